@@ -186,6 +186,7 @@ fn full_scene() -> Scene {
             camera(Projection::Parallel { height: 0.7 }, None),
             camera(Projection::Perspective { view_angle: 0.1 }, Some((0.1, 1e9))),
         ],
+        own_camera: None,
         ambient: [0.1, 0.2, 0.3],
         ups: Vec::new(),
         warnings: Vec::new(),

@@ -173,11 +173,11 @@ counters! {
         reordered: count,
         /// Painter: cycles that were cut.
         cycles: count,
-        /// Weiler–Atherton: polygons clipped against another.
+        /// Weiler–Atherton: polygons that another cut in two.
         clipped_polygons: count,
         /// Weiler–Atherton: lists looked at again because the preliminary order erred.
         recursions: count,
-        /// Weiler–Atherton: visible polygons, tile by tile.
+        /// Weiler–Atherton: visible polygons.
         visible_polygons: count,
         /// List priority: samples drawn over by something later in the list.
         overdrawn: count,

@@ -9,11 +9,13 @@
 mod canvas;
 pub mod legend;
 pub mod numbered;
+pub mod outlines;
 pub mod picture;
 pub mod quadtree;
 pub mod replay;
 pub mod tables;
 
+use outlines::{Contour, CutPolygon, SortedPolygon};
 use serde::Serialize;
 use tables::{Bucket, Crossing, TablePolygon};
 
@@ -26,6 +28,11 @@ pub trait Observer: std::fmt::Debug + Send + Sync {
     fn watches(&self, pixel: [u32; 2]) -> bool {
         let _ = pixel;
         false
+    }
+
+    /// Whether it reads [`Step::FirstOrder`] and [`Step::Clip`], whose outlines grow with the square of the scene.
+    fn reads_clips(&self) -> bool {
+        true
     }
 }
 
@@ -361,25 +368,46 @@ pub enum Step {
         /// Its corners.
         outline: Vec<[f32; 2]>,
     },
-    /// Weiler–Atherton: a list was clipped with a polygon.
+    /// Weiler–Atherton: the polygons in their first order, the one with the nearest point first.
+    FirstOrder {
+        /// The polygons.
+        polygons: Vec<SortedPolygon>,
+    },
+    /// Weiler–Atherton: a list was clipped with a polygon. The inside list is treated before the outside list: clips of the
+    /// inside list follow, then that of the outside list.
     Clip {
-        /// Left and top of the tile.
-        tile: [u32; 2],
-        /// The facet of the clipping polygon.
+        /// The clip's own number, from 0 in the order of steps.
+        clip: u32,
+        /// The clip whose inside list was clipped; none for the first list.
+        within: Option<u32>,
+        /// First facet of the clipping polygon.
         facet: u32,
-        /// Parts inside that it does not hide, its own among them.
-        inside: u32,
-        /// Parts outside.
-        outside: u32,
-        /// The preliminary order erred: the inside is treated again.
+        /// The clipping polygon's corners in order, clockwise, as it came in, pixels.
+        outline: Vec<[f32; 2]>,
+        /// Polygons of the list with an area inside the clipping polygon, in the list's order, the clipping polygon among
+        /// them.
+        cut: Vec<CutPolygon>,
+        /// First facets of the inside list, in order: what is inside and not hidden.
+        inside: Vec<u32>,
+        /// First facets of the outside list, in order, at most [`MAX_LISTED`](outlines::MAX_LISTED) of them.
+        outside: Vec<u32>,
+        /// How many polygons the outside list has.
+        outside_count: u32,
+        /// First facets of polygons with a part that was removed, since the clipping polygon hides it.
+        hidden: Vec<u32>,
+        /// The preliminary order erred: the inside list is clipped again.
         again: bool,
     },
     /// Weiler–Atherton: a visible polygon.
     Visible {
-        /// The facet.
+        /// Its first facet.
         facet: u32,
-        /// The edges of its outline and its holes.
-        edges: Vec<[[f32; 2]; 2]>,
+        /// The clip in whose inside list it was left.
+        clip: Option<u32>,
+        /// Square pixels.
+        area: f64,
+        /// Its outlines, those around it before its holes.
+        contours: Vec<Contour>,
     },
 }
 
@@ -402,9 +430,13 @@ impl Step {
                 let edges = outline.iter().zip(outline.iter().cycle().skip(1));
                 holds(edges.map(|(a, b)| [*a, *b]), [x, y])
             }
-            Self::Visible { edges, .. } => holds(edges.iter().copied(), [x, y]),
+            Self::Visible { contours, .. } => holds(contours.iter().flat_map(Contour::edges), [x, y]),
+            Self::Clip { outline, .. } => {
+                let edges = outline.iter().zip(outline.iter().cycle().skip(1));
+                holds(edges.map(|(a, b)| [*a, *b]), [x, y])
+            }
             Self::TreeSplit { .. } | Self::Moved { .. } | Self::Circle { .. } | Self::Split { .. } => false,
-            Self::Clip { .. } | Self::Space { .. } | Self::EdgeTable { .. } | Self::Box { .. } => false,
+            Self::FirstOrder { .. } | Self::Space { .. } | Self::EdgeTable { .. } | Self::Box { .. } => false,
             Self::Clipped { .. } => false,
         }
     }
@@ -461,7 +493,19 @@ impl Step {
             Self::Piece { order, facet, cuts, .. } => {
                 format!("place {order} in the list, from the back: facet {facet}, cut {cuts} time(s)")
             }
-            Self::Visible { facet, edges } => format!("a visible polygon of facet {facet}, with {} edges", edges.len()),
+            Self::Clip { clip, within, facet, inside, outside_count, hidden, again, .. } => {
+                let within = within.map_or(String::new(), |outer| format!(" of the inside of clip {outer}"));
+                let order = if *again { ", which is clipped again" } else { "" };
+                format!(
+                    "clip {clip}{within} with facet {facet}: inside {}{order}; {outside_count} outside, {} hidden",
+                    few(inside),
+                    hidden.len()
+                )
+            }
+            Self::Visible { facet, contours, .. } => {
+                let edges: usize = contours.iter().map(|contour| contour.corners.len()).sum();
+                format!("a visible polygon of facet {facet}, with {edges} edges")
+            }
             other => format!("{other:?}"),
         }
     }
@@ -488,11 +532,17 @@ impl Step {
             Self::Rays { through, .. } => 24 * through.len(),
             Self::Circle { facets } => of(facets),
             Self::Piece { outline, .. } => of(outline),
-            Self::Visible { edges, .. } => of(edges),
-            Self::Compared { .. } | Self::Space { .. } | Self::RayMeets { .. } | Self::RayGoesOn { .. } => 0,
-            Self::TreeSplit { .. } | Self::Moved { .. } | Self::Split { .. } | Self::Clip { .. } | Self::Box { .. } => {
-                0
+            Self::FirstOrder { polygons } => {
+                of(polygons) + polygons.iter().map(|p| contours_bytes(&p.contours)).sum::<usize>()
             }
+            Self::Clip { outline, cut, inside, outside, hidden, .. } => {
+                let parts = |c: &CutPolygon| [&c.before, &c.inside, &c.hidden, &c.outside].map(|c| contours_bytes(c));
+                let cuts: usize = cut.iter().flat_map(parts).sum();
+                of(outline) + of(cut) + cuts + of(inside) + of(outside) + of(hidden)
+            }
+            Self::Visible { contours, .. } => contours_bytes(contours),
+            Self::Compared { .. } | Self::Space { .. } | Self::RayMeets { .. } | Self::RayGoesOn { .. } => 0,
+            Self::TreeSplit { .. } | Self::Moved { .. } | Self::Split { .. } | Self::Box { .. } => 0,
         };
         (size_of::<Self>() + listed) as u64
     }
@@ -512,6 +562,11 @@ impl Step {
         let told = if told.is_empty() { String::new() } else { format!(" ({})", told.join("; ")) };
         format!("{left} polygon(s) left{told}")
     }
+}
+
+/// Bytes of outlines in memory.
+fn contours_bytes(contours: &[Contour]) -> usize {
+    size_of_val(contours) + contours.iter().map(|contour| size_of_val(contour.corners.as_slice())).sum::<usize>()
 }
 
 /// The first few of some facets.

@@ -96,14 +96,15 @@ fn place(step: &Step) -> [u64; 3] {
         Step::Box { .. } => [0, 0, 0],
         Step::Clipped { facet, .. } => [1, u64::from(*facet), 0],
         Step::Space { .. } | Step::TreeSplit { .. } => [2, 0, 0],
-        Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } | Step::Clip { .. } => [3, 0, 0],
+        Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => [3, 0, 0],
+        Step::FirstOrder { .. } | Step::Clip { .. } | Step::Visible { .. } => [3, 0, 0],
         Step::Compared { facet, .. } => [3, u64::from(*facet), 0],
         Step::Drawn { facet, .. } => [3, u64::from(*facet), 1],
         Step::Window { path, .. } => [3, path_key(path), 0],
         Step::EdgeTable { rows, .. } => [3, u64::from(rows[0]), 0],
         Step::Line { row, .. } => [3, u64::from(*row), 1],
         Step::Rays { pixels: [x, y, ..], .. } => row_by_row(3, [*x, *y]),
-        Step::Piece { .. } | Step::Visible { .. } => [4, 0, 0],
+        Step::Piece { .. } => [4, 0, 0],
         Step::RayMeets { pixel, .. } | Step::RayGoesOn { pixel, .. } => row_by_row(5, *pixel),
     }
 }
@@ -158,6 +159,9 @@ struct Parents {
     boxes: Vec<([u32; 2], Option<u32>, u32)>,
     /// Boxes round instances that came before.
     boxes_of_instances: Vec<([u32; 2], Option<u32>, u32)>,
+    /// The polygons in their first order, and clips by their own numbers.
+    first_order: Option<u32>,
+    clips: HashMap<u32, u32>,
     /// The facet that was clipped last.
     clipped: Option<(u32, u32)>,
     /// The last table of edges, and the last step about what rays go through.
@@ -183,6 +187,15 @@ impl Parents {
                 let above = path.char_indices().next_back().map(|(at, _)| &path[..at]);
                 above.and_then(|above| self.windows.get(above).copied())
             }
+            Step::FirstOrder { .. } => {
+                self.first_order = Some(number);
+                None
+            }
+            Step::Clip { clip, within, .. } => {
+                self.clips.insert(*clip, number);
+                within.map_or(self.first_order, |outer| self.clips.get(&outer).copied())
+            }
+            Step::Visible { clip, .. } => clip.map_or(self.first_order, |clip| self.clips.get(&clip).copied()),
             Step::EdgeTable { .. } => {
                 self.edge_table = Some(number);
                 None

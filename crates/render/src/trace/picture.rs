@@ -11,6 +11,7 @@
 //! depend on the order of threads.
 
 use super::canvas::Canvas;
+use super::outlines::Contour;
 use super::{Observer, Step, WindowVerdict};
 use std::sync::Mutex;
 use vitral_frame::Plane;
@@ -124,6 +125,10 @@ impl Recorder {
 }
 
 impl Observer for Recorder {
+    fn reads_clips(&self) -> bool {
+        false
+    }
+
     fn step(&self, step: &Step) {
         let planes = &mut *self.planes.lock().expect("no thread panics while it draws steps");
         match step {
@@ -151,13 +156,13 @@ impl Observer for Recorder {
                     }
                 }
             }
-            Step::Visible { edges, .. } => {
-                for edge in edges {
-                    self.canvas.line(*edge, |at| planes.mark[at] = 1);
+            Step::Visible { contours, .. } => {
+                for edge in contours.iter().flat_map(Contour::edges) {
+                    self.canvas.line(edge, |at| planes.mark[at] = 1);
                 }
             }
             Step::TreeSplit { .. } | Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => {}
-            Step::Clip { .. } | Step::Space { .. } | Step::EdgeTable { .. } => {}
+            Step::FirstOrder { .. } | Step::Clip { .. } | Step::Space { .. } | Step::EdgeTable { .. } => {}
             Step::RayMeets { .. } | Step::RayGoesOn { .. } => {}
         }
     }

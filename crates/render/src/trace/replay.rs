@@ -9,6 +9,7 @@
 
 use super::canvas::Canvas;
 use super::numbered::NumberedStep;
+use super::outlines::Contour;
 use super::{Step, WindowVerdict};
 use vitral_frame::Plane;
 
@@ -108,7 +109,10 @@ impl<'w> Replay<'w> {
             Step::Line { row, .. } => rectangle(canvas, [0, *row, canvas.width, 1], |at| shown[at] = Shown::Final),
             Step::Drawn { stays, .. } => runs(canvas, stays, |at| shown[at] = overwritten),
             Step::Piece { outline, .. } => canvas.fill(outline, |at| shown[at] = overwritten),
-            Step::Visible { edges, .. } => canvas.fill_edges(edges, |at| shown[at] = Shown::Final),
+            Step::Visible { contours, .. } => {
+                let edges: Vec<_> = contours.iter().flat_map(Contour::edges).collect();
+                canvas.fill_edges(&edges, |at| shown[at] = Shown::Final);
+            }
             _ => {}
         }
     }
@@ -138,11 +142,13 @@ impl<'w> Replay<'w> {
             Step::Compared { pixel: [x, y], .. } | Step::RayMeets { pixel: [x, y], .. } => {
                 sides(canvas, [x.saturating_sub(2), y.saturating_sub(2), 5, 5], mark);
             }
-            Step::Piece { outline, .. } => {
+            Step::Piece { outline, .. } | Step::Clip { outline, .. } => {
                 let edges = outline.iter().zip(outline.iter().cycle().skip(1));
                 edges.for_each(|(a, b)| canvas.line([*a, *b], &mut mark));
             }
-            Step::Visible { edges, .. } => edges.iter().for_each(|edge| canvas.line(*edge, &mut mark)),
+            Step::Visible { contours, .. } => {
+                contours.iter().flat_map(Contour::edges).for_each(|edge| canvas.line(edge, &mut mark));
+            }
             _ => {}
         }
     }

@@ -82,11 +82,6 @@ impl<'v, 'a> Facets<'v, 'a> {
         rows[row].iter().map(|&[batch, index]| &self.opaque[batch as usize].setups()[index as usize])
     }
 
-    /// The opaque triangles that touch a tile.
-    pub(super) fn in_tile(&self, tile: usize) -> impl Iterator<Item = &Setup> {
-        self.opaque.iter().flat_map(move |batch| batch.tile(tile))
-    }
-
     /// All opaque triangles, those of a face one after the other.
     pub(super) fn opaque(&self) -> impl Iterator<Item = &Setup> {
         self.opaque.iter().flat_map(Batch::setups)

@@ -149,6 +149,12 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
         self.plane.facet
     }
 
+    /// Its lowest and highest facet.
+    pub(super) fn facets(self) -> [u32; 2] {
+        let own = self.plane.facet;
+        self.triangles.iter().fold([own; 2], |[low, high], t| [low.min(t.facet), high.max(t.facet)])
+    }
+
     /// Its plane, with the depths of all corners as the range; the corners in it are those of its first triangle alone.
     pub(super) fn plane(self) -> &'p Setup {
         self.plane

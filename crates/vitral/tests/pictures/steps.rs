@@ -6,9 +6,7 @@ use std::sync::{Arc, Mutex};
 use vitral::internals::render::trace::numbered::NumberedStep;
 use vitral::internals::render::trace::replay::Replay;
 use vitral::internals::render::trace::{Observer, SpanVerdict, Step};
-use vitral::{
-    Camera, Material, Mesh, Part, Projection, Renderer, Visibility, execution, load_builtin, load_bytes,
-};
+use vitral::{Camera, Material, Mesh, Part, Projection, Renderer, Visibility, execution, load_builtin, load_bytes};
 
 #[derive(Debug, Default)]
 struct Steps(Mutex<Vec<Step>>);

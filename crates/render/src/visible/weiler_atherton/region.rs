@@ -3,393 +3,589 @@
 //! Weiler and Atherton walk along the outline of one polygon until it meets the other, and turn there. What makes this
 //! hard are the degenerate cases: corners on edges, edges along edges, and rounded crossings that are not on either.
 //! Here a region is the set of its boundary's edges, each directed with the region on the positive side of its line.
-//! Lines have whole coefficients; the ends of an edge are crossings of lines, kept as fractions of whole numbers, so that
-//! the side of a line on which a crossing lies is known exactly. Clipping by a convex polygon then needs no cases:
+//! Lines have whole coefficients, and points are crossings of lines, compared exactly (`line.rs`). Clipping by a convex polygon
+//! then needs no cases:
 //!
 //! - An edge of the region is cut where it enters and leaves the clipping polygon: the middle bounds the inside, the rest
 //!   the outside. What lies along an edge of the clipping polygon is dropped.
 //! - Along an edge of the clipping polygon, the region is met in intervals. Infinitely little to the inner side of the
 //!   edge, the crossings with the region's boundary begin and end the intervals that bound the inside; infinitely little
-//!   to the outer side, those that bound the outside, turned round.
+//!   to the outer side, those that bound the outside, turned round. Where an edge is crossed nowhere, one of its ends is looked at.
 //!
 //! Holes need no bookkeeping: where a polygon lies in the middle of a region, its edges, turned round, are the hole.
-//! A point belongs to the region if a ray from it crosses the boundary an odd number of times. Filling
-//! samples and clipping need no more; only the tests walk along outlines.
+//! A point belongs to the region if a ray from it crosses the boundary an odd number of times. Outlines are walked when they
+//! are asked for. An edge that does not touch the clipping polygon's box stays as it is and is not looked at, in a region
+//! that has many.
 //!
-//! In:   regions and convex polygons, 1/256 pixel from the corner of a window. Out: the part inside and the part outside.
-//! Cost: edges of the region times edges of the polygon. Numbers stay below 2^115: ends are crossings of two of the lines
-//! that came in, never of crossings.
-//! Source: [Weiler & Atherton 1977], [Weiler 1980]; points as crossings after [Bernstein & Fussell 2009].
+//! In:   regions and convex polygons, 1/256 pixel. Out: the part inside and the part outside.
+//! Cost: edges of the region near the polygon, times edges of the polygon.
+//! Source: [Weiler & Atherton 1977], [Weiler 1980].
 
+use super::edge_index::EdgeIndex;
+use super::line::{Edge, Line, Point, ROUNDING};
 use std::cmp::Ordering;
-use vitral_raster::{SUBPIXEL, SamplePattern, TILE};
+use vitral_raster::SUBPIXEL;
 
-/// `a x + b y + c`, positive on the inner side. The edge runs in the direction `(b, -a)`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Line {
-    pub(super) a: i64,
-    pub(super) b: i64,
-    pub(super) c: i64,
-}
+/// Edges from which on a region has an index of them.
+const INDEX_THRESHOLD: usize = 64;
 
-/// The point `(x / w, y / w)`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Point {
-    x: i128,
-    y: i128,
-    /// Positive.
-    w: i128,
-    /// About where it is.
-    pub(super) about: [f64; 2],
-}
-
-/// Beyond this, in 1/256 pixel, the rounding of [`Point::about`] cannot matter.
-const ROUNDING: f64 = 1e-6;
-
-impl Point {
-    /// A point of the grid.
-    fn whole([x, y]: [i64; 2]) -> Self {
-        Self { x: x.into(), y: y.into(), w: 1, about: [x as f64, y as f64] }
-    }
-
-    /// Compares x (`axis` 0) or y.
-    fn compare(&self, other: &Self, axis: usize) -> Ordering {
-        let gap = self.about[axis] - other.about[axis];
-        if gap.abs() > ROUNDING {
-            return gap.total_cmp(&0.0);
-        }
-        let [one, two] = [self, other].map(|p| if axis == 0 { p.x } else { p.y });
-        (one * other.w).cmp(&(two * self.w))
-    }
-
-    /// Whether it lies below the line `y`.
-    fn is_below(&self, y: i32) -> bool {
-        let gap = self.about[1] - f64::from(y);
-        if gap.abs() > ROUNDING { gap > 0.0 } else { self.y > i128::from(y) * self.w }
-    }
-}
-
-impl Line {
-    /// The line through two points of the grid.
-    fn through(from: [i64; 2], to: [i64; 2]) -> Self {
-        let [dx, dy] = [0, 1].map(|k| to[k] - from[k]);
-        Self { a: -dy, b: dx, c: dy * from[0] - dx * from[1] }
-    }
-
-    fn reversed(self) -> Self {
-        Self { a: -self.a, b: -self.b, c: -self.c }
-    }
-
-    /// On which side a point lies.
-    fn side(&self, p: &Point) -> Ordering {
-        let (a, b) = (self.a as f64, self.b as f64);
-        let value = a * p.about[0] + b * p.about[1] + self.c as f64;
-        // Rounding of the point, and of the sum, whose parts may be large.
-        let slack = (a.abs() + b.abs()) * ROUNDING + (self.c as f64).abs() * 1e-14;
-        if value.abs() > slack {
-            return value.total_cmp(&0.0);
-        }
-        (i128::from(self.a) * p.x + i128::from(self.b) * p.y + i128::from(self.c) * p.w).cmp(&0)
-    }
-
-    /// Where two lines that are not parallel cross.
-    fn crossing(&self, other: &Self) -> Point {
-        let [a, b, c] = [self.a, self.b, self.c].map(i128::from);
-        let [d, e, f] = [other.a, other.b, other.c].map(i128::from);
-        let (x, y, w) = (b * f - e * c, c * d - f * a, a * e - d * b);
-        let (x, y, w) = if w < 0 { (-x, -y, -w) } else { (x, y, w) };
-        Point { x, y, w, about: [x as f64 / w as f64, y as f64 / w as f64] }
-    }
-
-    /// Which of two points on the line comes first.
-    fn compare(&self, one: &Point, two: &Point) -> Ordering {
-        let (axis, forwards) = if self.b.abs() >= self.a.abs() { (0, self.b > 0) } else { (1, self.a < 0) };
-        let order = one.compare(two, axis);
-        if forwards { order } else { order.reverse() }
-    }
-}
-
-/// A piece of a boundary.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
-    line: Line,
-    pub(super) ends: [Point; 2],
-}
-
-impl Edge {
-    fn reversed(self) -> Self {
-        Self { line: self.line.reversed(), ends: [self.ends[1], self.ends[0]] }
-    }
-}
-
-/// A convex polygon to clip with: the lines along its edges, and where each begins and ends.
+/// A convex polygon to clip with: its corners, and the line from each to the next, positive inside. A half-plane has no corners.
 #[derive(Clone, Debug)]
 pub(super) struct Convex {
-    sides: Vec<(Line, Option<[Point; 2]>)>,
+    lines: Vec<Line>,
+    corners: Vec<[i32; 2]>,
     /// Smallest x and y, largest x and y.
-    bounds: [f64; 4],
+    pub(super) bounds: [f64; 4],
 }
 
 impl Convex {
-    /// A polygon of grid points that run so that the inner side is positive.
-    pub(super) fn polygon(corners: &[[i64; 2]]) -> Self {
-        let region = Region::polygon(corners);
-        Self { sides: region.edges.iter().map(|e| (e.line, Some(e.ends))).collect(), bounds: region.bounds() }
+    /// A polygon of grid points that run so that the inner side is positive. Corners on a straight line are left out.
+    pub(super) fn polygon(outline: &[[i32; 2]]) -> Self {
+        let count = outline.len();
+        let turns = |i: usize| {
+            let [before, here, after] = [count - 1, 0, 1].map(|k| outline[(i + k) % count]);
+            Line::through(before, here).cross(&Line::through(here, after)) != 0
+        };
+        let corners: Vec<_> = (0..count).filter(|&i| turns(i)).map(|i| outline[i]).collect();
+        let next = |i: usize| corners[(i + 1) % corners.len()];
+        let lines = (0..corners.len()).map(|i| Line::through(corners[i], next(i))).collect();
+        let bounds = bounds(corners.iter().map(|c| c.map(f64::from)));
+        Self { lines, corners, bounds }
     }
 
     /// The positive side of a line.
     pub(super) fn half_plane(line: Line) -> Self {
         let far = f64::INFINITY;
-        Self { sides: vec![(line, None)], bounds: [-far, -far, far, far] }
+        Self { lines: vec![line], corners: Vec::new(), bounds: [-far, -far, far, far] }
     }
 
-    fn touches(&self, [x0, y0, x1, y1]: [f64; 4]) -> bool {
-        let [left, top, right, bottom] = self.bounds;
-        x0 < right + ROUNDING && left < x1 + ROUNDING && y0 < bottom + ROUNDING && top < y1 + ROUNDING
+    /// Its corners, 1/256 pixel.
+    pub(super) fn corners(&self) -> &[[i32; 2]] {
+        &self.corners
     }
+
+    /// Where a side begins and ends, if it does.
+    fn ends(&self, side: usize) -> Option<[Point; 2]> {
+        let count = self.corners.len();
+        let corner = |i: usize| Point::corner(self.corners[i], [self.lines[(i + count - 1) % count], self.lines[i]]);
+        (count > 0).then(|| [corner(side), corner((side + 1) % count)])
+    }
+
+    /// Whether it may have an area in common with something in a box.
+    pub(super) fn touches(&self, around: [f64; 4]) -> bool {
+        overlap(self.bounds, around)
+    }
+
+    /// Whether a box is inside.
+    fn holds_box(&self, [x0, y0, x1, y1]: [f64; 4]) -> bool {
+        let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+        self.lines.iter().all(|line| corners.iter().all(|&c| line.about(c) > line.slack()))
+    }
+
+    /// A box round what this and another polygon have in common, a little too large.
+    fn common_box(&self, other: &Self) -> Option<[f64; 4]> {
+        let mut outline: Vec<_> = self.corners.iter().map(|c| c.map(f64::from)).collect();
+        let mut clipped = Vec::with_capacity(outline.len() + 1);
+        for line in &other.lines {
+            clipped.clear();
+            let slack = line.slack();
+            for (i, &p) in outline.iter().enumerate() {
+                let q = outline[(i + 1) % outline.len()];
+                let [here, there] = [p, q].map(|p| line.about(p) + slack);
+                if here >= 0.0 {
+                    clipped.push(p);
+                }
+                if (here >= 0.0) != (there >= 0.0) {
+                    let t = here / (here - there);
+                    clipped.push([0, 1].map(|k| p[k] + (q[k] - p[k]) * t));
+                }
+            }
+            std::mem::swap(&mut outline, &mut clipped);
+            if outline.is_empty() {
+                return None;
+            }
+        }
+        let [x0, y0, x1, y1] = bounds(outline.into_iter());
+        Some([x0 - 1.0, y0 - 1.0, x1 + 1.0, y1 + 1.0])
+    }
+}
+
+/// Smallest x and y, largest x and y.
+fn bounds(points: impl Iterator<Item = [f64; 2]>) -> [f64; 4] {
+    let empty = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+    points.fold(empty, |b, [x, y]| [b[0].min(x), b[1].min(y), b[2].max(x), b[3].max(y)])
+}
+
+/// Whether two boxes may have an area in common.
+pub(super) fn overlap(a: [f64; 4], b: [f64; 4]) -> bool {
+    (0..2).all(|k| a[k] < b[k + 2] + ROUNDING && b[k] < a[k + 2] + ROUNDING)
 }
 
 /// A part of the screen.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Region {
-    pub(super) edges: Vec<Edge>,
+    /// Those that the index has removed among them.
+    edges: Vec<Edge>,
+    index: Option<Box<EdgeIndex>>,
+    /// Smallest x and y, largest x and y, or a little more.
+    bounds: [f64; 4],
 }
 
 /// What a polygon leaves of a region.
+#[derive(Debug)]
 pub(super) enum Clipped {
-    /// All is inside.
+    /// All is inside. The region is as it was.
     Inside,
-    /// All is outside.
+    /// All is outside. The region is as it was.
     Outside,
-    /// The parts inside and outside; either may be empty.
-    Both(Region, Region),
+    /// This is inside; the region has become the part outside.
+    Both(Region),
+}
+
+/// An outline of a region.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Outline {
+    /// Whether the region lies around it.
+    pub(super) is_hole: bool,
+    /// 1/256 pixel. Clockwise on the screen, a hole the other way round.
+    pub(super) corners: Vec<[f64; 2]>,
+}
+
+/// An edge as filling needs it: it is crossed at whole `y` of this range, 1/256 pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FillEdge {
+    pub(super) line: Line,
+    /// First, and the one behind the last.
+    pub(super) y: [i32; 2],
+}
+
+/// Memory that clips have in common.
+#[derive(Debug, Default)]
+pub(super) struct Workspace {
+    /// Numbers of the edges near the polygon.
+    near: Vec<u32>,
+    /// On which side of the polygon's lines their ends lie, line by line.
+    sides: Vec<[Ordering; 2]>,
+    /// Where a line enters (1) or leaves (-1) the region.
+    crossings: Vec<(Point, i32)>,
+    /// Edges that the polygon cuts or holds.
+    removed: Vec<u32>,
+    inside: Vec<Edge>,
+    outside: Vec<Edge>,
 }
 
 impl Region {
-    /// A polygon of grid points that run so that the inner side is positive.
-    pub(super) fn polygon(corners: &[[i64; 2]]) -> Self {
-        let next = |i: usize| corners[(i + 1) % corners.len()];
-        let edge = |i: usize| Edge {
-            line: Line::through(corners[i], next(i)),
-            ends: [Point::whole(corners[i]), Point::whole(next(i))],
-        };
-        Self { edges: (0..corners.len()).map(edge).collect() }
+    /// A convex polygon.
+    pub(super) fn polygon(polygon: &Convex) -> Self {
+        let side = |i: usize| polygon.ends(i).map(|ends| Edge::new(polygon.lines[i], ends));
+        Self { edges: (0..polygon.lines.len()).filter_map(side).collect(), index: None, bounds: polygon.bounds }
+    }
+
+    fn of(edges: &[Edge]) -> Self {
+        let bounds = bounds(edges.iter().flat_map(|e| e.about));
+        Self { edges: edges.to_vec(), index: None, bounds }
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.edges.is_empty()
+        self.edge_count() == 0
     }
 
-    /// Smallest x and y, largest x and y.
+    fn edge_count(&self) -> usize {
+        self.index.as_ref().map_or(self.edges.len(), |index| index.len())
+    }
+
+    /// Smallest x and y, largest x and y of a box around it.
     pub(super) fn bounds(&self) -> [f64; 4] {
-        let empty = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-        self.edges.iter().fold(empty, |b, e| {
-            let [x, y] = e.ends[0].about;
-            [b[0].min(x), b[1].min(y), b[2].max(x), b[3].max(y)]
-        })
+        self.bounds
     }
 
-    /// Clips by a convex polygon. `bounds` are the region's.
-    pub(super) fn clip(&self, bounds: [f64; 4], polygon: &Convex) -> Clipped {
-        if !polygon.touches(bounds) {
+    /// Its boundary, in no order.
+    pub(super) fn edges(&self) -> impl Iterator<Item = &Edge> {
+        let index = self.index.as_deref();
+        let is_there = move |i: usize| index.is_none_or(|index| index.has(i));
+        self.edges.iter().enumerate().filter(move |(i, _)| is_there(*i)).map(|(_, edge)| edge)
+    }
+
+    /// Bytes in memory, about.
+    pub(super) fn bytes(&self) -> usize {
+        self.edges.capacity() * size_of::<Edge>() + self.index.as_ref().map_or(0, |index| index.bytes())
+    }
+
+    /// Clips by a convex polygon. The region is a part of `whole`.
+    pub(super) fn clip(&mut self, polygon: &Convex, whole: &Convex, work: &mut Workspace) -> Clipped {
+        if !polygon.touches(self.bounds) {
             return Clipped::Outside;
         }
-        // Trivial cases: all corners inside, or all beyond one side.
-        let mut within = true;
-        for (line, _) in &polygon.sides {
-            let (mut front, mut back) = (false, false);
-            for edge in &self.edges {
-                match line.side(&edge.ends[0]) {
-                    Ordering::Greater => front = true,
-                    Ordering::Less => back = true,
-                    Ordering::Equal => {}
-                }
+        work.near.clear();
+        if self.index.is_some() || self.edges.len() > INDEX_THRESHOLD {
+            // Take the edges near the polygon.
+            if polygon.holds_box(self.bounds) {
+                return Clipped::Inside;
             }
-            if !front {
-                return Clipped::Outside;
+            let Some(common) = whole.common_box(polygon) else { return Clipped::Outside };
+            if self.index.as_ref().is_none_or(|index| index.is_stale()) {
+                self.make_index();
             }
-            within &= !back;
+            if let Some(index) = &self.index {
+                index.near(&self.edges, common, &mut work.near);
+            }
+            self.find_sides(polygon, work);
+        } else {
+            // Take all. All may be inside, or beyond one side.
+            work.near.extend(0..self.edges.len() as u32);
+            if let Some(trivial) = self.find_sides(polygon, work) {
+                return trivial;
+            }
         }
-        if within {
-            return Clipped::Inside;
-        }
-        let (mut inside, mut outside) = (Self::default(), Self::default());
-        for edge in &self.edges {
-            cut_edge(edge, polygon, &mut inside, &mut outside);
-        }
-        for (line, ends) in &polygon.sides {
-            let bounding = |interval: [Point; 2]| {
-                let ends = ends.map_or(interval, |[from, to]| {
-                    let later = line.compare(&interval[0], &from) == Ordering::Less;
-                    let sooner = line.compare(&interval[1], &to) == Ordering::Greater;
-                    [if later { from } else { interval[0] }, if sooner { to } else { interval[1] }]
-                });
-                (line.compare(&ends[0], &ends[1]) == Ordering::Less).then_some(Edge { line: *line, ends })
-            };
-            inside.edges.extend(self.intervals(line, true).into_iter().filter_map(bounding));
-            let outer = self.intervals(line, false).into_iter().filter_map(bounding);
-            outside.edges.extend(outer.map(Edge::reversed));
-        }
-        Clipped::Both(inside, outside)
+        self.cut(polygon, work)
     }
 
-    /// Where the region is met infinitely little beside a line, on its inner or outer side: from where to where.
-    fn intervals(&self, line: &Line, inner: bool) -> Vec<[Point; 2]> {
-        let mut crossings = Vec::new();
-        for edge in &self.edges {
-            let sides = [line.side(&edge.ends[0]), line.side(&edge.ends[1])];
-            // Beside the line, the points on it are on the other side.
-            let [from, to] = sides.map(|s| if inner { s == Ordering::Greater } else { s != Ordering::Less });
-            if from != to {
-                crossings.push(match sides {
-                    [Ordering::Equal, _] => edge.ends[0],
-                    [_, Ordering::Equal] => edge.ends[1],
-                    _ => line.crossing(&edge.line),
+    /// Finds on which side of the polygon's lines the near edges' ends lie, and what follows if these are all edges.
+    fn find_sides(&self, polygon: &Convex, work: &mut Workspace) -> Option<Clipped> {
+        let is_all = self.index.is_none();
+        let mut within = true;
+        work.sides.clear();
+        for line in &polygon.lines {
+            let mut front = false;
+            for &i in &work.near {
+                let edge = &self.edges[i as usize];
+                let sides = [line.side(&edge.end(0)), line.side(&edge.end(1))];
+                front |= sides.contains(&Ordering::Greater);
+                within &= !sides.contains(&Ordering::Less);
+                work.sides.push(sides);
+            }
+            if is_all && !front {
+                return Some(Clipped::Outside);
+            }
+        }
+        (is_all && within).then_some(Clipped::Inside)
+    }
+
+    /// Cuts the near edges and finds the new ones.
+    fn cut(&mut self, polygon: &Convex, work: &mut Workspace) -> Clipped {
+        work.removed.clear();
+        work.inside.clear();
+        work.outside.clear();
+        let count = work.near.len();
+        for (at, &number) in work.near.iter().enumerate() {
+            let sides = work.sides.iter().skip(at).step_by(count.max(1));
+            let cut = EdgeCut::new(&self.edges[number as usize], polygon, sides);
+            if let Some([inside, before, behind]) = cut.into_parts() {
+                work.removed.push(number);
+                work.inside.extend(inside);
+                work.outside.extend(before.into_iter().chain(behind));
+            }
+        }
+        for side in 0..polygon.lines.len() {
+            let line = polygon.lines[side];
+            for inner in [true, false] {
+                self.intervals(polygon, side, inner, work, |ends, work| {
+                    let edge = Edge::new(line, ends);
+                    if inner { work.inside.push(edge) } else { work.outside.push(edge.reversed()) }
                 });
             }
         }
-        crossings.sort_by(|one, two| line.compare(one, two));
-        crossings.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
+        if work.inside.is_empty() {
+            return Clipped::Outside;
+        }
+        if work.outside.is_empty() && work.removed.len() == self.edge_count() {
+            return Clipped::Inside;
+        }
+        self.become_outside(work);
+        Clipped::Both(Self::of(&work.inside))
+    }
+
+    /// Takes the edges that were cut out, and the new ones in.
+    fn become_outside(&mut self, work: &Workspace) {
+        if let Some(index) = &mut self.index {
+            work.removed.iter().for_each(|&number| index.remove(number));
+            for edge in &work.outside {
+                index.push(edge);
+                self.edges.push(*edge);
+            }
+            return;
+        }
+        let mut removed = work.removed.iter().copied().peekable();
+        let mut number = 0;
+        self.edges.retain(|_| {
+            let goes = removed.next_if_eq(&number).is_some();
+            number += 1;
+            !goes
+        });
+        self.edges.extend(&work.outside);
+        self.bounds = bounds(self.edges.iter().flat_map(|e| e.about));
+    }
+
+    fn make_index(&mut self) {
+        self.edges = self.edges().copied().collect();
+        self.bounds = bounds(self.edges.iter().flat_map(|e| e.about));
+        self.index = Some(Box::new(EdgeIndex::new(&self.edges, self.bounds)));
+    }
+
+    /// Where the region is met infinitely little beside a side of a polygon, on its inner or outer side: from where to where.
+    fn intervals(
+        &self,
+        polygon: &Convex,
+        side: usize,
+        inner: bool,
+        work: &mut Workspace,
+        mut found: impl FnMut([Point; 2], &mut Workspace),
+    ) {
+        // Find the crossings, in order.
+        let (line, ends) = (polygon.lines[side], polygon.ends(side));
+        let count = work.near.len();
+        let mut crossings = std::mem::take(&mut work.crossings);
+        crossings.clear();
+        for (&number, &sides) in work.near.iter().zip(&work.sides[side * count..(side + 1) * count]) {
+            // Beside the line, the points on it are on the other side.
+            let [from, to] = sides.map(|s| if inner { s == Ordering::Greater } else { s != Ordering::Less });
+            if from == to {
+                continue;
+            }
+            let edge = &self.edges[number as usize];
+            let place = match sides {
+                [Ordering::Equal, _] => edge.end(0),
+                [_, Ordering::Equal] => edge.end(1),
+                _ => line.crossing(&edge.line),
+            };
+            let is_within = ends.is_none_or(|[first, last]| {
+                line.compare(&place, &first) == Ordering::Greater && line.compare(&place, &last) == Ordering::Less
+            });
+            if is_within {
+                crossings.push((place, if line.cross(&edge.line) < 0 { 1 } else { -1 }));
+            }
+        }
+        crossings.sort_by(|one, two| line.compare(&one.0, &two.0));
+
+        // Where parts of the region touch in a point, the line leaves one and enters the other.
+        crossings.dedup_by(|next, kept| {
+            let same = line.compare(&next.0, &kept.0) == Ordering::Equal;
+            kept.1 += if same { next.1 } else { 0 };
+            same
+        });
+        crossings.retain(|crossing| crossing.1 != 0);
+
+        let starts_within = match (crossings.first(), ends) {
+            (Some(first), _) => first.1 < 0,
+            (None, Some(_)) => self.holds_beside(polygon.corners[side], &line, inner),
+            (None, None) => false,
+        };
+        let mut from = ends.filter(|_| starts_within).map(|ends| ends[0]);
+        for &(place, change) in &crossings {
+            if change > 0 {
+                from = Some(place);
+            } else if let Some(from) = from.take() {
+                found([from, place], work);
+            }
+        }
+        if let (Some(from), Some(ends)) = (from, ends) {
+            found([from, ends[1]], work);
+        }
+        work.crossings = crossings;
+    }
+
+    /// Whether the region holds a place infinitely little farther than `corner` along a line, and still less beside it.
+    fn holds_beside(&self, corner: [i32; 2], line: &Line, inner: bool) -> bool {
+        let place = corner.map(f64::from);
+        let [x0, y0, x1, y1] = self.bounds;
+        if place[0] < x0 - 1.0 || place[1] < y0 - 1.0 || place[0] > x1 + 1.0 || place[1] > y1 + 1.0 {
+            return false;
+        }
+        let axis = self.index.as_ref().map_or(1, |index| index.axis);
+        let point = Point::corner(corner, [*line; 2]);
+        let along = [line.b, -line.a].map(i64::from);
+        let beside = [line.a, line.b].map(|v| if inner { i64::from(v) } else { -i64::from(v) });
+        let is_forwards = if along[axis] != 0 { along[axis] > 0 } else { beside[axis] > 0 };
+
+        // Count the edges that a ray along the other axis, to the lower side, crosses.
+        let comes_before = |edge: &Edge, end: usize| {
+            let gap = edge.about[end][axis] - place[axis];
+            if gap.abs() > ROUNDING {
+                return gap < 0.0;
+            }
+            match edge.end(end).compare(&point, axis) {
+                Ordering::Less => true,
+                Ordering::Equal => is_forwards,
+                Ordering::Greater => false,
+            }
+        };
+        let is_crossed = |edge: &Edge| {
+            if comes_before(edge, 0) == comes_before(edge, 1) {
+                return false;
+            }
+            let slopes = [edge.line.a, edge.line.b].map(i64::from);
+            let change = |way: [i64; 2]| slopes[0] * way[0] + slopes[1] * way[1];
+            let values = [Line::at(corner, &edge.line), change(along), change(beside)];
+            let value = values.into_iter().find(|v| *v != 0).unwrap_or(0);
+            (value > 0) == (slopes[1 - axis] > 0)
+        };
+        let crossed = match &self.index {
+            Some(index) => index.across(place[axis]).filter(|&i| is_crossed(&self.edges[i])).count(),
+            None => self.edges.iter().filter(|edge| is_crossed(edge)).count(),
+        };
+        crossed % 2 == 1
     }
 
     /// The area, in square pixels of 256 x 256.
-    #[cfg(test)]
     pub(super) fn area(&self) -> f64 {
         let doubled = |e: &Edge| {
-            let [[x0, y0], [x1, y1]] = e.ends.map(|p| p.about);
+            let [[x0, y0], [x1, y1]] = e.about;
             x0 * y1 - y0 * x1
         };
-        self.edges.iter().map(doubled).sum::<f64>() / 2.0 / f64::from(SUBPIXEL * SUBPIXEL)
+        self.edges().map(doubled).sum::<f64>() / 2.0 / f64::from(SUBPIXEL * SUBPIXEL)
     }
 
-    /// Turns the bits of the window's samples that lie in the region: `rows[sample * TILE + row]`, bit = column.
-    /// A sample on an edge counts as one a little to the right, and if that is on it too, a little below: this is the
-    /// rule of top and left edges.
-    pub(super) fn turn_samples(&self, pattern: &SamplePattern, rows: &mut [u64]) {
-        for edge in &self.edges {
-            let [top, bottom] = [0, 1].map(|axis| {
-                let [one, two] = edge.ends.map(|p| p.about[1]);
-                if axis == 0 { one.min(two) } else { one.max(two) }
-            });
-            let pixel = f64::from(SUBPIXEL);
-            let first = ((top - pixel) / pixel).floor().max(0.0) as usize;
-            let last = ((bottom + 1.0) / pixel).floor().min(TILE as f64 - 1.0);
-            for row in (first..TILE).take_while(|&r| r as f64 <= last) {
-                for s in 0..pattern.len() {
-                    let [x, y] = pattern.position(s);
-                    let y = row as i32 * SUBPIXEL + y;
-                    if edge.ends[0].is_below(y) != edge.ends[1].is_below(y) {
-                        rows[s * TILE + row] ^= right_of(&edge.line, y, x);
+    /// The edges as filling needs them.
+    pub(super) fn fill_edges(&self) -> impl Iterator<Item = FillEdge> {
+        self.edges().filter(|edge| edge.line.a != 0).filter_map(|edge| {
+            let [one, two] = [edge.end(0).y_up(), edge.end(1).y_up()];
+            (one != two).then(|| FillEdge { line: edge.line, y: [one.min(two), one.max(two)] })
+        })
+    }
+
+    /// The outlines, walked, those around the region before its holes. Where several edges leave a point, the walk takes the one
+    /// that turns most towards the region, so that outlines touch but do not cross.
+    pub(super) fn outlines(&self) -> Vec<Outline> {
+        // Sort the edges by where they begin.
+        let mut edges: Vec<(Point, Edge)> = self.edges().map(|edge| (edge.end(0), *edge)).collect();
+        edges.sort_by(|one, two| one.0.compare_both(&two.0));
+        let mut is_walked = vec![false; edges.len()];
+        let mut outlines = Vec::new();
+        for start in 0..edges.len() {
+            if is_walked[start] {
+                continue;
+            }
+            let (mut walk, mut at) = (vec![edges[start].1], start);
+            is_walked[start] = true;
+            loop {
+                let edge = edges[at].1;
+                let end = edge.end(1);
+                let first = edges.partition_point(|(begin, _)| begin.compare_both(&end) == Ordering::Less);
+                let leaving = (first..edges.len())
+                    .take_while(|&i| edges[i].0.compare_both(&end) == Ordering::Equal)
+                    .filter(|&i| !is_walked[i]);
+                let next = leaving.max_by(|&i, &j| turn(&edge, &edges[i].1).total_cmp(&turn(&edge, &edges[j].1)));
+                // A boundary is closed: the walk ends where it began.
+                let Some(next) = next.filter(|_| end.compare_both(&edges[start].0) != Ordering::Equal) else { break };
+                is_walked[next] = true;
+                walk.push(edges[next].1);
+                at = next;
+            }
+            outlines.push(outline(&walk));
+        }
+        outlines.sort_by_key(|outline| outline.is_hole);
+        outlines
+    }
+}
+
+/// How far an edge turns towards the region from another that ends where it begins, radians.
+fn turn(edge: &Edge, next: &Edge) -> f64 {
+    let [[dx, dy], [ex, ey]] = [edge, next].map(|e| [f64::from(e.line.b), -f64::from(e.line.a)]);
+    vitral_math::func::atan2(dx * ey - dy * ex, dx * ex + dy * ey)
+}
+
+/// The outline of edges that were walked. Edges along one line are one.
+fn outline(walk: &[Edge]) -> Outline {
+    let before = walk.iter().cycle().skip(walk.len() - 1);
+    let bends = walk.iter().zip(before).filter(|(edge, before)| turn(before, edge) != 0.0);
+    let corners: Vec<_> = bends.map(|(edge, _)| edge.about[0]).collect();
+    let doubled = |([x0, y0], [x1, y1]): (&[f64; 2], &[f64; 2])| x0 * y1 - y0 * x1;
+    let area: f64 = corners.iter().zip(corners.iter().cycle().skip(1)).map(doubled).sum();
+    Outline { is_hole: area < 0.0, corners }
+}
+
+/// An edge cut where it enters and leaves a polygon.
+struct EdgeCut {
+    edge: Edge,
+    /// From where to where it is within, or along a side.
+    ends: [Point; 2],
+    /// Whether these are not its own ends.
+    is_cut: [bool; 2],
+    is_along: bool,
+    is_outside: bool,
+}
+
+impl EdgeCut {
+    /// `sides`: on which side of the polygon's lines the edge's ends lie.
+    fn new<'s>(edge: &Edge, polygon: &Convex, sides: impl Iterator<Item = &'s [Ordering; 2]>) -> Self {
+        use Ordering::{Equal, Greater, Less};
+        let own = [edge.end(0), edge.end(1)];
+        let mut cut = Self { edge: *edge, ends: own, is_cut: [false; 2], is_along: false, is_outside: false };
+        for (line, sides) in polygon.lines.iter().zip(sides) {
+            match sides {
+                [Equal, Equal] => cut.is_along = true,
+                [Less | Equal, Less | Equal] => {
+                    cut.is_outside = true;
+                    return cut;
+                }
+                [Less, Greater] => {
+                    let enters = edge.line.crossing(line);
+                    if edge.line.compare(&enters, &cut.ends[0]) == Greater {
+                        (cut.ends[0], cut.is_cut[0]) = (enters, true);
                     }
                 }
-            }
-        }
-    }
-
-    /// The outlines, walked: the region lies on the positive side, so holes run the other way. Where several edges leave
-    /// a point, the walk takes the one that turns most towards the region, so that outlines touch but do not cross.
-    #[cfg(test)]
-    pub(super) fn contours(&self) -> Vec<Vec<[f64; 2]>> {
-        let same = |p: &Point, q: &Point| (0..2).all(|k| p.compare(q, k) == Ordering::Equal);
-        let direction = |e: &Edge| [e.line.b as f64, -e.line.a as f64];
-        let mut left: Vec<Edge> = self.edges.clone();
-        let mut contours = Vec::new();
-        while let Some(first) = left.pop() {
-            let (mut contour, mut edge) = (vec![first.ends[0].about], first);
-            while !same(&edge.ends[1], &first.ends[0]) {
-                let [dx, dy] = direction(&edge);
-                let turn = |e: &Edge| {
-                    let [ex, ey] = direction(e);
-                    vitral_math::func::atan2(dx * ey - dy * ex, dx * ex + dy * ey)
-                };
-                let leaving = (0..left.len()).filter(|&i| same(&left[i].ends[0], &edge.ends[1]));
-                let next = leaving.max_by(|&i, &j| turn(&left[i]).total_cmp(&turn(&left[j])));
-                edge = left.swap_remove(next.expect("boundaries are closed"));
-                contour.push(edge.ends[0].about);
-            }
-            contours.push(contour);
-        }
-        contours
-    }
-}
-
-/// The columns whose samples at `y` lie right of a line that is not horizontal; `x` is their place in the pixel.
-fn right_of(line: &Line, y: i32, x: i32) -> u64 {
-    let (a, rest) = (i128::from(line.a), i128::from(line.b) * i128::from(y) + i128::from(line.c));
-    let (a, rest) = if a < 0 { (-a, -rest) } else { (a, rest) };
-    // Right of it is where a x + rest is not negative.
-    let ceil = |n: i128, d: i128| -(-n).div_euclid(d);
-    let column = ceil(ceil(-rest, a) - i128::from(x), SUBPIXEL.into());
-    match column {
-        ..=0 => u64::MAX,
-        1..64 => u64::MAX << column,
-        _ => 0,
-    }
-}
-
-/// Hands the part of an edge within a polygon to `inside`, if it is not along the polygon's own, and the rest to `outside`.
-fn cut_edge(edge: &Edge, polygon: &Convex, inside: &mut Region, outside: &mut Region) {
-    let [mut from, mut to] = edge.ends;
-    let (mut along, mut cut) = (false, [false; 2]);
-    for (line, _) in &polygon.sides {
-        use Ordering::{Equal, Greater, Less};
-        match edge.ends.map(|p| line.side(&p)) {
-            [Equal, Equal] => along = true,
-            [Less | Equal, Less | Equal] => return outside.edges.push(*edge),
-            [Less, Greater] => {
-                let enters = edge.line.crossing(line);
-                if edge.line.compare(&enters, &from) == Greater {
-                    (from, cut[0]) = (enters, true);
+                [Greater, Less] => {
+                    let leaves = edge.line.crossing(line);
+                    if edge.line.compare(&leaves, &cut.ends[1]) == Less {
+                        (cut.ends[1], cut.is_cut[1]) = (leaves, true);
+                    }
                 }
+                _ => {}
             }
-            [Greater, Less] => {
-                let leaves = edge.line.crossing(line);
-                if edge.line.compare(&leaves, &to) == Less {
-                    (to, cut[1]) = (leaves, true);
-                }
-            }
-            _ => {}
         }
+        cut.is_outside = edge.line.compare(&cut.ends[0], &cut.ends[1]) != Less;
+        cut
     }
-    if edge.line.compare(&from, &to) != Ordering::Less {
-        return outside.edges.push(*edge);
-    }
-    if cut[0] {
-        outside.edges.push(Edge { ends: [edge.ends[0], from], ..*edge });
-    }
-    if cut[1] {
-        outside.edges.push(Edge { ends: [to, edge.ends[1]], ..*edge });
-    }
-    if !along {
-        inside.edges.push(Edge { ends: [from, to], ..*edge });
+
+    /// The part within the polygon, if it is not along one of its sides, and those before and behind it; `None` if all is
+    /// outside.
+    fn into_parts(self) -> Option<[Option<Edge>; 3]> {
+        let Self { edge, ends, is_cut, is_along, is_outside } = self;
+        let part = |ends: [Point; 2]| Edge::new(edge.line, ends);
+        (!is_outside).then(|| {
+            [
+                (!is_along).then(|| part(ends)),
+                is_cut[0].then(|| part([edge.end(0), ends[0]])),
+                is_cut[1].then(|| part([ends[1], edge.end(1)])),
+            ]
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::fill::first_right;
     use super::*;
+    use vitral_raster::SamplePattern;
 
     /// In pixels; corners run clockwise as one looks at the screen.
-    fn grid(corners: &[[i64; 2]]) -> Vec<[i64; 2]> {
-        corners.iter().map(|c| c.map(|v| v * 256)).collect()
+    fn convex(corners: &[[i32; 2]]) -> Convex {
+        Convex::polygon(&corners.iter().map(|c| c.map(|v| v * 256)).collect::<Vec<_>>())
     }
 
-    fn region(corners: &[[i64; 2]]) -> Region {
-        Region::polygon(&grid(corners))
+    fn region(corners: &[[i32; 2]]) -> Region {
+        Region::polygon(&convex(corners))
     }
 
-    fn clip(region: &Region, corners: &[[i64; 2]]) -> [Region; 2] {
-        match region.clip(region.bounds(), &Convex::polygon(&grid(corners))) {
-            Clipped::Inside => [region.clone(), Region::default()],
-            Clipped::Outside => [Region::default(), region.clone()],
-            Clipped::Both(inside, outside) => [inside, outside],
+    fn clip(region: &Region, corners: &[[i32; 2]]) -> [Region; 2] {
+        let mut outside = region.clone();
+        match outside.clip(&convex(corners), &convex(&SQUARE), &mut Workspace::default()) {
+            Clipped::Inside => [outside, Region::default()],
+            Clipped::Outside => [Region::default(), outside],
+            Clipped::Both(inside) => [inside, outside],
         }
     }
 
-    const SQUARE: [[i64; 2]; 4] = [[0, 0], [10, 0], [10, 10], [0, 10]];
+    /// Whether the sample of this column, at `x` in its pixel, and at `y`, is in a region.
+    fn covers(region: &[FillEdge], column: i32, x: i32, y: i32) -> bool {
+        let crossed = region.iter().filter(|e| (e.y[0]..e.y[1]).contains(&y) && first_right(e, y, x) <= column.into());
+        crossed.count() % 2 == 1
+    }
+
+    const SQUARE: [[i32; 2]; 4] = [[0, 0], [10, 0], [10, 10], [0, 10]];
 
     fn shape(region: &Region) -> Vec<usize> {
-        let mut shape: Vec<_> = region.contours().iter().map(Vec::len).collect();
+        let mut shape: Vec<_> = region.outlines().iter().map(|outline| outline.corners.len()).collect();
         shape.sort_unstable();
         shape
     }
@@ -411,7 +607,7 @@ mod tests {
     #[test]
     fn p24_degenerate_cases() {
         let square = region(&SQUARE);
-        let areas = |corners: &[[i64; 2]]| clip(&square, corners).map(|r| r.area());
+        let areas = |corners: &[[i32; 2]]| clip(&square, corners).map(|r| r.area());
         // Itself; the same with a corner on an edge; half of it along three edges.
         assert_eq!(areas(&SQUARE), [100.0, 0.0]);
         assert_eq!(areas(&[[0, 0], [10, 0], [10, 10]]), [50.0, 50.0]);
@@ -437,59 +633,94 @@ mod tests {
         assert_eq!(shape(&clip(&left, &[[10, 10], [0, 10], [5, 5]])[1]), [3, 3]);
     }
 
+    /// Random triangles within `side` units, on a grid of `step`.
+    fn triangles(state: &mut u32, count: usize, side: i32, size: i32, step: i32) -> Vec<Convex> {
+        let mut next = |size: i32| {
+            *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (*state >> 8) as i32 % size
+        };
+        let mut triangles = Vec::new();
+        while triangles.len() < count {
+            let origin = [0; 2].map(|_| next(side + size) - size);
+            let mut corners = [0; 3].map(|_| origin.map(|v| (v + next(size * 3 / 2)) / step * step));
+            let [a, b, c] = corners;
+            let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+            if area < 0 {
+                corners.swap(1, 2);
+            }
+            if area != 0 {
+                triangles.push(Convex::polygon(&corners));
+            }
+        }
+        triangles
+    }
+
     #[test]
     fn p24_random_polygons_share_samples_and_area_out() {
         let pattern = SamplePattern::new(4);
-        let mut state = 5u32;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            i64::from(state >> 8)
-        };
-        for round in 0..200 {
+        let (mut state, mut work) = (5u32, Workspace::default());
+        let whole = convex(&[[0, 0], [64, 0], [64, 64], [0, 64]]);
+        for round in 0..100 {
             // Coarse grids make degenerate cases, and samples on edges.
             let step = [1, 32, 1024, 4096][round % 4];
-            let whole = Region::polygon(&[[0, 0], [16384, 0], [16384, 16384], [0, 16384]]);
-            let mut parts = vec![whole];
-            for _ in 0..12 {
-                let mut corners = [0; 3].map(|_| [0; 2].map(|_| (next() % 24576 - 4096) / step * step));
-                let [a, b, c] = corners;
-                let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-                if area == 0 {
-                    continue;
-                }
-                if area < 0 {
-                    corners.swap(1, 2);
-                }
-                let polygon = Convex::polygon(&corners);
-                let mut pieces = Vec::new();
-                for part in parts {
-                    match part.clip(part.bounds(), &polygon) {
-                        Clipped::Inside | Clipped::Outside => pieces.push(part),
-                        Clipped::Both(inside, outside) => pieces.extend([inside, outside]),
+            let mut parts = vec![Region::polygon(&whole)];
+            for polygon in triangles(&mut state, 12, 16384, 12000, step) {
+                for i in 0..parts.len() {
+                    if let Clipped::Both(inside) = parts[i].clip(&polygon, &whole, &mut work) {
+                        parts.push(inside);
                     }
                 }
-                parts = pieces;
             }
             let area: f64 = parts.iter().map(Region::area).sum();
             assert!((area - 4096.0).abs() < 1e-6, "round {round}: {area}");
             // Each sample is in exactly one.
-            let (mut once, mut twice) = ([0u64; 4 * TILE], [0u64; 4 * TILE]);
-            for part in &parts {
-                let mut rows = [0u64; 4 * TILE];
-                part.turn_samples(&pattern, &mut rows);
-                for i in 0..rows.len() {
-                    twice[i] |= once[i] & rows[i];
-                    once[i] |= rows[i];
+            let parts: Vec<Vec<_>> = parts.iter().map(|part| part.fill_edges().collect()).collect();
+            for (row, s) in (0..64).step_by(3).flat_map(|row| (0..4).map(move |s| (row, s))) {
+                let [x, y] = pattern.position(s);
+                for column in 0..64 {
+                    let count = parts.iter().filter(|part| covers(part, column, x, row * 256 + y)).count();
+                    assert_eq!(count, 1, "round {round}: {column}, {row}, {s}");
                 }
             }
-            assert!(once.iter().all(|&r| r == u64::MAX) && twice.iter().all(|&r| r == 0), "round {round}");
+        }
+    }
+
+    #[test]
+    fn an_index_of_edges_changes_nothing() {
+        let (mut state, mut work) = (17u32, Workspace::default());
+        let whole = convex(&[[0, 0], [64, 0], [64, 48], [0, 48]]);
+        for round in 0..12 {
+            let (size, step) = ([700, 2500, 6000][round % 3], [1, 64][round % 2]);
+            let mut left = Region::polygon(&whole);
+            let mut left_of_bands = [0, 1, 2, 3].map(|i| {
+                let [top, bottom] = [i * 12, i * 12 + 12];
+                let band = convex(&[[0, top], [64, top], [64, bottom], [0, bottom]]);
+                (Region::polygon(&band), band)
+            });
+            for (i, polygon) in triangles(&mut state, 300, 16384, size, step).iter().enumerate() {
+                let inside_of = |clipped, region: &mut Region| match clipped {
+                    Clipped::Outside => 0.0,
+                    Clipped::Inside => std::mem::take(region).area(),
+                    Clipped::Both(inside) => inside.area(),
+                };
+                let clipped = left.clip(polygon, &whole, &mut work);
+                let inside = inside_of(clipped, &mut left);
+                let of_bands = left_of_bands.iter_mut().map(|(region, band)| {
+                    let clipped = region.clip(polygon, band, &mut work);
+                    inside_of(clipped, region)
+                });
+                let expected: f64 = of_bands.sum();
+                assert!((inside - expected).abs() < 1e-6, "round {round}, {i}: {inside} of {expected}");
+            }
+            let outlines = left.outlines();
+            let edges: usize = outlines.iter().map(|outline| outline.corners.len()).sum();
+            assert!(edges > 0 && edges <= left.edges().count(), "{edges}");
         }
     }
 
     #[test]
     fn p24_samples_of_a_triangle_are_those_that_its_edge_functions_cover() {
         use vitral_raster::{CornerPosition, Setup};
-        let pattern = SamplePattern::new(1);
         for corners in [
             [[0, 0], [2048, 0], [0, 2048]],
             [[128, 128], [1408, 640], [640, 1408]],
@@ -497,13 +728,10 @@ mod tests {
         ] {
             let [a, b, c] = corners.map(|[x, y]| CornerPosition { x, y, z: 0.5 });
             let setup = Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0);
-            let mut rows = [0; TILE];
-            Region::polygon(&corners.map(|c| c.map(i64::from))).turn_samples(&pattern, &mut rows);
-            for (row, bits) in rows.iter().enumerate() {
-                for column in 0..TILE {
-                    let covers = setup.covers(column as i32 * 256 + 128, row as i32 * 256 + 128);
-                    assert_eq!(bits >> column & 1 == 1, covers, "{corners:?}: {column}, {row}");
-                }
+            let edges: Vec<_> = Region::polygon(&Convex::polygon(&corners)).fill_edges().collect();
+            for (row, column) in (0..20).flat_map(|row| (0..20).map(move |column| (row, column))) {
+                let expected = setup.covers(column * 256 + 128, row * 256 + 128);
+                assert_eq!(covers(&edges, column, 128, row * 256 + 128), expected, "{corners:?}: {column}, {row}");
             }
         }
     }

@@ -61,7 +61,14 @@ impl<'f> Polygons<'f> {
 
     /// [`Self::new`]; `face` is the face that a facet is of.
     pub(super) fn joined(setups: impl IntoIterator<Item = &'f Setup>, face: impl Fn(u32) -> u32) -> Self {
-        let mut polygons = Self { polygons: Vec::new(), triangles: Vec::new(), corners: Vec::new() };
+        // Of most meshes each triangle is a polygon: make room at once.
+        let setups = setups.into_iter();
+        let count = setups.size_hint().0;
+        let mut polygons = Self {
+            polygons: Vec::with_capacity(count),
+            triangles: Vec::with_capacity(count),
+            corners: Vec::with_capacity(3 * count),
+        };
         // The triangles of the face at hand, and its number, once it was asked for.
         let (mut at_hand, mut number): (Vec<&'f Setup>, Option<u32>) = (Vec::new(), None);
         for setup in setups {

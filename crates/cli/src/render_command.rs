@@ -15,7 +15,8 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 use vitral::explain::{Deciders, Explanation, explain};
 use vitral::internals::frame::compare;
-use vitral::internals::render::trace::Observer;
+use vitral::internals::render::trace::structure::{StructureRecorder, drawer};
+use vitral::internals::render::trace::{Observer, Step};
 use vitral::{Camera, ColorSpace, EncodeOptions, Frame, Plane, Renderer, dump};
 
 /// What each algorithm may take for `--pixel`, if nothing else is said, in seconds.
@@ -115,10 +116,12 @@ fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<
     Ok((renderer, warnings))
 }
 
-/// Draws the pictures, if any are wanted, with a trace of the steps if one is; saves the solution of radiosity.
+/// Draws the pictures, if any are wanted, with a trace of the steps and a picture of the structure if these are; saves the solution of radiosity.
 fn draw_traced(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Camera]) -> Result<Drawn, Failure> {
-    let tracing = args.report.trace.as_deref().map(TraceFile::create).transpose()?;
-    renderer.execution_mut().observer = tracing.clone().map(|file| file as Arc<dyn Observer>);
+    let trace = args.report.trace.as_deref().map(TraceFile::create).transpose()?;
+    let structure = args.report.structure.as_ref().map(|_| StructureRecorder::default());
+    let onlookers = Arc::new(Onlookers { trace, structure });
+    renderer.execution_mut().observer = onlookers.is_any().then(|| Arc::clone(&onlookers) as Arc<dyn Observer>);
     let drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
         Drawn::default()
     } else {
@@ -130,10 +133,35 @@ fn draw_traced(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras:
         vitral::picture::write(file, &bytes)?;
     }
     renderer.execution_mut().observer = None;
-    if let Some(file) = tracing {
-        file.finish()?;
+    if let Some(trace) = &onlookers.trace {
+        trace.finish()?;
+    }
+    if let (Some(file), Some(steps), Some(draw)) =
+        (&args.report.structure, &onlookers.structure, drawer(plan.state.settings.visibility))
+    {
+        report::write(file, draw(&steps.take()).as_bytes())?;
     }
     Ok(drawn)
+}
+
+/// Who is told the steps.
+#[derive(Debug)]
+struct Onlookers {
+    trace: Option<Arc<TraceFile>>,
+    structure: Option<StructureRecorder>,
+}
+
+impl Onlookers {
+    fn is_any(&self) -> bool {
+        self.trace.is_some() || self.structure.is_some()
+    }
+}
+
+impl Observer for Onlookers {
+    fn step(&self, step: &Step) {
+        self.trace.iter().for_each(|trace| trace.step(step));
+        self.structure.iter().for_each(|structure| structure.step(step));
+    }
 }
 
 /// Explains a pixel of the first frame.

@@ -15,6 +15,7 @@ use std::ops::Range;
 use vitral_raster::Setup;
 
 /// The polygons of some triangles.
+#[derive(Debug, Default)]
 pub(super) struct Polygons<'f> {
     polygons: Vec<Polygon>,
     /// Triangles, polygon by polygon.
@@ -53,39 +54,72 @@ impl<'f> Polygons<'f> {
         Self::joined(setups, |a, b| world.surface_of_facet(a) == world.surface_of_facet(b))
     }
 
+    /// [`Self::new`], of opaque triangles and then of layers: none is joined with one of the others.
+    pub(super) fn of_list((opaque, layers): (&[&'f Setup], &[&'f Setup]), view: &PreparedView<'_>) -> Self {
+        let world = view.session.world();
+        let mut polygons = Self::default();
+        for setups in [opaque, layers] {
+            let same_face = |a, b| world.surface_of_facet(a) == world.surface_of_facet(b);
+            polygons.extend(setups.iter().copied(), same_face);
+        }
+        polygons
+    }
+
     /// [`Self::new`]; `same_face` says whether two facets are of one face.
-    fn joined(setups: impl IntoIterator<Item = &'f Setup>, same_face: impl Fn(u32, u32) -> bool) -> Self {
-        let mut polygons = Self { polygons: Vec::new(), triangles: Vec::new(), corners: Vec::new() };
+    pub(super) fn joined(
+        setups: impl IntoIterator<Item = &'f Setup>,
+        same_face: impl Fn(u32, u32) -> bool,
+    ) -> Self {
+        let mut polygons = Self::default();
+        polygons.extend(setups, same_face);
+        polygons
+    }
+
+    /// Adds the polygons of more triangles.
+    fn extend(&mut self, setups: impl IntoIterator<Item = &'f Setup>, same_face: impl Fn(u32, u32) -> bool) {
+        let goes_on = |last: &Setup, setup: &Setup| {
+            same_plane(last, setup) && (last.facet == setup.facet || same_face(last.facet, setup.facet))
+        };
         // The polygons of the face at hand.
         let mut growing: Vec<Growing<'f>> = Vec::new();
-        let mut last: Option<&Setup> = None;
-        for setup in setups {
-            let goes_on = last.is_some_and(|last| {
-                same_plane(last, setup) && (last.facet == setup.facet || same_face(last.facet, setup.facet))
-            });
-            if !goes_on {
-                growing.drain(..).for_each(|done| polygons.push(&done));
+        let mut setups = setups.into_iter().peekable();
+        while let Some(setup) = setups.next() {
+            let is_last = setups.peek().is_none_or(|next| !goes_on(setup, next));
+            if is_last && growing.is_empty() {
+                // The only one of its face.
+                self.push(&[setup], &corners(setup));
+                continue;
             }
             if !growing.iter_mut().any(|polygon| polygon.join(setup)) {
                 growing.push(Growing { triangles: vec![setup], outline: corners(setup).to_vec() });
             }
-            last = Some(setup);
+            if is_last {
+                growing.drain(..).for_each(|done| self.push(&done.triangles, &done.outline));
+            }
         }
-        growing.iter().for_each(|done| polygons.push(done));
-        polygons
     }
 
-    fn push(&mut self, done: &Growing<'f>) {
-        let (triangles, corners) = (self.triangles.len() as u32, self.corners.len() as u32);
-        self.triangles.extend(&done.triangles);
-        self.corners.extend(&done.outline);
-        let mut plane = *done.triangles[0];
-        for setup in &done.triangles {
+    fn push(&mut self, triangles: &[&'f Setup], outline: &[[i32; 2]]) {
+        let (first_triangle, first_corner) = (self.triangles.len() as u32, self.corners.len() as u32);
+        self.triangles.extend(triangles);
+        self.corners.extend(outline);
+        let mut plane = *triangles[0];
+        for setup in triangles {
             plane.z_min = plane.z_min.min(setup.z_min);
             plane.z_max = plane.z_max.max(setup.z_max);
         }
-        let (triangles, corners) = (triangles..self.triangles.len() as u32, corners..self.corners.len() as u32);
+        let (triangles, corners) = (first_triangle..self.triangles.len() as u32, first_corner..self.corners.len() as u32);
         self.polygons.push(Polygon { plane, triangles, corners });
+    }
+
+    /// The triangles of all, polygon by polygon.
+    pub(super) fn triangles(&self) -> &[&'f Setup] {
+        &self.triangles
+    }
+
+    /// Where the triangles of the polygon of this number are among all.
+    pub(super) fn triangles_of(&self, number: usize) -> Range<u32> {
+        self.polygons[number].triangles.clone()
     }
 
     /// How many there are.
@@ -153,22 +187,34 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
 impl<'f> Growing<'f> {
     /// Adds a triangle, if it shares an edge and the outline stays convex.
     fn join(&mut self, setup: &'f Setup) -> bool {
-        let [a, b, c] = corners(setup);
-        let count = self.outline.len();
-        for ([from, to], tip) in [([a, b], c), ([b, c], a), ([c, a], b)] {
-            // Outlines turn one way: a shared edge is walked in both directions.
-            let Some(at) = (0..count).find(|&i| self.outline[i] == to && self.outline[(i + 1) % count] == from) else {
-                continue;
-            };
-            let (before, after) = (self.outline[(at + count - 1) % count], self.outline[(at + 2) % count]);
-            if turn(before, to, tip) >= 0 && turn(tip, from, after) >= 0 {
-                self.outline.insert(at + 1, tip);
-                self.triangles.push(setup);
-                return true;
-            }
+        let joined = join(&mut self.outline, corners(setup), |a, b, c| turn(a, b, c) >= 0);
+        if joined {
+            self.triangles.push(setup);
         }
-        false
+        joined
     }
+}
+
+/// Adds the tip of a triangle to an outline, if they share an edge and the outline stays convex; whether it does. `is_convex` says
+/// whether three corners in a row turn the outline's way or go straight on.
+pub(super) fn join<C: Copy + PartialEq>(
+    outline: &mut Vec<C>,
+    [a, b, c]: [C; 3],
+    is_convex: impl Fn(C, C, C) -> bool,
+) -> bool {
+    let count = outline.len();
+    for ([from, to], tip) in [([a, b], c), ([b, c], a), ([c, a], b)] {
+        // Outlines turn one way: a shared edge is walked in both directions.
+        let Some(at) = (0..count).find(|&i| outline[i] == to && outline[(i + 1) % count] == from) else {
+            continue;
+        };
+        let (before, after) = (outline[(at + count - 1) % count], outline[(at + 2) % count]);
+        if is_convex(before, to, tip) && is_convex(tip, from, after) {
+            outline.insert(at + 1, tip);
+            return true;
+        }
+    }
+    false
 }
 
 /// The corners of a triangle, 1/256 pixel.

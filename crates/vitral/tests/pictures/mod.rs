@@ -11,6 +11,7 @@ mod equal_planes;
 mod hidden_line;
 mod interpolation;
 mod lighting;
+mod lists;
 mod marks;
 mod normal_maps;
 mod pixel_light;

@@ -6,7 +6,7 @@
 //! behind the plane of Q; (4) Q lies in front of the plane of P; (5) the projections do not overlap. If none holds but
 //! 3 or 4 with the roles exchanged, Q has to come first: it is moved before P and marked, and the same is asked of Q.
 //! If a polygon has to wait for one that is marked, they wait for each other in a circle, which is cut: one of them is
-//! split. If Q is neither before nor behind P, they penetrate, and P is split where the planes meet.
+//! split. If Q is neither before nor behind P, they penetrate, and one is split where the planes meet.
 //!
 //! The polygons are the faces of the file: flat convex ones whole, others in the few convex pieces that their triangles can be
 //! joined to (`polygons.rs`).
@@ -18,8 +18,10 @@
 //! Cost: `O(n log n)` for sorting, plus pairs of polygons in one cell of a grid, plus covered samples, hidden ones too.
 //! Source: [Newell, Newell & Sancha 1972]. Departs from it: a grid over the picture finds the polygons to compare with;
 //! marked polygons form a stack, so that one that has to come first is painted at once; before a split the depths in
-//! the overlap of the projections are looked at, since planes often meet elsewhere; circles of polygons that lie on one
-//! side of each other's planes are cut along an edge, where a plane would not cut them.
+//! the overlap of the projections are looked at, since planes often meet elsewhere; circles are cut along a
+//! line, of a plane or an edge, that leaves no part both waiting and waited for, if there is one; of two polygons that penetrate, the
+//! smaller is split, which makes fewer parts; parts go on with the comparisons of the whole; and the grid becomes finer as parts
+//! become many.
 
 mod compare;
 
@@ -473,11 +475,19 @@ impl<'f, 'c> Sorting<'f, 'c> {
         }
     }
 
-    /// Splits the last marked polygon where its plane meets that of another.
+    /// Splits the last marked polygon, or the one that it penetrates, where their planes meet: the smaller one, if the line splits
+    /// it, and if it is not marked.
     fn split_at_plane(&mut self, other: u32) -> bool {
         let last = self.marked.len() - 1;
-        let [p, q] = [self.marked[last].polygon, other].map(|i| self.plane(i));
-        crossing(p, q).is_some_and(|line| self.split(last, line, other))
+        let top = self.marked[last].polygon;
+        let Some(line) = crossing(self.plane(top), self.plane(other)) else { return false };
+        let [own_area, other_area] = [top, other].map(|i| self.polygons[i as usize].area(&self.corners));
+        let splits_other = other_area < own_area && self.states[other as usize] == State::Waiting;
+        if splits_other && let Some(halves) = self.polygons[other as usize].split(&self.corners, &line) {
+            self.replace((other, self.progress[other as usize]), &halves, line, top, Vec::new());
+            return true;
+        }
+        self.split(last, line, other)
     }
 
     /// Cuts the circle of marked polygons that begins at `start`: somewhere along it, one is split by its neighbour.
@@ -522,25 +532,35 @@ impl<'f, 'c> Sorting<'f, 'c> {
     /// Splits a marked polygon along a line, that of the plane or an edge of another, if it lies clearly on both sides. Those marked
     /// after it have to wait again.
     fn split(&mut self, place: usize, line: Cut, by: u32) -> bool {
-        let number = self.marked[place].polygon;
-        let polygon = self.polygons[number as usize].clone();
-        let Some(halves) = polygon.split(&self.corners, &line) else { return false };
-        self.counters.splits += 1;
-        self.finish(number, State::Split);
-        let progress = self.marked[place].progress;
-        for left in &self.marked[place..] {
-            self.progress[left.polygon as usize] = left.progress;
-        }
-        let mut unmarked: Vec<u32> = self.marked.drain(place..).map(|left| left.polygon).collect();
-        unmarked.retain(|&left| self.states[left as usize] == State::Marked);
+        let Marked { polygon: number, progress } = self.marked[place];
+        let Some(halves) = self.polygons[number as usize].split(&self.corners, &line) else { return false };
+        self.marked[place..].iter().for_each(|left| self.progress[left.polygon as usize] = left.progress);
+        let unmarked: Vec<u32> = self.marked.drain(place..).skip(1).map(|left| left.polygon).collect();
         for &left in &unmarked {
             self.states[left as usize] = State::Waiting;
             self.waiting.push(Farness { far: self.polygons[left as usize].far, facet: self.facet(left), polygon: left });
         }
+        self.replace((number, progress), &halves, line, by, unmarked);
+        true
+    }
+
+    /// Puts the halves of a polygon in its place; its comparisons had come so far.
+    fn replace(
+        &mut self,
+        (number, progress): (u32, Progress),
+        halves: &[Vec<[f64; 2]>; 2],
+        line: Cut,
+        by: u32,
+        unmarked: Vec<u32>,
+    ) {
+        self.counters.splits += 1;
+        self.finish(number, State::Split);
+        let Polygon { whole, ref cuts, .. } = self.polygons[number as usize];
+        let cuts = cuts.clone();
         let mut parts = [None; 2];
         for (part, (corners, cut)) in parts.iter_mut().zip(halves.iter().zip([line, line.opposite()])) {
             let first = self.cuts.len() as u32;
-            for inherited in polygon.cuts.clone() {
+            for inherited in cuts.clone() {
                 // A line that stays clear of the part cuts nothing off it.
                 let inherited = self.cuts[inherited as usize];
                 if !inherited.holds(corners) {
@@ -548,7 +568,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
                 }
             }
             self.cuts.push(cut);
-            *part = self.add(polygon.whole, corners, first..self.cuts.len() as u32);
+            *part = self.add(whole, corners, first..self.cuts.len() as u32);
             if let Some(part) = *part {
                 self.go_on(part, progress);
             }
@@ -562,7 +582,6 @@ impl<'f, 'c> Sorting<'f, 'c> {
             parts: parts.iter().flatten().map(|&part| self.listed(part)).collect(),
             unmarked,
         });
-        true
     }
 
     /// Lets a part go on where the whole has come to.

@@ -75,6 +75,13 @@ impl Polygon {
         &corners[self.corners.start as usize..self.corners.end as usize]
     }
 
+    /// Twice its area, 1/65536 square pixels.
+    pub(super) fn area(&self, corners: &[[f64; 2]]) -> f64 {
+        let points = self.points(corners);
+        let edges = points.iter().zip(points.iter().cycle().skip(1));
+        edges.map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
+    }
+
     /// The lines along its edges.
     pub(super) fn edges(&self, corners: &[[f64; 2]]) -> Vec<Cut> {
         let points = self.points(corners);

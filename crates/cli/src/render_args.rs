@@ -373,6 +373,10 @@ pub(crate) struct ReportArgs {
     /// Write the steps of the visibility algorithm into this file, a JSON object a line
     #[arg(long, value_name = "FILE")]
     pub(crate) trace: Option<PathBuf>,
+    /// Draw the structure that the visibility algorithm builds, as SVG: the quadtree of warnock, the list of painter, the tree of bsp; of
+    /// the last frame
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) structure: Option<PathBuf>,
     /// One JSON object with the results on standard output
     #[arg(long)]
     pub(crate) json: bool,

@@ -9,7 +9,7 @@ use crate::render_args::{RenderArgs, ReportArgs};
 use crate::report::{self, DIFFERENT, Failure};
 use crate::resolve::{Plan, resolve};
 use crate::step_pictures;
-use crate::trace_file::TraceFile;
+use crate::trace_file::Onlooker;
 use crate::values;
 use serde_json::{Map, Value, json};
 use std::sync::atomic::Ordering;
@@ -133,15 +133,14 @@ fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<
     Ok((renderer, warnings))
 }
 
-/// Draws the pictures, if any are wanted, with a trace of the steps if one is; saves the solution of radiosity.
+/// Draws the pictures, if any are wanted, with a trace of the steps and a picture of the structure if these are; saves the solution of radiosity.
 fn draw_traced(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Camera]) -> Result<Drawn, Failure> {
-    let (watched, has_frames) = (args.report.pixel, plan.frames.end() > plan.frames.start());
-    let trace = args.report.trace.as_deref();
-    let mut tracing = trace.map(|path| TraceFile::create(path, renderer, watched, has_frames)).transpose()?;
+    let has_frames = plan.frames.end() > plan.frames.start();
+    let mut onlooker = Onlooker::new(&args.report, renderer, has_frames)?;
     let mut drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
         Drawn::default()
     } else {
-        draw(args, plan, renderer, cameras, tracing.as_mut())?
+        draw(args, plan, renderer, cameras, onlooker.as_mut())?
     };
     if let Some(output) = &plan.steps_video {
         let camera = &cameras[*plan.frames.start() as usize];
@@ -153,8 +152,8 @@ fn draw_traced(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras:
     {
         vitral::picture::write(file, &bytes)?;
     }
-    if let Some(file) = tracing {
-        file.finish(renderer)?;
+    if let Some(onlooker) = onlooker {
+        onlooker.finish(renderer)?;
     }
     Ok(drawn)
 }
@@ -189,7 +188,7 @@ fn draw(
     plan: &Plan,
     renderer: &mut Renderer,
     cameras: &[Camera],
-    mut tracing: Option<&mut TraceFile>,
+    mut onlooker: Option<&mut Onlooker>,
 ) -> Result<Drawn, Failure> {
     let (model, options) = (model_of(plan), encode_options(plan));
     let count = u64::from(plan.frames.end() - plan.frames.start() + 1);
@@ -200,8 +199,8 @@ fn draw(
         let render_start = Instant::now();
         let mut rendered =
             if args.output.panels { vitral::panels(renderer, camera)? } else { renderer.render_from(camera)? };
-        if let Some(file) = &mut tracing {
-            file.write_frame(number)?;
+        if let Some(onlooker) = &mut onlooker {
+            onlooker.take_frame(renderer, number)?;
         }
         if let Some(step) = args.output.step {
             step_pictures::after_step(renderer, camera, step, &mut rendered.frame)?;

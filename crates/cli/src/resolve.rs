@@ -12,8 +12,10 @@ use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use vitral::internals::render::registry;
+use vitral::internals::render::trace::structure::drawer;
 use vitral::{
     Background, Channel, Channels, ColorSpace, Global, Lines, Normals, Plane, Settings, State, Transparency, Viewpoint,
+    Visibility,
 };
 
 /// Largest configuration or state file, in bytes.
@@ -109,10 +111,17 @@ fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Failure> {
 /// Refuses options about pictures that are not made.
 fn check_pictures_are_made(args: &RenderArgs, state: &State, outputs: &[Output]) -> Result<(), Failure> {
     let output = &args.output;
-    if let Some(file) = args.report.trace.as_ref().filter(|_| outputs.is_empty()) {
-        return Err(
-            Failure::usage(format!("--trace {}: no picture is made", file.display())).with_hint("give --output")
-        );
+    for (option, file) in [("--trace", &args.report.trace), ("--structure", &args.report.structure)] {
+        if let Some(file) = file.as_ref().filter(|_| outputs.is_empty()) {
+            let message = format!("{option} {}: no picture is made", file.display());
+            return Err(Failure::usage(message).with_hint("give --output"));
+        }
+    }
+    let visibility = state.settings.visibility;
+    if args.report.structure.is_some() && drawer(visibility).is_none() {
+        let message = format!("--structure: the algorithm {visibility} builds no structure that is drawn");
+        let drawn: Vec<_> = Visibility::all().filter(|v| drawer(*v).is_some()).map(|v| v.name).collect();
+        return Err(Failure::usage(message).with_hint(format!("give --visibility {}", drawn.join(" or "))));
     }
     if let Some(other) = outputs.iter().find(|o| output.panels && o.channel != Channel::Color) {
         return Err(Failure::usage(format!(
@@ -186,6 +195,7 @@ fn check_standard_output(args: &RenderArgs, outputs: &[Output]) -> Result<(), Fa
         (is_standard(&args.process.save_state), "--save-state -"),
         (is_standard(&report.stats_file), "--stats-file -"),
         (is_standard(&report.trace), "--trace -"),
+        (is_standard(&report.structure), "--structure -"),
     ];
     let mut wanted = wanted.iter().filter(|(wants, _)| *wants).map(|(_, option)| option);
     match (wanted.next(), wanted.next()) {

@@ -141,6 +141,29 @@ fn pictures_after_steps_are_drawn_one_by_one() {
 }
 
 #[test]
+fn structures_are_drawn_of_algorithms_that_have_one() {
+    let folder = Folder::new("structures");
+    for (name, title) in [("bsp", ">BSP tree: "), ("painter", ">Depth sort: "), ("warnock", ">Area subdivision: ")] {
+        let arguments =
+            ["builtin:cubs", "-o", "a.png", "--visibility", name, "--structure", "s.svg", "--trace", "t.jsonl"];
+        let output = render(&folder, &arguments);
+        assert_eq!(code(&output), 0, "{}", errors(&output));
+        let svg = String::from_utf8(folder.read("s.svg")).unwrap();
+        assert!(svg.starts_with("<svg ") && svg.contains(title), "{name}: {svg}");
+        assert!(!folder.read("t.jsonl").is_empty());
+    }
+    let refused = render(&folder, &["builtin:cubs", "-o", "a.png", "--structure", "s.svg"]);
+    assert_eq!(code(&refused), 2);
+    assert!(
+        errors(&refused).contains("z-buffer") && errors(&refused).contains("warnock or painter or bsp"),
+        "{}",
+        errors(&refused)
+    );
+    let nothing = ["builtin:cubs", "--pixel", "1,1", "--visibility", "bsp", "--structure", "s.svg"];
+    assert_eq!(code(&render(&folder, &nothing)), 2);
+}
+
+#[test]
 fn models_on_standard_input_name_files_in_the_current_folder() {
     let folder = Folder::new("beside");
     folder.file("m.mtl", "newmtl red\nKd 1 0 0\n");

@@ -8,13 +8,16 @@
 
 mod canvas;
 pub mod legend;
+pub mod lists;
 pub mod numbered;
 pub mod outlines;
 pub mod picture;
 pub mod quadtree;
 pub mod replay;
+pub mod structure;
 pub mod tables;
 
+use lists::{ListTest, ListVerdict, ListedPolygon, OverruledSample, PlaneSide, PolygonSet};
 use outlines::{Contour, CutPolygon, SortedPolygon};
 use serde::Serialize;
 use tables::{Bucket, Crossing, TablePolygon};
@@ -30,7 +33,7 @@ pub trait Observer: std::fmt::Debug + Send + Sync {
         false
     }
 
-    /// Whether it reads [`Step::FirstOrder`] and [`Step::Clip`], whose outlines grow with the square of the scene.
+    /// Whether it reads [`Step::NearestFirst`] and [`Step::Clip`], whose outlines grow with the square of the scene.
     fn reads_clips(&self) -> bool {
         true
     }
@@ -216,7 +219,7 @@ pub enum Step {
         hidden: Vec<[u32; 3]>,
     },
     /// Z-buffer: what happened at a watched pixel when a facet came.
-    Compared {
+    DepthTest {
         /// The pixel.
         pixel: [u32; 2],
         /// The facet that came.
@@ -331,45 +334,135 @@ pub enum Step {
         /// How red, green and blue of what it will meet count in the pixel.
         weight: [f32; 3],
     },
-    /// BSP, while the tree is built: a facet, or a part of one, crosses a plane and is split.
-    TreeSplit {
-        /// The facet.
-        facet: u32,
-        /// `a x + b y + c z + d = 0`, world space.
+    /// BSP: a node of the tree, each after the one that it hangs below. A tree that is there already is told like one that was
+    /// just built.
+    TreeNode {
+        /// Its number. The root is 0.
+        node: u32,
+        /// The number of the node that it hangs below; none for the root.
+        parent: Option<u32>,
+        /// The side of that node's plane that it divides.
+        side: Option<PlaneSide>,
+        /// The first facet of the polygon that gave the plane, the splitter; none for a plane across an axis.
+        splitter: Option<u32>,
+        /// `a x + b y + c z + d = 0`, world units; `(a, b, c)` is unit and points to the front.
         plane: [f64; 4],
+        /// The polygons in the plane, the splitter among them, the lowest facet first.
+        coincident: PolygonSet,
+        /// The polygons in front, parts of those that are cut among them, the lowest facet first.
+        front: PolygonSet,
+        /// The polygons behind, parts of those that are cut among them, the lowest facet first.
+        back: PolygonSet,
+        /// The polygons that cross the plane and are cut, the lowest facet first.
+        cut: PolygonSet,
     },
-    /// Painter: a polygon has to be painted before one that was farther in the first order.
-    Moved {
-        /// Facet of the polygon that is moved.
+    /// BSP: the walk through the tree comes to a node, whose polygons are next in the list. All nodes on the far side of its
+    /// plane came before, all on the viewer's side follow.
+    TreeVisit {
+        /// Its place in the walk, 0 for the farthest node.
+        order: u32,
+        /// The number of the node.
+        node: u32,
+        /// The number of the node that it hangs below; none for the root.
+        parent: Option<u32>,
+        /// The side of its plane on which the viewer is.
+        viewer: PlaneSide,
+        /// The first facets of its polygons, in the order of the list, from back to front.
+        polygons: Vec<u32>,
+    },
+    /// Painter: the first order, before any comparison.
+    FirstOrder {
+        /// The polygons, the farthest first.
+        polygons: Vec<ListedPolygon>,
+    },
+    /// Painter: the farthest polygon that is left has its turn, and is compared with those that it might cover.
+    Turn {
+        /// Its number.
+        polygon: u32,
+        /// Its first facet.
         facet: u32,
-        /// Facet of the one that waits.
+    },
+    /// Painter: a polygon P was compared with another one, Q, that is not painted yet.
+    Compared {
+        /// The number of P.
+        polygon: u32,
+        /// The first facet of P.
+        facet: u32,
+        /// The number of Q.
+        with: u32,
+        /// The first facet of Q.
+        with_facet: u32,
+        /// The test that decided.
+        test: ListTest,
+        /// What it decided: before lets P be painted before Q.
+        verdict: ListVerdict,
+    },
+    /// Painter: a polygon has to be painted before one that was farther in the first order. It is moved and marked.
+    Moved {
+        /// The number of the polygon that is moved.
+        polygon: u32,
+        /// Its first facet.
+        facet: u32,
+        /// The number of the polygon that waits for it.
+        before_polygon: u32,
+        /// The first facet of that one.
         before: u32,
     },
-    /// Painter: polygons wait for each other in a circle.
+    /// Painter: polygons wait for each other in a circle. Each waits for the next one, the last for the first.
     Circle {
-        /// Their facets.
+        /// Their numbers.
+        polygons: Vec<u32>,
+        /// Their first facets.
         facets: Vec<u32>,
     },
-    /// Painter: a polygon is split along `a x + b y + c = 0` on the screen, 1/256 pixel.
+    /// Painter: a polygon is split along `a x + b y + c = 0` on the screen; `(a, b)` is unit.
     Split {
-        /// The facet.
+        /// Its number.
+        polygon: u32,
+        /// Its first facet.
         facet: u32,
-        /// The line.
+        /// The number of the polygon whose plane or edge the line is of.
+        by: u32,
+        /// The first facet of that one.
+        by_facet: u32,
+        /// The line: `a`, `b`, and `c` in pixels.
         line: [f64; 3],
+        /// The numbers of its parts, those that can have samples; they wait by their own depths.
+        parts: Vec<ListedPolygon>,
+        /// The numbers of polygons that were marked after it: they lose the mark and wait again.
+        unmarked: Vec<u32>,
+    },
+    /// Painter: nothing has to come before a polygon that is left: it is painted.
+    Painted {
+        /// Its number.
+        polygon: u32,
+        /// Its first facet.
+        facet: u32,
     },
     /// List priority: a polygon has its place in the list, the smallest first from the back.
     Piece {
-        /// The place.
+        /// The place, 0 for the farthest.
         order: u32,
-        /// The facet.
+        /// The number of the polygon, or of the part: painter's as in the steps before, a BSP tree's as it is kept in the tree.
+        polygon: u32,
+        /// The number of the node in whose plane it lies; none in a painter's list.
+        node: Option<u32>,
+        /// Its first facet.
         facet: u32,
         /// Lines it was cut along.
         cuts: u32,
-        /// Its corners.
+        /// Its corners, pixels.
         outline: Vec<[f32; 2]>,
     },
+    /// List priority: a tile's samples at which the depth function contradicts the list, and wins.
+    Overruled {
+        /// Left, top, width, height of the tile, pixels.
+        pixels: [u32; 4],
+        /// The samples, those of a pixel one after the other.
+        samples: Vec<OverruledSample>,
+    },
     /// Weiler–Atherton: the polygons in their first order, the one with the nearest point first.
-    FirstOrder {
+    NearestFirst {
         /// The polygons.
         polygons: Vec<SortedPolygon>,
     },
@@ -418,7 +511,7 @@ impl Step {
             Self::Drawn { stays, hidden, .. } => {
                 stays.iter().chain(hidden).any(|&[row, from, to]| row == y && (from..to).contains(&x))
             }
-            Self::Compared { pixel, .. } | Self::RayMeets { pixel, .. } | Self::RayGoesOn { pixel, .. } => {
+            Self::DepthTest { pixel, .. } | Self::RayMeets { pixel, .. } | Self::RayGoesOn { pixel, .. } => {
                 *pixel == [x, y]
             }
             Self::Window { pixels: [left, top, width, height], .. }
@@ -435,8 +528,11 @@ impl Step {
                 let edges = outline.iter().zip(outline.iter().cycle().skip(1));
                 holds(edges.map(|(a, b)| [*a, *b]), [x, y])
             }
-            Self::TreeSplit { .. } | Self::Moved { .. } | Self::Circle { .. } | Self::Split { .. } => false,
-            Self::FirstOrder { .. } | Self::Space { .. } | Self::EdgeTable { .. } | Self::Box { .. } => false,
+            Self::Overruled { samples, .. } => samples.iter().any(|sample| sample.pixel == [x, y]),
+            Self::TreeNode { .. } | Self::TreeVisit { .. } | Self::FirstOrder { .. } | Self::Turn { .. } => false,
+            Self::Compared { .. } | Self::Moved { .. } | Self::Circle { .. } => false,
+            Self::Split { .. } | Self::Painted { .. } => false,
+            Self::NearestFirst { .. } | Self::Space { .. } | Self::EdgeTable { .. } | Self::Box { .. } => false,
             Self::Clipped { .. } => false,
         }
     }
@@ -448,7 +544,7 @@ impl Step {
                 let stays = stays.iter().any(|&[row, from, to]| row == y && (from..to).contains(&x));
                 format!("facet {facet} comes: {}", if stays { "nearer than what is there" } else { "hidden" })
             }
-            Self::Compared { facet, depth, there, there_depth, stays, .. } => {
+            Self::DepthTest { facet, depth, there, there_depth, stays, .. } => {
                 let was = match there.zip(*there_depth) {
                     Some((there, depth)) => format!("facet {there} is there with depth {depth}"),
                     None => "nothing is there".to_owned(),
@@ -490,8 +586,16 @@ impl Step {
                 let tested = format!("{boxes} box(es), {facets} facet(s) tested");
                 format!("{rays} ray(s) of {width} x {height} pixel(s): {tested}{}", through.tell())
             }
-            Self::Piece { order, facet, cuts, .. } => {
-                format!("place {order} in the list, from the back: facet {facet}, cut {cuts} time(s)")
+            Self::Piece { order, facet, cuts, node, .. } => {
+                let node = node.map_or(String::new(), |node| format!(", of node {node} of the tree"));
+                format!("place {order} in the list, from the back: polygon of facet {facet}, cut {cuts} time(s){node}")
+            }
+            Self::Overruled { samples, .. } => {
+                let own: Vec<_> = samples.iter().filter(|sample| sample.pixel == [x, y]).collect();
+                let facets = own.first().map_or(String::new(), |sample| {
+                    format!(": facet {} is nearer than facet {}, which the list shows", sample.by_depth, sample.by_list)
+                });
+                format!("depth overrules the list at {} sample(s){facets}", own.len())
             }
             Self::Clip { clip, within, facet, inside, outside_count, hidden, again, .. } => {
                 let within = within.map_or(String::new(), |outer| format!(" of the inside of clip {outer}"));
@@ -530,9 +634,9 @@ impl Step {
             }
             Self::Clipped { before, after, .. } => of(before) + of(after),
             Self::Rays { through, .. } => 24 * through.len(),
-            Self::Circle { facets } => of(facets),
+            Self::Circle { polygons, facets } => of(polygons) + of(facets),
             Self::Piece { outline, .. } => of(outline),
-            Self::FirstOrder { polygons } => {
+            Self::NearestFirst { polygons } => {
                 of(polygons) + polygons.iter().map(|p| contours_bytes(&p.contours)).sum::<usize>()
             }
             Self::Clip { outline, cut, inside, outside, hidden, .. } => {
@@ -541,8 +645,16 @@ impl Step {
                 of(outline) + of(cut) + cuts + of(inside) + of(outside) + of(hidden)
             }
             Self::Visible { contours, .. } => contours_bytes(contours),
-            Self::Compared { .. } | Self::Space { .. } | Self::RayMeets { .. } | Self::RayGoesOn { .. } => 0,
-            Self::TreeSplit { .. } | Self::Moved { .. } | Self::Split { .. } | Self::Box { .. } => 0,
+            Self::TreeNode { coincident, front, back, cut, .. } => {
+                [coincident, front, back, cut].iter().map(|set| of(&set.facets)).sum()
+            }
+            Self::TreeVisit { polygons, .. } => of(polygons),
+            Self::FirstOrder { polygons } => of(polygons),
+            Self::Split { parts, unmarked, .. } => of(parts) + of(unmarked),
+            Self::Overruled { samples, .. } => of(samples),
+            Self::DepthTest { .. } | Self::Space { .. } | Self::RayMeets { .. } | Self::RayGoesOn { .. } => 0,
+            Self::Turn { .. } | Self::Compared { .. } | Self::Moved { .. } | Self::Painted { .. } => 0,
+            Self::Box { .. } => 0,
         };
         (size_of::<Self>() + listed) as u64
     }
@@ -614,8 +726,13 @@ pub(crate) mod tests {
         assert!(drawn.concerns([1, 2]) && drawn.concerns([3, 2]) && !drawn.concerns([4, 2]) && !drawn.concerns([1, 1]));
         assert!(!window.concerns([12, 4]) && !window.concerns([8, 6]) && !window.concerns([7, 4]));
         let outline = vec![[0.0, 0.0], [10.0, 0.0], [0.0, 10.0]];
-        let piece = Step::Piece { order: 1, facet: 2, cuts: 0, outline };
+        let piece = Step::Piece { order: 1, polygon: 5, node: None, facet: 2, cuts: 0, outline };
         assert!(piece.concerns([1, 1]) && !piece.concerns([8, 8]) && !piece.concerns([1, 11]));
-        assert!(!Step::Moved { facet: 0, before: 1 }.concerns([0, 0]));
+        assert!(!Step::Turn { polygon: 0, facet: 0 }.concerns([0, 0]));
+        let sample = OverruledSample { pixel: [1, 2], sample: 0, by_list: 3, by_depth: 4 };
+        let overruled = Step::Overruled { pixels: [0, 0, 8, 8], samples: vec![sample] };
+        assert!(overruled.concerns([1, 2]) && !overruled.concerns([2, 1]));
+        let told = overruled.tell([1, 2]);
+        assert!(told.contains("facet 4 is nearer than facet 3"), "{told}");
     }
 }

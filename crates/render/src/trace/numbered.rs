@@ -95,17 +95,21 @@ fn place(step: &Step) -> [u64; 3] {
     match step {
         Step::Box { .. } => [0, 0, 0],
         Step::Clipped { facet, .. } => [1, u64::from(*facet), 0],
-        Step::Space { .. } | Step::TreeSplit { .. } => [2, 0, 0],
-        Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => [3, 0, 0],
-        Step::FirstOrder { .. } | Step::Clip { .. } | Step::Visible { .. } => [3, 0, 0],
-        Step::Compared { facet, .. } => [3, u64::from(*facet), 0],
+        // Told by one thread after the other, in order.
+        Step::Space { .. } | Step::TreeNode { .. } => [2, 0, 0],
+        Step::TreeVisit { .. } => [3, 0, 0],
+        Step::FirstOrder { .. } | Step::Turn { .. } | Step::Compared { .. } | Step::Moved { .. } => [3, 0, 0],
+        Step::Circle { .. } | Step::Split { .. } | Step::Painted { .. } => [3, 0, 0],
+        Step::NearestFirst { .. } | Step::Clip { .. } | Step::Visible { .. } => [3, 0, 0],
+        Step::DepthTest { facet, .. } => [3, u64::from(*facet), 0],
         Step::Drawn { facet, .. } => [3, u64::from(*facet), 1],
         Step::Window { path, .. } => [3, path_key(path), 0],
         Step::EdgeTable { rows, .. } => [3, u64::from(rows[0]), 0],
         Step::Line { row, .. } => [3, u64::from(*row), 1],
         Step::Rays { pixels: [x, y, ..], .. } => row_by_row(3, [*x, *y]),
         Step::Piece { .. } => [4, 0, 0],
-        Step::RayMeets { pixel, .. } | Step::RayGoesOn { pixel, .. } => row_by_row(5, *pixel),
+        Step::Overruled { pixels: [x, y, ..], .. } => row_by_row(5, [*x, *y]),
+        Step::RayMeets { pixel, .. } | Step::RayGoesOn { pixel, .. } => row_by_row(6, *pixel),
     }
 }
 
@@ -159,8 +163,12 @@ struct Parents {
     boxes: Vec<([u32; 2], Option<u32>, u32)>,
     /// Boxes round instances that came before.
     boxes_of_instances: Vec<([u32; 2], Option<u32>, u32)>,
-    /// The polygons in their first order, and clips by their own numbers.
+    /// The polygons in their first order, the turn of one of them, nodes of a tree and visits to them by the nodes' numbers, clips
+    /// by their own.
     first_order: Option<u32>,
+    turn: Option<u32>,
+    nodes: HashMap<u32, u32>,
+    visits: HashMap<u32, u32>,
     clips: HashMap<u32, u32>,
     /// The facet that was clipped last.
     clipped: Option<(u32, u32)>,
@@ -187,10 +195,27 @@ impl Parents {
                 let above = path.char_indices().next_back().map(|(at, _)| &path[..at]);
                 above.and_then(|above| self.windows.get(above).copied())
             }
-            Step::FirstOrder { .. } => {
+            Step::FirstOrder { .. } | Step::NearestFirst { .. } => {
                 self.first_order = Some(number);
                 None
             }
+            Step::Turn { .. } => {
+                self.turn = Some(number);
+                self.first_order
+            }
+            Step::Compared { .. } | Step::Moved { .. } | Step::Circle { .. } => self.turn,
+            Step::Split { .. } | Step::Painted { .. } => self.turn,
+            Step::TreeNode { node, parent, .. } => {
+                self.nodes.insert(*node, number);
+                parent.and_then(|above| self.nodes.get(&above).copied())
+            }
+            Step::TreeVisit { node, .. } => {
+                let built = self.nodes.get(node).copied();
+                self.visits.insert(*node, number);
+                built
+            }
+            Step::Piece { node: Some(node), .. } => self.visits.get(node).copied(),
+            Step::Piece { node: None, .. } => self.first_order,
             Step::Clip { clip, within, .. } => {
                 self.clips.insert(*clip, number);
                 within.map_or(self.first_order, |outer| self.clips.get(&outer).copied())

@@ -137,7 +137,7 @@ impl Observer for Recorder {
                     self.spend(planes, [from, row, to - from, 1], 1);
                 }
             }
-            Step::Compared { .. } | Step::Box { .. } | Step::Clipped { .. } => {}
+            Step::DepthTest { .. } | Step::Box { .. } | Step::Clipped { .. } => {}
             Step::Window { pixels, verdict, .. } => self.window(planes, *pixels, *verdict),
             Step::Line { row, spans, .. } => {
                 for span in spans {
@@ -161,8 +161,10 @@ impl Observer for Recorder {
                     self.canvas.line(edge, |at| planes.mark[at] = 1);
                 }
             }
-            Step::TreeSplit { .. } | Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => {}
-            Step::FirstOrder { .. } | Step::Clip { .. } | Step::Space { .. } | Step::EdgeTable { .. } => {}
+            Step::TreeNode { .. } | Step::TreeVisit { .. } | Step::FirstOrder { .. } | Step::Turn { .. } => {}
+            Step::Compared { .. } | Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => {}
+            Step::Painted { .. } | Step::Overruled { .. } | Step::NearestFirst { .. } => {}
+            Step::Clip { .. } | Step::Space { .. } | Step::EdgeTable { .. } => {}
             Step::RayMeets { .. } | Step::RayGoesOn { .. } => {}
         }
     }
@@ -191,7 +193,7 @@ mod tests {
     fn what_is_on_top_of_the_list_has_its_colour() {
         let recorder = Recorder::new(4, 4);
         let square = |low: f32, high: f32| vec![[low, low], [high, low], [high, high], [low, high]];
-        let piece = |order, outline| Step::Piece { order, facet: 0, cuts: 0, outline };
+        let piece = |order, outline| Step::Piece { order, polygon: 0, node: None, facet: 0, cuts: 0, outline };
         // Told in the wrong order, as threads may.
         recorder.step(&piece(1, square(0.0, 2.0)));
         recorder.step(&piece(0, square(0.0, 4.0)));

@@ -139,7 +139,7 @@ impl<'w> Replay<'w> {
                 let border = borders(canvas, &covers);
                 border.into_iter().for_each(|at| data[at] = opaque(ABOUT));
             }
-            Step::Compared { pixel: [x, y], .. } | Step::RayMeets { pixel: [x, y], .. } => {
+            Step::DepthTest { pixel: [x, y], .. } | Step::RayMeets { pixel: [x, y], .. } => {
                 sides(canvas, [x.saturating_sub(2), y.saturating_sub(2), 5, 5], mark);
             }
             Step::Piece { outline, .. } | Step::Clip { outline, .. } => {

@@ -6,24 +6,30 @@
 //! across an axis), each half's polygons are cut where they cross the plane, and the whole is a tree that depends on the
 //! scene alone. To draw a picture is to walk the tree, asking at each node on which side the eye is.
 //!
-//! In:   the world's facets (world space). Out: the samples of each tile (screen space).
+//! The polygons are the faces of the file: flat convex ones whole, others in the few convex pieces that their triangles can be
+//! joined to (`bsp/polygons.rs`). Those in one plane share a node; of these, what faces the viewer comes last, then the lower facet.
+//!
+//! In:   the world's polygons (world space). Out: the samples of each tile (screen space).
 //! Cost: building, see `bsp/tree.rs`; a picture costs the nodes plus covered samples, hidden ones included.
 //! Source: [Fuchs, Kedem & Naylor 1980], [Schumacker et al. 1969]. Departs from them: a parallel projection asks for the
 //! side of the direction to the viewer; the list is taken from its end, from front to back, so that what is full need not
-//! be looked at again; a fragment is not a new polygon but its facet and the planes that cut it, which
+//! be looked at again; a fragment is not a new polygon but its facets and the planes that cut it, which
 //! become lines on the screen (see `pieces.rs`).
 //! Coherence: of frames. The tree stays in the session, so a second picture from anywhere does not build one.
 
+mod polygons;
 mod tree;
 
-use super::cut::{Cut, Depth};
+use super::cut::{Cut, Depth, clip_outline};
 use super::facets::Facets;
 use super::pieces::{Footprint, Pieces, Raster};
-use super::priority_list::{PriorityList, draw_list, piece_step};
+use super::polygons::Polygons;
+use super::priority_list::{PriorityList, draw_list, on_screen};
 use super::sink::TileSink;
 use super::{Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
+use crate::trace::Step;
 use crate::{Cached, Execution, PreparedView};
 use std::sync::Arc;
 use vitral_exec::Limit;
@@ -57,6 +63,8 @@ impl VisibleSurface for Bsp {
         let mut resolved = Resolved::default();
         let facets = Facets::new(view, execution, &mut resolved)?;
         let (tree, reused) = tree_of(view, execution)?;
+        tree.tell_nodes(execution);
+        tree.tell_walk(eye(view), execution);
         execution.budget.charge(tree.bytes(), "the BSP tree")?;
         let pictured = picture(&tree, &facets, marks, grid, sink);
         execution.budget.release(tree.bytes());
@@ -78,7 +86,7 @@ fn tree_of(view: &PreparedView<'_>, execution: &Execution) -> Result<(Arc<Tree>,
     let mut reused = true;
     let tree = view.session.cache.get_or_build((), || {
         reused = false;
-        Tree::of_world(&view.session.world, execution)
+        Tree::of_world(&view.session.world, view.session.planes(&execution.workers), execution)
     })?;
     Ok((tree, reused))
 }
@@ -108,6 +116,7 @@ fn picture(
         let fragments = Fragments { tree, setups: &setups, footprints, raster, order, places, lines, execution };
         let count = fragments.order.len().div_ceil(FRAGMENTS_A_RUN);
         let runs = execution.workers.map(count, |run| fragments.pieces(run));
+        fragments.tell(&runs);
 
         // Draw them, tile by tile.
         let list = PriorityList { setups: &setups, opaque, runs: &runs };
@@ -154,21 +163,52 @@ impl Fragments<'_> {
     fn pieces(&self, run: usize) -> Pieces {
         let mut pieces = Pieces::default();
         let first = run * FRAGMENTS_A_RUN;
-        let places_in_list = (0..self.order.len() as u32).rev().skip(first);
-        for (&fragment, place) in self.order[first..].iter().take(FRAGMENTS_A_RUN).zip(places_in_list) {
-            for at in self.places.setups_of(self.tree.facet(fragment), self.setups) {
-                let setup = self.setups[at as usize];
-                let plane = Depth::of(setup);
-                let cuts =
-                    || self.tree.cuts(fragment).map(|(cutter, positive)| self.lines.cut(cutter, positive, plane));
-                let footprint = self.footprints[at as usize];
-                if footprint.is_some_and(|footprint| pieces.add(at, (setup, footprint), cuts(), &self.raster)) {
-                    self.execution.tell(|| piece_step(place, setup, &cuts().collect::<Vec<_>>()));
-                }
-            }
+        for &fragment in self.order[first..].iter().take(FRAGMENTS_A_RUN) {
+            let triangles = self.triangles(fragment);
+            let triangles = triangles.map(|(index, setup)| (index, setup, self.footprints[index as usize]));
+            pieces.add_polygon(fragment, triangles, |depth| self.cuts(fragment, depth), &self.raster);
         }
         pieces.finish(self.raster.viewport());
         pieces
+    }
+
+    /// The triangles on the screen of a fragment's polygon, with their indices.
+    fn triangles(&self, fragment: u32) -> impl Iterator<Item = (u32, &Setup)> {
+        let facets = self.tree.facets(fragment).iter();
+        let indices = facets.flat_map(|&facet| self.places.setups_of(facet, self.setups));
+        indices.map(|index| (index, self.setups[index as usize]))
+    }
+
+    /// The lines along which a fragment is cut from a triangle of its polygon, that has this depth.
+    fn cuts(&self, fragment: u32, depth: Depth) -> impl ExactSizeIterator<Item = Cut> + '_ {
+        self.tree.cuts(fragment).map(move |(cutter, positive)| self.lines.cut(cutter, positive, depth))
+    }
+
+    /// Tells the list from back to front.
+    fn tell(&self, runs: &[Pieces]) {
+        if self.execution.observer.is_none() {
+            return;
+        }
+        let nodes = self.tree.nodes_of_fragments();
+        let listed = runs.iter().rev().flat_map(|run| run.listed.iter().rev());
+        for (order, &fragment) in (0..).zip(listed) {
+            // One outline for all triangles; more if the polygon was not brought to the screen as a whole.
+            let outlines = Polygons::joined(self.triangles(fragment).map(|(_, setup)| setup), |_| 0);
+            for polygon in (0..outlines.len()).map(|number| outlines.get(number)) {
+                let mut outline: Vec<_> = polygon.outline().iter().map(|p| p.map(f64::from)).collect();
+                let (mut scratch, cuts) = (Vec::new(), self.cuts(fragment, Depth::of(polygon.plane())));
+                let count = cuts.len() as u32;
+                cuts.for_each(|cut| clip_outline(&mut outline, &mut scratch, &cut));
+                self.execution.tell(|| Step::Piece {
+                    order,
+                    polygon: fragment,
+                    node: nodes[fragment as usize],
+                    facet: self.tree.name(fragment),
+                    cuts: count,
+                    outline: on_screen(&outline),
+                });
+            }
+        }
     }
 }
 

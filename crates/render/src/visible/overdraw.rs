@@ -77,7 +77,7 @@ impl Pixels<'_> {
                 if execution.observer.as_ref().is_some_and(|observer| observer.watches(pixel)) {
                     let ((depth, facet), stays) = (came, held.map_or(came.1, |(_, facet)| facet));
                     let (there, there_depth) = (was.map(|(_, facet)| facet), was.map(|(depth, _)| depth));
-                    execution.tell(|| Step::Compared { pixel, facet, depth, there, there_depth, stays });
+                    execution.tell(|| Step::DepthTest { pixel, facet, depth, there, there_depth, stays });
                 }
             }
         }

@@ -6,36 +6,43 @@
 //! behind the plane of Q; (4) Q lies in front of the plane of P; (5) the projections do not overlap. If none holds but
 //! 3 or 4 with the roles exchanged, Q has to come first: it is moved before P and marked, and the same is asked of Q.
 //! If a polygon has to wait for one that is marked, they wait for each other in a circle, which is cut: one of them is
-//! split. If Q is neither before nor behind P, they penetrate, and P is split where the planes meet.
+//! split. If Q is neither before nor behind P, they penetrate, and one is split where the planes meet.
+//!
+//! The polygons are the faces of the file: flat convex ones whole, others in the few convex pieces that their triangles can be
+//! joined to (`polygons.rs`).
 //!
 //! It always ends. A polygon is split along planes and edges of the others it meets, each time into two parts that lie
 //! clearly off the line; when no line is left that splits one, the circle is one of rounding, and P is painted.
 //!
-//! In:   set-up triangles (screen space). Out: the samples of each tile (screen space).
+//! In:   set-up triangles, joined to polygons (screen space). Out: the samples of each tile (screen space).
 //! Cost: `O(n log n)` for sorting, plus pairs of polygons in one cell of a grid, plus covered samples, hidden ones too.
 //! Source: [Newell, Newell & Sancha 1972]. Departs from it: a grid over the picture finds the polygons to compare with;
 //! marked polygons form a stack, so that one that has to come first is painted at once; before a split the depths in
-//! the overlap of the projections are looked at, since planes often meet elsewhere; circles of polygons that lie on one
-//! side of each other's planes are cut along an edge, where a plane would not cut them.
+//! the overlap of the projections are looked at, since planes often meet elsewhere; circles are cut along a
+//! line, of a plane or an edge, that leaves no part both waiting and waited for, if there is one; of two polygons that penetrate, the
+//! smaller is split, which makes fewer parts; parts go on with the comparisons of the whole; and the grid becomes finer as parts
+//! become many.
 
 mod compare;
 
-use super::cut::{Cut, bounds, corners};
+use super::cut::{Cut, bounds};
 use super::facets::Facets;
 use super::pieces::{Pieces, Raster};
-use super::priority_list::{PriorityList, draw_list, piece_step};
+use super::polygons::Polygons;
+use super::priority_list::{PriorityList, draw_list, on_screen};
 use super::sink::TileSink;
 use super::{Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
+use crate::trace::lists::{ListTest, ListVerdict as Verdict, ListedPolygon};
 use crate::{Execution, PreparedView};
-use compare::{Polygon, Verdict, compare, crossing};
+use compare::{Polygon, compare, crossing};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 use vitral_exec::Limit;
-use vitral_raster::{Setup, TileGrid};
+use vitral_raster::{SUBPIXEL, Setup, TileGrid};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -53,32 +60,36 @@ impl VisibleSurface for Painter {
         let mut resolved = Resolved::default();
         let facets = Facets::new(view, execution, &mut resolved)?;
         let (setups, opaque) = facets.listed();
+        let polygons = Polygons::of_list(setups.split_at(opaque), view);
+        execution.budget.charged(polygons.bytes(), "the painter's list", || {
+            // Sort from back to front, splitting what is in no order.
+            let mut counters = VisibilityCounters::default();
+            let raster = Raster::new(view.viewport, &view.pattern);
+            let list = sorted(&polygons, raster, execution, &mut counters)?;
+            counters.pieces = list.len() as u64;
 
-        // Sort from back to front, splitting what is in no order.
-        let mut counters = VisibilityCounters::default();
-        let list = sorted(&setups, Raster::new(view.viewport, &view.pattern), execution, &mut counters)?;
-        counters.pieces = list.len() as u64;
-
-        // Paint.
-        let (bytes, runs) = (list.bytes(), [list]);
-        let list = PriorityList { setups: &setups, opaque, runs: &runs };
-        let painted = execution.budget.charged(bytes, "the painter's list", || {
-            draw_list::<false>(&facets, &list, marks, grid, sink, "painting")
+            // Paint.
+            let (bytes, runs) = (list.bytes(), [list]);
+            let list = PriorityList { setups: polygons.triangles(), opaque, runs: &runs };
+            let painted = execution.budget.charged(bytes, "the painter's list", || {
+                draw_list::<false>(&facets, &list, marks, grid, sink, "painting")
+            })?;
+            counters.add(&painted);
+            resolved.counters = counters;
+            Ok(())
         })?;
-        counters.add(&painted);
-        resolved.counters = counters;
         Ok(resolved)
     }
 }
 
-/// The list of all triangles or their pieces, from back to front.
+/// The list of all polygons or their parts, from back to front.
 fn sorted(
-    setups: &[&Setup],
+    wholes: &Polygons<'_>,
     raster: Raster<'_>,
     execution: &Execution,
     counters: &mut VisibilityCounters,
 ) -> Result<Pieces, Limit> {
-    let mut sorting = Sorting::new(setups, raster, execution, counters)?;
+    let mut sorting = Sorting::new(wholes, raster, execution, counters)?;
     let outcome = sorting.sort();
     let (list, charged) = (sorting.list(), sorting.charged);
     drop(sorting);
@@ -95,6 +106,13 @@ enum State {
     Painted,
     /// Its parts have taken its place.
     Split,
+}
+
+impl State {
+    /// Whether it is neither painted nor split.
+    fn is_pending(self) -> bool {
+        matches!(self, Self::Waiting | Self::Marked)
+    }
 }
 
 /// What the first order goes by: the farthest first.
@@ -124,18 +142,27 @@ impl Ord for Farness {
 #[derive(Clone, Copy)]
 struct Marked {
     polygon: u32,
+    progress: Progress,
+}
+
+/// How far the comparisons of a polygon have come. What it passed once it need not be compared with again, nor with parts of it.
+#[derive(Clone, Copy)]
+struct Progress {
     /// Cell of the grid, and place in its list.
     cell: [u16; 2],
     at: u32,
+    /// The state of the cell's list that the place is in.
+    version: u32,
 }
 
-/// What is looked at first of a polygon that another is compared with: the first cell it is in, its farthest depth, and
-/// what has become of it. Small, since many are looked at.
+/// A polygon on the list of a cell, with what is looked at first when another is compared with it. Small, since many are looked at.
 #[derive(Clone, Copy)]
-struct Brief {
-    cell: [u16; 2],
+struct Entry {
+    polygon: u32,
+    /// Its farthest depth.
     far: f32,
-    state: State,
+    /// The first cell it is in.
+    cell: [u16; 2],
 }
 
 /// Pixels along a cell of the grid at least.
@@ -143,100 +170,185 @@ const SMALLEST_CELL: u32 = 8;
 /// About how many polygons a cell should hold.
 const POLYGONS_A_CELL: usize = 12;
 /// Bytes of a polygon: itself, its corners, its place, its entries in the grid.
-const BYTES_A_POLYGON: u64 = (size_of::<Polygon>() + 3 * 16 + size_of::<Farness>() + 16) as u64;
+const BYTES_A_POLYGON: u64 = (size_of::<Polygon>() + 4 * 16 + size_of::<Farness>() + 16) as u64;
 
 /// The sorting of one picture.
 struct Sorting<'f, 'c> {
-    setups: &'f [&'f Setup],
+    /// The polygons before any is split.
+    wholes: &'f Polygons<'f>,
     raster: Raster<'f>,
     execution: &'f Execution,
     counters: &'c mut VisibilityCounters,
     polygons: Vec<Polygon>,
-    briefs: Vec<Brief>,
+    states: Vec<State>,
     corners: Vec<[f64; 2]>,
     cuts: Vec<Cut>,
     /// The order by the farthest point.
     waiting: BinaryHeap<Farness>,
     marked: Vec<Marked>,
     /// Polygons by cell, row by row.
-    cells: Vec<Vec<u32>>,
+    cells: Vec<Vec<Entry>>,
     /// How many polygons of each cell's list are painted or split.
     done: Vec<u32>,
     /// Cells where that is more than half.
     stale: Vec<u32>,
+    /// How often each cell's list was tidied.
+    versions: Vec<u32>,
+    /// How far each polygon's comparisons had come when it lost its mark.
+    progress: Vec<Progress>,
     columns: u32,
     cell: u32,
+    /// How many polygons wait.
+    pending: usize,
     painted: Vec<u32>,
     charged: u64,
 }
 
+/// Pixels along a cell of the grid for so many polygons.
+fn cell_size(raster: &Raster<'_>, polygons: usize) -> u32 {
+    let viewport = raster.viewport();
+    let pixels = viewport.width as usize * viewport.height as usize;
+    ((pixels / (polygons / POLYGONS_A_CELL + 1)).isqrt() as u32).max(SMALLEST_CELL)
+}
+
 impl<'f, 'c> Sorting<'f, 'c> {
     fn new(
-        setups: &'f [&'f Setup],
+        wholes: &'f Polygons<'f>,
         raster: Raster<'f>,
         execution: &'f Execution,
         counters: &'c mut VisibilityCounters,
     ) -> Result<Self, Limit> {
+        let cell = cell_size(&raster, wholes.len());
         let viewport = raster.viewport();
-        let pixels = viewport.width as usize * viewport.height as usize;
-        let cells = setups.len() / POLYGONS_A_CELL + 1;
-        let cell = ((pixels / cells).isqrt() as u32).max(SMALLEST_CELL);
         let (columns, rows) = (viewport.width.div_ceil(cell), viewport.height.div_ceil(cell));
-        let charged = setups.len() as u64 * BYTES_A_POLYGON + u64::from(columns * rows) * 24;
+        let charged = wholes.len() as u64 * BYTES_A_POLYGON + u64::from(columns * rows) * 24;
         execution.budget.charge(charged, "the painter's list")?;
         let mut sorting = Self {
-            setups,
+            wholes,
             raster,
             execution,
             counters,
-            polygons: Vec::with_capacity(setups.len()),
-            briefs: Vec::with_capacity(setups.len()),
-            corners: Vec::with_capacity(setups.len() * 3),
+            polygons: Vec::with_capacity(wholes.len()),
+            states: Vec::with_capacity(wholes.len()),
+            corners: Vec::with_capacity(wholes.len() * 4),
             cuts: Vec::new(),
-            waiting: BinaryHeap::with_capacity(setups.len()),
+            waiting: BinaryHeap::with_capacity(wholes.len()),
             marked: Vec::new(),
             cells: vec![Vec::new(); (columns * rows) as usize],
             done: vec![0; (columns * rows) as usize],
             stale: Vec::new(),
+            versions: vec![0; (columns * rows) as usize],
+            progress: Vec::with_capacity(wholes.len()),
             columns,
             cell,
+            pending: 0,
             painted: Vec::new(),
             charged,
         };
-        for (i, setup) in setups.iter().enumerate() {
-            sorting.add(i as u32, &corners(setup), 0..0);
+        let mut outline = Vec::new();
+        for whole in 0..wholes.len() {
+            outline.clear();
+            outline.extend(wholes.get(whole).outline().iter().map(|corner| corner.map(f64::from)));
+            sorting.add(whole as u32, &outline, 0..0);
         }
         Ok(sorting)
     }
 
-    /// Adds a polygon, if it can have samples.
-    fn add(&mut self, index: u32, corners: &[[f64; 2]], cuts: Range<u32>) {
-        let Some(pixels) = self.raster.pixels(bounds(corners)) else { return };
-        let setup = self.setups[index as usize];
+    /// The plane of a polygon, or of the one that it is a part of.
+    fn plane(&self, polygon: u32) -> &'f Setup {
+        self.wholes.get(self.polygons[polygon as usize].whole as usize).plane()
+    }
+
+    /// The facet by which a polygon is named.
+    fn facet(&self, polygon: u32) -> u32 {
+        self.plane(polygon).facet
+    }
+
+    /// Adds a polygon, if it can have samples, and gives its number.
+    fn add(&mut self, whole: u32, corners: &[[f64; 2]], cuts: Range<u32>) -> Option<u32> {
+        let pixels = self.raster.pixels(bounds(corners))?;
+        let plane = self.wholes.get(whole as usize).plane();
         let first = self.corners.len() as u32;
         self.corners.extend_from_slice(corners);
         let own = first..self.corners.len() as u32;
-        let polygon = Polygon::new(setup, index, corners, own, cuts, pixels.map(|p| p / self.cell as u16));
+        let polygon = Polygon::new(plane, whole, corners, own, cuts, pixels.map(|p| p / self.cell as u16));
         let number = self.polygons.len() as u32;
-        let [x0, y0, x1, y1] = polygon.cells;
+        self.enter(number, polygon.far, polygon.cells);
+        self.pending += 1;
+        let [x0, y0, ..] = polygon.cells;
+        self.waiting.push(Farness { far: polygon.far, facet: plane.facet, polygon: number });
+        self.states.push(State::Waiting);
+        self.polygons.push(polygon);
+        self.progress.push(Progress { cell: [x0, y0], at: 0, version: 0 });
+        Some(number)
+    }
+
+    /// Where a cell is among all.
+    fn index(&self, [x, y]: [u16; 2]) -> usize {
+        y as usize * self.columns as usize + x as usize
+    }
+
+    /// Puts a polygon on the lists of its cells.
+    fn enter(&mut self, polygon: u32, far: f32, [x0, y0, x1, y1]: [u16; 4]) {
+        let entry = Entry { polygon, far, cell: [x0, y0] };
         for y in y0..=y1 {
             for x in x0..=x1 {
-                self.cells[y as usize * self.columns as usize + x as usize].push(number);
+                self.cells[y as usize * self.columns as usize + x as usize].push(entry);
             }
         }
-        self.waiting.push(Farness { far: polygon.far, facet: setup.facet, polygon: number });
-        self.briefs.push(Brief { cell: [x0, y0], far: polygon.far, state: State::Waiting });
-        self.polygons.push(polygon);
+    }
+
+    /// Makes the cells smaller when splitting has made polygons many and small. None may be marked.
+    fn refine(&mut self) {
+        let cell = cell_size(&self.raster, self.pending);
+        if cell * 2 > self.cell {
+            return;
+        }
+        let viewport = self.raster.viewport();
+        self.cell = cell;
+        self.columns = viewport.width.div_ceil(cell);
+        let cells = (self.columns * viewport.height.div_ceil(cell)) as usize;
+        self.cells.iter_mut().for_each(Vec::clear);
+        self.cells.resize(cells, Vec::new());
+        self.stale.clear();
+        self.done.clear();
+        self.done.resize(cells, 0);
+        self.versions.clear();
+        self.versions.resize(cells, 0);
+        for number in 0..self.polygons.len() as u32 {
+            if self.states[number as usize] == State::Waiting {
+                let around = bounds(self.polygons[number as usize].points(&self.corners));
+                let Some(pixels) = self.raster.pixels(around) else { continue };
+                let own = pixels.map(|p| p / cell as u16);
+                self.polygons[number as usize].cells = own;
+                self.progress[number as usize] = Progress { cell: [own[0], own[1]], at: 0, version: 0 };
+                self.enter(number, self.polygons[number as usize].far, own);
+            }
+        }
+    }
+
+    /// A polygon as steps tell it.
+    fn listed(&self, polygon: u32) -> ListedPolygon {
+        let depth = &self.polygons[polygon as usize].depth;
+        ListedPolygon { polygon, facet: self.facet(polygon), far: depth.min as f32, near: depth.max as f32 }
+    }
+
+    /// The step of the first order.
+    fn first_order(&self) -> Step {
+        let order = self.waiting.clone().into_sorted_vec();
+        Step::FirstOrder { polygons: order.iter().rev().map(|farness| self.listed(farness.polygon)).collect() }
     }
 
     /// Finds the order.
     fn sort(&mut self) -> Result<(), Limit> {
         self.execution.budget.begin("polygons", self.polygons.len() as u64);
+        self.execution.tell(|| self.first_order());
         while let Some(place) = self.waiting.pop() {
-            if self.briefs[place.polygon as usize].state == State::Waiting {
+            if self.states[place.polygon as usize] == State::Waiting {
+                self.execution.tell(|| Step::Turn { polygon: place.polygon, facet: place.facet });
                 self.mark(place.polygon);
                 self.paint_marked()?;
-                self.tidy();
+                self.refine();
             }
         }
         Ok(())
@@ -244,7 +356,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// Notes that a polygon is painted or split.
     fn finish(&mut self, polygon: u32, state: State) {
-        self.briefs[polygon as usize].state = state;
+        self.states[polygon as usize] = state;
+        self.pending -= 1;
         let [x0, y0, x1, y1] = self.polygons[polygon as usize].cells;
         for y in y0..=y1 {
             for x in x0..=x1 {
@@ -257,22 +370,22 @@ impl<'f, 'c> Sorting<'f, 'c> {
         }
     }
 
-    /// Takes what is done out of the cells' lists. While polygons are marked, their places in the lists must not move.
+    /// Takes what is done out of the cells' lists. Places in these lists are no longer valid then.
     fn tidy(&mut self) {
         for cell in self.stale.drain(..) {
             let done = &mut self.done[cell as usize];
             if *done > 0 {
                 *done = 0;
-                let pending = |p: &u32| matches!(self.briefs[*p as usize].state, State::Waiting | State::Marked);
+                self.versions[cell as usize] += 1;
+                let pending = |entry: &Entry| self.states[entry.polygon as usize].is_pending();
                 self.cells[cell as usize].retain(pending);
             }
         }
     }
 
     fn mark(&mut self, polygon: u32) {
-        self.briefs[polygon as usize].state = State::Marked;
-        let [x0, y0, ..] = self.polygons[polygon as usize].cells;
-        self.marked.push(Marked { polygon, cell: [x0, y0], at: 0 });
+        self.states[polygon as usize] = State::Marked;
+        self.marked.push(Marked { polygon, progress: self.progress[polygon as usize] });
     }
 
     /// Paints the marked polygons, and whatever has to come before them.
@@ -283,27 +396,31 @@ impl<'f, 'c> Sorting<'f, 'c> {
             if steps % 64 == 1 {
                 self.account()?;
             }
+            self.tidy();
             let Some((other, verdict)) = self.obstacle()? else {
                 self.finish(top.polygon, State::Painted);
+                self.execution.tell(|| Step::Painted { polygon: top.polygon, facet: self.facet(top.polygon) });
                 self.painted.push(top.polygon);
                 self.execution.budget.advance();
                 self.marked.pop();
                 continue;
             };
-            let solved = match (verdict, self.briefs[other as usize].state) {
+            let solved = match (verdict, self.states[other as usize]) {
                 (Verdict::After, State::Marked) => self.cut_cycle(other),
                 (Verdict::After, _) => {
                     self.counters.reordered += 1;
-                    let [facet, before] = [other, top.polygon].map(|p| self.facet(p));
-                    self.execution.tell(|| Step::Moved { facet, before });
+                    self.execution.tell(|| {
+                        let [facet, before] = [other, top.polygon].map(|p| self.facet(p));
+                        Step::Moved { polygon: other, facet, before_polygon: top.polygon, before }
+                    });
                     self.mark(other);
                     true
                 }
-                _ => self.split_at_plane(top.polygon, other),
+                _ => self.split_at_plane(other),
             };
             // No line splits them clearly: they are as good as in order.
             if !solved && let Some(top) = self.marked.last_mut() {
-                top.at += 1;
+                top.progress.at += 1;
             }
         }
         Ok(())
@@ -312,46 +429,65 @@ impl<'f, 'c> Sorting<'f, 'c> {
     /// Goes on with the comparisons of the last marked polygon, until one says that it cannot be painted yet.
     fn obstacle(&mut self) -> Result<Option<(u32, Verdict)>, Limit> {
         let Some(top) = self.marked.last_mut() else { return Ok(None) };
-        let p = &self.polygons[top.polygon as usize];
-        let [x0, y0, x1, y1] = p.cells;
+        let (polygon, at) = (top.polygon, &mut top.progress);
+        let p = &self.polygons[polygon as usize];
+        let [x0, _, x1, y1] = p.cells;
+        let version = self.versions[at.cell[1] as usize * self.columns as usize + at.cell[0] as usize];
+        if at.version != version {
+            // The list was tidied since: look at all of it.
+            *at = Progress { at: 0, version, ..*at };
+        }
         loop {
-            let list = &self.cells[top.cell[1] as usize * self.columns as usize + top.cell[0] as usize];
-            while let Some(&other) = list.get(top.at as usize) {
-                let brief = &self.briefs[other as usize];
+            let cell = at.cell[1] as usize * self.columns as usize + at.cell[0] as usize;
+            while let Some(&Entry { polygon: other, far, cell: first }) = self.cells[cell].get(at.at as usize) {
                 // Two polygons are compared in the first cell that both are in.
-                let here = [0, 1].map(|k| p.cells[k].max(brief.cell[k])) == top.cell;
-                let pending = matches!(brief.state, State::Waiting | State::Marked);
-                if here && pending && other != top.polygon && !p.is_behind(brief.far, self.counters) {
-                    let q = &self.polygons[other as usize];
-                    let verdict = compare(p, q, self.setups, &self.corners, self.counters);
+                let here = [0, 1].map(|k| p.cells[k].max(first[k])) == at.cell;
+                if here && self.states[other as usize].is_pending() && other != polygon {
+                    let (verdict, test) = match p.is_behind(far, self.counters) {
+                        true => (Verdict::Before, ListTest::DepthExtent),
+                        false => {
+                            let q = &self.polygons[other as usize];
+                            compare(p, q, self.wholes, &self.corners, self.counters)
+                        }
+                    };
+                    self.execution.tell(|| {
+                        let facet = |i: u32| self.wholes.get(self.polygons[i as usize].whole as usize).facet();
+                        let (facet, with_facet) = (facet(polygon), facet(other));
+                        Step::Compared { polygon, facet, with: other, with_facet, test, verdict }
+                    });
                     if verdict != Verdict::Before {
                         return Ok(Some((other, verdict)));
                     }
                 }
-                top.at += 1;
+                at.at += 1;
             }
             // On to the next cell.
-            top.at = 0;
-            top.cell[0] += 1;
-            if top.cell[0] > x1 {
+            let mut next = [at.cell[0] + 1, at.cell[1]];
+            if next[0] > x1 {
                 self.execution.budget.check("the painter's list")?;
-                top.cell = [x0, top.cell[1] + 1];
-                if top.cell[1] > y1 {
-                    top.cell[1] = y0;
+                next = [x0, at.cell[1] + 1];
+                if next[1] > y1 {
                     return Ok(None);
                 }
             }
+            let version = self.versions[next[1] as usize * self.columns as usize + next[0] as usize];
+            *at = Progress { cell: next, at: 0, version };
         }
     }
 
-    fn facet(&self, polygon: u32) -> u32 {
-        self.setups[self.polygons[polygon as usize].setup as usize].facet
-    }
-
-    /// Splits the last marked polygon where its plane meets that of another.
-    fn split_at_plane(&mut self, polygon: u32, other: u32) -> bool {
-        let [p, q] = [polygon, other].map(|i| self.setups[self.polygons[i as usize].setup as usize]);
-        crossing(p, q).is_some_and(|line| self.split(self.marked.len() - 1, line))
+    /// Splits the last marked polygon, or the one that it penetrates, where their planes meet: the smaller one, if the line splits
+    /// it, and if it is not marked.
+    fn split_at_plane(&mut self, other: u32) -> bool {
+        let last = self.marked.len() - 1;
+        let top = self.marked[last].polygon;
+        let Some(line) = crossing(self.plane(top), self.plane(other)) else { return false };
+        let [own_area, other_area] = [top, other].map(|i| self.polygons[i as usize].area(&self.corners));
+        let splits_other = other_area < own_area && self.states[other as usize] == State::Waiting;
+        if splits_other && let Some(halves) = self.polygons[other as usize].split(&self.corners, &line) {
+            self.replace((other, self.progress[other as usize]), &halves, line, top, Vec::new());
+            return true;
+        }
+        self.split(last, line, other)
     }
 
     /// Cuts the circle of marked polygons that begins at `start`: somewhere along it, one is split by its neighbour.
@@ -359,17 +495,33 @@ impl<'f, 'c> Sorting<'f, 'c> {
         self.counters.cycles += 1;
         let first = self.marked.iter().position(|m| m.polygon == start).unwrap_or(0);
         let last = self.marked.len() - 1;
-        let circle = || self.marked[first..].iter().map(|m| self.facet(m.polygon)).collect();
-        self.execution.tell(|| Step::Circle { facets: circle() });
-        // Each has to be painted after the next one, and the last after the first.
+        self.execution.tell(|| {
+            let polygons: Vec<u32> = self.marked[first..].iter().map(|m| m.polygon).collect();
+            let facets = polygons.iter().map(|&p| self.facet(p)).collect();
+            Step::Circle { polygons, facets }
+        });
+        // Each has to be painted after the next one, and the last after the first. Split one so that no part waits and is waited for.
+        let (next, previous) = (
+            |place: usize| if place == last { first } else { place + 1 },
+            |place: usize| if place == first { last } else { place - 1 },
+        );
         for place in (first..=last).rev() {
-            let next = if place == last { first } else { place + 1 };
-            for (split, by) in [(place, next), (next, place)] {
-                let [p, q] = [split, by].map(|i| self.marked[i].polygon as usize);
-                let [ps, qs] = [p, q].map(|i| self.setups[self.polygons[i].setup as usize]);
-                let lines = crossing(ps, qs).into_iter().chain(self.polygons[q].edges(&self.corners));
-                let lines: Vec<_> = lines.collect();
-                if lines.into_iter().any(|line| self.split(split, line)) {
+            let [p, q, r] = [place, next(place), previous(place)].map(|i| self.marked[i].polygon);
+            let [own, behind, in_front] = [p, q, r].map(|i| &self.polygons[i as usize]);
+            if let Some((line, is_of_next)) = own.separating_line([behind, in_front], self.wholes, &self.corners)
+                && self.split(place, line, if is_of_next { q } else { r })
+            {
+                return true;
+            }
+        }
+
+        // Without such a line, split one along any that splits it.
+        for place in (first..=last).rev() {
+            for (split, by) in [(place, next(place)), (next(place), place)] {
+                let [p, q] = [split, by].map(|i| self.marked[i].polygon);
+                let edges = self.polygons[q as usize].edges(&self.corners);
+                let lines: Vec<_> = crossing(self.plane(p), self.plane(q)).into_iter().chain(edges).collect();
+                if lines.into_iter().any(|line| self.split(split, line, q)) {
                     return true;
                 }
             }
@@ -377,31 +529,84 @@ impl<'f, 'c> Sorting<'f, 'c> {
         false
     }
 
-    /// Splits a marked polygon along a line, if it lies clearly on both sides. Those marked after it have to wait again.
-    fn split(&mut self, place: usize, line: Cut) -> bool {
-        let number = self.marked[place].polygon as usize;
-        let polygon = self.polygons[number].clone();
-        let Some(halves) = polygon.split(&self.corners, &line) else { return false };
+    /// Splits a marked polygon along a line, that of the plane or an edge of another, if it lies clearly on both sides. Those marked
+    /// after it have to wait again.
+    fn split(&mut self, place: usize, line: Cut, by: u32) -> bool {
+        let Marked { polygon: number, progress } = self.marked[place];
+        let Some(halves) = self.polygons[number as usize].split(&self.corners, &line) else { return false };
+        self.marked[place..].iter().for_each(|left| self.progress[left.polygon as usize] = left.progress);
+        let unmarked: Vec<u32> = self.marked.drain(place..).skip(1).map(|left| left.polygon).collect();
+        for &left in &unmarked {
+            self.states[left as usize] = State::Waiting;
+            self.waiting.push(Farness {
+                far: self.polygons[left as usize].far,
+                facet: self.facet(left),
+                polygon: left,
+            });
+        }
+        self.replace((number, progress), &halves, line, by, unmarked);
+        true
+    }
+
+    /// Puts the halves of a polygon in its place; its comparisons had come so far.
+    fn replace(
+        &mut self,
+        (number, progress): (u32, Progress),
+        halves: &[Vec<[f64; 2]>; 2],
+        line: Cut,
+        by: u32,
+        unmarked: Vec<u32>,
+    ) {
         self.counters.splits += 1;
-        let facet = self.facet(number as u32);
-        self.execution.tell(|| Step::Split { facet, line: [line.a, line.b, line.c] });
-        self.finish(number as u32, State::Split);
-        for left in self.marked.drain(place..) {
-            let state = &mut self.briefs[left.polygon as usize].state;
-            if *state == State::Marked {
-                *state = State::Waiting;
-                let waiting = &self.polygons[left.polygon as usize];
-                let facet = self.setups[waiting.setup as usize].facet;
-                self.waiting.push(Farness { far: waiting.far, facet, polygon: left.polygon });
+        self.finish(number, State::Split);
+        let Polygon { whole, ref cuts, .. } = self.polygons[number as usize];
+        let cuts = cuts.clone();
+        let mut parts = [None; 2];
+        for (part, (corners, cut)) in parts.iter_mut().zip(halves.iter().zip([line, line.opposite()])) {
+            let first = self.cuts.len() as u32;
+            for inherited in cuts.clone() {
+                // A line that stays clear of the part cuts nothing off it.
+                let inherited = self.cuts[inherited as usize];
+                if !inherited.holds(corners) {
+                    self.cuts.push(inherited);
+                }
+            }
+            self.cuts.push(cut);
+            *part = self.add(whole, corners, first..self.cuts.len() as u32);
+            if let Some(part) = *part {
+                self.go_on(part, progress);
             }
         }
-        for (corners, cut) in halves.iter().zip([line, line.opposite()]) {
-            let first = self.cuts.len() as u32;
-            self.cuts.extend_from_within(polygon.cuts.start as usize..polygon.cuts.end as usize);
-            self.cuts.push(cut);
-            self.add(polygon.setup, corners, first..self.cuts.len() as u32);
-        }
-        true
+        self.execution.tell(|| Step::Split {
+            polygon: number,
+            facet: self.facet(number),
+            by,
+            by_facet: self.facet(by),
+            line: [line.a, line.b, line.c / f64::from(SUBPIXEL)],
+            parts: parts.iter().flatten().map(|&part| self.listed(part)).collect(),
+            unmarked,
+        });
+    }
+
+    /// Lets a part go on where the whole has come to.
+    fn go_on(&mut self, part: u32, progress: Progress) {
+        let [x0, y0, x1, y1] = self.polygons[part as usize].cells;
+        let [x, y] = progress.cell;
+        // The part may begin after the cell, or end before it in this row.
+        let cell = match (y < y0, x > x1) {
+            (true, _) => [x0, y0],
+            (false, true) => [x0, y + 1],
+            (false, false) => [x.max(x0), y],
+        };
+        let own = if cell == progress.cell {
+            progress
+        } else if cell[1] > y1 {
+            // All is compared: nothing is left in the last cell.
+            Progress { cell: [x1, y1], at: u32::MAX, version: self.versions[self.index([x1, y1])] }
+        } else {
+            Progress { cell, at: 0, version: self.versions[self.index(cell)] }
+        };
+        self.progress[part as usize] = own;
     }
 
     /// Charges what the splits have added, and looks at the clock.
@@ -422,12 +627,19 @@ impl<'f, 'c> Sorting<'f, 'c> {
         for &number in &self.painted {
             let polygon = &self.polygons[number as usize];
             let cuts = &self.cuts[polygon.cuts.start as usize..polygon.cuts.end as usize];
-            let setup = self.setups[polygon.setup as usize];
-            let order = list.len() as u32;
-            let Some(footprint) = self.raster.footprint(setup) else { continue };
-            if list.add(polygon.setup, (setup, footprint), cuts.iter().copied(), &self.raster) {
-                self.execution.tell(|| piece_step(order, setup, cuts));
-            }
+            let triangles = self.wholes.triangles_of(polygon.whole as usize).map(|index| {
+                let setup = self.wholes.triangles()[index as usize];
+                (index, setup, self.raster.footprint(setup))
+            });
+            list.add_polygon(number, triangles, |_| cuts.iter().copied(), &self.raster);
+        }
+        for (order, &number) in (0..).zip(&list.listed) {
+            self.execution.tell(|| {
+                let polygon = &self.polygons[number as usize];
+                let outline = on_screen(polygon.points(&self.corners));
+                let cuts = polygon.cuts.len() as u32;
+                Step::Piece { order, polygon: number, node: None, facet: self.facet(number), cuts, outline }
+            });
         }
         list.finish(self.raster.viewport());
         list
@@ -446,13 +658,13 @@ mod tests {
 
     /// The facets in the order in which they are painted, and the counters.
     fn order(setups: &[Setup]) -> (Vec<u32>, VisibilityCounters) {
-        let setups: Vec<_> = setups.iter().collect();
+        let wholes = Polygons::joined(setups, |facet| facet);
         let (execution, mut counters) = (Execution::default(), VisibilityCounters::default());
         let pattern = SamplePattern::new(1);
         let raster = Raster::new(Viewport::new(64, 64).unwrap(), &pattern);
-        let mut sorting = Sorting::new(&setups, raster, &execution, &mut counters).unwrap();
+        let mut sorting = Sorting::new(&wholes, raster, &execution, &mut counters).unwrap();
         sorting.sort().unwrap();
-        let painted = sorting.painted.iter().map(|&p| setups[sorting.polygons[p as usize].setup as usize].facet);
+        let painted = sorting.painted.iter().map(|&p| sorting.facet(p));
         (painted.collect(), counters)
     }
 

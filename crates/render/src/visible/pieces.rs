@@ -1,16 +1,16 @@
-//! Pieces of facets: what painter's algorithm and BSP trees cut polygons into.
+//! Pieces of polygons: what painter's algorithm and BSP trees cut polygons into.
 //!
-//! A piece of a facet is the facet and the lines it was cut along, no new corners: a sample belongs to the piece if the
-//! facet covers it and it lies on the kept side of each line. The two halves of a cut share the line and differ in the
+//! A piece of a polygon is its facets and the lines it was cut along, no new corners: a sample belongs to the piece if one of the
+//! facets covers it and it lies on the kept side of each line. The two halves of a cut share the line and differ in the
 //! side, so a sample belongs to one of them, never to none or both. The outline of a piece, by contrast, is computed
 //! with rounding; it only bounds the pixels where samples are looked for, a little too far out. A triangle of few samples
 //! needs no outline: each sample is asked, and the piece is the list of those that belong to it.
 //!
-//! In:   set-up triangles and lines (screen space). Out: pieces, sorted into tiles.
+//! In:   polygons' set-up triangles and lines (screen space). Out: pieces, sorted into tiles.
 //! Cost: linear in the pieces and the tiles that each touches.
 //! Source: the lines are those of [Fuchs, Kedem & Naylor 1980].
 
-use super::cut::{Cut, around, bounds, clip_outline, corners};
+use super::cut::{Cut, Depth, around, bounds, clip_outline, corners};
 use super::tiles::extent;
 use std::ops::Range;
 use vitral_raster::{BLOCK, SUBPIXEL, SamplePattern, Setup, TILE, Viewport};
@@ -20,7 +20,7 @@ const MAX_LISTED_SAMPLES: usize = 64;
 /// Samples of a block that are asked without a look at the block's corners first.
 const CORNER_TEST_THRESHOLD: u32 = 4;
 
-/// A part of a set-up triangle.
+/// A part of a set-up triangle: a polygon in the list has one for each of its triangles.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     /// Index among the view's triangles.
@@ -38,6 +38,8 @@ pub(super) const UNLISTED: u32 = u32::MAX;
 /// A run of the list, sorted into tiles.
 #[derive(Debug, Default)]
 pub(super) struct Pieces {
+    /// The polygons that have samples, in the order of the list: the numbers that [`Pieces::add_polygon`] was given.
+    pub(super) listed: Vec<u32>,
     pub(super) pieces: Vec<Piece>,
     pub(super) cuts: Vec<Cut>,
     /// Samples of small pieces: for each sample of a pixel the pixels from the upper left of the piece's, 8 a row.
@@ -128,9 +130,28 @@ impl<'p> Raster<'p> {
 }
 
 impl Pieces {
-    /// Adds the next piece of the list, a triangle with its footprint and the cuts that make it, if it can have samples;
+    /// Adds the next polygon of the list: its triangles with their indices and footprints, each with the cuts for its depth,
+    /// as far as they can have samples.
+    pub(super) fn add_polygon<'s, C: ExactSizeIterator<Item = Cut>>(
+        &mut self,
+        number: u32,
+        triangles: impl Iterator<Item = (u32, &'s Setup, Option<Footprint>)>,
+        cuts: impl Fn(Depth) -> C,
+        raster: &Raster<'_>,
+    ) {
+        let mut any = false;
+        for (index, setup, footprint) in triangles {
+            any |=
+                footprint.is_some_and(|footprint| self.add(index, (setup, footprint), cuts(Depth::of(setup)), raster));
+        }
+        if any {
+            self.listed.push(number);
+        }
+    }
+
+    /// Adds a piece, a triangle with its footprint and the cuts that make it, if it can have samples;
     /// whether it can.
-    pub(super) fn add(
+    fn add(
         &mut self,
         index: u32,
         (setup, footprint): (&Setup, Footprint),
@@ -249,14 +270,15 @@ impl Pieces {
         items.iter().map(|&item| &self.pieces[item as usize])
     }
 
-    /// How many pieces there are.
+    /// How many polygons and parts of polygons there are.
     pub(super) fn len(&self) -> usize {
-        self.pieces.len()
+        self.listed.len()
     }
 
     /// Bytes it takes.
     pub(super) fn bytes(&self) -> u64 {
-        let cuts = self.cuts.len() * size_of::<Cut>() + (self.starts.len() + self.items.len()) * 4;
+        let numbers = self.listed.len() + self.starts.len() + self.items.len();
+        let cuts = self.cuts.len() * size_of::<Cut>() + numbers * 4;
         (self.pieces.len() * size_of::<Piece>() + self.samples.len() * 8 + cuts) as u64
     }
 }

@@ -16,9 +16,10 @@ use vitral_raster::Setup;
 
 /// A triangle is joined to one of the polygons that its face has come out as, of these the last so many: more would take time
 /// that grows with the square of the triangles, and triangulations put neighbours close together.
-const RECENT: usize = 32;
+pub(super) const RECENT: usize = 32;
 
 /// The polygons of some triangles.
+#[derive(Debug, Default)]
 pub(super) struct Polygons<'f> {
     polygons: Vec<Polygon>,
     /// Triangles, polygon by polygon.
@@ -47,9 +48,7 @@ pub(super) struct ConvexPolygon<'p, 'f> {
 /// A polygon that is being joined.
 struct Growing<'f> {
     triangles: Vec<&'f Setup>,
-    outline: Vec<[i32; 2]>,
-    /// The corner of the outline that was added last: in a fan or a strip, the next triangle has an edge beside it.
-    tip: usize,
+    outline: Outline<[i32; 2]>,
 }
 
 impl<'f> Polygons<'f> {
@@ -61,14 +60,33 @@ impl<'f> Polygons<'f> {
 
     /// [`Self::new`]; `face` is the face that a facet is of.
     pub(super) fn joined(setups: impl IntoIterator<Item = &'f Setup>, face: impl Fn(u32) -> u32) -> Self {
-        // Of most meshes each triangle is a polygon: make room at once.
         let setups = setups.into_iter();
-        let count = setups.size_hint().0;
-        let mut polygons = Self {
+        let mut polygons = Self::with_room(setups.size_hint().0);
+        polygons.extend(setups, face);
+        polygons
+    }
+
+    /// [`Self::new`], of opaque triangles and then of layers: none is joined with one of the others.
+    pub(super) fn of_list((opaque, layers): (&[&'f Setup], &[&'f Setup]), view: &PreparedView<'_>) -> Self {
+        let world = view.session.world();
+        let mut polygons = Self::with_room(opaque.len() + layers.len());
+        for setups in [opaque, layers] {
+            polygons.extend(setups.iter().copied(), |facet| world.surface_of_facet(facet));
+        }
+        polygons
+    }
+
+    /// None, with room for those of so many triangles: of most meshes each is a polygon.
+    fn with_room(count: usize) -> Self {
+        Self {
             polygons: Vec::with_capacity(count),
             triangles: Vec::with_capacity(count),
             corners: Vec::with_capacity(3 * count),
-        };
+        }
+    }
+
+    /// Adds the polygons of more triangles.
+    fn extend(&mut self, setups: impl IntoIterator<Item = &'f Setup>, face: impl Fn(u32) -> u32) {
         // The triangles of the face at hand, and its number, once it was asked for.
         let (mut at_hand, mut number): (Vec<&'f Setup>, Option<u32>) = (Vec::new(), None);
         for setup in setups {
@@ -79,14 +97,13 @@ impl<'f> Polygons<'f> {
                         *number.insert(face(setup.facet)) == before
                     });
                 if !goes_on {
-                    polygons.join(&mut at_hand);
+                    self.join(&mut at_hand);
                     number = None;
                 }
             }
             at_hand.push(setup);
         }
-        polygons.join(&mut at_hand);
-        polygons
+        self.join(&mut at_hand);
     }
 
     /// Adds the polygons of a face, and takes its triangles.
@@ -98,16 +115,16 @@ impl<'f> Polygons<'f> {
             for setup in face.iter() {
                 let recent = growing.len().saturating_sub(RECENT);
                 if !growing[recent..].iter_mut().any(|polygon| polygon.join(setup)) {
-                    growing.push(Growing { triangles: vec![setup], outline: setup.corners().to_vec(), tip: 0 });
+                    growing.push(Growing { triangles: vec![setup], outline: Outline::new(setup.corners()) });
                 }
             }
-            growing.iter().for_each(|done| self.push(&done.triangles, &done.outline));
+            growing.iter().for_each(|done| self.push(&done.triangles, &done.outline.corners));
         }
         face.clear();
     }
 
     fn push(&mut self, of_polygon: &[&'f Setup], outline: &[[i32; 2]]) {
-        let (triangles, corners) = (self.triangles.len() as u32, self.corners.len() as u32);
+        let (first_triangle, first_corner) = (self.triangles.len() as u32, self.corners.len() as u32);
         self.triangles.extend(of_polygon);
         self.corners.extend(outline);
         let mut plane = *of_polygon[0];
@@ -115,8 +132,19 @@ impl<'f> Polygons<'f> {
             plane.z_min = plane.z_min.min(setup.z_min);
             plane.z_max = plane.z_max.max(setup.z_max);
         }
-        let (triangles, corners) = (triangles..self.triangles.len() as u32, corners..self.corners.len() as u32);
+        let (triangles, corners) =
+            (first_triangle..self.triangles.len() as u32, first_corner..self.corners.len() as u32);
         self.polygons.push(Polygon { plane, triangles, corners });
+    }
+
+    /// The triangles of all, polygon by polygon.
+    pub(super) fn triangles(&self) -> &[&'f Setup] {
+        &self.triangles
+    }
+
+    /// Where the triangles of the polygon of this number are among all.
+    pub(super) fn triangles_of(&self, number: usize) -> Range<u32> {
+        self.polygons[number].triangles.clone()
     }
 
     /// How many there are.
@@ -199,17 +227,41 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
 impl<'f> Growing<'f> {
     /// Adds a triangle, if it shares an edge and the outline stays convex.
     fn join(&mut self, setup: &'f Setup) -> bool {
-        let [a, b, c] = setup.corners();
-        let count = self.outline.len();
+        let joined = self.outline.add(setup.corners(), |a, b, c| turn(a, b, c) >= 0);
+        if joined {
+            self.triangles.push(setup);
+        }
+        joined
+    }
+}
+
+/// The outline of a convex polygon that triangles are joined to.
+pub(super) struct Outline<C> {
+    /// Its corners in order.
+    pub(super) corners: Vec<C>,
+    /// The corner that was added last: in a fan or a strip, the next triangle has an edge beside it.
+    tip: usize,
+}
+
+impl<C: Copy + PartialEq> Outline<C> {
+    /// That of a triangle.
+    pub(super) fn new(triangle: [C; 3]) -> Self {
+        Self { corners: triangle.to_vec(), tip: 0 }
+    }
+
+    /// Adds the tip of a triangle, if they share an edge and the outline stays convex; whether it does. `is_convex` says whether three
+    /// corners in a row turn the outline's way or go straight on.
+    pub(super) fn add(&mut self, [a, b, c]: [C; 3], is_convex: impl Fn(C, C, C) -> bool) -> bool {
+        let corners = &mut self.corners;
+        let count = corners.len();
         for ([from, to], tip) in [([a, b], c), ([b, c], a), ([c, a], b)] {
             // Outlines turn one way: a shared edge is walked in both directions.
-            let shared = |&i: &usize| self.outline[i] == to && self.outline[(i + 1) % count] == from;
+            let shared = |&i: &usize| corners[i] == to && corners[(i + 1) % count] == from;
             let Some(at) = (self.tip..count).chain(0..self.tip).find(shared) else { continue };
-            let (before, after) = (self.outline[(at + count - 1) % count], self.outline[(at + 2) % count]);
-            if turn(before, to, tip) >= 0 && turn(tip, from, after) >= 0 {
-                self.outline.insert(at + 1, tip);
+            let (before, after) = (corners[(at + count - 1) % count], corners[(at + 2) % count]);
+            if is_convex(before, to, tip) && is_convex(tip, from, after) {
+                corners.insert(at + 1, tip);
                 self.tip = at + 1;
-                self.triangles.push(setup);
                 return true;
             }
         }

@@ -12,26 +12,25 @@
 //! Cost: linear in the pieces of each tile and covered samples, hidden ones included.
 //! Source: [Newell, Newell & Sancha 1972].
 
-use super::cut::{Cut, clip_outline, corners};
+use super::cut::Cut;
 use super::facets::{Facets, fill_with};
 use super::pieces::{Piece, Pieces, UNLISTED, cut_masks, moved};
 use super::sink::TileSink;
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
+use crate::trace::lists::OverruledSample;
+use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Simd, dispatch};
 use vitral_raster::{
-    BLOCK, Block, BlockSink, InBlocks, LayerList, LayerSink, PriorityCounts, PrioritySink, RowSink, SUBPIXEL,
-    SamplePattern, Setup, TILE, Tile, TileGrid, traverse_by_rows, traverse_window,
+    BLOCK, Block, BlockSink, InBlocks, LayerList, LayerSink, NO_FACET, PriorityCounts, PrioritySink, RowSink, SUBPIXEL,
+    SamplePattern, Setup, TILE, TILE_PIXELS, Tile, TileGrid, traverse_by_rows, traverse_window,
 };
 
-/// The step that gives a piece its place in the list, the smallest from the back.
-pub(super) fn piece_step(order: u32, setup: &Setup, cuts: &[Cut]) -> Step {
-    let (mut outline, mut scratch) = (corners(setup).to_vec(), Vec::new());
-    cuts.iter().for_each(|cut| clip_outline(&mut outline, &mut scratch, cut));
-    let outline = outline.iter().map(|p| p.map(|v| (v / f64::from(SUBPIXEL)) as f32)).collect();
-    Step::Piece { order, facet: setup.facet, cuts: cuts.len() as u32, outline }
+/// An outline in 1/256 pixel as steps tell it, in pixels.
+pub(super) fn on_screen(outline: &[[f64; 2]]) -> Vec<[f32; 2]> {
+    outline.iter().map(|p| p.map(|v| (v / f64::from(SUBPIXEL)) as f32)).collect()
 }
 
 /// A list of pieces, in runs.
@@ -60,15 +59,92 @@ pub(super) fn draw_list<const FRONT_FIRST: bool>(
     sink: &dyn TileSink,
     stage: &'static str,
 ) -> Result<VisibilityCounters, Limit> {
+    // Tiles are drawn by all threads; what an observer is told of them comes in the order of tiles, at the end.
+    let overruled = Mutex::new(Vec::new());
     let fill = |facets: &Facets<'_, '_>, index: usize, tiles: &mut [Tile], counters: &mut VisibilityCounters| {
         facets.execution().budget.check(stage)?;
+        let before = counters.overruled;
         draw::<FRONT_FIRST>(facets, list, index, &mut tiles[0], counters);
+        if counters.overruled > before && facets.execution().observer.is_some() {
+            let step = overruled_step::<FRONT_FIRST>(facets, list, index, &tiles[0]);
+            overruled.lock().expect("no thread panics while it keeps a step").push((index, step));
+        }
         Ok(())
     };
     let collect = |facets: &Facets<'_, '_>, index: usize, tile: &Tile, layers: &mut LayerList| {
         draw_layers::<FRONT_FIRST>(facets, list, index, tile, layers);
     };
-    fill_with(facets, marks, grid, sink, 1, &fill, Some(&collect))
+    let drawn = fill_with(facets, marks, grid, sink, 1, &fill, Some(&collect));
+    let mut steps = overruled.into_inner().expect("no thread panics while it keeps a step");
+    steps.sort_unstable_by_key(|(index, _)| *index);
+    steps.into_iter().for_each(|(_, step)| facets.execution().tell(|| step));
+    drawn
+}
+
+/// The step that tells at which samples of a finished tile the list alone would show another facet.
+fn overruled_step<const FRONT_FIRST: bool>(
+    facets: &Facets<'_, '_>,
+    list: &PriorityList<'_>,
+    index: usize,
+    tile: &Tile,
+) -> Step {
+    // Paint by the list alone.
+    let pattern = &facets.view().pattern;
+    let mut by_list = vec![NO_FACET; TILE_PIXELS * pattern.len()];
+    for (run, piece) in list.in_tile(index).filter(|(_, piece)| (piece.setup as usize) < list.opaque) {
+        let facet = list.setups[piece.setup as usize].facet;
+        each_sample(list, (run, piece), (tile.x, tile.y), pattern, |at| {
+            if !FRONT_FIRST || by_list[at] == NO_FACET {
+                by_list[at] = facet;
+            }
+        });
+    }
+
+    // Compare.
+    let mut samples = Vec::new();
+    for pixel in 0..TILE_PIXELS {
+        for sample in 0..pattern.len() {
+            let at = sample * TILE_PIXELS + pixel;
+            let (by_list, by_depth) = (by_list[at], tile.facet[at]);
+            if by_list != by_depth {
+                let place = [tile.x + (pixel % TILE) as u32, tile.y + (pixel / TILE) as u32];
+                samples.push(OverruledSample { pixel: place, sample: sample as u32, by_list, by_depth });
+            }
+        }
+    }
+    let viewport = facets.view().viewport;
+    let [width, height] = [viewport.width - tile.x, viewport.height - tile.y].map(|side| side.min(TILE as u32));
+    Step::Overruled { pixels: [tile.x, tile.y, width, height], samples }
+}
+
+/// Calls `f` with the samples of a tile, as they are numbered in it, that a piece has.
+fn each_sample(
+    list: &PriorityList<'_>,
+    (run, piece): (&Pieces, &Piece),
+    place: (u32, u32),
+    pattern: &SamplePattern,
+    mut f: impl FnMut(usize),
+) {
+    let setup = list.setups[piece.setup as usize];
+    let cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
+    let [x0, y0, x1, y1] = piece.pixels.map(u32::from);
+    let tile = TILE as u32;
+    for y in y0.max(place.1)..(y1 + 1).min(place.1 + tile) {
+        for x in x0.max(place.0)..(x1 + 1).min(place.0 + tile) {
+            for s in 0..pattern.len() {
+                let has = if piece.samples == UNLISTED {
+                    let offset = pattern.position(s);
+                    let [px, py] = [x as i32 * SUBPIXEL + offset[0], y as i32 * SUBPIXEL + offset[1]];
+                    setup.covers(px, py) && cuts.iter().all(|cut| cut.keeps([f64::from(px), f64::from(py)]))
+                } else {
+                    run.samples[piece.samples as usize + s] >> ((y - y0) * BLOCK as u32 + (x - x0)) & 1 == 1
+                };
+                if has {
+                    f(s * TILE_PIXELS + ((y - place.1) * tile + (x - place.0)) as usize);
+                }
+            }
+        }
+    }
 }
 
 /// Draws the opaque pieces of a tile's part of a list, from front to back or from back to front.

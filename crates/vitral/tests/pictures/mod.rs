@@ -12,6 +12,7 @@ mod equal_planes;
 mod hidden_line;
 mod interpolation;
 mod lighting;
+mod lists;
 mod marks;
 mod normal_maps;
 mod pixel_light;

@@ -11,19 +11,24 @@
 //! certain. The plane of a needle, whose normal is uncertain, is replaced by one along its longest edge. The polygon
 //! that gave the plane is always in it. So each node consumes a polygon or halves the set, and the build ends.
 //!
+//! Polygons whose facets share a plane of the world lie in one node, however their corners were rounded. A node keeps those that
+//! face the front apart from those that face the back: of two in one plane, the one that faces the viewer is nearer.
+//!
 //! A fragment keeps the planes that cut it and that it is near to. Those that stay clear of it are implied by the others
 //! but for rounding; should that move a sample across one, two fragments hold the sample, never none.
 //!
-//! In:   the world's facets, world space. Out: nodes, and fragments: facets with the planes that cut them.
+//! In:   the world's polygons, world space. Out: nodes, and fragments: polygons with the planes that cut them.
 //! Cost: `O(n log n)` until sets are small, if planes split few polygons; `O(n^2)` fragments for the worst scenes.
 //! Source: [Fuchs, Kedem & Naylor 1980]; axis planes first after [Paterson & Yao 1990], who also bound the size.
 
+mod report;
+
+use super::polygons::{PolygonFacets, WorldPolygons};
 use crate::Execution;
-use crate::trace::Step;
 use std::ops::Range;
 use vitral_exec::Limit;
 use vitral_math::{DVec3, DVec4};
-use vitral_scene::World;
+use vitral_scene::{SharedPlanes, World};
 
 /// Sets of fewer polygons are cut by planes of their polygons.
 const SMALL: usize = 24;
@@ -63,8 +68,25 @@ impl Plane {
         let wide = cross.length() > 1e-9 * longest.length_squared();
         let across = if wide { cross } else { longest.any_orthogonal_vector() };
         let normal = across.try_normalize().unwrap_or(DVec3::Z);
-        let size = [a, b, c].into_iter().map(|p| (normal * p).abs().element_sum()).fold(0.0, f64::max);
-        Self { equation: normal.extend(-normal.dot(a)), thickness: size * THICKNESS }
+        Self { equation: normal.extend(-normal.dot(a)), thickness: Self::rounding(normal, &[a, b, c]) }
+    }
+
+    /// The plane of a polygon: the one that it shares with others, or that of its first corners.
+    fn of_polygon(polygons: &WorldPolygons, polygon: u32) -> Self {
+        let corners = polygons.corners(polygon);
+        let Some(number) = polygons.plane(polygon) else {
+            return Self::of([corners[0], corners[1], corners[2]]);
+        };
+        let equation = polygons.equation(number);
+        let faces_back = polygons.doubled_area(polygon).dot(equation.truncate()) < 0.0;
+        let equation = if faces_back { -equation } else { equation };
+        let thickness = Self::rounding(equation.truncate(), corners).max(polygons.tolerance);
+        Self { equation, thickness }
+    }
+
+    /// How far off the plane with this normal corners may be by their rounding.
+    fn rounding(normal: DVec3, corners: &[DVec3]) -> f64 {
+        corners.iter().map(|&p| (normal * p).abs().element_sum()).fold(0.0, f64::max) * THICKNESS
     }
 
     /// The plane through `at` across an axis. It is exact.
@@ -116,14 +138,18 @@ struct Node {
     plane: DVec4,
     front: u32,
     back: u32,
-    /// The fragments in the plane, the highest facet first.
+    /// The fragments in the plane: those that face the back, then those that face the front, of each the highest polygon first.
     fragments: Range<u32>,
+    /// The first that faces the front.
+    facing_front: u32,
+    /// The polygon that gave the plane, if one did.
+    splitter: u32,
 }
 
-/// A facet, or a part of one.
+/// A polygon, or a part of one.
 #[derive(Clone, Copy, Debug)]
 struct Fragment {
-    facet: u32,
+    polygon: u32,
     /// The planes that cut it off from its surroundings, in the tree's list.
     first_cut: u32,
     cuts: u32,
@@ -147,7 +173,7 @@ struct CutLink {
 /// A fragment that is still on its way down.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    facet: u32,
+    polygon: u32,
     /// The last of the planes that cut it, or none.
     cuts: u32,
     /// Its corners, in the job's list.
@@ -170,27 +196,30 @@ pub(crate) struct Tree {
     cuts: Vec<Cut>,
     /// The planes that cut fragments, in the order of the first: far fewer than nodes.
     cutters: Vec<DVec4>,
-    /// Facets without finite corners; on the screen they are nothing, or clipped beyond recognition.
+    /// The facets of the polygons.
+    facets: PolygonFacets,
+    /// Polygons without finite corners; on the screen they are nothing, or clipped beyond recognition.
     loose: Range<u32>,
     splits: u64,
 }
 
 impl Tree {
-    /// Builds the tree of all facets of a world.
-    pub(crate) fn of_world(world: &World, execution: &Execution) -> Result<Self, Limit> {
-        let triangles = triangles(world, execution)?;
-        let tree = Self::new(&triangles, execution);
-        execution.budget.release(size_of_val(triangles.as_slice()) as u64);
+    /// Builds the tree of all polygons of a world.
+    pub(crate) fn of_world(world: &World, planes: &SharedPlanes, execution: &Execution) -> Result<Self, Limit> {
+        let polygons = WorldPolygons::new(world, planes, execution)?;
+        let bytes = polygons.bytes();
+        let tree = Self::new(polygons, execution);
+        execution.budget.release(bytes);
         tree
     }
 
-    /// Builds the tree of triangles; the facets are their indices.
-    fn new(triangles: &[[DVec3; 3]], execution: &Execution) -> Result<Self, Limit> {
+    /// Builds the tree of polygons.
+    fn new(polygons: WorldPolygons, execution: &Execution) -> Result<Self, Limit> {
         let budget = &execution.budget;
-        let mut top = Builder::new(triangles, execution);
-        let result = top.of_all(triangles, execution);
+        let mut top = Builder::new(&polygons, execution);
+        let result = top.of_all(execution);
         budget.release(top.charged);
-        result
+        result.map(|tree| Self { facets: polygons.facets, ..tree })
     }
 
     pub(crate) fn node_count(&self) -> u64 {
@@ -208,12 +237,13 @@ impl Tree {
     /// Bytes it takes.
     pub(crate) fn bytes(&self) -> u64 {
         let bytes = size_of_val(self.nodes.as_slice()) + size_of_val(self.fragments.as_slice());
-        (bytes + size_of_val(self.cuts.as_slice()) + size_of_val(self.cutters.as_slice())) as u64
+        let bytes = bytes + size_of_val(self.cuts.as_slice()) + size_of_val(self.cutters.as_slice());
+        bytes as u64 + self.facets.bytes()
     }
 
-    /// The facet that a fragment is part of.
-    pub(crate) fn facet(&self, fragment: u32) -> u32 {
-        self.fragments[fragment as usize].facet
+    /// The facets of the polygon that a fragment is part of, the lowest first.
+    pub(crate) fn facets(&self, fragment: u32) -> &[u32] {
+        self.facets.of(self.fragments[fragment as usize].polygon)
     }
 
     /// The planes that cut fragments, world space.
@@ -231,47 +261,46 @@ impl Tree {
     /// Calls `f` with the fragments from back to front. `viewer` is a homogeneous point: an eye, or a direction towards it.
     pub(crate) fn back_to_front(&self, viewer: DVec4, mut f: impl FnMut(u32)) {
         self.loose.clone().for_each(&mut f);
+        self.walk(viewer, |node, in_front| self.nodes[node as usize].each_fragment(in_front, &mut f));
+    }
+
+    /// Calls `f` with the nodes from back to front, and whether the viewer is in front of each.
+    fn walk(&self, viewer: DVec4, mut f: impl FnMut(u32, bool)) {
         // A stack of our own: trees may be deep. Nodes wait until all behind them is done.
         let (mut waiting, mut node) = (Vec::new(), if self.nodes.is_empty() { NONE } else { 0 });
         loop {
             while node != NONE {
                 let n = &self.nodes[node as usize];
+                let in_front = n.plane.dot(viewer) >= 0.0;
                 if n.front == NONE && n.back == NONE {
                     // A leaf: its plane divides nothing.
-                    n.fragments.clone().for_each(&mut f);
+                    f(node, in_front);
                     break;
                 }
-                let in_front = n.plane.dot(viewer) >= 0.0;
                 let (far, near) = if in_front { (n.back, n.front) } else { (n.front, n.back) };
-                waiting.push((node, near));
+                waiting.push((node, in_front, near));
                 node = far;
             }
-            let Some((done, near)) = waiting.pop() else { return };
-            self.nodes[done as usize].fragments.clone().for_each(&mut f);
+            let Some((done, in_front, near)) = waiting.pop() else { return };
+            f(done, in_front);
             node = near;
         }
     }
 }
 
-/// All facets' corners, world space. Charged to the budget.
-fn triangles(world: &World, execution: &Execution) -> Result<Vec<[DVec3; 3]>, Limit> {
-    let bytes = u64::from(world.facet_count) * size_of::<[DVec3; 3]>() as u64;
-    execution.budget.charge(bytes, "the BSP tree")?;
-    let mut triangles = Vec::with_capacity(world.facet_count as usize);
-    for instance in &world.instances {
-        let world_from_model = &instance.world_from_model;
-        let place = |i: u32| {
-            let [x, y, z] = instance.mesh.positions[i as usize].map(f64::from);
-            world_from_model.transform_point3(DVec3::new(x, y, z))
-        };
-        triangles.extend(instance.mesh.triangles.iter().map(|t| t.map(place)));
+impl Node {
+    /// Calls `f` with its fragments in the order of the list: those that face away from the viewer first.
+    fn each_fragment(&self, in_front: bool, f: impl FnMut(u32)) {
+        let (facing_back, facing_front) =
+            (self.fragments.start..self.facing_front, self.facing_front..self.fragments.end);
+        let (first, then) = if in_front { (facing_back, facing_front) } else { (facing_front, facing_back) };
+        first.chain(then).for_each(f);
     }
-    Ok(triangles)
 }
 
 /// Builds a tree, or what hangs below a set of parts.
 struct Builder<'t> {
-    triangles: &'t [[DVec3; 3]],
+    polygons: &'t WorldPolygons,
     execution: &'t Execution,
     tree: Tree,
     links: Vec<CutLink>,
@@ -283,13 +312,16 @@ struct Builder<'t> {
     accounted: usize,
     /// Workspace: corners of a polygon that is split.
     split: [Vec<DVec3>; 2],
+    /// Workspace: where the parts of a set lie, and the planes that those in the node's plane share.
+    sides: Vec<Side>,
+    coplanar: Vec<u32>,
 }
 
 impl<'t> Builder<'t> {
-    fn new(triangles: &'t [[DVec3; 3]], execution: &'t Execution) -> Self {
+    fn new(polygons: &'t WorldPolygons, execution: &'t Execution) -> Self {
         let (tree, split) = (Tree::default(), Default::default());
         Self {
-            triangles,
+            polygons,
             execution,
             tree,
             links: Vec::new(),
@@ -298,23 +330,27 @@ impl<'t> Builder<'t> {
             charged: 0,
             accounted: 0,
             split,
+            sides: Vec::new(),
+            coplanar: Vec::new(),
         }
     }
 
     /// Begins the tree by axis planes, lets jobs finish its branches, and puts them together.
-    fn of_all(&mut self, triangles: &[[DVec3; 3]], execution: &Execution) -> Result<Tree, Limit> {
-        let mut parts = Vec::new();
-        for (facet, corners) in triangles.iter().enumerate() {
-            let facet = facet as u32;
+    fn of_all(&mut self, execution: &Execution) -> Result<Tree, Limit> {
+        let polygons = self.polygons;
+        let mut parts = Vec::with_capacity(polygons.len());
+        for polygon in 0..polygons.len() as u32 {
+            let corners = polygons.corners(polygon);
             if corners.iter().all(|p| p.is_finite() && p.abs().max_element() < 1e60) {
-                parts.push(Part { facet, cuts: NONE, first: self.points.len() as u32, count: 3 });
+                let (first, count) = (self.points.len() as u32, corners.len() as u32);
+                parts.push(Part { polygon, cuts: NONE, first, count });
                 self.points.extend(corners);
             } else {
-                self.tree.fragments.push(Fragment { facet, first_cut: 0, cuts: 0 });
+                self.tree.fragments.push(Fragment { polygon, first_cut: 0, cuts: 0 });
             }
         }
         self.tree.loose = 0..self.tree.fragments.len() as u32;
-        execution.budget.begin("triangles", parts.len() as u64);
+        execution.budget.begin("polygons", parts.len() as u64);
         let job_size = (parts.len() / JOBS).max(256);
         let mut tasks = vec![Task { parts, parent: NONE, front: true }];
         let mut jobs = Vec::new();
@@ -327,7 +363,7 @@ impl<'t> Builder<'t> {
         }
         let outer = &*self;
         let branches = execution.workers.map(jobs.len(), |i| {
-            let mut builder = Builder { outer: Some(outer), ..Builder::new(triangles, execution) };
+            let mut builder = Builder { outer: Some(outer), ..Builder::new(polygons, execution) };
             let done = builder.branch(&jobs[i].parts, &outer.points);
             execution.budget.release(builder.charged);
             done.map(|()| builder.tree)
@@ -367,11 +403,11 @@ impl<'t> Builder<'t> {
     }
 
     fn points_of(&self, part: &Part) -> &[DVec3] {
-        &self.points[part.first as usize..][..part.count as usize]
+        points_of(&self.points, part)
     }
 
     fn plane_of(&self, part: &Part) -> Plane {
-        Plane::of(self.triangles[part.facet as usize])
+        Plane::of_polygon(self.polygons, part.polygon)
     }
 
     /// The best plane across an axis, if one halves the set.
@@ -427,33 +463,69 @@ impl<'t> Builder<'t> {
         if let Some(parent) = self.tree.nodes.get_mut(task.parent as usize) {
             *(if task.front { &mut parent.front } else { &mut parent.back }) = node;
         }
+        self.sort_out(&task.parts, &plane, splitter);
         let (mut front, mut back) = (Vec::new(), Vec::new());
         let start = self.tree.fragments.len();
-        for (i, part) in task.parts.into_iter().enumerate() {
-            let side = if splitter == Some(i) { Side::In } else { side_of(&plane, self.points_of(&part)) };
-            match side {
-                Side::In => self.place(&part),
-                Side::Front => front.push(part),
-                Side::Back => back.push(part),
+        for (i, part) in task.parts.iter().enumerate() {
+            match self.sides[i] {
+                Side::In => self.place(part),
+                Side::Front => front.push(*part),
+                Side::Back => back.push(*part),
                 Side::Across => {
-                    let halves = self.split(&part, &plane, node);
+                    let halves = self.split(part, &plane, node);
                     front.push(halves[0]);
                     back.push(halves[1]);
                 }
             }
         }
-        self.tree.fragments[start..].sort_by_key(|f| std::cmp::Reverse(f.facet));
+        let (polygons, normal) = (self.polygons, plane.equation.truncate());
+        let placed = &mut self.tree.fragments[start..];
+        let faces_front = |f: &Fragment| polygons.doubled_area(f.polygon).dot(normal) >= 0.0;
+        placed.sort_by_cached_key(|f| (faces_front(f), std::cmp::Reverse(f.polygon)));
+        let facing_front = (start + placed.partition_point(|f| !faces_front(f))) as u32;
         let fragments = start as u32..self.tree.fragments.len() as u32;
-        self.tree.nodes.push(Node { plane: plane.equation, front: NONE, back: NONE, fragments });
+        let splitter = splitter.map_or(NONE, |i| task.parts[i].polygon);
+        let plane = plane.equation;
+        self.tree.nodes.push(Node { plane, front: NONE, back: NONE, fragments, facing_front, splitter });
         tasks.push(Task { parts: front, parent: node, front: true });
         tasks.push(Task { parts: back, parent: node, front: false });
         Ok(())
     }
 
+    /// Finds where the parts of a set lie, into `sides`. The one at `splitter` gave the plane.
+    fn sort_out(&mut self, parts: &[Part], plane: &Plane, splitter: Option<usize>) {
+        self.sides.clear();
+        self.coplanar.clear();
+        for (i, part) in parts.iter().enumerate() {
+            let side = if splitter == Some(i) { Side::In } else { side_of(plane, points_of(&self.points, part)) };
+            self.sides.push(side);
+            if side == Side::In
+                && let Some(number) = self.polygons.plane(part.polygon)
+                && !self.coplanar.contains(&number)
+            {
+                self.coplanar.push(number);
+            }
+        }
+
+        // What shares a plane with a polygon in the node's lies in it, too, however its corners were rounded.
+        if self.coplanar.is_empty() {
+            return;
+        }
+        let thick = Plane { thickness: plane.thickness.max(2.0 * self.polygons.tolerance), ..*plane };
+        for (side, part) in self.sides.iter_mut().zip(parts).filter(|(side, _)| **side != Side::In) {
+            let number = self.polygons.plane(part.polygon);
+            if number.is_some_and(|number| self.coplanar.contains(&number))
+                && side_of(&thick, points_of(&self.points, part)) == Side::In
+            {
+                *side = Side::In;
+            }
+        }
+    }
+
     /// Makes a part a fragment of the node that is being made. Of the planes that cut it on its way down, the tree keeps
     /// those that it is near to.
     fn place(&mut self, part: &Part) {
-        let points = &self.points[part.first as usize..][..part.count as usize];
+        let points = points_of(&self.points, part);
         let (low, high) = points.iter().fold((points[0], points[0]), |(l, h), &p| (l.min(p), h.max(p)));
         let clear = (high - low).max_element() * CLEAR;
         let (first_cut, mut link) = (self.tree.cuts.len() as u32, part.cuts);
@@ -470,15 +542,13 @@ impl<'t> Builder<'t> {
             link = if before == NONE { NONE } else { before | outer };
         }
         let cuts = self.tree.cuts.len() as u32 - first_cut;
-        self.tree.fragments.push(Fragment { facet: part.facet, first_cut, cuts });
+        self.tree.fragments.push(Fragment { polygon: part.polygon, first_cut, cuts });
         self.execution.budget.advance();
     }
 
     /// Cuts a part in the halves in front of and behind a plane.
     fn split(&mut self, part: &Part, plane: &Plane, node: u32) -> [Part; 2] {
         self.tree.splits += 1;
-        let (facet, equation) = (part.facet, plane.equation.to_array());
-        self.execution.tell(|| Step::TreeSplit { facet, plane: equation });
         let [mut front, mut back] = std::mem::take(&mut self.split);
         front.clear();
         back.clear();
@@ -503,7 +573,7 @@ impl<'t> Builder<'t> {
             self.links.push(CutLink { cut: Cut { node, positive }, before: part.cuts });
             let first = self.points.len() as u32;
             self.points.extend(corners);
-            Part { facet: part.facet, cuts, first, count: corners.len() as u32 }
+            Part { polygon: part.polygon, cuts, first, count: corners.len() as u32 }
         });
         self.split = [front, back];
         halves
@@ -525,6 +595,11 @@ impl<'t> Builder<'t> {
         self.charged += more;
         Ok(())
     }
+}
+
+/// The corners of a part, among those of its job.
+fn points_of<'p>(points: &'p [DVec3], part: &Part) -> &'p [DVec3] {
+    &points[part.first as usize..][..part.count as usize]
 }
 
 /// What a plane does to a set.
@@ -559,6 +634,7 @@ impl Tree {
             front: moved(n.front, nodes),
             back: moved(n.back, nodes),
             fragments: n.fragments.start + fragments..n.fragments.end + fragments,
+            facing_front: n.facing_front + fragments,
             ..n
         }));
         let placed = |f: Fragment| Fragment { first_cut: f.first_cut + cuts, ..f };
@@ -587,12 +663,12 @@ mod tests {
 
     fn tree(triangles: &[[[f64; 3]; 3]]) -> Tree {
         let triangles: Vec<_> = triangles.iter().map(|t| t.map(DVec3::from_array)).collect();
-        Tree::new(&triangles, &Execution::default()).unwrap()
+        Tree::new(WorldPolygons::of_triangles(&triangles), &Execution::default()).unwrap()
     }
 
     fn order(tree: &Tree, viewer: DVec4) -> Vec<u32> {
         let mut order = Vec::new();
-        tree.back_to_front(viewer, |f| order.push(tree.facet(f)));
+        tree.back_to_front(viewer, |f| order.extend(tree.facets(f)));
         order
     }
 
@@ -608,6 +684,17 @@ mod tests {
         assert_eq!(order(&tree, at(-9.0)), [1, 3, 2, 0]);
         assert_eq!(order(&tree, DVec4::new(0.0, 0.0, 1.0, 0.0)), [0, 3, 2, 1]);
         assert_eq!((tree.splits(), tree.node_count()), (0, 3));
+    }
+
+    #[test]
+    fn p22_of_two_in_one_plane_the_one_that_faces_the_viewer_comes_last() {
+        let turned = [FLAT[0], FLAT[2], FLAT[1]];
+        for facets in [[FLAT, turned, FLAT], [turned, FLAT, turned]] {
+            let tree = tree(&facets);
+            let from = |z: f64| order(&tree, DVec4::new(0.3, 0.1, z, 1.0));
+            let [up, down] = if facets[0] == FLAT { [9.0, -9.0] } else { [-9.0, 9.0] };
+            assert_eq!((from(up), from(down)), (vec![1, 2, 0], vec![2, 0, 1]));
+        }
     }
 
     #[test]
@@ -644,10 +731,10 @@ mod tests {
     #[test]
     fn p22_the_halves_add_up() {
         let triangles = [FLAT.map(DVec3::from_array)];
-        let execution = Execution::default();
-        let mut builder = Builder::new(&triangles, &execution);
+        let (execution, polygons) = (Execution::default(), WorldPolygons::of_triangles(&triangles));
+        let mut builder = Builder::new(&polygons, &execution);
         builder.points.extend(triangles[0]);
-        let part = Part { facet: 0, cuts: NONE, first: 0, count: 3 };
+        let part = Part { polygon: 0, cuts: NONE, first: 0, count: 3 };
         let mut parts = vec![part];
         for plane in
             [Plane::across(0, 0.1), Plane::across(1, -0.3), Plane::of([DVec3::X * 0.3, DVec3::Y * 0.3, DVec3::Z])]

@@ -54,7 +54,7 @@ impl AreaSorting<'_> {
                 nearest: self.polygons[item.polygon as usize].plane.z_max,
                 contours: contours(&item.region),
             };
-            self.execution.tell(|| Step::FirstOrder { polygons: list.items.iter().map(sorted).collect() });
+            self.execution.tell(|| Step::NearestFirst { polygons: list.items.iter().map(sorted).collect() });
         }
     }
 

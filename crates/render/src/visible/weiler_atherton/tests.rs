@@ -152,7 +152,7 @@ fn a_square_with_a_hole_is_one_polygon_with_two_outlines() {
             })
             .collect();
         assert_eq!(outlines, [vec![(false, 3)], vec![(false, 4), (true, 3)]]);
-        let Step::FirstOrder { polygons } = &steps[0] else { panic!("{:?}", steps[0]) };
+        let Step::NearestFirst { polygons } = &steps[0] else { panic!("{:?}", steps[0]) };
         assert_eq!(polygons.iter().map(|p| p.facet).collect::<Vec<_>>(), [1, 0]);
         assert_eq!(polygons[1].contours.len(), 1, "two triangles of one plane are one polygon");
         let Step::Clip { clip: 0, within: None, facet: 1, cut, inside, outside, hidden, again: false, .. } = &steps[1]

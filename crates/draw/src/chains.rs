@@ -120,11 +120,10 @@ impl<'s> Graph<'s> {
     /// Of the strokes that are left at the node of `arrival`, the one that turns least from the way from `departure`.
     fn straightest(&self, departure: u32, arrival: u32) -> Option<u32> {
         let [from, at] = [self.at(departure), self.at(arrival)];
-        let way = |a: Step, b: Step| [0, 1].map(|k| f64::from(b[k]) - f64::from(a[k]));
-        let before = way(from, at);
+        let before = step(from, at);
         let cosine = |end: u32| {
-            let after = way(at, self.at(end ^ 1));
-            (before[0] * after[0] + before[1] * after[1]) / (after[0] * after[0] + after[1] * after[1]).sqrt()
+            let after = step(at, self.at(end ^ 1));
+            dot(before, after) / dot(after, after).sqrt()
         };
         let free = self.ends_at(self.node[arrival as usize]).iter().filter(|&&end| !self.used[end as usize / 2]);
         free.copied().max_by(|&a, &b| cosine(a).total_cmp(&cosine(b)).then(b.cmp(&a)))
@@ -140,7 +139,9 @@ fn straightened(points: Vec<Step>) -> Vec<Step> {
         let anchor = kept[kept.len() - 1];
         dropped.push(here);
         let goes_on = next.filter(|&next| {
-            dropped.len() < MOST_DROPPED && dropped.iter().all(|&point| is_between(anchor, point, next))
+            let ahead = dropped.iter().skip(1).chain([&next]);
+            let goes_ahead = dropped.iter().zip(ahead).all(|(&a, &b)| dot(step(anchor, next), step(a, b)) > 0.0);
+            dropped.len() < MOST_DROPPED && goes_ahead && dropped.iter().all(|&point| is_between(anchor, point, next))
         });
         if goes_on.is_none() {
             kept.push(here);
@@ -150,12 +151,19 @@ fn straightened(points: Vec<Step>) -> Vec<Step> {
     kept
 }
 
+/// The way from one point to another.
+fn step(from: Step, to: Step) -> [f64; 2] {
+    [0, 1].map(|k| f64::from(to[k]) - f64::from(from[k]))
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
 /// Whether a point is on the way from one to another, but for rounding.
 fn is_between(a: Step, point: Step, b: Step) -> bool {
-    let d = |p: Step, q: Step| [0, 1].map(|k| f64::from(q[k]) - f64::from(p[k]));
-    let (way, at) = (d(a, b), d(a, point));
-    let square = way[0] * way[0] + way[1] * way[1];
-    let (along, beside) = (way[0] * at[0] + way[1] * at[1], way[0] * at[1] - way[1] * at[0]);
+    let (way, at) = (step(a, b), step(a, point));
+    let (square, along, beside) = (dot(way, way), dot(way, at), way[0] * at[1] - way[1] * at[0]);
     along >= 0.0 && along <= square && beside * beside <= STRAIGHT * STRAIGHT * square
 }
 
@@ -204,8 +212,10 @@ mod tests {
             let trails = Graph::new(&strokes).trails();
             let walked = trails.iter().flat_map(|t| t.windows(2).map(|w| [w[0], w[1]])).collect();
             prop_assert_eq!(sorted(walked), sorted(strokes.clone()));
-            let length = |p: &[Step]| { let d = [p[1][0] - p[0][0], p[1][1] - p[0][1]]; f64::from(d[0] * d[0] + d[1] * d[1]).sqrt() };
+            let length = |p: &[Step]| dot(step(p[0], p[1]), step(p[0], p[1])).sqrt();
             for trail in trails {
+                // Large steps: what lies within half a step of a line lies on it.
+                let trail: Vec<Step> = trail.iter().map(|p| p.map(|c| c * 100)).collect();
                 let whole: f64 = trail.windows(2).map(length).sum();
                 let kept = straightened(trail.clone());
                 prop_assert_eq!((kept.first(), kept.last()), (trail.first(), trail.last()));

@@ -166,10 +166,15 @@ impl<'v> Clipper<'v> {
         vertex
     }
 
-    /// A new vertex where the way between two vertices meets a plane. It lies in the plane: snapping puts it onto the border.
+    /// The vertex where the way between two vertices meets a plane: a new one, unless an end lies in the plane.
     fn vertex_between(&mut self, a: u32, b: u32, plane: u32) -> u32 {
         let [p, q] = [a, b].map(|v| self.vertices[v as usize].at);
         let (d, e) = (distance(p, plane), distance(q, plane));
+        match (d == 0.0, e == 0.0) {
+            (true, _) => return a,
+            (_, true) => return b,
+            _ => {}
+        }
         // Rounding may leave both ends on one side.
         let way = if d == e { 0.0 } else { (d / (d - e)).clamp(0.0, 1.0) };
         let at = p + (q - p) * way;

@@ -193,7 +193,9 @@ mod tests {
                 let count = add_crossings(&mut mesh, &grid, |t| t.hides, run).unwrap();
                 assert_eq!(count as usize, mesh.edges.len() - before);
             });
-            mesh.edges[before..].iter().map(|edge| mesh.ends(edge)).collect::<Vec<_>>()
+            let mut ends: Vec<_> = mesh.edges[before..].iter().map(|edge| mesh.ends(edge)).collect();
+            ends.iter_mut().for_each(|ends| ends.sort_unstable());
+            ends
         });
         assert_eq!(all[0], all[1]);
         all[0].clone()
@@ -207,8 +209,8 @@ mod tests {
         assert_eq!(crossings(&[FLOOR, sail]), [[[750, 700, 500], [1250, 700, 500]]]);
         assert_eq!(crossings(&[sail, FLOOR]), [[[750, 700, 500], [1250, 700, 500]]]);
         // One that reaches beyond the floor ends at its border.
-        let wide = [[-500, 500, 0], [1500, 500, 0], [500, 900, 1000]];
-        assert_eq!(crossings(&[FLOOR, wide]), [[[0, 700, 500], [1000, 700, 500]]]);
+        let wide = [[1000, 500, 0], [4000, 500, 0], [4000, 1500, 1000]];
+        assert_eq!(crossings(&[FLOOR, wide]), [[[2500, 1000, 500], [3000, 1000, 500]]]);
     }
 
     #[test]

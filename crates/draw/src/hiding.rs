@@ -8,8 +8,7 @@
 //! lies in a face stays visible there, whatever the last bits are.
 //!
 //! A triangle whose outline runs along the edge covers one side of it only. It hides, but a line that runs under the common side of two
-//! triangles lies behind one layer and not two; such intervals are marked as [grazing](Interval::grazing), and layers are counted as
-//! if the edge were moved to its left by an infinitesimal step.
+//! triangles lies behind one layer and not two: an interval tells on which [`Sides`] of the edge the triangle lies.
 //!
 //! In:   an edge and a triangle on the page. Out: the interval, if it has a length.
 //! Cost: constant.
@@ -18,13 +17,23 @@ use crate::page_mesh::Triangle;
 use crate::place::{Maker, Place, Segment};
 use vitral_math::exact::orient2d;
 
+/// The sides of an edge that a triangle covers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sides {
+    /// The edge runs through it.
+    Both,
+    /// It lies to the left of the edge, which runs along its outline.
+    Left,
+    /// It lies to the right.
+    Right,
+}
+
 /// A part of an edge that a triangle hides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Interval {
     pub(crate) from: Place,
     pub(crate) to: Place,
-    /// The triangle only touches the edge from the right.
-    pub(crate) grazing: bool,
+    pub(crate) sides: Sides,
 }
 
 impl Segment<'_> {
@@ -39,7 +48,7 @@ impl Segment<'_> {
     #[inline]
     fn covered_by(&self, number: u32, triangle: &Triangle) -> Option<Interval> {
         let [p, q] = self.ends;
-        let mut covered = Interval { from: Place::START, to: Place::END, grazing: false };
+        let mut covered = Interval { from: Place::START, to: Place::END, sides: Sides::Both };
         for side in 0..3 {
             let (u, v) = (triangle.corners[side], triangle.corners[(side + 1) % 3]);
             let (start, end) = (orient2d(u, v, p), orient2d(u, v, q));
@@ -49,7 +58,7 @@ impl Segment<'_> {
                     return None;
                 }
                 let along = |k: usize| (i64::from(q[k]) - i64::from(p[k])) * (i64::from(v[k]) - i64::from(u[k]));
-                covered.grazing = along(0) + along(1) < 0;
+                covered.sides = if along(0) + along(1) > 0 { Sides::Left } else { Sides::Right };
             } else if start < 0 || end < 0 {
                 let about = start as f64 / (start - end) as f64;
                 let place = Place { about, maker: Maker::Side { triangle: number, side: side as u8 } };
@@ -96,33 +105,34 @@ impl Segment<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::Sides::{Both, Left, Right};
     use super::*;
     use crate::page_mesh::PageMesh;
 
     const BIG: [[i32; 3]; 3] = [[0, 0, 1000], [4000, 0, 1000], [0, 4000, 1000]];
 
-    /// The hidden part of an edge, in thousandths, and whether it grazes.
-    fn hidden(corners: [[i32; 3]; 3], ends: [[i32; 3]; 2]) -> Option<(i32, i32, bool)> {
+    /// The hidden part of an edge, in thousandths, and the covered sides.
+    fn hidden(corners: [[i32; 3]; 3], ends: [[i32; 3]; 2]) -> Option<(i32, i32, Sides)> {
         let mesh = PageMesh { triangles: vec![Triangle::new(corners, [0, 1, 2])], ..PageMesh::default() };
         let part = Segment { mesh: &mesh, ends }.hidden_by(0, &mesh.triangles[0])?;
         let thousandths = |place: Place| (place.about * 1000.0).round() as i32;
-        Some((thousandths(part.from), thousandths(part.to), part.grazing))
+        Some((thousandths(part.from), thousandths(part.to), part.sides))
     }
 
     #[test]
     fn what_is_inside_and_behind_is_hidden() {
-        assert_eq!(hidden(BIG, [[500, 500, 0], [1000, 1000, 0]]), Some((0, 1000, false)));
-        assert_eq!(hidden(BIG, [[-1000, 1000, 0], [9000, 1000, 0]]), Some((100, 400, false)));
+        assert_eq!(hidden(BIG, [[500, 500, 0], [1000, 1000, 0]]), Some((0, 1000, Both)));
+        assert_eq!(hidden(BIG, [[-1000, 1000, 0], [9000, 1000, 0]]), Some((100, 400, Both)));
         assert_eq!(hidden(BIG, [[500, 500, 2000], [1000, 1000, 2000]]), None, "in front");
         assert_eq!(hidden(BIG, [[5000, 500, 0], [9000, 1000, 0]]), None, "beside");
-        assert_eq!(hidden(BIG, [[-1000, 1000, 2000], [9000, 1000, -3000]]), Some((200, 400, false)), "piercing");
-        assert_eq!(hidden(BIG, [[9000, 1000, -3000], [-1000, 1000, 2000]]), Some((600, 800, false)), "the other way");
+        assert_eq!(hidden(BIG, [[-1000, 1000, 2000], [9000, 1000, -3000]]), Some((200, 400, Both)), "piercing");
+        assert_eq!(hidden(BIG, [[9000, 1000, -3000], [-1000, 1000, 2000]]), Some((600, 800, Both)), "the other way");
     }
 
     #[test]
-    fn the_outline_hides_and_grazes_on_one_side() {
-        assert_eq!(hidden(BIG, [[1000, 0, 0], [2000, 0, 0]]), Some((0, 1000, false)), "on its left");
-        assert_eq!(hidden(BIG, [[2000, 0, 0], [1000, 0, 0]]), Some((0, 1000, true)), "on its right");
+    fn the_outline_hides_and_covers_one_side() {
+        assert_eq!(hidden(BIG, [[1000, 0, 0], [2000, 0, 0]]), Some((0, 1000, Left)));
+        assert_eq!(hidden(BIG, [[2000, 0, 0], [1000, 0, 0]]), Some((0, 1000, Right)));
         assert_eq!(hidden(BIG, [[0, 0, 0], [-100, -100, 0]]), None, "a corner alone");
         assert_eq!(hidden(BIG, [[-500, 500, 0], [500, -500, 0]]), None, "through a corner");
     }
@@ -131,7 +141,7 @@ mod tests {
     fn contacts_hide_nothing() {
         assert_eq!(hidden(BIG, [[500, 500, 1000], [1000, 1000, 1000]]), None, "in the plane");
         assert_eq!(hidden(BIG, [[500, 500, 999], [1000, 1000, 999]]), None, "a unit behind");
-        assert_eq!(hidden(BIG, [[500, 500, 998], [1000, 1000, 998]]), Some((0, 1000, false)));
-        assert_eq!(hidden(BIG, [[500, 500, 1000], [1000, 1000, 900]]), Some((0, 1000, false)), "leaving the plane");
+        assert_eq!(hidden(BIG, [[500, 500, 998], [1000, 1000, 998]]), Some((0, 1000, Both)));
+        assert_eq!(hidden(BIG, [[500, 500, 1000], [1000, 1000, 900]]), Some((0, 1000, Both)), "leaving the plane");
     }
 }

@@ -106,7 +106,7 @@ impl Triangle {
 
     /// Depth of its farthest corner.
     pub(crate) fn farthest(&self) -> i32 {
-        self.corners.iter().fold(i32::MAX, |z, p| z.min(p[2]))
+        self.corners.iter().fold(i32::MAX, |farthest, p| farthest.min(p[2]))
     }
 
     /// Whether it has an area on the page.

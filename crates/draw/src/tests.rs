@@ -61,15 +61,15 @@ fn a_crease_angle_and_classes_choose_lines() {
 
 #[test]
 fn boxes_that_penetrate_have_lines_of_intersection() {
-    let mut scene = Scene::default();
-    let mesh = scene.add_mesh(solids::cuboid(DVec3::ONE), DMat4::IDENTITY);
-    let _ = mesh;
-    scene.add_instance(0, DMat4::from_translation(DVec3::new(0.5, 0.25, 0.25)));
+    // A bar through a cube: seen is where its top and its front leave the cube's right side, half an edge of the cube each.
+    let mut scene = Scene::from_mesh(solids::cuboid(DVec3::ONE));
+    scene.add_instance(0, DMat4::from_scale(DVec3::new(2.0, 0.5, 0.5)));
     let Drawn { drawing, stats } = drawn(&scene, View::Iso, Lens::Parallel, &DrawingSettings::default(), 2);
     assert!(stats.intersections > 0);
     let length = drawing.length(|l| l.class == LineClass::Intersection);
-    // The second box leaves the first one's front at its right half and its upper three quarters; seen are those on the top and front.
-    assert!(length > 0.0, "{:?}", drawing.lines);
+    // Edges are seen at √(2/3) of their length; the bar makes the drawing 1.25·√2 edges wide, which are 180 mm.
+    let expected = (2.0f64 / 3.0).sqrt() * 180.0 / (1.25 * 2f64.sqrt());
+    assert!((length - expected).abs() < 0.01, "{length} {expected}");
     let without = DrawingSettings { lines: Classes::one(LineClass::Crease), ..DrawingSettings::default() };
     assert_eq!(drawn(&scene, View::Iso, Lens::Parallel, &without, 2).stats.intersections, 0);
 }
@@ -108,7 +108,7 @@ fn what_is_before_the_near_plane_or_outside_the_window_is_cut() {
     let camera = Camera::look_at([0.0, 0.0, 9.0], [0.0; 3]);
     assert!(of(&camera.with_clip(20.0, 30.0)).drawing.lines.is_empty());
     let half = of(&camera.with_clip(9.0, 30.0));
-    assert!(half.stats.hiding_triangles == half.stats.triangles, "the near plane opens it");
+    assert!(half.stats.hiding_triangles * 10 > half.stats.triangles * 9, "the near plane opens it: {:?}", half.stats);
 }
 
 #[test]

@@ -13,7 +13,7 @@
 
 use crate::classes::Classes;
 use crate::grid::Grid;
-use crate::hiding::Interval;
+use crate::hiding::{Interval, Sides};
 use crate::page_mesh::{Edge, NONE, PageMesh};
 use crate::place::{Place, Segment};
 use crate::run::Run;
@@ -131,8 +131,8 @@ struct Walk {
 #[derive(Clone, Copy)]
 struct Change {
     place: Place,
-    full: i32,
-    grazing: i32,
+    sides: Sides,
+    by: i32,
 }
 
 impl Walk {
@@ -261,19 +261,20 @@ impl Walk {
     fn sweep(&mut self, segment: &Segment<'_>, number: u32, most_layers: u32, found: &mut Vec<Fragment>) {
         self.changes.clear();
         for interval in &self.hidden {
-            let (full, grazing) = if interval.grazing { (0, 1) } else { (1, 0) };
-            self.changes.push(Change { place: interval.from, full, grazing });
-            self.changes.push(Change { place: interval.to, full: -full, grazing: -grazing });
+            self.changes.push(Change { place: interval.from, sides: interval.sides, by: 1 });
+            self.changes.push(Change { place: interval.to, sides: interval.sides, by: -1 });
         }
-        self.changes.push(Change { place: Place::END, full: 0, grazing: 0 });
+        self.changes.push(Change { place: Place::END, sides: Sides::Both, by: 0 });
         self.changes.sort_by(|a, b| segment.compare(&a.place, &b.place));
 
-        // What grazes hides, but is a layer of its own only where nothing else is.
-        let (mut full, mut grazing, mut at) = (0, 0, Place::START);
+        // Count the layers over both sides of the edge; the side with more of them tells.
+        let (mut counts, mut at) = ([0; 3], Place::START);
         let first = found.len();
         for change in &self.changes {
             if segment.is_before(&at, &change.place) {
-                let layers = if full > 0 { full as u32 } else { u32::from(grazing > 0) };
+                let layers = (counts[Sides::Both as usize]
+                    + counts[Sides::Left as usize].max(counts[Sides::Right as usize]))
+                    as u32;
                 match found[first..].last_mut() {
                     Some(last) if last.layers == layers && last.to == at => last.to = change.place,
                     _ if layers <= most_layers => {
@@ -283,8 +284,7 @@ impl Walk {
                 }
                 at = change.place;
             }
-            full += change.full;
-            grazing += change.grazing;
+            counts[change.sides as usize] += change.by;
         }
     }
 }

@@ -119,8 +119,7 @@ pub(crate) struct DrawReportArgs {
 
 /// The help of `--lines`.
 fn lines_help() -> String {
-    let classes: Vec<String> =
-        drawable().map(|(class, what)| format!("{} ({what})", class.name())).collect();
+    let classes: Vec<String> = drawable().map(|(class, what)| format!("{} ({what})", class.name())).collect();
     format!(
         "Which lines are drawn: a list of {}; or all. An edge of several classes is drawn as the first of the list that it is \
          [default: contour,boundary,crease,material,intersection]",
@@ -163,7 +162,9 @@ fn page_size(text: &str) -> Result<Sheet, String> {
     let side = |side: &str| values::positive(side).ok().filter(|&side| side <= 10_000.0);
     match sides.and_then(|(width, height)| Some([side(width)?, side(height)?])) {
         Some(size) => Ok(Sheet::Size(size)),
-        None => Err(format!("`{text}` is no sheet: fit, A0 to A6, or a size of up to 10 m such as 200x100mm is required")),
+        None => {
+            Err(format!("`{text}` is no sheet: fit, A0 to A6, or a size of up to 10 m such as 200x100mm is required"))
+        }
     }
 }
 

@@ -81,7 +81,12 @@ fn a_box_on_a_floor_touches_it() {
     scene.add_mesh(solids::cuboid(DVec3::ONE), DMat4::from_translation(DVec3::new(0.1, 0.5, 0.3)));
     for (view, lens) in [(View::Iso, Lens::Parallel), (View::Iso, Lens::default()), (View::Front, Lens::default())] {
         let Drawn { drawing, .. } = drawn(&scene, view, lens, &DrawingSettings::default(), 1);
-        assert_eq!(drawing.length(|l| l.class == LineClass::Intersection), 0.0, "{view:?} {lens:?}: {:?}", drawing.lines);
+        assert_eq!(
+            drawing.length(|l| l.class == LineClass::Intersection),
+            0.0,
+            "{view:?} {lens:?}: {:?}",
+            drawing.lines
+        );
     }
     let Drawn { drawing, .. } = drawn(&scene, View::Iso, Lens::Parallel, &DrawingSettings::default(), 1);
     let contours = drawing.length(|l| l.class == LineClass::Contour);
@@ -152,7 +157,9 @@ fn regions_cover_the_silhouette_once_and_touch_where_faces_do() {
     let palette = |look: &FaceLook| look.normal.map(|c| (c * 255.0) as u8);
     let settings = DrawingSettings { lines: Classes::EMPTY, margin: 0.0, ..DrawingSettings::default() };
     let of = |threads| {
-        draw(&world, &camera, 1.0, &settings, Some(&palette), &Workers::new(threads), &Budget::default()).unwrap().drawing
+        draw(&world, &camera, 1.0, &settings, Some(&palette), &Workers::new(threads), &Budget::default())
+            .unwrap()
+            .drawing
     };
     let drawing = of(1);
     assert_eq!(drawing, of(3));

@@ -71,7 +71,14 @@ fn units(millimetres: f64) -> i32 {
 }
 
 /// A group of lines, if there are any.
-fn lines<'l>(out: &mut String, lines: impl Iterator<Item = &'l Line>, name: &str, layer: usize, pen: &str, height: i32) {
+fn lines<'l>(
+    out: &mut String,
+    lines: impl Iterator<Item = &'l Line>,
+    name: &str,
+    layer: usize,
+    pen: &str,
+    height: i32,
+) {
     let mut lines = lines.peekable();
     if lines.peek().is_none() {
         return;

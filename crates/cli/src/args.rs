@@ -1,5 +1,6 @@
 //! The command line as typed: verbs, and the options of all verbs but `render`.
 
+use crate::draw_args::DrawArgs;
 use crate::help::{EXIT_CODES, model_help};
 use crate::render_args::{CameraArgs, EyeArgs, RenderArgs};
 use crate::values;
@@ -29,6 +30,8 @@ pub(crate) struct Cli {
 pub(crate) enum Verb {
     /// Make a picture of one or more models
     Render(Box<RenderArgs>),
+    /// Make a vector drawing of one or more models: visible and hidden lines
+    Draw(Box<DrawArgs>),
     /// Tell what is in a model file
     Info(InfoArgs),
     /// Compare two pictures; exit code 6 when they differ

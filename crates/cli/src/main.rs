@@ -9,6 +9,8 @@ mod choices;
 mod command_line;
 mod compare_command;
 mod depth_cue;
+mod draw_args;
+mod draw_command;
 mod exit;
 mod fields;
 mod help;
@@ -57,6 +59,7 @@ fn run() -> Result<u8, Failure> {
     };
     match cli.verb {
         Verb::Render(args) => render_command::run(&args),
+        Verb::Draw(args) => draw_command::run(&args),
         Verb::Info(args) => info_command::run(&args),
         Verb::Compare(args) => compare_command::run(&args),
         Verb::Bench(args) => bench_command::run(&args),

@@ -99,7 +99,7 @@ pub(crate) fn model_name(model: &str) -> String {
     if stem == "-" { "model".to_owned() } else { stem.into_owned() }
 }
 
-fn expand(pattern: &str, model: &str, frame: u32) -> Result<String, Failure> {
+pub(crate) fn expand(pattern: &str, model: &str, frame: u32) -> Result<String, Failure> {
     let mut out = String::new();
     let mut rest = pattern;
     while let Some((before, after)) = rest.split_once('{') {

@@ -7,7 +7,7 @@ use crate::outputs::model_name;
 use crate::progress::Progress;
 use crate::render_args::{RenderArgs, ReportArgs};
 use crate::report::{self, DIFFERENT, Failure};
-use crate::resolve::{Plan, resolve};
+use crate::resolve::{Plan, resolve, save_state};
 use crate::step_pictures;
 use crate::trace_file::Onlooker;
 use crate::values;
@@ -32,11 +32,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     let start = Instant::now();
     let plan = resolve(args)?;
     if let Some(file) = &args.process.save_state {
-        let mut state = plan.state.clone();
-        if let Some(folder) = file.parent().filter(|_| !report::is_standard(file)) {
-            state.leave_for(folder);
-        }
-        report::write(file, state.to_json().as_bytes())?;
+        save_state(&plan.state, file)?;
     }
     let mut execution = values::execution_from(args.process.threads)?;
     execution.budget =

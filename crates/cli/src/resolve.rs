@@ -67,7 +67,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
 }
 
 /// Lays the configuration file and the state file over the state.
-fn overlay_files(state: &mut State, args: &ProcessArgs) -> Result<(), Failure> {
+pub(crate) fn overlay_files(state: &mut State, args: &ProcessArgs) -> Result<(), Failure> {
     if let Some(config) = config_file(args)? {
         overlay(state, &config, "--config")?;
     }
@@ -202,6 +202,15 @@ fn check_standard_output(args: &RenderArgs, outputs: &[Output]) -> Result<(), Fa
         (Some(one), Some(other)) => Err(Failure::usage(format!("{one} and {other} both want standard output"))),
         _ => Ok(()),
     }
+}
+
+/// Writes the state into the file that `--save-state` names.
+pub(crate) fn save_state(state: &State, file: &Path) -> Result<(), Failure> {
+    let mut state = state.clone();
+    if let Some(folder) = file.parent().filter(|_| !report::is_standard(file)) {
+        state.leave_for(folder);
+    }
+    report::write(file, state.to_json().as_bytes())
 }
 
 /// The configuration file to use, if any: the one that was named, else the user's if it exists.

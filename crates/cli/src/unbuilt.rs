@@ -2,7 +2,39 @@
 //! for it is told so, rather than that it is unknown.
 
 /// Verbs to come.
-const VERBS: [&str; 3] = ["draw", "lab", "batch"];
+const VERBS: [&str; 2] = ["lab", "batch"];
+
+/// Options of `draw` to come.
+const DRAWING_OPTIONS: [&str; 23] = [
+    "--algorithm",
+    "--angle",
+    "--color-by",
+    "--explode",
+    "--flatten",
+    "--hatch",
+    "--hide-tangent",
+    "--max-segments",
+    "--plotter",
+    "--precision",
+    "--scale",
+    "--seams",
+    "--section-plane",
+    "--shades",
+    "--shadows",
+    "--simplify",
+    "--stroke",
+    "--svg-ids",
+    "--title-block",
+    "--transparency",
+    "--unit",
+    "--views",
+    "--light",
+];
+
+/// Whether this option of `draw` is to come.
+pub(crate) fn drawing_option(name: &str) -> bool {
+    DRAWING_OPTIONS.contains(&name)
+}
 
 /// Whether this verb is to come.
 pub(crate) fn verb(name: &str) -> bool {
@@ -20,6 +52,10 @@ mod tests {
         let cli = Cli::command();
         for command in cli.get_subcommands() {
             assert!(!verb(command.get_name()), "{}", command.get_name());
+            for option in command.get_arguments().filter_map(|a| a.get_long()).filter(|_| command.get_name() == "draw")
+            {
+                assert!(!drawing_option(&format!("--{option}")), "{option}");
+            }
         }
     }
 }

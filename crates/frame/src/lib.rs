@@ -1,11 +1,14 @@
-//! Floor 1: pixels. Planes of values, textures with their samplers, and the finished [`Frame`].
+//! Floor 1: pixels. Planes of values, textures with their samplers, and the finished [`Frame`]; and its counterpart for vector
+//! output, the [`Drawing`].
 #![forbid(unsafe_code)]
 
 pub mod compare;
+pub mod drawing;
 mod frame;
 mod plane;
 pub mod texture;
 
+pub use drawing::Drawing;
 pub use frame::{Frame, TwoBuffers};
 pub use plane::Plane;
 pub use texture::{Encoding, Filter, MipFilter, Sampler, Texture, Wrap, decode_table};

@@ -10,6 +10,7 @@
 mod bounding_sphere;
 pub mod bounds;
 pub mod color;
+pub mod exact;
 mod fingerprint;
 pub mod frustum;
 pub mod func;

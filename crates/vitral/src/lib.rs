@@ -31,6 +31,7 @@
 //!
 //! | also here | for |
 //! |---|---|
+//! | [`Renderer::draw`] | vector drawings: visible and hidden lines, filled regions |
 //! | [`info`](mod@info) | what is in a scene |
 //! | [`State`] | all that makes a picture, as JSON |
 //! | [`explain`](mod@explain) | how each algorithm decides about a pixel |
@@ -47,6 +48,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bench;
+mod drawing;
 pub mod dump;
 mod error;
 mod exercise;
@@ -83,8 +85,13 @@ pub use state::{Objects, State};
 pub use system_clock::SystemClock;
 pub use viewpoint::Viewpoint;
 
+pub use vitral_draw::{
+    Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, PageSize, VisibilityStats,
+};
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
-pub use vitral_frame::{Encoding, Filter, Frame, MipFilter, Plane, Sampler, Texture, Wrap};
+pub use vitral_frame::drawing::{Line, LineClass, Region};
+pub use vitral_frame::{Drawing, Encoding, Filter, Frame, MipFilter, Plane, Sampler, Texture, Wrap};
+pub use vitral_io::encode::{SvgOptions, svg as drawing_to_svg};
 pub use vitral_io::{Error as InputError, Format, NoFiles, ResolveError, Resolver};
 pub use vitral_light::{
     AlphaMode, AreaShape, Attenuation, Illumination, Light, LightKind, Material, Reflectance, Rgb, TextureRef,

@@ -7,19 +7,22 @@
 //! | [`jpeg()`] | small opaque pictures |
 //! | [`ppm()`] | the simplest format there is |
 //! | [`npy_f32`], [`npy_f32x3`], [`npy_u32`] | channels without loss, for numpy |
+//! | [`svg()`] | drawings |
 //!
-//! All take planes with the top row first and straight alpha, and give the whole file.
+//! All but the last take planes with the top row first and straight alpha; all give the whole file.
 
 mod jpeg;
 mod npy;
 mod pixels;
 mod png;
 mod ppm;
+mod svg;
 
 pub use jpeg::jpeg;
 pub use npy::{npy_f32, npy_f32x3, npy_u32};
 pub use png::{PngOptions, png, png_with_text, png16_gray};
 pub use ppm::ppm;
+pub use svg::{SvgOptions, svg};
 
 use crate::Error;
 use vitral_frame::Plane;

@@ -9,7 +9,7 @@
 use serde_json::Value;
 
 /// Every crate's floor and its place on it. Equal places do not see each other.
-const FLOORS: [(&str, u32, u32); 14] = [
+const FLOORS: [(&str, u32, u32); 15] = [
     ("vitral-math", 0, 0),
     ("vitral-exec", 0, 0),
     ("vitral-frame", 1, 0),
@@ -17,6 +17,7 @@ const FLOORS: [(&str, u32, u32); 14] = [
     ("vitral-scene", 1, 2),
     ("vitral-raster", 2, 0),
     ("vitral-render", 3, 0),
+    ("vitral-draw", 3, 0),
     ("vitral-io", 3, 0),
     ("vitral-gl", 3, 0),
     ("vitral", 4, 0),

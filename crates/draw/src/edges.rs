@@ -1,0 +1,188 @@
+//! The edges of the page's triangles: one for each pair of vertices, with the list of all triangles at it.
+//!
+//! Every triangle says for each of its sides "I run from a to b". Sorted by (lower vertex, higher vertex), the uses of one edge come
+//! together; an edge of more than two triangles keeps them all. Of triangles over the same three vertices only the first counts: the
+//! others hide nothing that it does not hide, and have no edges.
+//!
+//! In:   facets and triangles. Out: edges with their triangles and classes, in order of their vertices; duplicates hide nothing.
+//! Cost: linear for meshes of bounded valence, at most `n log n`.
+//! Source: a counting sort by the lower vertex, as for the winged edges of [Baumgart 1975].
+
+use crate::classes::{Classes, Side, classes_of};
+use crate::page_mesh::{Edge, PageMesh, Triangle};
+use crate::projection::{Facet, Projected};
+use crate::run::Run;
+use vitral_exec::Limit;
+use vitral_frame::drawing::LineClass;
+use vitral_math::func;
+
+/// Vertices in one piece of work.
+const BATCH: usize = 1 << 13;
+/// Bytes of an edge with two triangles, and of its uses.
+const BYTES_A_SIDE: u64 = 32;
+
+/// A side of a triangle under its lower vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Use {
+    higher: u32,
+    triangle: u32,
+    /// Whether the triangle runs from the higher vertex to the lower one.
+    reversed: bool,
+    /// Whether the side is one of the face's.
+    outline: bool,
+}
+
+/// Makes the page's mesh. `crease_angle` in radians.
+pub(crate) fn with_edges(projected: Projected, crease_angle: f64, run: &Run<'_>) -> Result<PageMesh, Limit> {
+    run.memory.charge(projected.facets.len() as u64 * 3 * BYTES_A_SIDE)?;
+    run.budget.check("edges")?;
+    let (starts, mut uses) = by_lower_vertex(&projected.facets, projected.vertices.len());
+
+    // Sort the uses of each vertex by the other end.
+    let mut lists: Vec<&mut [Use]> = Vec::new();
+    let mut rest = uses.as_mut_slice();
+    for first in (0..projected.vertices.len()).step_by(BATCH) {
+        let last = projected.vertices.len().min(first + BATCH);
+        let (list, others) = rest.split_at_mut((starts[last] - starts[first]) as usize);
+        lists.push(list);
+        rest = others;
+    }
+    let vertices_of = |batch: usize| batch * BATCH..projected.vertices.len().min((batch + 1) * BATCH);
+    run.workers.for_each(lists.into_iter().enumerate().collect(), |(batch, list): (usize, &mut [Use])| {
+        let base = starts[batch * BATCH];
+        for v in vertices_of(batch) {
+            list[(starts[v] - base) as usize..(starts[v + 1] - base) as usize].sort_unstable();
+        }
+    });
+    run.budget.check("edges")?;
+
+    // Find duplicates, then classify what the others have in common.
+    let uses_of = |v: usize| &uses[starts[v] as usize..starts[v + 1] as usize];
+    let batches = projected.vertices.len().div_ceil(BATCH);
+    let duplicates = duplicates(&projected, batches, &|batch| vertices_of(batch).map(uses_of).collect(), run);
+    let threshold = (func::cos(crease_angle.clamp(0.0, std::f64::consts::PI)) - 1e-6) as f32;
+    let pieces = run.workers.map(batches, |batch| {
+        let (mut edges, mut triangles) = (Vec::new(), Vec::new());
+        for v in vertices_of(batch) {
+            for edge in uses_of(v).chunk_by(|a, b| a.higher == b.higher) {
+                add_edge(v as u32, edge, &projected, &duplicates, threshold, &mut edges, &mut triangles);
+            }
+        }
+        (edges, triangles)
+    });
+    Ok(put_together(projected, pieces, &duplicates))
+}
+
+/// The mesh of the pieces, with the free lines as edges without triangles.
+fn put_together(projected: Projected, pieces: Vec<(Vec<Edge>, Vec<u32>)>, duplicates: &[u32]) -> PageMesh {
+    let Projected { size, vertices, mut triangles, sources, facets, lines } = projected;
+    duplicates.iter().for_each(|&t| triangles[t as usize].hides = false);
+    let sources = facets.iter().map(|facet| sources[facet.source as usize]).collect();
+    let mut mesh = PageMesh { size, vertices, triangles, sources, ..PageMesh::default() };
+    for (edges, triangles) in pieces {
+        let first = mesh.edge_triangles.len() as u32;
+        mesh.edges.extend(edges.into_iter().map(|edge| Edge { first: first + edge.first, ..edge }));
+        mesh.edge_triangles.extend(triangles);
+    }
+    let classes = Classes::one(LineClass::Boundary) | Classes::one(LineClass::Smooth);
+    mesh.edges.extend(lines.iter().map(|&ends| Edge { ends, first: 0, count: 0, classes }));
+    mesh
+}
+
+/// The sides of all triangles, those of one lower vertex together, and where each vertex's begin.
+fn by_lower_vertex(facets: &[Facet], vertices: usize) -> (Vec<u32>, Vec<Use>) {
+    let side = |facet: &Facet, k: usize| (facet.vertices[k], facet.vertices[(k + 1) % 3]);
+    let mut starts = vec![0u32; vertices + 1];
+    for facet in facets {
+        for (a, b) in (0..3).map(|k| side(facet, k)) {
+            starts[a.min(b) as usize + 1] += 1;
+        }
+    }
+    for v in 0..vertices {
+        starts[v + 1] += starts[v];
+    }
+    let mut next = starts.clone();
+    let mut uses = vec![Use::default(); facets.len() * 3];
+    for (t, facet) in facets.iter().enumerate() {
+        for k in 0..3 {
+            let (a, b) = side(facet, k);
+            let place = &mut next[a.min(b) as usize];
+            let outline = facet.outline >> k & 1 == 1;
+            uses[*place as usize] = Use { higher: a.max(b), triangle: t as u32, reversed: a > b, outline };
+            *place += 1;
+        }
+    }
+    (starts, uses)
+}
+
+/// Triangles over the same vertices as an earlier one, in order.
+fn duplicates<'u>(
+    projected: &Projected,
+    batches: usize,
+    uses_of: &(dyn Fn(usize) -> Vec<&'u [Use]> + Sync),
+    run: &Run<'_>,
+) -> Vec<u32> {
+    let third = |v: usize, u: &Use| {
+        let corners = projected.facets[u.triangle as usize].vertices;
+        corners.into_iter().find(|&c| c != v as u32 && c != u.higher)
+    };
+    let found = run.workers.map(batches, |batch| {
+        let mut found = Vec::new();
+        for (v, uses) in (batch * BATCH..).zip(uses_of(batch)) {
+            for edge in uses.chunk_by(|a, b| a.higher == b.higher).filter(|edge| edge.len() > 1) {
+                let mut thirds: Vec<_> = edge.iter().map(|u| (third(v, u), u.triangle)).collect();
+                thirds.sort_unstable();
+                found.extend(thirds.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1));
+            }
+        }
+        found
+    });
+    let mut all = found.concat();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+/// Adds an edge, if triangles that count are at it.
+fn add_edge(
+    lower: u32,
+    uses: &[Use],
+    projected: &Projected,
+    duplicates: &[u32],
+    threshold: f32,
+    edges: &mut Vec<Edge>,
+    triangles: &mut Vec<u32>,
+) {
+    let counts = |u: &&Use| duplicates.is_empty() || duplicates.binary_search(&u.triangle).is_err();
+    let first = triangles.len() as u32;
+    triangles.extend(uses.iter().filter(counts).map(|u| u.triangle));
+    let count = triangles.len() as u32 - first;
+    if count == 0 {
+        return;
+    }
+
+    // Diagonals are never drawn, nor sides that a face uses twice, as where a bridge leads to a hole.
+    let source = |t: u32| &projected.sources[projected.facets[t as usize].source as usize];
+    let outlines = || uses.iter().filter(counts).filter(|u| u.outline);
+    let surface = outlines().next().map(|u| source(u.triangle).surface);
+    let bridge = count > 1 && outlines().all(|u| Some(source(u.triangle).surface) == surface);
+    let classes = if surface.is_none() || (bridge && outlines().count() > 1) {
+        Classes::EMPTY
+    } else {
+        let side = |u: &Use| Side {
+            triangle: &projected.triangles[u.triangle as usize],
+            source: source(u.triangle),
+            reversed: u.reversed,
+        };
+        let sides: Vec<Side<'_>> = outlines().map(side).collect();
+        classes_of(&sides, threshold)
+    };
+    edges.push(Edge { ends: [lower, uses[0].higher], first, count, classes });
+}
+
+impl Triangle {
+    /// Whether a vertex is one of its corners.
+    pub(crate) fn has(&self, vertex: u32) -> bool {
+        self.vertices.contains(&vertex)
+    }
+}

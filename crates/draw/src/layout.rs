@@ -1,0 +1,149 @@
+//! The sheet: strokes are scaled and placed, rounded to the precision, and joined.
+//!
+//! In:   strokes and regions in units of the page's grid. Out: a [`Drawing`] in millimetres.
+//! Cost: that of [`chains`](crate::chains).
+
+use crate::chains::{Step, chains};
+use crate::fill::PageRegion;
+use crate::page_mesh::NONE;
+use crate::strokes::Stroke;
+use vitral_frame::Drawing;
+use vitral_frame::drawing::{Line, Region};
+
+/// Steps of the precision in a millimetre.
+const STEPS_A_MILLIMETRE: f64 = 1000.0;
+
+/// How large the sheet is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PageSize {
+    /// As large as the drawing, whose longer side has this length in millimetres.
+    Fit {
+        /// The length.
+        longer: f64,
+    },
+    /// A sheet of this width and height in millimetres, which the drawing fills.
+    Sheet {
+        /// Width.
+        width: f64,
+        /// Height.
+        height: f64,
+    },
+}
+
+impl Default for PageSize {
+    /// A drawing of 180 mm, which fits on A4.
+    fn default() -> Self {
+        Self::Fit { longer: 180.0 }
+    }
+}
+
+/// From units of the grid to millimetres on the sheet.
+#[derive(Clone, Copy, Debug)]
+struct Placement {
+    scale: f64,
+    offset: [f64; 2],
+    /// Width and height of the sheet.
+    sheet: [f64; 2],
+}
+
+impl Placement {
+    /// Places a box of these corners.
+    fn new(low: [f64; 2], high: [f64; 2], page: PageSize, margin: f64) -> Self {
+        let size = [0, 1].map(|k| high[k] - low[k]);
+        // A drawing without width or height is placed by its other side; one without both is a point.
+        let ratio = |room: f64, side: f64| if side > 0.0 { (room / side).max(0.0) } else { f64::INFINITY };
+        let scale = match page {
+            PageSize::Fit { longer } => ratio(longer, size[0].max(size[1])),
+            PageSize::Sheet { width, height } => {
+                ratio(width - 2.0 * margin, size[0]).min(ratio(height - 2.0 * margin, size[1]))
+            }
+        };
+        let scale = if scale.is_finite() { scale } else { 0.0 };
+        let sheet = match page {
+            PageSize::Fit { .. } => size.map(|side| side * scale + 2.0 * margin),
+            PageSize::Sheet { width, height } => [width, height],
+        };
+        let offset = [0, 1].map(|k| (sheet[k] - size[k] * scale) / 2.0 - low[k] * scale);
+        Self { scale, offset, sheet }
+    }
+
+    fn step(&self, point: [f64; 2]) -> Step {
+        [0, 1].map(|k| ((point[k] * self.scale + self.offset[k]) * STEPS_A_MILLIMETRE).round() as i32)
+    }
+
+    /// A region on the sheet, unless nothing is left of it at the precision.
+    fn region(&self, region: &PageRegion) -> Option<Region> {
+        let ring = |ring: &Vec<[f64; 2]>| {
+            let mut points: Vec<Step> = ring.iter().map(|&point| self.step(point)).collect();
+            points.dedup();
+            while points.len() > 1 && points.first() == points.last() {
+                points.pop();
+            }
+            (points.len() > 2).then(|| points.into_iter().map(millimetres).collect::<Vec<_>>())
+        };
+        let rings: Vec<_> = region.rings.iter().filter_map(ring).collect();
+        let PageRegion { surface, material, color, .. } = *region;
+        let material = Some(material).filter(|&material| material != NONE);
+        (!rings.is_empty()).then_some(Region { surface, material, color, rings })
+    }
+}
+
+/// A point of the sheet in millimetres.
+fn millimetres(point: Step) -> [f64; 2] {
+    point.map(|step| f64::from(step) / STEPS_A_MILLIMETRE)
+}
+
+/// Places strokes and regions on the sheet, and joins the strokes.
+pub(crate) fn lay_out(strokes: &[Stroke], regions: &[PageRegion], page: PageSize, margin: f64) -> Drawing {
+    let outlines = regions.iter().flat_map(|region| region.rings.iter().flatten().copied());
+    let points = strokes.iter().flat_map(|stroke| stroke.ends).chain(outlines);
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for point in points {
+        for k in 0..2 {
+            (low[k], high[k]) = (low[k].min(point[k]), high[k].max(point[k]));
+        }
+    }
+    if low[0] > high[0] {
+        (low, high) = ([0.0; 2], [0.0; 2]);
+    }
+    let placement = Placement::new(low, high, page, margin);
+    let placed: Vec<_> = strokes.iter().map(|s| (s.class, s.layers, s.ends.map(|p| placement.step(p)))).collect();
+    let lines = chains(&placed)
+        .into_iter()
+        .map(|chain| {
+            let points = chain.points.iter().map(|&p| millimetres(p)).collect();
+            Line { class: chain.class, layers: chain.layers, points }
+        })
+        .collect();
+    let [width, height] = placement.sheet;
+    Drawing { width, height, lines, regions: regions.iter().filter_map(|region| placement.region(region)).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitral_frame::drawing::LineClass;
+
+    fn line(p: [f64; 2], q: [f64; 2]) -> Stroke {
+        Stroke { class: LineClass::Crease, layers: 0, ends: [p, q] }
+    }
+
+    #[test]
+    fn a_drawing_fits_the_sheet_or_the_sheet_the_drawing() {
+        let strokes = [line([100.0, 100.0], [300.0, 100.0]), line([300.0, 100.0], [300.0, 200.0])];
+        let fit = lay_out(&strokes, &[], PageSize::Fit { longer: 100.0 }, 5.0);
+        assert_eq!((fit.width, fit.height), (110.0, 60.0));
+        assert_eq!(fit.lines[0].points, [[5.0, 5.0], [105.0, 5.0], [105.0, 55.0]]);
+        let sheet = lay_out(&strokes, &[], PageSize::Sheet { width: 50.0, height: 90.0 }, 5.0);
+        assert_eq!((sheet.width, sheet.height), (50.0, 90.0));
+        assert_eq!(sheet.lines[0].points, [[5.0, 35.0], [45.0, 35.0], [45.0, 55.0]]);
+    }
+
+    #[test]
+    fn nothing_and_lines_without_height_have_a_sheet() {
+        let empty = lay_out(&[], &[], PageSize::default(), 5.0);
+        assert_eq!((empty.width, empty.height, empty.lines.len()), (10.0, 10.0, 0));
+        let flat = lay_out(&[line([0.0, 7.0], [9.0, 7.0])], &[], PageSize::Sheet { width: 20.0, height: 10.0 }, 1.0);
+        assert_eq!(flat.lines[0].points, [[1.0, 5.0], [19.0, 5.0]]);
+    }
+}

@@ -1,0 +1,169 @@
+//! Floor 3: exact vector drawings of meshes, visible and hidden lines, each with its class, and visible surfaces.
+//!
+//! All geometry is snapped to an integer grid once; afterwards every decision about visibility is exact. The way of a drawing:
+//!
+//! | step | file |
+//! |---|---|
+//! | weld, project, clip, snap | `projection.rs`, `clip.rs` |
+//! | edges with all their triangles, and what they are | `edges.rs`, `classes.rs` |
+//! | a pyramid of grids over the triangles that hide | `grid.rs` |
+//! | lines in which triangles penetrate each other | `crossings.rs` |
+//! | for each edge, the parts that triangles hide | `hiding.rs`, `place.rs`, `visibility.rs` |
+//! | strokes, of which no two coincide | `strokes.rs` |
+//! | the visible surface as regions that do not overlap | `fill.rs` |
+//! | long polylines on the page | `chains.rs`, `layout.rs` |
+//!
+//! Nothing depends on the number of threads.
+//!
+//! ```
+//! use vitral_draw::{DrawingSettings, draw};
+//! use vitral_exec::{Budget, Workers};
+//! use vitral_scene::{Axis, Lens, Scene, View, World, builtin::solids, frame};
+//!
+//! let world = World::new(&Scene::from_mesh(solids::cuboid([2.0, 1.0, 1.0].into()))).unwrap();
+//! let camera = frame(&world.bounds, View::Front, Axis::PlusY, Lens::Parallel, 1.0);
+//! let (settings, workers, budget) = (DrawingSettings::default(), Workers::single(), Budget::default());
+//! let drawn = draw(&world, &camera, 1.0, &settings, None, &workers, &budget).unwrap();
+//! assert_eq!(drawn.drawing.lines.len(), 1, "a box from the front is one closed line");
+//! assert_eq!(drawn.drawing.lines[0].points.len(), 5);
+//! ```
+#![forbid(unsafe_code)]
+
+mod chains;
+mod classes;
+mod clip;
+mod crossings;
+mod edges;
+mod fill;
+mod grid;
+mod hiding;
+mod layout;
+mod page_mesh;
+mod place;
+mod projection;
+mod run;
+mod strokes;
+#[cfg(test)]
+mod testing;
+mod visibility;
+
+pub use classes::Classes;
+pub use fill::{FaceLook, Palette};
+pub use layout::PageSize;
+pub use visibility::VisibilityStats;
+
+use grid::Grid;
+use page_mesh::{PageMesh, Triangle};
+use run::Run;
+use visibility::{Search, Wanted, fragments};
+use vitral_exec::{Budget, Limit, Workers};
+use vitral_frame::Drawing;
+use vitral_frame::drawing::LineClass;
+use vitral_scene::{Camera, World, depth_range};
+
+/// What is to be decided about a drawing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrawingSettings {
+    /// Which lines are drawn, if any; an edge of several classes is drawn as the first of these.
+    pub lines: Classes,
+    /// Lines behind up to so many faces are drawn as well. 0: visible lines alone.
+    pub hidden_layers: u32,
+    /// Edges at a larger angle are creases, radians.
+    pub crease_angle: f64,
+    /// The sheet.
+    pub page: PageSize,
+    /// Distance of the drawing from the border of the sheet, millimetres.
+    pub margin: f64,
+}
+
+impl Default for DrawingSettings {
+    fn default() -> Self {
+        Self {
+            lines: Classes::USUAL,
+            hidden_layers: 0,
+            crease_angle: std::f64::consts::FRAC_PI_6,
+            page: PageSize::default(),
+            margin: 5.0,
+        }
+    }
+}
+
+/// A drawing and how it came about.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawn {
+    /// Lines and regions.
+    pub drawing: Drawing,
+    /// Counters.
+    pub stats: DrawingStats,
+}
+
+/// Counters of a drawing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DrawingStats {
+    /// Triangles on the page.
+    pub triangles: u64,
+    /// Of these, triangles that hide what is behind them.
+    pub hiding_triangles: u64,
+    /// Edges of faces, diagonals of polygons included.
+    pub edges: u64,
+    /// Lines in which two triangles intersect.
+    pub intersections: u64,
+    /// Parts of edges between changes of visibility.
+    pub fragments: u64,
+    /// Work of the pass over the edges.
+    pub visibility: VisibilityStats,
+}
+
+/// Draws what `camera` sees in a window of `aspect` (width by height): lines, and with a palette the visible surfaces.
+///
+/// # Errors
+/// A limit of the budget.
+pub fn draw(
+    world: &World,
+    camera: &Camera,
+    aspect: f64,
+    settings: &DrawingSettings,
+    palette: Option<&Palette<'_>>,
+    workers: &Workers,
+    budget: &Budget,
+) -> Result<Drawn, Limit> {
+    let run = Run::new(workers, budget);
+    let view = camera.transform(aspect, depth_range(camera, &world.bounds));
+    let projected = projection::project(world, &view, aspect, &run)?;
+    let mut mesh = edges::with_edges(projected, settings.crease_angle, &run)?;
+    let grid = Grid::new(&mesh, |triangle| triangle.hides, &run)?;
+    let mut stats = DrawingStats {
+        triangles: mesh.triangles.len() as u64,
+        hiding_triangles: mesh.triangles.iter().filter(|triangle| triangle.hides).count() as u64,
+        edges: mesh.edges.len() as u64,
+        ..DrawingStats::default()
+    };
+    if settings.lines.has(LineClass::Intersection) {
+        stats.intersections = intersect(&mut mesh, &grid, settings.hidden_layers > 0, &run)?;
+    }
+
+    let wanted = Wanted { classes: settings.lines, most_layers: settings.hidden_layers };
+    let (fragments, visibility) = fragments(&mesh, Search::Grid(&grid), wanted, &run)?;
+    (stats.fragments, stats.visibility) = (fragments.len() as u64, visibility);
+    let strokes = strokes::strokes(&mesh, &fragments, settings.lines, &run)?;
+    budget.check("lines")?;
+    let regions = match palette {
+        Some(palette) => fill::regions(&mesh, &grid, palette, &run)?,
+        None => Vec::new(),
+    };
+    let drawing = layout::lay_out(&strokes, &regions, settings.page, settings.margin);
+    Ok(Drawn { drawing, stats })
+}
+
+/// Adds the lines of intersection. Where hidden lines are drawn, back faces of solid bodies have some, too.
+fn intersect(mesh: &mut PageMesh, grid: &Grid, with_backs: bool, run: &Run<'_>) -> Result<u64, Limit> {
+    let has_area = |triangle: &Triangle| !triangle.is_flat();
+    if with_backs && mesh.triangles.iter().any(|triangle| has_area(triangle) && !triangle.hides) {
+        let all = Grid::new(mesh, has_area, run)?;
+        return crossings::add_crossings(mesh, &all, has_area, run);
+    }
+    crossings::add_crossings(mesh, grid, |triangle| triangle.hides, run)
+}
+
+#[cfg(test)]
+mod tests;

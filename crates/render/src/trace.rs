@@ -340,7 +340,7 @@ pub enum Step {
         /// Its number. The root is 0.
         node: u32,
         /// The number of the node that it hangs below; none for the root.
-        parent: Option<u32>,
+        above: Option<u32>,
         /// The side of that node's plane that it divides.
         side: Option<PlaneSide>,
         /// The first facet of the polygon that gave the plane, the splitter; none for a plane across an axis.
@@ -364,7 +364,7 @@ pub enum Step {
         /// The number of the node.
         node: u32,
         /// The number of the node that it hangs below; none for the root.
-        parent: Option<u32>,
+        above: Option<u32>,
         /// The side of its plane on which the viewer is.
         viewer: PlaneSide,
         /// The first facets of its polygons, in the order of the list, from back to front.

@@ -205,9 +205,9 @@ impl Parents {
             }
             Step::Compared { .. } | Step::Moved { .. } | Step::Circle { .. } => self.turn,
             Step::Split { .. } | Step::Painted { .. } => self.turn,
-            Step::TreeNode { node, parent, .. } => {
+            Step::TreeNode { node, above, .. } => {
                 self.nodes.insert(*node, number);
-                parent.and_then(|above| self.nodes.get(&above).copied())
+                above.and_then(|above| self.nodes.get(&above).copied())
             }
             Step::TreeVisit { node, .. } => {
                 let built = self.nodes.get(node).copied();

@@ -114,7 +114,7 @@ fn p21_steps_and_counters_of_the_tests_agree() {
 /// What a node of the tree says: its number, parent, side, splitter, and its four sets.
 fn nodes(steps: &[Step]) -> Vec<(u32, Option<u32>, Option<PlaneSide>, Option<u32>, [Vec<u32>; 4])> {
     let node = |step: &Step| match step {
-        Step::TreeNode { node, parent, side, splitter, coincident, front, back, cut, .. } => {
+        Step::TreeNode { node, above: parent, side, splitter, coincident, front, back, cut, .. } => {
             let sets = [coincident, front, back, cut].map(|set| set.facets.clone());
             Some((*node, *parent, *side, *splitter, sets))
         }

@@ -85,8 +85,8 @@ fn nodes(steps: &[Step]) -> BTreeMap<u32, Node<'_>> {
     let mut nodes = BTreeMap::new();
     for step in steps {
         match step {
-            Step::TreeNode { node, parent, side, splitter, plane, coincident, cut, .. } => {
-                if let Some(above) = parent.and_then(|parent| nodes.get_mut(&parent)) {
+            Step::TreeNode { node, above, side, splitter, plane, coincident, cut, .. } => {
+                if let Some(above) = above.and_then(|above| nodes.get_mut(&above)) {
                     let above: &mut Node<'_> = above;
                     above.children[usize::from(*side == Some(PlaneSide::Front))] = Some(*node);
                 }
@@ -213,7 +213,7 @@ mod tests {
     fn heap(count: u32) -> Vec<Step> {
         let node = |node: u32| Step::TreeNode {
             node,
-            parent: (node > 0).then(|| (node - 1) / 2),
+            above: (node > 0).then(|| (node - 1) / 2),
             side: (node > 0).then_some(if node % 2 == 1 { PlaneSide::Back } else { PlaneSide::Front }),
             splitter: Some(node + 100),
             plane: [0.0, 0.0, 1.0, 0.0],
@@ -231,7 +231,7 @@ mod tests {
         let visit = |order, node| Step::TreeVisit {
             order,
             node,
-            parent: None,
+            above: None,
             viewer: PlaneSide::Front,
             polygons: vec![node + 100],
         };

@@ -30,8 +30,8 @@ impl Tree {
             let mut polygons = Vec::new();
             self.nodes[node as usize].each_fragment(in_front, |f| polygons.push(self.name(f)));
             let viewer = if in_front { PlaneSide::Front } else { PlaneSide::Back };
-            let parent = parents[node as usize].map(|(parent, _)| parent);
-            execution.tell(|| Step::TreeVisit { order, node, parent, viewer, polygons });
+            let above = parents[node as usize].map(|(parent, _)| parent);
+            execution.tell(|| Step::TreeVisit { order, node, above, viewer, polygons });
             order += 1;
         });
     }
@@ -75,7 +75,7 @@ impl Tree {
         let named = |polygons: &[u32]| PolygonSet::new(polygons.iter().map(|&p| self.facets.name(p)));
         Step::TreeNode {
             node,
-            parent: parent.map(|(parent, _)| parent),
+            above: parent.map(|(parent, _)| parent),
             side: parent.map(|(_, side)| side),
             splitter: (n.splitter != NONE).then(|| self.facets.name(n.splitter)),
             plane: n.plane.to_array(),

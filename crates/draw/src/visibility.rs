@@ -159,14 +159,15 @@ impl Walk {
         self.hidden.clear();
         self.pieces.push((Place::START, Place::END));
         let visible_only = most_layers == 0;
-        let ask = |list: &[u32]| self.ask(list, &segment, edge, number, visible_only, run);
         let flow =
             match search {
-                Search::Grid(grid) => grid.along(segment.ends, visible_only, ask),
+                Search::Grid(grid) => grid.along(segment.ends, visible_only, |list: &[u32]| {
+                    self.ask(list, &segment, edge, number, visible_only, run)
+                }),
                 #[cfg(test)]
                 Search::All => (0..mesh.triangles.len() as u32)
                     .filter(|&t| mesh.triangles[t as usize].hides)
-                    .try_for_each(|t| match ask(&[t]) {
+                    .try_for_each(|t| match self.ask(&[t], &segment, edge, number, visible_only, run) {
                         ControlFlow::Break(Some(limit)) => ControlFlow::Break(Some(limit)),
                         _ => ControlFlow::Continue(()),
                     }),

@@ -34,12 +34,7 @@ fn contours(region: &Region) -> Vec<Contour> {
 
 /// The step of a visible polygon.
 pub(super) fn visible(polygon: &Polygon<'_>, item: &Item, clip: Option<u32>) -> Step {
-    Step::Visible {
-        facet: polygon.plane.facet,
-        clip,
-        area: item.region.area(),
-        contours: contours(&item.region),
-    }
+    Step::Visible { facet: polygon.plane.facet, clip, area: item.region.area(), contours: contours(&item.region) }
 }
 
 impl AreaSorting<'_> {

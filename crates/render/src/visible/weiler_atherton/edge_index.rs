@@ -92,11 +92,7 @@ impl EdgeIndex {
         for band in first..=last {
             for &number in &self.bands[band] {
                 let edge = &edges[number as usize];
-                let touches = self.has(number as usize)
-                    && (0..2).all(|k| {
-                        let [from, to] = edge.about.map(|p| p[k]);
-                        from.min(to) <= around[k + 2] + ROUNDING && from.max(to) >= around[k] - ROUNDING
-                    });
+                let touches = self.has(number as usize) && edge.touches(around);
                 // An edge is taken in the first band that both reach.
                 if touches && self.reach_of(edge)[0].max(first) == band {
                     found.push(number);

@@ -178,6 +178,14 @@ impl Edge {
         Point { about: self.about[which], lines, is_corner: self.is_corner[which] }
     }
 
+    /// Whether its box touches one: smallest x and y, largest x and y.
+    pub(super) fn touches(&self, around: [f64; 4]) -> bool {
+        (0..2).all(|k| {
+            let [from, to] = self.about.map(|p| p[k]);
+            from.min(to) <= around[k + 2] + ROUNDING && from.max(to) >= around[k] - ROUNDING
+        })
+    }
+
     /// The same edge of what lies on the other side.
     pub(super) fn reversed(&self) -> Self {
         let [from, to] = [self.end(0), self.end(1)];

@@ -26,8 +26,12 @@ use super::line::{Edge, Line, Point, ROUNDING};
 use std::cmp::Ordering;
 use vitral_raster::SUBPIXEL;
 
+/// Edges up to which all of a region are clipped: a search for those near the clipping polygon takes longer.
+const SMALL: usize = 8;
+/// Edges up to which a region's box is found anew when it was cut.
+const BOUNDED: usize = 32;
 /// Edges from which on a region has an index of them.
-const INDEX_THRESHOLD: usize = 64;
+const INDEX_THRESHOLD: usize = 256;
 
 /// A convex polygon to clip with: its corners, and the line from each to the next, positive inside. A half-plane has no corners.
 #[derive(Clone, Debug)]
@@ -83,9 +87,9 @@ impl Convex {
     }
 
     /// A box round what this and another polygon have in common, a little too large.
-    fn common_box(&self, other: &Self) -> Option<[f64; 4]> {
-        let mut outline: Vec<_> = self.corners.iter().map(|c| c.map(f64::from)).collect();
-        let mut clipped = Vec::with_capacity(outline.len() + 1);
+    fn common_box(&self, other: &Self, [outline, clipped]: &mut [Vec<[f64; 2]>; 2]) -> Option<[f64; 4]> {
+        outline.clear();
+        outline.extend(self.corners.iter().map(|c| c.map(f64::from)));
         for line in &other.lines {
             clipped.clear();
             let slack = line.slack();
@@ -100,12 +104,12 @@ impl Convex {
                     clipped.push([0, 1].map(|k| p[k] + (q[k] - p[k]) * t));
                 }
             }
-            std::mem::swap(&mut outline, &mut clipped);
+            std::mem::swap(outline, clipped);
             if outline.is_empty() {
                 return None;
             }
         }
-        let [x0, y0, x1, y1] = bounds(outline.into_iter());
+        let [x0, y0, x1, y1] = bounds(outline.iter().copied());
         Some([x0 - 1.0, y0 - 1.0, x1 + 1.0, y1 + 1.0])
     }
 }
@@ -164,6 +168,8 @@ pub(super) struct FillEdge {
 pub(super) struct Workspace {
     /// Numbers of the edges near the polygon.
     near: Vec<u32>,
+    /// Outlines while they are clipped.
+    outlines: [Vec<[f64; 2]>; 2],
     /// On which side of the polygon's lines their ends lie, line by line.
     sides: Vec<[Ordering; 2]>,
     /// Where a line enters (1) or leaves (-1) the region.
@@ -217,32 +223,31 @@ impl Region {
             return Clipped::Outside;
         }
         work.near.clear();
-        if self.index.is_some() || self.edges.len() > INDEX_THRESHOLD {
+        let is_all = self.index.is_none() && self.edges.len() <= SMALL;
+        if is_all {
+            work.near.extend(0..self.edges.len() as u32);
+        } else {
             // Take the edges near the polygon.
             if polygon.holds_box(self.bounds) {
                 return Clipped::Inside;
             }
-            let Some(common) = whole.common_box(polygon) else { return Clipped::Outside };
-            if self.index.as_ref().is_none_or(|index| index.is_stale()) {
+            let Some(common) = whole.common_box(polygon, &mut work.outlines) else { return Clipped::Outside };
+            if self.index.as_ref().map_or(self.edges.len() > INDEX_THRESHOLD, |index| index.is_stale()) {
                 self.make_index();
             }
-            if let Some(index) = &self.index {
-                index.near(&self.edges, common, &mut work.near);
+            match &self.index {
+                Some(index) => index.near(&self.edges, common, &mut work.near),
+                None => work.near.extend((0..).zip(&self.edges).filter(|(_, e)| e.touches(common)).map(|(i, _)| i)),
             }
-            self.find_sides(polygon, work);
-        } else {
-            // Take all. All may be inside, or beyond one side.
-            work.near.extend(0..self.edges.len() as u32);
-            if let Some(trivial) = self.find_sides(polygon, work) {
-                return trivial;
-            }
+        }
+        if let Some(trivial) = self.find_sides(polygon, is_all, work) {
+            return trivial;
         }
         self.cut(polygon, work)
     }
 
     /// Finds on which side of the polygon's lines the near edges' ends lie, and what follows if these are all edges.
-    fn find_sides(&self, polygon: &Convex, work: &mut Workspace) -> Option<Clipped> {
-        let is_all = self.index.is_none();
+    fn find_sides(&self, polygon: &Convex, is_all: bool, work: &mut Workspace) -> Option<Clipped> {
         let mut within = true;
         work.sides.clear();
         for line in &polygon.lines {
@@ -305,15 +310,13 @@ impl Region {
             }
             return;
         }
-        let mut removed = work.removed.iter().copied().peekable();
-        let mut number = 0;
-        self.edges.retain(|_| {
-            let goes = removed.next_if_eq(&number).is_some();
-            number += 1;
-            !goes
-        });
+        for &number in work.removed.iter().rev() {
+            self.edges.swap_remove(number as usize);
+        }
         self.edges.extend(&work.outside);
-        self.bounds = bounds(self.edges.iter().flat_map(|e| e.about));
+        if self.edges.len() <= BOUNDED {
+            self.bounds = bounds(self.edges.iter().flat_map(|e| e.about));
+        }
     }
 
     fn make_index(&mut self) {

@@ -194,7 +194,7 @@ fn clips_of_an_inside_list_name_the_clip_that_made_it() {
 #[test]
 fn threads_and_the_plain_order_find_the_same_polygons() {
     let mut state = 11u32;
-    for (count, size) in [(40, 200), (600, 30), (1500, 12), (400, 150), (700, 60)] {
+    for (count, size) in [(40, 200), (600, 30), (320, 80)] {
         let mut setups = random(&mut state, count, 120, size);
         // Something large that lies behind, before and across the others.
         for (facet, z) in [[0.0, 0.1, 0.0], [0.9, 0.0, 0.5], [1.0, 0.1, 0.1]].into_iter().enumerate() {
@@ -217,7 +217,7 @@ fn threads_and_the_plain_order_find_the_same_polygons() {
             for (a, b) in spread.iter().zip(&plain) {
                 assert!(a.0 == b.0 && (a.1 - b.1).abs() < 1e-5, "{a:?} {b:?}");
             }
-            assert_eq!(execution.budget.peak() > 0, true);
+            assert!(execution.budget.peak() > 0);
             assert!(execution.budget.charge(0, "nothing").is_ok());
         }
         let (again, _, others) = told([120; 2], &setups);

@@ -1,6 +1,6 @@
 //! Integer depths: few bits show z-fighting, many do not.
 
-use crate::common::exact;
+use super::common::exact;
 use vitral::{
     Camera, Channels, DMat4, DVec3, Mesh, Projection, Renderer, Scene, SettingsError, Transparency, TransparencyOrder,
     Visibility,

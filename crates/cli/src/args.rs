@@ -111,8 +111,8 @@ pub(crate) struct BenchArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", value_parser = values::resolution, default_value = "1024x768")]
     pub(crate) resolution: [u32; 2],
-    /// Samples a pixel
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::whole(1..=16u32))]
+    /// Samples a pixel, 1 to 16, or 32
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::samples)]
     pub(crate) samples: u32,
     /// Pictures that the median is taken of, after a first one
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = values::whole(1..=1000u32))]

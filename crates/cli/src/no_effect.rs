@@ -7,8 +7,9 @@
 use crate::render_args::RenderArgs;
 use std::sync::Arc;
 use vitral::{
-    AlphaMode, AreaShape, Camera, Global, Illumination, Interpolation, Light, LightKind, Lines, Normals, Projection,
-    Renderer, Scene, Settings, Shading, State, Transmission, Transparency, TransparencyOrder, View, Viewpoint,
+    AlphaMode, AreaShape, Camera, ColorSpace, Global, Illumination, Interpolation, Light, LightKind, Lines, Normals,
+    Projection, Renderer, Scene, Settings, Shading, State, Transmission, Transparency, TransparencyOrder, View,
+    Viewpoint,
 };
 
 /// An option, when it does nothing, and what is said then.
@@ -39,12 +40,14 @@ const FLAT: &str = "with --shading flat each face has its own normal";
 const PARALLEL: &str = "the projection is parallel";
 
 /// What does nothing beside what. Rows of one option stand together; the first that holds is told.
-const ROWS: [Row; 42] = [
-    row("--samples", |a| a.picture.samples.is_some(), Case::makes_no_color, "channels of data have one sample a pixel"),
+const ROWS: [Row; 54] = [
+    row("--samples", gives_samples, Case::makes_no_color, "channels of data have one sample a pixel"),
     row("--background-color", |a| a.picture.background_color.is_some(), Case::makes_no_color, DATA),
     row("--no-background", |a| a.picture.no_background, Case::makes_no_color, DATA),
-    row("--color-space", |a| a.picture.color_space.is_some(), Case::makes_no_color, DATA),
+    row("--color-space", gives_color_space, Case::makes_no_color, DATA),
     row("--depth-cue", |a| a.algorithms.depth_cue.is_some(), Case::makes_no_color, DATA),
+    row("--edges", |a| a.algorithms.edges, Case::makes_no_color, DATA),
+    row("--wireframe-hidden-line", |a| a.algorithms.wireframe_hidden_line, Case::makes_no_color, DATA),
     row("--illumination", gives_illumination, Case::makes_no_color, DATA),
     row("--illumination", gives_illumination, Case::draws_wires, WIRES),
     row("--illumination", gives_illumination, |c| c.is_dark() && !c.is_constant(), DARK),
@@ -72,17 +75,35 @@ const ROWS: [Row; 42] = [
     row("--shadows", gives_shadows, |c| c.is_ambient() && !c.shows_shadows(), AMBIENT),
     row("--shadows", gives_shadows, |c| !c.casts_shadows(), NO_CASTER),
     row("--light-samples", gives_light_samples, |c| !c.has_areas(), "no light has an area"),
+    row("--light", |a| !a.light.light.is_empty(), |c| c.makes_no_color() && !c.shows_shadows(), DATA),
     row("--light", |a| !a.light.light.is_empty(), |c| c.is_dark() && !c.shows_shadows(), DARK),
     row("--light", |a| !a.light.light.is_empty(), |c| c.is_constant() && !c.shows_shadows(), CONSTANT),
+    row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.makes_no_color() && !c.shows_shadows(), DATA),
     row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.is_dark() && !c.shows_shadows(), DARK),
     row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.is_constant() && !c.shows_shadows(), CONSTANT),
     row("--light-intensity", gives_intensity, Case::makes_no_color, DATA),
     row("--light-intensity", gives_intensity, Case::is_dark, DARK),
     row("--light-intensity", gives_intensity, Case::is_constant, CONSTANT),
-    row("--normals", gives_normals, |c| c.is_flat() && !c.shows_normals(), FLAT),
+    row("--normals", gives_normals, |c| c.makes_no_color() && !c.shows_normals(), DATA),
+    row("--normals", gives_normals, |c| c.draws_wires() && !c.shows_normals(), WIRES),
+    row("--normals", gives_normals, |c| c.is_dark() && c.is_solid() && !c.shows_normals(), DARK),
+    row("--normals", gives_normals, |c| c.is_flat() && c.is_solid() && !c.shows_normals(), FLAT),
+    row("--crease-angle", gives_crease, |c| c.makes_no_color() && !c.shows_normals(), DATA),
+    row("--crease-angle", gives_crease, |c| c.draws_wires() && !c.shows_normals(), WIRES),
+    row("--crease-angle", gives_crease, |c| c.is_dark() && c.is_solid() && !c.shows_normals(), DARK),
+    row("--crease-angle", gives_crease, |c| c.is_flat() && c.is_solid() && !c.shows_normals(), FLAT),
     row("--view", gives_view, Case::has_camera, "--camera-index and --camera-direction say from where"),
+    row("--up", |a| a.camera.up.is_some(), Case::has_own_up, "--camera-index brings its own, and nothing turns"),
     row("--camera-view-angle", |a| a.camera.camera_view_angle.is_some(), Case::is_parallel_without_angle, PARALLEL),
 ];
+
+fn gives_samples(args: &RenderArgs) -> bool {
+    args.picture.samples.is_some_and(|count| count != Settings::default().picture.samples)
+}
+
+fn gives_color_space(args: &RenderArgs) -> bool {
+    args.picture.color_space.is_some_and(|space| space != ColorSpace::default())
+}
 
 fn gives_illumination(args: &RenderArgs) -> bool {
     args.algorithms.illumination.is_some_and(|model| model != Illumination::default())
@@ -124,6 +145,10 @@ fn gives_normals(args: &RenderArgs) -> bool {
     args.algorithms.normals.is_some_and(|normals| normals != Normals::default())
 }
 
+fn gives_crease(args: &RenderArgs) -> bool {
+    args.algorithms.crease_angle.is_some()
+}
+
 fn gives_view(args: &RenderArgs) -> bool {
     args.camera.view.is_some_and(|view| view != View::default())
 }
@@ -135,6 +160,8 @@ struct Case {
     /// Panels or a file show shadows by themselves.
     files: bool,
     viewpoint: Viewpoint,
+    /// Views are made from all around.
+    turns: bool,
     settings: Settings,
     scene: Arc<Scene>,
     camera: Camera,
@@ -148,6 +175,7 @@ impl Case {
             told: args.report.pixel.is_some() || args.output.dump.is_some(),
             files: args.output.panels || args.output.export_shadow_polygons.is_some(),
             viewpoint: state.viewpoint.clone(),
+            turns: state.turntable.is_some(),
             settings: renderer.settings.clone(),
             scene: Arc::clone(renderer.scene()),
             camera,
@@ -201,11 +229,12 @@ impl Case {
         self.settings.transparency.model == Transparency::None
     }
 
-    /// Whether nothing that the models have is seen through.
+    /// Whether all that is drawn is faces of which none is seen through.
     fn is_solid(&self) -> bool {
         let scene = &self.scene;
-        let opaque = scene.materials.iter().all(|material| material.alpha_mode != AlphaMode::Blend);
-        opaque && self.is_plain()
+        let opaque = scene.materials.iter().all(|material| material.alpha_mode == AlphaMode::Opaque);
+        let faces = scene.meshes.iter().all(|mesh| mesh.lines.is_empty() && mesh.points.is_empty());
+        opaque && faces && self.settings.picture.lines == Lines::None
     }
 
     fn scatters(&self) -> bool {
@@ -231,6 +260,11 @@ impl Case {
         let viewpoint = &self.viewpoint;
         let opened = viewpoint.camera_index.is_some() && viewpoint.orthographic;
         self.is_parallel() && !opened
+    }
+
+    /// Whether a camera of the model says which way is up, and nothing else asks for it.
+    fn has_own_up(&self) -> bool {
+        self.viewpoint.camera_index.is_some() && !self.turns && self.settings.global.model != Global::Radiosity
     }
 
     /// Whether the direction of view comes from elsewhere than from a side.

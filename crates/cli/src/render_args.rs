@@ -93,8 +93,8 @@ pub(crate) struct PictureArgs {
     /// Width and height in pixels, 1024x768 or 1024,768 [default: 1024x768]
     #[arg(long, value_name = "WxH", value_parser = values::resolution, allow_hyphen_values = true)]
     pub(crate) resolution: Option<[u32; 2]>,
-    /// Samples a pixel; 1 means no anti-aliasing [default: 4]
-    #[arg(long, value_name = "N", value_parser = values::whole(1..=16u32), allow_negative_numbers = true)]
+    /// Samples a pixel, 1 to 16, or 32 for a mask of 4 x 8; 1 means no anti-aliasing [default: 4]
+    #[arg(long, value_name = "N", value_parser = values::samples, allow_negative_numbers = true)]
     pub(crate) samples: Option<u32>,
     /// A name, #rrggbb, or r,g,b from 0 to 1 [default: a soft gradient]
     #[arg(long, value_name = "COLOR", value_parser = values::color, conflicts_with = "no_background")]

@@ -69,6 +69,14 @@ pub(crate) fn execution_from(threads: Option<usize>) -> Result<Execution, Failur
     Ok(Execution { level, ..execution })
 }
 
+/// A number of samples a pixel.
+pub(crate) fn samples(text: &str) -> Result<u32, String> {
+    match text.trim().parse() {
+        Ok(count @ (1..=16 | 32)) => Ok(count),
+        _ => Err("a whole number from 1 to 16, or 32, is required".to_owned()),
+    }
+}
+
 /// A parser of whole numbers from a range.
 pub(crate) fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
 where

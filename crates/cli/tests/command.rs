@@ -81,6 +81,25 @@ fn p25_a_bench_has_a_row_for_every_algorithm_and_goes_on_after_a_limit() {
     let table = String::from_utf8(limited.stdout.clone()).unwrap();
     assert_eq!(table.matches("the time limit of 0.000000001 s was reached").count(), rows.len(), "{table}");
     assert!(errors(&limited).contains("1 of "), "progress is on standard error");
+    // The report begins with the command, and the camera is that of render's options.
+    assert!(
+        table.starts_with("vitral bench builtin:cubs --resolution 64x48 --frames 1 --time-limit 1e-9\n"),
+        "{table}"
+    );
+    let z_buffer = ["--visibility", "z-buffer", "--json"];
+    let seen = |camera: &[&str]| {
+        let told = json(&folder.run(&[&arguments[..], &z_buffer, camera].concat()));
+        let expected = [&["vitral"], &arguments[..], &z_buffer, camera].concat().join(" ");
+        assert_eq!(told["command"], expected);
+        told["algorithms"][0]["geometry"].clone()
+    };
+    let framed = seen(&[]);
+    assert_eq!(framed, seen(&["--view", "iso"]));
+    for camera in [&["--camera-zoom-factor", "6"][..], &["--eye-rotation", "0,80,0"], &["--view", "top"]] {
+        assert_ne!(framed, seen(camera), "{camera:?}");
+    }
+    assert_eq!(code(&folder.run(&[&arguments[..], &["--camera-index", "7"]].concat())), 2);
+    assert_eq!(code(&folder.run(&["bench", "--report", "r", "--view", "top"])), 2);
     assert_eq!(code(&folder.run(&["bench"])), 2);
 }
 
@@ -408,7 +427,7 @@ fn mistakes_are_told_in_words_of_our_own() {
     folder.file("a.obj", TRIANGLE);
     let required = |range: &str| format!("a whole number from {range} is required");
     for (arguments, said) in [
-        (&["--samples", "x"][..], required("1 to 16")),
+        (&["--samples", "17"][..], "a whole number from 1 to 16, or 32, is required".to_owned()),
         (&["--threads", "-1"], required("0 to 1024")),
         (&["--camera-index", "-1"], required("0 to 4294967295")),
         (&["--resolution", "-5x5"], "`-5x5` is no size".to_owned()),
@@ -755,6 +774,105 @@ fn a_scene_file_with_one_camera_is_seen_from_it() {
         let first = picture(&[&["one.json", "--save-state", "s.json"], view].concat());
         assert_eq!(first, picture(&["--load-state", "s.json"]), "{view:?}");
     }
+}
+
+#[test]
+fn options_without_effect_are_told_and_change_nothing() {
+    let folder = Folder::new("no-effect");
+    let picture = |arguments: &[&str]| {
+        let channel = if arguments.contains(&"--channel") { "a.npy" } else { "a.png" };
+        let output = render(&folder, &[arguments, &["-o", channel, "--samples", "1"]].concat());
+        assert_eq!(code(&output), 0, "{arguments:?}: {}", errors(&output));
+        (folder.read(channel), errors(&output))
+    };
+    // Model and options, then the option that changes nothing beside them, then why.
+    let (dark, constant) =
+        (&["builtin:sphere", "--lighting", "off"][..], &["builtin:sphere", "--illumination", "constant"][..]);
+    let (wires, data) = (&["builtin:cubs", "--wireframe"][..], &["builtin:cubs", "--channel", "depth"][..]);
+    let own = "show their own colours";
+    let black = "no colour picture";
+    for (rest, option, why) in [
+        (dark, &["--shading", "flat"][..], own),
+        (dark, &["--shading", "gouraud"], own),
+        (dark, &["--illumination", "lambert"], own),
+        (dark, &["--shadows", "ray"], own),
+        (dark, &["--light", "ambient:"], own),
+        (dark, &["--light-edit", "LIGHT0.diffuse=red"], own),
+        (dark, &["--light-intensity", "2"], own),
+        (constant, &["--shading", "flat"], own),
+        (constant, &["--shadows", "volume"], own),
+        (constant, &["--light", "ambient:"], own),
+        (constant, &["--light-edit", "LIGHT0.diffuse=red"], own),
+        (constant, &["--light-intensity", "2"], own),
+        (&["builtin:scene0", "--illumination", "ambient"], &["--shadows", "ray"], "in particular"),
+        (wires, &["--shading", "gouraud"], "edges alone"),
+        (wires, &["--illumination", "lambert"], "edges alone"),
+        (wires, &["--shadows", "ray"], "edges alone"),
+        (wires, &["--interpolation", "linear"], "edges alone"),
+        (&["builtin:lens", "--wireframe"], &["--transparency", "kay"], "edges alone"),
+        (&["builtin:lens", "--wireframe"], &["--transparency-order", "sorted"], "edges alone"),
+        (&["builtin:cubs", "--wireframe-hidden-line"], &["--shading", "flat"], "edges alone"),
+        (data, &["--edges"], black),
+        (data, &["--wireframe-hidden-line"], black),
+        (data, &["--light", "ambient:"], black),
+        (data, &["--light-edit", "LIGHT0.diffuse=red"], black),
+        (data, &["--normals", "made"], black),
+        (data, &["--crease-angle", "60"], black),
+        (wires, &["--normals", "made"], "edges alone"),
+        (dark, &["--normals", "none"], own),
+        (&["builtin:sphere", "--camera-index", "0"], &["--up", "+Z"], "its own"),
+        (data, &["--background-color", "red"], black),
+        (data, &["--no-background"], black),
+        (data, &["--color-space", "raw"], black),
+        (data, &["--depth-cue"], black),
+        (data, &["--illumination", "lambert"], black),
+        (data, &["--shading", "flat"], black),
+        (data, &["--interpolation", "linear"], black),
+        (data, &["--shadows", "ray"], black),
+        (data, &["--light-intensity", "2"], black),
+        (&["builtin:lens", "--channel", "depth"], &["--transparency", "kay"], black),
+        (&["builtin:lens", "--channel", "depth"], &["--transparency-order", "sorted"], black),
+        (&["builtin:scene0", "--camera-orthographic"], &["--interpolation", "linear"], "parallel"),
+        (&["builtin:scene0", "--camera-orthographic"], &["--camera-view-angle", "50"], "parallel"),
+        (&["builtin:cubs"], &["--transparency", "kay"], "no transparent surfaces"),
+        (&["builtin:cubs"], &["--transparency-order", "sorted"], "no transparent surfaces"),
+        (&["builtin:cubs", "--transparency", "kay"], &["--kay-exponent", "2"], "no transparent surfaces"),
+        (&["builtin:lens", "--transparency", "none"], &["--transparency-order", "sorted"], "is opaque"),
+        (&["builtin:lens", "--transparency", "none"], &["--scatter-samples", "8"], "is opaque"),
+        (&["builtin:lens"], &["--scatter-samples", "8"], "no translucent surfaces"),
+        (&["builtin:cubs", "--light", "ambient:"], &["--shadows", "ray"], "no light casts shadows"),
+        (&["builtin:scene0", "--shadows", "ray"], &["--light-samples", "4"], "no light has an area"),
+        (&["builtin:scene0", "--shading", "flat"], &["--normals", "made"], "its own normal"),
+        (&["builtin:sphere", "--camera-index", "0"], &["--view", "top"], "say from where"),
+        (&["builtin:sphere", "--camera-direction=1,0,-1"], &["--view", "top"], "say from where"),
+    ] {
+        let ((plain, before), (with, told)) = (picture(rest), picture(&[rest, option].concat()));
+        let expected = format!("{}: warning: no effect, ", option[0].split('=').next().unwrap());
+        assert!(told.contains(&expected) && told.contains(why), "{rest:?} {option:?}: {told}");
+        assert!(!before.contains(&expected), "{rest:?}: {before}");
+        assert!(plain == with, "{rest:?} {option:?}: the picture changes");
+    }
+    // What has an effect, is what holds anyway, or comes from a state is not told; nor is anything that was not typed.
+    let state = r#"{"settings": {"lighting": false, "shading": "flat", "shadows": "ray"}, "light-intensity": 2}"#;
+    folder.file("s.json", state);
+    for arguments in [
+        &["builtin:sphere", "--load-state", "s.json"][..],
+        &["builtin:sphere", "--lighting", "off", "--shading", "phong", "--illumination", "auto", "--shadows", "none"],
+        &["builtin:sphere", "--lighting", "off", "--illumination", "constant"],
+        &["builtin:cubs", "--shading", "flat", "--illumination", "lambert"],
+        &["builtin:lens", "--transparency", "kay", "--kay-exponent", "2", "--transparency-order", "sorted"],
+        &["builtin:scene0", "--shadows", "volume", "--light-intensity", "2", "--interpolation", "linear"],
+        &["builtin:scene0", "--camera-index", "0", "--camera-orthographic", "--camera-view-angle", "50"],
+    ] {
+        let (_, told) = picture(arguments);
+        assert!(!told.contains("no effect"), "{arguments:?}: {told}");
+    }
+    let quiet = render(
+        &folder,
+        &["builtin:sphere", "--lighting", "off", "--shading", "flat", "-o", "a.png", "--quiet", "--json"],
+    );
+    assert_eq!(errors(&quiet), "");
+    assert!(json(&quiet)["warnings"][0].as_str().unwrap().starts_with("--shading: no effect"));
 }
 
 #[test]

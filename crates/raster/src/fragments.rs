@@ -40,7 +40,7 @@ impl<'a> FragmentSink<'a> {
     /// Hands the triangle at hand on.
     #[inline(always)]
     fn flush<S: Simd, const MOST: usize>(&mut self, simd: S) {
-        let samples = if MOST == MOST_SAMPLES { self.pattern.len().min(MOST) } else { MOST };
+        let samples = if MOST == 16 { self.pattern.len().min(MOST) } else { MOST };
         let infinity = F32x8::splat(simd, f32::INFINITY);
         let [top, end] = std::mem::replace(&mut self.rows, NO_ROWS);
         for y in top..end {
@@ -122,7 +122,8 @@ impl<S: Simd> RowSink<S> for FragmentSink<'_> {
         match self.pattern.len() {
             1 => self.flush::<S, 1>(simd),
             4 => self.flush::<S, 4>(simd),
-            _ => self.flush::<S, MOST_SAMPLES>(simd),
+            32 => self.flush::<S, 32>(simd),
+            _ => self.flush::<S, 16>(simd),
         }
     }
 }

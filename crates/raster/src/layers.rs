@@ -38,7 +38,7 @@ pub struct Fragment {
     /// `y * TILE + x` within the tile.
     pub pixel: u16,
     /// The samples that it covers, one bit each; not 0.
-    pub mask: u16,
+    pub mask: u32,
     /// How many they are.
     pub count: u16,
 }
@@ -134,12 +134,12 @@ impl LayerList {
         let start = self.depths.len();
         self.depths.resize(start + MOST, 0.0);
         let depths = &mut self.depths[start..start + MOST];
-        let (mut mask, mut count) = (0u16, 0usize);
+        let (mut mask, mut count) = (0u32, 0usize);
         for s in 0..samples.min(MOST) {
             let (seen, depth) = at(s);
             depths[count % MOST] = depth;
             count += usize::from(seen);
-            mask |= u16::from(seen) << s;
+            mask |= u32::from(seen) << s;
         }
         let fragment = Fragment { start: start as u32, mask, count: count as u16, ..place };
         if self.gathers {
@@ -172,7 +172,7 @@ impl LayerList {
     }
 
     fn spread(&mut self, fragment: Fragment, depths: &[f32]) {
-        let samples = (0..u16::BITS as usize).filter(|s| fragment.mask >> s & 1 == 1);
+        let samples = (0..u32::BITS as usize).filter(|s| fragment.mask >> s & 1 == 1);
         for (sample, &depth) in samples.zip(depths) {
             let at = (sample * TILE_PIXELS + usize::from(fragment.pixel)) as u32;
             self.push(Layer { at, depth, facet: fragment.facet });

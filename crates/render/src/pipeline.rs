@@ -18,7 +18,7 @@ use crate::stats::{CullCounters, RadiosityCounters, Stats, TracingCounters};
 use crate::visible::{Resolved, VisibleSurface};
 use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, registry};
 use assemble::Assembler;
-use checks::{check_indices, check_order, warnings};
+use checks::{check_indices, check_order, check_size, warnings};
 pub use pixel::{ExaminedPixel, examine_pixel};
 use std::sync::Arc;
 pub use steps::watch_steps;
@@ -62,6 +62,7 @@ pub fn render(
     execution: &Execution,
 ) -> Result<Rendered, Error> {
     let viewport = settings.check()?;
+    check_size(session, settings)?;
     let direct = (settings.global.model == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
     let left_out = direct.as_ref().and_then(|direct| lamps::left_out(shot.lights, direct));
     if settings.global.model == Global::RayTrace {

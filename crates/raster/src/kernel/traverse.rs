@@ -118,12 +118,14 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
         match pattern.len() {
             1 => rows_apart::<S, K, 1>(simd, setup, &place, pattern, sink),
             4 => rows_apart::<S, K, 4>(simd, setup, &place, pattern, sink),
+            32 => rows_apart::<S, K, 32>(simd, setup, &place, pattern, sink),
             _ => rows_apart::<S, K, 16>(simd, setup, &place, pattern, sink),
         }
     } else {
         match pattern.len() {
             1 => blocks_apart::<S, K, 1>(simd, setup, &place, pattern, sink),
             4 => blocks_apart::<S, K, 4>(simd, setup, &place, pattern, sink),
+            32 => blocks_apart::<S, K, 32>(simd, setup, &place, pattern, sink),
             _ => blocks_apart::<S, K, 16>(simd, setup, &place, pattern, sink),
         }
     }
@@ -422,6 +424,7 @@ pub fn traverse_window<S: Simd, K: BlockSink<S>>(
     match pattern.len() {
         1 => traverse_samples::<S, K, 1>(simd, setup, tile, window, pattern, sink),
         4 => traverse_samples::<S, K, 4>(simd, setup, tile, window, pattern, sink),
+        32 => traverse_samples::<S, K, 32>(simd, setup, tile, window, pattern, sink),
         _ => traverse_samples::<S, K, 16>(simd, setup, tile, window, pattern, sink),
     }
 }

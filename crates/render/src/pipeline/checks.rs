@@ -4,7 +4,9 @@ use crate::TransparencyOrder;
 use crate::radiosity::enclosure::{has_holes, partly_transparent};
 use crate::radiosity::lamps;
 use crate::{Error, Global, Session, Settings, SettingsError, Stats};
+use std::ops::RangeInclusive;
 use vitral_exec::Workers;
+use vitral_light::Illumination;
 use vitral_scene::Scene;
 
 /// Indices of refraction must be ones.
@@ -14,6 +16,31 @@ pub(super) fn check_indices(scene: &Scene) -> Result<(), Error> {
         let name = &m.name;
         Err(Error::Scene(format!("material `{name}`: index of refraction {}: above 0 is required", m.ior)))
     })
+}
+
+/// Light is computed in scenes of these sizes: squares of distances stay well within single precision.
+const LIT_SIZES: RangeInclusive<f64> = 1e-16..=1e16;
+/// Rays are followed, and light between surfaces and shadows computed, in scenes of these sizes: products of three lengths stay
+/// within single precision, of small triangles, too.
+const TRACED_SIZES: RangeInclusive<f64> = 1e-9..=1e12;
+
+/// Light needs numbers that single precision has: a picture without it can be of any size.
+pub(super) fn check_size(session: &Session, settings: &Settings) -> Result<(), Error> {
+    let shading = &settings.shading;
+    let bounds = &session.world.bounds;
+    let is_lit = settings.picture.channels.color && shading.lighting && shading.illumination != Illumination::Constant;
+    let is_traced = settings.global.model != Global::None || !settings.shadows.algorithm.is_none;
+    if !(is_lit || settings.picture.channels.any_shadow()) || bounds.is_empty() {
+        return Ok(());
+    }
+    let (sizes, what) = if is_traced { (TRACED_SIZES, "shadows and rays are") } else { (LIT_SIZES, "light is") };
+    let size = bounds.size().max_element();
+    if size == 0.0 || sizes.contains(&size) {
+        return Ok(());
+    }
+    let (least, most) = (sizes.start(), sizes.end());
+    let help = "scale it, or do without light (--lighting off)";
+    Err(Error::Scene(format!("the scene is {size:.1e} across, and {what} computed from {least:e} to {most:e}: {help}")))
 }
 
 /// Translucent surfaces need an order that can show them.

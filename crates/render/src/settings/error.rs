@@ -16,7 +16,7 @@ pub enum SettingsError {
         height: u32,
     },
     /// Number of samples.
-    #[error("{0} samples a pixel: 1 to 16 are possible")]
+    #[error("{0} samples a pixel: 1 to 16, or 32, are possible")]
     Samples(u32),
     /// The exponent of Kay's model.
     #[error("an exponent of {0} in Kay's model of transparency: a number above 0 is required")]

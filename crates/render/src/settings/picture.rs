@@ -11,7 +11,7 @@ pub struct PictureSettings {
     pub width: u32,
     /// Height in pixels, `1..=16384`.
     pub height: u32,
-    /// Samples a pixel, `1..=16`; 1 means no anti-aliasing.
+    /// Samples a pixel, `1..=16` or 32; 1 means no anti-aliasing.
     pub samples: u32,
     /// What the numbers in the picture mean.
     pub color_space: ColorSpace,
@@ -44,7 +44,7 @@ impl Default for PictureSettings {
 impl PictureSettings {
     /// The picture's pixels, if all numbers are in their ranges.
     pub(super) fn check(&self) -> Result<Viewport, SettingsError> {
-        if !(1..=16).contains(&self.samples) {
+        if !matches!(self.samples, 1..=16 | 32) {
             return Err(SettingsError::Samples(self.samples));
         }
         self.depth_cue.map_or(Ok(()), |cue| cue.check(&self.background))?;

@@ -311,7 +311,7 @@ impl Points {
         let inside = pixels_inside(tile, constants);
         let point = |f: &Fragment| {
             let &Fragment { facet, start, far, near, pixel, mask, count } = f;
-            let (pixel, mask, count) = (u32::from(pixel), u32::from(mask), u32::from(count));
+            let (pixel, count) = (u32::from(pixel), u32::from(count));
             (pixel as usize, FragmentPoint { pixel, facet, mask, start, count, far, near, source: 0, is_mark: false })
         };
         let points = fragments.iter().map(point).filter(|(pixel, _)| inside(*pixel));

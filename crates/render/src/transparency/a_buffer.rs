@@ -48,7 +48,7 @@ fn pack<const MOST: usize>(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]])
     }
 
     // As long as fragments fill the pixel, one sample stands for all.
-    let all = (1u32 << samples.len().min(MOST_SAMPLES)) - 1;
+    let all = u32::MAX >> (MOST_SAMPLES - samples.len().clamp(1, MOST_SAMPLES));
     let same = samples.iter().all(|s| *s == samples[0]);
     let (mut color, mut nearest, mut count) = (samples[0], f32::MIN, 0);
     while let Some(fragment) = order.get(count).map(of).filter(|f| same && f.mask == all && f.far > nearest) {

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 /// Most samples a pixel.
-pub const MOST_SAMPLES: usize = 16;
+pub const MOST_SAMPLES: usize = 32;
 
 /// Lays a pixel's fragments, in the order of the scene, over the colours of its samples.
 pub type Lay = fn(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]);

@@ -160,6 +160,19 @@ fn find(
     )
 }
 
+#[test]
+fn p18_all_algorithms_agree_about_the_mask_of_32_samples() {
+    for name in ["cubs", "lens"] {
+        let renderer = exact_builtin(name, 40, 30);
+        let run = |algorithm| find_at([40, 30], &renderer, algorithm, 32, renderer.execution()).unwrap();
+        let first = run(&VISIBILITY[0]);
+        for algorithm in &VISIBILITY[1..] {
+            let other = run(algorithm);
+            assert!(first.samples == other.samples && first.layers == other.layers, "{name}: {}", algorithm.name);
+        }
+    }
+}
+
 /// [`find`] in a picture of another size.
 fn find_at(
     [width, height]: [u32; 2],

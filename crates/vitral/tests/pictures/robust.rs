@@ -4,7 +4,7 @@ use super::common::{all_channels, colors, exact, exact_builtin, limit, on_z, one
 use std::sync::Arc;
 use vitral::internals::render::registry::SHADOWS;
 use vitral::{
-    AlphaMode, Budget, Camera, DMat4, DVec3, Error, Faces, Frame, Light, LightKind, Limit, Material, Node,
+    AlphaMode, Budget, Camera, Channels, DMat4, DVec3, Error, Faces, Frame, Light, LightKind, Limit, Material, Node,
     NodeTransform, Reflectance, RenderError, Renderer, Scene, SettingsError, Shadows, SystemClock, Viewpoint,
     Visibility, load_builtin, solids,
 };
@@ -115,9 +115,54 @@ fn odd_numbers_everywhere_give_a_picture_all_the_same() {
         scene.nodes[node].transform = NodeTransform::Matrix(DMat4::from_scale(scale));
     }
     let mut renderer = exact(scene, 40, 30);
-    renderer.settings.picture.channels = all_channels();
+    renderer.settings.picture.channels = Channels { attached_shadow: false, ..all_channels() };
+    let error = renderer.render().unwrap_err().to_string();
+    assert!(error.starts_with("the scene is ") && error.contains("light is computed from 1e-16 to 1e16"), "{error}");
+    renderer.settings.shading.lighting = false;
     let frame = renderer.render().unwrap().frame;
     assert!(frame.normal.unwrap().data().iter().flatten().all(|n| n.is_finite()));
+}
+
+#[test]
+fn light_is_the_same_at_all_sizes_or_refused() {
+    // Lab3D's sphere and its lights, scaled; a point light without attenuation shines alike at all distances.
+    let picture = |scale: f64, change: fn(&mut Renderer)| {
+        let mut scene = load_builtin("sphere").unwrap();
+        let transform = DMat4::from_scale(DVec3::splat(scale));
+        scene.roots.retain(|&root| scene.nodes[root as usize].camera.is_none());
+        let children = std::mem::take(&mut scene.roots);
+        scene.add_root(Node { transform: NodeTransform::Matrix(transform), children, ..Node::default() });
+        scene.lights.iter_mut().for_each(|light| {
+            if let LightKind::Point { position } = &mut light.kind {
+                *position *= scale;
+            }
+        });
+        let mut renderer = exact(scene, 48, 36);
+        change(&mut renderer);
+        renderer.render().map(|rendered| rendered.frame.color.unwrap().data().to_vec())
+    };
+    let usual = picture(1.0, |_| {}).unwrap();
+    let apart = |a: &[[u8; 4]], b: &[[u8; 4]]| {
+        let pairs = a.as_flattened().iter().zip(b.as_flattened());
+        pairs.filter(|(a, b)| a.abs_diff(**b) > 2).count()
+    };
+    for scale in [1e-15, 1e-9, 1e6, 1e14] {
+        let scaled = picture(scale, |_| {}).unwrap();
+        assert!(apart(&usual, &scaled) < usual.len() / 100, "{scale}: {}", apart(&usual, &scaled));
+    }
+    for scale in [1e-20, 1e18] {
+        let told = picture(scale, |_| {}).unwrap_err().to_string();
+        assert!(told.contains("light is computed"), "{told}");
+        picture(scale, |r| r.settings.shading.lighting = false).unwrap();
+    }
+    // Shadows and rays need more room.
+    let shadowed = |r: &mut Renderer| r.settings.shadows.algorithm = Shadows::RAY;
+    let usual = picture(1.0, shadowed).unwrap();
+    for scale in [1e-8, 1e10] {
+        let scaled = picture(scale, shadowed).unwrap();
+        assert!(apart(&usual, &scaled) < usual.len() / 50, "{scale}: {}", apart(&usual, &scaled));
+    }
+    assert!(picture(1e-12, shadowed).unwrap_err().to_string().contains("shadows and rays are computed"));
 }
 
 /// The error for a resolution and a number of samples.

@@ -109,7 +109,8 @@ fn steps_are_traced_and_drawn() {
 fn structures_are_drawn_of_algorithms_that_have_one() {
     let folder = Folder::new("structures");
     for (name, title) in [("bsp", ">BSP tree: "), ("painter", ">Depth sort: ")] {
-        let arguments = ["builtin:cubs", "-o", "a.png", "--visibility", name, "--structure", "s.svg", "--trace", "t.jsonl"];
+        let arguments =
+            ["builtin:cubs", "-o", "a.png", "--visibility", name, "--structure", "s.svg", "--trace", "t.jsonl"];
         let output = render(&folder, &arguments);
         assert_eq!(code(&output), 0, "{}", errors(&output));
         let svg = String::from_utf8(folder.read("s.svg")).unwrap();
@@ -118,7 +119,11 @@ fn structures_are_drawn_of_algorithms_that_have_one() {
     }
     let refused = render(&folder, &["builtin:cubs", "-o", "a.png", "--structure", "s.svg"]);
     assert_eq!(code(&refused), 2);
-    assert!(errors(&refused).contains("z-buffer") && errors(&refused).contains("painter or bsp"), "{}", errors(&refused));
+    assert!(
+        errors(&refused).contains("z-buffer") && errors(&refused).contains("painter or bsp"),
+        "{}",
+        errors(&refused)
+    );
     let nothing = ["builtin:cubs", "--pixel", "1,1", "--visibility", "bsp", "--structure", "s.svg"];
     assert_eq!(code(&render(&folder, &nothing)), 2);
 }

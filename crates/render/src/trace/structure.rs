@@ -19,8 +19,7 @@ pub type Drawer = fn(&[Step]) -> String;
 
 /// What draws the structure of an algorithm; none if it has no picture.
 pub fn drawer(algorithm: Visibility) -> Option<Drawer> {
-    let drawers: [(Visibility, Drawer); 2] =
-        [(Visibility::BSP, bsp_tree_svg), (Visibility::PAINTER, depth_sort_svg)];
+    let drawers: [(Visibility, Drawer); 2] = [(Visibility::BSP, bsp_tree_svg), (Visibility::PAINTER, depth_sort_svg)];
     drawers.into_iter().find(|(drawn, _)| *drawn == algorithm).map(|(_, drawer)| drawer)
 }
 

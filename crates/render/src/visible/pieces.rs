@@ -141,7 +141,8 @@ impl Pieces {
     ) {
         let mut any = false;
         for (index, setup, footprint) in triangles {
-            any |= footprint.is_some_and(|footprint| self.add(index, (setup, footprint), cuts(Depth::of(setup)), raster));
+            any |=
+                footprint.is_some_and(|footprint| self.add(index, (setup, footprint), cuts(Depth::of(setup)), raster));
         }
         if any {
             self.listed.push(number);

@@ -66,10 +66,7 @@ impl<'f> Polygons<'f> {
     }
 
     /// [`Self::new`]; `same_face` says whether two facets are of one face.
-    pub(super) fn joined(
-        setups: impl IntoIterator<Item = &'f Setup>,
-        same_face: impl Fn(u32, u32) -> bool,
-    ) -> Self {
+    pub(super) fn joined(setups: impl IntoIterator<Item = &'f Setup>, same_face: impl Fn(u32, u32) -> bool) -> Self {
         let mut polygons = Self::default();
         polygons.extend(setups, same_face);
         polygons
@@ -108,7 +105,8 @@ impl<'f> Polygons<'f> {
             plane.z_min = plane.z_min.min(setup.z_min);
             plane.z_max = plane.z_max.max(setup.z_max);
         }
-        let (triangles, corners) = (first_triangle..self.triangles.len() as u32, first_corner..self.corners.len() as u32);
+        let (triangles, corners) =
+            (first_triangle..self.triangles.len() as u32, first_corner..self.corners.len() as u32);
         self.polygons.push(Polygon { plane, triangles, corners });
     }
 

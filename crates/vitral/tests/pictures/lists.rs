@@ -95,7 +95,8 @@ fn p21_steps_and_counters_of_the_tests_agree() {
     let mut renderer = exact(load_builtin("cubs").unwrap(), 96, 72);
     let (steps, c) = steps(&mut renderer, Visibility::PAINTER);
     let count = |wanted: &[ListTest]| {
-        let is = |s: &&Step| matches!(s, Step::Compared { test, verdict: ListVerdict::Before, .. } if wanted.contains(test));
+        let is =
+            |s: &&Step| matches!(s, Step::Compared { test, verdict: ListVerdict::Before, .. } if wanted.contains(test));
         steps.iter().filter(is).count() as u64
     };
     assert_eq!(count(&[ListTest::DepthExtent]), c.by_depth_extent);
@@ -160,7 +161,8 @@ fn p22_four_squares_are_cut_three_times() {
     assert_eq!(visits.len(), nodes.len());
     assert!(visits.iter().enumerate().all(|(i, visit)| visit.0 == i as u32));
     let walked: Vec<u32> = visits.iter().flat_map(|visit| visit.2.clone()).collect();
-    let listed: Vec<u32> = steps.iter().filter_map(|s| if let Step::Piece { facet, .. } = s { Some(*facet) } else { None }).collect();
+    let listed: Vec<u32> =
+        steps.iter().filter_map(|s| if let Step::Piece { facet, .. } = s { Some(*facet) } else { None }).collect();
     assert_eq!(walked, listed, "all of them have samples");
     assert!(bsp_tree_svg(&steps).contains("3 cut(s), 7 polygon(s)"));
 }
@@ -224,14 +226,16 @@ fn p21_p22_depth_overrules_no_list_of_coplanar_faces() {
 #[test]
 fn p21_where_depth_overrules_the_list_it_is_told() {
     // Two squares closer than what the painter's list tells apart; the nearer one has the higher facets.
-    let square = |z: f32| Mesh::new([[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]], [[0, 1, 2], [0, 2, 3]]);
+    let square =
+        |z: f32| Mesh::new([[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]], [[0, 1, 2], [0, 2, 3]]);
     let mut scene = Scene::default();
     scene.add_mesh(square(0.0), DMat4::IDENTITY);
     scene.add_mesh(square(0.0024), DMat4::IDENTITY);
     let mut renderer = exact(scene, 8, 8);
     let projection = Projection::Parallel { height: 4.0 };
     let position = DVec3::new(0.0, 0.0, 6000.0);
-    renderer.camera = Some(Camera { projection, clip: Some((1.0, 20_000.0)), ..Camera::look_at(position, DVec3::ZERO) });
+    renderer.camera =
+        Some(Camera { projection, clip: Some((1.0, 20_000.0)), ..Camera::look_at(position, DVec3::ZERO) });
     let (steps, counters) = steps(&mut renderer, Visibility::PAINTER);
     let Some(Step::Overruled { pixels, samples }) = steps.last() else { panic!("{:?}", steps.last()) };
     assert_eq!((*pixels, samples.len() as u64), ([0, 0, 8, 8], counters.overruled));

@@ -82,7 +82,8 @@ pub fn depth_sort_svg(steps: &[Step]) -> String {
         sorting.moved.len(),
         sorting.wholes.values().collect::<std::collections::BTreeSet<_>>().len(),
     );
-    let explained = ["From back to front. Arrows lead to a polygon's place in the final list: blue if it was moved, red if split."];
+    let explained =
+        ["From back to front. Arrows lead to a polygon's place in the final list: blue if it was moved, red if split."];
     let mut picture = Picture::new(&title, &explained);
     let top = picture.bottom() + LINE;
     picture.text([FIRST, top], "first order, by the farthest depth", INK, "start");

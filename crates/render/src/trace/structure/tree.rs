@@ -19,8 +19,9 @@ struct Node<'s> {
     plane: [f64; 4],
     coincident: &'s PolygonSet,
     cut: &'s PolygonSet,
-    /// What hangs on the back and on the front.
+    /// What hangs on the back and on the front, and how many polygons and parts that are.
     children: [Option<u32>; 2],
+    counts: [u32; 2],
     /// Its place in the walk, and the viewer's side.
     visit: Option<(u32, PlaneSide)>,
 }
@@ -41,9 +42,10 @@ pub fn bsp_tree_svg(steps: &[Step]) -> String {
     let nodes = nodes(steps);
     let cuts: u64 = nodes.values().map(|node| u64::from(node.cut.count)).sum();
     let polygons: u64 = nodes.values().map(|node| u64::from(node.coincident.count)).sum();
-    let title = format!("BSP tree: {} node(s), {cuts} cut(s), {polygons} polygon(s) and parts in the list", nodes.len());
+    let title =
+        format!("BSP tree: {} node(s), {cuts} cut(s), {polygons} polygon(s) and parts in the list", nodes.len());
     let explained = [
-        "A node: the facet that gave its plane, its polygons in the plane, those cut by it (red).",
+        "A node: the facet that gave its plane, its polygons in the plane, those cut by it (red). A link: polygons on that side.",
         "#n: its place in the walk for this viewer, from back to front; blue links lead to the viewer's side.",
     ];
     let mut picture = Picture::new(&title, &explained);
@@ -56,12 +58,14 @@ pub fn bsp_tree_svg(steps: &[Step]) -> String {
         let Some((parent, side)) = p.parent else { continue };
         let (from, to) = (middle(&placed[parent]), middle(p));
         let from = [from[0], from[1] + BOX[1]];
-        let viewer = nodes.get(&placed[parent].node).and_then(|node| node.visit).map(|(_, side)| side);
+        let above = nodes.get(&placed[parent].node);
+        let viewer = above.and_then(|node| node.visit).map(|(_, side)| side);
+        let count = above.map_or(0, |node| node.counts[usize::from(side == PlaneSide::Front)]);
         let color = if viewer == Some(side) { BLUE } else { GREY };
         picture.line(from, to, color, if color == BLUE { 2.0 } else { 1.0 });
-        let (x, anchor) = if to[0] < from[0] { (-6.0, "end") } else { (6.0, "start") };
-        let at = [(from[0] + to[0]) / 2.0 + x, (from[1] + to[1]) / 2.0 + 4.0];
-        picture.text(at, side.name(), color, anchor);
+        let (x, anchor) = if to[0] < from[0] { (-12.0, "end") } else { (12.0, "start") };
+        let at = [(from[0] + to[0]) / 2.0 + x, (from[1] + to[1]) / 2.0];
+        picture.text(at, &format!("{} {count}", side.name()), color, anchor);
     }
     for p in &placed {
         let [x, y] = middle(p);
@@ -84,14 +88,15 @@ fn nodes(steps: &[Step]) -> BTreeMap<u32, Node<'_>> {
     let mut nodes = BTreeMap::new();
     for step in steps {
         match step {
-            Step::TreeNode { node, parent, side, splitter, plane, coincident, cut, .. } => {
+            Step::TreeNode { node, parent, side, splitter, plane, coincident, cut, front, back } => {
                 if let Some(above) = parent.and_then(|parent| nodes.get_mut(&parent)) {
                     let above: &mut Node<'_> = above;
                     above.children[usize::from(*side == Some(PlaneSide::Front))] = Some(*node);
                 }
                 let (children, visit) = ([None; 2], None);
                 let (splitter, plane) = (*splitter, *plane);
-                nodes.insert(*node, Node { splitter, plane, coincident, cut, children, visit });
+                let counts = [back.count, front.count];
+                nodes.insert(*node, Node { splitter, plane, coincident, cut, children, counts, visit });
             }
             Step::TreeVisit { order, node, viewer, .. } => {
                 if let Some(node) = nodes.get_mut(node) {
@@ -173,7 +178,13 @@ fn draw_node(picture: &mut Picture, number: u32, node: &Node<'_>, [x, y]: [f64; 
     let name = match (node.splitter, node.plane) {
         (Some(facet), _) => format!("facet {facet}"),
         (None, [a, b, _, d]) => {
-            let axis = if a.abs() == 1.0 { "x" } else if b.abs() == 1.0 { "y" } else { "z" };
+            let axis = if a.abs() == 1.0 {
+                "x"
+            } else if b.abs() == 1.0 {
+                "y"
+            } else {
+                "z"
+            };
             format!("plane {axis} = {:.4}", -d)
         }
     };
@@ -191,7 +202,11 @@ fn draw_node(picture: &mut Picture, number: u32, node: &Node<'_>, [x, y]: [f64; 
 /// What fits into a box.
 fn short(text: &str) -> String {
     const MOST: usize = 25;
-    if text.chars().count() <= MOST { text.to_owned() } else { text.chars().take(MOST - 3).chain("...".chars()).collect() }
+    if text.chars().count() <= MOST {
+        text.to_owned()
+    } else {
+        text.chars().take(MOST - 3).chain("...".chars()).collect()
+    }
 }
 
 #[cfg(test)]
@@ -207,8 +222,8 @@ mod tests {
             splitter: Some(node + 100),
             plane: [0.0, 0.0, 1.0, 0.0],
             coincident: PolygonSet::new([node + 100]),
-            front: PolygonSet::default(),
-            back: PolygonSet::default(),
+            front: PolygonSet::new([1, 2, 3]),
+            back: PolygonSet::new([4]),
             cut: PolygonSet::new((node == 0).then_some(107)),
         };
         (0..count).map(node).collect()
@@ -217,12 +232,18 @@ mod tests {
     #[test]
     fn a_small_tree_is_drawn_whole() {
         let mut steps = heap(3);
-        let visit = |order, node| {
-            Step::TreeVisit { order, node, parent: None, viewer: PlaneSide::Front, polygons: vec![node + 100] }
+        let visit = |order, node| Step::TreeVisit {
+            order,
+            node,
+            parent: None,
+            viewer: PlaneSide::Front,
+            polygons: vec![node + 100],
         };
         steps.extend([visit(0, 1), visit(1, 0), visit(2, 2)]);
         let svg = bsp_tree_svg(&steps);
-        for text in [">facet 100<", ">facet 101<", ">facet 102<", ">back<", ">front<", ">cut 1: 107<", ">node 1 #0<"] {
+        for text in
+            [">facet 100<", ">facet 101<", ">facet 102<", ">back 1<", ">front 3<", ">cut 1: 107<", ">node 1 #0<"]
+        {
             assert!(svg.contains(text), "{text} in {svg}");
         }
         assert!(svg.contains("3 node(s), 1 cut(s), 3 polygon(s)") && !svg.contains("..."), "{svg}");

@@ -100,7 +100,13 @@ impl Polygon {
         let shared = others.map(|other| overlap(self.points(corners), other.points(corners)));
         let side = |line: &Cut, points: &[[f64; 2]]| {
             let (low, high) = range(points.iter().map(|&p| line.value(p)));
-            if low >= -CLEARLY { 1 } else if high <= CLEARLY { -1 } else { 0 }
+            if low >= -CLEARLY {
+                1
+            } else if high <= CLEARLY {
+                -1
+            } else {
+                0
+            }
         };
         let lines = others.into_iter().zip([true, false]).flat_map(|(other, is_first)| {
             let lines = crossing(plane(self), plane(other)).into_iter().chain(other.edges(corners));

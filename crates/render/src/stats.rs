@@ -161,7 +161,7 @@ counters! {
         by_x_extent: count,
         /// Painter: pairs decided by the second test, extents in y.
         by_y_extent: count,
-        /// Painter: pairs decided by the third test, the farther polygon lies behind the nearer one's plane.
+        /// Painter: pairs decided by the third test, the farther polygon lies behind the nearer one's plane, or in it.
         by_plane_of_nearer: count,
         /// Painter: pairs decided by the fourth test, the nearer polygon lies in front of the farther one's plane.
         by_plane_of_farther: count,

@@ -282,3 +282,146 @@ impl<S: Simd, K: BlockSink<S>> BlockSink<S> for PieceSink<'_, K> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{NullSink, VisibleSurface, bsp::Bsp, painter::Painter, zbuffer::ZBuffer};
+    use crate::stats::{CullCounters, VisibilityCounters};
+    use crate::trace::{Observer, Step};
+    use crate::{Execution, PreparedView, Session, Settings};
+    use std::sync::{Arc, Mutex};
+    use vitral_exec::Workers;
+    use vitral_math::{DMat4, DVec3};
+    use vitral_raster::{SamplePattern, TileGrid, Viewport};
+    use vitral_scene::{Camera, Faces, Mesh, Projection, Scene};
+
+    #[derive(Debug, Default)]
+    struct Steps(Mutex<Vec<Step>>);
+
+    impl Observer for Steps {
+        fn step(&self, step: &Step) {
+            self.0.lock().unwrap().push(step.clone());
+        }
+    }
+
+    /// A mesh of faces with four corners each.
+    fn squares(corners: &[[f32; 3]]) -> Mesh {
+        let faces = corners.len() as u32 / 4;
+        let triangles = (0..faces).flat_map(|f| [[4 * f, 4 * f + 1, 4 * f + 2], [4 * f, 4 * f + 2, 4 * f + 3]]);
+        let faces = Faces::Polygons {
+            starts: (0..=faces).map(|f| 4 * f).collect(),
+            corners: (0..corners.len() as u32).collect(),
+        };
+        Mesh { faces, ..Mesh::new(corners.to_vec(), triangles.collect::<Vec<_>>()) }
+    }
+
+    /// What is seen at each sample, facets and depths; the counters, the steps.
+    type Found = (Vec<(u32, u32)>, VisibilityCounters, Vec<Step>);
+
+    fn find(session: &Session, camera: &Camera, algorithm: &dyn VisibleSurface, threads: usize) -> Found {
+        const SIDE: u32 = 80;
+        let (viewport, samples) = (Viewport::new(SIDE, SIDE).unwrap(), 2);
+        let kept = Arc::new(Steps::default());
+        let observer = Some(Arc::clone(&kept) as Arc<dyn Observer>);
+        let execution = Execution { observer, workers: Workers::new(threads), ..Execution::default() };
+        let (settings, pattern) = (Settings::default(), SamplePattern::new(samples));
+        let culled = &mut CullCounters::default();
+        let view = PreparedView::new(session, camera, &settings, viewport, pattern, &execution, culled);
+        let mut grid = TileGrid::new(viewport, samples);
+        let resolved = algorithm.resolve(&view, None, &mut grid, &execution, &NullSink).unwrap();
+        let mut seen = Vec::new();
+        for (y, x) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (y, x))) {
+            let (tile, at) = grid.locate(x, y);
+            seen.extend(
+                (0..samples).map(|s| s * super::TILE_PIXELS + at).map(|at| (tile.facet[at], tile.depth[at].to_bits())),
+            );
+        }
+        let steps = std::mem::take(&mut *kept.0.lock().unwrap());
+        (seen, resolved.counters, steps)
+    }
+
+    fn session(meshes: Vec<Mesh>) -> Session {
+        let mut scene = Scene::default();
+        let place = DMat4::from_rotation_y(0.37) * DMat4::from_rotation_x(0.5);
+        for mesh in meshes {
+            scene.add_mesh(mesh, place);
+        }
+        Session::new(Arc::new(scene)).unwrap()
+    }
+
+    fn cameras() -> impl Iterator<Item = Camera> {
+        (0..12).map(|i| {
+            let turn = DMat4::from_rotation_y(f64::from(i) * 0.55);
+            let position = turn.transform_point3(DVec3::new(4.0, 0.75 + 0.03 * f64::from(i), 0.0));
+            let projection = match i % 3 {
+                0 => Projection::Parallel { height: 4.5 },
+                _ => Projection::Perspective { view_angle: 0.9 },
+            };
+            Camera { projection, ..Camera::look_at(position, DVec3::ZERO) }
+        })
+    }
+
+    const SHEET: [[f32; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+
+    #[test]
+    fn p21_p22_lists_agree_with_the_depth_buffer_and_depth_overrules_no_coplanar_faces() {
+        let [a, b, c, d] = SHEET;
+        let decal = [[-0.5, -0.3, 0.0], [0.4, -0.4, 0.0], [0.5, 0.3, 0.0], [-0.3, 0.5, 0.0f32]];
+        let through = [[-0.9, 0.1, -0.8], [0.8, 0.2, -0.8], [0.8, 0.2, 0.9], [-0.9, 0.1, 0.9f32]];
+        // Both sides of a sheet with a decal; the same, and a face that penetrates them.
+        let sheet = || vec![squares(&[d, c, b, a]), squares(&SHEET), squares(&decal)];
+        for (meshes, is_coplanar) in [(sheet(), true), ([sheet(), vec![squares(&through)]].concat(), false)] {
+            let session = session(meshes);
+            for camera in cameras() {
+                let (expected, ..) = find(&session, &camera, &ZBuffer, 1);
+                for algorithm in [&Painter as &dyn VisibleSurface, &Bsp] {
+                    let (seen, counters, steps) = find(&session, &camera, algorithm, 1);
+                    assert!(seen == expected, "{counters:?}");
+                    assert!(counters.overruled_far == 0, "{counters:?}");
+                    let told = steps.iter().filter(|s| matches!(s, Step::Overruled { .. })).count();
+                    assert_eq!(counters.overruled > 0, told > 0);
+                    if is_coplanar {
+                        assert_eq!((counters.overruled, counters.splits, counters.pieces), (0, 0, 3), "{counters:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn p21_p22_threads_and_used_sessions_tell_the_same_steps() {
+        let scene = vitral_scene::builtin::scene("cubs").unwrap();
+        let cubs = Session::new(Arc::new(scene)).unwrap();
+        let camera = cameras().nth(1).unwrap();
+        for algorithm in [&Painter as &dyn VisibleSurface, &Bsp] {
+            let (_, counters, first) = find(&cubs, &camera, algorithm, 1);
+            assert!(first.len() > 20 && counters.pieces > 6);
+            assert!(find(&cubs, &camera, algorithm, 1).2 == first, "a used session");
+            assert!(find(&cubs, &camera, algorithm, 3).2 == first, "three threads");
+            let fresh = Session::new(Arc::clone(cubs.scene())).unwrap();
+            assert!(find(&fresh, &camera, algorithm, 3).2 == first, "three threads build the tree");
+        }
+    }
+
+    #[test]
+    fn p21_where_depth_overrules_the_list_it_is_told() {
+        // Two squares closer than what the painter's list tells apart; the nearer one has the higher facets.
+        let near = SHEET.map(|[x, y, _]| [x, y, 0.0024]);
+        let mut scene = Scene::default();
+        scene.add_mesh(squares(&SHEET), DMat4::IDENTITY);
+        scene.add_mesh(squares(&near), DMat4::IDENTITY);
+        let session = Session::new(Arc::new(scene)).unwrap();
+        let (projection, clip) = (Projection::Parallel { height: 4.0 }, Some((1.0, 20_000.0)));
+        let position = DVec3::new(0.0, 0.0, 6000.0);
+        let camera = Camera { projection, clip, ..Camera::look_at(position, DVec3::ZERO) };
+        let (seen, counters, steps) = find(&session, &camera, &Painter, 1);
+        assert!(seen == find(&session, &camera, &ZBuffer, 1).0);
+        let told: Vec<_> = steps
+            .iter()
+            .filter_map(|step| if let Step::Overruled { samples, .. } = step { Some(samples) } else { None })
+            .flatten()
+            .collect();
+        assert_eq!((told.len() as u64, told.len()), (counters.overruled, 40 * 40 * 2));
+        assert!(told.iter().all(|s| s.by_list < 2 && s.by_depth >= 2), "{:?}", told[0]);
+    }
+}

@@ -19,8 +19,9 @@ struct Node<'s> {
     plane: [f64; 4],
     coincident: &'s PolygonSet,
     cut: &'s PolygonSet,
-    /// What hangs on the back and on the front.
+    /// What hangs on the back and on the front, and how many polygons and parts that are.
     children: [Option<u32>; 2],
+    counts: [u32; 2],
     /// Its place in the walk, and the viewer's side.
     visit: Option<(u32, PlaneSide)>,
 }
@@ -44,7 +45,7 @@ pub fn bsp_tree_svg(steps: &[Step]) -> String {
     let title =
         format!("BSP tree: {} node(s), {cuts} cut(s), {polygons} polygon(s) and parts in the list", nodes.len());
     let explained = [
-        "A node: the facet that gave its plane, its polygons in the plane, those cut by it (red).",
+        "A node: the facet that gave its plane, its polygons in the plane, those cut by it (red). A link: polygons on that side.",
         "#n: its place in the walk for this viewer, from back to front; blue links lead to the viewer's side.",
     ];
     let mut picture = Picture::new(&title, &explained);
@@ -57,12 +58,14 @@ pub fn bsp_tree_svg(steps: &[Step]) -> String {
         let Some((parent, side)) = p.parent else { continue };
         let (from, to) = (middle(&placed[parent]), middle(p));
         let from = [from[0], from[1] + BOX[1]];
-        let viewer = nodes.get(&placed[parent].node).and_then(|node| node.visit).map(|(_, side)| side);
+        let above = nodes.get(&placed[parent].node);
+        let viewer = above.and_then(|node| node.visit).map(|(_, side)| side);
+        let count = above.map_or(0, |node| node.counts[usize::from(side == PlaneSide::Front)]);
         let color = if viewer == Some(side) { BLUE } else { GREY };
         picture.line(from, to, color, if color == BLUE { 2.0 } else { 1.0 });
-        let (x, anchor) = if to[0] < from[0] { (-6.0, "end") } else { (6.0, "start") };
-        let at = [(from[0] + to[0]) / 2.0 + x, (from[1] + to[1]) / 2.0 + 4.0];
-        picture.text(at, side.name(), color, anchor);
+        let (x, anchor) = if to[0] < from[0] { (-12.0, "end") } else { (12.0, "start") };
+        let at = [(from[0] + to[0]) / 2.0 + x, (from[1] + to[1]) / 2.0];
+        picture.text(at, &format!("{} {count}", side.name()), color, anchor);
     }
     for p in &placed {
         let [x, y] = middle(p);
@@ -85,14 +88,15 @@ fn nodes(steps: &[Step]) -> BTreeMap<u32, Node<'_>> {
     let mut nodes = BTreeMap::new();
     for step in steps {
         match step {
-            Step::TreeNode { node, above, side, splitter, plane, coincident, cut, .. } => {
+            Step::TreeNode { node, above, side, splitter, plane, coincident, cut, front, back } => {
                 if let Some(above) = above.and_then(|above| nodes.get_mut(&above)) {
                     let above: &mut Node<'_> = above;
                     above.children[usize::from(*side == Some(PlaneSide::Front))] = Some(*node);
                 }
                 let (children, visit) = ([None; 2], None);
                 let (splitter, plane) = (*splitter, *plane);
-                nodes.insert(*node, Node { splitter, plane, coincident, cut, children, visit });
+                let counts = [back.count, front.count];
+                nodes.insert(*node, Node { splitter, plane, coincident, cut, children, counts, visit });
             }
             Step::TreeVisit { order, node, viewer, .. } => {
                 if let Some(node) = nodes.get_mut(node) {
@@ -218,8 +222,8 @@ mod tests {
             splitter: Some(node + 100),
             plane: [0.0, 0.0, 1.0, 0.0],
             coincident: PolygonSet::new([node + 100]),
-            front: PolygonSet::default(),
-            back: PolygonSet::default(),
+            front: PolygonSet::new([1, 2, 3]),
+            back: PolygonSet::new([4]),
             cut: PolygonSet::new((node == 0).then_some(107)),
         };
         (0..count).map(node).collect()
@@ -237,7 +241,9 @@ mod tests {
         };
         steps.extend([visit(0, 1), visit(1, 0), visit(2, 2)]);
         let svg = bsp_tree_svg(&steps);
-        for text in [">facet 100<", ">facet 101<", ">facet 102<", ">back<", ">front<", ">cut 1: 107<", ">node 1 #0<"] {
+        for text in
+            [">facet 100<", ">facet 101<", ">facet 102<", ">back 1<", ">front 3<", ">cut 1: 107<", ">node 1 #0<"]
+        {
             assert!(svg.contains(text), "{text} in {svg}");
         }
         assert!(svg.contains("3 node(s), 1 cut(s), 3 polygon(s)") && !svg.contains("..."), "{svg}");

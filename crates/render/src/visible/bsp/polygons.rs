@@ -108,32 +108,50 @@ impl WorldPolygons {
         let mirrored = mirrors(&instance.world_from_model);
         let mut growing: Vec<Growing> = Vec::new();
         for face in 0..mesh.face_count() {
-            for triangle in mesh.face_triangles(face) {
-                let (facet, corners) = (instance.first_facet + triangle as u32, mesh.triangles[triangle]);
+            let triangles = mesh.face_triangles(face);
+            if triangles.len() == 1 {
+                let triangle = triangles.start;
                 let plane = planes.get(triangle).copied().unwrap_or(NO_PLANE);
-                let flat = |polygon: &&mut Growing| plane != NO_PLANE && polygon.plane == plane;
-                let normal = self.equations.get(plane as usize).map_or(DVec3::Z, |e| e.truncate());
-                let turns = Turns::new(instance, corners, normal, self.tolerance);
-                let join = |polygon: &mut Growing| {
-                    let joined = polygon.outline.add(corners, |a, b, c| turns.is_convex([a, b, c]));
-                    if joined {
-                        polygon.facets.push(facet);
-                    }
-                    joined
-                };
-                let recent = growing.len().saturating_sub(RECENT);
-                if !growing[recent..].iter_mut().filter(flat).any(join) {
-                    growing.push(Growing { plane, facets: vec![facet], outline: Outline::new(corners) });
-                }
+                let outline = &mesh.triangles[triangle];
+                self.push_placed(instance, mirrored, (&[instance.first_facet + triangle as u32], outline, plane));
+                continue;
+            }
+            for triangle in triangles {
+                let plane = planes.get(triangle).copied().unwrap_or(NO_PLANE);
+                self.join(instance, triangle, plane, &mut growing);
             }
             for done in growing.drain(..) {
-                let places = done.outline.corners.iter().map(|&vertex| instance.place(vertex));
-                if mirrored {
-                    self.push(&done.facets, places.rev(), done.plane);
-                } else {
-                    self.push(&done.facets, places, done.plane);
-                }
+                self.push_placed(instance, mirrored, (&done.facets, &done.outline.corners, done.plane));
             }
+        }
+    }
+
+    /// Adds a triangle of a mesh to one of the polygons of its face, or begins one.
+    fn join(&self, instance: &Instance, triangle: usize, plane: u32, growing: &mut Vec<Growing>) {
+        let (facet, corners) = (instance.first_facet + triangle as u32, instance.mesh.triangles[triangle]);
+        let (recent, in_plane) =
+            (growing.len().saturating_sub(RECENT), |polygon: &&mut Growing| polygon.plane == plane);
+        let joined = plane != NO_PLANE
+            && growing[recent..].iter_mut().filter(in_plane).any(|polygon| {
+                let turns = Turns::new(instance, corners, self.equation(plane).truncate(), self.tolerance);
+                let joined = polygon.outline.add(corners, |a, b, c| turns.is_convex([a, b, c]));
+                if joined {
+                    polygon.facets.push(facet);
+                }
+                joined
+            });
+        if !joined {
+            growing.push(Growing { plane, facets: vec![facet], outline: Outline::new(corners) });
+        }
+    }
+
+    /// Adds a polygon of an instance: its facets, the vertices round it, and its plane.
+    fn push_placed(&mut self, instance: &Instance, mirrored: bool, (facets, outline, plane): (&[u32], &[u32], u32)) {
+        let places = outline.iter().map(|&vertex| instance.place(vertex));
+        if mirrored {
+            self.push(facets, places.rev(), plane);
+        } else {
+            self.push(facets, places, plane);
         }
     }
 

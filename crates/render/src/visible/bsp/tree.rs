@@ -21,10 +21,12 @@
 //! Cost: `O(n log n)` until sets are small, if planes split few polygons; `O(n^2)` fragments for the worst scenes.
 //! Source: [Fuchs, Kedem & Naylor 1980]; axis planes first after [Paterson & Yao 1990], who also bound the size.
 
+mod plane;
 mod report;
 
 use super::polygons::{PolygonFacets, WorldPolygons};
 use crate::Execution;
+use plane::{Plane, Side, side_of};
 use std::ops::Range;
 use vitral_exec::Limit;
 use vitral_math::{DVec3, DVec4};
@@ -42,95 +44,12 @@ const SPLIT_COST: usize = 6;
 const WORST_HALF: usize = 6;
 /// Pieces of work that the set is divided into before threads share them.
 const JOBS: usize = 64;
-/// The half-thickness of planes, relative to the numbers that enter the distance.
 /// A cut is forgotten if all of a fragment is farther from it than this part of the fragment's size.
 const CLEAR: f64 = 0.125;
-const THICKNESS: f64 = 1.0 / (1 << 21) as f64;
 /// No node; no cut.
 const NONE: u32 = u32::MAX;
 /// Marks a cut of the part of the tree that was built before the jobs.
 const OUTER: u32 = 1 << 31;
-
-/// Points at distance `normal . p + offset`, in the plane up to its thickness.
-#[derive(Clone, Copy, Debug)]
-struct Plane {
-    equation: DVec4,
-    thickness: f64,
-}
-
-impl Plane {
-    /// The plane of a triangle; of one that is thinner than its corners are certain, some plane through it.
-    fn of([a, b, c]: [DVec3; 3]) -> Self {
-        let edges = [b - a, c - b, a - c];
-        let longest =
-            edges.into_iter().fold(DVec3::ZERO, |l, e| if e.length_squared() > l.length_squared() { e } else { l });
-        let cross = edges[0].cross(-edges[2]);
-        let wide = cross.length() > 1e-9 * longest.length_squared();
-        let across = if wide { cross } else { longest.any_orthogonal_vector() };
-        let normal = across.try_normalize().unwrap_or(DVec3::Z);
-        Self { equation: normal.extend(-normal.dot(a)), thickness: Self::rounding(normal, &[a, b, c]) }
-    }
-
-    /// The plane of a polygon: the one that it shares with others, or that of its first corners.
-    fn of_polygon(polygons: &WorldPolygons, polygon: u32) -> Self {
-        let corners = polygons.corners(polygon);
-        let Some(number) = polygons.plane(polygon) else {
-            return Self::of([corners[0], corners[1], corners[2]]);
-        };
-        let equation = polygons.equation(number);
-        let faces_back = polygons.doubled_area(polygon).dot(equation.truncate()) < 0.0;
-        let equation = if faces_back { -equation } else { equation };
-        let thickness = Self::rounding(equation.truncate(), corners).max(polygons.tolerance);
-        Self { equation, thickness }
-    }
-
-    /// How far off the plane with this normal corners may be by their rounding.
-    fn rounding(normal: DVec3, corners: &[DVec3]) -> f64 {
-        corners.iter().map(|&p| (normal * p).abs().element_sum()).fold(0.0, f64::max) * THICKNESS
-    }
-
-    /// The plane through `at` across an axis. It is exact.
-    fn across(axis: usize, at: f64) -> Self {
-        let mut equation = DVec4::ZERO;
-        equation[axis] = 1.0;
-        equation.w = -at;
-        Self { equation, thickness: 0.0 }
-    }
-
-    /// Distance in front of the plane; 0 in it.
-    #[inline]
-    fn side(&self, p: DVec3) -> f64 {
-        let e = self.equation;
-        let distance = e.x * p.x + e.y * p.y + e.z * p.z + e.w;
-        if distance.abs() <= self.thickness { 0.0 } else { distance }
-    }
-}
-
-/// Where a polygon lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Side {
-    Front,
-    Back,
-    In,
-    Across,
-}
-
-/// Where a polygon lies by the distances of its corners.
-#[inline]
-fn side_of(plane: &Plane, points: &[DVec3]) -> Side {
-    let (mut front, mut back) = (false, false);
-    for &p in points {
-        let d = plane.side(p);
-        front |= d > 0.0;
-        back |= d < 0.0;
-    }
-    match (front, back) {
-        (true, true) => Side::Across,
-        (true, false) => Side::Front,
-        (false, true) => Side::Back,
-        (false, false) => Side::In,
-    }
-}
 
 /// A node of the tree.
 #[derive(Clone, Debug)]

@@ -78,7 +78,8 @@ impl Tree {
             above: parent.map(|(parent, _)| parent),
             side: parent.map(|(_, side)| side),
             splitter: (n.splitter != NONE).then(|| self.facets.name(n.splitter)),
-            plane: n.plane.to_array(),
+            // Adding 0 takes the sign of zeros.
+            plane: n.plane.to_array().map(|v| v + 0.0),
             coincident: named(&coincident),
             cut: PolygonSet::new(cut.map(|p| self.facets.name(p))),
             front: named(&front),

@@ -169,3 +169,20 @@ fn regions_cover_the_silhouette_once_and_touch_where_faces_do() {
     assert_eq!((drawing.regions.len(), drawing.lines.len()), (3, 0));
     assert!(drawing.regions.iter().all(|r| r.rings.len() == 1 && r.rings[0].len() == 4), "{:?}", drawing.regions);
 }
+
+#[test]
+fn a_contour_goes_on_over_faces_that_are_not_flat() {
+    // A twisted quadrilateral whose halves face to the front and to the back.
+    let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.9, 0.2, 1.0]];
+    let mesh = Mesh::from_polygons(positions, [vec![0, 1, 2, 3]]);
+    let scene = Scene::from_mesh(mesh);
+    let Drawn { drawing, stats } = drawn(&scene, View::Front, Lens::Parallel, &everything(), 1);
+    assert_eq!((stats.triangles, stats.edges), (2, 5));
+    let contour = drawing.length(|l| l.class == LineClass::Contour);
+    assert!(contour > 0.0, "{:?}", drawing.lines);
+    // Of a flat one, the diagonal is no line at all.
+    let flat =
+        Mesh::from_polygons([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]], [vec![0, 1, 2, 3]]);
+    let Drawn { drawing, .. } = drawn(&Scene::from_mesh(flat), View::Front, Lens::Parallel, &everything(), 1);
+    assert!((drawing.length(|_| true) - 720.0).abs() < 0.01, "{:?}", drawing.lines);
+}

@@ -11,7 +11,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
-use vitral::{DrawingSettings, Drawn, PageSize, Renderer, State, SvgOptions, Viewpoint, default_camera};
+use vitral::{DrawingSettings, Drawn, LineClasses, PageSize, Renderer, State, SvgOptions, Viewpoint, default_camera};
 
 /// Exit code for what is not supported.
 const UNSUPPORTED: u8 = 4;
@@ -61,7 +61,10 @@ fn draw(
     let mut renderer = Renderer::with_execution(scene, execution)?;
     state.apply(&mut renderer)?;
     let load_seconds = start.elapsed().as_secs_f64();
-    let drawn = renderer.draw(settings)?;
+    let drawn = match style_of(args) {
+        Style::HiddenLine => renderer.draw(settings)?,
+        Style::Filled | Style::FilledLines => renderer.draw_filled(settings)?,
+    };
     let draw_seconds = start.elapsed().as_secs_f64() - load_seconds;
     let dashes = SvgOptions::default().hidden_dashes.filter(|_| args.lines.hidden != Some(Hidden::Solid));
     let file = vitral::drawing_to_svg(&drawn.drawing, &SvgOptions { hidden_dashes: dashes, ..SvgOptions::default() });
@@ -110,9 +113,10 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
 fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
     let usual = DrawingSettings::default();
     let lines = &args.lines;
-    if let Some(style @ (Style::Filled | Style::FilledLines)) = lines.style {
-        let name = if style == Style::Filled { "filled" } else { "filled-lines" };
-        return Err(Failure::usage(format!("--style {name}: filled drawings are not there yet")));
+    let has_lines = style_of(args) != Style::Filled;
+    let line_options = [(lines.lines.is_some(), "--lines"), (lines.hidden.is_some(), "--hidden")];
+    if let Some((_, option)) = line_options.iter().find(|(given, _)| *given && !has_lines) {
+        return Err(Failure::usage(format!("{option}: --style filled draws no lines")).with_hint("give --style filled-lines"));
     }
     let is_hidden_drawn = lines.hidden.is_some_and(|hidden| hidden != Hidden::None);
     let hidden_layers = match (is_hidden_drawn, lines.hidden_max_layers) {
@@ -124,12 +128,17 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
         (true, Some(layers)) => layers,
     };
     Ok(DrawingSettings {
-        lines: lines.lines.unwrap_or(usual.lines),
+        lines: if has_lines { lines.lines.unwrap_or(usual.lines) } else { LineClasses::EMPTY },
         hidden_layers,
         crease_angle: lines.crease_angle.map_or(usual.crease_angle, f64::to_radians),
         page: page_of(&args.page)?,
         margin: args.page.margin.unwrap_or(usual.margin),
     })
+}
+
+/// What the drawing is made of.
+fn style_of(args: &DrawArgs) -> Style {
+    args.lines.style.unwrap_or_default()
 }
 
 fn page_of(args: &PageArgs) -> Result<PageSize, Failure> {
@@ -188,6 +197,7 @@ fn stats_of(drawn: &Drawn, [load, draw, total]: [f64; 3], bytes: usize, peak: u6
         "hidden-intervals": stats.visibility.intervals,
         "intersections": stats.intersections,
         "fragments": stats.fragments,
+        "regions": drawn.drawing.regions.len(),
         "polylines": lines.len(),
         "points": lines.iter().map(|line| line.points.len()).sum::<usize>(),
         "visible-millimetres": drawn.drawing.length(|line| line.layers == 0),

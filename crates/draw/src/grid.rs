@@ -124,6 +124,24 @@ impl Grid {
         ControlFlow::Continue(())
     }
 
+    /// Calls `visit` with the list of each cell that a box meets, without what covered cells hide.
+    pub(crate) fn over<B>(
+        &self,
+        low: [i32; 2],
+        high: [i32; 2],
+        mut visit: impl FnMut(&[u32]) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        for level in &self.levels {
+            let ([left, bottom], [right, top]) = (level.cell_of(low), level.cell_of(high));
+            for row in bottom..=top {
+                for column in left..=right {
+                    visit(level.list(row * level.width + column, true))?;
+                }
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
     /// Calls `visit` with the list of each cell that a triangle's box meets, on its own level and coarser ones, and whether it is the
     /// triangle's own level: so each pair of triangles is met from the smaller one.
     pub(crate) fn around<B>(

@@ -1,12 +1,14 @@
 //! The sheet: strokes are scaled and placed, rounded to the precision, and joined.
 //!
-//! In:   strokes in units of the page's grid. Out: a [`Drawing`] in millimetres.
+//! In:   strokes and regions in units of the page's grid. Out: a [`Drawing`] in millimetres.
 //! Cost: that of [`chains`](crate::chains).
 
 use crate::chains::{Step, chains};
+use crate::fill::PageRegion;
+use crate::page_mesh::NONE;
 use crate::strokes::Stroke;
 use vitral_frame::Drawing;
-use vitral_frame::drawing::Line;
+use vitral_frame::drawing::{Line, Region};
 
 /// Steps of the precision in a millimetre.
 const STEPS_A_MILLIMETRE: f64 = 1000.0;
@@ -68,18 +70,40 @@ impl Placement {
     fn step(&self, point: [f64; 2]) -> Step {
         [0, 1].map(|k| ((point[k] * self.scale + self.offset[k]) * STEPS_A_MILLIMETRE).round() as i32)
     }
+
+    /// A region on the sheet, unless nothing is left of it at the precision.
+    fn region(&self, region: &PageRegion) -> Option<Region> {
+        let ring = |ring: &Vec<[f64; 2]>| {
+            let mut points: Vec<Step> = ring.iter().map(|&point| self.step(point)).collect();
+            points.dedup();
+            while points.len() > 1 && points.first() == points.last() {
+                points.pop();
+            }
+            (points.len() > 2).then(|| points.into_iter().map(millimetres).collect::<Vec<_>>())
+        };
+        let rings: Vec<_> = region.rings.iter().filter_map(ring).collect();
+        let PageRegion { surface, material, color, .. } = *region;
+        let material = Some(material).filter(|&material| material != NONE);
+        (!rings.is_empty()).then_some(Region { surface, material, color, rings })
+    }
 }
 
-/// Places strokes on the sheet and joins them.
-pub(crate) fn lay_out(strokes: &[Stroke], page: PageSize, margin: f64) -> Drawing {
-    let points = strokes.iter().flat_map(|stroke| stroke.ends);
+/// A point of the sheet in millimetres.
+fn millimetres(point: Step) -> [f64; 2] {
+    point.map(|step| f64::from(step) / STEPS_A_MILLIMETRE)
+}
+
+/// Places strokes and regions on the sheet, and joins the strokes.
+pub(crate) fn lay_out(strokes: &[Stroke], regions: &[PageRegion], page: PageSize, margin: f64) -> Drawing {
+    let outlines = regions.iter().flat_map(|region| region.rings.iter().flatten().copied());
+    let points = strokes.iter().flat_map(|stroke| stroke.ends).chain(outlines);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for point in points {
         for k in 0..2 {
             (low[k], high[k]) = (low[k].min(point[k]), high[k].max(point[k]));
         }
     }
-    if strokes.is_empty() {
+    if low[0] > high[0] {
         (low, high) = ([0.0; 2], [0.0; 2]);
     }
     let placement = Placement::new(low, high, page, margin);
@@ -87,12 +111,12 @@ pub(crate) fn lay_out(strokes: &[Stroke], page: PageSize, margin: f64) -> Drawin
     let lines = chains(&placed)
         .into_iter()
         .map(|chain| {
-            let points = chain.points.iter().map(|p| p.map(|step| f64::from(step) / STEPS_A_MILLIMETRE)).collect();
+            let points = chain.points.iter().map(|&p| millimetres(p)).collect();
             Line { class: chain.class, layers: chain.layers, points }
         })
         .collect();
     let [width, height] = placement.sheet;
-    Drawing { width, height, lines, regions: Vec::new() }
+    Drawing { width, height, lines, regions: regions.iter().filter_map(|region| placement.region(region)).collect() }
 }
 
 #[cfg(test)]
@@ -107,19 +131,19 @@ mod tests {
     #[test]
     fn a_drawing_fits_the_sheet_or_the_sheet_the_drawing() {
         let strokes = [line([100.0, 100.0], [300.0, 100.0]), line([300.0, 100.0], [300.0, 200.0])];
-        let fit = lay_out(&strokes, PageSize::Fit { longer: 100.0 }, 5.0);
+        let fit = lay_out(&strokes, &[], PageSize::Fit { longer: 100.0 }, 5.0);
         assert_eq!((fit.width, fit.height), (110.0, 60.0));
         assert_eq!(fit.lines[0].points, [[5.0, 5.0], [105.0, 5.0], [105.0, 55.0]]);
-        let sheet = lay_out(&strokes, PageSize::Sheet { width: 50.0, height: 90.0 }, 5.0);
+        let sheet = lay_out(&strokes, &[], PageSize::Sheet { width: 50.0, height: 90.0 }, 5.0);
         assert_eq!((sheet.width, sheet.height), (50.0, 90.0));
         assert_eq!(sheet.lines[0].points, [[5.0, 35.0], [45.0, 35.0], [45.0, 55.0]]);
     }
 
     #[test]
     fn nothing_and_lines_without_height_have_a_sheet() {
-        let empty = lay_out(&[], PageSize::default(), 5.0);
+        let empty = lay_out(&[], &[], PageSize::default(), 5.0);
         assert_eq!((empty.width, empty.height, empty.lines.len()), (10.0, 10.0, 0));
-        let flat = lay_out(&[line([0.0, 7.0], [9.0, 7.0])], PageSize::Sheet { width: 20.0, height: 10.0 }, 1.0);
+        let flat = lay_out(&[line([0.0, 7.0], [9.0, 7.0])], &[], PageSize::Sheet { width: 20.0, height: 10.0 }, 1.0);
         assert_eq!(flat.lines[0].points, [[1.0, 5.0], [19.0, 5.0]]);
     }
 }

@@ -1,4 +1,4 @@
-//! Floor 3: exact vector drawings of meshes, visible and hidden lines, each with its class.
+//! Floor 3: exact vector drawings of meshes, visible and hidden lines, each with its class, and visible surfaces.
 //!
 //! All geometry is snapped to an integer grid once; afterwards every decision about visibility is exact. The way of a drawing:
 //!
@@ -10,6 +10,7 @@
 //! | lines in which triangles penetrate each other | `crossings.rs` |
 //! | for each edge, the parts that triangles hide | `hiding.rs`, `place.rs`, `visibility.rs` |
 //! | strokes, of which no two coincide | `strokes.rs` |
+//! | the visible surface as regions that do not overlap | `fill.rs` |
 //! | long polylines on the page | `chains.rs`, `layout.rs` |
 //!
 //! Nothing depends on the number of threads.
@@ -21,7 +22,8 @@
 //!
 //! let world = World::new(&Scene::from_mesh(solids::cuboid([2.0, 1.0, 1.0].into()))).unwrap();
 //! let camera = frame(&world.bounds, View::Front, Axis::PlusY, Lens::Parallel, 1.0);
-//! let drawn = draw(&world, &camera, 1.0, &DrawingSettings::default(), &Workers::single(), &Budget::default()).unwrap();
+//! let (settings, workers, budget) = (DrawingSettings::default(), Workers::single(), Budget::default());
+//! let drawn = draw(&world, &camera, 1.0, &settings, None, &workers, &budget).unwrap();
 //! assert_eq!(drawn.drawing.lines.len(), 1, "a box from the front is one closed line");
 //! assert_eq!(drawn.drawing.lines[0].points.len(), 5);
 //! ```
@@ -32,6 +34,7 @@ mod classes;
 mod clip;
 mod crossings;
 mod edges;
+mod fill;
 mod grid;
 mod hiding;
 mod layout;
@@ -45,6 +48,7 @@ mod testing;
 mod visibility;
 
 pub use classes::Classes;
+pub use fill::{FaceLook, Palette};
 pub use layout::PageSize;
 pub use visibility::VisibilityStats;
 
@@ -60,7 +64,7 @@ use vitral_scene::{Camera, World, depth_range};
 /// What is to be decided about a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawingSettings {
-    /// Which lines are drawn; an edge of several classes is drawn as the first of these.
+    /// Which lines are drawn, if any; an edge of several classes is drawn as the first of these.
     pub lines: Classes,
     /// Lines behind up to so many faces are drawn as well. 0: visible lines alone.
     pub hidden_layers: u32,
@@ -87,7 +91,7 @@ impl Default for DrawingSettings {
 /// A drawing and how it came about.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawn {
-    /// The lines.
+    /// Lines and regions.
     pub drawing: Drawing,
     /// Counters.
     pub stats: DrawingStats,
@@ -110,7 +114,7 @@ pub struct DrawingStats {
     pub visibility: VisibilityStats,
 }
 
-/// Draws what `camera` sees in a window of `aspect` (width by height).
+/// Draws what `camera` sees in a window of `aspect` (width by height): lines, and with a palette the visible surfaces.
 ///
 /// # Errors
 /// A limit of the budget.
@@ -119,6 +123,7 @@ pub fn draw(
     camera: &Camera,
     aspect: f64,
     settings: &DrawingSettings,
+    palette: Option<&Palette<'_>>,
     workers: &Workers,
     budget: &Budget,
 ) -> Result<Drawn, Limit> {
@@ -142,7 +147,11 @@ pub fn draw(
     (stats.fragments, stats.visibility) = (fragments.len() as u64, visibility);
     let strokes = strokes::strokes(&mesh, &fragments, settings.lines, &run)?;
     budget.check("lines")?;
-    let drawing = layout::lay_out(&strokes, settings.page, settings.margin);
+    let regions = match palette {
+        Some(palette) => fill::regions(&mesh, &grid, palette, &run)?,
+        None => Vec::new(),
+    };
+    let drawing = layout::lay_out(&strokes, &regions, settings.page, settings.margin);
     Ok(Drawn { drawing, stats })
 }
 

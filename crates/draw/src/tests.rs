@@ -7,7 +7,7 @@ use vitral_scene::{Axis, Lens, Mesh, Scene, View, frame};
 fn drawn(scene: &Scene, view: View, lens: Lens, settings: &DrawingSettings, threads: usize) -> Drawn {
     let world = World::new(scene).unwrap();
     let camera = frame(&world.bounds, view, Axis::PlusY, lens, 1.0);
-    draw(&world, &camera, 1.0, settings, &Workers::new(threads), &Budget::default()).unwrap()
+    draw(&world, &camera, 1.0, settings, None, &Workers::new(threads), &Budget::default()).unwrap()
 }
 
 fn everything() -> DrawingSettings {
@@ -94,7 +94,7 @@ fn what_is_before_the_near_plane_or_outside_the_window_is_cut() {
     let scene = Scene::from_mesh(solids::sphere(1.0, 24, 16));
     let world = World::new(&scene).unwrap();
     let of = |camera: &Camera| {
-        draw(&world, camera, 1.5, &everything(), &Workers::single(), &Budget::default()).unwrap()
+        draw(&world, camera, 1.5, &everything(), None, &Workers::single(), &Budget::default()).unwrap()
     };
     // From within, all faces are seen from behind and none is hidden.
     let inside = of(&Camera::look_at([0.0; 3], [0.0, 0.0, -1.0]).with_view_angle(1.0));
@@ -141,4 +141,24 @@ fn threads_do_not_matter() {
     for threads in [2, 3, 7] {
         assert_eq!(one, drawn(&scene, View::Iso, Lens::default(), &everything(), threads));
     }
+}
+
+#[test]
+fn regions_cover_the_silhouette_once_and_touch_where_faces_do() {
+    // A cube from a corner: three equal rhombi in a regular hexagon, of three colours.
+    let scene = Scene::from_mesh(solids::cuboid(DVec3::ONE));
+    let world = World::new(&scene).unwrap();
+    let camera = frame(&world.bounds, View::Iso, Axis::PlusY, Lens::Parallel, 1.0);
+    let palette = |look: &FaceLook| look.normal.map(|c| (c * 255.0) as u8);
+    let settings = DrawingSettings { lines: Classes::EMPTY, margin: 0.0, ..DrawingSettings::default() };
+    let of = |threads| {
+        draw(&world, &camera, 1.0, &settings, Some(&palette), &Workers::new(threads), &Budget::default()).unwrap().drawing
+    };
+    let drawing = of(1);
+    assert_eq!(drawing, of(3));
+    let side = drawing.height / 2.0;
+    let hexagon = 1.5 * 3f64.sqrt() * side * side;
+    assert!((drawing.area() / hexagon - 1.0).abs() < 1e-4, "{} {hexagon}", drawing.area());
+    assert_eq!((drawing.regions.len(), drawing.lines.len()), (3, 0));
+    assert!(drawing.regions.iter().all(|r| r.rings.len() == 1 && r.rings[0].len() == 4), "{:?}", drawing.regions);
 }

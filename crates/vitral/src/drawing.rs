@@ -1,10 +1,18 @@
-//! Vector drawings: the lines that the renderer's camera sees, and files of them.
+//! Vector drawings: the lines and surfaces that the renderer's camera sees, and files of them.
 
-use crate::{Error, Renderer};
-use vitral_draw::{DrawingSettings, Drawn, draw};
+use crate::{Camera, Error, Renderer};
+use vitral_draw::{DrawingSettings, Drawn, FaceLook, draw};
+use vitral_light::constant_color;
+use vitral_math::color::{byte_from_unit, srgb_from_linear};
+use vitral_math::{DVec3, Vec3};
+
+/// Steps of brightness of a filled drawing: faces of one step and material become one region.
+const SHADES: f32 = 32.0;
+/// Brightness of faces that the light does not reach.
+const AMBIENT: f32 = 0.35;
 
 impl Renderer {
-    /// Draws what [`frame_camera`](Self::frame_camera) sees: the same window as [`render`](Self::render) shows.
+    /// Draws the lines that [`frame_camera`](Self::frame_camera) sees: the same window as [`render`](Self::render) shows.
     ///
     /// ```
     /// use vitral::{DrawingSettings, Lens, SvgOptions, drawing_to_svg};
@@ -21,6 +29,30 @@ impl Renderer {
     /// A limit that was reached.
     pub fn draw(&self, settings: &DrawingSettings) -> Result<Drawn, Error> {
         let (camera, execution) = (self.frame_camera(), self.execution());
-        Ok(draw(self.world(), &camera, self.aspect(), settings, &execution.workers, &execution.budget)?)
+        Ok(draw(self.world(), &camera, self.aspect(), settings, None, &execution.workers, &execution.budget)?)
     }
+
+    /// As [`draw`](Self::draw), with the visible surfaces as regions in the colours of their materials, shaded by a light over the
+    /// viewer's left shoulder.
+    ///
+    /// # Errors
+    /// A limit that was reached.
+    pub fn draw_filled(&self, settings: &DrawingSettings) -> Result<Drawn, Error> {
+        let (camera, execution) = (self.frame_camera(), self.execution());
+        let (materials, light) = (&self.scene().materials, towards_light(&camera));
+        let palette = |look: &FaceLook| {
+            let material = look.material.and_then(|index| materials.get(index as usize)).cloned().unwrap_or_default();
+            let lit = Vec3::from_array(look.normal).dot(light).max(0.0);
+            let brightness = ((AMBIENT + (1.0 - AMBIENT) * lit) * SHADES).round() / SHADES;
+            constant_color(&material).map(|c| byte_from_unit(srgb_from_linear(c * brightness)))
+        };
+        let palette = Some(&palette as &vitral_draw::Palette<'_>);
+        Ok(draw(self.world(), &camera, self.aspect(), settings, palette, &execution.workers, &execution.budget)?)
+    }
+}
+
+/// Unit vector to the light of filled drawings, world space.
+fn towards_light(camera: &Camera) -> Vec3 {
+    let world_from_view = camera.view_from_world().inverse();
+    world_from_view.transform_vector3(DVec3::new(-0.4, 0.5, 1.0)).normalize_or(DVec3::Z).as_vec3()
 }

@@ -31,7 +31,7 @@
 //!
 //! | also here | for |
 //! |---|---|
-//! | [`Renderer::draw`] | vector drawings: visible and hidden lines |
+//! | [`Renderer::draw`] | vector drawings: visible and hidden lines, filled regions |
 //! | [`info`](mod@info) | what is in a scene |
 //! | [`State`] | all that makes a picture, as JSON |
 //! | [`explain`](mod@explain) | how each algorithm decides about a pixel |
@@ -83,7 +83,7 @@ pub use state::{Objects, State};
 pub use system_clock::SystemClock;
 pub use viewpoint::Viewpoint;
 
-pub use vitral_draw::{Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, PageSize, VisibilityStats};
+pub use vitral_draw::{Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, PageSize, VisibilityStats};
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
 pub use vitral_frame::drawing::{Line, LineClass, Region};
 pub use vitral_frame::{Drawing, Encoding, Filter, Frame, MipFilter, Plane, Sampler, Texture, Wrap};

@@ -5,7 +5,7 @@ use crate::render_args::{CameraArgs, ProcessArgs, ProgressWhen};
 use crate::values;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use vitral::{LineClass, LineClasses, MaterialOverride, Pens};
+use vitral::{LineClass, LineClasses, MaterialOverride, Pens, TitleBlock};
 
 /// Options of `vitral draw`.
 #[derive(Args, Debug, Default)]
@@ -105,6 +105,9 @@ pub(crate) struct PageArgs {
     /// Leave out corners of lines that are at most MM from the line without them [default: 0]
     #[arg(long, value_name = "MM", value_parser = values::not_negative, allow_negative_numbers = true)]
     pub(crate) simplify: Option<f64>,
+    /// A row of a table below the drawing, in strokes on a layer of their own; repeatable
+    #[arg(long, value_name = "KEY=VALUE", value_parser = title_row)]
+    pub(crate) title_block: Vec<(String, String)>,
     /// For a plotter: lines alone, joined, each once, with short ways in the air; dashes as lines. HP-GL is always so
     #[arg(long)]
     pub(crate) plotter: bool,
@@ -248,6 +251,16 @@ fn decimals(text: &str) -> Result<u8, String> {
     known.map(|decimals| decimals as u8).ok_or_else(|| "1, .1, .01 or .001 is required".to_owned())
 }
 
+/// `Scale=1:2`, in letters that there are strokes for.
+fn title_row(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or("KEY=VALUE is required, such as Scale=1:2")?;
+    let row = (key.to_owned(), value.to_owned());
+    match TitleBlock::new(std::slice::from_ref(&row)) {
+        Ok(_) => Ok(row),
+        Err(letter) => Err(format!("there are no strokes for `{letter}`; letters are A to Z, a to z, 0 to 9 and punctuation")),
+    }
+}
+
 /// A distance of at least 0 mm.
 fn margin(text: &str) -> Result<f64, String> {
     let margin = values::number(text)?;
@@ -274,6 +287,8 @@ mod tests {
         assert!(decimals("0.002").is_err() && stroke("contour").is_err() && stroke("contour=0").is_err());
         assert_eq!(stroke("hidden=.2"), Ok(("hidden".to_owned(), 0.2)));
         assert!(stroke("outline=1").unwrap_err().contains("contour, boundary"));
+        assert_eq!(title_row("Scale=1:2"), Ok(("Scale".to_owned(), "1:2".to_owned())));
+        assert!(title_row("Scale").is_err() && title_row("Maß=1").unwrap_err().contains("`ß`"));
         assert_eq!(margin("0"), Ok(0.0));
         assert!(margin("-1").is_err());
     }

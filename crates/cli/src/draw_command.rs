@@ -16,8 +16,9 @@ use vitral::{DrawingSettings, Drawn, LineClasses, PageSize, Renderer, State, Vie
 pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     let start = Instant::now();
     let state = state_of(args)?;
-    let settings = settings_of(args)?;
+    let mut settings = settings_of(args)?;
     let file = DrawFile::new(args, &state)?;
+    settings.page = file.page_above_title(settings.page, settings.margin)?;
     if let Some(path) = &args.process.save_state {
         save_state(&state, path)?;
     }
@@ -68,7 +69,7 @@ fn draw(
         report::warnings(&[warning]);
     }
     let counted = args.report.stats.then(|| stats_of(&drawn));
-    let bytes = file.encode(drawn.drawing);
+    let bytes = file.encode(drawn.drawing, settings.margin);
     report::write(&file.path, &bytes)?;
     if let Some(mut stats) = counted {
         use std::io::Write;

@@ -4,7 +4,7 @@ use crate::draw_args::{DrawArgs, Hidden, Style};
 use crate::outputs::{expand, model_name};
 use crate::report::{self, Failure};
 use std::path::PathBuf;
-use vitral::{Drawing, DrawingFormat, DrawingOptions, DrawingSettings, PageSize, State, for_plotter, simplify};
+use vitral::{Drawing, DrawingFormat, DrawingOptions, DrawingSettings, PageSize, State, TitleBlock, for_plotter, simplify};
 
 /// Exit code for what is not supported.
 const UNSUPPORTED: u8 = 4;
@@ -24,6 +24,7 @@ pub(crate) struct DrawFile {
     plotter: bool,
     /// Tolerance of simplified lines, millimetres.
     tolerance: f64,
+    title: Option<TitleBlock>,
 }
 
 impl DrawFile {
@@ -43,7 +44,22 @@ impl DrawFile {
         options.decimals = args.page.precision.unwrap_or(options.decimals);
         options.surface_ids = args.page.svg_ids;
         let tolerance = args.page.simplify.unwrap_or(0.0);
-        Ok(Self { path, format, options, plotter: args.page.plotter, tolerance })
+        let rows = &args.page.title_block;
+        let title = if rows.is_empty() { None } else { Some(TitleBlock::new(rows)) };
+        let title = title.transpose().map_err(|letter| Failure::usage(format!("--title-block: no strokes for `{letter}`")))?;
+        Ok(Self { path, format, options, plotter: args.page.plotter, tolerance, title })
+    }
+
+    /// The page without the title block.
+    pub(crate) fn page_above_title(&self, page: PageSize, margin: f64) -> Result<PageSize, Failure> {
+        let (Some(title), PageSize::Sheet { width, height }) = (&self.title, page) else { return Ok(page) };
+        let height = height - title.room();
+        if title.size[0] + 2.0 * margin > width || height <= 2.0 * margin {
+            let [across, up] = title.size;
+            let what = format!("--title-block: a table of {across:.1} x {up:.1} mm leaves no room on the sheet");
+            return Err(Failure::usage(what).with_hint("choose a larger --page, or shorter texts"));
+        }
+        Ok(PageSize::Sheet { width, height })
     }
 
     /// What the format leaves out of a drawing.
@@ -53,17 +69,21 @@ impl DrawFile {
     }
 
     /// Makes the file's content.
-    pub(crate) fn encode(&self, mut drawing: Drawing) -> Vec<u8> {
+    pub(crate) fn encode(&self, mut drawing: Drawing, margin: f64) -> Vec<u8> {
         if self.tolerance > 0.0 {
             simplify(&mut drawing, self.tolerance);
+        }
+        let mut options = self.options.clone();
+        if let Some(title) = &self.title {
+            options.title = title.place(&mut drawing, margin);
         }
         // HP-GL is ordered by its writer, in the plotter's own steps.
         if self.plotter && self.format != DrawingFormat::Hpgl {
             let steps_a_millimetre = [1.0, 10.0, 100.0, 1000.0][usize::from(self.options.decimals)];
-            let (drawing, options) = for_plotter(&drawing, &self.options, steps_a_millimetre);
+            let (drawing, options) = for_plotter(&drawing, &options, steps_a_millimetre);
             return self.format.encode(&drawing, &options);
         }
-        self.format.encode(&drawing, &self.options)
+        self.format.encode(&drawing, &options)
     }
 }
 
@@ -108,6 +128,7 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
             "choose .svg, .pdf or .hpgl",
         ),
         (strokes("hidden") && !hidden, "--stroke hidden: hidden lines are not drawn", "add --hidden dashed"),
+        (strokes("title") && page.title_block.is_empty(), "--stroke title: there is no title block", "add --title-block"),
         (
             page.precision.is_some() && format == DrawingFormat::Hpgl,
             "--precision: HP-GL has steps of 1/40 mm",

@@ -5,7 +5,7 @@
 const VERBS: [&str; 2] = ["lab", "batch"];
 
 /// Options of `draw` to come.
-const DRAWING_OPTIONS: [&str; 16] = [
+const DRAWING_OPTIONS: [&str; 15] = [
     "--algorithm",
     "--angle",
     "--color-by",
@@ -18,7 +18,6 @@ const DRAWING_OPTIONS: [&str; 16] = [
     "--section-plane",
     "--shades",
     "--shadows",
-    "--title-block",
     "--transparency",
     "--views",
     "--light",

@@ -161,6 +161,16 @@ fn plotters_get_numbered_layers_with_each_line_once() {
 }
 
 #[test]
+fn title_blocks_are_a_layer_below_the_drawing() {
+    let folder = Folder::new("title");
+    let rows = ["--title-block", "Part=Cube", "--title-block", "Scale=1:1"];
+    let text = folder.text("x.svg", &[&FRONT[..], &rows].concat());
+    assert!(text.contains("inkscape:label=\"9 title\"") && text.contains("viewBox=\"0 0 37833 45000\""), "{text}");
+    let sheet = folder.text("x.svg", &[&rows[..], &["--page", "A6", "--stroke", "title=.3"]].concat());
+    assert!(sheet.contains("viewBox=\"0 0 105000 148000\"") && sheet.contains("stroke-width=\"300\""), "{sheet}");
+}
+
+#[test]
 fn options_that_do_not_suit_the_file_are_told() {
     let folder = Folder::new("mistakes");
     for (arguments, code, said) in [
@@ -173,6 +183,9 @@ fn options_that_do_not_suit_the_file_are_told() {
         (&["-o", "x.svg", "--precision", ".3"], 2, "1, .1, .01 or .001 is required"),
         (&["-o", "x.svg", "--svg-ids"], 2, "add --style filled"),
         (&["-o", "x.pdf", "--style", "filled", "--svg-ids"], 2, "choose .svg"),
+        (&["-o", "x.svg", "--title-block", "Part=ß"], 2, "no strokes for `ß`"),
+        (&["-o", "x.svg", "--title-block", "Part=Cube", "--page", "20x20mm"], 2, "leaves no room"),
+        (&["-o", "x.svg", "--stroke", "title=1"], 2, "add --title-block"),
         (&["-o", "x.svg", "--unit", "m"], 2, "--scale"),
         (&["-o", "x.svg", "--scale", "0:1"], 2, "is no scale"),
         (&["-o", "x.svg", "--scale", "1:1", "--camera-view-angle", "30"], 2, "add --camera-orthographic"),

@@ -88,7 +88,7 @@ pub use vitral_draw::{Classes as LineClasses, DrawingSettings, DrawingStats, Dra
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
 pub use vitral_frame::drawing::{Line, LineClass, Region};
 pub use vitral_frame::{Drawing, Encoding, Filter, Frame, MipFilter, Plane, Sampler, Texture, Wrap};
-pub use vitral_io::encode::{DrawingOptions, Pens, Polyline, for_plotter, simplify};
+pub use vitral_io::encode::{DrawingOptions, Pens, Polyline, TitleBlock, for_plotter, simplify};
 pub use vitral_io::{Error as InputError, Format, NoFiles, ResolveError, Resolver};
 pub use vitral_light::{
     AlphaMode, AreaShape, Attenuation, Illumination, Light, LightKind, Material, Reflectance, Rgb, TextureRef,

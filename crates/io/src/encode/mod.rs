@@ -12,8 +12,8 @@
 //! | [`dxf()`] | drawings for CAD programs |
 //! | [`hpgl()`] | drawings for plotters |
 //!
-//! Those of pictures take planes with the top row first and straight alpha; all give the whole file. [`simplify()`] and [`for_plotter`]
-//! change lines before they are written.
+//! Those of pictures take planes with the top row first and straight alpha; all give the whole file. [`simplify()`], [`for_plotter`]
+//! and [`TitleBlock`] change a drawing before it is written.
 
 mod dxf;
 mod hpgl;
@@ -27,6 +27,7 @@ mod png;
 mod ppm;
 mod simplify;
 mod svg;
+mod title_block;
 
 pub use dxf::dxf;
 pub use hpgl::hpgl;
@@ -39,6 +40,7 @@ pub use png::{PngOptions, png, png_with_text, png16_gray};
 pub use ppm::ppm;
 pub use simplify::simplify;
 pub use svg::svg;
+pub use title_block::TitleBlock;
 
 use crate::Error;
 use vitral_frame::Plane;

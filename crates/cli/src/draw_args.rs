@@ -168,8 +168,7 @@ pub(crate) struct DrawReportArgs {
 
 /// The help of `--lines`.
 fn lines_help() -> String {
-    let classes: Vec<String> =
-        drawable().map(|(class, what)| format!("{} ({what})", class.name())).collect();
+    let classes: Vec<String> = drawable().map(|(class, what)| format!("{} ({what})", class.name())).collect();
     format!(
         "Which lines are drawn: a list of {}; or all. An edge of several classes is drawn as the first of the list that it is \
          [default: contour,boundary,crease,material,intersection]",
@@ -212,7 +211,9 @@ fn page_size(text: &str) -> Result<Sheet, String> {
     let side = |side: &str| values::positive(side).ok().filter(|&side| side <= 10_000.0);
     match sides.and_then(|(width, height)| Some([side(width)?, side(height)?])) {
         Some(size) => Ok(Sheet::Size(size)),
-        None => Err(format!("`{text}` is no sheet: fit, A0 to A6, or a size of up to 10 m such as 200x100mm is required")),
+        None => {
+            Err(format!("`{text}` is no sheet: fit, A0 to A6, or a size of up to 10 m such as 200x100mm is required"))
+        }
     }
 }
 
@@ -257,7 +258,9 @@ fn title_row(text: &str) -> Result<(String, String), String> {
     let row = (key.to_owned(), value.to_owned());
     match TitleBlock::new(std::slice::from_ref(&row)) {
         Ok(_) => Ok(row),
-        Err(letter) => Err(format!("there are no strokes for `{letter}`; letters are A to Z, a to z, 0 to 9 and punctuation")),
+        Err(letter) => {
+            Err(format!("there are no strokes for `{letter}`; letters are A to Z, a to z, 0 to 9 and punctuation"))
+        }
     }
 }
 

@@ -120,12 +120,16 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
     let has_lines = style_of(args) != Style::Filled;
     let line_options = [(lines.lines.is_some(), "--lines"), (lines.hidden.is_some(), "--hidden")];
     if let Some((_, option)) = line_options.iter().find(|(given, _)| *given && !has_lines) {
-        return Err(Failure::usage(format!("{option}: --style filled draws no lines")).with_hint("give --style filled-lines"));
+        return Err(
+            Failure::usage(format!("{option}: --style filled draws no lines")).with_hint("give --style filled-lines")
+        );
     }
     let is_hidden_drawn = lines.hidden.is_some_and(|hidden| hidden != Hidden::None);
     let hidden_layers = match (is_hidden_drawn, lines.hidden_max_layers) {
         (false, Some(_)) => {
-            return Err(Failure::usage("--hidden-max-layers: hidden lines are not drawn").with_hint("add --hidden dashed"));
+            return Err(
+                Failure::usage("--hidden-max-layers: hidden lines are not drawn").with_hint("add --hidden dashed")
+            );
         }
         (false, None) => 0,
         (true, None | Some(0)) => u32::MAX,
@@ -148,7 +152,8 @@ fn style_of(args: &DrawArgs) -> Style {
 fn page_of(args: &PageArgs) -> Result<PageSize, Failure> {
     let Some(Sheet::Size([width, height])) = args.page else {
         if args.landscape {
-            return Err(Failure::usage("--landscape: a sheet that fits the drawing cannot be turned").with_hint("give --page A4"));
+            return Err(Failure::usage("--landscape: a sheet that fits the drawing cannot be turned")
+                .with_hint("give --page A4"));
         }
         return Ok(PageSize::default());
     };

@@ -4,7 +4,9 @@ use crate::draw_args::{DrawArgs, Hidden, Style};
 use crate::outputs::{expand, model_name};
 use crate::report::{self, Failure};
 use std::path::PathBuf;
-use vitral::{Drawing, DrawingFormat, DrawingOptions, DrawingSettings, PageSize, State, TitleBlock, for_plotter, simplify};
+use vitral::{
+    Drawing, DrawingFormat, DrawingOptions, DrawingSettings, PageSize, State, TitleBlock, for_plotter, simplify,
+};
 
 /// Exit code for what is not supported.
 const UNSUPPORTED: u8 = 4;
@@ -46,7 +48,8 @@ impl DrawFile {
         let tolerance = args.page.simplify.unwrap_or(0.0);
         let rows = &args.page.title_block;
         let title = if rows.is_empty() { None } else { Some(TitleBlock::new(rows)) };
-        let title = title.transpose().map_err(|letter| Failure::usage(format!("--title-block: no strokes for `{letter}`")))?;
+        let title =
+            title.transpose().map_err(|letter| Failure::usage(format!("--title-block: no strokes for `{letter}`")))?;
         Ok(Self { path, format, options, plotter: args.page.plotter, tolerance, title })
     }
 
@@ -119,7 +122,11 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
     let strokes = |name: &str| lines.stroke.iter().any(|(class, _)| class == name);
     let write_lines = "give --style filled-lines";
     let mistakes = [
-        (style == Style::Filled && lines_alone, "--style filled: plotters, DXF and HP-GL have lines alone", write_lines),
+        (
+            style == Style::Filled && lines_alone,
+            "--style filled: plotters, DXF and HP-GL have lines alone",
+            write_lines,
+        ),
         (style == Style::Filled && stroke, "--stroke: --style filled draws no lines", write_lines),
         (style == Style::Filled && page.simplify.is_some(), "--simplify: --style filled draws no lines", write_lines),
         (
@@ -128,7 +135,11 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
             "choose .svg, .pdf or .hpgl",
         ),
         (strokes("hidden") && !hidden, "--stroke hidden: hidden lines are not drawn", "add --hidden dashed"),
-        (strokes("title") && page.title_block.is_empty(), "--stroke title: there is no title block", "add --title-block"),
+        (
+            strokes("title") && page.title_block.is_empty(),
+            "--stroke title: there is no title block",
+            "add --title-block",
+        ),
         (
             page.precision.is_some() && format == DrawingFormat::Hpgl,
             "--precision: HP-GL has steps of 1/40 mm",
@@ -148,7 +159,9 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
 pub(crate) fn scaled_page(args: &DrawArgs, page: PageSize, window: Option<f64>) -> Result<PageSize, Failure> {
     let Some(scale) = args.page.scale else { return Ok(page) };
     let Some(window) = window else {
-        return Err(Failure::usage("--scale: nothing is to scale in perspective").with_hint("add --camera-orthographic"));
+        return Err(
+            Failure::usage("--scale: nothing is to scale in perspective").with_hint("add --camera-orthographic")
+        );
     };
     let sheet = match page {
         PageSize::Sheet { width, height } => Some([width, height]),
@@ -175,7 +188,8 @@ pub(crate) fn check_fits(args: &DrawArgs, settings: &DrawingSettings, drawing: &
     };
     let sides = |[width, height]: [f64; 2]| format!("{width:.1} x {height:.1} mm");
     let what = format!("--scale: the drawing has {}, the sheet has room for {}", sides(size), sides(room));
-    Err(Failure::usage(what).with_hint(format!("--scale {fitting} fits; or choose a larger --page, a smaller --margin")))
+    Err(Failure::usage(what)
+        .with_hint(format!("--scale {fitting} fits; or choose a larger --page, a smaller --margin")))
 }
 
 /// Width and height of what is drawn.

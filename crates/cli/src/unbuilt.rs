@@ -44,7 +44,8 @@ mod tests {
         let cli = Cli::command();
         for command in cli.get_subcommands() {
             assert!(!verb(command.get_name()), "{}", command.get_name());
-            for option in command.get_arguments().filter_map(|a| a.get_long()).filter(|_| command.get_name() == "draw") {
+            for option in command.get_arguments().filter_map(|a| a.get_long()).filter(|_| command.get_name() == "draw")
+            {
                 assert!(!drawing_option(&format!("--{option}")), "{option}");
             }
         }

@@ -134,7 +134,8 @@ fn hpgl_draws_no_line_twice() {
     assert!(text.contains("SP3;") && text.contains("SP8;PW0.18;"), "{text}");
     let (mut at, mut drawn) = ([0; 2], HashSet::new());
     for instruction in text.split(';').map(str::trim) {
-        let Some((pen, points)) = instruction.split_at_checked(2).filter(|(name, _)| ["PU", "PD"].contains(name)) else {
+        let Some((pen, points)) = instruction.split_at_checked(2).filter(|(name, _)| ["PU", "PD"].contains(name))
+        else {
             continue;
         };
         let numbers: Vec<i32> = points.split(',').filter(|n| !n.is_empty()).map(|n| n.parse().unwrap()).collect();
@@ -189,7 +190,11 @@ fn options_that_do_not_suit_the_file_are_told() {
         (&["-o", "x.svg", "--unit", "m"], 2, "--scale"),
         (&["-o", "x.svg", "--scale", "0:1"], 2, "is no scale"),
         (&["-o", "x.svg", "--scale", "1:1", "--camera-view-angle", "30"], 2, "add --camera-orthographic"),
-        (&["-o", "x.svg", "--view", "front", "--scale", "15:1", "--page", "A4"], 2, "has 300.0 x 300.0 mm, the sheet has room for 200.0 x 287.0 mm"),
+        (
+            &["-o", "x.svg", "--view", "front", "--scale", "15:1", "--page", "A4"],
+            2,
+            "has 300.0 x 300.0 mm, the sheet has room for 200.0 x 287.0 mm",
+        ),
         (&["-o", "x.svg", "--view", "front", "--scale", "1:1", "--unit", "m"], 2, "--scale 1:2 fits"),
         (&["-o", "x.dxf", "--style", "filled-lines"], 0, "x.dxf: warning: filled regions are left out"),
         (&["-o", "x.svg", "--view", "front", "--scale", "10:1", "--page", "A4"], 0, ""),

@@ -69,7 +69,9 @@ impl Placement {
         let scale = if scale.is_finite() { scale } else { 0.0 };
         let sheet = match page {
             PageSize::Fit { .. } | PageSize::Scaled { sheet: None, .. } => size.map(|side| side * scale + 2.0 * margin),
-            PageSize::Sheet { width, height } | PageSize::Scaled { sheet: Some([width, height]), .. } => [width, height],
+            PageSize::Sheet { width, height } | PageSize::Scaled { sheet: Some([width, height]), .. } => {
+                [width, height]
+            }
         };
         let offset = [0, 1].map(|k| (sheet[k] - size[k] * scale) / 2.0 - low[k] * scale);
         Self { scale, offset, sheet }

@@ -84,7 +84,9 @@ pub use state::{Objects, State};
 pub use system_clock::SystemClock;
 pub use viewpoint::Viewpoint;
 
-pub use vitral_draw::{Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, PageSize, VisibilityStats};
+pub use vitral_draw::{
+    Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, PageSize, VisibilityStats,
+};
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
 pub use vitral_frame::drawing::{Line, LineClass, Region};
 pub use vitral_frame::{Drawing, Encoding, Filter, Frame, MipFilter, Plane, Sampler, Texture, Wrap};

@@ -147,7 +147,11 @@ mod tests {
         let file = |width, height| pdf(&sheet(width, height), &DrawingOptions::default());
         let has = |file: &[u8], text: &str| file.windows(text.len()).any(|part| part == text.as_bytes());
         let a4 = file(210.0, 297.0);
-        assert!(a4.starts_with(b"%PDF-1.5") && has(&a4, "/MediaBox [0 0 595.2756 841.8898]"), "{}", String::from_utf8_lossy(&a4));
+        assert!(
+            a4.starts_with(b"%PDF-1.5") && has(&a4, "/MediaBox [0 0 595.2756 841.8898]"),
+            "{}",
+            String::from_utf8_lossy(&a4)
+        );
         assert!(has(&a4, "/Name (8 hidden)") && has(&a4, "/Order [7 0 R 6 0 R 5 0 R]") && !has(&a4, "Date"));
         assert_eq!(a4, file(210.0, 297.0));
         // Pages of more than 5 m have a larger unit.

@@ -125,7 +125,8 @@ impl Ends {
         let size = [0, 1].map(|k| (i64::from(high[k]) - i64::from(low[k])).max(0));
         let side = size[0].max(size[1]) / along + 1;
         let [columns, rows] = size.map(|length| length / side + 1);
-        let mut grid = Self { lines: count, low, side, columns, rows, cells: vec![Vec::new(); (columns * rows) as usize] };
+        let mut grid =
+            Self { lines: count, low, side, columns, rows, cells: vec![Vec::new(); (columns * rows) as usize] };
         for (point, end) in ends() {
             let [x, y] = grid.cell(point);
             grid.cells[(y * columns + x) as usize].push((point, end));

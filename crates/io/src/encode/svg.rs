@@ -164,7 +164,8 @@ mod tests {
     #[test]
     fn a_coarse_precision_makes_coarse_units_and_faces_are_told() {
         let lines = vec![line(LineClass::Contour, 0, &[[0.0, 0.0], [1.26, 0.01], [1.26, 0.04]])];
-        let region = Region { surface: 3, material: None, color: [0; 3], rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]] };
+        let region =
+            Region { surface: 3, material: None, color: [0; 3], rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]] };
         let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
         let options = DrawingOptions { decimals: 1, surface_ids: true, ..DrawingOptions::default() };
         let text = String::from_utf8(svg(&drawing, &options)).unwrap();

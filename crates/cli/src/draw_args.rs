@@ -5,7 +5,7 @@ use crate::render_args::{CameraArgs, EyeArgs, ProcessArgs, ProgressWhen};
 use crate::values;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use vitral::{LineClass, LineClasses, MaterialOverride};
+use vitral::{LineClass, LineClasses, MaterialOverride, Pens, TitleBlock};
 
 /// Options of `vitral draw`.
 #[derive(Args, Debug, Default)]
@@ -13,7 +13,7 @@ use vitral::{LineClass, LineClasses, MaterialOverride};
 pub(crate) struct DrawArgs {
     #[arg(required_unless_present = "load_state", value_name = "MODEL", help = model_help())]
     pub(crate) models: Vec<PathBuf>,
-    /// Where the drawing goes: .svg, or `-` for an SVG on standard output; {model} expands
+    /// Where the drawing goes: .svg, .pdf, .dxf, .hpgl or .plt; or `-` for an SVG on standard output; {model} expands
     #[arg(long, short, value_name = "OUT", required = true)]
     pub(crate) output: PathBuf,
     #[command(flatten)]
@@ -51,6 +51,8 @@ pub(crate) struct LineArgs {
     /// Edges at a larger angle are creases, 0 (all) to 180 (none) [default: 30]
     #[arg(long, value_name = "DEGREES", value_parser = values::half_turn, allow_negative_numbers = true)]
     pub(crate) crease_angle: Option<f64>,
+    #[arg(long, value_name = "CLASS=MM", value_parser = stroke, help = stroke_help())]
+    pub(crate) stroke: Vec<(String, f64)>,
     /// Override a material's property, as in `render`; a material that is told apart makes a line; repeatable
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material)]
     pub(crate) material: Vec<MaterialOverride>,
@@ -93,6 +95,53 @@ pub(crate) struct PageArgs {
     /// Distance of the drawing from the border of the sheet in millimetres [default: 5]
     #[arg(long, value_name = "MM", value_parser = margin, allow_negative_numbers = true)]
     pub(crate) margin: Option<f64>,
+    /// Millimetres on paper to millimetres of the model, as 1:2 or .5; not in perspective [default: as large as the sheet]
+    #[arg(long, value_name = "RATIO", value_parser = scale, conflicts_with = "perspective")]
+    pub(crate) scale: Option<f64>,
+    /// The unit of the model's coordinates [default: mm]
+    #[arg(long, value_name = "UNIT", value_enum, requires = "scale")]
+    pub(crate) unit: Option<ModelUnit>,
+    /// The step of coordinates in millimetres: 1, .1, .01 or .001 [default: .001]
+    #[arg(long, value_name = "MM", value_parser = decimals)]
+    pub(crate) precision: Option<u8>,
+    /// Leave out corners of lines that are at most MM from the line without them [default: 0]
+    #[arg(long, value_name = "MM", value_parser = values::not_negative, allow_negative_numbers = true)]
+    pub(crate) simplify: Option<f64>,
+    /// A row of a table below the drawing, in strokes on a layer of their own; repeatable
+    #[arg(long, value_name = "KEY=VALUE", value_parser = title_row)]
+    pub(crate) title_block: Vec<(String, String)>,
+    /// For a plotter: lines alone, joined, each once, with short ways in the air; dashes as lines. HP-GL is always so
+    #[arg(long)]
+    pub(crate) plotter: bool,
+    /// Filled regions of SVG files tell the id of their surface as data-face
+    #[arg(long)]
+    pub(crate) svg_ids: bool,
+}
+
+/// Units of models.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ModelUnit {
+    /// Millimetres
+    #[default]
+    Mm,
+    /// Centimetres
+    Cm,
+    /// Inches
+    In,
+    /// Metres
+    M,
+}
+
+impl ModelUnit {
+    /// Its length.
+    pub(crate) fn millimetres(self) -> f64 {
+        match self {
+            Self::Mm => 1.0,
+            Self::Cm => 10.0,
+            Self::In => 25.4,
+            Self::M => 1000.0,
+        }
+    }
 }
 
 /// A sheet of paper.
@@ -170,6 +219,53 @@ fn page_size(text: &str) -> Result<Sheet, String> {
     }
 }
 
+/// The help of `--stroke`.
+fn stroke_help() -> String {
+    let mut usual = Pens::default();
+    let mut width = |name: &str| usual.width_mut(name).map_or(0.0, |width| *width);
+    let names: Vec<String> = Pens::names().map(|name| format!("{name}={}", width(name))).collect();
+    format!("Width of lines in millimetres; repeatable [default: {}]", names.join(", "))
+}
+
+/// `contour=0.5`.
+fn stroke(text: &str) -> Result<(String, f64), String> {
+    let (name, width) = text.split_once('=').ok_or("CLASS=WIDTH is required, such as contour=0.5")?;
+    if !Pens::names().any(|known| known == name) {
+        return Err(format!("`{name}` is not one of {}", Pens::names().collect::<Vec<_>>().join(", ")));
+    }
+    let width = values::positive(width)?;
+    if width > 100.0 { Err("at most 100 mm is required".to_owned()) } else { Ok((name.to_owned(), width)) }
+}
+
+/// `1:2`, `2:1` or `0.5`.
+fn scale(text: &str) -> Result<f64, String> {
+    let wrong = || format!("`{text}` is no scale: 1:2, 2:1 or a number above 0 is required");
+    let ratio = match text.split_once(':') {
+        Some((paper, model)) => values::positive(paper).and_then(|paper| Ok(paper / values::positive(model)?)),
+        None => values::positive(text),
+    };
+    ratio.ok().filter(|ratio| ratio.is_finite() && *ratio > 0.0).ok_or_else(wrong)
+}
+
+/// The decimals of a precision.
+fn decimals(text: &str) -> Result<u8, String> {
+    let step = values::number(text)?;
+    let known = [1.0, 0.1, 0.01, 0.001].iter().position(|&known| known == step);
+    known.map(|decimals| decimals as u8).ok_or_else(|| "1, .1, .01 or .001 is required".to_owned())
+}
+
+/// `Scale=1:2`, in letters that there are strokes for.
+fn title_row(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or("KEY=VALUE is required, such as Scale=1:2")?;
+    let row = (key.to_owned(), value.to_owned());
+    match TitleBlock::new(std::slice::from_ref(&row)) {
+        Ok(_) => Ok(row),
+        Err(letter) => {
+            Err(format!("there are no strokes for `{letter}`; letters are A to Z, a to z, 0 to 9 and punctuation"))
+        }
+    }
+}
+
 /// A distance of at least 0 mm.
 fn margin(text: &str) -> Result<f64, String> {
     let margin = values::number(text)?;
@@ -190,6 +286,14 @@ mod tests {
         assert_eq!((page_size("fit"), page_size("a4")), (Ok(Sheet::Fit), Ok(Sheet::Size([210.0, 297.0]))));
         assert_eq!(page_size("20x10.5mm"), Ok(Sheet::Size([20.0, 10.5])));
         assert!(["A9", "20x10", "0x3mm", "-1x1mm", "1e9x1mm"].iter().all(|text| page_size(text).is_err()));
+        assert_eq!((scale("1:2"), scale("2.5"), scale("25.4:1")), (Ok(0.5), Ok(2.5), Ok(25.4)));
+        assert!(["1:0", "0", "-1:2", "1:2:3", "a"].iter().all(|text| scale(text).is_err()));
+        assert_eq!((decimals(".001"), decimals("1")), (Ok(3), Ok(0)));
+        assert!(decimals("0.002").is_err() && stroke("contour").is_err() && stroke("contour=0").is_err());
+        assert_eq!(stroke("hidden=.2"), Ok(("hidden".to_owned(), 0.2)));
+        assert!(stroke("outline=1").unwrap_err().contains("contour, boundary"));
+        assert_eq!(title_row("Scale=1:2"), Ok(("Scale".to_owned(), "1:2".to_owned())));
+        assert!(title_row("Scale").is_err() && title_row("Maß=1").unwrap_err().contains("`ß`"));
         assert_eq!(margin("0"), Ok(0.0));
         assert!(margin("-1").is_err());
     }

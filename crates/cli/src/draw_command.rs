@@ -1,29 +1,26 @@
 //! `vitral draw`: models in, a vector drawing out.
 
 use crate::draw_args::{DrawArgs, Hidden, PageArgs, Sheet, Style};
+use crate::draw_file::{DrawFile, check_fits, scaled_page};
 use crate::interrupt::{self, INTERRUPTED};
-use crate::outputs::{expand, model_name};
 use crate::progress::Progress;
 use crate::report::{self, Failure};
 use crate::resolve::{overlay_files, save_state, set_viewpoint};
 use crate::values;
 use serde_json::json;
-use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
-use vitral::{DrawingSettings, Drawn, LineClasses, PageSize, Renderer, State, SvgOptions, World};
-
-/// Exit code for what is not supported.
-const UNSUPPORTED: u8 = 4;
+use vitral::{DrawingSettings, Drawn, LineClasses, PageSize, Renderer, State, World};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     let start = Instant::now();
     let state = state_of(args)?;
-    let settings = settings_of(args)?;
-    let output = output_of(args, &state)?;
-    if let Some(file) = &args.process.save_state {
-        save_state(&state, file)?;
+    let mut settings = settings_of(args)?;
+    let file = DrawFile::new(args, &state)?;
+    settings.page = file.page_above_title(settings.page, settings.margin)?;
+    if let Some(path) = &args.process.save_state {
+        save_state(&state, path)?;
     }
 
     // Set the limits.
@@ -36,7 +33,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     let cancelled = execution.budget.cancel_flag();
     interrupt::listen(cancelled.clone());
 
-    let result = draw(args, &state, &settings, &output, execution, start);
+    let result = draw(args, &state, settings, &file, execution, start);
     if cancelled.load(Ordering::Relaxed) { Ok(INTERRUPTED) } else { result.map(|()| 0) }
 }
 
@@ -44,8 +41,8 @@ pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
 fn draw(
     args: &DrawArgs,
     state: &State,
-    settings: &DrawingSettings,
-    output: &Path,
+    mut settings: DrawingSettings,
+    file: &DrawFile,
     execution: vitral::Execution,
     start: Instant,
 ) -> Result<(), Failure> {
@@ -61,18 +58,25 @@ fn draw(
     let mut renderer = Renderer::with_execution(scene, execution)?;
     projected(args, state, renderer.world()).apply(&mut renderer)?;
     let load_seconds = start.elapsed().as_secs_f64();
+    settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
     let drawn = match style_of(args) {
-        Style::HiddenLine => renderer.draw(settings)?,
-        Style::Filled | Style::FilledLines => renderer.draw_filled(settings)?,
+        Style::HiddenLine => renderer.draw(&settings)?,
+        Style::Filled | Style::FilledLines => renderer.draw_filled(&settings)?,
     };
+    check_fits(args, &settings, &drawn.drawing)?;
     let draw_seconds = start.elapsed().as_secs_f64() - load_seconds;
-    let dashes = SvgOptions::default().hidden_dashes.filter(|_| args.lines.hidden != Some(Hidden::Solid));
-    let file = vitral::drawing_to_svg(&drawn.drawing, &SvgOptions { hidden_dashes: dashes, ..SvgOptions::default() });
-    report::write(output, &file)?;
-    if args.report.stats {
+    if let Some(warning) = file.warning(&drawn.drawing).filter(|_| !args.report.quiet) {
+        report::warnings(&[warning]);
+    }
+    let counted = args.report.stats.then(|| stats_of(&drawn));
+    let bytes = file.encode(drawn.drawing, settings.margin);
+    report::write(&file.path, &bytes)?;
+    if let Some(mut stats) = counted {
         use std::io::Write;
-        let seconds = [load_seconds, draw_seconds, start.elapsed().as_secs_f64()];
-        let stats = stats_of(&drawn, seconds, file.len(), renderer.execution().budget.peak());
+        let total = start.elapsed().as_secs_f64();
+        stats["bytes"] = bytes.len().into();
+        stats["charged-bytes"] = renderer.execution().budget.peak().into();
+        stats["seconds"] = json!({ "load": load_seconds, "draw": draw_seconds, "total": total });
         // Diagnostics that nobody can read are not worth failing for.
         let _ = std::io::stderr().lock().write_all(&report::json(&stats));
     }
@@ -161,33 +165,8 @@ fn page_of(args: &PageArgs) -> Result<PageSize, Failure> {
     })
 }
 
-/// The file to write.
-fn output_of(args: &DrawArgs, state: &State) -> Result<PathBuf, Failure> {
-    if report::is_standard(&args.output) {
-        if args.process.save_state.as_deref().is_some_and(report::is_standard) {
-            return Err(Failure::usage("--output - and --save-state - both want standard output"));
-        }
-        return Ok(args.output.clone());
-    }
-    let model = model_name(state.models.first().map_or("", String::as_str));
-    let path = PathBuf::from(expand(&args.output.to_string_lossy(), &model, 0)?);
-    match path.extension().map(|e| e.to_ascii_lowercase()) {
-        Some(extension) if extension == "svg" => {}
-        Some(extension) if extension == "pdf" || extension == "dxf" || extension == "hpgl" => {
-            let what = format!("{}: drawings of this format are not there yet", path.display());
-            return Err(Failure::with_code(UNSUPPORTED, what).with_hint(".svg is written"));
-        }
-        _ => {
-            let what = format!("{}: not a format of drawings", path.display());
-            return Err(Failure::with_code(UNSUPPORTED, what).with_hint(".svg is written"));
-        }
-    }
-    vitral::picture::check_place(&path)?;
-    Ok(path)
-}
-
-/// Counters and times.
-fn stats_of(drawn: &Drawn, [load, draw, total]: [f64; 3], bytes: usize, peak: u64) -> serde_json::Value {
+/// Counters.
+fn stats_of(drawn: &Drawn) -> serde_json::Value {
     let (stats, lines) = (&drawn.stats, &drawn.drawing.lines);
     json!({
         "triangles": stats.triangles,
@@ -204,8 +183,5 @@ fn stats_of(drawn: &Drawn, [load, draw, total]: [f64; 3], bytes: usize, peak: u6
         "points": lines.iter().map(|line| line.points.len()).sum::<usize>(),
         "visible-millimetres": drawn.drawing.length(|line| line.layers == 0),
         "hidden-millimetres": drawn.drawing.length(|line| line.layers > 0),
-        "bytes": bytes,
-        "charged-bytes": peak,
-        "seconds": { "load": load, "draw": draw, "total": total },
     })
 }

@@ -11,6 +11,7 @@ mod compare_command;
 mod depth_cue;
 mod draw_args;
 mod draw_command;
+mod draw_file;
 mod exit;
 mod fields;
 mod help;

@@ -5,7 +5,7 @@
 const VERBS: [&str; 2] = ["lab", "batch"];
 
 /// Options of `draw` to come.
-const DRAWING_OPTIONS: [&str; 23] = [
+const DRAWING_OPTIONS: [&str; 15] = [
     "--algorithm",
     "--angle",
     "--color-by",
@@ -14,19 +14,11 @@ const DRAWING_OPTIONS: [&str; 23] = [
     "--hatch",
     "--hide-tangent",
     "--max-segments",
-    "--plotter",
-    "--precision",
-    "--scale",
     "--seams",
     "--section-plane",
     "--shades",
     "--shadows",
-    "--simplify",
-    "--stroke",
-    "--svg-ids",
-    "--title-block",
     "--transparency",
-    "--unit",
     "--views",
     "--light",
 ];

@@ -5,7 +5,7 @@
 
 use crate::chains::{Step, chains};
 use crate::fill::PageRegion;
-use crate::page_mesh::NONE;
+use crate::page_mesh::{NONE, PAGE_UNITS};
 use crate::strokes::Stroke;
 use vitral_frame::Drawing;
 use vitral_frame::drawing::{Line, Region};
@@ -27,6 +27,13 @@ pub enum PageSize {
         width: f64,
         /// Height.
         height: f64,
+    },
+    /// A drawing to scale.
+    Scaled {
+        /// Millimetres on paper along the longer side of the camera's window.
+        window: f64,
+        /// Width and height of the sheet; `None`: as large as the drawing.
+        sheet: Option<[f64; 2]>,
     },
 }
 
@@ -57,11 +64,14 @@ impl Placement {
             PageSize::Sheet { width, height } => {
                 ratio(width - 2.0 * margin, size[0]).min(ratio(height - 2.0 * margin, size[1]))
             }
+            PageSize::Scaled { window, .. } => window / f64::from(PAGE_UNITS),
         };
         let scale = if scale.is_finite() { scale } else { 0.0 };
         let sheet = match page {
-            PageSize::Fit { .. } => size.map(|side| side * scale + 2.0 * margin),
-            PageSize::Sheet { width, height } => [width, height],
+            PageSize::Fit { .. } | PageSize::Scaled { sheet: None, .. } => size.map(|side| side * scale + 2.0 * margin),
+            PageSize::Sheet { width, height } | PageSize::Scaled { sheet: Some([width, height]), .. } => {
+                [width, height]
+            }
         };
         let offset = [0, 1].map(|k| (sheet[k] - size[k] * scale) / 2.0 - low[k] * scale);
         Self { scale, offset, sheet }
@@ -137,6 +147,16 @@ mod tests {
         let sheet = lay_out(&strokes, &[], PageSize::Sheet { width: 50.0, height: 90.0 }, 5.0);
         assert_eq!((sheet.width, sheet.height), (50.0, 90.0));
         assert_eq!(sheet.lines[0].points, [[5.0, 35.0], [45.0, 35.0], [45.0, 55.0]]);
+    }
+
+    #[test]
+    fn a_drawing_to_scale_is_as_large_as_its_window_says() {
+        let half = f64::from(PAGE_UNITS) / 2.0;
+        let strokes = [line([0.0, 0.0], [half, 0.0])];
+        let fit = lay_out(&strokes, &[], PageSize::Scaled { window: 40.0, sheet: None }, 5.0);
+        assert_eq!((fit.width, fit.height), (30.0, 10.0));
+        let sheet = lay_out(&strokes, &[], PageSize::Scaled { window: 40.0, sheet: Some([30.0, 20.0]) }, 5.0);
+        assert_eq!(sheet.lines[0].points, [[5.0, 10.0], [25.0, 10.0]]);
     }
 
     #[test]

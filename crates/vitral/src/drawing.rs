@@ -1,7 +1,9 @@
 //! Vector drawings: the lines and surfaces that the renderer's camera sees, and files of them.
 
-use crate::{Camera, Error, Renderer};
+use crate::{Camera, Error, Projection, Renderer};
 use vitral_draw::{DrawingSettings, Drawn, FaceLook, draw};
+use vitral_frame::Drawing;
+use vitral_io::encode::{self, DrawingOptions};
 use vitral_light::constant_color;
 use vitral_math::color::{byte_from_unit, srgb_from_linear};
 use vitral_math::{DVec3, Vec3};
@@ -15,12 +17,12 @@ impl Renderer {
     /// Draws the lines that [`frame_camera`](Self::frame_camera) sees: the same window as [`render`](Self::render) shows.
     ///
     /// ```
-    /// use vitral::{DrawingSettings, Lens, SvgOptions, drawing_to_svg};
+    /// use vitral::{DrawingFormat, DrawingOptions, DrawingSettings, Lens};
     ///
     /// let mut renderer = vitral::open("builtin:teapot")?;
     /// renderer.lens = Lens::Parallel;
     /// let drawn = renderer.draw(&DrawingSettings::default())?;
-    /// let file = drawing_to_svg(&drawn.drawing, &SvgOptions::default());
+    /// let file = DrawingFormat::Svg.encode(&drawn.drawing, &DrawingOptions::default());
     /// assert!(file.starts_with(b"<svg"));
     /// # Ok::<(), vitral::Error>(())
     /// ```
@@ -48,6 +50,54 @@ impl Renderer {
         };
         let palette = Some(&palette as &vitral_draw::Palette<'_>);
         Ok(draw(self.world(), &camera, self.aspect(), settings, palette, &execution.workers, &execution.budget)?)
+    }
+
+    /// The longer side of the window that a drawing shows, in units of the world; `None` in perspective, where nothing is to scale.
+    pub fn drawing_window(&self) -> Option<f64> {
+        match self.frame_camera().projection {
+            Projection::Parallel { height } => Some(height * self.aspect().max(1.0)),
+            Projection::Perspective { .. } => None,
+        }
+    }
+}
+
+/// Formats of drawings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrawingFormat {
+    /// SVG.
+    Svg,
+    /// PDF.
+    Pdf,
+    /// DXF of AutoCAD release 12: lines alone.
+    Dxf,
+    /// HP-GL: lines alone.
+    Hpgl,
+}
+
+impl DrawingFormat {
+    /// All formats with the extensions of their files.
+    pub const ALL: [(Self, &'static [&'static str]); 4] =
+        [(Self::Svg, &["svg"]), (Self::Pdf, &["pdf"]), (Self::Dxf, &["dxf"]), (Self::Hpgl, &["hpgl", "plt"])];
+
+    /// The format of files with this extension.
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        let known = |names: &[&str]| names.iter().any(|name| name.eq_ignore_ascii_case(extension));
+        Self::ALL.into_iter().find(|(_, names)| known(names)).map(|(format, _)| format)
+    }
+
+    /// Whether files have filled regions.
+    pub fn has_fills(self) -> bool {
+        matches!(self, Self::Svg | Self::Pdf)
+    }
+
+    /// Makes the file.
+    pub fn encode(self, drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
+        match self {
+            Self::Svg => encode::svg(drawing, options),
+            Self::Pdf => encode::pdf(drawing, options),
+            Self::Dxf => encode::dxf(drawing, options),
+            Self::Hpgl => encode::hpgl(drawing, options),
+        }
     }
 }
 

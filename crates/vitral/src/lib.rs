@@ -69,6 +69,7 @@ pub mod state;
 mod system_clock;
 mod viewpoint;
 
+pub use drawing::DrawingFormat;
 pub use error::Error;
 pub use exercise::{EXERCISES, Exercise};
 pub use files::{FolderResolver, read};
@@ -91,7 +92,7 @@ pub use vitral_draw::{
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
 pub use vitral_frame::drawing::{Line, LineClass, Region};
 pub use vitral_frame::{Drawing, Encoding, Filter, Frame, MipFilter, Plane, Sampler, Texture, Wrap};
-pub use vitral_io::encode::{SvgOptions, svg as drawing_to_svg};
+pub use vitral_io::encode::{DrawingOptions, Pens, Polyline, TitleBlock, for_plotter, simplify};
 pub use vitral_io::{Error as InputError, Format, NoFiles, ResolveError, Resolver};
 pub use vitral_light::{
     AlphaMode, AreaShape, Attenuation, Illumination, Light, LightKind, Material, Reflectance, Rgb, TextureRef,

@@ -12,10 +12,10 @@ pub(crate) struct Prepared {
     pub(crate) no_wasm: Option<String>,
 }
 
-/// Looks for node, the WebAssembly target and Mesa's OSMesa, and installs them if they are missing.
+/// Looks for node, the WebAssembly target, Mesa's OSMesa and readers of drawings, and installs them if they are missing.
 pub(crate) fn prepare() -> Prepared {
     let problems: Vec<String> = [wasm_target(), node()].into_iter().filter_map(Result::err).collect();
-    for problem in problems.iter().cloned().chain(mesa().err()) {
+    for problem in problems.iter().cloned().chain([mesa(), drawing_readers()].into_iter().filter_map(Result::err)) {
         println!("could not install: {problem}");
     }
     Prepared { no_wasm: (!problems.is_empty()).then(|| problems.join("; ")) }
@@ -65,6 +65,11 @@ fn wasm_target() -> shell::Outcome {
 /// are not there.
 fn mesa() -> shell::Outcome {
     debian_packages(&["libosmesa6", "binutils"])
+}
+
+/// Programs that read PDF and DXF files of drawings. Tests that want them say so when they are not there.
+fn drawing_readers() -> shell::Outcome {
+    debian_packages(&["poppler-utils", "mupdf-tools", "python3-ezdxf"])
 }
 
 fn node() -> shell::Outcome {

@@ -7,22 +7,40 @@
 //! | [`jpeg()`] | small opaque pictures |
 //! | [`ppm()`] | the simplest format there is |
 //! | [`npy_f32`], [`npy_f32x3`], [`npy_u32`] | channels without loss, for numpy |
-//! | [`svg()`] | drawings |
+//! | [`svg()`] | drawings for browsers and drawing programs |
+//! | [`pdf()`] | drawings for print |
+//! | [`dxf()`] | drawings for CAD programs |
+//! | [`hpgl()`] | drawings for plotters |
 //!
-//! All but the last take planes with the top row first and straight alpha; all give the whole file.
+//! Those of pictures take planes with the top row first and straight alpha; all give the whole file. [`simplify()`], [`for_plotter`]
+//! and [`TitleBlock`] change a drawing before it is written.
 
+mod dxf;
+mod hpgl;
 mod jpeg;
 mod npy;
+mod pdf;
+mod pens;
 mod pixels;
+mod plotter;
 mod png;
 mod ppm;
+mod simplify;
 mod svg;
+mod title_block;
 
+pub use dxf::dxf;
+pub use hpgl::hpgl;
 pub use jpeg::jpeg;
 pub use npy::{npy_f32, npy_f32x3, npy_u32};
+pub use pdf::pdf;
+pub use pens::{DrawingOptions, HIDDEN, Pens, Polyline, TITLE};
+pub use plotter::for_plotter;
 pub use png::{PngOptions, png, png_with_text, png16_gray};
 pub use ppm::ppm;
-pub use svg::{SvgOptions, svg};
+pub use simplify::simplify;
+pub use svg::svg;
+pub use title_block::TitleBlock;
 
 use crate::Error;
 use vitral_frame::Plane;

@@ -1,144 +1,119 @@
 //! SVG: a drawing with one group for each class of lines.
 //!
-//! The unit of the file is the micrometre: the page is a view box of whole numbers, and paths go from corner to corner in relative
-//! steps, which are short and whole. Groups are layers for Inkscape, and `data-class` tells the class to whoever reads the file. They
+//! The unit of the file is the step of the precision, usually a micrometre: the page is a view box of whole numbers, and paths go from
+//! corner to corner in relative steps, which are short and whole. Groups are layers for Inkscape, and `data-class` tells the class to whoever reads the file. They
 //! come in the order in which they are painted: fills, hidden lines, then visible lines, the most important last.
 //!
 //! Source: \[SVG\].
 
+use super::pens::{DrawingOptions, FILL, Layer, Precision, layers};
 use std::fmt::Write;
 use vitral_frame::Drawing;
-use vitral_frame::drawing::{Line, LineClass, Region};
+use vitral_frame::drawing::Region;
 
-/// Micrometres in a millimetre.
-const UNITS: f64 = 1000.0;
 /// Points of a path in a line of the file: editors and version control choke on longer ones.
 const POINTS_A_LINE: usize = 16;
 
-/// How lines look.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SvgOptions {
-    /// Widths of visible lines in millimetres, in the order of [`LineClass::ALL`].
-    pub widths: [f64; 7],
-    /// Width of hidden lines in millimetres.
-    pub hidden_width: f64,
-    /// Lengths of dashes and gaps of hidden lines in millimetres; `None`: solid.
-    pub hidden_dashes: Option<[f64; 2]>,
-}
-
-impl Default for SvgOptions {
-    /// The widths of ISO 128: wide lines for outlines, narrow ones inside, thin dashes where lines are hidden.
-    fn default() -> Self {
-        let widths = LineClass::ALL.map(|(class, ..)| match class {
-            LineClass::Contour | LineClass::Boundary => 0.5,
-            LineClass::Section => 0.7,
-            LineClass::Smooth => 0.18,
-            _ => 0.35,
-        });
-        Self { widths, hidden_width: 0.18, hidden_dashes: Some([2.0, 1.0]) }
-    }
-}
-
 /// Writes a drawing.
-pub fn svg(drawing: &Drawing, options: &SvgOptions) -> Vec<u8> {
-    let [width, height] = [drawing.width, drawing.height].map(units);
+pub fn svg(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
+    let precision = options.precision();
+    let [width, height] = [drawing.width, drawing.height].map(|side| precision.steps(side));
+    let millimetres = |steps| f64::from(steps) / precision.steps_a_millimetre;
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
          width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {width} {height}\">\n",
-        f64::from(width) / UNITS,
-        f64::from(height) / UNITS,
+        millimetres(width),
+        millimetres(height),
     );
-    regions(&mut out, &drawing.regions, height);
-
-    // Hidden lines of all classes are one layer, below the visible ones.
-    let mut pen = format!("stroke-width=\"{}\"", units(options.hidden_width));
-    if let Some([dash, gap]) = options.hidden_dashes {
-        let _ = write!(pen, " stroke-dasharray=\"{} {}\"", units(dash), units(gap));
-    }
-    let hidden = drawing.lines.iter().filter(|line| line.layers > 0);
-    lines(&mut out, hidden, "hidden", LineClass::ALL.len() + 1, &pen, height);
-    for (i, (class, name, _)) in LineClass::ALL.iter().enumerate().rev() {
-        let visible = drawing.lines.iter().filter(|line| line.layers == 0 && line.class == *class);
-        lines(&mut out, visible, name, i + 1, &format!("stroke-width=\"{}\"", units(options.widths[i])), height);
-    }
+    let page = Page { precision, height };
+    page.regions(&mut out, &drawing.regions, options.surface_ids);
+    layers(drawing, options).iter().for_each(|layer| page.lines(&mut out, layer));
     out.push_str("</svg>\n");
     out.into_bytes()
 }
 
-/// Whole micrometres.
-fn units(millimetres: f64) -> i32 {
-    (millimetres * UNITS).round() as i32
-}
-
-/// A group of lines, if there are any.
-fn lines<'l>(
-    out: &mut String,
-    lines: impl Iterator<Item = &'l Line>,
-    name: &str,
-    layer: usize,
-    pen: &str,
+/// The unit of the file, and its height in it.
+struct Page {
+    precision: Precision,
     height: i32,
-) {
-    let mut lines = lines.peekable();
-    if lines.peek().is_none() {
-        return;
-    }
-    let _ = writeln!(
-        out,
-        "<g id=\"{name}\" inkscape:groupmode=\"layer\" inkscape:label=\"{layer} {name}\" data-class=\"{name}\" fill=\"none\" \
-         stroke=\"#000\" {pen} stroke-linecap=\"round\" stroke-linejoin=\"round\">"
-    );
-    for line in lines {
-        let closed = line.points.len() > 3 && line.points.first() == line.points.last();
-        let corners = if closed { &line.points[..line.points.len() - 1] } else { &line.points[..] };
-        out.push_str("<path d=\"");
-        path(out, corners, closed, height);
-        out.push_str("\"/>\n");
-    }
-    out.push_str("</g>\n");
 }
 
-/// The group of fills, if there are any.
-fn regions(out: &mut String, regions: &[Region], height: i32) {
-    if regions.is_empty() {
-        return;
-    }
-    out.push_str("<g id=\"fill\" inkscape:groupmode=\"layer\" inkscape:label=\"0 fill\" data-class=\"fill\" fill-rule=\"evenodd\">\n");
-    for region in regions {
-        let [red, green, blue] = region.color;
-        let _ = write!(out, "<path fill=\"#{red:02x}{green:02x}{blue:02x}\" d=\"");
-        region.rings.iter().for_each(|ring| path(out, ring, true, height));
-        out.push_str("\"/>\n");
-    }
-    out.push_str("</g>\n");
-}
-
-/// A path through points of the page, which begin with the lower left corner; files begin with the upper left one.
-fn path(out: &mut String, points: &[[f64; 2]], closed: bool, height: i32) {
-    let mut at = [0, 0];
-    for (i, point) in points.iter().enumerate() {
-        let next = [units(point[0]), height - units(point[1])];
-        let [dx, dy] = [next[0] - at[0], next[1] - at[1]];
-        at = next;
-        match i {
-            0 => out.push('M'),
-            1 => out.push('l'),
-            _ if i.is_multiple_of(POINTS_A_LINE) => out.push('\n'),
-            // A minus sign separates numbers as well.
-            _ if dx >= 0 => out.push(' '),
-            _ => {}
+impl Page {
+    /// A group of lines.
+    fn lines(&self, out: &mut String, layer: &Layer<'_>) {
+        // Widths and dashes may be finer than the precision of corners.
+        let length = |millimetres: f64| (millimetres * self.precision.steps_a_millimetre * 1000.0).round() / 1000.0;
+        let (name, number) = (layer.name, layer.number);
+        let _ = write!(
+            out,
+            "<g id=\"{name}\" inkscape:groupmode=\"layer\" inkscape:label=\"{number} {name}\" data-class=\"{name}\" \
+             fill=\"none\" stroke=\"#000\" stroke-width=\"{}\"",
+            length(layer.width)
+        );
+        if let Some([dash, gap]) = layer.dashes {
+            let _ = write!(out, " stroke-dasharray=\"{} {}\"", length(dash), length(gap));
         }
-        let separator = if dy >= 0 { " " } else { "" };
-        let _ = write!(out, "{dx}{separator}{dy}");
+        out.push_str(" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n");
+        for (corners, closed) in layer.lines.iter().filter_map(|line| self.precision.line(line)) {
+            out.push_str("<path d=\"");
+            self.path(out, &corners, closed);
+            out.push_str("\"/>\n");
+        }
+        out.push_str("</g>\n");
     }
-    if closed {
-        out.push('z');
+
+    /// The group of fills, if there are any.
+    fn regions(&self, out: &mut String, regions: &[Region], surface_ids: bool) {
+        if regions.is_empty() {
+            return;
+        }
+        let _ = writeln!(
+            out,
+            "<g id=\"{FILL}\" inkscape:groupmode=\"layer\" inkscape:label=\"0 {FILL}\" data-class=\"{FILL}\" \
+             fill-rule=\"evenodd\">"
+        );
+        for region in regions {
+            let [red, green, blue] = region.color;
+            out.push_str("<path");
+            if surface_ids {
+                let _ = write!(out, " data-face=\"{}\"", region.surface);
+            }
+            let _ = write!(out, " fill=\"#{red:02x}{green:02x}{blue:02x}\" d=\"");
+            region.rings.iter().for_each(|ring| self.path(out, &self.precision.ring(ring), true));
+            out.push_str("\"/>\n");
+        }
+        out.push_str("</g>\n");
+    }
+
+    /// A path through corners of the page, which begin with the lower left one; files begin with the upper left one.
+    fn path(&self, out: &mut String, corners: &[[i32; 2]], closed: bool) {
+        let mut at = [0, 0];
+        for (i, corner) in corners.iter().enumerate() {
+            let next = [corner[0], self.height - corner[1]];
+            let [dx, dy] = [next[0] - at[0], next[1] - at[1]];
+            at = next;
+            match i {
+                0 => out.push('M'),
+                1 => out.push('l'),
+                _ if i.is_multiple_of(POINTS_A_LINE) => out.push('\n'),
+                // A minus sign separates numbers as well.
+                _ if dx >= 0 => out.push(' '),
+                _ => {}
+            }
+            let separator = if dy >= 0 { " " } else { "" };
+            let _ = write!(out, "{dx}{separator}{dy}");
+        }
+        if closed {
+            out.push('z');
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::pens::Pens;
     use super::*;
+    use vitral_frame::drawing::{Line, LineClass};
 
     fn line(class: LineClass, layers: u32, points: &[[f64; 2]]) -> Line {
         Line { class, layers, points: points.to_vec() }
@@ -155,7 +130,7 @@ mod tests {
         let ring = square[..4].to_vec();
         let region = Region { surface: 3, material: None, color: [255, 0, 16], rings: vec![ring] };
         let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
-        let text = String::from_utf8(svg(&drawing, &SvgOptions::default())).unwrap();
+        let text = String::from_utf8(svg(&drawing, &DrawingOptions::default())).unwrap();
         let expected = "\
 <svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"3mm\" height=\"2mm\" viewBox=\"0 0 3000 2000\">
 <g id=\"fill\" inkscape:groupmode=\"layer\" inkscape:label=\"0 fill\" data-class=\"fill\" fill-rule=\"evenodd\">
@@ -178,10 +153,24 @@ mod tests {
     #[test]
     fn solid_hidden_lines_have_no_dashes_and_nothing_has_no_groups() {
         let lines = vec![line(LineClass::Smooth, 1, &[[0.0, 0.0], [1.0, 0.0]])];
-        let options = SvgOptions { hidden_dashes: None, ..SvgOptions::default() };
+        let pens = Pens { hidden_dashes: None, ..Pens::default() };
+        let options = DrawingOptions { pens, ..DrawingOptions::default() };
         let text = String::from_utf8(svg(&Drawing { lines, ..Drawing::default() }, &options)).unwrap();
         assert!(text.contains("data-class=\"hidden\"") && !text.contains("dash"));
         let empty = String::from_utf8(svg(&Drawing::default(), &options)).unwrap();
         assert!(!empty.contains("<g"));
+    }
+
+    #[test]
+    fn a_coarse_precision_makes_coarse_units_and_faces_are_told() {
+        let lines = vec![line(LineClass::Contour, 0, &[[0.0, 0.0], [1.26, 0.01], [1.26, 0.04]])];
+        let region =
+            Region { surface: 3, material: None, color: [0; 3], rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]] };
+        let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
+        let options = DrawingOptions { decimals: 1, surface_ids: true, ..DrawingOptions::default() };
+        let text = String::from_utf8(svg(&drawing, &options)).unwrap();
+        assert!(text.contains("width=\"3mm\" height=\"2mm\" viewBox=\"0 0 30 20\""), "{text}");
+        assert!(text.contains("stroke-width=\"5\"") && text.contains("<path d=\"M0 20l13 0\"/>"), "{text}");
+        assert!(text.contains("<path data-face=\"3\" fill=\"#000000\" d=\"M0 20l10 0 0-10z\"/>"), "{text}");
     }
 }

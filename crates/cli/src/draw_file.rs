@@ -1,0 +1,206 @@
+//! The file that `vitral draw` writes: its place, format and pens, and whether the options suit it.
+
+use crate::draw_args::{DrawArgs, Hidden, Style};
+use crate::outputs::{expand, model_name};
+use crate::report::{self, Failure};
+use std::path::PathBuf;
+use vitral::{
+    Drawing, DrawingFormat, DrawingOptions, DrawingSettings, PageSize, State, TitleBlock, for_plotter, simplify,
+};
+
+/// Exit code for what is not supported.
+const UNSUPPORTED: u8 = 4;
+/// The longest side of a drawing to scale, in millimetres.
+const LONGEST: f64 = 10_000.0;
+/// What a drawing may be larger than its sheet for the rounding of its corners, in millimetres.
+const ROUNDING: f64 = 0.002;
+
+/// Where a drawing goes.
+#[derive(Debug)]
+pub(crate) struct DrawFile {
+    /// The file, or `-`.
+    pub(crate) path: PathBuf,
+    format: DrawingFormat,
+    options: DrawingOptions,
+    /// Ordered for a plotter.
+    plotter: bool,
+    /// Tolerance of simplified lines, millimetres.
+    tolerance: f64,
+    title: Option<TitleBlock>,
+}
+
+impl DrawFile {
+    /// The file to write, after a check of everything that can be checked before the work.
+    pub(crate) fn new(args: &DrawArgs, state: &State) -> Result<Self, Failure> {
+        let (path, format) = place(args, state)?;
+        check_options(args, format)?;
+        let mut options = DrawingOptions::default();
+        if args.lines.hidden == Some(Hidden::Solid) {
+            options.pens.hidden_dashes = None;
+        }
+        for (name, width) in &args.lines.stroke {
+            if let Some(pen) = options.pens.width_mut(name) {
+                *pen = *width;
+            }
+        }
+        options.decimals = args.page.precision.unwrap_or(options.decimals);
+        options.surface_ids = args.page.svg_ids;
+        let tolerance = args.page.simplify.unwrap_or(0.0);
+        let rows = &args.page.title_block;
+        let title = if rows.is_empty() { None } else { Some(TitleBlock::new(rows)) };
+        let title =
+            title.transpose().map_err(|letter| Failure::usage(format!("--title-block: no strokes for `{letter}`")))?;
+        Ok(Self { path, format, options, plotter: args.page.plotter, tolerance, title })
+    }
+
+    /// The page without the title block.
+    pub(crate) fn page_above_title(&self, page: PageSize, margin: f64) -> Result<PageSize, Failure> {
+        let (Some(title), PageSize::Sheet { width, height }) = (&self.title, page) else { return Ok(page) };
+        let height = height - title.room();
+        if title.size[0] + 2.0 * margin > width || height <= 2.0 * margin {
+            let [across, up] = title.size;
+            let what = format!("--title-block: a table of {across:.1} x {up:.1} mm leaves no room on the sheet");
+            return Err(Failure::usage(what).with_hint("choose a larger --page, or shorter texts"));
+        }
+        Ok(PageSize::Sheet { width, height })
+    }
+
+    /// What the format leaves out of a drawing.
+    pub(crate) fn warning(&self, drawing: &Drawing) -> Option<String> {
+        let is_left_out = !drawing.regions.is_empty() && (self.plotter || !self.format.has_fills());
+        is_left_out.then(|| format!("{}: filled regions are left out", self.path.display()))
+    }
+
+    /// Makes the file's content.
+    pub(crate) fn encode(&self, mut drawing: Drawing, margin: f64) -> Vec<u8> {
+        if self.tolerance > 0.0 {
+            simplify(&mut drawing, self.tolerance);
+        }
+        let mut options = self.options.clone();
+        if let Some(title) = &self.title {
+            options.title = title.place(&mut drawing, margin);
+        }
+        // HP-GL is ordered by its writer, in the plotter's own steps.
+        if self.plotter && self.format != DrawingFormat::Hpgl {
+            let steps_a_millimetre = [1.0, 10.0, 100.0, 1000.0][usize::from(self.options.decimals)];
+            let (drawing, options) = for_plotter(&drawing, &options, steps_a_millimetre);
+            return self.format.encode(&drawing, &options);
+        }
+        self.format.encode(&drawing, &options)
+    }
+}
+
+/// The path and the format of its extension.
+fn place(args: &DrawArgs, state: &State) -> Result<(PathBuf, DrawingFormat), Failure> {
+    if report::is_standard(&args.output) {
+        if args.process.save_state.as_deref().is_some_and(report::is_standard) {
+            return Err(Failure::usage("--output - and --save-state - both want standard output"));
+        }
+        return Ok((args.output.clone(), DrawingFormat::Svg));
+    }
+    let model = model_name(state.models.first().map_or("", String::as_str));
+    let path = PathBuf::from(expand(&args.output.to_string_lossy(), &model, 0)?);
+    let extension = path.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
+    let Some(format) = DrawingFormat::from_extension(&extension) else {
+        let names = DrawingFormat::ALL.iter().flat_map(|(_, names)| names.iter().map(|name| format!(".{name}")));
+        let names: Vec<String> = names.collect();
+        let what = format!("{}: not a format of drawings", path.display());
+        return Err(Failure::with_code(UNSUPPORTED, what).with_hint(format!("written are {}", names.join(", "))));
+    };
+    vitral::picture::check_place(&path)?;
+    Ok((path, format))
+}
+
+/// Whether every option has an effect in this format.
+fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> {
+    let (lines, page) = (&args.lines, &args.page);
+    let style = lines.style.unwrap_or_default();
+    let fills = style != Style::HiddenLine;
+    let hidden = lines.hidden.is_some_and(|hidden| hidden != Hidden::None);
+    let lines_alone = page.plotter || !format.has_fills();
+    let stroke = !lines.stroke.is_empty();
+    let strokes = |name: &str| lines.stroke.iter().any(|(class, _)| class == name);
+    let write_lines = "give --style filled-lines";
+    let mistakes = [
+        (
+            style == Style::Filled && lines_alone,
+            "--style filled: plotters, DXF and HP-GL have lines alone",
+            write_lines,
+        ),
+        (style == Style::Filled && stroke, "--stroke: --style filled draws no lines", write_lines),
+        (style == Style::Filled && page.simplify.is_some(), "--simplify: --style filled draws no lines", write_lines),
+        (
+            stroke && format == DrawingFormat::Dxf,
+            "--stroke: DXF of release 12 has no widths of lines",
+            "choose .svg, .pdf or .hpgl",
+        ),
+        (strokes("hidden") && !hidden, "--stroke hidden: hidden lines are not drawn", "add --hidden dashed"),
+        (
+            strokes("title") && page.title_block.is_empty(),
+            "--stroke title: there is no title block",
+            "add --title-block",
+        ),
+        (
+            page.precision.is_some() && format == DrawingFormat::Hpgl,
+            "--precision: HP-GL has steps of 1/40 mm",
+            "leave it out, or choose .svg, .pdf or .dxf",
+        ),
+        (page.svg_ids && format != DrawingFormat::Svg, "--svg-ids: only SVG files tell ids", "choose .svg"),
+        (page.svg_ids && (!fills || lines_alone), "--svg-ids: no regions are drawn", "add --style filled"),
+    ];
+    match mistakes.into_iter().find(|(is_mistake, ..)| *is_mistake) {
+        Some((_, what, hint)) => Err(Failure::usage(what).with_hint(hint)),
+        None => Ok(()),
+    }
+}
+
+/// The page of a drawing to scale; `window` is the longer side of the camera's window in units of the model, if it is not in
+/// perspective.
+pub(crate) fn scaled_page(args: &DrawArgs, page: PageSize, window: Option<f64>) -> Result<PageSize, Failure> {
+    let Some(scale) = args.page.scale else { return Ok(page) };
+    let Some(window) = window else {
+        return Err(
+            Failure::usage("--scale: nothing is to scale in perspective").with_hint("add --camera-orthographic")
+        );
+    };
+    let sheet = match page {
+        PageSize::Sheet { width, height } => Some([width, height]),
+        PageSize::Fit { .. } | PageSize::Scaled { .. } => None,
+    };
+    Ok(PageSize::Scaled { window: window * args.page.unit.unwrap_or_default().millimetres() * scale, sheet })
+}
+
+/// Whether a drawing to scale fits its sheet.
+pub(crate) fn check_fits(args: &DrawArgs, settings: &DrawingSettings, drawing: &Drawing) -> Result<(), Failure> {
+    let (Some(scale), PageSize::Scaled { sheet, .. }) = (args.page.scale, settings.page) else { return Ok(()) };
+    let room = sheet.map_or([LONGEST; 2], |sheet| sheet.map(|side| side - 2.0 * settings.margin));
+    let size = match sheet {
+        Some(_) => extent(drawing),
+        None => [drawing.width, drawing.height].map(|side| side - 2.0 * settings.margin),
+    };
+    if (0..2).all(|k| size[k] <= room[k] + ROUNDING) {
+        return Ok(());
+    }
+    let fitting = scale * (room[0] / size[0]).min(room[1] / size[1]);
+    let fitting = match fitting < 1.0 {
+        true => format!("1:{}", (1.0 / fitting).ceil()),
+        false => format!("{}", (fitting * 100.0).floor() / 100.0),
+    };
+    let sides = |[width, height]: [f64; 2]| format!("{width:.1} x {height:.1} mm");
+    let what = format!("--scale: the drawing has {}, the sheet has room for {}", sides(size), sides(room));
+    Err(Failure::usage(what)
+        .with_hint(format!("--scale {fitting} fits; or choose a larger --page, a smaller --margin")))
+}
+
+/// Width and height of what is drawn.
+fn extent(drawing: &Drawing) -> [f64; 2] {
+    let lines = drawing.lines.iter().flat_map(|line| &line.points);
+    let outlines = drawing.regions.iter().flat_map(|region| region.rings.iter().flatten());
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for point in lines.chain(outlines) {
+        for k in 0..2 {
+            (low[k], high[k]) = (low[k].min(point[k]), high[k].max(point[k]));
+        }
+    }
+    [0, 1].map(|k| (high[k] - low[k]).max(0.0))
+}

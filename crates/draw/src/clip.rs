@@ -40,7 +40,7 @@ fn distance(p: DVec4, plane: u32) -> f64 {
 /// A bit for each plane that a point is outside of; all bits for a point that is not finite.
 pub(crate) fn outcode(p: DVec4) -> u8 {
     if !p.is_finite() {
-        return u8::MAX & !OUT_OF_NEAR;
+        return !OUT_OF_NEAR;
     }
     (0..PLANES).fold(0, |code, plane| code | u8::from(distance(p, plane) < 0.0) << plane)
 }

@@ -19,7 +19,8 @@ fn length(mesh: &PageMesh, fragments: &[Fragment], layers: u32) -> f64 {
     let of = |f: &Fragment| {
         let segment = Segment { mesh, ends: mesh.ends(&mesh.edges[f.edge as usize]) };
         let [a, b] = [segment.point(&f.from), segment.point(&f.to)];
-        ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
+        let [dx, dy] = [a[0] - b[0], a[1] - b[1]];
+        (dx * dx + dy * dy).sqrt()
     };
     fragments.iter().filter(|f| f.layers == layers).map(of).sum()
 }

@@ -13,8 +13,11 @@ use crate::{Execution, PreparedView};
 use std::sync::Mutex;
 use vitral_raster::{Batch, SUBPIXEL, Setup, Tile};
 
-/// Depths and facets of the tiles as far as facets came; none where nobody looks on.
-pub(super) struct Overdraw(Vec<Mutex<Vec<Option<(f32, u32)>>>>);
+/// What the first sample of a pixel holds: depth and facet.
+type Held = Option<(f32, u32)>;
+
+/// What the tiles hold as far as facets came; none where nobody looks on.
+pub(super) struct Overdraw(Vec<Mutex<Vec<Held>>>);
 
 impl Overdraw {
     pub(super) fn new(tiles: usize, execution: &Execution) -> Self {
@@ -47,7 +50,7 @@ impl Overdraw {
 
 /// A tile's pixels in the picture, and what their first samples hold.
 struct Pixels<'p> {
-    held: &'p mut [Option<(f32, u32)>],
+    held: &'p mut [Held],
     /// Columns and rows.
     size: [usize; 2],
     /// The first pixel.

@@ -112,7 +112,10 @@ fn p21_steps_and_counters_of_the_tests_agree() {
 }
 
 /// What a node of the tree says: its number, parent, side, splitter, and its four sets.
-fn nodes(steps: &[Step]) -> Vec<(u32, Option<u32>, Option<PlaneSide>, Option<u32>, [Vec<u32>; 4])> {
+type NodeTold = (u32, Option<u32>, Option<PlaneSide>, Option<u32>, [Vec<u32>; 4]);
+
+/// What the nodes of the tree say.
+fn nodes(steps: &[Step]) -> Vec<NodeTold> {
     let node = |step: &Step| match step {
         Step::TreeNode { node, above: parent, side, splitter, coincident, front, back, cut, .. } => {
             let sets = [coincident, front, back, cut].map(|set| set.facets.clone());

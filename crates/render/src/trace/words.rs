@@ -1,0 +1,198 @@
+//! Steps in words, for one of the pixels that they concern, and what they take in memory.
+
+use super::outlines::{Contour, CutPolygon};
+use super::{SpanVerdict, Step, WindowVerdict};
+
+impl Step {
+    /// Whether a pixel's first sample is in what the step is about.
+    pub fn concerns(&self, [x, y]: [u32; 2]) -> bool {
+        match self {
+            Self::Drawn { stays, hidden, .. } => {
+                stays.iter().chain(hidden).any(|&[row, from, to]| row == y && (from..to).contains(&x))
+            }
+            Self::DepthTest { pixel, .. } | Self::RayMeets { pixel, .. } | Self::RayGoesOn { pixel, .. } => {
+                *pixel == [x, y]
+            }
+            Self::Window { pixels: [left, top, width, height], .. }
+            | Self::Rays { pixels: [left, top, width, height], .. } => {
+                (*left..left + width).contains(&x) && (*top..top + height).contains(&y)
+            }
+            Self::Line { row, sample, .. } => *row == y && *sample == 0,
+            Self::Piece { outline, .. } => {
+                let edges = outline.iter().zip(outline.iter().cycle().skip(1));
+                holds(edges.map(|(a, b)| [*a, *b]), [x, y])
+            }
+            Self::Visible { contours, .. } => holds(contours.iter().flat_map(Contour::edges), [x, y]),
+            Self::Clip { outline, .. } => {
+                let edges = outline.iter().zip(outline.iter().cycle().skip(1));
+                holds(edges.map(|(a, b)| [*a, *b]), [x, y])
+            }
+            Self::Overruled { samples, .. } => samples.iter().any(|sample| sample.pixel == [x, y]),
+            Self::TreeNode { .. } | Self::TreeVisit { .. } | Self::FirstOrder { .. } | Self::Turn { .. } => false,
+            Self::Compared { .. } | Self::Moved { .. } | Self::Circle { .. } => false,
+            Self::Split { .. } | Self::Painted { .. } => false,
+            Self::NearestFirst { .. } | Self::Space { .. } | Self::EdgeTable { .. } | Self::Box { .. } => false,
+            Self::Clipped { .. } => false,
+        }
+    }
+
+    /// The step in words, for one of the pixels it concerns.
+    pub fn tell(&self, [x, y]: [u32; 2]) -> String {
+        match self {
+            Self::Drawn { facet, stays, .. } => {
+                let stays = stays.iter().any(|&[row, from, to]| row == y && (from..to).contains(&x));
+                format!("facet {facet} comes: {}", if stays { "nearer than what is there" } else { "hidden" })
+            }
+            Self::DepthTest { facet, depth, there, there_depth, stays, .. } => {
+                let was = match there.zip(*there_depth) {
+                    Some((there, depth)) => format!("facet {there} is there with depth {depth}"),
+                    None => "nothing is there".to_owned(),
+                };
+                format!("facet {facet} comes with depth {depth}, {was}: facet {stays} stays")
+            }
+            Self::Window { pixels: [left, top, width, height], verdict, .. } => {
+                let what = match verdict {
+                    WindowVerdict::Empty => "empty",
+                    WindowVerdict::One => "one polygon is drawn",
+                    WindowVerdict::Surrounded => "filled by a polygon that surrounds it in front of all others",
+                    WindowVerdict::Pixel => "one pixel, the nearest at each sample",
+                    WindowVerdict::Cut => "cut in four",
+                };
+                format!("window {left},{top} of {width} x {height}, {}: {what}", self.relations())
+            }
+            Self::Line { active_edges, spans, .. } => {
+                let line = format!("{} active edge(s)", active_edges.len());
+                match spans.iter().find(|s| (s.pixels[0]..s.pixels[1]).contains(&x)) {
+                    Some(span) => {
+                        let how = match span.verdict {
+                            SpanVerdict::Only => "one polygon is in",
+                            SpanVerdict::Hides => "one hides the others at both ends",
+                            SpanVerdict::ImpliedEdge => "one hides the others on its side of an implied edge",
+                            SpanVerdict::Samples => "decided sample by sample",
+                        };
+                        let ([from, to], inside) = (span.pixels, span.inside.len());
+                        let won = span.facet.map_or(String::new(), |facet| format!(", facet {facet}"));
+                        let facets = few(&span.inside);
+                        format!(
+                            "{line}; span {from} to {} with {inside} polygon(s) in, of facet(s) {facets}: {how}{won}",
+                            to - 1
+                        )
+                    }
+                    None => format!("{line}; no polygon is in here"),
+                }
+            }
+            Self::Rays { pixels: [_, _, width, height], rays, boxes, facets, through } => {
+                let tested = format!("{boxes} box(es), {facets} facet(s) tested");
+                format!("{rays} ray(s) of {width} x {height} pixel(s): {tested}{}", through.tell())
+            }
+            Self::Piece { order, facet, cuts, node, .. } => {
+                let node = node.map_or(String::new(), |node| format!(", of node {node} of the tree"));
+                format!("place {order} in the list, from the back: polygon of facet {facet}, cut {cuts} time(s){node}")
+            }
+            Self::Overruled { samples, .. } => {
+                let own: Vec<_> = samples.iter().filter(|sample| sample.pixel == [x, y]).collect();
+                let facets = own.first().map_or(String::new(), |sample| {
+                    format!(": facet {} is nearer than facet {}, which the list shows", sample.by_depth, sample.by_list)
+                });
+                format!("depth overrules the list at {} sample(s){facets}", own.len())
+            }
+            Self::Clip { clip, within, facet, inside, outside_count, hidden, again, .. } => {
+                let within = within.map_or(String::new(), |outer| format!(" of the inside of clip {outer}"));
+                let order = if *again { ", which is clipped again" } else { "" };
+                format!(
+                    "clip {clip}{within} with facet {facet}: inside {}{order}; {outside_count} outside, {} hidden",
+                    few(inside),
+                    hidden.len()
+                )
+            }
+            Self::Visible { facet, contours, .. } => {
+                let edges: usize = contours.iter().map(|contour| contour.corners.len()).sum();
+                format!("a visible polygon of facet {facet}, with {edges} edges")
+            }
+            other => format!("{other:?}"),
+        }
+    }
+}
+
+impl Step {
+    /// About how many bytes it takes in memory.
+    pub fn bytes(&self) -> u64 {
+        fn of<T>(list: &[T]) -> usize {
+            size_of_val(list)
+        }
+        let listed = match self {
+            Self::Drawn { stays, hidden, .. } => of(stays) + of(hidden),
+            Self::Window { path, contained, intersecting, surrounding, hidden, .. } => {
+                path.len() + of(contained) + of(intersecting) + of(surrounding) + of(hidden)
+            }
+            Self::EdgeTable { polygons, buckets, .. } => {
+                of(polygons) + buckets.iter().map(|b| size_of_val(b) + of(&b.edges)).sum::<usize>()
+            }
+            Self::Line { active_edges, spans, .. } => {
+                of(active_edges) + spans.iter().map(|s| size_of_val(s) + of(&s.inside)).sum::<usize>()
+            }
+            Self::Clipped { before, after, .. } => of(before) + of(after),
+            Self::Rays { through, .. } => 24 * through.len(),
+            Self::Circle { polygons, facets } => of(polygons) + of(facets),
+            Self::Piece { outline, .. } => of(outline),
+            Self::NearestFirst { polygons } => {
+                of(polygons) + polygons.iter().map(|p| contours_bytes(&p.contours)).sum::<usize>()
+            }
+            Self::Clip { outline, cut, inside, outside, hidden, .. } => {
+                let parts = |c: &CutPolygon| [&c.before, &c.inside, &c.hidden, &c.outside].map(|c| contours_bytes(c));
+                let cuts: usize = cut.iter().flat_map(parts).sum();
+                of(outline) + of(cut) + cuts + of(inside) + of(outside) + of(hidden)
+            }
+            Self::Visible { contours, .. } => contours_bytes(contours),
+            Self::TreeNode { coincident, front, back, cut, .. } => {
+                [coincident, front, back, cut].iter().map(|set| of(&set.facets)).sum()
+            }
+            Self::TreeVisit { polygons, .. } => of(polygons),
+            Self::FirstOrder { polygons } => of(polygons),
+            Self::Split { parts, unmarked, .. } => of(parts) + of(unmarked),
+            Self::Overruled { samples, .. } => of(samples),
+            Self::DepthTest { .. } | Self::Space { .. } | Self::RayMeets { .. } | Self::RayGoesOn { .. } => 0,
+            Self::Turn { .. } | Self::Compared { .. } | Self::Moved { .. } | Self::Painted { .. } => 0,
+            Self::Box { .. } => 0,
+        };
+        (size_of::<Self>() + listed) as u64
+    }
+
+    /// Of a window's polygons, how many are left and what they are to it.
+    fn relations(&self) -> String {
+        let Self::Window { contained, intersecting, surrounding, hidden, .. } = self else { return String::new() };
+        let left = contained.len() + intersecting.len() + surrounding.len();
+        let kinds = [
+            (surrounding, "surrounding"),
+            (intersecting, "intersecting"),
+            (contained, "contained"),
+            (hidden, "hidden"),
+        ];
+        let told = kinds.iter().filter(|(facets, _)| !facets.is_empty());
+        let told: Vec<_> = told.map(|(facets, kind)| format!("{kind} {}", few(facets))).collect();
+        let told = if told.is_empty() { String::new() } else { format!(" ({})", told.join("; ")) };
+        format!("{left} polygon(s) left{told}")
+    }
+}
+
+/// Bytes of outlines in memory.
+fn contours_bytes(contours: &[Contour]) -> usize {
+    size_of_val(contours) + contours.iter().map(|contour| size_of_val(contour.corners.as_slice())).sum::<usize>()
+}
+
+/// The first few of some facets.
+fn few(facets: &[u32]) -> String {
+    const MOST: usize = 8;
+    let names: Vec<_> = facets.iter().take(MOST).map(u32::to_string).collect();
+    names.join(" ") + if facets.len() > MOST { " ..." } else { "" }
+}
+
+/// Whether a pixel's centre is inside an outline, by the parity of crossings.
+fn holds(edges: impl Iterator<Item = [[f32; 2]; 2]>, [x, y]: [u32; 2]) -> bool {
+    let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
+    let crossings = edges.filter(|[a, b]| {
+        let crosses = (a[1] > y) != (b[1] > y);
+        crosses && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+    });
+    crossings.count() % 2 == 1
+}

@@ -418,7 +418,7 @@ impl Region {
             }
             let slopes = [edge.line.a, edge.line.b].map(i64::from);
             let change = |way: [i64; 2]| slopes[0] * way[0] + slopes[1] * way[1];
-            let values = [Line::at(corner, &edge.line), change(along), change(beside)];
+            let values = [edge.line.at(corner), change(along), change(beside)];
             let value = values.into_iter().find(|v| *v != 0).unwrap_or(0);
             (value > 0) == (slopes[1 - axis] > 0)
         };

@@ -496,7 +496,7 @@ pub enum Step {
     Visible {
         /// Its first facet.
         facet: u32,
-        /// The clip in whose inside list it was left.
+        /// The clip in whose inside list it was left; none for observers that do not read clips.
         clip: Option<u32>,
         /// Square pixels.
         area: f64,

@@ -74,7 +74,8 @@ impl VisibleSurface for WeilerAtherton {
 
         // Draw them, a row of tiles at a time.
         let (rows, tiles_a_row) = (visible.rows(view.viewport), view.viewport.tiles_x() as usize);
-        let filling = Filling { view, polygons: &polygons, visible: &visible };
+        let (viewport, pattern) = (view.viewport, &view.pattern);
+        let filling = Filling { viewport, pattern, polygons: &polygons, visible: &visible };
         let drawn = fill_with(
             &facets,
             marks,

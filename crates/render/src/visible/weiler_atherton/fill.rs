@@ -8,13 +8,12 @@
 //! Cost: edges times lines of samples that they cross, and the samples within.
 
 use super::region::{FillEdge, Region};
-use crate::PreparedView;
 use crate::visible::agreement::nearer;
 use crate::visible::polygons::Polygons;
 use crate::visible::tiles::put;
 use std::ops::Range;
 use vitral_exec::{Budget, Limit};
-use vitral_raster::{SUBPIXEL, TILE, TILE_PIXELS, Tile, Viewport};
+use vitral_raster::{SUBPIXEL, SamplePattern, TILE, TILE_PIXELS, Tile, Viewport};
 
 /// Visible polygons with the edges of each.
 #[derive(Debug, Default)]
@@ -92,7 +91,8 @@ impl VisiblePolygons {
 
 /// What a row of tiles is filled with.
 pub(super) struct Filling<'f, 'p> {
-    pub(super) view: &'f PreparedView<'f>,
+    pub(super) viewport: Viewport,
+    pub(super) pattern: &'f SamplePattern,
     pub(super) polygons: &'f Polygons<'p>,
     pub(super) visible: &'f VisiblePolygons,
 }
@@ -121,7 +121,7 @@ impl Filling<'_, '_> {
     /// too, a little below: this is the rule of top and left edges.
     fn cross(&self, row: usize, edges: &[FillEdge], crossings: &mut Vec<[u32; 2]>) {
         crossings.clear();
-        let (pattern, viewport) = (&self.view.pattern, self.view.viewport);
+        let (pattern, viewport) = (self.pattern, self.viewport);
         let top = (row * TILE) as i32 * SUBPIXEL;
         let height = TILE.min(viewport.height as usize - row * TILE) as i32;
         for edge in edges {
@@ -140,7 +140,7 @@ impl Filling<'_, '_> {
 
     /// Puts a polygon's facets into the samples of a span, where nothing nearer is.
     fn span(&self, polygon: u32, line: u32, [from, to]: [u32; 2], tiles: &mut [Tile]) {
-        let pattern = &self.view.pattern;
+        let pattern = self.pattern;
         let (r, s) = (line as usize / pattern.len(), line as usize % pattern.len());
         let [sx, sy] = pattern.position(s);
         let polygon = self.polygons.get(polygon as usize);

@@ -99,8 +99,8 @@ impl Line {
     }
 
     /// Its value at a corner of the grid.
-    pub(super) fn at([x, y]: [i32; 2], line: &Self) -> i64 {
-        i64::from(line.a) * i64::from(x) + i64::from(line.b) * i64::from(y) + line.c
+    pub(super) fn at(&self, [x, y]: [i32; 2]) -> i64 {
+        i64::from(self.a) * i64::from(x) + i64::from(self.b) * i64::from(y) + self.c
     }
 
     /// Its value at about a place.
@@ -116,7 +116,7 @@ impl Line {
     /// On which side a point lies.
     pub(super) fn side(&self, p: &Point) -> Ordering {
         if p.is_corner {
-            return Self::at(p.about.map(|v| v as i32), self).cmp(&0);
+            return self.at(p.about.map(|v| v as i32)).cmp(&0);
         }
         // Rounding of the point, and of the sum, whose parts may be large.
         let value = self.about(p.about);

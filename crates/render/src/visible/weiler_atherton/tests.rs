@@ -1,7 +1,7 @@
 use super::*;
 use crate::trace::{Observer, Step};
 use std::sync::{Arc, Mutex};
-use vitral_raster::{CornerPosition, Setup};
+use vitral_raster::{CornerPosition, NO_FACET, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
 
 fn triangle(corners: [[i32; 2]; 3], z: [f32; 3], facet: u32) -> Setup {
     let [a, b, c] = [0, 1, 2].map(|i| CornerPosition { x: corners[i][0] * 256, y: corners[i][1] * 256, z: z[i] });
@@ -222,5 +222,54 @@ fn threads_and_the_plain_order_find_the_same_polygons() {
         }
         let (again, _, others) = told([120; 2], &setups);
         assert!(sorted(again) == plain && others == steps);
+    }
+}
+
+/// The facet at each sample of a picture of four tiles and a little, as the visible polygons are drawn.
+fn drawn(viewport: Viewport, pattern: &SamplePattern, polygons: &Polygons<'_>, execution: &Execution) -> TileGrid {
+    let (sorted, held) = (in_first_order(polygons), Held::new(&execution.budget));
+    let found = AreaSorting { execution, polygons: &sorted, held: &held }.run(viewport).unwrap();
+    let rows = found.visible.rows(viewport);
+    let filling = Filling { viewport, pattern, polygons, visible: &found.visible };
+    let mut grid = TileGrid::new(viewport, pattern.len());
+    for (row, tiles) in grid.tiles.chunks_mut(viewport.tiles_x() as usize).enumerate() {
+        tiles.iter_mut().for_each(Tile::clear);
+        filling.row(row, &rows[row], tiles, &execution.budget).unwrap();
+    }
+    grid
+}
+
+#[test]
+fn samples_are_those_of_the_nearest_facets() {
+    let (viewport, mut state) = (Viewport { width: 150, height: 70 }, 29u32);
+    for (round, size) in [10, 40, 150, 400].into_iter().cycle().take(8).enumerate() {
+        let pattern = SamplePattern::new([1, 4][round / 4]);
+        let mut setups = random(&mut state, [400, 60][round % 2], 150, size);
+        // Squares of two facets in one plane, whose ids mix, over each other, and some in the plane of others.
+        for facet in 0..4 {
+            let [low, high] = [facet * 11, facet * 11 + 50].map(|v| v as i32);
+            for (half, tip) in [[high, low], [low, high]].into_iter().enumerate() {
+                let corners = if half == 0 { [[low, low], tip, [high, high]] } else { [[low, low], [high, high], tip] };
+                let z = if facet < 3 { 0.5 } else { 0.75 };
+                let own = triangle(corners, [z; 3], 9000 + facet + 4 * half as u32);
+                setups.push(Setup { origin: [0, 0], dz_dx: 0.0, dz_dy: 0.0, ..own });
+            }
+        }
+        let polygons = Polygons::joined(&setups, |a, b| a % 4 == b % 4);
+        let grid = drawn(viewport, &pattern, &polygons, &Execution::default());
+        for tile in &grid.tiles {
+            let rows = TILE.min((viewport.height - tile.y) as usize);
+            let columns = TILE.min((viewport.width - tile.x) as usize);
+            let samples = (0..pattern.len()).flat_map(|s| (0..rows).map(move |row| (s, row)));
+            for (s, row, column) in samples.flat_map(|(s, row)| (0..columns).map(move |column| (s, row, column))) {
+                let [sx, sy] = pattern.position(s);
+                let [x, y] =
+                    [(tile.x as usize + column, sx), (tile.y as usize + row, sy)].map(|(p, o)| p as i32 * 256 + o);
+                let candidates = setups.iter().filter(|setup| setup.covers(x, y)).map(|f| (f.depth(x, y), f.facet));
+                let expected = candidates.reduce(|a, b| if crate::visible::nearer(b, a) { b } else { a });
+                let found = tile.facet[s * TILE_PIXELS + row * TILE + column];
+                assert_eq!(found, expected.map_or(NO_FACET, |e| e.1), "round {round}: {x}, {y}");
+            }
+        }
     }
 }

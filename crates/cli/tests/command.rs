@@ -266,8 +266,53 @@ fn exit_codes() {
     }
     assert_eq!(code(&folder.run(&["render", "a.obj", "-o", "x.png", "--resolution", "0x4"])), 2);
     assert_eq!(code(&folder.run(&["render", "a.obj", "-o", "x.png", "--resolution", "99999x4"])), 7);
-    assert_eq!(code(&folder.run(&["draw", "a.obj", "-o", "x.svg"])), 2);
+    assert_eq!(code(&folder.run(&["lab", "a.obj"])), 2);
     assert_eq!(code(&folder.run(&[])), 2);
+}
+
+#[test]
+fn p21_a_model_becomes_a_drawing() {
+    let folder = Folder::new("drawing");
+    folder.file("a.obj", TRIANGLE);
+    let output = folder.run(&["draw", "a.obj", "-o", "{model}.svg", "--view", "front", "--stats"]);
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    let stats: serde_json::Value = serde_json::from_slice(&output.stderr).unwrap();
+    assert_eq!([&stats["triangles"], &stats["edges"], &stats["polylines"], &stats["points"]], [1, 3, 1, 4]);
+    // A right triangle with legs of 180 mm.
+    let expected = 180.0 * (2.0 + 2f64.sqrt());
+    assert!((stats["visible-millimetres"].as_f64().unwrap() - expected).abs() < 0.01, "{stats}");
+    let file = String::from_utf8(folder.read("a.svg")).unwrap();
+    assert!(file.contains("viewBox=\"0 0 190000 190000\"") && file.contains("data-class=\"boundary\""), "{file}");
+
+    // Standard output, filled, on a sheet.
+    let output = folder.run(&["draw", "a.obj", "-o", "-", "--style", "filled", "--page", "A4", "--landscape"]);
+    let filled = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(code(&output), 0, "{}", errors(&output));
+    assert!(filled.contains("width=\"297mm\" height=\"210mm\"") && filled.matches("<path").count() == 1, "{filled}");
+}
+
+#[test]
+fn mistakes_in_drawings_are_told() {
+    let folder = Folder::new("drawing-mistakes");
+    folder.file("a.obj", TRIANGLE);
+    for (arguments, expected, said) in [
+        (&["-o", "x.png"][..], 4, "not a format of drawings"),
+        (&["-o", "x.svg", "--explode", "2"], 2, "not there yet"),
+        (&["-o", "x.svg", "--lines", "section"], 2, "not there yet"),
+        (&["-o", "x.svg", "--lines", "edges"], 2, "contour"),
+        (&["-o", "x.svg", "--hidden-max-layers", "2"], 2, "--hidden dashed"),
+        (&["-o", "x.svg", "--style", "filled", "--lines", "all"], 2, "filled-lines"),
+        (&["-o", "x.svg", "--page", "A4", "--margin", "200"], 2, "nothing is left"),
+        (&["-o", "x.svg", "--landscape"], 2, "--page"),
+        (&["-o", "x.svg", "--max-memory", "300"], 7, "memory"),
+        (&["-o", "nowhere/x.svg"], 5, "nowhere"),
+        (&[], 2, "--output"),
+    ] {
+        let output = folder.run(&[&["draw", "a.obj"], arguments].concat());
+        assert_eq!(code(&output), expected, "{arguments:?}: {}", errors(&output));
+        assert!(errors(&output).contains(said), "{arguments:?}: {}", errors(&output));
+    }
+    assert!(!folder.has("x.svg"));
 }
 
 #[test]

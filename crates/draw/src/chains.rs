@@ -196,8 +196,12 @@ mod tests {
 
     #[test]
     fn classes_and_layers_stay_apart() {
-        let found = chains(&[(Crease, 0, [[1, 0], [2, 0]]), (Contour, 1, [[1, 0], [0, 0]]), (Contour, 0, [[1, 0], [1, 1]])]);
-        assert_eq!(found.iter().map(|c| (c.class, c.layers)).collect::<Vec<_>>(), [(Contour, 0), (Crease, 0), (Contour, 1)]);
+        let found =
+            chains(&[(Crease, 0, [[1, 0], [2, 0]]), (Contour, 1, [[1, 0], [0, 0]]), (Contour, 0, [[1, 0], [1, 1]])]);
+        assert_eq!(
+            found.iter().map(|c| (c.class, c.layers)).collect::<Vec<_>>(),
+            [(Contour, 0), (Crease, 0), (Contour, 1)]
+        );
     }
 
     proptest! {

@@ -11,6 +11,8 @@
 //! | material | of faces with different materials |
 //! | smooth | of any face |
 //!
+//! Diagonals of faces that are not flat are contours where the face turns away between their corners, and nothing else.
+//!
 //! Source: the classes are those of [Bénard & Hertzmann 2019], section 2.
 
 use crate::page_mesh::{Source, Triangle};

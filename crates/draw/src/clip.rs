@@ -228,7 +228,8 @@ mod tests {
 
     #[test]
     fn lines_are_cut_and_what_is_not_finite_vanishes() {
-        let mut all = vertices(&[[-3.0, 0.0, 0.5], [3.0, 0.0, 0.5], [f64::NAN, 0.0, 0.0], [0.0, 0.0, 0.5], [5.0, 5.0, 0.5]]);
+        let mut all =
+            vertices(&[[-3.0, 0.0, 0.5], [3.0, 0.0, 0.5], [f64::NAN, 0.0, 0.0], [0.0, 0.0, 0.5], [5.0, 5.0, 0.5]]);
         let mut clipper = Clipper::new(&mut all);
         let [a, b] = clipper.clip_line([1, 0]).unwrap();
         assert!(clipper.clip_line([0, 2]).is_none() && clipper.clip_line([4, 1]).is_none());

@@ -161,21 +161,21 @@ fn add_edge(
         return;
     }
 
-    // Diagonals are never drawn, nor sides that a face uses twice, as where a bridge leads to a hole.
+    // A diagonal of a face that is not flat may be a contour and nothing else, and so may a side that a face uses twice, as where a
+    // bridge leads to a hole.
     let source = |t: u32| &projected.sources[projected.facets[t as usize].source as usize];
-    let outlines = || uses.iter().filter(counts).filter(|u| u.outline);
-    let surface = outlines().next().map(|u| source(u.triangle).surface);
-    let bridge = count > 1 && outlines().all(|u| Some(source(u.triangle).surface) == surface);
-    let classes = if surface.is_none() || (bridge && outlines().count() > 1) {
-        Classes::EMPTY
+    let side = |u: &Use| Side {
+        triangle: &projected.triangles[u.triangle as usize],
+        source: source(u.triangle),
+        reversed: u.reversed,
+    };
+    let outlines: Vec<Side<'_>> = uses.iter().filter(counts).filter(|u| u.outline).map(side).collect();
+    let is_bridge = outlines.len() > 1 && outlines.iter().all(|s| s.source.surface == outlines[0].source.surface);
+    let classes = if outlines.is_empty() || is_bridge {
+        let all: Vec<Side<'_>> = uses.iter().filter(counts).map(side).collect();
+        classes_of(&all, threshold).common(Classes::one(LineClass::Contour))
     } else {
-        let side = |u: &Use| Side {
-            triangle: &projected.triangles[u.triangle as usize],
-            source: source(u.triangle),
-            reversed: u.reversed,
-        };
-        let sides: Vec<Side<'_>> = outlines().map(side).collect();
-        classes_of(&sides, threshold)
+        classes_of(&outlines, threshold)
     };
     edges.push(Edge { ends: [lower, uses[0].higher], first, count, classes });
 }

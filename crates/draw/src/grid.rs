@@ -108,7 +108,8 @@ impl Grid {
                 let (mut from, mut to) = (left, right);
                 if to > from + 1 && top > bottom {
                     // Where the edge is within this row, a unit more on both sides.
-                    let at = |row: usize| f64::from(p[0]) + slope * (((row as i64) << level.shift) - i64::from(p[1])) as f64;
+                    let at =
+                        |row: usize| f64::from(p[0]) + slope * (((row as i64) << level.shift) - i64::from(p[1])) as f64;
                     let (a, b) = (at(row), at(row + 1));
                     from = from.max((a.min(b) - 1.0).max(0.0) as usize >> level.shift);
                     to = to.min((a.max(b) + 1.0).max(0.0) as usize >> level.shift);
@@ -169,7 +170,8 @@ impl Level {
         let mut level = Self { shift, width, starts: vec![0; width * height + 1], ends: Vec::new(), items: Vec::new() };
         let cells = |t: u32| {
             let triangle = &triangles[t as usize];
-            let [[left, bottom], [right, top]] = [triangle.low, triangle.high].map(|p| p.map(|c| (c >> shift) as usize));
+            let [[left, bottom], [right, top]] =
+                [triangle.low, triangle.high].map(|p| p.map(|c| (c >> shift) as usize));
             (bottom..=top).flat_map(move |row| (left..=right).map(move |column| row * width + column))
         };
         for &t in members {
@@ -225,7 +227,8 @@ impl Covers {
         for row in bottom..=top {
             for column in left..=right {
                 // A cell ends a unit before the next begins, and covers its border.
-                let corners = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, y]| [(column + x) << shift, (row + y) << shift, 0]);
+                let corners =
+                    [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, y]| [(column + x) << shift, (row + y) << shift, 0]);
                 let inside = |p: GridPoint| {
                     let [a, b, c] = triangle.corners;
                     orient2d(a, b, p) >= 0 && orient2d(b, c, p) >= 0 && orient2d(c, a, p) >= 0
@@ -259,7 +262,8 @@ impl Covers {
             let (row, column) = (cell / level.width, cell % level.width);
             let behind = covering.iter().fold(i32::MIN, |behind, &shift| {
                 let up = shift - level.shift;
-                behind.max(self.depths[(shift - self.finest) as usize][(row >> up) * self.width(shift) + (column >> up)])
+                behind
+                    .max(self.depths[(shift - self.finest) as usize][(row >> up) * self.width(shift) + (column >> up)])
             });
             let (start, end) = (level.starts[cell] as usize, level.ends[cell] as usize);
             let list = &level.items[start..end];

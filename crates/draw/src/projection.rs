@@ -325,13 +325,7 @@ fn snap(to: &mut Projected, clip: &[ClipVertex], view: &ViewTransform, run: &Run
 }
 
 /// Makes the page's triangles of the facets.
-fn finish_triangles(
-    to: &mut Projected,
-    world: &World,
-    placed: &[Placed<'_>],
-    view: &ViewTransform,
-    run: &Run<'_>,
-) {
+fn finish_triangles(to: &mut Projected, world: &World, placed: &[Placed<'_>], view: &ViewTransform, run: &Run<'_>) {
     let (facets, vertices, sources) = (&to.facets, &to.vertices, &to.sources);
     let world_from_view = view.view_from_world.inverse();
     let eye = world_from_view.transform_point3(DVec3::ZERO);

@@ -170,12 +170,21 @@ impl Cells {
 
     /// Calls `f` for the cells within reach of a stroke.
     fn visit(&self, stroke: &Stroke, mut f: impl FnMut(usize)) {
-        let [p, q] = if stroke.ends[0][1] <= stroke.ends[1][1] { stroke.ends } else { [stroke.ends[1], stroke.ends[0]] };
+        let [p, q] =
+            if stroke.ends[0][1] <= stroke.ends[1][1] { stroke.ends } else { [stroke.ends[1], stroke.ends[0]] };
         let slope = (q[0] - p[0]) / (q[1] - p[1]);
         for row in self.range(p[1], q[1], self.height) {
             // The part of the stroke within the row.
             let border = |row: usize, slack: f64| ((row << self.shift) as f64 + slack).clamp(p[1], q[1]);
-            let at = |y: f64| if y == p[1] { p[0] } else if y == q[1] { q[0] } else { p[0] + (y - p[1]) * slope };
+            let at = |y: f64| {
+                if y == p[1] {
+                    p[0]
+                } else if y == q[1] {
+                    q[0]
+                } else {
+                    p[0] + (y - p[1]) * slope
+                }
+            };
             let (a, b) = (at(border(row, -REACH - 1.0)), at(border(row + 1, REACH + 1.0)));
             let columns = self.range(a.min(b), a.max(b), self.width);
             columns.for_each(|column| f(row * self.width + column));
@@ -202,7 +211,8 @@ mod tests {
         use LineClass::{Contour, Crease};
         let long = stroke(Crease, 0, [100.0, 100.0], [900.0, 900.0]);
         let middle = stroke(Contour, 0, [700.0, 700.5], [300.0, 300.0]);
-        let rest = [stroke(Crease, 0, [100.0, 100.0], [300.0, 300.0]), stroke(Crease, 0, [700.0, 700.5], [900.0, 900.0])];
+        let rest =
+            [stroke(Crease, 0, [100.0, 100.0], [300.0, 300.0]), stroke(Crease, 0, [700.0, 700.5], [900.0, 900.0])];
         assert_eq!(left(&[long, middle]), [rest[0], rest[1], middle]);
         // A hidden line gives way to a visible one of any class, and of equal ones the first stays.
         assert_eq!(left(&[stroke(Contour, 1, [0.0, 0.0], [1000.0, 1000.0]), long]).len(), 3);

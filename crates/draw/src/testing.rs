@@ -22,7 +22,11 @@ pub(crate) fn mesh_of(size: [i32; 2], corners: &[[GridPoint; 3]]) -> PageMesh {
         });
         let [a, b, c] = triangle.map(|p| DVec3::from_array(p.map(f64::from)));
         let normal = (b - a).cross(c - a);
-        if vertices[0] == vertices[1] || vertices[1] == vertices[2] || vertices[2] == vertices[0] || normal == DVec3::ZERO {
+        if vertices[0] == vertices[1]
+            || vertices[1] == vertices[2]
+            || vertices[2] == vertices[0]
+            || normal == DVec3::ZERO
+        {
             continue;
         }
         let source = projected.sources.len() as u32;

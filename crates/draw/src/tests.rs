@@ -81,7 +81,12 @@ fn a_box_on_a_floor_touches_it() {
     scene.add_mesh(solids::cuboid(DVec3::ONE), DMat4::from_translation(DVec3::new(0.1, 0.5, 0.3)));
     for (view, lens) in [(View::Iso, Lens::Parallel), (View::Iso, Lens::default()), (View::Front, Lens::default())] {
         let Drawn { drawing, .. } = drawn(&scene, view, lens, &DrawingSettings::default(), 1);
-        assert_eq!(drawing.length(|l| l.class == LineClass::Intersection), 0.0, "{view:?} {lens:?}: {:?}", drawing.lines);
+        assert_eq!(
+            drawing.length(|l| l.class == LineClass::Intersection),
+            0.0,
+            "{view:?} {lens:?}: {:?}",
+            drawing.lines
+        );
     }
     let Drawn { drawing, .. } = drawn(&scene, View::Iso, Lens::Parallel, &DrawingSettings::default(), 1);
     let contours = drawing.length(|l| l.class == LineClass::Contour);
@@ -152,7 +157,9 @@ fn regions_cover_the_silhouette_once_and_touch_where_faces_do() {
     let palette = |look: &FaceLook| look.normal.map(|c| (c * 255.0) as u8);
     let settings = DrawingSettings { lines: Classes::EMPTY, margin: 0.0, ..DrawingSettings::default() };
     let of = |threads| {
-        draw(&world, &camera, 1.0, &settings, Some(&palette), &Workers::new(threads), &Budget::default()).unwrap().drawing
+        draw(&world, &camera, 1.0, &settings, Some(&palette), &Workers::new(threads), &Budget::default())
+            .unwrap()
+            .drawing
     };
     let drawing = of(1);
     assert_eq!(drawing, of(3));
@@ -161,4 +168,21 @@ fn regions_cover_the_silhouette_once_and_touch_where_faces_do() {
     assert!((drawing.area() / hexagon - 1.0).abs() < 1e-4, "{} {hexagon}", drawing.area());
     assert_eq!((drawing.regions.len(), drawing.lines.len()), (3, 0));
     assert!(drawing.regions.iter().all(|r| r.rings.len() == 1 && r.rings[0].len() == 4), "{:?}", drawing.regions);
+}
+
+#[test]
+fn a_contour_goes_on_over_faces_that_are_not_flat() {
+    // A twisted quadrilateral whose halves face to the front and to the back.
+    let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.9, 0.2, 1.0]];
+    let mesh = Mesh::from_polygons(positions, [vec![0, 1, 2, 3]]);
+    let scene = Scene::from_mesh(mesh);
+    let Drawn { drawing, stats } = drawn(&scene, View::Front, Lens::Parallel, &everything(), 1);
+    assert_eq!((stats.triangles, stats.edges), (2, 5));
+    let contour = drawing.length(|l| l.class == LineClass::Contour);
+    assert!(contour > 0.0, "{:?}", drawing.lines);
+    // Of a flat one, the diagonal is no line at all.
+    let flat =
+        Mesh::from_polygons([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]], [vec![0, 1, 2, 3]]);
+    let Drawn { drawing, .. } = drawn(&Scene::from_mesh(flat), View::Front, Lens::Parallel, &everything(), 1);
+    assert!((drawing.length(|_| true) - 720.0).abs() < 0.01, "{:?}", drawing.lines);
 }

@@ -159,15 +159,16 @@ impl Walk {
         self.pieces.push((Place::START, Place::END));
         let visible_only = most_layers == 0;
         let mut ask = |list: &[u32]| self.ask(list, &segment, edge, number, visible_only, run);
-        let flow = match search {
-            Search::Grid(grid) => grid.along(segment.ends, visible_only, ask),
-            Search::All => (0..mesh.triangles.len() as u32)
-                .filter(|&t| mesh.triangles[t as usize].hides)
-                .try_for_each(|t| match ask(&[t]) {
-                    ControlFlow::Break(Some(limit)) => ControlFlow::Break(Some(limit)),
-                    _ => ControlFlow::Continue(()),
-                }),
-        };
+        let flow =
+            match search {
+                Search::Grid(grid) => grid.along(segment.ends, visible_only, ask),
+                Search::All => (0..mesh.triangles.len() as u32)
+                    .filter(|&t| mesh.triangles[t as usize].hides)
+                    .try_for_each(|t| match ask(&[t]) {
+                        ControlFlow::Break(Some(limit)) => ControlFlow::Break(Some(limit)),
+                        _ => ControlFlow::Continue(()),
+                    }),
+            };
         if let ControlFlow::Break(Some(limit)) = flow {
             return Err(limit);
         }

@@ -268,9 +268,8 @@ fn mistakes_in_drawings_are_told() {
     let folder = Folder::new("drawing-mistakes");
     folder.file("a.obj", TRIANGLE);
     for (arguments, expected, said) in [
-        (&["-o", "x.pdf"][..], 4, "not there yet"),
-        (&["-o", "x.png"], 4, "not a format of drawings"),
-        (&["-o", "x.svg", "--plotter"], 2, "not there yet"),
+        (&["-o", "x.png"][..], 4, "not a format of drawings"),
+        (&["-o", "x.svg", "--explode", "2"], 2, "not there yet"),
         (&["-o", "x.svg", "--lines", "section"], 2, "not there yet"),
         (&["-o", "x.svg", "--lines", "edges"], 2, "contour"),
         (&["-o", "x.svg", "--hidden-max-layers", "2"], 2, "--hidden dashed"),

@@ -22,7 +22,7 @@ pub fn hpgl(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
     let (drawing, options) = for_plotter(drawing, options, units.steps_a_millimetre);
     let mut out = format!("IN;PS{},{};\n", units.steps(drawing.width), units.steps(drawing.height));
 
-    // The most important lines first: if the ink ends, they are there.
+    // Draw the title block and the most important lines first, as long as there is ink.
     for layer in layers(&drawing, &options).iter().rev() {
         let _ = writeln!(out, "SP{};PW{};", layer.number, layer.width);
         for points in &layer.lines {

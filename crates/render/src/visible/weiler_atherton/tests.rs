@@ -255,7 +255,7 @@ fn samples_are_those_of_the_nearest_facets() {
                 setups.push(Setup { origin: [0, 0], dz_dx: 0.0, dz_dy: 0.0, ..own });
             }
         }
-        let polygons = Polygons::joined(&setups, |a, b| a % 4 == b % 4);
+        let polygons = Polygons::joined(&setups, |facet| facet % 4);
         let grid = drawn(viewport, &pattern, &polygons, &Execution::default());
         for tile in &grid.tiles {
             let rows = TILE.min((viewport.height - tile.y) as usize);

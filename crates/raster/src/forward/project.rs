@@ -217,7 +217,12 @@ fn to_window<S: Simd>(
 fn residues<S: Simd>(in_band: Mask8<S>, x: F32x8<S>, y: F32x8<S>) -> U32x8<S> {
     let kept = lanes::inlined(
         #[inline(always)]
-        |v: F32x8<S>| -> U32x8<S> { whole(in_band, (v - v.floor()) * (1.0 / RESIDUE)).bitcast() },
+        |v: F32x8<S>| -> U32x8<S> {
+            // A place just below a step may be rounded to a whole one.
+            let most = F32x8::splat(in_band.token(), 1.0 / RESIDUE - 1.0);
+            let kept = lanes::Lanes::min((v - v.floor()) * (1.0 / RESIDUE), most);
+            whole(in_band, kept).bitcast()
+        },
     );
     // Half a step is in them: to take it off is to turn the highest bit over.
     let halves = in_band.select(U32x8::splat(in_band.token(), HALVES), U32x8::splat(in_band.token(), 0));

@@ -138,6 +138,7 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
         crease_angle: lines.crease_angle.map_or(usual.crease_angle, f64::to_radians),
         page: page_of(&args.page)?,
         margin: args.page.margin.unwrap_or(usual.margin),
+        ..usual
     })
 }
 

@@ -74,6 +74,8 @@ pub struct DrawingSettings {
     pub page: PageSize,
     /// Distance of the drawing from the border of the sheet, millimetres.
     pub margin: f64,
+    /// Ask all triangles about each edge instead of those near it: the same lines in quadratic time, to check the grid by.
+    pub brute_force: bool,
 }
 
 impl Default for DrawingSettings {
@@ -84,6 +86,7 @@ impl Default for DrawingSettings {
             crease_angle: std::f64::consts::FRAC_PI_6,
             page: PageSize::default(),
             margin: 5.0,
+            brute_force: false,
         }
     }
 }
@@ -143,7 +146,8 @@ pub fn draw(
     }
 
     let wanted = Wanted { classes: settings.lines, most_layers: settings.hidden_layers };
-    let (fragments, visibility) = fragments(&mesh, Search::Grid(&grid), wanted, &run)?;
+    let search = if settings.brute_force { Search::All } else { Search::Grid(&grid) };
+    let (fragments, visibility) = fragments(&mesh, search, wanted, &run)?;
     (stats.fragments, stats.visibility) = (fragments.len() as u64, visibility);
     let strokes = strokes::strokes(&mesh, &fragments, settings.lines, &run)?;
     budget.check("lines")?;

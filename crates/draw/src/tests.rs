@@ -146,6 +146,8 @@ fn threads_do_not_matter() {
     for threads in [2, 3, 7] {
         assert_eq!(one, drawn(&scene, View::Iso, Lens::default(), &everything(), threads));
     }
+    let slow = DrawingSettings { brute_force: true, ..everything() };
+    assert_eq!(one.drawing, drawn(&scene, View::Iso, Lens::default(), &slow, 3).drawing);
 }
 
 #[test]

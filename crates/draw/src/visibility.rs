@@ -66,7 +66,6 @@ pub(crate) enum Search<'g> {
     /// In the cells that an edge runs through.
     Grid(&'g Grid),
     /// Everywhere: brute force, which tests compare with.
-    #[cfg(test)]
     All,
 }
 
@@ -164,7 +163,6 @@ impl Walk {
                 Search::Grid(grid) => grid.along(segment.ends, visible_only, |list: &[u32]| {
                     self.ask(list, &segment, edge, number, visible_only, run)
                 }),
-                #[cfg(test)]
                 Search::All => (0..mesh.triangles.len() as u32)
                     .filter(|&t| mesh.triangles[t as usize].hides)
                     .try_for_each(|t| match self.ask(&[t], &segment, edge, number, visible_only, run) {

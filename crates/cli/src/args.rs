@@ -6,6 +6,7 @@ use crate::render_args::{CameraArgs, EyeArgs, RenderArgs};
 use crate::values;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
+use vitral::Visibility;
 
 /// Renders 3D models to pictures, without GPU, display or GL driver.
 ///
@@ -107,7 +108,7 @@ pub(crate) struct BenchArgs {
     pub(crate) report: Option<PathBuf>,
     /// Only these algorithms, and the z-buffer; repeatable [default: all]
     #[arg(long, value_name = "NAME", value_parser = crate::choices::visibility())]
-    pub(crate) visibility: Vec<String>,
+    pub(crate) visibility: Vec<Visibility>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", value_parser = values::resolution, default_value = "1024x768")]
     pub(crate) resolution: [u32; 2],

@@ -43,7 +43,7 @@ fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {
     state.apply(&mut renderer)?;
 
     // The algorithms.
-    let wanted = |e: &Entrant| args.visibility.is_empty() || args.visibility.iter().any(|v| v == e.algorithm.name);
+    let wanted = |e: &Entrant| args.visibility.is_empty() || args.visibility.contains(&e.algorithm.choice());
     let all = Entrant::all();
     let entrants: Vec<_> = all.iter().enumerate().filter(|(i, e)| *i == 0 || wanted(e)).map(|(_, e)| *e).collect();
     let rows = rows(args, &renderer, &entrants)?;

@@ -28,7 +28,9 @@ fn steps(renderer: &mut Renderer, visibility: Visibility) -> (Vec<Step>, Visibil
     renderer.execution_mut().observer = Some(Arc::clone(&kept) as Arc<dyn Observer>);
     let counters = renderer.render().unwrap().stats.visibility;
     renderer.execution_mut().observer = None;
-    (std::mem::take(&mut *kept.0.lock().unwrap()), counters)
+    let mut steps = std::mem::take(&mut *kept.0.lock().unwrap());
+    steps.retain(|step| !matches!(step, Step::Box { .. }));
+    (steps, counters)
 }
 
 /// A scene of the course, seen by its own camera.

@@ -285,12 +285,15 @@ impl<S: Simd, K: BlockSink<S>> BlockSink<S> for PieceSink<'_, K> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{NullSink, VisibleSurface, bsp::Bsp, painter::Painter, zbuffer::ZBuffer};
+    use super::super::pieces::Raster;
+    use super::super::{NullSink, Resolved, VisibleSurface, bsp::Bsp, painter::Painter, zbuffer::ZBuffer};
+    use super::{Facets, Pieces, PriorityList, TileSink, draw_list};
+    use crate::marks::Marks;
     use crate::stats::{CullCounters, VisibilityCounters};
     use crate::trace::{Observer, Step};
     use crate::{Execution, PreparedView, Session, Settings};
     use std::sync::{Arc, Mutex};
-    use vitral_exec::Workers;
+    use vitral_exec::{Limit, Workers};
     use vitral_math::{DMat4, DVec3};
     use vitral_raster::{SamplePattern, TileGrid, Viewport};
     use vitral_scene::{Camera, Faces, Mesh, Projection, Scene};
@@ -403,19 +406,47 @@ mod tests {
         }
     }
 
+    /// A list in which the facets that come last in the scene are the farthest.
+    struct WrongOrder;
+
+    impl VisibleSurface for WrongOrder {
+        fn resolve(
+            &self,
+            view: &PreparedView<'_>,
+            marks: Option<&Marks>,
+            grid: &mut TileGrid,
+            execution: &Execution,
+            sink: &dyn TileSink,
+        ) -> Result<Resolved, Limit> {
+            let mut resolved = Resolved::default();
+            let facets = Facets::new(view, execution, &mut resolved)?;
+            let (setups, opaque) = facets.listed();
+            let raster = Raster::new(view.viewport, &view.pattern);
+            let mut run = Pieces::default();
+            for index in (0..setups.len() as u32).rev() {
+                let setup = setups[index as usize];
+                let triangle = [(index, setup, raster.footprint(setup))];
+                run.add_polygon(index, triangle.into_iter(), |_| std::iter::empty(), &raster);
+            }
+            run.finish(view.viewport);
+            let list = PriorityList { setups: &setups, opaque, runs: &[run] };
+            resolved.counters = draw_list::<false>(&facets, &list, marks, grid, sink, "a list in the wrong order")?;
+            Ok(resolved)
+        }
+    }
+
     #[test]
     fn p21_where_depth_overrules_the_list_it_is_told() {
-        // Two squares closer than what the painter's list tells apart; the nearer one has the higher facets.
-        let near = SHEET.map(|[x, y, _]| [x, y, 0.0024]);
+        // Two squares, the nearer one with the higher facets.
+        let near = SHEET.map(|[x, y, _]| [x, y, 0.5]);
         let mut scene = Scene::default();
         scene.add_mesh(squares(&SHEET), DMat4::IDENTITY);
         scene.add_mesh(squares(&near), DMat4::IDENTITY);
         let session = Session::new(Arc::new(scene)).unwrap();
-        let (projection, clip) = (Projection::Parallel { height: 4.0 }, Some((1.0, 20_000.0)));
-        let position = DVec3::new(0.0, 0.0, 6000.0);
-        let camera = Camera { projection, clip, ..Camera::look_at(position, DVec3::ZERO) };
-        let (seen, counters, steps) = find(&session, &camera, &Painter, 1);
-        assert!(seen == find(&session, &camera, &ZBuffer, 1).0);
+        let projection = Projection::Parallel { height: 4.0 };
+        let camera = Camera { projection, ..Camera::look_at(DVec3::new(0.0, 0.0, 6.0), DVec3::ZERO) };
+        let (seen, counters, steps) = find(&session, &camera, &WrongOrder, 1);
+        assert!(seen == find(&session, &camera, &ZBuffer, 1).0, "the nearer facet is seen whatever the list says");
         let told: Vec<_> = steps
             .iter()
             .filter_map(|step| if let Step::Overruled { samples, .. } = step { Some(samples) } else { None })
@@ -423,5 +454,9 @@ mod tests {
             .collect();
         assert_eq!((told.len() as u64, told.len()), (counters.overruled, 40 * 40 * 2));
         assert!(told.iter().all(|s| s.by_list < 2 && s.by_depth >= 2), "{:?}", told[0]);
+        for algorithm in [&Painter as &dyn VisibleSurface, &Bsp] {
+            let (.., steps) = find(&session, &camera, algorithm, 1);
+            assert!(!steps.iter().any(|step| matches!(step, Step::Overruled { .. })), "their lists are right");
+        }
     }
 }

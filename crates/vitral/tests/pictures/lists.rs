@@ -227,24 +227,3 @@ fn p21_p22_depth_overrules_no_list_of_coplanar_faces() {
         }
     }
 }
-
-#[test]
-fn p21_where_depth_overrules_the_list_it_is_told() {
-    // Two squares closer than what the painter's list tells apart; the nearer one has the higher facets.
-    let square =
-        |z: f32| Mesh::new([[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]], [[0, 1, 2], [0, 2, 3]]);
-    let mut scene = Scene::default();
-    scene.add_mesh(square(0.0), DMat4::IDENTITY);
-    scene.add_mesh(square(0.0024), DMat4::IDENTITY);
-    let mut renderer = exact(scene, 8, 8);
-    let projection = Projection::Parallel { height: 4.0 };
-    let position = DVec3::new(0.0, 0.0, 6000.0);
-    renderer.camera =
-        Some(Camera { projection, clip: Some((1.0, 20_000.0)), ..Camera::look_at(position, DVec3::ZERO) });
-    let (steps, counters) = steps(&mut renderer, Visibility::PAINTER);
-    let Some(Step::Overruled { pixels, samples }) = steps.last() else { panic!("{:?}", steps.last()) };
-    assert_eq!((*pixels, samples.len() as u64), ([0, 0, 8, 8], counters.overruled));
-    assert_eq!(samples.len(), 16);
-    assert!(samples.iter().all(|s| s.by_list < 2 && s.by_depth == s.by_list + 2 && s.sample == 0), "{samples:?}");
-    assert!(steps.last().unwrap().concerns([3, 3]) && !steps.last().unwrap().concerns([0, 0]));
-}

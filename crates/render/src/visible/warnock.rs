@@ -14,9 +14,9 @@
 //! In:   set-up triangles, joined to polygons (screen space). Out: the samples of each tile (screen space).
 //! Cost: windows (about the length of visible edges in pixels) times the polygons in them.
 //! Source: [Warnock 1969]. Departs from it: large windows are cut between tiles of 64x64 pixels, nearest to their middle
-//! ([`window`]); a window's corners are those of the box round its samples. The four-corner test leaves a margin for
+//! (`warnock/window.rs`); a window's corners are those of the box round its samples. The four-corner test leaves a margin for
 //! rounding and reckons with the clamping of depths, so that it never decides but what the facets' depth function would
-//! ([`depths`]); two facets with one depth plane are decided by their ids.
+//! (`warnock/depths.rs`); two facets with one depth plane are decided by their ids.
 
 mod depths;
 mod lists;

@@ -29,7 +29,7 @@ pub mod flag {
     pub const USER: u32 = 256;
     /// All bits of the user's planes.
     pub const USERS: u32 = 63 * USER;
-    /// What snapping took from x: the bits from this one on, as [`super::ScreenVertex::residue`].
+    /// What snapping took from x: the bits from this one on, as `ScreenVertex::residue`.
     pub const RESIDUE_X: u32 = 14;
     /// What it took from y: the bits from this one on, which are the last.
     pub const RESIDUE_Y: u32 = RESIDUE_X + RESIDUE_BITS;

@@ -8,7 +8,7 @@
 
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_raster::{SamplePattern, TileGrid};
+use vitral_raster::{SamplePattern, TILE_PIXELS, TileGrid, Viewport};
 use vitral_render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
 use vitral_render::visible::NullSink;
@@ -100,7 +100,7 @@ pub struct Measured {
     pub seen: Seen,
 }
 
-/// What is seen at each sample: facets and depths, tile by tile.
+/// What is seen at each sample of the picture: facets and depths, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     facets: Vec<u32>,
@@ -108,9 +108,11 @@ pub struct Seen {
 }
 
 impl Seen {
-    fn of(grid: &TileGrid) -> Self {
-        let facets = grid.tiles.iter().flat_map(|t| t.facet.iter().copied()).collect();
-        let depths = grid.tiles.iter().flat_map(|t| t.depth.iter().copied()).collect();
+    fn of(grid: &TileGrid, viewport: Viewport, samples: usize) -> Self {
+        // Some algorithms fill tiles beyond the border of the picture, others do not.
+        let pixels = || (0..viewport.height).flat_map(|y| (0..viewport.width).map(move |x| grid.locate(x, y)));
+        let places = || pixels().flat_map(|(tile, at)| (0..samples).map(move |s| (tile, s * TILE_PIXELS + at)));
+        let (facets, depths) = places().map(|(tile, at)| (tile.facet[at], tile.depth[at])).unzip();
         Self { facets, depths }
     }
 
@@ -146,7 +148,7 @@ pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Res
         Ok(first) => first,
         Err(limit) => return Ok(Err(limit)),
     };
-    let seen = Seen::of(&grid);
+    let seen = Seen::of(&grid, viewport, samples);
     let mut seconds = Vec::new();
     while seconds.len() + 1 < task.frames {
         // A limit now only means fewer pictures.
@@ -180,13 +182,16 @@ fn median(values: &mut [f64]) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::{Renderer, execution, load_builtin};
+    use vitral_math::DVec3;
 
     #[test]
     fn p25_every_algorithm_is_measured_and_agrees() {
         let mut renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
         (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
             (48, 36, 1);
-        let (camera, execution) = (renderer.frame_camera(), execution(1));
+        // The nearest cubes reach beyond the lower border.
+        let camera = Camera::look_at(DVec3::new(3.0, 3.0, 3.0), DVec3::ZERO);
+        let execution = execution(1);
         let (scene, settings) = (renderer.scene(), &renderer.settings);
         let task = Task { scene, camera: &camera, settings, frames: 2, time_limit: None, memory_limit: None };
         let all = Entrant::all();

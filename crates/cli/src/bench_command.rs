@@ -4,26 +4,22 @@ use crate::args::BenchArgs;
 use crate::bench_report;
 use crate::bench_rows::{Row, differing, rows};
 use crate::command_line;
-use crate::interrupt::{self, INTERRUPTED};
+use crate::interrupt;
 use crate::report::{self, Failure};
 use crate::resolve::set_viewpoint;
 use crate::values;
 use serde_json::{Value, json};
 use std::fmt::Write;
-use std::sync::atomic::Ordering;
 use vitral::bench::{Entrant, Measured};
 use vitral::{Execution, Renderer, State};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &BenchArgs) -> Result<u8, Failure> {
     let execution = values::execution_from(args.threads)?;
-    let cancelled = execution.budget.cancel_flag();
-    interrupt::listen(cancelled.clone());
-    let result = match &args.report {
+    interrupt::heed(&execution.budget.clone(), || match &args.report {
         Some(folder) => bench_report::write(args, folder, &execution),
         None => bench(args, execution),
-    };
-    if cancelled.load(Ordering::Relaxed) { Ok(INTERRUPTED) } else { result }
+    })
 }
 
 fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {

@@ -33,7 +33,7 @@ pub(crate) struct DrawArgs {
     pub(crate) report: DrawReportArgs,
 }
 
-/// What is drawn.
+/// Lines, fills and their looks.
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Lines")]
 pub(crate) struct LineArgs {
@@ -153,7 +153,7 @@ pub(crate) enum Sheet {
     Size([f64; 2]),
 }
 
-/// What is told.
+/// Statistics, warnings, progress.
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Reports")]
 pub(crate) struct DrawReportArgs {

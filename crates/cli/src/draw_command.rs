@@ -2,13 +2,11 @@
 
 use crate::draw_args::{DrawArgs, Hidden, PageArgs, Sheet, Style};
 use crate::draw_file::{DrawFile, check_fits, scaled_page};
-use crate::interrupt::{self, INTERRUPTED};
+use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::{self, Failure};
-use crate::resolve::{overlay_files, save_state, set_viewpoint};
-use crate::values;
+use crate::resolve::{execution_within, overlay_files, save_state, set_viewpoint};
 use serde_json::json;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 use vitral::{DrawingSettings, Drawn, LineClasses, PageSize, Renderer, State, World};
 
@@ -23,18 +21,12 @@ pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
         save_state(&state, path)?;
     }
 
-    // Set the limits.
-    let mut execution = values::execution_from(args.process.threads)?;
-    let process = &args.process;
-    execution.budget = execution.budget.with_time_limit(process.time_limit).with_memory_limit(process.max_memory);
-    if let Some(listener) = Progress::stages(args.report.progress.unwrap_or_default(), args.report.quiet) {
-        execution.budget = execution.budget.with_progress(listener);
-    }
-    let cancelled = execution.budget.cancel_flag();
-    interrupt::listen(cancelled.clone());
-
-    let result = draw(args, &state, settings, &file, execution, start);
-    if cancelled.load(Ordering::Relaxed) { Ok(INTERRUPTED) } else { result.map(|()| 0) }
+    let listener = Progress::stages(args.report.progress.unwrap_or_default(), args.report.quiet);
+    let execution = execution_within(&args.process, listener)?;
+    interrupt::heed(&execution.budget.clone(), || {
+        draw(args, &state, settings, &file, execution, start)?;
+        Ok(0)
+    })
 }
 
 /// Reads the models, draws, writes.
@@ -46,6 +38,7 @@ fn draw(
     execution: vitral::Execution,
     start: Instant,
 ) -> Result<(), Failure> {
+    // Read the models.
     let mut scene = state.load_scene_on(&execution.workers)?;
     let points: usize = scene.meshes.iter().map(|mesh| mesh.points.len()).sum();
     if points > 0 {
@@ -58,6 +51,8 @@ fn draw(
     let mut renderer = Renderer::with_execution(scene, execution)?;
     projected(args, state, renderer.world()).apply(&mut renderer)?;
     let load_seconds = start.elapsed().as_secs_f64();
+
+    // Draw.
     settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
     let drawn = match style_of(args) {
         Style::HiddenLine => renderer.draw(&settings)?,
@@ -65,6 +60,8 @@ fn draw(
     };
     check_fits(args, &settings, &drawn.drawing)?;
     let draw_seconds = start.elapsed().as_secs_f64() - load_seconds;
+
+    // Write.
     if let Some(warning) = file.warning(&drawn.drawing).filter(|_| !args.report.quiet) {
         report::warnings(&[warning]);
     }
@@ -96,7 +93,6 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
     if let Some(limit) = args.process.max_memory {
         state.load.max_file_bytes = state.load.max_file_bytes.min(limit);
     }
-
     Ok(state)
 }
 
@@ -110,8 +106,9 @@ fn projected(args: &DrawArgs, state: &State, world: &World) -> State {
     state
 }
 
-/// What is drawn, and on what sheet.
+/// The settings of the drawing: its lines, hidden layers and sheet.
 fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
+    // Refuse choices about lines where there are none.
     let usual = DrawingSettings::default();
     let lines = &args.lines;
     let has_lines = style_of(args) != Style::Filled;
@@ -121,6 +118,8 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
             Failure::usage(format!("{option}: --style filled draws no lines")).with_hint("give --style filled-lines")
         );
     }
+
+    // Hidden lines are drawn behind any number of faces, if nothing else is said.
     let is_hidden_drawn = lines.hidden.is_some_and(|hidden| hidden != Hidden::None);
     let hidden_layers = match (is_hidden_drawn, lines.hidden_max_layers) {
         (false, Some(_)) => {

@@ -8,7 +8,7 @@ use vitral::{
     Drawing, DrawingFormat, DrawingOptions, DrawingSettings, PageSize, State, TitleBlock, for_plotter, simplify,
 };
 
-/// Exit code for what is not supported.
+/// Exit code of formats that drawings are not written in.
 const UNSUPPORTED: u8 = 4;
 /// The longest side of a drawing to scale, in millimetres.
 const LONGEST: f64 = 10_000.0;
@@ -34,6 +34,8 @@ impl DrawFile {
     pub(crate) fn new(args: &DrawArgs, state: &State) -> Result<Self, Failure> {
         let (path, format) = place(args, state)?;
         check_options(args, format)?;
+
+        // Choose the pens.
         let mut options = DrawingOptions::default();
         if args.lines.hidden == Some(Hidden::Solid) {
             options.pens.hidden_dashes = None;
@@ -43,6 +45,8 @@ impl DrawFile {
                 *pen = *width;
             }
         }
+
+        // Take the rest over.
         options.decimals = args.page.precision.unwrap_or(options.decimals);
         options.surface_ids = args.page.svg_ids;
         let tolerance = args.page.simplify.unwrap_or(0.0);
@@ -82,8 +86,7 @@ impl DrawFile {
         }
         // HP-GL is ordered by its writer, in the plotter's own steps.
         if self.plotter && self.format != DrawingFormat::Hpgl {
-            let steps_a_millimetre = [1.0, 10.0, 100.0, 1000.0][usize::from(self.options.decimals)];
-            let (drawing, options) = for_plotter(&drawing, &options, steps_a_millimetre);
+            let (drawing, options) = for_plotter(&drawing, &options);
             return self.format.encode(&drawing, &options);
         }
         self.format.encode(&drawing, &options)
@@ -98,8 +101,11 @@ fn place(args: &DrawArgs, state: &State) -> Result<(PathBuf, DrawingFormat), Fai
         }
         return Ok((args.output.clone(), DrawingFormat::Svg));
     }
+    // Fill the model's name in.
     let model = model_name(state.models.first().map_or("", String::as_str));
     let path = PathBuf::from(expand(&args.output.to_string_lossy(), &model, 0)?);
+
+    // Find the format.
     let extension = path.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
     let Some(format) = DrawingFormat::from_extension(&extension) else {
         let names = DrawingFormat::ALL.iter().flat_map(|(_, names)| names.iter().map(|name| format!(".{name}")));
@@ -119,6 +125,8 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
     let hidden = lines.hidden.is_some_and(|hidden| hidden != Hidden::None);
     let lines_alone = page.plotter || !format.has_fills();
     let stroke = !lines.stroke.is_empty();
+
+    // Each row: whether it is a mistake, what is said, and the way out.
     let strokes = |name: &str| lines.stroke.iter().any(|(class, _)| class == name);
     let write_lines = "give --style filled-lines";
     let mistakes = [
@@ -173,15 +181,18 @@ pub(crate) fn scaled_page(args: &DrawArgs, page: PageSize, window: Option<f64>) 
 /// Whether a drawing to scale fits its sheet.
 pub(crate) fn check_fits(args: &DrawArgs, settings: &DrawingSettings, drawing: &Drawing) -> Result<(), Failure> {
     let (Some(scale), PageSize::Scaled { sheet, .. }) = (args.page.scale, settings.page) else { return Ok(()) };
+    // A sheet that fits the drawing has room for any that is not too large to be one.
     let room = sheet.map_or([LONGEST; 2], |sheet| sheet.map(|side| side - 2.0 * settings.margin));
     let size = match sheet {
-        Some(_) => extent(drawing),
+        Some(_) => drawing.extent(),
         None => [drawing.width, drawing.height].map(|side| side - 2.0 * settings.margin),
     };
     if (0..2).all(|k| size[k] <= room[k] + ROUNDING) {
         return Ok(());
     }
-    let fitting = scale * (room[0] / size[0]).min(room[1] / size[1]);
+
+    // Name the largest scale of round numbers that fits, by the same measure.
+    let fitting = scale * [0, 1].map(|k| (room[k] + ROUNDING) / size[k]).into_iter().fold(f64::INFINITY, f64::min);
     let fitting = match fitting < 1.0 {
         true => format!("1:{}", (1.0 / fitting).ceil()),
         false => format!("{}", (fitting * 100.0).floor() / 100.0),
@@ -190,17 +201,4 @@ pub(crate) fn check_fits(args: &DrawArgs, settings: &DrawingSettings, drawing: &
     let what = format!("--scale: the drawing has {}, the sheet has room for {}", sides(size), sides(room));
     Err(Failure::usage(what)
         .with_hint(format!("--scale {fitting} fits; or choose a larger --page, a smaller --margin")))
-}
-
-/// Width and height of what is drawn.
-fn extent(drawing: &Drawing) -> [f64; 2] {
-    let lines = drawing.lines.iter().flat_map(|line| &line.points);
-    let outlines = drawing.regions.iter().flat_map(|region| region.rings.iter().flatten());
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for point in lines.chain(outlines) {
-        for k in 0..2 {
-            (low[k], high[k]) = (low[k].min(point[k]), high[k].max(point[k]));
-        }
-    }
-    [0, 1].map(|k| (high[k] - low[k]).max(0.0))
 }

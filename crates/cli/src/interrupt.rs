@@ -1,17 +1,27 @@
 //! Ctrl-C: asks the work to stop, and ends the process if it does not soon.
 
+use crate::report::Failure;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
+use vitral::Budget;
 
 /// Exit code of an interrupted process.
-pub(crate) const INTERRUPTED: u8 = 130;
+const INTERRUPTED: u8 = 130;
 
 /// How long the work may take to notice. A file that is being written is finished within this time.
 const PATIENCE: Duration = Duration::from_millis(300);
 
+/// Does some work within a budget, which Ctrl-C cancels; gives the exit code.
+pub(crate) fn heed(budget: &Budget, work: impl FnOnce() -> Result<u8, Failure>) -> Result<u8, Failure> {
+    let cancelled = budget.cancel_flag();
+    listen(cancelled.clone());
+    let result = work();
+    if cancelled.load(Ordering::Relaxed) { Ok(INTERRUPTED) } else { result }
+}
+
 /// Sets `cancelled` at the first Ctrl-C. Where no handler can be set, the system's default ends the process.
-pub(crate) fn listen(cancelled: Arc<AtomicBool>) {
+fn listen(cancelled: Arc<AtomicBool>) {
     let handler = move || {
         cancelled.store(true, Ordering::Relaxed);
         std::thread::sleep(PATIENCE);

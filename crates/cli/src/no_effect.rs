@@ -12,7 +12,7 @@ use vitral::{
     Viewpoint,
 };
 
-/// An option, when it does nothing, and what is said then.
+/// A row of the table: an option, a condition under which it has no effect, and the reason.
 struct Row {
     /// As typed.
     option: &'static str,
@@ -153,7 +153,7 @@ fn gives_view(args: &RenderArgs) -> bool {
     args.camera.view.is_some_and(|view| view != View::default())
 }
 
-/// What is about to be rendered.
+/// The picture that conditions are about: its settings, scene, camera and lights.
 struct Case {
     /// An explained pixel or a dump tells of light and normals, whatever channels are made.
     told: bool,
@@ -277,6 +277,7 @@ impl Case {
 
 /// A warning for each option that was typed and changes nothing.
 pub(crate) fn warnings(args: &RenderArgs, state: &State, renderer: &Renderer) -> Vec<String> {
+    // Of each option tell the first row that holds.
     let case = Case::new(args, state, renderer);
     let mut told: Vec<(&str, &str)> = Vec::new();
     for row in &ROWS {

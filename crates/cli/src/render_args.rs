@@ -114,7 +114,7 @@ pub(crate) struct AlgorithmArgs {
     /// How the visible surfaces are found [default: z-buffer]
     #[arg(long, value_name = "NAME", value_parser = choices::visibility())]
     pub(crate) visibility: Option<Visibility>,
-    /// Integer depths of N bits, 8 to 32, with --visibility z-buffer: what is nearly as near comes to the same depth, and faces
+    /// Integer depths of N bits, 8 to 32, with --visibility z-buffer: faces nearer to each other than a step get equal depths and
     /// fight for the pixels [default: floating point]
     #[arg(long, value_name = "N", value_parser = values::whole(8..=32u32), allow_negative_numbers = true)]
     pub(crate) depth_bits: Option<u32>,
@@ -350,7 +350,7 @@ pub(crate) struct ProcessArgs {
     pub(crate) max_memory: Option<u64>,
 }
 
-/// What is told.
+/// Statistics, explanations, traces, progress.
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Reports")]
 pub(crate) struct ReportArgs {

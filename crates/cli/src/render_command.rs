@@ -1,18 +1,16 @@
 //! `vitral render`: models in, pictures out.
 
 use crate::compare_command;
-use crate::interrupt::{self, INTERRUPTED};
+use crate::interrupt;
 use crate::no_effect;
 use crate::outputs::model_name;
 use crate::progress::Progress;
 use crate::render_args::{RenderArgs, ReportArgs};
 use crate::report::{self, DIFFERENT, Failure};
-use crate::resolve::{Plan, resolve, save_state};
+use crate::resolve::{Plan, execution_within, resolve, save_state};
 use crate::step_pictures;
 use crate::trace_file::Onlooker;
-use crate::values;
 use serde_json::{Map, Value, json};
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 use vitral::explain::{Deciders, Explanation, explain};
 use vitral::internals::frame::compare;
@@ -34,19 +32,10 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     if let Some(file) = &args.process.save_state {
         save_state(&plan.state, file)?;
     }
-    let mut execution = values::execution_from(args.process.threads)?;
-    execution.budget =
-        execution.budget.with_time_limit(args.process.time_limit).with_memory_limit(args.process.max_memory);
     let one_frame = plan.frames.end() == plan.frames.start();
     let listener = Progress::stages(args.report.progress.unwrap_or_default(), args.report.quiet);
-    if let Some(listener) = listener.filter(|_| one_frame) {
-        execution.budget = execution.budget.with_progress(listener);
-    }
-    let cancelled = execution.budget.cancel_flag();
-    interrupt::listen(cancelled.clone());
-
-    let result = render(args, &plan, execution, start);
-    if cancelled.load(Ordering::Relaxed) { Ok(INTERRUPTED) } else { result }
+    let execution = execution_within(&args.process, listener.filter(|_| one_frame))?;
+    interrupt::heed(&execution.budget.clone(), || render(args, &plan, execution, start))
 }
 
 /// Renders the frames of the plan, and reports about them.

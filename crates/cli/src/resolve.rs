@@ -11,11 +11,12 @@ use crate::{step_pictures, values};
 use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use vitral::internals::render::registry;
 use vitral::internals::render::trace::structure::drawer;
 use vitral::{
-    Background, Channel, Channels, ColorSpace, Global, Lines, Normals, Plane, Settings, State, Transparency, Viewpoint,
-    Visibility,
+    Background, Channel, Channels, ColorSpace, Execution, Global, Lines, Normals, Plane, Settings, State, Transparency,
+    Viewpoint, Visibility,
 };
 
 /// Largest configuration or state file, in bytes.
@@ -64,6 +65,19 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     check_files(args, &state, outputs.iter().chain(&steps_video), &frames)?;
     let reference = args.output.reference.as_deref().map(compare_command::read).transpose()?;
     Ok(Plan { state, outputs, frames, views, steps_video, reference })
+}
+
+/// How to compute, within the limits that were typed; `listener` is told how far it is.
+pub(crate) fn execution_within(
+    process: &ProcessArgs,
+    listener: Option<Arc<vitral::Progress>>,
+) -> Result<Execution, Failure> {
+    let mut execution = values::execution_from(process.threads)?;
+    execution.budget = execution.budget.with_time_limit(process.time_limit).with_memory_limit(process.max_memory);
+    if let Some(listener) = listener {
+        execution.budget = execution.budget.with_progress(listener);
+    }
+    Ok(execution)
 }
 
 /// Lays the configuration file and the state file over the state.

@@ -71,7 +71,7 @@ impl Onlooker {
         Ok(())
     }
 
-    /// Writes what is left, and ends watching.
+    /// Flushes the trace, and takes the observer away.
     pub(crate) fn finish(self, renderer: &mut Renderer) -> Result<(), Failure> {
         renderer.execution_mut().observer = None;
         match self.trace {

@@ -46,11 +46,7 @@ impl Folder {
             return None;
         };
         assert!(output.status.success(), "{program} {arguments:?}: {}", errors(&output));
-        // What a build of the program lacks is no fault of the file.
-        let errors = errors(&output);
-        let complaints: Vec<_> =
-            errors.lines().filter(|line| *line != "warning: ICC support is not available").collect();
-        assert!(complaints.is_empty(), "{program} {arguments:?}: {errors}");
+        assert_eq!(errors(&output), "", "{program} {arguments:?}");
         Some(String::from_utf8_lossy(&output.stdout).into_owned())
     }
 }
@@ -101,7 +97,7 @@ fn pdf_is_read_by_others() {
     if let Some(told) = folder.ask("mutool", &["show", "y.pdf", "trailer/Root/OCProperties/OCGs"], "mupdf-tools") {
         assert_eq!(told.matches(" 0 R").count(), 3, "hidden, crease and contour: {told}");
     }
-    folder.ask("mutool", &["draw", "-q", "-o", "x.png", "x.pdf"], "mupdf-tools");
+    folder.ask("mutool", &["draw", "-q", "-N", "-o", "x.png", "x.pdf"], "mupdf-tools");
 }
 
 #[test]
@@ -199,7 +195,7 @@ fn options_that_do_not_suit_the_file_are_told() {
             2,
             "has 300.0 x 300.0 mm, the sheet has room for 200.0 x 287.0 mm",
         ),
-        (&["-o", "x.svg", "--view", "front", "--scale", "1:1", "--unit", "m"], 2, "--scale 1:3 fits"),
+        (&["-o", "x.svg", "--view", "front", "--scale", "1:1", "--unit", "m"], 2, "--scale 1:2 fits"),
         (&["-o", "x.dxf", "--style", "filled-lines"], 0, "x.dxf: warning: filled regions are left out"),
         (&["-o", "x.svg", "--view", "front", "--scale", "10:1", "--page", "A4"], 0, ""),
     ] {

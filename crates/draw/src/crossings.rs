@@ -125,7 +125,7 @@ impl Pairs {
             ControlFlow::Continue(())
         });
         // Two vertices, an edge and two entries in its list, here and in the mesh.
-        run.memory.charge((found.len() - start) as u64 * (2 * size_of::<Crossing>() + size_of::<Edge>()) as u64)?;
+        run.memory.add((found.len() - start) as u64 * (2 * size_of::<Crossing>() + size_of::<Edge>()) as u64)?;
         if let ControlFlow::Break(limit) = flow { Err(limit) } else { Ok(()) }
     }
 }

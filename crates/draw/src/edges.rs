@@ -12,9 +12,11 @@ use crate::classes::{Classes, Side, classes_of};
 use crate::page_mesh::{Edge, PageMesh, Triangle};
 use crate::projection::{Facet, Projected};
 use crate::run::Run;
+use std::ops::Range;
 use vitral_exec::Limit;
 use vitral_frame::drawing::LineClass;
 use vitral_math::func;
+use vitral_scene::buckets::{Dealt, Source};
 
 /// Vertices in one piece of work.
 const BATCH: usize = 1 << 13;
@@ -34,9 +36,9 @@ struct Use {
 
 /// Makes the page's mesh. `crease_angle` in radians.
 pub(crate) fn with_edges(projected: Projected, crease_angle: f64, run: &Run<'_>) -> Result<PageMesh, Limit> {
-    run.memory.charge(projected.facets.len() as u64 * 3 * BYTES_A_SIDE)?;
+    run.memory.add(projected.facets.len() as u64 * 3 * BYTES_A_SIDE)?;
     run.budget.check("edges")?;
-    let (starts, mut uses) = by_lower_vertex(&projected.facets, projected.vertices.len());
+    let (starts, mut uses) = Dealt::new(&Sides(&projected.facets), projected.vertices.len()).into_parts();
 
     // Sort the uses of each vertex by the other end.
     let mut lists: Vec<&mut [Use]> = Vec::new();
@@ -89,30 +91,24 @@ fn put_together(projected: Projected, pieces: Vec<(Vec<Edge>, Vec<u32>)>, duplic
     mesh
 }
 
-/// The sides of all triangles, those of one lower vertex together, and where each vertex's begin.
-fn by_lower_vertex(facets: &[Facet], vertices: usize) -> (Vec<u32>, Vec<Use>) {
-    let side = |facet: &Facet, k: usize| (facet.vertices[k], facet.vertices[(k + 1) % 3]);
-    let mut starts = vec![0u32; vertices + 1];
-    for facet in facets {
-        for (a, b) in (0..3).map(|k| side(facet, k)) {
-            starts[a.min(b) as usize + 1] += 1;
+/// The sides of all triangles, each under its lower vertex.
+struct Sides<'f>(&'f [Facet]);
+
+impl Source<Use> for Sides<'_> {
+    fn items(&self) -> usize {
+        self.0.len()
+    }
+
+    fn visit(&self, range: Range<usize>, mut put: impl FnMut(usize, Use)) {
+        for t in range {
+            let facet = &self.0[t];
+            for k in 0..3 {
+                let (a, b) = (facet.vertices[k], facet.vertices[(k + 1) % 3]);
+                let outline = facet.outline >> k & 1 == 1;
+                put(a.min(b) as usize, Use { higher: a.max(b), triangle: t as u32, reversed: a > b, outline });
+            }
         }
     }
-    for v in 0..vertices {
-        starts[v + 1] += starts[v];
-    }
-    let mut next = starts.clone();
-    let mut uses = vec![Use::default(); facets.len() * 3];
-    for (t, facet) in facets.iter().enumerate() {
-        for k in 0..3 {
-            let (a, b) = side(facet, k);
-            let place = &mut next[a.min(b) as usize];
-            let outline = facet.outline >> k & 1 == 1;
-            uses[*place as usize] = Use { higher: a.max(b), triangle: t as u32, reversed: a > b, outline };
-            *place += 1;
-        }
-    }
-    (starts, uses)
 }
 
 /// Triangles over the same vertices as an earlier one, in order.

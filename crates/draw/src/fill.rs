@@ -79,6 +79,7 @@ pub(crate) fn regions(
     palette: &Palette<'_>,
     run: &Run<'_>,
 ) -> Result<Vec<PageRegion>, Limit> {
+    // Find the visible part of each triangle.
     let (spare, count) = (Spare::<Clipping>::default(), mesh.triangles.len());
     run.budget.begin("triangles", count as u64);
     let pieces = run.workers.map(count.div_ceil(BATCH), |batch| {
@@ -96,7 +97,7 @@ pub(crate) fn regions(
                     continue;
                 }
                 let corners: usize = shapes.iter().flatten().map(Vec::len).sum();
-                run.memory.charge(corners as u64 * BYTES_A_CORNER)?;
+                run.memory.add(corners as u64 * BYTES_A_CORNER)?;
                 let source = mesh.sources[t];
                 parts.push(Part { color: palette(&look(triangle, &source)), source, shapes });
             }
@@ -120,6 +121,7 @@ fn look(triangle: &Triangle, source: &Source) -> FaceLook {
 
 /// Joins the parts of each colour and material.
 fn join(parts: Vec<Part>, run: &Run<'_>) -> Result<Vec<PageRegion>, Limit> {
+    // Gather the parts of each colour and material.
     let mut groups: BTreeMap<(u32, [u8; 3]), (u32, Vec<Shapes>)> = BTreeMap::new();
     for Part { color, source, shapes } in parts {
         let (surface, all) = groups.entry((source.material, color)).or_insert((source.surface, Vec::new()));
@@ -127,6 +129,8 @@ fn join(parts: Vec<Part>, run: &Run<'_>) -> Result<Vec<PageRegion>, Limit> {
         all.push(shapes);
     }
     let groups: Vec<_> = groups.into_iter().collect();
+
+    // Join those that touch.
     let joined = run.workers.map(groups.len(), |i| {
         run.budget.check("regions")?;
         let ((material, color), (surface, all)) = &groups[i];
@@ -171,6 +175,7 @@ impl Clipping {
     /// The visible part of a triangle.
     fn visible(&mut self, mesh: &PageMesh, grid: &Grid, number: u32, run: &Run<'_>) -> Result<Shapes, Limit> {
         let triangle = &mesh.triangles[number as usize];
+        // Collect what lies in front, until something hides all of it.
         let (farthest, mut in_front) = (triangle.farthest(), Vec::new());
         let flow = grid.over(triangle.low, triangle.high, |list| {
             for &other in list {
@@ -210,6 +215,8 @@ impl Clipping {
             ControlFlow::Break(None) => return Ok(Vec::new()),
             ControlFlow::Continue(()) => {}
         }
+
+        // Take it away.
         let whole = triangle.corners.map(|p| corner(p, 1.0, p)).to_vec();
         if in_front.is_empty() {
             return Ok(vec![vec![whole]]);

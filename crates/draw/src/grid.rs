@@ -69,7 +69,7 @@ impl Grid {
             .filter(|&t| wanted(&triangles[t as usize]))
             .map(|t| (-triangles[t as usize].nearest, t))
             .collect();
-        run.memory.charge(order.len() as u64 * BYTES_A_TRIANGLE)?;
+        run.memory.add(order.len() as u64 * BYTES_A_TRIANGLE)?;
         order.sort_unstable();
         run.budget.check("the grid")?;
 

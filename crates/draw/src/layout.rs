@@ -8,7 +8,7 @@ use crate::fill::PageRegion;
 use crate::page_mesh::{NONE, PAGE_UNITS};
 use crate::strokes::Stroke;
 use vitral_frame::Drawing;
-use vitral_frame::drawing::{Line, Region};
+use vitral_frame::drawing::{Line, Region, bounds};
 
 /// Steps of the precision in a millimetre.
 const STEPS_A_MILLIMETRE: f64 = 1000.0;
@@ -107,15 +107,7 @@ fn millimetres(point: Step) -> [f64; 2] {
 pub(crate) fn lay_out(strokes: &[Stroke], regions: &[PageRegion], page: PageSize, margin: f64) -> Drawing {
     let outlines = regions.iter().flat_map(|region| region.rings.iter().flatten().copied());
     let points = strokes.iter().flat_map(|stroke| stroke.ends).chain(outlines);
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for point in points {
-        for k in 0..2 {
-            (low[k], high[k]) = (low[k].min(point[k]), high[k].max(point[k]));
-        }
-    }
-    if low[0] > high[0] {
-        (low, high) = ([0.0; 2], [0.0; 2]);
-    }
+    let [low, high] = bounds(points).unwrap_or_default();
     let placement = Placement::new(low, high, page, margin);
     let placed: Vec<_> = strokes.iter().map(|s| (s.class, s.layers, s.ends.map(|p| placement.step(p)))).collect();
     let lines = chains(&placed)

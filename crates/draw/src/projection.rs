@@ -91,7 +91,7 @@ pub(crate) fn project(world: &World, view: &ViewTransform, aspect: f64, run: &Ru
     let size = if aspect >= 1.0 { [longer, longer / aspect] } else { [longer * aspect, longer] };
     let size = size.map(|side| (side.round() as i32).clamp(1, PAGE_UNITS));
     let vertex_count: usize = world.instances.iter().map(|i| i.mesh.positions.len()).sum();
-    run.memory.charge(vertex_count as u64 * BYTES_A_VERTEX + u64::from(world.facet_count) * BYTES_A_TRIANGLE)?;
+    run.memory.add(vertex_count as u64 * BYTES_A_VERTEX + u64::from(world.facet_count) * BYTES_A_TRIANGLE)?;
 
     // Weld each mesh once, and give each instance its vertices in clip space.
     let mut welds: Vec<Option<(Weld, Vec<u32>)>> = Vec::new();

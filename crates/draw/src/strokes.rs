@@ -13,9 +13,10 @@ use crate::page_mesh::PageMesh;
 use crate::place::Segment;
 use crate::run::Run;
 use crate::visibility::Fragment;
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 use vitral_exec::Limit;
 use vitral_frame::drawing::LineClass;
+use vitral_scene::buckets::{Dealt, Source};
 
 /// Distance in units within which strokes coincide: two roundings by half a unit each way.
 const REACH: f64 = 1.5;
@@ -55,7 +56,7 @@ pub(crate) fn strokes(
     wanted: Classes,
     run: &Run<'_>,
 ) -> Result<Vec<Stroke>, Limit> {
-    run.memory.charge(fragments.len() as u64 * BYTES_A_STROKE)?;
+    run.memory.add(fragments.len() as u64 * BYTES_A_STROKE)?;
     let all: Vec<Stroke> = fragments
         .iter()
         .filter_map(|fragment| {
@@ -78,8 +79,8 @@ fn without_coincident(all: Vec<Stroke>, size: [i32; 2], run: &Run<'_>) -> Result
         for i in batch * BATCH..all.len().min((batch + 1) * BATCH) {
             parts.clear();
             parts.push(all[i]);
-            cells.visit(&all[i], |cell| {
-                for &other in cells.list(cell) {
+            cells.grid.visit(&all[i], |cell| {
+                for &other in cells.numbers.bucket(cell) {
                     let front = &all[other as usize];
                     if (front.rank(), other as usize) < (all[i].rank(), i) {
                         parts = parts.iter().flat_map(|part| give_way(part, front)).flatten().collect();
@@ -127,11 +128,32 @@ fn give_way(stroke: &Stroke, front: &Stroke) -> [Option<Stroke>; 2] {
 
 /// Strokes by the cells of a grid that they run through.
 struct Cells {
+    grid: CellGrid,
+    numbers: Dealt<u32>,
+}
+
+/// Cells of equal size over the page.
+#[derive(Clone, Copy)]
+struct CellGrid {
     shift: u32,
     width: usize,
     height: usize,
-    starts: Vec<u32>,
-    items: Vec<u32>,
+}
+
+/// Strokes, with the cells within their reach.
+struct InCells<'s> {
+    grid: CellGrid,
+    strokes: &'s [Stroke],
+}
+
+impl Source<u32> for InCells<'_> {
+    fn items(&self) -> usize {
+        self.strokes.len()
+    }
+
+    fn visit(&self, range: Range<usize>, mut put: impl FnMut(usize, u32)) {
+        range.for_each(|i| self.grid.visit(&self.strokes[i], |cell| put(cell, i as u32)));
+    }
 }
 
 impl Cells {
@@ -140,28 +162,12 @@ impl Cells {
         let along = (strokes.len() as f64).sqrt().max(1.0) as u32;
         let shift = (longer / along).max(16).ilog2();
         let [width, height] = size.map(|side| (side >> shift) as usize + 1);
-        let mut cells = Self { shift, width, height, starts: vec![0; width * height + 1], items: Vec::new() };
-        let mut counts = vec![0u32; width * height + 1];
-        strokes.iter().for_each(|stroke| cells.visit(stroke, |cell| counts[cell + 1] += 1));
-        for cell in 0..width * height {
-            counts[cell + 1] += counts[cell];
-        }
-        let mut next = counts.clone();
-        let mut items = vec![0; counts[width * height] as usize];
-        for (i, stroke) in strokes.iter().enumerate() {
-            cells.visit(stroke, |cell| {
-                items[next[cell] as usize] = i as u32;
-                next[cell] += 1;
-            });
-        }
-        (cells.starts, cells.items) = (counts, items);
-        cells
+        let grid = CellGrid { shift, width, height };
+        Self { grid, numbers: Dealt::new(&InCells { grid, strokes }, width * height) }
     }
+}
 
-    fn list(&self, cell: usize) -> &[u32] {
-        &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize]
-    }
-
+impl CellGrid {
     /// Columns or rows within reach of a range of coordinates.
     fn range(&self, low: f64, high: f64, count: usize) -> RangeInclusive<usize> {
         let cell = |at: f64| (at.max(0.0) as usize >> self.shift).min(count - 1);

@@ -88,7 +88,7 @@ pub(crate) fn fragments(
                 }
                 run.budget.advance();
             }
-            run.memory.charge((found.len() * size_of::<Fragment>()) as u64)?;
+            run.memory.add((found.len() * size_of::<Fragment>()) as u64)?;
             run.budget.check("visibility")?;
             run.budget.progress("visibility", run.budget.achieved().done, mesh.edges.len() as u64);
             Ok(found)

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod budget;
+mod charge;
 #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
 mod placement;
 mod spare;
@@ -12,6 +13,7 @@ mod started;
 mod workers;
 
 pub use budget::{Achieved, Budget, Clock, Limit, MAX_STEPS, NoClock, Progress};
+pub use charge::Charge;
 pub use spare::Spare;
 pub use started::{Started, born_of_fork, forked, hold_for_fork};
 pub use workers::Workers;

@@ -85,6 +85,14 @@ impl Drawing {
         self.lines.iter().filter(|line| wanted(line)).map(Line::length).sum()
     }
 
+    /// Width and height of the box round all lines and regions, in millimetres.
+    pub fn extent(&self) -> [f64; 2] {
+        let lines = self.lines.iter().flat_map(|line| &line.points);
+        let outlines = self.regions.iter().flat_map(|region| region.rings.iter().flatten());
+        let around = bounds(lines.chain(outlines).copied());
+        around.map_or([0.0; 2], |[low, high]| [high[0] - low[0], high[1] - low[1]])
+    }
+
     /// The area of all regions, in square millimetres.
     pub fn area(&self) -> f64 {
         self.regions.iter().map(Region::area).sum()
@@ -107,6 +115,14 @@ impl Region {
     pub fn area(&self) -> f64 {
         self.rings.iter().map(|ring| signed_area(ring)).sum()
     }
+}
+
+/// The smallest and the largest coordinates of points; `None` without any.
+pub fn bounds(points: impl IntoIterator<Item = [f64; 2]>) -> Option<[[f64; 2]; 2]> {
+    points.into_iter().fold(None, |around, point| {
+        let [low, high] = around.unwrap_or([point; 2]);
+        Some([[0, 1].map(|k| low[k].min(point[k])), [0, 1].map(|k| high[k].max(point[k]))])
+    })
 }
 
 /// The area inside a closed polyline, positive where it runs counter-clockwise.
@@ -135,6 +151,7 @@ mod tests {
         let lines = vec![line(0, &square(0.0, 3.0)), line(2, &[[0.0, 0.0], [3.0, 4.0]])];
         let drawing = Drawing { width: 3.0, height: 4.0, lines, regions: vec![region] };
         assert_eq!((drawing.area(), drawing.length(|l| l.layers == 0), drawing.length(|_| true)), (8.0, 9.0, 14.0));
-        assert_eq!(signed_area(&[]), 0.0);
+        assert_eq!(drawing.extent(), [3.0, 4.0]);
+        assert_eq!((signed_area(&[]), bounds([]), Drawing::default().extent()), (0.0, None, [0.0; 2]));
     }
 }

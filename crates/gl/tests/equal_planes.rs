@@ -86,11 +86,7 @@ fn depths_of_a_plane_are_the_same_to_a_few_steps_however_it_is_cut() {
             let both = whole.iter().zip(depths(n, angle)).filter(|(a, b)| **a < 1.0 && *b < 1.0);
             let apart = both.map(|(a, b)| (f64::from(*a) - f64::from(b)).abs() * f64::from((1 << 24) - 1));
             let (most, sum, count) = apart.fold((0.0f64, 0.0, 0), |(m, s, n), d| (m.max(d), s + d, n + 1));
-            // Slivers that snapping turned over keep to their snapped corners: at a few samples they are off by more.
-            assert!(
-                count > 20 && most < 24.0 && sum / f64::from(count) < 2.0,
-                "{view:?}, {n}: {most}, {sum} / {count}"
-            );
+            assert!(count > 20 && most < 6.5 && sum / f64::from(count) < 2.0, "{view:?}, {n}: {most}, {sum} / {count}");
         }
     }
 }

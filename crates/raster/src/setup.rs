@@ -105,16 +105,13 @@ impl DepthPlane {
         let scale = SUBPIXEL as f32 / (snapped + rest);
         let (dz_dx, dz_dy) = ((dz1 * y2 - dz2 * y1) * scale, (dz2 * x1 - dz1 * x2) * scale);
 
-        // The first corner's depth is that of its own place: go back to where it was snapped to.
-        let back = |axis: usize| residues[0][axis] as f32 * (RESIDUE / SUBPIXEL as f32);
-        Self {
-            z: a.z - (back(0) * dz_dx + back(1) * dz_dy),
-            dz_dx,
-            dz_dy,
-            origin: [a.x, a.y],
-            z_min: a.z.min(b.z).min(c.z),
-            z_max: a.z.max(b.z).max(c.z),
-        }
+        // Depths are those of the corners' own places: go back to where they were snapped to, so that the range holds there, too.
+        let unit = RESIDUE / SUBPIXEL as f32;
+        let snapped =
+            |corner: CornerPosition, [x, y]: [i32; 2]| corner.z - (x as f32 * unit * dz_dx + y as f32 * unit * dz_dy);
+        let [za, zb, zc] = [snapped(a, residues[0]), snapped(b, residues[1]), snapped(c, residues[2])];
+        let (z_min, z_max) = (za.min(zb).min(zc).max(0.0), za.max(zb).max(zc).min(1.0));
+        Self { z: za, dz_dx, dz_dy, origin: [a.x, a.y], z_min, z_max }
     }
 
     /// Adds to all depths.

@@ -1,8 +1,9 @@
 //! The steps of the algorithms, for whoever wants to look on.
 //!
 //! An [`Observer`] in the [`Execution`](crate::Execution) is told each step as it is done, from any thread: in one tile or
-//! band they come in order, those of different tiles mix ([`numbered`] puts them in the algorithm's own). Nobody listening costs nothing that can be measured: the
-//! question is asked once for a window, a line, a polygon of a list, a ray or a block of rays, never in a loop within.
+//! band they come in order, those of different tiles mix ([`numbered`] puts them in the algorithm's own). Nobody listening costs
+//! nothing that can be measured: the question is asked once for a window, a line, a polygon of a list, a ray or a block of rays,
+//! never in a loop within.
 //!
 //! [`picture`] draws the steps over the image.
 
@@ -12,7 +13,6 @@ pub mod lists;
 pub mod numbered;
 pub mod outlines;
 pub mod picture;
-pub mod quadtree;
 pub mod replay;
 pub mod structure;
 pub mod tables;
@@ -29,8 +29,7 @@ pub trait Observer: std::fmt::Debug + Send + Sync {
     fn step(&self, step: &Step);
 
     /// Whether each comparison of the z-buffer at a pixel is to be told.
-    fn watches(&self, pixel: [u32; 2]) -> bool {
-        let _ = pixel;
+    fn watches(&self, _pixel: [u32; 2]) -> bool {
         false
     }
 

@@ -17,22 +17,59 @@ use vitral_exec::Workers;
 const RUN: usize = 1 << 16;
 
 /// Where records come from.
-pub(crate) trait Source<T>: Sync {
+pub trait Source<T>: Sync {
     /// Number of items; each has any number of records.
     fn items(&self) -> usize;
     /// Calls `put(bucket, record)` for the records of the items in `range`, in order. Called twice for each range.
     fn visit(&self, range: Range<usize>, put: impl FnMut(usize, T));
 }
 
-/// Records of one run, bucket after bucket.
-struct Run<T> {
+/// Records bucket after bucket, dealt by one thread.
+#[derive(Debug)]
+pub struct Dealt<T> {
     records: Vec<T>,
     starts: Vec<u32>,
 }
 
+impl<T: Copy + Default> Dealt<T> {
+    /// Deals all records of `source` into `count` buckets.
+    pub fn new(source: &impl Source<T>, count: usize) -> Self {
+        Self::of_range(source, 0..source.items(), count)
+    }
+
+    /// Deals the records of some items.
+    fn of_range(source: &impl Source<T>, range: Range<usize>, count: usize) -> Self {
+        // Count the records of each bucket, and turn counts into places.
+        let mut starts = vec![0u32; count + 1];
+        source.visit(range.clone(), |bucket, _| starts[bucket + 1] += 1);
+        for b in 0..count {
+            starts[b + 1] += starts[b];
+        }
+
+        // Place the records; `next` runs ahead of `starts`, which stays as it is.
+        let mut next = starts.clone();
+        let mut records = vec![T::default(); starts[count] as usize];
+        source.visit(range, |bucket, record| {
+            records[next[bucket] as usize] = record;
+            next[bucket] += 1;
+        });
+        Self { records, starts }
+    }
+
+    /// The records of bucket `b`, in the order of the input.
+    pub fn bucket(&self, b: usize) -> &[T] {
+        &self.records[self.starts[b] as usize..self.starts[b + 1] as usize]
+    }
+
+    /// Where the records of each bucket begin, and the end of the last ones; and all records.
+    pub fn into_parts(self) -> (Vec<u32>, Vec<T>) {
+        (self.starts, self.records)
+    }
+}
+
 /// Records by bucket.
 pub(crate) struct Buckets<T> {
-    runs: Vec<Run<T>>,
+    runs: Vec<Dealt<T>>,
     count: usize,
 }
 
@@ -40,31 +77,14 @@ impl<T: Copy + Default + Send + Sync> Buckets<T> {
     /// Deals the records of `source` into `count` buckets.
     pub(crate) fn deal(source: &impl Source<T>, count: usize, workers: &Workers) -> Self {
         let items = source.items();
-        let runs = workers.map(items.div_ceil(RUN), |r| {
-            let range = r * RUN..items.min((r + 1) * RUN);
-
-            // Count the records of each bucket, and turn counts into places.
-            let mut starts = vec![0u32; count + 1];
-            source.visit(range.clone(), |bucket, _| starts[bucket + 1] += 1);
-            for b in 0..count {
-                starts[b + 1] += starts[b];
-            }
-
-            // Place the records; `next` runs ahead of `starts`, which stays as it is.
-            let mut next = starts.clone();
-            let mut records = vec![T::default(); starts[count] as usize];
-            source.visit(range, |bucket, record| {
-                records[next[bucket] as usize] = record;
-                next[bucket] += 1;
-            });
-            Run { records, starts }
-        });
+        let runs =
+            workers.map(items.div_ceil(RUN), |r| Dealt::of_range(source, r * RUN..items.min((r + 1) * RUN), count));
         Self { runs, count }
     }
 
     /// The pieces of bucket `b`, one a run.
     pub(crate) fn pieces(&self, b: usize) -> impl Iterator<Item = &[T]> + Clone {
-        self.runs.iter().map(move |run| &run.records[run.starts[b] as usize..run.starts[b + 1] as usize])
+        self.runs.iter().map(move |run| run.bucket(b))
     }
 
     /// How many buckets there are.

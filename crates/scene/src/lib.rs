@@ -3,7 +3,7 @@
 
 mod axis;
 pub mod bodies;
-mod buckets;
+pub mod buckets;
 pub mod builtin;
 mod camera;
 mod camera_moves;

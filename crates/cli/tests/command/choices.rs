@@ -1,4 +1,4 @@
-//! Choices of the view and of lights, and those that have no effect.
+//! Options of the view and of lights, and options without effect.
 
 use super::{Folder, code, errors, json, render};
 

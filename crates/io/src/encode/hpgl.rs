@@ -7,7 +7,7 @@
 //! Source: \[HP-GL\].
 
 use super::pens::{DrawingOptions, Precision, layers};
-use super::plotter::for_plotter;
+use super::plotter::in_steps;
 use std::fmt::Write;
 use vitral_frame::Drawing;
 
@@ -19,7 +19,7 @@ const POINTS_AN_INSTRUCTION: usize = 32;
 /// Writes the lines of a drawing.
 pub fn hpgl(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
     let units = Precision { decimals: 0, steps_a_millimetre: UNITS };
-    let (drawing, options) = for_plotter(drawing, options, units.steps_a_millimetre);
+    let (drawing, options) = in_steps(drawing, options, units.steps_a_millimetre);
     let mut out = format!("IN;PS{},{};\n", units.steps(drawing.width), units.steps(drawing.height));
 
     // Draw the title block and the most important lines first, as long as there is ink.

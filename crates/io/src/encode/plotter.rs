@@ -17,8 +17,17 @@ type Step = [i32; 2];
 /// Lines for which a grid is made anew at least.
 const SMALLEST_GRID: usize = 16;
 
-/// The drawing for a plotter that knows `steps_a_millimetre`, and the options to write it with.
-pub fn for_plotter(drawing: &Drawing, options: &DrawingOptions, steps_a_millimetre: f64) -> (Drawing, DrawingOptions) {
+/// The drawing for a plotter with steps of the options' precision, and the options to write it with.
+pub fn for_plotter(drawing: &Drawing, options: &DrawingOptions) -> (Drawing, DrawingOptions) {
+    in_steps(drawing, options, options.precision().steps_a_millimetre)
+}
+
+/// [`for_plotter`] for one that knows `steps_a_millimetre`.
+pub(super) fn in_steps(
+    drawing: &Drawing,
+    options: &DrawingOptions,
+    steps_a_millimetre: f64,
+) -> (Drawing, DrawingOptions) {
     let steps = |points: &[[f64; 2]]| -> Vec<Step> {
         points.iter().map(|p| p.map(|at| (at * steps_a_millimetre).round() as i32)).collect()
     };
@@ -220,7 +229,7 @@ mod tests {
     }
 
     fn route(lines: &[&[[f64; 2]]]) -> Vec<Polyline> {
-        let (drawing, _) = for_plotter(&drawing(lines), &DrawingOptions::default(), 1000.0);
+        let (drawing, _) = for_plotter(&drawing(lines), &DrawingOptions::default());
         drawing.lines.into_iter().map(|line| line.points).collect()
     }
 

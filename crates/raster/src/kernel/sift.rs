@@ -243,30 +243,43 @@ fn depth_planes<S: Simd, const UNSNAPPED: bool>(
         |v: I32x8<S>| -> F32x8<S> { v.to_float() },
     );
     let mut spanned = [real(edges.dx1), real(edges.dy1), real(edges.dx2), real(edges.dy2), real(edges.area)];
-    let mut back = None;
+    let mut moved = None;
     if UNSNAPPED {
-        let first;
-        (spanned, first) = unsnapped(simd, [a[3], b[3], c[3]], spanned);
-        back = Some(first);
+        let corners;
+        (spanned, corners) = unsnapped(simd, [a[3], b[3], c[3]], spanned);
+        moved = Some(corners);
     }
     let [x1, y1, x2, y2, area] = spanned;
     let scale = <F32x8<S> as SimdBase<S>>::splat(simd, SUBPIXEL as f32) / area;
     let dz_dx = (dz1 * y2 - dz2 * y1) * scale;
     let dz_dy = (dz2 * x1 - dz1 * x2) * scale;
-    let z_min = lanes::Lanes::min(lanes::Lanes::min(z0, z1), z2);
-    let z_max = lanes::Lanes::max(lanes::Lanes::max(z0, z1), z2);
-    let z = back.map_or(z0, |[x, y]| z0 - (x * dz_dx + y * dz_dy));
-    [z, dz_dx, dz_dy, z_min, z_max]
+    let [z0, z1, z2] = match moved {
+        None => [z0, z1, z2],
+        Some([a, b, c]) => {
+            let back = lanes::inlined(
+                #[inline(always)]
+                |z: F32x8<S>, [x, y]: [F32x8<S>; 2]| z - (x * dz_dx + y * dz_dy),
+            );
+            [back(z0, a), back(z1, b), back(z2, c)]
+        }
+    };
+    let mut z_min = lanes::Lanes::min(lanes::Lanes::min(z0, z1), z2);
+    let mut z_max = lanes::Lanes::max(lanes::Lanes::max(z0, z1), z2);
+    if UNSNAPPED {
+        z_min = lanes::Lanes::max(z_min, F32x8::splat(simd, 0.0));
+        z_max = lanes::Lanes::min(z_max, F32x8::splat(simd, 1.0));
+    }
+    [z0, dz_dx, dz_dy, z_min, z_max]
 }
 
 /// The edges from the first corner, x and y of one and the other, and twice the area that they span, before the corners were
-/// snapped, of those after; and by how many pixels the first corner was moved. Slivers keep to their snapped corners.
+/// snapped, of those after; and by how many pixels each corner was moved. Slivers keep to their snapped corners.
 #[inline(always)]
 fn unsnapped<S: Simd>(
     simd: S,
     [a, b, c]: [I32x8<S>; 3],
     [dx1, dy1, dx2, dy2, area]: [F32x8<S>; 5],
-) -> ([F32x8<S>; 5], [F32x8<S>; 2]) {
+) -> ([F32x8<S>; 5], [[F32x8<S>; 2]; 3]) {
     let residue = lanes::inlined(
         #[inline(always)]
         |flags: I32x8<S>| [flags << flag::RESIDUE_BITS >> flag::RESIDUE_Y, flags >> flag::RESIDUE_Y],
@@ -289,7 +302,11 @@ fn unsnapped<S: Simd>(
     let spanned = [[x1, dx1], [y1, dy1], [x2, dx2], [y2, dy2], [area + rest, area]];
     let spanned = [select(spanned[0]), select(spanned[1]), select(spanned[2]), select(spanned[3]), select(spanned[4])];
     let (zero, unit) = (F32x8::splat(simd, 0.0), RESIDUE / SUBPIXEL as f32);
-    (spanned, [select([real(ax) * unit, zero]), select([real(ay) * unit, zero])])
+    let moved = lanes::inlined(
+        #[inline(always)]
+        |[x, y]: [I32x8<S>; 2]| [select([real(x) * unit, zero]), select([real(y) * unit, zero])],
+    );
+    (spanned, [moved([ax, ay]), moved([bx, by]), moved([cx, cy])])
 }
 
 /// The side, in pixels, of boxes whose samples are tested themselves.

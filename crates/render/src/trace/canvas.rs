@@ -28,25 +28,9 @@ impl Canvas {
         }
     }
 
-    /// Calls `f` with the pixels whose centres a convex outline holds.
-    pub(super) fn fill(&self, outline: &[[f32; 2]], mut f: impl FnMut(usize)) {
-        let (low, high) =
-            outline.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), p| (l.min(p[1]), h.max(p[1])));
-        for y in low.max(0.0) as i64..=(high.min(self.height as f32) as i64) {
-            let middle = y as f32 + 0.5;
-            let edges = outline.iter().zip(outline.iter().cycle().skip(1));
-            let crossed = edges.filter(|(a, b)| (a[1] > middle) != (b[1] > middle));
-            let at = crossed.map(|(a, b)| a[0] + (middle - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
-            let (from, to) = at.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-            if from <= to {
-                let columns = (from - 0.5).ceil().max(0.0) as i64..(to - 0.5).ceil().min(self.width as f32) as i64;
-                columns.filter_map(|x| self.index(x, y)).for_each(&mut f);
-            }
-        }
-    }
-
     /// Calls `f` with the pixels whose centres lie in what `edges` bound, by the parity of crossings. Edges are in pixels.
-    pub(super) fn fill_edges(&self, edges: &[[[f32; 2]; 2]], mut f: impl FnMut(usize)) {
+    pub(super) fn fill(&self, edges: impl Iterator<Item = [[f32; 2]; 2]>, mut f: impl FnMut(usize)) {
+        let edges: Vec<_> = edges.collect();
         let ends = edges.iter().flatten().map(|p| p[1]);
         let (low, high) = ends.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
         let mut crossings = Vec::new();

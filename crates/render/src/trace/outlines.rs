@@ -44,6 +44,11 @@ pub struct CutPolygon {
 impl Contour {
     /// Its edges.
     pub fn edges(&self) -> impl Iterator<Item = [[f32; 2]; 2]> {
-        self.corners.iter().zip(self.corners.iter().cycle().skip(1)).map(|(from, to)| [*from, *to])
+        edges(&self.corners)
     }
+}
+
+/// The edges of a closed outline.
+pub fn edges(corners: &[[f32; 2]]) -> impl Iterator<Item = [[f32; 2]; 2]> {
+    corners.iter().zip(corners.iter().cycle().skip(1)).map(|(from, to)| [*from, *to])
 }

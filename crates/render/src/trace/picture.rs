@@ -11,7 +11,7 @@
 //! depend on the order of threads.
 
 use super::canvas::Canvas;
-use super::outlines::Contour;
+use super::outlines::{Contour, edges};
 use super::{Observer, Step, WindowVerdict};
 use std::sync::Mutex;
 use vitral_frame::Plane;
@@ -149,10 +149,10 @@ impl Observer for Recorder {
                 self.spend(planes, *pixels, boxes + facets);
             }
             Step::Piece { order, cuts, outline, .. } => {
-                self.canvas.fill(outline, |at| planes.order[at] = planes.order[at].max(order + 1));
+                self.canvas.fill(edges(outline), |at| planes.order[at] = planes.order[at].max(order + 1));
                 if *cuts > 0 {
-                    for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
-                        self.canvas.line([*a, *b], |at| planes.outline[at] = planes.outline[at].max(order + 1));
+                    for edge in edges(outline) {
+                        self.canvas.line(edge, |at| planes.outline[at] = planes.outline[at].max(order + 1));
                     }
                 }
             }

@@ -9,7 +9,7 @@
 
 use super::canvas::Canvas;
 use super::numbered::NumberedStep;
-use super::outlines::Contour;
+use super::outlines::{Contour, edges};
 use super::{Step, WindowVerdict};
 use vitral_frame::Plane;
 
@@ -108,10 +108,9 @@ impl<'w> Replay<'w> {
             }
             Step::Line { row, .. } => rectangle(canvas, [0, *row, canvas.width, 1], |at| shown[at] = Shown::Final),
             Step::Drawn { stays, .. } => runs(canvas, stays, |at| shown[at] = overwritten),
-            Step::Piece { outline, .. } => canvas.fill(outline, |at| shown[at] = overwritten),
+            Step::Piece { outline, .. } => canvas.fill(edges(outline), |at| shown[at] = overwritten),
             Step::Visible { contours, .. } => {
-                let edges: Vec<_> = contours.iter().flat_map(Contour::edges).collect();
-                canvas.fill_edges(&edges, |at| shown[at] = Shown::Final);
+                canvas.fill(contours.iter().flat_map(Contour::edges), |at| shown[at] = Shown::Final);
             }
             _ => {}
         }
@@ -143,8 +142,7 @@ impl<'w> Replay<'w> {
                 sides(canvas, [x.saturating_sub(2), y.saturating_sub(2), 5, 5], mark);
             }
             Step::Piece { outline, .. } | Step::Clip { outline, .. } => {
-                let edges = outline.iter().zip(outline.iter().cycle().skip(1));
-                edges.for_each(|(a, b)| canvas.line([*a, *b], &mut mark));
+                edges(outline).for_each(|edge| canvas.line(edge, &mut mark));
             }
             Step::Visible { contours, .. } => {
                 contours.iter().flat_map(Contour::edges).for_each(|edge| canvas.line(edge, &mut mark));

@@ -1,17 +1,18 @@
 //! The structures that algorithms build, drawn from the steps that they tell: `vitral render --structure FILE.svg`.
 //!
-//! Warnock's windows are drawn in the picture and as a tree, a BSP tree as nodes and links, the painter's list as two columns: the first order beside the final one. Large
-//! structures are abbreviated; what is left out is counted in the picture.
+//! Warnock's windows are drawn in the picture and as a tree, a BSP tree as nodes and links, the painter's list as two columns: the
+//! first order beside the final one. Large structures are abbreviated; what is left out is counted in the picture.
 
 mod depth_sort;
+mod quadtree;
 mod tree;
 
 pub use depth_sort::depth_sort_svg;
+pub use quadtree::quadtree_svg;
 pub use tree::bsp_tree_svg;
 
 use super::Step;
 use super::numbered::NumberedStep;
-use super::quadtree::quadtree_svg;
 use crate::Visibility;
 use std::fmt::Write;
 
@@ -72,8 +73,8 @@ impl Picture {
         self.size = [self.size[0].max(x), self.size[1].max(y)];
     }
 
-    /// Text whose baseline begins at a point, or has it in its middle or at its end.
-    fn text(&mut self, [x, y]: [f64; 2], text: &str, color: &str, anchor: &str) {
+    /// Text whose baseline begins at a point, or has it in its middle or at its end; returns how far it reaches.
+    fn text(&mut self, [x, y]: [f64; 2], text: &str, color: &str, anchor: &str) -> f64 {
         let escaped = text.replace('&', "&amp;").replace('<', "&lt;");
         // Writing to a string cannot fail.
         let _ = writeln!(
@@ -87,6 +88,7 @@ impl Picture {
             _ => width,
         };
         self.reach(x + after, y + 4.0);
+        x + after
     }
 
     fn line(&mut self, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], color: &str, width: f64) {

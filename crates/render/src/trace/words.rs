@@ -1,6 +1,6 @@
 //! Steps in words, for one of the pixels that they concern, and what they take in memory.
 
-use super::outlines::{Contour, CutPolygon};
+use super::outlines::{Contour, CutPolygon, edges};
 use super::{SpanVerdict, Step, WindowVerdict};
 
 impl Step {
@@ -18,15 +18,8 @@ impl Step {
                 (*left..left + width).contains(&x) && (*top..top + height).contains(&y)
             }
             Self::Line { row, sample, .. } => *row == y && *sample == 0,
-            Self::Piece { outline, .. } => {
-                let edges = outline.iter().zip(outline.iter().cycle().skip(1));
-                holds(edges.map(|(a, b)| [*a, *b]), [x, y])
-            }
+            Self::Piece { outline, .. } | Self::Clip { outline, .. } => holds(edges(outline), [x, y]),
             Self::Visible { contours, .. } => holds(contours.iter().flat_map(Contour::edges), [x, y]),
-            Self::Clip { outline, .. } => {
-                let edges = outline.iter().zip(outline.iter().cycle().skip(1));
-                holds(edges.map(|(a, b)| [*a, *b]), [x, y])
-            }
             Self::Overruled { samples, .. } => samples.iter().any(|sample| sample.pixel == [x, y]),
             Self::TreeNode { .. } | Self::TreeVisit { .. } | Self::FirstOrder { .. } | Self::Turn { .. } => false,
             Self::Compared { .. } | Self::Moved { .. } | Self::Circle { .. } => false,
@@ -112,9 +105,7 @@ impl Step {
             other => format!("{other:?}"),
         }
     }
-}
 
-impl Step {
     /// About how many bytes it takes in memory.
     pub fn bytes(&self) -> u64 {
         fn of<T>(list: &[T]) -> usize {

@@ -295,7 +295,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
         let entry = Entry { polygon, far, cell: [x0, y0] };
         for y in y0..=y1 {
             for x in x0..=x1 {
-                self.cells[y as usize * self.columns as usize + x as usize].push(entry);
+                let cell = self.index([x, y]);
+                self.cells[cell].push(entry);
             }
         }
     }
@@ -363,7 +364,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
         let [x0, y0, x1, y1] = self.polygons[polygon as usize].cells;
         for y in y0..=y1 {
             for x in x0..=x1 {
-                let cell = y as usize * self.columns as usize + x as usize;
+                let cell = self.index([x, y]);
                 self.done[cell] += 1;
                 if self.done[cell] as usize * 2 > self.cells[cell].len() {
                     self.stale.push(cell as u32);

@@ -33,7 +33,7 @@ use crate::{Execution, PreparedView};
 use lists::{Entry, Lists};
 use std::ops::Range;
 use std::sync::Arc;
-use vitral_exec::Limit;
+use vitral_exec::{Charge, Limit};
 use vitral_raster::{SUBPIXEL, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid};
 use window::{Relation, Window};
 
@@ -55,14 +55,13 @@ impl VisibleSurface for Warnock {
         let polygons = Polygons::new(facets.opaque(), view);
         let bytes = polygons.bytes() + (polygons.len() * BYTES_A_POLYGON) as u64;
         resolved.counters = execution.budget.charged(bytes, STAGE, || {
-            let Divided { tiles, mut counters, charged } = Divided::new(&facets, &polygons)?;
+            let lists = Charge::new(&execution.budget, STAGE);
+            let Divided { tiles, mut counters } = Divided::new(&facets, &polygons, &lists)?;
             let fill: &Fill<'_> = &|facets, index, tile, counters| {
                 let Some(work) = &tiles[index] else { return Ok(()) };
                 Subdivision::new(facets, &polygons, &mut tile[0], counters, work).run(work)
             };
-            let in_tiles = fill_with(&facets, marks, grid, sink, 1, fill, None);
-            execution.budget.release(charged);
-            counters.add(&in_tiles?);
+            counters.add(&fill_with(&facets, marks, grid, sink, 1, fill, None)?);
             Ok(counters)
         })?;
         Ok(resolved)
@@ -95,19 +94,17 @@ struct Divided {
     /// What is left to do in each; nothing in those that no polygon is in.
     tiles: Vec<Option<TileWork>>,
     counters: VisibilityCounters,
-    /// Bytes of the lists, charged to the budget.
-    charged: u64,
 }
 
 impl Divided {
-    /// Looks at the windows of several tiles, from the whole picture down.
-    fn new(facets: &Facets<'_, '_>, polygons: &Polygons<'_>) -> Result<Self, Limit> {
+    /// Looks at the windows of several tiles, from the whole picture down. What the lists take is charged to `memory`.
+    fn new(facets: &Facets<'_, '_>, polygons: &Polygons<'_>, memory: &Charge<'_>) -> Result<Self, Limit> {
         let view = facets.view();
         // Of the facets of a single tile no list of a larger window can be told.
         let observer = facets.execution().observer.clone().filter(|_| view.makes_all_tiles());
         let execution = &Execution { observer, ..facets.execution().clone() };
         let tiles = (0..view.viewport.tiles_x() * view.viewport.tiles_y()).map(|_| None).collect();
-        let mut divided = Self { tiles, counters: VisibilityCounters::default(), charged: 0 };
+        let mut divided = Self { tiles, counters: VisibilityCounters::default() };
         let all = (0..polygons.len() as u32).map(|polygon| Entry { polygon, relation: Relation::Intersecting });
         let whole = Window::whole(view.viewport.width, view.viewport.height);
         let mut level: Vec<(Window, Arc<[Entry]>)> = vec![(whole, all.collect())];
@@ -134,9 +131,7 @@ impl Divided {
                     [] => {}
                     [only] => divided.draw_in_tiles(window, only, view),
                     _ => {
-                        let bytes = size_of_val(own.as_slice()) as u64;
-                        execution.budget.charge(bytes, STAGE)?;
-                        divided.charged += bytes;
+                        memory.add(size_of_val(own.as_slice()) as u64)?;
                         let own: Arc<[Entry]> = own.into();
                         let parts = window.parts().into_iter().filter(|part| is_wanted(part, view));
                         level.extend(parts.map(|part| (part, Arc::clone(&own))));

@@ -39,8 +39,7 @@ use buckets::Buckets;
 use fill::{Filling, VisiblePolygons};
 use polygon::{Polygon, Relation, line_of_gap, relation};
 use region::{Clipped, Convex, Region, Workspace};
-use std::sync::atomic::{AtomicU64, Ordering};
-use vitral_exec::{Budget, Limit};
+use vitral_exec::{Charge, Limit};
 use vitral_raster::{SUBPIXEL, TileGrid, Viewport};
 
 /// See the module.
@@ -63,8 +62,8 @@ impl VisibleSurface for WeilerAtherton {
         let facets = Facets::new(view, execution, &mut resolved)?;
         let (setups, opaque) = facets.listed();
         let polygons = Polygons::new(setups.into_iter().take(opaque), view);
-        let held = Held::new(&execution.budget);
-        held.change(0, polygons.bytes() + (polygons.len() * size_of::<Polygon<'_>>()) as u64)?;
+        let held = Charge::new(&execution.budget, STAGE);
+        held.add(polygons.bytes() + (polygons.len() * size_of::<Polygon<'_>>()) as u64)?;
 
         // Find the visible polygons.
         let sorted = in_first_order(&polygons);
@@ -166,37 +165,7 @@ struct AreaSorting<'s> {
     execution: &'s Execution,
     /// In the first order.
     polygons: &'s [Polygon<'s>],
-    held: &'s Held<'s>,
-}
-
-/// Bytes that are charged to the budget as long as this lives.
-struct Held<'b> {
-    budget: &'b Budget,
-    bytes: AtomicU64,
-}
-
-impl<'b> Held<'b> {
-    fn new(budget: &'b Budget) -> Self {
-        Self { budget, bytes: AtomicU64::new(0) }
-    }
-
-    /// Something that took `before` bytes takes `after`.
-    fn change(&self, before: u64, after: u64) -> Result<(), Limit> {
-        if after >= before {
-            self.budget.charge(after - before, STAGE)?;
-            self.bytes.fetch_add(after - before, Ordering::Relaxed);
-        } else {
-            self.budget.release(before - after);
-            self.bytes.fetch_sub(before - after, Ordering::Relaxed);
-        }
-        Ok(())
-    }
-}
-
-impl Drop for Held<'_> {
-    fn drop(&mut self) {
-        self.budget.release(*self.bytes.get_mut());
-    }
+    held: &'s Charge<'s>,
 }
 
 impl Item {
@@ -247,7 +216,7 @@ impl AreaSorting<'_> {
             };
             list.items.push(Item { polygon: place, clipped_with: false, is_reduced: false, region });
         }
-        self.held.change(0, list.bytes())?;
+        self.held.add(list.bytes())?;
         Ok(list)
     }
 

@@ -4,6 +4,8 @@
 //! Cost: linear in boxes; of a search, the boxes in its cells.
 
 use super::region::overlap;
+use std::ops::Range;
+use vitral_scene::buckets::{Dealt, Source};
 
 /// Entries for each box at most, on average: this decides how fine the grid is.
 const ENTRIES_A_BOX: usize = 8;
@@ -13,9 +15,26 @@ const ENTRIES_A_BOX: usize = 8;
 pub(super) struct Buckets {
     boxes: Vec<[f64; 4]>,
     grid: Grid,
-    /// Where each cell's numbers begin.
-    starts: Vec<u32>,
-    numbers: Vec<u32>,
+    /// Numbers of boxes by cell.
+    numbers: Dealt<u32>,
+}
+
+/// Boxes, with the cells that they reach.
+struct InCells<'b> {
+    grid: Grid,
+    boxes: &'b [[f64; 4]],
+}
+
+impl Source<u32> for InCells<'_> {
+    fn items(&self) -> usize {
+        self.boxes.len()
+    }
+
+    fn visit(&self, range: Range<usize>, mut put: impl FnMut(usize, u32)) {
+        for number in range {
+            self.grid.cells(self.boxes[number]).for_each(|cell| put(cell, number as u32));
+        }
+    }
 }
 
 /// Cells of the same size over all boxes.
@@ -64,30 +83,15 @@ impl Buckets {
             side /= 2;
         };
 
-        // Count, then fill, the cells.
-        let mut starts = vec![0u32; side * side + 1];
-        for b in &boxes {
-            grid.cells(*b).for_each(|cell| starts[cell + 1] += 1);
-        }
-        for cell in 1..starts.len() {
-            starts[cell] += starts[cell - 1];
-        }
-        let mut next = starts.clone();
-        let mut numbers = vec![0; starts[side * side] as usize];
-        for (number, b) in (0..).zip(&boxes) {
-            for cell in grid.cells(*b) {
-                numbers[next[cell] as usize] = number;
-                next[cell] += 1;
-            }
-        }
-        Self { boxes, grid, starts, numbers }
+        let numbers = Dealt::new(&InCells { grid, boxes: &boxes }, side * side);
+        Self { boxes, grid, numbers }
     }
 
     /// The boxes that overlap one, the lowest number first.
     pub(super) fn overlapping(&self, around: [f64; 4], found: &mut Vec<u32>) {
         found.clear();
         for cell in self.grid.cells(around) {
-            let numbers = &self.numbers[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+            let numbers = self.numbers.bucket(cell);
             found.extend(numbers.iter().filter(|&&number| overlap(self.boxes[number as usize], around)));
         }
         found.sort_unstable();

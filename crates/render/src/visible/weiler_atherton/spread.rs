@@ -87,7 +87,7 @@ impl AreaSorting<'_> {
     /// Clips a long list, adds what is visible without more ado, and gives the inside lists.
     fn clip_long(&self, list: List, found: &mut Found) -> Result<Vec<List>, Limit> {
         let bytes = Buckets::bytes(list.items.len()) as u64;
-        self.held.change(0, bytes)?;
+        self.held.add(bytes)?;
         let outline = |item: &Item| match item.is_reduced {
             true => self.polygons[item.polygon as usize].shape.bounds,
             false => item.region.bounds(),

@@ -21,7 +21,7 @@ impl Observer for Steps {
 /// Facet and area of the visible polygons in a picture of this size, in the plain order or on all threads.
 fn visible_in(size: [i32; 2], setups: &[Setup], execution: &Execution) -> (Vec<(u32, f64)>, VisibilityCounters) {
     let polygons = Polygons::joined(setups, |facet| facet);
-    let (sorted, held) = (in_first_order(&polygons), Held::new(&execution.budget));
+    let (sorted, held) = (in_first_order(&polygons), Charge::new(&execution.budget, STAGE));
     let sorting = AreaSorting { execution, polygons: &sorted, held: &held };
     let viewport = Viewport { width: size[0] as u32, height: size[1] as u32 };
     let found = sorting.run(viewport).unwrap();
@@ -227,7 +227,7 @@ fn threads_and_the_plain_order_find_the_same_polygons() {
 
 /// The facet at each sample of a picture of four tiles and a little, as the visible polygons are drawn.
 fn drawn(viewport: Viewport, pattern: &SamplePattern, polygons: &Polygons<'_>, execution: &Execution) -> TileGrid {
-    let (sorted, held) = (in_first_order(polygons), Held::new(&execution.budget));
+    let (sorted, held) = (in_first_order(polygons), Charge::new(&execution.budget, STAGE));
     let found = AreaSorting { execution, polygons: &sorted, held: &held }.run(viewport).unwrap();
     let rows = found.visible.rows(viewport);
     let filling = Filling { viewport, pattern, polygons, visible: &found.visible };

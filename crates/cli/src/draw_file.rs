@@ -12,8 +12,8 @@ use vitral::{
 const UNSUPPORTED: u8 = 4;
 /// The longest side of a drawing to scale, in millimetres.
 const LONGEST: f64 = 10_000.0;
-/// What a drawing may be larger than its sheet for the rounding of its corners, in millimetres.
-const ROUNDING: f64 = 0.002;
+/// What a drawing may be larger than its sheet for the rounding of its corners: millimetres, and a part of its size.
+const ROUNDING: [f64; 2] = [0.002, 1e-6];
 
 /// Where a drawing goes.
 #[derive(Debug)]
@@ -187,12 +187,14 @@ pub(crate) fn check_fits(args: &DrawArgs, settings: &DrawingSettings, drawing: &
         Some(_) => drawing.extent(),
         None => [drawing.width, drawing.height].map(|side| side - 2.0 * settings.margin),
     };
-    if (0..2).all(|k| size[k] <= room[k] + ROUNDING) {
+    let room_with_rounding = [0, 1].map(|k| room[k] + ROUNDING[0] + ROUNDING[1] * size[k]);
+    if (0..2).all(|k| size[k] <= room_with_rounding[k]) {
         return Ok(());
     }
 
     // Name the largest scale of round numbers that fits, by the same measure.
-    let fitting = scale * [0, 1].map(|k| (room[k] + ROUNDING) / size[k]).into_iter().fold(f64::INFINITY, f64::min);
+    let ratios = [0, 1].map(|k| room_with_rounding[k] / size[k]);
+    let fitting = scale * ratios.into_iter().fold(f64::INFINITY, f64::min);
     let fitting = match fitting < 1.0 {
         true => format!("1:{}", (1.0 / fitting).ceil()),
         false => format!("{}", (fitting * 100.0).floor() / 100.0),

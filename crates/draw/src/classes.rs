@@ -130,7 +130,7 @@ mod tests {
             .iter()
             .map(|&(facing, normal, material, _)| {
                 let triangle = Triangle { facing, ..Triangle::new([[0; 3]; 3], [0, 1, 2]) };
-                (triangle, Source { surface: 0, material, normal })
+                (triangle, Source { facet: 0, surface: 0, material, normal })
             })
             .collect();
         let sides: Vec<Side<'_>> = parts

@@ -78,7 +78,9 @@ pub(crate) fn with_edges(projected: Projected, crease_angle: f64, run: &Run<'_>)
 /// The mesh of the pieces, with the free lines as edges without triangles.
 fn put_together(projected: Projected, pieces: Vec<(Vec<Edge>, Vec<u32>)>, duplicates: &[u32]) -> PageMesh {
     let Projected { size, vertices, mut triangles, sources, facets, lines } = projected;
-    duplicates.iter().for_each(|&t| triangles[t as usize].hides = false);
+    for &t in duplicates {
+        (triangles[t as usize].hides, triangles[t as usize].clear) = (false, false);
+    }
     let sources = facets.iter().map(|facet| sources[facet.source as usize]).collect();
     let mut mesh = PageMesh { size, vertices, triangles, sources, ..PageMesh::default() };
     for (edges, triangles) in pieces {

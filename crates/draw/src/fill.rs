@@ -1,55 +1,105 @@
-//! The visible surface as regions that do not overlap.
+//! The visible surface as regions.
 //!
-//! Of each triangle that faces the viewer, everything that lies in front of it is taken away; what is left is visible. Whether another
-//! triangle lies in front is decided by exact heights of corners over planes, once for each pair in the order of their numbers, so that
-//! both agree: where two triangles cross, each loses the part beyond the line in which their planes meet; coplanar ones give way to
-//! the lower number. Regions of one colour that touch become one.
+//! | step | file |
+//! |---|---|
+//! | what can be seen of each triangle, in layers where it is clear | `fill/visible.rs` |
+//! | lit and shadowed parts | `fill/lit.rs` |
+//! | colours; parts that look alike and touch become one region | `fill/groups.rs` |
+//! | regions reach under those that are painted later | `fill/seams.rs` |
+//! | clear layers mixed with what is behind them | `fill/flatten.rs` |
 //!
-//! Polygons are clipped and joined on a grid that is [`FINER`] times as fine as the page's, since the corners of what is left are
-//! rounded to it.
-//!
-//! In:   the page's mesh, a grid of the triangles that hide, a colour for each face. Out: regions in units of the page.
-//! Cost: for each triangle `k log k` with `k` triangles in front of it.
-//! Source: the overlay of polygons is the crate `i_overlay`'s; what lies in front, see above.
+//! In:   the page's mesh, a grid of the triangles that hide, colours. Out: regions in units of the page, in the order of painting.
+//! Cost: for each triangle `k log k` with `k` triangles in front of it; the union of all parts.
+
+mod flatten;
+mod groups;
+mod lit;
+mod seams;
+mod shapes;
+mod visible;
+
+pub use lit::LitPolygons;
+pub(crate) use lit::Projector;
 
 use crate::grid::Grid;
-use crate::page_mesh::{NONE, PageMesh, Source, Triangle};
+use crate::page_mesh::{NONE, PageMesh, Source};
 use crate::run::Run;
-use i_overlay::core::fill_rule::FillRule;
-use i_overlay::core::overlay::Overlay;
-use i_overlay::core::overlay::{IntOverlayOptions, ShapeType};
-use i_overlay::core::overlay_rule::OverlayRule;
-use i_overlay::i_float::int::point::IntPoint;
-use std::cmp::Ordering;
-use std::collections::BTreeMap;
-use std::ops::ControlFlow;
+use groups::{Groups, Look};
+use shapes::{Shapes, on_page};
+use std::ops::Range;
+use visible::{Clipping, Seen, Stage};
 use vitral_exec::{Limit, Spare};
-use vitral_math::exact::{GridPlane, GridPoint, orient2d};
+use vitral_math::DVec3;
 
-/// Steps of the finer grid in a unit of the page.
-const FINER: i32 = 128;
-/// Area in units of the page below which a region or a hole is a trace of rounding: a millionth of a square millimetre on a sheet.
-const LEAST_AREA: u64 = 1024;
 /// Triangles in one piece of work.
 const BATCH: usize = 256;
-/// Triangles in lists between two looks at the clock.
-const TESTS_A_CHECK: u32 = 1 << 14;
 /// Bytes of a corner of a region, with those of its lists.
 const BYTES_A_CORNER: u64 = 24;
 
 /// What a colour is chosen by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceLook {
+    /// Number of the facet in the world.
+    pub facet: u32,
     /// Surface id.
     pub surface: u32,
     /// Index into the scene's materials.
     pub material: Option<u32>,
     /// Unit normal on the side that is seen, world space.
     pub normal: [f32; 3],
+    /// A bit for each light that reaches the place, by [`LitPolygons::light`]; all bits without shadows.
+    pub lights: u32,
 }
 
 /// Gives each face its colour, sRGB.
 pub type Palette<'p> = dyn Fn(&FaceLook) -> [u8; 3] + Sync + 'p;
+
+/// How regions of different colours meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Seams {
+    /// Each region reaches under those that are painted later, so that no viewer shows the paper between them.
+    #[default]
+    Under,
+    /// Regions only touch: no place is painted twice.
+    None,
+}
+
+/// How visible surfaces are filled.
+#[derive(Clone, Copy)]
+pub struct Surfaces<'s> {
+    /// The colours.
+    pub palette: &'s Palette<'s>,
+    /// Opacity of each material, by index, 0 to 1. Materials beyond the end are opaque.
+    pub opacities: &'s [f32],
+    /// Mix clear layers with what is behind them, so that every region is opaque.
+    pub flatten: bool,
+    /// What each light reaches; lights that are not there reach everything.
+    pub lit: &'s [LitPolygons],
+    /// How regions of different colours meet.
+    pub seams: Seams,
+    /// Each face is a region of its own, whatever its colour.
+    pub by_face: bool,
+}
+
+impl<'s> Surfaces<'s> {
+    /// Opaque surfaces of these colours without shadows.
+    pub fn new(palette: &'s Palette<'s>) -> Self {
+        Self { palette, opacities: &[], flatten: false, lit: &[], seams: Seams::default(), by_face: false }
+    }
+
+    /// The opacity of a material.
+    pub(crate) fn opacity(&self, material: u32) -> f32 {
+        self.opacities.get(material as usize).copied().unwrap_or(1.0)
+    }
+}
+
+/// What the page's mesh has to say about the world.
+#[derive(Clone, Copy)]
+pub(crate) struct Facets<'f> {
+    /// Corners of a facet of the world.
+    pub(crate) corners: &'f (dyn Fn(u32) -> [DVec3; 3] + Sync),
+    pub(crate) to_page: Projector,
+}
 
 /// A visible region on the page.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,327 +108,131 @@ pub(crate) struct PageRegion {
     pub(crate) surface: u32,
     pub(crate) material: u32,
     pub(crate) color: [u8; 3],
+    pub(crate) opacity: f32,
     /// Counter-clockwise round the region, clockwise round holes; in units.
     pub(crate) rings: Vec<Vec<[f64; 2]>>,
 }
 
-type Corner = IntPoint<i32>;
-type Shapes = Vec<Vec<Vec<Corner>>>;
-
 /// A visible part of a triangle.
+#[derive(Debug)]
 struct Part {
-    color: [u8; 3],
-    source: Source,
+    triangle: u32,
+    surface: u32,
+    look: Look,
     shapes: Shapes,
 }
 
-/// The visible regions.
+/// What can be seen of all triangles, and which triangles cut which parts.
+#[derive(Default)]
+struct Parts {
+    all: Vec<Part>,
+    /// A part and a triangle whose outline cuts it.
+    contacts: Vec<[u32; 2]>,
+}
+
+/// The visible regions in the order in which they are painted.
 pub(crate) fn regions(
     mesh: &PageMesh,
-    grid: &Grid,
-    palette: &Palette<'_>,
+    opaque: &Grid,
+    surfaces: &Surfaces<'_>,
+    facets: &Facets<'_>,
     run: &Run<'_>,
 ) -> Result<Vec<PageRegion>, Limit> {
-    // Find the visible part of each triangle.
-    let (spare, count) = (Spare::<Clipping>::default(), mesh.triangles.len());
+    // Find the visible parts.
+    let clear = match mesh.triangles.iter().any(|triangle| triangle.clear) {
+        true => Some(Grid::new(mesh, |triangle| triangle.clear, run)?),
+        false => None,
+    };
+    let tells_contacts = surfaces.seams == Seams::Under;
+    let stage = Stage { mesh, opaque, clear: clear.as_ref(), tells_contacts };
+    let parts = parts(&stage, surfaces, facets, run)?;
+
+    // Join those that look alike.
+    let groups = Groups::new(&parts.all);
+    let beneath = match surfaces.seams {
+        Seams::Under => seams::beneath(mesh, &parts, &groups, run)?,
+        Seams::None => vec![Vec::new(); groups.len()],
+    };
+    let joined = groups.joined(&parts.all, &beneath, run)?;
+    match surfaces.flatten && clear.is_some() {
+        true => flatten::flattened(joined, &groups, &parts.all, surfaces.seams, run),
+        false => Ok(joined.iter().flat_map(groups::Joined::regions).collect()),
+    }
+}
+
+/// The visible parts of all triangles, in order.
+fn parts(stage: &Stage<'_>, surfaces: &Surfaces<'_>, facets: &Facets<'_>, run: &Run<'_>) -> Result<Parts, Limit> {
+    let (spare, count) = (Spare::<Clipping>::default(), stage.mesh.triangles.len());
     run.budget.begin("triangles", count as u64);
     let pieces = run.workers.map(count.div_ceil(BATCH), |batch| {
-        spare.lend(|clipping| {
-            clipping.asked.resize(count, NONE);
-            let mut parts = Vec::new();
-            for t in batch * BATCH..count.min((batch + 1) * BATCH) {
-                run.budget.advance();
-                let triangle = &mesh.triangles[t];
-                if !triangle.hides {
-                    continue;
-                }
-                let shapes = clipping.visible(mesh, grid, t as u32, run)?;
-                if shapes.is_empty() {
-                    continue;
-                }
+        let range = batch * BATCH..count.min((batch + 1) * BATCH);
+        let parts = spare.lend(|clipping| parts_of(range, stage, clipping, surfaces, facets, run))?;
+        run.budget.check("visible surfaces")?;
+        run.budget.progress("visible surfaces", run.budget.achieved().done, count as u64);
+        Ok(parts)
+    });
+    let mut parts = Parts::default();
+    for piece in pieces {
+        let (piece, before): (Parts, _) = (piece?, parts.all.len() as u32);
+        parts.all.extend(piece.all);
+        parts.contacts.extend(piece.contacts.into_iter().map(|[part, triangle]| [before + part, triangle]));
+    }
+    Ok(parts)
+}
+
+/// The visible parts of some triangles.
+fn parts_of(
+    triangles: Range<usize>,
+    stage: &Stage<'_>,
+    clipping: &mut Clipping,
+    surfaces: &Surfaces<'_>,
+    facets: &Facets<'_>,
+    run: &Run<'_>,
+) -> Result<Parts, Limit> {
+    let mut parts = Parts::default();
+    for t in triangles {
+        run.budget.advance();
+        let triangle = &stage.mesh.triangles[t];
+        if !triangle.hides && !triangle.clear {
+            continue;
+        }
+        let source = &stage.mesh.sources[t];
+        let Seen { layers, contacts } = clipping.see(stage, t as u32, run)?;
+        for (layer, shapes) in layers.into_iter().enumerate().filter(|(_, shapes)| !shapes.is_empty()) {
+            let divided = match surfaces.lit.is_empty() {
+                true => vec![(u32::MAX, shapes)],
+                false => lit::divide(
+                    shapes,
+                    source.facet,
+                    (facets.corners)(source.facet),
+                    surfaces.lit,
+                    &facets.to_page,
+                ),
+            };
+            for (lights, shapes) in divided {
                 let corners: usize = shapes.iter().flatten().map(Vec::len).sum();
                 run.memory.add(corners as u64 * BYTES_A_CORNER)?;
-                let source = mesh.sources[t];
-                parts.push(Part { color: palette(&look(triangle, &source)), source, shapes });
+                let color = (surfaces.palette)(&look(triangle.facing, source, lights));
+                // Layers are painted from the deepest to the nearest, over what is opaque.
+                let over = if triangle.clear { u32::MAX - layer as u32 } else { 0 };
+                let face = if surfaces.by_face { source.surface } else { 0 };
+                let opacity = surfaces.opacity(source.material);
+                let look = Look { over, material: source.material, color, opacity, face };
+                let part = parts.all.len() as u32;
+                parts.contacts.extend(contacts.iter().map(|&triangle| [part, triangle]));
+                parts.all.push(Part { triangle: t as u32, surface: source.surface, look, shapes });
             }
-            run.budget.check("visible surfaces")?;
-            run.budget.progress("visible surfaces", run.budget.achieved().done, count as u64);
-            Ok(parts)
-        })
-    });
-    let mut parts = Vec::new();
-    for piece in pieces {
-        parts.extend(piece?);
+        }
     }
-    join(parts, run)
+    Ok(parts)
 }
 
 /// What a face shows to its palette.
-fn look(triangle: &Triangle, source: &Source) -> FaceLook {
-    let normal = if triangle.facing < 0 { source.normal.map(|c| -c) } else { source.normal };
-    FaceLook { surface: source.surface, material: Some(source.material).filter(|&m| m != NONE), normal }
-}
-
-/// Joins the parts of each colour and material.
-fn join(parts: Vec<Part>, run: &Run<'_>) -> Result<Vec<PageRegion>, Limit> {
-    // Gather the parts of each colour and material.
-    let mut groups: BTreeMap<(u32, [u8; 3]), (u32, Vec<Shapes>)> = BTreeMap::new();
-    for Part { color, source, shapes } in parts {
-        let (surface, all) = groups.entry((source.material, color)).or_insert((source.surface, Vec::new()));
-        *surface = source.surface.min(*surface);
-        all.push(shapes);
-    }
-    let groups: Vec<_> = groups.into_iter().collect();
-
-    // Join those that touch.
-    let joined = run.workers.map(groups.len(), |i| {
-        run.budget.check("regions")?;
-        let ((material, color), (surface, all)) = &groups[i];
-        let least = LEAST_AREA * u64::from(FINER.unsigned_abs()).pow(2);
-        let options = IntOverlayOptions { min_output_area: least, ..IntOverlayOptions::default() };
-        let mut overlay = Overlay::<i32>::new_custom(all.len() * 4, options, Default::default());
-        for ring in all.iter().flatten().flatten() {
-            overlay.add_contour(ring, ShapeType::Subject);
-        }
-        let shapes = overlay.overlay(OverlayRule::Subject, FillRule::NonZero);
-        let point = |p: &Corner| [p.x, p.y].map(|c| f64::from(c) / f64::from(FINER));
-        let region = |shape: Vec<Vec<Corner>>| {
-            let rings = shape.iter().map(|ring| ring.iter().map(point).collect()).collect();
-            PageRegion { surface: *surface, material: *material, color: *color, rings }
-        };
-        Ok(shapes.into_iter().map(region).collect::<Vec<_>>())
-    });
-    let mut regions = Vec::new();
-    for group in joined {
-        regions.extend(group?);
-    }
-    Ok(regions)
-}
-
-/// What a thread needs to clip triangles.
-#[derive(Default)]
-struct Clipping {
-    /// For each triangle the one that asked it last.
-    asked: Vec<u32>,
-    tests: u32,
-}
-
-/// What of one triangle lies in front of another.
-enum Front {
-    Nothing,
-    All,
-    /// Where it is above the other's plane.
-    Above,
-}
-
-impl Clipping {
-    /// The visible part of a triangle.
-    fn visible(&mut self, mesh: &PageMesh, grid: &Grid, number: u32, run: &Run<'_>) -> Result<Shapes, Limit> {
-        let triangle = &mesh.triangles[number as usize];
-        // Collect what lies in front, until something hides all of it.
-        let (farthest, mut in_front) = (triangle.farthest(), Vec::new());
-        let flow = grid.over(triangle.low, triangle.high, |list| {
-            for &other in list {
-                let front = &mesh.triangles[other as usize];
-                if front.nearest < farthest {
-                    break;
-                }
-                self.tests += 1;
-                if self.tests.is_multiple_of(TESTS_A_CHECK)
-                    && let Err(limit) = run.budget.check("visible surfaces")
-                {
-                    return ControlFlow::Break(Some(limit));
-                }
-                let apart = |k: usize| front.low[k] >= triangle.high[k] || front.high[k] <= triangle.low[k];
-                if other == number || apart(0) || apart(1) {
-                    continue;
-                }
-                if std::mem::replace(&mut self.asked[other as usize], number) == number
-                    || are_beside(triangle, front)
-                    || are_beside(front, triangle)
-                {
-                    continue;
-                }
-                match front_part((number, triangle), (other, front)) {
-                    Front::Nothing => {}
-                    Front::All if triangle.corners.iter().all(|&p| is_inside(front, p)) => {
-                        return ControlFlow::Break(None);
-                    }
-                    Front::All => in_front.push(front.corners.map(|p| corner(p, 1.0, p)).to_vec()),
-                    Front::Above => in_front.push(above(front, &triangle.plane())),
-                }
-            }
-            ControlFlow::Continue(())
-        });
-        match flow {
-            ControlFlow::Break(Some(limit)) => return Err(limit),
-            ControlFlow::Break(None) => return Ok(Vec::new()),
-            ControlFlow::Continue(()) => {}
-        }
-
-        // Take it away.
-        let whole = triangle.corners.map(|p| corner(p, 1.0, p)).to_vec();
-        if in_front.is_empty() {
-            return Ok(vec![vec![whole]]);
-        }
-        let mut overlay = Overlay::<i32>::new(3 + 4 * in_front.len());
-        overlay.add_contour(&whole, ShapeType::Subject);
-        in_front.iter().for_each(|polygon| overlay.add_contour(polygon, ShapeType::Clip));
-        Ok(overlay.overlay(OverlayRule::Difference, FillRule::NonZero))
-    }
-}
-
-/// Whether a side of `a` has all of `b` on its outside: they overlap in no area.
-fn are_beside(a: &Triangle, b: &Triangle) -> bool {
-    (0..3).any(|k| b.corners.iter().all(|&p| orient2d(a.corners[k], a.corners[(k + 1) % 3], p) <= 0))
-}
-
-/// Whether a point of the page lies in a triangle, its outline included.
-fn is_inside(triangle: &Triangle, p: GridPoint) -> bool {
-    (0..3).all(|k| orient2d(triangle.corners[k], triangle.corners[(k + 1) % 3], p) >= 0)
-}
-
-/// What of `other` lies in front of `own`. The answer for the two the other way round is the opposite.
-fn front_part(own: (u32, &Triangle), other: (u32, &Triangle)) -> Front {
-    let ((_, first), (_, second)) = if own.0 < other.0 { (own, other) } else { (other, own) };
-    // Whether the second is in front of the first.
-    let (above, below) = (over(&first.plane(), second), over(&second.plane(), first));
-    let order = match (above, below) {
-        (Some(order), _) if order.is_ne() => order,
-        (_, Some(order)) if order.is_ne() => order.reverse(),
-        (None, None) => return Front::Above,
-        // Coplanar: the lower number is in front.
-        _ => Ordering::Less,
-    };
-    let other_is_second = other.0 > own.0;
-    if (order == Ordering::Greater) == other_is_second { Front::All } else { Front::Nothing }
-}
-
-/// On which side of a plane a triangle lies: in front (`Greater`), behind, in it but for snapping; `None` on both.
-fn over(plane: &GridPlane, triangle: &Triangle) -> Option<Ordering> {
-    let snapping = plane.snapping();
-    let heights = triangle.corners.map(|p| plane.rounded_height(p).0);
-    let (up, down) = (heights.iter().any(|&h| h > snapping), heights.iter().any(|&h| h < -snapping));
-    match (up, down) {
-        (true, true) => None,
-        (true, false) => Some(Ordering::Greater),
-        (false, true) => Some(Ordering::Less),
-        (false, false) => Some(Ordering::Equal),
-    }
-}
-
-/// The part of a triangle above a plane.
-fn above(triangle: &Triangle, plane: &GridPlane) -> Vec<Corner> {
-    let heights = triangle.corners.map(|p| plane.height(p));
-    let mut polygon = Vec::with_capacity(4);
-    for k in 0..3 {
-        let next = (k + 1) % 3;
-        let [p, q] = [triangle.corners[k], triangle.corners[next]];
-        if heights[k] >= 0 {
-            polygon.push(corner(p, 1.0, p));
-        }
-        if (heights[k] > 0 && heights[next] < 0) || (heights[k] < 0 && heights[next] > 0) {
-            // In the order of the vertices, so that neighbours get the same corner.
-            let (a, b, from, to) = if triangle.vertices[k] < triangle.vertices[next] {
-                (p, q, heights[k], heights[next])
-            } else {
-                (q, p, heights[next], heights[k])
-            };
-            polygon.push(corner(a, from as f64 / (from - to) as f64, b));
-        }
-    }
-    polygon
-}
-
-/// The corner of the finer grid at a fraction of the way from one point to another.
-fn corner(from: GridPoint, way: f64, to: GridPoint) -> Corner {
-    let at = |k: usize| {
-        let (p, q) = (f64::from(from[k]), f64::from(to[k]));
-        ((p + way * (q - p)) * f64::from(FINER)).round() as i32
-    };
-    IntPoint::new(at(0), at(1))
+fn look(facing: i8, source: &Source, lights: u32) -> FaceLook {
+    let normal = if facing < 0 { source.normal.map(|c| -c) } else { source.normal };
+    let material = Some(source.material).filter(|&m| m != NONE);
+    FaceLook { facet: source.facet, surface: source.surface, material, normal, lights }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::{mesh_of, with_run};
-    use proptest::prelude::*;
-
-    /// Area of each surface that is seen; each has a colour of its own.
-    fn areas(corners: &[[GridPoint; 3]]) -> Vec<f64> {
-        let mesh = mesh_of([4096; 2], corners);
-        let all = [1, 3].map(|threads| {
-            with_run(threads, |run| {
-                let grid = Grid::new(&mesh, |t| t.hides, run).unwrap();
-                let color = |look: &FaceLook| [look.surface as u8, 0, 0];
-                regions(&mesh, &grid, &color, run).unwrap()
-            })
-        });
-        assert_eq!(all[0], all[1]);
-        let mut areas = vec![0.0; corners.len()];
-        for region in &all[0] {
-            let rings = region.rings.iter().map(|ring| vitral_frame::drawing::signed_area(ring));
-            areas[usize::from(region.color[0])] += rings.sum::<f64>();
-        }
-        areas
-    }
-
-    const BIG: [GridPoint; 3] = [[0, 0, 0], [4000, 0, 0], [0, 4000, 0]];
-
-    #[test]
-    fn a_triangle_in_front_cuts_a_hole() {
-        let small = [[500, 500, 9], [1500, 500, 9], [500, 1500, 9]];
-        assert_eq!(areas(&[BIG, small]), [7_500_000.0, 500_000.0]);
-        assert_eq!(areas(&[small, BIG]), [500_000.0, 7_500_000.0]);
-        let behind = small.map(|p| [p[0], p[1], -9]);
-        assert_eq!(areas(&[BIG, behind]), [8_000_000.0, 0.0]);
-    }
-
-    #[test]
-    fn coplanar_triangles_give_way_to_the_first_and_crossing_ones_share() {
-        assert_eq!(areas(&[BIG, [[0, 0, 0], [2000, 0, 0], [0, 2000, 0]]]), [8_000_000.0, 0.0]);
-        // The second rises from left to right through the first: each shows its half of what they cover together.
-        let up = [[0, 0, -1000], [2000, 0, 1000], [0, 2000, -1000]];
-        let shown = areas(&[BIG, up]);
-        assert!((shown[1] - 500_000.0).abs() < 1.0 && (shown[0] - 7_500_000.0).abs() < 1.0, "{shown:?}");
-    }
-
-    #[test]
-    fn neighbours_of_one_colour_become_one_region() {
-        let square = [[[0, 0, 0], [1000, 0, 0], [1000, 1000, 5]], [[0, 0, 0], [1000, 1000, 5], [0, 1000, 0]]];
-        let mesh = mesh_of([4096; 2], &square);
-        let found = with_run(1, |run| {
-            let grid = Grid::new(&mesh, |t| t.hides, run).unwrap();
-            regions(&mesh, &grid, &|_| [9; 3], run).unwrap()
-        });
-        assert_eq!((found.len(), found[0].rings.len(), found[0].rings[0].len()), (1, 1, 4));
-    }
-
-    /// The area that triangles cover together.
-    fn union(corners: &[[GridPoint; 3]]) -> f64 {
-        let mut overlay = Overlay::<i32>::new(corners.len() * 3);
-        for triangle in corners {
-            let ring = Triangle::new(*triangle, [0, 1, 2]).corners.map(|p| corner(p, 1.0, p));
-            overlay.add_contour(&ring, ShapeType::Subject);
-        }
-        let point = |p: &Corner| [p.x, p.y].map(|c| f64::from(c) / f64::from(FINER));
-        let shapes = overlay.overlay(OverlayRule::Subject, FillRule::NonZero);
-        let rings = shapes.iter().flatten().map(|ring| ring.iter().map(point).collect::<Vec<_>>());
-        rings.map(|ring| vitral_frame::drawing::signed_area(&ring)).sum()
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(48))]
-
-        #[test]
-        fn regions_cover_once_what_triangles_cover(
-            corners in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(0i32..4096)), 1..16),
-        ) {
-            let seen: f64 = areas(&corners).iter().sum();
-            let covered = union(&corners);
-            // Lost are slivers below the least area, and what rounding makes of thin ones.
-            prop_assert!((seen - covered).abs() < 2e-3 * covered + 20.0 * LEAST_AREA as f64, "{} {}", seen, covered);
-        }
-    }
-}
+mod tests;

@@ -48,7 +48,7 @@ mod testing;
 mod visibility;
 
 pub use classes::Classes;
-pub use fill::{FaceLook, Palette};
+pub use fill::{FaceLook, LitPolygons, Palette, Seams, Surfaces};
 pub use layout::PageSize;
 pub use visibility::VisibilityStats;
 
@@ -117,7 +117,8 @@ pub struct DrawingStats {
     pub visibility: VisibilityStats,
 }
 
-/// Draws what `camera` sees in a window of `aspect` (width by height): lines, and with a palette the visible surfaces.
+/// Draws what `camera` sees in a window of `aspect` (width by height): lines, and with `surfaces` what is visible of the faces.
+/// Faces of materials that let light through hide no lines there.
 ///
 /// # Errors
 /// A limit of the budget.
@@ -126,13 +127,16 @@ pub fn draw(
     camera: &Camera,
     aspect: f64,
     settings: &DrawingSettings,
-    palette: Option<&Palette<'_>>,
+    surfaces: Option<&Surfaces<'_>>,
     workers: &Workers,
     budget: &Budget,
 ) -> Result<Drawn, Limit> {
     let run = Run::new(workers, budget);
     let view = camera.transform(aspect, depth_range(camera, &world.bounds));
-    let projected = projection::project(world, &view, aspect, &run)?;
+    let mut projected = projection::project(world, &view, aspect, &run)?;
+    if let Some(surfaces) = surfaces {
+        projected.let_through(|material| surfaces.opacity(material));
+    }
     let mut mesh = edges::with_edges(projected, settings.crease_angle, &run)?;
     let grid = Grid::new(&mesh, |triangle| triangle.hides, &run)?;
     let mut stats = DrawingStats {
@@ -151,8 +155,14 @@ pub fn draw(
     (stats.fragments, stats.visibility) = (fragments.len() as u64, visibility);
     let strokes = strokes::strokes(&mesh, &fragments, settings.lines, &run)?;
     budget.check("lines")?;
-    let regions = match palette {
-        Some(palette) => fill::regions(&mesh, &grid, palette, &run)?,
+    let corners = |facet: u32| {
+        let instance = &world.instances[world.instance_of_facet(facet)];
+        instance.corners(facet - instance.first_facet)
+    };
+    let to_page = fill::Projector { clip_from_world: view.clip_from_world(), size: mesh.size.map(f64::from) };
+    let facets = fill::Facets { corners: &corners, to_page };
+    let regions = match surfaces {
+        Some(surfaces) => fill::regions(&mesh, &grid, surfaces, &facets, &run)?,
         None => Vec::new(),
     };
     let drawing = layout::lay_out(&strokes, &regions, settings.page, settings.margin);
@@ -161,10 +171,10 @@ pub fn draw(
 
 /// Adds the lines of intersection. Where hidden lines are drawn, back faces of solid bodies have some, too.
 fn intersect(mesh: &mut PageMesh, grid: &Grid, with_backs: bool, run: &Run<'_>) -> Result<u64, Limit> {
-    let has_area = |triangle: &Triangle| !triangle.is_flat();
-    if with_backs && mesh.triangles.iter().any(|triangle| has_area(triangle) && !triangle.hides) {
-        let all = Grid::new(mesh, has_area, run)?;
-        return crossings::add_crossings(mesh, &all, has_area, run);
+    let is_wanted = |triangle: &Triangle| !triangle.is_flat() && (with_backs || triangle.hides || triangle.clear);
+    if mesh.triangles.iter().any(|triangle| is_wanted(triangle) && !triangle.hides) {
+        let all = Grid::new(mesh, is_wanted, run)?;
+        return crossings::add_crossings(mesh, &all, is_wanted, run);
     }
     crossings::add_crossings(mesh, grid, |triangle| triangle.hides, run)
 }

@@ -41,6 +41,8 @@ pub(crate) struct Triangle {
     pub(crate) vertices: [u32; 3],
     /// Whether lines behind it are hidden by it: it has an area on the page and is not the back of a solid body.
     pub(crate) hides: bool,
+    /// Whether it is filled and hides nothing, since light passes it.
+    pub(crate) clear: bool,
     /// 1 where the file's front is seen, -1 where its back is, 0 where it is seen edge-on.
     pub(crate) facing: i8,
 }
@@ -48,6 +50,8 @@ pub(crate) struct Triangle {
 /// Where a triangle comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Source {
+    /// Number of the facet in the world.
+    pub(crate) facet: u32,
     /// Surface id of its face.
     pub(crate) surface: u32,
     /// Index into the scene's materials, or [`NONE`].
@@ -95,7 +99,7 @@ impl Triangle {
         let low = [0, 1].map(|k| of(k).into_iter().fold(i32::MAX, i32::min));
         let high = [0, 1].map(|k| of(k).into_iter().fold(i32::MIN, i32::max));
         let nearest = of(2).into_iter().fold(i32::MIN, i32::max);
-        Self { low, high, nearest, corners, vertices, hides: area != 0, facing: area.signum() as i8 }
+        Self { low, high, nearest, corners, vertices, hides: area != 0, clear: false, facing: area.signum() as i8 }
     }
 
     /// Its plane.
@@ -109,7 +113,7 @@ impl Triangle {
         self.corners.iter().fold(i32::MAX, |farthest, p| farthest.min(p[2]))
     }
 
-    /// Whether it has an area on the page.
+    /// Whether it has no area on the page.
     pub(crate) fn is_flat(&self) -> bool {
         let [a, b, c] = self.corners;
         vitral_math::exact::orient2d(a, b, c) == 0

@@ -58,6 +58,20 @@ pub(crate) struct Projected {
     pub(crate) lines: Vec<[u32; 2]>,
 }
 
+impl Projected {
+    /// Makes triangles clear whose materials have an opacity below 1, back faces of solid bodies as well: they are seen through the
+    /// others. Those of no opacity are not seen at all.
+    pub(crate) fn let_through(&mut self, opacity: impl Fn(u32) -> f32) {
+        for (facet, triangle) in self.facets.iter().zip(&mut self.triangles) {
+            let opacity = opacity(self.sources[facet.source as usize].material);
+            if opacity < 1.0 {
+                triangle.hides = false;
+                triangle.clear = opacity > 0.0 && !triangle.is_flat();
+            }
+        }
+    }
+}
+
 /// An instance on its way to the page.
 struct Placed<'w> {
     instance: &'w Instance,
@@ -190,7 +204,9 @@ fn sources_of(instance: &Instance, triangles: Range<usize>) -> Vec<Source> {
     for t in triangles {
         let face = mesh.face_of_triangle(t);
         let same = sources.last().filter(|_| face == last).copied();
-        sources.push(same.unwrap_or_else(|| Source {
+        let facet = instance.first_facet + t as u32;
+        sources.push(same.map(|source| Source { facet, ..source }).unwrap_or_else(|| Source {
+            facet,
             surface: instance.first_surface + face as u32,
             material: mesh.material_of_triangle(t).unwrap_or(NONE),
             normal: face_normal(instance, face),

@@ -31,7 +31,7 @@ pub(crate) fn mesh_of(size: [i32; 2], corners: &[[GridPoint; 3]]) -> PageMesh {
         }
         let source = projected.sources.len() as u32;
         let normal = normal.normalize_or_zero().as_vec3().to_array();
-        projected.sources.push(Source { surface: t as u32, material: 0, normal });
+        projected.sources.push(Source { facet: source, surface: t as u32, material: 0, normal });
         projected.facets.push(Facet { vertices, source, outline: 0b111 });
         projected.triangles.push(Triangle::new(*triangle, vertices));
     }

@@ -159,7 +159,8 @@ fn regions_cover_the_silhouette_once_and_touch_where_faces_do() {
     let palette = |look: &FaceLook| look.normal.map(|c| (c * 255.0) as u8);
     let settings = DrawingSettings { lines: Classes::EMPTY, margin: 0.0, ..DrawingSettings::default() };
     let of = |threads| {
-        draw(&world, &camera, 1.0, &settings, Some(&palette), &Workers::new(threads), &Budget::default())
+        let surfaces = Surfaces { seams: Seams::None, ..Surfaces::new(&palette) };
+        draw(&world, &camera, 1.0, &settings, Some(&surfaces), &Workers::new(threads), &Budget::default())
             .unwrap()
             .drawing
     };

@@ -14,7 +14,7 @@ pub struct Drawing {
     pub height: f64,
     /// Lines, in the order of [`LineClass::ALL`], visible ones first.
     pub lines: Vec<Line>,
-    /// Filled regions, which do not overlap.
+    /// Filled regions, in the order in which they are painted.
     pub regions: Vec<Region>,
 }
 
@@ -38,6 +38,8 @@ pub struct Region {
     pub material: Option<u32>,
     /// Display colour, sRGB.
     pub color: [u8; 3],
+    /// 1: it hides what was painted before; 0: it is invisible.
+    pub opacity: f32,
     /// Outlines, closed without repeating the first point: counter-clockwise round the region, clockwise round holes.
     pub rings: Vec<Vec<[f64; 2]>>,
 }
@@ -93,7 +95,7 @@ impl Drawing {
         around.map_or([0.0; 2], |[low, high]| [high[0] - low[0], high[1] - low[1]])
     }
 
-    /// The area of all regions, in square millimetres.
+    /// The area of all regions, in square millimetres: where they overlap, it counts for each.
     pub fn area(&self) -> f64 {
         self.regions.iter().map(Region::area).sum()
     }
@@ -146,7 +148,7 @@ mod tests {
         let square = |at: f64, side: f64| [[at, at], [at + side, at], [at + side, at + side], [at, at + side]];
         let mut hole = square(1.0, 1.0).to_vec();
         hole.reverse();
-        let region = Region { surface: 0, material: None, color: [0; 3], rings: vec![square(0.0, 3.0).to_vec(), hole] };
+        let region = Region { surface: 0, material: None, color: [0; 3], opacity: 1.0, rings: vec![square(0.0, 3.0).to_vec(), hole] };
         let line = |layers, points: &[[f64; 2]]| Line { class: LineClass::Crease, layers, points: points.to_vec() };
         let lines = vec![line(0, &square(0.0, 3.0)), line(2, &[[0.0, 0.0], [3.0, 4.0]])];
         let drawing = Drawing { width: 3.0, height: 4.0, lines, regions: vec![region] };

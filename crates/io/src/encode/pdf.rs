@@ -5,8 +5,10 @@
 //!
 //! Source: \[PDF\], 8.11 for optional content, 8.5 for paths; the objects are written by `pdf-writer`.
 
-use super::pens::{DrawingOptions, FILL, Precision, layers};
+use super::pens::{DrawingOptions, FILL, Precision, layers, thousandths};
+use pdf_writer::writers::ExtGraphicsState;
 use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use vitral_frame::Drawing;
 
@@ -61,6 +63,14 @@ pub fn pdf(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
             properties.pair(Name(name.as_bytes()), group(i));
         }
     }
+    let opacities = opacities(drawing);
+    if !opacities.is_empty() {
+        let mut states = resources.ext_g_states();
+        for &opacity in &opacities {
+            let name = state_name(opacity);
+            states.insert(Name(name.as_bytes())).start::<ExtGraphicsState<'_>>().non_stroking_alpha(opacity as f32 / 1000.0);
+        }
+    }
     resources.finish();
     page.finish();
 
@@ -73,6 +83,20 @@ pub fn pdf(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
     pdf.finish()
 }
 
+/// The opacity of what hides what was painted before, in thousandths.
+const OPAQUE: u32 = 1000;
+
+/// The opacities of a drawing that has clear regions, in thousandths; none, if all are opaque.
+fn opacities(drawing: &Drawing) -> BTreeSet<u32> {
+    let all: BTreeSet<u32> = drawing.regions.iter().map(|region| thousandths(region.opacity)).collect();
+    if all.iter().all(|&opacity| opacity == OPAQUE) { BTreeSet::new() } else { all }
+}
+
+/// The name of the graphics state of an opacity.
+fn state_name(thousandths: u32) -> String {
+    format!("opacity{thousandths}")
+}
+
 /// The operators that paint the page, with `scale` points for a millimetre; and the layers' numbers and names, the lowest first.
 fn content(drawing: &Drawing, options: &DrawingOptions, scale: f64) -> (String, Vec<(usize, &'static str)>) {
     let precision = options.precision();
@@ -81,10 +105,15 @@ fn content(drawing: &Drawing, options: &DrawingOptions, scale: f64) -> (String, 
     if !drawing.regions.is_empty() {
         groups.push((0, FILL));
         let _ = writeln!(out, "/OC /{FILL} BDC");
+        let mut painted = OPAQUE;
         for region in &drawing.regions {
             // Three decimals tell all levels of eight bits apart.
             let [red, green, blue] = region.color.map(|level| (f64::from(level) / 0.255).round() / 1000.0);
             let _ = writeln!(out, "{red} {green} {blue} rg");
+            let opacity = thousandths(region.opacity);
+            if std::mem::replace(&mut painted, opacity) != opacity {
+                let _ = writeln!(out, "/{} gs", state_name(opacity));
+            }
             region.rings.iter().for_each(|ring| path(&mut out, precision, &precision.ring(ring)));
             out.push_str("f*\n");
         }
@@ -128,7 +157,7 @@ mod tests {
             line(LineClass::Crease, 1, &[[0.0, 0.0], [1.5, 0.25]]),
         ];
         let ring = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
-        let region = Region { surface: 3, material: None, color: [255, 0, 16], rings: vec![ring] };
+        let region = Region { surface: 3, material: None, color: [255, 0, 16], opacity: 1.0, rings: vec![ring] };
         Drawing { width, height, lines, regions: vec![region] }
     }
 
@@ -140,6 +169,19 @@ mod tests {
                         /OC /hidden BDC\n0.18 w\n[2 1] 0 d\n0 0 m\n1.5 0.25 l\nS\nEMC\n\
                         /OC /contour BDC\n0.5 w\n[] 0 d\n1 1 m\n2.5 1 l\n2 2 l\ns\nEMC\n";
         assert_eq!((text.as_str(), groups), (expected, vec![(0, "fill"), (8, "hidden"), (1, "contour")]));
+    }
+
+    #[test]
+    fn opacities_are_graphics_states() {
+        let mut drawing = sheet(10.0, 10.0);
+        drawing.regions.push(Region { opacity: 0.3, ..drawing.regions[0].clone() });
+        drawing.regions.push(Region { opacity: 0.3, ..drawing.regions[0].clone() });
+        let (text, _) = content(&drawing, &DrawingOptions::default(), POINTS);
+        assert_eq!(text.matches("gs\n").collect::<Vec<_>>().len(), 1, "{text}");
+        assert!(text.contains("rg\n/opacity300 gs\n0 0 m"), "{text}");
+        let file = pdf(&drawing, &DrawingOptions::default());
+        let file = String::from_utf8_lossy(&file);
+        assert!(file.contains("/opacity300") && file.contains("/ca 0.3"), "{file}");
     }
 
     #[test]

@@ -93,6 +93,11 @@ pub(super) struct Precision {
     pub(super) steps_a_millimetre: f64,
 }
 
+/// A share of 0 to 1 in thousandths.
+pub(super) fn thousandths(share: f32) -> u32 {
+    (share.clamp(0.0, 1.0) * 1000.0).round() as u32
+}
+
 impl Precision {
     /// A length in steps.
     pub(super) fn steps(self, millimetres: f64) -> i32 {

@@ -6,7 +6,7 @@
 //!
 //! Source: \[SVG\].
 
-use super::pens::{DrawingOptions, FILL, Layer, Precision, layers};
+use super::pens::{DrawingOptions, FILL, Layer, Precision, layers, thousandths};
 use std::fmt::Write;
 use vitral_frame::Drawing;
 use vitral_frame::drawing::Region;
@@ -78,7 +78,11 @@ impl Page {
             if surface_ids {
                 let _ = write!(out, " data-face=\"{}\"", region.surface);
             }
-            let _ = write!(out, " fill=\"#{red:02x}{green:02x}{blue:02x}\" d=\"");
+            let _ = write!(out, " fill=\"#{red:02x}{green:02x}{blue:02x}\"");
+            if thousandths(region.opacity) < 1000 {
+                let _ = write!(out, " fill-opacity=\"{}\"", f64::from(thousandths(region.opacity)) / 1000.0);
+            }
+            out.push_str(" d=\"");
             region.rings.iter().for_each(|ring| self.path(out, &self.precision.ring(ring), true));
             out.push_str("\"/>\n");
         }
@@ -128,7 +132,7 @@ mod tests {
             line(LineClass::Crease, 2, &[[0.0, 0.0], [3.0, 2.0]]),
         ];
         let ring = square[..4].to_vec();
-        let region = Region { surface: 3, material: None, color: [255, 0, 16], rings: vec![ring] };
+        let region = Region { surface: 3, material: None, color: [255, 0, 16], opacity: 1.0, rings: vec![ring] };
         let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
         let text = String::from_utf8(svg(&drawing, &DrawingOptions::default())).unwrap();
         let expected = "\
@@ -165,12 +169,12 @@ mod tests {
     fn a_coarse_precision_makes_coarse_units_and_faces_are_told() {
         let lines = vec![line(LineClass::Contour, 0, &[[0.0, 0.0], [1.26, 0.01], [1.26, 0.04]])];
         let region =
-            Region { surface: 3, material: None, color: [0; 3], rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]] };
+            Region { surface: 3, material: None, color: [0; 3], opacity: 0.25, rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]] };
         let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
         let options = DrawingOptions { decimals: 1, surface_ids: true, ..DrawingOptions::default() };
         let text = String::from_utf8(svg(&drawing, &options)).unwrap();
         assert!(text.contains("width=\"3mm\" height=\"2mm\" viewBox=\"0 0 30 20\""), "{text}");
         assert!(text.contains("stroke-width=\"5\"") && text.contains("<path d=\"M0 20l13 0\"/>"), "{text}");
-        assert!(text.contains("<path data-face=\"3\" fill=\"#000000\" d=\"M0 20l10 0 0-10z\"/>"), "{text}");
+        assert!(text.contains("<path data-face=\"3\" fill=\"#000000\" fill-opacity=\"0.25\" d=\"M0 20l10 0 0-10z\"/>"), "{text}");
     }
 }

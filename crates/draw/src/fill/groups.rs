@@ -1,0 +1,118 @@
+//! Parts that look alike, and the regions that they make.
+//!
+//! In:   visible parts. Out: one union for each look, in the order of painting: what is opaque, then clear layers from the deepest on.
+//! Cost: `n log n` for the corners of each union.
+
+use super::shapes::{FINER, Shapes, union};
+use super::{PageRegion, Part, on_page};
+use crate::run::Run;
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use vitral_exec::Limit;
+
+/// Area in units of the page below which a region or a hole is a trace of rounding: a millionth of a square millimetre on a sheet.
+pub(super) const LEAST_AREA: u64 = 1024;
+
+/// The look of a part. The order is that of painting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Look {
+    /// 0 for what is opaque; clear layers come over each other in this order.
+    pub(super) over: u32,
+    pub(super) material: u32,
+    pub(super) color: [u8; 3],
+    pub(super) opacity: f32,
+    /// The surface id, where each face is a region of its own; else 0.
+    pub(super) face: u32,
+}
+
+impl Look {
+    fn key(&self) -> (u32, u32, [u8; 3], u32, u32) {
+        (self.over, self.material, self.color, self.opacity.to_bits(), self.face)
+    }
+}
+
+impl Eq for Look {}
+
+impl Ord for Look {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.key().cmp(&other.key())
+    }
+}
+
+impl PartialOrd for Look {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The parts of each look.
+pub(super) struct Groups {
+    groups: Vec<(Look, Vec<u32>)>,
+    /// The group of each part.
+    of_part: Vec<u32>,
+}
+
+/// What a group looks like, and its shapes.
+#[derive(Clone, Debug)]
+pub(super) struct Joined {
+    pub(super) look: Look,
+    /// The lowest surface id of its faces.
+    pub(super) surface: u32,
+    pub(super) shapes: Shapes,
+}
+
+impl Groups {
+    /// Sorts parts by their looks.
+    pub(super) fn new(parts: &[Part]) -> Self {
+        let mut by_look: BTreeMap<Look, Vec<u32>> = BTreeMap::new();
+        for (i, part) in parts.iter().enumerate() {
+            by_look.entry(part.look).or_default().push(i as u32);
+        }
+        let groups: Vec<_> = by_look.into_iter().collect();
+        let mut of_part = vec![0; parts.len()];
+        for (g, (_, members)) in groups.iter().enumerate() {
+            members.iter().for_each(|&i| of_part[i as usize] = g as u32);
+        }
+        Self { groups, of_part }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// The group of a part, in the order of painting.
+    pub(super) fn of_part(&self, part: u32) -> u32 {
+        self.of_part[part as usize]
+    }
+
+    /// The union of each group, with other parts beneath it.
+    pub(super) fn joined(
+        &self,
+        parts: &[Part],
+        beneath: &[Vec<u32>],
+        run: &Run<'_>,
+    ) -> Result<Vec<Joined>, Limit> {
+        let least = LEAST_AREA * u64::from(FINER.unsigned_abs()).pow(2);
+        let joined = run.workers.map(self.groups.len(), |g| {
+            run.budget.check("regions")?;
+            let (look, members) = &self.groups[g];
+            let all = members.iter().chain(&beneath[g]).map(|&i| &parts[i as usize].shapes);
+            let surface = members.iter().map(|&i| parts[i as usize].surface).min().unwrap_or(0);
+            Ok(Joined { look: *look, surface, shapes: union(all, least) })
+        });
+        joined.into_iter().collect()
+    }
+}
+
+impl Joined {
+    /// Its regions.
+    pub(super) fn regions(&self) -> impl Iterator<Item = PageRegion> + '_ {
+        self.shapes.iter().map(|shape| PageRegion {
+            surface: self.surface,
+            material: self.look.material,
+            color: self.look.color,
+            opacity: self.look.opacity,
+            rings: shape.iter().map(|ring| ring.iter().map(on_page).collect()).collect(),
+        })
+    }
+}

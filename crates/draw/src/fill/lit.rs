@@ -1,0 +1,186 @@
+//! Lit and shadowed parts of what is visible.
+//!
+//! A light's lit polygons are details of the facets that they lie in, found in space. Each is brought to the page, where what is
+//! visible of its facet is divided: a part outside all of them is in the light's shadow.
+//!
+//! A lit polygon that reaches a side of its facet is drawn out over it: rounding could leave a hair of shadow there else.
+//!
+//! In:   visible shapes of a triangle, lit polygons of its facet in world space. Out: shapes, each with the lights that reach it.
+//! Cost: `k log k` with `k` corners of lit polygons.
+//! Source: [Atherton, Weiler & Greenberg 1978].
+
+use super::shapes::{Corner, Shapes, corner_at, without, without_hairs};
+use std::collections::BTreeMap;
+use vitral_math::{DMat4, DVec3, DVec4};
+
+/// Weights of a corner on a side of the facet, but for rounding.
+const ON_SIDE: f64 = 1e-6;
+/// How far a corner is drawn out over a side, in units of the page; and what that may be of the facet's height over the side.
+const BEYOND: f64 = 1.0;
+const LEAST_BEYOND: f64 = 1e-6;
+const MOST_BEYOND: f64 = 1e-2;
+/// The least homogeneous coordinate in front of the viewer, as a part of the facet's largest.
+const NEAR: f64 = 1e-6;
+
+/// The polygons that one light reaches.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LitPolygons {
+    /// The light's number, 0 to 31: its bit in [`FaceLook::lights`](super::FaceLook::lights).
+    pub light: u8,
+    /// For each facet of the world that it reaches, convex polygons that do not overlap, world space.
+    pub of_facet: BTreeMap<u32, Vec<Vec<DVec3>>>,
+}
+
+/// From the world to units of the page.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Projector {
+    pub(crate) clip_from_world: DMat4,
+    /// Width and height of the page in units.
+    pub(crate) size: [f64; 2],
+}
+
+/// Divides shapes of a facet between the lights: each part comes with a bit for every light that reaches it. Lights that are not
+/// among `lights` reach everything.
+pub(super) fn divide(
+    shapes: Shapes,
+    facet: u32,
+    corners: [DVec3; 3],
+    lights: &[LitPolygons],
+    to_page: &Projector,
+) -> Vec<(u32, Shapes)> {
+    let mut parts = vec![(u32::MAX, shapes)];
+    for light in lights {
+        let lit = light.of_facet.get(&facet).map_or(&[][..], Vec::as_slice);
+        let lit: Vec<Vec<Corner>> = lit.iter().filter_map(|polygon| to_page.polygon(polygon, corners)).collect();
+        parts = parts.into_iter().flat_map(|(lights, shapes)| split(lights, shapes, &lit, light.light)).collect();
+    }
+    parts
+}
+
+/// The part of some shapes that a light reaches, and its shadow.
+fn split(lights: u32, shapes: Shapes, lit: &[Vec<Corner>], light: u8) -> Vec<(u32, Shapes)> {
+    let dark = lights & !(1 << light);
+    if lit.is_empty() {
+        return vec![(dark, shapes)];
+    }
+    let shadow = without_hairs(without(&shapes, lit));
+    if shadow.is_empty() {
+        return vec![(lights, shapes)];
+    }
+    let bright = without_hairs(without(&shapes, shadow.iter().flatten()));
+    let mut parts = vec![(lights, bright), (dark, shadow)];
+    parts.retain(|(_, shapes)| !shapes.is_empty());
+    parts
+}
+
+impl Projector {
+    /// A polygon of a facet on the page, drawn out over the sides that it reaches; `None` if nothing of it is in front of the viewer.
+    fn polygon(&self, polygon: &[DVec3], facet: [DVec3; 3]) -> Option<Vec<Corner>> {
+        // Write each corner as weights of the facet's corners.
+        let [a, b, c] = facet;
+        let normal = (b - a).cross(c - a);
+        let square = normal.length_squared();
+        if square == 0.0 {
+            return None;
+        }
+        let clip = facet.map(|p| self.clip_from_world * p.extend(1.0));
+        let beyond = self.beyond(&clip);
+        let placed = polygon.iter().map(|&p| {
+            let weight = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(normal) / square;
+            let weights = [weight(b, c), weight(c, a), weight(a, b)];
+            let weights = [0, 1, 2].map(|k| if weights[k] < ON_SIDE { -beyond[k] } else { weights[k] });
+            let sum: f64 = weights.iter().sum();
+            (clip[0] * weights[0] + clip[1] * weights[1] + clip[2] * weights[2]) / sum
+        });
+
+        // Leave out what is behind the viewer.
+        let near = NEAR * clip.iter().fold(0.0f64, |most, p| most.max(p.w));
+        let visible = in_front(&placed.collect::<Vec<_>>(), near);
+        // Far outside the page it does not matter where.
+        let within = |at: [f64; 2]| corner_at([0, 1].map(|k| at[k].clamp(-0.5 * self.size[k], 1.5 * self.size[k])));
+        (visible.len() > 2).then(|| visible.iter().map(|p| within(self.point(p))).collect())
+    }
+
+    /// A point in units of the page.
+    fn point(&self, p: &DVec4) -> [f64; 2] {
+        [(p.x / p.w * 0.5 + 0.5) * self.size[0], (p.y / p.w * 0.5 + 0.5) * self.size[1]]
+    }
+
+    /// For each corner of a facet, what [`BEYOND`] is of its height over the opposite side on the page.
+    fn beyond(&self, clip: &[DVec4; 3]) -> [f64; 3] {
+        if clip.iter().any(|p| p.w <= 0.0) {
+            return [LEAST_BEYOND; 3];
+        }
+        let corners = clip.each_ref().map(|p| self.point(p));
+        let side = |k: usize| [0, 1].map(|i| corners[(k + 2) % 3][i] - corners[(k + 1) % 3][i]);
+        let [u, v] = [side(0), side(1)];
+        let area = (u[0] * v[1] - u[1] * v[0]).abs();
+        [0, 1, 2].map(|k| {
+            let [x, y] = side(k);
+            (BEYOND * (x * x + y * y).sqrt() / area).clamp(LEAST_BEYOND, MOST_BEYOND)
+        })
+    }
+}
+
+/// The part of a convex polygon with a homogeneous coordinate above `near`.
+fn in_front(polygon: &[DVec4], near: f64) -> Vec<DVec4> {
+    if polygon.iter().all(|p| p.w >= near) {
+        return polygon.to_vec();
+    }
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (p, q) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+        if p.w >= near {
+            kept.push(*p);
+        }
+        if (p.w >= near) != (q.w >= near) {
+            kept.push(p.lerp(*q, (near - p.w) / (q.w - p.w)));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::shapes::on_page;
+    use super::*;
+    use vitral_math::dvec3;
+
+    const FACET: [DVec3; 3] = [dvec3(0.0, 0.0, 0.0), dvec3(1.0, 0.0, 0.0), dvec3(0.0, 1.0, 0.0)];
+    /// A page of 1000 units that shows a square of two by two.
+    const TO_PAGE: Projector = Projector { clip_from_world: DMat4::IDENTITY, size: [1000.0; 2] };
+
+    fn area(shapes: &Shapes) -> f64 {
+        let ring = |ring: &Vec<Corner>| ring.iter().map(on_page).collect::<Vec<_>>();
+        shapes.iter().flatten().map(|r| vitral_frame::drawing::signed_area(&ring(r))).sum()
+    }
+
+    /// The parts of the facet that two lights make, by their bits.
+    fn parts(first: &[Vec<DVec3>], second: &[Vec<DVec3>]) -> Vec<(u32, f64)> {
+        let whole = FACET.map(|p| corner_at([p.x * 500.0 + 500.0, p.y * 500.0 + 500.0])).to_vec();
+        let of = |light, polygons: &[Vec<DVec3>]| LitPolygons {
+            light,
+            of_facet: [(7, polygons.to_vec())].into_iter().filter(|(_, p)| !p.is_empty()).collect(),
+        };
+        let lights = [of(0, first), of(3, second)];
+        let divided = divide(vec![vec![whole]], 7, FACET, &lights, &TO_PAGE);
+        divided.iter().map(|(lights, shapes)| (lights & 0b1001, area(shapes))).collect()
+    }
+
+    #[test]
+    fn a_facet_is_lit_dark_or_divided() {
+        let half = vec![dvec3(0.0, 0.0, 0.0), dvec3(0.5, 0.0, 0.0), dvec3(0.5, 0.5, 0.0), dvec3(0.0, 1.0, 0.0)];
+        assert_eq!(parts(&[FACET.to_vec()], &[FACET.to_vec()]), [(0b1001, 125_000.0)]);
+        assert_eq!(parts(&[], &[FACET.to_vec()]), [(0b1000, 125_000.0)]);
+        let divided = parts(&[half], &[]);
+        assert_eq!(divided.iter().map(|part| part.0).collect::<Vec<_>>(), [0b0001, 0b0000]);
+        assert!((divided[0].1 - 93_750.0).abs() < 1_000.0 && (divided[1].1 - 31_250.0).abs() < 1_000.0, "{divided:?}");
+    }
+
+    #[test]
+    fn what_is_behind_the_viewer_is_cut_off() {
+        let point = |w: f64| DVec4::new(w, 0.0, 0.0, w);
+        let cut = in_front(&[point(1.0), point(-1.0), point(3.0)], 0.5);
+        assert_eq!(cut.iter().map(|p| p.w).collect::<Vec<_>>(), [1.0, 0.5, 0.5, 3.0]);
+        assert!(in_front(&[point(-1.0), point(-2.0), point(-1.0)], 0.5).is_empty());
+    }
+}

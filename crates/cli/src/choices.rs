@@ -4,8 +4,8 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::internals::render::choice::Row;
 use vitral::{
-    Acceleration, Channel, Choice, ColorSpace, Global, Illumination, Interpolation, Normals, Shading, Shadows,
-    Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
+    Acceleration, Channel, Choice, ColorBy, ColorSpace, Global, Illumination, Interpolation, Normals, Seams, Shading,
+    Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
 };
 
 /// A value, its name, one line that explains it (may be empty).
@@ -61,6 +61,17 @@ pub(crate) fn global() -> impl TypedValueParser<Value = Global> {
 
 pub(crate) fn illumination() -> impl TypedValueParser<Value = Illumination> {
     of(Illumination::ALL.map(|model| (model, model.name(), model.description())))
+}
+
+pub(crate) fn color_by() -> impl TypedValueParser<Value = ColorBy> {
+    of(ColorBy::ALL)
+}
+
+pub(crate) fn seams() -> impl TypedValueParser<Value = Seams> {
+    of([
+        (Seams::Under, "under", "regions reach under those painted later: no viewer shows paper between them"),
+        (Seams::None, "none", "regions only touch, for cutting and checks: no place is painted twice"),
+    ])
 }
 
 pub(crate) fn shading() -> impl TypedValueParser<Value = Shading> {

@@ -1,11 +1,12 @@
 //! The options of `vitral draw` as typed.
 
+use crate::choices;
 use crate::help::{EXIT_CODES, model_help};
-use crate::render_args::{CameraArgs, EyeArgs, ProcessArgs, ProgressWhen};
+use crate::render_args::{CameraArgs, EyeArgs, LightArgs, ProcessArgs, ProgressWhen};
 use crate::values;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use vitral::{LineClass, LineClasses, MaterialOverride, Pens, TitleBlock};
+use vitral::{ColorBy, Illumination, LineClass, LineClasses, Pens, Seams, TitleBlock};
 
 /// Options of `vitral draw`.
 #[derive(Args, Debug, Default)]
@@ -18,6 +19,10 @@ pub(crate) struct DrawArgs {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) lines: LineArgs,
+    #[command(flatten)]
+    pub(crate) fill: FillArgs,
+    #[command(flatten)]
+    pub(crate) light: LightArgs,
     #[command(flatten)]
     pub(crate) page: PageArgs,
     #[command(flatten)]
@@ -53,9 +58,33 @@ pub(crate) struct LineArgs {
     pub(crate) crease_angle: Option<f64>,
     #[arg(long, value_name = "CLASS=MM", value_parser = stroke, help = stroke_help())]
     pub(crate) stroke: Vec<(String, f64)>,
-    /// Override a material's property, as in `render`; a material that is told apart makes a line; repeatable
-    #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material)]
-    pub(crate) material: Vec<MaterialOverride>,
+}
+
+/// How surfaces are filled.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Surfaces (with --style filled and filled-lines)")]
+pub(crate) struct FillArgs {
+    /// What colours tell [default: shading]
+    #[arg(long, value_name = "WHAT", value_parser = choices::color_by())]
+    pub(crate) color_by: Option<ColorBy>,
+    /// Steps of brightness of shaded faces, 1 to 256: faces of one material and step become one region [default: 32]
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=256), allow_negative_numbers = true)]
+    pub(crate) shades: Option<u32>,
+    /// How light is reflected, as in `render` [default: auto]
+    #[arg(long, value_name = "MODEL", value_parser = choices::illumination())]
+    pub(crate) illumination: Option<Illumination>,
+    /// Cut faces where shadows fall, and shade both parts: shadows of all lights that cast some, of area lights as of a point
+    #[arg(long)]
+    pub(crate) shadows: bool,
+    /// Draw what is seen through transparent materials, in layers from behind; else all surfaces are opaque
+    #[arg(long)]
+    pub(crate) transparency: bool,
+    /// Mix transparent layers with what is behind them to opaque regions, for programs that know no opacity
+    #[arg(long, requires = "transparency")]
+    pub(crate) flatten: bool,
+    /// How regions meet [default: under]
+    #[arg(long, value_name = "HOW", value_parser = choices::seams())]
+    pub(crate) seams: Option<Seams>,
 }
 
 /// What a drawing is made of.

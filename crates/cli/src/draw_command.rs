@@ -5,10 +5,10 @@ use crate::draw_file::{DrawFile, check_fits, scaled_page};
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::{self, Failure};
-use crate::resolve::{execution_within, overlay_files, save_state, set_viewpoint};
+use crate::resolve::{execution_within, overlay_files, save_state, set_lights, set_viewpoint};
 use serde_json::json;
 use std::time::Instant;
-use vitral::{DrawingSettings, Drawn, LineClasses, PageSize, Renderer, State, World};
+use vitral::{DrawingSettings, Drawn, FillSettings, LineClasses, PageSize, Renderer, State, World};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
@@ -56,7 +56,13 @@ fn draw(
     settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
     let drawn = match style_of(args) {
         Style::HiddenLine => renderer.draw(&settings)?,
-        Style::Filled | Style::FilledLines => renderer.draw_filled(&settings)?,
+        Style::Filled | Style::FilledLines => {
+            let fill = fill_of(args);
+            if fill.transparency && renderer.opacities().iter().all(|&opacity| opacity == 1.0) && !args.report.quiet {
+                report::warnings(&["--transparency: the models have no transparent surfaces".to_owned()]);
+            }
+            renderer.draw_filled(&settings, &fill)?
+        }
     };
     check_fits(args, &settings, &drawn.drawing)?;
     let draw_seconds = start.elapsed().as_secs_f64() - load_seconds;
@@ -88,7 +94,9 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
         state.models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
     }
     set_viewpoint(&mut state.viewpoint, &args.camera, &args.eye);
-    state.materials.extend(args.lines.material.iter().cloned());
+    set_lights(&mut state, &args.light)?;
+    let shading = &mut state.settings.shading;
+    shading.illumination = args.fill.illumination.unwrap_or(shading.illumination);
     state.load.allow_external |= args.process.allow_external;
     if let Some(limit) = args.process.max_memory {
         state.load.max_file_bytes = state.load.max_file_bytes.min(limit);
@@ -139,6 +147,20 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
         margin: args.page.margin.unwrap_or(usual.margin),
         ..usual
     })
+}
+
+/// How its surfaces are filled.
+fn fill_of(args: &DrawArgs) -> FillSettings {
+    let (fill, usual) = (&args.fill, FillSettings::default());
+    FillSettings {
+        color_by: fill.color_by.unwrap_or(usual.color_by),
+        shades: fill.shades.unwrap_or(usual.shades),
+        shadows: fill.shadows,
+        transparency: fill.transparency,
+        flatten: fill.flatten,
+        seams: fill.seams.unwrap_or(usual.seams),
+        by_face: args.page.svg_ids,
+    }
 }
 
 /// What the drawing is made of.

@@ -5,7 +5,8 @@ use crate::outputs::{expand, model_name};
 use crate::report::{self, Failure};
 use std::path::PathBuf;
 use vitral::{
-    Drawing, DrawingFormat, DrawingOptions, DrawingSettings, PageSize, State, TitleBlock, for_plotter, simplify,
+    ColorBy, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, PageSize, State, TitleBlock, for_plotter,
+    simplify,
 };
 
 /// Exit code of formats that drawings are not written in.
@@ -158,8 +159,41 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
     ];
     match mistakes.into_iter().find(|(is_mistake, ..)| *is_mistake) {
         Some((_, what, hint)) => Err(Failure::usage(what).with_hint(hint)),
-        None => Ok(()),
+        None => check_fill(args, fills && !lines_alone),
     }
+}
+
+/// Whether every option of surfaces has an effect; `is_filled` tells whether there are any.
+fn check_fill(args: &DrawArgs, is_filled: bool) -> Result<(), Failure> {
+    let (fill, light) = (&args.fill, &args.light);
+    let is_shaded = fill.color_by.is_none_or(|by| by == ColorBy::Shading);
+    let is_dark = light.lighting == Some(false);
+    let by_light = [
+        ("--shades", fill.shades.is_some()),
+        ("--illumination", fill.illumination.is_some()),
+        ("--shadows", fill.shadows),
+        ("--lighting", light.lighting.is_some()),
+        ("--light", !light.light.is_empty()),
+        ("--light-edit", !light.light_edit.is_empty()),
+        ("--light-intensity", light.light_intensity.is_some()),
+    ];
+    let others = [
+        ("--color-by", fill.color_by.is_some()),
+        ("--transparency", fill.transparency),
+        ("--seams", fill.seams.is_some()),
+    ];
+    let given = |options: &[(&'static str, bool)]| options.iter().find(|(_, given)| *given).map(|(name, _)| *name);
+    let refuse = |name: &str, why: &str, hint: &str| Err(Failure::usage(format!("{name}: {why}")).with_hint(hint));
+    if let Some(name) = given(&by_light).or(given(&others)).filter(|_| !is_filled) {
+        return refuse(name, "no surfaces are filled", "give --style filled or filled-lines, in an .svg or .pdf");
+    }
+    if let Some(name) = given(&by_light).filter(|_| !is_shaded) {
+        return refuse(name, "these colours have no light", "give --color-by shading");
+    }
+    if fill.shadows && is_dark {
+        return refuse("--shadows", "the lights are off", "leave --lighting off out");
+    }
+    Ok(())
 }
 
 /// The page of a drawing to scale; `window` is the longer side of the camera's window in units of the model, if it is not in

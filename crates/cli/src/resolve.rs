@@ -380,7 +380,7 @@ fn no_radiosity(option: &str) -> Failure {
     Failure::usage(format!("{option}: radiosity is not computed")).with_hint("add --global radiosity")
 }
 
-fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Failure> {
+pub(crate) fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Failure> {
     state.settings.shading.lighting = args.lighting.unwrap_or(state.settings.shading.lighting);
     if !args.light.is_empty() {
         let raw = state.settings.picture.color_space == ColorSpace::Raw;

@@ -201,13 +201,9 @@ fn parts_of(
         for (layer, shapes) in layers.into_iter().enumerate().filter(|(_, shapes)| !shapes.is_empty()) {
             let divided = match surfaces.lit.is_empty() {
                 true => vec![(u32::MAX, shapes)],
-                false => lit::divide(
-                    shapes,
-                    source.facet,
-                    (facets.corners)(source.facet),
-                    surfaces.lit,
-                    &facets.to_page,
-                ),
+                false => {
+                    lit::divide(shapes, source.facet, (facets.corners)(source.facet), surfaces.lit, &facets.to_page)
+                }
             };
             for (lights, shapes) in divided {
                 let corners: usize = shapes.iter().flatten().map(Vec::len).sum();

@@ -1,17 +1,78 @@
 //! Vector drawings: the lines and surfaces that the renderer's camera sees, and files of them.
 
+mod colors;
+
 use crate::{Camera, Error, Projection, Renderer};
-use vitral_draw::{DrawingSettings, Drawn, FaceLook, draw};
+use colors::Colors;
+use std::collections::BTreeMap;
+use vitral_draw::{DrawingSettings, Drawn, FaceLook, LitPolygons, Seams, Surfaces, draw};
 use vitral_frame::Drawing;
 use vitral_io::encode::{self, DrawingOptions};
-use vitral_light::constant_color;
-use vitral_math::color::{byte_from_unit, srgb_from_linear};
-use vitral_math::{DVec3, Vec3};
+use vitral_light::{AlphaMode, AreaShape, Light, LightKind};
+use vitral_math::DVec3;
+use vitral_render::{Settings, Shadows, Transparency, registry, shadow};
 
-/// Steps of brightness of a filled drawing: faces of one step and material become one region.
-const SHADES: f32 = 32.0;
-/// Brightness of faces that the light does not reach.
-const AMBIENT: f32 = 0.35;
+/// Most lights that cast shadows in a drawing.
+const MOST_LIGHTS: usize = 32;
+/// Bytes of a lit polygon, besides its corners.
+const BYTES_A_POLYGON: u64 = 32;
+
+/// What the colours of a filled drawing tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorBy {
+    /// The light of each face, with the lights and the illumination model of pictures.
+    #[default]
+    Shading,
+    /// The material's own colour.
+    Material,
+    /// Which of the scene's bodies a face belongs to.
+    Part,
+    /// Nothing: surfaces are white.
+    None,
+}
+
+impl ColorBy {
+    /// All with their names and a line each.
+    pub const ALL: [(Self, &'static str, &'static str); 4] = [
+        (Self::Shading, "shading", "the light of each face, with the lights and models of pictures"),
+        (Self::Material, "material", "the material's own colour"),
+        (Self::Part, "part", "a colour for each of the scene's bodies"),
+        (Self::None, "none", "white"),
+    ];
+}
+
+/// How the surfaces of a drawing are filled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FillSettings {
+    /// What colours tell.
+    pub color_by: ColorBy,
+    /// Steps of brightness of shaded faces, at least 1: faces of one material and step become one region.
+    pub shades: u32,
+    /// Divide faces where the shadows of lights fall that cast some; an area light counts as a point in its middle.
+    pub shadows: bool,
+    /// Draw what is seen through materials that are blended, instead of taking them for opaque.
+    pub transparency: bool,
+    /// Mix what is transparent with what is behind it, so that all regions are opaque.
+    pub flatten: bool,
+    /// How regions meet.
+    pub seams: Seams,
+    /// Make each face a region of its own, whatever its colour.
+    pub by_face: bool,
+}
+
+impl Default for FillSettings {
+    fn default() -> Self {
+        Self {
+            color_by: ColorBy::default(),
+            shades: 32,
+            shadows: false,
+            transparency: false,
+            flatten: false,
+            seams: Seams::default(),
+            by_face: false,
+        }
+    }
+}
 
 impl Renderer {
     /// Draws the lines that [`frame_camera`](Self::frame_camera) sees: the same window as [`render`](Self::render) shows.
@@ -30,26 +91,86 @@ impl Renderer {
     /// # Errors
     /// A limit that was reached.
     pub fn draw(&self, settings: &DrawingSettings) -> Result<Drawn, Error> {
-        let (camera, execution) = (self.frame_camera(), self.execution());
-        Ok(draw(self.world(), &camera, self.aspect(), settings, None, &execution.workers, &execution.budget)?)
+        self.draw_surfaces(settings, None)
     }
 
-    /// As [`draw`](Self::draw), with the visible surfaces as regions in the colours of their materials, shaded by a light over the
-    /// viewer's left shoulder.
+    /// As [`draw`](Self::draw), with the visible surfaces as regions.
+    ///
+    /// ```
+    /// use vitral::{DrawingSettings, FillSettings};
+    ///
+    /// let renderer = vitral::open("builtin:teapot")?;
+    /// let shaded = renderer.draw_filled(&DrawingSettings::default(), &FillSettings { shades: 8, ..Default::default() })?;
+    /// assert!(!shaded.drawing.regions.is_empty());
+    /// # Ok::<(), vitral::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// A limit that was reached.
-    pub fn draw_filled(&self, settings: &DrawingSettings) -> Result<Drawn, Error> {
-        let (camera, execution) = (self.frame_camera(), self.execution());
-        let (materials, light) = (&self.scene().materials, towards_light(&camera));
-        let palette = |look: &FaceLook| {
-            let material = look.material.and_then(|index| materials.get(index as usize)).cloned().unwrap_or_default();
-            let lit = Vec3::from_array(look.normal).dot(light).max(0.0);
-            let brightness = ((AMBIENT + (1.0 - AMBIENT) * lit) * SHADES).round() / SHADES;
-            constant_color(&material).map(|c| byte_from_unit(srgb_from_linear(c * brightness)))
+    /// Shadows of more than 32 lights; a limit that was reached.
+    pub fn draw_filled(&self, settings: &DrawingSettings, fill: &FillSettings) -> Result<Drawn, Error> {
+        let camera = self.frame_camera();
+        let colors = Colors::new(self, &camera, fill);
+        let palette = |look: &FaceLook| colors.of(look);
+        let lit = if fill.shadows { self.lit_polygons(&camera)? } else { Vec::new() };
+        let opacities = if fill.transparency { self.opacities() } else { Vec::new() };
+        let surfaces = Surfaces {
+            opacities: &opacities,
+            flatten: fill.flatten,
+            lit: &lit,
+            seams: fill.seams,
+            by_face: fill.by_face,
+            ..Surfaces::new(&palette)
         };
-        let palette = Some(&palette as &vitral_draw::Palette<'_>);
-        Ok(draw(self.world(), &camera, self.aspect(), settings, palette, &execution.workers, &execution.budget)?)
+        self.draw_surfaces(settings, Some(&surfaces))
+    }
+
+    fn draw_surfaces(&self, settings: &DrawingSettings, surfaces: Option<&Surfaces<'_>>) -> Result<Drawn, Error> {
+        let (camera, execution) = (self.frame_camera(), self.execution());
+        Ok(draw(self.world(), &camera, self.aspect(), settings, surfaces, &execution.workers, &execution.budget)?)
+    }
+
+    /// The opacity of each material, 1 where it is not blended.
+    pub fn opacities(&self) -> Vec<f32> {
+        let opacity = |mode, opacity: f32| if mode == AlphaMode::Blend { opacity.clamp(0.0, 1.0) } else { 1.0 };
+        self.scene().materials.iter().map(|m| opacity(m.alpha_mode, m.opacity)).collect()
+    }
+
+    /// What the lights that cast shadows reach, after Atherton, Weiler and Greenberg.
+    fn lit_polygons(&self, camera: &Camera) -> Result<Vec<LitPolygons>, Error> {
+        // Take each light as one point, and none that casts no shadow.
+        let lights: Vec<Light> = self.frame_lights(camera).iter().map(as_point).collect();
+        let casts = |light: &Light| light.shadow && light.kind != LightKind::Ambient;
+        let casting = lights.iter().enumerate().filter(|(_, light)| casts(light));
+        let mut lit: Vec<LitPolygons> = Vec::new();
+        for (number, _) in casting {
+            let light = u8::try_from(number).ok().filter(|&n| usize::from(n) < MOST_LIGHTS).ok_or_else(|| {
+                Error::usage(
+                    format!("shadows of {} lights in a drawing", lights.len()),
+                    format!("at most {MOST_LIGHTS} can be drawn"),
+                )
+            })?;
+            lit.push(LitPolygons { light, of_facet: BTreeMap::new() });
+        }
+        if lit.is_empty() {
+            return Err(Error::usage("no light casts shadows", "choose a scene with a light that does"));
+        }
+
+        // Collect their lit polygons.
+        let mut settings = Settings::default().with_shadows(Shadows::OBJECT_PRECISION);
+        settings.shadows.light_samples = 1;
+        settings.transparency.model = Transparency::None;
+        let mut bytes = 0;
+        let (algorithm, session) = (registry::shadows(Shadows::OBJECT_PRECISION), self.session());
+        let drawn = shadow::draw(algorithm, session, &lights, &settings, self.execution(), &mut |polygon| {
+            let of_light = lit.iter_mut().find(|lit| usize::from(lit.light) == polygon.light);
+            if let (Some(facet), Some(of_light)) = (polygon.facet, of_light) {
+                bytes += size_of_val(polygon.corners) as u64 + BYTES_A_POLYGON;
+                of_light.of_facet.entry(facet).or_default().push(polygon.corners.to_vec());
+            }
+            bytes
+        });
+        drawn.map_err(vitral_render::Error::from)?;
+        Ok(lit)
     }
 
     /// The longer side of the window that a drawing shows, in units of the world; `None` in perspective, where nothing is to scale.
@@ -101,8 +222,14 @@ impl DrawingFormat {
     }
 }
 
-/// Unit vector to the light of filled drawings, world space.
-fn towards_light(camera: &Camera) -> Vec3 {
-    let world_from_view = camera.view_from_world().inverse();
-    world_from_view.transform_vector3(DVec3::new(-0.4, 0.5, 1.0)).normalize_or(DVec3::Z).as_vec3()
+/// A light with a shape as a point in its middle.
+fn as_point(light: &Light) -> Light {
+    let middle = match &light.kind {
+        LightKind::Area { shape: AreaShape::Disc { center, .. } } => *center,
+        LightKind::Area { shape: AreaShape::Polygon { corners } } => {
+            corners.iter().sum::<DVec3>() / corners.len().max(1) as f64
+        }
+        _ => return light.clone(),
+    };
+    Light { kind: LightKind::Point { position: middle }, ..light.clone() }
 }

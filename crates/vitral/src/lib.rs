@@ -69,7 +69,7 @@ pub mod state;
 mod system_clock;
 mod viewpoint;
 
-pub use drawing::DrawingFormat;
+pub use drawing::{ColorBy, DrawingFormat, FillSettings};
 pub use error::Error;
 pub use exercise::{EXERCISES, Exercise};
 pub use files::{FolderResolver, read};
@@ -87,7 +87,7 @@ pub use system_clock::SystemClock;
 pub use viewpoint::Viewpoint;
 
 pub use vitral_draw::{
-    Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, PageSize, VisibilityStats,
+    Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, PageSize, Seams, VisibilityStats,
 };
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
 pub use vitral_frame::drawing::{Line, LineClass, Region};

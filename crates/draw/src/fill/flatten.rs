@@ -99,9 +99,11 @@ fn mix(over: Look, behind: [u8; 3]) -> [u8; 3] {
 /// The box round shapes.
 fn bounds(shapes: &Shapes) -> [[i32; 2]; 2] {
     let empty = [[i32::MAX; 2], [i32::MIN; 2]];
-    shapes.iter().flatten().flatten().fold(empty, |[low, high], p| {
-        [[low[0].min(p.x), low[1].min(p.y)], [high[0].max(p.x), high[1].max(p.y)]]
-    })
+    shapes
+        .iter()
+        .flatten()
+        .flatten()
+        .fold(empty, |[low, high], p| [[low[0].min(p.x), low[1].min(p.y)], [high[0].max(p.x), high[1].max(p.y)]])
 }
 
 fn meet([low, high]: [[i32; 2]; 2], [other_low, other_high]: [[i32; 2]; 2]) -> bool {

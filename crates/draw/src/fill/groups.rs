@@ -86,12 +86,7 @@ impl Groups {
     }
 
     /// The union of each group, with other parts beneath it.
-    pub(super) fn joined(
-        &self,
-        parts: &[Part],
-        beneath: &[Vec<u32>],
-        run: &Run<'_>,
-    ) -> Result<Vec<Joined>, Limit> {
+    pub(super) fn joined(&self, parts: &[Part], beneath: &[Vec<u32>], run: &Run<'_>) -> Result<Vec<Joined>, Limit> {
         let least = LEAST_AREA * u64::from(FINER.unsigned_abs()).pow(2);
         let joined = run.workers.map(self.groups.len(), |g| {
             run.budget.check("regions")?;

@@ -47,11 +47,7 @@ pub(super) fn within<'p>(subject: &Shapes, polygons: impl IntoIterator<Item = &'
     overlaid(subject, polygons, OverlayRule::Intersect)
 }
 
-fn overlaid<'p>(
-    subject: &Shapes,
-    polygons: impl IntoIterator<Item = &'p Vec<Corner>>,
-    rule: OverlayRule,
-) -> Shapes {
+fn overlaid<'p>(subject: &Shapes, polygons: impl IntoIterator<Item = &'p Vec<Corner>>, rule: OverlayRule) -> Shapes {
     let mut overlay = Overlay::<i32>::new(16);
     subject.iter().flatten().for_each(|ring| overlay.add_contour(ring, ShapeType::Subject));
     polygons.into_iter().for_each(|polygon| overlay.add_contour(polygon, ShapeType::Clip));
@@ -134,9 +130,8 @@ mod tests {
 
     #[test]
     fn hairs_are_narrow_and_not_small() {
-        let strip = |width: i32| {
-            [[0, 0], [10_000, 0], [10_000, width], [0, width]].map(|[x, y]| IntPoint::new(x, y)).to_vec()
-        };
+        let strip =
+            |width: i32| [[0, 0], [10_000, 0], [10_000, width], [0, width]].map(|[x, y]| IntPoint::new(x, y)).to_vec();
         assert_eq!(without_hairs(vec![vec![strip(20)], vec![strip(80)], vec![square(0, 200)]]).len(), 2);
     }
 }

@@ -125,8 +125,7 @@ fn shadows_divide_what_is_visible() {
     let half = vec![facet[0], facet[1].lerp(facet[2], 0.5), facet[2]];
     let lit = [LitPolygons { light: 2, of_facet: [(0, vec![half])].into_iter().collect() }];
     let by_light = |look: &FaceLook| if look.lights & 0b100 != 0 { [200; 3] } else { [50; 3] };
-    let regions =
-        found(&[triangle], &[], &Surfaces { lit: &lit, seams: Seams::None, ..Surfaces::new(&by_light) });
+    let regions = found(&[triangle], &[], &Surfaces { lit: &lit, seams: Seams::None, ..Surfaces::new(&by_light) });
     let told: Vec<_> = regions.iter().map(|r| (r.color[0], (area(r) / 1024.0).round())).collect();
     assert_eq!(told, [(50, 1024.0), (200, 1024.0)]);
 }

@@ -68,7 +68,10 @@ pub fn pdf(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
         let mut states = resources.ext_g_states();
         for &opacity in &opacities {
             let name = state_name(opacity);
-            states.insert(Name(name.as_bytes())).start::<ExtGraphicsState<'_>>().non_stroking_alpha(opacity as f32 / 1000.0);
+            states
+                .insert(Name(name.as_bytes()))
+                .start::<ExtGraphicsState<'_>>()
+                .non_stroking_alpha(opacity as f32 / 1000.0);
         }
     }
     resources.finish();

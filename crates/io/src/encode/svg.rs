@@ -168,13 +168,21 @@ mod tests {
     #[test]
     fn a_coarse_precision_makes_coarse_units_and_faces_are_told() {
         let lines = vec![line(LineClass::Contour, 0, &[[0.0, 0.0], [1.26, 0.01], [1.26, 0.04]])];
-        let region =
-            Region { surface: 3, material: None, color: [0; 3], opacity: 0.25, rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]] };
+        let region = Region {
+            surface: 3,
+            material: None,
+            color: [0; 3],
+            opacity: 0.25,
+            rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]],
+        };
         let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
         let options = DrawingOptions { decimals: 1, surface_ids: true, ..DrawingOptions::default() };
         let text = String::from_utf8(svg(&drawing, &options)).unwrap();
         assert!(text.contains("width=\"3mm\" height=\"2mm\" viewBox=\"0 0 30 20\""), "{text}");
         assert!(text.contains("stroke-width=\"5\"") && text.contains("<path d=\"M0 20l13 0\"/>"), "{text}");
-        assert!(text.contains("<path data-face=\"3\" fill=\"#000000\" fill-opacity=\"0.25\" d=\"M0 20l10 0 0-10z\"/>"), "{text}");
+        assert!(
+            text.contains("<path data-face=\"3\" fill=\"#000000\" fill-opacity=\"0.25\" d=\"M0 20l10 0 0-10z\"/>"),
+            "{text}"
+        );
     }
 }

@@ -12,6 +12,7 @@
 //! In:   a tile's facets and depths. Out: display colours, straight alpha.
 //! Cost: linear in points, times the number of lights.
 
+pub mod face_colors;
 pub mod face_table;
 pub mod flat;
 pub mod gouraud;

@@ -203,7 +203,7 @@ impl<S: Simd> SurfaceParameters<S> {
                     roughness: self.roughness_factor,
                     occlusion: self.occlusion,
                 };
-                coefficients(material, color, &factors)
+                coefficients(&material.material.reflectance, material.model, color, &factors)
             },
         )
     }
@@ -325,9 +325,14 @@ struct Factors<T> {
 
 /// Coefficients for a material's model.
 #[inline(always)]
-fn coefficients<T: Lanes>(material: &MaterialConstants<'_>, color: V3<T>, factors: &Factors<T>) -> Coefficients<T> {
+fn coefficients<T: Lanes>(
+    reflectance: &Reflectance,
+    model: Model,
+    color: V3<T>,
+    factors: &Factors<T>,
+) -> Coefficients<T> {
     let &Factors { specular, metallic: metallic_factor, roughness: roughness_factor, occlusion } = factors;
-    match (material.material.reflectance, material.model) {
+    match (*reflectance, model) {
         (Reflectance::Phong { ka, kd, ks, shininess }, model) => {
             let k = Phong {
                 ka: V3::splat(occlusion, ka).times(color).scale(occlusion),
@@ -359,8 +364,15 @@ fn coefficients<T: Lanes>(material: &MaterialConstants<'_>, color: V3<T>, factor
 #[inline(always)]
 pub(super) fn uniform<T: Lanes>(one: T, material: &MaterialConstants<'_>) -> (Coefficients<T>, T) {
     let white = V3::new(one, one, one);
+    (of_base(one, &material.material.reflectance, material.model, white), opaque_part(material, one))
+}
+
+/// Coefficients where only a base colour varies them; `one` is 1.
+#[inline(always)]
+pub(super) fn of_base<T: Lanes>(one: T, reflectance: &Reflectance, model: Model, base: V3<T>) -> Coefficients<T> {
+    let white = V3::new(one, one, one);
     let factors = Factors { specular: white, metallic: one, roughness: one, occlusion: one };
-    (coefficients(material, white, &factors), opaque_part(material, one))
+    coefficients(reflectance, model, base, &factors)
 }
 
 /// Opacity of a material where textures and vertex colours leave `alpha` of the surface.

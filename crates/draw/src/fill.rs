@@ -153,7 +153,10 @@ pub(crate) fn regions(
         Seams::Under => seams::beneath(mesh, &parts, &groups, run)?,
         Seams::None => vec![Vec::new(); groups.len()],
     };
-    let joined = groups.joined(&parts.all, &beneath, run)?;
+    let mut joined = groups.joined(&parts.all, &beneath, run)?;
+    if surfaces.seams == Seams::Under && !surfaces.by_face {
+        joined.splice(0..0, seams::ground(&parts.all, &joined));
+    }
     match surfaces.flatten && clear.is_some() {
         true => flatten::flattened(joined, &groups, &parts.all, surfaces.seams, run),
         false => Ok(joined.iter().flat_map(groups::Joined::regions).collect()),

@@ -10,8 +10,8 @@
 //! Cost: for each layer the pairs of overlapping looks, `n log n` for the corners of each.
 //! Source: the mixing is that of [Porter & Duff 1984], `over`.
 
-use super::groups::{Groups, Joined, Look};
-use super::shapes::{FINER, Shapes, union, within, without};
+use super::groups::{Groups, Joined, LEAST_SHAPE, Look};
+use super::shapes::{Shapes, union, within, without};
 use super::{PageRegion, Part, Seams};
 use crate::run::Run;
 use std::collections::BTreeMap;
@@ -83,8 +83,11 @@ fn laid_over(painted: Vec<Joined>, layer: &[Joined], run: &Run<'_>) -> Result<Ve
             left.push(Joined { shapes, ..group });
         }
     }
-    let least = super::groups::LEAST_AREA * u64::from(FINER.unsigned_abs()).pow(2);
-    left.extend(mixed.into_iter().map(|(look, (surface, all))| Joined { look, surface, shapes: union(&all, least) }));
+    left.extend(mixed.into_iter().map(|(look, (surface, all))| Joined {
+        look,
+        surface,
+        shapes: union(&all, LEAST_SHAPE),
+    }));
     Ok(left)
 }
 

@@ -12,6 +12,8 @@ use vitral_exec::Limit;
 
 /// Area in units of the page below which a region or a hole is a trace of rounding: a millionth of a square millimetre on a sheet.
 pub(super) const LEAST_AREA: u64 = 1024;
+/// The same in steps of the finer grid, squared.
+pub(super) const LEAST_SHAPE: u64 = LEAST_AREA * (FINER as u64).pow(2);
 
 /// The look of a part. The order is that of painting.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,13 +89,12 @@ impl Groups {
 
     /// The union of each group, with other parts beneath it.
     pub(super) fn joined(&self, parts: &[Part], beneath: &[Vec<u32>], run: &Run<'_>) -> Result<Vec<Joined>, Limit> {
-        let least = LEAST_AREA * u64::from(FINER.unsigned_abs()).pow(2);
         let joined = run.workers.map(self.groups.len(), |g| {
             run.budget.check("regions")?;
             let (look, members) = &self.groups[g];
             let all = members.iter().chain(&beneath[g]).map(|&i| &parts[i as usize].shapes);
             let surface = members.iter().map(|&i| parts[i as usize].surface).min().unwrap_or(0);
-            Ok(Joined { look: *look, surface, shapes: union(all, least) })
+            Ok(Joined { look: *look, surface, shapes: union(all, LEAST_SHAPE) })
         });
         joined.into_iter().collect()
     }

@@ -5,12 +5,15 @@
 //! under its neighbour covers such pixels whole, and the neighbour mixes with it alone.
 //!
 //! A part reaches under the visible parts of all triangles round its corners, and of those whose outlines cut it, or that it cuts.
-//! Clear parts reach nowhere: what is under a clear part shows.
+//! Clear parts reach nowhere: what is under a clear part shows. Where parts are smaller than pixels, or belong to bodies that only
+//! touch, that is not enough: beneath everything lies the outline of the whole in its mean colour, so that what shines through there
+//! is not far from its neighbours.
 //!
 //! In:   parts with their groups in the order of painting. Out: for each group the parts beneath which it reaches.
 //! Cost: linear in the pairs of neighbours.
 
-use super::groups::Groups;
+use super::groups::{Groups, Joined, LEAST_SHAPE, Look};
+use super::shapes::{area_of, union};
 use super::{Part, Parts};
 use crate::page_mesh::PageMesh;
 use crate::run::Run;
@@ -54,6 +57,22 @@ pub(super) fn beneath(mesh: &PageMesh, parts: &Parts, groups: &Groups, run: &Run
         list.dedup();
     }
     Ok(neighbours.beneath)
+}
+
+/// The outline of all that is opaque, in its mean colour, where there are several looks.
+pub(super) fn ground(parts: &[Part], joined: &[Joined]) -> Option<Joined> {
+    let opaque: Vec<&Joined> = joined.iter().filter(|group| group.look.over == 0).collect();
+    let [first, _, ..] = opaque.as_slice() else { return None };
+    let (mut sum, mut area) = ([0.0; 3], 0.0);
+    for group in &opaque {
+        let own = area_of(&group.shapes);
+        (0..3).for_each(|k| sum[k] += own * f64::from(group.look.color[k]));
+        area += own;
+    }
+    let color = sum.map(|s| (s / area).round() as u8);
+    let shapes = parts.iter().filter(|part| part.look.over == 0).map(|part| &part.shapes);
+    let (look, surface) = (Look { color, ..first.look }, first.surface);
+    Some(Joined { look, surface, shapes: union(shapes, LEAST_SHAPE) })
 }
 
 /// Where the parts of each triangle begin; parts are in the order of their triangles.

@@ -81,19 +81,29 @@ pub(super) fn covered(polygons: &[Vec<Corner>], count: usize) -> Vec<Vec<Corner>
     overlay.overlay(OverlayRule::Subject, FillRule::Positive).into_iter().flatten().collect()
 }
 
+/// The area of shapes, in steps squared.
+pub(super) fn area_of(shapes: &Shapes) -> f64 {
+    shapes.iter().flatten().map(|ring| area_and_outline(ring)[0]).sum()
+}
+
+/// The area inside a ring, positive where it runs counter-clockwise, and its length.
+fn area_and_outline(ring: &[Corner]) -> [f64; 2] {
+    let (mut area, mut outline) = (0.0, 0.0);
+    for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+        let [ax, ay, bx, by] = [a.x, a.y, b.x, b.y].map(f64::from);
+        area += ax * by - bx * ay;
+        outline += ((bx - ax) * (bx - ax) + (by - ay) * (by - ay)).sqrt();
+    }
+    [area / 2.0, outline]
+}
+
 /// Without shapes that are nowhere wider than a hair.
 pub(super) fn without_hairs(mut shapes: Shapes) -> Shapes {
     shapes.retain(|shape| {
-        let (mut area, mut outline) = (0.0, 0.0);
-        for ring in shape {
-            for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-                let [dx, dy] = [f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y)];
-                area += f64::from(a.x) * f64::from(b.y) - f64::from(b.x) * f64::from(a.y);
-                outline += (dx * dx + dy * dy).sqrt();
-            }
-        }
+        let [area, outline] =
+            shape.iter().map(|ring| area_and_outline(ring)).fold([0.0; 2], |s, r| [s[0] + r[0], s[1] + r[1]]);
         // A strip has half its outline times its width.
-        area.abs() > outline * HAIR * f64::from(FINER)
+        area.abs() > outline / 2.0 * HAIR * f64::from(FINER)
     });
     shapes
 }

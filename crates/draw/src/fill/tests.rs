@@ -84,14 +84,18 @@ fn neighbours_of_one_colour_become_one_region_unless_each_face_is_one() {
 
 #[test]
 fn the_first_painted_reaches_under_its_neighbours_and_under_what_cuts_it() {
-    // Neighbours.
-    let regions = found(&SQUARE, &[], &touching(Seams::Under));
-    assert_eq!(regions.iter().map(area).collect::<Vec<_>>(), [1_000_000.0, 500_000.0]);
+    // Beneath everything lies the whole.
+    let areas = |corners: &[[GridPoint; 3]]| -> Vec<f64> {
+        found(corners, &[], &touching(Seams::Under)).iter().map(area).collect()
+    };
+    assert_eq!(areas(&SQUARE), [1_000_000.0, 1_000_000.0, 500_000.0]);
+    assert_eq!(found(&SQUARE, &[], &touching(Seams::Under))[0].color, [3, 0, 0]);
     // A triangle in front, painted later; painted first, it reaches under what is left of the other.
-    let cut = |corners: &[[GridPoint; 3]]| found(corners, &[], &touching(Seams::Under)).iter().map(area).collect();
-    let (behind_first, front_first): (Vec<f64>, Vec<f64>) = (cut(&[BIG, SMALL]), cut(&[SMALL, BIG]));
-    assert_eq!(behind_first, [8_000_000.0, 500_000.0]);
-    assert_eq!(front_first, [8_000_000.0, 7_500_000.0]);
+    assert_eq!(areas(&[BIG, SMALL]), [8_000_000.0, 8_000_000.0, 500_000.0]);
+    assert_eq!(areas(&[SMALL, BIG]), [8_000_000.0, 8_000_000.0, 7_500_000.0]);
+    // Faces of their own have no ground.
+    let faces = Surfaces { by_face: true, ..touching(Seams::Under) };
+    assert_eq!(found(&SQUARE, &[], &faces).iter().map(area).collect::<Vec<_>>(), [1_000_000.0, 500_000.0]);
 }
 
 #[test]

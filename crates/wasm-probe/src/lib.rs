@@ -4,26 +4,44 @@
 //! [`render`] draws, and compares with the hash that this crate's program prints natively.
 //!
 //! What is drawn: Lab3D's scene 1 through its own camera, smooth with all data planes, then as faceted Cook-Torrance
-//! with edges. So culling, clipping, rasterising, three shading models, marks and both colour spaces take part.
+//! with edges. So culling, clipping, rasterising, three shading models, marks and both colour spaces take part. Then the same scene as
+//! a vector drawing: visible and hidden lines, intersections, and regions.
 
 // Exporting a function by its name is the only way out of a WebAssembly module, and the attribute for it is unsafe
 // because two functions of one name would collide. There is no unsafe block.
 #![allow(unsafe_code)]
 
 use std::sync::{Arc, OnceLock};
+use vitral_draw::{Classes, DrawingSettings, FaceLook, Surfaces};
 use vitral_exec::{Budget, Workers};
 use vitral_frame::Frame;
 use vitral_light::Illumination;
 use vitral_math::lanes::Level;
 use vitral_render::{Channels, ColorSpace, Execution, Lines, Session, Settings, Shading, Shot};
-use vitral_scene::{Camera, Projection, builtin};
+use vitral_scene::{Camera, Projection, World, builtin};
 
 /// Width and height of the pictures in pixels; the last tiles are not full.
 const SIZE: (u32, u32) = (140, 100);
 
-/// The pictures: RGBA colours of all, then depths, surface ids and normals of the first, little-endian.
+/// The pictures: RGBA colours of all, then depths, surface ids and normals of the first, and the points of the drawing, little-endian.
 pub fn picture() -> Vec<u8> {
-    draw(Level::new())
+    let mut bytes = draw(Level::new());
+    bytes.extend(drawing(&Workers::single()));
+    bytes
+}
+
+/// The corners of all lines and regions of a drawing, in millimetres.
+fn drawing(workers: &Workers) -> Vec<u8> {
+    let world = World::new(&builtin::scene("scene1").expect("scene1 is built in")).expect("built-in scenes are sound");
+    let settings = DrawingSettings { lines: Classes::ALL, hidden_layers: 2, ..DrawingSettings::default() };
+    let palette = |look: &FaceLook| look.normal.map(|c| if c > 0.5 { 200 } else { 100 });
+    let surfaces = Surfaces::new(&palette);
+    let drawn =
+        vitral_draw::draw(&world, &world.cameras[0], 1.4, &settings, Some(&surfaces), workers, &Budget::default());
+    let drawing = drawn.expect("there are no limits").drawing;
+    let outlines = drawing.regions.iter().flat_map(|region| &region.rings);
+    let points = drawing.lines.iter().map(|line| &line.points).chain(outlines).flatten();
+    points.flatten().flat_map(|c| c.to_le_bytes()).collect()
 }
 
 /// FNV-1a, 64 bits: the hash that `run.mjs` computes as well.
@@ -100,7 +118,7 @@ mod tests {
 
     #[test]
     fn every_level_draws_the_same_pictures() {
-        let pictures = picture();
+        let pictures = draw(Level::new());
         for (name, level) in available_levels() {
             assert!(draw(level) == pictures, "{name}");
         }
@@ -108,6 +126,12 @@ mod tests {
         let pixels = (SIZE.0 * SIZE.1) as usize;
         assert_eq!(pictures.len(), pixels * (3 * 4 + 20));
         assert_ne!(pictures[..4], pictures[pixels * 2..][..4], "the middle differs from the corner");
+    }
+
+    #[test]
+    fn drawings_do_not_depend_on_threads() {
+        let bytes = drawing(&Workers::single());
+        assert!(bytes.len() > 1000 && bytes == drawing(&Workers::new(3)) && picture().ends_with(&bytes));
     }
 
     #[test]

@@ -10,6 +10,7 @@
 use super::{ColorBy, FillSettings};
 use crate::Renderer;
 use vitral_draw::FaceLook;
+use vitral_frame::{Encoding, Texture};
 use vitral_light::{Material, Rgb, constant_color};
 use vitral_math::color::{byte_from_unit, linear_from_srgb, srgb_from_linear};
 use vitral_math::{DVec3, Vec3};
@@ -54,9 +55,9 @@ impl<'r> Colors<'r> {
         match self.fill.color_by {
             ColorBy::None => [255; 3],
             ColorBy::Part => hue_of_part(number),
-            ColorBy::Material => encoded(own(material, base_of(instance, face))),
+            ColorBy::Material => encoded(own(material, self.base_of(instance, face, material))),
             ColorBy::Shading => {
-                let base = base_of(instance, face);
+                let base = self.base_of(instance, face, material);
                 let normal = Vec3::from_array(look.normal).as_dvec3();
                 let place = FacePlace { position: center_of(instance, face), normal, base };
                 let reaches = |light: usize| light >= 32 || look.lights >> light & 1 == 1;
@@ -65,10 +66,29 @@ impl<'r> Colors<'r> {
             }
         }
     }
+
+    /// What vertex colours and textures make of a material's colour: the mean of a face, and that of the whole texture.
+    fn base_of(&self, instance: &Instance, face: usize, material: &Material) -> Rgb {
+        let vertices = vertex_color(instance, face);
+        let textures = &self.renderer.scene().textures;
+        let texture = material.base_texture.and_then(|reference| textures.get(reference.texture as usize));
+        let texture = texture.map_or([1.0; 3], |texture| mean_of(texture));
+        [0, 1, 2].map(|k| vertices[k] * texture[k])
+    }
+}
+
+/// The mean colour of a texture, linear: its smallest level.
+fn mean_of(texture: &Texture) -> Rgb {
+    let Some([r, g, b, _]) = texture.levels.last().map(|level| level.row(0)[0]) else { return [1.0; 3] };
+    let decoded = |byte: u8| match texture.encoding {
+        Encoding::Linear => f32::from(byte) / 255.0,
+        Encoding::Srgb => linear_from_srgb(f32::from(byte) / 255.0),
+    };
+    [r, g, b].map(decoded)
 }
 
 /// The mean colour of the vertices of a face, linear; white without any.
-fn base_of(instance: &Instance, face: usize) -> Rgb {
+fn vertex_color(instance: &Instance, face: usize) -> Rgb {
     let Some(colors) = &instance.mesh.colors else { return [1.0; 3] };
     let triangles = instance.mesh.face_triangles(face);
     let count = 3.0 * triangles.len() as f32;

@@ -5,7 +5,7 @@ use crate::render_args::{CameraArgs, EyeArgs, ProcessArgs, ProgressWhen};
 use crate::values;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use vitral::{LineClass, LineClasses, MaterialOverride, Pens, TitleBlock};
+use vitral::{LineClass, LineClasses, MaterialOverride, Pens, PolygonOrder, TitleBlock, Visibility};
 
 /// Options of `vitral draw`.
 #[derive(Args, Debug, Default)]
@@ -37,7 +37,11 @@ pub(crate) struct DrawArgs {
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Lines")]
 pub(crate) struct LineArgs {
-    /// What the drawing is made of [default: hidden-line]
+    /// Who decides what is visible. The algorithms of the course give their own polygons in their own order, with all their cuts: of a
+    /// list from back to front the later ones cover the earlier ones [default: exact]
+    #[arg(long, value_name = "NAME", value_parser = crate::choices::drawing_algorithm())]
+    pub(crate) algorithm: Option<DrawingAlgorithm>,
+    /// What the drawing is made of [default: hidden-line; filled-lines with another --algorithm than exact]
     #[arg(long, value_name = "STYLE", value_enum)]
     pub(crate) style: Option<Style>,
     #[arg(long, value_name = "LIST", value_parser = line_classes, help = lines_help())]
@@ -56,6 +60,39 @@ pub(crate) struct LineArgs {
     /// Override a material's property, as in `render`; a material that is told apart makes a line; repeatable
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material)]
     pub(crate) material: Vec<MaterialOverride>,
+}
+
+/// Who decides what is visible.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum DrawingAlgorithm {
+    /// The drawing's own, exact on a grid.
+    #[default]
+    Exact,
+    /// An algorithm that comes to polygons.
+    Polygons(Visibility),
+}
+
+impl DrawArgs {
+    /// What the drawing is made of.
+    pub(crate) fn style(&self) -> Style {
+        self.lines.style.unwrap_or(match self.polygons() {
+            Some(_) => Style::FilledLines,
+            None => Style::default(),
+        })
+    }
+
+    /// The algorithm whose polygons are drawn.
+    pub(crate) fn polygons(&self) -> Option<Visibility> {
+        match self.lines.algorithm {
+            Some(DrawingAlgorithm::Polygons(algorithm)) => Some(algorithm),
+            Some(DrawingAlgorithm::Exact) | None => None,
+        }
+    }
+
+    /// Whether the drawing is a list of polygons of which later ones cover earlier ones.
+    pub(crate) fn overlaps(&self) -> bool {
+        self.polygons().is_some_and(|algorithm| algorithm.polygons == Some(PolygonOrder::BackToFront))
+    }
 }
 
 /// What a drawing is made of.

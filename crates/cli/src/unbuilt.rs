@@ -5,8 +5,7 @@
 const VERBS: [&str; 2] = ["lab", "batch"];
 
 /// Options of `draw` to come.
-const DRAWING_OPTIONS: [&str; 15] = [
-    "--algorithm",
+const DRAWING_OPTIONS: [&str; 14] = [
     "--angle",
     "--color-by",
     "--explode",

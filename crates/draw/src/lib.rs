@@ -13,6 +13,8 @@
 //! | the visible surface as regions that do not overlap | `fill.rs` |
 //! | long polylines on the page | `chains.rs`, `layout.rs` |
 //!
+//! Polygons that another algorithm comes to are laid out on the same page: `listed.rs`.
+//!
 //! Nothing depends on the number of threads.
 //!
 //! ```
@@ -38,6 +40,7 @@ mod fill;
 mod grid;
 mod hiding;
 mod layout;
+mod listed;
 mod page_mesh;
 mod place;
 mod projection;
@@ -50,6 +53,7 @@ mod visibility;
 pub use classes::Classes;
 pub use fill::{FaceLook, Palette};
 pub use layout::PageSize;
+pub use listed::{ListedPolygon, ListedPolygons, covered_area, draw_polygons};
 pub use visibility::VisibilityStats;
 
 use grid::Grid;

@@ -14,7 +14,8 @@ pub struct Drawing {
     pub height: f64,
     /// Lines, in the order of [`LineClass::ALL`], visible ones first.
     pub lines: Vec<Line>,
-    /// Filled regions, which do not overlap.
+    /// Filled regions in the order in which they are painted. Those of visible surfaces do not overlap; in a list from back to front, as
+    /// painter's algorithm and BSP trees make it, later regions cover earlier ones.
     pub regions: Vec<Region>,
 }
 
@@ -93,7 +94,7 @@ impl Drawing {
         around.map_or([0.0; 2], |[low, high]| [high[0] - low[0], high[1] - low[1]])
     }
 
-    /// The area of all regions, in square millimetres.
+    /// The sum of the areas of all regions, in square millimetres: where they overlap, it counts more than once.
     pub fn area(&self) -> f64 {
         self.regions.iter().map(Region::area).sum()
     }

@@ -41,15 +41,20 @@ impl Renderer {
     /// A limit that was reached.
     pub fn draw_filled(&self, settings: &DrawingSettings) -> Result<Drawn, Error> {
         let (camera, execution) = (self.frame_camera(), self.execution());
-        let (materials, light) = (&self.scene().materials, towards_light(&camera));
-        let palette = |look: &FaceLook| {
+        let palette = self.palette(&camera);
+        let palette = Some(&palette as &vitral_draw::Palette<'_>);
+        Ok(draw(self.world(), &camera, self.aspect(), settings, palette, &execution.workers, &execution.budget)?)
+    }
+
+    /// The colours of filled drawings.
+    pub(crate) fn palette(&self, camera: &Camera) -> impl Fn(&FaceLook) -> [u8; 3] + Sync + '_ {
+        let (materials, light) = (&self.scene().materials, towards_light(camera));
+        move |look| {
             let material = look.material.and_then(|index| materials.get(index as usize)).cloned().unwrap_or_default();
             let lit = Vec3::from_array(look.normal).dot(light).max(0.0);
             let brightness = ((AMBIENT + (1.0 - AMBIENT) * lit) * SHADES).round() / SHADES;
             constant_color(&material).map(|c| byte_from_unit(srgb_from_linear(c * brightness)))
-        };
-        let palette = Some(&palette as &vitral_draw::Palette<'_>);
-        Ok(draw(self.world(), &camera, self.aspect(), settings, palette, &execution.workers, &execution.budget)?)
+        }
     }
 
     /// The longer side of the window that a drawing shows, in units of the world; `None` in perspective, where nothing is to scale.

@@ -81,12 +81,20 @@ fn content(drawing: &Drawing, options: &DrawingOptions, scale: f64) -> (String, 
     if !drawing.regions.is_empty() {
         groups.push((0, FILL));
         let _ = writeln!(out, "/OC /{FILL} BDC");
+        let outline = options.outline_width();
+        if let Some(width) = outline {
+            let _ = writeln!(out, "{width} w\n[] 0 d");
+        }
         for region in &drawing.regions {
             // Three decimals tell all levels of eight bits apart.
             let [red, green, blue] = region.color.map(|level| (f64::from(level) / 0.255).round() / 1000.0);
             let _ = writeln!(out, "{red} {green} {blue} rg");
-            region.rings.iter().for_each(|ring| path(&mut out, precision, &precision.ring(ring)));
-            out.push_str("f*\n");
+            for ring in &region.rings {
+                path(&mut out, precision, &precision.ring(ring));
+                // Fills close outlines by themselves.
+                out.push_str(if outline.is_some() { "h\n" } else { "" });
+            }
+            out.push_str(if outline.is_some() { "B*\n" } else { "f*\n" });
         }
         out.push_str("EMC\n");
     }
@@ -140,6 +148,13 @@ mod tests {
                         /OC /hidden BDC\n0.18 w\n[2 1] 0 d\n0 0 m\n1.5 0.25 l\nS\nEMC\n\
                         /OC /contour BDC\n0.5 w\n[] 0 d\n1 1 m\n2.5 1 l\n2 2 l\ns\nEMC\n";
         assert_eq!((text.as_str(), groups), (expected, vec![(0, "fill"), (8, "hidden"), (1, "contour")]));
+    }
+
+    #[test]
+    fn outlined_regions_are_closed_and_stroked() {
+        let options = DrawingOptions { region_outlines: Some(LineClass::Smooth), ..DrawingOptions::default() };
+        let (text, _) = content(&sheet(9.0, 9.0), &options, POINTS);
+        assert!(text.contains("/fill BDC\n0.18 w\n[] 0 d\n1 0 0.063 rg\n0 0 m\n1 0 l\n1 1 l\nh\nB*\nEMC\n"), "{text}");
     }
 
     #[test]

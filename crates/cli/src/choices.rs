@@ -46,7 +46,8 @@ pub(crate) fn visibility() -> impl TypedValueParser<Value = Visibility> {
 
 /// What decides about visibility in drawings: `exact`, and the algorithms that come to polygons.
 pub(crate) fn drawing_algorithm() -> impl TypedValueParser<Value = DrawingAlgorithm> {
-    let exact = (DrawingAlgorithm::Exact, "exact", "visible and hidden lines, and regions, exact on a grid of their own");
+    let exact =
+        (DrawingAlgorithm::Exact, "exact", "visible and hidden lines, and regions, exact on a grid of their own");
     let listed = Visibility::all().filter(|choice| choice.polygons.is_some());
     let rows = listed.map(|choice| (DrawingAlgorithm::Polygons(choice), choice.name(), choice.description()));
     of([exact].into_iter().chain(rows))

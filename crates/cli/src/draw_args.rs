@@ -41,6 +41,10 @@ pub(crate) struct LineArgs {
     /// list from back to front the later ones cover the earlier ones [default: exact]
     #[arg(long, value_name = "NAME", value_parser = crate::choices::drawing_algorithm())]
     pub(crate) algorithm: Option<DrawingAlgorithm>,
+    /// Cut polygons at the shadows of all lights that cast some; what a light does not reach is darker, and tells the light's number as
+    /// data-shadow; not with --algorithm exact
+    #[arg(long)]
+    pub(crate) shadows: bool,
     /// What the drawing is made of [default: hidden-line; filled-lines with another --algorithm than exact]
     #[arg(long, value_name = "STYLE", value_enum)]
     pub(crate) style: Option<Style>,

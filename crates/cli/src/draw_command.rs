@@ -9,9 +9,7 @@ use crate::report::{self, Failure};
 use crate::resolve::{execution_within, overlay_files, save_state, set_viewpoint};
 use serde_json::json;
 use std::time::Instant;
-use vitral::{
-    Drawing, DrawingSettings, Drawn, LineClasses, PageSize, PolygonDrawing, Renderer, State, World,
-};
+use vitral::{Drawing, DrawingSettings, Drawn, LineClasses, PageSize, PolygonDrawing, Renderer, State, World};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {

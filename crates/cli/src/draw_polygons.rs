@@ -3,14 +3,23 @@
 use crate::draw_args::{DrawArgs, Style};
 use crate::report::{self, Failure};
 use serde_json::{Value, json};
-use vitral::{DrawingSettings, LineClass, PolygonDrawing, PolygonFill, Renderer, Visibility, covered_area};
+use vitral::{
+    DrawingSettings, LineClass, PolygonDrawing, PolygonFill, PolygonSettings, Renderer, Visibility, covered_area,
+};
 
 /// Whether every option has an effect beside the algorithm.
 pub(crate) fn check_options(args: &DrawArgs) -> Result<(), Failure> {
-    let Some(algorithm) = args.polygons() else { return Ok(()) };
+    let Some(algorithm) = args.polygons() else {
+        if args.lines.shadows {
+            let what = "--shadows: --algorithm exact draws no shadows";
+            return Err(Failure::usage(what).with_hint("choose --algorithm weiler-atherton, painter or bsp"));
+        }
+        return Ok(());
+    };
     let lines = &args.lines;
     let outline = LineClass::Smooth.name();
-    let other_pen = lines.stroke.iter().map(|(class, _)| class.as_str()).find(|class| ![outline, "title"].contains(class));
+    let other_pen =
+        lines.stroke.iter().map(|(class, _)| class.as_str()).find(|class| ![outline, "title"].contains(class));
 
     // Each row: whether it is a mistake, and the option.
     let mistakes = [
@@ -51,7 +60,8 @@ pub(crate) fn draw(
         Style::Filled => (PolygonFill::Shaded, false),
         Style::FilledLines => (PolygonFill::Shaded, true),
     };
-    Ok(renderer.draw_polygons(algorithm, fill, outlines, settings)?)
+    let polygons = PolygonSettings { algorithm, fill, outlines, shadows: args.lines.shadows };
+    Ok(renderer.draw_polygons(&polygons, settings)?)
 }
 
 /// Counters.
@@ -61,6 +71,7 @@ pub(crate) fn stats_of(drawn: &PolygonDrawing) -> Value {
     json!({
         "model-polygons": model_polygons,
         "pieces": pieces,
+        "shadowed-regions": drawing.regions.iter().filter(|region| region.unlit != 0).count(),
         "splits": counters.splits,
         "counters": nonzero(json!(counters)),
         "regions": drawing.regions.len(),

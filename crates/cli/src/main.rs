@@ -2,6 +2,7 @@
 
 mod args;
 mod bench_command;
+mod bench_drawings;
 mod bench_plot;
 mod bench_report;
 mod bench_rows;

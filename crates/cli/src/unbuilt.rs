@@ -5,7 +5,7 @@
 const VERBS: [&str; 2] = ["lab", "batch"];
 
 /// Options of `draw` to come.
-const DRAWING_OPTIONS: [&str; 14] = [
+const DRAWING_OPTIONS: [&str; 13] = [
     "--angle",
     "--color-by",
     "--explode",
@@ -16,7 +16,6 @@ const DRAWING_OPTIONS: [&str; 14] = [
     "--seams",
     "--section-plane",
     "--shades",
-    "--shadows",
     "--transparency",
     "--views",
     "--light",

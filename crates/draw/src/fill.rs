@@ -27,9 +27,9 @@ use vitral_exec::{Limit, Spare};
 use vitral_math::exact::{GridPlane, GridPoint, orient2d};
 
 /// Steps of the finer grid in a unit of the page.
-const FINER: i32 = 128;
+pub(crate) const FINER: i32 = 128;
 /// Area in units of the page below which a region or a hole is a trace of rounding: a millionth of a square millimetre on a sheet.
-const LEAST_AREA: u64 = 1024;
+pub(crate) const LEAST_AREA: u64 = 1024;
 /// Triangles in one piece of work.
 const BATCH: usize = 256;
 /// Triangles in lists between two looks at the clock.
@@ -58,6 +58,8 @@ pub(crate) struct PageRegion {
     pub(crate) surface: u32,
     pub(crate) material: u32,
     pub(crate) color: [u8; 3],
+    /// The lights that do not reach it, a bit each.
+    pub(crate) unlit: u64,
     /// Counter-clockwise round the region, clockwise round holes; in units.
     pub(crate) rings: Vec<Vec<[f64; 2]>>,
 }
@@ -144,7 +146,7 @@ fn join(parts: Vec<Part>, run: &Run<'_>) -> Result<Vec<PageRegion>, Limit> {
         let point = |p: &Corner| [p.x, p.y].map(|c| f64::from(c) / f64::from(FINER));
         let region = |shape: Vec<Vec<Corner>>| {
             let rings = shape.iter().map(|ring| ring.iter().map(point).collect()).collect();
-            PageRegion { surface: *surface, material: *material, color: *color, rings }
+            PageRegion { surface: *surface, material: *material, color: *color, unlit: 0, rings }
         };
         Ok(shapes.into_iter().map(region).collect::<Vec<_>>())
     });

@@ -13,7 +13,8 @@
 //! | the visible surface as regions that do not overlap | `fill.rs` |
 //! | long polylines on the page | `chains.rs`, `layout.rs` |
 //!
-//! Polygons that another algorithm comes to are laid out on the same page: `listed.rs`.
+//! Polygons that another algorithm comes to are laid out on the same page (`listed.rs`), divided in lit and shadowed parts if that is
+//! wanted (`lit.rs`).
 //!
 //! Nothing depends on the number of threads.
 //!
@@ -41,6 +42,7 @@ mod grid;
 mod hiding;
 mod layout;
 mod listed;
+mod lit;
 mod page_mesh;
 mod place;
 mod projection;
@@ -54,6 +56,7 @@ pub use classes::Classes;
 pub use fill::{FaceLook, Palette};
 pub use layout::PageSize;
 pub use listed::{ListedPolygon, ListedPolygons, covered_area, draw_polygons};
+pub use lit::LitPolygons;
 pub use visibility::VisibilityStats;
 
 use grid::Grid;

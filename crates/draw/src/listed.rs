@@ -8,6 +8,7 @@
 
 use crate::fill::{FaceLook, PageRegion, Palette};
 use crate::layout::{self, PageSize};
+use crate::lit::{LitPolygons, Page};
 use crate::page_mesh::NONE;
 use crate::projection::{page_size, source_of_facet};
 use crate::run::Run;
@@ -20,7 +21,7 @@ use vitral_exec::{Budget, Limit, Workers};
 use vitral_frame::Drawing;
 use vitral_frame::drawing::{LineClass, Region, signed_area};
 use vitral_math::DVec3;
-use vitral_scene::{Camera, World, depth_range};
+use vitral_scene::{Camera, ViewTransform, World, depth_range};
 
 /// Polygons between two looks at the clock.
 const POLYGONS_A_CHECK: usize = 4096;
@@ -32,8 +33,8 @@ const STEPS_A_MILLIMETRE: f64 = 1000.0;
 /// A polygon of a list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ListedPolygon {
-    /// A facet of the face that it is a part of.
-    pub facet: u32,
+    /// The facets of the flat polygon that it is a part of, at least one.
+    pub facets: Vec<u32>,
     /// Outlines, counter-clockwise round the polygon, clockwise round holes, closed without repeating the first point. The window of the
     /// camera reaches from `[0, 0]`, lower left, to `[1, 1]`.
     pub outlines: Vec<Vec<[f64; 2]>>,
@@ -47,6 +48,8 @@ pub struct ListedPolygons<'p> {
     pub fill: Option<&'p Palette<'p>>,
     /// The class of lines that outlines become; `None`: no lines.
     pub lines: Option<LineClass>,
+    /// Divides the polygons in what each light reaches and what it does not; shadows are darker.
+    pub lit: Option<&'p LitPolygons>,
 }
 
 /// Lays polygons out on the page of a drawing of what `camera` sees in a window of `aspect` (width by height).
@@ -58,13 +61,15 @@ pub fn draw_polygons(
     camera: &Camera,
     aspect: f64,
     polygons: ListedPolygons<'_>,
-    (page, margin): (PageSize, f64),
+    (sheet, margin): (PageSize, f64),
     workers: &Workers,
     budget: &Budget,
 ) -> Result<Drawing, Limit> {
     let run = Run::new(workers, budget);
     let size = page_size(aspect);
-    let sides = Sides::new(world, camera, aspect);
+    let view = camera.transform(aspect, depth_range(camera, &world.bounds));
+    let sides = Sides::new(world, &view);
+    let page = Page { clip_from_world: view.clip_from_world(), near: view.near, size };
 
     // Bring the polygons to the page.
     let mut regions = Vec::with_capacity(polygons.list.len());
@@ -76,10 +81,14 @@ pub fn draw_polygons(
         run.memory.add(corners as u64 * BYTES_A_CORNER)?;
         let on_page = |p: [f64; 2]| [0, 1].map(|k| p[k] * f64::from(size[k]));
         let rings = polygon.outlines.into_iter().map(|ring| ring.into_iter().map(on_page).collect()).collect();
-        let look = sides.look(polygon.facet);
+        let (corner, look) = sides.look(polygon.facets[0]);
         let color = polygons.fill.map_or([0; 3], |palette| palette(&look));
         let material = look.material.unwrap_or(NONE);
-        regions.push(PageRegion { surface: look.surface, material, color, rings });
+        let whole = PageRegion { surface: look.surface, material, color, unlit: 0, rings };
+        match polygons.lit {
+            Some(lit) => lit.divide(whole, &polygon.facets, (corner, look.normal), &page, &mut regions),
+            None => regions.push(whole),
+        }
     }
 
     // Draw each part of their outlines once.
@@ -96,7 +105,7 @@ pub fn draw_polygons(
     if polygons.fill.is_none() {
         regions.clear();
     }
-    Ok(layout::lay_out(&strokes, &regions, page, margin))
+    Ok(layout::lay_out(&strokes, &regions, sheet, margin))
 }
 
 /// Tells which side of a face is seen.
@@ -108,22 +117,22 @@ struct Sides<'w> {
 }
 
 impl<'w> Sides<'w> {
-    fn new(world: &'w World, camera: &Camera, aspect: f64) -> Self {
-        let view = camera.transform(aspect, depth_range(camera, &world.bounds));
+    fn new(world: &'w World, view: &ViewTransform) -> Self {
         let world_from_view = view.view_from_world.inverse();
         let eye = world_from_view.transform_point3(DVec3::ZERO);
         Self { world, perspective: view.perspective, eye, backwards: world_from_view.transform_vector3(DVec3::Z) }
     }
 
-    /// What a facet's face shows to a palette.
-    fn look(&self, facet: u32) -> FaceLook {
+    /// A corner of a facet, and what its face shows to a palette.
+    fn look(&self, facet: u32) -> (DVec3, FaceLook) {
         let source = source_of_facet(self.world, facet);
         let instance = &self.world.instances[self.world.instance_of_facet(facet)];
         let corner = instance.corners(facet - instance.first_facet)[0];
         let towards = if self.perspective { self.eye - corner } else { self.backwards };
         let is_back = towards.dot(DVec3::from_array(source.normal.map(f64::from))) < 0.0;
         let normal = if is_back { source.normal.map(|c| -c) } else { source.normal };
-        FaceLook { surface: source.surface, material: Some(source.material).filter(|&m| m != NONE), normal }
+        let material = Some(source.material).filter(|&m| m != NONE);
+        (corner, FaceLook { surface: source.surface, material, normal })
     }
 }
 

@@ -39,6 +39,8 @@ pub struct Region {
     pub material: Option<u32>,
     /// Display colour, sRGB.
     pub color: [u8; 3],
+    /// The lights that do not reach it, a bit each, where shadows are drawn; else 0.
+    pub unlit: u64,
     /// Outlines, closed without repeating the first point: counter-clockwise round the region, clockwise round holes.
     pub rings: Vec<Vec<[f64; 2]>>,
 }
@@ -147,7 +149,13 @@ mod tests {
         let square = |at: f64, side: f64| [[at, at], [at + side, at], [at + side, at + side], [at, at + side]];
         let mut hole = square(1.0, 1.0).to_vec();
         hole.reverse();
-        let region = Region { surface: 0, material: None, color: [0; 3], rings: vec![square(0.0, 3.0).to_vec(), hole] };
+        let region = Region {
+            surface: 0,
+            material: None,
+            color: [0; 3],
+            unlit: 0,
+            rings: vec![square(0.0, 3.0).to_vec(), hole],
+        };
         let line = |layers, points: &[[f64; 2]]| Line { class: LineClass::Crease, layers, points: points.to_vec() };
         let lines = vec![line(0, &square(0.0, 3.0)), line(2, &[[0.0, 0.0], [3.0, 4.0]])];
         let drawing = Drawing { width: 3.0, height: 4.0, lines, regions: vec![region] };

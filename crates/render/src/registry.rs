@@ -11,8 +11,8 @@ use crate::shadow::{
 };
 use crate::trace::legend::Legend;
 use crate::visible::{
-    PolygonAlgorithm, VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
-    warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
+    PolygonAlgorithm, VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast,
+    scanline::ScanLine, warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
 };
 use crate::{Coherence, Global};
 

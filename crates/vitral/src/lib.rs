@@ -82,7 +82,7 @@ pub use load::{
 pub use material_override::{MaterialOverride, material_properties, override_material};
 pub use panels::panels;
 pub use picture::{Channel, EncodeOptions, Picture, PictureFormat};
-pub use polygon_drawing::{PolygonDrawing, PolygonFill};
+pub use polygon_drawing::{PolygonDrawing, PolygonFill, PolygonSettings};
 pub use renderer::{Moves, Renderer, execution, open};
 pub use shadow_polygons::shadow_polygons;
 pub use state::{Objects, State};

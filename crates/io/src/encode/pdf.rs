@@ -136,7 +136,7 @@ mod tests {
             line(LineClass::Crease, 1, &[[0.0, 0.0], [1.5, 0.25]]),
         ];
         let ring = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
-        let region = Region { surface: 3, material: None, color: [255, 0, 16], rings: vec![ring] };
+        let region = Region { surface: 3, material: None, color: [255, 0, 16], unlit: 0, rings: vec![ring] };
         Drawing { width, height, lines, regions: vec![region] }
     }
 

@@ -87,6 +87,11 @@ impl Page {
             if options.surface_ids {
                 let _ = write!(out, " data-face=\"{}\"", region.surface);
             }
+            if region.unlit != 0 {
+                let lights = (1..=u64::BITS).filter(|light| region.unlit >> (light - 1) & 1 == 1);
+                let lights: Vec<_> = lights.map(|light| light.to_string()).collect();
+                let _ = write!(out, " data-shadow=\"{}\"", lights.join(" "));
+            }
             let _ = write!(out, " fill=\"#{red:02x}{green:02x}{blue:02x}\" d=\"");
             region.rings.iter().for_each(|ring| self.path(out, &self.precision.ring(ring), true));
             out.push_str("\"/>\n");
@@ -137,7 +142,7 @@ mod tests {
             line(LineClass::Crease, 2, &[[0.0, 0.0], [3.0, 2.0]]),
         ];
         let ring = square[..4].to_vec();
-        let region = Region { surface: 3, material: None, color: [255, 0, 16], rings: vec![ring] };
+        let region = Region { surface: 3, material: None, color: [255, 0, 16], unlit: 0, rings: vec![ring] };
         let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
         let text = String::from_utf8(svg(&drawing, &DrawingOptions::default())).unwrap();
         let expected = "\
@@ -173,19 +178,24 @@ mod tests {
     #[test]
     fn outlined_regions_are_stroked_in_their_order() {
         let ring = |x: f64| vec![[x, 0.0], [x + 1.0, 0.0], [x, 1.0]];
-        let region = |x: f64| Region { surface: 0, material: None, color: [255; 3], rings: vec![ring(x)] };
+        let region = |x: f64| Region { surface: 0, material: None, color: [255; 3], unlit: 5, rings: vec![ring(x)] };
         let drawing = Drawing { regions: vec![region(0.0), region(0.5)], ..Drawing::default() };
         let options = DrawingOptions { region_outlines: Some(LineClass::Smooth), ..DrawingOptions::default() };
         let text = String::from_utf8(svg(&drawing, &options)).unwrap();
         assert!(text.contains("fill-rule=\"evenodd\" stroke=\"#000\" stroke-width=\"180\" stroke-linejoin"), "{text}");
-        assert_eq!((text.matches("<g").count(), text.matches("<path").count()), (1, 2));
+        assert_eq!((text.matches("<g").count(), text.matches("<path data-shadow=\"1 3\" fill").count()), (1, 2));
     }
 
     #[test]
     fn a_coarse_precision_makes_coarse_units_and_faces_are_told() {
         let lines = vec![line(LineClass::Contour, 0, &[[0.0, 0.0], [1.26, 0.01], [1.26, 0.04]])];
-        let region =
-            Region { surface: 3, material: None, color: [0; 3], rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]] };
+        let region = Region {
+            surface: 3,
+            material: None,
+            color: [0; 3],
+            unlit: 0,
+            rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]],
+        };
         let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
         let options = DrawingOptions { decimals: 1, surface_ids: true, ..DrawingOptions::default() };
         let text = String::from_utf8(svg(&drawing, &options)).unwrap();

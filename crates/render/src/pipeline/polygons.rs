@@ -5,7 +5,9 @@
 
 use crate::stats::CullCounters;
 use crate::visible::PolygonList;
-use crate::{Error, Execution, Lines, PreparedView, Session, Settings, SettingsError, Transparency, Visibility, registry};
+use crate::{
+    Error, Execution, Lines, PreparedView, Session, Settings, SettingsError, Transparency, Visibility, registry,
+};
 use vitral_raster::{MAX_SIDE, SamplePattern, Viewport};
 use vitral_scene::Camera;
 

@@ -57,6 +57,8 @@ pub struct Drawn<'a> {
     /// What it is: `lit`; a `shadow` on the polygon that it falls on, or a `tinted-shadow` of something transparent; or a `side`,
     /// `near-cap` or `far-cap` of a volume.
     pub kind: &'static str,
+    /// The facet that a lit polygon is a part of.
+    pub facet: Option<u32>,
     /// World space.
     pub corners: &'a [DVec3],
 }

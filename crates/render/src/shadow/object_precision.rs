@@ -248,15 +248,17 @@ impl Shadows for Prepared<'_> {
     }
 
     fn draw(&self, take: &mut dyn FnMut(Drawn<'_>)) {
-        let center = self.polygons.casters.triangles().center;
+        let triangles = self.polygons.casters.triangles();
+        let center = triangles.center;
         let mut corners = Vec::new();
         for (light, places) in self.polygons.lights.iter().enumerate() {
-            for details in places.iter().flat_map(|place| &place.details) {
-                for found in &details.found {
+            for (piece, details) in places.iter().flat_map(|place| place.details.iter().enumerate()) {
+                for (i, found) in details.found.iter().enumerate() {
+                    let facet = Some(triangles.facets[piece * TRIANGLES_A_JOB + i]);
                     details.detail.each(found.root, &mut |polygon| {
                         corners.clear();
                         corners.extend(polygon.iter().map(|&c| c + center));
-                        take(Drawn { light, kind: "lit", corners: &corners });
+                        take(Drawn { light, kind: "lit", facet, corners: &corners });
                     });
                 }
             }

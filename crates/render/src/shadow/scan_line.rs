@@ -132,7 +132,7 @@ impl Shadows for Prepared<'_> {
                     casters: &self.casters,
                     light: emitter.at,
                 };
-                receivers.each(&mut |kind, corners| take(Drawn { light, kind, corners }));
+                receivers.each(&mut |kind, corners| take(Drawn { light, kind, facet: None, corners }));
             }
         }
     }

@@ -95,8 +95,8 @@ impl PolygonAlgorithm for Bsp {
                 if done % FRAGMENTS_A_RUN == 0 {
                     execution.budget.check("the BSP tree")?;
                 }
-                let facet = tree.name(fragment);
-                fragments.each_outline(fragment, |outline, _| list.push_convex(facet, outline));
+                let facets = tree.facets(fragment);
+                fragments.each_outline(fragment, |outline, _| list.push_convex(facets.to_vec(), outline));
             }
             list.wholes = tree.polygon_count();
             list.counters.tree_nodes = tree.node_count();
@@ -138,9 +138,10 @@ fn picture(
         // Find the order of the fragments from front to back, and where their facets are on the screen.
         let raster = Raster::new(view.viewport, &view.pattern);
         let footprints = footprints(&setups, &raster, execution);
-        let (order, places) = execution
-            .workers
-            .join(|| front_to_back(tree, eye(view)), || SetupIndex::new(&setups, facet_count, |i| footprints[i].is_some()));
+        let (order, places) = execution.workers.join(
+            || front_to_back(tree, eye(view)),
+            || SetupIndex::new(&setups, facet_count, |i| footprints[i].is_some()),
+        );
 
         // Bring the fragments to the screen, in runs.
         let lines = Lines::new(view, tree, execution);

@@ -30,8 +30,8 @@ pub mod zbuffer;
 
 pub(crate) use agreement::nearer;
 pub(crate) use front_end::{all_batches, give_back, touching};
-pub(crate) use passing::resolve_in_passing;
 pub use outlined::{OutlinedPolygon, PolygonAlgorithm, PolygonList};
+pub(crate) use passing::resolve_in_passing;
 pub use peel::{PassLayer, Peel};
 pub(crate) use sink::layer_list;
 pub use sink::{NullSink, TileSink};

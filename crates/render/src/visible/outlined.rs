@@ -24,8 +24,8 @@ pub trait PolygonAlgorithm: Sync {
 /// A polygon, or what an algorithm made of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutlinedPolygon {
-    /// The facet by which it is named: the first of its face, or of a part of that.
-    pub facet: u32,
+    /// The facets of the polygon that it is a part of, first the one by which that is named.
+    pub facets: Vec<u32>,
     /// Outlines, closed without repeating the first point: counter-clockwise round the polygon, clockwise round holes. The page reaches
     /// from `[0, 0]`, lower left, to `[1, 1]`.
     pub outlines: Vec<Vec<[f64; 2]>>,
@@ -50,7 +50,7 @@ impl PolygonList {
     }
 
     /// Adds a convex polygon, given clockwise on the screen, as far as it lies in the picture.
-    pub(super) fn push_convex(&mut self, facet: u32, corners: &[[f64; 2]]) {
+    pub(super) fn push_convex(&mut self, facets: Vec<u32>, corners: &[[f64; 2]]) {
         let size = self.size();
         let (mut inside, mut from) = (corners.to_vec(), Vec::new());
         for (axis, side) in [(0, 0.0), (1, 0.0), (0, size[0]), (1, size[1])] {
@@ -58,16 +58,16 @@ impl PolygonList {
             clip_along(axis, side, side > 0.0, &from, &mut inside);
         }
         if inside.len() > 2 {
-            self.push(facet, [inside]);
+            self.push(facets, [inside]);
         }
     }
 
     /// Adds a polygon by its outlines, clockwise on the screen, those of holes the other way round.
-    pub(super) fn push(&mut self, facet: u32, outlines: impl IntoIterator<Item = Vec<[f64; 2]>>) {
+    pub(super) fn push(&mut self, facets: Vec<u32>, outlines: impl IntoIterator<Item = Vec<[f64; 2]>>) {
         let [width, height] = self.size();
         let on_page = |[x, y]: [f64; 2]| [x / width, 1.0 - y / height];
         let outlines = outlines.into_iter().map(|corners| corners.into_iter().rev().map(on_page).collect());
-        self.polygons.push(OutlinedPolygon { facet, outlines: outlines.collect() });
+        self.polygons.push(OutlinedPolygon { facets, outlines: outlines.collect() });
     }
 
     /// Width and height of the picture, 1/256 pixel.
@@ -102,10 +102,10 @@ mod tests {
     fn polygons_lie_on_the_page_with_y_upwards_and_end_at_its_border() {
         let mut list = PolygonList::new(Viewport::new(4, 2).unwrap());
         let square = |x0: f64, y0: f64, x1: f64, y1: f64| [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
-        list.push_convex(7, &square(256.0, 0.0, 512.0, 256.0));
-        list.push_convex(8, &square(-600.0, 256.0, 256.0, 9000.0));
-        list.push_convex(9, &square(2000.0, 0.0, 2100.0, 9.0));
-        assert_eq!(list.polygons.iter().map(|p| p.facet).collect::<Vec<_>>(), [7, 8]);
+        list.push_convex(vec![7], &square(256.0, 0.0, 512.0, 256.0));
+        list.push_convex(vec![8], &square(-600.0, 256.0, 256.0, 9000.0));
+        list.push_convex(vec![9], &square(2000.0, 0.0, 2100.0, 9.0));
+        assert_eq!(list.polygons.iter().map(|p| p.facets[0]).collect::<Vec<_>>(), [7, 8]);
         assert_eq!(list.polygons[0].outlines, [[[0.25, 0.5], [0.5, 0.5], [0.5, 1.0], [0.25, 1.0]]]);
         let corners = &list.polygons[1].outlines[0];
         let mut sorted = corners.clone();

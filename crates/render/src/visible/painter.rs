@@ -94,7 +94,8 @@ impl PolygonAlgorithm for Painter {
             sorted(&wholes, raster, execution, &mut counters, |sorting| {
                 for &number in &sorting.painted {
                     let polygon = &sorting.polygons[number as usize];
-                    list.push_convex(sorting.facet(number), polygon.points(&sorting.corners));
+                    let facets = wholes.get(polygon.whole as usize).all_facets();
+                    list.push_convex(facets, polygon.points(&sorting.corners));
                 }
             })?;
             counters.pieces = list.polygons.len() as u64;

@@ -103,8 +103,8 @@ impl PolygonAlgorithm for WeilerAtherton {
         let sorting = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: true };
         let found = sorting.run(view.viewport)?;
         for (number, outlines) in found.outlines {
-            let facet = polygons.get(number as usize).facet();
-            list.push(facet, outlines.into_iter().map(|outline| outline.corners));
+            let facets = polygons.get(number as usize).all_facets();
+            list.push(facets, outlines.into_iter().map(|outline| outline.corners));
         }
         list.wholes = polygons.len() as u64;
         list.counters = VisibilityCounters { visible_polygons: list.polygons.len() as u64, ..found.counters };

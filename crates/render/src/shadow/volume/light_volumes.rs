@@ -74,7 +74,7 @@ impl LightVolumes {
         let beyond = |p: DVec3| p + away(self.from.at, p).normalize_or_zero() * reach;
         let mut hand = |kind: &'static str, corners: &[DVec3]| {
             let corners: Vec<DVec3> = corners.iter().map(|&c| c + triangles.center).collect();
-            take(Drawn { light, kind, corners: &corners });
+            take(Drawn { light, kind, facet: None, corners: &corners });
         };
         // Outwards: the near cap towards the light, the far cap away from it.
         let casting = || (0..self.turned.len()).filter(|&i| casters.opaque[i] && self.turned[i] != 0);

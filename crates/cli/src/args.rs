@@ -104,8 +104,12 @@ pub(crate) struct BenchArgs {
     pub(crate) models: Vec<PathBuf>,
     /// Measure growth over the number of polygons and of pixels on a scene of its own, and write visibility-report.md
     /// with its plots into this folder
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["models", "json", "resolution", "samples", "visibility", "CameraArgs", "EyeArgs"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["json", "resolution", "samples", "visibility", "CameraArgs", "EyeArgs"])]
     pub(crate) report: Option<PathBuf>,
+    /// With --report: compare the polygons of painter, bsp and weiler-atherton with exact drawings, of scenes of its own and of the
+    /// models, and write drawing-report.md with its pictures
+    #[arg(long, requires = "report")]
+    pub(crate) drawings: bool,
     /// Only these algorithms, and the z-buffer; repeatable [default: all]
     #[arg(long, value_name = "NAME", value_parser = crate::choices::visibility())]
     pub(crate) visibility: Vec<Visibility>,

@@ -1,6 +1,7 @@
 //! `vitral bench`: every visible-surface algorithm on one model, as a table.
 
 use crate::args::BenchArgs;
+use crate::bench_drawings;
 use crate::bench_report;
 use crate::bench_rows::{Row, differing, rows};
 use crate::command_line;
@@ -17,6 +18,11 @@ use vitral::{Execution, Renderer, State};
 pub(crate) fn run(args: &BenchArgs) -> Result<u8, Failure> {
     let execution = values::execution_from(args.threads)?;
     interrupt::heed(&execution.budget.clone(), || match &args.report {
+        Some(folder) if args.drawings => bench_drawings::write(args, folder, &execution),
+        Some(_) if !args.models.is_empty() => {
+            Err(Failure::usage("--report: it has a scene of its own")
+                .with_hint("leave the models out, or add --drawings"))
+        }
         Some(folder) => bench_report::write(args, folder, &execution),
         None => bench(args, execution),
     })

@@ -1,6 +1,7 @@
 //! Options with a fixed set of values. Names and descriptions come from the registry and the enums that the renderer
 //! itself uses, so that help, completions and man page say what there is.
 
+use crate::draw_args::DrawingAlgorithm;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::internals::render::choice::Row;
 use vitral::{
@@ -41,6 +42,15 @@ pub(crate) fn exercise() -> impl TypedValueParser<Value = &'static str> {
 
 pub(crate) fn visibility() -> impl TypedValueParser<Value = Visibility> {
     rows()
+}
+
+/// What decides about visibility in drawings: `exact`, and the algorithms that come to polygons.
+pub(crate) fn drawing_algorithm() -> impl TypedValueParser<Value = DrawingAlgorithm> {
+    let exact =
+        (DrawingAlgorithm::Exact, "exact", "visible and hidden lines, and regions, exact on a grid of their own");
+    let listed = Visibility::all().filter(|choice| choice.polygons.is_some());
+    let rows = listed.map(|choice| (DrawingAlgorithm::Polygons(choice), choice.name(), choice.description()));
+    of([exact].into_iter().chain(rows))
 }
 
 pub(crate) fn shadows() -> impl TypedValueParser<Value = Shadows> {

@@ -6,7 +6,7 @@ use crate::render_args::{CameraArgs, EyeArgs, LightArgs, ProcessArgs, ProgressWh
 use crate::values;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use vitral::{ColorBy, Illumination, LineClass, LineClasses, Pens, Seams, TitleBlock};
+use vitral::{ColorBy, Illumination, LineClass, LineClasses, Pens, PolygonOrder, Seams, TitleBlock, Visibility};
 
 /// Options of `vitral draw`.
 #[derive(Args, Debug, Default)]
@@ -42,7 +42,11 @@ pub(crate) struct DrawArgs {
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Lines")]
 pub(crate) struct LineArgs {
-    /// What the drawing is made of [default: hidden-line]
+    /// Who decides what is visible. The algorithms of the course give their own polygons in their own order, with all their cuts: of a
+    /// list from back to front the later ones cover the earlier ones [default: exact]
+    #[arg(long, value_name = "NAME", value_parser = crate::choices::drawing_algorithm())]
+    pub(crate) algorithm: Option<DrawingAlgorithm>,
+    /// What the drawing is made of [default: hidden-line; filled-lines with another --algorithm than exact]
     #[arg(long, value_name = "STYLE", value_enum)]
     pub(crate) style: Option<Style>,
     #[arg(long, value_name = "LIST", value_parser = line_classes, help = lines_help())]
@@ -73,7 +77,8 @@ pub(crate) struct FillArgs {
     /// How light is reflected, as in `render` [default: auto]
     #[arg(long, value_name = "MODEL", value_parser = choices::illumination())]
     pub(crate) illumination: Option<Illumination>,
-    /// Cut faces where shadows fall, and shade both parts: shadows of all lights that cast some, of area lights as of a point
+    /// Cut faces where shadows fall, and shade both parts: shadows of all lights that cast some, of area lights as of a point. SVG files
+    /// tell the lights that do not reach a region as data-shadow
     #[arg(long)]
     pub(crate) shadows: bool,
     /// Draw what is seen through transparent materials, in layers from behind; else all surfaces are opaque
@@ -85,6 +90,39 @@ pub(crate) struct FillArgs {
     /// How regions meet [default: under]
     #[arg(long, value_name = "HOW", value_parser = choices::seams())]
     pub(crate) seams: Option<Seams>,
+}
+
+/// Who decides what is visible.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum DrawingAlgorithm {
+    /// The drawing's own, exact on a grid.
+    #[default]
+    Exact,
+    /// An algorithm that comes to polygons.
+    Polygons(Visibility),
+}
+
+impl DrawArgs {
+    /// What the drawing is made of.
+    pub(crate) fn style(&self) -> Style {
+        self.lines.style.unwrap_or(match self.polygons() {
+            Some(_) => Style::FilledLines,
+            None => Style::default(),
+        })
+    }
+
+    /// The algorithm whose polygons are drawn.
+    pub(crate) fn polygons(&self) -> Option<Visibility> {
+        match self.lines.algorithm {
+            Some(DrawingAlgorithm::Polygons(algorithm)) => Some(algorithm),
+            Some(DrawingAlgorithm::Exact) | None => None,
+        }
+    }
+
+    /// Whether the drawing is a list of polygons of which later ones cover earlier ones.
+    pub(crate) fn overlaps(&self) -> bool {
+        self.polygons().is_some_and(|algorithm| algorithm.polygons == Some(PolygonOrder::BackToFront))
+    }
 }
 
 /// What a drawing is made of.

@@ -2,17 +2,21 @@
 
 use crate::draw_args::{DrawArgs, Hidden, PageArgs, Sheet, Style};
 use crate::draw_file::{DrawFile, check_fits, scaled_page};
+use crate::draw_polygons;
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::{self, Failure};
 use crate::resolve::{execution_within, overlay_files, save_state, set_lights, set_viewpoint};
 use serde_json::json;
 use std::time::Instant;
-use vitral::{DrawingSettings, Drawn, FillSettings, LineClasses, PageSize, Renderer, State, World};
+use vitral::{
+    Drawing, DrawingSettings, Drawn, FillSettings, LineClasses, PageSize, PolygonDrawing, Renderer, State, World,
+};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     let start = Instant::now();
+    draw_polygons::check_options(args)?;
     let state = state_of(args)?;
     let mut settings = settings_of(args)?;
     let file = DrawFile::new(args, &state)?;
@@ -54,25 +58,29 @@ fn draw(
 
     // Draw.
     settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
-    let drawn = match style_of(args) {
-        Style::HiddenLine => renderer.draw(&settings)?,
-        Style::Filled | Style::FilledLines => {
+    let made = match args.polygons() {
+        Some(algorithm) => Made::Polygons(draw_polygons::draw(args, algorithm, &renderer, &settings)?),
+        None if args.style() == Style::HiddenLine => Made::Exact(renderer.draw(&settings)?),
+        None => {
             let fill = fill_of(args);
             if fill.transparency && renderer.opacities().iter().all(|&opacity| opacity == 1.0) && !args.report.quiet {
                 report::warnings(&["--transparency: the models have no transparent surfaces".to_owned()]);
             }
-            renderer.draw_filled(&settings, &fill)?
+            Made::Exact(renderer.draw_filled(&settings, &fill)?)
         }
     };
-    check_fits(args, &settings, &drawn.drawing)?;
+    check_fits(args, &settings, made.drawing())?;
     let draw_seconds = start.elapsed().as_secs_f64() - load_seconds;
 
     // Write.
-    if let Some(warning) = file.warning(&drawn.drawing).filter(|_| !args.report.quiet) {
+    if let Some(warning) = file.warning(made.drawing()).filter(|_| !args.report.quiet) {
         report::warnings(&[warning]);
     }
-    let counted = args.report.stats.then(|| stats_of(&drawn));
-    let bytes = file.encode(drawn.drawing, settings.margin);
+    let counted = args.report.stats.then(|| match &made {
+        Made::Exact(drawn) => stats_of(drawn),
+        Made::Polygons(drawn) => draw_polygons::stats_of(drawn),
+    });
+    let bytes = file.encode(made.into_drawing(), settings.margin);
     report::write(&file.path, &bytes)?;
     if let Some(mut stats) = counted {
         use std::io::Write;
@@ -84,6 +92,28 @@ fn draw(
         let _ = std::io::stderr().lock().write_all(&report::json(&stats));
     }
     Ok(())
+}
+
+/// A drawing, by whom it was made.
+enum Made {
+    Exact(Drawn),
+    Polygons(PolygonDrawing),
+}
+
+impl Made {
+    fn drawing(&self) -> &Drawing {
+        match self {
+            Self::Exact(drawn) => &drawn.drawing,
+            Self::Polygons(drawn) => &drawn.drawing,
+        }
+    }
+
+    fn into_drawing(self) -> Drawing {
+        match self {
+            Self::Exact(drawn) => drawn.drawing,
+            Self::Polygons(drawn) => drawn.drawing,
+        }
+    }
 }
 
 /// The state: defaults, then files, then options.
@@ -119,7 +149,7 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
     // Refuse choices about lines where there are none.
     let usual = DrawingSettings::default();
     let lines = &args.lines;
-    let has_lines = style_of(args) != Style::Filled;
+    let has_lines = args.style() != Style::Filled;
     let line_options = [(lines.lines.is_some(), "--lines"), (lines.hidden.is_some(), "--hidden")];
     if let Some((_, option)) = line_options.iter().find(|(given, _)| *given && !has_lines) {
         return Err(
@@ -150,7 +180,7 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
 }
 
 /// How its surfaces are filled.
-fn fill_of(args: &DrawArgs) -> FillSettings {
+pub(crate) fn fill_of(args: &DrawArgs) -> FillSettings {
     let (fill, usual) = (&args.fill, FillSettings::default());
     FillSettings {
         color_by: fill.color_by.unwrap_or(usual.color_by),
@@ -161,11 +191,6 @@ fn fill_of(args: &DrawArgs) -> FillSettings {
         seams: fill.seams.unwrap_or(usual.seams),
         by_face: args.page.svg_ids,
     }
-}
-
-/// What the drawing is made of.
-fn style_of(args: &DrawArgs) -> Style {
-    args.lines.style.unwrap_or_default()
 }
 
 fn page_of(args: &PageArgs) -> Result<PageSize, Failure> {

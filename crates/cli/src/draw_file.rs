@@ -5,8 +5,8 @@ use crate::outputs::{expand, model_name};
 use crate::report::{self, Failure};
 use std::path::PathBuf;
 use vitral::{
-    ColorBy, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, PageSize, State, TitleBlock, for_plotter,
-    simplify,
+    ColorBy, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, LineClass, PageSize, State, TitleBlock,
+    for_plotter, simplify,
 };
 
 /// Exit code of formats that drawings are not written in.
@@ -50,6 +50,7 @@ impl DrawFile {
         // Take the rest over.
         options.decimals = args.page.precision.unwrap_or(options.decimals);
         options.surface_ids = args.page.svg_ids;
+        options.region_outlines = Some(LineClass::Smooth).filter(|_| args.overlaps() && args.style() != Style::Filled);
         let tolerance = args.page.simplify.unwrap_or(0.0);
         let rows = &args.page.title_block;
         let title = if rows.is_empty() { None } else { Some(TitleBlock::new(rows)) };
@@ -121,8 +122,8 @@ fn place(args: &DrawArgs, state: &State) -> Result<(PathBuf, DrawingFormat), Fai
 /// Whether every option has an effect in this format.
 fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> {
     let (lines, page) = (&args.lines, &args.page);
-    let style = lines.style.unwrap_or_default();
-    let fills = style != Style::HiddenLine;
+    let style = args.style();
+    let fills = style != Style::HiddenLine || args.overlaps();
     let hidden = lines.hidden.is_some_and(|hidden| hidden != Hidden::None);
     let lines_alone = page.plotter || !format.has_fills();
     let stroke = !lines.stroke.is_empty();
@@ -131,6 +132,11 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
     let strokes = |name: &str| lines.stroke.iter().any(|(class, _)| class == name);
     let write_lines = "give --style filled-lines";
     let mistakes = [
+        (
+            args.overlaps() && lines_alone,
+            "--algorithm: in a list, later polygons cover earlier ones, and plotters, DXF and HP-GL have lines alone",
+            "choose weiler-atherton or exact; or .svg or .pdf",
+        ),
         (
             style == Style::Filled && lines_alone,
             "--style filled: plotters, DXF and HP-GL have lines alone",

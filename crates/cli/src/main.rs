@@ -2,6 +2,7 @@
 
 mod args;
 mod bench_command;
+mod bench_drawings;
 mod bench_plot;
 mod bench_report;
 mod bench_rows;
@@ -12,6 +13,7 @@ mod depth_cue;
 mod draw_args;
 mod draw_command;
 mod draw_file;
+mod draw_polygons;
 mod exit;
 mod fields;
 mod help;

@@ -3,7 +3,7 @@
 //! | step | file |
 //! |---|---|
 //! | what can be seen of each triangle, in layers where it is clear | `fill/visible.rs` |
-//! | lit and shadowed parts | `fill/lit.rs` |
+//! | lit and shadowed parts | `lit.rs` |
 //! | colours; parts that look alike and touch become one region | `fill/groups.rs` |
 //! | regions reach under those that are painted later | `fill/seams.rs` |
 //! | clear layers mixed with what is behind them | `fill/flatten.rs` |
@@ -13,19 +13,15 @@
 
 mod flatten;
 mod groups;
-mod lit;
 mod seams;
-mod shapes;
 mod visible;
 
-pub use lit::LitPolygons;
-pub(crate) use lit::Projector;
-
 use crate::grid::Grid;
+use crate::lit::{self, LitPolygons, Projector};
 use crate::page_mesh::{NONE, PageMesh, Source};
 use crate::run::Run;
+use crate::shapes::{Shapes, on_page};
 use groups::{Groups, Look};
-use shapes::{Shapes, on_page};
 use std::ops::Range;
 use visible::{Clipping, Seen, Stage};
 use vitral_exec::{Limit, Spare};
@@ -109,6 +105,8 @@ pub(crate) struct PageRegion {
     pub(crate) material: u32,
     pub(crate) color: [u8; 3],
     pub(crate) opacity: f32,
+    /// The lights that do not reach it, a bit each.
+    pub(crate) unlit: u32,
     /// Counter-clockwise round the region, clockwise round holes; in units.
     pub(crate) rings: Vec<Vec<[f64; 2]>>,
 }
@@ -205,7 +203,9 @@ fn parts_of(
             let divided = match surfaces.lit.is_empty() {
                 true => vec![(u32::MAX, shapes)],
                 false => {
-                    lit::divide(shapes, source.facet, (facets.corners)(source.facet), surfaces.lit, &facets.to_page)
+                    let normal = normal_seen(triangle.facing, source);
+                    let facet = (source.facet, (facets.corners)(source.facet));
+                    lit::divide(shapes, &[facet], normal, surfaces.lit, &facets.to_page)
                 }
             };
             for (lights, shapes) in divided {
@@ -216,7 +216,8 @@ fn parts_of(
                 let over = if triangle.clear { u32::MAX - layer as u32 } else { 0 };
                 let face = if surfaces.by_face { source.surface } else { 0 };
                 let opacity = surfaces.opacity(source.material);
-                let look = Look { over, material: source.material, color, opacity, face };
+                let unlit = lit::unlit(lights, surfaces.lit);
+                let look = Look { over, material: source.material, color, opacity, unlit, face };
                 let part = parts.all.len() as u32;
                 parts.contacts.extend(contacts.iter().map(|&triangle| [part, triangle]));
                 parts.all.push(Part { triangle: t as u32, surface: source.surface, look, shapes });
@@ -228,9 +229,14 @@ fn parts_of(
 
 /// What a face shows to its palette.
 fn look(facing: i8, source: &Source, lights: u32) -> FaceLook {
-    let normal = if facing < 0 { source.normal.map(|c| -c) } else { source.normal };
     let material = Some(source.material).filter(|&m| m != NONE);
+    let normal = normal_seen(facing, source);
     FaceLook { facet: source.facet, surface: source.surface, material, normal, lights }
+}
+
+/// The normal on the side that is seen.
+fn normal_seen(facing: i8, source: &Source) -> [f32; 3] {
+    if facing < 0 { source.normal.map(|c| -c) } else { source.normal }
 }
 
 #[cfg(test)]

@@ -92,9 +92,9 @@ impl Placement {
             (points.len() > 2).then(|| points.into_iter().map(millimetres).collect::<Vec<_>>())
         };
         let rings: Vec<_> = region.rings.iter().filter_map(ring).collect();
-        let PageRegion { surface, material, color, opacity, .. } = *region;
+        let PageRegion { surface, material, color, opacity, unlit, .. } = *region;
         let material = Some(material).filter(|&material| material != NONE);
-        (!rings.is_empty()).then_some(Region { surface, material, color, opacity, rings })
+        (!rings.is_empty()).then_some(Region { surface, material, color, opacity, unlit, rings })
     }
 }
 

@@ -13,6 +13,9 @@
 //! | the visible surface as regions that do not overlap | `fill.rs` |
 //! | long polylines on the page | `chains.rs`, `layout.rs` |
 //!
+//! Polygons that another algorithm comes to are laid out on the same page (`listed.rs`), divided in lit and shadowed parts if that is
+//! wanted (`lit.rs`).
+//!
 //! Nothing depends on the number of threads.
 //!
 //! ```
@@ -38,18 +41,23 @@ mod fill;
 mod grid;
 mod hiding;
 mod layout;
+mod listed;
+mod lit;
 mod page_mesh;
 mod place;
 mod projection;
 mod run;
+mod shapes;
 mod strokes;
 #[cfg(test)]
 mod testing;
 mod visibility;
 
 pub use classes::Classes;
-pub use fill::{FaceLook, LitPolygons, Palette, Seams, Surfaces};
+pub use fill::{FaceLook, Palette, Seams, Surfaces};
 pub use layout::PageSize;
+pub use listed::{ListedPolygon, ListedPolygons, covered_area, draw_polygons};
+pub use lit::LitPolygons;
 pub use visibility::VisibilityStats;
 
 use grid::Grid;
@@ -159,7 +167,7 @@ pub fn draw(
         let instance = &world.instances[world.instance_of_facet(facet)];
         instance.corners(facet - instance.first_facet)
     };
-    let to_page = fill::Projector { clip_from_world: view.clip_from_world(), size: mesh.size.map(f64::from) };
+    let to_page = lit::Projector { clip_from_world: view.clip_from_world(), size: mesh.size.map(f64::from) };
     let facets = fill::Facets { corners: &corners, to_page };
     let regions = match surfaces {
         Some(surfaces) => fill::regions(&mesh, &grid, surfaces, &facets, &run)?,

@@ -99,11 +99,16 @@ impl SolidTriangles {
     }
 }
 
-/// Projects a world; `aspect` is the page's width by its height.
-pub(crate) fn project(world: &World, view: &ViewTransform, aspect: f64, run: &Run<'_>) -> Result<Projected, Limit> {
+/// Width and height of a page of `aspect` (width by height) in units.
+pub(crate) fn page_size(aspect: f64) -> [i32; 2] {
     let longer = f64::from(PAGE_UNITS);
     let size = if aspect >= 1.0 { [longer, longer / aspect] } else { [longer * aspect, longer] };
-    let size = size.map(|side| (side.round() as i32).clamp(1, PAGE_UNITS));
+    size.map(|side| (side.round() as i32).clamp(1, PAGE_UNITS))
+}
+
+/// Projects a world; `aspect` is the page's width by its height.
+pub(crate) fn project(world: &World, view: &ViewTransform, aspect: f64, run: &Run<'_>) -> Result<Projected, Limit> {
+    let size = page_size(aspect);
     let vertex_count: usize = world.instances.iter().map(|i| i.mesh.positions.len()).sum();
     run.memory.add(vertex_count as u64 * BYTES_A_VERTEX + u64::from(world.facet_count) * BYTES_A_TRIANGLE)?;
 
@@ -197,6 +202,20 @@ fn sources(world: &World, run: &Run<'_>) -> Vec<Source> {
     all
 }
 
+/// What a facet of the world is part of.
+pub(crate) fn source_of_facet(world: &World, facet: u32) -> Source {
+    let instance = &world.instances[world.instance_of_facet(facet)];
+    let (t, mesh) = ((facet - instance.first_facet) as usize, &instance.mesh);
+    let face = mesh.face_of_triangle(t);
+    Source {
+        facet,
+        surface: instance.first_surface + face as u32,
+        material: mesh.material_of_triangle(t).unwrap_or(NONE),
+        normal: face_normal(instance, face),
+    }
+}
+
+/// What triangles of an instance are part of: neighbours are often of one face.
 fn sources_of(instance: &Instance, triangles: Range<usize>) -> Vec<Source> {
     let mesh = &instance.mesh;
     let mut sources: Vec<Source> = Vec::with_capacity(triangles.len());

@@ -21,7 +21,7 @@ use vitral_scene::buckets::{Dealt, Source};
 /// Distance in units within which strokes coincide: two roundings by half a unit each way.
 const REACH: f64 = 1.5;
 /// Length in units below which strokes are dust and do not count.
-const DUST: f64 = 3.0;
+pub(crate) const DUST: f64 = 3.0;
 /// Strokes in one piece of work.
 const BATCH: usize = 2048;
 /// Bytes of a stroke, with its place in the grid.
@@ -38,7 +38,7 @@ pub(crate) struct Stroke {
 }
 
 impl Stroke {
-    fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         let [[x, y], [u, v]] = self.ends;
         ((u - x) * (u - x) + (v - y) * (v - y)).sqrt()
     }
@@ -71,7 +71,7 @@ pub(crate) fn strokes(
 }
 
 /// Takes away the parts of strokes that lie on more important ones.
-fn without_coincident(all: Vec<Stroke>, size: [i32; 2], run: &Run<'_>) -> Result<Vec<Stroke>, Limit> {
+pub(crate) fn without_coincident(all: Vec<Stroke>, size: [i32; 2], run: &Run<'_>) -> Result<Vec<Stroke>, Limit> {
     let cells = Cells::new(&all, size);
     let pieces = run.workers.map(all.len().div_ceil(BATCH), |batch| {
         run.budget.check("coincident lines")?;

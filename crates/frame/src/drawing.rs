@@ -14,7 +14,9 @@ pub struct Drawing {
     pub height: f64,
     /// Lines, in the order of [`LineClass::ALL`], visible ones first.
     pub lines: Vec<Line>,
-    /// Filled regions, in the order in which they are painted.
+    /// Filled regions in the order in which they are painted. Those of visible surfaces overlap only where they reach under each other
+    /// and where they are clear; in a list from back to front, as painter's algorithm and BSP trees make it, later regions cover
+    /// earlier ones.
     pub regions: Vec<Region>,
 }
 
@@ -40,6 +42,8 @@ pub struct Region {
     pub color: [u8; 3],
     /// 1: it hides what was painted before; 0: it is invisible.
     pub opacity: f32,
+    /// The lights that do not reach it, a bit each, where shadows are drawn; else 0.
+    pub unlit: u32,
     /// Outlines, closed without repeating the first point: counter-clockwise round the region, clockwise round holes.
     pub rings: Vec<Vec<[f64; 2]>>,
 }
@@ -95,7 +99,7 @@ impl Drawing {
         around.map_or([0.0; 2], |[low, high]| [high[0] - low[0], high[1] - low[1]])
     }
 
-    /// The area of all regions, in square millimetres: where they overlap, it counts for each.
+    /// The sum of the areas of all regions, in square millimetres: where they overlap, it counts more than once.
     pub fn area(&self) -> f64 {
         self.regions.iter().map(Region::area).sum()
     }
@@ -153,6 +157,7 @@ mod tests {
             material: None,
             color: [0; 3],
             opacity: 1.0,
+            unlit: 0,
             rings: vec![square(0.0, 3.0).to_vec(), hole],
         };
         let line = |layers, points: &[[f64; 2]]| Line { class: LineClass::Crease, layers, points: points.to_vec() };

@@ -37,6 +37,17 @@ pub struct VisibilityInfo {
     pub coherence: &'static [Coherence],
     /// What its picture of steps shows.
     pub steps: Legend,
+    /// How the polygons that it comes to before it looks at samples make a drawing; `None`: it comes to none.
+    pub polygons: Option<PolygonOrder>,
+}
+
+/// How a list of polygons makes a drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PolygonOrder {
+    /// From back to front: what comes later covers what came before.
+    BackToFront,
+    /// In any order: they are what is visible, and do not overlap.
+    Disjoint,
 }
 
 impl VisibilityInfo {

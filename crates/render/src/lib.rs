@@ -33,7 +33,9 @@ pub use catalogue::{Acceleration, Shadows, Visibility};
 pub use choice::{Choice, UnknownName};
 pub use coherence::{Coherence, CoherenceSet};
 pub use execution::Execution;
-pub use pipeline::{ExaminedPixel, Rendered, Shot, examine_pixel, illuminate_corners, render, watch_steps};
+pub use pipeline::{
+    ExaminedPixel, Rendered, Shot, examine_pixel, illuminate_corners, outlined_polygons, render, watch_steps,
+};
 pub use prepare::PreparedView;
 pub use session::Session;
 pub use settings::{

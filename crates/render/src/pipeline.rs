@@ -3,6 +3,7 @@
 mod assemble;
 mod checks;
 mod pixel;
+mod polygons;
 mod steps;
 mod stop_watch;
 
@@ -20,6 +21,7 @@ use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings
 use assemble::Assembler;
 use checks::{check_indices, check_order, check_size, warnings};
 pub use pixel::{ExaminedPixel, examine_pixel};
+pub use polygons::outlined_polygons;
 use std::sync::Arc;
 pub use steps::watch_steps;
 use stop_watch::StopWatch;

@@ -3,7 +3,7 @@
 //! It stands on top of all algorithms, and nothing below looks into it: an algorithm that is asked for by name is a
 //! [`Choice`](crate::choice::Choice), and the pipeline hands its code in. A new algorithm is a row here.
 
-use crate::catalogue::{LIST_PRIORITY, Panels, ShadowInfo, Shadows, Visibility, VisibilityInfo};
+use crate::catalogue::{LIST_PRIORITY, Panels, PolygonOrder, ShadowInfo, Shadows, Visibility, VisibilityInfo};
 use crate::choice::table;
 use crate::shadow::{
     ShadowAlgorithm, map::MapShadows, object_precision::ObjectPrecisionShadows, ray::RayShadows,
@@ -11,8 +11,8 @@ use crate::shadow::{
 };
 use crate::trace::legend::Legend;
 use crate::visible::{
-    VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast, scanline::ScanLine,
-    warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
+    PolygonAlgorithm, VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast,
+    scanline::ScanLine, warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
 };
 use crate::{Coherence, Global};
 
@@ -24,6 +24,8 @@ pub struct VisibilityAlgorithm {
     pub info: VisibilityInfo,
     /// The code.
     pub algorithm: &'static dyn VisibleSurface,
+    /// The code that gives its polygons, if it comes to some.
+    pub polygons: Option<&'static dyn PolygonAlgorithm>,
 }
 
 table! {
@@ -42,8 +44,10 @@ table! {
             has_edge_table: false,
             coherence: &[Coherence::Object, Coherence::Frame],
             steps: Legend::Cost("opaque facets that cover the pixel"),
+            polygons: None,
         },
         algorithm: &ZBuffer,
+        polygons: None,
     };
     /// Watkins' scan-line algorithm.
     SCAN_LINE = VisibilityAlgorithm {
@@ -66,8 +70,10 @@ table! {
                 Coherence::Frame,
             ],
             steps: Legend::Cost("polygons that are in, over the spans of the pixel"),
+            polygons: None,
         },
         algorithm: &ScanLine,
+        polygons: None,
     };
     /// Warnock's area subdivision.
     WARNOCK = VisibilityAlgorithm {
@@ -81,8 +87,10 @@ table! {
             has_edge_table: false,
             coherence: &[Coherence::Object, Coherence::Area, Coherence::Depth, Coherence::Frame],
             steps: Legend::Windows,
+            polygons: None,
         },
         algorithm: &Warnock,
+        polygons: None,
     };
     /// Appel's ray casting.
     RAY_CAST = VisibilityAlgorithm {
@@ -96,8 +104,10 @@ table! {
             has_edge_table: false,
             coherence: &[Coherence::Object, Coherence::Area, Coherence::Frame],
             steps: Legend::Cost("boxes or cells and facets that the rays of its block of pixels were tested against"),
+            polygons: None,
         },
         algorithm: &RayCast,
+        polygons: None,
     };
     /// Every facet against every sample.
     BRUTE_FORCE = VisibilityAlgorithm {
@@ -111,8 +121,10 @@ table! {
             has_edge_table: false,
             coherence: &[Coherence::Object, Coherence::Frame],
             steps: Legend::Cost("facets that the rays of its block of pixels were tested against"),
+            polygons: None,
         },
         algorithm: &BruteForce,
+        polygons: None,
     };
     /// The depth-sort of Newell, Newell and Sancha.
     PAINTER = VisibilityAlgorithm {
@@ -126,8 +138,10 @@ table! {
             has_edge_table: false,
             coherence: &[Coherence::Object, Coherence::Frame],
             steps: Legend::List,
+            polygons: Some(PolygonOrder::BackToFront),
         },
         algorithm: &Painter,
+        polygons: Some(&Painter),
     };
     /// The BSP tree of Fuchs, Kedem and Naylor.
     BSP = VisibilityAlgorithm {
@@ -141,8 +155,10 @@ table! {
             has_edge_table: false,
             coherence: &[Coherence::Object, Coherence::Frame],
             steps: Legend::List,
+            polygons: Some(PolygonOrder::BackToFront),
         },
         algorithm: &Bsp,
+        polygons: Some(&Bsp),
     };
     /// Weiler and Atherton's object-precision algorithm.
     WEILER_ATHERTON = VisibilityAlgorithm {
@@ -156,8 +172,10 @@ table! {
             has_edge_table: false,
             coherence: &[Coherence::Object, Coherence::Frame],
             steps: Legend::Outlines,
+            polygons: Some(PolygonOrder::Disjoint),
         },
         algorithm: &WeilerAtherton,
+        polygons: Some(&WeilerAtherton),
     };
 }
 
@@ -275,6 +293,15 @@ pub static GLOBALS: &[GlobalIllumination] = &[
 pub fn visibility(choice: Visibility) -> &'static dyn VisibleSurface {
     let row = VISIBILITY.iter().find(|row| row.name == choice.name);
     row.expect("a choice is made of a row").algorithm
+}
+
+/// The code that gives the polygons of a visible-surface algorithm; `None`: it comes to none.
+///
+/// # Panics
+/// Never: a choice is made of a row.
+pub fn polygons(choice: Visibility) -> Option<&'static dyn PolygonAlgorithm> {
+    let row = VISIBILITY.iter().find(|row| row.name == choice.name);
+    row.expect("a choice is made of a row").polygons
 }
 
 /// The code of a shadow algorithm; `None` for no shadows.

@@ -3,13 +3,13 @@
 mod colors;
 
 use crate::{Camera, Error, Projection, Renderer};
-use colors::Colors;
+pub(crate) use colors::Colors;
 use std::collections::BTreeMap;
 use vitral_draw::{DrawingSettings, Drawn, FaceLook, LitPolygons, Seams, Surfaces, draw};
 use vitral_frame::Drawing;
 use vitral_io::encode::{self, DrawingOptions};
 use vitral_light::{AlphaMode, AreaShape, Light, LightKind};
-use vitral_math::DVec3;
+use vitral_math::{DVec3, DVec4};
 use vitral_render::{Settings, Shadows, Transparency, registry, shadow};
 
 /// Most lights that cast shadows in a drawing.
@@ -136,20 +136,21 @@ impl Renderer {
     }
 
     /// What the lights that cast shadows reach, after Atherton, Weiler and Greenberg.
-    fn lit_polygons(&self, camera: &Camera) -> Result<Vec<LitPolygons>, Error> {
+    pub(crate) fn lit_polygons(&self, camera: &Camera) -> Result<Vec<LitPolygons>, Error> {
         // Take each light as one point, and none that casts no shadow.
         let lights: Vec<Light> = self.frame_lights(camera).iter().map(as_point).collect();
         let casts = |light: &Light| light.shadow && light.kind != LightKind::Ambient;
         let casting = lights.iter().enumerate().filter(|(_, light)| casts(light));
         let mut lit: Vec<LitPolygons> = Vec::new();
-        for (number, _) in casting {
+        for (number, light) in casting {
+            let place = place_of(light);
             let light = u8::try_from(number).ok().filter(|&n| usize::from(n) < MOST_LIGHTS).ok_or_else(|| {
                 Error::usage(
                     format!("shadows of {} lights in a drawing", lights.len()),
                     format!("at most {MOST_LIGHTS} can be drawn"),
                 )
             })?;
-            lit.push(LitPolygons { light, of_facet: BTreeMap::new() });
+            lit.push(LitPolygons { light, place, of_facet: BTreeMap::new() });
         }
         if lit.is_empty() {
             return Err(Error::usage("no light casts shadows", "choose a scene with a light that does"));
@@ -219,6 +220,15 @@ impl DrawingFormat {
             Self::Dxf => encode::dxf(drawing, options),
             Self::Hpgl => encode::hpgl(drawing, options),
         }
+    }
+}
+
+/// Where a light without a shape is: a point, or with `w` 0 the direction to it.
+fn place_of(light: &Light) -> DVec4 {
+    match &light.kind {
+        LightKind::Directional { direction } => (-*direction).extend(0.0),
+        LightKind::Point { position } | LightKind::Spot { position, .. } => position.extend(1.0),
+        LightKind::Area { .. } | LightKind::Ambient => DVec4::ZERO,
     }
 }
 

@@ -32,6 +32,7 @@
 //! | also here | for |
 //! |---|---|
 //! | [`Renderer::draw`] | vector drawings: visible and hidden lines, filled regions |
+//! | [`Renderer::draw_polygons`] | the polygons of painter's algorithm, BSP trees, Weiler–Atherton |
 //! | [`info`](mod@info) | what is in a scene |
 //! | [`State`] | all that makes a picture, as JSON |
 //! | [`explain`](mod@explain) | how each algorithm decides about a pixel |
@@ -63,6 +64,7 @@ mod material_override;
 pub mod names;
 mod panels;
 pub mod picture;
+mod polygon_drawing;
 mod renderer;
 mod shadow_polygons;
 pub mod state;
@@ -80,6 +82,7 @@ pub use load::{
 pub use material_override::{MaterialOverride, material_properties, override_material};
 pub use panels::panels;
 pub use picture::{Channel, EncodeOptions, Picture, PictureFormat};
+pub use polygon_drawing::{PolygonDrawing, PolygonFill, PolygonSettings};
 pub use renderer::{Moves, Renderer, execution, open};
 pub use shadow_polygons::shadow_polygons;
 pub use state::{Objects, State};
@@ -88,6 +91,7 @@ pub use viewpoint::Viewpoint;
 
 pub use vitral_draw::{
     Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, PageSize, Seams, VisibilityStats,
+    covered_area,
 };
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
 pub use vitral_frame::drawing::{Line, LineClass, Region};
@@ -99,6 +103,8 @@ pub use vitral_light::{
     Transmission,
 };
 pub use vitral_math::{Aabb, DMat4, DQuat, DVec3};
+pub use vitral_render::catalogue::PolygonOrder;
+pub use vitral_render::stats::VisibilityCounters;
 pub use vitral_render::{
     Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue, Error as RenderError,
     Execution, Global, GlobalSettings, Interpolation, Lines, PictureSettings, Settings, SettingsError, Shading,

@@ -11,9 +11,9 @@
 //! Source: the mixing is that of [Porter & Duff 1984], `over`.
 
 use super::groups::{Groups, Joined, LEAST_SHAPE, Look};
-use super::shapes::{Shapes, union, within, without};
 use super::{PageRegion, Part, Seams};
 use crate::run::Run;
+use crate::shapes::{Shapes, union, within, without};
 use std::collections::BTreeMap;
 use vitral_exec::Limit;
 

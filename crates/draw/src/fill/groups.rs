@@ -3,9 +3,9 @@
 //! In:   visible parts. Out: one union for each look, in the order of painting: what is opaque, then clear layers from the deepest on.
 //! Cost: `n log n` for the corners of each union.
 
-use super::shapes::{FINER, Shapes, union};
 use super::{PageRegion, Part, on_page};
 use crate::run::Run;
+use crate::shapes::{FINER, Shapes, union};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use vitral_exec::Limit;
@@ -23,13 +23,15 @@ pub(super) struct Look {
     pub(super) material: u32,
     pub(super) color: [u8; 3],
     pub(super) opacity: f32,
+    /// The lights that do not reach it, a bit each.
+    pub(super) unlit: u32,
     /// The surface id, where each face is a region of its own; else 0.
     pub(super) face: u32,
 }
 
 impl Look {
-    fn key(&self) -> (u32, u32, [u8; 3], u32, u32) {
-        (self.over, self.material, self.color, self.opacity.to_bits(), self.face)
+    fn key(&self) -> (u32, u32, [u8; 3], [u32; 3]) {
+        (self.over, self.material, self.color, [self.opacity.to_bits(), self.unlit, self.face])
     }
 }
 
@@ -108,6 +110,7 @@ impl Joined {
             material: self.look.material,
             color: self.look.color,
             opacity: self.look.opacity,
+            unlit: self.look.unlit,
             rings: shape.iter().map(|ring| ring.iter().map(on_page).collect()).collect(),
         })
     }

@@ -13,10 +13,10 @@
 //! Cost: linear in the pairs of neighbours.
 
 use super::groups::{Groups, Joined, LEAST_SHAPE, Look};
-use super::shapes::{area_of, union};
 use super::{Part, Parts};
 use crate::page_mesh::PageMesh;
 use crate::run::Run;
+use crate::shapes::{area_of, union};
 use std::ops::Range;
 use vitral_exec::Limit;
 use vitral_scene::buckets::{Dealt, Source};
@@ -71,7 +71,7 @@ pub(super) fn ground(parts: &[Part], joined: &[Joined]) -> Option<Joined> {
     }
     let color = sum.map(|s| (s / area).round() as u8);
     let shapes = parts.iter().filter(|part| part.look.over == 0).map(|part| &part.shapes);
-    let (look, surface) = (Look { color, ..first.look }, first.surface);
+    let (look, surface) = (Look { color, unlit: 0, ..first.look }, first.surface);
     Some(Joined { look, surface, shapes: union(shapes, LEAST_SHAPE) })
 }
 

@@ -1,11 +1,11 @@
 use super::groups::LEAST_AREA;
-use super::shapes::{corner_between, union};
 use super::*;
 use crate::page_mesh::Triangle;
+use crate::shapes::{corner_between, union};
 use crate::testing::{mesh_of, with_run};
 use proptest::prelude::*;
-use vitral_math::DMat4;
 use vitral_math::exact::GridPoint;
+use vitral_math::{DMat4, DVec4};
 
 /// The regions of these triangles, of which those marked are clear; the same with one thread and three.
 fn found(corners: &[[GridPoint; 3]], clear: &[usize], surfaces: &Surfaces<'_>) -> Vec<PageRegion> {
@@ -127,7 +127,8 @@ fn shadows_divide_what_is_visible() {
     let triangle = [[4096, 2048, 0], [2048, 4096, 0], [2048, 2048, 0]];
     let facet = [DVec3::X, DVec3::Y, DVec3::ZERO];
     let half = vec![facet[0], facet[1].lerp(facet[2], 0.5), facet[2]];
-    let lit = [LitPolygons { light: 2, of_facet: [(0, vec![half])].into_iter().collect() }];
+    let of_facet = [(0, vec![half])].into_iter().collect();
+    let lit = [LitPolygons { light: 2, place: DVec4::Z, of_facet }];
     let by_light = |look: &FaceLook| if look.lights & 0b100 != 0 { [200; 3] } else { [50; 3] };
     let regions = found(&[triangle], &[], &Surfaces { lit: &lit, seams: Seams::None, ..Surfaces::new(&by_light) });
     let told: Vec<_> = regions.iter().map(|r| (r.color[0], (area(r) / 1024.0).round())).collect();

@@ -12,10 +12,10 @@
 //! Cost: for each triangle `k log k` with `k` triangles in front of it.
 //! Source: the overlay of polygons is the crate `i_overlay`'s; what lies in front, see above.
 
-use super::shapes::{Corner, Shapes, corner_between, covered, within, without};
 use crate::grid::Grid;
 use crate::page_mesh::{NONE, PageMesh, Triangle};
 use crate::run::Run;
+use crate::shapes::{Corner, Shapes, corner_between, covered, within, without};
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 use vitral_exec::Limit;

@@ -109,6 +109,10 @@ fn content(drawing: &Drawing, options: &DrawingOptions, scale: f64) -> (String, 
         groups.push((0, FILL));
         let _ = writeln!(out, "/OC /{FILL} BDC");
         let mut painted = OPAQUE;
+        let outline = options.outline_width();
+        if let Some(width) = outline {
+            let _ = writeln!(out, "{width} w\n[] 0 d");
+        }
         for region in &drawing.regions {
             // Three decimals tell all levels of eight bits apart.
             let [red, green, blue] = region.color.map(|level| (f64::from(level) / 0.255).round() / 1000.0);
@@ -117,8 +121,12 @@ fn content(drawing: &Drawing, options: &DrawingOptions, scale: f64) -> (String, 
             if std::mem::replace(&mut painted, opacity) != opacity {
                 let _ = writeln!(out, "/{} gs", state_name(opacity));
             }
-            region.rings.iter().for_each(|ring| path(&mut out, precision, &precision.ring(ring)));
-            out.push_str("f*\n");
+            for ring in &region.rings {
+                path(&mut out, precision, &precision.ring(ring));
+                // Fills close outlines by themselves.
+                out.push_str(if outline.is_some() { "h\n" } else { "" });
+            }
+            out.push_str(if outline.is_some() { "B*\n" } else { "f*\n" });
         }
         out.push_str("EMC\n");
     }
@@ -160,7 +168,8 @@ mod tests {
             line(LineClass::Crease, 1, &[[0.0, 0.0], [1.5, 0.25]]),
         ];
         let ring = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
-        let region = Region { surface: 3, material: None, color: [255, 0, 16], opacity: 1.0, rings: vec![ring] };
+        let region =
+            Region { surface: 3, material: None, color: [255, 0, 16], opacity: 1.0, unlit: 0, rings: vec![ring] };
         Drawing { width, height, lines, regions: vec![region] }
     }
 
@@ -180,11 +189,18 @@ mod tests {
         drawing.regions.push(Region { opacity: 0.3, ..drawing.regions[0].clone() });
         drawing.regions.push(Region { opacity: 0.3, ..drawing.regions[0].clone() });
         let (text, _) = content(&drawing, &DrawingOptions::default(), POINTS);
-        assert_eq!(text.matches("gs\n").collect::<Vec<_>>().len(), 1, "{text}");
+        assert_eq!(text.matches("gs\n").count(), 1, "{text}");
         assert!(text.contains("rg\n/opacity300 gs\n0 0 m"), "{text}");
         let file = pdf(&drawing, &DrawingOptions::default());
         let file = String::from_utf8_lossy(&file);
         assert!(file.contains("/opacity300") && file.contains("/ca 0.3"), "{file}");
+    }
+
+    #[test]
+    fn outlined_regions_are_closed_and_stroked() {
+        let options = DrawingOptions { region_outlines: Some(LineClass::Smooth), ..DrawingOptions::default() };
+        let (text, _) = content(&sheet(9.0, 9.0), &options, POINTS);
+        assert!(text.contains("/fill BDC\n0.18 w\n[] 0 d\n1 0 0.063 rg\n0 0 m\n1 0 l\n1 1 l\nh\nB*\nEMC\n"), "{text}");
     }
 
     #[test]

@@ -68,17 +68,24 @@ pub struct DrawingOptions {
     pub decimals: u8,
     /// Whether regions of SVG files tell the surface that they show.
     pub surface_ids: bool,
+    /// Whether regions of SVG and PDF files are outlined, each above what is painted before, and by the pen of which class.
+    pub region_outlines: Option<LineClass>,
     /// Strokes of the title block.
     pub title: Vec<Polyline>,
 }
 
 impl Default for DrawingOptions {
     fn default() -> Self {
-        Self { pens: Pens::default(), decimals: 3, surface_ids: false, title: Vec::new() }
+        Self { pens: Pens::default(), decimals: 3, surface_ids: false, region_outlines: None, title: Vec::new() }
     }
 }
 
 impl DrawingOptions {
+    /// The width of the outlines of regions in millimetres, if there are any.
+    pub(super) fn outline_width(&self) -> Option<f64> {
+        self.region_outlines.map(|class| self.pens.widths[class as usize])
+    }
+
     /// Coordinates in whole steps of the precision.
     pub(super) fn precision(&self) -> Precision {
         let decimals = usize::from(self.decimals.min(3));

@@ -26,7 +26,7 @@ pub fn svg(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
         millimetres(height),
     );
     let page = Page { precision, height };
-    page.regions(&mut out, &drawing.regions, options.surface_ids);
+    page.regions(&mut out, &drawing.regions, options);
     layers(drawing, options).iter().for_each(|layer| page.lines(&mut out, layer));
     out.push_str("</svg>\n");
     out.into_bytes()
@@ -39,10 +39,14 @@ struct Page {
 }
 
 impl Page {
+    /// A width or the length of a dash, which may be finer than the precision of corners.
+    fn length(&self, millimetres: f64) -> f64 {
+        (millimetres * self.precision.steps_a_millimetre * 1000.0).round() / 1000.0
+    }
+
     /// A group of lines.
     fn lines(&self, out: &mut String, layer: &Layer<'_>) {
-        // Widths and dashes may be finer than the precision of corners.
-        let length = |millimetres: f64| (millimetres * self.precision.steps_a_millimetre * 1000.0).round() / 1000.0;
+        let length = |millimetres| self.length(millimetres);
         let (name, number) = (layer.name, layer.number);
         let _ = write!(
             out,
@@ -63,20 +67,30 @@ impl Page {
     }
 
     /// The group of fills, if there are any.
-    fn regions(&self, out: &mut String, regions: &[Region], surface_ids: bool) {
+    fn regions(&self, out: &mut String, regions: &[Region], options: &DrawingOptions) {
         if regions.is_empty() {
             return;
         }
-        let _ = writeln!(
+        let _ = write!(
             out,
             "<g id=\"{FILL}\" inkscape:groupmode=\"layer\" inkscape:label=\"0 {FILL}\" data-class=\"{FILL}\" \
-             fill-rule=\"evenodd\">"
+             fill-rule=\"evenodd\""
         );
+        if let Some(width) = options.outline_width() {
+            let width = self.length(width);
+            let _ = write!(out, " stroke=\"#000\" stroke-width=\"{width}\" stroke-linejoin=\"round\"");
+        }
+        out.push_str(">\n");
         for region in regions {
             let [red, green, blue] = region.color;
             out.push_str("<path");
-            if surface_ids {
+            if options.surface_ids {
                 let _ = write!(out, " data-face=\"{}\"", region.surface);
+            }
+            if region.unlit != 0 {
+                let lights = (0..u32::BITS).filter(|light| region.unlit >> light & 1 == 1);
+                let lights: Vec<_> = lights.map(|light| light.to_string()).collect();
+                let _ = write!(out, " data-shadow=\"{}\"", lights.join(" "));
             }
             let _ = write!(out, " fill=\"#{red:02x}{green:02x}{blue:02x}\"");
             if thousandths(region.opacity) < 1000 {
@@ -132,7 +146,8 @@ mod tests {
             line(LineClass::Crease, 2, &[[0.0, 0.0], [3.0, 2.0]]),
         ];
         let ring = square[..4].to_vec();
-        let region = Region { surface: 3, material: None, color: [255, 0, 16], opacity: 1.0, rings: vec![ring] };
+        let region =
+            Region { surface: 3, material: None, color: [255, 0, 16], opacity: 1.0, unlit: 0, rings: vec![ring] };
         let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
         let text = String::from_utf8(svg(&drawing, &DrawingOptions::default())).unwrap();
         let expected = "\
@@ -166,6 +181,24 @@ mod tests {
     }
 
     #[test]
+    fn outlined_regions_are_stroked_in_their_order() {
+        let ring = |x: f64| vec![[x, 0.0], [x + 1.0, 0.0], [x, 1.0]];
+        let region = |x: f64| Region {
+            surface: 0,
+            material: None,
+            color: [255; 3],
+            opacity: 1.0,
+            unlit: 5,
+            rings: vec![ring(x)],
+        };
+        let drawing = Drawing { regions: vec![region(0.0), region(0.5)], ..Drawing::default() };
+        let options = DrawingOptions { region_outlines: Some(LineClass::Smooth), ..DrawingOptions::default() };
+        let text = String::from_utf8(svg(&drawing, &options)).unwrap();
+        assert!(text.contains("fill-rule=\"evenodd\" stroke=\"#000\" stroke-width=\"180\" stroke-linejoin"), "{text}");
+        assert_eq!((text.matches("<g").count(), text.matches("<path data-shadow=\"0 2\" fill").count()), (1, 2));
+    }
+
+    #[test]
     fn a_coarse_precision_makes_coarse_units_and_faces_are_told() {
         let lines = vec![line(LineClass::Contour, 0, &[[0.0, 0.0], [1.26, 0.01], [1.26, 0.04]])];
         let region = Region {
@@ -173,6 +206,7 @@ mod tests {
             material: None,
             color: [0; 3],
             opacity: 0.25,
+            unlit: 0,
             rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]],
         };
         let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };

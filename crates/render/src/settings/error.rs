@@ -75,6 +75,14 @@ pub enum SettingsError {
         /// Those that do.
         choices: String,
     },
+    /// The polygons of a visibility algorithm are wanted, but it comes to none.
+    #[error("`{visibility}` comes to samples and not to polygons: choose {choices}")]
+    Polygons {
+        /// Asked for.
+        visibility: Visibility,
+        /// Those that do.
+        choices: String,
+    },
     /// The panels of a shadow algorithm are wanted, but it has none.
     #[error("the shadows `{shadows}` have no panels: choose {choices}")]
     Panels {

@@ -26,7 +26,7 @@ use super::pieces::{Footprint, Pieces, Raster};
 use super::polygons::Polygons;
 use super::priority_list::{PriorityList, draw_list, on_screen};
 use super::sink::TileSink;
-use super::{Resolved, VisibleSurface};
+use super::{PolygonAlgorithm, PolygonList, Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
@@ -77,6 +77,37 @@ impl VisibleSurface for Bsp {
     }
 }
 
+impl PolygonAlgorithm for Bsp {
+    fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit> {
+        let facets = Facets::without_tiles(view, execution)?;
+        let setups: Vec<&Setup> = facets.all().collect();
+        let (tree, _) = tree_of(view, execution)?;
+        let facet_count = view.session.world.facet_count;
+        let bytes = tree.bytes() + tree.fragment_count() * 4 + u64::from(facet_count) * 4;
+        execution.budget.charged(bytes, "the BSP tree", || {
+            // Walk the tree, and cut each polygon out of its triangles on the screen.
+            let order = front_to_back(&tree, eye(view));
+            let places = SetupIndex::new(&setups, facet_count, |_| true);
+            let lines = Lines::new(view, &tree, execution);
+            let fragments = OnScreen { tree: &tree, setups: &setups, places, lines };
+            execution.budget.begin("polygons", order.len() as u64);
+            for (done, &fragment) in order.iter().rev().enumerate() {
+                if done % FRAGMENTS_A_RUN == 0 {
+                    execution.budget.check("the BSP tree")?;
+                }
+                let facets = tree.facets(fragment);
+                fragments.each_outline(fragment, |outline, _| list.push_convex(facets.to_vec(), outline));
+            }
+            list.wholes = tree.polygon_count();
+            list.counters.tree_nodes = tree.node_count();
+            list.counters.fragments = tree.fragment_count();
+            list.counters.splits = tree.splits();
+            list.counters.pieces = list.polygons.len() as u64;
+            Ok(())
+        })
+    }
+}
+
 impl Cached for Tree {
     type Key = ();
 }
@@ -107,13 +138,15 @@ fn picture(
         // Find the order of the fragments from front to back, and where their facets are on the screen.
         let raster = Raster::new(view.viewport, &view.pattern);
         let footprints = footprints(&setups, &raster, execution);
-        let (order, places) = execution
-            .workers
-            .join(|| front_to_back(tree, eye(view)), || SetupIndex::new(&setups, &footprints, facet_count));
+        let (order, places) = execution.workers.join(
+            || front_to_back(tree, eye(view)),
+            || SetupIndex::new(&setups, facet_count, |i| footprints[i].is_some()),
+        );
 
         // Bring the fragments to the screen, in runs.
         let lines = Lines::new(view, tree, execution);
-        let fragments = Fragments { tree, setups: &setups, footprints, raster, order, places, lines, execution };
+        let on_screen = OnScreen { tree, setups: &setups, places, lines };
+        let fragments = Fragments { on_screen, footprints, raster, order, execution };
         let count = fragments.order.len().div_ceil(FRAGMENTS_A_RUN);
         let runs = execution.workers.map(count, |run| fragments.pieces(run));
         fragments.tell(&runs);
@@ -145,33 +178,25 @@ fn front_to_back(tree: &Tree, to_viewer: DVec4) -> Vec<u32> {
     order
 }
 
-/// The fragments of a tree, on their way to the screen.
-struct Fragments<'a> {
+/// What brings the fragments of a tree to the screen.
+struct OnScreen<'a> {
     tree: &'a Tree,
     setups: &'a [&'a Setup],
+    places: SetupIndex,
+    lines: Lines,
+}
+
+/// The fragments of a tree, on their way to the samples.
+struct Fragments<'a> {
+    on_screen: OnScreen<'a>,
     footprints: Vec<Option<Footprint>>,
     raster: Raster<'a>,
     /// From front to back.
     order: Vec<u32>,
-    places: SetupIndex,
-    lines: Lines,
     execution: &'a Execution,
 }
 
-impl Fragments<'_> {
-    /// The pieces of a run of the list.
-    fn pieces(&self, run: usize) -> Pieces {
-        let mut pieces = Pieces::default();
-        let first = run * FRAGMENTS_A_RUN;
-        for &fragment in self.order[first..].iter().take(FRAGMENTS_A_RUN) {
-            let triangles = self.triangles(fragment);
-            let triangles = triangles.map(|(index, setup)| (index, setup, self.footprints[index as usize]));
-            pieces.add_polygon(fragment, triangles, |depth| self.cuts(fragment, depth), &self.raster);
-        }
-        pieces.finish(self.raster.viewport());
-        pieces
-    }
-
+impl OnScreen<'_> {
     /// The triangles on the screen of a fragment's polygon, with their indices.
     fn triangles(&self, fragment: u32) -> impl Iterator<Item = (u32, &Setup)> {
         let facets = self.tree.facets(fragment).iter();
@@ -184,30 +209,54 @@ impl Fragments<'_> {
         self.tree.cuts(fragment).map(move |(cutter, positive)| self.lines.cut(cutter, positive, depth))
     }
 
+    /// Calls `f` with the outline of a fragment, clockwise, 1/256 pixel, and how many lines cut it: once for all triangles of its
+    /// polygon, or more often if that was not brought to the screen as a whole. An outline may have become empty.
+    fn each_outline(&self, fragment: u32, mut f: impl FnMut(&[[f64; 2]], u32)) {
+        let wholes = Polygons::joined(self.triangles(fragment).map(|(_, setup)| setup), |_| 0);
+        let mut scratch = Vec::new();
+        for polygon in (0..wholes.len()).map(|number| wholes.get(number)) {
+            let mut outline: Vec<_> = polygon.outline().iter().map(|p| p.map(f64::from)).collect();
+            let cuts = self.cuts(fragment, Depth::of(polygon.plane()));
+            let count = cuts.len() as u32;
+            cuts.for_each(|cut| clip_outline(&mut outline, &mut scratch, &cut));
+            f(&outline, count);
+        }
+    }
+}
+
+impl Fragments<'_> {
+    /// The pieces of a run of the list.
+    fn pieces(&self, run: usize) -> Pieces {
+        let mut pieces = Pieces::default();
+        let first = run * FRAGMENTS_A_RUN;
+        for &fragment in self.order[first..].iter().take(FRAGMENTS_A_RUN) {
+            let triangles = self.on_screen.triangles(fragment);
+            let triangles = triangles.map(|(index, setup)| (index, setup, self.footprints[index as usize]));
+            pieces.add_polygon(fragment, triangles, |depth| self.on_screen.cuts(fragment, depth), &self.raster);
+        }
+        pieces.finish(self.raster.viewport());
+        pieces
+    }
+
     /// Tells the list from back to front.
     fn tell(&self, runs: &[Pieces]) {
         if self.execution.observer.is_none() {
             return;
         }
-        let nodes = self.tree.nodes_of_fragments();
+        let tree = self.on_screen.tree;
+        let nodes = tree.nodes_of_fragments();
         let listed = runs.iter().rev().flat_map(|run| run.listed.iter().rev());
         for (order, &fragment) in (0..).zip(listed) {
-            // One outline for all triangles; more if the polygon was not brought to the screen as a whole.
-            let outlines = Polygons::joined(self.triangles(fragment).map(|(_, setup)| setup), |_| 0);
-            for polygon in (0..outlines.len()).map(|number| outlines.get(number)) {
-                let mut outline: Vec<_> = polygon.outline().iter().map(|p| p.map(f64::from)).collect();
-                let (mut scratch, cuts) = (Vec::new(), self.cuts(fragment, Depth::of(polygon.plane())));
-                let count = cuts.len() as u32;
-                cuts.for_each(|cut| clip_outline(&mut outline, &mut scratch, &cut));
+            self.on_screen.each_outline(fragment, |outline, cuts| {
                 self.execution.tell(|| Step::Piece {
                     order,
                     polygon: fragment,
                     node: nodes[fragment as usize],
-                    facet: self.tree.name(fragment),
-                    cuts: count,
-                    outline: on_screen(&outline),
+                    facet: tree.name(fragment),
+                    cuts,
+                    outline: on_screen(outline),
                 });
-            }
+            });
         }
     }
 }
@@ -224,9 +273,10 @@ struct SetupIndex {
 }
 
 impl SetupIndex {
-    fn new(setups: &[&Setup], footprints: &[Option<Footprint>], facet_count: u32) -> Self {
+    /// Of the triangles that are `wanted`, by their places.
+    fn new(setups: &[&Setup], facet_count: u32, wanted: impl Fn(usize) -> bool) -> Self {
         let mut first = vec![ABSENT; facet_count as usize];
-        for (i, setup) in setups.iter().enumerate().rev().filter(|(i, _)| footprints[*i].is_some()) {
+        for (i, setup) in setups.iter().enumerate().rev().filter(|(i, _)| wanted(*i)) {
             first[setup.facet as usize] = i as u32;
         }
         Self { first }

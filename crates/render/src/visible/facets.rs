@@ -38,6 +38,20 @@ impl<'v, 'a> Facets<'v, 'a> {
         execution: &'v Execution,
         resolved: &mut Resolved,
     ) -> Result<Self, Limit> {
+        Self::with_lists(view, execution, resolved, TileLists::Kept)
+    }
+
+    /// [`Self::new`] without lists by tile: nobody looks at samples.
+    pub(super) fn without_tiles(view: &'v PreparedView<'a>, execution: &'v Execution) -> Result<Self, Limit> {
+        Self::with_lists(view, execution, &mut Resolved::default(), TileLists::Unwanted)
+    }
+
+    fn with_lists(
+        view: &'v PreparedView<'a>,
+        execution: &'v Execution,
+        resolved: &mut Resolved,
+        lists: TileLists,
+    ) -> Result<Self, Limit> {
         let start = execution.budget.elapsed();
         let charged = triangle_count(view) * BYTES_A_TRIANGLE;
         execution.budget.charge(charged, "the view's facets")?;
@@ -47,7 +61,7 @@ impl<'v, 'a> Facets<'v, 'a> {
         for round in front_end.rounds() {
             execution.budget.check("the view's facets")?;
             front_end.transform(round.clone());
-            for (layered, batch) in front_end.set_up(round.clone(), DrawOrder::Scene, TileLists::Kept) {
+            for (layered, batch) in front_end.set_up(round.clone(), DrawOrder::Scene, lists) {
                 let list = if layered { &mut facets.layered } else { &mut facets.opaque };
                 list.push(batch);
             }
@@ -85,6 +99,11 @@ impl<'v, 'a> Facets<'v, 'a> {
     /// All opaque triangles, those of a face one after the other.
     pub(super) fn opaque(&self) -> impl Iterator<Item = &Setup> {
         self.opaque.iter().flat_map(Batch::setups)
+    }
+
+    /// All triangles, opaque ones first, those of a face one after the other.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Setup> {
+        self.opaque.iter().chain(&self.layered).flat_map(Batch::setups)
     }
 
     /// The triangles that take part in a list by depth, those of a clipped facet one after the other, and how many of them are

@@ -9,6 +9,7 @@ pub mod fates;
 mod front_end;
 mod jobs;
 mod near_first;
+mod outlined;
 mod overdraw;
 pub mod painter;
 mod passing;
@@ -29,6 +30,7 @@ pub mod zbuffer;
 
 pub(crate) use agreement::nearer;
 pub(crate) use front_end::{all_batches, give_back, touching};
+pub use outlined::{OutlinedPolygon, PolygonAlgorithm, PolygonList};
 pub(crate) use passing::resolve_in_passing;
 pub use peel::{PassLayer, Peel};
 pub(crate) use sink::layer_list;

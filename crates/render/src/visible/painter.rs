@@ -32,7 +32,7 @@ use super::pieces::{Pieces, Raster};
 use super::polygons::Polygons;
 use super::priority_list::{PriorityList, draw_list, on_screen};
 use super::sink::TileSink;
-use super::{Resolved, VisibleSurface};
+use super::{PolygonAlgorithm, PolygonList, Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
@@ -66,7 +66,7 @@ impl VisibleSurface for Painter {
             // Sort from back to front, splitting what is in no order.
             let mut counters = VisibilityCounters::default();
             let raster = Raster::new(view.viewport, &view.pattern);
-            let list = sorted(&polygons, raster, execution, &mut counters)?;
+            let list = sorted(&polygons, raster, execution, &mut counters, |sorting| sorting.list())?;
             counters.pieces = list.len() as u64;
 
             // Paint.
@@ -83,16 +83,39 @@ impl VisibleSurface for Painter {
     }
 }
 
-/// The list of all polygons or their parts, from back to front.
-fn sorted(
+impl PolygonAlgorithm for Painter {
+    fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit> {
+        let facets = Facets::without_tiles(view, execution)?;
+        let wholes = Polygons::new(facets.all(), view);
+        list.wholes = wholes.len() as u64;
+        execution.budget.charged(wholes.bytes(), "the painter's list", || {
+            let mut counters = VisibilityCounters::default();
+            let raster = Raster::new(view.viewport, &view.pattern);
+            sorted(&wholes, raster, execution, &mut counters, |sorting| {
+                for &number in &sorting.painted {
+                    let polygon = &sorting.polygons[number as usize];
+                    let facets = wholes.get(polygon.whole as usize).all_facets();
+                    list.push_convex(facets, polygon.points(&sorting.corners));
+                }
+            })?;
+            counters.pieces = list.polygons.len() as u64;
+            list.counters = counters;
+            Ok(())
+        })
+    }
+}
+
+/// Sorts all polygons and their parts from back to front, and takes what is wanted of that.
+fn sorted<T>(
     wholes: &Polygons<'_>,
     raster: Raster<'_>,
     execution: &Execution,
     counters: &mut VisibilityCounters,
-) -> Result<Pieces, Limit> {
+    take: impl FnOnce(&Sorting<'_, '_>) -> T,
+) -> Result<T, Limit> {
     let mut sorting = Sorting::new(wholes, raster, execution, counters)?;
     let outcome = sorting.sort();
-    let (list, charged) = (sorting.list(), sorting.charged);
+    let (list, charged) = (take(&sorting), sorting.charged);
     drop(sorting);
     execution.budget.release(charged);
     outcome.map(|()| list)

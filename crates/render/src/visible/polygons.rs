@@ -190,6 +190,13 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
         self.triangles.iter().fold([own; 2], |[low, high], t| [low.min(t.facet), high.max(t.facet)])
     }
 
+    /// All its facets, that of its name first.
+    pub(super) fn all_facets(self) -> Vec<u32> {
+        let mut facets: Vec<u32> = self.triangles.iter().map(|triangle| triangle.facet).collect();
+        facets.dedup();
+        facets
+    }
+
     /// Its plane, with the depths of all corners as the range; the corners in it are those of its first triangle alone.
     pub(super) fn plane(self) -> &'p Setup {
         self.plane

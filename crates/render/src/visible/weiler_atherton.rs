@@ -31,14 +31,14 @@ mod spread;
 use super::facets::{Facets, fill_with};
 use super::polygons::Polygons;
 use super::sink::TileSink;
-use super::{Resolved, VisibleSurface};
+use super::{PolygonAlgorithm, PolygonList, Resolved, VisibleSurface};
 use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use buckets::Buckets;
 use fill::{Filling, VisiblePolygons};
 use polygon::{Polygon, Relation, line_of_gap, relation};
-use region::{Clipped, Convex, Region, Workspace};
+use region::{Clipped, Convex, Outline, Region, Workspace};
 use vitral_exec::{Charge, Limit};
 use vitral_raster::{SUBPIXEL, TileGrid, Viewport};
 
@@ -67,8 +67,8 @@ impl VisibleSurface for WeilerAtherton {
 
         // Find the visible polygons.
         let sorted = in_first_order(&polygons);
-        let sorting = AreaSorting { execution, polygons: &sorted, held: &held };
-        let Found { visible, mut counters } = sorting.run(view.viewport)?;
+        let sorting = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: false };
+        let Found { visible, mut counters, .. } = sorting.run(view.viewport)?;
         counters.visible_polygons = visible.len() as u64;
 
         // Draw them, a row of tiles at a time.
@@ -90,6 +90,25 @@ impl VisibleSurface for WeilerAtherton {
         counters.add(&drawn);
         resolved.counters = counters;
         Ok(resolved)
+    }
+}
+
+impl PolygonAlgorithm for WeilerAtherton {
+    fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit> {
+        let facets = Facets::without_tiles(view, execution)?;
+        let polygons = Polygons::new(facets.all(), view);
+        let held = Charge::new(&execution.budget, STAGE);
+        held.add(polygons.bytes() + (polygons.len() * size_of::<Polygon<'_>>()) as u64)?;
+        let sorted = in_first_order(&polygons);
+        let sorting = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: true };
+        let found = sorting.run(view.viewport)?;
+        for (number, outlines) in found.outlines {
+            let facets = polygons.get(number as usize).all_facets();
+            list.push(facets, outlines.into_iter().map(|outline| outline.corners));
+        }
+        list.wholes = polygons.len() as u64;
+        list.counters = VisibilityCounters { visible_polygons: list.polygons.len() as u64, ..found.counters };
+        Ok(())
     }
 }
 
@@ -144,6 +163,8 @@ struct Inside {
 #[derive(Debug, Default)]
 struct Found {
     visible: VisiblePolygons,
+    /// The same as outlines, if these are wanted, each with the number of its polygon among the view's.
+    outlines: Vec<(u32, Vec<Outline>)>,
     counters: VisibilityCounters,
 }
 
@@ -166,6 +187,8 @@ struct AreaSorting<'s> {
     /// In the first order.
     polygons: &'s [Polygon<'s>],
     held: &'s Charge<'s>,
+    /// Whether outlines are wanted and not what samples are filled by.
+    keeps_outlines: bool,
 }
 
 impl Item {
@@ -222,7 +245,7 @@ impl AreaSorting<'_> {
 
     /// Treats a list, and the inside lists that come of it, in the plain order.
     fn treat(&self, list: List, worker: &mut Worker) -> Result<(), Limit> {
-        let (mut charged, shown) = (list.bytes(), worker.found.visible.bytes());
+        let (mut charged, shown) = (list.bytes(), worker.found.bytes());
         let mut counted = worker.pairs;
         let mut frames = vec![Frame::new(list)];
         while let Some(frame) = frames.last_mut() {
@@ -243,7 +266,7 @@ impl AreaSorting<'_> {
                 charged = bytes;
             }
         }
-        self.held.change(charged + shown, worker.found.visible.bytes())
+        self.held.change(charged + shown, worker.found.bytes())
     }
 
     /// Takes the nearest polygon of a list that nothing was clipped with yet, clips the list by it, and gives the inside list.
@@ -325,7 +348,11 @@ impl AreaSorting<'_> {
     fn show(&self, item: &Item, clip: Option<u32>, found: &mut Found) {
         let polygon = &self.polygons[item.polygon as usize];
         self.execution.tell(|| report::visible(polygon, item, clip));
-        found.visible.push(polygon.number, &item.region);
+        if self.keeps_outlines {
+            found.outlines.push((polygon.number, item.region.outlines()));
+        } else {
+            found.visible.push(polygon.number, &item.region);
+        }
     }
 }
 
@@ -349,9 +376,16 @@ fn near_items(around: [f64; 4], buckets: Option<&Buckets>, count: usize, near: &
 }
 
 impl Found {
+    /// Bytes of what is visible.
+    fn bytes(&self) -> u64 {
+        let corners = self.outlines.iter().flat_map(|(_, outlines)| outlines).map(|outline| outline.corners.len());
+        self.visible.bytes() + (corners.sum::<usize>() * size_of::<[f64; 2]>()) as u64
+    }
+
     /// Adds what another thread found.
     fn append(&mut self, other: Self) {
         self.visible.append(other.visible);
+        self.outlines.extend(other.outlines);
         self.counters.add(&other.counters);
     }
 }

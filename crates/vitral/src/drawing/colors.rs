@@ -25,7 +25,7 @@ const RATIO_STEPS: f32 = 64.0;
 const HUE_STEP: f64 = 0.618_033_988_749_895;
 
 /// Gives faces their colours.
-pub(super) struct Colors<'r> {
+pub(crate) struct Colors<'r> {
     renderer: &'r Renderer,
     light: FaceColors,
     fill: FillSettings,
@@ -33,7 +33,7 @@ pub(super) struct Colors<'r> {
 }
 
 impl<'r> Colors<'r> {
-    pub(super) fn new(renderer: &'r Renderer, camera: &Camera, fill: &FillSettings) -> Self {
+    pub(crate) fn new(renderer: &'r Renderer, camera: &Camera, fill: &FillSettings) -> Self {
         let view = camera.transform(renderer.aspect(), depth_range(camera, &renderer.world().bounds));
         let (lights, ambient) = (renderer.frame_lights(camera), renderer.frame_ambient());
         let light = FaceColors::new(renderer.settings.shading, &view, &lights, ambient);
@@ -41,7 +41,7 @@ impl<'r> Colors<'r> {
     }
 
     /// The colour of a face.
-    pub(super) fn of(&self, look: &FaceLook) -> [u8; 3] {
+    pub(crate) fn of(&self, look: &FaceLook) -> [u8; 3] {
         let world = self.renderer.world();
         let number = world.instance_of_facet(look.facet);
         let instance = &world.instances[number];

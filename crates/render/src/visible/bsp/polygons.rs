@@ -56,6 +56,11 @@ impl PolygonFacets {
         &self.facets[start..end]
     }
 
+    /// How many polygons there are.
+    pub(super) fn len(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
     /// The facet by which a polygon is named: its first.
     pub(super) fn name(&self, polygon: u32) -> u32 {
         self.facets[self.starts[polygon as usize] as usize]

@@ -145,6 +145,11 @@ impl Tree {
         self.nodes.len() as u64
     }
 
+    /// How many polygons the fragments are parts of.
+    pub(crate) fn polygon_count(&self) -> u64 {
+        self.facets.len() as u64
+    }
+
     pub(crate) fn fragment_count(&self) -> u64 {
         self.fragments.len() as u64
     }

@@ -22,7 +22,7 @@ impl Observer for Steps {
 fn visible_in(size: [i32; 2], setups: &[Setup], execution: &Execution) -> (Vec<(u32, f64)>, VisibilityCounters) {
     let polygons = Polygons::joined(setups, |facet| facet);
     let (sorted, held) = (in_first_order(&polygons), Charge::new(&execution.budget, STAGE));
-    let sorting = AreaSorting { execution, polygons: &sorted, held: &held };
+    let sorting = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: false };
     let viewport = Viewport { width: size[0] as u32, height: size[1] as u32 };
     let found = sorting.run(viewport).unwrap();
     let facet = |number: u32| polygons.get(number as usize).facet();

@@ -5,11 +5,11 @@
 //!
 //! A lit polygon that reaches a side of its facet is drawn out over it: rounding could leave a hair of shadow there else.
 //!
-//! In:   visible shapes of a triangle, lit polygons of its facet in world space. Out: shapes, each with the lights that reach it.
+//! In:   shapes of facets on the page, lit polygons of these facets in world space. Out: shapes, each with the lights that reach it.
 //! Cost: `k log k` with `k` corners of lit polygons.
 //! Source: [Atherton, Weiler & Greenberg 1978].
 
-use super::shapes::{Corner, Shapes, corner_at, without, without_hairs};
+use crate::shapes::{Corner, Shapes, corner_at, without, without_hairs};
 use std::collections::BTreeMap;
 use vitral_math::{DMat4, DVec3, DVec4};
 
@@ -19,14 +19,18 @@ const ON_SIDE: f64 = 1e-6;
 const BEYOND: f64 = 1.0;
 const LEAST_BEYOND: f64 = 1e-6;
 const MOST_BEYOND: f64 = 1e-2;
+/// The sine of the angle from which on a light is before a plane.
+const GRAZING: f64 = 1e-6;
 /// The least homogeneous coordinate in front of the viewer, as a part of the facet's largest.
 const NEAR: f64 = 1e-6;
 
 /// The polygons that one light reaches.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LitPolygons {
-    /// The light's number, 0 to 31: its bit in [`FaceLook::lights`](super::FaceLook::lights).
+    /// The light's number, 0 to 31: its bit in [`FaceLook::lights`](crate::FaceLook::lights).
     pub light: u8,
+    /// Where the light is: a point, or with `w` 0 the direction to it.
+    pub place: DVec4,
     /// For each facet of the world that it reaches, convex polygons that do not overlap, world space.
     pub of_facet: BTreeMap<u32, Vec<Vec<DVec3>>>,
 }
@@ -39,22 +43,39 @@ pub(crate) struct Projector {
     pub(crate) size: [f64; 2],
 }
 
-/// Divides shapes of a facet between the lights: each part comes with a bit for every light that reaches it. Lights that are not
-/// among `lights` reach everything.
-pub(super) fn divide(
+/// Divides shapes of some facets in one plane between the lights: each part comes with a bit for every light that reaches it. Lights
+/// that are not among `lights` reach everything. Facets come with their corners, world space; `normal` is the unit normal on the side
+/// that is seen: a light on the other side reaches nothing.
+pub(crate) fn divide(
     shapes: Shapes,
-    facet: u32,
-    corners: [DVec3; 3],
+    facets: &[(u32, [DVec3; 3])],
+    normal: [f32; 3],
     lights: &[LitPolygons],
     to_page: &Projector,
 ) -> Vec<(u32, Shapes)> {
     let mut parts = vec![(u32::MAX, shapes)];
     for light in lights {
-        let lit = light.of_facet.get(&facet).map_or(&[][..], Vec::as_slice);
-        let lit: Vec<Vec<Corner>> = lit.iter().filter_map(|polygon| to_page.polygon(polygon, corners)).collect();
+        let mut lit: Vec<Vec<Corner>> = Vec::new();
+        for &(facet, corners) in facets.iter().filter(|(_, corners)| light.is_before(corners[0], normal)) {
+            let polygons = light.of_facet.get(&facet).map_or(&[][..], Vec::as_slice);
+            lit.extend(polygons.iter().filter_map(|polygon| to_page.polygon(polygon, corners)));
+        }
         parts = parts.into_iter().flat_map(|(lights, shapes)| split(lights, shapes, &lit, light.light)).collect();
     }
     parts
+}
+
+/// The lights among `lights` that do not reach a part.
+pub(crate) fn unlit(reached_by: u32, lights: &[LitPolygons]) -> u32 {
+    lights.iter().fold(0, |unlit, light| unlit | 1 << light.light) & !reached_by
+}
+
+impl LitPolygons {
+    /// Whether the light is on the side of a plane that a normal points to.
+    fn is_before(&self, corner: DVec3, normal: [f32; 3]) -> bool {
+        let to_light = (self.place.truncate() - corner * self.place.w).normalize_or_zero();
+        to_light.dot(DVec3::from_array(normal.map(f64::from))) > GRAZING
+    }
 }
 
 /// The part of some shapes that a light reaches, and its shadow.
@@ -141,8 +162,8 @@ fn in_front(polygon: &[DVec4], near: f64) -> Vec<DVec4> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::shapes::on_page;
     use super::*;
+    use crate::shapes::on_page;
     use vitral_math::dvec3;
 
     const FACET: [DVec3; 3] = [dvec3(0.0, 0.0, 0.0), dvec3(1.0, 0.0, 0.0), dvec3(0.0, 1.0, 0.0)];
@@ -159,10 +180,11 @@ mod tests {
         let whole = FACET.map(|p| corner_at([p.x * 500.0 + 500.0, p.y * 500.0 + 500.0])).to_vec();
         let of = |light, polygons: &[Vec<DVec3>]| LitPolygons {
             light,
+            place: DVec4::new(0.0, 0.0, 5.0, 1.0),
             of_facet: [(7, polygons.to_vec())].into_iter().filter(|(_, p)| !p.is_empty()).collect(),
         };
         let lights = [of(0, first), of(3, second)];
-        let divided = divide(vec![vec![whole]], 7, FACET, &lights, &TO_PAGE);
+        let divided = divide(vec![vec![whole]], &[(7, FACET)], [0.0, 0.0, 1.0], &lights, &TO_PAGE);
         divided.iter().map(|(lights, shapes)| (lights & 0b1001, area(shapes))).collect()
     }
 

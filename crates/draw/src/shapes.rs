@@ -9,22 +9,22 @@ use i_overlay::i_float::int::point::IntPoint;
 use vitral_math::exact::GridPoint;
 
 /// Steps of the finer grid in a unit of the page: the corners of what is left of clipped polygons are rounded to it.
-pub(super) const FINER: i32 = 128;
+pub(crate) const FINER: i32 = 128;
 /// Shapes that are nowhere wider, in units of the page, are traces of rounding where they are not wanted.
 const HAIR: f64 = 0.25;
 
 /// A corner of the finer grid.
-pub(super) type Corner = IntPoint<i32>;
+pub(crate) type Corner = IntPoint<i32>;
 /// Outlines with their holes.
-pub(super) type Shapes = Vec<Vec<Vec<Corner>>>;
+pub(crate) type Shapes = Vec<Vec<Vec<Corner>>>;
 
 /// The corner nearest to a point in units of the page.
-pub(super) fn corner_at([x, y]: [f64; 2]) -> Corner {
+pub(crate) fn corner_at([x, y]: [f64; 2]) -> Corner {
     IntPoint::new((x * f64::from(FINER)).round() as i32, (y * f64::from(FINER)).round() as i32)
 }
 
 /// The corner at a fraction of the way from one point of the page to another.
-pub(super) fn corner_between(from: GridPoint, way: f64, to: GridPoint) -> Corner {
+pub(crate) fn corner_between(from: GridPoint, way: f64, to: GridPoint) -> Corner {
     let at = |k: usize| {
         let (p, q) = (f64::from(from[k]), f64::from(to[k]));
         p + way * (q - p)
@@ -33,17 +33,17 @@ pub(super) fn corner_between(from: GridPoint, way: f64, to: GridPoint) -> Corner
 }
 
 /// A corner in units of the page.
-pub(super) fn on_page(corner: &Corner) -> [f64; 2] {
+pub(crate) fn on_page(corner: &Corner) -> [f64; 2] {
     [corner.x, corner.y].map(|c| f64::from(c) / f64::from(FINER))
 }
 
 /// What is left of `subject` without `polygons`.
-pub(super) fn without<'p>(subject: &Shapes, polygons: impl IntoIterator<Item = &'p Vec<Corner>>) -> Shapes {
+pub(crate) fn without<'p>(subject: &Shapes, polygons: impl IntoIterator<Item = &'p Vec<Corner>>) -> Shapes {
     overlaid(subject, polygons, OverlayRule::Difference)
 }
 
 /// What `subject` has in common with the union of `polygons`.
-pub(super) fn within<'p>(subject: &Shapes, polygons: impl IntoIterator<Item = &'p Vec<Corner>>) -> Shapes {
+pub(crate) fn within<'p>(subject: &Shapes, polygons: impl IntoIterator<Item = &'p Vec<Corner>>) -> Shapes {
     overlaid(subject, polygons, OverlayRule::Intersect)
 }
 
@@ -55,7 +55,7 @@ fn overlaid<'p>(subject: &Shapes, polygons: impl IntoIterator<Item = &'p Vec<Cor
 }
 
 /// The union of shapes, without those that are smaller than `least`, in steps squared, and without such holes.
-pub(super) fn union<'s>(all: impl IntoIterator<Item = &'s Shapes>, least: u64) -> Shapes {
+pub(crate) fn union<'s>(all: impl IntoIterator<Item = &'s Shapes>, least: u64) -> Shapes {
     let options = IntOverlayOptions { min_output_area: least, ..IntOverlayOptions::default() };
     let mut overlay = Overlay::<i32>::new_custom(64, options, Default::default());
     for ring in all.into_iter().flatten().flatten() {
@@ -65,7 +65,7 @@ pub(super) fn union<'s>(all: impl IntoIterator<Item = &'s Shapes>, least: u64) -
 }
 
 /// Where at least `count` of some counter-clockwise polygons lie over each other.
-pub(super) fn covered(polygons: &[Vec<Corner>], count: usize) -> Vec<Vec<Corner>> {
+pub(crate) fn covered(polygons: &[Vec<Corner>], count: usize) -> Vec<Vec<Corner>> {
     let corners = || polygons.iter().flatten();
     let (Some(left), Some(right)) = (corners().map(|p| p.x).min(), corners().map(|p| p.x).max()) else {
         return Vec::new();
@@ -82,7 +82,7 @@ pub(super) fn covered(polygons: &[Vec<Corner>], count: usize) -> Vec<Vec<Corner>
 }
 
 /// The area of shapes, in steps squared.
-pub(super) fn area_of(shapes: &Shapes) -> f64 {
+pub(crate) fn area_of(shapes: &Shapes) -> f64 {
     shapes.iter().flatten().map(|ring| area_and_outline(ring)[0]).sum()
 }
 
@@ -98,7 +98,7 @@ fn area_and_outline(ring: &[Corner]) -> [f64; 2] {
 }
 
 /// Without shapes that are nowhere wider than a hair.
-pub(super) fn without_hairs(mut shapes: Shapes) -> Shapes {
+pub(crate) fn without_hairs(mut shapes: Shapes) -> Shapes {
     shapes.retain(|shape| {
         let [area, outline] =
             shape.iter().map(|ring| area_and_outline(ring)).fold([0.0; 2], |s, r| [s[0] + r[0], s[1] + r[1]]);

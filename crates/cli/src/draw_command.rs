@@ -2,18 +2,20 @@
 
 use crate::draw_args::{DrawArgs, Hidden, PageArgs, Sheet, Style};
 use crate::draw_file::{DrawFile, check_fits, scaled_page};
+use crate::draw_sheet;
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::{self, Failure};
 use crate::resolve::{execution_within, overlay_files, save_state, set_viewpoint};
 use serde_json::json;
 use std::time::Instant;
-use vitral::{DrawingSettings, Drawn, LineClasses, PageSize, Renderer, State, World};
+use vitral::{DrawingSettings, Drawn, LineClass, LineClasses, PageSize, Renderer, State, World};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     let start = Instant::now();
     let state = state_of(args)?;
+    draw_sheet::check_options(args, &state)?;
     let mut settings = settings_of(args)?;
     let file = DrawFile::new(args, &state)?;
     settings.page = file.page_above_title(settings.page, settings.margin)?;
@@ -39,11 +41,7 @@ fn draw(
     start: Instant,
 ) -> Result<(), Failure> {
     // Read the models.
-    let mut scene = state.load_scene_on(&execution.workers)?;
-    let points: usize = scene.meshes.iter().map(|mesh| mesh.points.len()).sum();
-    if points > 0 {
-        scene.warnings.push(format!("{points} free points are not drawn yet"));
-    }
+    let scene = state.load_scene_on(&execution.workers)?;
     if !args.report.quiet {
         report::warnings(&scene.warnings);
     }
@@ -53,12 +51,18 @@ fn draw(
     let load_seconds = start.elapsed().as_secs_f64();
 
     // Draw.
-    settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
-    let drawn = match style_of(args) {
-        Style::HiddenLine => renderer.draw(&settings)?,
-        Style::Filled | Style::FilledLines => renderer.draw_filled(&settings)?,
+    let (drawn, views) = if args.page.views.is_empty() {
+        settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
+        let drawn = match style_of(args) {
+            Style::HiddenLine => renderer.draw(&settings)?,
+            Style::Filled | Style::FilledLines => renderer.draw_filled(&settings)?,
+        };
+        check_fits(args, &settings, &drawn.drawing)?;
+        (drawn, None)
+    } else {
+        let (drawn, layout) = draw_sheet::draw(args, &renderer, &settings)?;
+        (drawn, Some(layout))
     };
-    check_fits(args, &settings, &drawn.drawing)?;
     let draw_seconds = start.elapsed().as_secs_f64() - load_seconds;
 
     // Write.
@@ -66,10 +70,14 @@ fn draw(
         report::warnings(&[warning]);
     }
     let counted = args.report.stats.then(|| stats_of(&drawn));
+    let views = views.as_ref().map(|layout| draw_sheet::stats_of(args, layout));
     let bytes = file.encode(drawn.drawing, settings.margin);
     report::write(&file.path, &bytes)?;
     if let Some(mut stats) = counted {
         use std::io::Write;
+        if let Some(views) = views {
+            stats["views"] = views;
+        }
         let total = start.elapsed().as_secs_f64();
         stats["bytes"] = bytes.len().into();
         stats["charged-bytes"] = renderer.execution().budget.peak().into();
@@ -99,10 +107,12 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
 /// The state with the projection of drawings: a parallel one, unless that is said or the camera has an angle of view.
 fn projected(args: &DrawArgs, state: &State, world: &World) -> State {
     let mut state = state.clone();
-    state.viewpoint = state.viewpoint.or_own(world);
+    if args.page.views.is_empty() {
+        state.viewpoint = state.viewpoint.or_own(world);
+    }
     let viewpoint = &mut state.viewpoint;
     let has_angle = viewpoint.view_angle_degrees.is_some() || viewpoint.camera_index.is_some();
-    viewpoint.orthographic = !args.perspective && (viewpoint.orthographic || !has_angle);
+    viewpoint.orthographic = !args.perspective && (!args.page.views.is_empty() || viewpoint.orthographic || !has_angle);
     state
 }
 
@@ -119,6 +129,21 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
         );
     }
 
+    // Tangent edges are smooth ones, borders of materials, or creases of a small angle.
+    let classes = lines.lines.unwrap_or(usual.lines);
+    let crease_angle = lines.crease_angle.map_or(usual.crease_angle, f64::to_radians);
+    let has_tangent = [LineClass::Smooth, LineClass::Material].into_iter().any(|class| classes.has(class));
+    let has_flat_creases = classes.has(LineClass::Crease) && crease_angle < 1f64.to_radians();
+    if lines.hide_tangent && !has_lines {
+        return Err(
+            Failure::usage("--hide-tangent: --style filled draws no lines").with_hint("give --style filled-lines")
+        );
+    }
+    if lines.hide_tangent && !has_tangent && !has_flat_creases {
+        return Err(Failure::usage("--hide-tangent: no tangent edges are drawn")
+            .with_hint("leave it out, or add material or smooth to --lines"));
+    }
+
     // Hidden lines are drawn behind any number of faces, if nothing else is said.
     let is_hidden_drawn = lines.hidden.is_some_and(|hidden| hidden != Hidden::None);
     let hidden_layers = match (is_hidden_drawn, lines.hidden_max_layers) {
@@ -132,9 +157,11 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
         (true, Some(layers)) => layers,
     };
     Ok(DrawingSettings {
-        lines: if has_lines { lines.lines.unwrap_or(usual.lines) } else { LineClasses::EMPTY },
+        lines: if has_lines { classes } else { LineClasses::EMPTY },
         hidden_layers,
-        crease_angle: lines.crease_angle.map_or(usual.crease_angle, f64::to_radians),
+        crease_angle,
+        hide_tangent: lines.hide_tangent,
+        max_segments: lines.max_segments,
         page: page_of(&args.page)?,
         margin: args.page.margin.unwrap_or(usual.margin),
         ..usual
@@ -180,6 +207,8 @@ fn stats_of(drawn: &Drawn) -> serde_json::Value {
         "fragments": stats.fragments,
         "regions": drawn.drawing.regions.len(),
         "polylines": lines.len(),
+        "segments": drawn.drawing.segments(),
+        "free-points": drawn.drawing.points.len(),
         "points": lines.iter().map(|line| line.points.len()).sum::<usize>(),
         "visible-millimetres": drawn.drawing.length(|line| line.layers == 0),
         "hidden-millimetres": drawn.drawing.length(|line| line.layers > 0),

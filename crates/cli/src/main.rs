@@ -12,6 +12,7 @@ mod depth_cue;
 mod draw_args;
 mod draw_command;
 mod draw_file;
+mod draw_sheet;
 mod exit;
 mod fields;
 mod help;

@@ -9,9 +9,11 @@
 //! | a pyramid of grids over the triangles that hide | `grid.rs` |
 //! | lines in which triangles penetrate each other | `crossings.rs` |
 //! | for each edge, the parts that triangles hide | `hiding.rs`, `place.rs`, `visibility.rs` |
+//! | free points that are visible | `points.rs` |
 //! | strokes, of which no two coincide | `strokes.rs` |
 //! | the visible surface as regions that do not overlap | `fill.rs` |
 //! | long polylines on the page | `chains.rs`, `layout.rs` |
+//! | several views on one sheet | `sheet/` |
 //!
 //! Nothing depends on the number of threads.
 //!
@@ -40,8 +42,10 @@ mod hiding;
 mod layout;
 mod page_mesh;
 mod place;
+mod points;
 mod projection;
 mod run;
+pub mod sheet;
 mod strokes;
 #[cfg(test)]
 mod testing;
@@ -53,10 +57,11 @@ pub use layout::PageSize;
 pub use visibility::VisibilityStats;
 
 use grid::Grid;
+use layout::Content;
 use page_mesh::{PageMesh, Triangle};
 use run::Run;
 use visibility::{Search, Wanted, fragments};
-use vitral_exec::{Budget, Limit, Workers};
+use vitral_exec::{Achieved, Budget, Limit, Workers};
 use vitral_frame::Drawing;
 use vitral_frame::drawing::LineClass;
 use vitral_scene::{Camera, World, depth_range};
@@ -70,6 +75,10 @@ pub struct DrawingSettings {
     pub hidden_layers: u32,
     /// Edges at a larger angle are creases, radians.
     pub crease_angle: f64,
+    /// Leave out edges between two faces whose normals agree within a degree, unless they are contours.
+    pub hide_tangent: bool,
+    /// The most segments that lines and outlines may have in all.
+    pub max_segments: Option<u64>,
     /// The sheet.
     pub page: PageSize,
     /// Distance of the drawing from the border of the sheet, millimetres.
@@ -84,6 +93,8 @@ impl Default for DrawingSettings {
             lines: Classes::USUAL,
             hidden_layers: 0,
             crease_angle: std::f64::consts::FRAC_PI_6,
+            hide_tangent: false,
+            max_segments: None,
             page: PageSize::default(),
             margin: 5.0,
             brute_force: false,
@@ -133,7 +144,7 @@ pub fn draw(
     let run = Run::new(workers, budget);
     let view = camera.transform(aspect, depth_range(camera, &world.bounds));
     let projected = projection::project(world, &view, aspect, &run)?;
-    let mut mesh = edges::with_edges(projected, settings.crease_angle, &run)?;
+    let mut mesh = edges::with_edges(projected, settings.crease_angle, settings.hide_tangent, &run)?;
     let grid = Grid::new(&mesh, |triangle| triangle.hides, &run)?;
     let mut stats = DrawingStats {
         triangles: mesh.triangles.len() as u64,
@@ -145,17 +156,27 @@ pub fn draw(
         stats.intersections = intersect(&mut mesh, &grid, settings.hidden_layers > 0, &run)?;
     }
 
-    let wanted = Wanted { classes: settings.lines, most_layers: settings.hidden_layers };
+    let wanted =
+        Wanted { classes: settings.lines, most_layers: settings.hidden_layers, most_segments: settings.max_segments };
     let search = if settings.brute_force { Search::All } else { Search::Grid(&grid) };
     let (fragments, visibility) = fragments(&mesh, search, wanted, &run)?;
     (stats.fragments, stats.visibility) = (fragments.len() as u64, visibility);
     let strokes = strokes::strokes(&mesh, &fragments, settings.lines, &run)?;
+    let points = match settings.lines.has(LineClass::Boundary) {
+        true => points::visible_points(&mesh, search, &run)?,
+        false => Vec::new(),
+    };
     budget.check("lines")?;
     let regions = match palette {
         Some(palette) => fill::regions(&mesh, &grid, palette, &run)?,
         None => Vec::new(),
     };
-    let drawing = layout::lay_out(&strokes, &regions, settings.page, settings.margin);
+    let content = Content { size: mesh.size, strokes: &strokes, regions: &regions, points: &points };
+    let drawing = layout::lay_out(&content, settings.page, settings.margin);
+    if let Some(limit) = settings.max_segments.filter(|&limit| drawing.segments() > limit) {
+        let achieved = Achieved { done: limit, whole: drawing.segments(), pieces: "segments" };
+        return Err(Limit::Segments { limit, stage: "the layout", achieved });
+    }
     Ok(Drawn { drawing, stats })
 }
 

@@ -1,7 +1,9 @@
 //! Vector drawings: the lines and surfaces that the renderer's camera sees, and files of them.
 
 use crate::{Camera, Error, Projection, Renderer};
-use vitral_draw::{DrawingSettings, Drawn, FaceLook, draw};
+use vitral_draw::sheet::{Sheet, SheetLayout};
+use vitral_draw::{DrawingSettings, Drawn, FaceLook, PageSize, draw};
+use vitral_exec::Limit;
 use vitral_frame::Drawing;
 use vitral_io::encode::{self, DrawingOptions};
 use vitral_light::constant_color;
@@ -30,8 +32,7 @@ impl Renderer {
     /// # Errors
     /// A limit that was reached.
     pub fn draw(&self, settings: &DrawingSettings) -> Result<Drawn, Error> {
-        let (camera, execution) = (self.frame_camera(), self.execution());
-        Ok(draw(self.world(), &camera, self.aspect(), settings, None, &execution.workers, &execution.budget)?)
+        Ok(self.drawn(&self.frame_camera(), self.aspect(), settings, false)?)
     }
 
     /// As [`draw`](Self::draw), with the visible surfaces as regions in the colours of their materials, shaded by a light over the
@@ -40,16 +41,56 @@ impl Renderer {
     /// # Errors
     /// A limit that was reached.
     pub fn draw_filled(&self, settings: &DrawingSettings) -> Result<Drawn, Error> {
-        let (camera, execution) = (self.frame_camera(), self.execution());
-        let (materials, light) = (&self.scene().materials, towards_light(&camera));
+        Ok(self.drawn(&self.frame_camera(), self.aspect(), settings, true)?)
+    }
+
+    /// Draws a sheet of views from standard sides, [`up`](Self::up) upwards in them; [`DrawingSettings::page`] is the whole sheet.
+    ///
+    /// ```
+    /// use vitral::{DrawingSettings, PageSize, Sheet, SheetAngle, View};
+    ///
+    /// let renderer = vitral::open("builtin:teapot")?;
+    /// let views = vec![View::Front, View::Top, View::Right, View::Iso];
+    /// let sheet = Sheet { views, angle: SheetAngle::First, scale: None, filled: false };
+    /// let page = PageSize::Sheet { width: 420.0, height: 297.0 };
+    /// let (drawn, layout) = renderer.draw_sheet(&DrawingSettings { page, ..DrawingSettings::default() }, &sheet)?;
+    /// assert_eq!((drawn.drawing.width, layout.views.len()), (420.0, 4));
+    /// # Ok::<(), vitral::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Views that do not fit the page, or a limit that was reached.
+    pub fn draw_sheet(&self, settings: &DrawingSettings, sheet: &Sheet) -> Result<(Drawn, SheetLayout), Error> {
+        let layout = sheet.lay_out(self.world(), self.up, settings.page, settings.margin, &self.execution().workers)?;
+        let (mut drawings, mut segments) = (Vec::new(), 0);
+        for view in &layout.views {
+            // Segments are limited over all views.
+            let max_segments = settings.max_segments.map(|limit| limit - segments);
+            let page = PageSize::Window { window: view.window };
+            let of_view = DrawingSettings { page, max_segments, ..*settings };
+            let drawn = self.drawn(&view.camera, 1.0, &of_view, sheet.filled);
+            let drawn = drawn.map_err(|limit| match (limit, settings.max_segments) {
+                (Limit::Segments { stage, achieved, .. }, Some(limit)) => Limit::Segments { limit, stage, achieved },
+                (limit, _) => limit,
+            })?;
+            segments += drawn.drawing.segments();
+            drawings.push(drawn);
+        }
+        Ok((layout.compose(drawings), layout))
+    }
+
+    /// What `camera` sees, with filled surfaces or without.
+    fn drawn(&self, camera: &Camera, aspect: f64, settings: &DrawingSettings, filled: bool) -> Result<Drawn, Limit> {
+        let execution = self.execution();
+        let (materials, light) = (&self.scene().materials, towards_light(camera));
         let palette = |look: &FaceLook| {
             let material = look.material.and_then(|index| materials.get(index as usize)).cloned().unwrap_or_default();
             let lit = Vec3::from_array(look.normal).dot(light).max(0.0);
             let brightness = ((AMBIENT + (1.0 - AMBIENT) * lit) * SHADES).round() / SHADES;
             constant_color(&material).map(|c| byte_from_unit(srgb_from_linear(c * brightness)))
         };
-        let palette = Some(&palette as &vitral_draw::Palette<'_>);
-        Ok(draw(self.world(), &camera, self.aspect(), settings, palette, &execution.workers, &execution.budget)?)
+        let palette = filled.then_some(&palette as &vitral_draw::Palette<'_>);
+        draw(self.world(), camera, aspect, settings, palette, &execution.workers, &execution.budget)
     }
 
     /// The longer side of the window that a drawing shows, in units of the world; `None` in perspective, where nothing is to scale.

@@ -6,7 +6,7 @@ use crate::render_args::{CameraArgs, EyeArgs, LightArgs, ProcessArgs, ProgressWh
 use crate::values;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use vitral::{ColorBy, Illumination, LineClass, LineClasses, Pens, PolygonOrder, Seams, TitleBlock, Visibility};
+use vitral::{ColorBy, Illumination, LineClass, LineClasses, Pens, PolygonOrder, Seams, TitleBlock, View, Visibility};
 
 /// Options of `vitral draw`.
 #[derive(Args, Debug, Default)]
@@ -60,6 +60,12 @@ pub(crate) struct LineArgs {
     /// Edges at a larger angle are creases, 0 (all) to 180 (none) [default: 30]
     #[arg(long, value_name = "DEGREES", value_parser = values::half_turn, allow_negative_numbers = true)]
     pub(crate) crease_angle: Option<f64>,
+    /// Leave out tangent edges: those between two faces whose normals agree within a degree, unless they are contours
+    #[arg(long)]
+    pub(crate) hide_tangent: bool,
+    /// The most segments of lines and outlines, before --simplify and dashes; more end the work with exit code 7
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=u64::MAX), allow_negative_numbers = true)]
+    pub(crate) max_segments: Option<u64>,
     #[arg(long, value_name = "CLASS=MM", value_parser = stroke, help = stroke_help())]
     pub(crate) stroke: Vec<(String, f64)>,
 }
@@ -174,6 +180,13 @@ pub(crate) struct PageArgs {
     /// Leave out corners of lines that are at most MM from the line without them [default: 0]
     #[arg(long, value_name = "MM", value_parser = values::not_negative, allow_negative_numbers = true)]
     pub(crate) simplify: Option<f64>,
+    /// A sheet with several views to one scale, 15 mm apart, placed by --angle: a list of front, back, left, right, top, bottom
+    /// and iso. The last comes into a free corner; with --scale it may get a smaller one. Below them is the symbol of the projection
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = crate::choices::view())]
+    pub(crate) views: Vec<View>,
+    /// The method of projection of --views [default: first]
+    #[arg(long, value_name = "METHOD", value_enum)]
+    pub(crate) angle: Option<Angle>,
     /// A row of a table below the drawing, in strokes on a layer of their own; repeatable
     #[arg(long, value_name = "KEY=VALUE", value_parser = title_row)]
     pub(crate) title_block: Vec<(String, String)>,
@@ -183,6 +196,16 @@ pub(crate) struct PageArgs {
     /// Filled regions of SVG files tell the id of their surface as data-face
     #[arg(long)]
     pub(crate) svg_ids: bool,
+}
+
+/// Methods of orthographic projection.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Angle {
+    /// The view from the right stands left of the front, that from above below it (ISO, Europe)
+    #[default]
+    First,
+    /// The view from the right stands right of the front, that from above above it (America)
+    Third,
 }
 
 /// Units of models.

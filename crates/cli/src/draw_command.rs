@@ -3,6 +3,7 @@
 use crate::draw_args::{DrawArgs, Hidden, PageArgs, Sheet, Style};
 use crate::draw_file::{DrawFile, check_fits, scaled_page};
 use crate::draw_polygons;
+use crate::draw_sheet;
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::{self, Failure};
@@ -10,7 +11,8 @@ use crate::resolve::{execution_within, overlay_files, save_state, set_lights, se
 use serde_json::json;
 use std::time::Instant;
 use vitral::{
-    Drawing, DrawingSettings, Drawn, FillSettings, LineClasses, PageSize, PolygonDrawing, Renderer, State, World,
+    Drawing, DrawingSettings, Drawn, FillSettings, LineClass, LineClasses, PageSize, PolygonDrawing, Renderer, State,
+    World,
 };
 
 /// Runs the verb; gives the exit code.
@@ -18,6 +20,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     let start = Instant::now();
     draw_polygons::check_options(args)?;
     let state = state_of(args)?;
+    draw_sheet::check_options(args, &state)?;
     let mut settings = settings_of(args)?;
     let file = DrawFile::new(args, &state)?;
     settings.page = file.page_above_title(settings.page, settings.margin)?;
@@ -43,11 +46,7 @@ fn draw(
     start: Instant,
 ) -> Result<(), Failure> {
     // Read the models.
-    let mut scene = state.load_scene_on(&execution.workers)?;
-    let points: usize = scene.meshes.iter().map(|mesh| mesh.points.len()).sum();
-    if points > 0 {
-        scene.warnings.push(format!("{points} free points are not drawn yet"));
-    }
+    let scene = state.load_scene_on(&execution.workers)?;
     if !args.report.quiet {
         report::warnings(&scene.warnings);
     }
@@ -57,19 +56,27 @@ fn draw(
     let load_seconds = start.elapsed().as_secs_f64();
 
     // Draw.
-    settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
-    let made = match args.polygons() {
-        Some(algorithm) => Made::Polygons(draw_polygons::draw(args, algorithm, &renderer, &settings)?),
-        None if args.style() == Style::HiddenLine => Made::Exact(renderer.draw(&settings)?),
-        None => {
-            let fill = fill_of(args);
-            if fill.transparency && renderer.opacities().iter().all(|&opacity| opacity == 1.0) && !args.report.quiet {
-                report::warnings(&["--transparency: the models have no transparent surfaces".to_owned()]);
-            }
-            Made::Exact(renderer.draw_filled(&settings, &fill)?)
-        }
+    let is_opaque = renderer.opacities().iter().all(|&opacity| opacity == 1.0);
+    if args.fill.transparency && is_opaque && !args.report.quiet {
+        report::warnings(&["--transparency: the models have no transparent surfaces".to_owned()]);
+    }
+    let mut views = None;
+    let made = if !args.page.views.is_empty() {
+        let (drawn, layout) = draw_sheet::draw(args, &renderer, &settings)?;
+        views = Some(draw_sheet::stats_of(args, &layout));
+        Made::Exact(drawn)
+    } else {
+        settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
+        let made = match args.polygons() {
+            Some(algorithm) => Made::Polygons(draw_polygons::draw(args, algorithm, &renderer, &settings)?),
+            None => Made::Exact(match fill_of(args) {
+                Some(fill) => renderer.draw_filled(&settings, &fill)?,
+                None => renderer.draw(&settings)?,
+            }),
+        };
+        check_fits(args, &settings, made.drawing())?;
+        made
     };
-    check_fits(args, &settings, made.drawing())?;
     let draw_seconds = start.elapsed().as_secs_f64() - load_seconds;
 
     // Write.
@@ -84,6 +91,9 @@ fn draw(
     report::write(&file.path, &bytes)?;
     if let Some(mut stats) = counted {
         use std::io::Write;
+        if let Some(views) = views {
+            stats["views"] = views;
+        }
         let total = start.elapsed().as_secs_f64();
         stats["bytes"] = bytes.len().into();
         stats["charged-bytes"] = renderer.execution().budget.peak().into();
@@ -137,10 +147,12 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
 /// The state with the projection of drawings: a parallel one, unless that is said or the camera has an angle of view.
 fn projected(args: &DrawArgs, state: &State, world: &World) -> State {
     let mut state = state.clone();
-    state.viewpoint = state.viewpoint.or_own(world);
+    if args.page.views.is_empty() {
+        state.viewpoint = state.viewpoint.or_own(world);
+    }
     let viewpoint = &mut state.viewpoint;
     let has_angle = viewpoint.view_angle_degrees.is_some() || viewpoint.camera_index.is_some();
-    viewpoint.orthographic = !args.perspective && (viewpoint.orthographic || !has_angle);
+    viewpoint.orthographic = !args.perspective && (!args.page.views.is_empty() || viewpoint.orthographic || !has_angle);
     state
 }
 
@@ -157,6 +169,21 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
         );
     }
 
+    // Tangent edges are smooth ones, borders of materials, or creases of a small angle.
+    let classes = lines.lines.unwrap_or(usual.lines);
+    let crease_angle = lines.crease_angle.map_or(usual.crease_angle, f64::to_radians);
+    let has_tangent = [LineClass::Smooth, LineClass::Material].into_iter().any(|class| classes.has(class));
+    let has_flat_creases = classes.has(LineClass::Crease) && crease_angle < 1f64.to_radians();
+    if lines.hide_tangent && !has_lines {
+        return Err(
+            Failure::usage("--hide-tangent: --style filled draws no lines").with_hint("give --style filled-lines")
+        );
+    }
+    if lines.hide_tangent && !has_tangent && !has_flat_creases {
+        return Err(Failure::usage("--hide-tangent: no tangent edges are drawn")
+            .with_hint("leave it out, or add material or smooth to --lines"));
+    }
+
     // Hidden lines are drawn behind any number of faces, if nothing else is said.
     let is_hidden_drawn = lines.hidden.is_some_and(|hidden| hidden != Hidden::None);
     let hidden_layers = match (is_hidden_drawn, lines.hidden_max_layers) {
@@ -170,19 +197,21 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
         (true, Some(layers)) => layers,
     };
     Ok(DrawingSettings {
-        lines: if has_lines { lines.lines.unwrap_or(usual.lines) } else { LineClasses::EMPTY },
+        lines: if has_lines { classes } else { LineClasses::EMPTY },
         hidden_layers,
-        crease_angle: lines.crease_angle.map_or(usual.crease_angle, f64::to_radians),
+        crease_angle,
+        hide_tangent: lines.hide_tangent,
+        max_segments: lines.max_segments,
         page: page_of(&args.page)?,
         margin: args.page.margin.unwrap_or(usual.margin),
         ..usual
     })
 }
 
-/// How its surfaces are filled.
-pub(crate) fn fill_of(args: &DrawArgs) -> FillSettings {
+/// How its surfaces are filled, if they are.
+pub(crate) fn fill_of(args: &DrawArgs) -> Option<FillSettings> {
     let (fill, usual) = (&args.fill, FillSettings::default());
-    FillSettings {
+    (args.style() != Style::HiddenLine).then(|| FillSettings {
         color_by: fill.color_by.unwrap_or(usual.color_by),
         shades: fill.shades.unwrap_or(usual.shades),
         shadows: fill.shadows,
@@ -190,7 +219,7 @@ pub(crate) fn fill_of(args: &DrawArgs) -> FillSettings {
         flatten: fill.flatten,
         seams: fill.seams.unwrap_or(usual.seams),
         by_face: args.page.svg_ids,
-    }
+    })
 }
 
 fn page_of(args: &PageArgs) -> Result<PageSize, Failure> {
@@ -227,6 +256,8 @@ fn stats_of(drawn: &Drawn) -> serde_json::Value {
         "fragments": stats.fragments,
         "regions": drawn.drawing.regions.len(),
         "polylines": lines.len(),
+        "segments": drawn.drawing.segments(),
+        "free-points": drawn.drawing.points.len(),
         "points": lines.iter().map(|line| line.points.len()).sum::<usize>(),
         "visible-millimetres": drawn.drawing.length(|line| line.layers == 0),
         "hidden-millimetres": drawn.drawing.length(|line| line.layers > 0),

@@ -1,6 +1,7 @@
 //! The file that `vitral draw` writes: its place, format and pens, and whether the options suit it.
 
 use crate::draw_args::{DrawArgs, Hidden, Style};
+use crate::draw_sheet;
 use crate::outputs::{expand, model_name};
 use crate::report::{self, Failure};
 use std::path::PathBuf;
@@ -53,7 +54,9 @@ impl DrawFile {
         options.region_outlines = Some(LineClass::Smooth).filter(|_| args.overlaps() && args.style() != Style::Filled);
         let tolerance = args.page.simplify.unwrap_or(0.0);
         let rows = &args.page.title_block;
-        let title = if rows.is_empty() { None } else { Some(TitleBlock::new(rows)) };
+        let symbol = draw_sheet::projection_symbol(args);
+        let has_block = symbol.is_some() || !rows.is_empty();
+        let title = has_block.then(|| TitleBlock::with_figure(rows, symbol.as_ref()));
         let title =
             title.transpose().map_err(|letter| Failure::usage(format!("--title-block: no strokes for `{letter}`")))?;
         Ok(Self { path, format, options, plotter: args.page.plotter, tolerance, title })
@@ -65,7 +68,7 @@ impl DrawFile {
         let height = height - title.room();
         if title.size[0] + 2.0 * margin > width || height <= 2.0 * margin {
             let [across, up] = title.size;
-            let what = format!("--title-block: a table of {across:.1} x {up:.1} mm leaves no room on the sheet");
+            let what = format!("--page: a title block of {across:.1} x {up:.1} mm leaves no room on the sheet");
             return Err(Failure::usage(what).with_hint("choose a larger --page, or shorter texts"));
         }
         Ok(PageSize::Sheet { width, height })
@@ -151,7 +154,7 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
         ),
         (strokes("hidden") && !hidden, "--stroke hidden: hidden lines are not drawn", "add --hidden dashed"),
         (
-            strokes("title") && page.title_block.is_empty(),
+            strokes("title") && page.title_block.is_empty() && draw_sheet::projection_symbol(args).is_none(),
             "--stroke title: there is no title block",
             "add --title-block",
         ),
@@ -213,7 +216,7 @@ pub(crate) fn scaled_page(args: &DrawArgs, page: PageSize, window: Option<f64>) 
     };
     let sheet = match page {
         PageSize::Sheet { width, height } => Some([width, height]),
-        PageSize::Fit { .. } | PageSize::Scaled { .. } => None,
+        PageSize::Fit { .. } | PageSize::Scaled { .. } | PageSize::Window { .. } => None,
     };
     Ok(PageSize::Scaled { window: window * args.page.unit.unwrap_or_default().millimetres() * scale, sheet })
 }
@@ -232,15 +235,23 @@ pub(crate) fn check_fits(args: &DrawArgs, settings: &DrawingSettings, drawing: &
         return Ok(());
     }
 
-    // Name the largest scale of round numbers that fits, by the same measure.
+    // Name the largest scale that fits, by the same measure.
     let ratios = [0, 1].map(|k| room_with_rounding[k] / size[k]);
-    let fitting = scale * ratios.into_iter().fold(f64::INFINITY, f64::min);
-    let fitting = match fitting < 1.0 {
-        true => format!("1:{}", (1.0 / fitting).ceil()),
-        false => format!("{}", (fitting * 100.0).floor() / 100.0),
-    };
+    Err(too_large(size, room, scale * ratios.into_iter().fold(f64::INFINITY, f64::min)))
+}
+
+/// A drawing to scale does not fit its sheet, but one at `fitting` would.
+pub(crate) fn too_large(size: [f64; 2], room: [f64; 2], fitting: f64) -> Failure {
+    let fitting = round_scale(fitting);
     let sides = |[width, height]: [f64; 2]| format!("{width:.1} x {height:.1} mm");
     let what = format!("--scale: the drawing has {}, the sheet has room for {}", sides(size), sides(room));
-    Err(Failure::usage(what)
-        .with_hint(format!("--scale {fitting} fits; or choose a larger --page, a smaller --margin")))
+    Failure::usage(what).with_hint(format!("--scale {fitting} fits; or choose a larger --page, a smaller --margin"))
+}
+
+/// The largest scale of round numbers that is no larger.
+fn round_scale(scale: f64) -> String {
+    match scale < 1.0 {
+        true => format!("1:{}", (1.0 / scale).ceil()),
+        false => format!("{}", (scale * 100.0).floor() / 100.0),
+    }
 }

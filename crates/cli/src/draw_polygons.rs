@@ -62,7 +62,7 @@ pub(crate) fn draw(
         Style::Filled => (PolygonFill::Shaded, false),
         Style::FilledLines => (PolygonFill::Shaded, true),
     };
-    let polygons = PolygonSettings { algorithm, fill, outlines, surfaces: fill_of(args) };
+    let polygons = PolygonSettings { algorithm, fill, outlines, surfaces: fill_of(args).unwrap_or_default() };
     Ok(renderer.draw_polygons(&polygons, settings)?)
 }
 

@@ -9,7 +9,7 @@ use vitral::{Error, InputError, Limit, RenderError, SettingsError};
 /// 5 cannot write, 7 a limit was reached, 130 interrupted, 1 anything else.
 pub(crate) fn exit_code(error: &Error) -> u8 {
     match error {
-        Error::Usage { .. } => 2,
+        Error::Usage { .. } | Error::Sheet(_) => 2,
         Error::Read { .. } | Error::State { .. } => 3,
         Error::Unsupported { .. } => 4,
         Error::Write { .. } => 5,
@@ -59,6 +59,9 @@ pub(crate) fn hint(error: &Error) -> Option<String> {
         }
         Error::Render(RenderError::Limit(Limit::Memory { .. })) => {
             "fewer samples or a smaller resolution need less memory".to_owned()
+        }
+        Error::Render(RenderError::Limit(Limit::Segments { .. })) => {
+            "draw fewer classes of --lines, or raise --max-segments".to_owned()
         }
         _ => String::new(),
     };

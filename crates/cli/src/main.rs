@@ -14,6 +14,7 @@ mod draw_args;
 mod draw_command;
 mod draw_file;
 mod draw_polygons;
+mod draw_sheet;
 mod exit;
 mod fields;
 mod help;

@@ -5,8 +5,7 @@
 const VERBS: [&str; 2] = ["lab", "batch"];
 
 /// Options of `draw` to come.
-const DRAWING_OPTIONS: [&str; 7] =
-    ["--angle", "--explode", "--hatch", "--hide-tangent", "--max-segments", "--section-plane", "--views"];
+const DRAWING_OPTIONS: [&str; 3] = ["--explode", "--hatch", "--section-plane"];
 
 /// Whether this option of `draw` is to come.
 pub(crate) fn drawing_option(name: &str) -> bool {

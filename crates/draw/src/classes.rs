@@ -11,6 +11,9 @@
 //! | material | of faces with different materials |
 //! | smooth | of any face |
 //!
+//! Where the normals of its two faces agree within a degree, an edge is a tangent edge: the joint of a plane and a fillet, a line on a
+//! flat wall. If these are not wanted, it is a contour or nothing.
+//!
 //! Diagonals of faces that are not flat are contours where the face turns away between their corners, and nothing else.
 //!
 //! Source: the classes are those of [Bénard & Hertzmann 2019], section 2.
@@ -89,8 +92,17 @@ pub(crate) struct Side<'a> {
     pub(crate) reversed: bool,
 }
 
-/// The classes of an edge that is part of the outlines of these faces. `threshold` is the cosine of the crease angle.
-pub(crate) fn classes_of(sides: &[Side<'_>], threshold: f32) -> Classes {
+/// Cosines of the angles between faces that decide about classes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Thresholds {
+    /// Of the crease angle: edges at larger angles are creases.
+    pub(crate) crease: f32,
+    /// Of the angle below which edges are tangent ones, if these are left out.
+    pub(crate) tangent: Option<f32>,
+}
+
+/// The classes of an edge that is part of the outlines of these faces.
+pub(crate) fn classes_of(sides: &[Side<'_>], thresholds: Thresholds) -> Classes {
     let mut classes = Classes::one(LineClass::Smooth);
     if let [_] = sides {
         return classes | Classes::one(LineClass::Boundary);
@@ -102,13 +114,15 @@ pub(crate) fn classes_of(sides: &[Side<'_>], threshold: f32) -> Classes {
     if left != right {
         classes = classes | Classes::one(LineClass::Contour);
     }
-    if sides.len() > 2 || cosine(&sides[0], &sides[1]) < threshold {
+    let flat = cosine(&sides[0], &sides[1]);
+    if sides.len() > 2 || flat < thresholds.crease {
         classes = classes | Classes::one(LineClass::Crease);
     }
     if sides.iter().any(|s| s.source.material != sides[0].source.material) {
         classes = classes | Classes::one(LineClass::Material);
     }
-    classes
+    let is_left_out = sides.len() == 2 && thresholds.tangent.is_some_and(|tangent| flat > tangent);
+    if is_left_out { classes.common(Classes::one(LineClass::Contour)) } else { classes }
 }
 
 /// The cosine of the angle between the normals of two faces, one of them turned where they run along the edge in the same direction.
@@ -126,6 +140,10 @@ mod tests {
     const ASIDE: [f32; 3] = [1.0, 0.0, 0.0];
 
     fn of(sides: &[(i8, [f32; 3], u32, bool)]) -> Vec<LineClass> {
+        with(None, sides)
+    }
+
+    fn with(tangent: Option<f32>, sides: &[(i8, [f32; 3], u32, bool)]) -> Vec<LineClass> {
         let parts: Vec<(Triangle, Source)> = sides
             .iter()
             .map(|&(facing, normal, material, _)| {
@@ -138,7 +156,7 @@ mod tests {
             .zip(sides)
             .map(|((triangle, source), side)| Side { triangle, source, reversed: side.3 })
             .collect();
-        let found = classes_of(&sides, 0.8);
+        let found = classes_of(&sides, Thresholds { crease: 0.8, tangent });
         LineClass::ALL.iter().map(|row| row.0).filter(|&class| found.has(class)).collect()
     }
 
@@ -156,6 +174,17 @@ mod tests {
         // A neighbour of the other winding lies on the other side all the same.
         assert_eq!(of(&[(1, UP, 0, false), (-1, [0.0, 0.0, -1.0], 0, false)]), [Smooth]);
         assert_eq!(of(&[(1, UP, 0, false), (1, UP, 0, true), (1, UP, 0, true)]), [Crease, Smooth]);
+    }
+
+    #[test]
+    fn tangent_edges_are_contours_or_nothing() {
+        let hidden = |sides: &[(i8, [f32; 3], u32, bool)]| with(Some(0.99), sides);
+        let [near, far] = [[0.1, 0.0, 0.995], [0.2, 0.0, 0.98]];
+        assert_eq!(hidden(&[(1, UP, 0, false), (1, near, 7, true)]), []);
+        assert_eq!(hidden(&[(1, UP, 0, false), (1, far, 7, true)]), [LineClass::Material, LineClass::Smooth]);
+        assert_eq!(hidden(&[(1, UP, 0, false), (-1, near, 0, true)]), [LineClass::Contour]);
+        assert_eq!(hidden(&[(1, UP, 0, false)]), [LineClass::Boundary, LineClass::Smooth]);
+        assert_eq!(hidden(&[(1, UP, 0, false), (1, UP, 0, true), (1, UP, 0, true)]).len(), 2, "not two faces");
     }
 
     #[test]

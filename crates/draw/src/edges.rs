@@ -8,7 +8,7 @@
 //! Cost: linear for meshes of bounded valence, at most `n log n`.
 //! Source: a counting sort by the lower vertex, as for the winged edges of [Baumgart 1975].
 
-use crate::classes::{Classes, Side, classes_of};
+use crate::classes::{Classes, Side, Thresholds, classes_of};
 use crate::page_mesh::{Edge, PageMesh, Triangle};
 use crate::projection::{Facet, Projected};
 use crate::run::Run;
@@ -20,6 +20,8 @@ use vitral_scene::buckets::{Dealt, Source};
 
 /// Vertices in one piece of work.
 const BATCH: usize = 1 << 13;
+/// Degrees between the normals of two faces up to which the edge between them is a tangent one.
+const TANGENT_DEGREES: f64 = 1.0;
 /// Bytes of an edge with two triangles, and of its uses.
 const BYTES_A_SIDE: u64 = 32;
 
@@ -34,8 +36,13 @@ struct Use {
     outline: bool,
 }
 
-/// Makes the page's mesh. `crease_angle` in radians.
-pub(crate) fn with_edges(projected: Projected, crease_angle: f64, run: &Run<'_>) -> Result<PageMesh, Limit> {
+/// Makes the page's mesh. `crease_angle` in radians; tangent edges are left out where `hide_tangent` says so.
+pub(crate) fn with_edges(
+    projected: Projected,
+    crease_angle: f64,
+    hide_tangent: bool,
+    run: &Run<'_>,
+) -> Result<PageMesh, Limit> {
     run.memory.add(projected.facets.len() as u64 * 3 * BYTES_A_SIDE)?;
     run.budget.check("edges")?;
     let (starts, mut uses) = Dealt::new(&Sides(&projected.facets), projected.vertices.len()).into_parts();
@@ -62,12 +69,15 @@ pub(crate) fn with_edges(projected: Projected, crease_angle: f64, run: &Run<'_>)
     let uses_of = |v: usize| &uses[starts[v] as usize..starts[v + 1] as usize];
     let batches = projected.vertices.len().div_ceil(BATCH);
     let duplicates = duplicates(&projected, batches, &|batch| vertices_of(batch).map(uses_of).collect(), run);
-    let threshold = (func::cos(crease_angle.clamp(0.0, std::f64::consts::PI)) - 1e-6) as f32;
+    let thresholds = Thresholds {
+        crease: (func::cos(crease_angle.clamp(0.0, std::f64::consts::PI)) - 1e-6) as f32,
+        tangent: hide_tangent.then(|| func::cos(TANGENT_DEGREES.to_radians()) as f32),
+    };
     let pieces = run.workers.map(batches, |batch| {
         let (mut edges, mut triangles) = (Vec::new(), Vec::new());
         for v in vertices_of(batch) {
             for edge in uses_of(v).chunk_by(|a, b| a.higher == b.higher) {
-                add_edge(v as u32, edge, &projected, &duplicates, threshold, &mut edges, &mut triangles);
+                add_edge(v as u32, edge, &projected, &duplicates, thresholds, &mut edges, &mut triangles);
             }
         }
         (edges, triangles)
@@ -77,12 +87,12 @@ pub(crate) fn with_edges(projected: Projected, crease_angle: f64, run: &Run<'_>)
 
 /// The mesh of the pieces, with the free lines as edges without triangles.
 fn put_together(projected: Projected, pieces: Vec<(Vec<Edge>, Vec<u32>)>, duplicates: &[u32]) -> PageMesh {
-    let Projected { size, vertices, mut triangles, sources, facets, lines } = projected;
+    let Projected { size, vertices, mut triangles, sources, facets, lines, points } = projected;
     for &t in duplicates {
         (triangles[t as usize].hides, triangles[t as usize].clear) = (false, false);
     }
     let sources = facets.iter().map(|facet| sources[facet.source as usize]).collect();
-    let mut mesh = PageMesh { size, vertices, triangles, sources, ..PageMesh::default() };
+    let mut mesh = PageMesh { size, vertices, triangles, sources, points, ..PageMesh::default() };
     for (edges, triangles) in pieces {
         let first = mesh.edge_triangles.len() as u32;
         mesh.edges.extend(edges.into_iter().map(|edge| Edge { first: first + edge.first, ..edge }));
@@ -147,7 +157,7 @@ fn add_edge(
     uses: &[Use],
     projected: &Projected,
     duplicates: &[u32],
-    threshold: f32,
+    thresholds: Thresholds,
     edges: &mut Vec<Edge>,
     triangles: &mut Vec<u32>,
 ) {
@@ -171,9 +181,9 @@ fn add_edge(
     let is_bridge = outlines.len() > 1 && outlines.iter().all(|s| s.source.surface == outlines[0].source.surface);
     let classes = if outlines.is_empty() || is_bridge {
         let all: Vec<Side<'_>> = uses.iter().filter(counts).map(side).collect();
-        classes_of(&all, threshold).common(Classes::one(LineClass::Contour))
+        classes_of(&all, thresholds).common(Classes::one(LineClass::Contour))
     } else {
-        classes_of(&outlines, threshold)
+        classes_of(&outlines, thresholds)
     };
     edges.push(Edge { ends: [lower, uses[0].higher], first, count, classes });
 }

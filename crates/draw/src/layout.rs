@@ -1,6 +1,6 @@
 //! The sheet: strokes are scaled and placed, rounded to the precision, and joined.
 //!
-//! In:   strokes and regions in units of the page's grid. Out: a [`Drawing`] in millimetres.
+//! In:   strokes, regions and points in units of the page's grid. Out: a [`Drawing`] in millimetres.
 //! Cost: that of [`chains`](crate::chains).
 
 use crate::chains::{Step, chains};
@@ -35,6 +35,11 @@ pub enum PageSize {
         /// Width and height of the sheet; `None`: as large as the drawing.
         sheet: Option<[f64; 2]>,
     },
+    /// The whole window of the camera, to scale and without margins: what is in the middle of the window is in the middle of the page.
+    Window {
+        /// Millimetres on paper along its longer side.
+        window: f64,
+    },
 }
 
 impl Default for PageSize {
@@ -54,6 +59,12 @@ struct Placement {
 }
 
 impl Placement {
+    /// Places a window of so many units.
+    fn of_window(size: [i32; 2], window: f64) -> Self {
+        let scale = window / f64::from(PAGE_UNITS);
+        Self { scale, offset: [0.0; 2], sheet: size.map(|side| f64::from(side) * scale) }
+    }
+
     /// Places a box of these corners.
     fn new(low: [f64; 2], high: [f64; 2], page: PageSize, margin: f64) -> Self {
         let size = [0, 1].map(|k| high[k] - low[k]);
@@ -64,11 +75,13 @@ impl Placement {
             PageSize::Sheet { width, height } => {
                 ratio(width - 2.0 * margin, size[0]).min(ratio(height - 2.0 * margin, size[1]))
             }
-            PageSize::Scaled { window, .. } => window / f64::from(PAGE_UNITS),
+            PageSize::Scaled { window, .. } | PageSize::Window { window } => window / f64::from(PAGE_UNITS),
         };
         let scale = if scale.is_finite() { scale } else { 0.0 };
         let sheet = match page {
-            PageSize::Fit { .. } | PageSize::Scaled { sheet: None, .. } => size.map(|side| side * scale + 2.0 * margin),
+            PageSize::Fit { .. } | PageSize::Scaled { sheet: None, .. } | PageSize::Window { .. } => {
+                size.map(|side| side * scale + 2.0 * margin)
+            }
             PageSize::Sheet { width, height } | PageSize::Scaled { sheet: Some([width, height]), .. } => {
                 [width, height]
             }
@@ -103,12 +116,26 @@ fn millimetres(point: Step) -> [f64; 2] {
     point.map(|step| f64::from(step) / STEPS_A_MILLIMETRE)
 }
 
-/// Places strokes and regions on the sheet, and joins the strokes.
-pub(crate) fn lay_out(strokes: &[Stroke], regions: &[PageRegion], page: PageSize, margin: f64) -> Drawing {
-    let outlines = regions.iter().flat_map(|region| region.rings.iter().flatten().copied());
-    let points = strokes.iter().flat_map(|stroke| stroke.ends).chain(outlines);
-    let [low, high] = bounds(points).unwrap_or_default();
-    let placement = Placement::new(low, high, page, margin);
+/// What is drawn, in units of the page's grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Content<'a> {
+    /// Width and height of the camera's window.
+    pub(crate) size: [i32; 2],
+    pub(crate) strokes: &'a [Stroke],
+    pub(crate) regions: &'a [PageRegion],
+    /// Free points.
+    pub(crate) points: &'a [[f64; 2]],
+}
+
+/// Places strokes, regions and points on the sheet, and joins the strokes.
+pub(crate) fn lay_out(content: &Content<'_>, page: PageSize, margin: f64) -> Drawing {
+    let Content { size, strokes, regions, points } = *content;
+    let outlines = regions.iter().flat_map(|region| region.rings.iter().flatten());
+    let all = strokes.iter().flat_map(|stroke| &stroke.ends).chain(outlines).chain(points);
+    let placement = match (page, bounds(all.copied()).unwrap_or_default()) {
+        (PageSize::Window { window }, _) => Placement::of_window(size, window),
+        (_, [low, high]) => Placement::new(low, high, page, margin),
+    };
     let placed: Vec<_> = strokes.iter().map(|s| (s.class, s.layers, s.ends.map(|p| placement.step(p)))).collect();
     let lines = chains(&placed)
         .into_iter()
@@ -117,14 +144,23 @@ pub(crate) fn lay_out(strokes: &[Stroke], regions: &[PageRegion], page: PageSize
             Line { class: chain.class, layers: chain.layers, points }
         })
         .collect();
+    let regions = regions.iter().filter_map(|region| placement.region(region)).collect();
+    let mut points: Vec<Step> = points.iter().map(|&point| placement.step(point)).collect();
+    points.sort_unstable();
+    points.dedup();
     let [width, height] = placement.sheet;
-    Drawing { width, height, lines, regions: regions.iter().filter_map(|region| placement.region(region)).collect() }
+    Drawing { width, height, lines, regions, points: points.into_iter().map(millimetres).collect() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use vitral_frame::drawing::LineClass;
+
+    fn lay_out(strokes: &[Stroke], points: &[[f64; 2]], page: PageSize, margin: f64) -> Drawing {
+        let content = Content { size: [PAGE_UNITS, PAGE_UNITS / 2], strokes, regions: &[], points };
+        super::lay_out(&content, page, margin)
+    }
 
     fn line(p: [f64; 2], q: [f64; 2]) -> Stroke {
         Stroke { class: LineClass::Crease, layers: 0, ends: [p, q] }
@@ -149,6 +185,15 @@ mod tests {
         assert_eq!((fit.width, fit.height), (30.0, 10.0));
         let sheet = lay_out(&strokes, &[], PageSize::Scaled { window: 40.0, sheet: Some([30.0, 20.0]) }, 5.0);
         assert_eq!(sheet.lines[0].points, [[5.0, 10.0], [25.0, 10.0]]);
+    }
+
+    #[test]
+    fn a_window_keeps_its_middle_and_points_are_drawn_once() {
+        let [half, quarter] = [2.0, 4.0].map(|part| f64::from(PAGE_UNITS) / part);
+        let window =
+            lay_out(&[], &[[half, quarter], [half, quarter], [0.0, 0.0]], PageSize::Window { window: 40.0 }, 5.0);
+        assert_eq!((window.width, window.height), (40.0, 20.0));
+        assert_eq!(window.points, [[0.0, 0.0], [20.0, 10.0]]);
     }
 
     #[test]

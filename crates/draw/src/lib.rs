@@ -9,9 +9,11 @@
 //! | a pyramid of grids over the triangles that hide | `grid.rs` |
 //! | lines in which triangles penetrate each other | `crossings.rs` |
 //! | for each edge, the parts that triangles hide | `hiding.rs`, `place.rs`, `visibility.rs` |
+//! | free points that are visible | `points.rs` |
 //! | strokes, of which no two coincide | `strokes.rs` |
 //! | the visible surface as regions that do not overlap | `fill.rs` |
 //! | long polylines on the page | `chains.rs`, `layout.rs` |
+//! | several views on one sheet | `sheet/` |
 //!
 //! Polygons that another algorithm comes to are laid out on the same page (`listed.rs`), divided in lit and shadowed parts if that is
 //! wanted (`lit.rs`).
@@ -45,9 +47,11 @@ mod listed;
 mod lit;
 mod page_mesh;
 mod place;
+mod points;
 mod projection;
 mod run;
 mod shapes;
+pub mod sheet;
 mod strokes;
 #[cfg(test)]
 mod testing;
@@ -61,10 +65,11 @@ pub use lit::LitPolygons;
 pub use visibility::VisibilityStats;
 
 use grid::Grid;
+use layout::Content;
 use page_mesh::{PageMesh, Triangle};
 use run::Run;
 use visibility::{Search, Wanted, fragments};
-use vitral_exec::{Budget, Limit, Workers};
+use vitral_exec::{Achieved, Budget, Limit, Workers};
 use vitral_frame::Drawing;
 use vitral_frame::drawing::LineClass;
 use vitral_scene::{Camera, World, depth_range};
@@ -78,6 +83,10 @@ pub struct DrawingSettings {
     pub hidden_layers: u32,
     /// Edges at a larger angle are creases, radians.
     pub crease_angle: f64,
+    /// Leave out edges between two faces whose normals agree within a degree, unless they are contours.
+    pub hide_tangent: bool,
+    /// The most segments that lines and outlines may have in all.
+    pub max_segments: Option<u64>,
     /// The sheet.
     pub page: PageSize,
     /// Distance of the drawing from the border of the sheet, millimetres.
@@ -92,6 +101,8 @@ impl Default for DrawingSettings {
             lines: Classes::USUAL,
             hidden_layers: 0,
             crease_angle: std::f64::consts::FRAC_PI_6,
+            hide_tangent: false,
+            max_segments: None,
             page: PageSize::default(),
             margin: 5.0,
             brute_force: false,
@@ -145,7 +156,7 @@ pub fn draw(
     if let Some(surfaces) = surfaces {
         projected.let_through(|material| surfaces.opacity(material));
     }
-    let mut mesh = edges::with_edges(projected, settings.crease_angle, &run)?;
+    let mut mesh = edges::with_edges(projected, settings.crease_angle, settings.hide_tangent, &run)?;
     let grid = Grid::new(&mesh, |triangle| triangle.hides, &run)?;
     let mut stats = DrawingStats {
         triangles: mesh.triangles.len() as u64,
@@ -157,11 +168,16 @@ pub fn draw(
         stats.intersections = intersect(&mut mesh, &grid, settings.hidden_layers > 0, &run)?;
     }
 
-    let wanted = Wanted { classes: settings.lines, most_layers: settings.hidden_layers };
+    let wanted =
+        Wanted { classes: settings.lines, most_layers: settings.hidden_layers, most_segments: settings.max_segments };
     let search = if settings.brute_force { Search::All } else { Search::Grid(&grid) };
     let (fragments, visibility) = fragments(&mesh, search, wanted, &run)?;
     (stats.fragments, stats.visibility) = (fragments.len() as u64, visibility);
     let strokes = strokes::strokes(&mesh, &fragments, settings.lines, &run)?;
+    let points = match settings.lines.has(LineClass::Boundary) {
+        true => points::visible_points(&mesh, search, &run)?,
+        false => Vec::new(),
+    };
     budget.check("lines")?;
     let corners = |facet: u32| {
         let instance = &world.instances[world.instance_of_facet(facet)];
@@ -173,7 +189,12 @@ pub fn draw(
         Some(surfaces) => fill::regions(&mesh, &grid, surfaces, &facets, &run)?,
         None => Vec::new(),
     };
-    let drawing = layout::lay_out(&strokes, &regions, settings.page, settings.margin);
+    let content = Content { size: mesh.size, strokes: &strokes, regions: &regions, points: &points };
+    let drawing = layout::lay_out(&content, settings.page, settings.margin);
+    if let Some(limit) = settings.max_segments.filter(|&limit| drawing.segments() > limit) {
+        let achieved = Achieved { done: limit, whole: drawing.segments(), pieces: "segments" };
+        return Err(Limit::Segments { limit, stage: "the layout", achieved });
+    }
     Ok(Drawn { drawing, stats })
 }
 

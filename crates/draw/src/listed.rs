@@ -7,7 +7,7 @@
 //! Cost: linear in corners, and that of [`strokes`](crate::strokes) for lines.
 
 use crate::fill::{FaceLook, PageRegion, Palette};
-use crate::layout::{self, PageSize};
+use crate::layout::{self, Content, PageSize};
 use crate::lit::{self, LitPolygons, Projector};
 use crate::page_mesh::NONE;
 use crate::projection::{page_size, source_of_facet};
@@ -100,7 +100,8 @@ pub fn draw_polygons(
     if polygons.fill.is_none() {
         regions.clear();
     }
-    Ok(layout::lay_out(&strokes, &regions, sheet, margin))
+    let content = Content { size, strokes: &strokes, regions: &regions, points: &[] };
+    Ok(layout::lay_out(&content, sheet, margin))
 }
 
 /// Tells which side of a face is seen.

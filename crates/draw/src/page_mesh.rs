@@ -24,6 +24,8 @@ pub(crate) struct PageMesh {
     pub(crate) edges: Vec<Edge>,
     /// The triangles at the edges, edge by edge.
     pub(crate) edge_triangles: Vec<u32>,
+    /// Free points, as vertices, each once.
+    pub(crate) points: Vec<u32>,
 }
 
 /// A triangle on the page.

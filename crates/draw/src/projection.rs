@@ -56,6 +56,8 @@ pub(crate) struct Projected {
     pub(crate) sources: Vec<Source>,
     /// Free lines, as pairs of vertices.
     pub(crate) lines: Vec<[u32; 2]>,
+    /// Free points, as vertices, each once.
+    pub(crate) points: Vec<u32>,
 }
 
 impl Projected {
@@ -133,17 +135,18 @@ pub(crate) fn project(world: &World, view: &ViewTransform, aspect: f64, run: &Ru
     for one in &placed {
         add_triangles(one, &mut clipper, &mut projected, run)?;
         add_lines(one, &mut clipper, &mut projected);
+        add_points(one, &clipper, &mut projected);
     }
     snap(&mut projected, &clip, view, run);
     finish_triangles(&mut projected, world, &placed, view, run);
     Ok(projected)
 }
 
-/// The welded vertices that triangles and free lines of an instance's mesh use, in order.
+/// The welded vertices that triangles, free lines and free points of an instance's mesh use, in order.
 fn used_vertices(instance: &Instance, weld: &Weld) -> Vec<u32> {
     let mesh = &instance.mesh;
     let mut used = vec![false; mesh.positions.len()];
-    let named = mesh.triangles.as_flattened().iter().chain(mesh.lines.as_flattened());
+    let named = mesh.triangles.as_flattened().iter().chain(mesh.lines.as_flattened()).chain(&mesh.points);
     named.for_each(|&v| used[weld.representative[v as usize] as usize] = true);
     (0..used.len() as u32).filter(|&v| used[v as usize]).collect()
 }
@@ -329,6 +332,15 @@ fn add_lines(placed: &Placed<'_>, clipper: &mut Clipper<'_>, to: &mut Projected)
             to.lines.push(clipped);
         }
     }
+}
+
+/// Adds the free points of an instance that are on the page.
+fn add_points(placed: &Placed<'_>, clipper: &Clipper<'_>, to: &mut Projected) {
+    let first = to.points.len();
+    let vertices = placed.instance.mesh.points.iter().map(|&v| placed.vertex_of[v as usize]);
+    to.points.extend(vertices.filter(|&v| clipper.vertices()[v as usize].outcode == 0));
+    to.points[first..].sort_unstable();
+    to.points.dedup();
 }
 
 /// Snaps the vertices in use to the grid.

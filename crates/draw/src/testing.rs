@@ -35,7 +35,7 @@ pub(crate) fn mesh_of(size: [i32; 2], corners: &[[GridPoint; 3]]) -> PageMesh {
         projected.facets.push(Facet { vertices, source, outline: 0b111 });
         projected.triangles.push(Triangle::new(*triangle, vertices));
     }
-    with_run(1, |run| with_edges(projected, std::f64::consts::FRAC_PI_6, run)).unwrap()
+    with_run(1, |run| with_edges(projected, std::f64::consts::FRAC_PI_6, false, run)).unwrap()
 }
 
 /// Calls `f` with so many threads and without limits.

@@ -14,14 +14,18 @@
 use crate::classes::Classes;
 use crate::grid::Grid;
 use crate::hiding::{Interval, Sides};
+use crate::layout::{Content, PageSize, lay_out};
 use crate::page_mesh::{Edge, NONE, PageMesh};
 use crate::place::{Place, Segment};
 use crate::run::Run;
+use crate::strokes::strokes;
 use std::ops::ControlFlow;
 use vitral_exec::{Limit, Spare};
 
 /// Edges in one piece of work.
 const BATCH: usize = 512;
+/// Pieces of work in a round.
+const ROUND: usize = 32;
 /// Visible pieces of an edge beyond which intervals are collected and sorted instead: inserting many is quadratic.
 const MOST_PIECES: usize = 16;
 /// Triangles that are asked between two looks at the clock.
@@ -45,6 +49,8 @@ pub(crate) struct Wanted {
     pub(crate) classes: Classes,
     /// Parts with up to so many layers in front; 0: only visible ones.
     pub(crate) most_layers: u32,
+    /// The most segments that the drawing may have.
+    pub(crate) most_segments: Option<u64>,
 }
 
 /// Counters of a pass over the edges.
@@ -78,7 +84,7 @@ pub(crate) fn fragments(
 ) -> Result<(Vec<Fragment>, VisibilityStats), Limit> {
     let (spare, batches) = (Spare::<Walk>::default(), mesh.edges.len().div_ceil(BATCH));
     run.budget.begin("edges", mesh.edges.len() as u64);
-    let pieces = run.workers.map(batches, |batch| {
+    let of_batch = |batch: usize| {
         spare.lend(|walk| {
             walk.asked.resize(mesh.triangles.len(), NONE);
             let mut found = Vec::new();
@@ -93,17 +99,55 @@ pub(crate) fn fragments(
             run.budget.progress("visibility", run.budget.achieved().done, mesh.edges.len() as u64);
             Ok(found)
         })
-    });
-    let mut fragments = Vec::new();
-    for piece in pieces {
-        fragments.extend(piece?);
+    };
+
+    // Where segments are limited, go on in rounds, and look now and then at what the fragments would become.
+    let (mut fragments, mut watch) = (Vec::new(), wanted.most_segments.map(SegmentWatch::new));
+    let round = if watch.is_some() { ROUND } else { batches.max(1) };
+    for first in (0..batches).step_by(round) {
+        for piece in run.workers.map(round.min(batches - first), |i| of_batch(first + i)) {
+            fragments.extend(piece?);
+        }
+        if let Some(watch) = watch.as_mut().filter(|_| first + round < batches) {
+            watch.look(mesh, &fragments, wanted.classes, run)?;
+        }
     }
     let stats = spare.into_inner().iter().fold(VisibilityStats::default(), |sum, walk| sum.plus(&walk.stats));
     Ok((fragments, stats))
 }
 
+/// Stops the search for fragments where their segments are far too many.
+///
+/// Fragments still get fewer: coincident ones are dropped, and those in a line are joined. So they are joined to be counted, each time
+/// that they have doubled. What is found later may join what was found, so only twice the limit stops the search; the finished
+/// drawing is counted exactly.
+struct SegmentWatch {
+    limit: u64,
+    /// Fragments at which they are counted next.
+    next: u64,
+}
+
+impl SegmentWatch {
+    fn new(limit: u64) -> Self {
+        Self { limit, next: 2 * limit }
+    }
+
+    fn look(&mut self, mesh: &PageMesh, fragments: &[Fragment], wanted: Classes, run: &Run<'_>) -> Result<(), Limit> {
+        let count = fragments.len() as u64;
+        if count <= self.next {
+            return Ok(());
+        }
+        self.next = 2 * count;
+        let strokes = strokes(mesh, fragments, wanted, run)?;
+        let content = Content { size: mesh.size, strokes: &strokes, regions: &[], points: &[] };
+        let segments = lay_out(&content, PageSize::default(), 0.0).segments();
+        let (limit, achieved) = (self.limit, run.budget.achieved());
+        if segments > 2 * limit { Err(Limit::Segments { limit, stage: "visibility", achieved }) } else { Ok(()) }
+    }
+}
+
 impl VisibilityStats {
-    fn plus(self, other: &Self) -> Self {
+    pub(crate) fn plus(self, other: &Self) -> Self {
         Self {
             edges: self.edges + other.edges,
             candidates: self.candidates + other.candidates,

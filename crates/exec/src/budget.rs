@@ -60,6 +60,16 @@ pub enum Limit {
         /// What wanted them.
         stage: &'static str,
     },
+    /// A drawing would have more segments than allowed.
+    #[error("the limit of {limit} segments was reached during {stage}{achieved}")]
+    Segments {
+        /// Segments allowed.
+        limit: u64,
+        /// What was being done.
+        stage: &'static str,
+        /// How far it had come.
+        achieved: Achieved,
+    },
     /// The user cancelled.
     #[error("cancelled during {stage}")]
     Cancelled {

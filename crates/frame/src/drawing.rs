@@ -18,6 +18,8 @@ pub struct Drawing {
     /// and where they are clear; in a list from back to front, as painter's algorithm and BSP trees make it, later regions cover
     /// earlier ones.
     pub regions: Vec<Region>,
+    /// Free points of the model that are visible, each once.
+    pub points: Vec<[f64; 2]>,
 }
 
 /// A polyline.
@@ -53,7 +55,7 @@ pub struct Region {
 pub enum LineClass {
     /// Where a surface turns away from the viewer.
     Contour,
-    /// Where a surface ends: an edge of one face; a free line of the model.
+    /// Where a surface ends: an edge of one face; a free line of the model. Free points are drawn where this class is.
     Boundary,
     /// A sharp edge.
     Crease,
@@ -71,7 +73,7 @@ impl LineClass {
     /// All classes with their names and a line each, the most important first.
     pub const ALL: [(Self, &'static str, &'static str); 7] = [
         (Self::Contour, "contour", "where a surface turns away from the viewer"),
-        (Self::Boundary, "boundary", "where a surface ends, and free lines of the model"),
+        (Self::Boundary, "boundary", "where a surface ends, and free lines and points of the model"),
         (Self::Crease, "crease", "edges with an angle above the crease angle"),
         (Self::Material, "material", "where two materials meet"),
         (Self::Intersection, "intersection", "where faces penetrate each other"),
@@ -91,11 +93,25 @@ impl Drawing {
         self.lines.iter().filter(|line| wanted(line)).map(Line::length).sum()
     }
 
-    /// Width and height of the box round all lines and regions, in millimetres.
+    /// The straight segments of all lines and outlines of regions.
+    pub fn segments(&self) -> u64 {
+        let lines = self.lines.iter().map(|line| line.points.len() as u64 - 1);
+        let outlines = self.regions.iter().flat_map(|region| region.rings.iter().map(|ring| ring.len() as u64));
+        lines.chain(outlines).sum()
+    }
+
+    /// Moves everything on the page, which keeps its size.
+    pub fn shift(&mut self, by: [f64; 2]) {
+        let lines = self.lines.iter_mut().flat_map(|line| &mut line.points);
+        let outlines = self.regions.iter_mut().flat_map(|region| region.rings.iter_mut().flatten());
+        lines.chain(outlines).chain(&mut self.points).for_each(|point| *point = [point[0] + by[0], point[1] + by[1]]);
+    }
+
+    /// Width and height of the box round all lines, regions and points, in millimetres.
     pub fn extent(&self) -> [f64; 2] {
         let lines = self.lines.iter().flat_map(|line| &line.points);
         let outlines = self.regions.iter().flat_map(|region| region.rings.iter().flatten());
-        let around = bounds(lines.chain(outlines).copied());
+        let around = bounds(lines.chain(outlines).chain(&self.points).copied());
         around.map_or([0.0; 2], |[low, high]| [high[0] - low[0], high[1] - low[1]])
     }
 
@@ -162,9 +178,11 @@ mod tests {
         };
         let line = |layers, points: &[[f64; 2]]| Line { class: LineClass::Crease, layers, points: points.to_vec() };
         let lines = vec![line(0, &square(0.0, 3.0)), line(2, &[[0.0, 0.0], [3.0, 4.0]])];
-        let drawing = Drawing { width: 3.0, height: 4.0, lines, regions: vec![region] };
+        let mut drawing = Drawing { width: 3.0, height: 4.0, lines, regions: vec![region], points: vec![[1.0, 5.0]] };
         assert_eq!((drawing.area(), drawing.length(|l| l.layers == 0), drawing.length(|_| true)), (8.0, 9.0, 14.0));
-        assert_eq!(drawing.extent(), [3.0, 4.0]);
+        assert_eq!((drawing.extent(), drawing.segments()), ([3.0, 5.0], 3 + 1 + 8));
+        drawing.shift([1.0, -2.0]);
+        assert_eq!((drawing.points[0], drawing.lines[1].points[1]), ([2.0, 3.0], [4.0, 2.0]));
         assert_eq!((signed_area(&[]), bounds([]), Drawing::default().extent()), (0.0, None, [0.0; 2]));
     }
 }

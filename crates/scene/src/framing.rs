@@ -129,6 +129,11 @@ pub fn frame_turning(
     fit.camera(need)
 }
 
+/// How far the finite points of a world reach from `center` in a direction (unit); at least 0.
+pub fn reach(world: &World, center: DVec3, direction: DVec3, workers: &Workers) -> f64 {
+    greatest_need(world, |point| (point - center).dot(direction), workers)
+}
+
 /// The greatest of what the finite points of a world need.
 ///
 /// What a point needs must be convex: no point of a box needs more than its neediest corner then, and runs of triangles are looked

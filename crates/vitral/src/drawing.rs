@@ -5,12 +5,14 @@ mod colors;
 use crate::{Camera, Error, Projection, Renderer};
 pub(crate) use colors::Colors;
 use std::collections::BTreeMap;
-use vitral_draw::{DrawingSettings, Drawn, FaceLook, LitPolygons, Seams, Surfaces, draw};
+use vitral_draw::sheet::{Sheet, SheetLayout};
+use vitral_draw::{DrawingSettings, Drawn, FaceLook, LitPolygons, PageSize, Seams, Surfaces, draw};
+use vitral_exec::Limit;
 use vitral_frame::Drawing;
 use vitral_io::encode::{self, DrawingOptions};
 use vitral_light::{AlphaMode, AreaShape, Light, LightKind};
 use vitral_math::{DVec3, DVec4};
-use vitral_render::{Settings, Shadows, Transparency, registry, shadow};
+use vitral_render::{Error as RenderError, Settings, Shadows, Transparency, registry, shadow};
 
 /// Most lights that cast shadows in a drawing.
 const MOST_LIGHTS: usize = 32;
@@ -91,7 +93,7 @@ impl Renderer {
     /// # Errors
     /// A limit that was reached.
     pub fn draw(&self, settings: &DrawingSettings) -> Result<Drawn, Error> {
-        self.draw_surfaces(settings, None)
+        self.draw_from(&self.frame_camera(), self.aspect(), settings, None)
     }
 
     /// As [`draw`](Self::draw), with the visible surfaces as regions.
@@ -108,10 +110,68 @@ impl Renderer {
     /// # Errors
     /// Shadows of more than 32 lights; a limit that was reached.
     pub fn draw_filled(&self, settings: &DrawingSettings, fill: &FillSettings) -> Result<Drawn, Error> {
-        let camera = self.frame_camera();
-        let colors = Colors::new(self, &camera, fill);
+        self.draw_from(&self.frame_camera(), self.aspect(), settings, Some(fill))
+    }
+
+    /// Draws a sheet of views from standard sides, [`up`](Self::up) upwards in them, with filled surfaces if `fill` is given;
+    /// [`DrawingSettings::page`] is the whole sheet.
+    ///
+    /// ```
+    /// use vitral::{DrawingSettings, PageSize, Sheet, SheetAngle, View};
+    ///
+    /// let renderer = vitral::open("builtin:teapot")?;
+    /// let views = vec![View::Front, View::Top, View::Right, View::Iso];
+    /// let sheet = Sheet { views, angle: SheetAngle::First, scale: None };
+    /// let page = PageSize::Sheet { width: 420.0, height: 297.0 };
+    /// let settings = DrawingSettings { page, ..DrawingSettings::default() };
+    /// let (drawn, layout) = renderer.draw_sheet(&settings, &sheet, None)?;
+    /// assert_eq!((drawn.drawing.width, layout.views.len()), (420.0, 4));
+    /// # Ok::<(), vitral::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Views that do not fit the page; as [`draw_filled`](Self::draw_filled).
+    pub fn draw_sheet(
+        &self,
+        settings: &DrawingSettings,
+        sheet: &Sheet,
+        fill: Option<&FillSettings>,
+    ) -> Result<(Drawn, SheetLayout), Error> {
+        let layout = sheet.lay_out(self.world(), self.up, settings.page, settings.margin, &self.execution().workers)?;
+        let (mut drawings, mut segments) = (Vec::new(), 0);
+        for view in &layout.views {
+            // Segments are limited over all views.
+            let max_segments = settings.max_segments.map(|limit| limit - segments);
+            let page = PageSize::Window { window: view.window };
+            let of_view = DrawingSettings { page, max_segments, ..*settings };
+            let drawn = self.draw_from(&view.camera, 1.0, &of_view, fill);
+            let drawn = drawn.map_err(|error| match (error, settings.max_segments) {
+                (Error::Render(RenderError::Limit(Limit::Segments { stage, achieved, .. })), Some(limit)) => {
+                    Limit::Segments { limit, stage, achieved }.into()
+                }
+                (error, _) => error,
+            })?;
+            segments += drawn.drawing.segments();
+            drawings.push(drawn);
+        }
+        Ok((layout.compose(drawings), layout))
+    }
+
+    /// What `camera` sees in a window of `aspect`, with filled surfaces if `fill` is given.
+    fn draw_from(
+        &self,
+        camera: &Camera,
+        aspect: f64,
+        settings: &DrawingSettings,
+        fill: Option<&FillSettings>,
+    ) -> Result<Drawn, Error> {
+        let (world, execution) = (self.world(), self.execution());
+        let Some(fill) = fill else {
+            return Ok(draw(world, camera, aspect, settings, None, &execution.workers, &execution.budget)?);
+        };
+        let colors = Colors::new(self, camera, fill);
         let palette = |look: &FaceLook| colors.of(look);
-        let lit = if fill.shadows { self.lit_polygons(&camera)? } else { Vec::new() };
+        let lit = if fill.shadows { self.lit_polygons(camera)? } else { Vec::new() };
         let opacities = if fill.transparency { self.opacities() } else { Vec::new() };
         let surfaces = Surfaces {
             opacities: &opacities,
@@ -121,12 +181,7 @@ impl Renderer {
             by_face: fill.by_face,
             ..Surfaces::new(&palette)
         };
-        self.draw_surfaces(settings, Some(&surfaces))
-    }
-
-    fn draw_surfaces(&self, settings: &DrawingSettings, surfaces: Option<&Surfaces<'_>>) -> Result<Drawn, Error> {
-        let (camera, execution) = (self.frame_camera(), self.execution());
-        Ok(draw(self.world(), &camera, self.aspect(), settings, surfaces, &execution.workers, &execution.budget)?)
+        Ok(draw(world, camera, aspect, settings, Some(&surfaces), &execution.workers, &execution.budget)?)
     }
 
     /// The opacity of each material, 1 where it is not blended.

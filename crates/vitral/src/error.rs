@@ -37,6 +37,9 @@ pub enum Error {
     /// A picture cannot be made.
     #[error(transparent)]
     Render(#[from] vitral_render::Error),
+    /// Views that cannot be put on a sheet.
+    #[error(transparent)]
+    Sheet(#[from] vitral_draw::sheet::SheetError),
     /// Known, but not possible here.
     #[error("{what}")]
     Unsupported {

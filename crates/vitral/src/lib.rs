@@ -89,6 +89,7 @@ pub use state::{Objects, State};
 pub use system_clock::SystemClock;
 pub use viewpoint::Viewpoint;
 
+pub use vitral_draw::sheet::{Angle as SheetAngle, PlacedView, SYMBOL_SIZE, Sheet, SheetError, SheetLayout, symbol};
 pub use vitral_draw::{
     Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, PageSize, Seams, VisibilityStats,
     covered_area,
@@ -96,7 +97,7 @@ pub use vitral_draw::{
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
 pub use vitral_frame::drawing::{Line, LineClass, Region};
 pub use vitral_frame::{Drawing, Encoding, Filter, Frame, MipFilter, Plane, Sampler, Texture, Wrap};
-pub use vitral_io::encode::{DrawingOptions, Pens, Polyline, TitleBlock, for_plotter, simplify};
+pub use vitral_io::encode::{DrawingOptions, Figure, Pens, Polyline, TitleBlock, for_plotter, simplify};
 pub use vitral_io::{Error as InputError, Format, NoFiles, ResolveError, Resolver};
 pub use vitral_light::{
     AlphaMode, AreaShape, Attenuation, Illumination, Light, LightKind, Material, Reflectance, Rgb, TextureRef,

@@ -10,7 +10,7 @@ fn found(mesh: &PageMesh, brute: bool, most_layers: u32, threads: usize) -> Vec<
     with_run(threads, |run| {
         let grid = Grid::new(mesh, |t| t.hides, run).unwrap();
         let search = if brute { Search::All } else { Search::Grid(&grid) };
-        fragments(mesh, search, Wanted { classes: Classes::ALL, most_layers }, run).unwrap().0
+        fragments(mesh, search, Wanted { classes: Classes::ALL, most_layers, most_segments: None }, run).unwrap().0
     })
 }
 
@@ -117,7 +117,7 @@ fn limits_stop_a_walk() {
     let (workers, budget) = (vitral_exec::Workers::single(), vitral_exec::Budget::default());
     budget.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
     let run = Run::new(&workers, &budget);
-    let wanted = Wanted { classes: Classes::ALL, most_layers: 0 };
+    let wanted = Wanted { classes: Classes::ALL, most_layers: 0, most_segments: None };
     assert!(matches!(fragments(&mesh, Search::All, wanted, &run), Err(Limit::Cancelled { .. })));
     let small = vitral_exec::Budget::default().with_memory_limit(Some(8));
     assert!(matches!(Grid::new(&mesh, |_| true, &Run::new(&workers, &small)), Err(Limit::Memory { .. })));

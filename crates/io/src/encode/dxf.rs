@@ -10,7 +10,7 @@ use std::fmt::{Display, Write};
 use vitral_frame::Drawing;
 
 /// Colour numbers of layers by their numbers; 7 is black on white and white on black.
-const COLORS: [u32; 10] = [7, 7, 5, 3, 6, 1, 2, 8, 4, 9];
+const COLORS: [u32; 11] = [7, 7, 5, 3, 6, 1, 2, 8, 4, 9, 30];
 /// The line types' names.
 const SOLID: &str = "CONTINUOUS";
 const DASHED: &str = "HIDDEN";
@@ -42,6 +42,11 @@ pub fn dxf(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
     for layer in &layers {
         for (corners, closed) in layer.lines.iter().filter_map(|line| precision.line(line)) {
             file.entity(layer.name, &corners, closed);
+        }
+        for &point in layer.points {
+            file.group(0, "POINT");
+            file.group(8, layer.name);
+            file.point(10, point.map(|at| precision.steps(at)));
         }
     }
     file.group(0, "ENDSEC");
@@ -166,15 +171,16 @@ mod tests {
             line(LineClass::Contour, 0, &[[1.0, 1.0], [2.5, 1.0], [2.0, 2.0], [1.0, 1.0]]),
             line(LineClass::Crease, 1, &[[0.0, 0.0], [1.5, 0.25]]),
         ];
-        let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: Vec::new() };
+        let drawing = Drawing { width: 3.0, height: 2.0, lines, points: vec![[0.5, 1.0]], ..Drawing::default() };
         let text = String::from_utf8(dxf(&drawing, &DrawingOptions::default())).unwrap();
         for part in [
             "9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n4\n9\n$EXTMIN\n10\n0.0\n20\n0.0\n30\n0.0\n9\n$EXTMAX\n10\n3.0\n20\n2.0\n",
             "LTYPE\n2\nHIDDEN\n70\n0\n3\nHidden __ __ __ __\n72\n65\n73\n2\n40\n3.0\n49\n2.0\n49\n-1.0\n",
-            "0\nLAYER\n2\nhidden\n70\n0\n62\n4\n6\nHIDDEN\n0\nLAYER\n2\ncontour\n70\n0\n62\n7\n6\nCONTINUOUS\n0\nENDTAB\n",
+            "0\nLAYER\n2\nhidden\n70\n0\n62\n4\n6\nHIDDEN\n0\nLAYER\n2\ncontour\n70\n0\n62\n7\n6\nCONTINUOUS\n\
+             0\nLAYER\n2\npoint\n70\n0\n62\n30\n6\nCONTINUOUS\n0\nENDTAB\n",
             "ENTITIES\n0\nLINE\n8\nhidden\n10\n0.0\n20\n0.0\n11\n1.5\n21\n0.25\n0\nPOLYLINE\n8\ncontour\n66\n1\n10\n0.0\n20\n0.0\n70\n1\n\
              0\nVERTEX\n8\ncontour\n10\n1.0\n20\n1.0\n0\nVERTEX\n8\ncontour\n10\n2.5\n20\n1.0\n0\nVERTEX\n8\ncontour\n10\n2.0\n20\n2.0\n\
-             0\nSEQEND\n8\ncontour\n0\nENDSEC\n0\nEOF\n",
+             0\nSEQEND\n8\ncontour\n0\nPOINT\n8\npoint\n10\n0.5\n20\n1.0\n0\nENDSEC\n0\nEOF\n",
         ] {
             assert!(text.contains(part), "{part}\nis not in\n{text}");
         }

@@ -141,6 +141,11 @@ fn content(drawing: &Drawing, options: &DrawingOptions, scale: f64) -> (String, 
             path(&mut out, precision, &corners);
             out.push_str(if closed { "s\n" } else { "S\n" });
         }
+        for point in layer.points {
+            let step = point.map(|at| precision.steps(at));
+            path(&mut out, precision, &[step, step]);
+            out.push_str("S\n");
+        }
         out.push_str("EMC\n");
     }
     (out, groups)
@@ -170,7 +175,7 @@ mod tests {
         let ring = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
         let region =
             Region { surface: 3, material: None, color: [255, 0, 16], opacity: 1.0, unlit: 0, rings: vec![ring] };
-        Drawing { width, height, lines, regions: vec![region] }
+        Drawing { width, height, lines, regions: vec![region], points: vec![[0.5, 1.0]] }
     }
 
     #[test]
@@ -179,8 +184,12 @@ mod tests {
         let expected = "2.834645669 0 0 2.834645669 0 0 cm\n1 J 1 j\n\
                         /OC /fill BDC\n1 0 0.063 rg\n0 0 m\n1 0 l\n1 1 l\nf*\nEMC\n\
                         /OC /hidden BDC\n0.18 w\n[2 1] 0 d\n0 0 m\n1.5 0.25 l\nS\nEMC\n\
-                        /OC /contour BDC\n0.5 w\n[] 0 d\n1 1 m\n2.5 1 l\n2 2 l\ns\nEMC\n";
-        assert_eq!((text.as_str(), groups), (expected, vec![(0, "fill"), (8, "hidden"), (1, "contour")]));
+                        /OC /contour BDC\n0.5 w\n[] 0 d\n1 1 m\n2.5 1 l\n2 2 l\ns\nEMC\n\
+                        /OC /point BDC\n0.5 w\n[] 0 d\n0.5 1 m\n0.5 1 l\nS\nEMC\n";
+        assert_eq!(
+            (text.as_str(), groups),
+            (expected, vec![(0, "fill"), (8, "hidden"), (1, "contour"), (10, "point")])
+        );
     }
 
     #[test]
@@ -213,7 +222,7 @@ mod tests {
             "{}",
             String::from_utf8_lossy(&a4)
         );
-        assert!(has(&a4, "/Name (8 hidden)") && has(&a4, "/Order [7 0 R 6 0 R 5 0 R]") && !has(&a4, "Date"));
+        assert!(has(&a4, "/Name (8 hidden)") && has(&a4, "/Order [8 0 R 7 0 R 6 0 R 5 0 R]") && !has(&a4, "Date"));
         assert_eq!(a4, file(210.0, 297.0));
         // Pages of more than 5 m have a larger unit.
         let banner = file(10_000.0, 25.4);

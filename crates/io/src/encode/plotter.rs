@@ -3,7 +3,7 @@
 //! Pens come one after another. Segments that a more important pen has drawn are left out, the rest is walked from nearest end to nearest
 //! end, either way round; where an end is where the pen is, the line goes on. Dashes become lines of their own.
 //!
-//! In:   a drawing. Out: the same, ordered, without fills and with at most one number of layers for hidden lines.
+//! In:   a drawing. Out: the same, lines and points ordered, without fills and with at most one number of layers for hidden lines.
 //! Cost: about linear: ends are found on a grid, which is made anew when half of them are gone.
 //! Source: \[HP-GL\] for what plotters do; the tour is that of the nearest neighbour.
 
@@ -48,6 +48,8 @@ pub(super) fn in_steps(
         let points = route(visible.map(|line| &line.points[..]).collect());
         lines.extend(points.into_iter().map(|points| Line { class, layers: 0, points }));
     }
+    let dots = drawing.points.iter().map(|point| steps(&[*point, *point])).collect();
+    let points = ordered(dots).into_iter().map(|dot| millimetres(dot)[0]).collect();
     let title = route(options.title.iter().map(|stroke| &stroke[..]).collect());
     let hidden = route(drawing.lines.iter().filter(|line| line.layers > 0).map(|line| &line.points[..]).collect());
 
@@ -60,7 +62,7 @@ pub(super) fn in_steps(
         lines.extend(pieces.into_iter().map(|points| Line { class: LineClass::Smooth, layers: 1, points }));
     }
     let pens = Pens { hidden_dashes: None, ..options.pens };
-    (Drawing { lines, regions: Vec::new(), ..*drawing }, DrawingOptions { pens, title, ..options.clone() })
+    (Drawing { lines, points, regions: Vec::new(), ..*drawing }, DrawingOptions { pens, title, ..options.clone() })
 }
 
 /// Adds the parts of a line that have not been drawn.
@@ -225,7 +227,7 @@ mod tests {
 
     fn drawing(lines: &[&[[f64; 2]]]) -> Drawing {
         let line = |points: &&[[f64; 2]]| Line { class: LineClass::Crease, layers: 0, points: points.to_vec() };
-        Drawing { width: 100.0, height: 100.0, lines: lines.iter().map(line).collect(), regions: Vec::new() }
+        Drawing { width: 100.0, height: 100.0, lines: lines.iter().map(line).collect(), ..Drawing::default() }
     }
 
     fn route(lines: &[&[[f64; 2]]]) -> Vec<Polyline> {
@@ -264,6 +266,13 @@ mod tests {
             at = line[line.len() - 1];
         }
         assert!(left.is_empty());
+    }
+
+    #[test]
+    fn points_are_walked_from_nearest_to_nearest() {
+        let points = vec![[50.0, 1.0], [10.0, 1.0], [30.0, 1.0], [0.0, 0.0]];
+        let (drawing, _) = for_plotter(&Drawing { points, ..Drawing::default() }, &DrawingOptions::default());
+        assert_eq!(drawing.points, [[0.0, 0.0], [10.0, 1.0], [30.0, 1.0], [50.0, 1.0]]);
     }
 
     #[test]

@@ -63,6 +63,11 @@ impl Page {
             self.path(out, &corners, closed);
             out.push_str("\"/>\n");
         }
+        // A line without length and with round ends is a dot.
+        for point in layer.points {
+            let [x, y] = point.map(|at| self.precision.steps(at));
+            let _ = writeln!(out, "<path d=\"M{x} {}h0\"/>", self.height - y);
+        }
         out.push_str("</g>\n");
     }
 
@@ -148,7 +153,8 @@ mod tests {
         let ring = square[..4].to_vec();
         let region =
             Region { surface: 3, material: None, color: [255, 0, 16], opacity: 1.0, unlit: 0, rings: vec![ring] };
-        let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
+        let points = vec![[0.5, 1.5]];
+        let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region], points };
         let text = String::from_utf8(svg(&drawing, &DrawingOptions::default())).unwrap();
         let expected = "\
 <svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"3mm\" height=\"2mm\" viewBox=\"0 0 3000 2000\">
@@ -163,6 +169,9 @@ mod tests {
 </g>
 <g id=\"contour\" inkscape:groupmode=\"layer\" inkscape:label=\"1 contour\" data-class=\"contour\" fill=\"none\" stroke=\"#000\" stroke-width=\"500\" stroke-linecap=\"round\" stroke-linejoin=\"round\">
 <path d=\"M1000 1000l1000 0 0-1000-1000 0z\"/>
+</g>
+<g id=\"point\" inkscape:groupmode=\"layer\" inkscape:label=\"10 point\" data-class=\"point\" fill=\"none\" stroke=\"#000\" stroke-width=\"500\" stroke-linecap=\"round\" stroke-linejoin=\"round\">
+<path d=\"M500 500h0\"/>
 </g>
 </svg>
 ";
@@ -209,7 +218,7 @@ mod tests {
             unlit: 0,
             rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]],
         };
-        let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region] };
+        let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region], ..Drawing::default() };
         let options = DrawingOptions { decimals: 1, surface_ids: true, ..DrawingOptions::default() };
         let text = String::from_utf8(svg(&drawing, &options)).unwrap();
         assert!(text.contains("width=\"3mm\" height=\"2mm\" viewBox=\"0 0 30 20\""), "{text}");

@@ -1,4 +1,4 @@
-//! A title block below a drawing: a table of keys and values in strokes.
+//! A title block below a drawing: a table of keys and values in strokes, and beside it a figure, such as the symbol of the projection.
 //!
 //! Letters are polylines on a grid of 4 x 8 units, all of one width: capitals are six units high, two are left below the base line. A
 //! plotter draws them as they are.
@@ -48,6 +48,15 @@ const GLYPHS: [(char, &str); 92] = [
     ('°', "1728372617"), ('×', "0347 0743"), ('·', "2425"), ('–', "0545"), ('±', "0646 2428 0343"),
 ];
 
+/// A figure in strokes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Figure {
+    /// Width and height in millimetres.
+    pub size: [f64; 2],
+    /// Its lines, from the lower left corner.
+    pub strokes: Vec<Polyline>,
+}
+
 /// A table of keys and values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TitleBlock {
@@ -62,24 +71,57 @@ impl TitleBlock {
     /// # Errors
     /// A letter that there are no strokes for.
     pub fn new(rows: &[(String, String)]) -> Result<Self, char> {
+        Self::with_figure(rows, None)
+    }
+
+    /// The block with these rows and a figure in a cell to the left of them; at least one of both.
+    ///
+    /// # Errors
+    /// A letter that there are no strokes for.
+    pub fn with_figure(rows: &[(String, String)], figure: Option<&Figure>) -> Result<Self, char> {
+        let high = figure.map_or(0.0, |figure| figure.size[1] + 2.0 * PADDING);
+        let row = if rows.is_empty() { 0.0 } else { ROW.max(high / rows.len() as f64) };
+        let mut block = Self { size: [0.0, high], strokes: Vec::new() };
+        if !rows.is_empty() {
+            block = Self::table(rows, row)?;
+        }
+        let Some(figure) = figure else { return Ok(block) };
+
+        // Move the table aside, and put the figure into the middle of its cell.
+        let wide = figure.size[0] + 2.0 * PADDING;
+        block.strokes.iter_mut().flatten().for_each(|point| point[0] += wide);
+        let [_, top] = block.size;
+        let low = (top - figure.size[1]) / 2.0;
+        let place = |stroke: &Polyline| stroke.iter().map(|p| [p[0] + PADDING, p[1] + low]).collect::<Polyline>();
+        let mut border = vec![[wide, 0.0], [0.0, 0.0], [0.0, top], [wide, top]];
+        border.extend(rows.is_empty().then_some([wide, 0.0]));
+        block.strokes.push(border);
+        block.strokes.extend(figure.strokes.iter().map(place));
+        block.size[0] += wide;
+        Ok(block)
+    }
+
+    /// A table with rows of this height.
+    fn table(rows: &[(String, String)], row_height: f64) -> Result<Self, char> {
         let column = |text: fn(&(String, String)) -> &String| {
             let longest = rows.iter().map(|row| text(row).chars().count()).max().unwrap_or(0);
             (longest as f64 * ADVANCE - (ADVANCE - 4.0)).max(0.0) * UNIT + 2.0 * PADDING
         };
         let (keys, values) = (column(|row| &row.0), column(|row| &row.1));
-        let size = [keys + values, rows.len() as f64 * ROW];
+        let size = [keys + values, rows.len() as f64 * row_height];
         let [right, top] = size;
 
         // Rule the table, then fill it in.
         let mut strokes = vec![vec![[0.0, 0.0], [right, 0.0], [right, top], [0.0, top], [0.0, 0.0]]];
         strokes.push(vec![[keys, 0.0], [keys, top]]);
         for (i, (key, value)) in rows.iter().enumerate() {
-            let low = top - (i + 1) as f64 * ROW;
+            let low = top - (i + 1) as f64 * row_height;
+            let base = low + (row_height - LETTERS) / 2.0;
             if i + 1 < rows.len() {
                 strokes.push(vec![[0.0, low], [right, low]]);
             }
-            write(&mut strokes, key, [PADDING, low + PADDING])?;
-            write(&mut strokes, value, [keys + PADDING, low + PADDING])?;
+            write(&mut strokes, key, [PADDING, base])?;
+            write(&mut strokes, value, [keys + PADDING, base])?;
         }
         Ok(Self { size, strokes })
     }
@@ -93,11 +135,9 @@ impl TitleBlock {
     pub fn place(&self, drawing: &mut Drawing, margin: f64) -> Vec<Polyline> {
         let wider = (self.size[0] + 2.0 * margin - drawing.width).max(0.0);
         let shift = [wider / 2.0, self.room()];
-        let moved = |point: &mut [f64; 2]| *point = [point[0] + shift[0], point[1] + shift[1]];
         drawing.width += wider;
         drawing.height += shift[1];
-        drawing.lines.iter_mut().flat_map(|line| &mut line.points).for_each(moved);
-        drawing.regions.iter_mut().flat_map(|region| region.rings.iter_mut().flatten()).for_each(moved);
+        drawing.shift(shift);
         let corner = [drawing.width - margin - self.size[0], margin];
         let place = |stroke: &Polyline| stroke.iter().map(|p| [p[0] + corner[0], p[1] + corner[1]]).collect();
         self.strokes.iter().map(place).collect()
@@ -149,5 +189,17 @@ mod tests {
         block.place(&mut narrow, 5.0);
         assert_eq!(narrow.width, block.size[0] + 10.0);
         assert_eq!(TitleBlock::new(&[row("Maß", "")]), Err('ß'));
+    }
+
+    #[test]
+    fn a_figure_stands_in_a_cell_beside_the_table() {
+        let figure = Figure { size: [4.0, 7.0], strokes: vec![vec![[0.0, 0.0], [4.0, 7.0]]] };
+        let rows = vec![("Title".to_owned(), "Cube".to_owned())];
+        let (plain, both) = (TitleBlock::new(&rows).unwrap(), TitleBlock::with_figure(&rows, Some(&figure)).unwrap());
+        let wide = 4.0 + 2.0 * PADDING;
+        assert_eq!(both.size, [plain.size[0] + wide, 7.0 + 2.0 * PADDING], "the row is as high as the figure");
+        assert_eq!(both.strokes.last().unwrap()[..], [[PADDING, PADDING], [4.0 + PADDING, 7.0 + PADDING]]);
+        let alone = TitleBlock::with_figure(&[], Some(&figure)).unwrap();
+        assert_eq!((alone.size, alone.strokes.len(), alone.strokes[0].len()), ([wide, both.size[1]], 2, 5));
     }
 }

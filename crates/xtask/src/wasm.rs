@@ -10,6 +10,8 @@ use crate::test::PROFILE;
 use std::path::PathBuf;
 
 const PACKAGE: &str = "vitral-wasm-probe";
+/// The compiler takes six times as long to optimise the kernels for WebAssembly at level 2, and the pictures are small.
+const OPT_LEVEL: &str = "1";
 
 /// How one check ended.
 pub(crate) enum CheckResult {
@@ -102,6 +104,7 @@ fn hash_under_node(variant: &Variant) -> Result<String, String> {
     let folder: PathBuf = target_folder().join(variant.folder);
     let mut build = cargo();
     build.env("RUSTFLAGS", variant.flags).env_remove("CARGO_ENCODED_RUSTFLAGS");
+    build.env(format!("CARGO_PROFILE_{}_OPT_LEVEL", PROFILE.to_uppercase()), OPT_LEVEL);
     build.args(["build", "--quiet", "--profile", PROFILE, "--lib", "--package", PACKAGE, "--no-default-features"]);
     run(build.args(["--target", WASM_TARGET, "--target-dir"]).arg(&folder))?;
     let module = folder.join(WASM_TARGET).join(PROFILE).join("vitral_wasm_probe.wasm");

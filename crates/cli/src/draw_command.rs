@@ -8,7 +8,7 @@ use crate::report::{self, Failure};
 use crate::resolve::{execution_within, overlay_files, save_state, set_viewpoint};
 use serde_json::json;
 use std::time::Instant;
-use vitral::{DrawingSettings, Drawn, LineClasses, PageSize, Renderer, State, World};
+use vitral::{DrawingSettings, Drawn, LineClass, LineClasses, PageSize, Renderer, State, World};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
@@ -39,7 +39,8 @@ fn draw(
     start: Instant,
 ) -> Result<(), Failure> {
     // Read the models.
-    let mut scene = state.load_scene_on(&execution.workers)?;
+    let scene = state.load_scene_on(&execution.workers)?;
+    let mut scene = args.section.apply(scene, &execution)?;
     let points: usize = scene.meshes.iter().map(|mesh| mesh.points.len()).sum();
     if points > 0 {
         scene.warnings.push(format!("{points} free points are not drawn yet"));
@@ -134,6 +135,7 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
     Ok(DrawingSettings {
         lines: if has_lines { lines.lines.unwrap_or(usual.lines) } else { LineClasses::EMPTY },
         hidden_layers,
+        hatch: args.section.hatch().filter(|_| has_lines),
         crease_angle: lines.crease_angle.map_or(usual.crease_angle, f64::to_radians),
         page: page_of(&args.page)?,
         margin: args.page.margin.unwrap_or(usual.margin),
@@ -181,7 +183,8 @@ fn stats_of(drawn: &Drawn) -> serde_json::Value {
         "regions": drawn.drawing.regions.len(),
         "polylines": lines.len(),
         "points": lines.iter().map(|line| line.points.len()).sum::<usize>(),
-        "visible-millimetres": drawn.drawing.length(|line| line.layers == 0),
+        "visible-millimetres": drawn.drawing.length(|line| line.layers == 0 && line.class != LineClass::Hatch),
+        "hatch-millimetres": drawn.drawing.length(|line| line.class == LineClass::Hatch),
         "hidden-millimetres": drawn.drawing.length(|line| line.layers > 0),
     })
 }

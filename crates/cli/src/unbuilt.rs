@@ -5,17 +5,14 @@
 const VERBS: [&str; 2] = ["lab", "batch"];
 
 /// Options of `draw` to come.
-const DRAWING_OPTIONS: [&str; 15] = [
+const DRAWING_OPTIONS: [&str; 12] = [
     "--algorithm",
     "--angle",
     "--color-by",
-    "--explode",
     "--flatten",
-    "--hatch",
     "--hide-tangent",
     "--max-segments",
     "--seams",
-    "--section-plane",
     "--shades",
     "--shadows",
     "--transparency",

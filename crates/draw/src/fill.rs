@@ -3,7 +3,7 @@
 //! Of each triangle that faces the viewer, everything that lies in front of it is taken away; what is left is visible. Whether another
 //! triangle lies in front is decided by exact heights of corners over planes, once for each pair in the order of their numbers, so that
 //! both agree: where two triangles cross, each loses the part beyond the line in which their planes meet; coplanar ones give way to
-//! the lower number. Regions of one colour that touch become one.
+//! the lower rank, or else the lower number. Regions of one colour that touch become one.
 //!
 //! Polygons are clipped and joined on a grid that is [`FINER`] times as fine as the page's, since the corners of what is left are
 //! rounded to it.
@@ -79,6 +79,17 @@ pub(crate) fn regions(
     palette: &Palette<'_>,
     run: &Run<'_>,
 ) -> Result<Vec<PageRegion>, Limit> {
+    regions_of(mesh, grid, &|_| true, palette, run)
+}
+
+/// The visible regions of some surfaces.
+pub(crate) fn regions_of(
+    mesh: &PageMesh,
+    grid: &Grid,
+    is_wanted: &(dyn Fn(u32) -> bool + Sync),
+    palette: &Palette<'_>,
+    run: &Run<'_>,
+) -> Result<Vec<PageRegion>, Limit> {
     // Find the visible part of each triangle.
     let (spare, count) = (Spare::<Clipping>::default(), mesh.triangles.len());
     run.budget.begin("triangles", count as u64);
@@ -89,7 +100,7 @@ pub(crate) fn regions(
             for t in batch * BATCH..count.min((batch + 1) * BATCH) {
                 run.budget.advance();
                 let triangle = &mesh.triangles[t];
-                if !triangle.hides {
+                if !triangle.hides || !is_wanted(mesh.sources[t].surface) {
                     continue;
                 }
                 let shapes = clipping.visible(mesh, grid, t as u32, run)?;
@@ -199,7 +210,7 @@ impl Clipping {
                 {
                     continue;
                 }
-                match front_part((number, triangle), (other, front)) {
+                match front_part((mesh.order_of(number), triangle), (mesh.order_of(other), front)) {
                     Front::Nothing => {}
                     Front::All if triangle.corners.iter().all(|&p| is_inside(front, p)) => {
                         return ControlFlow::Break(None);
@@ -238,8 +249,9 @@ fn is_inside(triangle: &Triangle, p: GridPoint) -> bool {
     (0..3).all(|k| orient2d(triangle.corners[k], triangle.corners[(k + 1) % 3], p) >= 0)
 }
 
-/// What of `other` lies in front of `own`. The answer for the two the other way round is the opposite.
-fn front_part(own: (u32, &Triangle), other: (u32, &Triangle)) -> Front {
+/// What of `other` lies in front of `own`, each with its place in the order of coplanar ones. The answer for the two the other way round
+/// is the opposite.
+fn front_part(own: ((u32, u32), &Triangle), other: ((u32, u32), &Triangle)) -> Front {
     let ((_, first), (_, second)) = if own.0 < other.0 { (own, other) } else { (other, own) };
     // Whether the second is in front of the first.
     let (above, below) = (over(&first.plane(), second), over(&second.plane(), first));
@@ -247,7 +259,7 @@ fn front_part(own: (u32, &Triangle), other: (u32, &Triangle)) -> Front {
         (Some(order), _) if order.is_ne() => order,
         (_, Some(order)) if order.is_ne() => order.reverse(),
         (None, None) => return Front::Above,
-        // Coplanar: the lower number is in front.
+        // Coplanar: the first in the order is in front.
         _ => Ordering::Less,
     };
     let other_is_second = other.0 > own.0;

@@ -5,6 +5,7 @@
 
 use crate::chains::{Step, chains};
 use crate::fill::PageRegion;
+use crate::hatch::{Cuts, hatch};
 use crate::page_mesh::{NONE, PAGE_UNITS};
 use crate::strokes::Stroke;
 use vitral_frame::Drawing;
@@ -103,20 +104,30 @@ fn millimetres(point: Step) -> [f64; 2] {
     point.map(|step| f64::from(step) / STEPS_A_MILLIMETRE)
 }
 
-/// Places strokes and regions on the sheet, and joins the strokes.
-pub(crate) fn lay_out(strokes: &[Stroke], regions: &[PageRegion], page: PageSize, margin: f64) -> Drawing {
-    let outlines = regions.iter().flat_map(|region| region.rings.iter().flatten().copied());
+/// Places strokes and regions on the sheet, joins the strokes, and hatches the visible parts of cuts.
+pub(crate) fn lay_out(
+    strokes: &[Stroke],
+    regions: &[PageRegion],
+    cuts: &Cuts,
+    page: PageSize,
+    margin: f64,
+) -> Drawing {
+    let outlines = regions.iter().chain(&cuts.regions).flat_map(|region| region.rings.iter().flatten().copied());
     let points = strokes.iter().flat_map(|stroke| stroke.ends).chain(outlines);
     let [low, high] = bounds(points).unwrap_or_default();
     let placement = Placement::new(low, high, page, margin);
     let placed: Vec<_> = strokes.iter().map(|s| (s.class, s.layers, s.ends.map(|p| placement.step(p)))).collect();
-    let lines = chains(&placed)
+    let mut lines: Vec<Line> = chains(&placed)
         .into_iter()
         .map(|chain| {
             let points = chain.points.iter().map(|&p| millimetres(p)).collect();
             Line { class: chain.class, layers: chain.layers, points }
         })
         .collect();
+    for region in &cuts.regions {
+        let Some(on_sheet) = placement.region(region) else { continue };
+        lines.extend(hatch(&on_sheet.rings, cuts.pattern(region)));
+    }
     let [width, height] = placement.sheet;
     Drawing { width, height, lines, regions: regions.iter().filter_map(|region| placement.region(region)).collect() }
 }
@@ -133,10 +144,10 @@ mod tests {
     #[test]
     fn a_drawing_fits_the_sheet_or_the_sheet_the_drawing() {
         let strokes = [line([100.0, 100.0], [300.0, 100.0]), line([300.0, 100.0], [300.0, 200.0])];
-        let fit = lay_out(&strokes, &[], PageSize::Fit { longer: 100.0 }, 5.0);
+        let fit = lay_out(&strokes, &[], &Cuts::default(), PageSize::Fit { longer: 100.0 }, 5.0);
         assert_eq!((fit.width, fit.height), (110.0, 60.0));
         assert_eq!(fit.lines[0].points, [[5.0, 5.0], [105.0, 5.0], [105.0, 55.0]]);
-        let sheet = lay_out(&strokes, &[], PageSize::Sheet { width: 50.0, height: 90.0 }, 5.0);
+        let sheet = lay_out(&strokes, &[], &Cuts::default(), PageSize::Sheet { width: 50.0, height: 90.0 }, 5.0);
         assert_eq!((sheet.width, sheet.height), (50.0, 90.0));
         assert_eq!(sheet.lines[0].points, [[5.0, 35.0], [45.0, 35.0], [45.0, 55.0]]);
     }
@@ -145,17 +156,17 @@ mod tests {
     fn a_drawing_to_scale_is_as_large_as_its_window_says() {
         let half = f64::from(PAGE_UNITS) / 2.0;
         let strokes = [line([0.0, 0.0], [half, 0.0])];
-        let fit = lay_out(&strokes, &[], PageSize::Scaled { window: 40.0, sheet: None }, 5.0);
+        let fit = lay_out(&strokes, &[], &Cuts::default(), PageSize::Scaled { window: 40.0, sheet: None }, 5.0);
         assert_eq!((fit.width, fit.height), (30.0, 10.0));
-        let sheet = lay_out(&strokes, &[], PageSize::Scaled { window: 40.0, sheet: Some([30.0, 20.0]) }, 5.0);
+        let sheet = lay_out(&strokes, &[], &Cuts::default(), PageSize::Scaled { window: 40.0, sheet: Some([30.0, 20.0]) }, 5.0);
         assert_eq!(sheet.lines[0].points, [[5.0, 10.0], [25.0, 10.0]]);
     }
 
     #[test]
     fn nothing_and_lines_without_height_have_a_sheet() {
-        let empty = lay_out(&[], &[], PageSize::default(), 5.0);
+        let empty = lay_out(&[], &[], &Cuts::default(), PageSize::default(), 5.0);
         assert_eq!((empty.width, empty.height, empty.lines.len()), (10.0, 10.0, 0));
-        let flat = lay_out(&[line([0.0, 7.0], [9.0, 7.0])], &[], PageSize::Sheet { width: 20.0, height: 10.0 }, 1.0);
+        let flat = lay_out(&[line([0.0, 7.0], [9.0, 7.0])], &[], &Cuts::default(), PageSize::Sheet { width: 20.0, height: 10.0 }, 1.0);
         assert_eq!(flat.lines[0].points, [[1.0, 5.0], [19.0, 5.0]]);
     }
 }

@@ -11,6 +11,7 @@
 //! | for each edge, the parts that triangles hide | `hiding.rs`, `place.rs`, `visibility.rs` |
 //! | strokes, of which no two coincide | `strokes.rs` |
 //! | the visible surface as regions that do not overlap | `fill.rs` |
+//! | hatching on cuts by planes of section | `cuts.rs`, `hatch.rs` |
 //! | long polylines on the page | `chains.rs`, `layout.rs` |
 //!
 //! Nothing depends on the number of threads.
@@ -33,9 +34,11 @@ mod chains;
 mod classes;
 mod clip;
 mod crossings;
+mod cuts;
 mod edges;
 mod fill;
 mod grid;
+mod hatch;
 mod hiding;
 mod layout;
 mod page_mesh;
@@ -49,6 +52,7 @@ mod visibility;
 
 pub use classes::Classes;
 pub use fill::{FaceLook, Palette};
+pub use hatch::Hatch;
 pub use layout::PageSize;
 pub use visibility::VisibilityStats;
 
@@ -74,6 +78,8 @@ pub struct DrawingSettings {
     pub page: PageSize,
     /// Distance of the drawing from the border of the sheet, millimetres.
     pub margin: f64,
+    /// Hatching where planes of section have cut bodies ([`Scene::cut`](vitral_scene::Scene::cut)), if lines are drawn; `None`: none.
+    pub hatch: Option<Hatch>,
     /// Ask all triangles about each edge instead of those near it: the same lines in quadratic time, to check the grid by.
     pub brute_force: bool,
 }
@@ -86,6 +92,7 @@ impl Default for DrawingSettings {
             crease_angle: std::f64::consts::FRAC_PI_6,
             page: PageSize::default(),
             margin: 5.0,
+            hatch: Some(Hatch::default()),
             brute_force: false,
         }
     }
@@ -134,6 +141,8 @@ pub fn draw(
     let view = camera.transform(aspect, depth_range(camera, &world.bounds));
     let projected = projection::project(world, &view, aspect, &run)?;
     let mut mesh = edges::with_edges(projected, settings.crease_angle, &run)?;
+    let caps = cuts::Caps::new(world);
+    mesh.ranks = caps.ranks(&mesh);
     let grid = Grid::new(&mesh, |triangle| triangle.hides, &run)?;
     let mut stats = DrawingStats {
         triangles: mesh.triangles.len() as u64,
@@ -155,7 +164,11 @@ pub fn draw(
         Some(palette) => fill::regions(&mesh, &grid, palette, &run)?,
         None => Vec::new(),
     };
-    let drawing = layout::lay_out(&strokes, &regions, settings.page, settings.margin);
+    let cuts = match settings.hatch.filter(|_| !settings.lines.is_empty()) {
+        Some(hatch) => caps.visible(&mesh, &grid, hatch, &run)?,
+        None => hatch::Cuts::default(),
+    };
+    let drawing = layout::lay_out(&strokes, &regions, &cuts, settings.page, settings.margin);
     Ok(Drawn { drawing, stats })
 }
 

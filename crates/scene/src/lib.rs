@@ -14,6 +14,7 @@ mod disjoint_sets;
 mod edge_table;
 pub mod edges;
 mod exposure;
+mod explode;
 pub mod extent;
 mod face_data;
 pub mod framing;

@@ -87,7 +87,7 @@ pub use system_clock::SystemClock;
 pub use viewpoint::Viewpoint;
 
 pub use vitral_draw::{
-    Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, PageSize, VisibilityStats,
+    Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, Hatch, PageSize, VisibilityStats,
 };
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
 pub use vitral_frame::drawing::{Line, LineClass, Region};
@@ -107,8 +107,8 @@ pub use vitral_render::{
 };
 pub use vitral_scene::builtin::solids;
 pub use vitral_scene::{
-    Attribute, Axis, Camera, Faces, Lens, Mesh, Node, NodeTransform, Part, Projection, Scene, View, World, lab,
-    walkthrough,
+    Attribute, Axis, Camera, Faces, Lens, Mesh, Node, NodeTransform, Part, Projection, Scene, SectionPlane, View, World, lab,
+    section, walkthrough,
 };
 
 /// The programs of `docs/library.md`, as tests.

@@ -1,6 +1,6 @@
 //! What a drawing looks like on paper, for all writers: layers with their pens, and corners in steps of the precision.
 //!
-//! A layer is a class of visible lines, or all hidden lines, or the strokes of the title block. Names and numbers of layers are the same
+//! A layer is a class of visible lines, or all hidden lines, or the strokes of the title block, or the hatching of cuts. Names and numbers of layers are the same
 //! in all formats.
 
 use std::fmt::Write;
@@ -11,6 +11,8 @@ use vitral_frame::drawing::LineClass;
 pub const HIDDEN: &str = "hidden";
 /// Name of the layer of the title block.
 pub const TITLE: &str = "title";
+/// Name of the layer of hatching.
+pub const HATCH: &str = "hatch";
 /// Name of the layer of filled regions.
 pub(super) const FILL: &str = "fill";
 
@@ -26,6 +28,8 @@ pub struct Pens {
     pub hidden_width: f64,
     /// Width of the strokes of the title block in millimetres.
     pub title_width: f64,
+    /// Width of hatching in millimetres.
+    pub hatch_width: f64,
     /// Lengths of dashes and gaps of hidden lines in millimetres; `None`: solid.
     pub hidden_dashes: Option<[f64; 2]>,
 }
@@ -39,14 +43,14 @@ impl Default for Pens {
             LineClass::Smooth => 0.18,
             _ => 0.35,
         });
-        Self { widths, hidden_width: 0.18, title_width: 0.25, hidden_dashes: Some([2.0, 1.0]) }
+        Self { widths, hidden_width: 0.18, title_width: 0.25, hatch_width: 0.18, hidden_dashes: Some([2.0, 1.0]) }
     }
 }
 
 impl Pens {
-    /// The names of all pens: the classes of lines, [`HIDDEN`] and [`TITLE`].
+    /// The names of all pens: the classes of lines, [`HIDDEN`], [`TITLE`] and [`HATCH`].
     pub fn names() -> impl Iterator<Item = &'static str> {
-        LineClass::ALL.into_iter().map(|(_, name, _)| name).chain([HIDDEN, TITLE])
+        LineClass::ALL.into_iter().map(|(_, name, _)| name).chain([HIDDEN, TITLE, HATCH])
     }
 
     /// The width of the pen of this name.
@@ -54,6 +58,7 @@ impl Pens {
         match name {
             HIDDEN => Some(&mut self.hidden_width),
             TITLE => Some(&mut self.title_width),
+            HATCH => Some(&mut self.hatch_width),
             _ => LineClass::ALL.iter().position(|row| row.1 == name).map(|i| &mut self.widths[i]),
         }
     }
@@ -150,22 +155,26 @@ pub(super) struct Layer<'d> {
     pub(super) lines: Vec<&'d [[f64; 2]]>,
 }
 
-/// The layers of a drawing that have lines, as they are painted: hidden lines, then visible ones, the most important last, then the title
-/// block.
+/// The layers of a drawing that have lines, as they are painted: hatching, hidden lines, then visible ones, the most important last, then
+/// the title block.
 pub(super) fn layers<'d>(drawing: &'d Drawing, options: &'d DrawingOptions) -> Vec<Layer<'d>> {
     let pens = &options.pens;
     let count = LineClass::ALL.len();
-    let mut layers = vec![Layer {
+    let visible = |class: LineClass| {
+        let of_class = drawing.lines.iter().filter(move |line| line.layers == 0 && line.class == class);
+        of_class.map(|line| &line.points[..]).collect()
+    };
+    let lines = visible(LineClass::Hatch);
+    let mut layers = vec![Layer { number: count + 3, name: HATCH, width: pens.hatch_width, dashes: None, lines }];
+    layers.push(Layer {
         number: count + 1,
         name: HIDDEN,
         width: pens.hidden_width,
         dashes: pens.hidden_dashes,
         lines: drawing.lines.iter().filter(|line| line.layers > 0).map(|line| &line.points[..]).collect(),
-    }];
+    });
     for (i, (class, name, _)) in LineClass::ALL.into_iter().enumerate().rev() {
-        let visible = drawing.lines.iter().filter(|line| line.layers == 0 && line.class == class);
-        let lines = visible.map(|line| &line.points[..]).collect();
-        layers.push(Layer { number: i + 1, name, width: pens.widths[i], dashes: None, lines });
+        layers.push(Layer { number: i + 1, name, width: pens.widths[i], dashes: None, lines: visible(class) });
     }
     let lines = options.title.iter().map(|stroke| &stroke[..]).collect();
     layers.push(Layer { number: count + 2, name: TITLE, width: pens.title_width, dashes: None, lines });
@@ -205,7 +214,7 @@ mod tests {
         for (i, name) in Pens::names().enumerate() {
             *pens.width_mut(name).unwrap() = 1.0 + i as f64;
         }
-        assert_eq!((pens.widths[0], pens.widths[6], pens.hidden_width, pens.title_width), (1.0, 7.0, 8.0, 9.0));
+        assert_eq!((pens.widths[0], pens.widths[6], pens.hidden_width, pens.title_width, pens.hatch_width), (1.0, 7.0, 8.0, 9.0, 10.0));
         assert!(pens.width_mut("fill").is_none());
     }
 }

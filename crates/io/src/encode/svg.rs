@@ -151,6 +151,17 @@ mod tests {
     }
 
     #[test]
+    fn hatching_lies_below_other_lines() {
+        let lines = vec![
+            line(LineClass::Section, 0, &[[0.0, 0.0], [1.0, 0.0]]),
+            line(LineClass::Hatch, 0, &[[0.0, 0.0], [1.0, 1.0]]),
+        ];
+        let text = String::from_utf8(svg(&Drawing { lines, ..Drawing::default() }, &DrawingOptions::default())).unwrap();
+        let (hatch, section) = (text.find("label=\"10 hatch\"").unwrap(), text.find("label=\"6 section\"").unwrap());
+        assert!(hatch < section && text.contains("stroke-width=\"180\"") && text.contains("stroke-width=\"700\""));
+    }
+
+    #[test]
     fn solid_hidden_lines_have_no_dashes_and_nothing_has_no_groups() {
         let lines = vec![line(LineClass::Smooth, 1, &[[0.0, 0.0], [1.0, 0.0]])];
         let pens = Pens { hidden_dashes: None, ..Pens::default() };

@@ -3,6 +3,7 @@
 use crate::choices;
 use crate::help::{EXIT_CODES, model_help};
 use crate::render_args::{CameraArgs, EyeArgs, LightArgs, ProcessArgs, ProgressWhen};
+use crate::section_args::SectionArgs;
 use crate::values;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -23,6 +24,8 @@ pub(crate) struct DrawArgs {
     pub(crate) fill: FillArgs,
     #[command(flatten)]
     pub(crate) light: LightArgs,
+    #[command(flatten)]
+    pub(crate) section: SectionArgs,
     #[command(flatten)]
     pub(crate) page: PageArgs,
     #[command(flatten)]
@@ -260,17 +263,12 @@ pub(crate) struct DrawReportArgs {
 
 /// The help of `--lines`.
 fn lines_help() -> String {
-    let classes: Vec<String> = drawable().map(|(class, what)| format!("{} ({what})", class.name())).collect();
+    let classes: Vec<String> = LineClass::ALL.iter().map(|(_, name, what)| format!("{name} ({what})")).collect();
     format!(
-        "Which lines are drawn: a list of {}; or all. An edge of several classes is drawn as the first of the list that it is \
-         [default: contour,boundary,crease,material,intersection]",
+        "Which lines are drawn: a list of {}; or all. An edge of several classes is drawn as section, or else as the first of the \
+         list that it is [default: contour,boundary,crease,material,intersection; section with --section-plane]",
         classes.join(", ")
     )
-}
-
-/// The classes that there are lines of, with a line each.
-fn drawable() -> impl Iterator<Item = (LineClass, &'static str)> {
-    LineClass::ALL.into_iter().filter(|row| row.0 != LineClass::Section).map(|(class, _, what)| (class, what))
 }
 
 /// `contour,crease`, or `all`.
@@ -279,11 +277,8 @@ fn line_classes(text: &str) -> Result<LineClasses, String> {
         return Ok(LineClasses::ALL);
     }
     let class = |word: &str| {
-        if word == LineClass::Section.name() {
-            return Err("section: lines of sections are not there yet".to_owned());
-        }
-        let found = drawable().map(|row| row.0).find(|class| class.name() == word);
-        let names: Vec<_> = drawable().map(|row| row.0.name()).collect();
+        let found = LineClass::ALL.iter().map(|row| row.0).find(|class| class.name() == word);
+        let names: Vec<_> = LineClass::ALL.iter().map(|row| row.1).collect();
         found.ok_or_else(|| format!("`{word}` is not one of {}; or all alone", names.join(", ")))
     };
     text.split(',').map(class).collect()
@@ -369,10 +364,10 @@ mod tests {
     #[test]
     fn lines_and_sheets_are_read() {
         assert_eq!(line_classes("crease"), Ok(LineClasses::one(LineClass::Crease)));
-        assert_eq!(line_classes("contour,boundary,crease,material,intersection"), Ok(LineClasses::USUAL));
+        assert_eq!(line_classes("contour,boundary,crease,material,intersection,section"), Ok(LineClasses::USUAL));
         assert_eq!(line_classes("all"), Ok(LineClasses::ALL));
         assert!(line_classes("all,crease").is_err() && line_classes("").is_err());
-        assert!(line_classes("section").unwrap_err().contains("not there yet"));
+        assert!(line_classes("hatch").unwrap_err().contains("is not one of"));
         assert_eq!((page_size("fit"), page_size("a4")), (Ok(Sheet::Fit), Ok(Sheet::Size([210.0, 297.0]))));
         assert_eq!(page_size("20x10.5mm"), Ok(Sheet::Size([20.0, 10.5])));
         assert!(["A9", "20x10", "0x3mm", "-1x1mm", "1e9x1mm"].iter().all(|text| page_size(text).is_err()));

@@ -47,6 +47,7 @@ fn draw(
 ) -> Result<(), Failure> {
     // Read the models.
     let scene = state.load_scene_on(&execution.workers)?;
+    let scene = args.section.apply(scene, &execution)?;
     if !args.report.quiet {
         report::warnings(&scene.warnings);
     }
@@ -202,6 +203,7 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
         crease_angle,
         hide_tangent: lines.hide_tangent,
         max_segments: lines.max_segments,
+        hatch: args.section.hatch().filter(|_| has_lines),
         page: page_of(&args.page)?,
         margin: args.page.margin.unwrap_or(usual.margin),
         ..usual
@@ -259,7 +261,8 @@ fn stats_of(drawn: &Drawn) -> serde_json::Value {
         "segments": drawn.drawing.segments(),
         "free-points": drawn.drawing.points.len(),
         "points": lines.iter().map(|line| line.points.len()).sum::<usize>(),
-        "visible-millimetres": drawn.drawing.length(|line| line.layers == 0),
+        "visible-millimetres": drawn.drawing.length(|line| line.layers == 0 && line.class != LineClass::Hatch),
+        "hatch-millimetres": drawn.drawing.length(|line| line.class == LineClass::Hatch),
         "hidden-millimetres": drawn.drawing.length(|line| line.layers > 0),
     })
 }

@@ -4,10 +4,11 @@ use crate::draw_args::{DrawArgs, Hidden, Style};
 use crate::draw_sheet;
 use crate::outputs::{expand, model_name};
 use crate::report::{self, Failure};
+use crate::section_args::Hatching;
 use std::path::PathBuf;
 use vitral::{
-    ColorBy, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, LineClass, PageSize, State, TitleBlock,
-    for_plotter, simplify,
+    ColorBy, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, LineClass, LineClasses, PageSize, State,
+    TitleBlock, for_plotter, simplify,
 };
 
 /// Exit code of formats that drawings are not written in.
@@ -36,6 +37,7 @@ impl DrawFile {
     pub(crate) fn new(args: &DrawArgs, state: &State) -> Result<Self, Failure> {
         let (path, format) = place(args, state)?;
         check_options(args, format)?;
+        args.section.check()?;
 
         // Choose the pens.
         let mut options = DrawingOptions::default();
@@ -132,6 +134,9 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
     let stroke = !lines.stroke.is_empty();
 
     // Each row: whether it is a mistake, what is said, and the way out.
+    let is_cut = !args.section.section_plane.is_empty();
+    let names_section = |classes: LineClasses| classes.has(LineClass::Section) && classes != LineClasses::ALL;
+    let hatched = is_cut && args.section.hatch != Some(Hatching::None);
     let strokes = |name: &str| lines.stroke.iter().any(|(class, _)| class == name);
     let write_lines = "give --style filled-lines";
     let mistakes = [
@@ -140,6 +145,22 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
             "--algorithm: in a list, later polygons cover earlier ones, and plotters, DXF and HP-GL have lines alone",
             "choose weiler-atherton or exact; or .svg or .pdf",
         ),
+        (
+            lines.lines.is_some_and(names_section) && !is_cut,
+            "--lines section: there is no plane of section",
+            "add --section-plane 0,0,0,0,0,1",
+        ),
+        (
+            strokes("section") && !is_cut,
+            "--stroke section: there is no plane of section",
+            "add --section-plane 0,0,0,0,0,1",
+        ),
+        (
+            strokes("hatch") && !hatched,
+            "--stroke hatch: there is no hatching",
+            "add --section-plane 0,0,0,0,0,1 and no --hatch none",
+        ),
+        (style == Style::Filled && args.section.hatch.is_some(), "--hatch: --style filled draws no lines", write_lines),
         (
             style == Style::Filled && lines_alone,
             "--style filled: plotters, DXF and HP-GL have lines alone",

@@ -29,6 +29,7 @@ mod render_args;
 mod render_command;
 mod report;
 mod resolve;
+mod section_args;
 mod step_pictures;
 mod tables;
 mod trace_file;

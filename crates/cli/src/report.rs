@@ -107,10 +107,6 @@ impl From<clap::Error> for Failure {
                 let hint = similar.map_or(HELP.to_owned(), |name| format!("there is the verb `{name}`"));
                 return Self::usage(format!("{word}: there is no such verb, and no file of that name")).with_hint(hint);
             }
-            ErrorKind::UnknownArgument if is_drawing_option_to_come(context(ContextKind::InvalidArg)) => {
-                let option = context(ContextKind::InvalidArg);
-                return Self::usage(format!("{option}: this option of `vitral draw` is not there yet"));
-            }
             ErrorKind::UnknownArgument if SIZES.contains(&context(ContextKind::InvalidArg)) => {
                 let option = context(ContextKind::InvalidArg);
                 return Self::usage(format!("there is no option {option}"))
@@ -128,11 +124,6 @@ impl From<clap::Error> for Failure {
         let hint = tip.unwrap_or(HELP);
         Self::usage(message).with_hint(hint)
     }
-}
-
-/// Whether an unknown option is one that `draw` will have, and `draw` was typed.
-fn is_drawing_option_to_come(option: &str) -> bool {
-    std::env::args_os().nth(1).is_some_and(|verb| verb == "draw") && crate::unbuilt::drawing_option(option)
 }
 
 /// Writes to standard output and flushes it.

@@ -4,14 +4,6 @@
 /// Verbs to come.
 const VERBS: [&str; 2] = ["lab", "batch"];
 
-/// Options of `draw` to come.
-const DRAWING_OPTIONS: [&str; 3] = ["--explode", "--hatch", "--section-plane"];
-
-/// Whether this option of `draw` is to come.
-pub(crate) fn drawing_option(name: &str) -> bool {
-    DRAWING_OPTIONS.contains(&name)
-}
-
 /// Whether this verb is to come.
 pub(crate) fn verb(name: &str) -> bool {
     VERBS.contains(&name)
@@ -28,10 +20,6 @@ mod tests {
         let cli = Cli::command();
         for command in cli.get_subcommands() {
             assert!(!verb(command.get_name()), "{}", command.get_name());
-            for option in command.get_arguments().filter_map(|a| a.get_long()).filter(|_| command.get_name() == "draw")
-            {
-                assert!(!drawing_option(&format!("--{option}")), "{option}");
-            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What an edge is, before any question of visibility.
 //!
-//! An edge may be several things at once: the outline of a box is a contour and a crease. It is drawn as the first of the classes in
-//! the order of [`LineClass::ALL`] that the user wants.
+//! An edge may be several things at once: the outline of a box is a contour and a crease. It is drawn as a section if it is one, or else
+//! as the first of the classes in the order of [`LineClass::ALL`] that the user wants.
 //!
 //! | class | an edge |
 //! |---|---|
@@ -9,6 +9,7 @@
 //! | boundary | of one face |
 //! | crease | of two faces at an angle above the crease angle, or of more than two |
 //! | material | of faces with different materials |
+//! | section | along which a plane of section has cut a face |
 //! | smooth | of any face |
 //!
 //! Where the normals of its two faces agree within a degree, an edge is a tangent edge: the joint of a plane and a fillet, a line on a
@@ -35,7 +36,8 @@ impl Classes {
             | 1 << LineClass::Boundary as u8
             | 1 << LineClass::Crease as u8
             | 1 << LineClass::Material as u8
-            | 1 << LineClass::Intersection as u8,
+            | 1 << LineClass::Intersection as u8
+            | 1 << LineClass::Section as u8,
     );
     /// Every edge of a face.
     pub const ALL: Self = Self(0x7f);
@@ -61,8 +63,11 @@ impl Classes {
         Self(self.0 & other.0)
     }
 
-    /// The most important class in the set.
+    /// The most important class in the set: sections are drawn as such, whatever else they are.
     pub fn first(self) -> Option<LineClass> {
+        if self.has(LineClass::Section) {
+            return Some(LineClass::Section);
+        }
         LineClass::ALL.iter().map(|row| row.0).find(|&class| self.has(class))
     }
 }
@@ -189,7 +194,9 @@ mod tests {
 
     #[test]
     fn sets_have_an_order() {
-        assert_eq!(Classes::ALL.first(), Some(LineClass::Contour));
+        assert_eq!(Classes::ALL.first(), Some(LineClass::Section));
+        let uncut: Classes = [LineClass::Smooth, LineClass::Contour].into_iter().collect();
+        assert_eq!(uncut.first(), Some(LineClass::Contour));
         assert_eq!((Classes::EMPTY.first(), Classes::USUAL.has(LineClass::Smooth)), (None, false));
         let two: Classes = [LineClass::Smooth, LineClass::Material].into_iter().collect();
         assert_eq!(two.common(Classes::USUAL), Classes::one(LineClass::Material));

@@ -8,7 +8,7 @@
 //! Cost: constant for each triangle that crosses a plane; six planes.
 //! Source: [Sutherland & Hodgman 1974], in the clip space of [Blinn & Newell 1978].
 
-use crate::projection::Facet;
+use crate::projection::{CUT_SIDES, Facet};
 use std::collections::HashMap;
 use vitral_math::DVec4;
 
@@ -48,7 +48,7 @@ pub(crate) fn outcode(p: DVec4) -> u8 {
 /// What a side of a polygon is part of: a side of the triangle, by the numbers of its ends in order, or a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Origin {
-    Side { ends: [u32; 2], outline: bool },
+    Side { ends: [u32; 2], outline: bool, cut: bool },
     Plane,
 }
 
@@ -86,8 +86,9 @@ impl<'v> Clipper<'v> {
         let mut polygon: Vec<Corner> = (0..3)
             .map(|k| {
                 let (a, b) = (facet.vertices[k], facet.vertices[(k + 1) % 3]);
-                let outline = facet.outline >> k & 1 == 1;
-                Corner { vertex: a, origin: Origin::Side { ends: [a.min(b), a.max(b)], outline } }
+                let has = |bit: u32| facet.outline >> bit & 1 == 1;
+                let (outline, cut) = (has(k as u32), has(k as u32 + CUT_SIDES));
+                Corner { vertex: a, origin: Origin::Side { ends: [a.min(b), a.max(b)], outline, cut } }
             })
             .collect();
         for plane in (0..PLANES).filter(|plane| crossed >> plane & 1 == 1) {
@@ -101,12 +102,15 @@ impl<'v> Clipper<'v> {
                 kept.push(*corner);
             }
         }
-        let is_outline = |corner: &Corner| matches!(corner.origin, Origin::Side { outline: true, .. });
+        let bits = |corner: &Corner| match corner.origin {
+            Origin::Side { outline, cut, .. } => u8::from(outline) | u8::from(cut) << CUT_SIDES,
+            Origin::Plane => 0,
+        };
         for k in 1..kept.len().saturating_sub(1) {
             let vertices = [kept[0].vertex, kept[k].vertex, kept[k + 1].vertex];
-            let first = k == 1 && is_outline(&kept[0]);
-            let last = k + 2 == kept.len() && is_outline(&kept[k + 1]);
-            let outline = u8::from(first) | u8::from(is_outline(&kept[k])) << 1 | u8::from(last) << 2;
+            let first = if k == 1 { bits(&kept[0]) } else { 0 };
+            let last = if k + 2 == kept.len() { bits(&kept[k + 1]) } else { 0 };
+            let outline = first | bits(&kept[k]) << 1 | last << 2;
             to.push(Facet { vertices, source: facet.source, outline });
         }
     }

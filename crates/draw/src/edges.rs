@@ -10,7 +10,7 @@
 
 use crate::classes::{Classes, Side, Thresholds, classes_of};
 use crate::page_mesh::{Edge, PageMesh, Triangle};
-use crate::projection::{Facet, Projected};
+use crate::projection::{CUT_SIDES, Facet, Projected};
 use crate::run::Run;
 use std::ops::Range;
 use vitral_exec::Limit;
@@ -34,6 +34,8 @@ struct Use {
     reversed: bool,
     /// Whether the side is one of the face's.
     outline: bool,
+    /// Whether a plane of section has cut along it.
+    cut: bool,
 }
 
 /// Makes the page's mesh. `crease_angle` in radians; tangent edges are left out where `hide_tangent` says so.
@@ -116,8 +118,9 @@ impl Source<Use> for Sides<'_> {
             let facet = &self.0[t];
             for k in 0..3 {
                 let (a, b) = (facet.vertices[k], facet.vertices[(k + 1) % 3]);
-                let outline = facet.outline >> k & 1 == 1;
-                put(a.min(b) as usize, Use { higher: a.max(b), triangle: t as u32, reversed: a > b, outline });
+                let has = |bit: u32| facet.outline >> bit & 1 == 1;
+                let (outline, cut) = (has(k as u32), has(k as u32 + CUT_SIDES));
+                put(a.min(b) as usize, Use { higher: a.max(b), triangle: t as u32, reversed: a > b, outline, cut });
             }
         }
     }
@@ -178,6 +181,7 @@ fn add_edge(
         reversed: u.reversed,
     };
     let outlines: Vec<Side<'_>> = uses.iter().filter(counts).filter(|u| u.outline).map(side).collect();
+    let is_cut = uses.iter().filter(counts).any(|u| u.cut);
     let is_bridge = outlines.len() > 1 && outlines.iter().all(|s| s.source.surface == outlines[0].source.surface);
     let classes = if outlines.is_empty() || is_bridge {
         let all: Vec<Side<'_>> = uses.iter().filter(counts).map(side).collect();
@@ -185,6 +189,7 @@ fn add_edge(
     } else {
         classes_of(&outlines, thresholds)
     };
+    let classes = if is_cut { classes | Classes::one(LineClass::Section) } else { classes };
     edges.push(Edge { ends: [lower, uses[0].higher], first, count, classes });
 }
 

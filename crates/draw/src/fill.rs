@@ -75,12 +75,14 @@ pub struct Surfaces<'s> {
     pub seams: Seams,
     /// Each face is a region of its own, whatever its colour.
     pub by_face: bool,
+    /// Fill only faces whose surface ids this accepts; the others hide all the same.
+    pub only: Option<&'s (dyn Fn(u32) -> bool + Sync)>,
 }
 
 impl<'s> Surfaces<'s> {
     /// Opaque surfaces of these colours without shadows.
     pub fn new(palette: &'s Palette<'s>) -> Self {
-        Self { palette, opacities: &[], flatten: false, lit: &[], seams: Seams::default(), by_face: false }
+        Self { palette, opacities: &[], flatten: false, lit: &[], seams: Seams::default(), by_face: false, only: None }
     }
 
     /// The opacity of a material.
@@ -194,10 +196,11 @@ fn parts_of(
     for t in triangles {
         run.budget.advance();
         let triangle = &stage.mesh.triangles[t];
-        if !triangle.hides && !triangle.clear {
+        let source = &stage.mesh.sources[t];
+        let is_wanted = surfaces.only.is_none_or(|only| only(source.surface));
+        if !is_wanted || (!triangle.hides && !triangle.clear) {
             continue;
         }
-        let source = &stage.mesh.sources[t];
         let Seen { layers, contacts } = clipping.see(stage, t as u32, run)?;
         for (layer, shapes) in layers.into_iter().enumerate().filter(|(_, shapes)| !shapes.is_empty()) {
             let divided = match surfaces.lit.is_empty() {

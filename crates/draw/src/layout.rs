@@ -5,6 +5,7 @@
 
 use crate::chains::{Step, chains};
 use crate::fill::PageRegion;
+use crate::hatch::{Cuts, hatch};
 use crate::page_mesh::{NONE, PAGE_UNITS};
 use crate::strokes::Stroke;
 use vitral_frame::Drawing;
@@ -123,27 +124,32 @@ pub(crate) struct Content<'a> {
     pub(crate) size: [i32; 2],
     pub(crate) strokes: &'a [Stroke],
     pub(crate) regions: &'a [PageRegion],
+    pub(crate) cuts: &'a Cuts,
     /// Free points.
     pub(crate) points: &'a [[f64; 2]],
 }
 
-/// Places strokes, regions and points on the sheet, and joins the strokes.
+/// Places strokes, regions and points on the sheet, joins the strokes, and hatches the visible parts of cuts.
 pub(crate) fn lay_out(content: &Content<'_>, page: PageSize, margin: f64) -> Drawing {
-    let Content { size, strokes, regions, points } = *content;
-    let outlines = regions.iter().flat_map(|region| region.rings.iter().flatten());
+    let Content { size, strokes, regions, cuts, points } = *content;
+    let outlines = regions.iter().chain(&cuts.regions).flat_map(|region| region.rings.iter().flatten());
     let all = strokes.iter().flat_map(|stroke| &stroke.ends).chain(outlines).chain(points);
     let placement = match (page, bounds(all.copied()).unwrap_or_default()) {
         (PageSize::Window { window }, _) => Placement::of_window(size, window),
         (_, [low, high]) => Placement::new(low, high, page, margin),
     };
     let placed: Vec<_> = strokes.iter().map(|s| (s.class, s.layers, s.ends.map(|p| placement.step(p)))).collect();
-    let lines = chains(&placed)
+    let mut lines: Vec<Line> = chains(&placed)
         .into_iter()
         .map(|chain| {
             let points = chain.points.iter().map(|&p| millimetres(p)).collect();
             Line { class: chain.class, layers: chain.layers, points }
         })
         .collect();
+    for region in &cuts.regions {
+        let Some(on_sheet) = placement.region(region) else { continue };
+        lines.extend(hatch(&on_sheet.rings, cuts.pattern(region)));
+    }
     let regions = regions.iter().filter_map(|region| placement.region(region)).collect();
     let mut points: Vec<Step> = points.iter().map(|&point| placement.step(point)).collect();
     points.sort_unstable();
@@ -158,7 +164,8 @@ mod tests {
     use vitral_frame::drawing::LineClass;
 
     fn lay_out(strokes: &[Stroke], points: &[[f64; 2]], page: PageSize, margin: f64) -> Drawing {
-        let content = Content { size: [PAGE_UNITS, PAGE_UNITS / 2], strokes, regions: &[], points };
+        let content =
+            Content { size: [PAGE_UNITS, PAGE_UNITS / 2], strokes, regions: &[], cuts: &Cuts::default(), points };
         super::lay_out(&content, page, margin)
     }
 

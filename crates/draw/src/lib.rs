@@ -12,6 +12,7 @@
 //! | free points that are visible | `points.rs` |
 //! | strokes, of which no two coincide | `strokes.rs` |
 //! | the visible surface as regions that do not overlap | `fill.rs` |
+//! | hatching on cuts by planes of section | `cuts.rs`, `hatch.rs` |
 //! | long polylines on the page | `chains.rs`, `layout.rs` |
 //! | several views on one sheet | `sheet/` |
 //!
@@ -38,9 +39,11 @@ mod chains;
 mod classes;
 mod clip;
 mod crossings;
+mod cuts;
 mod edges;
 mod fill;
 mod grid;
+mod hatch;
 mod hiding;
 mod layout;
 mod listed;
@@ -59,6 +62,7 @@ mod visibility;
 
 pub use classes::Classes;
 pub use fill::{FaceLook, Palette, Seams, Surfaces};
+pub use hatch::Hatch;
 pub use layout::PageSize;
 pub use listed::{ListedPolygon, ListedPolygons, covered_area, draw_polygons};
 pub use lit::LitPolygons;
@@ -91,6 +95,8 @@ pub struct DrawingSettings {
     pub page: PageSize,
     /// Distance of the drawing from the border of the sheet, millimetres.
     pub margin: f64,
+    /// Hatching where planes of section have cut bodies ([`Scene::cut`](vitral_scene::Scene::cut)), if lines are drawn; `None`: none.
+    pub hatch: Option<Hatch>,
     /// Ask all triangles about each edge instead of those near it: the same lines in quadratic time, to check the grid by.
     pub brute_force: bool,
 }
@@ -105,6 +111,7 @@ impl Default for DrawingSettings {
             max_segments: None,
             page: PageSize::default(),
             margin: 5.0,
+            hatch: Some(Hatch::default()),
             brute_force: false,
         }
     }
@@ -157,6 +164,8 @@ pub fn draw(
         projected.let_through(|material| surfaces.opacity(material));
     }
     let mut mesh = edges::with_edges(projected, settings.crease_angle, settings.hide_tangent, &run)?;
+    let caps = cuts::Caps::new(world);
+    mesh.ranks = caps.ranks(&mesh);
     let grid = Grid::new(&mesh, |triangle| triangle.hides, &run)?;
     let mut stats = DrawingStats {
         triangles: mesh.triangles.len() as u64,
@@ -189,7 +198,11 @@ pub fn draw(
         Some(surfaces) => fill::regions(&mesh, &grid, surfaces, &facets, &run)?,
         None => Vec::new(),
     };
-    let content = Content { size: mesh.size, strokes: &strokes, regions: &regions, points: &points };
+    let cuts = match settings.hatch.filter(|_| !settings.lines.is_empty()) {
+        Some(hatch) => caps.visible(&mesh, &grid, &facets, hatch, &run)?,
+        None => hatch::Cuts::default(),
+    };
+    let content = Content { size: mesh.size, strokes: &strokes, regions: &regions, cuts: &cuts, points: &points };
     let drawing = layout::lay_out(&content, settings.page, settings.margin);
     if let Some(limit) = settings.max_segments.filter(|&limit| drawing.segments() > limit) {
         let achieved = Achieved { done: limit, whole: drawing.segments(), pieces: "segments" };

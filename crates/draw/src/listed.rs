@@ -7,6 +7,7 @@
 //! Cost: linear in corners, and that of [`strokes`](crate::strokes) for lines.
 
 use crate::fill::{FaceLook, PageRegion, Palette};
+use crate::hatch::Cuts;
 use crate::layout::{self, Content, PageSize};
 use crate::lit::{self, LitPolygons, Projector};
 use crate::page_mesh::NONE;
@@ -100,7 +101,7 @@ pub fn draw_polygons(
     if polygons.fill.is_none() {
         regions.clear();
     }
-    let content = Content { size, strokes: &strokes, regions: &regions, points: &[] };
+    let content = Content { size, strokes: &strokes, regions: &regions, cuts: &Cuts::default(), points: &[] };
     Ok(layout::lay_out(&content, sheet, margin))
 }
 

@@ -26,6 +26,8 @@ pub(crate) struct PageMesh {
     pub(crate) edge_triangles: Vec<u32>,
     /// Free points, as vertices, each once.
     pub(crate) points: Vec<u32>,
+    /// For each triangle a rank: of coplanar triangles, the one of the lowest rank is in front. Empty: all are equal.
+    pub(crate) ranks: Vec<u32>,
 }
 
 /// A triangle on the page.
@@ -80,6 +82,12 @@ impl PageMesh {
     #[inline]
     pub(crate) fn ends(&self, edge: &Edge) -> [GridPoint; 2] {
         edge.ends.map(|v| self.vertices[v as usize])
+    }
+
+    /// The place of a triangle in the order of coplanar ones: by rank, then by number.
+    #[inline]
+    pub(crate) fn order_of(&self, triangle: u32) -> (u32, u32) {
+        (self.ranks.get(triangle as usize).copied().unwrap_or(0), triangle)
     }
 
     /// The triangles at an edge: a line lies in them and is not hidden by them.

@@ -32,8 +32,11 @@ const BATCH: usize = 1 << 14;
 const BYTES_A_VERTEX: u64 = 56;
 const BYTES_A_TRIANGLE: u64 = 176;
 
-/// A triangle before it is snapped: welded vertices, the facet it was cut from, and a bit for each side that is part of the outline of
-/// its face.
+/// Where in [`Facet::outline`] the bits of sides begin along which a plane of section has cut.
+pub(crate) const CUT_SIDES: u32 = 3;
+
+/// A triangle before it is snapped: welded vertices, the facet it was cut from, a bit for each side that is part of the outline of
+/// its face, and above these one for each side along a cut.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Facet {
     pub(crate) vertices: [u32; 3],
@@ -303,13 +306,17 @@ impl Outline {
         Self { face: usize::MAX, sides: Vec::new() }
     }
 
-    /// A bit for each side of a triangle: whether it is a side of its face as well, and no diagonal.
+    /// A bit for each side of a triangle: whether it is a side of its face as well, and no diagonal; and three more for cuts.
     fn sides_of(&mut self, instance: &Instance, t: usize) -> u8 {
         let mesh = &instance.mesh;
         let face = mesh.face_of_triangle(t);
         let corners = mesh.face_corners(face);
+        let [a, b, c] = mesh.triangles[t];
+        let is_cut = |a: u32, b: u32| mesh.section.as_ref().is_some_and(|section| section.has_edge(a, b));
+        let cuts = [(a, b), (b, c), (c, a)].into_iter().enumerate();
+        let cuts = cuts.fold(0, |bits, (k, (a, b))| bits | u8::from(is_cut(a, b)) << (k as u32 + CUT_SIDES));
         if corners.len() == 3 {
-            return 0b111;
+            return cuts | 0b111;
         }
         if self.face != face {
             self.face = face;
@@ -319,8 +326,7 @@ impl Outline {
             self.sides.sort_unstable();
         }
         let is_side = |a: u32, b: u32| u8::from(self.sides.binary_search(&[a.min(b), a.max(b)]).is_ok());
-        let [a, b, c] = mesh.triangles[t];
-        is_side(a, b) | is_side(b, c) << 1 | is_side(c, a) << 2
+        cuts | is_side(a, b) | is_side(b, c) << 1 | is_side(c, a) << 2
     }
 }
 

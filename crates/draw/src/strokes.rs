@@ -1,7 +1,7 @@
 //! From fragments to strokes on the page, of which no two coincide.
 //!
 //! Edges of different faces often lie on one another: the front and the back of a box, parts that touch, lines of intersection along an
-//! edge. Of strokes that coincide, the most important stays: visible before hidden, then in the order of the classes. A stroke gives way
+//! edge. Of strokes that coincide, the most important stays: visible before hidden, sections first, then in the order of the classes. A stroke gives way
 //! where another one lies within the reach of snapping all along their common part, and its new end is the other one's end, so that the
 //! rest still joins.
 //!
@@ -44,8 +44,8 @@ impl Stroke {
     }
 
     /// Less is more important.
-    fn rank(&self) -> (bool, LineClass, u32) {
-        (self.layers > 0, self.class, self.layers)
+    fn rank(&self) -> (bool, bool, LineClass, u32) {
+        (self.layers > 0, self.class != LineClass::Section, self.class, self.layers)
     }
 }
 

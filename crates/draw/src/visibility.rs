@@ -139,7 +139,13 @@ impl SegmentWatch {
         }
         self.next = 2 * count;
         let strokes = strokes(mesh, fragments, wanted, run)?;
-        let content = Content { size: mesh.size, strokes: &strokes, regions: &[], points: &[] };
+        let content = Content {
+            size: mesh.size,
+            strokes: &strokes,
+            regions: &[],
+            cuts: &crate::hatch::Cuts::default(),
+            points: &[],
+        };
         let segments = lay_out(&content, PageSize::default(), 0.0).segments();
         let (limit, achieved) = (self.limit, run.budget.achieved());
         if segments > 2 * limit { Err(Limit::Segments { limit, stage: "visibility", achieved }) } else { Ok(()) }

@@ -12,7 +12,7 @@ pub struct Drawing {
     pub width: f64,
     /// Height of the page in millimetres.
     pub height: f64,
-    /// Lines, in the order of [`LineClass::ALL`], visible ones first.
+    /// Lines, in the order of [`LineClass::ALL`], visible ones first; then the hatching.
     pub lines: Vec<Line>,
     /// Filled regions in the order in which they are painted. Those of visible surfaces overlap only where they reach under each other
     /// and where they are clear; in a list from back to front, as painter's algorithm and BSP trees make it, later regions cover
@@ -50,7 +50,8 @@ pub struct Region {
     pub rings: Vec<Vec<[f64; 2]>>,
 }
 
-/// What a line shows. The order is that of importance: of lines that coincide, the first class stays.
+/// What a line shows. The order is that of importance: of lines that coincide, a [`Section`](Self::Section) stays, or else the first
+/// class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LineClass {
     /// Where a surface turns away from the viewer.
@@ -67,10 +68,12 @@ pub enum LineClass {
     Section,
     /// Any other edge of a face.
     Smooth,
+    /// Hatching of a cut: no edge of the model.
+    Hatch,
 }
 
 impl LineClass {
-    /// All classes with their names and a line each, the most important first.
+    /// All classes of edges with their names and a line each, the most important first.
     pub const ALL: [(Self, &'static str, &'static str); 7] = [
         (Self::Contour, "contour", "where a surface turns away from the viewer"),
         (Self::Boundary, "boundary", "where a surface ends, and free lines and points of the model"),
@@ -83,7 +86,7 @@ impl LineClass {
 
     /// Its name on the command line and in files.
     pub fn name(self) -> &'static str {
-        Self::ALL[self as usize].1
+        Self::ALL.get(self as usize).map_or("hatch", |row| row.1)
     }
 }
 
@@ -161,6 +164,7 @@ mod tests {
     fn classes_are_in_their_order() {
         assert!(LineClass::ALL.windows(2).all(|pair| pair[0].0 < pair[1].0));
         assert!(LineClass::ALL.iter().all(|&(class, name, _)| class.name() == name));
+        assert_eq!(LineClass::Hatch.name(), "hatch");
     }
 
     #[test]

@@ -7,8 +7,9 @@
 //! corners is cut into exactly `n - 2` triangles (its *facets*), in order, so that triangle numbers follow from
 //! corner numbers.
 
-use crate::KnownSolidity;
+use crate::{KnownSolidity, Section};
 use std::ops::Range;
+use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Level, Simd, dispatch};
@@ -61,6 +62,8 @@ pub struct Mesh {
     /// What was found out about the surface while normals were made; counts as long as positions and triangles stay as
     /// they were then.
     pub solidity: Option<KnownSolidity>,
+    /// What planes of section have made of it ([`Scene::cut`](crate::Scene::cut)).
+    pub section: Option<Arc<Section>>,
 }
 
 /// Values at corners.

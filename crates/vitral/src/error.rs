@@ -74,6 +74,16 @@ impl From<vitral_io::Error> for Error {
     }
 }
 
+impl From<vitral_scene::section::SectionError> for Error {
+    fn from(error: vitral_scene::section::SectionError) -> Self {
+        use vitral_scene::section::SectionError;
+        match error {
+            SectionError::World(error) => Self::Render(error.into()),
+            SectionError::Limit(limit) => limit.into(),
+        }
+    }
+}
+
 impl From<Limit> for Error {
     fn from(limit: Limit) -> Self {
         Self::Render(limit.into())

@@ -91,7 +91,7 @@ pub use viewpoint::Viewpoint;
 
 pub use vitral_draw::sheet::{Angle as SheetAngle, PlacedView, SYMBOL_SIZE, Sheet, SheetError, SheetLayout, symbol};
 pub use vitral_draw::{
-    Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, PageSize, Seams, VisibilityStats,
+    Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, Hatch, PageSize, Seams, VisibilityStats,
     covered_area,
 };
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
@@ -114,8 +114,8 @@ pub use vitral_render::{
 };
 pub use vitral_scene::builtin::solids;
 pub use vitral_scene::{
-    Attribute, Axis, Camera, Faces, Lens, Mesh, Node, NodeTransform, Part, Projection, Scene, View, World, lab,
-    walkthrough,
+    Attribute, Axis, Camera, Faces, Lens, Mesh, Node, NodeTransform, Part, Projection, Scene, SectionPlane, View,
+    World, lab, section, walkthrough,
 };
 
 /// The programs of `docs/library.md`, as tests.

@@ -3,7 +3,7 @@
 //! Of each triangle that faces the viewer, everything that lies in front of it is taken away; what is left is visible. Whether another
 //! triangle lies in front is decided by exact heights of corners over planes, once for each pair in the order of their numbers, so that
 //! both agree: where two triangles cross, each loses the part beyond the line in which their planes meet; coplanar ones give way to
-//! the lower number.
+//! the lower rank, or else the lower number.
 //!
 //! Of clear triangles nothing is taken away by others of their kind: they lie in layers over each other. A place of a clear triangle is
 //! in layer `k` if `k` other clear triangles lie in front of it, as depth peeling finds it for pixels ([Everitt 2001]).
@@ -138,7 +138,7 @@ impl Clipping {
                 {
                     continue;
                 }
-                let polygon = match front_part((number, triangle), (other, front)) {
+                let polygon = match front_part((mesh.order_of(number), triangle), (mesh.order_of(other), front)) {
                     Front::Nothing => continue,
                     Front::All if hides && triangle.corners.iter().all(|&p| is_inside(front, p)) => {
                         return ControlFlow::Break(None);
@@ -187,8 +187,9 @@ fn is_inside(triangle: &Triangle, p: GridPoint) -> bool {
     (0..3).all(|k| orient2d(triangle.corners[k], triangle.corners[(k + 1) % 3], p) >= 0)
 }
 
-/// What of `other` lies in front of `own`. The answer for the two the other way round is the opposite.
-fn front_part(own: (u32, &Triangle), other: (u32, &Triangle)) -> Front {
+/// What of `other` lies in front of `own`, each with its place in the order of coplanar ones. The answer for the two the other way round
+/// is the opposite.
+fn front_part(own: ((u32, u32), &Triangle), other: ((u32, u32), &Triangle)) -> Front {
     let ((_, first), (_, second)) = if own.0 < other.0 { (own, other) } else { (other, own) };
     // Whether the second is in front of the first.
     let (above, below) = (over(&first.plane(), second), over(&second.plane(), first));
@@ -196,7 +197,7 @@ fn front_part(own: (u32, &Triangle), other: (u32, &Triangle)) -> Front {
         (Some(order), _) if order.is_ne() => order,
         (_, Some(order)) if order.is_ne() => order.reverse(),
         (None, None) => return Front::Above,
-        // Coplanar: the lower number is in front.
+        // Coplanar: the first in the order is in front.
         _ => Ordering::Less,
     };
     let other_is_second = other.0 > own.0;

@@ -10,7 +10,7 @@ use std::fmt::{Display, Write};
 use vitral_frame::Drawing;
 
 /// Colour numbers of layers by their numbers; 7 is black on white and white on black.
-const COLORS: [u32; 11] = [7, 7, 5, 3, 6, 1, 2, 8, 4, 9, 30];
+const COLORS: [u32; 12] = [7, 7, 5, 3, 6, 1, 2, 8, 4, 9, 8, 30];
 /// The line types' names.
 const SOLID: &str = "CONTINUOUS";
 const DASHED: &str = "HIDDEN";

@@ -34,7 +34,7 @@ pub use hpgl::hpgl;
 pub use jpeg::jpeg;
 pub use npy::{npy_f32, npy_f32x3, npy_u32};
 pub use pdf::pdf;
-pub use pens::{DrawingOptions, HIDDEN, POINT, Pens, Polyline, TITLE};
+pub use pens::{DrawingOptions, HATCH, HIDDEN, POINT, Pens, Polyline, TITLE};
 pub use plotter::for_plotter;
 pub use png::{PngOptions, png, png_with_text, png16_gray};
 pub use ppm::ppm;

@@ -188,7 +188,7 @@ mod tests {
                         /OC /point BDC\n0.5 w\n[] 0 d\n0.5 1 m\n0.5 1 l\nS\nEMC\n";
         assert_eq!(
             (text.as_str(), groups),
-            (expected, vec![(0, "fill"), (8, "hidden"), (1, "contour"), (10, "point")])
+            (expected, vec![(0, "fill"), (8, "hidden"), (1, "contour"), (11, "point")])
         );
     }
 

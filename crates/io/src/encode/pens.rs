@@ -1,6 +1,7 @@
 //! What a drawing looks like on paper, for all writers: layers with their pens, and corners in steps of the precision.
 //!
-//! A layer is a class of visible lines, or all hidden lines, or the strokes of the title block, or the free points of the model. Names and numbers of layers are the same
+//! A layer is a class of visible lines, or all hidden lines, the strokes of the title block, the hatching of cuts, or the free points of
+//! the model. Names and numbers of layers are the same
 //! in all formats.
 
 use std::fmt::Write;
@@ -11,6 +12,8 @@ use vitral_frame::drawing::LineClass;
 pub const HIDDEN: &str = "hidden";
 /// Name of the layer of the title block.
 pub const TITLE: &str = "title";
+/// Name of the layer of hatching.
+pub const HATCH: &str = "hatch";
 /// Name of the layer of free points.
 pub const POINT: &str = "point";
 /// Name of the layer of filled regions.
@@ -28,6 +31,8 @@ pub struct Pens {
     pub hidden_width: f64,
     /// Width of the strokes of the title block in millimetres.
     pub title_width: f64,
+    /// Width of hatching in millimetres.
+    pub hatch_width: f64,
     /// Diameter of free points in millimetres; `None`: the width of contours.
     pub point_width: Option<f64>,
     /// Lengths of dashes and gaps of hidden lines in millimetres; `None`: solid.
@@ -43,14 +48,21 @@ impl Default for Pens {
             LineClass::Smooth => 0.18,
             _ => 0.35,
         });
-        Self { widths, hidden_width: 0.18, title_width: 0.25, point_width: None, hidden_dashes: Some([2.0, 1.0]) }
+        Self {
+            widths,
+            hidden_width: 0.18,
+            title_width: 0.25,
+            hatch_width: 0.18,
+            point_width: None,
+            hidden_dashes: Some([2.0, 1.0]),
+        }
     }
 }
 
 impl Pens {
-    /// The names of all pens: the classes of lines, [`HIDDEN`], [`TITLE`] and [`POINT`].
+    /// The names of all pens: the classes of lines, [`HIDDEN`], [`TITLE`], [`HATCH`] and [`POINT`].
     pub fn names() -> impl Iterator<Item = &'static str> {
-        LineClass::ALL.into_iter().map(|(_, name, _)| name).chain([HIDDEN, TITLE, POINT])
+        LineClass::ALL.into_iter().map(|(_, name, _)| name).chain([HIDDEN, TITLE, HATCH, POINT])
     }
 
     /// The width of the pen of this name.
@@ -58,6 +70,7 @@ impl Pens {
         match name {
             HIDDEN => Some(&mut self.hidden_width),
             TITLE => Some(&mut self.title_width),
+            HATCH => Some(&mut self.hatch_width),
             POINT => Some(self.point_width.get_or_insert(self.widths[LineClass::Contour as usize])),
             _ => LineClass::ALL.iter().position(|row| row.1 == name).map(|i| &mut self.widths[i]),
         }
@@ -169,28 +182,34 @@ pub(super) struct Layer<'d> {
     pub(super) points: &'d [[f64; 2]],
 }
 
-/// The layers of a drawing that are not empty, as they are painted: hidden lines, then visible ones, the most important last, then the
-/// title block and the free points.
+/// The layers of a drawing that are not empty, as they are painted: hatching, hidden lines, then visible ones, the most important last,
+/// then the title block and the free points.
 pub(super) fn layers<'d>(drawing: &'d Drawing, options: &'d DrawingOptions) -> Vec<Layer<'d>> {
     let pens = &options.pens;
     let count = LineClass::ALL.len();
-    let mut layers = vec![Layer {
+    let visible = |class: LineClass| {
+        let of_class = drawing.lines.iter().filter(move |line| line.layers == 0 && line.class == class);
+        of_class.map(|line| &line.points[..]).collect()
+    };
+    let lines = visible(LineClass::Hatch);
+    let mut layers =
+        vec![Layer { number: count + 3, name: HATCH, width: pens.hatch_width, dashes: None, lines, points: &[] }];
+    layers.push(Layer {
         number: count + 1,
         name: HIDDEN,
         width: pens.hidden_width,
         dashes: pens.hidden_dashes,
         lines: drawing.lines.iter().filter(|line| line.layers > 0).map(|line| &line.points[..]).collect(),
         points: &[],
-    }];
+    });
     for (i, (class, name, _)) in LineClass::ALL.into_iter().enumerate().rev() {
-        let visible = drawing.lines.iter().filter(|line| line.layers == 0 && line.class == class);
-        let lines = visible.map(|line| &line.points[..]).collect();
+        let lines = visible(class);
         layers.push(Layer { number: i + 1, name, width: pens.widths[i], dashes: None, lines, points: &[] });
     }
     let lines = options.title.iter().map(|stroke| &stroke[..]).collect();
     layers.push(Layer { number: count + 2, name: TITLE, width: pens.title_width, dashes: None, lines, points: &[] });
     let width = pens.point_width.unwrap_or(pens.widths[LineClass::Contour as usize]);
-    let (number, points) = (count + 3, &drawing.points[..]);
+    let (number, points) = (count + 4, &drawing.points[..]);
     layers.push(Layer { number, name: POINT, width, dashes: None, lines: Vec::new(), points });
     layers.retain(|layer| !layer.lines.is_empty() || !layer.points.is_empty());
     layers
@@ -228,7 +247,10 @@ mod tests {
         for (i, name) in Pens::names().enumerate() {
             *pens.width_mut(name).unwrap() = 1.0 + i as f64;
         }
-        assert_eq!((pens.widths[0], pens.widths[6], pens.hidden_width, pens.title_width), (1.0, 7.0, 8.0, 9.0));
+        assert_eq!(
+            (pens.widths[0], pens.widths[6], pens.hidden_width, pens.title_width, pens.hatch_width),
+            (1.0, 7.0, 8.0, 9.0, 10.0)
+        );
         assert!(pens.width_mut("fill").is_none());
     }
 }

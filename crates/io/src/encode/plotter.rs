@@ -43,7 +43,7 @@ pub(super) fn in_steps(
 
     // Order the lines of each pen.
     let mut lines = Vec::new();
-    for (class, ..) in LineClass::ALL {
+    for class in LineClass::ALL.map(|row| row.0).into_iter().chain([LineClass::Hatch]) {
         let visible = drawing.lines.iter().filter(|line| line.layers == 0 && line.class == class);
         let points = route(visible.map(|line| &line.points[..]).collect());
         lines.extend(points.into_iter().map(|points| Line { class, layers: 0, points }));

@@ -170,12 +170,24 @@ mod tests {
 <g id=\"contour\" inkscape:groupmode=\"layer\" inkscape:label=\"1 contour\" data-class=\"contour\" fill=\"none\" stroke=\"#000\" stroke-width=\"500\" stroke-linecap=\"round\" stroke-linejoin=\"round\">
 <path d=\"M1000 1000l1000 0 0-1000-1000 0z\"/>
 </g>
-<g id=\"point\" inkscape:groupmode=\"layer\" inkscape:label=\"10 point\" data-class=\"point\" fill=\"none\" stroke=\"#000\" stroke-width=\"500\" stroke-linecap=\"round\" stroke-linejoin=\"round\">
+<g id=\"point\" inkscape:groupmode=\"layer\" inkscape:label=\"11 point\" data-class=\"point\" fill=\"none\" stroke=\"#000\" stroke-width=\"500\" stroke-linecap=\"round\" stroke-linejoin=\"round\">
 <path d=\"M500 500h0\"/>
 </g>
 </svg>
 ";
         assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn hatching_lies_below_other_lines() {
+        let lines = vec![
+            line(LineClass::Section, 0, &[[0.0, 0.0], [1.0, 0.0]]),
+            line(LineClass::Hatch, 0, &[[0.0, 0.0], [1.0, 1.0]]),
+        ];
+        let text =
+            String::from_utf8(svg(&Drawing { lines, ..Drawing::default() }, &DrawingOptions::default())).unwrap();
+        let (hatch, section) = (text.find("label=\"10 hatch\"").unwrap(), text.find("label=\"6 section\"").unwrap());
+        assert!(hatch < section && text.contains("stroke-width=\"180\"") && text.contains("stroke-width=\"700\""));
     }
 
     #[test]

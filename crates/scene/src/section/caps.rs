@@ -1,0 +1,191 @@
+//! Closes the cuts through bodies.
+//!
+//! The loops of all closed bodies of one material lie on an integer grid in the plane. What they go round is cut into triangles; corners
+//! of the loops stay the mesh's vertices, so that a closed surface is closed afterwards. Where loops cross, as where surfaces penetrate
+//! themselves, vertices are added.
+//!
+//! In:   a clipped mesh and the outline of the cut. Out: the mesh with a flat face for each region inside.
+//! Cost: `n log n` in the corners of the loops.
+
+use super::SectionPlane;
+use super::outline::{BodyLoops, Inside, Outline};
+use super::rings::rings;
+use crate::{Attribute, Corners, Faces, Instance, Mesh, Part};
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay::{IntOverlayOptions, Overlay, ShapeType};
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::i_float::int::point::IntPoint;
+use i_triangle::int::unchecked::IntUncheckedTriangulatable;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use vitral_math::{DMat4, DVec3};
+
+/// Half the steps of the grid across a cut.
+const HALF_GRID: f64 = (1u64 << 29) as f64;
+
+type Point = IntPoint<i32>;
+
+/// The grid in the plane of a cut.
+struct Grid {
+    origin: DVec3,
+    /// Unit vectors, world space; the plane's normal is `across × up`.
+    across: DVec3,
+    up: DVec3,
+    steps_a_unit: f64,
+    model_from_world: DMat4,
+    vertices: BTreeMap<[i32; 2], u32>,
+}
+
+impl Grid {
+    /// A grid for loops of a mesh; `None` where it would be of no size.
+    fn new(mesh: &Mesh, instance: &Instance, plane: &SectionPlane, loops: &[BodyLoops]) -> Option<Self> {
+        let across = plane.normal.any_orthonormal_vector();
+        let up = plane.normal.cross(across);
+        let place = |v: u32| instance.world_from_model.transform_point3(mesh.position(v));
+        let corners = || loops.iter().flat_map(|body| body.loops.iter().flatten()).copied();
+        let along = |axis: DVec3| {
+            let all = corners().map(|v| axis.dot(place(v) - plane.point));
+            let (low, high) = all.fold((f64::MAX, f64::MIN), |(low, high), at| (low.min(at), high.max(at)));
+            ((low + high) / 2.0, (high - low) / 2.0)
+        };
+        let ((x, half_width), (y, half_height)) = (along(across), along(up));
+        let steps_a_unit = HALF_GRID / half_width.max(half_height);
+        let model_from_world = instance.world_from_model.inverse();
+        if !(steps_a_unit.is_finite() && steps_a_unit > 0.0 && model_from_world.is_finite()) {
+            return None;
+        }
+
+        // Find the vertex at each point; of several, the first.
+        let origin = plane.point + across * x + up * y;
+        let mut grid = Self { origin, across, up, steps_a_unit, model_from_world, vertices: BTreeMap::new() };
+        for vertex in corners() {
+            let Point { x, y } = grid.point(place(vertex));
+            let first = grid.vertices.entry([x, y]).or_insert(vertex);
+            *first = vertex.min(*first);
+        }
+        Some(grid)
+    }
+
+    fn point(&self, at: DVec3) -> Point {
+        let step = |axis: DVec3| (axis.dot(at - self.origin) * self.steps_a_unit).round() as i32;
+        Point::new(step(self.across), step(self.up))
+    }
+
+    /// The vertex at a point, a new one where the mesh has none.
+    fn vertex(&mut self, point: &Point, positions: &mut Vec<[f32; 3]>) -> u32 {
+        *self.vertices.entry([point.x, point.y]).or_insert_with(|| {
+            let [x, y] = [point.x, point.y].map(|step| f64::from(step) / self.steps_a_unit);
+            let at = self.origin + self.across * x + self.up * y;
+            positions.push(self.model_from_world.transform_point3(at).as_vec3().to_array());
+            positions.len() as u32 - 1
+        })
+    }
+}
+
+/// Adds caps and the outline of the cut to a clipped mesh.
+pub(super) fn close(clipped: &mut Mesh, whole: &Mesh, instance: &Instance, plane: &SectionPlane, outline: &Outline) {
+    // Gather the loops of each material.
+    let mut edges: Vec<[u32; 2]> = outline.edges.clone();
+    let mut groups: BTreeMap<(Option<u32>, Inside), (u32, Vec<&[u32]>)> = BTreeMap::new();
+    for body in &outline.bodies {
+        let material = whole.material_of_triangle(body.triangle as usize);
+        let (triangle, loops) = groups.entry((material, body.inside)).or_insert((body.triangle, Vec::new()));
+        *triangle = body.triangle.min(*triangle);
+        loops.extend(body.loops.iter().map(Vec::as_slice));
+    }
+
+    // Cut what they go round into triangles.
+    let normal = instance.world_from_model.transpose().transform_vector3(plane.normal).normalize_or_zero();
+    let mirrored = instance.world_from_model.determinant() < 0.0;
+    if let Some(mut grid) = Grid::new(clipped, instance, plane, &outline.bodies) {
+        for ((material, inside), (triangle, loops)) in groups {
+            let part = whole.parts.iter().find(|part| part.triangles.contains(&triangle));
+            let name = part.map_or(String::new(), |part| part.name.clone());
+            for shape in regions(clipped, instance, &grid, &loops, inside) {
+                let triangles = triangles(&shape, &mut grid, &mut clipped.positions, mirrored);
+                add_outline(&triangles, &mut edges);
+                add_faces(clipped, &triangles, &name, material, normal);
+            }
+        }
+    }
+
+    // Note the edges along the cut.
+    edges.iter_mut().for_each(|edge| edge.sort_unstable());
+    if let Some(section) = &mut clipped.section {
+        let section = Arc::make_mut(section);
+        section.outline.extend(edges);
+        section.outline.sort_unstable();
+        section.outline.dedup();
+    }
+}
+
+/// What loops go round: outlines counter-clockwise, holes clockwise.
+fn regions(mesh: &Mesh, instance: &Instance, grid: &Grid, loops: &[&[u32]], inside: Inside) -> Vec<Vec<Vec<Point>>> {
+    let options = IntOverlayOptions {
+        preserve_input_collinear: true,
+        preserve_output_collinear: true,
+        ..IntOverlayOptions::default()
+    };
+    let capacity = loops.iter().map(|corners| corners.len()).sum();
+    let mut overlay = Overlay::<i32>::new_custom(capacity, options, Default::default());
+    for corners in loops {
+        let place = |&v: &u32| grid.point(instance.world_from_model.transform_point3(mesh.position(v)));
+        let contour: Vec<Point> = corners.iter().map(place).collect();
+        overlay.add_contour(&contour, ShapeType::Subject);
+    }
+    let rule = match inside {
+        Inside::Winding => FillRule::NonZero,
+        Inside::Parity => FillRule::EvenOdd,
+    };
+    overlay.overlay(OverlayRule::Subject, rule)
+}
+
+/// The triangles of a region, as vertices of the mesh, counter-clockwise seen from the side that is taken away.
+fn triangles(shape: &Vec<Vec<Point>>, grid: &mut Grid, positions: &mut Vec<[f32; 3]>, mirrored: bool) -> Vec<Corners> {
+    let found = shape.uncheck_triangulate().into_triangulation::<u32>();
+    let vertices: Vec<u32> = found.points.iter().map(|point| grid.vertex(point, positions)).collect();
+    let corners = found.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|i| vertices[i as usize]));
+    let turned = corners.map(|[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] });
+    turned.filter(|[a, b, c]| a != b && b != c && c != a).collect()
+}
+
+/// Adds the sides that one triangle uses.
+fn add_outline(triangles: &[Corners], edges: &mut Vec<[u32; 2]>) {
+    let sides = |&[a, b, c]: &Corners| [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
+    let mut all: Vec<[u32; 2]> = triangles.iter().flat_map(sides).collect();
+    all.sort_unstable();
+    edges.extend(all.chunk_by(|a, b| a == b).filter(|uses| uses.len() == 1).map(|uses| uses[0]));
+}
+
+/// Adds flat faces of these triangles at the end of a mesh.
+fn add_faces(mesh: &mut Mesh, triangles: &[Corners], name: &str, material: Option<u32>, normal: DVec3) {
+    let Faces::Polygons { starts, corners } = &mut mesh.faces else { return };
+    let first = mesh.triangles.len() as u32;
+    for ring in if triangles.is_empty() { Vec::new() } else { rings(triangles) } {
+        mesh.triangles.extend(ring.triangles.iter().map(|&t| triangles[t as usize]));
+        corners.extend(ring.corners);
+        starts.push(corners.len() as u32);
+        mesh.smoothing_groups.iter_mut().for_each(|groups| groups.push(0));
+    }
+
+    // Give them their material, and values for what the mesh has at its corners.
+    let end = mesh.triangles.len() as u32;
+    match mesh.parts.last_mut() {
+        Some(last) if last.material == material && last.name == name => last.triangles.end = end,
+        _ => mesh.parts.push(Part { name: name.to_owned(), triangles: first..end, material }),
+    }
+    let count = (end - first) as usize;
+    mesh.normals.iter_mut().for_each(|all| add_value(all, normal.as_vec3().to_array(), count));
+    mesh.tangents.iter_mut().for_each(|all| add_value(all, [0.0, 0.0, 0.0, 1.0], count));
+    mesh.uvs.iter_mut().for_each(|all| add_value(all, [0.0; 2], count));
+    mesh.colors.iter_mut().for_each(|all| add_value(all, [1.0; 4], count));
+}
+
+/// Adds triangles with one value at all corners.
+fn add_value<T>(all: &mut Attribute<T>, value: T, triangles: usize) {
+    all.values.push(value);
+    let index = all.values.len() as u32 - 1;
+    if let Some(corners) = &mut all.corners {
+        corners.extend(std::iter::repeat_n([index; 3], triangles));
+    }
+}

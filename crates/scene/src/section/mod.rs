@@ -1,0 +1,206 @@
+//! Sections: what is left of a scene where planes take one side of it away, and caps on bodies that they cut open.
+//!
+//! Each mesh that a plane crosses is clipped exactly there, faces staying faces. Where bodies are closed, the cut is closed as well: a
+//! cap is one flat face with the body's material. Caps are the last faces of a mesh, and [`Section`] names them and the edges along the
+//! cuts. A cut mesh with its caps is an ordinary mesh: pictures and drawings show it, and the next plane cuts it.
+//!
+//! In:   a scene and planes in world space. Out: the scene with meshes of its own for each instance that is cut.
+//! Cost: linear in the triangles of these instances, `n log n` in the length of the cuts.
+//! Source: polygons are clipped as by [Sutherland & Hodgman 1974]; the crates `i_overlay` and `i_triangle` tell the inside of a cut by
+//! winding numbers and cut it into triangles.
+
+mod caps;
+mod clip;
+mod outline;
+mod rings;
+
+use crate::weld::Weld;
+use crate::{Instance, Mesh, Scene, World, WorldError};
+use std::sync::Arc;
+use vitral_exec::{Budget, Charge, Limit, Workers};
+use vitral_math::DVec3;
+
+/// Bytes that a triangle takes while its mesh is cut.
+const BYTES_A_TRIANGLE: u64 = 320;
+/// Distance from a plane within which a vertex lies in it, as a part of the largest coordinate: a step of single precision.
+const IN_PLANE: f64 = 1.0 / (1u64 << 22) as f64;
+
+/// A plane of section, world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SectionPlane {
+    point: DVec3,
+    normal: DVec3,
+}
+
+/// What planes of section have made of a mesh.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Section {
+    /// Faces from this number on are caps.
+    pub first_cap: u32,
+    /// Edges along the cuts as pairs of positions, the lower one first, in order.
+    pub outline: Vec<[u32; 2]>,
+}
+
+/// Why a scene cannot be cut.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum SectionError {
+    /// Its graph is unsound.
+    #[error(transparent)]
+    World(#[from] WorldError),
+    /// A limit was reached.
+    #[error(transparent)]
+    Limit(#[from] Limit),
+}
+
+impl SectionPlane {
+    /// The plane through a point. The side to which the normal, of any length, points is taken away. `None` for a normal without
+    /// length and for numbers that are not finite.
+    pub fn new(point: impl Into<DVec3>, normal: impl Into<DVec3>) -> Option<Self> {
+        let (point, normal) = (point.into(), normal.into().try_normalize()?);
+        (point.is_finite() && normal.is_finite()).then_some(Self { point, normal })
+    }
+
+    /// Distance of a point, positive on the side that is taken away.
+    pub fn distance(&self, point: DVec3) -> f64 {
+        self.normal.dot(point - self.point)
+    }
+}
+
+impl Section {
+    /// Whether an edge runs along a cut.
+    pub fn has_edge(&self, a: u32, b: u32) -> bool {
+        self.outline.binary_search(&[a.min(b), a.max(b)]).is_ok()
+    }
+}
+
+impl Scene {
+    /// The scene without what lies in front of the planes, cut one after the other. Closed bodies get caps of their material.
+    ///
+    /// ```
+    /// use vitral_scene::{Scene, SectionPlane, World, builtin::solids};
+    ///
+    /// let ball = Scene::from_mesh(solids::sphere(1.0, 32, 16));
+    /// let front = SectionPlane::new([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]).unwrap();
+    /// let half = ball.cut(&[front]).unwrap();
+    /// assert_eq!(World::new(&half).unwrap().bounds.max.z, 0.0);
+    /// ```
+    ///
+    /// # Errors
+    /// A scene whose graph or numbers cannot be.
+    pub fn cut(&self, planes: &[SectionPlane]) -> Result<Self, WorldError> {
+        cut(self, planes, &Workers::single(), &Budget::default()).map_err(|error| match error {
+            SectionError::World(error) => error,
+            SectionError::Limit(_) => unreachable!("this budget has no limits"),
+        })
+    }
+
+    /// Whether a plane has cut one of the meshes.
+    pub fn is_cut(&self) -> bool {
+        let shown = self.nodes.iter().filter_map(|node| self.meshes.get(node.mesh? as usize));
+        shown.filter_map(|mesh| mesh.section.as_deref()).any(|section| !section.outline.is_empty())
+    }
+}
+
+/// [`Scene::cut`] with all of `workers` and within a budget.
+///
+/// # Errors
+/// A scene whose graph or numbers cannot be; a limit.
+pub fn cut(scene: &Scene, planes: &[SectionPlane], workers: &Workers, budget: &Budget) -> Result<Scene, SectionError> {
+    let world = World::with_workers(scene, workers)?;
+    let mut scene = scene.clone();
+    for mut instance in world.instances {
+        // Cut the mesh of each instance by one plane after the other.
+        let node = instance.node as usize;
+        let mut shown = true;
+        for plane in planes {
+            budget.check("section")?;
+            let memory = Charge::new(budget, "the section");
+            memory.add(instance.mesh.triangles.len() as u64 * BYTES_A_TRIANGLE)?;
+            match cut_mesh(&instance, plane, workers, budget)? {
+                Cut::Whole => {}
+                Cut::Nothing => shown = false,
+                Cut::Partly(mesh) => instance.mesh = Arc::new(*mesh),
+            }
+            if !shown {
+                break;
+            }
+        }
+
+        // Show what is left.
+        if !shown {
+            scene.nodes[node].mesh = None;
+        } else if !Arc::ptr_eq(&instance.mesh, &scene.meshes[instance.mesh_index as usize]) {
+            scene.meshes.push(instance.mesh);
+            scene.nodes[node].mesh = Some(scene.meshes.len() as u32 - 1);
+        }
+    }
+    Ok(scene)
+}
+
+/// What is left of a mesh.
+enum Cut {
+    Whole,
+    Nothing,
+    Partly(Box<Mesh>),
+}
+
+/// The heights of a mesh's vertices over a plane.
+struct Heights {
+    /// Distance in world space, positive on the side that is taken away.
+    of: Vec<f64>,
+    /// The plane's normal as a covector of model space: points to the side that is taken away.
+    normal: DVec3,
+    /// Heights up to this are none.
+    tolerance: f64,
+}
+
+impl Heights {
+    fn new(instance: &Instance, plane: &SectionPlane) -> Self {
+        let normal = instance.world_from_model.transpose().transform_vector3(plane.normal);
+        let offset = plane.distance(instance.world_from_model.transform_point3(DVec3::ZERO));
+        let of = instance.mesh.positions.iter().map(|&p| normal.dot(DVec3::from_array(p.map(f64::from))) + offset);
+        let bounds = instance.model_bounds;
+        let largest = bounds.min.abs().max(bounds.max.abs());
+        Self { of: of.collect(), normal, tolerance: normal.abs().dot(largest) * IN_PLANE }
+    }
+
+    /// 1 where a vertex is taken away, -1 where it stays, 0 in the plane; `None` where it is not finite.
+    fn side(&self, vertex: u32) -> Option<i8> {
+        let height = self.of[vertex as usize];
+        let side = i8::from(height > self.tolerance) - i8::from(height < -self.tolerance);
+        height.is_finite().then_some(side)
+    }
+}
+
+/// Cuts the mesh of an instance.
+fn cut_mesh(
+    instance: &Instance,
+    plane: &SectionPlane,
+    workers: &Workers,
+    budget: &Budget,
+) -> Result<Cut, SectionError> {
+    // Leave meshes alone that lie wholly on one side.
+    let mesh = &*instance.mesh;
+    let heights = Heights::new(instance, plane);
+    let used = mesh.triangles.as_flattened().iter().chain(mesh.lines.as_flattened()).chain(&mesh.points);
+    let (mut stays, mut goes) = (false, false);
+    used.filter_map(|&v| heights.side(v)).for_each(|side| (stays, goes) = (stays || side < 0, goes || side > 0));
+    match (stays, goes) {
+        (_, false) => return Ok(Cut::Whole),
+        (false, true) => return Ok(Cut::Nothing),
+        (true, true) => {}
+    }
+
+    // Clip, then close.
+    let weld = Weld::new(&mesh.positions, workers);
+    let bodies = outline::Bodies::new(mesh, &weld, workers);
+    budget.check("section")?;
+    let (mut clipped, sides) = clip::clip(mesh, &weld, &heights);
+    budget.check("section")?;
+    let outline = outline::Outline::new(&bodies, sides, &weld);
+    caps::close(&mut clipped, mesh, instance, plane, &outline);
+    Ok(Cut::Partly(Box::new(clipped)))
+}
+
+#[cfg(test)]
+mod tests;

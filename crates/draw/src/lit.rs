@@ -16,7 +16,7 @@ use vitral_math::{DMat4, DVec3, DVec4};
 /// Weights of a corner on a side of the facet, but for rounding.
 const ON_SIDE: f64 = 1e-6;
 /// How far a corner is drawn out over a side, in units of the page; and what that may be of the facet's height over the side.
-const BEYOND: f64 = 1.0;
+const BEYOND: f64 = 2.0;
 const LEAST_BEYOND: f64 = 1e-6;
 const MOST_BEYOND: f64 = 1e-2;
 /// The sine of the angle from which on a light is before a plane.

@@ -57,7 +57,7 @@ fn draw(
     // Draw.
     settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
     let made = match args.polygons() {
-        Some(algorithm) => Made::Polygons(draw_polygons::draw(args, algorithm, &renderer, &settings)?),
+        Some(algorithm) => Made::Polygons(Box::new(draw_polygons::draw(args, algorithm, &renderer, &settings)?)),
         None if args.style() == Style::HiddenLine => Made::Exact(renderer.draw(&settings)?),
         None => Made::Exact(renderer.draw_filled(&settings)?),
     };
@@ -89,7 +89,7 @@ fn draw(
 /// A drawing, by whom it was made.
 enum Made {
     Exact(Drawn),
-    Polygons(PolygonDrawing),
+    Polygons(Box<PolygonDrawing>),
 }
 
 impl Made {

@@ -15,11 +15,15 @@ use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay::{IntOverlayOptions, Overlay, ShapeType};
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::i_float::int::point::IntPoint;
+use std::cmp::Ordering;
 use std::ops::Range;
 use vitral_math::{DMat4, DVec3, DVec4};
 
 /// What is left of a colour where no light arrives.
 const DARKENED: f64 = 0.5;
+/// Units of the page by which lit polygons are made larger: corners of what they lie on are rounded to a unit, and between two that share a
+/// side there is to be no crack.
+const REACH: f64 = 2.0;
 /// Farthest that a light may seem to lie below a face that it grazes, as a sine.
 const GRAZING: f64 = 1e-6;
 
@@ -150,11 +154,36 @@ impl Page {
         };
         let mut outline: Vec<Corner> = polygon.iter().map(on_page).collect();
         // Whether it is seen from before or from behind, it runs counter-clockwise.
-        if doubled_area(&outline) < 0 {
-            outline.reverse();
+        match doubled_area(&outline).cmp(&0) {
+            Ordering::Less => outline.reverse(),
+            Ordering::Equal => outline.clear(),
+            Ordering::Greater => {}
         }
-        outline
+        enlarged(&outline)
     }
+}
+
+/// A convex outline with its sides moved outwards by [`REACH`], and its corners cut off where they would become longer than that.
+fn enlarged(outline: &[Corner]) -> Vec<Corner> {
+    let mut larger = Vec::with_capacity(2 * outline.len());
+    let next = outline.iter().cycle().skip(1);
+    for (p, q) in outline.iter().zip(next) {
+        let [dx, dy] = [q.x - p.x, q.y - p.y].map(f64::from);
+        let length = (dx * dx + dy * dy).sqrt();
+        if length > 0.0 {
+            let step = REACH * f64::from(FINER) / length;
+            let [x, y] = [dy * step, -dx * step].map(|at| at.round() as i32);
+            larger.extend([p, q].map(|corner| Corner::new(corner.x + x, corner.y + y)));
+        }
+    }
+    larger
+}
+
+/// The box round points.
+fn bounds(points: &[Corner]) -> [i32; 4] {
+    points.iter().fold([i32::MAX, i32::MAX, i32::MIN, i32::MIN], |[x0, y0, x1, y1], p| {
+        [x0.min(p.x), y0.min(p.y), x1.max(p.x), y1.max(p.y)]
+    })
 }
 
 /// Twice the area of an outline, positive where it runs counter-clockwise.
@@ -182,22 +211,31 @@ fn clipped(polygon: &[DVec4], inside: impl Fn(&DVec4) -> f64) -> Vec<DVec4> {
 
 /// The part of a region inside convex polygons, and the part outside.
 fn cut_at(rings: &Rings, lit: &[Vec<Corner>]) -> [Rings; 2] {
-    if lit.is_empty() {
-        return [Vec::new(), rings.clone()];
-    }
     let fine = |p: &[f64; 2]| {
         let [x, y] = p.map(|at| (at * f64::from(FINER)).round() as i32);
         Corner::new(x, y)
     };
+    let subject: Vec<Vec<Corner>> = rings.iter().map(|ring| ring.iter().map(fine).collect()).collect();
+
+    // Take the polygons that come near.
+    let [x0, y0, x1, y1] = bounds(&subject.concat());
+    let is_near = |polygon: &&Vec<Corner>| {
+        let [u0, v0, u1, v1] = bounds(polygon);
+        u0 < x1 && x0 < u1 && v0 < y1 && y0 < v1
+    };
+    let near: Vec<&Vec<Corner>> = lit.iter().filter(is_near).collect();
+    if near.is_empty() {
+        return [Vec::new(), rings.clone()];
+    }
+
+    // Cut.
     let rough = |p: &Corner| [p.x, p.y].map(|at| f64::from(at) / f64::from(FINER));
     let least = LEAST_AREA * u64::from(FINER.unsigned_abs()).pow(2);
     [OverlayRule::Intersect, OverlayRule::Difference].map(|rule| {
         let options = IntOverlayOptions { min_output_area: least, ..IntOverlayOptions::default() };
-        let mut overlay = Overlay::<i32>::new_custom(rings.len() * 8 + lit.len() * 4, options, Default::default());
-        for ring in rings {
-            overlay.add_contour(&ring.iter().map(fine).collect::<Vec<_>>(), ShapeType::Subject);
-        }
-        lit.iter().for_each(|polygon| overlay.add_contour(polygon, ShapeType::Clip));
+        let mut overlay = Overlay::<i32>::new_custom(rings.len() * 8 + near.len() * 8, options, Default::default());
+        subject.iter().for_each(|ring| overlay.add_contour(ring, ShapeType::Subject));
+        near.iter().for_each(|polygon| overlay.add_contour(polygon, ShapeType::Clip));
         let shapes = overlay.overlay(rule, FillRule::NonZero);
         shapes.iter().flatten().map(|ring| ring.iter().map(rough).collect()).collect()
     })
@@ -249,7 +287,7 @@ mod tests {
     #[test]
     fn a_polygon_is_lit_where_a_lit_polygon_lies_on_it() {
         let half = square([0.0; 2], [1536.0, 4096.0]);
-        let expected = [(0, 512.0 * 1024.0, [200; 3]), (1, 512.0 * 1024.0, [100; 3])];
+        let expected = [(0, (512.0 + REACH) * 1024.0, [200; 3]), (1, (512.0 - REACH) * 1024.0, [100; 3])];
         assert_eq!(parts(&[ABOVE], &[(0, half.clone())]), expected);
         // Run the other way round, it is the same.
         let turned = half.iter().rev().copied().collect();
@@ -264,10 +302,20 @@ mod tests {
         let (left, lower) = (square([0.0; 2], [1280.0, 4096.0]), square([0.0; 2], [4096.0, 1280.0]));
         let mut found = parts(&[ABOVE, ABOVE], &[(0, left), (1, lower)]);
         found.sort_by_key(|part| part.0);
-        let areas = [256.0 * 256.0, 768.0 * 256.0, 256.0 * 768.0, 768.0 * 768.0];
+        let (lit, dark) = (256.0 + REACH, 768.0 - REACH);
+        let areas = [lit * lit, dark * lit, lit * dark, dark * dark];
         let colors = [200, 150, 150, 100];
         let expected: Vec<_> = (0..4).map(|i| (i as u64, areas[i], [colors[i]; 3])).collect();
         assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn between_lit_polygons_there_is_no_crack() {
+        // The corner of the middle one lies on the side of the first but for rounding.
+        let lower = square([0.0; 2], [4096.0, 1500.3]);
+        let upper = vec![[4096.0, 1500.3], [4096.0, 4096.0], [0.0, 4096.0], [0.0, 1500.3], [1111.1, 1500.305]];
+        let found = parts(&[ABOVE], &[(0, lower), (0, upper)]);
+        assert_eq!(found, [(0, 1024.0 * 1024.0, [200; 3])]);
     }
 
     #[test]
@@ -277,9 +325,10 @@ mod tests {
         let page = Page { clip_from_world, near: 0.1, size: [4096; 2] };
         let floor = [[-1e3, 1e3], [-1e3, -1e3], [1e3, -1e3], [1e3, 1e3]].map(|[x, z]| DVec3::new(x, -1.0, z));
         let outline = page.outline(&floor);
-        assert!(outline.len() > 2 && outline.iter().all(|p| (0..=4096 * FINER).contains(&p.x)), "{outline:?}");
+        let page = -3 * FINER..=4099 * FINER;
+        assert!(outline.len() > 2 && outline.iter().all(|p| page.contains(&p.x)), "{outline:?}");
         let highest = outline.iter().map(|p| f64::from(p.y) / f64::from(FINER)).fold(0.0, f64::max);
-        assert!(highest > 2040.0 && highest < 2048.0, "just below the horizon: {highest}");
+        assert!(highest > 2042.0 && highest < 2050.0, "just below the horizon: {highest}");
     }
 
     proptest! {

@@ -1,5 +1,6 @@
 //! The options of `vitral draw` as typed.
 
+use crate::choices::{self, DrawingAlgorithm};
 use crate::help::{EXIT_CODES, model_help};
 use crate::render_args::{CameraArgs, EyeArgs, ProcessArgs, ProgressWhen};
 use crate::values;
@@ -39,7 +40,7 @@ pub(crate) struct DrawArgs {
 pub(crate) struct LineArgs {
     /// Who decides what is visible. The algorithms of the course give their own polygons in their own order, with all their cuts: of a
     /// list from back to front the later ones cover the earlier ones [default: exact]
-    #[arg(long, value_name = "NAME", value_parser = crate::choices::drawing_algorithm())]
+    #[arg(long, value_name = "NAME", value_parser = choices::drawing_algorithm())]
     pub(crate) algorithm: Option<DrawingAlgorithm>,
     /// Cut polygons at the shadows of all lights that cast some; what a light does not reach is darker, and tells the light's number as
     /// data-shadow; not with --algorithm exact
@@ -64,16 +65,6 @@ pub(crate) struct LineArgs {
     /// Override a material's property, as in `render`; a material that is told apart makes a line; repeatable
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material)]
     pub(crate) material: Vec<MaterialOverride>,
-}
-
-/// Who decides what is visible.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) enum DrawingAlgorithm {
-    /// The drawing's own, exact on a grid.
-    #[default]
-    Exact,
-    /// An algorithm that comes to polygons.
-    Polygons(Visibility),
 }
 
 impl DrawArgs {

@@ -9,9 +9,9 @@ use crate::report::{self, Failure};
 use std::fmt::Write;
 use std::path::Path;
 use vitral::{
-    Budget, DMat4, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, Error, Execution, FillSettings, Lens,
-    Limit, LineClass, Material, Mesh, PageSize, PolygonOrder, PolygonSettings, RenderError, Renderer, Scene, Seams,
-    State, View, Visibility, covered_area,
+    Budget, DMat4, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, Error, Execution, Faces, FillSettings,
+    Lens, Limit, LineClass, Material, Mesh, PageSize, PolygonOrder, PolygonSettings, RenderError, Renderer, Scene,
+    Seams, State, View, Visibility, covered_area,
 };
 
 /// Length of the longer side of the pictures, millimetres.
@@ -78,7 +78,9 @@ pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> R
         }
         text.push_str(if subject.pictures.is_some() { "\n" } else { "" });
     }
-    vitral::picture::write(folder.join("drawing-report.md"), text.trim_end().as_bytes())?;
+    text.truncate(text.trim_end().len());
+    text.push('\n');
+    vitral::picture::write(folder.join("drawing-report.md"), text.as_bytes())?;
     Ok(0)
 }
 
@@ -109,10 +111,12 @@ fn subjects(args: &BenchArgs, execution: &Execution) -> Result<Vec<Subject>, Fai
     Ok(all)
 }
 
-/// A mesh of quadrilaterals in a colour.
-fn quads(scene: &mut Scene, color: [f32; 3], corners: [[f32; 3]; 4]) {
+/// Adds a quadrilateral in a colour.
+fn add_quad(scene: &mut Scene, color: [f32; 3], corners: [[f32; 3]; 4]) {
     let material = scene.add_material(Material { double_sided: true, ..Material::matte(color) });
-    scene.add_mesh(Mesh::new(corners, [[0, 1, 2], [0, 2, 3]]).with_material(material), DMat4::IDENTITY);
+    let faces = Faces::Polygons { starts: vec![0, 4], corners: vec![0, 1, 2, 3] };
+    let mesh = Mesh { faces, ..Mesh::new(corners, [[0, 1, 2], [0, 2, 3]]) };
+    scene.add_mesh(mesh.with_material(material), DMat4::IDENTITY);
 }
 
 /// Three bars round a triangle. Each is near at one end and far at the other, so that they cover each other in a circle.
@@ -131,7 +135,7 @@ fn bars() -> Scene {
         };
         let near = [end(bx, by, 1.5, -1.0, 1.0), end(bx, by, 1.5, 1.0, 1.0)];
         let far = [end(ax, ay, -1.5, -1.0, -1.0), end(ax, ay, -1.5, 1.0, -1.0)];
-        quads(&mut scene, color, [far[0], near[0], near[1], far[1]]);
+        add_quad(&mut scene, color, [far[0], near[0], near[1], far[1]]);
     }
     scene
 }
@@ -140,9 +144,9 @@ fn bars() -> Scene {
 fn squares() -> Scene {
     let mut scene = Scene::default();
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    quads(&mut scene, [0.75, 0.35, 0.3], corners.map(|[a, b]| [a, b, 0.0]));
-    quads(&mut scene, [0.35, 0.6, 0.35], corners.map(|[a, b]| [0.0, a, b]));
-    quads(&mut scene, [0.35, 0.45, 0.75], corners.map(|[a, b]| [b, 0.0, a]));
+    add_quad(&mut scene, [0.75, 0.35, 0.3], corners.map(|[a, b]| [a, b, 0.0]));
+    add_quad(&mut scene, [0.35, 0.6, 0.35], corners.map(|[a, b]| [0.0, a, b]));
+    add_quad(&mut scene, [0.35, 0.45, 0.75], corners.map(|[a, b]| [b, 0.0, a]));
     scene
 }
 

@@ -1,13 +1,22 @@
 //! Options with a fixed set of values. Names and descriptions come from the registry and the enums that the renderer
 //! itself uses, so that help, completions and man page say what there is.
 
-use crate::draw_args::DrawingAlgorithm;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::internals::render::choice::Row;
 use vitral::{
     Acceleration, Channel, Choice, ColorBy, ColorSpace, Global, Illumination, Interpolation, Normals, Seams, Shading,
     Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
 };
+
+/// Who decides what is visible in a drawing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum DrawingAlgorithm {
+    /// The drawing's own, exact on a grid.
+    #[default]
+    Exact,
+    /// An algorithm that comes to polygons.
+    Polygons(Visibility),
+}
 
 /// A value, its name, one line that explains it (may be empty).
 type Named<T> = (T, &'static str, &'static str);

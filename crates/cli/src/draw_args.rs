@@ -1,6 +1,6 @@
 //! The options of `vitral draw` as typed.
 
-use crate::choices;
+use crate::choices::{self, DrawingAlgorithm};
 use crate::help::{EXIT_CODES, model_help};
 use crate::render_args::{CameraArgs, EyeArgs, LightArgs, ProcessArgs, ProgressWhen};
 use crate::section_args::SectionArgs;
@@ -47,7 +47,7 @@ pub(crate) struct DrawArgs {
 pub(crate) struct LineArgs {
     /// Who decides what is visible. The algorithms of the course give their own polygons in their own order, with all their cuts: of a
     /// list from back to front the later ones cover the earlier ones [default: exact]
-    #[arg(long, value_name = "NAME", value_parser = crate::choices::drawing_algorithm())]
+    #[arg(long, value_name = "NAME", value_parser = choices::drawing_algorithm())]
     pub(crate) algorithm: Option<DrawingAlgorithm>,
     /// What the drawing is made of [default: hidden-line; filled-lines with another --algorithm than exact]
     #[arg(long, value_name = "STYLE", value_enum)]
@@ -99,16 +99,6 @@ pub(crate) struct FillArgs {
     /// How regions meet [default: under]
     #[arg(long, value_name = "HOW", value_parser = choices::seams())]
     pub(crate) seams: Option<Seams>,
-}
-
-/// Who decides what is visible.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) enum DrawingAlgorithm {
-    /// The drawing's own, exact on a grid.
-    #[default]
-    Exact,
-    /// An algorithm that comes to polygons.
-    Polygons(Visibility),
 }
 
 impl DrawArgs {

@@ -69,7 +69,7 @@ fn draw(
     } else {
         settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
         let made = match args.polygons() {
-            Some(algorithm) => Made::Polygons(draw_polygons::draw(args, algorithm, &renderer, &settings)?),
+            Some(algorithm) => Made::Polygons(Box::new(draw_polygons::draw(args, algorithm, &renderer, &settings)?)),
             None => Made::Exact(match fill_of(args) {
                 Some(fill) => renderer.draw_filled(&settings, &fill)?,
                 None => renderer.draw(&settings)?,
@@ -108,7 +108,7 @@ fn draw(
 /// A drawing, by whom it was made.
 enum Made {
     Exact(Drawn),
-    Polygons(PolygonDrawing),
+    Polygons(Box<PolygonDrawing>),
 }
 
 impl Made {

@@ -82,7 +82,7 @@ impl Renderer {
         // Find the polygons.
         let (camera, execution, own) = (self.frame_camera(), self.execution(), &self.settings);
         let lit = if settings.surfaces.shadows { self.lit_polygons(&camera)? } else { Vec::new() };
-        let picture = Settings { cull: own.cull.clone(), ..Settings::default() }
+        let picture = Settings { cull: own.cull, ..Settings::default() }
             .with_size(own.picture.width, own.picture.height)
             .with_visibility(settings.algorithm);
         let found = outlined_polygons(self.session(), &camera, &picture, execution)?;
@@ -193,6 +193,28 @@ mod tests {
     }
 
     #[test]
+    fn f24_the_light_sees_what_is_lit_and_the_viewer_the_shadows() {
+        let mut scene = floor_and_plate();
+        let direction = DVec3::new(2.0, -1.0, 0.0);
+        scene.add_light(Light { shadow: true, ..Light::directional(direction) });
+        let (mut renderer, page) = from_above(scene, 1);
+        let settings = PolygonSettings { shadows: true, ..PolygonSettings::new(Visibility::WEILER_ATHERTON) };
+        let mut areas = || {
+            let drawing = renderer.draw_polygons(&settings, &page).unwrap().drawing;
+            let dark: f64 = drawing.regions.iter().filter(|r| r.unlit != 0).map(|r| r.area()).sum();
+            let viewer = renderer.frame_camera();
+            let from_light = Camera { position: -direction * 10.0, view_up: DVec3::Y, ..viewer };
+            renderer.camera = Some(from_light);
+            (drawing.area(), dark)
+        };
+        let (viewer, light) = (areas(), areas());
+        assert!((viewer.0 - 3600.0).abs() < 0.1 && (viewer.1 - 100.0).abs() < 0.1, "{viewer:?}");
+        // The floor is seen at a slant of 1 to the root of 5; before it stands a part of the plate, or beside.
+        let slanted = 3600.0 / 5f64.sqrt();
+        assert!((light.0 - slanted).abs() < 0.5 && light.1 < 0.1, "{light:?} {slanted}");
+    }
+
+    #[test]
     fn shadows_take_a_light_that_casts_some() {
         let mut scene = floor_and_plate();
         scene.add_light(Light::directional([0.0, -1.0, 0.0]));
@@ -257,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn p24_the_visible_polygons_of_a_scene_are_those_of_its_exact_drawing() {
+    fn p24_f24_the_visible_polygons_of_a_scene_are_those_of_its_exact_drawing() {
         let mut renderer = Renderer::with_execution(load_builtin("scene0").unwrap(), execution(1)).unwrap();
         renderer.lens = Lens::Parallel;
         let page =

@@ -6,8 +6,8 @@ use crate::report::{self, Failure};
 use crate::section_args::Hatching;
 use std::path::PathBuf;
 use vitral::{
-    Drawing, DrawingFormat, DrawingOptions, DrawingSettings, LineClass, LineClasses, PageSize, State, TitleBlock, for_plotter,
-    simplify,
+    Drawing, DrawingFormat, DrawingOptions, DrawingSettings, LineClass, LineClasses, PageSize, State, TitleBlock,
+    for_plotter, simplify,
 };
 
 /// Exit code of formats that drawings are not written in.
@@ -151,11 +151,7 @@ fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> 
             "--stroke hatch: there is no hatching",
             "add --section-plane 0,0,0,0,0,1 and no --hatch none",
         ),
-        (
-            style == Style::Filled && args.section.hatch.is_some(),
-            "--hatch: --style filled draws no lines",
-            write_lines,
-        ),
+        (style == Style::Filled && args.section.hatch.is_some(), "--hatch: --style filled draws no lines", write_lines),
         (
             style == Style::Filled && lines_alone,
             "--style filled: plotters, DXF and HP-GL have lines alone",

@@ -62,7 +62,8 @@ impl SectionArgs {
     pub(crate) fn apply(&self, mut scene: Scene, execution: &vitral::Execution) -> Result<Scene, Failure> {
         let (workers, budget) = (&execution.workers, &execution.budget);
         if let Some(factor) = self.explode.filter(|&factor| factor > 0.0) {
-            scene = scene.exploded_on(factor, workers).map_err(section::SectionError::from).map_err(vitral::Error::from)?;
+            scene =
+                scene.exploded_on(factor, workers).map_err(section::SectionError::from).map_err(vitral::Error::from)?;
         }
         if self.section_plane.is_empty() {
             return Ok(scene);

@@ -105,13 +105,7 @@ fn millimetres(point: Step) -> [f64; 2] {
 }
 
 /// Places strokes and regions on the sheet, joins the strokes, and hatches the visible parts of cuts.
-pub(crate) fn lay_out(
-    strokes: &[Stroke],
-    regions: &[PageRegion],
-    cuts: &Cuts,
-    page: PageSize,
-    margin: f64,
-) -> Drawing {
+pub(crate) fn lay_out(strokes: &[Stroke], regions: &[PageRegion], cuts: &Cuts, page: PageSize, margin: f64) -> Drawing {
     let outlines = regions.iter().chain(&cuts.regions).flat_map(|region| region.rings.iter().flatten().copied());
     let points = strokes.iter().flat_map(|stroke| stroke.ends).chain(outlines);
     let [low, high] = bounds(points).unwrap_or_default();
@@ -158,7 +152,8 @@ mod tests {
         let strokes = [line([0.0, 0.0], [half, 0.0])];
         let fit = lay_out(&strokes, &[], &Cuts::default(), PageSize::Scaled { window: 40.0, sheet: None }, 5.0);
         assert_eq!((fit.width, fit.height), (30.0, 10.0));
-        let sheet = lay_out(&strokes, &[], &Cuts::default(), PageSize::Scaled { window: 40.0, sheet: Some([30.0, 20.0]) }, 5.0);
+        let sheet =
+            lay_out(&strokes, &[], &Cuts::default(), PageSize::Scaled { window: 40.0, sheet: Some([30.0, 20.0]) }, 5.0);
         assert_eq!(sheet.lines[0].points, [[5.0, 10.0], [25.0, 10.0]]);
     }
 
@@ -166,7 +161,13 @@ mod tests {
     fn nothing_and_lines_without_height_have_a_sheet() {
         let empty = lay_out(&[], &[], &Cuts::default(), PageSize::default(), 5.0);
         assert_eq!((empty.width, empty.height, empty.lines.len()), (10.0, 10.0, 0));
-        let flat = lay_out(&[line([0.0, 7.0], [9.0, 7.0])], &[], &Cuts::default(), PageSize::Sheet { width: 20.0, height: 10.0 }, 1.0);
+        let flat = lay_out(
+            &[line([0.0, 7.0], [9.0, 7.0])],
+            &[],
+            &Cuts::default(),
+            PageSize::Sheet { width: 20.0, height: 10.0 },
+            1.0,
+        );
         assert_eq!(flat.lines[0].points, [[1.0, 5.0], [19.0, 5.0]]);
     }
 }

@@ -107,8 +107,8 @@ pub use vitral_render::{
 };
 pub use vitral_scene::builtin::solids;
 pub use vitral_scene::{
-    Attribute, Axis, Camera, Faces, Lens, Mesh, Node, NodeTransform, Part, Projection, Scene, SectionPlane, View, World, lab,
-    section, walkthrough,
+    Attribute, Axis, Camera, Faces, Lens, Mesh, Node, NodeTransform, Part, Projection, Scene, SectionPlane, View,
+    World, lab, section, walkthrough,
 };
 
 /// The programs of `docs/library.md`, as tests.

@@ -214,7 +214,10 @@ mod tests {
         for (i, name) in Pens::names().enumerate() {
             *pens.width_mut(name).unwrap() = 1.0 + i as f64;
         }
-        assert_eq!((pens.widths[0], pens.widths[6], pens.hidden_width, pens.title_width, pens.hatch_width), (1.0, 7.0, 8.0, 9.0, 10.0));
+        assert_eq!(
+            (pens.widths[0], pens.widths[6], pens.hidden_width, pens.title_width, pens.hatch_width),
+            (1.0, 7.0, 8.0, 9.0, 10.0)
+        );
         assert!(pens.width_mut("fill").is_none());
     }
 }

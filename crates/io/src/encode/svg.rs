@@ -156,7 +156,8 @@ mod tests {
             line(LineClass::Section, 0, &[[0.0, 0.0], [1.0, 0.0]]),
             line(LineClass::Hatch, 0, &[[0.0, 0.0], [1.0, 1.0]]),
         ];
-        let text = String::from_utf8(svg(&Drawing { lines, ..Drawing::default() }, &DrawingOptions::default())).unwrap();
+        let text =
+            String::from_utf8(svg(&Drawing { lines, ..Drawing::default() }, &DrawingOptions::default())).unwrap();
         let (hatch, section) = (text.find("label=\"10 hatch\"").unwrap(), text.find("label=\"6 section\"").unwrap());
         assert!(hatch < section && text.contains("stroke-width=\"180\"") && text.contains("stroke-width=\"700\""));
     }

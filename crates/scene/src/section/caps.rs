@@ -120,13 +120,7 @@ pub(super) fn close(clipped: &mut Mesh, whole: &Mesh, instance: &Instance, plane
 }
 
 /// What loops go round: outlines counter-clockwise, holes clockwise.
-fn regions(
-    mesh: &Mesh,
-    instance: &Instance,
-    grid: &Grid,
-    loops: &[&[u32]],
-    inside: Inside,
-) -> Vec<Vec<Vec<Point>>> {
+fn regions(mesh: &Mesh, instance: &Instance, grid: &Grid, loops: &[&[u32]], inside: Inside) -> Vec<Vec<Vec<Point>>> {
     let options = IntOverlayOptions {
         preserve_input_collinear: true,
         preserve_output_collinear: true,
@@ -147,12 +141,7 @@ fn regions(
 }
 
 /// The triangles of a region, as vertices of the mesh, counter-clockwise seen from the side that is taken away.
-fn triangles(
-    shape: &Vec<Vec<Point>>,
-    grid: &mut Grid,
-    positions: &mut Vec<[f32; 3]>,
-    mirrored: bool,
-) -> Vec<Corners> {
+fn triangles(shape: &Vec<Vec<Point>>, grid: &mut Grid, positions: &mut Vec<[f32; 3]>, mirrored: bool) -> Vec<Corners> {
     let found = shape.uncheck_triangulate().into_triangulation::<u32>();
     let vertices: Vec<u32> = found.points.iter().map(|point| grid.vertex(point, positions)).collect();
     let corners = found.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|i| vertices[i as usize]));

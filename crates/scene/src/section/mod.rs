@@ -105,12 +105,7 @@ impl Scene {
 ///
 /// # Errors
 /// A scene whose graph or numbers cannot be; a limit.
-pub fn cut(
-    scene: &Scene,
-    planes: &[SectionPlane],
-    workers: &Workers,
-    budget: &Budget,
-) -> Result<Scene, SectionError> {
+pub fn cut(scene: &Scene, planes: &[SectionPlane], workers: &Workers, budget: &Budget) -> Result<Scene, SectionError> {
     let world = World::with_workers(scene, workers)?;
     let mut scene = scene.clone();
     for mut instance in world.instances {

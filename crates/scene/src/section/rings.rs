@@ -70,10 +70,12 @@ mod tests {
         let two = rings(&[[0, 1, 2], [2, 3, 4]]);
         assert_eq!(two.iter().map(|r| &r.corners[..]).collect::<Vec<_>>(), [[0, 1, 2], [2, 3, 4]]);
         // A square frame: eight triangles round a hole.
-        let frame: Vec<Corners> = (0..4).flat_map(|k| {
-            let next = (k + 1) % 4;
-            [[k, next, next + 4], [k, next + 4, k + 4]]
-        }).collect();
+        let frame: Vec<Corners> = (0..4)
+            .flat_map(|k| {
+                let next = (k + 1) % 4;
+                [[k, next, next + 4], [k, next + 4, k + 4]]
+            })
+            .collect();
         let ring = &rings(&frame)[0];
         assert_eq!((ring.triangles.len(), ring.corners.len()), (8, 10));
         assert_eq!((0..8).map(|v| ring.corners.iter().filter(|&&c| c == v).count()).sum::<usize>(), 10);

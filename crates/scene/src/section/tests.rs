@@ -20,10 +20,12 @@ fn cap_area(instance: &Instance) -> f64 {
     let Some(section) = &instance.mesh.section else { return 0.0 };
     let faces = section.first_cap as usize..instance.mesh.face_count();
     let triangles = faces.flat_map(|face| instance.mesh.face_triangles(face));
-    triangles.map(|t| {
-        let [a, b, c] = instance.corners(t as u32);
-        (b - a).cross(c - a).length() / 2.0
-    }).sum()
+    triangles
+        .map(|t| {
+            let [a, b, c] = instance.corners(t as u32);
+            (b - a).cross(c - a).length() / 2.0
+        })
+        .sum()
 }
 
 /// The length of an instance's cuts.
@@ -46,9 +48,13 @@ fn joined(a: &Mesh, b: &Mesh, turned: bool) -> Mesh {
     let shift = a.positions.len() as u32;
     let mut mesh = bare(a);
     mesh.positions.extend(&b.positions);
-    mesh.triangles.extend(b.triangles.iter().map(|&[p, q, r]| {
-        if turned { [p, r, q].map(|v| v + shift) } else { [p, q, r].map(|v| v + shift) }
-    }));
+    mesh.triangles.extend(
+        b.triangles.iter().map(
+            |&[p, q, r]| {
+                if turned { [p, r, q].map(|v| v + shift) } else { [p, q, r].map(|v| v + shift) }
+            },
+        ),
+    );
     mesh.parts[0].triangles = 0..mesh.triangles.len() as u32;
     mesh
 }

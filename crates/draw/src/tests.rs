@@ -2,7 +2,7 @@ use super::*;
 use vitral_frame::drawing::Line;
 use vitral_math::{DMat4, DVec3};
 use vitral_scene::builtin::solids;
-use vitral_scene::{Axis, Lens, Mesh, Scene, View, frame};
+use vitral_scene::{Axis, Lens, Mesh, Scene, SectionPlane, View, frame};
 
 fn drawn(scene: &Scene, view: View, lens: Lens, settings: &DrawingSettings, threads: usize) -> Drawn {
     let world = World::new(scene).unwrap();
@@ -188,4 +188,88 @@ fn a_contour_goes_on_over_faces_that_are_not_flat() {
         Mesh::from_polygons([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]], [vec![0, 1, 2, 3]]);
     let Drawn { drawing, .. } = drawn(&Scene::from_mesh(flat), View::Front, Lens::Parallel, &everything(), 1);
     assert!((drawing.length(|_| true) - 720.0).abs() < 0.01, "{:?}", drawing.lines);
+}
+
+/// A cube with a side of 2, and another one of side 1 in its middle, cut through their centres; seen from the front.
+fn cut_cubes(with_inner: bool) -> Scene {
+    let mut scene = Scene::default();
+    scene.add_mesh(solids::cuboid(DVec3::splat(2.0)), DMat4::IDENTITY);
+    if with_inner {
+        scene.add_mesh(solids::cuboid(DVec3::ONE), DMat4::IDENTITY);
+    }
+    scene.cut(&[SectionPlane::new([0.0; 3], [0.0, 0.0, 1.0]).unwrap()]).unwrap()
+}
+
+#[test]
+fn half_a_cube_has_an_outline_and_hatching() {
+    let scene = cut_cubes(false);
+    let front = |settings: &DrawingSettings| drawn(&scene, View::Front, Lens::Parallel, settings, 1).drawing;
+    let of = |drawing: &Drawing, class| drawing.length(|line| line.class == class);
+    let drawing = front(&DrawingSettings::default());
+    assert!((of(&drawing, LineClass::Section) - 720.0).abs() < 0.01);
+    // Lines of 45 degrees, 2 mm apart: one is the diagonal, and there are 63 on each side of it.
+    let hatching: Vec<&Line> = drawing.lines.iter().filter(|line| line.class == LineClass::Hatch).collect();
+    let root = 2f64.sqrt();
+    let expected: f64 = (-63i32..=63).map(|k| root * (180.0 - 2.0 * root * f64::from(k.abs()))).sum();
+    assert_eq!(hatching.len(), 127);
+    assert!((of(&drawing, LineClass::Hatch) - expected).abs() < 0.1, "{} {expected}", of(&drawing, LineClass::Hatch));
+    assert!((drawing.length(|_| true) - 720.0 - expected).abs() < 0.1, "nothing else is seen");
+
+    // Without the class, the outline is the contour that it is as well.
+    let lines = Classes::one(LineClass::Contour);
+    let contours = front(&DrawingSettings { lines, hatch: None, ..DrawingSettings::default() });
+    assert!((of(&contours, LineClass::Contour) - 720.0).abs() < 0.01 && contours.length(|_| true) < 721.0);
+    // From the side, the cut is a line.
+    let side = drawn(&scene, View::Right, Lens::Parallel, &DrawingSettings::default(), 1).drawing;
+    assert!((of(&side, LineClass::Section) - 180.0).abs() < 0.01 && of(&side, LineClass::Hatch) == 0.0);
+}
+
+#[test]
+fn caps_hide_what_is_behind_and_the_smaller_is_in_front() {
+    // A cube in the back half is hidden by the cap.
+    let mut scene = cut_cubes(false);
+    scene.add_mesh(solids::cuboid(DVec3::splat(0.5)), DMat4::from_translation(DVec3::new(0.1, 0.0, -0.5)));
+    let settings = DrawingSettings { hatch: None, ..DrawingSettings::default() };
+    let drawing = drawn(&scene, View::Front, Lens::Parallel, &settings, 1).drawing;
+    assert!(drawing.lines.iter().all(|line| line.class == LineClass::Section), "{:?}", drawing.lines);
+    let hidden =
+        drawn(&scene, View::Front, Lens::Parallel, &DrawingSettings { hidden_layers: 1, ..settings }, 1).drawing;
+    assert!((hidden.length(|line| line.layers == 1) - 180.0).abs() < 0.01, "{:?}", hidden.lines);
+
+    // Of two that lie in each other, both are seen: an area of 3 with one pattern and 1 with another.
+    let scene = cut_cubes(true);
+    let drawing = drawn(&scene, View::Front, Lens::Parallel, &DrawingSettings::default(), 1).drawing;
+    let rises = |line: &Line| (line.points[1][1] - line.points[0][1]) * (line.points[1][0] - line.points[0][0]) > 0.0;
+    let of = |rising: bool| drawing.length(|line| line.class == LineClass::Hatch && rises(line) == rising);
+    assert!((of(true) / of(false) - 3.0).abs() < 0.03, "{} {}", of(true), of(false));
+    assert!((drawing.length(|line| line.class == LineClass::Section) - 720.0 - 360.0).abs() < 0.01);
+    let world = World::new(&scene).unwrap();
+    let camera = frame(&world.bounds, View::Front, Axis::PlusY, Lens::Parallel, 1.0);
+    let palette = |look: &FaceLook| if look.surface < 6 { [1; 3] } else { [2; 3] };
+    let filled = draw(&world, &camera, 1.0, &settings, Some(&palette), &Workers::single(), &Budget::default()).unwrap();
+    let areas: Vec<f64> = filled.drawing.regions.iter().map(vitral_frame::drawing::Region::area).collect();
+    assert!((areas[0] - 0.75 * 32400.0).abs() < 0.1 && (areas[1] - 0.25 * 32400.0).abs() < 0.1, "{areas:?}");
+}
+
+#[test]
+fn sections_do_not_depend_on_threads_or_the_near_plane() {
+    let mut scene = Scene::from_mesh(solids::torus(1.0, 0.4, 40, 24));
+    scene.add_instance(0, DMat4::from_rotation_x(1.2) * DMat4::from_translation(DVec3::new(0.7, 0.1, 0.0)));
+    let planes = [([0.1, 0.0, 0.0], [1.0, 0.2, 0.3]), ([0.0, 0.2, 0.0], [0.1, 1.0, 0.0])];
+    let scene = scene.cut(&planes.map(|(point, normal)| SectionPlane::new(point, normal).unwrap())).unwrap();
+    let one = drawn(&scene, View::Iso, Lens::default(), &everything(), 1);
+    for class in [LineClass::Section, LineClass::Hatch] {
+        assert!(one.drawing.length(|line| line.class == class) > 10.0, "{class:?}");
+    }
+    assert_eq!(one, drawn(&scene, View::Iso, Lens::default(), &everything(), 3));
+    // Triangles that the border of the page cuts keep their sides along cuts.
+    let world = World::new(&cut_cubes(false)).unwrap();
+    let camera = Camera::look_at([0.0, 0.0, 3.0], [0.0; 3]).with_view_angle(0.4);
+    let near = Camera { position: DVec3::new(0.9, 0.9, 3.0), focal_point: DVec3::new(0.9, 0.9, 0.0), ..camera };
+    let draw = |camera| draw(&world, camera, 1.0, &everything(), None, &Workers::single(), &Budget::default()).unwrap();
+    assert!(draw(&near).drawing.length(|line| line.class == LineClass::Section && is_visible(line)) > 100.0);
+    assert!(
+        draw(&camera).drawing.length(|line| line.class == LineClass::Section) == 0.0,
+        "only the inside is in sight"
+    );
 }

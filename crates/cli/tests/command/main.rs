@@ -269,8 +269,13 @@ fn mistakes_in_drawings_are_told() {
     folder.file("a.obj", TRIANGLE);
     for (arguments, expected, said) in [
         (&["-o", "x.png"][..], 4, "not a format of drawings"),
-        (&["-o", "x.svg", "--explode", "2"], 2, "not there yet"),
-        (&["-o", "x.svg", "--lines", "section"], 2, "not there yet"),
+        (&["-o", "x.svg", "--explode", "-2"], 2, "--explode"),
+        (&["-o", "x.svg", "--lines", "section"], 2, "add --section-plane"),
+        (&["-o", "x.svg", "--shadows"], 2, "give --style filled"),
+        (&["-o", "x.svg", "--style", "filled", "--color-by", "part", "--shades", "4"], 2, "give --color-by shading"),
+        (&["-o", "x.svg", "--style", "filled", "--flatten"], 2, "--transparency"),
+        (&["-o", "x.svg", "--style", "filled", "--shadows", "--lighting", "off"], 2, "the lights are off"),
+        (&["-o", "x.svg", "--algorithm", "bsp", "--seams", "none"], 2, "choose --algorithm exact"),
         (&["-o", "x.svg", "--lines", "edges"], 2, "contour"),
         (&["-o", "x.svg", "--hidden-max-layers", "2"], 2, "--hidden dashed"),
         (&["-o", "x.svg", "--style", "filled", "--lines", "all"], 2, "filled-lines"),

@@ -85,16 +85,29 @@ impl Scene {
     }
 }
 
-/// The groups or bodies of a mesh as meshes of their own, in order of their first faces; none if there is only one.
-fn taken_apart(mesh: &Mesh, workers: &Workers) -> Vec<Mesh> {
-    // Number the parts of the faces: by groups, or else by bodies.
+impl World {
+    /// The number of the part of each surface, by surface id. Parts are those of [`Scene::exploded`].
+    pub fn parts_of_surfaces(&self, workers: &Workers) -> Vec<u32> {
+        match &self.instances[..] {
+            [one] => parts_of_faces(&one.mesh, workers).0,
+            all => all
+                .iter()
+                .enumerate()
+                .flat_map(|(i, instance)| std::iter::repeat_n(i as u32, instance.mesh.face_count()))
+                .collect(),
+        }
+    }
+}
+
+/// For each face of a mesh the number of its part, a group or else a body, in order of their first faces; and how many there are.
+fn parts_of_faces(mesh: &Mesh, workers: &Workers) -> (Vec<u32>, usize) {
     let mut names: BTreeMap<&str, u32> = BTreeMap::new();
     for part in mesh.parts.iter().filter(|part| !part.triangles.is_empty()) {
         let next = names.len() as u32;
         names.entry(&part.name).or_insert(next);
     }
     let first_triangles = (0..mesh.face_count()).map(|face| mesh.face_triangles(face).start);
-    let (part_of_face, count) = if names.len() > 1 {
+    if names.len() > 1 {
         let mut part = 0;
         let numbers = first_triangles.map(|t| {
             while mesh.parts[part].triangles.end as usize <= t {
@@ -112,7 +125,12 @@ fn taken_apart(mesh: &Mesh, workers: &Workers) -> Vec<Mesh> {
         });
         let numbered: Vec<u32> = numbered.collect();
         (numbered, numbers.len())
-    };
+    }
+}
+
+/// The groups or bodies of a mesh as meshes of their own, in order of their first faces; none if there is only one.
+fn taken_apart(mesh: &Mesh, workers: &Workers) -> Vec<Mesh> {
+    let (part_of_face, count) = parts_of_faces(mesh, workers);
     if count < 2 {
         return Vec::new();
     }

@@ -27,7 +27,7 @@ pub enum ColorBy {
     Shading,
     /// The material's own colour.
     Material,
-    /// Which of the scene's bodies a face belongs to.
+    /// Which part of the scene a face belongs to; parts are those of [`Scene::exploded`](crate::Scene::exploded).
     Part,
     /// Nothing: surfaces are white.
     None,
@@ -38,7 +38,7 @@ impl ColorBy {
     pub const ALL: [(Self, &'static str, &'static str); 4] = [
         (Self::Shading, "shading", "the light of each face, with the lights and models of pictures"),
         (Self::Material, "material", "the material's own colour"),
-        (Self::Part, "part", "a colour for each of the scene's bodies"),
+        (Self::Part, "part", "a colour for each object, group or body, as --explode takes them apart"),
         (Self::None, "none", "white"),
     ];
 }

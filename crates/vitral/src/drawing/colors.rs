@@ -30,6 +30,8 @@ pub(crate) struct Colors<'r> {
     light: FaceColors,
     fill: FillSettings,
     usual: Material,
+    /// The part of each surface, where colours tell it.
+    parts: Vec<u32>,
 }
 
 impl<'r> Colors<'r> {
@@ -37,14 +39,17 @@ impl<'r> Colors<'r> {
         let view = camera.transform(renderer.aspect(), depth_range(camera, &renderer.world().bounds));
         let (lights, ambient) = (renderer.frame_lights(camera), renderer.frame_ambient());
         let light = FaceColors::new(renderer.settings.shading, &view, &lights, ambient);
-        Self { renderer, light, fill: *fill, usual: Material::default() }
+        let parts = match fill.color_by {
+            ColorBy::Part => renderer.world().parts_of_surfaces(&renderer.execution().workers),
+            _ => Vec::new(),
+        };
+        Self { renderer, light, fill: *fill, usual: Material::default(), parts }
     }
 
     /// The colour of a face.
     pub(crate) fn of(&self, look: &FaceLook) -> [u8; 3] {
         let world = self.renderer.world();
-        let number = world.instance_of_facet(look.facet);
-        let instance = &world.instances[number];
+        let instance = &world.instances[world.instance_of_facet(look.facet)];
         let face = instance.mesh.face_of_triangle((look.facet - instance.first_facet) as usize);
         let material = look.material.and_then(|index| self.renderer.scene().materials.get(index as usize));
         let material = material.unwrap_or(&self.usual);
@@ -54,7 +59,7 @@ impl<'r> Colors<'r> {
         };
         match self.fill.color_by {
             ColorBy::None => [255; 3],
-            ColorBy::Part => hue_of_part(number),
+            ColorBy::Part => hue_of_part(self.parts[look.surface as usize] as usize),
             ColorBy::Material => encoded(own(material, self.base_of(instance, face, material))),
             ColorBy::Shading => {
                 let base = self.base_of(instance, face, material);

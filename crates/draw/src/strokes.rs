@@ -191,7 +191,11 @@ impl CellGrid {
                     p[0] + (y - p[1]) * slope
                 }
             };
-            let (a, b) = (at(border(row, -REACH - 1.0)), at(border(row + 1, REACH + 1.0)));
+            let (mut a, mut b) = (at(border(row, -REACH - 1.0)), at(border(row + 1, REACH + 1.0)));
+            if p[1] == q[1] {
+                // All of a level stroke lies in its rows.
+                (a, b) = (p[0], q[0]);
+            }
             let columns = self.range(a.min(b), a.max(b), self.width);
             columns.for_each(|column| f(row * self.width + column));
         }
@@ -223,6 +227,12 @@ mod tests {
         // A hidden line gives way to a visible one of any class, and of equal ones the first stays.
         assert_eq!(left(&[stroke(Contour, 1, [0.0, 0.0], [1000.0, 1000.0]), long]).len(), 3);
         assert_eq!(left(&[long, long, long]), [long]);
+        // A level line that runs the other way coincides, too.
+        let level = stroke(Crease, 0, [100.0, 500.0], [4000.0, 500.0]);
+        let back = Stroke { ends: [level.ends[1], level.ends[0]], ..level };
+        let others: Vec<Stroke> =
+            (1..90).map(|i| stroke(Crease, 0, [f64::from(i) * 40.0, 900.0], [f64::from(i) * 40.0, 990.0])).collect();
+        assert_eq!(left(&[&[level, back], &others[..]].concat()).len(), 90);
     }
 
     #[test]

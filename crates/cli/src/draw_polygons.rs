@@ -24,14 +24,20 @@ pub(crate) fn check_options(args: &DrawArgs) -> Result<(), Failure> {
         (lines.hidden.is_some(), "--hidden"),
         (lines.hidden_max_layers.is_some(), "--hidden-max-layers"),
         (lines.crease_angle.is_some(), "--crease-angle"),
+        (lines.hide_tangent, "--hide-tangent"),
+        (args.section.hatch.is_some(), "--hatch"),
     ];
     if let Some((_, option)) = mistakes.into_iter().find(|(is_mistake, _)| *is_mistake) {
         let what = format!("{option}: with --algorithm {algorithm}, the outlines of its polygons are the lines");
         return Err(Failure::usage(what).with_hint("leave it out, or choose --algorithm exact"));
     }
-    let exact = [(args.fill.transparency, "--transparency"), (args.fill.seams.is_some(), "--seams")];
-    if let Some((_, option)) = exact.into_iter().find(|(is_mistake, _)| *is_mistake) {
-        let what = format!("{option}: --algorithm {algorithm} gives its own polygons, and all are opaque");
+    let exact = [
+        (args.fill.transparency, "--transparency", "all are opaque"),
+        (args.fill.seams.is_some(), "--seams", "they are as they are"),
+        (!args.page.views.is_empty(), "--views", "they are those of one view"),
+    ];
+    if let Some((_, option, why)) = exact.into_iter().find(|(is_mistake, ..)| *is_mistake) {
+        let what = format!("{option}: --algorithm {algorithm} gives its own polygons, and {why}");
         return Err(Failure::usage(what).with_hint("leave it out, or choose --algorithm exact"));
     }
     if let Some(class) = other_pen {

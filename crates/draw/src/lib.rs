@@ -204,11 +204,20 @@ pub fn draw(
     };
     let content = Content { size: mesh.size, strokes: &strokes, regions: &regions, cuts: &cuts, points: &points };
     let drawing = layout::lay_out(&content, settings.page, settings.margin);
-    if let Some(limit) = settings.max_segments.filter(|&limit| drawing.segments() > limit) {
-        let achieved = Achieved { done: limit, whole: drawing.segments(), pieces: "segments" };
-        return Err(Limit::Segments { limit, stage: "the layout", achieved });
+    Ok(Drawn { drawing: settings.limited(drawing)?, stats })
+}
+
+impl DrawingSettings {
+    /// A drawing with no more segments than are allowed.
+    pub(crate) fn limited(&self, drawing: Drawing) -> Result<Drawing, Limit> {
+        match self.max_segments.filter(|&limit| drawing.segments() > limit) {
+            Some(limit) => {
+                let achieved = Achieved { done: limit, whole: drawing.segments(), pieces: "segments" };
+                Err(Limit::Segments { limit, stage: "the layout", achieved })
+            }
+            None => Ok(drawing),
+        }
     }
-    Ok(Drawn { drawing, stats })
 }
 
 /// Adds the lines of intersection. Where hidden lines are drawn, back faces of solid bodies have some, too.

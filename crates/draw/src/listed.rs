@@ -6,9 +6,10 @@
 //!       once.
 //! Cost: linear in corners, and that of [`strokes`](crate::strokes) for lines.
 
+use crate::DrawingSettings;
 use crate::fill::{FaceLook, PageRegion, Palette};
 use crate::hatch::Cuts;
-use crate::layout::{self, Content, PageSize};
+use crate::layout::{self, Content};
 use crate::lit::{self, LitPolygons, Projector};
 use crate::page_mesh::NONE;
 use crate::projection::{page_size, source_of_facet};
@@ -63,7 +64,7 @@ pub fn draw_polygons(
     camera: &Camera,
     aspect: f64,
     mut polygons: ListedPolygons<'_>,
-    (sheet, margin): (PageSize, f64),
+    page: &DrawingSettings,
     workers: &Workers,
     budget: &Budget,
 ) -> Result<Drawing, Limit> {
@@ -102,7 +103,7 @@ pub fn draw_polygons(
         regions.clear();
     }
     let content = Content { size, strokes: &strokes, regions: &regions, cuts: &Cuts::default(), points: &[] };
-    Ok(layout::lay_out(&content, sheet, margin))
+    page.limited(layout::lay_out(&content, page.page, page.margin))
 }
 
 /// Tells which side of a face is seen.

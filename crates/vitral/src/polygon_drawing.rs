@@ -61,8 +61,8 @@ pub struct PolygonDrawing {
 
 impl Renderer {
     /// Draws the polygons that an algorithm comes to before it looks at samples, on the page of [`draw`](Self::draw): the list of
-    /// painter's algorithm or a BSP tree from back to front, or the visible polygons of Weiler–Atherton. Of `page`, the sheet and its
-    /// margin count.
+    /// painter's algorithm or a BSP tree from back to front, or the visible polygons of Weiler–Atherton. Of `page`, the sheet, its
+    /// margin and the most segments count.
     ///
     /// ```
     /// use vitral::{DrawingSettings, Lens, PolygonSettings, Visibility};
@@ -100,8 +100,8 @@ impl Renderer {
         let listed = found.polygons.into_iter().map(|p| ListedPolygon { facets: p.facets, outlines: p.outlines });
         let lines = Some(LineClass::Smooth).filter(|_| settings.outlines && order == PolygonOrder::Disjoint);
         let polygons = ListedPolygons { list: listed.collect(), fill, lines, lit: &lit };
-        let (sheet, workers, budget) = ((page.page, page.margin), &execution.workers, &execution.budget);
-        let drawing = draw_polygons(self.world(), &camera, self.aspect(), polygons, sheet, workers, budget)?;
+        let (workers, budget) = (&execution.workers, &execution.budget);
+        let drawing = draw_polygons(self.world(), &camera, self.aspect(), polygons, page, workers, budget)?;
         Ok(PolygonDrawing { drawing, order, model_polygons: found.wholes, pieces, counters: found.counters })
     }
 }

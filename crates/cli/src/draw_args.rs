@@ -81,7 +81,7 @@ pub(crate) struct FillArgs {
     #[arg(long, value_name = "WHAT", value_parser = choices::color_by())]
     pub(crate) color_by: Option<ColorBy>,
     /// Steps of brightness of shaded faces, 1 to 256: faces of one material and step become one region [default: 32]
-    #[arg(long, value_name = "N", value_parser = values::whole(1..=256), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=256u32), allow_negative_numbers = true)]
     pub(crate) shades: Option<u32>,
     /// How light is reflected, as in `render` [default: auto]
     #[arg(long, value_name = "MODEL", value_parser = choices::illumination())]

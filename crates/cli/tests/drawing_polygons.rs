@@ -141,7 +141,7 @@ fn what_has_no_effect_is_refused() {
     let said = folder.mistake(&[&painter[..], &["--stroke", "contour=1"], &svg].concat());
     assert!(said.contains("--stroke smooth=MM"), "{said}");
     assert!(folder.mistake(&[&painter[..], &["--simplify", "1"], &svg].concat()).contains("--simplify"));
-    assert!(folder.mistake(&["--shadows", "-o", "x.svg"]).contains("weiler-atherton"));
+    assert!(folder.mistake(&["--shadows", "-o", "x.svg"]).contains("give --style filled"));
     for file in ["x.dxf", "x.plt"] {
         let said = folder.mistake(&[&painter[..], &["-o", file]].concat());
         assert!(said.contains("choose weiler-atherton or exact; or .svg or .pdf"), "{said}");

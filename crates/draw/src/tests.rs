@@ -246,7 +246,16 @@ fn caps_hide_what_is_behind_and_the_smaller_is_in_front() {
     let world = World::new(&scene).unwrap();
     let camera = frame(&world.bounds, View::Front, Axis::PlusY, Lens::Parallel, 1.0);
     let palette = |look: &FaceLook| if look.surface < 6 { [1; 3] } else { [2; 3] };
-    let filled = draw(&world, &camera, 1.0, &settings, Some(&palette), &Workers::single(), &Budget::default()).unwrap();
+    let filled = draw(
+        &world,
+        &camera,
+        1.0,
+        &settings,
+        Some(&Surfaces { seams: Seams::None, ..Surfaces::new(&palette) }),
+        &Workers::single(),
+        &Budget::default(),
+    )
+    .unwrap();
     let areas: Vec<f64> = filled.drawing.regions.iter().map(vitral_frame::drawing::Region::area).collect();
     assert!((areas[0] - 0.75 * 32400.0).abs() < 0.1 && (areas[1] - 0.25 * 32400.0).abs() < 0.1, "{areas:?}");
 }

@@ -72,6 +72,7 @@ fn full_mesh() -> Mesh {
         smoothing_groups: Some(vec![1, 0]),
         // Found out again where it is needed, not written.
         solidity: None,
+        section: None,
     }
 }
 

@@ -57,7 +57,7 @@ mod tests {
         ];
         let drawing = Drawing { width: 4.0, height: 2.0, lines, points: vec![[0.5, 1.0]], ..Drawing::default() };
         let text = String::from_utf8(hpgl(&drawing, &DrawingOptions::default())).unwrap();
-        let expected = "IN;PS160,80;\nSP10;PW0.5;\nPU20,40;PD;\nSP1;PW0.5;\nPU40,40;PD100,40;\nSP3;PW0.35;\nPU0,0;PD40,40;\n\
+        let expected = "IN;PS160,80;\nSP11;PW0.5;\nPU20,40;PD;\nSP1;PW0.5;\nPU40,40;PD100,40;\nSP3;PW0.35;\nPU0,0;PD40,40;\n\
                         SP8;PW0.18;\nPU0,80;PD80,80;\nPU120,80;PD160,80;\nPU;SP0;\n";
         assert_eq!(text, expected);
     }

@@ -94,8 +94,8 @@ impl<'s> Surfaces<'s> {
 /// What the page's mesh has to say about the world.
 #[derive(Clone, Copy)]
 pub(crate) struct Facets<'f> {
-    /// Corners of a facet of the world.
-    pub(crate) corners: &'f (dyn Fn(u32) -> [DVec3; 3] + Sync),
+    /// A corner of a facet of the world.
+    pub(crate) corner: &'f (dyn Fn(u32) -> DVec3 + Sync),
     pub(crate) to_page: Projector,
 }
 
@@ -207,7 +207,7 @@ fn parts_of(
                 true => vec![(u32::MAX, shapes)],
                 false => {
                     let normal = normal_seen(triangle.facing, source);
-                    let facet = (source.facet, (facets.corners)(source.facet));
+                    let facet = (source.facet, (facets.corner)(source.facet));
                     lit::divide(shapes, &[facet], normal, surfaces.lit, &facets.to_page)
                 }
             };

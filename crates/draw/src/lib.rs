@@ -188,12 +188,12 @@ pub fn draw(
         false => Vec::new(),
     };
     budget.check("lines")?;
-    let corners = |facet: u32| {
+    let corner = |facet: u32| {
         let instance = &world.instances[world.instance_of_facet(facet)];
-        instance.corners(facet - instance.first_facet)
+        instance.corners(facet - instance.first_facet)[0]
     };
     let to_page = lit::Projector { clip_from_world: view.clip_from_world(), size: mesh.size.map(f64::from) };
-    let facets = fill::Facets { corners: &corners, to_page };
+    let facets = fill::Facets { corner: &corner, to_page };
     let regions = match surfaces {
         Some(surfaces) => fill::regions(&mesh, &grid, surfaces, &facets, &run)?,
         None => Vec::new(),

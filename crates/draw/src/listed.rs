@@ -144,7 +144,7 @@ impl<'w> Sides<'w> {
             return;
         }
         let shape = rings.iter().map(|ring| ring.iter().map(|&p| corner_at(p)).collect()).collect();
-        let facets: Vec<_> = facets.iter().map(|&facet| (facet, self.corners(facet))).collect();
+        let facets: Vec<_> = facets.iter().map(|&facet| (facet, self.corner(facet))).collect();
         let parts = lit::divide(vec![shape], &facets, look.normal, polygons.lit, to_page);
         regions.extend(parts.into_iter().map(|(lights, shapes)| {
             let rings = shapes.iter().flatten().map(|ring| ring.iter().map(on_page).collect()).collect();
@@ -152,15 +152,16 @@ impl<'w> Sides<'w> {
         }));
     }
 
-    fn corners(&self, facet: u32) -> [DVec3; 3] {
+    /// A corner of a facet.
+    fn corner(&self, facet: u32) -> DVec3 {
         let instance = &self.world.instances[self.world.instance_of_facet(facet)];
-        instance.corners(facet - instance.first_facet)
+        instance.corners(facet - instance.first_facet)[0]
     }
 
     /// What a facet's face shows to a palette.
     fn look(&self, facet: u32) -> FaceLook {
         let source = source_of_facet(self.world, facet);
-        let towards = if self.perspective { self.eye - self.corners(facet)[0] } else { self.backwards };
+        let towards = if self.perspective { self.eye - self.corner(facet) } else { self.backwards };
         let is_back = towards.dot(DVec3::from_array(source.normal.map(f64::from))) < 0.0;
         let normal = if is_back { source.normal.map(|c| -c) } else { source.normal };
         let material = Some(source.material).filter(|&m| m != NONE);

@@ -3,7 +3,8 @@
 //! A light's lit polygons are details of the facets that they lie in, found in space. Each is brought to the page, where what is
 //! visible of its facet is divided: a part outside all of them is in the light's shadow.
 //!
-//! A lit polygon that reaches a side of its facet is drawn out over it: rounding could leave a hair of shadow there else.
+//! Lit polygons are made larger by a little. Rounding could leave hairs of shadow else: between two of them, and where one reaches a side
+//! of its facet.
 //!
 //! In:   shapes of facets on the page, lit polygons of these facets in world space. Out: shapes, each with the lights that reach it.
 //! Cost: `k log k` with `k` corners of lit polygons.
@@ -11,14 +12,12 @@
 
 use crate::shapes::{Corner, Shapes, corner_at, without, without_hairs};
 use std::collections::BTreeMap;
+use vitral_frame::drawing::signed_area;
 use vitral_math::{DMat4, DVec3, DVec4};
 
-/// Weights of a corner on a side of the facet, but for rounding.
-const ON_SIDE: f64 = 1e-6;
-/// How far a corner is drawn out over a side, in units of the page; and what that may be of the facet's height over the side.
-const BEYOND: f64 = 2.0;
-const LEAST_BEYOND: f64 = 1e-6;
-const MOST_BEYOND: f64 = 1e-2;
+/// Units of the page by which lit polygons are made larger: what they lie on is rounded to a unit, and two that share a side leave no
+/// crack.
+const REACH: f64 = 2.0;
 /// The sine of the angle from which on a light is before a plane.
 const GRAZING: f64 = 1e-6;
 /// The least homogeneous coordinate in front of the viewer, as a part of the facet's largest.
@@ -44,11 +43,11 @@ pub(crate) struct Projector {
 }
 
 /// Divides shapes of some facets in one plane between the lights: each part comes with a bit for every light that reaches it. Lights
-/// that are not among `lights` reach everything. Facets come with their corners, world space; `normal` is the unit normal on the side
+/// that are not among `lights` reach everything. Facets come with a corner, world space; `normal` is the unit normal on the side
 /// that is seen: a light on the other side reaches nothing.
 pub(crate) fn divide(
     shapes: Shapes,
-    facets: &[(u32, [DVec3; 3])],
+    facets: &[(u32, DVec3)],
     normal: [f32; 3],
     lights: &[LitPolygons],
     to_page: &Projector,
@@ -56,9 +55,9 @@ pub(crate) fn divide(
     let mut parts = vec![(u32::MAX, shapes)];
     for light in lights {
         let mut lit: Vec<Vec<Corner>> = Vec::new();
-        for &(facet, corners) in facets.iter().filter(|(_, corners)| light.is_before(corners[0], normal)) {
+        for &(facet, _) in facets.iter().filter(|(_, corner)| light.is_before(*corner, normal)) {
             let polygons = light.of_facet.get(&facet).map_or(&[][..], Vec::as_slice);
-            lit.extend(polygons.iter().filter_map(|polygon| to_page.polygon(polygon, corners)));
+            lit.extend(polygons.iter().filter_map(|polygon| to_page.polygon(polygon)));
         }
         parts = parts.into_iter().flat_map(|(lights, shapes)| split(lights, shapes, &lit, light.light)).collect();
     }
@@ -95,52 +94,41 @@ fn split(lights: u32, shapes: Shapes, lit: &[Vec<Corner>], light: u8) -> Vec<(u3
 }
 
 impl Projector {
-    /// A polygon of a facet on the page, drawn out over the sides that it reaches; `None` if nothing of it is in front of the viewer.
-    fn polygon(&self, polygon: &[DVec3], facet: [DVec3; 3]) -> Option<Vec<Corner>> {
-        // Write each corner as weights of the facet's corners.
-        let [a, b, c] = facet;
-        let normal = (b - a).cross(c - a);
-        let square = normal.length_squared();
-        if square == 0.0 {
-            return None;
-        }
-        let clip = facet.map(|p| self.clip_from_world * p.extend(1.0));
-        let beyond = self.beyond(&clip);
-        let placed = polygon.iter().map(|&p| {
-            let weight = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(normal) / square;
-            let weights = [weight(b, c), weight(c, a), weight(a, b)];
-            let weights = [0, 1, 2].map(|k| if weights[k] < ON_SIDE { -beyond[k] } else { weights[k] });
-            let sum: f64 = weights.iter().sum();
-            (clip[0] * weights[0] + clip[1] * weights[1] + clip[2] * weights[2]) / sum
-        });
-
+    /// A convex polygon on the page, made larger; `None` if nothing of it is in front of the viewer or it is seen edge-on.
+    fn polygon(&self, polygon: &[DVec3]) -> Option<Vec<Corner>> {
         // Leave out what is behind the viewer.
+        let clip: Vec<DVec4> = polygon.iter().map(|p| self.clip_from_world * p.extend(1.0)).collect();
         let near = NEAR * clip.iter().fold(0.0f64, |most, p| most.max(p.w));
-        let visible = in_front(&placed.collect::<Vec<_>>(), near);
+        let visible = in_front(&clip, near);
+
         // Far outside the page it does not matter where.
-        let within = |at: [f64; 2]| corner_at([0, 1].map(|k| at[k].clamp(-0.5 * self.size[k], 1.5 * self.size[k])));
-        (visible.len() > 2).then(|| visible.iter().map(|p| within(self.point(p))).collect())
+        let within = |at: [f64; 2]| [0, 1].map(|k| at[k].clamp(-0.5 * self.size[k], 1.5 * self.size[k]));
+        let mut outline: Vec<[f64; 2]> = visible.iter().map(|p| within(self.point(p))).collect();
+        let area = signed_area(&outline);
+        if area < 0.0 {
+            outline.reverse();
+        }
+        (area != 0.0).then(|| enlarged(&outline))
     }
 
     /// A point in units of the page.
     fn point(&self, p: &DVec4) -> [f64; 2] {
         [(p.x / p.w * 0.5 + 0.5) * self.size[0], (p.y / p.w * 0.5 + 0.5) * self.size[1]]
     }
+}
 
-    /// For each corner of a facet, what [`BEYOND`] is of its height over the opposite side on the page.
-    fn beyond(&self, clip: &[DVec4; 3]) -> [f64; 3] {
-        if clip.iter().any(|p| p.w <= 0.0) {
-            return [LEAST_BEYOND; 3];
+/// A convex outline with its sides moved outwards by [`REACH`].
+fn enlarged(outline: &[[f64; 2]]) -> Vec<Corner> {
+    let mut larger = Vec::with_capacity(2 * outline.len());
+    for (p, q) in outline.iter().zip(outline.iter().cycle().skip(1)) {
+        let [dx, dy] = [q[0] - p[0], q[1] - p[1]];
+        let length = (dx * dx + dy * dy).sqrt();
+        if length > 0.0 {
+            let [x, y] = [dy * REACH / length, -dx * REACH / length];
+            larger.extend([p, q].map(|corner| corner_at([corner[0] + x, corner[1] + y])));
         }
-        let corners = clip.each_ref().map(|p| self.point(p));
-        let side = |k: usize| [0, 1].map(|i| corners[(k + 2) % 3][i] - corners[(k + 1) % 3][i]);
-        let [u, v] = [side(0), side(1)];
-        let area = (u[0] * v[1] - u[1] * v[0]).abs();
-        [0, 1, 2].map(|k| {
-            let [x, y] = side(k);
-            (BEYOND * (x * x + y * y).sqrt() / area).clamp(LEAST_BEYOND, MOST_BEYOND)
-        })
     }
+    larger
 }
 
 /// The part of a convex polygon with a homogeneous coordinate above `near`.
@@ -172,7 +160,7 @@ mod tests {
 
     fn area(shapes: &Shapes) -> f64 {
         let ring = |ring: &Vec<Corner>| ring.iter().map(on_page).collect::<Vec<_>>();
-        shapes.iter().flatten().map(|r| vitral_frame::drawing::signed_area(&ring(r))).sum()
+        shapes.iter().flatten().map(|r| signed_area(&ring(r))).sum()
     }
 
     /// The parts of the facet that two lights make, by their bits.
@@ -184,7 +172,7 @@ mod tests {
             of_facet: [(7, polygons.to_vec())].into_iter().filter(|(_, p)| !p.is_empty()).collect(),
         };
         let lights = [of(0, first), of(3, second)];
-        let divided = divide(vec![vec![whole]], &[(7, FACET)], [0.0, 0.0, 1.0], &lights, &TO_PAGE);
+        let divided = divide(vec![vec![whole]], &[(7, FACET[0])], [0.0, 0.0, 1.0], &lights, &TO_PAGE);
         divided.iter().map(|(lights, shapes)| (lights & 0b1001, area(shapes))).collect()
     }
 

@@ -93,7 +93,8 @@ impl LineClass {
 impl Drawing {
     /// The length of all lines that `wanted` accepts, in millimetres.
     pub fn length(&self, wanted: impl Fn(&Line) -> bool) -> f64 {
-        self.lines.iter().filter(|line| wanted(line)).map(Line::length).sum()
+        // A sum of nothing would be -0.
+        self.lines.iter().filter(|line| wanted(line)).map(Line::length).sum::<f64>() + 0.0
     }
 
     /// The straight segments of all lines and outlines of regions.

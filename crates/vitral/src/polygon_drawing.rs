@@ -198,7 +198,7 @@ mod tests {
         let direction = DVec3::new(2.0, -1.0, 0.0);
         scene.add_light(Light { shadow: true, ..Light::directional(direction) });
         let (mut renderer, page) = from_above(scene, 1);
-        let settings = PolygonSettings { shadows: true, ..PolygonSettings::new(Visibility::WEILER_ATHERTON) };
+        let settings = PolygonSettings { surfaces: shadowed(), ..PolygonSettings::new(Visibility::WEILER_ATHERTON) };
         let mut areas = || {
             let drawing = renderer.draw_polygons(&settings, &page).unwrap().drawing;
             let dark: f64 = drawing.regions.iter().filter(|r| r.unlit != 0).map(|r| r.area()).sum();

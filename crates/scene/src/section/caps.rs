@@ -82,11 +82,14 @@ impl Grid {
     }
 }
 
+/// The lowest triangle of some bodies, and the loops in which the plane cuts them.
+type Loops<'o> = (u32, Vec<&'o [u32]>);
+
 /// Adds caps and the outline of the cut to a clipped mesh.
 pub(super) fn close(clipped: &mut Mesh, whole: &Mesh, instance: &Instance, plane: &SectionPlane, outline: &Outline) {
     // Gather the loops of each material.
     let mut edges: Vec<[u32; 2]> = outline.edges.clone();
-    let mut groups: BTreeMap<(Option<u32>, Inside), (u32, Vec<&[u32]>)> = BTreeMap::new();
+    let mut groups: BTreeMap<(Option<u32>, Inside), Loops<'_>> = BTreeMap::new();
     for body in &outline.bodies {
         let material = whole.material_of_triangle(body.triangle as usize);
         let (triangle, loops) = groups.entry((material, body.inside)).or_insert((body.triangle, Vec::new()));

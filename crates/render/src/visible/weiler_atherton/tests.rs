@@ -228,7 +228,7 @@ fn threads_and_the_plain_order_find_the_same_polygons() {
 /// The facet at each sample of a picture of four tiles and a little, as the visible polygons are drawn.
 fn drawn(viewport: Viewport, pattern: &SamplePattern, polygons: &Polygons<'_>, execution: &Execution) -> TileGrid {
     let (sorted, held) = (in_first_order(polygons), Charge::new(&execution.budget, STAGE));
-    let found = AreaSorting { execution, polygons: &sorted, held: &held }.run(viewport).unwrap();
+    let found = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: false }.run(viewport).unwrap();
     let rows = found.visible.rows(viewport);
     let filling = Filling { viewport, pattern, polygons, visible: &found.visible };
     let mut grid = TileGrid::new(viewport, pattern.len());

@@ -7,7 +7,10 @@ use crate::section_args::SectionArgs;
 use crate::values;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use vitral::{ColorBy, Illumination, LineClass, LineClasses, Pens, PolygonOrder, Seams, TitleBlock, View, Visibility};
+use vitral::{
+    ColorBy, FillSettings, Illumination, LineClass, LineClasses, Pens, PolygonOrder, Seams, TitleBlock, View,
+    Visibility,
+};
 
 /// Options of `vitral draw`.
 #[derive(Args, Debug, Default)]
@@ -107,6 +110,20 @@ impl DrawArgs {
         self.lines.style.unwrap_or(match self.polygons() {
             Some(_) => Style::FilledLines,
             None => Style::default(),
+        })
+    }
+
+    /// How its surfaces are filled, if they are.
+    pub(crate) fn surfaces(&self) -> Option<FillSettings> {
+        let (fill, usual) = (&self.fill, FillSettings::default());
+        (self.style() != Style::HiddenLine).then(|| FillSettings {
+            color_by: fill.color_by.unwrap_or(usual.color_by),
+            shades: fill.shades.unwrap_or(usual.shades),
+            shadows: fill.shadows,
+            transparency: fill.transparency,
+            flatten: fill.flatten,
+            seams: fill.seams.unwrap_or(usual.seams),
+            by_face: self.page.svg_ids,
         })
     }
 

@@ -11,8 +11,7 @@ use crate::resolve::{execution_within, overlay_files, save_state, set_lights, se
 use serde_json::json;
 use std::time::Instant;
 use vitral::{
-    Drawing, DrawingSettings, Drawn, FillSettings, LineClass, LineClasses, PageSize, PolygonDrawing, Renderer, State,
-    World,
+    Drawing, DrawingSettings, Drawn, LineClass, LineClasses, PageSize, PolygonDrawing, Renderer, State, World,
 };
 
 /// Runs the verb; gives the exit code.
@@ -70,7 +69,7 @@ fn draw(
         settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
         let made = match args.polygons() {
             Some(algorithm) => Made::Polygons(Box::new(draw_polygons::draw(args, algorithm, &renderer, &settings)?)),
-            None => Made::Exact(match fill_of(args) {
+            None => Made::Exact(match args.surfaces() {
                 Some(fill) => renderer.draw_filled(&settings, &fill)?,
                 None => renderer.draw(&settings)?,
             }),
@@ -207,20 +206,6 @@ fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
         page: page_of(&args.page)?,
         margin: args.page.margin.unwrap_or(usual.margin),
         ..usual
-    })
-}
-
-/// How its surfaces are filled, if they are.
-pub(crate) fn fill_of(args: &DrawArgs) -> Option<FillSettings> {
-    let (fill, usual) = (&args.fill, FillSettings::default());
-    (args.style() != Style::HiddenLine).then(|| FillSettings {
-        color_by: fill.color_by.unwrap_or(usual.color_by),
-        shades: fill.shades.unwrap_or(usual.shades),
-        shadows: fill.shadows,
-        transparency: fill.transparency,
-        flatten: fill.flatten,
-        seams: fill.seams.unwrap_or(usual.seams),
-        by_face: args.page.svg_ids,
     })
 }
 

@@ -1,7 +1,6 @@
 //! `vitral draw --algorithm`: the polygons of an algorithm of the course, in its own order.
 
 use crate::draw_args::{DrawArgs, Style};
-use crate::draw_command::fill_of;
 use crate::report::{self, Failure};
 use serde_json::{Value, json};
 use vitral::{
@@ -68,7 +67,7 @@ pub(crate) fn draw(
         Style::Filled => (PolygonFill::Shaded, false),
         Style::FilledLines => (PolygonFill::Shaded, true),
     };
-    let polygons = PolygonSettings { algorithm, fill, outlines, surfaces: fill_of(args).unwrap_or_default() };
+    let polygons = PolygonSettings { algorithm, fill, outlines, surfaces: args.surfaces().unwrap_or_default() };
     Ok(renderer.draw_polygons(&polygons, settings)?)
 }
 

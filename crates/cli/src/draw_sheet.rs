@@ -1,7 +1,6 @@
 //! Sheets of `vitral draw --views`: several views on one page.
 
 use crate::draw_args::{Angle, DrawArgs};
-use crate::draw_command::fill_of;
 use crate::draw_file::too_large;
 use crate::report::{self, Failure};
 use serde_json::json;
@@ -80,7 +79,7 @@ pub(crate) fn draw(
         scale: args.page.scale.map(|scale| scale * unit_of(args)),
     };
     let (drawn, layout) =
-        renderer.draw_sheet(settings, &sheet, fill_of(args).as_ref()).map_err(|error| failure(args, error))?;
+        renderer.draw_sheet(settings, &sheet, args.surfaces().as_ref()).map_err(|error| failure(args, error))?;
 
     // Tell where the axonometric view has a scale of its own.
     let scale_of = |is_iso: bool| layout.views.iter().find(|view| (view.view == View::Iso) == is_iso).map(|v| v.scale);

@@ -13,6 +13,7 @@
 
 mod flatten;
 mod groups;
+mod parts;
 mod seams;
 mod visible;
 
@@ -20,8 +21,10 @@ use crate::grid::Grid;
 use crate::lit::{self, LitPolygons, Projector};
 use crate::page_mesh::{NONE, PageMesh, Source};
 use crate::run::Run;
-use crate::shapes::{Shapes, on_page};
-use groups::{Groups, Look};
+use groups::Groups;
+pub(crate) use parts::PageRegion;
+pub use parts::Seams;
+use parts::{Look, Part, Parts};
 use std::ops::Range;
 use visible::{Clipping, Seen, Stage};
 use vitral_exec::{Limit, Spare};
@@ -49,16 +52,6 @@ pub struct FaceLook {
 
 /// Gives each face its colour, sRGB.
 pub type Palette<'p> = dyn Fn(&FaceLook) -> [u8; 3] + Sync + 'p;
-
-/// How regions of different colours meet.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Seams {
-    /// Each region reaches under those that are painted later, so that no viewer shows the paper between them.
-    #[default]
-    Under,
-    /// Regions only touch: no place is painted twice.
-    None,
-}
 
 /// How visible surfaces are filled.
 #[derive(Clone, Copy)]
@@ -97,37 +90,6 @@ pub(crate) struct Facets<'f> {
     /// A corner of a facet of the world.
     pub(crate) corner: &'f (dyn Fn(u32) -> DVec3 + Sync),
     pub(crate) to_page: Projector,
-}
-
-/// A visible region on the page.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PageRegion {
-    /// The lowest surface id of its faces.
-    pub(crate) surface: u32,
-    pub(crate) material: u32,
-    pub(crate) color: [u8; 3],
-    pub(crate) opacity: f32,
-    /// The lights that do not reach it, a bit each.
-    pub(crate) unlit: u32,
-    /// Counter-clockwise round the region, clockwise round holes; in units.
-    pub(crate) rings: Vec<Vec<[f64; 2]>>,
-}
-
-/// A visible part of a triangle.
-#[derive(Debug)]
-struct Part {
-    triangle: u32,
-    surface: u32,
-    look: Look,
-    shapes: Shapes,
-}
-
-/// What can be seen of all triangles, and which triangles cut which parts.
-#[derive(Default)]
-struct Parts {
-    all: Vec<Part>,
-    /// A part and a triangle whose outline cuts it.
-    contacts: Vec<[u32; 2]>,
 }
 
 /// The visible regions in the order in which they are painted.

@@ -228,17 +228,32 @@ fn sources_of(instance: &Instance, triangles: Range<usize>) -> Vec<Source> {
     let mut last = usize::MAX;
     for t in triangles {
         let face = mesh.face_of_triangle(t);
-        let same = sources.last().filter(|_| face == last).copied();
         let facet = instance.first_facet + t as u32;
-        sources.push(same.map(|source| Source { facet, ..source }).unwrap_or_else(|| Source {
+        let same = sources.last().filter(|_| face == last).copied();
+        let mut source = same.unwrap_or_else(|| Source {
             facet,
             surface: instance.first_surface + face as u32,
             material: mesh.material_of_triangle(t).unwrap_or(NONE),
             normal: face_normal(instance, face),
-        }));
+        });
+        source.facet = facet;
         last = face;
+        if source.normal == [0.0; 3] {
+            // The halves of an outline that crosses itself cancel out.
+            source.normal = triangle_normal(instance, t);
+            last = usize::MAX;
+        }
+        sources.push(source);
     }
     sources
+}
+
+/// The unit normal of a triangle, world space; zero without an area.
+fn triangle_normal(instance: &Instance, t: usize) -> [f32; 3] {
+    let [a, b, c] = instance.corners(t as u32);
+    let normal = (b - a).cross(c - a);
+    let outward = if instance.world_from_model.determinant() < 0.0 { -normal } else { normal };
+    outward.try_normalize().unwrap_or(DVec3::ZERO).as_vec3().to_array()
 }
 
 /// The unit normal of a face, world space, by Newell's method; zero for a face without area.

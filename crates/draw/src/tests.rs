@@ -282,3 +282,11 @@ fn sections_do_not_depend_on_threads_or_the_near_plane() {
         "only the inside is in sight"
     );
 }
+
+#[test]
+fn an_outline_that_crosses_itself_is_drawn() {
+    let bow =
+        Mesh::from_polygons([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [vec![0, 1, 2, 3]]);
+    let Drawn { drawing, .. } = drawn(&Scene::from_mesh(bow), View::Front, Lens::Parallel, &everything(), 1);
+    assert!(drawing.length(is_visible) > 500.0, "{:?}", drawing.lines);
+}

@@ -7,7 +7,8 @@
 //! corners is cut into exactly `n - 2` triangles (its *facets*), in order, so that triangle numbers follow from
 //! corner numbers.
 
-use crate::{KnownSolidity, Section};
+use crate::KnownSolidity;
+use crate::cut_marks::Section;
 use std::ops::Range;
 use std::sync::Arc;
 use vitral_exec::Workers;

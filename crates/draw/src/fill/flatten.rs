@@ -7,13 +7,13 @@
 //! is painted once.
 //!
 //! In:   the union of each look. Out: opaque regions.
-//! Cost: for each layer the pairs of overlapping looks, `n log n` for the corners of each.
+//! Cost: for each layer the pairs of shapes whose boxes overlap, `n log n` for the corners of each.
 //! Source: the mixing is that of [Porter & Duff 1984], `over`.
 
-use super::groups::{Groups, Joined, LEAST_SHAPE, Look};
-use super::{PageRegion, Part, Seams};
+use super::groups::{Groups, Joined, LEAST_SHAPE};
+use super::parts::{Look, PageRegion, Part, Seams};
 use crate::run::Run;
-use crate::shapes::{Shapes, union, within, without};
+use crate::shapes::{Corner, Shapes, union, within, without, without_hairs};
 use std::collections::BTreeMap;
 use vitral_exec::Limit;
 
@@ -52,36 +52,36 @@ pub(super) fn flattened(
 
 /// What is painted after a layer of clear groups, which do not overlap.
 fn laid_over(painted: Vec<Joined>, layer: &[Joined], run: &Run<'_>) -> Result<Vec<Joined>, Limit> {
-    // Mix what lies over each other.
+    // Divide each painted group: a shape of the layer lies over it or not.
+    let shapes: Vec<Over<'_>> =
+        layer.iter().flat_map(|group| group.shapes.iter().map(|shape| Over::new(group, shape))).collect();
     let mut mixed: BTreeMap<Look, (u32, Vec<Shapes>)> = BTreeMap::new();
-    let mut add = |over: &Joined, behind: [u8; 3], shapes: Shapes| {
-        if !shapes.is_empty() {
-            let look = Look { color: mix(over.look, behind), opacity: 1.0, ..over.look };
-            let entry = mixed.entry(look).or_insert((over.surface, Vec::new()));
-            entry.0 = entry.0.min(over.surface);
-            entry.1.push(shapes);
-        }
-    };
-    for over in layer {
-        let box_of_over = bounds(&over.shapes);
-        for group in painted.iter().filter(|group| meet(box_of_over, bounds(&group.shapes))) {
+    let mut left = Vec::new();
+    let mut bare: Vec<Shapes> = shapes.iter().map(|over| vec![over.shape.clone()]).collect();
+    for group in painted {
+        let mut kept = Vec::new();
+        for shape in group.shapes {
             run.budget.check("clear layers")?;
-            add(over, group.look.color, within(&group.shapes, over.shapes.iter().flatten()));
+            let own = bounds(&shape);
+            let near: Vec<usize> = (0..shapes.len()).filter(|&i| meet(own, shapes[i].bounds)).collect();
+            let whole = vec![shape];
+            for &i in &near {
+                let common = without_hairs(within(&whole, shapes[i].shape));
+                if !common.is_empty() {
+                    bare[i] = without(&bare[i], common.iter().flatten());
+                    add(&mut mixed, shapes[i].group, group.look.color, common);
+                }
+            }
+            kept.extend(without_hairs(without(&whole, near.iter().flat_map(|&i| shapes[i].shape))));
         }
-        let all = painted.iter().flat_map(|group| group.shapes.iter().flatten());
-        add(over, PAPER, without(&over.shapes, all));
+        if !kept.is_empty() {
+            left.push(Joined { shapes: kept, ..group });
+        }
     }
 
-    // Keep what no clear shape lies over.
-    let mut left = Vec::new();
-    for group in painted {
-        run.budget.check("clear layers")?;
-        let own = bounds(&group.shapes);
-        let over: Vec<&Joined> = layer.iter().filter(|over| meet(own, bounds(&over.shapes))).collect();
-        let shapes = without(&group.shapes, over.iter().flat_map(|over| over.shapes.iter().flatten()));
-        if !shapes.is_empty() {
-            left.push(Joined { shapes, ..group });
-        }
+    // What lies over nothing is mixed with the paper.
+    for (over, bare) in shapes.iter().zip(bare) {
+        add(&mut mixed, over.group, PAPER, without_hairs(bare));
     }
     left.extend(mixed.into_iter().map(|(look, (surface, all))| Joined {
         look,
@@ -89,6 +89,29 @@ fn laid_over(painted: Vec<Joined>, layer: &[Joined], run: &Run<'_>) -> Result<Ve
         shapes: union(&all, LEAST_SHAPE),
     }));
     Ok(left)
+}
+
+/// A shape of a clear layer.
+struct Over<'g> {
+    group: &'g Joined,
+    shape: &'g Vec<Vec<Corner>>,
+    bounds: [[i32; 2]; 2],
+}
+
+impl<'g> Over<'g> {
+    fn new(group: &'g Joined, shape: &'g Vec<Vec<Corner>>) -> Self {
+        Self { group, shape, bounds: bounds(shape) }
+    }
+}
+
+/// Adds shapes where a clear group lies over a colour.
+fn add(mixed: &mut BTreeMap<Look, (u32, Vec<Shapes>)>, over: &Joined, behind: [u8; 3], shapes: Shapes) {
+    if !shapes.is_empty() {
+        let look = Look { color: mix(over.look, behind), opacity: 1.0, ..over.look };
+        let entry = mixed.entry(look).or_insert((over.surface, Vec::new()));
+        entry.0 = entry.0.min(over.surface);
+        entry.1.push(shapes);
+    }
 }
 
 /// A clear colour over another one.
@@ -99,12 +122,11 @@ fn mix(over: Look, behind: [u8; 3]) -> [u8; 3] {
     })
 }
 
-/// The box round shapes.
-fn bounds(shapes: &Shapes) -> [[i32; 2]; 2] {
+/// The box round a shape.
+fn bounds(shape: &[Vec<Corner>]) -> [[i32; 2]; 2] {
     let empty = [[i32::MAX; 2], [i32::MIN; 2]];
-    shapes
+    shape
         .iter()
-        .flatten()
         .flatten()
         .fold(empty, |[low, high], p| [[low[0].min(p.x), low[1].min(p.y)], [high[0].max(p.x), high[1].max(p.y)]])
 }

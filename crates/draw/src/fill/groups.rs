@@ -3,10 +3,9 @@
 //! In:   visible parts. Out: one union for each look, in the order of painting: what is opaque, then clear layers from the deepest on.
 //! Cost: `n log n` for the corners of each union.
 
-use super::{PageRegion, Part, on_page};
+use super::parts::{Look, PageRegion, Part};
 use crate::run::Run;
-use crate::shapes::{FINER, Shapes, union};
-use std::cmp::Ordering;
+use crate::shapes::{FINER, Shapes, on_page, union};
 use std::collections::BTreeMap;
 use vitral_exec::Limit;
 
@@ -14,40 +13,6 @@ use vitral_exec::Limit;
 pub(super) const LEAST_AREA: u64 = 1024;
 /// The same in steps of the finer grid, squared.
 pub(super) const LEAST_SHAPE: u64 = LEAST_AREA * (FINER as u64).pow(2);
-
-/// The look of a part. The order is that of painting.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Look {
-    /// 0 for what is opaque; clear layers come over each other in this order.
-    pub(super) over: u32,
-    pub(super) material: u32,
-    pub(super) color: [u8; 3],
-    pub(super) opacity: f32,
-    /// The lights that do not reach it, a bit each.
-    pub(super) unlit: u32,
-    /// The surface id, where each face is a region of its own; else 0.
-    pub(super) face: u32,
-}
-
-impl Look {
-    fn key(&self) -> (u32, u32, [u8; 3], [u32; 3]) {
-        (self.over, self.material, self.color, [self.opacity.to_bits(), self.unlit, self.face])
-    }
-}
-
-impl Eq for Look {}
-
-impl Ord for Look {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.key().cmp(&other.key())
-    }
-}
-
-impl PartialOrd for Look {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
 
 /// The parts of each look.
 pub(super) struct Groups {

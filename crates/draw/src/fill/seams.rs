@@ -12,8 +12,8 @@
 //! In:   parts with their groups in the order of painting. Out: for each group the parts beneath which it reaches.
 //! Cost: linear in the pairs of neighbours.
 
-use super::groups::{Groups, Joined, LEAST_SHAPE, Look};
-use super::{Part, Parts};
+use super::groups::{Groups, Joined, LEAST_SHAPE};
+use super::parts::{Look, Part, Parts};
 use crate::page_mesh::PageMesh;
 use crate::run::Run;
 use crate::shapes::{area_of, union};

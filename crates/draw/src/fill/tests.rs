@@ -1,7 +1,7 @@
 use super::groups::LEAST_AREA;
 use super::*;
 use crate::page_mesh::Triangle;
-use crate::shapes::{corner_between, union};
+use crate::shapes::{Shapes, corner_between, on_page, union};
 use crate::testing::{mesh_of, with_run};
 use proptest::prelude::*;
 use vitral_math::exact::GridPoint;

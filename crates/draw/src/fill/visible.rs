@@ -23,6 +23,8 @@ use vitral_math::exact::{GridPlane, GridPoint, orient2d};
 
 /// Triangles in lists between two looks at the clock.
 const TESTS_A_CHECK: u32 = 1 << 14;
+/// Polygons that are taken away together.
+const AT_ONCE: usize = 16;
 /// How far a corner lies from the outline that made it, in steps of the finer grid.
 const BESIDE: f64 = 2.0;
 
@@ -81,7 +83,14 @@ impl Clipping {
         }
         let (mut visible, mut contacts) = (vec![vec![whole]], Vec::new());
         if !self.in_front.is_empty() {
-            visible = without(&visible, self.in_front.iter().map(|front| &front.polygon));
+            // Large and near ones come first: often little is left for the others.
+            for some in self.in_front.chunks(AT_ONCE) {
+                visible = without(&visible, some.iter().map(|front| &front.polygon));
+                if visible.is_empty() {
+                    break;
+                }
+                run.budget.check("visible surfaces")?;
+            }
             if stage.tells_contacts {
                 contacts = self.contacts(triangle, &visible);
             }

@@ -8,8 +8,9 @@
 //! Cost: linear.
 //! Source: [Sutherland & Hodgman 1974].
 
+use super::Heights;
 use super::rings::rings;
-use super::{Heights, Section};
+use crate::cut_marks::Section;
 use crate::weld::Weld;
 use crate::{Attribute, Corners, Faces, FreePart, Mesh, Part};
 use std::collections::HashMap;

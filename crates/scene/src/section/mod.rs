@@ -1,7 +1,7 @@
 //! Sections: what is left of a scene where planes take one side of it away, and caps on bodies that they cut open.
 //!
 //! Each mesh that a plane crosses is clipped exactly there, faces staying faces. Where bodies are closed, the cut is closed as well: a
-//! cap is one flat face with the body's material. Caps are the last faces of a mesh, and [`Section`] names them and the edges along the
+//! cap is one flat face with the body's material. Caps are the last faces of a mesh, and [`Section`](crate::Section) names them and the edges along the
 //! cuts. A cut mesh with its caps is an ordinary mesh: pictures and drawings show it, and the next plane cuts it.
 //!
 //! In:   a scene and planes in world space. Out: the scene with meshes of its own for each instance that is cut.
@@ -32,15 +32,6 @@ pub struct SectionPlane {
     normal: DVec3,
 }
 
-/// What planes of section have made of a mesh.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Section {
-    /// Faces from this number on are caps.
-    pub first_cap: u32,
-    /// Edges along the cuts as pairs of positions, the lower one first, in order.
-    pub outline: Vec<[u32; 2]>,
-}
-
 /// Why a scene cannot be cut.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum SectionError {
@@ -63,13 +54,6 @@ impl SectionPlane {
     /// Distance of a point, positive on the side that is taken away.
     pub fn distance(&self, point: DVec3) -> f64 {
         self.normal.dot(point - self.point)
-    }
-}
-
-impl Section {
-    /// Whether an edge runs along a cut.
-    pub fn has_edge(&self, a: u32, b: u32) -> bool {
-        self.outline.binary_search(&[a.min(b), a.max(b)]).is_ok()
     }
 }
 

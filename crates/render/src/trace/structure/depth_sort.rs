@@ -2,7 +2,7 @@
 
 use super::super::Step;
 use super::super::lists::ListedPolygon;
-use super::{BLUE, GREY, INK, LINE, MARGIN, Picture, RED, row_of};
+use super::svg_picture::{BLUE, GREY, INK, LINE, MARGIN, Picture, RED, row_of};
 use std::collections::HashMap;
 
 /// Rows of a column that are drawn.

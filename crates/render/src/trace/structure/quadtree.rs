@@ -3,7 +3,7 @@
 use super::super::numbered::NumberedStep;
 use super::super::picture::MARKS;
 use super::super::{Step, WindowVerdict};
-use super::{GREY, INK, LINE, MARGIN, Picture};
+use super::svg_picture::{GREY, INK, LINE, MARGIN, Picture};
 use std::collections::HashMap;
 
 /// Windows of a level that are drawn one by one. Of a larger level the number is written.

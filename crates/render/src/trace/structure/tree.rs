@@ -2,7 +2,7 @@
 
 use super::super::Step;
 use super::super::lists::{PlaneSide, PolygonSet};
-use super::{BLUE, GREY, INK, LINE, MARGIN, Picture, RED, row_of};
+use super::svg_picture::{BLUE, GREY, INK, LINE, MARGIN, Picture, RED, row_of};
 use std::collections::{BTreeMap, VecDeque};
 
 /// Nodes that are drawn. What hangs below others is counted.

@@ -7,8 +7,8 @@
 //! In:   a clipped mesh and the outline of the cut. Out: the mesh with a flat face for each region inside.
 //! Cost: `n log n` in the corners of the loops.
 
-use super::SectionPlane;
 use super::outline::{BodyLoops, Inside, Outline};
+use super::plane::SectionPlane;
 use super::rings::rings;
 use crate::{Attribute, Corners, Faces, Instance, Mesh, Part};
 use i_overlay::core::fill_rule::FillRule;
@@ -82,18 +82,19 @@ impl Grid {
     }
 }
 
-/// The lowest triangle of some bodies, and the loops in which the plane cuts them.
-type Loops<'o> = (u32, Vec<&'o [u32]>);
+/// The loops in which the plane cuts some bodies.
+type Loops<'o> = Vec<&'o [u32]>;
 
 /// Adds caps and the outline of the cut to a clipped mesh.
 pub(super) fn close(clipped: &mut Mesh, whole: &Mesh, instance: &Instance, plane: &SectionPlane, outline: &Outline) {
-    // Gather the loops of each material.
+    // Gather the loops of each group and material.
     let mut edges: Vec<[u32; 2]> = outline.edges.clone();
-    let mut groups: BTreeMap<(Option<u32>, Inside), Loops<'_>> = BTreeMap::new();
+    let mut groups: BTreeMap<(&str, Option<u32>, Inside), Loops<'_>> = BTreeMap::new();
     for body in &outline.bodies {
         let material = whole.material_of_triangle(body.triangle as usize);
-        let (triangle, loops) = groups.entry((material, body.inside)).or_insert((body.triangle, Vec::new()));
-        *triangle = body.triangle.min(*triangle);
+        let part = whole.parts.iter().find(|part| part.triangles.contains(&body.triangle));
+        let name = part.map_or("", |part| part.name.as_str());
+        let loops = groups.entry((name, material, body.inside)).or_default();
         loops.extend(body.loops.iter().map(Vec::as_slice));
     }
 
@@ -101,13 +102,11 @@ pub(super) fn close(clipped: &mut Mesh, whole: &Mesh, instance: &Instance, plane
     let normal = instance.world_from_model.transpose().transform_vector3(plane.normal).normalize_or_zero();
     let mirrored = instance.world_from_model.determinant() < 0.0;
     if let Some(mut grid) = Grid::new(clipped, instance, plane, &outline.bodies) {
-        for ((material, inside), (triangle, loops)) in groups {
-            let part = whole.parts.iter().find(|part| part.triangles.contains(&triangle));
-            let name = part.map_or(String::new(), |part| part.name.clone());
+        for ((name, material, inside), loops) in groups {
             for shape in regions(clipped, instance, &grid, &loops, inside) {
                 let triangles = triangles(&shape, &mut grid, &mut clipped.positions, mirrored);
                 add_outline(&triangles, &mut edges);
-                add_faces(clipped, &triangles, &name, material, normal);
+                add_faces(clipped, &triangles, name, material, normal);
             }
         }
     }

@@ -8,7 +8,7 @@
 //! Cost: linear.
 //! Source: [Sutherland & Hodgman 1974].
 
-use super::Heights;
+use super::plane::Heights;
 use super::rings::rings;
 use crate::cut_marks::Section;
 use crate::weld::Weld;

@@ -2,7 +2,7 @@ use super::*;
 use crate::builtin::solids;
 use crate::{Node, Solidity};
 use proptest::prelude::*;
-use vitral_math::DMat4;
+use vitral_math::{DMat4, DVec3};
 
 fn plane(point: [f64; 3], normal: [f64; 3]) -> SectionPlane {
     SectionPlane::new(point, normal).unwrap()

@@ -33,25 +33,3 @@ pub fn drawer(algorithm: Visibility) -> Option<Drawer> {
 fn plain(steps: &[NumberedStep]) -> Vec<Step> {
     steps.iter().map(|numbered| numbered.step.clone()).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_picture_holds_what_is_drawn() {
-        let mut picture = Picture::new("A < B", &["explained"]);
-        picture.rectangle([10.0, 100.0], [30.0, 20.0], INK, "none");
-        picture.arrow([0.0, 0.0], [200.0, 50.0], BLUE);
-        assert_eq!(picture.bottom(), 120.0 + MARGIN);
-        let svg = picture.finish();
-        assert!(svg.contains("viewBox=\"0 0 216 136\"") && svg.contains("A &lt; B"), "{svg}");
-        assert!(svg.ends_with("</svg>\n"));
-    }
-
-    #[test]
-    fn long_rows_are_counted() {
-        assert_eq!(row_of(&[1, 2], 2), "1 2");
-        assert_eq!(row_of(&[1, 2], 9), "1 2 and 7 more");
-    }
-}

@@ -109,3 +109,25 @@ pub(super) fn row_of(numbers: &[u32], count: u32) -> String {
     let more = (count as usize).saturating_sub(names.len());
     if more > 0 { format!("{} and {more} more", names.join(" ")) } else { names.join(" ") }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_holds_what_is_drawn() {
+        let mut picture = Picture::new("A < B", &["explained"]);
+        picture.rectangle([10.0, 100.0], [30.0, 20.0], INK, "none");
+        picture.arrow([0.0, 0.0], [200.0, 50.0], BLUE);
+        assert_eq!(picture.bottom(), 120.0 + MARGIN);
+        let svg = picture.finish();
+        assert!(svg.contains("viewBox=\"0 0 216 136\"") && svg.contains("A &lt; B"), "{svg}");
+        assert!(svg.ends_with("</svg>\n"));
+    }
+
+    #[test]
+    fn long_rows_are_counted() {
+        assert_eq!(row_of(&[1, 2], 2), "1 2");
+        assert_eq!(row_of(&[1, 2], 9), "1 2 and 7 more");
+    }
+}

@@ -1,7 +1,7 @@
 //! `vitral bench --drawings --report`: the polygons of the algorithms of the course beside exact drawings.
 //!
-//! Each algorithm makes a filled drawing of the same view of the same scenes. Lists from back to front hold what is hidden as well; the
-//! area that is drawn again is the price of that. Two scenes are small enough to show: what each algorithm cuts is seen in them.
+//! Each algorithm makes a filled drawing of the same view of the same scenes. A list from back to front holds hidden polygons as well,
+//! so part of its area is painted more than once. For two small scenes, the report shows the drawings, with the cuts of each algorithm.
 
 use crate::args::BenchArgs;
 use crate::command_line;
@@ -95,12 +95,15 @@ fn name_of(algorithm: Option<Visibility>) -> &'static str {
 
 /// The two small scenes, built-in ones, and the models that were named.
 fn subjects(args: &BenchArgs, execution: &Execution) -> Result<Vec<Subject>, Failure> {
+    // Build the small scenes.
     let small =
         |name: &str, scene, view, pictures| Subject { name: name.to_owned(), scene, view, pictures: Some(pictures) };
     let mut all = vec![
         small("Three bars, each in front of the next", bars(), View::Front, "bars"),
         small("Three squares that cross", squares(), View::Iso, "squares"),
     ];
+
+    // Load the others.
     let named = args.models.iter().map(|model| model.to_string_lossy().into_owned());
     for model in BUILT_IN.into_iter().map(str::to_owned).chain(named) {
         let mut state = State { models: vec![model.clone()], ..State::default() };
@@ -125,14 +128,16 @@ fn bars() -> Scene {
     let ends = [[-6.0, -3.5], [6.0, -3.5], [0.0, 6.0]];
     let colors = [[0.75, 0.35, 0.3], [0.35, 0.6, 0.35], [0.35, 0.45, 0.75]];
     for (i, color) in colors.into_iter().enumerate() {
+        // Run along one side of the triangle, beyond both corners.
         let [[ax, ay], [bx, by]]: [[f32; 2]; 2] = [ends[i], ends[(i + 1) % 3]];
         let [dx, dy] = [bx - ax, by - ay];
         let length = (dx * dx + dy * dy).sqrt();
         let ([ux, uy], half) = ([dx / length, dy / length], 0.8);
-        // Bars reach beyond the corners of the triangle.
         let end = |x: f32, y: f32, way: f32, side: f32, z: f32| {
             [x + ux * way - uy * half * side, y + uy * way + ux * half * side, z]
         };
+
+        // Lower the first end, and raise the second.
         let near = [end(bx, by, 1.5, -1.0, 1.0), end(bx, by, 1.5, 1.0, 1.0)];
         let far = [end(ax, ay, -1.5, -1.0, -1.0), end(ax, ay, -1.5, 1.0, -1.0)];
         add_quad(&mut scene, color, [far[0], near[0], near[1], far[1]]);
@@ -157,11 +162,14 @@ fn measured(
     algorithm: Option<Visibility>,
     execution: &Execution,
 ) -> Result<Result<Measured, Limit>, Failure> {
+    // Each drawing has the whole budget for itself.
     let budget = || {
         let renewed: Budget = execution.budget.renewed();
         renewed.with_time_limit(Some(args.time_limit)).with_memory_limit(args.max_memory)
     };
     let page = DrawingSettings { lines: vitral::LineClasses::EMPTY, ..DrawingSettings::default() };
+
+    // Measure the first drawing in full, and of the others the time.
     let mut all: Option<Measured> = None;
     for _ in 0..=args.frames {
         let own = budget();

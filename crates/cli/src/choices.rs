@@ -8,7 +8,7 @@ use vitral::{
     Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
 };
 
-/// Who decides what is visible in a drawing.
+/// The algorithm that finds the visible surfaces of a drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum DrawingAlgorithm {
     /// The drawing's own, exact on a grid.

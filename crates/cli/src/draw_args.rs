@@ -48,8 +48,8 @@ pub(crate) struct DrawArgs {
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Lines")]
 pub(crate) struct LineArgs {
-    /// Who decides what is visible. The algorithms of the course give their own polygons in their own order, with all their cuts: of a
-    /// list from back to front the later ones cover the earlier ones [default: exact]
+    /// The algorithm of visibility. Those of the course draw their own polygons in their own order, with all their cuts, as lines of the
+    /// class smooth; in a list from back to front, later polygons cover earlier ones [default: exact]
     #[arg(long, value_name = "NAME", value_parser = choices::drawing_algorithm())]
     pub(crate) algorithm: Option<DrawingAlgorithm>,
     /// What the drawing is made of [default: hidden-line; filled-lines with another --algorithm than exact]
@@ -93,10 +93,10 @@ pub(crate) struct FillArgs {
     /// tell the lights that do not reach a region as data-shadow
     #[arg(long)]
     pub(crate) shadows: bool,
-    /// Draw what is seen through transparent materials, in layers from behind; else all surfaces are opaque
+    /// Draw transparent materials as layers of their opacity over the surfaces behind them [default: all surfaces are opaque]
     #[arg(long)]
     pub(crate) transparency: bool,
-    /// Mix transparent layers with what is behind them to opaque regions, for programs that know no opacity
+    /// Blend transparent layers and the surfaces behind them into opaque regions, for programs without opacity
     #[arg(long, requires = "transparency")]
     pub(crate) flatten: bool,
     /// How regions meet [default: under]

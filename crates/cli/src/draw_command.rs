@@ -17,11 +17,9 @@ use vitral::{
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     let start = Instant::now();
-    draw_polygons::check_options(args)?;
     let state = state_of(args)?;
-    draw_sheet::check_options(args, &state)?;
-    let mut settings = settings_of(args)?;
     let file = DrawFile::new(args, &state)?;
+    let mut settings = settings_of(args)?;
     settings.page = file.page_above_title(settings.page, settings.margin)?;
     if let Some(path) = &args.process.save_state {
         save_state(&state, path)?;
@@ -158,48 +156,20 @@ fn projected(args: &DrawArgs, state: &State, world: &World) -> State {
 
 /// The settings of the drawing: its lines, hidden layers and sheet.
 fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
-    // Refuse choices about lines where there are none.
     let usual = DrawingSettings::default();
     let lines = &args.lines;
     let has_lines = args.style() != Style::Filled;
-    let line_options = [(lines.lines.is_some(), "--lines"), (lines.hidden.is_some(), "--hidden")];
-    if let Some((_, option)) = line_options.iter().find(|(given, _)| *given && !has_lines) {
-        return Err(
-            Failure::usage(format!("{option}: --style filled draws no lines")).with_hint("give --style filled-lines")
-        );
-    }
 
-    // Tangent edges are smooth ones, borders of materials, or creases of a small angle.
-    let classes = lines.lines.unwrap_or(usual.lines);
-    let crease_angle = lines.crease_angle.map_or(usual.crease_angle, f64::to_radians);
-    let has_tangent = [LineClass::Smooth, LineClass::Material].into_iter().any(|class| classes.has(class));
-    let has_flat_creases = classes.has(LineClass::Crease) && crease_angle < 1f64.to_radians();
-    if lines.hide_tangent && !has_lines {
-        return Err(
-            Failure::usage("--hide-tangent: --style filled draws no lines").with_hint("give --style filled-lines")
-        );
-    }
-    if lines.hide_tangent && !has_tangent && !has_flat_creases {
-        return Err(Failure::usage("--hide-tangent: no tangent edges are drawn")
-            .with_hint("leave it out, or add material or smooth to --lines"));
-    }
-
-    // Hidden lines are drawn behind any number of faces, if nothing else is said.
-    let is_hidden_drawn = lines.hidden.is_some_and(|hidden| hidden != Hidden::None);
-    let hidden_layers = match (is_hidden_drawn, lines.hidden_max_layers) {
-        (false, Some(_)) => {
-            return Err(
-                Failure::usage("--hidden-max-layers: hidden lines are not drawn").with_hint("add --hidden dashed")
-            );
-        }
-        (false, None) => 0,
-        (true, None | Some(0)) => u32::MAX,
-        (true, Some(layers)) => layers,
+    // If no number is given, hidden lines are drawn behind any number of faces.
+    let hidden_layers = match (lines.hidden, lines.hidden_max_layers) {
+        (None | Some(Hidden::None), _) => 0,
+        (_, None | Some(0)) => u32::MAX,
+        (_, Some(layers)) => layers,
     };
     Ok(DrawingSettings {
-        lines: if has_lines { classes } else { LineClasses::EMPTY },
+        lines: if has_lines { lines.lines.unwrap_or(usual.lines) } else { LineClasses::EMPTY },
         hidden_layers,
-        crease_angle,
+        crease_angle: lines.crease_angle.map_or(usual.crease_angle, f64::to_radians),
         hide_tangent: lines.hide_tangent,
         max_segments: lines.max_segments,
         hatch: args.section.hatch().filter(|_| has_lines),

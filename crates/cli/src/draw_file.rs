@@ -1,14 +1,14 @@
 //! The file that `vitral draw` writes: its place, format and pens, and whether the options suit it.
 
 use crate::draw_args::{DrawArgs, Hidden, Style};
+use crate::draw_checks;
 use crate::draw_sheet;
 use crate::outputs::{expand, model_name};
 use crate::report::{self, Failure};
-use crate::section_args::Hatching;
 use std::path::PathBuf;
 use vitral::{
-    ColorBy, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, LineClass, LineClasses, PageSize, State,
-    TitleBlock, for_plotter, simplify,
+    Drawing, DrawingFormat, DrawingOptions, DrawingSettings, LineClass, PageSize, State, TitleBlock, for_plotter,
+    simplify,
 };
 
 /// Exit code of formats that drawings are not written in.
@@ -36,8 +36,7 @@ impl DrawFile {
     /// The file to write, after a check of everything that can be checked before the work.
     pub(crate) fn new(args: &DrawArgs, state: &State) -> Result<Self, Failure> {
         let (path, format) = place(args, state)?;
-        check_options(args, format)?;
-        args.section.check()?;
+        draw_checks::check(args, state, format)?;
 
         // Choose the pens.
         let mut options = DrawingOptions::default();
@@ -122,108 +121,6 @@ fn place(args: &DrawArgs, state: &State) -> Result<(PathBuf, DrawingFormat), Fai
     };
     vitral::picture::check_place(&path)?;
     Ok((path, format))
-}
-
-/// Whether every option has an effect in this format.
-fn check_options(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> {
-    let (lines, page) = (&args.lines, &args.page);
-    let style = args.style();
-    let fills = style != Style::HiddenLine || args.overlaps();
-    let hidden = lines.hidden.is_some_and(|hidden| hidden != Hidden::None);
-    let lines_alone = page.plotter || !format.has_fills();
-    let stroke = !lines.stroke.is_empty();
-
-    // Each row: whether it is a mistake, what is said, and the way out.
-    let is_cut = !args.section.section_plane.is_empty();
-    let names_section = |classes: LineClasses| classes.has(LineClass::Section) && classes != LineClasses::ALL;
-    let hatched = is_cut && args.section.hatch != Some(Hatching::None);
-    let strokes = |name: &str| lines.stroke.iter().any(|(class, _)| class == name);
-    let write_lines = "give --style filled-lines";
-    let mistakes = [
-        (
-            args.overlaps() && lines_alone,
-            "--algorithm: in a list, later polygons cover earlier ones, and plotters, DXF and HP-GL have lines alone",
-            "choose weiler-atherton or exact; or .svg or .pdf",
-        ),
-        (
-            lines.lines.is_some_and(names_section) && !is_cut,
-            "--lines section: there is no plane of section",
-            "add --section-plane 0,0,0,0,0,1",
-        ),
-        (
-            strokes("section") && !is_cut,
-            "--stroke section: there is no plane of section",
-            "add --section-plane 0,0,0,0,0,1",
-        ),
-        (
-            strokes("hatch") && !hatched,
-            "--stroke hatch: there is no hatching",
-            "add --section-plane 0,0,0,0,0,1 and no --hatch none",
-        ),
-        (style == Style::Filled && args.section.hatch.is_some(), "--hatch: --style filled draws no lines", write_lines),
-        (
-            style == Style::Filled && lines_alone,
-            "--style filled: plotters, DXF and HP-GL have lines alone",
-            write_lines,
-        ),
-        (style == Style::Filled && stroke, "--stroke: --style filled draws no lines", write_lines),
-        (style == Style::Filled && page.simplify.is_some(), "--simplify: --style filled draws no lines", write_lines),
-        (
-            stroke && format == DrawingFormat::Dxf,
-            "--stroke: DXF of release 12 has no widths of lines",
-            "choose .svg, .pdf or .hpgl",
-        ),
-        (strokes("hidden") && !hidden, "--stroke hidden: hidden lines are not drawn", "add --hidden dashed"),
-        (
-            strokes("title") && page.title_block.is_empty() && draw_sheet::projection_symbol(args).is_none(),
-            "--stroke title: there is no title block",
-            "add --title-block",
-        ),
-        (
-            page.precision.is_some() && format == DrawingFormat::Hpgl,
-            "--precision: HP-GL has steps of 1/40 mm",
-            "leave it out, or choose .svg, .pdf or .dxf",
-        ),
-        (page.svg_ids && format != DrawingFormat::Svg, "--svg-ids: only SVG files tell ids", "choose .svg"),
-        (page.svg_ids && (!fills || lines_alone), "--svg-ids: no regions are drawn", "add --style filled"),
-    ];
-    match mistakes.into_iter().find(|(is_mistake, ..)| *is_mistake) {
-        Some((_, what, hint)) => Err(Failure::usage(what).with_hint(hint)),
-        None => check_fill(args, fills && !lines_alone),
-    }
-}
-
-/// Whether every option of surfaces has an effect; `is_filled` tells whether there are any.
-fn check_fill(args: &DrawArgs, is_filled: bool) -> Result<(), Failure> {
-    let (fill, light) = (&args.fill, &args.light);
-    let is_shaded = fill.color_by.is_none_or(|by| by == ColorBy::Shading);
-    let is_dark = light.lighting == Some(false);
-    let by_light = [
-        ("--shades", fill.shades.is_some()),
-        ("--illumination", fill.illumination.is_some()),
-        ("--shadows", fill.shadows),
-        ("--lighting", light.lighting.is_some()),
-        ("--light", !light.light.is_empty()),
-        ("--light-edit", !light.light_edit.is_empty()),
-        ("--light-intensity", light.light_intensity.is_some()),
-    ];
-    let others = [
-        ("--color-by", fill.color_by.is_some()),
-        ("--transparency", fill.transparency),
-        ("--seams", fill.seams.is_some()),
-    ];
-    let given = |options: &[(&'static str, bool)]| options.iter().find(|(_, given)| *given).map(|(name, _)| *name);
-    let refuse = |name: &str, why: &str, hint: &str| Err(Failure::usage(format!("{name}: {why}")).with_hint(hint));
-    if let Some(name) = given(&by_light).or(given(&others)).filter(|_| !is_filled) {
-        return refuse(name, "no surfaces are filled", "give --style filled or filled-lines, in an .svg or .pdf");
-    }
-    if let Some(name) = given(&by_light).filter(|_| !is_shaded) {
-        return refuse(name, "these colours have no light", "give --color-by shading");
-    }
-    if fill.shadows && is_dark {
-        return refuse("--shadows", "the lights are off", "leave --lighting off out");
-    }
-    Ok(())
 }
 
 /// The page of a drawing to scale; `window` is the longer side of the camera's window in units of the model, if it is not in

@@ -3,52 +3,7 @@
 use crate::draw_args::{DrawArgs, Style};
 use crate::report::{self, Failure};
 use serde_json::{Value, json};
-use vitral::{
-    DrawingSettings, LineClass, PolygonDrawing, PolygonFill, PolygonSettings, Renderer, Visibility, covered_area,
-};
-
-/// Whether every option has an effect beside the algorithm.
-pub(crate) fn check_options(args: &DrawArgs) -> Result<(), Failure> {
-    let Some(algorithm) = args.polygons() else {
-        return Ok(());
-    };
-    let lines = &args.lines;
-    let outline = LineClass::Smooth.name();
-    let other_pen =
-        lines.stroke.iter().map(|(class, _)| class.as_str()).find(|class| ![outline, "title"].contains(class));
-
-    // Each row: whether it is a mistake, and the option.
-    let mistakes = [
-        (lines.lines.is_some(), "--lines"),
-        (lines.hidden.is_some(), "--hidden"),
-        (lines.hidden_max_layers.is_some(), "--hidden-max-layers"),
-        (lines.crease_angle.is_some(), "--crease-angle"),
-        (lines.hide_tangent, "--hide-tangent"),
-        (args.section.hatch.is_some(), "--hatch"),
-    ];
-    if let Some((_, option)) = mistakes.into_iter().find(|(is_mistake, _)| *is_mistake) {
-        let what = format!("{option}: with --algorithm {algorithm}, the outlines of its polygons are the lines");
-        return Err(Failure::usage(what).with_hint("leave it out, or choose --algorithm exact"));
-    }
-    let exact = [
-        (args.fill.transparency, "--transparency", "all are opaque"),
-        (args.fill.seams.is_some(), "--seams", "they are as they are"),
-        (!args.page.views.is_empty(), "--views", "they are those of one view"),
-    ];
-    if let Some((_, option, why)) = exact.into_iter().find(|(is_mistake, ..)| *is_mistake) {
-        let what = format!("{option}: --algorithm {algorithm} gives its own polygons, and {why}");
-        return Err(Failure::usage(what).with_hint("leave it out, or choose --algorithm exact"));
-    }
-    if let Some(class) = other_pen {
-        let what = format!("--stroke {class}: with --algorithm {algorithm}, all outlines are of the class {outline}");
-        return Err(Failure::usage(what).with_hint(format!("give --stroke {outline}=MM")));
-    }
-    if args.overlaps() && args.page.simplify.is_some() {
-        let what = format!("--simplify: the polygons of --algorithm {algorithm} are drawn as they are");
-        return Err(Failure::usage(what).with_hint("leave it out, or choose --algorithm exact"));
-    }
-    Ok(())
-}
+use vitral::{DrawingSettings, PolygonDrawing, PolygonFill, PolygonSettings, Renderer, Visibility, covered_area};
 
 /// Draws the polygons.
 pub(crate) fn draw(
@@ -58,8 +13,15 @@ pub(crate) fn draw(
     settings: &DrawingSettings,
 ) -> Result<PolygonDrawing, Failure> {
     let lines: usize = renderer.world().instances.iter().map(|instance| instance.mesh.lines.len()).sum();
-    if lines > 0 && !args.report.quiet {
-        report::warnings(&[format!("--algorithm {algorithm} knows polygons alone: {lines} free lines are not drawn")]);
+    let mut warnings = Vec::new();
+    if lines > 0 {
+        warnings.push(format!("--algorithm {algorithm} knows polygons alone: {lines} free lines are not drawn"));
+    }
+    if !args.section.section_plane.is_empty() {
+        warnings.push(format!("--algorithm {algorithm} knows polygons alone: cuts are not hatched"));
+    }
+    if !args.report.quiet {
+        report::warnings(&warnings);
     }
     let (fill, outlines) = match args.style() {
         Style::HiddenLine if args.overlaps() => (PolygonFill::White, true),

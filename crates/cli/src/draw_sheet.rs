@@ -5,49 +5,12 @@ use crate::draw_file::too_large;
 use crate::report::{self, Failure};
 use serde_json::json;
 use vitral::{
-    DrawingSettings, Drawn, Error, Figure, Renderer, SYMBOL_SIZE, Sheet, SheetAngle, SheetError, SheetLayout, State,
-    View, Viewpoint, names, symbol,
+    DrawingSettings, Drawn, Error, Figure, Renderer, SYMBOL_SIZE, Sheet, SheetAngle, SheetError, SheetLayout, View,
+    names, symbol,
 };
 
 /// Scales below this share of the others' are told.
 const SMALLER: f64 = 1.0 - 1e-9;
-
-/// Whether the options suit a sheet, or have an effect without one.
-pub(crate) fn check_options(args: &DrawArgs, state: &State) -> Result<(), Failure> {
-    let views = &args.page.views;
-    if views.is_empty() {
-        return match args.page.angle {
-            Some(_) => Err(Failure::usage("--angle: there is one view only").with_hint("add --views front,top,right")),
-            None => Ok(()),
-        };
-    }
-    if let Some(i) = (1..views.len()).find(|&i| views[..i].contains(&views[i])) {
-        let name = names::view_name(views[i]);
-        return Err(Failure::usage(format!("--views: {name} is there twice")).with_hint("name each view once"));
-    }
-    let has_methods = views.iter().filter(|&&view| view != View::Iso).count() > 1;
-    if args.page.angle.is_some() && !has_methods {
-        return Err(Failure::usage("--angle: a sheet with one orthographic view has no order of views")
-            .with_hint("leave it out, or add views such as top,right"));
-    }
-
-    // The views bring their cameras.
-    if args.perspective {
-        return Err(Failure::usage("--perspective: the views of a sheet are parallel projections")
-            .with_hint("leave out --perspective, or --views"));
-    }
-    let Viewpoint { view, up, orthographic, .. } = state.viewpoint;
-    if let Some(view) = view {
-        let hint = format!("leave out --view, and give --views {},...", names::view_name(view));
-        return Err(Failure::usage("--view: the views of a sheet are those of --views").with_hint(hint));
-    }
-    if state.viewpoint != (Viewpoint { up, orthographic, ..Viewpoint::default() }) {
-        let what = "--views: the views of a sheet have cameras of their own, and another one is given";
-        return Err(Failure::usage(what)
-            .with_hint("leave out --camera-... and --eye-..., in state files too; --up turns all views"));
-    }
-    Ok(())
-}
 
 /// The symbol of the projection method, on sheets with views that it places.
 pub(crate) fn projection_symbol(args: &DrawArgs) -> Option<Figure> {
@@ -93,7 +56,7 @@ pub(crate) fn draw(
     Ok((drawn, layout))
 }
 
-/// What is said of a sheet that cannot be drawn.
+/// The message for a sheet that cannot be laid out.
 fn failure(args: &DrawArgs, error: Error) -> Failure {
     match error {
         Error::Sheet(SheetError::TooLarge { size, room, fitting: Some(fitting) }) if args.page.scale.is_some() => {

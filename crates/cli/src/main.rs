@@ -11,6 +11,7 @@ mod command_line;
 mod compare_command;
 mod depth_cue;
 mod draw_args;
+mod draw_checks;
 mod draw_command;
 mod draw_file;
 mod draw_polygons;

@@ -19,8 +19,8 @@ pub(crate) struct SectionArgs {
     /// one after the other
     #[arg(long, value_name = "X,Y,Z,NX,NY,NZ", value_parser = plane, allow_hyphen_values = true)]
     pub(crate) section_plane: Vec<SectionPlane>,
-    /// Angle of hatching in degrees and distance of its lines on paper, or none. Each material has its own angle: 45, 135, 30,
-    /// 120, 60 and 150 degrees, then the same half as far again from each other; what has no material counts by itself
+    /// Angle of hatching in degrees and distance of its lines on paper, or none. Each material has its own pattern: angles of 45,
+    /// 135, 30, 120, 60 and 150 degrees, then the same angles at 1.5 times the distance; each object without a material has one, too
     /// [default: 45,2mm]
     #[arg(long, value_name = "ANGLE,DISTANCE", value_parser = hatch, allow_hyphen_values = true, requires = "section_plane")]
     pub(crate) hatch: Option<Hatching>,
@@ -71,7 +71,8 @@ impl SectionArgs {
         scene = section::cut(&scene, &self.section_plane, workers, budget).map_err(vitral::Error::from)?;
         let warning = match scene.nodes.iter().any(|node| node.mesh.is_some()) {
             false => Some("--section-plane: nothing is left of the model"),
-            true => (!scene.is_cut()).then_some("--section-plane: no plane cuts the model"),
+            true if !scene.is_cut() => Some("--section-plane: no plane cuts the model"),
+            true => (!scene.has_caps()).then_some("--section-plane: no body is closed, so there is no cap to hatch"),
         };
         scene.warnings.extend(warning.map(str::to_owned));
         Ok(scene)

@@ -49,7 +49,7 @@ impl Folder {
         (String::from_utf8(output.stdout).unwrap(), serde_json::from_str(&errors).unwrap())
     }
 
-    /// What is said about a mistake, with its exit code.
+    /// The message of a command line that is refused with exit code 2.
     fn mistake(&self, arguments: &[&str]) -> String {
         let output = self.run(&[&["draw", "bars.json"], arguments].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");

@@ -45,11 +45,12 @@ pub(crate) fn with_edges(
     hide_tangent: bool,
     run: &Run<'_>,
 ) -> Result<PageMesh, Limit> {
+    // List the uses of each lower vertex.
     run.memory.add(projected.facets.len() as u64 * 3 * BYTES_A_SIDE)?;
     run.budget.check("edges")?;
     let (starts, mut uses) = Dealt::new(&Sides(&projected.facets), projected.vertices.len()).into_parts();
 
-    // Sort the uses of each vertex by the other end.
+    // Sort the uses of each vertex by the other end, a batch of vertices on each thread.
     let mut lists: Vec<&mut [Use]> = Vec::new();
     let mut rest = uses.as_mut_slice();
     for first in (0..projected.vertices.len()).step_by(BATCH) {
@@ -90,11 +91,14 @@ pub(crate) fn with_edges(
 /// The mesh of the pieces, with the free lines as edges without triangles.
 fn put_together(projected: Projected, pieces: Vec<(Vec<Edge>, Vec<u32>)>, duplicates: &[u32]) -> PageMesh {
     let Projected { size, vertices, mut triangles, sources, facets, lines, points } = projected;
+    // Duplicates hide nothing and are not filled.
     for &t in duplicates {
         (triangles[t as usize].hides, triangles[t as usize].clear) = (false, false);
     }
     let sources = facets.iter().map(|facet| sources[facet.source as usize]).collect();
     let mut mesh = PageMesh { size, vertices, triangles, sources, points, ..PageMesh::default() };
+
+    // Number the edges of the pieces, then add the free lines.
     for (edges, triangles) in pieces {
         let first = mesh.edge_triangles.len() as u32;
         mesh.edges.extend(edges.into_iter().map(|edge| Edge { first: first + edge.first, ..edge }));
@@ -133,6 +137,7 @@ fn duplicates<'u>(
     uses_of: &(dyn Fn(usize) -> Vec<&'u [Use]> + Sync),
     run: &Run<'_>,
 ) -> Vec<u32> {
+    // Two triangles at an edge are over the same vertices if their third corners are one.
     let third = |v: usize, u: &Use| {
         let corners = projected.facets[u.triangle as usize].vertices;
         corners.into_iter().find(|&c| c != v as u32 && c != u.higher)
@@ -164,6 +169,7 @@ fn add_edge(
     edges: &mut Vec<Edge>,
     triangles: &mut Vec<u32>,
 ) {
+    // Keep the triangles that are no duplicates.
     let counts = |u: &&Use| duplicates.is_empty() || duplicates.binary_search(&u.triangle).is_err();
     let first = triangles.len() as u32;
     triangles.extend(uses.iter().filter(counts).map(|u| u.triangle));
@@ -172,8 +178,8 @@ fn add_edge(
         return;
     }
 
-    // A diagonal of a face that is not flat may be a contour and nothing else, and so may a side that a face uses twice, as where a
-    // bridge leads to a hole.
+    // Classify the edge. A diagonal of a face that is not flat may be a contour and nothing else, and so may a side that a face uses
+    // twice, as where a bridge leads to a hole.
     let source = |t: u32| &projected.sources[projected.facets[t as usize].source as usize];
     let side = |u: &Use| Side {
         triangle: &projected.triangles[u.triangle as usize],

@@ -2,7 +2,7 @@
 //!
 //! | step | file |
 //! |---|---|
-//! | what can be seen of each triangle, in layers where it is clear | `fill/visible.rs` |
+//! | the visible part of each triangle, in layers where it is clear | `fill/visible.rs` |
 //! | lit and shadowed parts | `lit.rs` |
 //! | colours; parts that look alike and touch become one region | `fill/groups.rs` |
 //! | regions reach under those that are painted later | `fill/seams.rs` |
@@ -26,7 +26,7 @@ pub(crate) use parts::PageRegion;
 pub use parts::Seams;
 use parts::{Look, Part, Parts};
 use std::ops::Range;
-use visible::{Clipping, Seen, Stage};
+use visible::{Clipping, Stage, VisibleShapes};
 use vitral_exec::{Limit, Spare};
 use vitral_math::DVec3;
 
@@ -35,7 +35,7 @@ const BATCH: usize = 256;
 /// Bytes of a corner of a region, with those of its lists.
 const BYTES_A_CORNER: u64 = 24;
 
-/// What a colour is chosen by.
+/// The properties of a face by which a palette chooses its colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceLook {
     /// Number of the facet in the world.
@@ -62,7 +62,7 @@ pub struct Surfaces<'s> {
     pub opacities: &'s [f32],
     /// Mix clear layers with what is behind them, so that every region is opaque.
     pub flatten: bool,
-    /// What each light reaches; lights that are not there reach everything.
+    /// Lit polygons of the lights that cast shadows; the other lights reach everything.
     pub lit: &'s [LitPolygons],
     /// How regions of different colours meet.
     pub seams: Seams,
@@ -84,7 +84,7 @@ impl<'s> Surfaces<'s> {
     }
 }
 
-/// What the page's mesh has to say about the world.
+/// Access from the page's facets to the world.
 #[derive(Clone, Copy)]
 pub(crate) struct Facets<'f> {
     /// A corner of a facet of the world.
@@ -105,8 +105,8 @@ pub(crate) fn regions(
         true => Some(Grid::new(mesh, |triangle| triangle.clear, run)?),
         false => None,
     };
-    let tells_contacts = surfaces.seams == Seams::Under;
-    let stage = Stage { mesh, opaque, clear: clear.as_ref(), tells_contacts };
+    let with_contacts = surfaces.seams == Seams::Under;
+    let stage = Stage { mesh, opaque, clear: clear.as_ref(), with_contacts };
     let parts = parts(&stage, surfaces, facets, run)?;
 
     // Join those that look alike.
@@ -136,6 +136,8 @@ fn parts(stage: &Stage<'_>, surfaces: &Surfaces<'_>, facets: &Facets<'_>, run: &
         run.budget.progress("visible surfaces", run.budget.achieved().done, count as u64);
         Ok(parts)
     });
+
+    // Put the pieces together.
     let mut parts = Parts::default();
     for piece in pieces {
         let (piece, before): (Parts, _) = (piece?, parts.all.len() as u32);
@@ -163,7 +165,9 @@ fn parts_of(
         if !is_wanted || (!triangle.hides && !triangle.clear) {
             continue;
         }
-        let Seen { layers, contacts } = clipping.see(stage, t as u32, run)?;
+        let VisibleShapes { layers, contacts } = clipping.visible_shapes(stage, t as u32, run)?;
+
+        // Divide each layer between the lights, and colour the parts.
         for (layer, shapes) in layers.into_iter().enumerate().filter(|(_, shapes)| !shapes.is_empty()) {
             let divided = match surfaces.lit.is_empty() {
                 true => vec![(u32::MAX, shapes)],
@@ -192,7 +196,7 @@ fn parts_of(
     Ok(parts)
 }
 
-/// What a face shows to its palette.
+/// The look of a face for its palette.
 fn look(facing: i8, source: &Source, lights: u32) -> FaceLook {
     let material = Some(source.material).filter(|&m| m != NONE);
     let normal = normal_seen(facing, source);

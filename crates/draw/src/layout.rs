@@ -12,7 +12,7 @@ use vitral_frame::Drawing;
 use vitral_frame::drawing::{Line, Region, bounds};
 
 /// Steps of the precision in a millimetre.
-const STEPS_A_MILLIMETRE: f64 = 1000.0;
+pub(crate) const STEPS_A_MILLIMETRE: f64 = 1000.0;
 
 /// How large the sheet is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -188,10 +188,7 @@ pub fn draw(
         false => Vec::new(),
     };
     budget.check("lines")?;
-    let corner = |facet: u32| {
-        let instance = &world.instances[world.instance_of_facet(facet)];
-        instance.corners(facet - instance.first_facet)[0]
-    };
+    let corner = |facet: u32| world.corners_of_facet(facet)[0];
     let to_page = lit::Projector { clip_from_world: view.clip_from_world(), size: mesh.size.map(f64::from) };
     let facets = fill::Facets { corner: &corner, to_page };
     let regions = match surfaces {

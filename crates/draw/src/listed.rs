@@ -9,20 +9,16 @@
 use crate::DrawingSettings;
 use crate::fill::{FaceLook, PageRegion, Palette};
 use crate::hatch::Cuts;
-use crate::layout::{self, Content};
+use crate::layout::{self, Content, STEPS_A_MILLIMETRE};
 use crate::lit::{self, LitPolygons, Projector};
 use crate::page_mesh::NONE;
 use crate::projection::{page_size, source_of_facet};
 use crate::run::Run;
-use crate::shapes::{corner_at, on_page};
+use crate::shapes::{Corner, Shapes, area_of, corner_at, on_page, union};
 use crate::strokes::{DUST, Stroke, without_coincident};
-use i_overlay::core::fill_rule::FillRule;
-use i_overlay::core::overlay::{Overlay, ShapeType};
-use i_overlay::core::overlay_rule::OverlayRule;
-use i_overlay::i_float::int::point::IntPoint;
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_frame::Drawing;
-use vitral_frame::drawing::{LineClass, Region, signed_area};
+use vitral_frame::drawing::{LineClass, Region};
 use vitral_math::DVec3;
 use vitral_scene::{Camera, ViewTransform, World, depth_range};
 
@@ -30,8 +26,6 @@ use vitral_scene::{Camera, ViewTransform, World, depth_range};
 const POLYGONS_A_CHECK: usize = 4096;
 /// Bytes of a corner in a region.
 const BYTES_A_CORNER: u64 = 16;
-/// Steps of the precision in a millimetre.
-const STEPS_A_MILLIMETRE: f64 = 1000.0;
 
 /// A polygon of a list.
 #[derive(Clone, Debug, PartialEq)]
@@ -144,7 +138,7 @@ impl<'w> Sides<'w> {
             return;
         }
         let shape = rings.iter().map(|ring| ring.iter().map(|&p| corner_at(p)).collect()).collect();
-        let facets: Vec<_> = facets.iter().map(|&facet| (facet, self.corner(facet))).collect();
+        let facets: Vec<_> = facets.iter().map(|&facet| (facet, self.world.corners_of_facet(facet)[0])).collect();
         let parts = lit::divide(vec![shape], &facets, look.normal, polygons.lit, to_page);
         regions.extend(parts.into_iter().map(|(lights, shapes)| {
             let rings = shapes.iter().flatten().map(|ring| ring.iter().map(on_page).collect()).collect();
@@ -152,16 +146,10 @@ impl<'w> Sides<'w> {
         }));
     }
 
-    /// A corner of a facet.
-    fn corner(&self, facet: u32) -> DVec3 {
-        let instance = &self.world.instances[self.world.instance_of_facet(facet)];
-        instance.corners(facet - instance.first_facet)[0]
-    }
-
     /// What a facet's face shows to a palette.
     fn look(&self, facet: u32) -> FaceLook {
         let source = source_of_facet(self.world, facet);
-        let towards = if self.perspective { self.eye - self.corner(facet) } else { self.backwards };
+        let towards = if self.perspective { self.eye - self.world.corners_of_facet(facet)[0] } else { self.backwards };
         let is_back = towards.dot(DVec3::from_array(source.normal.map(f64::from))) < 0.0;
         let normal = if is_back { source.normal.map(|c| -c) } else { source.normal };
         let material = Some(source.material).filter(|&m| m != NONE);
@@ -171,18 +159,11 @@ impl<'w> Sides<'w> {
 
 /// The area that regions cover together, in square millimetres.
 pub fn covered_area(regions: &[Region]) -> f64 {
-    let corners = regions.iter().flat_map(|region| &region.rings).map(Vec::len).sum();
-    let mut overlay = Overlay::<i32>::new(corners);
     let step = |p: &[f64; 2]| {
         let [x, y] = p.map(|at| (at * STEPS_A_MILLIMETRE).round() as i32);
-        IntPoint::new(x, y)
+        Corner::new(x, y)
     };
-    for ring in regions.iter().flat_map(|region| &region.rings) {
-        let ring: Vec<_> = ring.iter().map(step).collect();
-        overlay.add_contour(&ring, ShapeType::Subject);
-    }
-    let point = |p: &IntPoint<i32>| [p.x, p.y].map(|at| f64::from(at) / STEPS_A_MILLIMETRE);
-    let shapes = overlay.overlay(OverlayRule::Subject, FillRule::NonZero);
-    let rings = shapes.iter().flatten().map(|ring| ring.iter().map(point).collect::<Vec<_>>());
-    rings.map(|ring| signed_area(&ring)).sum()
+    let outlines = |region: &Region| vec![region.rings.iter().map(|ring| ring.iter().map(step).collect()).collect()];
+    let all: Vec<Shapes> = regions.iter().map(outlines).collect();
+    area_of(&union(&all, 0)) / (STEPS_A_MILLIMETRE * STEPS_A_MILLIMETRE)
 }

@@ -1,10 +1,10 @@
-//! Lit and shadowed parts of what is visible.
+//! Lit and shadowed parts of visible shapes.
 //!
-//! A light's lit polygons are details of the facets that they lie in, found in space. Each is brought to the page, where what is
-//! visible of its facet is divided: a part outside all of them is in the light's shadow.
+//! A light's lit polygons are details of the facets that they lie in, found in space. They are projected to the page, where they divide
+//! the visible shapes of their facet: a part outside all of them is in the light's shadow.
 //!
-//! Lit polygons are made larger by a little. Rounding could leave hairs of shadow else: between two of them, and where one reaches a side
-//! of its facet.
+//! Lit polygons are enlarged by [`REACH`]. Otherwise rounding could leave hairs of shadow between two of them, and where one reaches a
+//! side of its facet.
 //!
 //! In:   shapes of facets on the page, lit polygons of these facets in world space. Out: shapes, each with the lights that reach it.
 //! Cost: `k log k` with `k` corners of lit polygons.
@@ -183,7 +183,9 @@ mod tests {
         assert_eq!(parts(&[], &[FACET.to_vec()]), [(0b1000, 125_000.0)]);
         let divided = parts(&[half], &[]);
         assert_eq!(divided.iter().map(|part| part.0).collect::<Vec<_>>(), [0b0001, 0b0000]);
-        assert!((divided[0].1 - 93_750.0).abs() < 1_000.0 && (divided[1].1 - 31_250.0).abs() < 1_000.0, "{divided:?}");
+        // The shadow is a right triangle with legs of 250 units, and of 248 beside the enlarged polygon.
+        assert!((divided[1].1 - 248.0 * 248.0 / 2.0).abs() < 2.0, "{divided:?}");
+        assert!((divided[0].1 + divided[1].1 - 125_000.0).abs() < 1.0, "{divided:?}");
     }
 
     #[test]

@@ -211,54 +211,40 @@ fn sources(world: &World, run: &Run<'_>) -> Vec<Source> {
 /// What a facet of the world is part of.
 pub(crate) fn source_of_facet(world: &World, facet: u32) -> Source {
     let instance = &world.instances[world.instance_of_facet(facet)];
-    let (t, mesh) = ((facet - instance.first_facet) as usize, &instance.mesh);
-    let face = mesh.face_of_triangle(t);
+    let t = (facet - instance.first_facet) as usize;
+    let face = instance.mesh.face_of_triangle(t);
+    source_of(instance, t, face, outline_normal(instance, instance.mesh.face_corners(face)))
+}
+
+/// The source of a triangle whose face has this normal. An outline that crosses itself may have none, since its halves cancel out:
+/// each triangle has its own normal there.
+fn source_of(instance: &Instance, t: usize, face: usize, normal: [f32; 3]) -> Source {
+    let mesh = &instance.mesh;
+    let is_cancelled = normal == [0.0; 3];
     Source {
-        facet,
+        facet: instance.first_facet + t as u32,
         surface: instance.first_surface + face as u32,
         material: mesh.material_of_triangle(t).unwrap_or(NONE),
-        normal: face_normal(instance, face),
+        normal: if is_cancelled { outline_normal(instance, &mesh.triangles[t]) } else { normal },
     }
 }
 
-/// What triangles of an instance are part of: neighbours are often of one face.
+/// The sources of some triangles of an instance. Neighbours often belong to one face, whose normal is computed once.
 fn sources_of(instance: &Instance, triangles: Range<usize>) -> Vec<Source> {
     let mesh = &instance.mesh;
-    let mut sources: Vec<Source> = Vec::with_capacity(triangles.len());
-    let mut last = usize::MAX;
-    for t in triangles {
+    let (mut last, mut normal) = (usize::MAX, [0.0; 3]);
+    let source = |t: usize| {
         let face = mesh.face_of_triangle(t);
-        let facet = instance.first_facet + t as u32;
-        let same = sources.last().filter(|_| face == last).copied();
-        let mut source = same.unwrap_or_else(|| Source {
-            facet,
-            surface: instance.first_surface + face as u32,
-            material: mesh.material_of_triangle(t).unwrap_or(NONE),
-            normal: face_normal(instance, face),
-        });
-        source.facet = facet;
-        last = face;
-        if source.normal == [0.0; 3] {
-            // The halves of an outline that crosses itself cancel out.
-            source.normal = triangle_normal(instance, t);
-            last = usize::MAX;
+        if face != last {
+            (last, normal) = (face, outline_normal(instance, mesh.face_corners(face)));
         }
-        sources.push(source);
-    }
-    sources
+        source_of(instance, t, face, normal)
+    };
+    triangles.map(source).collect()
 }
 
-/// The unit normal of a triangle, world space; zero without an area.
-fn triangle_normal(instance: &Instance, t: usize) -> [f32; 3] {
-    let [a, b, c] = instance.corners(t as u32);
-    let normal = (b - a).cross(c - a);
-    let outward = if instance.world_from_model.determinant() < 0.0 { -normal } else { normal };
-    outward.try_normalize().unwrap_or(DVec3::ZERO).as_vec3().to_array()
-}
-
-/// The unit normal of a face, world space, by Newell's method; zero for a face without area.
-fn face_normal(instance: &Instance, face: usize) -> [f32; 3] {
-    let corners = instance.mesh.face_corners(face);
+/// The unit normal of an outline of vertices, world space, by Newell's method; zero for one without area.
+fn outline_normal(instance: &Instance, corners: &[u32]) -> [f32; 3] {
     let origin = instance.place(corners[0]);
     let mut sum = DVec3::ZERO;
     let mut before = DVec3::ZERO;

@@ -104,6 +104,16 @@ pub enum AreaShape {
     },
 }
 
+impl AreaShape {
+    /// The centre of a disc, or the mean of a polygon's corners.
+    pub fn middle(&self) -> DVec3 {
+        match self {
+            Self::Disc { center, .. } => *center,
+            Self::Polygon { corners } => corners.iter().sum::<DVec3>() / corners.len().max(1) as f64,
+        }
+    }
+}
+
 /// Loss of intensity over the distance `d` from a point, spot or area light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "form", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]

@@ -186,6 +186,12 @@ impl World {
         self.instances.partition_point(|i| i.first_facet <= facet) - 1
     }
 
+    /// Corners of a facet, world space.
+    pub fn corners_of_facet(&self, facet: u32) -> [DVec3; 3] {
+        let instance = &self.instances[self.instance_of_facet(facet)];
+        instance.corners(facet - instance.first_facet)
+    }
+
     /// The surface id of a facet.
     pub fn surface_of_facet(&self, facet: u32) -> u32 {
         let instance = &self.instances[self.instance_of_facet(facet)];

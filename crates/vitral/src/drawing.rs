@@ -10,8 +10,8 @@ use vitral_draw::{DrawingSettings, Drawn, FaceLook, LitPolygons, PageSize, Seams
 use vitral_exec::Limit;
 use vitral_frame::Drawing;
 use vitral_io::encode::{self, DrawingOptions};
-use vitral_light::{AlphaMode, AreaShape, Light, LightKind};
-use vitral_math::{DVec3, DVec4};
+use vitral_light::{AlphaMode, Light, LightKind};
+use vitral_math::DVec4;
 use vitral_render::{Error as RenderError, Settings, Shadows, Transparency, registry, shadow};
 
 /// Most lights that cast shadows in a drawing.
@@ -289,12 +289,8 @@ fn place_of(light: &Light) -> DVec4 {
 
 /// A light with a shape as a point in its middle.
 fn as_point(light: &Light) -> Light {
-    let middle = match &light.kind {
-        LightKind::Area { shape: AreaShape::Disc { center, .. } } => *center,
-        LightKind::Area { shape: AreaShape::Polygon { corners } } => {
-            corners.iter().sum::<DVec3>() / corners.len().max(1) as f64
-        }
-        _ => return light.clone(),
-    };
-    Light { kind: LightKind::Point { position: middle }, ..light.clone() }
+    match &light.kind {
+        LightKind::Area { shape } => Light { kind: LightKind::Point { position: shape.middle() }, ..light.clone() },
+        _ => light.clone(),
+    }
 }

@@ -10,7 +10,7 @@
 
 use crate::{Error, Picture, Renderer};
 use vitral_frame::{Frame, Plane};
-use vitral_light::{AreaShape, Light, LightKind, Material, Reflectance};
+use vitral_light::{Light, LightKind, Material, Reflectance};
 use vitral_math::{DMat4, DQuat, DVec3};
 use vitral_render::catalogue::Panels;
 use vitral_render::{Channels, Lines, Settings, SettingsError, Shadows, registry, shadow};
@@ -185,10 +185,7 @@ fn light_camera(renderer: &Renderer, light: &Light) -> Camera {
         }
         LightKind::Spot { position, direction, cutoff, .. } => at(*position, *direction, (2.0 * cutoff).min(2.6)),
         LightKind::Point { position } => around(*position),
-        LightKind::Area { shape } => around(match shape {
-            AreaShape::Disc { center, .. } => *center,
-            AreaShape::Polygon { corners } => corners.iter().sum::<DVec3>() / corners.len().max(1) as f64,
-        }),
+        LightKind::Area { shape } => around(shape.middle()),
         LightKind::Ambient => around(center),
     }
 }

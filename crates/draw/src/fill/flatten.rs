@@ -17,7 +17,7 @@ use crate::shapes::{Corner, Shapes, union, within, without, without_hairs};
 use std::collections::BTreeMap;
 use vitral_exec::Limit;
 
-/// What a clear shape over nothing is mixed with.
+/// The colour behind clear shapes where there is no surface.
 const PAPER: [u8; 3] = [255; 3];
 
 /// The regions of opaque and clear groups, `joined` as they are painted.
@@ -50,7 +50,7 @@ pub(super) fn flattened(
     Ok(regions)
 }
 
-/// What is painted after a layer of clear groups, which do not overlap.
+/// The painted groups after a layer of clear groups, which do not overlap each other.
 fn laid_over(painted: Vec<Joined>, layer: &[Joined], run: &Run<'_>) -> Result<Vec<Joined>, Limit> {
     // Divide each painted group: a shape of the layer lies over it or not.
     let shapes: Vec<Over<'_>> =

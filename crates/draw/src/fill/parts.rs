@@ -1,4 +1,4 @@
-//! What the steps of filling hand to each other: parts of triangles, their looks, and regions of the page.
+//! The data between the steps of filling: parts of triangles, their looks, and regions of the page.
 
 use crate::shapes::Shapes;
 use std::cmp::Ordering;
@@ -36,7 +36,7 @@ pub(super) struct Part {
     pub(super) shapes: Shapes,
 }
 
-/// What can be seen of all triangles, and which triangles cut which parts.
+/// The visible parts of all triangles, and the triangles that cut them.
 #[derive(Default)]
 pub(super) struct Parts {
     pub(super) all: Vec<Part>,

@@ -1,4 +1,4 @@
-//! What regions have beneath those that are painted later.
+//! The parts that regions reach under, so that no seam shows.
 //!
 //! Viewers mix each region with what is painted already, in proportion to how much of a pixel it covers. Where two regions only touch,
 //! the paper shines through between them: half of it passes the first, and half of that the second. A region that reaches a little
@@ -6,8 +6,8 @@
 //!
 //! A part reaches under the visible parts of all triangles round its corners, and of those whose outlines cut it, or that it cuts.
 //! Clear parts reach nowhere: what is under a clear part shows. Where parts are smaller than pixels, or belong to bodies that only
-//! touch, that is not enough: beneath everything lies the outline of the whole in its mean colour, so that what shines through there
-//! is not far from its neighbours.
+//! touch, that is not enough: beneath everything lies the outline of the whole in its mean colour, so that a pixel with a gap is not far
+//! from its neighbours.
 //!
 //! In:   parts with their groups in the order of painting. Out: for each group the parts beneath which it reaches.
 //! Cost: linear in the pairs of neighbours.

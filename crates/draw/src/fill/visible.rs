@@ -1,11 +1,11 @@
-//! What can be seen of each triangle.
+//! The visible part of each triangle.
 //!
-//! Of each triangle that faces the viewer, everything that lies in front of it is taken away; what is left is visible. Whether another
+//! From each triangle that faces the viewer, the triangles in front of it are subtracted; the rest is visible. Whether another
 //! triangle lies in front is decided by exact heights of corners over planes, once for each pair in the order of their numbers, so that
 //! both agree: where two triangles cross, each loses the part beyond the line in which their planes meet; coplanar ones give way to
 //! the lower rank, or else the lower number.
 //!
-//! Of clear triangles nothing is taken away by others of their kind: they lie in layers over each other. A place of a clear triangle is
+//! Clear triangles are not subtracted: they lie in layers over each other. A place of a clear triangle is
 //! in layer `k` if `k` other clear triangles lie in front of it, as depth peeling finds it for pixels ([Everitt 2001]).
 //!
 //! In:   the page's mesh, grids of the triangles that hide and of the clear ones. Out: shapes of the finer grid.
@@ -36,8 +36,8 @@ pub(super) struct Stage<'s> {
     pub(super) opaque: &'s Grid,
     /// Those that let light through, if there are any.
     pub(super) clear: Option<&'s Grid>,
-    /// Whether it is to be told which triangles cut others.
-    pub(super) tells_contacts: bool,
+    /// Whether contacts are collected: the triangles whose outlines cut others.
+    pub(super) with_contacts: bool,
 }
 
 /// What a thread needs to clip triangles.
@@ -55,9 +55,9 @@ struct InFront {
     polygon: Vec<Corner>,
 }
 
-/// What can be seen of a triangle.
+/// The visible shapes of a triangle.
 #[derive(Default)]
-pub(super) struct Seen {
+pub(super) struct VisibleShapes {
     /// Its visible shapes: of an opaque triangle at most one entry, of a clear one the shapes of each layer.
     pub(super) layers: Vec<Shapes>,
     /// The triangles whose outlines cut it.
@@ -73,13 +73,18 @@ enum Front {
 }
 
 impl Clipping {
-    /// What can be seen of the triangle with this number.
-    pub(super) fn see(&mut self, stage: &Stage<'_>, number: u32, run: &Run<'_>) -> Result<Seen, Limit> {
+    /// Finds the visible shapes of the triangle with this number.
+    pub(super) fn visible_shapes(
+        &mut self,
+        stage: &Stage<'_>,
+        number: u32,
+        run: &Run<'_>,
+    ) -> Result<VisibleShapes, Limit> {
         // Take away what hides it.
         let triangle = &stage.mesh.triangles[number as usize];
         let whole = triangle.corners.map(|p| corner_between(p, 1.0, p)).to_vec();
-        if !self.look(stage.mesh, stage.opaque, number, true, run)? {
-            return Ok(Seen::default());
+        if !self.collect_in_front(stage.mesh, stage.opaque, number, true, run)? {
+            return Ok(VisibleShapes::default());
         }
         let (mut visible, mut contacts) = (vec![vec![whole]], Vec::new());
         if !self.in_front.is_empty() {
@@ -91,16 +96,16 @@ impl Clipping {
                 }
                 run.budget.check("visible surfaces")?;
             }
-            if stage.tells_contacts {
+            if stage.with_contacts {
                 contacts = self.contacts(triangle, &visible);
             }
         }
         let Some(clear) = stage.clear.filter(|_| triangle.clear && !visible.is_empty()) else {
-            return Ok(Seen { layers: vec![visible], contacts });
+            return Ok(VisibleShapes { layers: vec![visible], contacts });
         };
 
         // Take it apart by the number of clear triangles in front.
-        self.look(stage.mesh, clear, number, false, run)?;
+        self.collect_in_front(stage.mesh, clear, number, false, run)?;
         let over: Vec<Vec<Corner>> = self.in_front.drain(..).map(|front| front.polygon).collect();
         let mut layers = Vec::new();
         for count in 1.. {
@@ -116,15 +121,25 @@ impl Clipping {
             }
         }
         layers.push(visible);
-        Ok(Seen { layers, contacts })
+        Ok(VisibleShapes { layers, contacts })
     }
 
-    /// Collects what of a grid's triangles lies in front of one. `false` if one alone hides all of it, where that is asked.
-    fn look(&mut self, mesh: &PageMesh, grid: &Grid, number: u32, hides: bool, run: &Run<'_>) -> Result<bool, Limit> {
+    /// Collects the polygons of a grid's triangles that lie in front of one triangle. With `hides`, stops and gives `false` at a polygon that
+    /// covers all of it.
+    fn collect_in_front(
+        &mut self,
+        mesh: &PageMesh,
+        grid: &Grid,
+        number: u32,
+        hides: bool,
+        run: &Run<'_>,
+    ) -> Result<bool, Limit> {
         self.in_front.clear();
         self.asked.resize(mesh.triangles.len(), NONE);
         let triangle = &mesh.triangles[number as usize];
         let farthest = triangle.farthest();
+
+        // Walk the lists, the nearest triangles first, until they begin behind this one.
         let flow = grid.over(triangle.low, triangle.high, |list| {
             for &other in list {
                 let front = &mesh.triangles[other as usize];
@@ -137,6 +152,8 @@ impl Clipping {
                 {
                     return ControlFlow::Break(Some(limit));
                 }
+
+                // Pass over triangles that do not overlap this one, or were met in another cell.
                 let apart = |k: usize| front.low[k] >= triangle.high[k] || front.high[k] <= triangle.low[k];
                 if other == number || apart(0) || apart(1) {
                     continue;
@@ -147,6 +164,8 @@ impl Clipping {
                 {
                     continue;
                 }
+
+                // Keep the part that lies in front.
                 let polygon = match front_part((mesh.order_of(number), triangle), (mesh.order_of(other), front)) {
                     Front::Nothing => continue,
                     Front::All if hides && triangle.corners.iter().all(|&p| is_inside(front, p)) => {

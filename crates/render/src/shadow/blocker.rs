@@ -11,7 +11,7 @@ use super::{Occluders, Place, clearance, facet};
 use crate::Session;
 use crate::raytrace::triangles::Triangles;
 use std::ops::Range;
-use vitral_light::{AreaShape, Light, LightKind};
+use vitral_light::{Light, LightKind};
 use vitral_math::{Aabb, DMat4, DVec3};
 use vitral_scene::{Instance, TRIANGLES_A_RUN};
 
@@ -41,10 +41,7 @@ pub(crate) fn blocker(session: &Session, occluders: &Occluders<'_>, light: &Ligh
         LightKind::Ambient => return None,
         LightKind::Directional { direction } => (-direction.normalize_or_zero(), f64::INFINITY),
         LightKind::Point { position } | LightKind::Spot { position, .. } => to(*position),
-        LightKind::Area { shape: AreaShape::Disc { center, .. } } => to(*center),
-        LightKind::Area { shape: AreaShape::Polygon { corners } } => {
-            to(corners.iter().sum::<DVec3>() / corners.len() as f64)
-        }
+        LightKind::Area { shape } => to(shape.middle()),
     };
     let size = world.bounds.size().max_element() * 0.5;
     let origin = place.position + place.normal * clearance(place.position, size);

@@ -59,8 +59,20 @@ impl Scene {
 
     /// Whether a plane has cut one of the meshes.
     pub fn is_cut(&self) -> bool {
-        let shown = self.nodes.iter().filter_map(|node| self.meshes.get(node.mesh? as usize));
-        shown.filter_map(|mesh| mesh.section.as_deref()).any(|section| !section.outline.is_empty())
+        self.shown_meshes().filter_map(|mesh| mesh.section.as_deref()).any(|section| !section.outline.is_empty())
+    }
+
+    /// Whether a plane has cut a closed body, which has a cap then.
+    pub fn has_caps(&self) -> bool {
+        let has_cap = |mesh: &Arc<Mesh>| {
+            mesh.section.as_ref().is_some_and(|section| (section.first_cap as usize) < mesh.face_count())
+        };
+        self.shown_meshes().any(has_cap)
+    }
+
+    /// The meshes that nodes show.
+    fn shown_meshes(&self) -> impl Iterator<Item = &Arc<Mesh>> {
+        self.nodes.iter().filter_map(|node| self.meshes.get(node.mesh? as usize))
     }
 }
 

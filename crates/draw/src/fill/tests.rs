@@ -9,7 +9,7 @@ use vitral_math::{DMat4, DVec4};
 
 /// The regions of these triangles, of which those marked are clear; the same with one thread and three.
 fn found(corners: &[[GridPoint; 3]], clear: &[usize], surfaces: &Surfaces<'_>) -> Vec<PageRegion> {
-    let mut mesh = mesh_of([4096; 2], corners);
+    let mut mesh = mesh_of([1 << 20; 2], corners);
     for (triangle, source) in mesh.triangles.iter_mut().zip(&mut mesh.sources) {
         if clear.contains(&(source.surface as usize)) {
             (triangle.hides, triangle.clear, source.material) = (false, true, 1);
@@ -155,8 +155,9 @@ proptest! {
     fn regions_cover_once_what_triangles_cover(
         corners in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(0i32..4096)), 1..16),
     ) {
+        // On a large page, slivers below the least area do not count.
+        let corners: Vec<[GridPoint; 3]> = corners.iter().map(|triangle| triangle.map(|p| p.map(|c| c * 256))).collect();
         let covered = covered_area(&corners);
-        // Lost are slivers below the least area, and what rounding makes of thin ones.
         let lost = 2e-3 * covered + 20.0 * LEAST_AREA as f64;
         let seen: f64 = areas(&corners).iter().sum();
         prop_assert!((seen - covered).abs() < lost, "{} {}", seen, covered);
@@ -168,10 +169,10 @@ proptest! {
             let sorted = |t: &[GridPoint; 3]| { let mut t = *t; t.sort_unstable(); t };
             sorted(t) == sorted(other)
         }));
-        prop_assert!(again || (layers - together).abs() < 2e-3 * together + 60.0 * LEAST_AREA as f64, "{} {}", layers, together);
+        prop_assert!(again || (layers - together).abs() < 2e-3 * together + 20.0 * LEAST_AREA as f64, "{} {}", layers, together);
         // Flattened, they cover what is covered.
         let flat = Surfaces { flatten: true, ..touching(Seams::None) };
         let flattened: f64 = found(&corners, &clear, &flat).iter().map(area).sum();
-        prop_assert!((flattened - covered).abs() < 4.0 * lost, "{} {}", flattened, covered);
+        prop_assert!((flattened - covered).abs() < lost, "{} {}", flattened, covered);
     }
 }

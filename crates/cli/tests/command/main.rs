@@ -1,7 +1,10 @@
 //! The command as users meet it: a process with files, standard streams and an exit code.
 
 mod choices;
+mod drawing;
+mod polygons;
 mod reports;
+mod sections;
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -2,11 +2,12 @@
 //!
 //! The loops of all closed bodies of one material lie on an integer grid in the plane. What they go round is cut into triangles; corners
 //! of the loops stay the mesh's vertices, so that a closed surface is closed afterwards. Where loops cross, as where surfaces penetrate
-//! themselves, vertices are added.
+//! themselves, vertices are added. Rounding makes short sides cross as well; triangles that thin close these gaps.
 //!
 //! In:   a clipped mesh and the outline of the cut. Out: the mesh with a flat face for each region inside.
 //! Cost: `n log n` in the corners of the loops.
 
+use super::gaps::close_gaps;
 use super::outline::{BodyLoops, Inside, Outline};
 use super::plane::SectionPlane;
 use super::rings::rings;
@@ -16,12 +17,14 @@ use i_overlay::core::overlay::{IntOverlayOptions, Overlay, ShapeType};
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::i_float::int::point::IntPoint;
 use i_triangle::int::unchecked::IntUncheckedTriangulatable;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
-use vitral_math::{DMat4, DVec3};
+use vitral_math::{DMat4, DVec2, DVec3};
 
 /// Half the steps of the grid across a cut.
 const HALF_GRID: f64 = (1u64 << 29) as f64;
+/// How far rounding may move a vertex, as a part of the largest coordinate: two steps of single precision.
+const ROUNDING: f64 = 1.0 / (1u64 << 22) as f64;
 
 type Point = IntPoint<i32>;
 
@@ -32,8 +35,14 @@ struct Grid {
     across: DVec3,
     up: DVec3,
     steps_a_unit: f64,
+    /// Steps by which rounding may move a vertex.
+    rounding: f64,
+    world_from_model: DMat4,
     model_from_world: DMat4,
+    /// The vertex at each point.
     vertices: BTreeMap<[i32; 2], u32>,
+    /// The vertex at each position, by its bits.
+    vertex_at: HashMap<[u32; 3], u32>,
 }
 
 impl Grid {
@@ -57,18 +66,45 @@ impl Grid {
 
         // Find the vertex at each point; of several, the first.
         let origin = plane.point + across * x + up * y;
-        let mut grid = Self { origin, across, up, steps_a_unit, model_from_world, vertices: BTreeMap::new() };
+        let largest = corners().fold(DVec3::ZERO, |largest, v| largest.max(mesh.position(v).abs()));
+        let scale = DVec3::AXES.map(|axis| instance.world_from_model.transform_vector3(axis).length());
+        let farthest = DVec3::from_array(scale).dot(largest);
+        let rounding = 2.0 + farthest * ROUNDING * steps_a_unit;
+        let mut grid = Self {
+            origin,
+            across,
+            up,
+            steps_a_unit,
+            rounding,
+            world_from_model: instance.world_from_model,
+            model_from_world,
+            vertices: BTreeMap::new(),
+            vertex_at: HashMap::new(),
+        };
         for vertex in corners() {
-            let Point { x, y } = grid.point(place(vertex));
+            let Point { x, y } = grid.point(mesh, vertex);
             let first = grid.vertices.entry([x, y]).or_insert(vertex);
+            *first = vertex.min(*first);
+            let first = grid.vertex_at.entry(bits(mesh.positions[vertex as usize])).or_insert(vertex);
             *first = vertex.min(*first);
         }
         Some(grid)
     }
 
-    fn point(&self, at: DVec3) -> Point {
+    /// The point nearest to a vertex of the mesh.
+    fn point(&self, mesh: &Mesh, vertex: u32) -> Point {
+        let at = self.world_from_model.transform_point3(mesh.position(vertex));
         let step = |axis: DVec3| (axis.dot(at - self.origin) * self.steps_a_unit).round() as i32;
         Point::new(step(self.across), step(self.up))
+    }
+
+    /// Twice the area of a triangle by its circumference, in what rounding may move a vertex.
+    fn thickness(&self, mesh: &Mesh, corners: Corners) -> f64 {
+        let [a, b, c] = corners.map(|v| {
+            let Point { x, y } = self.point(mesh, v);
+            DVec2::new(f64::from(x), f64::from(y))
+        });
+        (b - a).perp_dot(c - a).abs() / (a.distance(b) + b.distance(c) + c.distance(a)).max(1.0) / self.rounding
     }
 
     /// The vertex at a point, a new one where the mesh has none.
@@ -76,10 +112,18 @@ impl Grid {
         *self.vertices.entry([point.x, point.y]).or_insert_with(|| {
             let [x, y] = [point.x, point.y].map(|step| f64::from(step) / self.steps_a_unit);
             let at = self.origin + self.across * x + self.up * y;
-            positions.push(self.model_from_world.transform_point3(at).as_vec3().to_array());
-            positions.len() as u32 - 1
+            let position = self.model_from_world.transform_point3(at).as_vec3().to_array();
+            *self.vertex_at.entry(bits(position)).or_insert_with(|| {
+                positions.push(position);
+                positions.len() as u32 - 1
+            })
         })
     }
+}
+
+/// The bits of a position, the same for both zeros.
+fn bits(position: [f32; 3]) -> [u32; 3] {
+    position.map(|axis| (axis + 0.0).to_bits())
 }
 
 /// The loops in which the plane cuts some bodies.
@@ -103,11 +147,14 @@ pub(super) fn close(clipped: &mut Mesh, whole: &Mesh, instance: &Instance, plane
     let mirrored = instance.world_from_model.determinant() < 0.0;
     if let Some(mut grid) = Grid::new(clipped, instance, plane, &outline.bodies) {
         for ((name, material, inside), loops) in groups {
-            for shape in regions(clipped, instance, &grid, &loops, inside) {
-                let triangles = triangles(&shape, &mut grid, &mut clipped.positions, mirrored);
-                add_outline(&triangles, &mut edges);
-                add_faces(clipped, &triangles, name, material, normal);
+            let shapes = regions(clipped, &grid, &loops, inside);
+            let mut cap: Vec<Corners> = Vec::new();
+            shapes.iter().for_each(|shape| cap.extend(triangles(shape, &mut grid, &mut clipped.positions, mirrored)));
+            if inside == Inside::Winding {
+                close_gaps(&loops, &mut cap, |corners| grid.thickness(clipped, corners));
             }
+            add_outline(&cap, &mut edges);
+            add_faces(clipped, &cap, name, material, normal);
         }
     }
 
@@ -122,7 +169,7 @@ pub(super) fn close(clipped: &mut Mesh, whole: &Mesh, instance: &Instance, plane
 }
 
 /// What loops go round: outlines counter-clockwise, holes clockwise.
-fn regions(mesh: &Mesh, instance: &Instance, grid: &Grid, loops: &[&[u32]], inside: Inside) -> Vec<Vec<Vec<Point>>> {
+fn regions(mesh: &Mesh, grid: &Grid, loops: &[&[u32]], inside: Inside) -> Vec<Vec<Vec<Point>>> {
     let options = IntOverlayOptions {
         preserve_input_collinear: true,
         preserve_output_collinear: true,
@@ -131,8 +178,7 @@ fn regions(mesh: &Mesh, instance: &Instance, grid: &Grid, loops: &[&[u32]], insi
     let capacity = loops.iter().map(|corners| corners.len()).sum();
     let mut overlay = Overlay::<i32>::new_custom(capacity, options, Default::default());
     for corners in loops {
-        let place = |&v: &u32| grid.point(instance.world_from_model.transform_point3(mesh.position(v)));
-        let contour: Vec<Point> = corners.iter().map(place).collect();
+        let contour: Vec<Point> = corners.iter().map(|&v| grid.point(mesh, v)).collect();
         overlay.add_contour(&contour, ShapeType::Subject);
     }
     let rule = match inside {

@@ -11,6 +11,7 @@
 
 mod caps;
 mod clip;
+mod gaps;
 mod outline;
 mod plane;
 mod rings;

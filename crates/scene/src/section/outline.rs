@@ -128,7 +128,7 @@ impl Outline {
 }
 
 /// Joins edges to loops along their directions; `None` where one ends.
-fn directed_loops(mut edges: Vec<[u32; 2]>) -> Option<Vec<Vec<u32>>> {
+pub(super) fn directed_loops(mut edges: Vec<[u32; 2]>) -> Option<Vec<Vec<u32>>> {
     // Take the edges that leave each vertex one after the other.
     edges.sort_unstable();
     let first_at = |v: u32| edges.partition_point(|edge| edge[0] < v);

@@ -152,7 +152,7 @@ fn what_is_at_corners_is_interpolated_and_shared_meshes_stay() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(512))]
 
     #[test]
     fn what_planes_leave_of_a_solid_is_solid(

@@ -1,47 +1,44 @@
 //! Files of `vitral draw` as other programs read them.
 
+use super::{Folder, errors};
 use std::collections::HashSet;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 use vitral_testkit::fixture::SKIPPED;
 
 /// A cube with a side of 20.
-const CUBE: &str = "v 0 0 0\nv 20 0 0\nv 20 20 0\nv 0 20 0\nv 0 0 20\nv 20 0 20\nv 20 20 20\nv 0 20 20\n\
+pub(crate) const CUBE: &str = "v 0 0 0\nv 20 0 0\nv 20 20 0\nv 0 20 0\nv 0 0 20\nv 20 0 20\nv 20 20 20\nv 0 20 20\n\
     f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
-/// A folder of its own for a test with the cube in it, removed at its end.
-struct Folder(PathBuf);
+/// A folder with the cube in it.
+pub(crate) struct CubeFolder(pub(crate) Folder);
 
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("vitral-drawing-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        std::fs::write(path.join("cube.obj"), CUBE).unwrap();
-        Self(path)
+impl CubeFolder {
+    pub(crate) fn new(name: &str) -> Self {
+        let folder = Folder::new(&format!("cube-{name}"));
+        folder.file("cube.obj", CUBE);
+        Self(folder)
     }
 
     /// Runs `vitral draw cube.obj ARGUMENTS`.
-    fn draw(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_vitral"));
-        command.args(["draw", "cube.obj"]).args(arguments).current_dir(&self.0).stdin(Stdio::null());
-        command.env("XDG_CONFIG_HOME", &self.0).env_remove("VITRAL_SIMD").env_remove("VITRAL_THREADS");
-        command.output().unwrap()
+    pub(crate) fn draw(&self, arguments: &[&str]) -> Output {
+        self.0.run(&[&["draw", "cube.obj"], arguments].concat())
     }
 
     /// The file that `vitral draw cube.obj ARGUMENTS -o NAME` writes.
     fn drawn(&self, name: &str, arguments: &[&str]) -> Vec<u8> {
         let output = self.draw(&[arguments, &["-o", name]].concat());
         assert!(output.status.success(), "{arguments:?}: {}", errors(&output));
-        std::fs::read(self.0.join(name)).unwrap()
+        self.0.read(name)
     }
 
-    fn text(&self, name: &str, arguments: &[&str]) -> String {
-        String::from_utf8(self.drawn(name, arguments)).unwrap()
+    /// The same as text.
+    pub(crate) fn text(&self, name: &str, arguments: &[&str]) -> String {
+        String::from_utf8_lossy(&self.drawn(name, arguments)).into_owned()
     }
 
-    /// What another program says here; a line and `None` if it is not installed.
+    /// The output of another program in this folder; a line and `None` if it is not installed.
     fn ask(&self, program: &str, arguments: &[&str], package: &str) -> Option<String> {
-        let Ok(output) = Command::new(program).args(arguments).current_dir(&self.0).output() else {
+        let Ok(output) = Command::new(program).args(arguments).current_dir(&self.0.0).output() else {
             println!("{SKIPPED}{program} is not installed (Debian: {package})");
             return None;
         };
@@ -51,22 +48,12 @@ impl Folder {
     }
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn errors(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
 const FRONT: [&str; 4] = ["--view", "front", "--scale", "1:1"];
 const HIDDEN: [&str; 4] = ["--view", "iso", "--hidden", "dashed"];
 
 #[test]
 fn svg_has_real_millimetres() {
-    let folder = Folder::new("svg");
+    let folder = CubeFolder::new("svg");
     let text = folder.text("x.svg", &FRONT);
     assert!(text.contains("width=\"30mm\" height=\"30mm\" viewBox=\"0 0 30000 30000\""), "{text}");
     assert!(text.contains("20000") && text.matches("<path").count() == 1, "{text}");
@@ -80,7 +67,7 @@ fn svg_has_real_millimetres() {
 
 #[test]
 fn pdf_is_read_by_others() {
-    let folder = Folder::new("pdf");
+    let folder = CubeFolder::new("pdf");
     let arguments = [&FRONT[..], &["--hidden", "dashed", "--style", "filled-lines"]].concat();
     let file = folder.drawn("x.pdf", &arguments);
     assert!(file.starts_with(b"%PDF-1.5"));
@@ -91,7 +78,7 @@ fn pdf_is_read_by_others() {
     folder.drawn("y.pdf", &HIDDEN);
     folder.ask("pdftocairo", &["-svg", "y.pdf", "y.svg"], "poppler-utils");
     if folder.ask("pdftocairo", &["-svg", "x.pdf", "x.svg"], "poppler-utils").is_some() {
-        let text = std::fs::read_to_string(folder.0.join("x.svg")).unwrap();
+        let text = String::from_utf8(folder.0.read("x.svg")).unwrap();
         assert!(text.contains("<path"), "{text}");
     }
     if let Some(told) = folder.ask("mutool", &["show", "y.pdf", "trailer/Root/OCProperties/OCGs"], "mupdf-tools") {
@@ -102,7 +89,7 @@ fn pdf_is_read_by_others() {
 
 #[test]
 fn dxf_stands_an_audit() {
-    let folder = Folder::new("dxf");
+    let folder = CubeFolder::new("dxf");
     let text = folder.text("x.dxf", &[&HIDDEN[..], &["--scale", "1:1"]].concat());
     assert!(text.starts_with("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n"), "{text}");
     folder.drawn("front.dxf", &FRONT);
@@ -128,7 +115,7 @@ fn dxf_stands_an_audit() {
 
 #[test]
 fn hpgl_draws_no_line_twice() {
-    let folder = Folder::new("hpgl");
+    let folder = CubeFolder::new("hpgl");
     let text = folder.text("x.plt", &[&HIDDEN[..], &["--page", "A5"]].concat());
     assert!(text.starts_with("IN;PS5920,8400;\nSP1;PW0.5;\nPU") && text.ends_with("PU;SP0;\n"), "{text}");
     assert!(text.contains("SP3;") && text.contains("SP8;PW0.18;"), "{text}");
@@ -153,7 +140,7 @@ fn hpgl_draws_no_line_twice() {
 
 #[test]
 fn plotters_get_numbered_layers_with_each_line_once() {
-    let folder = Folder::new("plotter");
+    let folder = CubeFolder::new("plotter");
     let text = folder.text("x.svg", &[&HIDDEN[..], &["--plotter"]].concat());
     assert!(text.contains("inkscape:label=\"1 contour\"") && text.contains("inkscape:label=\"8 hidden\""), "{text}");
     assert!(!text.contains("dasharray") && text.matches("<path").count() > 20, "dashes are lines: {text}");
@@ -163,7 +150,7 @@ fn plotters_get_numbered_layers_with_each_line_once() {
 
 #[test]
 fn title_blocks_are_a_layer_below_the_drawing() {
-    let folder = Folder::new("title");
+    let folder = CubeFolder::new("title");
     let rows = ["--title-block", "Part=Cube", "--title-block", "Scale=1:1"];
     let text = folder.text("x.svg", &[&FRONT[..], &rows].concat());
     assert!(text.contains("inkscape:label=\"9 title\"") && text.contains("viewBox=\"0 0 37833 45000\""), "{text}");
@@ -173,7 +160,7 @@ fn title_blocks_are_a_layer_below_the_drawing() {
 
 #[test]
 fn options_that_do_not_suit_the_file_are_told() {
-    let folder = Folder::new("mistakes");
+    let folder = CubeFolder::new("mistakes");
     for (arguments, code, said) in [
         (&["-o", "x.png"][..], 4, "written are .svg, .pdf, .dxf, .hpgl, .plt"),
         (&["-o", "x.svg", "--stroke", "outline=1"], 2, "`outline` is not one of contour, boundary"),

@@ -1,54 +1,13 @@
 //! Sections and exploded views of `vitral draw` through the command line.
 
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
-
-/// A cube with a side of 20.
-const CUBE: &str = "v 0 0 0\nv 20 0 0\nv 20 20 0\nv 0 20 0\nv 0 0 20\nv 20 0 20\nv 20 20 20\nv 0 20 20\n\
-    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-
-/// A folder of its own with the cube in it, removed at its end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("vitral-sections-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        std::fs::write(path.join("cube.obj"), CUBE).unwrap();
-        Self(path)
-    }
-
-    /// Runs `vitral draw MODELS ARGUMENTS`.
-    fn draw(&self, models: &[&str], arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_vitral"));
-        command.arg("draw").args(models).args(arguments).current_dir(&self.0).stdin(Stdio::null());
-        command.env("XDG_CONFIG_HOME", &self.0).env_remove("VITRAL_SIMD").env_remove("VITRAL_THREADS");
-        command.output().unwrap()
-    }
-
-    /// The file that `vitral draw cube.obj ARGUMENTS -o NAME` writes.
-    fn text(&self, name: &str, arguments: &[&str]) -> String {
-        let output = self.draw(&["cube.obj"], &[arguments, &["-o", name]].concat());
-        assert!(output.status.success(), "{arguments:?}: {}", errors(&output));
-        String::from_utf8_lossy(&std::fs::read(self.0.join(name)).unwrap()).into_owned()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn errors(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
+use super::drawing::{CUBE, CubeFolder};
+use super::errors;
 
 const HALF: [&str; 6] = ["--section-plane", "10,10,10,0,0,1", "--view", "front", "--scale", "1:1"];
 
 #[test]
 fn a_cut_has_its_layers_in_all_formats() {
-    let folder = Folder::new("layers");
+    let folder = CubeFolder::new("section-layers");
     let svg = folder.text("x.svg", &HALF);
     for label in ["6 section", "10 hatch"] {
         assert!(svg.contains(&format!("inkscape:label=\"{label}\"")), "{svg}");
@@ -75,7 +34,7 @@ fn a_cut_has_its_layers_in_all_formats() {
 
 #[test]
 fn parts_move_apart_before_they_are_cut() {
-    let folder = Folder::new("explode");
+    let folder = CubeFolder::new("section-explode");
     let second = CUBE.lines().map(|line| match line.strip_prefix("v ") {
         Some(place) => {
             let (x, rest) = place.split_once(' ').unwrap();
@@ -83,10 +42,10 @@ fn parts_move_apart_before_they_are_cut() {
         }
         None => format!("{line}\n"),
     });
-    std::fs::write(folder.0.join("second.obj"), second.collect::<String>()).unwrap();
+    folder.0.file("second.obj", second.collect::<String>());
     let width = |arguments: &[&str]| {
         let file = [&["-o", "-", "--view", "front", "--scale", "1:1", "--margin", "0"], arguments].concat();
-        let output = folder.draw(&["cube.obj", "second.obj"], &file);
+        let output = folder.draw(&[&["second.obj"], &file[..]].concat());
         assert!(output.status.success(), "{}", errors(&output));
         let text = String::from_utf8(output.stdout).unwrap();
         text.split_once("width=\"").unwrap().1.split_once("mm\"").unwrap().0.to_owned()
@@ -101,7 +60,7 @@ fn parts_move_apart_before_they_are_cut() {
 
 #[test]
 fn mistakes_are_told() {
-    let folder = Folder::new("mistakes");
+    let folder = CubeFolder::new("section-mistakes");
     let cut = &HALF[..2];
     for (arguments, code, said) in [
         (&["--lines", "section"][..], 2, "add --section-plane"),
@@ -118,7 +77,7 @@ fn mistakes_are_told() {
         (&["--section-plane", "0,0,-1,0,0,1"], 0, "nothing is left of the model"),
         (&["--lines", "all"], 0, ""),
     ] {
-        let output = folder.draw(&["cube.obj"], &[arguments, &["-o", "x.svg"]].concat());
+        let output = folder.draw(&[arguments, &["-o", "x.svg"]].concat());
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", errors(&output));
         assert!(errors(&output).contains(said), "{arguments:?}: {}", errors(&output));
     }

@@ -1,7 +1,6 @@
 //! `vitral draw --algorithm`: polygons of the course's algorithms as other programs read them.
 
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use super::Folder;
 
 /// Three bars, each in front of the next: a circle that no order from back to front has.
 const BARS: &str = r#"{"vitral-scene": 1, "meshes": [{"positions": [
@@ -20,30 +19,21 @@ const SQUARES: &str = r#"{"vitral-scene": 1, "meshes": [{"positions": [
     "projection": {"type": "parallel", "height": 128}, "clip": [1, 300]}]}"#;
 const TRIANGLE: &str = "v -5 -5 0\nv 5 -5 0\nv 0 5 0\nf 1 2 3\n";
 
-/// A folder of its own for a test with the scenes in it, removed at its end.
-struct Folder(PathBuf);
+/// A folder with the scenes in it.
+struct SceneFolder(Folder);
 
-impl Folder {
+impl SceneFolder {
     fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("vitral-polygons-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
+        let folder = Folder::new(&format!("polygons-{name}"));
         for (file, text) in [("bars.json", BARS), ("squares.json", SQUARES), ("triangle.obj", TRIANGLE)] {
-            std::fs::write(path.join(file), text).unwrap();
+            folder.file(file, text);
         }
-        Self(path)
-    }
-
-    /// Runs `vitral ARGUMENTS`.
-    fn run(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_vitral"));
-        command.args(arguments).current_dir(&self.0).stdin(Stdio::null());
-        command.env("XDG_CONFIG_HOME", &self.0).env_remove("VITRAL_SIMD").env_remove("VITRAL_THREADS");
-        command.output().unwrap()
+        Self(folder)
     }
 
     /// The SVG of a drawing, and its statistics.
     fn drawn(&self, arguments: &[&str]) -> (String, serde_json::Value) {
-        let output = self.run(&[&["draw"], arguments, &["--stats", "-o", "-"]].concat());
+        let output = self.0.run(&[&["draw"], arguments, &["--stats", "-o", "-"]].concat());
         let errors = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{arguments:?}: {errors}");
         (String::from_utf8(output.stdout).unwrap(), serde_json::from_str(&errors).unwrap())
@@ -51,21 +41,15 @@ impl Folder {
 
     /// The message of a command line that is refused with exit code 2.
     fn mistake(&self, arguments: &[&str]) -> String {
-        let output = self.run(&[&["draw", "bars.json"], arguments].concat());
+        let output = self.0.run(&[&["draw", "bars.json"], arguments].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         String::from_utf8_lossy(&output.stderr).into_owned()
     }
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 #[test]
 fn hand_counts_of_cuts_and_pieces() {
-    let folder = Folder::new("counts");
+    let folder = SceneFolder::new("counts");
     // Model, algorithm, splits, pieces.
     let counted = [
         ("bars.json", "painter", 1, 4),
@@ -89,7 +73,7 @@ fn hand_counts_of_cuts_and_pieces() {
 
 #[test]
 fn styles_of_lists_and_of_visible_polygons() {
-    let folder = Folder::new("styles");
+    let folder = SceneFolder::new("styles");
     let svg = |algorithm: &str, more: &[&str]| {
         folder.drawn(&[&["bars.json", "--camera-index", "0", "--algorithm", algorithm], more].concat()).0
     };
@@ -109,13 +93,13 @@ fn styles_of_lists_and_of_visible_polygons() {
     assert_eq!([page(&usual), page(&lines)], [page(&exact), page(&exact)], "the same page");
     // DXF and plotters get lines.
     let dxf =
-        folder.run(&["draw", "bars.json", "--algorithm", "weiler-atherton", "--style", "hidden-line", "-o", "x.dxf"]);
-    assert!(dxf.status.success() && std::fs::read_to_string(folder.0.join("x.dxf")).unwrap().contains("POLYLINE"));
+        folder.0.run(&["draw", "bars.json", "--algorithm", "weiler-atherton", "--style", "hidden-line", "-o", "x.dxf"]);
+    assert!(dxf.status.success() && String::from_utf8(folder.0.read("x.dxf")).unwrap().contains("POLYLINE"));
 }
 
 #[test]
 fn shadows_are_told_and_the_page_stays() {
-    let folder = Folder::new("shadows");
+    let folder = SceneFolder::new("shadows");
     for algorithm in ["painter", "weiler-atherton"] {
         let arguments = ["builtin:scene0", "--algorithm", algorithm, "--style", "filled"];
         let (plain, _) = folder.drawn(&arguments);
@@ -129,7 +113,7 @@ fn shadows_are_told_and_the_page_stays() {
 
 #[test]
 fn what_has_no_effect_is_refused() {
-    let folder = Folder::new("refused");
+    let folder = SceneFolder::new("refused");
     let painter = ["--algorithm", "painter"];
     let svg = ["-o", "x.svg"];
     for option in
@@ -151,16 +135,16 @@ fn what_has_no_effect_is_refused() {
 
 #[test]
 fn the_report_compares_all_algorithms() {
-    let folder = Folder::new("report");
+    let folder = SceneFolder::new("report");
     let bench = ["bench", "--drawings", "--report", ".", "triangle.obj", "--frames", "1", "--quiet"];
-    let output = folder.run(&bench);
+    let output = folder.0.run(&bench);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = std::fs::read_to_string(folder.0.join("drawing-report.md")).unwrap();
+    let text = String::from_utf8(folder.0.read("drawing-report.md")).unwrap();
     for name in ["exact", "painter", "bsp", "weiler-atherton"] {
         assert_eq!(text.matches(&format!("\n| {name} |")).count(), 6, "{text}");
-        let picture = std::fs::read_to_string(folder.0.join(format!("drawing-bars-{name}.svg"))).unwrap();
+        let picture = String::from_utf8(folder.0.read(&format!("drawing-bars-{name}.svg"))).unwrap();
         assert!(text.contains(&format!("drawing-bars-{name}.svg")) && picture.len() < 4000, "{picture}");
     }
-    let refused = folder.run(&["bench", "--report", ".", "triangle.obj"]);
+    let refused = folder.0.run(&["bench", "--report", ".", "triangle.obj"]);
     assert_eq!(refused.status.code(), Some(2));
 }

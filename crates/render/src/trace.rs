@@ -293,8 +293,10 @@ pub enum Step {
         rays: u64,
         /// Boxes or cells looked at.
         boxes: u64,
-        /// Facets tested.
+        /// How many tests of facets there were.
         facets: u64,
+        /// The facets of these tests in order, ray after ray; none for brute force, which tests all in the order of their numbers.
+        tested: Vec<u32>,
         /// What they went through, each part once.
         through: Passed,
     },

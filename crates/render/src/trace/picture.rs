@@ -208,7 +208,7 @@ mod tests {
     fn costs_add_up_and_windows_have_sides() {
         let recorder = Recorder::new(4, 2);
         let through = Passed::Cells(vec![[0; 3]; 5]);
-        recorder.step(&Step::Rays { pixels: [2, 0, 8, 8], rays: 4, boxes: 5, facets: 2, through });
+        recorder.step(&Step::Rays { pixels: [2, 0, 8, 8], rays: 4, boxes: 5, facets: 2, tested: vec![1, 0], through });
         recorder.step(&Step::Drawn { facet: 0, stays: vec![[0, 1, 4]], hidden: vec![[0, 3, 4]] });
         recorder.step(&Step::Drawn { facet: 1, stays: vec![], hidden: vec![[0, 3, 9]] });
         recorder.step(&window([0, 0, 4, 2], WindowVerdict::One));

@@ -74,9 +74,10 @@ impl Step {
                     None => format!("{line}; no polygon is in here"),
                 }
             }
-            Self::Rays { pixels: [_, _, width, height], rays, boxes, facets, through } => {
-                let tested = format!("{boxes} box(es), {facets} facet(s) tested");
-                format!("{rays} ray(s) of {width} x {height} pixel(s): {tested}{}", through.tell())
+            Self::Rays { pixels: [_, _, width, height], rays, boxes, facets, tested, through } => {
+                let which = if tested.is_empty() { String::new() } else { format!(": {}", few(tested)) };
+                let tests = format!("{boxes} box(es) and {facets} facet(s) tested{which}");
+                format!("{rays} ray(s) of {width} x {height} pixel(s): {tests}{}", through.tell())
             }
             Self::Piece { order, facet, cuts, node, .. } => {
                 let node = node.map_or(String::new(), |node| format!(", of node {node} of the tree"));
@@ -123,7 +124,7 @@ impl Step {
                 of(active_edges) + spans.iter().map(|s| size_of_val(s) + of(&s.inside)).sum::<usize>()
             }
             Self::Clipped { before, after, .. } => of(before) + of(after),
-            Self::Rays { through, .. } => 24 * through.len(),
+            Self::Rays { tested, through, .. } => of(tested) + 24 * through.len(),
             Self::Circle { polygons, facets } => of(polygons) + of(facets),
             Self::Piece { outline, .. } => of(outline),
             Self::NearestFirst { polygons } => {

@@ -142,6 +142,33 @@ impl ScreenTriangle {
     }
 }
 
+/// How many setups were tested, and of which facets, if somebody wants to know.
+#[derive(Default)]
+pub(super) struct Tests {
+    pub(super) count: u64,
+    pub(super) facets: Option<Vec<u32>>,
+}
+
+impl Tests {
+    /// None so far; facets are noted for an observer.
+    pub(super) fn new(execution: &Execution) -> Self {
+        Self { count: 0, facets: execution.observer.is_some().then(Vec::new) }
+    }
+
+    #[inline(always)]
+    pub(super) fn add(&mut self, facet: u32) {
+        self.count += 1;
+        if let Some(facets) = &mut self.facets {
+            facets.push(facet);
+        }
+    }
+
+    /// The facets noted since the last call.
+    pub(super) fn take(&mut self) -> Vec<u32> {
+        self.facets.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+}
+
 /// Who was already asked: a structure may show a triangle to the same ray several times.
 pub(super) struct Stamps {
     seen: Vec<u32>,

@@ -11,7 +11,7 @@
 //! Cost: one way down for each block and kind.
 //! Source: [Wald et al. 2001]. Departs from it: 64 rays and more, and planes round them, not each ray's own slabs.
 
-use super::cast::{Cast, ScreenTriangle, Stamps, names};
+use super::cast::{Cast, ScreenTriangle, Stamps, Tests, names};
 use crate::raytrace::{Probe, Structure, Tree, Visitor, Watched};
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
@@ -80,8 +80,7 @@ struct BlockSearch<'a, S, T, K> {
     /// The block's samples lie between these places on the screen, in 1/256 pixel.
     samples: [[i32; 2]; 2],
     stamps: &'a mut Stamps,
-    /// Setups tested.
-    tests: u64,
+    tests: &'a mut Tests,
 }
 
 /// The depth of the block's farthest sample.
@@ -128,7 +127,7 @@ impl<S: Simd, T: Structure, K: Taker<S>> Visitor for BlockSearch<'_, S, T, K> {
             return;
         }
         for setup in self.cast.setups(found.setups) {
-            self.tests += 1;
+            self.tests.add(setup.facet);
             // Many a box that touches the block is that of a long slanting facet, which does not.
             if !setup.reaches(self.samples) {
                 continue;
@@ -145,7 +144,7 @@ pub(super) fn look<T: Tree>(
     layers: &mut LayerList,
 ) -> Result<VisibilityCounters, Limit> {
     let mut counters = VisibilityCounters::default();
-    let mut stamps = cast.take_stamps();
+    let (mut stamps, mut tests) = (cast.take_stamps(), Tests::new(cast.execution));
     let mut passed = cast.execution.observer.is_some().then(Vec::new);
     let (rows, columns) = size_in_picture(cast.view, tile);
     for y in (0..rows).step_by(BLOCK) {
@@ -153,8 +152,11 @@ pub(super) fn look<T: Tree>(
         for x in (0..columns).step_by(BLOCK) {
             let pixels = (rows - y).min(BLOCK) * (columns - x).min(BLOCK);
             let rays = (pixels * cast.view.pattern.len()) as u64;
-            let [boxes, tests] = dispatch!(cast.execution.level, simd =>
-                look_at_block(simd, cast, tile, (x, y), layers, &mut stamps, passed.as_mut()));
+            let before = tests.count;
+            let noted = Noted { stamps: &mut stamps, tests: &mut tests, passed: passed.as_mut() };
+            let boxes = dispatch!(cast.execution.level, simd =>
+                look_at_block(simd, cast, tile, (x, y), layers, noted));
+            let facets = tests.count - before;
             counters.rays += rays;
             counters.saved_by_area += rays - 1;
             counters.box_tests += boxes;
@@ -162,16 +164,25 @@ pub(super) fn look<T: Tree>(
                 let size = [columns - x, rows - y].map(|s| s.min(BLOCK) as u32);
                 let pixels = [tile.x + x as u32, tile.y + y as u32, size[0], size[1]];
                 let through = names(cast.structure, passed);
-                cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets: tests, through });
+                let tested = tests.take();
+                cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
             }
-            counters.triangle_tests += tests * rays;
+            counters.triangle_tests += facets * rays;
         }
     }
     cast.give_stamps(stamps);
     Ok(counters)
 }
 
-/// Fills a block: how many boxes and how many setups were tested.
+/// What a search notes on its way.
+struct Noted<'a> {
+    stamps: &'a mut Stamps,
+    tests: &'a mut Tests,
+    /// The parts of the structure gone through.
+    passed: Option<&'a mut Vec<u32>>,
+}
+
+/// Fills a block: how many boxes were tested.
 #[inline(always)]
 fn look_at_block<S: Simd, T: Tree>(
     simd: S,
@@ -179,28 +190,28 @@ fn look_at_block<S: Simd, T: Tree>(
     tile: &mut Tile,
     block: (usize, usize),
     layers: &mut LayerList,
-    stamps: &mut Stamps,
-    mut passed: Option<&mut Vec<u32>>,
-) -> [u64; 2] {
+    noted: Noted<'_>,
+) -> u64 {
+    let Noted { stamps, tests, mut passed } = noted;
+
     // The pyramid round the block's samples.
-    let samples = extent(&cast.view.pattern);
+    let offsets = extent(&cast.view.pattern);
     let corner = [tile.x as i32 + block.0 as i32, tile.y as i32 + block.1 as i32];
-    let low = [0, 1].map(|k| corner[k] * SUBPIXEL + samples[k][0]);
-    let high = [0, 1].map(|k| (corner[k] + BLOCK as i32 - 1) * SUBPIXEL + samples[k][1]);
+    let low = [0, 1].map(|k| corner[k] * SUBPIXEL + offsets[k][0]);
+    let high = [0, 1].map(|k| (corner[k] + BLOCK as i32 - 1) * SUBPIXEL + offsets[k][1]);
     let pyramid = cast.eye.pyramid(simd, low, high);
 
     stamps.next();
-    let mut opaque = BlockSearch { simd, cast, taker: Opaque(tile), block, samples: [low, high], stamps, tests: 0 };
+    let samples = [low, high];
+    let mut opaque =
+        BlockSearch { simd, cast, taker: Opaque(tile), block, samples, stamps: &mut *stamps, tests: &mut *tests };
     let mut boxes = descend(cast.structure, &pyramid, &mut opaque, passed.as_deref_mut());
-    let mut tests = opaque.tests;
     if !cast.slack[1].is_empty() {
         stamps.next();
-        let mut visitor =
-            BlockSearch { simd, cast, taker: Layers(tile, layers), block, samples: [low, high], stamps, tests: 0 };
+        let mut visitor = BlockSearch { simd, cast, taker: Layers(tile, layers), block, samples, stamps, tests };
         boxes += descend(cast.structure, &pyramid, &mut visitor, passed);
-        tests += visitor.tests;
     }
-    [boxes, tests]
+    boxes
 }
 
 /// [`Tree::descend`], with the parts gone through if somebody wants to know.

@@ -7,7 +7,7 @@
 //! Cost: one walk a sample.
 //! Source: [Appel 1968].
 
-use super::cast::{Cast, NONE, Stamps, names};
+use super::cast::{Cast, NONE, Stamps, Tests, names};
 use crate::Coherence;
 use crate::raytrace::{Structure, Visitor, Watched};
 use crate::stats::VisibilityCounters;
@@ -30,7 +30,7 @@ struct RaySearch<'a, T> {
     /// Transparent facets, some of them hidden.
     layers: Vec<(f32, u32)>,
     stamps: Stamps,
-    tests: u64,
+    tests: Tests,
 }
 
 impl<T: Structure> RaySearch<'_, T> {
@@ -70,7 +70,7 @@ impl<T: Structure> RaySearch<'_, T> {
     fn test(&mut self, setups: [u32; 2]) {
         let [x, y] = self.sample;
         for setup in self.cast.setups(setups) {
-            self.tests += 1;
+            self.tests.add(setup.facet);
             if setup.z_max < self.nearest.0 || !setup.covers(x, y) {
                 continue;
             }
@@ -116,14 +116,15 @@ pub(super) fn look<T: Structure>(
 ) -> Result<VisibilityCounters, Limit> {
     let mut counters = VisibilityCounters::default();
     let (stamps, none) = (cast.take_stamps(), [NONE; 2]);
+    let tests = Tests::new(cast.execution);
     let mut search =
-        RaySearch { cast, sample: [0; 2], nearest: BACKGROUND, setups: none, layers: Vec::new(), stamps, tests: 0 };
+        RaySearch { cast, sample: [0; 2], nearest: BACKGROUND, setups: none, layers: Vec::new(), stamps, tests };
     let mut passed = cast.execution.observer.is_some().then(Vec::new);
     let (rows, columns) = size_in_picture(cast.view, tile);
     for row in 0..rows {
         cast.execution.budget.check("ray casting")?;
         for column in 0..columns {
-            let before_pixel = (counters.box_tests, search.tests);
+            let before_pixel = (counters.box_tests, search.tests.count);
             let samples = cast.view.pattern.len();
             for sample in 0..samples {
                 search.follow(tile, [column, row], sample, passed.as_mut(), &mut counters);
@@ -138,13 +139,14 @@ pub(super) fn look<T: Structure>(
             }
             if let Some(passed) = &mut passed {
                 let (rays, boxes) = (samples as u64, counters.box_tests - before_pixel.0);
-                let (facets, through) = (search.tests - before_pixel.1, names(cast.structure, passed));
+                let (facets, through) = (search.tests.count - before_pixel.1, names(cast.structure, passed));
                 let pixels = [tile.x + column as u32, tile.y + row as u32, 1, 1];
-                cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets, through });
+                let tested = search.tests.take();
+                cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
             }
         }
     }
-    counters.triangle_tests = search.tests;
+    counters.triangle_tests = search.tests.count;
     cast.give_stamps(search.stamps);
     Ok(counters)
 }

@@ -1,0 +1,913 @@
+// The page's state: the situation that the link tells, what the engine answered, and what follows from
+// a change. Views read it and call its methods; it knows nothing of how the page looks.
+
+import { Engine, Refusal, Superseded, type Answer, type UserFile } from "./engine.ts";
+import { at, copy, equal, isObject, put, type Json, type JsonObject } from "./json.ts";
+import { LAB, pack, read, stateOfB, unpack, write, type Lab, type Language, type Problem, type Situation } from "./link.ts";
+import { setLanguage, t } from "./words.ts";
+
+export interface Named {
+  name: string;
+  description: string;
+}
+
+export interface Exercise {
+  id: string;
+  title: string;
+  page: string;
+  text: string;
+  hint: string;
+  start: JsonObject;
+}
+
+export interface Catalog {
+  algorithms: Record<string, (Named & JsonObject)[]>;
+  models: { name: string; about: string }[];
+  defaults: JsonObject;
+  exercises: Exercise[];
+  channels?: { name: string; about: string }[];
+  /** What the engine can be asked for, where it says so. */
+  wants?: string[];
+  version: string;
+}
+
+export interface Complete {
+  state: JsonObject;
+  lights: JsonObject[];
+  materials: JsonObject[];
+  camera: JsonObject;
+  warnings: string[];
+}
+
+export interface Counter {
+  name: string;
+  value: Json;
+  meaning: string;
+}
+
+export interface Picture {
+  width: number;
+  height: number;
+  description: string;
+  seconds: number;
+  warnings: string[];
+  counters: Counter[];
+  facts: JsonObject;
+}
+
+/** What a canvas shows. */
+export interface Plane {
+  bytes: Uint8Array;
+  width: number;
+  height: number;
+}
+
+export interface Recording {
+  steps: number;
+  complete: boolean;
+  groups: { name: string; count: number }[];
+  seconds: number;
+}
+
+export interface Step {
+  /** Counted from 1 among the steps that are shown, and among all. */
+  number: number;
+  at?: number;
+  total: number;
+  parent?: number | null;
+  group: string;
+  words: string;
+  fields: JsonObject;
+  structure?: JsonObject;
+  drawing?: string | null;
+}
+
+export interface Agreement {
+  differ: number;
+  largest: number;
+  surfaces: number;
+  first: [number, number][];
+}
+
+/** An answer of the engine and the question that it answers. */
+export interface Result<T> {
+  key: string;
+  value: T;
+}
+
+export type History = "replace" | "push";
+
+export type DialogName = "lights" | "materials" | "camera" | "keyboard" | "language" | "about";
+
+/** Milliseconds between two changes of the address bar: browsers refuse more than about 200 in 30 s. */
+const ADDRESS_INTERVAL = 300;
+
+/** Milliseconds of rest before work that is not urgent begins. */
+const REST = 150;
+
+/** A frame that takes longer than this is drawn coarser while something is dragged. */
+const COARSE_ABOVE = 0.025;
+
+const CHANNELS = ["depth", "surface", "object", "material", "normal", "steps", "attached-shadow", "cast-shadow", "ambient", "diffuse", "specular"];
+
+export class App {
+  engine: Engine;
+  catalog: Catalog | undefined;
+  situation: Situation = { state: {}, b: {}, lab: { ...LAB } };
+
+  complete: Result<Complete> | undefined;
+  picture: Result<Picture> | undefined;
+  pictureB: Result<Picture> | undefined;
+  plane: Result<Plane> | undefined;
+  planeB: Result<Plane> | undefined;
+  planeDifference: Result<Plane> | undefined;
+  agreement: Result<Agreement> | undefined;
+  recording: Result<Recording> | undefined;
+  step: Result<Step> | undefined;
+  /** Answers of a page's own: `info`, `stages`, `explain`, curves, … */
+  readonly answers = new Map<string, Result<Answer>>();
+
+  /** The cross in the picture, which Enter inspects. */
+  cross: [number, number] | null = null;
+  /** A facet or surface that was chosen in a table, list or tree. */
+  chosen: { facet: number } | null = null;
+  isDragging = false;
+  isPlaying = false;
+  isRecording = false;
+  sameCamera = true;
+  askFirst = false;
+  prediction: { next: Step; options: string[]; answer: string; chosen: string | null } | null = null;
+  dialogs: DialogName[] = [];
+  alert = "";
+  message = "";
+  /** The user's files that are models. */
+  models = new Set<string>();
+  hasKeys = true;
+  files = new Map<string, Uint8Array>();
+  /** Models of the user that the link names and that are not here. */
+  missing: string[] = [];
+  exerciseResult: { id: string; passed: boolean; text: string; differs: string[] } | null = null;
+  hasHint = false;
+  /** A light's place as it was typed, while it is no place that a light can have. */
+  draftPlace: { light: number; place: number[] } | null = null;
+  lightNumber = 0;
+  materialNumber = 0;
+
+  private readonly listeners: (() => void)[] = [];
+  private frame = 0;
+  private timers = new Map<string, ReturnType<typeof setTimeout>>();
+  private wanted = new Map<string, string>();
+  private addressTime = 0;
+  private shownHash = "";
+  private push = false;
+  private settled: Promise<void> = Promise.resolve();
+
+  constructor() {
+    this.engine = new Engine((message) => this.fail(message));
+  }
+
+  // ---- Rendering and messages ----
+
+  onRender(listener: () => void) {
+    this.listeners.push(listener);
+  }
+
+  /** Renders before the next frame. */
+  changed() {
+    if (this.frame) return;
+    const render = () => {
+      if (!this.frame) return;
+      cancelAnimationFrame(this.frame);
+      this.frame = 0;
+      for (const listener of this.listeners) listener();
+    };
+    this.frame = requestAnimationFrame(render);
+    // A hidden page has no frames.
+    if (document.hidden) setTimeout(render, 50);
+  }
+
+  fail(message: string) {
+    this.alert = message;
+    this.changed();
+    this.emit("error");
+  }
+
+  say(message: string) {
+    this.message = message;
+    this.changed();
+  }
+
+  private emitters: ((event: "ready" | "step" | "error") => void)[] = [];
+
+  onEvent(listener: (event: "ready" | "step" | "error") => void) {
+    this.emitters.push(listener);
+  }
+
+  private emit(event: "ready" | "step" | "error") {
+    for (const emitter of this.emitters) emitter(event);
+  }
+
+  after(name: string, milliseconds: number, action: () => void) {
+    clearTimeout(this.timers.get(name));
+    this.timers.set(name, setTimeout(action, milliseconds));
+  }
+
+  // ---- Reading the situation ----
+
+  get lab(): Lab {
+    return this.situation.lab;
+  }
+
+  get state(): JsonObject {
+    return this.situation.state;
+  }
+
+  get stateB(): JsonObject {
+    return stateOfB(this.situation);
+  }
+
+  /** A field of the state of a picture. */
+  get(path: string, picture: "a" | "b" = "a"): Json | undefined {
+    if (picture === "b" && Object.hasOwn(this.situation.b, path)) return this.situation.b[path];
+    return at(picture === "b" ? this.stateB : this.state, path);
+  }
+
+  get width() {
+    return Number(this.get("settings.width") ?? 640);
+  }
+
+  get height() {
+    return Number(this.get("settings.height") ?? 480);
+  }
+
+  /** The channel that the canvas shows: the first one chosen besides colour. */
+  channel(state = this.state): string {
+    const found = CHANNELS.find((c) => at(state, `settings.channels.${c}`) === true);
+    return found === "surface" ? "id" : (found ?? "color");
+  }
+
+  /** Whether the page shows steps. */
+  get hasSteps() {
+    const { page, layout, step } = this.lab;
+    return this.lab.compare === "none" && (page === "visibility" || page === "pipeline" || layout !== "full" || step !== null);
+  }
+
+  get isBusy() {
+    return this.plane?.key !== this.planeKey() || (this.lab.compare !== "none" && this.planeB?.key !== this.keyB());
+  }
+
+  private key(state = this.state) {
+    return JSON.stringify(state);
+  }
+
+  private keyB() {
+    return this.key(this.stateB);
+  }
+
+  private planeKey() {
+    const { step, steps } = this.lab;
+    return step === null || !this.hasSteps ? this.key() : `${this.key()} ${step} ${steps}`;
+  }
+
+  // ---- Changing the situation ----
+
+  /** Sets fields of the state of a picture. */
+  set(fields: Record<string, Json>, picture: "a" | "b" = "a", history: History = "replace") {
+    const situation = { ...this.situation, b: { ...this.situation.b } };
+    for (const [path, value] of Object.entries(fields)) {
+      if (picture === "a") situation.state = put(situation.state, path, value);
+      else if (equal(at(situation.state, path), value)) delete situation.b[path];
+      else situation.b[path] = value;
+    }
+    this.go(situation, history);
+  }
+
+  setLab(lab: Partial<Lab>, history: History = "replace") {
+    this.go({ ...this.situation, lab: { ...this.situation.lab, ...lab } }, history);
+  }
+
+  /** Opens another scene: what belongs to the old one is left behind. */
+  openModels(models: string[]) {
+    const defaults = this.catalog!.defaults;
+    const fields: JsonObject = { models };
+    for (const path of ["viewpoint", "lights", "light-edits", "light-intensity", "materials", "objects", "ambient"]) {
+      fields[path] = defaults[path] ?? null;
+    }
+    const b = Object.fromEntries(Object.entries(this.situation.b).filter(([path]) => path.startsWith("settings.")));
+    const lab = { ...this.lab, step: null, pixel: null };
+    this.go({ state: { ...this.state, ...fields }, b, lab }, "push");
+  }
+
+  /** Replaces the state of picture A by a state file. */
+  openState(state: JsonObject, lab: Partial<Lab> = {}, history: History = "push") {
+    const whole = overlay(this.catalog!.defaults, state);
+    this.go({ state: whole, b: {}, lab: { ...this.lab, step: null, pixel: null, ...lab } }, history);
+  }
+
+  go(situation: Situation, history: History) {
+    const before = this.situation;
+    this.situation = situation;
+    if (!equal(before.state, situation.state)) {
+      this.prediction = null;
+      this.exerciseResult = null;
+      if (this.lab.step !== null && before.lab.step === situation.lab.step) this.pause();
+    }
+    if (before.lab.exercise !== situation.lab.exercise) {
+      this.exerciseResult = null;
+      this.hasHint = false;
+    }
+    if (history === "push") this.push = true;
+    this.effects();
+    this.writeAddress();
+    this.changed();
+  }
+
+  // ---- The address bar ----
+
+  async fragment(situation = this.situation): Promise<string> {
+    return pack(write(situation, this.catalog!.defaults));
+  }
+
+  private writeAddress() {
+    const wait = this.push ? 0 : Math.max(0, this.addressTime + ADDRESS_INTERVAL - performance.now());
+    const isPush = this.push;
+    const write = async () => {
+      const hash = `#${await this.fragment()}`;
+      if (hash === this.shownHash || !this.catalog) return;
+      this.addressTime = performance.now();
+      try {
+        if (isPush && this.push) history.pushState(null, "", hash);
+        else history.replaceState(null, "", hash);
+      } catch {
+        // A page inside a `srcdoc` frame has no address of its own.
+      }
+      this.shownHash = location.hash || hash;
+      this.push = false;
+    };
+    if (wait === 0) this.settled = this.settled.then(write);
+    else this.after("address", wait, () => void (this.settled = this.settled.then(write)));
+  }
+
+  /** Writes the address that is still due. */
+  async settle() {
+    await this.settled;
+    clearTimeout(this.timers.get("address"));
+    const hash = `#${await this.fragment()}`;
+    try {
+      history.replaceState(null, "", hash);
+    } catch {
+      // As above.
+    }
+    this.shownHash = location.hash || hash;
+  }
+
+  /** Whether the address bar shows what the page wrote. */
+  isOwnHash() {
+    return location.hash === this.shownHash;
+  }
+
+  /** Reads a fragment and opens what it says. */
+  async openFragment(fragment: string) {
+    const catalog = this.catalog;
+    if (!catalog) return;
+    const { form, problems: packing } = await unpack(fragment);
+    if ([...form.keys()].length === 0) this.startForm().forEach((value, key) => form.append(key, value));
+    else if (!form.has("models")) form.append("models", JSON.stringify(this.startModels));
+
+    const { situation, problems } = read(form, catalog.defaults);
+    const exercises = catalog.exercises.map((e) => e.id);
+    if (situation.lab.exercise !== null && !exercises.includes(situation.lab.exercise)) {
+      situation.lab.exercise = null;
+      problems.push({ key: "exercise", what: "bad-value" });
+    }
+    const told = [...packing, ...problems].map((p) => tell(p));
+    told.push(...(await this.dropRefused(situation, form)));
+    this.alert = told.length ? `${t("In the link")}: ${told.join("; ")}` : "";
+    setLanguage(situation.lab.lang ?? browserLanguage());
+
+    this.isPlaying = false;
+    this.cross = null;
+    this.sameCamera = !Object.keys(situation.b).some((p) => p.startsWith("viewpoint"));
+    this.go(situation, "replace");
+    if (situation.lab.play) this.play();
+    if (this.alert) this.emit("error");
+  }
+
+  start: { models?: string[]; files?: { name: string; url: string }[]; state?: JsonObject } = {};
+
+  private get startModels() {
+    return this.start.models?.length ? this.start.models : ["builtin:teapot"];
+  }
+
+  /** What an empty fragment stands for. */
+  private startForm(): URLSearchParams {
+    const defaults = this.catalog!.defaults;
+    const state = overlay(defaults, { models: this.startModels, ...this.start.state });
+    const size: JsonObject = this.start.state ? {} : { width: 640, height: 480 };
+    const settings = { ...(state["settings"] as JsonObject), ...size };
+    return write({ state: { ...state, settings }, b: {}, lab: LAB }, defaults);
+  }
+
+  /** Takes fields out of a situation until the engine accepts it; says which. */
+  private async dropRefused(situation: Situation, form: URLSearchParams): Promise<string[]> {
+    const told: string[] = [];
+    this.missing = missingModels(situation.state, this.files);
+    if (this.missing.length) return told;
+    const refusal = await this.refusalOf(situation.state);
+    if (refusal) {
+      // Try the fields one by one: each alone, then all together once more.
+      const fields = [...form.keys()].filter((key) => !Object.hasOwn(LAB, key) && !key.startsWith("b.") && key !== "z");
+      const others = new Set(fields);
+      const models = at(situation.state, "models") ?? [];
+      for (const key of new Set(fields)) {
+        const value = at(situation.state, key);
+        if (value === undefined) continue;
+        const alone = put(key === "models" ? this.catalog!.defaults : put(this.catalog!.defaults, "models", models), key, value);
+        const why = await this.refusalOf(alone);
+        if (!why) continue;
+        others.delete(key);
+        told.push(`\`${key}\`: ${why.message}`);
+        const usual = key === "models" ? this.startModels : at(this.catalog!.defaults, key);
+        situation.state = put(situation.state, key, usual ?? null);
+      }
+      const still = await this.refusalOf(situation.state);
+      if (still) told.push(still.message);
+    }
+    for (const path of Object.keys(situation.b)) {
+      const why = await this.refusalOf(put(situation.state, path, situation.b[path] ?? null));
+      if (!why) continue;
+      told.push(`\`b.${path}\`: ${why.message}`);
+      delete situation.b[path];
+    }
+    return told;
+  }
+
+  private async refusalOf(state: JsonObject): Promise<Refusal | null> {
+    try {
+      await this.engine.ask(`try ${Math.random()}`, { want: "complete", state, lang: this.language });
+      return null;
+    } catch (e) {
+      return e instanceof Refusal ? e : null;
+    }
+  }
+
+  get language(): Language {
+    return this.lab.lang ?? browserLanguage();
+  }
+
+  // ---- What follows from the situation ----
+
+  /** Asks the engine for what the page has to show and does not have yet. */
+  effects() {
+    if (!this.catalog) return;
+    setLanguage(this.language);
+    document.documentElement.lang = this.language;
+    this.missing = missingModels(this.state, this.files);
+    if (this.missing.length) return;
+    const state = this.state;
+    const key = this.key();
+    const { lab } = this;
+    const isStep = lab.step !== null && this.hasSteps;
+
+    if (!isStep) this.wantPicture();
+    if (lab.compare !== "none") this.wantPictureB();
+    this.want("complete", key, { want: "complete", state }, ({ ok }) => {
+      this.complete = { key, value: ok as unknown as Complete };
+    });
+
+    // Long work waits until nothing moves.
+    if (this.hasSteps) this.wantRecording();
+    if (lab.compare !== "none") this.wantAgreement();
+    this.after("rest", this.isDragging ? 400 : REST, () => this.wantRest());
+  }
+
+  private wantPicture() {
+    const key = this.key();
+    const seconds = this.picture?.value.seconds ?? 0;
+    const coarse = this.isDragging && seconds > COARSE_ABOVE;
+    const wanted = coarse ? `coarse ${key}` : key;
+    if (this.plane?.key === key) return;
+    const { state } = this;
+    this.want("picture", wanted, { want: "picture", state, channel: this.channel(), ...(coarse ? { coarse } : {}) }, ({ ok, planes }) => {
+      const picture = ok as unknown as Picture;
+      if (coarse) picture.seconds = seconds;
+      this.picture = { key: wanted, value: picture };
+      this.plane = { key: wanted, value: planeOf(picture, planes[0]) };
+      this.emit("ready");
+    });
+  }
+
+  private wantPictureB() {
+    const key = this.keyB();
+    const state = this.stateB;
+    if (this.planeB?.key === key) return;
+    this.want("pictureB", key, { want: "picture", state, channel: this.channel(state) }, ({ ok, planes }) => {
+      const picture = ok as unknown as Picture;
+      this.pictureB = { key, value: picture };
+      this.planeB = { key, value: planeOf(picture, planes[0]) };
+    });
+  }
+
+  private wantAgreement() {
+    const key = `${this.key()} ${this.keyB()}`;
+    const sizes = ["settings.width", "settings.height"].every((p) => equal(this.get(p), this.get(p, "b")));
+    if (!sizes || this.agreement?.key === key) return;
+    const request = { want: "compare", state: this.state, b: this.stateB };
+    this.after("agreement", REST, () =>
+      this.want("compare", key, request, ({ ok, planes }) => {
+        this.agreement = { key, value: ok["agreement"] as unknown as Agreement };
+        const size = { width: this.width, height: this.height };
+        if (planes[2]) this.planeDifference = { key, value: { bytes: planes[2], ...size } };
+      }, true),
+    );
+  }
+
+  private recordKey() {
+    const pixel = this.lab.steps === "pixel" ? ` ${this.lab.pixel?.join(",")}` : "";
+    return this.key() + pixel;
+  }
+
+  private wantRecording() {
+    const key = this.recordKey();
+    if (this.recording?.key === key) return this.wantStep();
+    if (this.wanted.get("record") === key) return;
+    this.engine.stopLong();
+    this.isRecording = true;
+    const request: JsonObject = { want: "record", state: this.state };
+    if (this.lab.steps === "pixel" && this.lab.pixel) request["pixel"] = this.lab.pixel;
+    this.after("record", this.isDragging ? 500 : REST, () => {
+      if (this.recordKey() !== key || !this.hasSteps) return;
+      this.want("record", key, request, ({ ok }) => {
+        this.recording = { key, value: ok as unknown as Recording };
+        this.isRecording = false;
+        const groups = this.recording.value.groups.map((g) => g.name);
+        const { steps, step } = this.lab;
+        if (steps !== "all" && steps !== "pixel" && !groups.includes(steps)) this.setLab({ steps: "all" });
+        else if (step !== null && step > this.stepCount) this.setLab({ step: this.stepCount || null });
+        else this.wantStep();
+      }, true);
+    });
+  }
+
+  /** How many steps there are to show. */
+  get stepCount(): number {
+    const recording = this.recording?.key === this.recordKey() ? this.recording.value : undefined;
+    if (!recording) return 0;
+    const { steps } = this.lab;
+    if (steps === "all") return recording.steps;
+    const group = recording.groups.find((g) => g.name === steps);
+    if (group) return group.count;
+    return this.step?.key.startsWith(this.recordKey()) ? this.step.value.total : recording.steps;
+  }
+
+  private stepRequest(number: number): JsonObject {
+    const { steps, pixel } = this.lab;
+    return { want: "step", state: this.state, number, show: steps, ...(pixel ? { pixel } : {}) };
+  }
+
+  private wantStep() {
+    const { step, steps } = this.lab;
+    // The finished picture has the last step's structure.
+    const number = step ?? this.stepCount;
+    if (!number || this.stepCount === 0) return;
+    const key = `${this.recordKey()} ${step ?? "last"} ${steps}`;
+    if (this.step?.key === key) return;
+    const planeKey = this.planeKey();
+    this.want("step", key, this.stepRequest(number), ({ ok, planes }) => {
+      this.step = { key, value: ok as unknown as Step };
+      if (step !== null && planes[0]) {
+        const { width, height } = this;
+        this.plane = { key: planeKey, value: { bytes: planes[0], width, height } };
+      }
+      if (step !== null) this.emit("step");
+      this.stepDone?.();
+    }, true);
+  }
+
+  private stepDone: (() => void) | undefined;
+
+  /** Asks for what single pages show. */
+  private wantRest() {
+    const { state } = this;
+    const { page, pixel, second, layout, compare } = this.lab;
+    // Sharpen what was drawn coarsely.
+    if (this.lab.step === null && this.plane?.key !== this.key() && !this.isDragging) this.wantPicture();
+    if (layout === "full" && page === "scene") this.answer("info", { want: "info", state });
+    if (layout === "full" && page === "pipeline") {
+      this.answer("stages", { want: "stages", state, ...(pixel ? { pixel } : {}) });
+    }
+    if (pixel && layout === "full") this.answer("explain", { want: "explain", state, pixel });
+    if (pixel && layout === "full" && compare !== "none") {
+      this.answer("explainB", { want: "explain", state: this.stateB, pixel });
+    }
+    if (second !== "off") this.answer("overview", { want: "overview", state, second: isObject(second) ? second : null });
+    if (page === "shading" && layout === "full") {
+      for (const shading of ["flat", "gouraud", "phong"]) {
+        const own = put(put(put(state, "settings.shading", shading), "settings.width", 240), "settings.height", 180);
+        this.answer(`shading ${shading}`, { want: "picture", state: own });
+      }
+    }
+  }
+
+  /** The answer to a request about the present state, if it is here. */
+  answerTo(name: string): Answer | undefined {
+    return this.answers.get(name)?.value;
+  }
+
+  /** Asks once for each different request. */
+  answer(name: string, request: JsonObject, isLong = false) {
+    const key = JSON.stringify(request);
+    if (this.answers.get(name)?.key === key) return;
+    this.want(name, key, request, (value) => void this.answers.set(name, { key, value }), isLong);
+  }
+
+  /** Sends a request unless the same was sent last; the newest of a name wins. */
+  private want(name: string, key: string, request: JsonObject, take: (answer: Answer) => void, isLong = false) {
+    if (this.wanted.get(name) === key) return;
+    this.wanted.set(name, key);
+    const asked = { ...request, lang: this.language };
+    const sent = isLong ? this.engine.askLong(name, asked) : this.engine.ask(name, asked);
+    sent.then(
+      (answer) => {
+        // An older answer is shown on the way, as while something is dragged.
+        const isNewest = this.wanted.get(name) === key;
+        if (!isNewest && name !== "picture" && name !== "pictureB") return;
+        if (isNewest) this.refused.delete(name);
+        take(answer);
+        this.changed();
+      },
+      (error: unknown) => {
+        if (this.wanted.get(name) === key) this.wanted.delete(name);
+        if (error instanceof Superseded) return;
+        if (name === "record" || name === "step") this.isRecording = false;
+        this.refuse(name, key, error);
+      },
+    );
+  }
+
+  /** Requests that were refused, lest they be asked again and again. */
+  private readonly refused = new Map<string, string>();
+
+  private refuse(name: string, key: string, error: unknown) {
+    this.refused.set(name, key);
+    this.wanted.set(name, key);
+    if (name === "picture" && this.plane) this.plane = { ...this.plane, key };
+    if (name === "pictureB" && this.planeB) this.planeB = { ...this.planeB, key };
+    this.answers.delete(name);
+    this.fail(wordsOf(error));
+  }
+
+  // ---- Dragging ----
+
+  beginDrag() {
+    this.isDragging = true;
+  }
+
+  endDrag() {
+    this.isDragging = false;
+    this.wanted.delete("picture");
+    this.effects();
+    this.changed();
+  }
+
+  // ---- Steps ----
+
+  goToStep(number: number | null) {
+    const count = this.stepCount;
+    const step = number === null ? null : Math.min(Math.max(1, number), Math.max(1, count));
+    this.prediction = null;
+    this.setLab({ step });
+  }
+
+  get stepNumber() {
+    return this.lab.step ?? this.stepCount;
+  }
+
+  async nextStep() {
+    if (this.stepNumber >= this.stepCount) return;
+    const next = this.stepNumber + 1;
+    if (!this.askFirst || this.isPlaying) return this.goToStep(next);
+    const { ok } = await this.engine.askLong("ahead", { ...this.stepRequest(next), lang: this.language });
+    const step = ok as unknown as Step;
+    const question = questionOf(step);
+    if (!question) return this.goToStep(next);
+    this.prediction = { next: step, ...question, chosen: null };
+    this.changed();
+  }
+
+  predict(choice: string) {
+    const { prediction } = this;
+    if (!prediction) return;
+    const isRight = choice === prediction.answer;
+    const words = `${t(isRight ? "Right" : "Wrong")}: ${prediction.next.words}`;
+    this.goToStep(this.stepNumber + 1);
+    this.prediction = { ...prediction, chosen: choice };
+    this.say(words);
+  }
+
+  play() {
+    if (!this.hasSteps || this.isPlaying) return;
+    if (matchMedia("(prefers-reduced-motion: reduce)").matches && this.lab.play) {
+      // Nothing plays by itself.
+      this.setLab({ play: false });
+      return;
+    }
+    this.isPlaying = true;
+    if (!this.lab.play) this.setLab({ play: true });
+    let last = performance.now();
+    const tick = () => {
+      if (!this.isPlaying) return;
+      const now = performance.now();
+      const passed = ((now - last) / 1000) * this.lab.speed;
+      const isReady = this.stepCount > 0 && !this.isRecording;
+      if (isReady && passed >= 1) {
+        const from = this.lab.step ?? 0;
+        const to = Math.min(from + Math.floor(passed), this.stepCount);
+        last = now;
+        this.stepDone = () => {
+          this.stepDone = undefined;
+          next();
+        };
+        this.goToStep(to);
+        if (to >= this.stepCount) return this.pause();
+        // An answer that never comes must not stop the clock.
+        this.after("play", 3000, next);
+        return;
+      }
+      if (!isReady) last = now;
+      this.after("play", 1000 / Math.min(this.lab.speed, 60) / 2, tick);
+    };
+    const next = () => this.after("play", Math.max(0, 1000 / this.lab.speed - (performance.now() - last)), tick);
+    // At the end, play begins again.
+    if (this.lab.step === null || this.lab.step >= this.stepCount) this.goToStep(1);
+    tick();
+    this.changed();
+  }
+
+  pause() {
+    clearTimeout(this.timers.get("play"));
+    this.isPlaying = false;
+    if (this.lab.play) this.setLab({ play: false });
+    this.changed();
+  }
+
+  // ---- Pixels ----
+
+  inspect(pixel: [number, number] | null) {
+    const inside = pixel && pixel.every((v, i) => Number.isInteger(v) && v >= 0 && v < (i === 0 ? this.width : this.height));
+    if (pixel && !inside) return;
+    this.cross = pixel;
+    this.setLab({ pixel });
+  }
+
+  // ---- Files ----
+
+  async openFiles(list: UserFile[]) {
+    // A state file replaces the state.
+    if (list.length === 1 && list[0]!.name.endsWith(".json")) {
+      const state = stateIn(list[0]!.bytes);
+      if (state) {
+        const refusal = await this.refusalOf(overlay(this.catalog!.defaults, state));
+        if (refusal) return this.fail(`${list[0]!.name}: ${refusal.message}`);
+        return this.openState(state);
+      }
+    }
+    for (const { name, bytes } of list) this.files.set(name, bytes);
+    const all = [...this.files].map(([name, bytes]) => ({ name, bytes }));
+    try {
+      const { ok } = await this.engine.give(all);
+      this.recording = undefined;
+      this.wanted.clear();
+      const told = (ok["files"] as JsonObject[]).filter((f) => list.some(({ name }) => name === f["name"]));
+      const names = told.filter((f) => f["model"] === true).map((f) => `file:${f["name"]}#${f["hash"]}`);
+      for (const f of told) if (f["model"] === true) this.models.add(String(f["name"]));
+      this.hashes = new Map((ok["files"] as JsonObject[]).map((f) => [String(f["name"]), String(f["hash"])]));
+      const lacking = told.flatMap((f) => (f["missing"] as string[] | undefined) ?? []);
+      if (lacking.length) this.fail(t("Files that the model names are missing: {0}", [...new Set(lacking)].join(", ")));
+      else this.alert = "";
+      this.takeFiles(names, list);
+    } catch (e) {
+      this.fail(wordsOf(e));
+    }
+  }
+
+  hashes = new Map<string, string>();
+
+  /** Shows models that came, or gives a link what it waited for. */
+  private takeFiles(names: string[], list: UserFile[]) {
+    const waiting = missingModels(this.state, new Map());
+    const known = (model: string) => names.includes(model) || this.hashes.get(nameOf(model)) === hashOf(model);
+    const other = waiting.filter((model) => list.some((f) => f.name === nameOf(model)) && !known(model));
+    const wasMissing = this.missing.length > 0;
+    if (wasMissing && other.length) {
+      this.fail(t("{0} is another file than the one that the link means", nameOf(other[0]!)));
+      for (const model of other) this.files.delete(nameOf(model));
+      this.effects();
+      return;
+    }
+    if (wasMissing && waiting.every(known)) {
+      this.alert = "";
+      this.effects();
+      this.changed();
+      return;
+    }
+    if (names.length) this.openModels(names);
+    else {
+      this.plane = undefined;
+      this.effects();
+      this.changed();
+    }
+  }
+
+  // ---- Dialogs ----
+
+  private readonly openers = new Map<DialogName, Element | null>();
+
+  openDialog(name: DialogName, opener: Element | null = document.activeElement) {
+    this.openers.set(name, opener);
+    this.dialogs = [...this.dialogs.filter((d) => d !== name), name];
+    this.changed();
+    setTimeout(() => {
+      const dialog = document.querySelector(`dialog[data-name="${name}"]`);
+      dialog?.querySelector<HTMLElement>("select, input, button")?.focus();
+    }, 60);
+  }
+
+  closeDialog(name: DialogName) {
+    this.dialogs = this.dialogs.filter((d) => d !== name);
+    this.changed();
+    const opener = this.openers.get(name);
+    const isThere = opener instanceof HTMLElement && opener.isConnected && opener.offsetParent !== null;
+    const back = isThere ? opener : document.querySelector<HTMLElement>('[role="application"]');
+    setTimeout(() => back?.focus(), 30);
+  }
+}
+
+/** A state with every field: `over` laid on the defaults. */
+export function overlay(defaults: JsonObject, over: JsonObject): JsonObject {
+  const merged = copy(defaults);
+  for (const [key, value] of Object.entries(over)) {
+    const base = merged[key];
+    const isVariant = isObject(value) && ["type", "form", "mode", "shape"].some((k) => Object.hasOwn(value, k));
+    merged[key] = isObject(base) && isObject(value) && !isVariant ? overlay(base, value) : copy(value);
+  }
+  return merged;
+}
+
+const nameOf = (model: string) => model.replace(/^file:/, "").replace(/#[0-9a-f]+$/, "");
+const hashOf = (model: string) => /#([0-9a-f]+)$/.exec(model)?.[1] ?? "";
+
+/** Models of the user that a state names and that are not here. */
+function missingModels(state: JsonObject, files: Map<string, Uint8Array>): string[] {
+  const models = (at(state, "models") as Json[] | undefined) ?? [];
+  if (!Array.isArray(models)) return [];
+  return models.filter((m): m is string => typeof m === "string" && m.startsWith("file:") && !files.has(nameOf(m)));
+}
+
+export const fileNameOf = nameOf;
+
+/** The state in a file, if it is a state file. */
+function stateIn(bytes: Uint8Array): JsonObject | null {
+  try {
+    const value = JSON.parse(new TextDecoder().decode(bytes)) as Json;
+    return isObject(value) && value["vitral"] === 1 ? value : null;
+  } catch {
+    return null;
+  }
+}
+
+function planeOf(picture: Picture, bytes: Uint8Array | undefined): Plane {
+  return { bytes: bytes ?? new Uint8Array(), width: picture.width, height: picture.height };
+}
+
+export function wordsOf(error: unknown): string {
+  if (error instanceof Refusal) return error.hint ? `${error.message} (${error.hint})` : error.message;
+  return error instanceof Error ? error.message : String(error);
+}
+
+function tell({ key, what }: Problem): string {
+  const words = { "unknown-field": "unknown field", "bad-value": "no value that can be", unreadable: "cannot be read" } as const;
+  const short = key.length > 60 ? `${key.slice(0, 60)}…` : key;
+  return `\`${short}\`: ${t(words[what])}`;
+}
+
+export function browserLanguage(): Language {
+  const found = navigator.languages.map((l) => l.slice(0, 2)).find((l) => ["en", "ro", "fr", "pt"].includes(l));
+  return (found as Language | undefined) ?? "en";
+}
+
+/** What can be asked before a step is shown. */
+function questionOf(step: Step): { options: string[]; answer: string } | null {
+  const { fields } = step;
+  const questions: Record<string, [string, string[]]> = {
+    window: ["verdict", ["empty", "one", "surrounded", "pixel", "cut"]],
+    compared: [
+      "test",
+      ["depth-extent", "x-extent", "y-extent", "behind-plane", "in-front-of-plane", "projection", "exchanged-behind", "exchanged-in-front", "coplanar", "overlap"],
+    ],
+    "tree-visit": ["viewer", ["front", "back"]],
+  };
+  const [field, options] = questions[String(fields["step"])] ?? [];
+  const answer = field ? fields[field] : undefined;
+  return options && typeof answer === "string" ? { options, answer } : null;
+}

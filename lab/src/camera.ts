@@ -1,0 +1,64 @@
+// Where points of the world lie in the picture, for the handles of lights; and Lab3D's eye angles.
+
+export type Vector = [number, number, number];
+
+export interface Eye {
+  position: Vector;
+  right: Vector;
+  up: Vector;
+  /** Against the direction of view. */
+  back: Vector;
+  /** Vertical angle of view, degrees. */
+  viewAngle: number;
+  /** Height of the picture in a parallel projection; `null` in perspective. */
+  parallelHeight: number | null;
+  /** Width over height. */
+  aspect: number;
+}
+
+const dot = (a: Vector, b: Vector) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const cross = (a: Vector, b: Vector): Vector => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+
+function unit(v: Vector): Vector {
+  const length = Math.hypot(...v) || 1;
+  return [v[0] / length, v[1] / length, v[2] / length];
+}
+
+/** The axes of a camera that looks from a point at another one. */
+export function axes(position: Vector, focalPoint: Vector, viewUp: Vector): { right: Vector; up: Vector; back: Vector } {
+  const back = unit(minus(position, focalPoint));
+  const right = unit(cross(viewUp, back));
+  return { right, up: cross(back, right), back };
+}
+
+/** The angles about x, then y, then z, degrees, that turn an eye which looks along -z. */
+export function eyeAngles({ right, up, back }: { right: Vector; up: Vector; back: Vector }): Vector {
+  const degrees = (radians: number) => (radians * 180) / Math.PI;
+  const x = Math.atan2(up[2], back[2]);
+  const y = Math.asin(Math.max(-1, Math.min(1, -right[2])));
+  const z = Math.atan2(right[1], right[0]);
+  return [degrees(x), degrees(y), degrees(z)];
+}
+
+/** Half the height of the picture at a depth in front of the eye. */
+const halfHeight = (eye: Eye, depth: number) =>
+  eye.parallelHeight === null ? depth * Math.tan((eye.viewAngle * Math.PI) / 360) : eye.parallelHeight / 2;
+
+/** Place in the picture, 0 to 1 from the top left, and depth; `null` behind the eye. */
+export function project(eye: Eye, point: Vector): { x: number; y: number; depth: number } | null {
+  const from = minus(point, eye.position);
+  const depth = -dot(from, eye.back);
+  if (depth <= 1e-9 && eye.parallelHeight === null) return null;
+  const half = halfHeight(eye, depth);
+  return { x: 0.5 + dot(from, eye.right) / (2 * half * eye.aspect), y: 0.5 - dot(from, eye.up) / (2 * half), depth };
+}
+
+/** The point at a place in the picture and a depth. */
+export function unproject(eye: Eye, x: number, y: number, depth: number): Vector {
+  const half = halfHeight(eye, depth);
+  const [u, v] = [(x - 0.5) * 2 * half * eye.aspect, (0.5 - y) * 2 * half];
+  const { position, right, up, back } = eye;
+  const along = (i: 0 | 1 | 2) => position[i] + u * right[i] + v * up[i] - depth * back[i];
+  return [along(0), along(1), along(2)];
+}

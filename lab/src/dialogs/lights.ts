@@ -1,0 +1,147 @@
+// `dialog "Lights"`, Lab3D's IDD_LIGHT.
+
+import { html, nothing, type TemplateResult } from "lit-html";
+import type { App } from "../app.ts";
+import { isObject, type JsonObject } from "../json.ts";
+import {
+  addLight,
+  attenuationOf,
+  KINDS,
+  placeOf,
+  removeLight,
+  resetLights,
+  setAttenuation,
+  setColor,
+  setField,
+  setKind,
+  setKindField,
+  setPlace,
+  setSwitch,
+} from "../lights.ts";
+import { button, check, combo, group, spin } from "../parts/fields.ts";
+import { t, type Key } from "../words.ts";
+import { dialog } from "./dialog.ts";
+
+const KIND_NAMES: Record<(typeof KINDS)[number], Key> = {
+  ambient: "Ambient",
+  directional: "Directional",
+  point: "Point",
+  spot: "Spot",
+  area: "Area",
+};
+
+export const CHANNELS = [
+  ["red", "Red"],
+  ["green", "Green"],
+  ["blue", "Blue"],
+] as const;
+
+export function lightsDialog(app: App): TemplateResult {
+  return dialog(app, "lights", t("Lights"), content(app));
+}
+
+function content(app: App): unknown {
+  const lights = app.complete?.value.lights ?? [];
+  const number = Math.min(app.lightNumber, Math.max(0, lights.length - 1));
+  const light = lights[number];
+  const options = lights.map((l, i) => {
+    const name = String(l["name"] ?? "");
+    return { value: `LIGHT${i}`, text: name && name !== `LIGHT${i}` ? `LIGHT${i} (${name})` : `LIGHT${i}` };
+  });
+  const choice = combo(t("Light Number"), `LIGHT${number}`, options, (v) => {
+    app.lightNumber = Number(v.slice(5));
+    app.draftPlace = null;
+    app.changed();
+  });
+  const buttons = html`<div class="buttons">
+    ${button(t("Add light"), () => addLight(app))} ${light ? button(t("Remove light"), () => removeLight(app, number)) : nothing}
+    ${button(t("Reset"), () => resetLights(app))}
+  </div>`;
+  return html`<div class="row-of-fields">${choice}</div>
+    ${light ? fields(app, light, number) : html`<p class="note">${t("No light shines.")}</p>`} ${buttons}`;
+}
+
+function fields(app: App, light: JsonObject, number: number): unknown {
+  const kind = isObject(light["kind"]) ? light["kind"] : {};
+  const type = String(kind["type"]);
+  const color = (name: Key, field: "ambient" | "diffuse" | "specular") => {
+    const values = (light[field] as number[] | undefined) ?? [0, 0, 0];
+    return group(
+      t(name),
+      CHANNELS.map(([channel, label], i) =>
+        spin(t(label), values[i] ?? 0, (v) => setColor(app, number, field, i, v), {
+          name: t(`${name} ${channel}` as Key),
+          min: 0,
+          step: 0.05,
+        }),
+      ),
+      "in-row",
+    );
+  };
+  const draft = app.draftPlace?.light === number ? app.draftPlace.place : null;
+  const place = draft ?? placeOf(light);
+  const axis = (i: number) => (v: number) => {
+    const to = [...(place ?? [0, 0, 0, 1])];
+    to[i] = v;
+    setPlace(app, number, to);
+  };
+  const c = attenuationOf(light);
+  const degrees = (v: unknown) => (typeof v === "number" ? (v * 180) / Math.PI : null);
+  const only = (isThere: boolean) => (isThere ? null : t("Only spot lights have it"));
+  const setCutoff = (v: number) => {
+    const cutoff = (v * Math.PI) / 180;
+    setKindField(app, number, { cutoff, inner: Math.min(cutoff, Number(kind["inner"] ?? cutoff)) });
+  };
+  const isSpot = type === "spot";
+  const direction = isSpot ? ((kind["direction"] as number[] | undefined) ?? [0, 0, -1]) : null;
+  return html`<div class="row-of-fields">
+      ${check(t("Enabled"), light["enabled"] !== false, (on) => setSwitch(app, number, "enabled", on))}
+      ${check(t("Casts shadow"), light["shadow"] !== false, (on) => setSwitch(app, number, "shadow", on))}
+      ${combo(t("Kind"), type, KINDS.map((k) => ({ value: k, text: t(KIND_NAMES[k]) })), (v) => setKind(app, number, v))}
+    </div>
+    ${color("Ambient", "ambient")} ${color("Diffuse", "diffuse")} ${color("Specular", "specular")}
+    ${place
+      ? group(
+          t("Position"),
+          ["x", "y", "z", "w"].map((name, i) => spin(name, place[i] ?? 0, axis(i), { name: t(`Position ${name}` as Key), step: 0.5 })),
+          "in-row",
+        )
+      : nothing}
+    ${draft ? html`<p class="note">${t("A direction needs a length: x, y or z other than 0.")}</p>` : nothing}
+    ${direction
+      ? group(
+          t("Direction"),
+          ["x", "y", "z"].map((name, i) =>
+            spin(
+              name,
+              direction[i] ?? 0,
+              (v) => {
+                const to = [...direction];
+                to[i] = v;
+                if (to.some((d) => d !== 0)) setKindField(app, number, { direction: to });
+              },
+              { name: t(`Direction ${name}` as Key), step: 0.1 },
+            ),
+          ),
+          "in-row",
+        )
+      : nothing}
+    <div class="in-row">
+      ${spin(t("Cutoff"), degrees(kind["cutoff"]), setCutoff, { min: 0.1, max: 90, step: 1, reason: only(isSpot) })}
+      ${spin(t("Exponent"), typeof kind["exponent"] === "number" ? kind["exponent"] : null, (v) => setKindField(app, number, { exponent: v }), {
+        min: 0,
+        step: 1,
+        reason: only(isSpot),
+      })}
+    </div>
+    ${group(
+      t("Attenuation"),
+      ["c1", "c2", "c3"].map((name, i) =>
+        spin(name, c[i] ?? 0, (v) => setAttenuation(app, number, i, v), { name: t(`Attenuation ${name}` as Key), min: 0, step: 0.05 }),
+      ),
+      "in-row",
+    )}
+    ${(isObject(light["attenuation"]) ? light["attenuation"]["form"] : "none") !== "none"
+      ? button(t("No attenuation"), () => setField(app, number, "attenuation", { form: "none" }, "none"))
+      : nothing}`;
+}

@@ -1,0 +1,44 @@
+// Single keys. They act while the picture, the steps or the structure has the focus.
+
+import type { App } from "./app.ts";
+import { setComparison } from "./views/compare.ts";
+import { resetView } from "./views/camera.ts";
+
+const PLACES = '[role="application"], .steps, .structure';
+
+/** Fields and buttons keep the keys that they use themselves. */
+const uses = (element: Element, key: string) =>
+  element.matches("select, textarea, input:not([type=range]):not([type=checkbox])") ||
+  (element.matches("button, summary, input[type=checkbox], [role=treeitem]") && (key === " " || key === "Enter")) ||
+  (element.matches("input[type=range], [role=treeitem]") && (key === "Home" || key === "End"));
+
+export function listenToKeys(app: App) {
+  addEventListener("keydown", (e) => {
+    const element = e.target instanceof Element ? e.target : document.body;
+    if (!app.hasKeys || e.defaultPrevented || e.ctrlKey || e.metaKey || e.altKey) return;
+    if (!element.closest(PLACES) || uses(element, e.key)) return;
+    const act = actions(app)[e.key];
+    if (!act) return;
+    e.preventDefault();
+    act();
+  });
+}
+
+function actions(app: App): Record<string, () => void> {
+  const isFull = app.lab.layout === "full";
+  const steps: Record<string, () => void> = {
+    " ": () => (app.isPlaying ? app.pause() : app.play()),
+    ",": () => app.goToStep(app.stepNumber - 1),
+    ".": () => void app.nextStep(),
+    Home: () => app.goToStep(1),
+    End: () => app.goToStep(app.stepCount),
+  };
+  const others: Record<string, () => void> = {
+    c: () => setComparison(app, app.lab.compare === "none" ? "side" : "none"),
+    p: () => app.inspect(app.cross ?? app.lab.pixel ?? [Math.floor(app.width / 2), Math.floor(app.height / 2)]),
+    l: () => app.openDialog("lights"),
+    "?": () => app.openDialog("keyboard"),
+  };
+  const stepping = app.hasSteps && app.stepCount > 0 ? steps : {};
+  return { ...stepping, ...(isFull ? others : {}), r: () => resetView(app) };
+}

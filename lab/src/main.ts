@@ -1,0 +1,70 @@
+// Starts the page.
+
+import { render } from "lit-html";
+import { App, type Catalog } from "./app.ts";
+import { acceptDrops, startFiles } from "./files.ts";
+import { talkToParent } from "./frame.ts";
+import { listenToKeys } from "./keys.ts";
+import { page } from "./page.ts";
+import { setLanguage, t } from "./words.ts";
+import { browserLanguage } from "./app.ts";
+
+/** What the browser has to have. */
+function lacking(): string[] {
+  // A module with one function that uses a vector of 128 bits.
+  const simd = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11);
+  const missing: string[] = [];
+  if (typeof WebAssembly !== "object") missing.push("WebAssembly");
+  else if (!WebAssembly.validate(simd)) missing.push("WebAssembly SIMD");
+  if (typeof MathMLElement === "undefined") missing.push("MathML");
+  if (typeof DecompressionStream === "undefined") missing.push("DecompressionStream");
+  return missing;
+}
+
+async function start() {
+  const root = document.getElementById("lab")!;
+  const hash = new URLSearchParams(location.hash.slice(1)).get("lang");
+  setLanguage(hash === "ro" || hash === "fr" || hash === "pt" || hash === "en" ? hash : browserLanguage());
+  const app = new App();
+  app.onRender(() => render(page(app), root));
+  app.changed();
+  const missing = lacking();
+  if (missing.length) return app.fail(t("This browser lacks {0}", missing.join(", ")));
+
+  // Open what the page was made for.
+  const { ok } = await app.engine.ask("catalog", { want: "catalog" });
+  app.catalog = ok as unknown as Catalog;
+  const given = document.getElementById("lab-start")?.textContent;
+  if (given) app.start = JSON.parse(given) as typeof app.start;
+  try {
+    const files = await startFiles(app.start.files ?? []);
+    if (files.length) await takeStartFiles(app, files);
+  } catch (e) {
+    app.fail(e instanceof Error ? e.message : String(e));
+  }
+  listenToKeys(app);
+  acceptDrops(app);
+  talkToParent(app);
+  await app.openFragment(location.hash.slice(1));
+  const reread = () => {
+    if (app.isOwnHash()) return;
+    void app.openFragment(location.hash.slice(1));
+  };
+  addEventListener("hashchange", reread);
+  addEventListener("popstate", reread);
+}
+
+/** Names the models that were served by the content of their files. */
+async function takeStartFiles(app: App, files: { name: string; bytes: Uint8Array }[]) {
+  for (const { name, bytes } of files) app.files.set(name, bytes);
+  const { ok } = await app.engine.give(files);
+  const hashes = new Map((ok["files"] as { name: string; hash: string; model: boolean }[]).map((f) => [f.name, f]));
+  app.hashes = new Map([...hashes].map(([name, f]) => [name, f.hash]));
+  for (const [name, f] of hashes) if (f.model) app.models.add(name);
+  app.start.models = (app.start.models ?? []).map((m) => {
+    const found = m.startsWith("file:") ? hashes.get(m.slice(5)) : undefined;
+    return found ? `${m}#${found.hash}` : m;
+  });
+}
+
+void start();

@@ -1,0 +1,175 @@
+// The whole page: what stands where.
+
+import { html, nothing, type TemplateResult } from "lit-html";
+import { ref } from "lit-html/directives/ref.js";
+import { fileNameOf, type App, type DialogName } from "./app.ts";
+import { aboutDialog, cameraDialog, keyboardDialog, languageDialog } from "./dialogs/others.ts";
+import { lightsDialog } from "./dialogs/lights.ts";
+import { materialsDialog } from "./dialogs/materials.ts";
+import { pickFiles } from "./files.ts";
+import { formText, PAGES, write, type Page } from "./link.ts";
+import { button } from "./parts/fields.ts";
+import { t, type Key } from "./words.ts";
+import { cameraToolbar } from "./views/camera.ts";
+import { compareChoice, comparison, comparisonControls, comparisonRegions } from "./views/compare.ts";
+import { counters } from "./views/counters.ts";
+import { exerciseRegion, exercises } from "./views/exercise.ts";
+import { formulaRegion } from "./views/formula.ts";
+import { menubar } from "./views/menus.ts";
+import { compareAll, illumination, pipeline, scene, shading } from "./views/pages.ts";
+import { dragChoice, legend, show, stage } from "./views/picture.ts";
+import { pixelRegion } from "./views/pixel.ts";
+import { settings } from "./views/settings.ts";
+import { stepsToolbar } from "./views/steps.ts";
+import { structure } from "./views/structure.ts";
+
+const PAGE_NAMES: Record<Page, Key> = {
+  scene: "Scene",
+  pipeline: "Pipeline",
+  visibility: "Visible surfaces",
+  illumination: "Illumination",
+  shading: "Shading",
+  exercises: "Exercises",
+};
+
+const DIALOGS: Record<DialogName, (app: App) => TemplateResult> = {
+  lights: lightsDialog,
+  materials: materialsDialog,
+  camera: cameraDialog,
+  keyboard: keyboardDialog,
+  language: languageDialog,
+  about: aboutDialog,
+};
+
+/** A link to the same situation with another part of the Lab's own choices. */
+function linkTo(app: App, lab: Partial<App["lab"]>): string {
+  const situation = { ...app.situation, lab: { ...app.lab, ...lab } };
+  return `#${formText(write(situation, app.catalog!.defaults))}`;
+}
+
+function topics(app: App): TemplateResult {
+  const link = (page: Page) => {
+    const go = (e: MouseEvent) => {
+      if (e.ctrlKey || e.metaKey || e.shiftKey) return;
+      e.preventDefault();
+      app.setLab({ page }, "push");
+    };
+    const lab = { page };
+    return html`<li><a href=${linkTo(app, lab)} aria-current=${page === app.lab.page ? "page" : nothing} @click=${go}>${t(PAGE_NAMES[page])}</a></li>`;
+  };
+  return html`<nav aria-label=${t("Topics")}>
+    <ul>
+      ${PAGES.map(link)}
+    </ul>
+  </nav>`;
+}
+
+/** Pictures, the camera, the steps. */
+function pictures(app: App): TemplateResult {
+  const isAlone = app.lab.compare === "none";
+  const isFull = app.lab.layout === "full";
+  const overview = app.answers.get("overview");
+  return html`<div class="pictures">
+    ${isAlone
+      ? stage(app, { name: t("Picture"), picture: "a", plane: app.plane, isBusy: app.isBusy })
+      : html`${comparison(app)} ${comparisonControls(app)}`}
+    ${app.hasSteps ? html`<div class="legend-line">${legend(app)}</div>${stepsToolbar(app)}` : nothing}
+    <div class="bar">
+      ${cameraToolbar(app)}
+      ${isFull ? html`${dragChoice(app)} ${compareChoice(app)} ${button(t("Open model"), () => pickFiles(app))}` : nothing}
+    </div>
+    ${app.lab.second !== "off" && overview
+      ? html`<div class="second" role="application" aria-label=${t("Second view")} tabindex="0">
+          <canvas
+            role="img"
+            aria-label=${t("The scene from outside")}
+            ${ref((e) =>
+              show(e as HTMLCanvasElement | undefined, {
+                key: overview.key,
+                value: {
+                  bytes: overview.value.planes[0] ?? new Uint8Array(),
+                  width: Number(overview.value.ok["width"]),
+                  height: Number(overview.value.ok["height"]),
+                },
+              }),
+            )}
+          ></canvas>
+        </div>`
+      : nothing}
+  </div>`;
+}
+
+/** What the present page shows beside picture and settings. */
+function regions(app: App): unknown {
+  const { page } = app.lab;
+  const isAlone = app.lab.compare === "none";
+  const pages: Record<Page, () => unknown> = {
+    scene: () => html`${pixelRegion(app)} ${app.lab.pixel ? formulaRegion(app) : nothing} ${scene(app)} ${counters(app)}`,
+    pipeline: () => html`${pipeline(app)} ${pixelRegion(app)} ${counters(app)}`,
+    visibility: () => html`${pixelRegion(app)} ${compareAll(app)} ${counters(app)}`,
+    illumination: () => html`${formulaRegion(app)} ${pixelRegion(app)} ${illumination(app)}`,
+    shading: () => html`${shading(app)} ${pixelRegion(app)} ${counters(app)}`,
+    exercises: () => html`${exercises(app)} ${pixelRegion(app)}`,
+  };
+  return html`${exerciseRegion(app)} ${isAlone ? nothing : comparisonRegions(app)} ${app.hasSteps ? structure(app) : nothing} ${pages[page]()}`;
+}
+
+function messages(app: App): TemplateResult {
+  const needed = app.missing.map(fileNameOf).join(", ");
+  const dismiss = () => {
+    app.alert = "";
+    app.changed();
+  };
+  return html`<div class="messages">
+      <div role="alert" class=${app.alert ? "alert" : ""}>${app.alert}</div>
+      ${app.alert ? html`<button type="button" class="dismiss" @click=${dismiss}>${t("Dismiss")}</button>` : nothing}
+    </div>
+    ${app.missing.length
+      ? html`<p class="needed">
+          ${t("This link needs your file {0}: drop it here, or open it.", needed)} ${button(t("Open model"), () => pickFiles(app))}
+        </p>`
+      : nothing}`;
+}
+
+const status = (app: App) => html`<div role="status" aria-label=${t("Messages")} class="status">${app.message}</div>`;
+
+export function page(app: App): TemplateResult {
+  if (!app.catalog) {
+    return html`<main class="waiting">
+      <h1>vitral Lab</h1>
+      <p>${app.alert ? nothing : t("The engine is starting…")}</p>
+      <div role="alert" class=${app.alert ? "alert" : ""}>${app.alert}</div>
+    </main>`;
+  }
+  const { layout } = app.lab;
+  if (layout !== "full") {
+    const open = (e: MouseEvent) => {
+      if (e.ctrlKey || e.metaKey || e.shiftKey || parent !== window) return;
+      e.preventDefault();
+      app.setLab({ layout: "full" }, "push");
+    };
+    return html`<div class=${`lab ${layout}`}>
+      <header class="small">
+        <h1>vitral Lab</h1>
+        <a href=${linkTo(app, { layout: "full" })} target=${parent !== window ? "_blank" : nothing} @click=${open}>${t("Open in the Lab")}</a>
+      </header>
+      ${messages(app)}
+      <main>${pictures(app)}</main>
+      ${layout === "figure" && app.hasSteps ? html`<div class="regions">${structure(app)}</div>` : nothing} ${status(app)}
+      ${app.dialogs.map((d) => DIALOGS[d](app))}
+    </div>`;
+  }
+  return html`<div class="lab full">
+    <header>
+      <h1>vitral Lab</h1>
+      ${menubar(app)}
+    </header>
+    ${topics(app)} ${messages(app)}
+    <div class="columns">
+      <main>${pictures(app)}</main>
+      ${settings(app)}
+      <div class="regions">${regions(app)}</div>
+    </div>
+    ${status(app)} ${app.dialogs.map((d) => DIALOGS[d](app))}
+  </div>`;
+}

@@ -1,0 +1,153 @@
+// Form fields with a visible label: combo boxes, numbers, check boxes, groups.
+
+import { html, nothing, type TemplateResult } from "lit-html";
+import { live } from "lit-html/directives/live.js";
+import { ref } from "lit-html/directives/ref.js";
+
+export interface Option {
+  value: string;
+  text: string;
+  title?: string;
+  /** Why it cannot be chosen now. */
+  reason?: string | null;
+}
+
+let count = 0;
+const ids = new Map<string, string>();
+
+/** A stable id for an element that another one names. */
+export function idOf(name: string): string {
+  let id = ids.get(name);
+  if (!id) ids.set(name, (id = `f${(count += 1)}`));
+  return id;
+}
+
+/** The reason why a field is disabled, as its description. */
+function reasonOf(key: string, reason: string | null | undefined) {
+  if (!reason) return { id: nothing, template: nothing } as const;
+  const id = idOf(`reason ${key}`);
+  return { id, template: html`<span class="hidden" id=${id}>${reason}</span>` } as const;
+}
+
+export function combo(
+  label: string,
+  value: string,
+  options: Option[],
+  change: (value: string) => void,
+  more: { reason?: string | null; key?: string } = {},
+): TemplateResult {
+  const reason = reasonOf(more.key ?? label, more.reason);
+  const title = more.reason ?? options.find((o) => o.value === value)?.title ?? "";
+  return html`<label class="field" title=${title}>
+    <span class="label">${label}</span>
+    <select
+      ?disabled=${Boolean(more.reason)}
+      aria-describedby=${reason.id}
+      @change=${(e: Event) => change((e.target as HTMLSelectElement).value)}
+    >
+      ${options.map(
+        (o) =>
+          html`<option value=${o.value} .selected=${live(o.value === value)} ?disabled=${Boolean(o.reason)} title=${o.reason ?? o.title ?? ""}>
+            ${o.text}
+          </option>`,
+      )}
+    </select>
+    ${reason.template}
+  </label>`;
+}
+
+/** A number as it is typed: short, with a decimal point. */
+export const typed = (value: number) => String(Number(value.toPrecision(7)));
+
+export interface NumberRange {
+  min?: number;
+  max?: number;
+  step?: number;
+  /** The accessible name, where it says more than the label. */
+  name?: string;
+  reason?: string | null;
+  key?: string;
+}
+
+export function spin(label: string, value: number | null, change: (value: number) => void, range: NumberRange = {}): TemplateResult {
+  const text = value === null || !Number.isFinite(value) ? "" : typed(value);
+  const reason = reasonOf(range.key ?? range.name ?? label, range.reason);
+  const { min = -Infinity, max = Infinity } = range;
+  const take = (e: Event) => {
+    const { value, valueAsNumber } = e.target as HTMLInputElement;
+    if (value !== "" && valueAsNumber >= min && valueAsNumber <= max) change(valueAsNumber);
+  };
+  // What is being typed is not overwritten.
+  const show = (e: Element | undefined) => {
+    const input = e as HTMLInputElement | undefined;
+    if (input && document.activeElement !== input && input.value !== text) input.value = text;
+  };
+  const restore = (e: Event) => {
+    const input = e.target as HTMLInputElement;
+    if (input.value === "" || Number.isNaN(input.valueAsNumber)) input.value = text;
+  };
+  return html`<label class="field number">
+    <span class="label">${label}</span>
+    <input
+      type="number"
+      aria-label=${range.name ?? nothing}
+      min=${range.min ?? nothing}
+      max=${range.max ?? nothing}
+      step=${range.step ?? "any"}
+      ?disabled=${Boolean(range.reason)}
+      aria-describedby=${reason.id}
+      @input=${take}
+      @blur=${restore}
+      ${ref(show)}
+    />
+    ${reason.template}
+  </label>`;
+}
+
+export function check(
+  label: string,
+  isChecked: boolean,
+  change: (value: boolean) => void,
+  more: { reason?: string | null; key?: string; title?: string } = {},
+): TemplateResult {
+  const reason = reasonOf(more.key ?? label, more.reason);
+  return html`<label class="check" title=${more.reason ?? more.title ?? ""}>
+    <input
+      type="checkbox"
+      .checked=${live(isChecked)}
+      ?disabled=${Boolean(more.reason)}
+      aria-describedby=${reason.id}
+      @change=${(e: Event) => change((e.target as HTMLInputElement).checked)}
+    />
+    <span>${label}</span>${reason.template}
+  </label>`;
+}
+
+export function radio(label: string, name: string, isChecked: boolean, choose: () => void): TemplateResult {
+  return html`<label class="check">
+    <input type="radio" name=${name} .checked=${live(isChecked)} @change=${choose} />
+    <span>${label}</span>
+  </label>`;
+}
+
+export function group(legend: string, content: unknown, style = ""): TemplateResult {
+  return html`<fieldset class=${style}>
+    <legend>${legend}</legend>
+    <div class="inside">${content}</div>
+  </fieldset>`;
+}
+
+export function button(label: string, action: (e: Event) => void, more: { icon?: unknown; disabled?: boolean; pressed?: boolean; style?: string } = {}) {
+  const isIcon = more.icon !== undefined;
+  return html`<button
+    type="button"
+    class=${more.style ?? (isIcon ? "icon" : "")}
+    aria-label=${isIcon ? label : nothing}
+    title=${isIcon ? label : nothing}
+    aria-pressed=${more.pressed === undefined ? nothing : String(more.pressed)}
+    ?disabled=${more.disabled ?? false}
+    @click=${action}
+  >
+    ${isIcon ? more.icon : label}
+  </button>`;
+}

@@ -1,0 +1,83 @@
+// Tables. Long ones show a window of rows and tell how many there are.
+
+import { html, nothing, type TemplateResult } from "lit-html";
+import { css } from "./css.ts";
+import { number } from "./numbers.ts";
+
+export type Cell = string | number | boolean | null | undefined | TemplateResult;
+
+export interface Table {
+  name: string;
+  columns: string[];
+  rows: Cell[][];
+  /** The row that is in force. */
+  current?: number | undefined;
+  choose?: ((row: number) => void) | undefined;
+  /** Whether the first cell of a row is its head. */
+  hasHeads?: boolean;
+  caption?: boolean;
+}
+
+/** Tables of more rows show a window. */
+const MOST_ROWS = 200;
+
+/** Pixels a row of a windowed table is high: set in the style sheet, too. */
+const ROW = 26;
+
+const VISIBLE_ROWS = 24;
+
+/** Where long tables are scrolled to. */
+const offsets = new Map<string, number>();
+
+const cell = (value: Cell) => {
+  if (value === null || value === undefined) return "–";
+  if (typeof value === "number") return number(value);
+  if (typeof value === "boolean") return value ? "✓" : "–";
+  return value;
+};
+
+export function table(t: Table, changed: () => void = () => {}): TemplateResult {
+  const isLong = t.rows.length > MOST_ROWS;
+  const first = isLong ? Math.max(0, Math.min((offsets.get(t.name) ?? 0) - 20, t.rows.length - 80)) : 0;
+  const rows = isLong ? t.rows.slice(first, first + 80) : t.rows;
+  const row = (cells: Cell[], i: number) => {
+    const index = first + i;
+    const isCurrent = index === t.current;
+    const [head, ...rest] = cells;
+    const isNumber = (v: Cell) => (typeof v === "number" ? "n" : "");
+    const choose = t.choose;
+    const headCell = choose ? html`<button type="button" class="row" @click=${() => choose(index)}>${cell(head)}</button>` : cell(head);
+    return html`<tr class=${isCurrent ? "current" : ""} aria-rowindex=${isLong ? index + 2 : nothing} aria-current=${isCurrent ? "true" : nothing}>
+      ${t.hasHeads === false ? html`<td class=${isNumber(head)}>${headCell}</td>` : html`<th scope="row" class=${isNumber(head)}>${headCell}</th>`}
+      ${rest.map((c) => html`<td class=${isNumber(c)}>${cell(c)}</td>`)}
+    </tr>`;
+  };
+  const content = html`<table
+    class=${isLong ? "long" : ""}
+    aria-label=${t.caption ? nothing : t.name}
+    aria-rowcount=${isLong ? t.rows.length + 1 : nothing}
+    .style=${css(isLong ? { transform: `translateY(${first * ROW}px)` } : {})}
+  >
+    ${t.caption ? html`<caption>${t.name}</caption>` : nothing}
+    <thead>
+      <tr aria-rowindex=${isLong ? 1 : nothing}>
+        ${t.columns.map((c) => html`<th scope="col">${c}</th>`)}
+      </tr>
+    </thead>
+    <tbody>
+      ${rows.map(row)}
+    </tbody>
+  </table>`;
+  if (!isLong) {
+    return html`<div class="scroll" tabindex="0" role="group" aria-label=${t.name}>${content}</div>`;
+  }
+  const scrolled = (e: Event) => {
+    const at = Math.floor((e.target as HTMLElement).scrollTop / ROW);
+    const before = offsets.get(t.name) ?? 0;
+    offsets.set(t.name, at);
+    if (Math.abs(at - before) > 10 || at - 20 < first || at + VISIBLE_ROWS > first + 80) changed();
+  };
+  return html`<div class="scroll windowed" tabindex="0" role="group" aria-label=${t.name} @scroll=${scrolled}>
+    <div .style=${css({ height: `${(t.rows.length + 1) * ROW}px` })}>${content}</div>
+  </div>`;
+}

@@ -1,0 +1,1 @@
+export const TABLE: Record<string, readonly [string, string, string]> = {};

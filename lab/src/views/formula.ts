@@ -1,0 +1,63 @@
+// `region "Formula"`: the formula in force, the same with the pixel's numbers, and its values.
+
+import { html, nothing, type TemplateResult } from "lit-html";
+import type { App } from "../app.ts";
+import { at, isObject, type JsonObject } from "../json.ts";
+import { spin } from "../parts/fields.ts";
+import { formula } from "../parts/markup.ts";
+import { valueText } from "../parts/numbers.ts";
+import { table, type Cell } from "../parts/table.ts";
+import { t, translated } from "../words.ts";
+import { setMaterial } from "../materials.ts";
+import { explanationOf, objects } from "./pixel.ts";
+
+/** Where a value can be changed: a field of the state, a light, the material. */
+function place(app: App, row: JsonObject): Cell {
+  const setting = row["setting"];
+  if (typeof setting !== "string") return "";
+  if (setting.startsWith("lights.")) {
+    const number = Number(setting.slice(7));
+    const open = () => {
+      app.lightNumber = number;
+      app.openDialog("lights");
+    };
+    return html`<button type="button" class="link" @click=${open}>${t("Lights…")}</button>`;
+  }
+  if (setting === "materials.shininess") {
+    const value = Number(row["value"]);
+    const material = materialOfPixel(app);
+    if (material) return spin("n", value, (v) => setMaterial(app, material, "shininess", String(v)), { name: t("Shininess"), min: 0, max: 1000 });
+  }
+  if (setting.startsWith("materials.")) {
+    return html`<button type="button" class="link" @click=${() => app.openDialog("materials")}>${t("Materials…")}</button>`;
+  }
+  const value = at(app.state, setting);
+  if (typeof value === "number") return spin(setting, value, (v) => app.set({ [setting]: v }));
+  return "";
+}
+
+function materialOfPixel(app: App): string | null {
+  const seen = objects(explanationOf(app)?.["candidates"]).find((c) => c["stage"] === "visible");
+  return seen && typeof seen["material"] === "string" ? seen["material"] : null;
+}
+
+export function formulaRegion(app: App): TemplateResult {
+  const found = explanationOf(app) ? app.answerTo("explain")?.ok["formula"] : null;
+  const f = isObject(found ?? undefined) ? (found as JsonObject) : null;
+  const [mathml, numbers] = [f?.["mathml"], f?.["numbers"]];
+  const rows = objects(f?.["values"]).map((row): Cell[] => [
+    String(row["symbol"]),
+    valueText(row["value"]),
+    translated(String(row["meaning"])),
+    place(app, row),
+  ]);
+  return html`<section class="region formula" aria-labelledby="formula-title">
+    <h2 id="formula-title">${t("Formula")}</h2>
+    ${f
+      ? html`<div class="math scroll" tabindex="0" role="group" aria-label=${t("Formula")}>
+            ${typeof mathml === "string" ? formula(mathml, "letters") : nothing} ${typeof numbers === "string" ? formula(numbers, "numbers") : nothing}
+          </div>
+          ${table({ name: t("Values"), columns: [t("symbol"), t("value"), t("meaning"), t("set in")], rows, caption: true })}`
+      : html`<p class="note">${t("Inspect a pixel to see its formula with numbers.")}</p>`}
+  </section>`;
+}

@@ -1,0 +1,238 @@
+// What single pages show besides: Scene, Pipeline, Visible surfaces, Illumination, Shading.
+
+import { html, nothing, type TemplateResult } from "lit-html";
+import { ref } from "lit-html/directives/ref.js";
+import { type App, type Picture } from "../app.ts";
+import { isObject, put, type Json, type JsonObject } from "../json.ts";
+import { attenuationOf } from "../lights.ts";
+import { button, radio, spin } from "../parts/fields.ts";
+import { drawing } from "../parts/markup.ts";
+import { valueText } from "../parts/numbers.ts";
+import { table, type Cell } from "../parts/table.ts";
+import { stagePart, t, translated } from "../words.ts";
+import { show } from "./picture.ts";
+import { explanationOf, increments, objects } from "./pixel.ts";
+
+// ---- Scene ----
+
+export function scene(app: App): TemplateResult {
+  const answer = app.answerTo("info")?.ok;
+  const rows = objects(answer?.["rows"]).map((r): Cell[] => [translated(String(r["name"])), r["value"] as Cell]);
+  const warnings = [...new Set([...((answer?.["warnings"] as string[] | undefined) ?? []), ...(app.picture?.value.warnings ?? [])])];
+  return html`<section class="region" aria-labelledby="scene-title">
+    <h2 id="scene-title">${t("Scene")}</h2>
+    ${table({ name: t("Scene"), columns: [t("name"), t("value")], rows })}
+    ${warnings.length ? html`<ul class="warnings">${warnings.map((w) => html`<li>${w}</li>`)}</ul>` : nothing}
+  </section>`;
+}
+
+// ---- Pipeline ----
+
+export function pipeline(app: App): TemplateResult {
+  const answer = app.answerTo("stages")?.ok;
+  const rows = objects(answer?.["stages"]).map((s): Cell[] => [translated(String(s["stage"])), stagePart(String(s["in"])), stagePart(String(s["out"]))]);
+  return html`<section class="region" aria-labelledby="stages-title">
+    <h2 id="stages-title">${t("Stages")}</h2>
+    ${table({ name: t("Stages"), columns: [t("stage"), t("in"), t("out")], rows })} ${vertices(app, answer)}
+  </section>`;
+}
+
+/** The corners of the facet at the pixel, in each space. */
+function vertices(app: App, answer: JsonObject | undefined): unknown {
+  if (!app.lab.pixel) return html`<p class="note">${t("Inspect a pixel to see the vertices of its facet in every space.")}</p>`;
+  const spaces = isObject(answer?.["spaces"]) ? (answer["spaces"] as JsonObject) : null;
+  if (!spaces || !Object.keys(spaces).length) return nothing;
+  const rows: Cell[][] = [];
+  for (const space of ["model", "world", "view", "clip", "ndc", "screen"]) {
+    objects(spaces[space]).forEach((vertex, i) => {
+      const value = (k: string) => (typeof vertex[k] === "number" ? Number((vertex[k] as number).toPrecision(5)) : null);
+      rows.push([t(space as "world"), i, ...["x", "y", "z", "w"].map(value)]);
+    });
+  }
+  return table({ name: t("Vertices"), columns: [t("space"), t("corner"), "x", "y", "z", "w"], rows, caption: true });
+}
+
+// ---- Visible surfaces ----
+
+export function compareAll(app: App): TemplateResult {
+  const key = JSON.stringify({ want: "compare-all", state: app.state });
+  const answer = app.answers.get("compare-all");
+  const rows = answer?.key === key ? objects(answer.value.ok["rows"]) : [];
+  const ask = () => {
+    app.answer("compare-all", { want: "compare-all", state: app.state }, true);
+    app.say(t("Comparing all algorithms…"));
+  };
+  const counters = (v: Json | undefined) =>
+    isObject(v)
+      ? Object.entries(v)
+          .filter(([, n]) => typeof n === "number")
+          .map(([k, n]) => `${k} ${valueText(n)}`)
+          .join(", ")
+      : "–";
+  return html`<section class="region" aria-labelledby="all-title">
+    <h2 id="all-title">${t("All algorithms")}</h2>
+    ${rows.length
+      ? table({
+          name: t("All algorithms"),
+          columns: [t("algorithm"), t("milliseconds"), t("memory, kB"), t("pixels that differ"), t("counters")],
+          rows: rows.map((r): Cell[] => [
+            String(r["algorithm"]),
+            typeof r["seconds"] === "number" ? Math.round(r["seconds"] * 10000) / 10 : null,
+            typeof r["memory"] === "number" ? Math.round(r["memory"] / 1024) : null,
+            (r["differ"] as number | undefined) ?? null,
+            r["limit"] ? String(r["limit"]) : counters(r["counters"]),
+          ]),
+        })
+      : html`<p class="note">${t("Draws this scene with every algorithm and compares time, memory and pictures.")}</p>`}
+    ${button(t("Compare all"), ask)}
+  </section>`;
+}
+
+// ---- Illumination ----
+
+/** The exponent whose curve is shown, and the light whose attenuation. */
+let ns = 20;
+
+/** A curve with its axes and a mark. */
+function curve(name: string, points: number[][], mark: [number, number] | null, labels: [string, string]): TemplateResult {
+  if (!points.length) return html`<div class="curve"></div>`;
+  const [first, last] = [points[0]![0]!, points[points.length - 1]![0]!];
+  const X = (x: number) => 24 + ((x - first) / (last - first)) * 250;
+  const Y = (y: number) => 130 - y * 115;
+  const path = points.map(([x = 0, y = 0], i) => `${i ? "L" : "M"}${X(x).toFixed(1)} ${Y(y).toFixed(1)}`).join("");
+  const marked = mark
+    ? `<circle class="mark" cx="${X(mark[0]).toFixed(1)}" cy="${Y(mark[1]).toFixed(1)}" r="4"/><path class="guide" d="M${X(mark[0]).toFixed(1)} 130V${Y(mark[1]).toFixed(1)}H24"/>`
+    : "";
+  const text =
+    `<svg viewBox="0 0 290 152"><path class="axes" d="M24 10V130H280"/><text x="2" y="19">1</text><text x="2" y="134">0</text>` +
+    `<text x="24" y="147">${labels[0]}</text><text x="274" y="147" text-anchor="end">${labels[1]}</text>` +
+    `<path class="graph" d="${path}"/>${marked}</svg>`;
+  return html`<div class="curve" role="img" aria-label=${name}>${drawing(text, name)}</div>`;
+}
+
+const pointsOf = (app: App, name: string) => ((app.answerTo(name)?.ok["points"] as number[][] | undefined) ?? []).map((p) => [...p]);
+
+export function illumination(app: App): TemplateResult {
+  app.answer("cos-n", { want: "curve", what: "cos-n", ns });
+  const explanation = explanationOf(app);
+  const whole = isObject(explanation?.["light"]) ? (explanation["light"] as JsonObject) : {};
+  const evaluation = objects(objects(whole["points"])[0]?.["evaluations"])[0];
+  const lit = objects(evaluation?.["lights"]).filter((l) => typeof l["light"] === "number");
+  const own = lit.find((l) => isObject(l["highlight"])) ?? lit[0];
+  const highlight = isObject(own?.["highlight"]) ? (own["highlight"] as JsonObject) : null;
+  const angle = highlight ? (Math.acos(Math.min(1, Math.max(-1, Number(highlight["cosine"])))) * 180) / Math.PI : null;
+  const half = (Math.acos(2 ** (-1 / ns)) * 180) / Math.PI;
+
+  const light = app.complete?.value.lights[app.lightNumber];
+  const c = light ? attenuationOf(light) : [1, 0, 0];
+  app.answer("attenuation", { want: "curve", what: "attenuation", c });
+  const distance = Number(lit.find((l) => l["light"] === app.lightNumber)?.["distance"] ?? NaN);
+  const attenuated = Number.isFinite(distance) && distance <= 10 ? Math.min(1, 1 / (c[0]! + c[1]! * distance + c[2]! * distance ** 2)) : null;
+  const set = (value: number) => {
+    ns = value;
+    app.changed();
+  };
+  return html`${terms(app)}
+    <section class="region" aria-labelledby="curves-title">
+      <h2 id="curves-title">${t("Curves")}</h2>
+      <div class="curves">
+        <div>
+          ${curve(t("cos^n curve"), pointsOf(app, "cos-n"), angle !== null ? [angle, Math.max(0, Math.cos((angle * Math.PI) / 180)) ** ns] : null, ["−90°", "90°"])}
+          <p class="caption">cosⁿ Ω, ${t("half width {0} degrees", half.toFixed(2))}</p>
+          ${spin("n", ns, set, { name: t("Exponent n"), min: 1, max: 200, step: 1 })}
+        </div>
+        <div>
+          ${curve(t("Attenuation curve"), pointsOf(app, "attenuation"), attenuated !== null ? [distance, attenuated] : null, ["d = 0", "10"])}
+          <p class="caption">f_att = min(1, 1 / (${c[0]} + ${c[1]} d + ${c[2]} d²))</p>
+          <button type="button" @click=${() => app.openDialog("lights")}>${t("Lights…")}</button>
+        </div>
+      </div>
+    </section>`;
+}
+
+/** The terms of the formula, apart and together: lights with one part alone. */
+function terms(app: App): TemplateResult {
+  const { state } = app;
+  const lights = app.complete?.value.lights;
+  if (!lights) return html``;
+  const black = [0, 0, 0];
+  const only = (keep: string): JsonObject => {
+    const own = lights.map((l): JsonObject => ({ ...l, ambient: keep === "ambient" ? l["ambient"]! : black, diffuse: keep === "diffuse" ? l["diffuse"]! : black, specular: keep === "specular" ? l["specular"]! : black }));
+    let s = put(put(put(state, "lights", own), "light-edits", []), "light-intensity", 1);
+    if (keep !== "ambient") s = put(s, "ambient", black);
+    return small(s);
+  };
+  const views: [string, JsonObject][] = [
+    [t("Ambient term"), only("ambient")],
+    [t("Diffuse term"), only("diffuse")],
+    [t("Specular term"), only("specular")],
+    [t("Together"), small(state)],
+  ];
+  return html`<section class="region" aria-labelledby="terms-title">
+    <h2 id="terms-title">${t("Terms")}</h2>
+    <div class="thumbnails">${views.map(([name, s], i) => thumbnail(app, `term ${i}`, name, s))}</div>
+  </section>`;
+}
+
+const small = (state: JsonObject) => put(put(state, "settings.width", 240), "settings.height", 180);
+
+/** A small picture of a state. */
+function thumbnail(app: App, key: string, name: string, state: JsonObject, choose?: () => void): TemplateResult {
+  if (!app.isDragging && !app.isBusy) app.answer(key, { want: "picture", state });
+  const answer = app.answers.get(key);
+  const picture = answer?.value.ok as unknown as Picture | undefined;
+  let plane = planes.get(key);
+  if (answer && picture && plane?.key !== answer.key) {
+    plane = { key: answer.key, value: { bytes: answer.value.planes[0] ?? new Uint8Array(), width: picture.width, height: picture.height } };
+    planes.set(key, plane);
+  }
+  const canvas = html`<canvas width="240" height="180" role="img" aria-label=${name} ${ref((e) => show(e as HTMLCanvasElement | undefined, plane))}></canvas>`;
+  return html`<figure>${canvas}<figcaption>${choose ? html`<button type="button" class="link" @click=${choose}>${name}</button>` : name}</figcaption></figure>`;
+}
+
+const planes = new Map<string, { key: string; value: { bytes: Uint8Array; width: number; height: number } }>();
+
+// ---- Shading ----
+
+/** The classical defects: the figure, what shows it, what cures it. */
+const DEFECTS: { model: string; name: Parameters<typeof t>[0]; cure: Parameters<typeof t>[0]; defect: JsonObject; cured: JsonObject }[] = [
+  { model: "defect-silhouette", name: "Polygonal silhouette", cure: "finer polygons (right)", defect: {}, cured: {} },
+  { model: "defect-perspective", name: "Perspective distortion", cure: "interpolation in perspective", defect: { interpolation: "linear" }, cured: { interpolation: "perspective" } },
+  { model: "defect-orientation", name: "Dependence on orientation", cure: "smaller quads (right)", defect: { shading: "gouraud" }, cured: { shading: "phong" } },
+  { model: "defect-shared-vertices", name: "Vertices not shared", cure: "vertices on both sides (right)", defect: { shading: "gouraud" }, cured: { shading: "phong" } },
+  { model: "defect-normals", name: "Unrepresentative normals", cure: "the faces' own normals", defect: { shading: "gouraud" }, cured: { shading: "flat" } },
+];
+
+export function shading(app: App): TemplateResult {
+  const { state } = app;
+  const one = (name: string) =>
+    thumbnail(app, `shading ${name}`, name, small(put(state, "settings.shading", name)), () => app.set({ "settings.shading": name }));
+  const model = String((app.get("models") as string[] | undefined)?.[0] ?? "");
+  const open = (d: (typeof DEFECTS)[number]) => {
+    app.openModels([`builtin:${d.model}`]);
+    app.set(Object.fromEntries(Object.entries({ shading: "phong", interpolation: "perspective", ...d.defect }).map(([k, v]) => [`settings.${k}`, v])));
+  };
+  const shown = DEFECTS.find((d) => model === `builtin:${d.model}`);
+  const compareCure = (d: (typeof DEFECTS)[number]) => {
+    for (const [k, v] of Object.entries(d.cured)) app.set({ [`settings.${k}`]: v }, "b");
+    app.setLab({ compare: "side" });
+  };
+  return html`<section class="region" aria-labelledby="shading-title">
+      <h2 id="shading-title">${t("Flat, Gouraud, Phong")}</h2>
+      <div class="thumbnails">${["flat", "gouraud", "phong"].map(one)}</div>
+    </section>
+    <section class="region" aria-labelledby="defects-title">
+      <h2 id="defects-title">${t("Defects of interpolated shading")}</h2>
+      <div class="list">${DEFECTS.map((d) => radio(t(d.name), "defect", d === shown, () => open(d)))}</div>
+      ${shown
+        ? html`<p class="note">${t("Cure")}: ${t(shown.cure)}.</p>
+            ${Object.keys(shown.cured).length ? button(t("Compare with the cure"), () => compareCure(shown)) : nothing}`
+        : nothing}
+    </section>
+    <section class="region" aria-labelledby="increments-title">
+      <h2 id="increments-title">${t("Increments")}</h2>
+      ${app.get("settings.shading") === "gouraud" && app.lab.pixel
+        ? increments(explanationOf(app))
+        : html`<p class="note">${t("Choose Gouraud shading and inspect a pixel to see its line, increment by increment.")}</p>`}
+    </section>`;
+}

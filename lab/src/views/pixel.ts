@@ -1,0 +1,201 @@
+// `region "Pixel"`: what lies over a pixel, what became of it, and how its light adds up.
+
+import { html, nothing, type TemplateResult } from "lit-html";
+import type { App } from "../app.ts";
+import { isObject, type Json, type JsonObject } from "../json.ts";
+import { button, spin } from "../parts/fields.ts";
+import { number } from "../parts/numbers.ts";
+import { table, type Cell } from "../parts/table.ts";
+import { tree, type Node } from "../parts/tree.ts";
+import { t, translated } from "../words.ts";
+import { whyWords } from "../why.ts";
+
+export const objects = (v: Json | undefined): JsonObject[] => (Array.isArray(v) ? v.filter(isObject) : []);
+const numbers = (v: Json | undefined): number[] => (Array.isArray(v) ? v.map(Number) : []);
+
+export const explanationOf = (app: App): JsonObject | null => {
+  const { pixel } = app.lab;
+  const found = app.answerTo("explain")?.ok["explanation"];
+  if (!pixel || !isObject(found)) return null;
+  return String(found["pixel"]) === pixel.join(",") ? found : null;
+};
+
+/** What became of a surface over the pixel. */
+function fate(c: JsonObject, all: JsonObject[]): string {
+  const surfaceOf = (facet: number) => all.find((o) => o["facet"] === facet)?.["surface"] ?? facet;
+  switch (c["stage"]) {
+    case "visible":
+      return t("visible");
+    case "hidden": {
+      const by = [...new Set(numbers(c["by"]).map(surfaceOf))];
+      return by.length ? t("hidden by {0}", by.join(", ")) : t("hidden");
+    }
+    case "layer":
+      return t("layer");
+    case "back-face":
+      return t("culled: back face");
+    case "box-culled":
+    case "outside-frustum":
+      return t("culled: outside");
+    case "clipped-away":
+      return t("clipped away");
+    case "alpha-test":
+      return t("alpha test");
+    default:
+      return translated(String(c["stage"]));
+  }
+}
+
+function surfaces(explanation: JsonObject): TemplateResult {
+  const all = objects(explanation["candidates"]);
+  const depth = (c: JsonObject) => (typeof c["depth"] === "number" ? c["depth"] : -1);
+  const rows = [...all]
+    .sort((a, b) => depth(b) - depth(a))
+    .map((c): Cell[] => [
+      c["surface"] as number,
+      String(c["mesh"] ?? "–"),
+      String(c["material"] || "–"),
+      typeof c["depth"] === "number" ? Number(c["depth"].toPrecision(6)) : null,
+      fate(c, all),
+    ]);
+  return table({
+    name: t("Surfaces at the pixel"),
+    columns: [t("Surface"), t("Mesh"), t("Material"), t("Depth"), t("Fate")],
+    rows,
+    caption: true,
+  });
+}
+
+function decisions(app: App, explanation: JsonObject): TemplateResult {
+  const { pixel } = app.lab;
+  const asked = app.answers.get("ask-all");
+  const isCurrent = asked?.key === askKey(app);
+  const all = isCurrent ? objects(asked.value.ok["decisions"]) : objects(explanation["decisions"]);
+  const rows = all.map((d): Cell[] => [
+    String(d["algorithm"]),
+    typeof d["facet"] === "number" ? d["facet"] : t("background"),
+    (Array.isArray(d["steps"]) ? d["steps"] : []).slice(0, 30).map((s) => html`<span class="line">${String(s)}</span>`) as unknown as TemplateResult,
+  ]);
+  const ask = () => {
+    app.answer("ask-all", { want: "ask-all", state: app.state, pixel }, true);
+    app.say(t("Asking all algorithms…"));
+  };
+  return html`${table({ name: t("Decisions"), columns: [t("algorithm"), t("facet"), t("why")], rows, caption: true })}
+  ${isCurrent ? nothing : button(t("Ask all algorithms"), ask)}`;
+}
+
+const askKey = (app: App) => JSON.stringify({ want: "ask-all", state: app.state, pixel: app.lab.pixel });
+
+const three = (v: Json | undefined) => numbers(v).slice(0, 3).map((n) => number(Number(n.toPrecision(4)))).join(" ");
+
+function light(app: App, explanation: JsonObject): unknown {
+  const whole = isObject(explanation["light"]) ? explanation["light"] : {};
+  const points = objects(whole["points"]);
+  if (!points.length) return nothing;
+  const names = (app.answerTo("explain")?.ok["lights"] as string[] | undefined) ?? [];
+  const point = points[0]!;
+  const shadows = objects(point["shadows"]);
+  const rows: Cell[][] = [];
+  let head = "R·V";
+  for (const evaluation of objects(point["evaluations"])) {
+    const corner = evaluation["corner"];
+    for (const l of objects(evaluation["lights"])) {
+      const highlight = isObject(l["highlight"]) ? l["highlight"] : null;
+      if (highlight?.["h"]) head = "N·H";
+      const shadow = shadows.find((s) => s["light"] === l["light"]);
+      const S = numbers(l["visibility"]);
+      const blocked = shadow && typeof shadow["blocker"] === "number" && S.some((v) => v < 1);
+      const sum = [0, 1, 2].map((i) => ["ambient", "diffuse", "specular"].reduce((s, k) => s + (numbers(l[k])[i] ?? 0), 0));
+      const name = names[Number(l["light"])] ?? `LIGHT${Number(l["light"])}`;
+      rows.push([
+        typeof corner === "number" ? `${name} (${t("corner {0}", corner)})` : name,
+        Number(Number(l["n-l"]).toPrecision(4)),
+        highlight ? Number(Number(highlight["cosine"]).toPrecision(4)) : null,
+        Number(Number(l["attenuation"]).toPrecision(4)),
+        blocked ? `${three(l["visibility"])} (${t("facet {0}", String(shadow["blocker"]))})` : three(l["visibility"]),
+        three(l["ambient"]),
+        three(l["diffuse"]),
+        three(l["specular"]),
+        three(sum),
+      ]);
+    }
+    rows.push([t("scene"), null, null, null, null, three(evaluation["ambient"]), null, null, three(evaluation["ambient"])]);
+  }
+  const more = points.length > 1 ? html`<p class="note">${t("Of {0} surfaces in this pixel, the first.", points.length)}</p>` : nothing;
+  return html`${table({
+    name: t("Light at the pixel"),
+    columns: [t("light"), "L·N", head, "f_att", "S", t("ambient"), t("diffuse"), t("specular"), t("sum")],
+    rows,
+    caption: true,
+  })}
+  ${more}
+  <p class="note">${t("Sum of the samples: {0}; bytes: {1}", three(whole["straight"]), numbers(whole["bytes"]).slice(0, 3).join(" "))}</p>`;
+}
+
+/** `tree "Ray tree"` of the pixel: a ray hangs below the one that sent it. */
+function rays(app: App, explanation: JsonObject): unknown {
+  const list = objects(explanation["rays"]);
+  if (!list.length) return nothing;
+  const senders = new Map<string, { id: number; way: string; angles: number[] }>();
+  const nodes: Node[] = list.map((ray, id) => {
+    const sender = senders.get(JSON.stringify(ray["direction"]));
+    for (const on of objects(ray["goes-on"])) {
+      senders.set(JSON.stringify(on["direction"]), { id, way: String(on["way"]), angles: numbers(on["angles"]) });
+    }
+    const met = isObject(ray["meets"]) ? ray["meets"] : null;
+    const what = met ? t("surface {0} of {1}, distance {2}", String(met["surface"]), String(met["mesh"] || "–"), number(Number(met["distance"]))) : t("background");
+    const how = sender ? `${translated(sender.way)} (${sender.angles.map((a) => `${a.toFixed(1)}°`).join(" → ")}): ` : "";
+    return { id, parent: sender?.id ?? null, text: how + what };
+  });
+  return html`<div class="labelled"><p class="label">${t("Ray tree")}</p>${tree({ name: t("Ray tree"), nodes }, () => app.changed())}</div>`;
+}
+
+/** `table "Increments"`: Gouraud's intensities on the line of the pixel. */
+export function increments(explanation: JsonObject | null): unknown {
+  const g = explanation?.["gouraud"];
+  const pixel = numbers(explanation?.["pixel"]);
+  if (!isObject(g)) return nothing;
+  const edges = objects(g["edges"]);
+  const row: Cell[] = [
+    pixel[1] ?? null,
+    ...[0, 1].map((i) => three(edges[i]?.["intensity"])),
+    edges.map((e) => three(e["py"])).join("; "),
+    three(g["px"]),
+    (g["additions"] as number | undefined) ?? null,
+    three(g["intensity"]),
+    three(g["direct"]),
+  ];
+  return table({
+    name: t("Increments"),
+    columns: [t("line"), "I1", "I2", "py", "px", t("additions"), t("incremental"), t("direct")],
+    rows: [row],
+    caption: true,
+  });
+}
+
+export function pixelRegion(app: App): TemplateResult {
+  const { pixel } = app.lab;
+  const explanation = explanationOf(app);
+  const [x, y] = pixel ?? [null, null];
+  const middle: [number, number] = [Math.floor(app.width / 2), Math.floor(app.height / 2)];
+  const set = (at: 0 | 1) => (value: number) => {
+    const to: [number, number] = [...(pixel ?? middle)];
+    to[at] = value;
+    app.inspect(to);
+  };
+  const why = (app.answerTo("explain")?.ok["why"] as string[] | undefined) ?? [];
+  return html`<section class="region pixel" aria-labelledby="pixel-title">
+    <h2 id="pixel-title">${t("Pixel")}</h2>
+    <div class="row-of-fields">
+      ${spin("x", x, set(0), { name: t("Pixel x"), min: 0, max: app.width - 1, step: 1 })}
+      ${spin("y", y, set(1), { name: t("Pixel y"), min: 0, max: app.height - 1, step: 1 })}
+      ${pixel ? button(t("Clear"), () => app.inspect(null)) : nothing}
+    </div>
+    ${pixel ? nothing : html`<p class="note">${t("Double-click in the picture, or press Enter there.")}</p>`}
+    ${explanation
+      ? html`<p class="why">${why.map((s) => whyWords(s)).join(" ")}</p>
+          ${surfaces(explanation)} ${decisions(app, explanation)} ${light(app, explanation)} ${rays(app, explanation)}
+          ${app.lab.page === "shading" ? nothing : increments(explanation)}`
+      : nothing}
+  </section>`;
+}

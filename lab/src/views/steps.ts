@@ -1,0 +1,110 @@
+// `toolbar "Steps"`: play and step through a recording.
+
+import { html, nothing, type TemplateResult } from "lit-html";
+import { ref } from "lit-html/directives/ref.js";
+import type { App } from "../app.ts";
+import { button, check, combo } from "../parts/fields.ts";
+import { icon } from "../parts/icons.ts";
+import { stepWords } from "../stepwords.ts";
+import { t, translated } from "../words.ts";
+
+const SPEEDS = [0.5, 1, 2, 5, 10, 25, 100, 1000];
+
+export function stepsToolbar(app: App): TemplateResult {
+  const count = app.stepCount;
+  const number = app.stepNumber;
+  const step = app.step?.value;
+  const words = step && (app.lab.step !== null || number === count) ? stepWords(step) : "";
+  const text = count ? t("{0} of {1}: {2}", number, count, words) : t("Recording…");
+  const isReady = count > 0;
+  const go = (to: number) => () => {
+    app.pause();
+    app.goToStep(to);
+  };
+  const slide = (e: Event) => {
+    app.pause();
+    app.goToStep(Number((e.target as HTMLInputElement).value));
+  };
+  // The range has to know its end before its value.
+  const show = (e: Element | undefined) => {
+    const range = e as HTMLInputElement | undefined;
+    if (!range) return;
+    range.max = String(Math.max(1, count));
+    if (range.value !== String(Math.max(1, number))) range.value = String(Math.max(1, number));
+  };
+  const groups = app.recording?.value.groups ?? [];
+  const shown = [
+    { value: "all", text: t("All") },
+    ...(app.lab.pixel ? [{ value: "pixel", text: t("At the pixel") }] : []),
+    ...groups.map((g) => ({ value: g.name, text: `${translated(g.name)} (${g.count})` })),
+  ];
+  if (!shown.some((s) => s.value === app.lab.steps)) shown.push({ value: app.lab.steps, text: app.lab.steps });
+  const hasMore = app.recording?.value.complete === false;
+  const speeds = SPEEDS.includes(app.lab.speed) ? SPEEDS : [...SPEEDS, app.lab.speed].sort((a, b) => a - b);
+  return html`<div role="toolbar" class="toolbar steps" aria-label=${t("Steps")} aria-busy=${String(app.isRecording)}>
+      <div class="buttons">
+        ${button(t("First step"), go(1), { icon: icon("first"), disabled: !isReady })}
+        ${button(t("Previous step"), go(number - 1), { icon: icon("previous"), disabled: !isReady })}
+        ${app.isPlaying
+          ? button(t("Pause"), () => app.pause(), { icon: icon("pause"), style: "icon strong" })
+          : button(t("Play"), () => app.play(), { icon: icon("play"), disabled: !isReady, style: "icon strong" })}
+        ${button(
+          t("Next step"),
+          () => {
+            app.pause();
+            void app.nextStep();
+          },
+          { icon: icon("next"), disabled: !isReady },
+        )}
+        ${button(t("Last step"), go(count), { icon: icon("last"), disabled: !isReady })}
+      </div>
+      <input
+        class="slider"
+        type="range"
+        min="1"
+        step="1"
+        aria-label=${t("Step")}
+        aria-valuetext=${text}
+        ?disabled=${!isReady}
+        @input=${slide}
+        ${ref(show)}
+      />
+      <span class="count">${isReady ? html`${number} / ${count}` : nothing}</span>
+      ${combo(t("Speed"), String(app.lab.speed), speeds.map((s) => ({ value: String(s), text: t("{0} a second", s) })), (v) =>
+        app.setLab({ speed: Number(v) }),
+      )}
+      ${combo(t("Show steps"), app.lab.steps, shown, (v) => {
+        app.pause();
+        app.setLab({ steps: v, step: null });
+      })}
+      ${check(t("Ask me first"), app.askFirst, (on) => {
+        app.askFirst = on;
+        app.changed();
+      })}
+    </div>
+    ${app.lab.layout === "full" ? nothing : html`<p class="told">${text}</p>`}
+    ${hasMore ? html`<p class="note">${t("first {0} steps of more", count)}</p>` : nothing}`;
+}
+
+/** `radiogroup "Prediction"`: what comes next? */
+export function prediction(app: App): unknown {
+  const { prediction } = app;
+  if (!prediction) return nothing;
+  const { chosen, answer, options, next } = prediction;
+  if (chosen !== null) {
+    const isRight = chosen === answer;
+    return html`<p class=${`prediction ${isRight ? "right" : "wrong"}`}>
+      <strong>${t(isRight ? "Right" : "Wrong")}.</strong> ${translated(answer)}: ${stepWords(next)}
+    </p>`;
+  }
+  return html`<div class="prediction">
+    <div role="radiogroup" aria-label=${t("Prediction")}>
+      <p>${t("What comes next?")}</p>
+      ${options.map(
+        (o) => html`<label class="check"
+          ><input type="radio" name="prediction" .checked=${false} @change=${() => app.predict(o)} /><span>${translated(o)}</span></label
+        >`,
+      )}
+    </div>
+  </div>`;
+}

@@ -1,0 +1,40 @@
+// The page's texts in four languages.
+//
+// English texts are the keys of the table. What the engine tells in English is looked up there, too.
+
+import type { Language } from "./link.ts";
+import { TABLE } from "./table.ts";
+
+export type Key = keyof typeof TABLE;
+
+const COLUMNS = { ro: 0, fr: 1, pt: 2 } as const;
+
+let language: Language = "en";
+
+export function setLanguage(to: Language) {
+  language = to;
+}
+
+export const isEnglish = () => language === "en";
+
+const lookUp = (text: string): string => {
+  if (language === "en") return text;
+  const row = Object.hasOwn(TABLE, text) ? (TABLE as Record<string, readonly [string, string, string]>)[text] : undefined;
+  return row?.[COLUMNS[language]] ?? text;
+};
+
+/** A text of the table; `{0}`, `{1}`, … stand for the parts. */
+export function t(key: Key, ...parts: (string | number)[]): string {
+  return lookUp(key).replace(/\{(\d)\}/g, (_, i: string) => String(parts[Number(i)] ?? ""));
+}
+
+/** A text of the engine; one that the table lacks stays as it is. */
+export function translated(text: string): string {
+  return lookUp(text);
+}
+
+/** What goes in and out of a stage: numbers with words of the table. */
+export function stagePart(text: string): string {
+  if (language === "en") return text;
+  return text.replace(/[a-z][a-z ]*[a-z]/g, (words) => lookUp(words));
+}

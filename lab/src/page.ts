@@ -69,14 +69,14 @@ function pictures(app: App): TemplateResult {
   const isAlone = app.lab.compare === "none";
   const isFull = app.lab.layout === "full";
   const overview = app.answers.get("overview");
-  return html`<div class="pictures">
+  return html`<div class=${app.hasSteps ? "pictures with-steps" : "pictures"}>
     ${isAlone
       ? stage(app, { name: t("Picture"), picture: "a", plane: app.plane, isBusy: app.isBusy })
       : html`${comparison(app)} ${comparisonControls(app)}`}
     ${app.hasSteps ? html`<div class="legend-line">${legend(app)}</div>${stepsToolbar(app)}` : nothing}
     <div class="bar">
       ${cameraToolbar(app)}
-      ${isFull ? html`${dragChoice(app)} ${compareChoice(app)} ${button(t("Open model"), () => pickFiles(app))}` : nothing}
+      ${isFull ? html`${dragChoice(app)} ${compareChoice(app)}` : nothing}
     </div>
     ${app.lab.second !== "off" && overview
       ? html`<div class="second" role="application" aria-label=${t("Second view")} tabindex="0">

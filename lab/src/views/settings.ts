@@ -2,8 +2,9 @@
 
 import { html, nothing, type TemplateResult } from "lit-html";
 import { fileNameOf, type App } from "../app.ts";
+import { pickFiles } from "../files.ts";
 import type { Json } from "../json.ts";
-import { check, combo, group, radio, spin, type Option } from "../parts/fields.ts";
+import { button, check, combo, group, radio, spin, type Option } from "../parts/fields.ts";
 import { t, translated } from "../words.ts";
 
 type Picture = "a" | "b";
@@ -201,7 +202,10 @@ export function settings(app: App): TemplateResult {
   const bits = app.get("settings.depth-bits");
   const mapSize = app.get("settings.shadow-map-size");
   return html`<aside class="settings" aria-labelledby="settings-title">
-    <h2 id="settings-title">${t("Settings")}</h2>
+    <div class="title">
+      <h2 id="settings-title">${t("Settings")}</h2>
+      ${button(t("Open model"), () => pickFiles(app))}
+    </div>
     <div class="fields">
       ${combos(app, "a")}
       ${spin(t("Depth bits"), typeof bits === "number" ? bits : null, (v) => app.set({ "settings.depth-bits": v }), {

@@ -69,6 +69,41 @@ fn before_and_behind_walls() -> impl Strategy<Value = Vec<[GridPoint; 3]>> {
     })
 }
 
+/// Triangles with everything that touches them: a copy, one turned over, halves that meet a side in its middle, one that stands on an edge
+/// in their plane, and one that lies in it.
+fn touching() -> impl Strategy<Value = Vec<[GridPoint; 3]>> {
+    let one = (prop::array::uniform3(point(SIZE, 8)), point(SIZE, 8), 0u8..32);
+    let triangles = |([a, b, c], p, kinds): ([GridPoint; 3], GridPoint, u8)| {
+        // All corners are multiples of 8, so that these are places of the grid.
+        let mean =
+            |weights: [i32; 3]| [0, 1, 2].map(|k| (weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k]) / 4);
+        let (middle, inside) = (mean([2, 2, 0]), [mean([2, 1, 1]), mean([1, 2, 1]), mean([1, 1, 2])]);
+        let others = [
+            vec![[a, b, c]],
+            vec![[b, a, c]],
+            vec![[a, middle, p], [middle, b, p]],
+            vec![[inside[0], inside[1], p]],
+            vec![inside],
+        ];
+        let wanted = others.into_iter().enumerate().filter(move |(kind, _)| kinds >> kind & 1 == 1);
+        std::iter::once([a, b, c]).chain(wanted.flat_map(|(_, triangles)| triangles)).collect::<Vec<_>>()
+    };
+    prop::collection::vec(one.prop_map(triangles), 1..6).prop_map(|all| all.concat())
+}
+
+/// A quarter of a turn of the page leaves the length of lines behind each number of layers.
+fn check_turned(corners: &[[GridPoint; 3]]) -> Result<(), TestCaseError> {
+    let turned: Vec<_> = corners.iter().map(|t| t.map(|[x, y, z]| [SIZE - y, x, z])).collect();
+    let meshes = [mesh_of([SIZE; 2], corners), mesh_of([SIZE; 2], &turned)];
+    let all = [&meshes[0], &meshes[1]].map(|mesh| found(mesh, false, u32::MAX, 1));
+    let most = all.iter().flatten().map(|fragment| fragment.layers).max().unwrap_or(0);
+    for layers in 0..=most {
+        let [before, after] = [0, 1].map(|i| length(&meshes[i], &all[i], layers));
+        prop_assert!((before - after).abs() < 1e-6 * (1.0 + before), "{} layers: {} {}", layers, before, after);
+    }
+    Ok(())
+}
+
 #[test]
 fn a_square_before_another_hides_its_middle() {
     let square = |low: i32, high: i32, z: i32| {
@@ -134,6 +169,18 @@ proptest! {
     #[test]
     fn and_on_lattices_where_everything_coincides(corners in soup(SIZE / 4)) {
         check(&mesh_of([SIZE; 2], &corners))?;
+    }
+
+    #[test]
+    fn and_where_faces_coincide_and_edges_lie_in_faces_or_end_on_sides(corners in touching()) {
+        check(&mesh_of([SIZE; 2], &corners))?;
+    }
+
+    #[test]
+    fn lengths_do_not_depend_on_how_the_page_lies(any in soup(1), lattice in soup(SIZE / 4), touching in touching()) {
+        for corners in [any, lattice, touching] {
+            check_turned(&corners)?;
+        }
     }
 
     #[test]

@@ -1,10 +1,11 @@
-//! The same picture at every instruction set, with any number of threads, in a fresh session and in a used one.
+//! The same picture at every instruction set, with any number of threads, in a fresh session and in a used one. The same files of
+//! drawings with any number of threads.
 
 use super::common::{all_channels, colors, exact, exact_builtin};
 use vitral::internals::math::lanes::available_levels;
 use vitral::{
-    Budget, Execution, Frame, Illumination, Interpolation, Lines, Renderer, Shading, Workers, load_builtin,
-    override_material,
+    Budget, DrawingFormat, DrawingOptions, DrawingSettings, Execution, FillSettings, Frame, Illumination,
+    Interpolation, Lines, Renderer, Seams, Shading, Workers, execution, load_builtin, override_material,
 };
 
 /// Scene 1 with a transparent ball, lines on top, all channels, and one model and shading after the other.
@@ -43,6 +44,30 @@ fn equal_bytes_at_every_level_with_one_and_three_threads() {
                 assert!(frame == expected, "{name} with {threads} threads: picture {i} differs from the scalar one");
             }
         }
+    }
+}
+
+#[test]
+fn files_of_drawings_are_equal_with_any_number_of_threads() {
+    let mut scene = load_builtin("scene1").unwrap();
+    override_material(&mut scene, "teal ball", "opacity", "0.4").unwrap();
+    let files = |threads| {
+        let renderer = Renderer::with_execution(scene.clone(), execution(threads)).unwrap();
+        let settings = DrawingSettings { hidden_layers: u32::MAX, ..DrawingSettings::default() };
+        let mut files = Vec::new();
+        for (seams, flatten) in [(Seams::Under, false), (Seams::None, true)] {
+            let fill = FillSettings { transparency: true, shadows: true, seams, flatten, ..FillSettings::default() };
+            let drawing = renderer.draw_filled(&settings, &fill).unwrap().drawing;
+            for (format, _) in DrawingFormat::ALL {
+                files.push(format.encode(&drawing, &DrawingOptions::default()));
+            }
+        }
+        files
+    };
+    let one = files(1);
+    assert!(one.iter().all(|file| file.len() > 10_000), "{:?}", one.iter().map(Vec::len).collect::<Vec<_>>());
+    for threads in [2, 3, 7] {
+        assert!(files(threads) == one, "{threads} threads");
     }
 }
 

@@ -8,6 +8,7 @@ mod defects;
 mod depth_bits;
 mod depth_cue;
 mod determinism;
+mod drawn_surfaces;
 mod equal_planes;
 mod hidden_line;
 mod interpolation;

@@ -1,4 +1,4 @@
-//! Developer commands: `cargo xtask test | check | circles | bless | osmesa | clients | sanitize | vectors | compare`.
+//! Developer commands: `cargo xtask test | check | circles | bless | osmesa | clients | sanitize | vectors | compare | sheets`.
 #![forbid(unsafe_code)]
 
 mod bless;
@@ -8,6 +8,7 @@ mod compare;
 mod osmesa;
 mod prepare;
 mod sanitize;
+mod sheets;
 mod shell;
 mod spent;
 mod tally;
@@ -28,7 +29,11 @@ cargo xtask clients               run MuJoCo, Gymnasium, PyOpenGL, GLFW and a C 
 cargo xtask sanitize [TOOL...]    Miri, Valgrind and the sanitizers watch libOSMesa (miri, valgrind, thread, address)
 cargo xtask vectors               look for vector operations that became calls in the release build
 cargo xtask compare [--quick] [--peers-only]
-                                  install the peers, run them in turns with vitral, print ratios";
+                                  install the peers, run them in turns with vitral, print ratios
+cargo xtask compare draw [--quick] [--no-peers] [--vitral PATH]
+                                  `vitral draw` (or the built command at PATH) and its peers; into benches/results
+cargo xtask sheets draw DIR [--vitral PATH]
+                                  draw every model in every style; contact sheets, 20 drawings a page, in DIR";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -43,7 +48,9 @@ fn main() -> ExitCode {
         ["sanitize", tools @ ..] => sanitize::run_all(tools),
         ["osmesa"] => osmesa::run_all(),
         ["vectors"] => vectors::run_all(),
+        ["compare", "draw", options @ ..] => compare::draw::run(options),
         ["compare", options @ ..] => compare::run(options),
+        ["sheets", "draw", options @ ..] => sheets::run(options),
         _ => Err(format!("usage:\n{USAGE}")),
     };
     match result {

@@ -27,7 +27,7 @@ impl Stopwatch {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spent {
     pub(crate) wall: Duration,
-    cpu: Option<Duration>,
+    pub(crate) cpu: Option<Duration>,
 }
 
 impl std::fmt::Display for Spent {

@@ -9,6 +9,7 @@
 //! the rounds counts. Anti-aliasing is off on both sides, then four samples a pixel; F3D's default is the former,
 //! PyVista's the latter (it asks for eight, llvmpipe gives four).
 
+pub(crate) mod draw;
 mod measure;
 mod peers;
 mod table;

@@ -89,9 +89,11 @@ impl ViewportTransform {
         }
     }
 
-    /// Projects and snaps a clipped point.
+    /// Projects and snaps a clipped point. Rounding may leave a corner of a vast triangle far outside the guard band: it is moved to twice
+    /// the band, where setup still computes without overflow.
     pub fn project(&self, clip: Vec4) -> CornerPosition {
-        let snapped = |v: f32| (v + 0.5).floor() as i32;
+        let most = 2.0 * GUARD_BAND * SUBPIXEL as f32;
+        let snapped = |v: f32| (v.clamp(-most, most) + 0.5).floor() as i32;
         CornerPosition {
             x: snapped(clip.x / clip.w * self.scale.x + self.center.x),
             y: snapped(clip.y / clip.w * self.scale.y + self.center.y),

@@ -4,9 +4,9 @@ use super::common::{all_channels, colors, exact, exact_builtin, limit, on_z, one
 use std::sync::Arc;
 use vitral::internals::render::registry::SHADOWS;
 use vitral::{
-    AlphaMode, Budget, Camera, Channels, DMat4, DVec3, Error, Faces, Frame, Light, LightKind, Limit, Material, Node,
-    NodeTransform, Reflectance, RenderError, Renderer, Scene, SettingsError, Shadows, SystemClock, Viewpoint,
-    Visibility, load_builtin, solids,
+    AlphaMode, Budget, Camera, Channels, DMat4, DVec3, Error, Faces, Frame, Light, LightKind, Limit, Material, Mesh,
+    Node, NodeTransform, Projection, Reflectance, RenderError, Renderer, Scene, SettingsError, Shadows, SystemClock,
+    Viewpoint, Visibility, load_builtin, solids,
 };
 
 #[test]
@@ -86,6 +86,26 @@ fn triangles_with_nan_or_infinite_corners_vanish_and_are_counted() {
     assert!(rendered.stats.picture.covered_pixels > 100, "the others are there");
     assert!(rendered.frame.depth.unwrap().data().iter().all(|z| (0.0..=1.0).contains(z)));
     assert!(rendered.frame.normal.unwrap().data().iter().flatten().all(|n| n.is_finite()));
+}
+
+#[test]
+fn corners_too_far_away_to_clip_exactly_are_harmless() {
+    let corners = [
+        [3.5332105e18, -1.2369859e18, 8.757267e-36],
+        [-4.1693534e21, 1.8051624e-14, -6.3354252e-12],
+        [2.8403258e17, -3.0664892e25, -2.912492e36],
+    ];
+    let mut renderer = exact(Scene::from_mesh(Mesh::new(corners, [[0, 1, 2]])), 64, 64);
+    renderer.settings.shading.lighting = false;
+    renderer.settings.picture.channels = Channels { attached_shadow: false, ..all_channels() };
+    let projection = Projection::Parallel { height: 10.924444444444445 };
+    for position in [DVec3::new(-3.21875, 2.4375, -3.8125), DVec3::new(3.0, 2.0, 1.0), DVec3::new(0.0, 0.0, 5.0)] {
+        let focal_point = DVec3::new(-1.84375, -0.75, -3.96875);
+        let view_up = DVec3::new(-3.0, 0.96875, -0.15625);
+        renderer.camera = Some(Camera { position, focal_point, view_up, projection, clip: None });
+        let frame = renderer.render().unwrap().frame;
+        assert!(frame.depth.unwrap().data().iter().all(|z| (0.0..=1.0).contains(z)));
+    }
 }
 
 #[test]

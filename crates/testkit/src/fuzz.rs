@@ -1,10 +1,12 @@
-//! What the fuzzer feeds: for each reader, a function that takes any bytes and panics if the reader does what it must not.
+//! What the fuzzer feeds: for each reader, for the OpenGL state machine and for drawings, a function that takes any bytes and panics at
+//! what must not be.
 //!
 //! A reader may refuse; what it gives instead must be [`assert_sound`]. The targets in `fuzz/fuzz_targets` call these
 //! functions, and so does a plain test (`crates/io/tests/malformed.rs`) with every file of `fuzz/corpus`. Files beside
 //! the one that is read exist, see [`Beside`], so that the fuzzer reaches what reads them.
 
 use crate::fixture::{files_below, repository};
+pub use crate::fuzz_draw::draw;
 pub use crate::fuzz_gl::gl;
 use std::path::PathBuf;
 use vitral_exec::Workers;
@@ -13,7 +15,7 @@ use vitral_io::encode::{self, PngOptions};
 use vitral_io::{Error, NoFiles, ResolveError, Resolver, gltf, off, ply, scene_json, stl};
 use vitral_scene::{Scene, World};
 
-/// A reader to be fuzzed.
+/// Something to be fuzzed.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
     /// Of the fuzz target and of its folder in `fuzz/corpus`.
@@ -23,7 +25,8 @@ pub struct Target {
 }
 
 /// Every target.
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 10] = [
+    Target { name: "draw", run: draw },
     Target { name: "gl", run: gl },
     Target { name: "gltf", run: gltf },
     Target { name: "image", run: image },

@@ -4,6 +4,7 @@
 
 pub mod fixture;
 pub mod fuzz;
+pub mod fuzz_draw;
 pub mod fuzz_gl;
 pub mod golden;
 pub mod matrix;

@@ -5,7 +5,7 @@
 
 mod calls;
 mod groups;
-mod source;
+pub(crate) mod source;
 
 use calls::CALLS;
 use source::{BASE, LEN, Source, memory};

@@ -372,9 +372,11 @@ export class App {
     if (!catalog) return;
     const { form, problems: packing } = await unpack(fragment);
     if ([...form.keys()].length === 0) this.startForm().forEach((value, key) => form.append(key, value));
-    else if (!form.has("models")) form.append("models", JSON.stringify(this.startModels));
+    const exercise = form.has("models") ? undefined : catalog.exercises.find((e) => e.id === form.get("exercise"));
+    if (!exercise && !form.has("models")) form.append("models", JSON.stringify(this.startModels));
 
-    const { situation, problems } = read(form, catalog.defaults);
+    // A link that names an exercise and no model begins where the exercise does.
+    const { situation, problems } = read(form, catalog.defaults, exercise && overlay(catalog.defaults, exercise.start));
     const exercises = catalog.exercises.map((e) => e.id);
     if (situation.lab.exercise !== null && !exercises.includes(situation.lab.exercise)) {
       situation.lab.exercise = null;

@@ -139,9 +139,13 @@ function readLab(key: string, text: string): Partial<Lab> | undefined {
   }
 }
 
-/** Reads a form; what cannot be is told and left out. */
-export function read(form: URLSearchParams, defaults: JsonObject): { situation: Situation; problems: Problem[] } {
-  const situation: Situation = { state: copy(defaults), b: {}, lab: { ...LAB } };
+/** Reads a form into a state with every field, `start`; what cannot be is told and left out. */
+export function read(
+  form: URLSearchParams,
+  defaults: JsonObject,
+  start = defaults,
+): { situation: Situation; problems: Problem[] } {
+  const situation: Situation = { state: copy(start), b: {}, lab: { ...LAB } };
   const problems: Problem[] = [];
   for (const [key, text] of form) {
     if (Object.hasOwn(LAB, key)) {

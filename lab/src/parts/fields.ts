@@ -51,9 +51,8 @@ export function combo(
             ${o.text}
           </option>`,
       )}
-    </select>
-    ${reason.template}
-  </label>`;
+    </select></label
+    >${reason.template}`;
 }
 
 /** A number as it is typed: short, with a decimal point. */
@@ -99,9 +98,8 @@ export function spin(label: string, value: number | null, change: (value: number
       @input=${take}
       @blur=${restore}
       ${ref(show)}
-    />
-    ${reason.template}
-  </label>`;
+    /></label
+    >${reason.template}`;
 }
 
 export function check(
@@ -119,8 +117,8 @@ export function check(
       aria-describedby=${reason.id}
       @change=${(e: Event) => change((e.target as HTMLInputElement).checked)}
     />
-    <span>${label}</span>${reason.template}
-  </label>`;
+    <span>${label}</span></label
+    >${reason.template}`;
 }
 
 export function radio(label: string, name: string, isChecked: boolean, choose: () => void): TemplateResult {

@@ -33,6 +33,11 @@ export function translated(text: string): string {
   return lookUp(text);
 }
 
+/** A text of the engine in a tooltip: nothing where the table lacks it. */
+export function tooltip(text: string): string {
+  return language === "en" || Object.hasOwn(TABLE, text) ? lookUp(text) : "";
+}
+
 /** What goes in and out of a stage: numbers with words of the table. */
 export function stagePart(text: string): string {
   if (language === "en") return text;

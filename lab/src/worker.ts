@@ -19,7 +19,8 @@ export type FromWorker =
 interface Engine {
   memory: WebAssembly.Memory;
   lab_alloc(length: number): number;
-  lab_request(pointer: number, length: number): number;
+  /** Reads the message from where `lab_alloc` said, and says where the answer lies. */
+  lab_request(): number;
 }
 
 // The page's types know `self` as a window.
@@ -58,9 +59,9 @@ async function open(source: Source) {
 function request(json: JsonObject, planes: Uint8Array[]): { json: JsonObject; planes: Uint8Array[] } {
   if (!engine) return { json: { error: { message: "the engine is not open", hint: null } }, planes: [] };
   const message = encode(json, planes);
-  const pointer = engine.lab_alloc(message.length);
+  const pointer = engine.lab_alloc(message.length) >>> 0;
   new Uint8Array(engine.memory.buffer, pointer, message.length).set(message);
-  const answer = engine.lab_request(pointer, message.length) >>> 0;
+  const answer = engine.lab_request() >>> 0;
   const length = new DataView(engine.memory.buffer).getUint32(answer, true);
   return decode(new Uint8Array(engine.memory.buffer, answer + 4, length));
 }

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { after } from "node:test";
 import { readFileSync } from "node:fs";
+import { createServer } from "node:http";
 import { SMALL, close, fragment, open, pictureOf, ready, test, url } from "./browser.mjs";
 
 after(close);
@@ -245,12 +246,20 @@ test("figure and slide have no menus, and lead to the Lab", async (page) => {
 });
 
 test("a page in a frame tells its parent and is moved by it", async (page) => {
-  await page.goto("about:blank");
-  await page.setContent(`<iframe width="800" height="600" title="frame" src="${url}#${SMALL.replaceAll('"', "&quot;")}&layout=slide"></iframe>
-    <script>window.told = []; addEventListener("message", (e) => told.push(e.data));</script>`);
-  await page.waitForFunction(() => window.told.some((m) => m.type === "vitral-lab" && m.event === "ready"));
-  await page.evaluate((hash) => document.querySelector("iframe").contentWindow.postMessage({ type: "vitral-lab", hash }, "*"), `#${SMALL}&settings.visibility=warnock&layout=slide&step=2`);
-  await page.waitForFunction(() => window.told.some((m) => m.event === "step" && m.step === 2));
+  const frame = `<!doctype html><title>parent</title>
+    <script>window.told = []; addEventListener("message", (e) => told.push(e.data));</script>
+    <iframe width="800" height="600" title="frame" src="${url}#${SMALL.replaceAll('"', "&quot;")}&layout=slide"></iframe>`;
+  const server = createServer((_, answer) => answer.setHeader("Content-Type", "text/html").end(frame));
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  try {
+    await page.goto(`http://localhost:${server.address().port}/`);
+    await page.waitForFunction(() => window.told.some((m) => m.type === "vitral-lab" && m.event === "ready"));
+    const hash = `#${SMALL}&settings.visibility=warnock&layout=slide&step=2`;
+    await page.evaluate((hash) => document.querySelector("iframe").contentWindow.postMessage({ type: "vitral-lab", hash }, "*"), hash);
+    await page.waitForFunction(() => window.told.some((m) => m.event === "step" && m.step === 2));
+  } finally {
+    server.close();
+  }
 });
 
 test("a state file that is dropped is opened; other files are told", async (page) => {

@@ -12,7 +12,7 @@ const TURN = 15;
 
 /** A default viewpoint may stand for the scene's own camera: name it, or the view would jump. */
 function ownCamera(app: App, picture: "a" | "b"): Record<string, Json> {
-  const own = app.complete?.value.camera["own-camera"];
+  const own = app.complete?.value.camera["camera-index"];
   const viewpoint = JSON.stringify(app.get("viewpoint", picture));
   const isDefault = viewpoint === JSON.stringify(app.catalog?.defaults["viewpoint"]);
   return typeof own === "number" && isDefault ? { "viewpoint.camera-index": own } : {};

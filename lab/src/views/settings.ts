@@ -5,14 +5,14 @@ import { fileNameOf, type App } from "../app.ts";
 import { pickFiles } from "../files.ts";
 import type { Json } from "../json.ts";
 import { button, check, combo, group, radio, spin, type Option } from "../parts/fields.ts";
-import { t, translated } from "../words.ts";
+import { t, tooltip } from "../words.ts";
 
 type Picture = "a" | "b";
 
 /** The entries of a registry as options. */
 export function options(app: App, registry: string): Option[] {
   const list = app.catalog?.algorithms[registry] ?? [];
-  return list.map(({ name, description }) => ({ value: name, text: name, title: translated(description) }));
+  return list.map(({ name, description }) => ({ value: name, text: name, title: tooltip(description) }));
 }
 
 const named = (values: (string | number)[]): Option[] => values.map((v) => ({ value: String(v), text: String(v) }));
@@ -96,7 +96,7 @@ function model(app: App, picture: Picture): TemplateResult {
   const builtin = (app.catalog?.models ?? []).map(({ name, about }) => ({
     value: JSON.stringify([name]),
     text: name.replace("builtin:", ""),
-    title: translated(about),
+    title: tooltip(about),
   }));
   const own = [...app.hashes].map(([name, hash]) => ({ value: JSON.stringify([`file:${name}#${hash}`]), text: name }));
   const all = [...builtin, ...own.filter((o) => app.models.has(o.text))];
@@ -155,7 +155,7 @@ function coherence(app: App): TemplateResult {
       check(name, isOn(name), (on) => set(name, on), {
         reason: usable.includes(name) ? null : t("{0} does not use it", String(found?.name ?? "")),
         key: `coherence ${name}`,
-        title: translated(description),
+        title: tooltip(description),
       }),
     ),
     "two",

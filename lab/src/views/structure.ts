@@ -30,8 +30,20 @@ function stepsOf(app: App, kind: string): JsonObject[] {
   const group = app.recording?.value.groups.find((g) => g.name === kind);
   if (!group || !wants.includes("steps")) return [];
   app.answer(`steps ${kind}`, { want: "steps", state: app.state, show: kind, from: 1, to: Math.min(group.count, 20000) }, true);
-  return objects(app.answerTo(`steps ${kind}`)?.ok["steps"]);
+  const answer = app.answers.get(`steps ${kind}`);
+  if (!answer) return [];
+  const known = flattened.get(answer);
+  if (known) return known;
+  const steps = objects(answer.value.ok["steps"]).map((s): JsonObject => {
+    const fields = isObject(s["fields"]) ? s["fields"] : {};
+    return { ...fields, at: s["at"] ?? null, parent: s["parent"] ?? null };
+  });
+  flattened.set(answer, steps);
+  return steps;
 }
+
+/** Steps of an answer as their fields with their places. */
+const flattened = new WeakMap<object, JsonObject[]>();
 
 /** A step that the present one follows from. */
 function parentOf(app: App, number: Json | undefined, name: string): JsonObject | null {

@@ -4,6 +4,7 @@
 import { Engine, Refusal, Superseded, type Answer, type UserFile } from "./engine.ts";
 import { at, copy, equal, isObject, put, type Json, type JsonObject } from "./json.ts";
 import { LAB, pack, read, stateOfB, unpack, write, type Lab, type Language, type Problem, type Situation } from "./link.ts";
+import { stepWords } from "./stepwords.ts";
 import { setLanguage, t } from "./words.ts";
 
 export interface Named {
@@ -582,8 +583,19 @@ export class App {
         this.plane = { key: planeKey, value: { bytes: planes[0], width, height } };
       }
       if (step !== null) this.emit("step");
+      if (this.isPlaying) this.tellStep();
       this.stepDone?.();
     }, true);
+  }
+
+  private toldTime = 0;
+
+  /** Says a step while they play: at most once in two seconds, and not what the slider says itself. */
+  private tellStep() {
+    const now = performance.now();
+    if (now - this.toldTime < 2000 || document.activeElement?.matches("input[type=range]")) return;
+    this.toldTime = now;
+    if (this.step) this.message = stepWords(this.step.value);
   }
 
   private stepDone: (() => void) | undefined;

@@ -75,7 +75,7 @@ interface Drag {
 let drag: Drag | null = null;
 
 /** What dragging in the picture moves. */
-let dragMode: "camera" | "pixel" = "camera";
+let dragMode: "camera" | "pixel" | "highlight" = "camera";
 
 function pixelAt(app: App, e: MouseEvent, element: Element): [number, number] {
   const box = element.getBoundingClientRect();
@@ -90,9 +90,8 @@ function pointerDown(app: App, e: PointerEvent, picture: "a" | "b") {
   const box = e.currentTarget as HTMLElement;
   box.focus({ preventScroll: true });
   box.setPointerCapture(e.pointerId);
-  if (dragMode === "pixel") {
-    app.inspect(pixelAt(app, e, canvasOf(e)));
-  }
+  if (dragMode === "pixel") app.inspect(pixelAt(app, e, canvasOf(e)));
+  if (dragMode === "highlight") void moveHighlight(app, pixelAt(app, e, canvasOf(e)));
   const number = (path: string) => Number(app.get(path, picture) ?? 0);
   drag = {
     x: e.clientX,
@@ -107,6 +106,7 @@ function pointerDown(app: App, e: PointerEvent, picture: "a" | "b") {
 function pointerMove(app: App, e: PointerEvent, picture: "a" | "b") {
   if (!drag) return;
   if (dragMode === "pixel") return app.inspect(pixelAt(app, e, canvasOf(e)));
+  if (dragMode === "highlight") return void moveHighlight(app, pixelAt(app, e, canvasOf(e)));
   const [dx, dy] = [e.clientX - drag.x, e.clientY - drag.y];
   if (!drag.hasMoved && Math.hypot(dx, dy) < 4) return;
   drag.hasMoved = true;
@@ -114,6 +114,30 @@ function pointerMove(app: App, e: PointerEvent, picture: "a" | "b") {
   const scale = 180 / canvasOf(e).getBoundingClientRect().width;
   const round = (v: number) => Math.round(v * 10) / 10;
   turn(app, { azimuth: round(drag.azimuth - dx * scale), elevation: round(drag.elevation + dy * scale) }, picture);
+}
+
+/** Puts the chosen light where its highlight falls on the point of a pixel: L = 2N(N·V) - V. */
+async function moveHighlight(app: App, pixel: [number, number]) {
+  const light = app.complete?.value.lights[app.lightNumber];
+  const eye = eyeOf(app);
+  const place = light && placeOf(light);
+  if (!place || !eye) return;
+  const answer = await app.engine.ask("highlight", { want: "explain", state: app.state, pixel }).catch(() => null);
+  const whole = answer?.ok["explanation"] as { light?: { points?: { world: Vector; evaluations: { normal: Vector; viewer: Vector }[] }[] } } | undefined;
+  const point = whole?.light?.points?.[0];
+  const evaluation = point?.evaluations[0];
+  if (!point || !evaluation) return;
+  const { normal: n, viewer: v } = evaluation;
+  const cosine = n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
+  const l = n.map((c, i) => 2 * c * cosine - v[i]!) as Vector;
+
+  // From the eye's space to the world's.
+  const along = (i: 0 | 1 | 2) => l[0] * eye.right[i] + l[1] * eye.up[i] + l[2] * eye.back[i];
+  const towards: Vector = [along(0), along(1), along(2)];
+  const round = (c: number) => Number(c.toPrecision(5));
+  if (place[3] === 0) return setPlace(app, app.lightNumber, [...towards.map(round), 0]);
+  const distance = Math.hypot(...point.world.map((c, i) => c - place[i]!));
+  setPlace(app, app.lightNumber, [...point.world.map((c, i) => round(c + towards[i]! * distance)), 1]);
 }
 
 function pointerUp(app: App) {
@@ -278,6 +302,7 @@ export function dragChoice(app: App): TemplateResult {
   const options = [
     { value: "camera", text: t("Camera") },
     { value: "pixel", text: t("Pixel") },
+    { value: "highlight", text: t("Highlight") },
   ];
   return combo(t("Drag"), dragMode, options, (value) => {
     dragMode = value as typeof dragMode;

@@ -7,7 +7,7 @@ import { button, spin } from "../parts/fields.ts";
 import { number } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
-import { t, translated } from "../words.ts";
+import { isEnglish, t, translated } from "../words.ts";
 import { whyWords } from "../why.ts";
 
 export const objects = (v: Json | undefined): JsonObject[] => (Array.isArray(v) ? v.filter(isObject) : []);
@@ -74,7 +74,7 @@ function decisions(app: App, explanation: JsonObject): TemplateResult {
   const rows = all.map((d): Cell[] => [
     String(d["algorithm"]),
     typeof d["facet"] === "number" ? d["facet"] : t("background"),
-    (Array.isArray(d["steps"]) ? d["steps"] : []).slice(0, 30).map((s) => html`<span class="line">${String(s)}</span>`) as unknown as TemplateResult,
+    html`${decisionWords(d).map((s) => html`<span class="line">${s}</span>`)}`,
   ]);
   const ask = () => {
     app.answer("ask-all", { want: "ask-all", state: app.state, pixel }, true);
@@ -82,6 +82,15 @@ function decisions(app: App, explanation: JsonObject): TemplateResult {
   };
   return html`${table({ name: t("Decisions"), columns: [t("algorithm"), t("facet"), t("why")], rows, caption: true })}
   ${isCurrent ? nothing : button(t("Ask all algorithms"), ask)}`;
+}
+
+/** Why an algorithm decided as it did. Its own words are English. */
+function decisionWords(decision: JsonObject): string[] {
+  const steps = (Array.isArray(decision["steps"]) ? decision["steps"] : []).map(String);
+  if (isEnglish()) return steps.slice(0, 30);
+  const known = steps.map((s) => /^facet (\d+) comes with depth ([\d.e-]+), .*: facet (\d+) stays$/.exec(s));
+  if (steps.length && known.every((k) => k)) return known.map((k) => t("facet {0}, depth {1}: {2} stays", k![1]!, k![2]!, k![3]!));
+  return [t("{0} steps", steps.length)];
 }
 
 const askKey = (app: App) => JSON.stringify({ want: "ask-all", state: app.state, pixel: app.lab.pixel });

@@ -28,7 +28,7 @@ const STYLES: [(&str, &str); 8] = [
 ];
 
 /// Seconds that a drawing may take.
-const LIMIT: &str = "20";
+const LIMIT: &str = "60";
 
 /// Drawings across a page, and down.
 const PAGE: (usize, usize) = (5, 4);

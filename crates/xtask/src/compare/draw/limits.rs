@@ -24,7 +24,7 @@ pub(super) struct Held {
     pub(super) code: Option<i32>,
     pub(super) seconds: f64,
     pub(super) peak: Option<u64>,
-    /// The last line of its standard error.
+    /// The last line of its standard error that is no hint.
     pub(super) said: String,
     /// Whether the command kept to the limit.
     pub(super) kept: bool,
@@ -72,6 +72,6 @@ fn held(vitral: &Path, mesh: &'static str, path: &Path, options: &str) -> Result
     let kept = matches!(code, Some(0 | 7))
         && (!options.contains("--time-limit") || done.seconds <= TIME.0 + TIME.1)
         && (!options.contains("--max-memory") || done.peak.is_none_or(|peak| peak as f64 <= most));
-    let said = done.output.lines().last().unwrap_or_default().to_owned();
+    let said = done.output.lines().rev().find(|line| !line.starts_with("hint:")).unwrap_or_default().to_owned();
     Ok(Held { mesh, options, code, seconds: done.seconds, peak: done.peak, said, kept })
 }

@@ -646,7 +646,6 @@ export class App {
         // An older answer is shown on the way, as while something is dragged.
         const isNewest = this.wanted.get(name) === key;
         if (!isNewest && name !== "picture" && name !== "pictureB") return;
-        if (isNewest) this.refused.delete(name);
         take(answer);
         this.changed();
       },
@@ -659,11 +658,8 @@ export class App {
     );
   }
 
-  /** Requests that were refused, lest they be asked again and again. */
-  private readonly refused = new Map<string, string>();
-
+  /** Tells why a request was refused. It counts as sent, lest it be sent again and again. */
   private refuse(name: string, key: string, error: unknown) {
-    this.refused.set(name, key);
     this.wanted.set(name, key);
     if (name === "picture" && this.plane) this.plane = { ...this.plane, key };
     if (name === "pictureB" && this.planeB) this.planeB = { ...this.planeB, key };

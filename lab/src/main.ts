@@ -21,12 +21,24 @@ function lacking(): string[] {
   return missing;
 }
 
+/** Lets the keyboard into what can be scrolled, and past what need not be. */
+function markScrollers(root: HTMLElement) {
+  for (const e of root.querySelectorAll<HTMLElement>(".scroll[role=group]")) {
+    const canScroll = e.scrollHeight > e.clientHeight + 1 || e.scrollWidth > e.clientWidth + 1;
+    if (canScroll) e.tabIndex = 0;
+    else if (e !== document.activeElement) e.removeAttribute("tabindex");
+  }
+}
+
 async function start() {
   const root = document.getElementById("lab")!;
   const hash = new URLSearchParams(location.hash.slice(1)).get("lang");
   setLanguage(hash === "ro" || hash === "fr" || hash === "pt" || hash === "en" ? hash : browserLanguage());
   const app = new App();
-  app.onRender(() => render(page(app), root));
+  app.onRender(() => {
+    render(page(app), root);
+    app.after("scrollers", 200, () => markScrollers(root));
+  });
   app.changed();
   const missing = lacking();
   if (missing.length) return app.fail(t("This browser lacks {0}", missing.join(", ")));

@@ -165,7 +165,7 @@ export function page(app: App): TemplateResult {
       ${menubar(app)}
     </header>
     ${topics(app)} ${messages(app)}
-    <div class="columns">
+    <div class=${app.lab.compare === "side" || app.lab.compare === "difference" ? "columns wide-pictures" : "columns"}>
       <main>${pictures(app)}</main>
       ${settings(app)}
       <div class="regions">${regions(app)}</div>

@@ -42,7 +42,7 @@ function elementOf(text: string, namespace: string, allowed: Set<string>, use: s
   const whole = text.includes("xmlns") ? text : text.replace(/^\s*<(svg|math)/, `<$1 xmlns="${namespace}"`);
   const parsed = new DOMParser().parseFromString(whole, "application/xml").documentElement;
   const made = parsed.namespaceURI === namespace ? copyOf(parsed, namespace, allowed) : null;
-  if (cache.size > 60) cache.clear();
+  if (cache.size > 20) cache.clear();
   cache.set(key, made);
   return made;
 }

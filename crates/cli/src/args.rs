@@ -2,6 +2,7 @@
 
 use crate::draw_args::DrawArgs;
 use crate::help::{EXIT_CODES, model_help};
+use crate::lab_args::LabPageArgs;
 use crate::render_args::{CameraArgs, EyeArgs, RenderArgs};
 use crate::values;
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -33,6 +34,8 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Make a vector drawing of one or more models: visible and hidden lines
     Draw(Box<DrawArgs>),
+    /// Open the Lab in a browser: the course's algorithms to watch, step through and question
+    Lab(LabPageArgs),
     /// Tell what is in a model file
     Info(InfoArgs),
     /// Compare two pictures; exit code 6 when they differ

@@ -75,8 +75,12 @@ impl DrawFile {
         Ok(PageSize::Sheet { width, height })
     }
 
-    /// What the format leaves out of a drawing.
+    /// What the format leaves out of a drawing, or that there is nothing in it.
     pub(crate) fn warning(&self, drawing: &Drawing) -> Option<String> {
+        if drawing.lines.is_empty() && drawing.regions.is_empty() {
+            let what = "nothing is drawn: the models have no surface or line that this style shows";
+            return Some(format!("{}: {what} (--style lines draws free points, too)", self.path.display()));
+        }
         let is_left_out = !drawing.regions.is_empty() && (self.plotter || !self.format.has_fills());
         is_left_out.then(|| format!("{}: filled regions are left out", self.path.display()))
     }

@@ -58,7 +58,7 @@ pub(crate) fn hint(error: &Error) -> Option<String> {
             "leave out --transparency-order, or --global ray-trace".to_owned()
         }
         Error::Render(RenderError::Limit(Limit::Memory { .. })) => {
-            "fewer samples or a smaller resolution need less memory".to_owned()
+            "fewer samples, a smaller resolution, or in drawings fewer classes of --lines need less memory".to_owned()
         }
         Error::Render(RenderError::Limit(Limit::Segments { .. })) => {
             "draw fewer classes of --lines, or raise --max-segments".to_owned()

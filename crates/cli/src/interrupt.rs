@@ -20,6 +20,12 @@ pub(crate) fn heed(budget: &Budget, work: impl FnOnce() -> Result<u8, Failure>) 
     if cancelled.load(Ordering::Relaxed) { Ok(INTERRUPTED) } else { result }
 }
 
+/// Ends the process at Ctrl-C, for work that has no end of its own.
+#[cfg(feature = "lab")]
+pub(crate) fn end_at_ctrl_c() {
+    listen(Arc::default());
+}
+
 /// Sets `cancelled` at the first Ctrl-C. Where no handler can be set, the system's default ends the process.
 fn listen(cancelled: Arc<AtomicBool>) {
     let handler = move || {

@@ -21,6 +21,8 @@ mod fields;
 mod help;
 mod info_command;
 mod interrupt;
+mod lab;
+mod lab_args;
 mod light_spec;
 mod no_effect;
 mod osmesa_env_command;
@@ -66,6 +68,7 @@ fn run() -> Result<u8, Failure> {
     match cli.verb {
         Verb::Render(args) => render_command::run(&args),
         Verb::Draw(args) => draw_command::run(&args),
+        Verb::Lab(args) => lab::run(&args),
         Verb::Info(args) => info_command::run(&args),
         Verb::Compare(args) => compare_command::run(&args),
         Verb::Bench(args) => bench_command::run(&args),

@@ -3,23 +3,28 @@
 use serde::Serialize;
 use vitral_raster::GeometryCounters;
 
-/// Declares a group of counters, each once: the struct, which is written under the same names in kebab case, and the sum
-/// with another group. A `count` is added up. A `number` and a `measure` are set by whoever knows them.
+/// Declares a group of counters, each once: the struct, which is written under the same names in kebab case, the sum
+/// with another group, and what each means. A `count` is added up. A `number` and a `measure` are set by whoever knows them.
 macro_rules! counters {
     (
         $(#[$about:meta])*
         $name:ident += $summand:ty {
-            $( $(#[$text:meta])* $field:ident: $kind:ident, )+
+            $( $(#[doc = $text:literal])+ $field:ident: $kind:ident, )+
         }
     ) => {
         $(#[$about])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
         #[serde(rename_all = "kebab-case")]
         pub struct $name {
-            $( $(#[$text])* pub $field: counters!(@type $kind), )+
+            $( $(#[doc = $text])+ pub $field: counters!(@type $kind), )+
         }
 
         impl $name {
+            /// What each counter means, in the order of the fields; names have `_` for `-`.
+            pub const MEANINGS: &[(&str, &str)] = &[
+                $( (stringify!($field), concat!($($text),+).trim_ascii()), )+
+            ];
+
             /// Adds the counts of `other`.
             pub(crate) fn add(&mut self, other: &$summand) {
                 $( counters!(@add $kind, self.$field, other.$field); )+

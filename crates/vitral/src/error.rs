@@ -92,7 +92,7 @@ impl From<Limit> for Error {
 
 impl Error {
     /// [`Error::Usage`] from texts.
-    pub(crate) fn usage(what: impl Into<String>, hint: impl Into<String>) -> Self {
+    pub fn usage(what: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Usage { what: what.into(), hint: hint.into() }
     }
 }

@@ -4,7 +4,7 @@ use crate::Error;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Component, Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 use vitral_exec::Workers;
 use vitral_io::{ResolveError, Resolver};
 
@@ -136,7 +136,7 @@ fn read_in_pieces(file: &mut File, length: usize, bytes: &mut Vec<u8>, workers: 
         // There is room for it. New pages are zero without being written.
         *bytes = Vec::new();
         let mut whole = vec![0; length];
-        let (complete, shared) = (AtomicBool::new(true), &*file);
+        let (complete, shared) = (std::sync::atomic::AtomicBool::new(true), &*file);
         workers.for_each_chunk(&mut whole, PIECE, |number, piece| {
             if shared.read_exact_at(piece, (number * PIECE) as u64).is_err() {
                 complete.store(false, Ordering::Relaxed);

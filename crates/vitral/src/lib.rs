@@ -48,6 +48,7 @@
 //! set, for comparison.
 #![forbid(unsafe_code)]
 
+mod algorithms;
 pub mod bench;
 mod drawing;
 pub mod dump;
@@ -71,6 +72,7 @@ pub mod state;
 mod system_clock;
 mod viewpoint;
 
+pub use algorithms::algorithms;
 pub use drawing::{ColorBy, DrawingFormat, FillSettings};
 pub use error::Error;
 pub use exercise::{EXERCISES, Exercise};

@@ -288,7 +288,7 @@ pub fn encode_with(
     options: &EncodeOptions,
 ) -> Result<Vec<u8>, Error> {
     check(channel, format)?;
-    let missing = || Error::usage(format!("the channel {} was not rendered", channel.name()), "");
+    let missing = || not_rendered(channel);
     let numbers = PngOptions { srgb: false };
     let ids = |plane: &Option<Plane<u32>>| {
         let plane = plane.as_ref().ok_or_else(missing)?;
@@ -334,6 +334,35 @@ pub fn encode_with(
             }
         }
     }
+}
+
+/// A channel as it looks in a picture: RGBA in the display's encoding, straight opacity.
+///
+/// # Errors
+/// [`Error::Usage`] for a channel that was not rendered.
+pub fn shown(frame: &Frame, channel: Channel) -> Result<Plane<[u8; 4]>, Error> {
+    let grey = |share: f32| {
+        let byte = vitral_math::color::byte_from_unit(share);
+        [byte, byte, byte, 255]
+    };
+    let ids = |plane: &Option<Plane<u32>>| plane.as_ref().map(|plane| plane.map(|&id| id_color(id)));
+    let shares = |plane: &Option<Plane<f32>>| plane.as_ref().map(|plane| plane.map(|&share| grey(share)));
+    let shown = match channel {
+        Channel::Color => frame.color.clone(),
+        Channel::Steps => frame.steps.clone(),
+        Channel::Depth => shares(&frame.depth),
+        Channel::AttachedShadow => shares(&frame.attached_shadow),
+        Channel::CastShadow => shares(&frame.cast_shadow),
+        Channel::Surface => ids(&frame.surface),
+        Channel::Object => ids(&frame.object),
+        Channel::Material => ids(&frame.material),
+        Channel::Normal => frame.normal.as_ref().map(|plane| plane.map(|&n| normal_color(n))),
+    };
+    shown.ok_or_else(|| not_rendered(channel))
+}
+
+fn not_rendered(channel: Channel) -> Error {
+    Error::usage(format!("the channel {} was not rendered", channel.name()), "")
 }
 
 /// Colours in a format for pictures.

@@ -206,7 +206,15 @@ impl State {
     /// # Errors
     /// As [`load_scene`](Self::load_scene).
     pub fn load_scene_on(&self, workers: &Workers) -> Result<Scene, Error> {
-        let mut scenes = self.models.iter().map(|model| load_on(model, &self.load, workers));
+        self.load_scene_by(|model| load_on(model, &self.load, workers))
+    }
+
+    /// [`load_scene`](Self::load_scene) where models are no paths: `load` reads one by its name, as [`State::load`] says.
+    ///
+    /// # Errors
+    /// As [`load_scene`](Self::load_scene).
+    pub fn load_scene_by(&self, load: impl FnMut(&String) -> Result<Scene, Error>) -> Result<Scene, Error> {
+        let mut scenes = self.models.iter().map(load);
         let mut scene =
             scenes.next().ok_or_else(|| Error::usage("there is no model", "name a file or builtin:teapot"))??;
         for other in scenes {

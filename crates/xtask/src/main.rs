@@ -1,10 +1,11 @@
-//! Developer commands: `cargo xtask test | check | circles | bless | osmesa | clients | sanitize | vectors | compare | sheets`.
+//! Developer commands: `cargo xtask test | check | circles | bless | lab | osmesa | clients | sanitize | vectors | compare | sheets`.
 #![forbid(unsafe_code)]
 
 mod bless;
 mod check;
 mod clients;
 mod compare;
+mod lab;
 mod osmesa;
 mod prepare;
 mod sanitize;
@@ -24,6 +25,7 @@ cargo xtask check                 the floors and the rules of the house that the
 cargo xtask circles [CRATE...] [--all]
                                   which source files import each other, and by which names (all imports)
 cargo xtask bless [FILTER]        write the golden images anew (of the tests whose name contains FILTER)
+cargo xtask lab                   build the Lab: its page, its engine, and target/release/vitral with both inside
 cargo xtask osmesa                build libOSMesa and lay it out in target/osmesa
 cargo xtask clients               run MuJoCo, Gymnasium, PyOpenGL, GLFW and a C program with it and with Mesa's, compare
 cargo xtask sanitize [TOOL...]    Miri, Valgrind and the sanitizers watch libOSMesa (miri, valgrind, thread, address)
@@ -46,6 +48,7 @@ fn main() -> ExitCode {
         ["bless", filter] => bless::run(Some(filter)),
         ["clients"] => clients::run_all(),
         ["sanitize", tools @ ..] => sanitize::run_all(tools),
+        ["lab"] => lab::run_all(),
         ["osmesa"] => osmesa::run_all(),
         ["vectors"] => vectors::run_all(),
         ["compare", "draw", options @ ..] => compare::draw::run(options),

@@ -69,7 +69,7 @@ export function table(t: Table, changed: () => void = () => {}): TemplateResult 
     </tbody>
   </table>`;
   if (!isLong) {
-    return html`<div class="scroll" role="group" aria-label=${t.name}>${content}</div>`;
+    return html`<div class="scroll" tabindex="0" role="group" aria-label=${t.name}>${content}</div>`;
   }
   const scrolled = (e: Event) => {
     const at = Math.floor((e.target as HTMLElement).scrollTop / ROW);
@@ -77,7 +77,7 @@ export function table(t: Table, changed: () => void = () => {}): TemplateResult 
     offsets.set(t.name, at);
     if (Math.abs(at - before) > 10 || at - 20 < first || at + VISIBLE_ROWS > first + 80) changed();
   };
-  return html`<div class="scroll windowed" role="group" aria-label=${t.name} @scroll=${scrolled}>
+  return html`<div class="scroll windowed" tabindex="0" role="group" aria-label=${t.name} @scroll=${scrolled}>
     <div .style=${css({ height: `${(t.rows.length + 1) * ROW}px` })}>${content}</div>
   </div>`;
 }

@@ -54,7 +54,7 @@ export function formulaRegion(app: App): TemplateResult {
   return html`<section class="region formula" aria-labelledby="formula-title">
     <h2 id="formula-title">${t("Formula")}</h2>
     ${f
-      ? html`<div class="math scroll" role="group" aria-label=${t("Formula")}>
+      ? html`<div class="math scroll" tabindex="0" role="group" aria-label=${t("Formula")}>
             ${typeof mathml === "string" ? formula(mathml, "letters") : nothing} ${typeof numbers === "string" ? formula(numbers, "numbers") : nothing}
           </div>
           ${table({ name: t("Values"), columns: [t("symbol"), t("value"), t("meaning"), t("set in")], rows, caption: true })}`

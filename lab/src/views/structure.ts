@@ -200,7 +200,7 @@ function entries(name: string, items: { text: string; isCurrent?: boolean; choos
   const shown = items.slice(first, first + MOST);
   return labelled(
     name,
-    html`<div class="scroll" role="group" aria-label=${name}>
+    html`<div class="scroll" tabindex="0" role="group" aria-label=${name}>
       <ol role="list" aria-label=${name} start=${first + 1}>
         ${shown.map(
           (i, n) =>

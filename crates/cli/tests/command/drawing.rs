@@ -191,3 +191,13 @@ fn options_that_do_not_suit_the_file_are_told() {
         assert!(errors(&output).contains(said), "{arguments:?}: {}", errors(&output));
     }
 }
+
+#[test]
+fn a_drawing_without_anything_in_it_is_told() {
+    let folder = Folder::new("empty-drawing");
+    folder.file("point.obj", "v 0 0 0\nv 1 1 0\np 1\np 2\n");
+    let output = folder.run(&["draw", "point.obj", "--style", "filled", "-o", "x.svg"]);
+    assert!(output.status.success() && errors(&output).contains("nothing is drawn"), "{}", errors(&output));
+    let output = folder.run(&["draw", "point.obj", "-o", "x.svg"]);
+    assert!(output.status.success() && !errors(&output).contains("nothing is drawn"), "{}", errors(&output));
+}

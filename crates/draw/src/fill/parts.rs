@@ -44,7 +44,8 @@ pub(super) struct Parts {
     pub(super) contacts: Vec<[u32; 2]>,
 }
 
-/// The look of a part. The order is that of painting.
+/// The look of a part. The order is that of painting: equal colours after each other, so that nothing of another colour reaches between
+/// them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
     /// 0 for what is opaque; clear layers come over each other in this order.
@@ -59,8 +60,8 @@ pub(super) struct Look {
 }
 
 impl Look {
-    fn key(&self) -> (u32, u32, [u8; 3], [u32; 3]) {
-        (self.over, self.material, self.color, [self.opacity.to_bits(), self.unlit, self.face])
+    fn key(&self) -> (u32, [u8; 3], u32, [u32; 3]) {
+        (self.over, self.color, self.material, [self.opacity.to_bits(), self.unlit, self.face])
     }
 }
 

@@ -81,8 +81,19 @@ impl<'w> Replay<'w> {
         }
     }
 
-    /// The picture after the steps that were taken.
+    /// The picture after the steps that were taken, with what the last of them is about outlined.
     pub fn picture(&self) -> Plane<[u8; 4]> {
+        let mut picture = self.decided();
+        if let Some(last) = self.taken.checked_sub(1) {
+            let mut data = picture.data().to_vec();
+            self.outline(&self.watched.steps[last].step, &mut data);
+            picture = Plane::from_rows(self.canvas.width, self.canvas.height, data).expect("as many pixels as before");
+        }
+        picture
+    }
+
+    /// The picture after the steps that were taken: what is decided so far.
+    pub fn decided(&self) -> Plane<[u8; 4]> {
         let pixel = |(i, shown): (usize, &Shown)| match *shown {
             Shown::Paper => opaque(PAPER),
             Shown::Background => self.watched.background[i / self.canvas.width as usize],
@@ -90,10 +101,7 @@ impl<'w> Replay<'w> {
             Shown::Surface(surface) if self.watched.seen[i] == Some(surface) => self.watched.image.data()[i],
             Shown::Surface(surface) => opaque(pale(surface)),
         };
-        let mut data: Vec<[u8; 4]> = self.shown.iter().enumerate().map(pixel).collect();
-        if let Some(last) = self.taken.checked_sub(1) {
-            self.outline(&self.watched.steps[last].step, &mut data);
-        }
+        let data: Vec<[u8; 4]> = self.shown.iter().enumerate().map(pixel).collect();
         Plane::from_rows(self.canvas.width, self.canvas.height, data).expect("as many pixels as before")
     }
 

@@ -23,6 +23,7 @@ const FLOORS: [(&str, u32, u32); 15] = [
     ("vitral", 4, 0),
     ("vitral-cli", 4, 1),
     ("vitral-lab", 4, 1),
+    ("vitral-lab-wasm", 4, 2),
     ("vitral-osmesa", 4, 1),
     ("vitral-python", 4, 1),
 ];

@@ -8,8 +8,9 @@ use super::tokens::{Token, in_tests, tokens};
 const MOST_LINES: usize = 700;
 
 /// Where `unsafe` may live, and why.
-const UNSAFE_PLACES: [&str; 3] = [
+const UNSAFE_PLACES: [&str; 4] = [
     "crates/osmesa/",     // the C ABI
+    "crates/lab-wasm/",   // the attribute that exports a name to WebAssembly, the page's clock; no unsafe block
     "crates/wasm-probe/", // the attribute that exports a name to WebAssembly; no unsafe block
     "fuzz/",              // the fuzzer's entry
 ];

@@ -1,0 +1,100 @@
+//! What the page begins with: models with the files that they name, and a state.
+
+use crate::lab_args::LabPageArgs;
+use crate::report::Failure;
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::Mutex;
+use vitral::{Error, FolderResolver, LoadOptions, ResolveError, Resolver, State, load_bytes_with};
+
+/// A file that the page gets.
+pub(super) struct GivenFile {
+    /// Its path from the model's folder, or the model's own name.
+    pub(super) name: String,
+    pub(super) bytes: Vec<u8>,
+}
+
+/// See the module.
+pub(super) struct Begin {
+    pub(super) files: Vec<GivenFile>,
+    /// Names of models, as states of the page call them.
+    models: Vec<String>,
+    state: Option<Value>,
+}
+
+impl Begin {
+    /// Reads the models, and what they name, and the state.
+    pub(super) fn new(args: &LabPageArgs) -> Result<Self, Failure> {
+        let mut state = None;
+        let mut models: Vec<_> = args.models.clone();
+        if let Some(file) = &args.load_state {
+            let text = vitral::read(file, 64 << 20)?;
+            let text = String::from_utf8_lossy(&text).into_owned();
+            let mut read = State::from_json(&text, &file.to_string_lossy())?;
+            read.enter(file.parent().unwrap_or(Path::new("")));
+            if models.is_empty() {
+                models = read.models.iter().map(Into::into).collect();
+            }
+            read.models.clear();
+            state = Some(serde_json::to_value(&read).map_err(|e| Failure::other(e.to_string()))?);
+        }
+
+        let mut begin = Self { files: Vec::new(), models: Vec::new(), state };
+        let options = LoadOptions { allow_external: args.allow_external, ..LoadOptions::default() };
+        for model in &models {
+            begin.add(model, &options)?;
+        }
+        Ok(begin)
+    }
+
+    /// Adds a model and the files that it names. What cannot be read is refused before a page shows.
+    fn add(&mut self, model: &Path, options: &LoadOptions) -> Result<(), Failure> {
+        let text = model.to_string_lossy();
+        if text.starts_with("builtin:") {
+            vitral::load(model)?;
+            self.models.push(text.into_owned());
+            return Ok(());
+        }
+        let bytes = vitral::read(model, options.max_file_bytes)?;
+        let name = model.file_name().unwrap_or(model.as_os_str()).to_string_lossy().into_owned();
+        let folder = model.parent().unwrap_or(Path::new(""));
+        let folder = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
+        let noted = Noted { folder, files: Mutex::default() };
+        load_bytes_with(&bytes, &name, &noted, &LoadOptions { make_normals: false, ..options.clone() })?;
+        self.files.extend(noted.files.into_inner().unwrap_or_default());
+        self.models.push(format!("file:{name}"));
+        self.files.push(GivenFile { name, bytes });
+        Ok(())
+    }
+
+    /// What the page reads, where `address` gives the place of a file by its number, if it has one.
+    pub(super) fn start(&self, address: impl Fn(usize) -> Option<String>) -> String {
+        let file = |(number, file): (usize, &GivenFile)| json!({"name": file.name, "url": address(number)?}).into();
+        let files: Vec<Value> = self.files.iter().enumerate().filter_map(file).collect();
+        let text = json!({"models": self.models, "files": files, "state": self.state}).to_string();
+        format!(r#"<script type="application/json" id="lab-start">{}</script>"#, text.replace("</", "<\\/"))
+    }
+}
+
+/// Notes the files that a model reads.
+struct Noted {
+    folder: FolderResolver,
+    files: Mutex<Vec<GivenFile>>,
+}
+
+impl Resolver for Noted {
+    fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
+        let bytes = self.folder.read(path)?;
+        if let Ok(mut files) = self.files.lock()
+            && files.iter().all(|file| file.name != path)
+        {
+            files.push(GivenFile { name: path.to_owned(), bytes: bytes.clone() });
+        }
+        Ok(bytes)
+    }
+}
+
+/// The error of a file that cannot be written.
+pub(super) fn not_written(path: &Path, source: std::io::Error) -> Failure {
+    Error::Write { path: path.to_owned(), source }.into()
+}

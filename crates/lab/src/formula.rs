@@ -1,0 +1,157 @@
+//! The formula of illumination in force, in MathML: in the course's letters, then with the pixel's numbers; and its values as a table.
+//!
+//! Source: the course, notes V, illumination: `I = Σ Ia ka f + S f (Id kd N·L + Is ks (R·V)ⁿ)`, with Blinn's `N·H`.
+
+use serde_json::{Value, json};
+use vitral::explain::Explanation;
+use vitral::internals::render::shading::pixel_light::{CoefficientValues, Evaluation};
+
+/// The formula at a pixel; `null` where no light is computed.
+pub(crate) fn formula(told: &Explanation, lights: &[String]) -> Value {
+    let Some(point) = told.light.points.first() else { return Value::Null };
+    let Some(evaluation) = point.evaluations.first() else { return Value::Null };
+    json!({
+        "model": point.model,
+        "mathml": symbols(point.model),
+        "numbers": numbers(evaluation, told),
+        "values": values(evaluation, told, lights),
+    })
+}
+
+fn identifier(name: &str, index: &str) -> String {
+    if index.is_empty() { format!("<mi>{name}</mi>") } else { format!("<msub><mi>{name}</mi><mi>{index}</mi></msub>") }
+}
+
+fn number(value: f32) -> String {
+    format!("<mn>{}</mn>", digits(value))
+}
+
+/// A number with six digits.
+fn digits(value: f32) -> String {
+    let text = format!("{value:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// The formula in letters.
+fn symbols(model: &str) -> String {
+    let dot = |a: &str, b: &str| {
+        format!(
+            "<mrow><mo>(</mo><mi mathvariant=\"bold\">{a}</mi><mo>·</mo><mi mathvariant=\"bold\">{b}</mi><mo>)</mo></mrow>"
+        )
+    };
+    let i = |index: &str| identifier("I", index);
+    let k = |index: &str| identifier("k", index);
+    let ambient = format!("{}{}", i("a"), k("a"));
+    let diffuse = format!("{}{}{}", i("d"), k("d"), dot("N", "L"));
+    let specular = match model {
+        "phong" => format!("{}{}<msup>{}<mi>n</mi></msup>", i("s"), k("s"), dot("R", "V")),
+        "blinn-phong" => format!("{}{}<msup>{}<mi>n</mi></msup>", i("s"), k("s"), dot("N", "H")),
+        "constant" | "ambient" | "lambert" => String::new(),
+        _ => format!(
+            "{}<mfrac><mrow><mi>F</mi><mi>D</mi><mi>G</mi></mrow><mrow><mn>4</mn>{}{}</mrow></mfrac>{}",
+            i("s"),
+            dot("N", "L"),
+            dot("N", "V"),
+            dot("N", "L")
+        ),
+    };
+    let lit = if specular.is_empty() { diffuse } else { format!("{diffuse}<mo>+</mo>{specular}") };
+    format!(
+        "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\"><mi>I</mi><mo>=</mo>{}{}<mo>+</mo>\
+         <munder><mo>∑</mo><mtext>lights</mtext></munder><mrow><mo>(</mo>{ambient}<mo>+</mo><mi>S</mi>{}<mo>(</mo>{lit}<mo>)</mo>\
+         <mo>)</mo></mrow></math>",
+        i("A"),
+        k("a"),
+        identifier("f", "att")
+    )
+}
+
+/// The formula with the green channel's numbers.
+fn numbers(evaluation: &Evaluation, told: &Explanation) -> String {
+    const GREEN: usize = 1;
+    let mut terms = vec![number(evaluation.ambient[GREEN])];
+    for of_light in &evaluation.lights {
+        let t = &of_light.terms;
+        terms.push(format!(
+            "<mrow><mo>(</mo>{}<mo>+</mo>{}<mo>+</mo>{}<mo>)</mo></mrow>",
+            number(t.ambient[GREEN]),
+            number(t.diffuse[GREEN]),
+            number(t.specular[GREEN])
+        ));
+    }
+    let sum = evaluation.diffuse[GREEN] + evaluation.specular[GREEN];
+    let byte = told.light.bytes[GREEN];
+    format!(
+        "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\"><msub><mi>I</mi><mtext>green</mtext></msub><mo>=</mo>{}\
+         <mo>=</mo>{}<mo>→</mo><mn>{byte}</mn></math>",
+        terms.join("<mo>+</mo>"),
+        number(sum)
+    )
+}
+
+/// Symbols with their values and meanings; a setting is where the value can be changed.
+fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec<Value> {
+    let mut rows = Vec::new();
+    let mut row = |symbol: String, value: String, meaning: &str, setting: Option<String>| {
+        rows.push(json!({"symbol": symbol, "value": value, "meaning": meaning, "setting": setting}));
+    };
+    let three = |rgb: [f32; 3]| rgb.map(digits).join(" ");
+    row("N".to_owned(), three(evaluation.normal), "unit normal, view space", None);
+    row("V".to_owned(), three(evaluation.viewer), "unit vector to the viewer, view space", None);
+    match evaluation.coefficients {
+        CoefficientValues::Empirical { ka, kd, ks, shininess } => {
+            row("ka".to_owned(), three(ka), "ambient coefficient of the material", Some("materials.ka".to_owned()));
+            row("kd".to_owned(), three(kd), "diffuse coefficient", Some("materials.kd".to_owned()));
+            row("ks".to_owned(), three(ks), "specular coefficient", Some("materials.ks".to_owned()));
+            row("n".to_owned(), digits(shininess), "exponent of the highlight", Some("materials.shininess".to_owned()));
+        }
+        CoefficientValues::Microfacet { base_color, metallic, roughness, occlusion } => {
+            row("base".to_owned(), three(base_color), "base colour", Some("materials.base-color".to_owned()));
+            row("metallic".to_owned(), digits(metallic), "0 a dielectric, 1 a metal", None);
+            row("roughness".to_owned(), digits(roughness), "roughness of the surface", None);
+            row("occlusion".to_owned(), digits(occlusion), "how much ambient light arrives", None);
+        }
+    }
+    row(
+        "IA ka".to_owned(),
+        three(evaluation.ambient),
+        "ambient light of the scene times ka",
+        Some("ambient".to_owned()),
+    );
+
+    // Each light.
+    for of_light in &evaluation.lights {
+        let (t, name) = (&of_light.terms, &lights[of_light.light]);
+        let mut of = |symbol: &str, value: String, meaning: &str| {
+            row(format!("{symbol} ({name})"), value, meaning, Some(format!("lights.{}", of_light.light)));
+        };
+        let [ambient, diffuse, specular] = t.colors.map(three);
+        of("Ia", ambient, "ambient colour of the light");
+        of("Id", diffuse, "diffuse colour of the light");
+        of("Is", specular, "specular colour of the light");
+        of("L", three(t.l), "unit vector to the light, view space");
+        of("N·L", digits(t.n_l), "cosine of the angle of incidence, 0 behind the surface");
+        of("f_att", digits(t.attenuation), "what distance leaves of the light");
+        of("S", three(t.visibility), "which part arrives: 1 without shadow");
+        if let Some(highlight) = t.highlight {
+            let (symbol, meaning) = match highlight.r {
+                Some(_) => ("R·V", "cosine between the mirrored light and the viewer"),
+                None => ("N·H", "cosine between the normal and the halfway vector"),
+            };
+            of(symbol, digits(highlight.cosine), meaning);
+            of("lobe", digits(highlight.lobe), "that cosine to the power n, or the microfacets' lobe");
+        }
+        of("ambient", three(t.ambient), "ambient term");
+        of("diffuse", three(t.diffuse), "diffuse term");
+        of("specular", three(t.specular), "specular term");
+    }
+    row("I".to_owned(), three(told.light.straight), "the sum of all samples, before it is encoded", None);
+    row(
+        "bytes".to_owned(),
+        told.light.bytes[..3].iter().map(u8::to_string).collect::<Vec<_>>().join(" "),
+        "the pixel's bytes",
+        None,
+    );
+    rows
+}

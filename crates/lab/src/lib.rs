@@ -1,0 +1,135 @@
+//! The engine of the Lab, a page on which every algorithm and formula of the course can be watched and questioned.
+//!
+//! The page sends requests, JSON with planes of bytes beside it, and gets answers of the same form; [`Lab::answer`] is all there is.
+//! A request names what it wants, and carries the state, in the form of the command line's state files:
+//!
+//! ```
+//! let mut lab = vitral_lab::Lab::default();
+//! let request = r#"{"want": "picture", "state": {"models": ["builtin:cubs"], "settings": {"width": 64, "height": 48}}}"#;
+//! let answer = lab.answer(vitral_lab::Message { json: request.to_owned(), planes: Vec::new() });
+//! assert!(answer.json.starts_with(r#"{"ok":"#));
+//! assert_eq!(answer.planes[0].len(), 64 * 48 * 4);
+//! ```
+//!
+//! | want | gives |
+//! |---|---|
+//! | `catalog` | what there is to choose from: algorithms, built-in scenes, exercises, the defaults of all settings |
+//! | `files` | keeps the user's own files |
+//! | `complete` | the state with every field, its lights and materials |
+//! | `picture` | pixels of a channel, counters with their meaning |
+//! | `record`, `step` | the steps of the visibility algorithm; the picture, words and numbers after one |
+//! | `steps` | the words and numbers of many steps |
+//! | `structure` | the structure that the algorithm built, as SVG |
+//! | `explain`, `ask-all` | a pixel: its surfaces, its light, the formula with its numbers |
+//! | `compare`, `compare-all` | two states; all visibility algorithms |
+//! | `stages` | what each stage of the pipeline hands on |
+//! | `info` | what is in the scene |
+//! | `check` | whether an exercise is done |
+//! | `save` | the state, a command, or a drawing, as text |
+//! | `curve` | the curves of cosⁿ and attenuation |
+//!
+//! Nothing here knows of browsers; `vitral-lab-wasm` is the way in from JavaScript.
+#![forbid(unsafe_code)]
+
+mod catalog;
+mod compare;
+mod complete;
+mod curve;
+mod exercises;
+mod explain;
+mod files;
+mod formula;
+mod message;
+mod overlay;
+mod picture;
+mod request;
+mod save;
+mod scene;
+mod stages;
+mod steps;
+#[cfg(test)]
+mod tests;
+mod why;
+
+pub use message::Message;
+pub use vitral::Clock;
+
+use files::Files;
+use request::{Request, Want};
+use scene::Stage;
+use serde_json::{Value, json};
+use std::sync::Arc;
+use steps::Recording;
+use vitral::Error;
+
+/// What an answer consists of.
+pub(crate) type Answer = Result<(Value, Vec<Vec<u8>>), Error>;
+
+/// Answers requests, and keeps what the next ones may need: files, the scene, recorded steps.
+#[derive(Default)]
+pub struct Lab {
+    files: Files,
+    stage: Stage,
+    recording: Option<Recording>,
+}
+
+impl std::fmt::Debug for Lab {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Lab").field("files", &self.files).finish_non_exhaustive()
+    }
+}
+
+impl Lab {
+    /// With a clock, for the times that answers tell; without one they are 0.
+    pub fn with_clock(clock: Arc<dyn Clock>) -> Self {
+        Self { stage: Stage::with_clock(clock), ..Self::default() }
+    }
+
+    /// Answers a request: `{"ok": ...}` with planes, or `{"error": {"message", "hint"}}`.
+    pub fn answer(&mut self, message: Message) -> Message {
+        let Message { json, planes } = message;
+        match self.carry_out(&json, planes) {
+            Ok((ok, planes)) => Message { json: json!({"ok": ok}).to_string(), planes },
+            Err(error) => {
+                let hint = match &error {
+                    Error::Usage { hint, .. } | Error::Unsupported { hint, .. } if !hint.is_empty() => Some(hint),
+                    _ => None,
+                };
+                let told = json!({"error": {"message": error.to_string(), "hint": hint}});
+                Message { json: told.to_string(), planes: Vec::new() }
+            }
+        }
+    }
+
+    fn carry_out(&mut self, json: &str, planes: Vec<Vec<u8>>) -> Answer {
+        let Request { want, state } = Request::from_json(json)?;
+        let Self { files, stage, recording } = self;
+        match want {
+            Want::Catalog => catalog::catalog(),
+            Want::Files { files: names } => {
+                names.into_iter().zip(planes).for_each(|(file, bytes)| files.keep(&file.name, bytes));
+                stage.forget();
+                Ok((json!({"files": files.list()}), Vec::new()))
+            }
+            Want::Complete => complete::complete(stage.show(&state, files)?, &state),
+            Want::Picture { channel, coarse } => picture::picture(stage.show(&state, files)?, &state, channel, coarse),
+            Want::Record { pixel } => steps::record(stage, files, &state, pixel, recording),
+            Want::Step { number, show, pixel } => {
+                steps::step(stage, files, &state, pixel, recording, number, show.as_deref())
+            }
+            Want::Steps { from, to, show, pixel } => {
+                steps::steps(stage, files, &state, pixel, recording, [from, to], show.as_deref())
+            }
+            Want::Structure => steps::structure(stage, files, &state, recording),
+            Want::Explain { pixel } => explain::explain(stage.show(&state, files)?, pixel),
+            Want::AskAll { pixel } => explain::ask_all(stage.show(&state, files)?, pixel),
+            Want::Compare { b } => compare::compare(stage, files, &state, &b),
+            Want::CompareAll => compare::compare_all(stage.show(&state, files)?),
+            Want::Stages { pixel } => stages::stages(stage.show(&state, files)?, pixel),
+            Want::Info => stages::info(stage.show(&state, files)?),
+            Want::Check { exercise } => exercises::check(stage.show(&state, files)?, &state, &exercise),
+            Want::Save { what } => save::save(stage.show(&state, files)?, &state, what),
+            Want::Curve { what, ns, c } => curve::curve(what, ns, c),
+        }
+    }
+}

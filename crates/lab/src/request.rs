@@ -1,0 +1,140 @@
+//! Requests, as the page writes them.
+
+use serde::Deserialize;
+use serde_json::Value;
+use vitral::{Error, State};
+
+/// What is wanted, of which state.
+#[derive(Debug)]
+pub(crate) struct Request {
+    pub(crate) want: Want,
+    pub(crate) state: State,
+}
+
+/// A file that comes with a request, as a plane.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FileName {
+    pub(crate) name: String,
+}
+
+/// What is to be saved.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Saved {
+    State,
+    Command,
+    Drawing,
+}
+
+/// What a curve shows.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Curve {
+    /// `cosⁿ` of an angle from -90 to 90 degrees.
+    CosN,
+    /// What distance leaves of a light.
+    Attenuation,
+}
+
+/// What can be wanted, by its names in requests.
+pub(crate) const WANTS: [&str; 17] = [
+    "catalog",
+    "files",
+    "complete",
+    "picture",
+    "record",
+    "step",
+    "steps",
+    "structure",
+    "explain",
+    "ask-all",
+    "compare",
+    "compare-all",
+    "stages",
+    "info",
+    "check",
+    "save",
+    "curve",
+];
+
+/// See the crate's table.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "want", rename_all = "kebab-case", rename_all_fields = "kebab-case")]
+pub(crate) enum Want {
+    Catalog,
+    Files {
+        files: Vec<FileName>,
+    },
+    Complete,
+    Picture {
+        channel: Option<String>,
+        #[serde(default)]
+        coarse: bool,
+    },
+    Record {
+        pixel: Option<[u32; 2]>,
+    },
+    Step {
+        /// Counted from 1, among those that are shown.
+        number: u32,
+        /// `all`, `pixel`, or a group.
+        show: Option<String>,
+        pixel: Option<[u32; 2]>,
+    },
+    Steps {
+        /// The first, counted from 1 among those that are shown.
+        from: u32,
+        /// The last.
+        to: u32,
+        show: Option<String>,
+        pixel: Option<[u32; 2]>,
+    },
+    Structure,
+    Explain {
+        pixel: [u32; 2],
+    },
+    AskAll {
+        pixel: [u32; 2],
+    },
+    Compare {
+        #[serde(deserialize_with = "state_value")]
+        b: State,
+    },
+    CompareAll,
+    Stages {
+        pixel: Option<[u32; 2]>,
+    },
+    Info,
+    Check {
+        exercise: String,
+    },
+    Save {
+        what: Saved,
+    },
+    Curve {
+        what: Curve,
+        ns: Option<f64>,
+        c: Option<[f64; 3]>,
+    },
+}
+
+/// A state, with messages that name its fields.
+fn state_value<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<State, D::Error> {
+    let value = Value::deserialize(deserializer)?;
+    State::from_json(&value.to_string(), "b").map_err(serde::de::Error::custom)
+}
+
+impl Request {
+    pub(crate) fn from_json(json: &str) -> Result<Self, Error> {
+        let unreadable = |e: serde_json::Error| Error::usage(format!("a request that cannot be read: {e}"), "");
+        let mut value: Value = serde_json::from_str(json).map_err(unreadable)?;
+        let state = value.as_object_mut().and_then(|object| object.remove("state"));
+        let state = match state {
+            Some(state) => State::from_json(&state.to_string(), "state")?,
+            None => State::default(),
+        };
+        let want = serde_json::from_value(value).map_err(unreadable)?;
+        Ok(Self { want, state })
+    }
+}

@@ -1,0 +1,208 @@
+//! The steps of the visibility algorithm: recorded once, then any of them shown.
+
+use crate::files::Files;
+use crate::scene::Stage;
+use crate::{Answer, overlay};
+use serde_json::{Value, json};
+use std::mem::{Discriminant, discriminant};
+use vitral::internals::render::trace::Step;
+use vitral::internals::render::trace::replay::{Replay, WatchedSteps};
+use vitral::internals::render::trace::structure::drawer;
+use vitral::{Error, State};
+
+/// Steps that come at once.
+const MOST_STEPS: u32 = 20_000;
+/// Members of a list that come with one of many steps.
+const MOST_MEMBERS: usize = 64;
+
+/// Steps of a state.
+pub(crate) struct Recording {
+    /// The state that they were recorded of, and the pixel that was watched.
+    key: String,
+    watched: WatchedSteps,
+    /// The kind of each step, as a place among the groups.
+    kinds: Vec<u8>,
+    /// The kinds, in the order of their first steps, as traces name them.
+    groups: Vec<String>,
+    seconds: f64,
+}
+
+impl Recording {
+    fn new(stage: &Stage, files: &Files, state: &State, key: String) -> Result<Self, Error> {
+        // A renderer that knows nothing tells all that there is to do.
+        let mut renderer = stage.renderer(state, files)?;
+        let camera = renderer.frame_camera();
+        let mut watched = renderer.watch_steps(&camera)?;
+        let seconds = renderer.execution().budget.elapsed();
+
+        // What is decided shows the colours of the finished picture, with all its samples.
+        if let Some(color) = renderer.render_from(&camera)?.frame.color.take() {
+            watched.image = color;
+        }
+        let (mut found, mut groups): (Vec<Discriminant<Step>>, Vec<String>) = Default::default();
+        let kinds = watched.steps.iter().map(|numbered| {
+            let kind = discriminant(&numbered.step);
+            found.iter().position(|other| *other == kind).unwrap_or_else(|| {
+                found.push(kind);
+                let fields = serde_json::to_value(&numbered.step).unwrap_or(Value::Null);
+                groups.push(fields["step"].as_str().unwrap_or_default().to_owned());
+                found.len() - 1
+            }) as u8
+        });
+        let kinds = kinds.collect();
+        Ok(Self { key, watched, kinds, groups, seconds })
+    }
+
+    /// Numbers of the steps that are shown: all, those about a pixel, or those of a group.
+    fn shown(&self, show: Option<&str>, pixel: Option<[u32; 2]>) -> Result<Vec<u32>, Error> {
+        let steps = &self.watched.steps;
+        let numbers = 0..steps.len() as u32;
+        match show.unwrap_or("all") {
+            "all" => Ok(numbers.collect()),
+            "pixel" => {
+                let pixel = pixel.ok_or_else(|| Error::usage("no pixel is inspected", "choose one in the picture"))?;
+                Ok(numbers.filter(|&n| steps[n as usize].step.concerns(pixel)).collect())
+            }
+            group => match self.groups.iter().position(|name| name == group) {
+                Some(kind) => Ok(numbers.filter(|&n| usize::from(self.kinds[n as usize]) == kind).collect()),
+                None => Err(Error::usage(
+                    format!("the algorithm has no steps `{group}`"),
+                    format!("choose all, pixel or {}", self.groups.join(", ")),
+                )),
+            },
+        }
+    }
+}
+
+/// The recording of a state, a new one if the kept one is of another.
+fn recorded<'r>(
+    stage: &Stage,
+    files: &Files,
+    state: &State,
+    kept: &'r mut Option<Recording>,
+) -> Result<&'r Recording, Error> {
+    let key = state.to_json();
+    match kept {
+        Some(recording) if recording.key == key => {}
+        _ => {
+            *kept = None;
+            *kept = Some(Recording::new(stage, files, state, key)?);
+        }
+    }
+    Ok(kept.as_ref().expect("it was just put there"))
+}
+
+/// Records the steps of a state: how many there are, of which kinds.
+pub(crate) fn record(
+    stage: &Stage,
+    files: &Files,
+    state: &State,
+    pixel: Option<[u32; 2]>,
+    kept: &mut Option<Recording>,
+) -> Answer {
+    let recording = recorded(stage, files, state, kept)?;
+    let count = |kind: usize| recording.kinds.iter().filter(|&&k| usize::from(k) == kind).count();
+    let groups: Vec<Value> =
+        recording.groups.iter().enumerate().map(|(kind, name)| json!({"name": name, "count": count(kind)})).collect();
+    let about = pixel.map(|_| recording.shown(Some("pixel"), pixel).map(|steps| steps.len())).transpose()?;
+    let answer = json!({
+        "steps": recording.watched.steps.len(),
+        "complete": true,
+        "groups": groups,
+        "at-pixel": about,
+        "seconds": recording.seconds,
+    });
+    Ok((answer, Vec::new()))
+}
+
+/// A step: the picture so far, what it is about as a drawing over it, its words and its fields.
+pub(crate) fn step(
+    stage: &Stage,
+    files: &Files,
+    state: &State,
+    pixel: Option<[u32; 2]>,
+    kept: &mut Option<Recording>,
+    number: u32,
+    show: Option<&str>,
+) -> Answer {
+    // Find it among those that are shown.
+    let recording = recorded(stage, files, state, kept)?;
+    let shown = recording.shown(show, pixel)?;
+    let place = (number as usize).checked_sub(1).and_then(|place| shown.get(place));
+    let &at = place.ok_or_else(|| {
+        Error::usage(format!("there is no step {number}"), format!("they are counted from 1 to {}", shown.len()))
+    })?;
+
+    // Go there from the first.
+    let mut replay = Replay::new(&recording.watched);
+    replay.go_to(at as usize);
+    let decided = replay.decided();
+    let numbered = &recording.watched.steps[at as usize];
+    let about = pixel.unwrap_or_else(|| overlay::place(&numbered.step));
+    let answer = json!({
+        "number": number,
+        "total": shown.len(),
+        "at": at + 1,
+        "parent": numbered.parent.map(|parent| parent + 1),
+        "group": recording.groups[usize::from(recording.kinds[at as usize])],
+        "words": numbered.step.tell(about),
+        "fields": numbered.step,
+        "drawing": overlay::drawing(&numbered.step, decided.width(), decided.height()),
+        "width": decided.width(),
+        "height": decided.height(),
+    });
+    Ok((answer, vec![decided.data().as_flattened().to_vec()]))
+}
+
+/// The words and fields of the steps from one number to another, without pictures. Long lists in them are cut.
+pub(crate) fn steps(
+    stage: &Stage,
+    files: &Files,
+    state: &State,
+    pixel: Option<[u32; 2]>,
+    kept: &mut Option<Recording>,
+    [from, to]: [u32; 2],
+    show: Option<&str>,
+) -> Answer {
+    let recording = recorded(stage, files, state, kept)?;
+    let shown = recording.shown(show, pixel)?;
+    if from == 0 || to < from || to - from >= MOST_STEPS {
+        let hint = format!("they are counted from 1 to {}, and at most {MOST_STEPS} come at once", shown.len());
+        return Err(Error::usage(format!("there are no steps {from} to {to}"), hint));
+    }
+    let told = shown.iter().enumerate().skip(from as usize - 1).take((to - from) as usize + 1).map(|(place, &at)| {
+        let numbered = &recording.watched.steps[at as usize];
+        let mut fields = serde_json::to_value(numbered).unwrap_or(Value::Null);
+        if let Some(fields) = fields.as_object_mut() {
+            if matches!(numbered.step, Step::Drawn { .. }) {
+                fields.retain(|name, _| name != "stays" && name != "hidden");
+            }
+            fields.values_mut().for_each(shorten);
+        }
+        json!({
+            "number": place + 1,
+            "at": at + 1,
+            "parent": numbered.parent.map(|parent| parent + 1),
+            "words": numbered.step.tell(pixel.unwrap_or_else(|| overlay::place(&numbered.step))),
+            "fields": fields,
+        })
+    });
+    let told: Vec<Value> = told.collect();
+    Ok((json!({"steps": told, "total": shown.len()}), Vec::new()))
+}
+
+/// Leaves of a list its first members.
+fn shorten(value: &mut Value) {
+    if let Value::Array(list) = value {
+        list.truncate(MOST_MEMBERS);
+    }
+}
+
+/// The structure that the algorithm built, as SVG; none if it has no picture.
+pub(crate) fn structure(stage: &Stage, files: &Files, state: &State, kept: &mut Option<Recording>) -> Answer {
+    let recording = recorded(stage, files, state, kept)?;
+    let image = &recording.watched.image;
+    let draw = drawer(state.settings.visibility);
+    let drawing = draw.map(|draw| draw(&recording.watched.steps, image.width(), image.height()));
+    Ok((json!({"drawing": drawing}), Vec::new()))
+}

@@ -1,0 +1,219 @@
+use crate::{Lab, Message};
+use serde_json::{Value, json};
+use vitral::State;
+
+/// The answer to a request, which must be one.
+fn ask(lab: &mut Lab, request: Value) -> (Value, Vec<Vec<u8>>) {
+    let answer = lab.answer(Message { json: request.to_string(), planes: Vec::new() });
+    let told: Value = serde_json::from_str(&answer.json).unwrap();
+    assert!(told["error"].is_null(), "{told}");
+    (told["ok"].clone(), answer.planes)
+}
+
+fn error(lab: &mut Lab, request: Value) -> String {
+    let answer = lab.answer(Message { json: request.to_string(), planes: Vec::new() });
+    let told: Value = serde_json::from_str(&answer.json).unwrap();
+    told["error"]["message"].as_str().unwrap_or_else(|| panic!("{told}")).to_owned()
+}
+
+fn small(model: &str, settings: Value) -> Value {
+    let mut state = json!({"models": [model], "settings": {"width": 48, "height": 36}});
+    for (name, value) in settings.as_object().unwrap() {
+        state["settings"][name] = value.clone();
+    }
+    state
+}
+
+#[test]
+fn the_catalog_has_all_that_can_be_chosen() {
+    let (catalog, _) = ask(&mut Lab::default(), json!({"want": "catalog"}));
+    assert_eq!(catalog["algorithms"], vitral::algorithms());
+    for want in catalog["wants"].as_array().unwrap() {
+        let answer = Lab::default().answer(Message { json: json!({"want": want}).to_string(), planes: Vec::new() });
+        assert!(!answer.json.contains("unknown variant"), "{}", answer.json);
+    }
+    assert_eq!(catalog["models"].as_array().unwrap().len(), vitral::builtin_names().len());
+    let defaults: State = serde_json::from_value(catalog["defaults"].clone()).unwrap();
+    assert_eq!(defaults, State::default());
+}
+
+#[test]
+fn the_picture_is_the_renderers_byte_for_byte() {
+    let state = small("builtin:cubs", json!({"shading": "gouraud", "visibility": "warnock"}));
+    let (told, planes) = ask(&mut Lab::default(), json!({"want": "picture", "state": state}));
+    let state = State::from_json(&state.to_string(), "s").unwrap();
+    let mut renderer = vitral::Renderer::new(state.load_scene().unwrap()).unwrap();
+    state.apply(&mut renderer).unwrap();
+    assert_eq!(planes[0], renderer.render().unwrap().rgba8());
+    assert_eq!(told["description"], "cubs seen from the default side, warnock, gouraud shading, 2 lights");
+    let counters = told["counters"].as_array().unwrap();
+    let windows = counters.iter().find(|row| row["name"] == "visibility.windows").unwrap();
+    assert!(windows["value"].as_u64().unwrap() > 0 && windows["meaning"] == "Area subdivision: windows looked at.");
+}
+
+#[test]
+fn every_algorithm_is_stepped_and_ends_with_the_picture() {
+    let mut lab = Lab::default();
+    for algorithm in vitral::Visibility::all() {
+        let state = small("builtin:cubs", json!({"visibility": algorithm.name}));
+        let (_, picture) = ask(&mut lab, json!({"want": "picture", "state": state}));
+        let (told, _) = ask(&mut lab, json!({"want": "record", "state": state, "pixel": [24, 18]}));
+        let steps = told["steps"].as_u64().unwrap();
+        let counted: u64 = told["groups"].as_array().unwrap().iter().map(|g| g["count"].as_u64().unwrap()).sum();
+        assert!(steps > 0 && counted == steps, "{} {told}", algorithm.name);
+
+        // The last step shows what is left; any other is reached from there.
+        let step = |number: u64| json!({"want": "step", "state": state, "number": number});
+        let (last, end) = ask(&mut lab, step(steps));
+        assert_eq!((&last["number"], &last["total"]), (&json!(steps), &json!(steps)));
+        assert_eq!(end, picture, "{}", algorithm.name);
+        let (first, begin) = ask(&mut lab, step(1));
+        assert!(begin != end && !first["words"].as_str().unwrap().is_empty(), "{}", algorithm.name);
+        assert!(first["drawing"].as_str().unwrap().starts_with("<svg"));
+        assert!(error(&mut lab, step(steps + 1)).contains("there is no step"));
+    }
+}
+
+#[test]
+fn steps_of_a_group_and_of_a_pixel_are_fewer() {
+    let mut lab = Lab::default();
+    let state = small("builtin:cubs", json!({"visibility": "warnock"}));
+    let (told, _) = ask(&mut lab, json!({"want": "record", "state": state, "pixel": [24, 18]}));
+    let windows = told["groups"].as_array().unwrap().iter().find(|g| g["name"] == "window").unwrap()["count"].clone();
+    let step = |show: &str, number: u64| json!({"want": "step", "state": state, "number": number, "show": show, "pixel": [24, 18]});
+    let (told_window, _) = ask(&mut lab, step("window", 1));
+    assert_eq!((&told_window["total"], &told_window["group"]), (&windows, &json!("window")));
+    let (at_pixel, _) = ask(&mut lab, step("pixel", 1));
+    assert_eq!(at_pixel["total"], told["at-pixel"]);
+    assert!(at_pixel["total"].as_u64() < windows.as_u64());
+    assert!(error(&mut lab, step("line", 1)).contains("no steps `line`"));
+    let many = json!({"want": "steps", "state": state, "from": 2, "to": 4, "show": "window"});
+    let (many, _) = ask(&mut lab, many);
+    let numbers: Vec<u64> = many["steps"].as_array().unwrap().iter().map(|s| s["number"].as_u64().unwrap()).collect();
+    assert_eq!(numbers, [2, 3, 4]);
+    assert_eq!((&many["total"], &many["steps"][0]["fields"]["path"]), (&windows, &json!("0")));
+    let (structure, _) = ask(&mut lab, json!({"want": "structure", "state": state}));
+    assert!(structure["drawing"].as_str().unwrap().contains("<svg"));
+}
+
+#[test]
+fn a_pixel_is_explained_with_its_formula_and_why() {
+    let mut lab = Lab::default();
+    let state = small("builtin:sphere", json!({"illumination": "phong"}));
+    let (told, _) = ask(&mut lab, json!({"want": "explain", "state": state, "pixel": [24, 18]}));
+    let why = told["why"].as_array().unwrap();
+    assert!(why[0].as_str().unwrap().contains("is seen here"), "{why:?}");
+    assert_eq!(why.len(), 3, "{why:?}");
+    let mathml = told["formula"]["mathml"].as_str().unwrap();
+    assert!(mathml.starts_with("<math") && mathml.contains("<mi mathvariant=\"bold\">R</mi>"));
+    let values = told["formula"]["values"].as_array().unwrap();
+    let bytes = values.iter().find(|row| row["symbol"] == "bytes").unwrap()["value"].as_str().unwrap();
+    let (_, picture) = ask(&mut lab, json!({"want": "picture", "state": state}));
+    let at = (18 * 48 + 24) * 4;
+    assert_eq!(bytes, picture[0][at..at + 3].iter().map(u8::to_string).collect::<Vec<_>>().join(" "));
+
+    // Behind the sphere's edge there is nothing.
+    let (nothing, _) = ask(&mut lab, json!({"want": "explain", "state": state, "pixel": [0, 0]}));
+    assert_eq!(nothing["why"], json!(["No surface is here: the pixel shows the background."]));
+    assert_eq!(nothing["formula"], Value::Null);
+    let (all, _) = ask(&mut lab, json!({"want": "ask-all", "state": state, "pixel": [24, 18]}));
+    let decisions = all["decisions"].as_array().unwrap();
+    assert!(decisions.len() > 8 && decisions.iter().all(|d| d["facet"] == decisions[0]["facet"]));
+}
+
+#[test]
+fn algorithms_agree_and_defects_do_not() {
+    let mut lab = Lab::default();
+    let [a, b, c] = [json!({"visibility": "bsp"}), json!({"visibility": "painter"}), json!({"shading": "flat"})]
+        .map(|settings| small("builtin:sphere", settings));
+    let (same, planes) = ask(&mut lab, json!({"want": "compare", "state": a, "b": b}));
+    assert_eq!((&same["agreement"]["differ"], planes.len()), (&json!(0), 3));
+    let (other, _) = ask(&mut lab, json!({"want": "compare", "state": a, "b": c}));
+    assert!(other["agreement"]["differ"].as_u64().unwrap() > 20);
+    assert_eq!(other["agreement"]["first"].as_array().unwrap().len(), 20);
+    let (all, _) = ask(&mut lab, json!({"want": "compare-all", "state": a}));
+    assert!(all["rows"].as_array().unwrap().iter().all(|row| row["differ"] == 0), "{all}");
+}
+
+#[test]
+fn exercises_are_refused_at_first_and_passed_when_done() {
+    let mut lab = Lab::default();
+    let (catalog, _) = ask(&mut lab, json!({"want": "catalog"}));
+    let edit = |light: &str, field: &str, value: &str| json!({"light": light, "field": field, "value": value});
+    for exercise in catalog["exercises"].as_array().unwrap() {
+        let (id, start) = (exercise["id"].as_str().unwrap(), &exercise["start"]);
+        let mut check = |state: &Value| ask(&mut lab, json!({"want": "check", "state": state, "exercise": id})).0;
+        let refused = check(start);
+        assert!(refused["passed"] == false, "{id}: {refused}");
+        assert!(refused["message"].as_str().unwrap().starts_with("Not yet: "));
+
+        let mut done = start.clone();
+        match id {
+            "4.1" => done["light-edits"] = json!([edit("LIGHT0", "enabled", "off")]),
+            "4.2" => {
+                done["light-edits"] = json!([
+                    edit("LIGHT0", "ambient", "0"),
+                    edit("LIGHT0", "specular", "0"),
+                    edit("LIGHT0", "position", "-6,2,6"),
+                ]);
+            }
+            "4.3" => done["settings"]["lighting"] = json!(false),
+            "5.1" => {
+                let green = json!({"name": "LIGHT2", "kind": {"type": "directional", "direction": [-1, 0, 0]},
+                    "ambient": [0, 1, 0], "diffuse": [0, 1, 0], "specular": [0, 1, 0]});
+                done["lights"].as_array_mut().unwrap().push(green);
+            }
+            "5.2" => done["load"]["normals"] = json!("none"),
+            "P17" => done["settings"]["depth-bits"] = json!(8),
+            "P40" => done["light-edits"] = json!([edit("LIGHT0", "attenuation", "0,0,0.1")]),
+            other => panic!("{other} has no way to be done here"),
+        }
+        let passed = check(&done);
+        assert!(passed["passed"] == true, "{id}: {passed}");
+    }
+}
+
+#[test]
+fn stages_info_and_texts_are_told() {
+    let mut lab = Lab::default();
+    let state = small("builtin:cubs", json!({}));
+    let (told, _) = ask(&mut lab, json!({"want": "stages", "state": state, "pixel": [24, 18]}));
+    assert_eq!(told["stages"].as_array().unwrap().len(), 4);
+    for space in ["world", "view", "clip"] {
+        assert_eq!(told["spaces"][space].as_array().unwrap().len(), 3, "{space}: {told}");
+    }
+    let (info, _) = ask(&mut lab, json!({"want": "info", "state": state}));
+    assert!(info["rows"].as_array().unwrap().iter().any(|row| row["name"] == "triangles"));
+    let (complete, _) = ask(&mut lab, json!({"want": "complete", "state": state}));
+    assert_eq!(complete["lights"].as_array().unwrap().len(), 2);
+    let save = |what: &str| json!({"want": "save", "state": state, "what": what});
+    let (drawing, _) = ask(&mut lab, save("drawing"));
+    assert!(drawing["text"].as_str().unwrap().starts_with("<svg"));
+    let (saved, _) = ask(&mut lab, save("state"));
+    assert!(State::from_json(saved["text"].as_str().unwrap(), "s").is_ok());
+}
+
+#[test]
+fn mistakes_are_told_and_the_next_request_works() {
+    let mut lab = Lab::default();
+    assert!(error(&mut lab, json!({"want": "tea"})).contains("unknown variant `tea`"));
+    let told = error(&mut lab, json!({"want": "picture", "state": {"settings": {"visiblity": "bsp"}}}));
+    assert!(told.contains("settings") && told.contains("visiblity"), "{told}");
+    assert!(error(&mut lab, json!({"want": "picture", "state": {"models": ["x.obj"]}})).contains("no such model"));
+    let told = lab.answer(Message { json: "{".to_owned(), planes: Vec::new() });
+    assert!(told.json.contains("cannot be read"));
+    ask(&mut lab, json!({"want": "picture", "state": small("builtin:cubs", json!({}))}));
+}
+
+#[test]
+fn own_files_are_models() {
+    let mut lab = Lab::default();
+    let file = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n".to_vec();
+    let request = json!({"want": "files", "files": [{"name": "t.obj"}]});
+    let told = lab.answer(Message { json: request.to_string(), planes: vec![file] });
+    let told: Value = serde_json::from_str(&told.json).unwrap();
+    let hash = told["ok"]["files"][0]["hash"].as_str().unwrap();
+    let (picture, _) =
+        ask(&mut lab, json!({"want": "picture", "state": small(&format!("file:t.obj#{hash}"), json!({}))}));
+    assert_eq!(picture["facts"]["triangles"], 1);
+}

@@ -1,7 +1,8 @@
 //! What there is to choose from.
 
+use crate::answer::Answer;
+use crate::exercises;
 use crate::request::WANTS;
-use crate::{Answer, exercises};
 use serde_json::{Value, json};
 use vitral::picture::Channel;
 use vitral::{State, algorithms, builtin_names};

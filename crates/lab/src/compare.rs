@@ -1,6 +1,6 @@
 //! Two states beside each other, and all visibility algorithms.
 
-use crate::Answer;
+use crate::answer::Answer;
 use crate::files::Files;
 use crate::scene::Stage;
 use serde_json::{Value, json};

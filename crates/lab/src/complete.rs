@@ -1,6 +1,6 @@
 //! The state with every field, and what it leads to: lights, materials, camera.
 
-use crate::Answer;
+use crate::answer::Answer;
 use serde_json::json;
 use vitral::{Projection, Renderer, State};
 

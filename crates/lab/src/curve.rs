@@ -2,7 +2,7 @@
 //!
 //! Source: the course, notes V: Phong's exponent, attenuation `1 / (c1 + c2 d + c3 d²)`, at most 1.
 
-use crate::Answer;
+use crate::answer::Answer;
 use crate::request::Curve;
 use serde_json::json;
 use std::fmt::Write;
@@ -64,7 +64,7 @@ mod tests {
         for ns in [1.0, 5.0, 50.0] {
             let points = points(curve(Curve::CosN, Some(ns), None));
             assert_eq!(points[90], [0.0, 1.0]);
-            let half = f64::acos(f64::powf(0.5, 1.0 / ns)).to_degrees();
+            let half = func::acos(func::pow(0.5, 1.0 / ns)).to_degrees();
             for [degrees, value] in points {
                 assert_eq!(value >= 0.5, degrees.abs() <= half, "{ns} {degrees}");
             }

@@ -3,7 +3,7 @@
 //!
 //! Source: the course, notes L, chapters 4 and 5, and notes P.
 
-use crate::Answer;
+use crate::answer::Answer;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use vitral::{Attenuation, Error, Light, LightKind, Normals, Renderer, State, Visibility};

@@ -1,6 +1,7 @@
 //! A pixel, taken apart.
 
-use crate::{Answer, formula, why};
+use crate::answer::Answer;
+use crate::{formula, why};
 use serde_json::{Value, json};
 use vitral::bench::Entrant;
 use vitral::explain::{Deciders, Explanation, explain as explain_pixel};

@@ -31,6 +31,7 @@
 //! Nothing here knows of browsers; `vitral-lab-wasm` is the way in from JavaScript.
 #![forbid(unsafe_code)]
 
+mod answer;
 mod catalog;
 mod compare;
 mod complete;
@@ -54,16 +55,14 @@ mod why;
 pub use message::Message;
 pub use vitral::Clock;
 
+use answer::Answer;
 use files::Files;
 use request::{Request, Want};
 use scene::Stage;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::sync::Arc;
 use steps::Recording;
 use vitral::Error;
-
-/// What an answer consists of.
-pub(crate) type Answer = Result<(Value, Vec<Vec<u8>>), Error>;
 
 /// Answers requests, and keeps what the next ones may need: files, the scene, recorded steps.
 #[derive(Default)]

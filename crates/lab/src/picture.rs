@@ -1,6 +1,6 @@
 //! A picture, its counters, and what it shows in words.
 
-use crate::Answer;
+use crate::answer::Answer;
 use serde_json::{Value, json};
 use vitral::internals::render::stats::{GeometryStats, PictureCounters, TracingCounters};
 use vitral::picture::{self, Channel};

@@ -99,7 +99,7 @@ pub(crate) enum Want {
     },
     Compare {
         #[serde(deserialize_with = "state_value")]
-        b: State,
+        b: Box<State>,
     },
     CompareAll,
     Stages {
@@ -120,9 +120,9 @@ pub(crate) enum Want {
 }
 
 /// A state, with messages that name its fields.
-fn state_value<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<State, D::Error> {
+fn state_value<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Box<State>, D::Error> {
     let value = Value::deserialize(deserializer)?;
-    State::from_json(&value.to_string(), "b").map_err(serde::de::Error::custom)
+    State::from_json(&value.to_string(), "b").map(Box::new).map_err(serde::de::Error::custom)
 }
 
 impl Request {

@@ -1,6 +1,6 @@
 //! What the page saves as text.
 
-use crate::Answer;
+use crate::answer::Answer;
 use crate::request::Saved;
 use serde_json::json;
 use vitral::{DrawingFormat, DrawingOptions, DrawingSettings, Renderer, State};

@@ -1,6 +1,6 @@
 //! What each stage of the pipeline hands on, and what is in the scene.
 
-use crate::Answer;
+use crate::answer::Answer;
 use serde_json::{Value, json};
 use vitral::explain::{Deciders, explain};
 use vitral::info::info_on;

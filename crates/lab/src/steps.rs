@@ -1,8 +1,9 @@
 //! The steps of the visibility algorithm: recorded once, then any of them shown.
 
+use crate::answer::Answer;
 use crate::files::Files;
+use crate::overlay;
 use crate::scene::Stage;
-use crate::{Answer, overlay};
 use serde_json::{Value, json};
 use std::mem::{Discriminant, discriminant};
 use vitral::internals::render::trace::Step;

@@ -1,12 +1,13 @@
 // `toolbar "Steps"`: play and step through a recording.
 
 import { html, nothing, type TemplateResult } from "lit-html";
+import { live } from "lit-html/directives/live.js";
 import { ref } from "lit-html/directives/ref.js";
 import type { App } from "../app.ts";
 import { button, check, combo } from "../parts/fields.ts";
 import { icon } from "../parts/icons.ts";
 import { stepWords } from "../stepwords.ts";
-import { t, translated } from "../words.ts";
+import { t, translated, type Key } from "../words.ts";
 
 const SPEEDS = [0.5, 1, 2, 5, 10, 25, 100, 1000];
 
@@ -86,25 +87,36 @@ export function stepsToolbar(app: App): TemplateResult {
     ${hasMore ? html`<p class="note">${t("first {0} steps of more", count)}</p>` : nothing}`;
 }
 
+/** Answers in words, where the engine's name of a verdict is short. */
+const WINDOWS: Record<string, Key> = {
+  empty: "empty window",
+  one: "one polygon",
+  surrounded: "surrounded",
+  pixel: "one pixel",
+  cut: "cut in four",
+};
+
+const option = (app: App, name: string) => {
+  const key = app.prediction?.next.group === "window" ? WINDOWS[name] : undefined;
+  return key ? t(key) : translated(name);
+};
+
 /** `radiogroup "Prediction"`: what comes next? */
 export function prediction(app: App): unknown {
   const { prediction } = app;
   if (!prediction) return nothing;
   const { chosen, answer, options, next } = prediction;
-  if (chosen !== null) {
-    const isRight = chosen === answer;
-    return html`<p class=${`prediction ${isRight ? "right" : "wrong"}`}>
-      <strong>${t(isRight ? "Right" : "Wrong")}.</strong> ${translated(answer)}: ${stepWords(next)}
-    </p>`;
-  }
-  return html`<div class="prediction">
+  const isRight = chosen === answer;
+  const choice = (o: string) =>
+    html`<label class="check">
+      <input type="radio" name="prediction" .checked=${live(o === chosen)} ?disabled=${chosen !== null && o !== chosen} @change=${() => app.predict(o)} />
+      <span>${option(app, o)}</span>
+    </label>`;
+  return html`<div class=${`prediction ${chosen === null ? "" : isRight ? "right" : "wrong"}`}>
     <div role="radiogroup" aria-label=${t("Prediction")}>
       <p>${t("What comes next?")}</p>
-      ${options.map(
-        (o) => html`<label class="check"
-          ><input type="radio" name="prediction" .checked=${false} @change=${() => app.predict(o)} /><span>${translated(o)}</span></label
-        >`,
-      )}
+      ${options.map(choice)}
     </div>
+    ${chosen === null ? nothing : html`<p><strong>${t(isRight ? "Right" : "Wrong")}.</strong> ${option(app, answer)}: ${stepWords(next)}</p>`}
   </div>`;
 }

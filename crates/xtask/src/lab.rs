@@ -1,12 +1,20 @@
 //! `cargo xtask lab`: the Lab's engine as WebAssembly, its page by npm, and a `vitral` with both inside.
 
-use crate::prepare::WASM_TARGET;
+use crate::prepare::{self, WASM_TARGET};
 use crate::shell::{Outcome, cargo, command, repository, run, target_folder};
+use crate::test;
+use crate::wasm::{self, Check, CheckResult};
 use std::fs;
-use std::path::PathBuf;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
 
 /// The profile of the module: the release's, stripped.
 const PROFILE: &str = "lab";
+
+/// The package of the module, and the module's file.
+const PACKAGE: &str = "vitral-lab-wasm";
+const MODULE: &str = "vitral_lab.wasm";
 
 /// Modules are built with other flags than programs, in a folder of their own.
 const FOLDER: &str = "wasm-lab";
@@ -14,7 +22,7 @@ const FOLDER: &str = "wasm-lab";
 /// Builds everything; the command lies in `target/release`.
 pub(crate) fn run_all() -> Outcome {
     build_page()?;
-    build_engine(None)?;
+    build_engine()?;
     run(cargo().args(["build", "--release", "--package", "vitral-cli", "--features", "lab"]))
 }
 
@@ -24,22 +32,66 @@ fn sources() -> PathBuf {
 }
 
 /// Installs what the page needs, and bundles it into `lab/dist`.
-pub(crate) fn build_page() -> Outcome {
+fn build_page() -> Outcome {
+    prepare::npm()?;
     run(command("npm").args(["ci", "--no-audit", "--no-fund"]).current_dir(sources()))?;
     run(command("npm").args(["run", "build"]).current_dir(sources()))
 }
 
-/// Builds the module and lays it beside the page; at another level than the release's if one is given.
-pub(crate) fn build_engine(level: Option<&str>) -> Outcome {
+/// Builds the module for speed, and lays it beside the page.
+fn build_engine() -> Outcome {
     let folder = target_folder().join(FOLDER);
     let mut build = cargo();
     build.env("RUSTFLAGS", "-C target-feature=+simd128").env_remove("CARGO_ENCODED_RUSTFLAGS");
-    if let Some(level) = level {
-        build.env(format!("CARGO_PROFILE_{}_OPT_LEVEL", PROFILE.to_uppercase()), level);
-    }
-    build.args(["build", "--profile", PROFILE, "--package", "vitral-lab-wasm", "--target", WASM_TARGET]);
+    build.args(["build", "--profile", PROFILE, "--package", PACKAGE, "--target", WASM_TARGET]);
     run(build.arg("--target-dir").arg(&folder))?;
-    let module = folder.join(WASM_TARGET).join(PROFILE).join("vitral_lab.wasm");
-    let place = sources().join("dist").join("vitral_lab.wasm");
+    place_engine(&folder.join(WASM_TARGET).join(PROFILE))
+}
+
+/// Copies the module from the folder it was built in.
+fn place_engine(folder: &Path) -> Outcome {
+    let (module, place) = (folder.join(MODULE), sources().join("dist").join(MODULE));
     fs::copy(&module, &place).map(drop).map_err(|e| format!("{}: {e}", place.display()))
+}
+
+/// Tests the page's own functions under Node, then the page in a browser, with a module that is built quickly and runs slowly.
+/// `missing` says why there can be no module.
+pub(crate) fn test_all(missing: Option<&str>) -> Vec<Check> {
+    let missing = missing.map(str::to_owned).or_else(|| prepare::npm().err());
+    if let Some(why) = missing {
+        return vec![Check { name: "lab", result: CheckResult::Skipped(why) }];
+    }
+    let tried = |outcome: Outcome| outcome.map_or_else(CheckResult::Failed, |()| CheckResult::Passed);
+    let page = build_page().and_then(|()| run(command("npm").args(["run", "unit"]).current_dir(sources())));
+    let is_built = page.is_ok();
+    let browser = match prepare::browser() {
+        Err(why) => CheckResult::Skipped(why),
+        Ok(()) if !is_built => CheckResult::Skipped("the page was not built".to_owned()),
+        Ok(()) => tried(test_page()),
+    };
+    vec![Check { name: "lab: functions", result: tried(page) }, Check { name: "lab: page", result: browser }]
+}
+
+/// Builds a `vitral` with the Lab inside, lets it serve, and tests the page that it serves.
+fn test_page() -> Outcome {
+    place_engine(&wasm::build_with_vectors(PACKAGE)?)?;
+    let build = ["build", "--quiet", "--profile", test::PROFILE, "--package", "vitral-cli", "--features", "lab"];
+    run(cargo().args(build))?;
+    let program = target_folder().join(test::PROFILE).join(format!("vitral{}", std::env::consts::EXE_SUFFIX));
+    let mut serve = command(&program);
+    serve.args(["lab", "--no-open"]).stdout(Stdio::piped());
+    let mut server = serve.spawn().map_err(|e| format!("{}: {e}", program.display()))?;
+
+    // It prints its address, and serves until it is told to end.
+    let mut url = String::new();
+    let read = server.stdout.take().map(|out| BufReader::new(out).read_line(&mut url));
+    let tested = match read {
+        Some(Ok(1..)) => {
+            let mut tests = command("npm");
+            run(tests.args(["run", "page"]).current_dir(sources()).env("LAB_URL", url.trim()))
+        }
+        _ => Err("the server printed no address".to_owned()),
+    };
+    let ended = server.kill().and_then(|()| server.wait()).map(drop).map_err(|e| format!("the server: {e}"));
+    tested.and(ended)
 }

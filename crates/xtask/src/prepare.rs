@@ -67,6 +67,21 @@ fn mesa() -> shell::Outcome {
     debian_packages(&["libosmesa6", "binutils"])
 }
 
+/// Node's package manager; why it is not there otherwise.
+pub(crate) fn npm() -> shell::Outcome {
+    if succeeds("npm", &["--version"]) {
+        return Ok(());
+    }
+    debian_packages(&["npm"])?;
+    if succeeds("npm", &["--version"]) { Ok(()) } else { Err("npm: installed, but does not run".to_owned()) }
+}
+
+/// A browser for the page of the Lab. Its tests say so when there is none.
+pub(crate) fn browser() -> shell::Outcome {
+    let there = ["chromium", "chromium-browser", "google-chrome"].iter().any(|name| succeeds(name, &["--version"]));
+    if there || std::env::var_os("CHROMIUM").is_some() { Ok(()) } else { debian_packages(&["chromium"]) }
+}
+
 /// Programs that read PDF and DXF files of drawings. Tests that want them say so when they are not there.
 fn drawing_readers() -> shell::Outcome {
     debian_packages(&["poppler-utils", "mupdf-tools", "python3-ezdxf"])

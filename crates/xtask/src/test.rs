@@ -3,7 +3,7 @@
 use crate::shell::{self, Outcome, cargo};
 use crate::spent::{Spent, Stopwatch};
 use crate::tally::{Program, Reader, Tally};
-use crate::{prepare, wasm};
+use crate::{lab, prepare, wasm};
 use std::io::{BufRead, BufReader};
 use std::process::Command;
 use std::time::Instant;
@@ -43,7 +43,13 @@ pub(crate) fn run() -> Outcome {
 
     // Draw the same picture in WebAssembly.
     let web_assembly = Stopwatch::start();
-    for check in wasm::run_all(prepared.no_wasm.as_deref()) {
+    let mut checks = wasm::run_all(prepared.no_wasm.as_deref());
+    let web_assembly = web_assembly.spent();
+
+    // Build the Lab's page and try it in a browser.
+    let page = Stopwatch::start();
+    checks.extend(lab::test_all(prepared.no_wasm.as_deref()));
+    for check in checks {
         println!("test wasm::{} ... {}", check.name, check.result);
         match check.result {
             wasm::CheckResult::Passed => tally.passed += 1,
@@ -53,7 +59,10 @@ pub(crate) fn run() -> Outcome {
     }
 
     list_skipped(&reader.reasons);
-    list_spent(&[("build", build), ("tests", tests), ("WebAssembly", web_assembly.spent())], reader.programs);
+    list_spent(
+        &[("build", build), ("tests", tests), ("WebAssembly", web_assembly), ("the Lab", page.spent())],
+        reader.programs,
+    );
     close(tally)
 }
 

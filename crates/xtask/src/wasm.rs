@@ -13,6 +13,10 @@ const PACKAGE: &str = "vitral-wasm-probe";
 /// The compiler takes six times as long to optimise the kernels for WebAssembly at level 2, and the pictures are small.
 const OPT_LEVEL: &str = "1";
 
+/// Flags of modules with vectors, and the folder below cargo's in which they are built.
+const SIMD: &str = "-C target-feature=+simd128";
+const SIMD_FOLDER: &str = "wasm-simd128";
+
 /// How one check ended.
 pub(crate) enum CheckResult {
     Passed,
@@ -45,10 +49,8 @@ struct Variant {
     folder: &'static str,
 }
 
-const VARIANTS: [Variant; 2] = [
-    Variant { name: "scalar", flags: "", folder: "" },
-    Variant { name: "simd128", flags: "-C target-feature=+simd128", folder: "wasm-simd128" },
-];
+const VARIANTS: [Variant; 2] =
+    [Variant { name: "scalar", flags: "", folder: "" }, Variant { name: "simd128", flags: SIMD, folder: SIMD_FOLDER }];
 
 /// Runs all variants, unless `missing` says why that cannot be.
 pub(crate) fn run_all(missing: Option<&str>) -> Vec<Check> {
@@ -93,6 +95,22 @@ fn opengl() -> CheckResult {
     }
 }
 
+/// Builds a package's library with vectors, as the tests' modules are built; gives the folder of the modules.
+pub(crate) fn build_with_vectors(package: &str) -> Result<PathBuf, String> {
+    let folder = target_folder().join(SIMD_FOLDER);
+    run(module(SIMD).args(["--package", package, "--target-dir"]).arg(&folder))?;
+    Ok(folder.join(WASM_TARGET).join(PROFILE))
+}
+
+/// The command that builds a library's module.
+fn module(flags: &str) -> std::process::Command {
+    let mut build = cargo();
+    build.env("RUSTFLAGS", flags).env_remove("CARGO_ENCODED_RUSTFLAGS");
+    build.env(format!("CARGO_PROFILE_{}_OPT_LEVEL", PROFILE.to_uppercase()), OPT_LEVEL);
+    build.args(["build", "--quiet", "--profile", PROFILE, "--lib", "--target", WASM_TARGET]);
+    build
+}
+
 /// The hash that the native program prints, which was built with the tests: one of the probe's asks for it.
 fn native_hash() -> Result<String, String> {
     let program = target_folder().join(PROFILE).join(format!("{PACKAGE}{}", std::env::consts::EXE_SUFFIX));
@@ -102,11 +120,7 @@ fn native_hash() -> Result<String, String> {
 /// Builds one variant and runs it; gives the hash that it prints.
 fn hash_under_node(variant: &Variant) -> Result<String, String> {
     let folder: PathBuf = target_folder().join(variant.folder);
-    let mut build = cargo();
-    build.env("RUSTFLAGS", variant.flags).env_remove("CARGO_ENCODED_RUSTFLAGS");
-    build.env(format!("CARGO_PROFILE_{}_OPT_LEVEL", PROFILE.to_uppercase()), OPT_LEVEL);
-    build.args(["build", "--quiet", "--profile", PROFILE, "--lib", "--package", PACKAGE, "--no-default-features"]);
-    run(build.args(["--target", WASM_TARGET, "--target-dir"]).arg(&folder))?;
+    run(module(variant.flags).args(["--package", PACKAGE, "--no-default-features", "--target-dir"]).arg(&folder))?;
     let module = folder.join(WASM_TARGET).join(PROFILE).join("vitral_wasm_probe.wasm");
     output(command("node").arg("crates/wasm-probe/run.mjs").arg(module)).map(|hash| hash.trim().to_owned())
 }

@@ -30,6 +30,11 @@ test("a form comes back", () => {
   assert.equal((stateOfB(situation)["settings"] as JsonObject)["visibility"], "painter");
 });
 
+test("model and size come first", () => {
+  const { situation } = from('lights=[]&settings.visibility=bsp&settings.width=640&models=["builtin:teapot"]');
+  assert.deepEqual([...write(situation, DEFAULTS).keys()], ["models", "settings.width", "lights", "settings.visibility"]);
+});
+
 test("variants are written as wholes, strings that look like JSON are quoted", () => {
   let { situation } = from("");
   situation = { ...situation, state: put(situation.state, "settings.background", { type: "color", color: [0, 0, 0] }) };

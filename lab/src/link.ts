@@ -169,10 +169,16 @@ export function read(
   return { situation, problems };
 }
 
+/** What a reader of the link looks for first. */
+const FIRST = ["models", "settings.width", "settings.height"];
+
+const rank = (path: string) => (FIRST.includes(path) ? FIRST.indexOf(path) : FIRST.length);
+
 /** Writes the form of a situation: only what differs from the default. */
 export function write(situation: Situation, defaults: JsonObject): URLSearchParams {
   const form = new URLSearchParams();
-  for (const [path, value] of differences(situation.state, defaults)) form.append(path, writeValue(value));
+  const different = differences(situation.state, defaults).sort(([a], [b]) => rank(a) - rank(b));
+  for (const [path, value] of different) form.append(path, writeValue(value));
   for (const [path, value] of Object.entries(situation.b)) {
     if (!equal(at(situation.state, path), value)) form.append(`b.${path}`, writeValue(value));
   }

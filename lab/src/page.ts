@@ -107,7 +107,7 @@ function regions(app: App): unknown {
     scene: () => html`${pixelRegion(app)} ${app.lab.pixel ? formulaRegion(app) : nothing} ${scene(app)} ${counters(app)}`,
     pipeline: () => html`${pipeline(app)} ${pixelRegion(app)} ${counters(app)}`,
     visibility: () => html`${pixelRegion(app)} ${compareAll(app)} ${counters(app)}`,
-    illumination: () => html`${formulaRegion(app)} ${pixelRegion(app)} ${illumination(app)}`,
+    illumination: () => html`${pixelRegion(app)} ${illumination(app)}`,
     shading: () => html`${shading(app)} ${pixelRegion(app)} ${counters(app)}`,
     exercises: () => html`${exercises(app)} ${pixelRegion(app)}`,
   };
@@ -166,7 +166,7 @@ export function page(app: App): TemplateResult {
     </header>
     ${topics(app)} ${messages(app)}
     <div class=${app.lab.compare === "side" || app.lab.compare === "difference" ? "columns wide-pictures" : "columns"}>
-      <main>${pictures(app)}</main>
+      <main>${pictures(app)} ${app.lab.page === "illumination" ? formulaRegion(app) : nothing}</main>
       ${settings(app)}
       <div class="regions">${regions(app)}</div>
     </div>

@@ -8,7 +8,9 @@ import type { JsonObject } from "./json.ts";
 const length = (f: JsonObject, ...keys: string[]) => keys.reduce((sum, k) => sum + (Array.isArray(f[k]) ? f[k].length : 0), 0);
 
 export function stepWords(step: Step): string {
-  return isEnglish() ? step.words : wordsOf(step.fields);
+  // Some steps have no sentence, only their fields.
+  const isSentence = !/^[A-Z]\w+ \{/.test(step.words);
+  return isEnglish() && isSentence ? step.words : wordsOf(step.fields);
 }
 
 function wordsOf(f: JsonObject): string {

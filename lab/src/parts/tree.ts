@@ -1,7 +1,6 @@
 // Trees with arrow keys: one node is a tab stop, long trees show a window of nodes.
 
 import { html, nothing, type TemplateResult } from "lit-html";
-import { ref } from "lit-html/directives/ref.js";
 import { css } from "./css.ts";
 
 export interface Node {
@@ -156,13 +155,7 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
       changed();
     }
   };
-  // Bring the present node into view when it changes.
-  const reveal = (e: Element | undefined) => {
-    if (!e || !isNew || current === null) return;
-    const top = focusAt * ROW;
-    if (top < e.scrollTop || top > e.scrollTop + e.clientHeight - 2 * ROW) e.scrollTop = Math.max(0, top - 4 * ROW);
-  };
-  return html`<div class="scroll windowed" @scroll=${scrolled} ${ref(reveal)}>
+  return html`<div class="scroll windowed" @scroll=${scrolled}>
     <div .style=${css({ height: isLong ? `${shown.length * ROW}px` : "auto" })}>
       <ul role="tree" aria-label=${t.name} @keydown=${keys} .style=${css({ transform: `translateY(${first * ROW}px)` })}>
         ${visible.map(item)}

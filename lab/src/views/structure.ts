@@ -4,6 +4,7 @@
 // steps of a kind, once for each recording.
 
 import { html, nothing, type TemplateResult } from "lit-html";
+import { ref } from "lit-html/directives/ref.js";
 import type { App, Step } from "../app.ts";
 import { isObject, type Json, type JsonObject } from "../json.ts";
 import { drawing } from "../parts/markup.ts";
@@ -353,10 +354,28 @@ function wholeDrawing(app: App): unknown {
   </details>`;
 }
 
+/** The step whose rows and nodes were brought into view last. */
+let revealed = "";
+
+/** Scrolls lists, tables and trees to what a new step is about. */
+function reveal(app: App, e: Element | undefined) {
+  const key = `${app.step?.key} ${app.answers.size}`;
+  if (!e || key === revealed) return;
+  revealed = key;
+  setTimeout(() => {
+    for (const box of e.querySelectorAll<HTMLElement>(".scroll")) {
+      const row = box.querySelector('.current, [aria-selected="true"]');
+      if (!row) continue;
+      const [of, within] = [row.getBoundingClientRect(), box.getBoundingClientRect()];
+      if (of.top < within.top + 26 || of.bottom > within.bottom - 26) box.scrollTop += of.top - within.top - box.clientHeight / 3;
+    }
+  }, 30);
+}
+
 export function structure(app: App): TemplateResult {
   const step = app.stepCount ? app.step?.value : undefined;
   const { parent } = step ?? {};
-  return html`<section class="region structure" aria-labelledby="structure-title">
+  return html`<section class="region structure" aria-labelledby="structure-title" ${ref((e) => reveal(app, e))}>
     <h2 id="structure-title">${t("Structure")}</h2>
     ${prediction(app)}
     <p class="told">${step ? stepWords(step) : t("Recording…")}</p>

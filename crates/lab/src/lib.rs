@@ -20,6 +20,7 @@
 //! | `record`, `step` | the steps of the visibility algorithm; the picture, words and numbers after one |
 //! | `steps` | the words and numbers of many steps |
 //! | `structure` | the structure that the algorithm built, as SVG |
+//! | `overview` | the scene from outside, with the view volume, boxes and lights as SVG |
 //! | `explain`, `ask-all` | a pixel: its surfaces, its light, the formula with its numbers |
 //! | `compare`, `compare-all` | two states; all visibility algorithms |
 //! | `stages` | what each stage of the pipeline hands on |
@@ -42,6 +43,7 @@ mod files;
 mod formula;
 mod message;
 mod overlay;
+mod overview;
 mod picture;
 mod request;
 mod save;
@@ -120,6 +122,7 @@ impl Lab {
                 steps::steps(stage, files, &state, pixel, recording, [from, to], show.as_deref())
             }
             Want::Structure => steps::structure(stage, files, &state, recording),
+            Want::Overview { second } => overview::overview(stage.show(&state, files)?, second.as_ref()),
             Want::Explain { pixel } => explain::explain(stage.show(&state, files)?, pixel),
             Want::AskAll { pixel } => explain::ask_all(stage.show(&state, files)?, pixel),
             Want::Compare { b } => compare::compare(stage, files, &state, &b),

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 use serde_json::Value;
-use vitral::{Error, State};
+use vitral::{Error, State, Viewpoint};
 
 /// What is wanted, of which state.
 #[derive(Debug)]
@@ -38,7 +38,7 @@ pub(crate) enum Curve {
 }
 
 /// What can be wanted, by its names in requests.
-pub(crate) const WANTS: [&str; 17] = [
+pub(crate) const WANTS: [&str; 18] = [
     "catalog",
     "files",
     "complete",
@@ -47,6 +47,7 @@ pub(crate) const WANTS: [&str; 17] = [
     "step",
     "steps",
     "structure",
+    "overview",
     "explain",
     "ask-all",
     "compare",
@@ -91,6 +92,9 @@ pub(crate) enum Want {
         pixel: Option<[u32; 2]>,
     },
     Structure,
+    Overview {
+        second: Option<Viewpoint>,
+    },
     Explain {
         pixel: [u32; 2],
     },

@@ -97,6 +97,20 @@ fn steps_of_a_group_and_of_a_pixel_are_fewer() {
 }
 
 #[test]
+fn the_scene_is_seen_from_outside_with_its_view_volume() {
+    let mut lab = Lab::default();
+    let state = small("builtin:scene0", json!({}));
+    let (told, planes) = ask(&mut lab, json!({"want": "overview", "state": state}));
+    let drawing = told["drawing"].as_str().unwrap();
+    assert_eq!(drawing.matches("class=\"volume\"").count(), 12);
+    assert!(drawing.contains("class=\"eye\"") && drawing.contains("<title>LIGHT0</title>"), "{drawing}");
+    let (own, picture) = ask(&mut lab, json!({"want": "picture", "state": state}));
+    assert!(own["width"] == told["width"] && planes[0].len() == picture[0].len() && planes != picture);
+    let second = json!({"want": "overview", "state": state, "second": {"view": "top"}});
+    assert_ne!(ask(&mut lab, second).1, planes);
+}
+
+#[test]
 fn a_pixel_is_explained_with_its_formula_and_why() {
     let mut lab = Lab::default();
     let state = small("builtin:sphere", json!({"illumination": "phong"}));

@@ -9,7 +9,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-/// The profile of the module: the release's, stripped.
+/// The profile of the module.
 const PROFILE: &str = "lab";
 
 /// The package of the module, and the module's file.
@@ -38,7 +38,7 @@ fn build_page() -> Outcome {
     run(command("npm").args(["run", "build"]).current_dir(sources()))
 }
 
-/// Builds the module for speed, and lays it beside the page.
+/// Builds the module, and lays it beside the page.
 fn build_engine() -> Outcome {
     let folder = target_folder().join(FOLDER);
     let mut build = cargo();

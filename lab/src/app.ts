@@ -120,6 +120,8 @@ export class App {
   picture: Result<Picture> | undefined;
   pictureB: Result<Picture> | undefined;
   plane: Result<Plane> | undefined;
+  /** The last whole picture, whatever step is shown. */
+  finished: Result<Plane> | undefined;
   planeB: Result<Plane> | undefined;
   planeDifference: Result<Plane> | undefined;
   agreement: Result<Agreement> | undefined;
@@ -472,7 +474,7 @@ export class App {
     const { lab } = this;
     const isStep = lab.step !== null && this.hasSteps;
 
-    if (!isStep) this.wantPicture();
+    if (!isStep || !this.isDragging) this.wantPicture();
     if (lab.compare !== "none") this.wantPictureB();
     this.want("complete", key, { want: "complete", state }, ({ ok }) => {
       this.complete = { key, value: ok as unknown as Complete };
@@ -484,18 +486,26 @@ export class App {
     this.after("rest", this.isDragging ? 400 : REST, () => this.wantRest());
   }
 
+  /** The picture of the whole state; while a step is shown, for its numbers alone. */
   private wantPicture() {
     const key = this.key();
+    const isStep = () => this.lab.step !== null && this.hasSteps;
+    if (this.finished?.key === key) {
+      if (!isStep()) this.plane = this.finished;
+      return;
+    }
     const seconds = this.picture?.value.seconds ?? 0;
     const coarse = this.isDragging && seconds > COARSE_ABOVE;
     const wanted = coarse ? `coarse ${key}` : key;
-    if (this.plane?.key === key) return;
     const { state } = this;
     this.want("picture", wanted, { want: "picture", state, channel: this.channel(), ...(coarse ? { coarse } : {}) }, ({ ok, planes }) => {
       const picture = ok as unknown as Picture;
       if (coarse) picture.seconds = seconds;
       this.picture = { key: wanted, value: picture };
-      this.plane = { key: wanted, value: planeOf(picture, planes[0]) };
+      const plane = { key: wanted, value: planeOf(picture, planes[0]) };
+      if (!coarse) this.finished = plane;
+      if (isStep()) return;
+      this.plane = plane;
       this.emit("ready");
     });
   }
@@ -823,7 +833,7 @@ export class App {
     }
     if (names.length) this.openModels(names);
     else {
-      this.plane = undefined;
+      this.plane = this.finished = undefined;
       this.effects();
       this.changed();
     }

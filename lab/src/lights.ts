@@ -42,6 +42,23 @@ function whole(app: App): JsonObject[] {
   return copy(Array.isArray(own) && !hasEdits(app) ? (own as JsonObject[]) : (app.complete?.value.lights ?? []));
 }
 
+/** A light as the state has it now, which the engine may not have told yet. */
+export function lightNow(app: App, number: number): JsonObject | undefined {
+  const told = app.complete?.value.lights[number];
+  const own = app.get("lights");
+  const base = Array.isArray(own) && isObject(own[number]) ? { ...told, ...own[number] } : told;
+  if (!base) return undefined;
+  const edits = ((app.get("light-edits") as JsonObject[] | undefined) ?? []).filter((e) => e["light"] === String(number));
+  return edits.reduce((light: JsonObject, edit) => {
+    const field = String(edit["field"]);
+    const value = String(edit["value"]).split(",").map(Number);
+    if (value.length !== 3 || !value.every(Number.isFinite)) return light;
+    if (["ambient", "diffuse", "specular"].includes(field)) return { ...light, [field]: value };
+    if (["position", "direction"].includes(field)) return { ...light, kind: { ...kindOf(light), [field]: value } };
+    return light;
+  }, base);
+}
+
 const hasEdits = (app: App) => ((app.get("light-edits") as Json[] | undefined) ?? []).length > 0;
 
 /** Writes all lights. */
@@ -67,7 +84,7 @@ export function setField(app: App, number: number, field: string, value: Json, a
 }
 
 export function setColor(app: App, number: number, field: string, channel: number, value: number) {
-  const color = vector(app.complete?.value.lights[number]?.[field]);
+  const color = [...vector(lightNow(app, number)?.[field])];
   color[channel] = value;
   setField(app, number, field, color, color.join(","));
 }
@@ -88,7 +105,7 @@ export function setKindField(app: App, number: number, fields: JsonObject) {
 /** Puts a light elsewhere: w = 0 makes a direction of it. */
 export function setPlace(app: App, number: number, place: number[]) {
   const [x = 0, y = 0, z = 0, w = 1] = place;
-  const light = app.complete?.value.lights[number];
+  const light = lightNow(app, number);
   if (!light || !place.every(Number.isFinite)) return;
   const kind = kindOf(light);
   if (w === 0) {
@@ -131,7 +148,7 @@ function replaceKind(app: App, number: number, kind: JsonObject) {
 
 /** Makes another kind of light that stays where it is as far as that can be. */
 export function setKind(app: App, number: number, type: string) {
-  const light = app.complete?.value.lights[number];
+  const light = lightNow(app, number);
   if (!light || kindOf(light)["type"] === type) return;
   const place = placeOf(light) ?? [0, 5, 5, 1];
   const [x, y, z, w] = place;
@@ -169,7 +186,7 @@ export function attenuationOf(light: JsonObject): [number, number, number] {
 }
 
 export function setAttenuation(app: App, number: number, index: number, value: number) {
-  const light = app.complete?.value.lights[number];
+  const light = lightNow(app, number);
   if (!light) return;
   const c = attenuationOf(light);
   c[index] = value;

@@ -19,7 +19,7 @@ let browser;
 
 /** A test that gets a fresh page; skipped where there is no browser. */
 export function test(name, action, options = {}) {
-  nodeTest(name, { skip: lacking ?? false, timeout: 180_000 }, async () => {
+  nodeTest(name, { skip: lacking ?? false, timeout: 400_000 }, async () => {
     browser ??= await chromium.launch({ executablePath: browserPath, args: ["--no-sandbox"] });
     const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, locale: "en-GB", ...options });
     const page = await context.newPage();

@@ -181,6 +181,12 @@ test("steps go forwards, backwards and anywhere, and show the same", async (page
     assert.equal(await pictureOf(page), third);
     assert.equal(await page.getByRole("region", { name: "Structure" }).locator("p.told").textContent(), words);
     assert.ok((await slider.getAttribute("aria-valuetext")).includes(words));
+
+    // Other steps begin with the finished picture again.
+    const groups = page.getByRole("combobox", { name: "Show steps" });
+    await groups.selectOption({ index: 1 });
+    await ready(page);
+    assert.equal(await pictureOf(page), finished);
   }
 });
 

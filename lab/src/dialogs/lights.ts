@@ -7,6 +7,7 @@ import {
   addLight,
   attenuationOf,
   KINDS,
+  lightNow,
   placeOf,
   removeLight,
   resetLights,
@@ -43,7 +44,7 @@ export function lightsDialog(app: App): TemplateResult {
 function content(app: App): unknown {
   const lights = app.complete?.value.lights ?? [];
   const number = Math.min(app.lightNumber, Math.max(0, lights.length - 1));
-  const light = lights[number];
+  const light = lights[number] && lightNow(app, number);
   const options = lights.map((l, i) => {
     const name = String(l["name"] ?? "");
     return { value: `LIGHT${i}`, text: name && name !== `LIGHT${i}` ? `LIGHT${i} (${name})` : `LIGHT${i}` };

@@ -61,7 +61,7 @@ export function table(t: Table, changed: () => void = () => {}): TemplateResult 
     ${t.caption ? html`<caption>${t.name}</caption>` : nothing}
     <thead>
       <tr aria-rowindex=${isLong ? 1 : nothing}>
-        ${t.columns.map((c) => html`<th scope="col">${c}</th>`)}
+        ${t.columns.map((c, i) => html`<th scope="col" class=${typeof t.rows[0]?.[i] === "number" ? "n" : ""}>${c}</th>`)}
       </tr>
     </thead>
     <tbody>

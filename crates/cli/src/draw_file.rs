@@ -77,7 +77,7 @@ impl DrawFile {
 
     /// What the format leaves out of a drawing, or that there is nothing in it.
     pub(crate) fn warning(&self, drawing: &Drawing) -> Option<String> {
-        if drawing.lines.is_empty() && drawing.regions.is_empty() {
+        if drawing.lines.is_empty() && drawing.regions.is_empty() && drawing.points.is_empty() {
             let what = "nothing is drawn: the models have no surface or line that this style shows";
             return Some(format!("{}: {what} (--style lines draws free points, too)", self.path.display()));
         }

@@ -2,7 +2,7 @@
 //! for it is told so, rather than that it is unknown.
 
 /// Verbs to come.
-const VERBS: [&str; 2] = ["lab", "batch"];
+const VERBS: [&str; 1] = ["batch"];
 
 /// Whether this verb is to come.
 pub(crate) fn verb(name: &str) -> bool {

@@ -122,7 +122,7 @@ impl Lab {
                 steps::steps(stage, files, &state, pixel, recording, [from, to], show.as_deref())
             }
             Want::Structure => steps::structure(stage, files, &state, recording),
-            Want::Overview { second } => overview::overview(stage.show(&state, files)?, second.as_ref()),
+            Want::Overview { second } => overview::overview(stage.show(&state, files)?, second.as_deref()),
             Want::Explain { pixel } => explain::explain(stage.show(&state, files)?, pixel),
             Want::AskAll { pixel } => explain::ask_all(stage.show(&state, files)?, pixel),
             Want::Compare { b } => compare::compare(stage, files, &state, &b),

@@ -93,7 +93,7 @@ pub(crate) enum Want {
     },
     Structure,
     Overview {
-        second: Option<Viewpoint>,
+        second: Option<Box<Viewpoint>>,
     },
     Explain {
         pixel: [u32; 2],

@@ -139,14 +139,13 @@ pub(crate) fn step(
     replay.go_to(at as usize);
     let decided = replay.decided();
     let numbered = &recording.watched.steps[at as usize];
-    let about = pixel.unwrap_or_else(|| overlay::place(&numbered.step));
     let answer = json!({
         "number": number,
         "total": shown.len(),
         "at": at + 1,
         "parent": numbered.parent.map(|parent| parent + 1),
         "group": recording.groups[usize::from(recording.kinds[at as usize])],
-        "words": numbered.step.tell(about),
+        "words": words(&numbered.step, pixel),
         "fields": numbered.step,
         "drawing": overlay::drawing(&numbered.step, decided.width(), decided.height()),
         "width": decided.width(),
@@ -184,12 +183,17 @@ pub(crate) fn steps(
             "number": place + 1,
             "at": at + 1,
             "parent": numbered.parent.map(|parent| parent + 1),
-            "words": numbered.step.tell(pixel.unwrap_or_else(|| overlay::place(&numbered.step))),
+            "words": words(&numbered.step, pixel),
             "fields": fields,
         })
     });
     let told: Vec<Value> = told.collect();
     Ok((json!({"steps": told, "total": shown.len()}), Vec::new()))
+}
+
+/// A step in words, for the pixel if it is about that.
+fn words(step: &Step, pixel: Option<[u32; 2]>) -> String {
+    step.tell(pixel.filter(|&pixel| step.concerns(pixel)).unwrap_or_else(|| overlay::place(step)))
 }
 
 /// Leaves of a list its first members.

@@ -67,13 +67,27 @@ fn mesa() -> shell::Outcome {
     debian_packages(&["libosmesa6", "binutils"])
 }
 
-/// Node's package manager; why it is not there otherwise.
+/// Node's package manager, and a node that is new enough for the page of the Lab; why they are not there otherwise.
 pub(crate) fn npm() -> shell::Outcome {
+    node()?;
+    let version = shell::output(command("node").arg("--version"))?;
+    if !is_new_enough(version.trim()) {
+        return Err(format!("the Lab's page needs node {}.{} or newer, here is {}", NODE.0, NODE.1, version.trim()));
+    }
     if succeeds("npm", &["--version"]) {
         return Ok(());
     }
     debian_packages(&["npm"])?;
     if succeeds("npm", &["--version"]) { Ok(()) } else { Err("npm: installed, but does not run".to_owned()) }
+}
+
+/// The oldest node, major and minor version, that the tools of the page run on.
+const NODE: (u32, u32) = (20, 19);
+
+/// Whether a version, `v20.19.5`, is at least [`NODE`].
+fn is_new_enough(version: &str) -> bool {
+    let mut numbers = version.trim_start_matches('v').split('.').map_while(|number| number.parse().ok());
+    (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0)) >= NODE
 }
 
 /// A browser for the page of the Lab. Its tests say so when there is none.
@@ -93,4 +107,15 @@ fn node() -> shell::Outcome {
     }
     debian_packages(&["nodejs"])?;
     if succeeds("node", &["--version"]) { Ok(()) } else { Err("node: installed, but does not run".to_owned()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn versions_of_node_are_compared_by_their_numbers() {
+        assert!(["v20.19.0", "v20.20.1", "v22.1.0", "v100.0"].iter().all(|version| is_new_enough(version)));
+        assert!(["v20.9.0", "v18.20.4", "", "nonsense"].iter().all(|version| !is_new_enough(version)));
+    }
 }

@@ -71,6 +71,11 @@ fn every_algorithm_is_stepped_and_ends_with_the_picture() {
         assert!(begin != end && !first["words"].as_str().unwrap().is_empty(), "{}", algorithm.name);
         assert!(first["drawing"].as_str().unwrap().starts_with("<svg"));
         assert!(error(&mut lab, step(steps + 1)).contains("there is no step"));
+
+        // Every step is told in words, not as data.
+        let (all, _) = ask(&mut lab, json!({"want": "steps", "state": state, "from": 1, "to": 20_000}));
+        let words = all["steps"].as_array().unwrap().iter().map(|step| step["words"].as_str().unwrap());
+        words.for_each(|words| assert!(!words.contains('{') && words.len() > 5, "{}: {words}", algorithm.name));
     }
 }
 

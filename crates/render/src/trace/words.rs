@@ -1,7 +1,8 @@
 //! Steps in words, for one of the pixels that they concern, and what they take in memory.
 
+use super::lists::ListVerdict;
 use super::outlines::{Contour, CutPolygon, edges};
-use super::{SpanVerdict, Step, WindowVerdict};
+use super::{BoxVerdict, SpanVerdict, Step, WindowVerdict};
 
 impl Step {
     /// Whether a pixel's first sample is in what the step is about.
@@ -103,7 +104,7 @@ impl Step {
                 let edges: usize = contours.iter().map(|contour| contour.corners.len()).sum();
                 format!("a visible polygon of facet {facet}, with {edges} edges")
             }
-            other => format!("{other:?}"),
+            other => tell_what_is_built(other),
         }
     }
 
@@ -177,6 +178,81 @@ fn few(facets: &[u32]) -> String {
     const MOST: usize = 8;
     let names: Vec<_> = facets.iter().take(MOST).map(u32::to_string).collect();
     names.join(" ") + if facets.len() > MOST { " ..." } else { "" }
+}
+
+/// A step of culling and clipping, of a list or a tree, or of a ray, in words.
+fn tell_what_is_built(step: &Step) -> String {
+    match step {
+        Step::Box { instance, items: [from, to], verdict, beyond, .. } => {
+            let of = instance.map_or("instances".to_owned(), |instance| format!("triangles of instance {instance}"));
+            let found = match verdict {
+                BoxVerdict::Outside => "outside, all is culled",
+                BoxVerdict::Crossing => "partly outside, looked into",
+                BoxVerdict::Inside => "inside, all stays",
+            };
+            let beyond = beyond.map_or(String::new(), |plane| format!(", beyond the {plane} plane"));
+            format!("the box round {of} {from} to {}: {found}{beyond}", to.saturating_sub(1))
+        }
+        Step::Clipped { facet, plane, before, after } => {
+            let left = if after.len() < 3 { "nothing is left".to_owned() } else { format!("{} are left", after.len()) };
+            format!("facet {facet} is clipped at the {plane} plane: of {} corners {left}", before.len())
+        }
+        Step::Space { cells: Some([x, y, z]), .. } => format!("space is divided into {x} x {y} x {z} cells"),
+        Step::Space { cells: None, .. } => "the box that the structure divides".to_owned(),
+        Step::EdgeTable { rows: [from, to], polygons, buckets } => {
+            let edges: usize = buckets.iter().map(|bucket| bucket.edges.len()).sum();
+            format!("tables of rows {from} to {}: {} polygon(s), {edges} edge(s)", to.saturating_sub(1), polygons.len())
+        }
+        Step::NearestFirst { polygons } => format!("{} polygon(s), the nearest first", polygons.len()),
+        Step::RayMeets { facet: Some(facet), distance, turns, .. } => {
+            let distance = distance.map_or(String::new(), |distance| format!(" at a distance of {distance:.4}"));
+            format!("after {turns} turn(s) a ray meets facet {facet}{distance}")
+        }
+        Step::RayMeets { facet: None, turns, .. } => format!("after {turns} turn(s) a ray meets nothing"),
+        Step::RayGoesOn { facet, way, angles: [before, after], .. } => {
+            format!("at facet {facet} it goes on {}: {before:.2} degrees before, {after:.2} after", way.name())
+        }
+        other => tell_of_list(other),
+    }
+}
+
+/// A step of painter's algorithm or of a BSP tree in words.
+fn tell_of_list(step: &Step) -> String {
+    match step {
+        Step::TreeNode { node, above, side, splitter, .. } => {
+            let place = match above.zip(*side) {
+                Some((above, side)) => format!(", in {} of node {above}", side.name()),
+                None => ", the root".to_owned(),
+            };
+            let cut = splitter.map_or(String::new(), |splitter| format!(", cut by the plane of polygon {splitter}"));
+            format!("node {node}{place}{cut}")
+        }
+        Step::TreeVisit { node, viewer, polygons, .. } => {
+            let side = viewer.name();
+            format!("the viewer is in {side} of the plane of node {node}: its polygon(s) {} come now", few(polygons))
+        }
+        Step::FirstOrder { polygons } => {
+            format!("{} polygon(s) in their first order, by their farthest depths", polygons.len())
+        }
+        Step::Turn { polygon, facet } => format!("it is the turn of polygon {polygon}, of facet {facet}"),
+        Step::Compared { polygon, with, test, verdict, .. } => {
+            let found = match verdict {
+                ListVerdict::Before => format!("{polygon} may be painted before {with}"),
+                ListVerdict::After => format!("{with} has to be painted before {polygon}"),
+                ListVerdict::Across => "each covers a part of the other".to_owned(),
+            };
+            format!("polygons {polygon} and {with}: {}: {found}", test.tell(*polygon, *with))
+        }
+        Step::Moved { polygon, before_polygon, .. } => {
+            format!("polygon {polygon} moves before polygon {before_polygon} in the list, and is marked")
+        }
+        Step::Circle { polygons, .. } => format!("polygons {} cover each other in a circle", few(polygons)),
+        Step::Split { polygon, by, parts, .. } => {
+            format!("polygon {polygon} is split by the plane of {by} into {} parts", parts.len())
+        }
+        Step::Painted { polygon, facet } => format!("polygon {polygon}, of facet {facet}, is painted"),
+        other => format!("{other:?}"),
+    }
 }
 
 /// Whether a pixel's centre is inside an outline, by the parity of crossings.

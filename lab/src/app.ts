@@ -1,107 +1,18 @@
 // The page's state: the situation that the link tells, what the engine answered, and what follows from
 // a change. Views read it and call its methods; it knows nothing of how the page looks.
 
+import { Address } from "./address.ts";
+import type { Agreement, Catalog, Complete, Picture, Plane, Recording, Result, Step } from "./answers.ts";
 import { Engine, Refusal, Superseded, type Answer, type UserFile } from "./engine.ts";
-import { at, copy, equal, isObject, put, type Json, type JsonObject } from "./json.ts";
+import { at, equal, isObject, put, type Json, type JsonObject } from "./json.ts";
 import { LAB, pack, read, stateOfB, unpack, write, type Lab, type Language, type Problem, type Situation } from "./link.ts";
-import { stepWords } from "./stepwords.ts";
+import { Playback } from "./playback.ts";
+import { hashOf, missingModels, nameOf, overlay, stateIn } from "./states.ts";
 import { setLanguage, t } from "./words.ts";
-
-export interface Named {
-  name: string;
-  description: string;
-}
-
-export interface Exercise {
-  id: string;
-  title: string;
-  page: string;
-  text: string;
-  hint: string;
-  start: JsonObject;
-}
-
-export interface Catalog {
-  algorithms: Record<string, (Named & JsonObject)[]>;
-  models: { name: string; about: string }[];
-  defaults: JsonObject;
-  exercises: Exercise[];
-  channels?: { name: string; about: string }[];
-  /** What the engine can be asked for, where it says so. */
-  wants?: string[];
-  version: string;
-}
-
-export interface Complete {
-  state: JsonObject;
-  lights: JsonObject[];
-  materials: JsonObject[];
-  camera: JsonObject;
-  warnings: string[];
-}
-
-export interface Counter {
-  name: string;
-  value: Json;
-  meaning: string;
-}
-
-export interface Picture {
-  width: number;
-  height: number;
-  description: string;
-  seconds: number;
-  warnings: string[];
-  counters: Counter[];
-  facts: JsonObject;
-}
-
-/** What a canvas shows. */
-export interface Plane {
-  bytes: Uint8Array;
-  width: number;
-  height: number;
-}
-
-export interface Recording {
-  steps: number;
-  complete: boolean;
-  groups: { name: string; count: number }[];
-  seconds: number;
-}
-
-export interface Step {
-  /** Counted from 1 among the steps that are shown, and among all. */
-  number: number;
-  at?: number;
-  total: number;
-  parent?: number | null;
-  group: string;
-  words: string;
-  fields: JsonObject;
-  structure?: JsonObject;
-  drawing?: string | null;
-}
-
-export interface Agreement {
-  differ: number;
-  largest: number;
-  surfaces: number;
-  first: [number, number][];
-}
-
-/** An answer of the engine and the question that it answers. */
-export interface Result<T> {
-  key: string;
-  value: T;
-}
 
 export type History = "replace" | "push";
 
 export type DialogName = "lights" | "materials" | "camera" | "keyboard" | "language" | "about";
-
-/** Milliseconds between two changes of the address bar: browsers refuse more than about 200 in 30 s. */
-const ADDRESS_INTERVAL = 300;
 
 /** Milliseconds of rest before work that is not urgent begins. */
 const REST = 150;
@@ -113,6 +24,8 @@ const CHANNELS = ["depth", "surface", "object", "material", "normal", "steps", "
 
 export class App {
   engine: Engine;
+  readonly address = new Address(this);
+  readonly playback = new Playback(this);
   catalog: Catalog | undefined;
   situation: Situation = { state: {}, b: {}, lab: { ...LAB } };
 
@@ -135,11 +48,8 @@ export class App {
   /** A facet or surface that was chosen in a table, list or tree. */
   chosen: { facet: number } | null = null;
   isDragging = false;
-  isPlaying = false;
   isRecording = false;
   sameCamera = true;
-  askFirst = false;
-  prediction: { next: Step; options: string[]; answer: string; chosen: string | null } | null = null;
   dialogs: DialogName[] = [];
   alert = "";
   message = "";
@@ -160,10 +70,6 @@ export class App {
   private frame = 0;
   private timers = new Map<string, ReturnType<typeof setTimeout>>();
   private wanted = new Map<string, string>();
-  private addressTime = 0;
-  private shownHash = "";
-  private push = false;
-  private settled: Promise<void> = Promise.resolve();
 
   constructor() {
     this.engine = new Engine((message) => this.fail(message));
@@ -211,8 +117,12 @@ export class App {
   }
 
   after(name: string, milliseconds: number, action: () => void) {
-    clearTimeout(this.timers.get(name));
+    this.cancel(name);
     this.timers.set(name, setTimeout(action, milliseconds));
+  }
+
+  cancel(name: string) {
+    clearTimeout(this.timers.get(name));
   }
 
   // ---- Reading the situation ----
@@ -311,17 +221,16 @@ export class App {
     const before = this.situation;
     this.situation = situation;
     if (!equal(before.state, situation.state)) {
-      this.prediction = null;
+      this.playback.prediction = null;
       this.exerciseResult = null;
-      if (this.lab.step !== null && before.lab.step === situation.lab.step) this.pause();
+      if (this.lab.step !== null && before.lab.step === situation.lab.step) this.playback.pause();
     }
     if (before.lab.exercise !== situation.lab.exercise) {
       this.exerciseResult = null;
       this.hasHint = false;
     }
-    if (history === "push") this.push = true;
     this.effects();
-    this.writeAddress();
+    if (this.catalog) this.address.follow(history === "push");
     this.changed();
   }
 
@@ -329,44 +238,6 @@ export class App {
 
   async fragment(situation = this.situation): Promise<string> {
     return pack(write(situation, this.catalog!.defaults));
-  }
-
-  private writeAddress() {
-    const wait = this.push ? 0 : Math.max(0, this.addressTime + ADDRESS_INTERVAL - performance.now());
-    const isPush = this.push;
-    const write = async () => {
-      const hash = `#${await this.fragment()}`;
-      if (hash === this.shownHash || !this.catalog) return;
-      this.addressTime = performance.now();
-      try {
-        if (isPush && this.push) history.pushState(null, "", hash);
-        else history.replaceState(null, "", hash);
-      } catch {
-        // A page inside a `srcdoc` frame has no address of its own.
-      }
-      this.shownHash = location.hash || hash;
-      this.push = false;
-    };
-    if (wait === 0) this.settled = this.settled.then(write);
-    else this.after("address", wait, () => void (this.settled = this.settled.then(write)));
-  }
-
-  /** Writes the address that is still due. */
-  async settle() {
-    await this.settled;
-    clearTimeout(this.timers.get("address"));
-    const hash = `#${await this.fragment()}`;
-    try {
-      history.replaceState(null, "", hash);
-    } catch {
-      // As above.
-    }
-    this.shownHash = location.hash || hash;
-  }
-
-  /** Whether the address bar shows what the page wrote. */
-  isOwnHash() {
-    return location.hash === this.shownHash;
   }
 
   /** Reads a fragment and opens what it says. */
@@ -390,11 +261,11 @@ export class App {
     this.alert = told.length ? `${t("In the link")}: ${told.join("; ")}` : "";
     setLanguage(situation.lab.lang ?? browserLanguage());
 
-    this.isPlaying = false;
+    this.playback.isPlaying = false;
     this.cross = null;
     this.sameCamera = !Object.keys(situation.b).some((p) => p.startsWith("viewpoint"));
     this.go(situation, "replace");
-    if (situation.lab.play) this.play();
+    if (situation.lab.play) this.playback.play();
     if (this.alert) this.emit("error");
   }
 
@@ -551,6 +422,8 @@ export class App {
     this.after("record", this.isDragging ? 500 : REST, () => {
       if (this.recordKey() !== key || !this.hasSteps) return;
       this.want("record", key, request, ({ ok }) => {
+        // The steps of another state say nothing about this one.
+        if (this.recordKey() !== key) return;
         this.recording = { key, value: ok as unknown as Recording };
         this.isRecording = false;
         const groups = this.recording.value.groups.map((g) => g.name);
@@ -573,7 +446,8 @@ export class App {
     return this.step?.key.startsWith(this.recordKey()) ? this.step.value.total : recording.steps;
   }
 
-  private stepRequest(number: number): JsonObject {
+  /** The request for a step by its number. */
+  stepRequest(number: number): JsonObject {
     const { steps, pixel } = this.lab;
     return { want: "step", state: this.state, number, show: steps, ...(pixel ? { pixel } : {}) };
   }
@@ -593,22 +467,9 @@ export class App {
         this.plane = { key: planeKey, value: { bytes: planes[0], width, height } };
       }
       if (step !== null) this.emit("step");
-      if (this.isPlaying) this.tellStep();
-      this.stepDone?.();
+      this.playback.arrived(this.step.value);
     }, true);
   }
-
-  private toldTime = 0;
-
-  /** Says a step while they play: at most once in two seconds, and not what the slider says itself. */
-  private tellStep() {
-    const now = performance.now();
-    if (now - this.toldTime < 2000 || document.activeElement?.matches("input[type=range]")) return;
-    this.toldTime = now;
-    if (this.step) this.message = stepWords(this.step.value);
-  }
-
-  private stepDone: (() => void) | undefined;
 
   /** Asks for what single pages show. */
   private wantRest() {
@@ -695,80 +556,12 @@ export class App {
   goToStep(number: number | null) {
     const count = this.stepCount;
     const step = number === null ? null : Math.min(Math.max(1, number), Math.max(1, count));
-    this.prediction = null;
+    this.playback.prediction = null;
     this.setLab({ step });
   }
 
   get stepNumber() {
     return this.lab.step ?? this.stepCount;
-  }
-
-  async nextStep() {
-    if (this.stepNumber >= this.stepCount) return;
-    const next = this.stepNumber + 1;
-    if (!this.askFirst || this.isPlaying) return this.goToStep(next);
-    const { ok } = await this.engine.askLong("ahead", { ...this.stepRequest(next), lang: this.language });
-    const step = ok as unknown as Step;
-    const question = questionOf(step);
-    if (!question) return this.goToStep(next);
-    this.prediction = { next: step, ...question, chosen: null };
-    this.changed();
-  }
-
-  predict(choice: string) {
-    const { prediction } = this;
-    if (!prediction) return;
-    const isRight = choice === prediction.answer;
-    const words = `${t(isRight ? "Right" : "Wrong")}: ${prediction.next.words}`;
-    this.goToStep(this.stepNumber + 1);
-    this.prediction = { ...prediction, chosen: choice };
-    this.say(words);
-  }
-
-  play() {
-    if (!this.hasSteps || this.isPlaying) return;
-    if (matchMedia("(prefers-reduced-motion: reduce)").matches && this.lab.play) {
-      // Nothing plays by itself.
-      this.setLab({ play: false });
-      return;
-    }
-    this.isPlaying = true;
-    if (!this.lab.play) this.setLab({ play: true });
-    let last = performance.now();
-    const tick = () => {
-      if (!this.isPlaying) return;
-      const now = performance.now();
-      const passed = ((now - last) / 1000) * this.lab.speed;
-      const isReady = this.stepCount > 0 && !this.isRecording;
-      if (isReady && passed >= 1) {
-        const from = this.lab.step ?? 0;
-        const to = Math.min(from + Math.floor(passed), this.stepCount);
-        last = now;
-        this.stepDone = () => {
-          this.stepDone = undefined;
-          next();
-        };
-        this.goToStep(to);
-        if (to >= this.stepCount) return this.pause();
-        // An answer that never comes must not stop the clock.
-        this.after("play", 3000, next);
-        return;
-      }
-      if (!isReady) last = now;
-      this.after("play", 1000 / Math.min(this.lab.speed, 60) / 2, tick);
-    };
-    const next = () => this.after("play", Math.max(0, 1000 / this.lab.speed - (performance.now() - last)), tick);
-    // At the end, play begins again.
-    if (this.lab.step === null || this.lab.step >= this.stepCount) this.goToStep(1);
-    tick();
-    this.changed();
-  }
-
-  pause() {
-    clearTimeout(this.timers.get("play"));
-    this.isPlaying = false;
-    if (this.lab.play) this.setLab({ play: false });
-    this.changed();
   }
 
   // ---- Pixels ----
@@ -863,39 +656,6 @@ export class App {
   }
 }
 
-/** A state with every field: `over` laid on the defaults. */
-export function overlay(defaults: JsonObject, over: JsonObject): JsonObject {
-  const merged = copy(defaults);
-  for (const [key, value] of Object.entries(over)) {
-    const base = merged[key];
-    const isVariant = isObject(value) && ["type", "form", "mode", "shape"].some((k) => Object.hasOwn(value, k));
-    merged[key] = isObject(base) && isObject(value) && !isVariant ? overlay(base, value) : copy(value);
-  }
-  return merged;
-}
-
-const nameOf = (model: string) => model.replace(/^file:/, "").replace(/#[0-9a-f]+$/, "");
-const hashOf = (model: string) => /#([0-9a-f]+)$/.exec(model)?.[1] ?? "";
-
-/** Models of the user that a state names and that are not here. */
-function missingModels(state: JsonObject, files: Map<string, Uint8Array>): string[] {
-  const models = (at(state, "models") as Json[] | undefined) ?? [];
-  if (!Array.isArray(models)) return [];
-  return models.filter((m): m is string => typeof m === "string" && m.startsWith("file:") && !files.has(nameOf(m)));
-}
-
-export const fileNameOf = nameOf;
-
-/** The state in a file, if it is a state file. */
-function stateIn(bytes: Uint8Array): JsonObject | null {
-  try {
-    const value = JSON.parse(new TextDecoder().decode(bytes)) as Json;
-    return isObject(value) && value["vitral"] === 1 ? value : null;
-  } catch {
-    return null;
-  }
-}
-
 function planeOf(picture: Picture, bytes: Uint8Array | undefined): Plane {
   return { bytes: bytes ?? new Uint8Array(), width: picture.width, height: picture.height };
 }
@@ -914,20 +674,4 @@ function tell({ key, what }: Problem): string {
 export function browserLanguage(): Language {
   const found = navigator.languages.map((l) => l.slice(0, 2)).find((l) => ["en", "ro", "fr", "pt"].includes(l));
   return (found as Language | undefined) ?? "en";
-}
-
-/** What can be asked before a step is shown. */
-function questionOf(step: Step): { options: string[]; answer: string } | null {
-  const { fields } = step;
-  const questions: Record<string, [string, string[]]> = {
-    window: ["verdict", ["empty", "one", "surrounded", "pixel", "cut"]],
-    compared: [
-      "test",
-      ["depth-extent", "x-extent", "y-extent", "behind-plane", "in-front-of-plane", "projection", "exchanged-behind", "exchanged-in-front", "coplanar", "overlap"],
-    ],
-    "tree-visit": ["viewer", ["front", "back"]],
-  };
-  const [field, options] = questions[String(fields["step"])] ?? [];
-  const answer = field ? fields[field] : undefined;
-  return options && typeof answer === "string" ? { options, answer } : null;
 }

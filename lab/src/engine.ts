@@ -125,7 +125,7 @@ class Line {
   }
 
   get isBusy() {
-    return this.running !== undefined;
+    return this.running !== undefined || this.queue.length > 0;
   }
 }
 

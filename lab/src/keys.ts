@@ -27,9 +27,9 @@ export function listenToKeys(app: App) {
 function actions(app: App): Record<string, () => void> {
   const isFull = app.lab.layout === "full";
   const steps: Record<string, () => void> = {
-    " ": () => (app.isPlaying ? app.pause() : app.play()),
+    " ": () => (app.playback.isPlaying ? app.playback.pause() : app.playback.play()),
     ",": () => app.goToStep(app.stepNumber - 1),
-    ".": () => void app.nextStep(),
+    ".": () => void app.playback.next(),
     Home: () => app.goToStep(1),
     End: () => app.goToStep(app.stepCount),
   };

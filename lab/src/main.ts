@@ -1,7 +1,8 @@
 // Starts the page.
 
 import { render } from "lit-html";
-import { App, type Catalog } from "./app.ts";
+import type { Catalog } from "./answers.ts";
+import { App } from "./app.ts";
 import { acceptDrops, startFiles } from "./files.ts";
 import { talkToParent } from "./frame.ts";
 import { listenToKeys } from "./keys.ts";
@@ -59,7 +60,7 @@ async function start() {
   talkToParent(app);
   await app.openFragment(location.hash.slice(1));
   const reread = () => {
-    if (app.isOwnHash()) return;
+    if (app.address.isOwn()) return;
     void app.openFragment(location.hash.slice(1));
   };
   addEventListener("hashchange", reread);

@@ -2,7 +2,8 @@
 
 import { html, nothing, type TemplateResult } from "lit-html";
 import { ref } from "lit-html/directives/ref.js";
-import { fileNameOf, type App, type DialogName } from "./app.ts";
+import { type App, type DialogName } from "./app.ts";
+import { nameOf } from "./states.ts";
 import { aboutDialog, cameraDialog, keyboardDialog, languageDialog } from "./dialogs/others.ts";
 import { lightsDialog } from "./dialogs/lights.ts";
 import { materialsDialog } from "./dialogs/materials.ts";
@@ -115,7 +116,7 @@ function regions(app: App): unknown {
 }
 
 function messages(app: App): TemplateResult {
-  const needed = app.missing.map(fileNameOf).join(", ");
+  const needed = app.missing.map(nameOf).join(", ");
   const dismiss = () => {
     app.alert = "";
     app.changed();

@@ -69,7 +69,7 @@ async function link(app: App, layout?: "figure"): Promise<string> {
 }
 
 export async function copyLink(app: App) {
-  await app.settle();
+  await app.address.settle();
   await copy(app, await link(app), t("Link copied"));
 }
 

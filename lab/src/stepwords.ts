@@ -1,16 +1,14 @@
 // The words of a step. In English they are the engine's own, as `--trace` and `--pixel` tell them;
 // in other languages they are made from the step's fields.
 
-import type { Step } from "./app.ts";
+import type { Step } from "./answers.ts";
 import { isEnglish, t, translated } from "./words.ts";
 import type { JsonObject } from "./json.ts";
 
 const length = (f: JsonObject, ...keys: string[]) => keys.reduce((sum, k) => sum + (Array.isArray(f[k]) ? f[k].length : 0), 0);
 
 export function stepWords(step: Step): string {
-  // Some steps have no sentence, only their fields.
-  const isSentence = !/^[A-Z]\w+ \{/.test(step.words);
-  return isEnglish() && isSentence ? step.words : wordsOf(step.fields);
+  return isEnglish() ? step.words : wordsOf(step.fields);
 }
 
 function wordsOf(f: JsonObject): string {

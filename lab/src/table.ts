@@ -163,7 +163,6 @@ const PAGE = {
   "At the pixel": ["La pixel", "Au pixel", "No píxel"],
   "Ask me first": ["Întreabă-mă întâi", "Me demander d’abord", "Perguntar primeiro"],
   "Recording…": ["Se înregistrează…", "Enregistrement…", "A gravar…"],
-  "first {0} steps of more": ["primii {0} pași din mai mulți", "les {0} premières étapes, il y en a d’autres", "os primeiros {0} passos de mais"],
   "{0} of {1}: {2}": ["{0} din {1}: {2}", "{0} sur {1} : {2}", "{0} de {1}: {2}"],
   Prediction: ["Predicție", "Prédiction", "Previsão"],
   "What comes next?": ["Ce urmează?", "Que va-t-il se passer ?", "O que vem a seguir?"],

@@ -2,6 +2,7 @@
 //
 // LAB_URL is the address of a server (`vitral lab`) or of the single file; CHROMIUM the browser.
 
+import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { test as nodeTest } from "node:test";
 import { chromium } from "playwright-core";
@@ -15,6 +16,9 @@ export const url = process.env.LAB_URL;
 const lacking = !browserPath ? "no Chromium: set CHROMIUM" : !url ? "no page: set LAB_URL" : null;
 if (lacking) console.log(`The page of the Lab is not tested: ${lacking}.`);
 
+/** Milliseconds that a page may take on a slow machine. */
+const PATIENCE = 120_000;
+
 let browser;
 
 /** A test that gets a fresh page; skipped where there is no browser. */
@@ -22,6 +26,7 @@ export function test(name, action, options = {}) {
   nodeTest(name, { skip: lacking ?? false, timeout: 400_000 }, async () => {
     browser ??= await chromium.launch({ executablePath: browserPath, args: ["--no-sandbox"] });
     const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, locale: "en-GB", ...options });
+    context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
     const errors = [];
     page.on("console", (m) => m.type() === "error" && errors.push(m.text()));
@@ -53,8 +58,19 @@ export async function ready(page) {
       return all.length > 0 && all.every((e) => e.getAttribute("aria-busy") === "false");
     },
     null,
-    { timeout: 60_000 },
   );
+}
+
+/** Waits until a question has the answer. */
+export async function eventually(ask, expected, message = "") {
+  const end = Date.now() + PATIENCE;
+  let answer;
+  do {
+    answer = await ask();
+    if (answer === expected) return;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  } while (Date.now() < end);
+  assert.equal(answer, expected, message);
 }
 
 /** A short name of what a canvas shows. */

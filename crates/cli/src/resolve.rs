@@ -240,19 +240,24 @@ fn config_file(args: &ProcessArgs) -> Result<Option<PathBuf>, Failure> {
     Ok(base.map(|b| b.join("vitral").join("config.json")).filter(|f| f.is_file()))
 }
 
-/// Lays a file over the state; `option` names it.
-fn overlay(state: &mut State, file: &Path, option: &str) -> Result<(), Failure> {
+/// The text of a state file; `option` names it.
+pub(crate) fn read_state(file: &Path, option: &str) -> Result<String, Failure> {
     let bytes = vitral::read(file, MAX_STATE_BYTES).map_err(|e| {
         let is_missing = matches!(&e, vitral::Error::Read { source, .. } if source.kind() == ErrorKind::NotFound);
         let failure = Failure::from(e);
         if is_missing { failure.with_hint(format!("{option} takes a file that --save-state wrote")) } else { failure }
     })?;
-    let name = file.to_string_lossy();
-    let text = String::from_utf8(bytes).map_err(|_| vitral::Error::State {
-        file: name.clone().into_owned(),
+    let not_text = |_| vitral::Error::State {
+        file: file.to_string_lossy().into_owned(),
         place: String::new(),
         what: "not UTF-8 text".to_owned(),
-    })?;
+    };
+    Ok(String::from_utf8(bytes).map_err(not_text)?)
+}
+
+/// Lays a file over the state; `option` names it.
+fn overlay(state: &mut State, file: &Path, option: &str) -> Result<(), Failure> {
+    let (name, text) = (file.to_string_lossy(), read_state(file, option)?);
     let before = std::mem::take(&mut state.models);
     state.overlay(&text, &name)?;
     if state.models.is_empty() {

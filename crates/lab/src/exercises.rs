@@ -11,7 +11,7 @@ use vitral::{Attenuation, Error, Light, LightKind, Normals, Renderer, State, Vis
 /// The surface id of the background.
 const NO_SURFACE: u32 = u32::MAX;
 
-/// What is not yet so; nothing if the exercise is done.
+/// Tells the conditions that the state or its picture does not meet yet; none if the exercise is done.
 type Check = fn(&mut Renderer, &State) -> Result<Vec<String>, Error>;
 
 /// An exercise.
@@ -187,7 +187,7 @@ fn start(exercise: &Exercise) -> Result<State, Error> {
     Ok(state)
 }
 
-/// Whether an exercise is done, and what is not yet so.
+/// Whether an exercise is done, and the conditions that are open.
 pub(crate) fn check(renderer: &mut Renderer, state: &State, id: &str) -> Answer {
     let exercise = EXERCISES.iter().find(|exercise| exercise.id == id);
     let exercise = exercise.ok_or_else(|| Error::usage(format!("there is no exercise {id}"), ""))?;
@@ -196,9 +196,9 @@ pub(crate) fn check(renderer: &mut Renderer, state: &State, id: &str) -> Answer 
     Ok((json!({"passed": open.is_empty(), "message": message, "differs": open}), Vec::new()))
 }
 
-/// The message unless it is so.
-fn wants(is_so: bool, message: &str) -> Vec<String> {
-    if is_so { Vec::new() } else { vec![message.to_owned()] }
+/// The message as a list, empty if the condition holds.
+fn wants(holds: bool, message: &str) -> Vec<String> {
+    if holds { Vec::new() } else { vec![message.to_owned()] }
 }
 
 fn wants_model(state: &State, model: &str) -> Vec<String> {

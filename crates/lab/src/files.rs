@@ -27,7 +27,7 @@ impl Files {
         self.files.insert(name.to_owned(), File { bytes, hash });
     }
 
-    /// Each file: its name, its hash, whether it is a model, and what it names that is not there.
+    /// Each file: its name, its hash, whether it is a model, and the names of files that it needs and that are missing.
     pub(crate) fn list(&self) -> Value {
         let tell = |(name, file): (&String, &File)| {
             let is_model = Format::detect(&file.bytes, name).is_ok();
@@ -41,7 +41,7 @@ impl Files {
     fn missing(&self, name: &str, file: &File) -> Vec<String> {
         let asked = Asked { files: self, missing: std::sync::Mutex::default() };
         let options = LoadOptions { make_normals: false, ..LoadOptions::default() };
-        // What is wrong with it otherwise is told where it is shown.
+        // Other mistakes of the file are told when it is shown.
         let _ = load_bytes_with(&file.bytes, name, &asked, &options);
         let mut missing = asked.missing.into_inner().unwrap_or_default();
         missing.sort();
@@ -71,13 +71,19 @@ impl Files {
     }
 }
 
+/// A model's name without its kind and its hash: `builtin:teapot` is `teapot`, `file:chair.obj#0123456789ab` is `chair.obj`.
+pub(crate) fn plain_name(model: &str) -> &str {
+    let model = model.rsplit_once('#').map_or(model, |(name, _)| name);
+    model.split_once(':').map_or(model, |(_, name)| name)
+}
+
 /// The first digits of a file's SHA-256.
 fn hash(bytes: &[u8]) -> String {
     let digits = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
     digits[..HASH_DIGITS].to_owned()
 }
 
-/// Finds the files that a model names among those that were given, wherever they lay: by the whole path, else by the last part.
+/// Finds the files that a model names among the user's, by the whole path, else by its last part: folders are lost when files are dropped.
 struct Beside<'f> {
     files: &'f Files,
     model: &'f str,
@@ -100,7 +106,7 @@ impl Resolver for Beside<'_> {
     }
 }
 
-/// Notes what is not there.
+/// Notes the files that a model names in vain.
 struct Asked<'f> {
     files: &'f Files,
     missing: std::sync::Mutex<Vec<String>>,

@@ -24,7 +24,7 @@
 //! | `explain`, `ask-all` | a pixel: its surfaces, its light, the formula with its numbers |
 //! | `compare`, `compare-all` | two states; all visibility algorithms |
 //! | `stages` | what each stage of the pipeline hands on |
-//! | `info` | what is in the scene |
+//! | `info` | counts, materials, lights and warnings of the scene |
 //! | `check` | whether an exercise is done |
 //! | `save` | the state, a command, or a drawing, as text |
 //! | `curve` | the curves of cosⁿ and attenuation |
@@ -63,7 +63,7 @@ use request::{Request, Want};
 use scene::Stage;
 use serde_json::json;
 use std::sync::Arc;
-use steps::Recording;
+use steps::{Asked, Recording};
 use vitral::Error;
 
 /// Answers requests, and keeps what the next ones may need: files, the scene, recorded steps.
@@ -114,14 +114,14 @@ impl Lab {
             }
             Want::Complete => complete::complete(stage.show(&state, files)?, &state),
             Want::Picture { channel, coarse } => picture::picture(stage.show(&state, files)?, &state, channel, coarse),
-            Want::Record { pixel } => steps::record(stage, files, &state, pixel, recording),
+            Want::Record { pixel } => steps::record(&Asked { stage, files, state: &state, pixel }, recording),
             Want::Step { number, show, pixel } => {
-                steps::step(stage, files, &state, pixel, recording, number, show.as_deref())
+                steps::step(&Asked { stage, files, state: &state, pixel }, recording, number, show.as_deref())
             }
             Want::Steps { from, to, show, pixel } => {
-                steps::steps(stage, files, &state, pixel, recording, [from, to], show.as_deref())
+                steps::steps(&Asked { stage, files, state: &state, pixel }, recording, [from, to], show.as_deref())
             }
-            Want::Structure => steps::structure(stage, files, &state, recording),
+            Want::Structure => steps::structure(&Asked { stage, files, state: &state, pixel: None }, recording),
             Want::Overview { second } => overview::overview(stage.show(&state, files)?, second.as_deref()),
             Want::Explain { pixel } => explain::explain(stage.show(&state, files)?, pixel),
             Want::AskAll { pixel } => explain::ask_all(stage.show(&state, files)?, pixel),

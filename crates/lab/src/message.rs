@@ -12,7 +12,7 @@
 pub struct Message {
     /// Its text.
     pub json: String,
-    /// What is better not written as text: pixels, files.
+    /// Bytes that need no text: pixels, files.
     pub planes: Vec<Vec<u8>>,
 }
 

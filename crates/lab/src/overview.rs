@@ -5,14 +5,11 @@
 use crate::answer::Answer;
 use serde_json::json;
 use std::fmt::Write;
-use vitral::internals::math::func;
-use vitral::internals::scene::framing;
-use vitral::{Camera, DVec3, Error, LightKind, Projection, Renderer, Viewpoint};
+use vitral::internals::scene::framing::{depth_range, frame_from};
+use vitral::{Aabb, Camera, DMat4, DVec3, Error, LightKind, Renderer, Viewpoint};
 
 /// How much of the picture is filled.
 const FILL: f64 = 0.8;
-/// Where the view volume begins, as a part of the way to where it ends.
-const NEAREST: f64 = 0.02;
 
 /// The picture from `second`, or from beside the camera, with what belongs to the camera drawn over it.
 pub(crate) fn overview(renderer: &mut Renderer, second: Option<&Viewpoint>) -> Answer {
@@ -29,7 +26,8 @@ pub(crate) fn overview(renderer: &mut Renderer, second: Option<&Viewpoint>) -> A
 
     // Draw lines where the other camera sees them.
     let [width, height] = [renderer.settings.picture.width, renderer.settings.picture.height];
-    let screen = Screen { camera: outside, size: [f64::from(width), f64::from(height)] };
+    let clip_from_world = clip_from_world(&outside, renderer);
+    let screen = Screen { clip_from_world, size: [f64::from(width), f64::from(height)] };
     let mut svg = format!(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">"#);
     for instance in renderer.world().instances.iter().filter(|i| !i.bounds.is_empty()) {
         screen.cuboid(&mut svg, instance.bounds.corners(), "box");
@@ -52,46 +50,30 @@ pub(crate) fn overview(renderer: &mut Renderer, second: Option<&Viewpoint>) -> A
     Ok((json!({"width": width, "height": height, "drawing": svg}), vec![pixels]))
 }
 
-/// Unit vectors to the right, upwards and forwards of a camera.
-fn axes(camera: &Camera) -> [DVec3; 3] {
-    let forward = (camera.focal_point - camera.position).normalize_or(DVec3::NEG_Z);
-    let right = forward.cross(camera.view_up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
-    [right, right.cross(forward), forward]
+/// World to clip for what a camera sees of the scene.
+fn clip_from_world(camera: &Camera, renderer: &Renderer) -> DMat4 {
+    camera.transform(renderer.aspect(), depth_range(camera, &renderer.world().bounds)).clip_from_world()
 }
 
-/// Half the height of what a camera sees at a distance.
-fn half_height(camera: &Camera, distance: f64) -> f64 {
-    match camera.projection {
-        Projection::Perspective { view_angle } => distance * func::tan(view_angle / 2.0),
-        Projection::Parallel { height } => height / 2.0,
-    }
-}
-
-/// The corners of the view volume, from near to behind the scene, in the order of a box's corners.
+/// The corners of the view volume, in the order of a box's corners; the far ones come first, as depth is 0 there.
 fn view_volume(camera: &Camera, renderer: &Renderer) -> [DVec3; 8] {
-    let ([right, up, forward], aspect) = (axes(camera), renderer.aspect());
-    let farthest = renderer.world().bounds.corners().map(|corner| forward.dot(corner - camera.position));
-    let far = camera.clip.map_or_else(|| farthest.into_iter().fold(0.0, f64::max), |clip| clip.1).max(1e-6);
-    let near = camera.clip.map_or(far * NEAREST, |clip| clip.0);
-    std::array::from_fn(|i| {
-        let distance = if i & 4 == 0 { near } else { far };
-        let half = half_height(camera, distance);
-        let side = |bit: usize| if i & bit == 0 { -half } else { half };
-        camera.position + forward * distance + right * (side(1) * aspect) + up * side(2)
-    })
+    let world_from_clip = clip_from_world(camera, renderer).inverse();
+    let clip = Aabb { min: DVec3::new(-1.0, -1.0, 0.0), max: DVec3::ONE };
+    clip.corners().map(|corner| world_from_clip.project_point3(corner))
 }
 
 /// A camera beside another one, that sees it, its view volume and the scene.
 fn beside(camera: &Camera, volume: &[DVec3; 8], renderer: &Renderer) -> Camera {
-    let [right, up, forward] = axes(camera);
+    let axes = camera.view_from_world();
+    let [right, up, backward] = [0, 1, 2].map(|k| axes.row(k).truncate());
     let mut all = renderer.world().bounds;
     volume.iter().chain([&camera.position]).for_each(|corner| all.include(*corner));
-    framing::frame_from(&all, right + up * 0.5 - forward * 0.35, up, renderer.lens, renderer.aspect(), FILL)
+    frame_from(&all, right + up * 0.5 + backward * 0.35, up, renderer.lens, renderer.aspect(), FILL)
 }
 
 /// Where a camera sees places of the world.
 struct Screen {
-    camera: Camera,
+    clip_from_world: DMat4,
     /// Width and height in pixels.
     size: [f64; 2],
 }
@@ -99,13 +81,10 @@ struct Screen {
 impl Screen {
     /// The pixel of a place in front of the camera.
     fn place(&self, at: DVec3) -> Option<[f64; 2]> {
-        let ([right, up, forward], [width, height]) = (axes(&self.camera), self.size);
-        let from = at - self.camera.position;
-        let distance = forward.dot(from);
-        let is_behind = matches!(self.camera.projection, Projection::Perspective { .. }) && distance <= 0.0;
-        let scale = height / 2.0 / half_height(&self.camera, distance);
-        let pixel = [width / 2.0 + right.dot(from) * scale, height / 2.0 - up.dot(from) * scale];
-        (!is_behind && pixel.iter().all(|c| c.is_finite())).then_some(pixel)
+        let clip = self.clip_from_world * at.extend(1.0);
+        let [width, height] = self.size;
+        let pixel = [(1.0 + clip.x / clip.w) / 2.0 * width, (1.0 - clip.y / clip.w) / 2.0 * height];
+        (clip.w > 0.0 && pixel.iter().all(|c| c.is_finite())).then_some(pixel)
     }
 
     /// The twelve edges of a box; corners differ in x by the first bit of their number, in y by the second, in z by the third.
@@ -137,10 +116,11 @@ mod tests {
     #[test]
     fn places_are_where_the_picture_shows_them() {
         let camera = Camera::look_at([0.0, 0.0, 10.0], [0.0, 0.0, 0.0]);
-        let screen = Screen { camera, size: [200.0, 100.0] };
+        let screen =
+            Screen { clip_from_world: camera.transform(2.0, (1.0, 20.0)).clip_from_world(), size: [200.0, 100.0] };
         assert_eq!(screen.place(DVec3::ZERO), Some([100.0, 50.0]));
         assert_eq!(screen.place(DVec3::new(0.0, 0.0, 11.0)), None);
-        let top = half_height(&camera, 10.0);
+        let top = 10.0 * vitral::internals::math::func::tan(Camera::VIEW_ANGLE / 2.0);
         let [x, y] = screen.place(DVec3::new(-2.0 * top, top, 0.0)).unwrap();
         assert!(x.abs() < 1e-9 && y.abs() < 1e-9, "{x} {y}");
     }

@@ -1,6 +1,7 @@
 //! A picture, its counters, and what it shows in words.
 
 use crate::answer::Answer;
+use crate::files::plain_name;
 use serde_json::{Value, json};
 use vitral::internals::render::stats::{GeometryStats, PictureCounters, TracingCounters};
 use vitral::picture::{self, Channel};
@@ -41,14 +42,10 @@ pub(crate) fn picture(renderer: &mut Renderer, state: &State, channel: Option<St
     Ok((answer, vec![pixels]))
 }
 
-/// What the picture shows: "builtin:teapot, z-buffer, phong shading, 2 lights".
+/// The picture in words: "teapot seen from front, z-buffer, phong shading, 2 lights".
 fn description(renderer: &Renderer, state: &State, lights: usize) -> String {
     let settings = &renderer.settings;
-    let model = |name: &String| {
-        let name = name.rsplit_once('#').map_or(name.as_str(), |(name, _)| name);
-        name.split_once(':').map_or(name, |(_, name)| name).to_owned()
-    };
-    let models: Vec<String> = state.models.iter().map(model).collect();
+    let models: Vec<&str> = state.models.iter().map(|model| plain_name(model)).collect();
     let view = state.viewpoint.view.map_or("the default side", vitral::names::view_name);
     let shading = match settings.shading.lighting {
         true => format!("{} shading", settings.shading.model.name()),

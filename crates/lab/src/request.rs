@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use vitral::{Error, State, Viewpoint};
 
-/// What is wanted, of which state.
+/// A request: an entry of the crate's table, and the state it is about.
 #[derive(Debug)]
 pub(crate) struct Request {
     pub(crate) want: Want,
@@ -18,7 +18,7 @@ pub(crate) struct FileName {
     pub(crate) name: String,
 }
 
-/// What is to be saved.
+/// Texts that the page saves.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Saved {
@@ -27,17 +27,17 @@ pub(crate) enum Saved {
     Drawing,
 }
 
-/// What a curve shows.
+/// Curves of illumination.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Curve {
     /// `cosⁿ` of an angle from -90 to 90 degrees.
     CosN,
-    /// What distance leaves of a light.
+    /// The share of a light that a distance leaves.
     Attenuation,
 }
 
-/// What can be wanted, by its names in requests.
+/// The names of all requests.
 pub(crate) const WANTS: [&str; 18] = [
     "catalog",
     "files",

@@ -1,6 +1,7 @@
-//! What the page saves as text.
+//! The texts that the page saves.
 
 use crate::answer::Answer;
+use crate::files::plain_name;
 use crate::request::Saved;
 use serde_json::json;
 use vitral::{DrawingFormat, DrawingOptions, DrawingSettings, Renderer, State};
@@ -24,25 +25,21 @@ fn command(state: &State) -> String {
     let defaults = serde_json::to_value(State::default()).unwrap_or_default();
     let mut differing = difference(&all, &defaults).unwrap_or_else(|| json!({}));
     differing["vitral"] = all["vitral"].clone();
-    let name = state.models.first().map_or("picture", |model| {
-        let model = model.rsplit_once('#').map_or(model.as_str(), |(name, _)| name);
-        let model = model.split_once(':').map_or(model, |(_, name)| name);
-        model.rsplit_once('.').map_or(model, |(stem, _)| stem)
-    });
-    // Models of the user's own are files again.
+    let name = state.models.first().map_or("picture", |model| plain_name(model));
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem).replace('\'', "'\\''");
+
+    // Call models of the user's own by their files.
     if let Some(models) = differing["models"].as_array_mut() {
         for model in models {
-            let file = model.as_str().and_then(|model| model.strip_prefix("file:"));
-            let file = file.map(|name| name.rsplit_once('#').map_or(name, |(name, _)| name).to_owned());
-            if let Some(file) = file {
-                *model = json!(file);
+            if let Some(file) = model.as_str().filter(|model| model.starts_with("file:")) {
+                *model = json!(plain_name(file));
             }
         }
     }
-    format!("vitral render --load-state /dev/stdin -o '{name}.png' <<'STATE'\n{differing:#}\nSTATE\n")
+    format!("vitral render --load-state - -o '{stem}.png' <<'STATE'\n{differing:#}\nSTATE\n")
 }
 
-/// What of `value` differs from `default`, object by object; lists and tagged choices are wholes.
+/// The fields of `value` that differ from `default`, object by object; lists and tagged choices are wholes.
 fn difference(value: &serde_json::Value, default: &serde_json::Value) -> Option<serde_json::Value> {
     if value == default {
         return None;
@@ -65,15 +62,16 @@ mod tests {
 
     #[test]
     fn a_command_names_what_differs_alone() {
-        let text = r#"{"models": ["file:a/chair.obj#0123456789ab"], "settings": {"shading": "flat", "width": 64}}"#;
+        let text =
+            r#"{"models": ["file:a/bob's chair.obj#0123456789ab"], "settings": {"shading": "flat", "width": 64}}"#;
         let told = command(&State::from_json(text, "s").unwrap());
         let (first, rest) = told.split_once('\n').unwrap();
-        assert_eq!(first, "vitral render --load-state /dev/stdin -o 'a/chair.png' <<'STATE'");
+        assert_eq!(first, r"vitral render --load-state - -o 'a/bob'\''s chair.png' <<'STATE'");
         let state = rest.strip_suffix("\nSTATE\n").unwrap();
         let found: serde_json::Value = serde_json::from_str(state).unwrap();
         assert_eq!(
             found,
-            json!({"vitral": 1, "models": ["a/chair.obj"], "settings": {"shading": "flat", "width": 64}})
+            json!({"vitral": 1, "models": ["a/bob's chair.obj"], "settings": {"shading": "flat", "width": 64}})
         );
     }
 }

@@ -1,55 +1,48 @@
-//! What each stage of the pipeline hands on, and what is in the scene.
+//! The stages of the pipeline with their counts, and the contents of the scene.
 
 use crate::answer::Answer;
 use serde_json::{Value, json};
-use vitral::explain::{Deciders, explain};
+use vitral::explain::{Deciders, FacetSpaces, explain, spaces};
 use vitral::info::info_on;
-use vitral::{Error, Renderer, dump};
+use vitral::{Error, Renderer};
 
-/// The stages with what goes in and comes out; for the facet that is seen at a pixel, its corners in each space.
+/// The stages with their input and output; for the facet that is seen at a pixel, its corners in each space.
 pub(crate) fn stages(renderer: &mut Renderer, pixel: Option<[u32; 2]>) -> Answer {
     let camera = renderer.frame_camera();
     let picture = renderer.render_from(&camera)?;
     let stats = serde_json::to_value(&picture.stats).map_err(|e| Error::usage(e.to_string(), ""))?;
     renderer.recycle(picture);
 
-    // Take the corners of the facet from the tables of the stages.
+    // Bring the corners of the facet at the pixel through all spaces.
     let facet = match pixel {
         Some(pixel) => explain(renderer, &camera, pixel, &Deciders::Chosen, None)?.surfaces.first().map(|s| s.facet),
         None => None,
     };
-    let mut spaces = serde_json::Map::new();
-    if let Some(facet) = facet {
-        dump::dump(renderer, &camera, |name, bytes| {
-            let tables = [
-                ("4-illuminated.csv", "world"),
-                ("5-view.csv", "view"),
-                ("6-clip.csv", "clip"),
-                ("7-project.csv", "screen"),
-            ];
-            if let Some((_, space)) = tables.iter().find(|(table, _)| *table == name) {
-                spaces.insert((*space).to_owned(), rows_of(&String::from_utf8_lossy(bytes), facet));
-            }
-            Ok(())
-        })?;
-    }
-    let answer = json!({"stages": rows(&stats), "facet": facet, "spaces": spaces});
+    let corners = facet.map(|facet| spaces(renderer, &camera, facet)).transpose()?;
+    let answer = json!({"stages": rows(&stats), "facet": facet, "spaces": corners.as_ref().map(rows_of)});
     Ok((answer, Vec::new()))
 }
 
-/// The rows of a table that begin with a facet, each as an object by the table's head.
-fn rows_of(table: &str, facet: u32) -> Value {
-    let mut lines = table.lines();
-    let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-    let first = format!("{facet},");
-    let row = |line: &str| -> Value {
-        let values = line.split(',').map(|cell| cell.parse::<f64>().map_or(Value::Null, |number| json!(number)));
-        head.iter().map(|name| (*name).to_owned()).zip(values).collect()
-    };
-    lines.filter(|line| line.starts_with(&first)).map(row).collect()
+/// For each space a row for each corner.
+fn rows_of(corners: &FacetSpaces) -> Value {
+    fn rows<T: Copy + Into<f64>, const N: usize>(corners: &[[T; N]]) -> Vec<Value> {
+        let row = |corner: &[T; N]| {
+            let values = corner.iter().map(|&c| json!(Into::<f64>::into(c)));
+            ["x", "y", "z", "w"].iter().map(|name| (*name).to_owned()).zip(values).collect()
+        };
+        corners.iter().map(row).collect()
+    }
+    json!({
+        "model": rows(&corners.model),
+        "world": rows(&corners.world),
+        "view": rows(&corners.view),
+        "clip": rows(&corners.clip),
+        "ndc": rows(&corners.ndc),
+        "screen": rows(&corners.screen),
+    })
 }
 
-/// A row for each stage: its name, what goes in, what comes out.
+/// A row for each stage: its name, its input, its output.
 fn rows(stats: &Value) -> Vec<Value> {
     let (cull, geometry, picture) = (&stats["cull"], &stats["geometry"], &stats["picture"]);
     let count = |value: &Value| value.as_u64().unwrap_or(0);

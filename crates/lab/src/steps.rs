@@ -11,14 +11,24 @@ use vitral::internals::render::trace::replay::{Replay, WatchedSteps};
 use vitral::internals::render::trace::structure::drawer;
 use vitral::{Error, State};
 
+/// Bytes that the steps of a recording may take.
+const MOST_BYTES: u64 = 512 << 20;
 /// Steps that come at once.
 const MOST_STEPS: u32 = 20_000;
 /// Members of a list that come with one of many steps.
 const MOST_MEMBERS: usize = 64;
 
+/// The state whose steps are asked for, and a pixel that is inspected.
+pub(crate) struct Asked<'a> {
+    pub(crate) stage: &'a Stage,
+    pub(crate) files: &'a Files,
+    pub(crate) state: &'a State,
+    pub(crate) pixel: Option<[u32; 2]>,
+}
+
 /// Steps of a state.
 pub(crate) struct Recording {
-    /// The state that they were recorded of, and the pixel that was watched.
+    /// The state that they were recorded of.
     key: String,
     watched: WatchedSteps,
     /// The kind of each step, as a place among the groups.
@@ -30,16 +40,20 @@ pub(crate) struct Recording {
 
 impl Recording {
     fn new(stage: &Stage, files: &Files, state: &State, key: String) -> Result<Self, Error> {
-        // A renderer that knows nothing tells all that there is to do.
+        // Let a renderer that knows nothing tell all that there is to do.
         let mut renderer = stage.renderer(state, files)?;
+        let budget = &mut renderer.execution_mut().budget;
+        *budget = budget.renewed().with_memory_limit(Some(MOST_BYTES));
         let camera = renderer.frame_camera();
         let mut watched = renderer.watch_steps(&camera)?;
         let seconds = renderer.execution().budget.elapsed();
 
-        // What is decided shows the colours of the finished picture, with all its samples.
+        // Take the colours of what is decided from the finished picture, with all its samples.
         if let Some(color) = renderer.render_from(&camera)?.frame.color.take() {
             watched.image = color;
         }
+
+        // Give each kind of step a number, in the order of their first steps.
         let (mut found, mut groups): (Vec<Discriminant<Step>>, Vec<String>) = Default::default();
         let kinds = watched.steps.iter().map(|numbered| {
             let kind = discriminant(&numbered.step);
@@ -75,40 +89,29 @@ impl Recording {
     }
 }
 
-/// The recording of a state, a new one if the kept one is of another.
-fn recorded<'r>(
-    stage: &Stage,
-    files: &Files,
-    state: &State,
-    kept: &'r mut Option<Recording>,
-) -> Result<&'r Recording, Error> {
-    let key = state.to_json();
-    match kept {
-        Some(recording) if recording.key == key => {}
-        _ => {
+impl Asked<'_> {
+    /// The recording of the state: the kept one, or a new one where that is of another state.
+    fn recording<'r>(&self, kept: &'r mut Option<Recording>) -> Result<&'r Recording, Error> {
+        let key = self.state.to_json();
+        if kept.as_ref().is_none_or(|recording| recording.key != key) {
+            // The old one needs not be there while the new one is made.
             *kept = None;
-            *kept = Some(Recording::new(stage, files, state, key)?);
+            *kept = Some(Recording::new(self.stage, self.files, self.state, key)?);
         }
+        Ok(kept.as_ref().expect("it was just put there"))
     }
-    Ok(kept.as_ref().expect("it was just put there"))
 }
 
 /// Records the steps of a state: how many there are, of which kinds.
-pub(crate) fn record(
-    stage: &Stage,
-    files: &Files,
-    state: &State,
-    pixel: Option<[u32; 2]>,
-    kept: &mut Option<Recording>,
-) -> Answer {
-    let recording = recorded(stage, files, state, kept)?;
+pub(crate) fn record(asked: &Asked<'_>, kept: &mut Option<Recording>) -> Answer {
+    let recording = asked.recording(kept)?;
     let count = |kind: usize| recording.kinds.iter().filter(|&&k| usize::from(k) == kind).count();
     let groups: Vec<Value> =
         recording.groups.iter().enumerate().map(|(kind, name)| json!({"name": name, "count": count(kind)})).collect();
-    let about = pixel.map(|_| recording.shown(Some("pixel"), pixel).map(|steps| steps.len())).transpose()?;
+    let about =
+        asked.pixel.map(|_| recording.shown(Some("pixel"), asked.pixel).map(|steps| steps.len())).transpose()?;
     let answer = json!({
         "steps": recording.watched.steps.len(),
-        "complete": true,
         "groups": groups,
         "at-pixel": about,
         "seconds": recording.seconds,
@@ -117,18 +120,10 @@ pub(crate) fn record(
 }
 
 /// A step: the picture so far, what it is about as a drawing over it, its words and its fields.
-pub(crate) fn step(
-    stage: &Stage,
-    files: &Files,
-    state: &State,
-    pixel: Option<[u32; 2]>,
-    kept: &mut Option<Recording>,
-    number: u32,
-    show: Option<&str>,
-) -> Answer {
+pub(crate) fn step(asked: &Asked<'_>, kept: &mut Option<Recording>, number: u32, show: Option<&str>) -> Answer {
     // Find it among those that are shown.
-    let recording = recorded(stage, files, state, kept)?;
-    let shown = recording.shown(show, pixel)?;
+    let recording = asked.recording(kept)?;
+    let shown = recording.shown(show, asked.pixel)?;
     let place = (number as usize).checked_sub(1).and_then(|place| shown.get(place));
     let &at = place.ok_or_else(|| {
         Error::usage(format!("there is no step {number}"), format!("they are counted from 1 to {}", shown.len()))
@@ -145,7 +140,7 @@ pub(crate) fn step(
         "at": at + 1,
         "parent": numbered.parent.map(|parent| parent + 1),
         "group": recording.groups[usize::from(recording.kinds[at as usize])],
-        "words": words(&numbered.step, pixel),
+        "words": words(&numbered.step, asked.pixel),
         "fields": numbered.step,
         "drawing": overlay::drawing(&numbered.step, decided.width(), decided.height()),
         "width": decided.width(),
@@ -156,20 +151,20 @@ pub(crate) fn step(
 
 /// The words and fields of the steps from one number to another, without pictures. Long lists in them are cut.
 pub(crate) fn steps(
-    stage: &Stage,
-    files: &Files,
-    state: &State,
-    pixel: Option<[u32; 2]>,
+    asked: &Asked<'_>,
     kept: &mut Option<Recording>,
     [from, to]: [u32; 2],
     show: Option<&str>,
 ) -> Answer {
-    let recording = recorded(stage, files, state, kept)?;
-    let shown = recording.shown(show, pixel)?;
+    // Refuse numbers that are none, or too many.
+    let recording = asked.recording(kept)?;
+    let shown = recording.shown(show, asked.pixel)?;
     if from == 0 || to < from || to - from >= MOST_STEPS {
         let hint = format!("they are counted from 1 to {}, and at most {MOST_STEPS} come at once", shown.len());
         return Err(Error::usage(format!("there are no steps {from} to {to}"), hint));
     }
+
+    // Tell the others without what only their pictures show.
     let told = shown.iter().enumerate().skip(from as usize - 1).take((to - from) as usize + 1).map(|(place, &at)| {
         let numbered = &recording.watched.steps[at as usize];
         let mut fields = serde_json::to_value(numbered).unwrap_or(Value::Null);
@@ -183,7 +178,7 @@ pub(crate) fn steps(
             "number": place + 1,
             "at": at + 1,
             "parent": numbered.parent.map(|parent| parent + 1),
-            "words": words(&numbered.step, pixel),
+            "words": words(&numbered.step, asked.pixel),
             "fields": fields,
         })
     });
@@ -204,10 +199,10 @@ fn shorten(value: &mut Value) {
 }
 
 /// The structure that the algorithm built, as SVG; none if it has no picture.
-pub(crate) fn structure(stage: &Stage, files: &Files, state: &State, kept: &mut Option<Recording>) -> Answer {
-    let recording = recorded(stage, files, state, kept)?;
+pub(crate) fn structure(asked: &Asked<'_>, kept: &mut Option<Recording>) -> Answer {
+    let recording = asked.recording(kept)?;
     let image = &recording.watched.image;
-    let draw = drawer(state.settings.visibility);
+    let draw = drawer(asked.state.settings.visibility);
     let drawing = draw.map(|draw| draw(&recording.watched.steps, image.width(), image.height()));
     Ok((json!({"drawing": drawing}), Vec::new()))
 }

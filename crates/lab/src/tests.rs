@@ -198,7 +198,7 @@ fn stages_info_and_texts_are_told() {
     let state = small("builtin:cubs", json!({}));
     let (told, _) = ask(&mut lab, json!({"want": "stages", "state": state, "pixel": [24, 18]}));
     assert_eq!(told["stages"].as_array().unwrap().len(), 4);
-    for space in ["world", "view", "clip"] {
+    for space in ["model", "world", "view", "clip", "ndc", "screen"] {
         assert_eq!(told["spaces"][space].as_array().unwrap().len(), 3, "{space}: {told}");
     }
     let (info, _) = ask(&mut lab, json!({"want": "info", "state": state}));

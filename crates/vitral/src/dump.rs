@@ -27,9 +27,8 @@ mod two_buffer;
 
 use crate::{Channel, Error, Frame, Picture, PictureFormat, Renderer, picture};
 use serde_json::Value;
-use stage::{Listed, Write, prepare};
+use stage::{Listed, Write};
 use std::path::Path;
-use vitral_raster::Viewport;
 use vitral_render::stats::CullCounters;
 use vitral_render::{Settings, Shot, TransparencyOrder, illuminate_corners};
 use vitral_scene::Camera;
@@ -48,7 +47,7 @@ pub fn dump(
 
     // Stages 1 to 7: geometry.
     write_scene(renderer, &mut write)?;
-    let cull = write_geometry(renderer, camera, viewport, &mut write, &mut of_picture)?;
+    let cull = write_geometry(renderer, camera, &mut write, &mut of_picture)?;
 
     // Stage 8 of scan lines, as text.
     if renderer.settings.visibility.has_edge_table {
@@ -83,7 +82,6 @@ fn write_scene(renderer: &Renderer, write: &mut Write<'_>) -> Result<(), Error> 
 fn write_geometry(
     renderer: &Renderer,
     camera: &Camera,
-    viewport: Viewport,
     write: &mut Write<'_>,
     listed: &mut Vec<Listed>,
 ) -> Result<CullCounters, Error> {
@@ -91,7 +89,7 @@ fn write_geometry(
     let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
     let corners = illuminate_corners(renderer.session(), &shot, &renderer.settings, renderer.execution(), None)?;
     let mut counters = CullCounters::default();
-    let view = prepare(renderer, camera, viewport, &mut counters);
+    let view = renderer.prepared(camera, &mut counters)?;
     write_json(write, "3-cull.json", &scene::culled(&view, &counters))?;
     write_json(write, "4-lights.json", &scene::lights_in_view(renderer, camera, &view))?;
     write_json(write, "5-view.json", &scene::view_matrices(&view))?;
@@ -284,8 +282,7 @@ mod tests {
     fn p1_the_stages_follow_from_each_other() {
         let mut renderer = small("cubs");
         let files = dumped(&mut renderer);
-        let viewport = renderer.settings.check().unwrap();
-        let view = prepare(&renderer, &renderer.frame_camera(), viewport, &mut CullCounters::default());
+        let view = renderer.prepared(&renderer.frame_camera(), &mut CullCounters::default()).unwrap();
         let (world, seen) = (table(&files, "4-illuminated.csv"), table(&files, "5-view.csv"));
         let clip = table(&files, "6-clip.csv");
         let numbers = |row: &[String], from: usize| [0, 1, 2].map(|k| row[from + k].parse::<f64>().unwrap());

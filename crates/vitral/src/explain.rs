@@ -8,7 +8,10 @@
 //! Only the tile that holds the pixel is made, of the facets that may touch it; it is what it is in the whole picture. Whole
 //! pictures are made for algorithms that are asked for by name ([`Deciders::Named`]), and where translucent materials are in view.
 
+mod spaces;
 mod text;
+
+pub use spaces::{FacetSpaces, spaces};
 
 use crate::bench::Entrant;
 use crate::{Error, Renderer};
@@ -353,10 +356,8 @@ fn named(session: &Session, facet: u32) -> (u32, String, Option<String>) {
 
 /// The surfaces over the pixel's centre.
 fn surfaces(renderer: &Renderer, camera: &Camera, pixel: [u32; 2]) -> Result<Vec<Surface>, Error> {
-    let viewport = renderer.settings.check().map_err(vitral_render::Error::from)?;
-    let (culled, pattern) = (&mut CullCounters::default(), SamplePattern::new(1));
-    let (session, execution) = (renderer.session(), renderer.execution());
-    let view = PreparedView::new(session, camera, &renderer.settings, viewport, pattern, execution, culled);
+    let view = renderer.prepared(camera, &mut CullCounters::default())?;
+    let session = renderer.session();
     let surface = |(facet, depth, layer)| {
         let (surface, mesh, material) = named(session, facet);
         Surface { facet, surface, mesh, material, depth, layer }
@@ -371,11 +372,8 @@ fn gouraud(
     [column, row]: [u32; 2],
     facet: u32,
 ) -> Result<Option<Gouraud>, Error> {
-    let settings = &renderer.settings;
-    let viewport = settings.check().map_err(vitral_render::Error::from)?;
-    let (session, execution, pattern) = (renderer.session(), renderer.execution(), SamplePattern::new(1));
-    let culled = &mut CullCounters::default();
-    let view = PreparedView::new(session, camera, settings, viewport, pattern, execution, culled);
+    let (settings, session, execution) = (&renderer.settings, renderer.session(), renderer.execution());
+    let view = renderer.prepared(camera, &mut CullCounters::default())?;
     let Some((clip, false)) = view.clipped(facet) else { return Ok(None) };
     let lights = renderer.frame_lights(camera);
     let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };

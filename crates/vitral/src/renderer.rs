@@ -6,8 +6,12 @@ use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
 use vitral_light::{Light, LightKind, Rgb};
 use vitral_math::{DQuat, DVec3};
+use vitral_raster::SamplePattern;
+use vitral_render::stats::CullCounters;
 use vitral_render::trace::replay::WatchedSteps;
-use vitral_render::{ColorSpace, Execution, Global, Session, Settings, Shot, radiosity, render, watch_steps};
+use vitral_render::{
+    ColorSpace, Execution, Global, PreparedView, Session, Settings, Shot, radiosity, render, watch_steps,
+};
 use vitral_scene::{Axis, Camera, Lens, LightMeter, Scene, View, World, default_lights, framing};
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
@@ -315,6 +319,16 @@ impl Renderer {
         let lights = self.frame_lights(camera);
         let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
         Ok(watch_steps(&mut self.session, &shot, &self.settings, &self.execution, None)?)
+    }
+
+    /// The facets of the view from `camera`, culled and ready for the screen, with one sample a pixel, at its centre.
+    ///
+    /// # Errors
+    /// Settings that cannot be.
+    pub(crate) fn prepared(&self, camera: &Camera, counters: &mut CullCounters) -> Result<PreparedView<'_>, Error> {
+        let viewport = self.settings.check().map_err(vitral_render::Error::from)?;
+        let pattern = SamplePattern::new(1);
+        Ok(PreparedView::new(&self.session, camera, &self.settings, viewport, pattern, &self.execution, counters))
     }
 
     /// Takes back a picture that is not needed any more: the next one of its size is made in the same memory. Without it every

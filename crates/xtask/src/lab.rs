@@ -42,7 +42,7 @@ fn build_page() -> Outcome {
 fn build_engine() -> Outcome {
     let folder = target_folder().join(FOLDER);
     let mut build = cargo();
-    build.env("RUSTFLAGS", "-C target-feature=+simd128").env_remove("CARGO_ENCODED_RUSTFLAGS");
+    build.env("RUSTFLAGS", wasm::SIMD).env_remove("CARGO_ENCODED_RUSTFLAGS");
     build.args(["build", "--profile", PROFILE, "--package", PACKAGE, "--target", WASM_TARGET]);
     run(build.arg("--target-dir").arg(&folder))?;
     place_engine(&folder.join(WASM_TARGET).join(PROFILE))
@@ -69,7 +69,7 @@ pub(crate) fn test_all(missing: Option<&str>) -> Vec<Check> {
         Ok(()) if !is_built => CheckResult::Skipped("the page was not built".to_owned()),
         Ok(()) => tried(test_page()),
     };
-    vec![Check { name: "lab: functions", result: tried(page) }, Check { name: "lab: page", result: browser }]
+    vec![Check { name: "lab::functions", result: tried(page) }, Check { name: "lab::page", result: browser }]
 }
 
 /// Builds a `vitral` with the Lab inside, lets it serve, and tests the page that it serves.

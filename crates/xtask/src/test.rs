@@ -50,7 +50,7 @@ pub(crate) fn run() -> Outcome {
     let page = Stopwatch::start();
     checks.extend(lab::test_all(prepared.no_wasm.as_deref()));
     for check in checks {
-        println!("test wasm::{} ... {}", check.name, check.result);
+        println!("test {} ... {}", check.name, check.result);
         match check.result {
             wasm::CheckResult::Passed => tally.passed += 1,
             wasm::CheckResult::Failed(_) => tally.failed += 1,

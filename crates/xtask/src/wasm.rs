@@ -14,7 +14,7 @@ const PACKAGE: &str = "vitral-wasm-probe";
 const OPT_LEVEL: &str = "1";
 
 /// Flags of modules with vectors, and the folder below cargo's in which they are built.
-const SIMD: &str = "-C target-feature=+simd128";
+pub(crate) const SIMD: &str = "-C target-feature=+simd128";
 const SIMD_FOLDER: &str = "wasm-simd128";
 
 /// How one check ended.
@@ -49,8 +49,10 @@ struct Variant {
     folder: &'static str,
 }
 
-const VARIANTS: [Variant; 2] =
-    [Variant { name: "scalar", flags: "", folder: "" }, Variant { name: "simd128", flags: SIMD, folder: SIMD_FOLDER }];
+const VARIANTS: [Variant; 2] = [
+    Variant { name: "wasm::scalar", flags: "", folder: "" },
+    Variant { name: "wasm::simd128", flags: SIMD, folder: SIMD_FOLDER },
+];
 
 /// Runs all variants, unless `missing` says why that cannot be.
 pub(crate) fn run_all(missing: Option<&str>) -> Vec<Check> {
@@ -72,7 +74,7 @@ pub(crate) fn run_all(missing: Option<&str>) -> Vec<Check> {
     };
     let mut checks: Vec<Check> = VARIANTS.into_iter().map(check).collect();
     checks.push(Check {
-        name: "opengl",
+        name: "wasm::opengl",
         result: missing.map_or_else(opengl, |why| CheckResult::Skipped(why.to_owned())),
     });
     checks

@@ -36,7 +36,7 @@ export function compareChoice(app: App): TemplateResult {
 }
 
 export function setComparison(app: App, compare: Comparison) {
-  app.pause();
+  app.playback.pause();
   app.setLab({ compare, step: null });
 }
 

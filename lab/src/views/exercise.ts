@@ -1,7 +1,9 @@
 // `region "Exercise"` and the list of all exercises.
 
 import { html, nothing, type TemplateResult } from "lit-html";
-import { overlay, type App, type Exercise } from "../app.ts";
+import type { Exercise } from "../answers.ts";
+import { type App } from "../app.ts";
+import { overlay } from "../states.ts";
 import type { Page } from "../link.ts";
 import { PAGES } from "../link.ts";
 import { button } from "../parts/fields.ts";

@@ -2,7 +2,8 @@
 
 import { html, nothing, type TemplateResult } from "lit-html";
 import { ref } from "lit-html/directives/ref.js";
-import { type App, type Picture } from "../app.ts";
+import type { Picture } from "../answers.ts";
+import { type App } from "../app.ts";
 import { isObject, put, type Json, type JsonObject } from "../json.ts";
 import { attenuationOf } from "../lights.ts";
 import { button, radio, spin } from "../parts/fields.ts";

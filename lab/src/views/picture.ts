@@ -3,7 +3,8 @@
 import { html, nothing, svg, type TemplateResult } from "lit-html";
 import { ref } from "lit-html/directives/ref.js";
 import { css } from "../parts/css.ts";
-import { type App, type Plane, type Result } from "../app.ts";
+import type { Plane, Result } from "../answers.ts";
+import { type App } from "../app.ts";
 import { axes, project, unproject, type Eye, type Vector } from "../camera.ts";
 import type { JsonObject } from "../json.ts";
 import { placeOf, setPlace } from "../lights.ts";

@@ -1,7 +1,8 @@
 // `complementary "Settings"`: the choices of section 5. Names of algorithms come from the engine's registry.
 
 import { html, nothing, type TemplateResult } from "lit-html";
-import { fileNameOf, type App } from "../app.ts";
+import { type App } from "../app.ts";
+import { nameOf } from "../states.ts";
 import { pickFiles } from "../files.ts";
 import type { Json } from "../json.ts";
 import { button, check, combo, group, radio, spin, type Option } from "../parts/fields.ts";
@@ -100,7 +101,7 @@ function model(app: App, picture: Picture): TemplateResult {
   }));
   const own = [...app.hashes].map(([name, hash]) => ({ value: JSON.stringify([`file:${name}#${hash}`]), text: name }));
   const all = [...builtin, ...own.filter((o) => app.models.has(o.text))];
-  const joined = models.map((m) => fileNameOf(String(m)).replace("builtin:", "")).join(" + ");
+  const joined = models.map((m) => nameOf(String(m)).replace("builtin:", "")).join(" + ");
   const list = all.some((o) => o.value === value) ? all : [...all, { value, text: joined }];
   return combo(t("Model"), value, list, (v) => {
     if (picture === "b") app.set({ models: JSON.parse(v) as Json }, "b");

@@ -19,11 +19,11 @@ export function stepsToolbar(app: App): TemplateResult {
   const text = count ? t("{0} of {1}: {2}", number, count, words) : t("Recording…");
   const isReady = count > 0;
   const go = (to: number) => () => {
-    app.pause();
+    app.playback.pause();
     app.goToStep(to);
   };
   const slide = (e: Event) => {
-    app.pause();
+    app.playback.pause();
     app.goToStep(Number((e.target as HTMLInputElement).value));
   };
   // The range has to know its end before its value.
@@ -40,20 +40,19 @@ export function stepsToolbar(app: App): TemplateResult {
     ...groups.map((g) => ({ value: g.name, text: `${translated(g.name)} (${g.count})` })),
   ];
   if (!shown.some((s) => s.value === app.lab.steps)) shown.push({ value: app.lab.steps, text: app.lab.steps });
-  const hasMore = app.recording?.value.complete === false;
   const speeds = SPEEDS.includes(app.lab.speed) ? SPEEDS : [...SPEEDS, app.lab.speed].sort((a, b) => a - b);
   return html`<div role="toolbar" class="toolbar steps" aria-label=${t("Steps")} aria-busy=${String(app.isRecording)}>
       <div class="buttons">
         ${button(t("First step"), go(1), { icon: icon("first"), disabled: !isReady })}
         ${button(t("Previous step"), go(number - 1), { icon: icon("previous"), disabled: !isReady })}
-        ${app.isPlaying
-          ? button(t("Pause"), () => app.pause(), { icon: icon("pause"), style: "icon strong" })
-          : button(t("Play"), () => app.play(), { icon: icon("play"), disabled: !isReady, style: "icon strong" })}
+        ${app.playback.isPlaying
+          ? button(t("Pause"), () => app.playback.pause(), { icon: icon("pause"), style: "icon strong" })
+          : button(t("Play"), () => app.playback.play(), { icon: icon("play"), disabled: !isReady, style: "icon strong" })}
         ${button(
           t("Next step"),
           () => {
-            app.pause();
-            void app.nextStep();
+            app.playback.pause();
+            void app.playback.next();
           },
           { icon: icon("next"), disabled: !isReady },
         )}
@@ -75,16 +74,15 @@ export function stepsToolbar(app: App): TemplateResult {
         app.setLab({ speed: Number(v) }),
       )}
       ${combo(t("Show steps"), app.lab.steps, shown, (v) => {
-        app.pause();
+        app.playback.pause();
         app.setLab({ steps: v, step: null });
       })}
-      ${check(t("Ask me first"), app.askFirst, (on) => {
-        app.askFirst = on;
+      ${check(t("Ask me first"), app.playback.askFirst, (on) => {
+        app.playback.askFirst = on;
         app.changed();
       })}
     </div>
-    ${app.lab.layout === "full" ? nothing : html`<p class="told">${text}</p>`}
-    ${hasMore ? html`<p class="note">${t("first {0} steps of more", count)}</p>` : nothing}`;
+    ${app.lab.layout === "full" ? nothing : html`<p class="told">${text}</p>`}`;
 }
 
 /** Answers in words, where the engine's name of a verdict is short. */
@@ -97,19 +95,19 @@ const WINDOWS: Record<string, Key> = {
 };
 
 const option = (app: App, name: string) => {
-  const key = app.prediction?.next.group === "window" ? WINDOWS[name] : undefined;
+  const key = app.playback.prediction?.next.group === "window" ? WINDOWS[name] : undefined;
   return key ? t(key) : translated(name);
 };
 
 /** `radiogroup "Prediction"`: what comes next? */
 export function prediction(app: App): unknown {
-  const { prediction } = app;
+  const { prediction } = app.playback;
   if (!prediction) return nothing;
   const { chosen, answer, options, next } = prediction;
   const isRight = chosen === answer;
   const choice = (o: string) =>
     html`<label class="check">
-      <input type="radio" name="prediction" .checked=${live(o === chosen)} ?disabled=${chosen !== null && o !== chosen} @change=${() => app.predict(o)} />
+      <input type="radio" name="prediction" .checked=${live(o === chosen)} ?disabled=${chosen !== null && o !== chosen} @change=${() => app.playback.predict(o)} />
       <span>${option(app, o)}</span>
     </label>`;
   return html`<div class=${`prediction ${chosen === null ? "" : isRight ? "right" : "wrong"}`}>

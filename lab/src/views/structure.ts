@@ -5,7 +5,8 @@
 
 import { html, nothing, type TemplateResult } from "lit-html";
 import { ref } from "lit-html/directives/ref.js";
-import type { App, Step } from "../app.ts";
+import type { Step } from "../answers.ts";
+import type { App } from "../app.ts";
 import { isObject, type Json, type JsonObject } from "../json.ts";
 import { drawing } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";

@@ -1,7 +1,8 @@
-//! What the page begins with: models with the files that they name, and a state.
+//! The beginning of the page: models with the files that they name, and a state.
 
 use crate::lab_args::LabPageArgs;
 use crate::report::Failure;
+use crate::resolve::read_state;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Mutex;
@@ -28,8 +29,7 @@ impl Begin {
         let mut state = None;
         let mut models: Vec<_> = args.models.clone();
         if let Some(file) = &args.load_state {
-            let text = vitral::read(file, 64 << 20)?;
-            let text = String::from_utf8_lossy(&text).into_owned();
+            let text = read_state(file, "--load-state")?;
             let mut read = State::from_json(&text, &file.to_string_lossy())?;
             read.enter(file.parent().unwrap_or(Path::new("")));
             if models.is_empty() {

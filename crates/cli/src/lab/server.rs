@@ -15,11 +15,11 @@ use std::net::Ipv4Addr;
 use std::sync::Arc;
 use tokio::net::TcpListener;
 
-/// What the page may do: scripts and styles of this server, WebAssembly, no network besides. Pages may frame it.
+/// The policy of the page: scripts and styles of this server, WebAssembly, no network besides. Pages may frame it.
 const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; worker-src 'self'; \
     connect-src 'self'; img-src 'self' blob: data:; base-uri 'none'; form-action 'none'";
 
-/// What is served.
+/// The page and the models that are served.
 struct Site {
     page: Bytes,
     models: Vec<Bytes>,

@@ -183,6 +183,7 @@ fn few(facets: &[u32]) -> String {
 /// A step of culling and clipping, of a list or a tree, or of a ray, in words.
 fn tell_what_is_built(step: &Step) -> String {
     match step {
+        // Tell of culling and clipping.
         Step::Box { instance, items: [from, to], verdict, beyond, .. } => {
             let of = instance.map_or("instances".to_owned(), |instance| format!("triangles of instance {instance}"));
             let found = match verdict {
@@ -197,6 +198,7 @@ fn tell_what_is_built(step: &Step) -> String {
             let left = if after.len() < 3 { "nothing is left".to_owned() } else { format!("{} are left", after.len()) };
             format!("facet {facet} is clipped at the {plane} plane: of {} corners {left}", before.len())
         }
+        // Tell of what is there before the first line, polygon or ray.
         Step::Space { cells: Some([x, y, z]), .. } => format!("space is divided into {x} x {y} x {z} cells"),
         Step::Space { cells: None, .. } => "the box that the structure divides".to_owned(),
         Step::EdgeTable { rows: [from, to], polygons, buckets } => {
@@ -204,6 +206,7 @@ fn tell_what_is_built(step: &Step) -> String {
             format!("tables of rows {from} to {}: {} polygon(s), {edges} edge(s)", to.saturating_sub(1), polygons.len())
         }
         Step::NearestFirst { polygons } => format!("{} polygon(s), the nearest first", polygons.len()),
+        // Tell of rays.
         Step::RayMeets { facet: Some(facet), distance, turns, .. } => {
             let distance = distance.map_or(String::new(), |distance| format!(" at a distance of {distance:.4}"));
             format!("after {turns} turn(s) a ray meets facet {facet}{distance}")
@@ -219,6 +222,7 @@ fn tell_what_is_built(step: &Step) -> String {
 /// A step of painter's algorithm or of a BSP tree in words.
 fn tell_of_list(step: &Step) -> String {
     match step {
+        // Tell of a BSP tree.
         Step::TreeNode { node, above, side, splitter, .. } => {
             let place = match above.zip(*side) {
                 Some((above, side)) => format!(", in {} of node {above}", side.name()),
@@ -231,6 +235,7 @@ fn tell_of_list(step: &Step) -> String {
             let side = viewer.name();
             format!("the viewer is in {side} of the plane of node {node}: its polygon(s) {} come now", few(polygons))
         }
+        // Tell of the painter's list.
         Step::FirstOrder { polygons } => {
             format!("{} polygon(s) in their first order, by their farthest depths", polygons.len())
         }

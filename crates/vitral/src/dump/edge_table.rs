@@ -1,6 +1,5 @@
 //! The tables of the scan-line algorithm, as text: one sample a pixel, band by band.
 
-use super::stage::prepare;
 use crate::{Error, Renderer};
 use std::fmt::Write;
 use std::sync::{Arc, Mutex};
@@ -28,7 +27,7 @@ pub(super) fn edge_tables(renderer: &Renderer, camera: &Camera, viewport: Viewpo
     let tables = Arc::new(Tables::default());
     let observer = Some(Arc::clone(&tables) as Arc<dyn Observer>);
     let execution = Execution { observer, ..renderer.execution().clone() };
-    let view = prepare(renderer, camera, viewport, &mut CullCounters::default());
+    let view = renderer.prepared(camera, &mut CullCounters::default())?;
     let mut grid = TileGrid::new(viewport, 1);
     ScanLine.resolve(&view, None, &mut grid, &execution, &NullSink).map_err(vitral_render::Error::from)?;
     let mut parts = std::mem::take(&mut *tables.0.lock().expect("no thread panics while it keeps a step"));

@@ -1,10 +1,6 @@
-//! What the stages share: how files are written and listed, and the view that the tables are made of.
+//! How the stages' files are written and listed.
 
-use crate::{Error, Renderer};
-use vitral_raster::{SamplePattern, Viewport};
-use vitral_render::PreparedView;
-use vitral_render::stats::CullCounters;
-use vitral_scene::Camera;
+use crate::Error;
 
 /// A file that the index lists.
 pub(super) struct Listed {
@@ -14,14 +10,3 @@ pub(super) struct Listed {
 
 /// Takes a file: its name and bytes.
 pub(super) type Write<'a> = dyn FnMut(&str, &[u8]) -> Result<(), Error> + 'a;
-
-/// The view from `camera`, with one sample a pixel.
-pub(super) fn prepare<'a>(
-    renderer: &'a Renderer,
-    camera: &Camera,
-    viewport: Viewport,
-    counters: &mut CullCounters,
-) -> PreparedView<'a> {
-    let pattern = SamplePattern::new(1);
-    PreparedView::new(renderer.session(), camera, &renderer.settings, viewport, pattern, renderer.execution(), counters)
-}

@@ -75,6 +75,8 @@ export interface Step {
   fields: JsonObject;
   structure?: JsonObject;
   drawing?: string | null;
+  /** What samples round the inspected pixel hold, where the algorithm compares depths. */
+  depths?: JsonObject | null;
 }
 
 export interface Agreement {

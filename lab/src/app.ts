@@ -20,7 +20,7 @@ const REST = 150;
 /** A frame that takes longer than this is drawn coarser while something is dragged. */
 const COARSE_ABOVE = 0.025;
 
-const CHANNELS = ["depth", "surface", "object", "material", "normal", "steps", "attached-shadow", "cast-shadow", "ambient", "diffuse", "specular"];
+const CHANNELS = ["depth", "surface", "object", "material", "normal", "steps", "attached-shadow", "cast-shadow"];
 
 export class App {
   engine: Engine;
@@ -203,7 +203,7 @@ export class App {
   openModels(models: string[]) {
     const defaults = this.catalog!.defaults;
     const fields: JsonObject = { models };
-    for (const path of ["viewpoint", "lights", "light-edits", "light-intensity", "materials", "objects", "ambient"]) {
+    for (const path of ["viewpoint", "lights", "light-edits", "light-intensity", "light-term", "materials", "objects", "ambient"]) {
       fields[path] = defaults[path] ?? null;
     }
     const b = Object.fromEntries(Object.entries(this.situation.b).filter(([path]) => path.startsWith("settings.")));

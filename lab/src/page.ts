@@ -2,6 +2,7 @@
 
 import { html, nothing, type TemplateResult } from "lit-html";
 import { ref } from "lit-html/directives/ref.js";
+import { drawing } from "./parts/markup.ts";
 import { type App, type DialogName } from "./app.ts";
 import { nameOf } from "./states.ts";
 import { aboutDialog, cameraDialog, keyboardDialog, languageDialog } from "./dialogs/others.ts";
@@ -95,6 +96,7 @@ function pictures(app: App): TemplateResult {
               }),
             )}
           ></canvas>
+          ${drawing(String(overview.value.ok["drawing"] ?? ""), "overview")}
         </div>`
       : nothing}
   </div>`;

@@ -8,7 +8,8 @@ use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
     Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Global, Illumination, Interpolation, LightEdit,
-    MaterialOverride, Normals, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
+    LightTerm, MaterialOverride, Normals, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility,
+    VolumeCounting,
 };
 
 /// Options of `vitral render`.
@@ -219,6 +220,9 @@ pub(crate) struct LightArgs {
     /// exposure that a picture shows well]
     #[arg(long, value_name = "FACTOR", value_parser = values::intensity, allow_negative_numbers = true)]
     pub(crate) light_intensity: Option<f32>,
+    /// One term of all lights alone: ambient, diffuse or specular [default: all three]
+    #[arg(long, value_name = "TERM")]
+    pub(crate) light_term: Option<LightTerm>,
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material, help = material_help())]
     pub(crate) material: Vec<MaterialOverride>,
 }

@@ -394,6 +394,7 @@ pub(crate) fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Fail
     }
     state.light_edits.extend(args.light_edit.iter().cloned());
     state.light_intensity = args.light_intensity.or(state.light_intensity);
+    state.light_term = args.light_term.or(state.light_term);
     state.materials.extend(args.material.iter().cloned());
     Ok(())
 }

@@ -11,6 +11,9 @@ use vitral::{Channel, Error, Plane, Renderer, State};
 /// How many pixels that differ are named.
 const MOST_PIXELS: usize = 20;
 
+/// Pictures that are timed at most.
+const MOST_FRAMES: u32 = 1000;
+
 /// Colours and surface ids of a state.
 struct Seen {
     color: Plane<[u8; 4]>,
@@ -75,6 +78,25 @@ pub(crate) fn compare_all(renderer: &mut Renderer) -> Answer {
         rows.push(row);
     }
     Ok((json!({"rows": rows}), Vec::new()))
+}
+
+/// Seconds of pictures of the state: the first, with what is built once, the median and the least.
+pub(crate) fn bench(renderer: &mut Renderer, frames: u32) -> Answer {
+    if !(1..=MOST_FRAMES).contains(&frames) {
+        return Err(Error::usage(format!("{frames} pictures cannot be timed"), format!("1 to {MOST_FRAMES} can")));
+    }
+    let camera = renderer.frame_camera();
+    let mut seconds = Vec::new();
+    for _ in 0..frames {
+        let start = renderer.execution().budget.elapsed();
+        let picture = renderer.render_from(&camera)?;
+        seconds.push(renderer.execution().budget.elapsed() - start);
+        renderer.recycle(picture);
+    }
+    let first = seconds[0];
+    seconds.sort_by(f64::total_cmp);
+    let (median, fastest) = (seconds[seconds.len() / 2], seconds[0]);
+    Ok((json!({"frames": frames, "first": first, "median": median, "fastest": fastest}), Vec::new()))
 }
 
 /// Fields that are not zero.

@@ -1,7 +1,7 @@
 //! A pixel, taken apart.
 
 use crate::answer::Answer;
-use crate::{formula, why};
+use crate::{formula, printed, why};
 use serde_json::{Value, json};
 use vitral::bench::Entrant;
 use vitral::explain::{Deciders, Explanation, explain as explain_pixel};
@@ -21,6 +21,7 @@ pub(crate) fn explain(renderer: &mut Renderer, pixel: [u32; 2]) -> Answer {
         "lights": names,
         "why": why::why(&told, &names),
         "formula": formula::formula(&told, &names),
+        "printed": printed::printed(&told, &lights, &names),
         "text": told.to_string(),
     });
     Ok((answer, Vec::new()))

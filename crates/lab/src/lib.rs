@@ -23,6 +23,7 @@
 //! | `overview` | the scene from outside, with the view volume, boxes and lights as SVG |
 //! | `explain`, `ask-all` | a pixel: its surfaces, its light, the formula with its numbers |
 //! | `compare`, `compare-all` | two states; all visibility algorithms |
+//! | `bench` | seconds of several pictures |
 //! | `stages` | what each stage of the pipeline hands on |
 //! | `info` | counts, materials, lights and warnings of the scene |
 //! | `check` | whether an exercise is done |
@@ -37,6 +38,7 @@ mod catalog;
 mod compare;
 mod complete;
 mod curve;
+mod depths;
 mod exercises;
 mod explain;
 mod files;
@@ -45,6 +47,8 @@ mod message;
 mod overlay;
 mod overview;
 mod picture;
+mod printed;
+mod projector;
 mod request;
 mod save;
 mod scene;
@@ -63,7 +67,7 @@ use request::{Request, Want};
 use scene::Stage;
 use serde_json::json;
 use std::sync::Arc;
-use steps::{Asked, Recording};
+use steps::{Asked, Recordings};
 use vitral::Error;
 
 /// Answers requests, and keeps what the next ones may need: files, the scene, recorded steps.
@@ -71,7 +75,7 @@ use vitral::Error;
 pub struct Lab {
     files: Files,
     stage: Stage,
-    recording: Option<Recording>,
+    recordings: Recordings,
 }
 
 impl std::fmt::Debug for Lab {
@@ -104,7 +108,7 @@ impl Lab {
 
     fn carry_out(&mut self, json: &str, planes: Vec<Vec<u8>>) -> Answer {
         let Request { want, state } = Request::from_json(json)?;
-        let Self { files, stage, recording } = self;
+        let Self { files, stage, recordings } = self;
         match want {
             Want::Catalog => catalog::catalog(),
             Want::Files { files: names } => {
@@ -114,22 +118,23 @@ impl Lab {
             }
             Want::Complete => complete::complete(stage.show(&state, files)?, &state),
             Want::Picture { channel, coarse } => picture::picture(stage.show(&state, files)?, &state, channel, coarse),
-            Want::Record { pixel } => steps::record(&Asked { stage, files, state: &state, pixel }, recording),
+            Want::Record { pixel } => steps::record(&Asked { stage, files, state: &state, pixel }, recordings),
             Want::Step { number, show, pixel } => {
-                steps::step(&Asked { stage, files, state: &state, pixel }, recording, number, show.as_deref())
+                steps::step(&Asked { stage, files, state: &state, pixel }, recordings, number, show.as_deref())
             }
             Want::Steps { from, to, show, pixel } => {
-                steps::steps(&Asked { stage, files, state: &state, pixel }, recording, [from, to], show.as_deref())
+                steps::steps(&Asked { stage, files, state: &state, pixel }, recordings, [from, to], show.as_deref())
             }
-            Want::Structure => steps::structure(&Asked { stage, files, state: &state, pixel: None }, recording),
+            Want::Structure => steps::structure(&Asked { stage, files, state: &state, pixel: None }, recordings),
             Want::Overview { second } => overview::overview(stage.show(&state, files)?, second.as_deref()),
             Want::Explain { pixel } => explain::explain(stage.show(&state, files)?, pixel),
             Want::AskAll { pixel } => explain::ask_all(stage.show(&state, files)?, pixel),
             Want::Compare { b } => compare::compare(stage, files, &state, &b),
             Want::CompareAll => compare::compare_all(stage.show(&state, files)?),
+            Want::Bench { frames } => compare::bench(stage.show(&state, files)?, frames),
             Want::Stages { pixel } => stages::stages(stage.show(&state, files)?, pixel),
             Want::Info => stages::info(stage.show(&state, files)?),
-            Want::Check { exercise } => exercises::check(stage.show(&state, files)?, &state, &exercise),
+            Want::Check { exercise, pixel } => exercises::check(stage.show(&state, files)?, &state, &exercise, pixel),
             Want::Save { what } => save::save(stage.show(&state, files)?, &state, what),
             Want::Curve { what, ns, c } => curve::curve(what, ns, c),
         }

@@ -38,7 +38,7 @@ pub(crate) enum Curve {
 }
 
 /// The names of all requests.
-pub(crate) const WANTS: [&str; 18] = [
+pub(crate) const WANTS: [&str; 19] = [
     "catalog",
     "files",
     "complete",
@@ -52,6 +52,7 @@ pub(crate) const WANTS: [&str; 18] = [
     "ask-all",
     "compare",
     "compare-all",
+    "bench",
     "stages",
     "info",
     "check",
@@ -106,12 +107,18 @@ pub(crate) enum Want {
         b: Box<State>,
     },
     CompareAll,
+    Bench {
+        /// Pictures, the first among them.
+        frames: u32,
+    },
     Stages {
         pixel: Option<[u32; 2]>,
     },
     Info,
     Check {
         exercise: String,
+        /// The pixel that is inspected.
+        pixel: Option<[u32; 2]>,
     },
     Save {
         what: Saved,

@@ -1,6 +1,7 @@
 //! The stages of the pipeline with their counts, and the contents of the scene.
 
 use crate::answer::Answer;
+use crate::projector::projector;
 use serde_json::{Value, json};
 use vitral::explain::{Deciders, FacetSpaces, explain, spaces};
 use vitral::info::info_on;
@@ -14,12 +15,15 @@ pub(crate) fn stages(renderer: &mut Renderer, pixel: Option<[u32; 2]>) -> Answer
     renderer.recycle(picture);
 
     // Bring the corners of the facet at the pixel through all spaces.
-    let facet = match pixel {
-        Some(pixel) => explain(renderer, &camera, pixel, &Deciders::Chosen, None)?.surfaces.first().map(|s| s.facet),
-        None => None,
-    };
-    let corners = facet.map(|facet| spaces(renderer, &camera, facet)).transpose()?;
-    let answer = json!({"stages": rows(&stats), "facet": facet, "spaces": corners.as_ref().map(rows_of)});
+    let mut answer = json!({"stages": rows(&stats), "facet": null, "spaces": null, "projector": null});
+    if let Some(pixel) = pixel {
+        let surfaces = explain(renderer, &camera, pixel, &Deciders::Chosen, None)?.surfaces;
+        if let Some(nearest) = surfaces.first() {
+            answer["facet"] = json!(nearest.facet);
+            answer["spaces"] = rows_of(&spaces(renderer, &camera, nearest.facet)?);
+        }
+        answer["projector"] = projector(renderer, &camera, pixel, &surfaces);
+    }
     Ok((answer, Vec::new()))
 }
 

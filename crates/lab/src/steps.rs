@@ -1,6 +1,7 @@
 //! The steps of the visibility algorithm: recorded once, then any of them shown.
 
 use crate::answer::Answer;
+use crate::depths::depths;
 use crate::files::Files;
 use crate::overlay;
 use crate::scene::Stage;
@@ -9,7 +10,7 @@ use std::mem::{Discriminant, discriminant};
 use vitral::internals::render::trace::Step;
 use vitral::internals::render::trace::replay::{Replay, WatchedSteps};
 use vitral::internals::render::trace::structure::drawer;
-use vitral::{Error, State};
+use vitral::{Error, Renderer, State};
 
 /// Bytes that the steps of a recording may take.
 const MOST_BYTES: u64 = 512 << 20;
@@ -26,16 +27,25 @@ pub(crate) struct Asked<'a> {
     pub(crate) pixel: Option<[u32; 2]>,
 }
 
+/// The steps that were recorded last, of both states of a comparison.
+#[derive(Default)]
+pub(crate) struct Recordings(Vec<Recording>);
+
+/// Recordings that are kept.
+const MOST_RECORDINGS: usize = 2;
+
 /// Steps of a state.
 pub(crate) struct Recording {
     /// The state that they were recorded of.
     key: String,
-    watched: WatchedSteps,
+    pub(crate) watched: WatchedSteps,
     /// The kind of each step, as a place among the groups.
     kinds: Vec<u8>,
     /// The kinds, in the order of their first steps, as traces name them.
     groups: Vec<String>,
     seconds: f64,
+    /// With the scene and settings of the state.
+    pub(crate) renderer: Renderer,
 }
 
 impl Recording {
@@ -65,7 +75,7 @@ impl Recording {
             }) as u8
         });
         let kinds = kinds.collect();
-        Ok(Self { key, watched, kinds, groups, seconds })
+        Ok(Self { key, watched, kinds, groups, seconds, renderer })
     }
 
     /// Numbers of the steps that are shown: all, those about a pixel, or those of a group.
@@ -90,20 +100,23 @@ impl Recording {
 }
 
 impl Asked<'_> {
-    /// The recording of the state: the kept one, or a new one where that is of another state.
-    fn recording<'r>(&self, kept: &'r mut Option<Recording>) -> Result<&'r Recording, Error> {
+    /// The recording of the state: a kept one, or a new one in place of the older one.
+    fn recording<'r>(&self, Recordings(kept): &'r mut Recordings) -> Result<&'r Recording, Error> {
         let key = self.state.to_json();
-        if kept.as_ref().is_none_or(|recording| recording.key != key) {
-            // The old one needs not be there while the new one is made.
-            *kept = None;
-            *kept = Some(Recording::new(self.stage, self.files, self.state, key)?);
+        match kept.iter().position(|recording| recording.key == key) {
+            Some(place) => kept[..=place].rotate_right(1),
+            None => {
+                // The older one needs not be there while the new one is made.
+                kept.truncate(MOST_RECORDINGS - 1);
+                kept.insert(0, Recording::new(self.stage, self.files, self.state, key)?);
+            }
         }
-        Ok(kept.as_ref().expect("it was just put there"))
+        Ok(&kept[0])
     }
 }
 
 /// Records the steps of a state: how many there are, of which kinds.
-pub(crate) fn record(asked: &Asked<'_>, kept: &mut Option<Recording>) -> Answer {
+pub(crate) fn record(asked: &Asked<'_>, kept: &mut Recordings) -> Answer {
     let recording = asked.recording(kept)?;
     let count = |kind: usize| recording.kinds.iter().filter(|&&k| usize::from(k) == kind).count();
     let groups: Vec<Value> =
@@ -120,7 +133,7 @@ pub(crate) fn record(asked: &Asked<'_>, kept: &mut Option<Recording>) -> Answer 
 }
 
 /// A step: the picture so far, what it is about as a drawing over it, its words and its fields.
-pub(crate) fn step(asked: &Asked<'_>, kept: &mut Option<Recording>, number: u32, show: Option<&str>) -> Answer {
+pub(crate) fn step(asked: &Asked<'_>, kept: &mut Recordings, number: u32, show: Option<&str>) -> Answer {
     // Find it among those that are shown.
     let recording = asked.recording(kept)?;
     let shown = recording.shown(show, asked.pixel)?;
@@ -145,17 +158,13 @@ pub(crate) fn step(asked: &Asked<'_>, kept: &mut Option<Recording>, number: u32,
         "drawing": overlay::drawing(&numbered.step, decided.width(), decided.height()),
         "width": decided.width(),
         "height": decided.height(),
+        "depths": asked.pixel.map(|pixel| depths(recording, at as usize, pixel)).transpose()?,
     });
     Ok((answer, vec![decided.data().as_flattened().to_vec()]))
 }
 
 /// The words and fields of the steps from one number to another, without pictures. Long lists in them are cut.
-pub(crate) fn steps(
-    asked: &Asked<'_>,
-    kept: &mut Option<Recording>,
-    [from, to]: [u32; 2],
-    show: Option<&str>,
-) -> Answer {
+pub(crate) fn steps(asked: &Asked<'_>, kept: &mut Recordings, [from, to]: [u32; 2], show: Option<&str>) -> Answer {
     // Refuse numbers that are none, or too many.
     let recording = asked.recording(kept)?;
     let shown = recording.shown(show, asked.pixel)?;
@@ -199,7 +208,7 @@ fn shorten(value: &mut Value) {
 }
 
 /// The structure that the algorithm built, as SVG; none if it has no picture.
-pub(crate) fn structure(asked: &Asked<'_>, kept: &mut Option<Recording>) -> Answer {
+pub(crate) fn structure(asked: &Asked<'_>, kept: &mut Recordings) -> Answer {
     let recording = asked.recording(kept)?;
     let image = &recording.watched.image;
     let draw = drawer(asked.state.settings.visibility);

@@ -161,12 +161,15 @@ fn exercises_are_refused_at_first_and_passed_when_done() {
     let edit = |light: &str, field: &str, value: &str| json!({"light": light, "field": field, "value": value});
     for exercise in catalog["exercises"].as_array().unwrap() {
         let (id, start) = (exercise["id"].as_str().unwrap(), &exercise["start"]);
-        let mut check = |state: &Value| ask(&mut lab, json!({"want": "check", "state": state, "exercise": id})).0;
-        let refused = check(start);
+        let mut check = |state: &Value, pixel: Option<[u32; 2]>| {
+            ask(&mut lab, json!({"want": "check", "state": state, "exercise": id, "pixel": pixel})).0
+        };
+        let refused = check(start, None);
         assert!(refused["passed"] == false, "{id}: {refused}");
         assert!(refused["message"].as_str().unwrap().starts_with("Not yet: "));
 
-        let mut done = start.clone();
+        let (mut done, mut pixel) = (start.clone(), None);
+        let mut near_miss = None;
         match id {
             "4.1" => done["light-edits"] = json!([edit("LIGHT0", "enabled", "off")]),
             "4.2" => {
@@ -184,10 +187,32 @@ fn exercises_are_refused_at_first_and_passed_when_done() {
             }
             "5.2" => done["load"]["normals"] = json!("none"),
             "P17" => done["settings"]["depth-bits"] = json!(8),
+            "P7" => done["settings"]["coherence"] = json!(["object", "face", "scan-line", "area", "depth", "frame"]),
+            "P8" => (pixel, near_miss) = (Some([390, 200]), Some([5, 5])),
+            "P10" => done["viewpoint"]["zoom-factor"] = json!(10),
+            "P14" => done["settings"]["cull"]["back-face"] = json!(true),
+            "P19" => (pixel, near_miss) = (Some([320, 240]), Some([320, 2])),
+            "P20" => (pixel, near_miss) = (Some([320, 260]), Some([2, 2])),
+            "P21" => done["models"] = json!(["builtin:scene0"]),
+            "P22" => done["viewpoint"]["azimuth-angle"] = json!(180),
+            "L8" => {
+                done["settings"]["shading"] = json!("gouraud");
+                (done["load"]["normals"], done["load"]["crease-angle"]) = (json!("made"), json!(2.0));
+            }
+            "L9" => {
+                done["settings"]["shading"] = json!("gouraud");
+                (pixel, near_miss) = (Some([130, 200]), Some([400, 300]));
+            }
+            "L20" => (pixel, near_miss) = (Some([220, 170]), Some([240, 240])),
+            "P37" => done["materials"] = json!([{"material": "*", "property": "shininess", "value": "45"}]),
             "P40" => done["light-edits"] = json!([edit("LIGHT0", "attenuation", "0,0,0.1")]),
             other => panic!("{other} has no way to be done here"),
         }
-        let passed = check(&done);
+        if near_miss.is_some() {
+            let refused = check(&done, near_miss);
+            assert!(refused["passed"] == false, "{id}: {refused}");
+        }
+        let passed = check(&done, pixel);
         assert!(passed["passed"] == true, "{id}: {passed}");
     }
 }
@@ -210,6 +235,59 @@ fn stages_info_and_texts_are_told() {
     assert!(drawing["text"].as_str().unwrap().starts_with("<svg"));
     let (saved, _) = ask(&mut lab, save("state"));
     assert!(State::from_json(saved["text"].as_str().unwrap(), "s").is_ok());
+}
+
+#[test]
+fn a_pixel_tells_its_projector_and_what_the_notes_misprint() {
+    let mut lab = Lab::default();
+    let mut state = small("builtin:cubs", json!({"width": 640, "height": 480}));
+    state["light-edits"] = json!([{"light": "LIGHT0", "field": "attenuation", "value": "0,0,0.05"}]);
+    let (told, _) = ask(&mut lab, json!({"want": "stages", "state": state, "pixel": [390, 200]}));
+    assert_eq!(told["projector"].as_array().unwrap().len(), 2);
+
+    // LIGHT0 is behind this face: the printed formula takes light away.
+    let (told, _) = ask(&mut lab, json!({"want": "explain", "state": state, "pixel": [390, 200]}));
+    let rows = told["printed"].as_array().unwrap();
+    let find = |what: &str| rows.iter().find(|row| row["what"] == what).unwrap_or_else(|| panic!("{what}: {told}"));
+    let behind = find("diffuse and specular light of LIGHT0");
+    assert!(behind["right-value"] == 0.0 && behind["printed-value"].as_f64().unwrap() < 0.0, "{behind}");
+    assert_eq!(find("reflectance kd")["right-value"].as_f64().unwrap() as f32, 0.85);
+    let far = find("attenuation of LIGHT0");
+    assert!(far["right-value"].as_f64().unwrap() < 0.3 && far["printed-value"] == 1.0, "{far}");
+
+    let (timed, _) = ask(&mut lab, json!({"want": "bench", "state": small("builtin:cubs", json!({})), "frames": 3}));
+    assert_eq!(timed["frames"], 3);
+    assert!(
+        error(&mut lab, json!({"want": "bench", "state": small("builtin:cubs", json!({})), "frames": 0}))
+            .contains("cannot be timed")
+    );
+}
+
+#[test]
+fn depths_round_a_pixel_change_where_the_facet_of_the_step_stays() {
+    let mut lab = Lab::default();
+    let state = small("builtin:cubs", json!({"width": 640, "height": 480, "samples": 1}));
+    let pixel = json!([390, 200]);
+    let (recorded, _) = ask(&mut lab, json!({"want": "record", "state": state, "pixel": pixel}));
+    let about = recorded["at-pixel"].as_u64().unwrap();
+    assert!(about >= 2, "{recorded}");
+    let mut before = vec![0.0; 81];
+    for number in 1..=recorded["steps"].as_u64().unwrap() {
+        let request = json!({"want": "step", "state": state, "number": number, "pixel": pixel});
+        let (step, _) = ask(&mut lab, request);
+        let numbers = |name: &str| -> Vec<f64> { serde_json::from_value(step["depths"][name].clone()).unwrap() };
+        assert_eq!(numbers("before"), before, "step {number}");
+        before = numbers("after");
+        assert!(numbers("before").iter().zip(&before).all(|(before, after)| before <= after));
+        assert_eq!((&step["depths"]["x"], &step["depths"]["y"]), (&json!(386), &json!(196)));
+    }
+    // The last is the picture's depth.
+    let (told, _) = ask(&mut lab, json!({"want": "explain", "state": state, "pixel": pixel}));
+    assert_eq!(told["explanation"]["surfaces"][0]["depth"].as_f64().unwrap() as f32, before[40] as f32);
+
+    let brute = small("builtin:cubs", json!({"visibility": "brute-force"}));
+    let (step, _) = ask(&mut lab, json!({"want": "step", "state": brute, "number": 1, "pixel": [24, 18]}));
+    assert!(!step["depths"]["facets"].as_array().unwrap().is_empty());
 }
 
 #[test]

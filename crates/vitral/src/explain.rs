@@ -354,6 +354,40 @@ fn named(session: &Session, facet: u32) -> (u32, String, Option<String>) {
     (world.surface_of_facet(facet), instance.mesh.name.clone(), material.map(|m| m.name.clone()))
 }
 
+/// A facet over the centre of a pixel, and its depth there: 1 on the near plane, 0 on the far plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FacetDepth {
+    /// The facet.
+    pub facet: u32,
+    /// Its depth.
+    pub depth: f32,
+}
+
+/// The facets over the centres of a square of pixels, the nearest first, row by row: `size` by `size` pixels from `corner`, the
+/// top left one. Outside of the picture there are none.
+///
+/// # Errors
+/// Settings that cannot be.
+pub fn facets_over(
+    renderer: &Renderer,
+    camera: &Camera,
+    corner: [i64; 2],
+    size: u32,
+) -> Result<Vec<Vec<FacetDepth>>, Error> {
+    let view = renderer.prepared(camera, &mut CullCounters::default())?;
+    let picture = [renderer.settings.picture.width, renderer.settings.picture.height].map(i64::from);
+    let mut all = Vec::with_capacity((size * size) as usize);
+    for row in 0..i64::from(size) {
+        for column in 0..i64::from(size) {
+            let place = [corner[0] + column, corner[1] + row];
+            let is_inside = (0..2).all(|k| (0..picture[k]).contains(&place[k]));
+            let found = if is_inside { facets_at(&view, center(&view, place.map(|v| v as u32))) } else { Vec::new() };
+            all.push(found.into_iter().map(|(facet, depth, _)| FacetDepth { facet, depth }).collect());
+        }
+    }
+    Ok(all)
+}
+
 /// The surfaces over the pixel's centre.
 fn surfaces(renderer: &Renderer, camera: &Camera, pixel: [u32; 2]) -> Result<Vec<Surface>, Error> {
     let view = renderer.prepared(camera, &mut CullCounters::default())?;

@@ -59,6 +59,7 @@ mod files;
 pub mod info;
 pub mod internals;
 mod light_edit;
+mod light_term;
 pub mod light_text;
 mod load;
 mod material_override;
@@ -78,6 +79,7 @@ pub use error::Error;
 pub use exercise::{EXERCISES, Exercise};
 pub use files::{FolderResolver, read};
 pub use light_edit::{LightEdit, light_fields};
+pub use light_term::LightTerm;
 pub use load::{
     LoadOptions, Normals, builtin_names, load, load_builtin, load_bytes, load_bytes_with, load_on, load_with,
 };

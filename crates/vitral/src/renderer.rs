@@ -1,6 +1,6 @@
 //! The short way from a model or scene to pictures.
 
-use crate::{Channel, Error, LightEdit, LoadOptions, Picture, SystemClock, Viewpoint, load_on};
+use crate::{Channel, Error, LightEdit, LightTerm, LoadOptions, Picture, SystemClock, Viewpoint, load_on};
 use std::path::Path;
 use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
@@ -45,6 +45,8 @@ pub struct Renderer {
     /// Multiplies all lights; `None`: 1, but for the scene's own photometric lights (candela and lux, as in glTF) the
     /// [exposure](Self::exposure).
     pub light_intensity: Option<f32>,
+    /// One term of all lights alone; `None`: all three.
+    pub light_term: Option<LightTerm>,
     /// Global ambient light, on top of the scene's own.
     pub ambient: Rgb,
     session: Session,
@@ -145,6 +147,7 @@ impl Renderer {
             lights: None,
             light_edits: Vec::new(),
             light_intensity: None,
+            light_term: None,
             ambient: [0.0; 3],
             meter: LightMeter::read(session.world()),
             session,
@@ -228,6 +231,7 @@ impl Renderer {
             for color in [&mut light.ambient, &mut light.diffuse, &mut light.specular] {
                 *color = color.map(|c| c * factor);
             }
+            self.light_term.into_iter().for_each(|term| term.keep(light));
         }
         lights
     }
@@ -277,8 +281,12 @@ impl Renderer {
         lights
     }
 
-    /// Global ambient light of a picture: the scene's own and [`ambient`](Self::ambient).
+    /// Global ambient light of a picture: the scene's own and [`ambient`](Self::ambient); none where another
+    /// [`light_term`](Self::light_term) is chosen.
     pub fn frame_ambient(&self) -> Rgb {
+        if self.light_term.is_some_and(|term| term != LightTerm::Ambient) {
+            return [0.0; 3];
+        }
         let own = self.scene().ambient;
         [0, 1, 2].map(|k| own[k] + self.ambient[k])
     }

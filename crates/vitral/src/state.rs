@@ -4,7 +4,9 @@
 //! state; so is `{}`. Unknown fields are errors, told with line and column.
 
 use crate::load::load_on;
-use crate::{Error, Light, LightEdit, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers};
+use crate::{
+    Error, Light, LightEdit, LightTerm, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers,
+};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
@@ -46,6 +48,8 @@ pub struct State {
     pub light_edits: Vec<LightEdit>,
     /// Multiplies all lights; `null`: 1, and what brings the scene's own lights to where pictures show them.
     pub light_intensity: Option<f32>,
+    /// One term of all lights alone; `null`: all three.
+    pub light_term: Option<LightTerm>,
     /// Global ambient light on top of the scene's own.
     pub ambient: [f32; 3],
     /// How pictures are made.
@@ -83,6 +87,7 @@ impl Default for State {
             lights: None,
             light_edits: Vec::new(),
             light_intensity: None,
+            light_term: None,
             ambient: [0.0; 3],
             settings: Settings::default(),
             turntable: None,
@@ -244,6 +249,7 @@ impl State {
         renderer.settings = self.settings.clone();
         renderer.lights.clone_from(&self.lights);
         renderer.light_intensity = self.light_intensity;
+        renderer.light_term = self.light_term;
         renderer.ambient = self.ambient;
         let usual_up = renderer.scene().usual_up();
         match self.turntable {

@@ -40,7 +40,7 @@ export function start(app: App, exercise: Exercise) {
 
 async function checkIt(app: App, exercise: Exercise) {
   try {
-    const { ok } = await app.engine.ask("check", { want: "check", state: app.state, exercise: exercise.id, lang: app.language });
+    const { ok } = await app.engine.ask("check", { want: "check", state: app.state, exercise: exercise.id, pixel: app.lab.pixel, lang: app.language });
     const isPassed = ok["passed"] === true;
     const differs = ((ok["differs"] as string[] | undefined) ?? []).map((d) => translated(d));
     const text = isPassed ? t("Passed") : `${t("Not yet")}: ${differs.join("; ")}`;

@@ -59,5 +59,29 @@ export function formulaRegion(app: App): TemplateResult {
           </div>
           ${table({ name: t("Values"), columns: [t("symbol"), t("value"), t("meaning"), t("set in")], rows, caption: true })}`
       : html`<p class="note">${t("Inspect a pixel to see its formula with numbers.")}</p>`}
+    ${f ? printed(app) : nothing}
   </section>`;
+}
+
+/** Formulas that the notes print wrongly, beside the right ones. */
+function printed(app: App): unknown {
+  const rows = objects(app.answerTo("explain")?.ok["printed"]).map((row): Cell[] => [
+    partsTranslated(String(row["what"])),
+    formula(String(row["right"]), `right ${String(row["what"])}`),
+    valueText(row["right-value"]),
+    formula(String(row["printed"]), `printed ${String(row["what"])}`),
+    valueText(row["printed-value"]),
+  ]);
+  if (!rows.length) return nothing;
+  const columns = [t("what"), t("right"), t("result"), t("as printed"), t("result as printed")];
+  return html`<details>
+    <summary>${t("Where the notes err")}</summary>
+    ${table({ name: t("Where the notes err"), columns, rows })}
+  </details>`;
+}
+
+/** A text with the name of a light at its end. */
+function partsTranslated(text: string): string {
+  const found = /^(.*) of (.+)$/.exec(text);
+  return found ? `${translated(`${found[1]!} of`)} ${found[2]!}` : translated(text);
 }

@@ -6,7 +6,7 @@ import type { Picture } from "../answers.ts";
 import { type App } from "../app.ts";
 import { isObject, put, type Json, type JsonObject } from "../json.ts";
 import { attenuationOf } from "../lights.ts";
-import { button, radio, spin } from "../parts/fields.ts";
+import { button, combo, radio, spin } from "../parts/fields.ts";
 import { drawing } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
@@ -34,7 +34,7 @@ export function pipeline(app: App): TemplateResult {
   const rows = objects(answer?.["stages"]).map((s): Cell[] => [translated(String(s["stage"])), stagePart(String(s["in"])), stagePart(String(s["out"]))]);
   return html`<section class="region" aria-labelledby="stages-title">
     <h2 id="stages-title">${t("Stages")}</h2>
-    ${table({ name: t("Stages"), columns: [t("stage"), t("in"), t("out")], rows })} ${vertices(app, answer)}
+    ${table({ name: t("Stages"), columns: [t("stage"), t("in"), t("out")], rows })} ${vertices(app, answer)} ${projector(answer)}
   </section>`;
 }
 
@@ -51,6 +51,26 @@ function vertices(app: App, answer: JsonObject | undefined): unknown {
     });
   }
   return table({ name: t("Vertices"), columns: [t("space"), t("corner"), "x", "y", "z", "w"], rows, caption: true });
+}
+
+/** Two points of the pixel's projector: before the perspective transformation four divisions tell that, after it none. */
+function projector(answer: JsonObject | undefined): unknown {
+  const points = objects(answer?.["projector"]);
+  if (points.length < 2) return nothing;
+  const numbers = (v: Json | undefined, i: number) => (Array.isArray(v) ? Number(Number(v[i]).toPrecision(6)) : null);
+  const rows = points.map((p, i): Cell[] => [
+    `${i === 0 ? "P" : "Q"}${p["mesh"] ? ` (${String(p["mesh"])})` : ""}`,
+    ...[0, 1, 2].map((k) => numbers(p["view"], k)),
+    ...[0, 1].map((k) => numbers(p["quotients"], k)),
+    ...[0, 1, 2].map((k) => numbers(p["after"], k)),
+  ]);
+  return html`${table({
+      name: t("Two points of the projector"),
+      columns: [t("point"), "x", "y", "z", "x / z", "y / z", "x′", "y′", "z′"],
+      rows,
+      caption: true,
+    })}
+    <p class="note">${t("Before the transformation, four divisions show that P and Q lie on one projector. After it x′ and y′ are equal, and the larger z′ is nearer.")}</p>`;
 }
 
 // ---- Visible surfaces ----
@@ -151,27 +171,20 @@ export function illumination(app: App): TemplateResult {
     </section>`;
 }
 
-/** The terms of the formula, apart and together: lights with one part alone. */
+/** The terms of the formula, apart and together. */
 function terms(app: App): TemplateResult {
-  const { state } = app;
-  const lights = app.complete?.value.lights;
-  if (!lights) return html``;
-  const black = [0, 0, 0];
-  const only = (keep: string): JsonObject => {
-    const own = lights.map((l): JsonObject => ({ ...l, ambient: keep === "ambient" ? l["ambient"]! : black, diffuse: keep === "diffuse" ? l["diffuse"]! : black, specular: keep === "specular" ? l["specular"]! : black }));
-    let s = put(put(put(state, "lights", own), "light-edits", []), "light-intensity", 1);
-    if (keep !== "ambient") s = put(s, "ambient", black);
-    return small(s);
-  };
-  const views: [string, JsonObject][] = [
-    [t("Ambient term"), only("ambient")],
-    [t("Diffuse term"), only("diffuse")],
-    [t("Specular term"), only("specular")],
-    [t("Together"), small(state)],
+  const only = (term: string | null) => small(put(app.state, "light-term", term));
+  const views: [string, string | null][] = [
+    [t("Ambient term"), "ambient"],
+    [t("Diffuse term"), "diffuse"],
+    [t("Specular term"), "specular"],
+    [t("Together"), null],
   ];
   return html`<section class="region" aria-labelledby="terms-title">
     <h2 id="terms-title">${t("Terms")}</h2>
-    <div class="thumbnails">${views.map(([name, s], i) => thumbnail(app, `term ${i}`, name, s))}</div>
+    <div class="thumbnails">
+      ${views.map(([name, term], i) => thumbnail(app, `term ${i}`, name, only(term), () => app.set({ "light-term": term })))}
+    </div>
   </section>`;
 }
 
@@ -204,6 +217,31 @@ const DEFECTS: { model: string; name: Parameters<typeof t>[0]; cure: Parameters<
   { model: "defect-normals", name: "Unrepresentative normals", cure: "the faces' own normals", defect: { shading: "gouraud" }, cured: { shading: "flat" } },
 ];
 
+/** Where the normals at the corners come from. */
+function normals(app: App): TemplateResult {
+  const chosen = String(app.get("load.normals") ?? "file");
+  const crease = app.get("load.crease-angle");
+  const options = [
+    { value: "file", text: t("as the file has them") },
+    { value: "made", text: t("made from the faces") },
+    { value: "none", text: t("none") },
+  ];
+  const degrees = typeof crease === "number" ? (crease * 180) / Math.PI : 40;
+  return html`<section class="region" aria-labelledby="normals-title">
+    <h2 id="normals-title">${t("Normals at the corners")}</h2>
+    <div class="fields">
+      ${combo(t("Normals at the corners"), chosen, options, (v) => app.set({ "load.normals": v }))}
+      ${spin(t("Crease angle"), degrees, (v) => app.set({ "load.crease-angle": (v * Math.PI) / 180 }), {
+        min: 0,
+        max: 180,
+        step: 1,
+        reason: chosen === "made" ? null : t("for normals that are made"),
+      })}
+    </div>
+    <p class="note">${t("Faces that differ by less than the crease angle share the mean of their normals; between others there is an edge.")}</p>
+  </section>`;
+}
+
 export function shading(app: App): TemplateResult {
   const { state } = app;
   const one = (name: string) =>
@@ -222,6 +260,7 @@ export function shading(app: App): TemplateResult {
       <h2 id="shading-title">${t("Flat, Gouraud, Phong")}</h2>
       <div class="thumbnails">${["flat", "gouraud", "phong"].map(one)}</div>
     </section>
+    ${normals(app)}
     <section class="region" aria-labelledby="defects-title">
       <h2 id="defects-title">${t("Defects of interpolated shading")}</h2>
       <div class="list">${DEFECTS.map((d) => radio(t(d.name), "defect", d === shown, () => open(d)))}</div>

@@ -178,6 +178,10 @@ const CHANNELS = [
   ["attached-shadow", "Attached shadow"],
   ["cast-shadow", "Cast shadow"],
   ["steps", "Steps"],
+] as const;
+
+/** Terms of the lights, shown like channels. */
+const TERMS = [
   ["ambient", "Ambient term"],
   ["diffuse", "Diffuse term"],
   ["specular", "Specular term"],
@@ -186,15 +190,20 @@ const CHANNELS = [
 function channels(app: App): TemplateResult {
   const switches = app.get("settings.channels") as Record<string, Json> | undefined;
   const there = CHANNELS.filter(([field]) => switches && Object.hasOwn(switches, field));
-  const shown = app.channel() === "id" ? "surface" : app.channel();
-  const set = (field: string) => {
-    const fields: Record<string, Json> = {};
+  const term = app.get("light-term");
+  const channel = app.channel() === "id" ? "surface" : app.channel();
+  const shown = channel === "color" && typeof term === "string" ? term : channel;
+  const set = (field: string, term: string | null) => {
+    const fields: Record<string, Json> = { "light-term": term };
     for (const [other] of there) if (other !== "color") fields[`settings.channels.${other}`] = other === field;
     app.set(fields);
   };
   return group(
     t("Channels shown"),
-    there.map(([field, label]) => radio(t(label), "channel", field === shown, () => set(field))),
+    [
+      ...there.map(([field, label]) => radio(t(label), "channel", field === shown, () => set(field, null))),
+      ...TERMS.map(([field, label]) => radio(t(label), "channel", field === shown, () => set("color", field))),
+    ],
     "two",
   );
 }

@@ -272,14 +272,32 @@ function weilerAtherton(app: App, step: Step): unknown {
   return html`${clip} ${items.length ? entries(t("Visible polygons"), items) : nothing} ${f["step"] === "visible" ? fieldsTable(f) : nothing}`;
 }
 
-function zBuffer(f: JsonObject): unknown {
+function zBuffer(step: Step): unknown {
+  const f = step.fields;
+  const depths = step.depths ?? null;
+  return html`${depths ? depthTable(depths) : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : fieldsTable(f)}`;
+}
+
+/** Brute force: what the pixel's sample is compared with. */
+function bruteForce(step: Step): unknown {
+  const facets = objects(step.depths?.["facets"]);
+  if (!step.depths) return html`<p class="note">${t("Inspect a pixel to see the depths of all facets over it.")}</p>`;
+  const nearest = Math.max(...facets.map((f) => Number(f["depth"])));
+  return table({
+    name: t("Depths"),
+    columns: [t("facet"), t("Depth"), t("verdict")],
+    rows: facets.map((f) => [f["facet"] as number, valueText(f["depth"]), Number(f["depth"]) === nearest ? t("nearest") : t("hidden")]),
+    caption: true,
+  });
+}
+
+/** Runs of pixels in which a facet stays, and those in which it is hidden. */
+function runsOf(f: JsonObject): unknown {
   const runs = (key: string, word: string): Cell[][] =>
     list(f[key]).map((r) => {
       const [row = 0, first = 0, end = 0] = numbers(r);
       return [row, `${first}–${end - 1}`, end - first, word];
     });
-  const depths = isObject(f["depths"]) ? f["depths"] : null;
-  if (depths) return depthTable(depths);
   const rows = [...runs("stays", t("stays")), ...runs("hidden", t("hidden"))].sort((a, b) => Number(a[0]) - Number(b[0]));
   return table({ name: t("Runs of pixels"), columns: [t("row"), t("pixels"), t("count"), t("verdict")], rows, caption: true });
 }
@@ -318,7 +336,10 @@ function content(app: App, step: Step): unknown {
     case "line":
       return scanLine(app, step);
     case "drawn":
-      return zBuffer(f);
+    case "depth-test":
+      return zBuffer(step);
+    case "rays":
+      return app.get("settings.visibility") === "brute-force" ? html`${bruteForce(step)} ${fieldsTable(f)}` : fieldsTable(f);
     case "first-order":
     case "turn":
     case "compared":

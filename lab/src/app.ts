@@ -36,6 +36,10 @@ export class App {
   /** The last whole picture, whatever step is shown. */
   finished: Result<Plane> | undefined;
   planeB: Result<Plane> | undefined;
+  finishedB: Result<Plane> | undefined;
+  recordingB: Result<Recording> | undefined;
+  /** The step of picture B that goes with that of picture A. */
+  stepB: Result<Step> | undefined;
   planeDifference: Result<Plane> | undefined;
   agreement: Result<Agreement> | undefined;
   recording: Result<Recording> | undefined;
@@ -162,11 +166,11 @@ export class App {
   /** Whether the page shows steps. */
   get hasSteps() {
     const { page, layout, step } = this.lab;
-    return this.lab.compare === "none" && (page === "visibility" || page === "pipeline" || layout !== "full" || step !== null);
+    return page === "visibility" || page === "pipeline" || layout !== "full" || step !== null;
   }
 
   get isBusy() {
-    return this.plane?.key !== this.planeKey() || (this.lab.compare !== "none" && this.planeB?.key !== this.keyB());
+    return this.plane?.key !== this.planeKey() || (this.lab.compare !== "none" && this.planeB?.key !== this.planeKeyB());
   }
 
   private key(state = this.state) {
@@ -180,6 +184,12 @@ export class App {
   private planeKey() {
     const { step, steps } = this.lab;
     return step === null || !this.hasSteps ? this.key() : `${this.key()} ${step} ${steps}`;
+  }
+
+  /** Picture B shows the step at the same share of its steps. */
+  private planeKeyB() {
+    const { step, steps } = this.lab;
+    return step === null || !this.hasSteps ? this.keyB() : `${this.keyB()} ${step} of ${this.stepCount} ${steps}`;
   }
 
   // ---- Changing the situation ----
@@ -384,11 +394,15 @@ export class App {
   private wantPictureB() {
     const key = this.keyB();
     const state = this.stateB;
-    if (this.planeB?.key === key) return;
+    if (this.finishedB?.key === key) {
+      if (this.lab.step === null || !this.hasSteps) this.planeB = this.finishedB;
+      return;
+    }
     this.want("pictureB", key, { want: "picture", state, channel: this.channel(state) }, ({ ok, planes }) => {
       const picture = ok as unknown as Picture;
       this.pictureB = { key, value: picture };
-      this.planeB = { key, value: planeOf(picture, planes[0]) };
+      this.finishedB = { key, value: planeOf(picture, planes[0]) };
+      if (this.lab.step === null || !this.hasSteps) this.planeB = this.finishedB;
     });
   }
 
@@ -452,7 +466,41 @@ export class App {
     return { want: "step", state: this.state, number, show: steps, ...(pixel ? { pixel } : {}) };
   }
 
+  /** How many of picture B's steps there are to show; 0 where it has none of the kind. */
+  private get stepCountB(): number {
+    const recording = this.recordingB?.key === this.keyB() ? this.recordingB.value : undefined;
+    if (!recording) return 0;
+    const { steps } = this.lab;
+    return steps === "all" || steps === "pixel" ? recording.steps : (recording.groups.find((g) => g.name === steps)?.count ?? 0);
+  }
+
+  /** Asks for the step of picture B at the same share of its own steps. */
+  private wantStepB() {
+    const { step, steps, compare } = this.lab;
+    if (compare === "none" || step === null || this.stepCount === 0) return;
+    const key = this.keyB();
+    const state = this.stateB;
+    if (this.recordingB?.key !== key) {
+      this.want("recordB", key, { want: "record", state }, ({ ok }) => {
+        this.recordingB = { key, value: ok as unknown as Recording };
+        this.wantStepB();
+      }, true);
+      return;
+    }
+    // Steps of a kind that B's algorithm has not are shown among all.
+    const ownKind = this.stepCountB > 0 && steps !== "pixel";
+    const count = ownKind ? this.stepCountB : this.recordingB.value.steps;
+    const number = Math.max(1, Math.round((step / this.stepCount) * count));
+    const planeKey = this.planeKeyB();
+    this.want("stepB", planeKey, { want: "step", state, number, show: ownKind ? steps : "all" }, ({ ok, planes }) => {
+      this.stepB = { key: planeKey, value: ok as unknown as Step };
+      const [width, height] = [Number(ok["width"]), Number(ok["height"])];
+      if (planes[0]) this.planeB = { key: planeKey, value: { bytes: planes[0], width, height } };
+    }, true);
+  }
+
   private wantStep() {
+    this.wantStepB();
     const { step, steps } = this.lab;
     // The finished picture has the last step's structure.
     const number = step ?? this.stepCount;

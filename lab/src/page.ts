@@ -97,7 +97,8 @@ function pictures(app: App): TemplateResult {
             )}
           ></canvas>
           ${drawing(String(overview.value.ok["drawing"] ?? ""), "overview")}
-        </div>`
+        </div>
+        <p class="caption">${t("blue: the view volume; green: boxes in view; red, dashed: boxes that are culled")}</p>`
       : nothing}
   </div>`;
 }

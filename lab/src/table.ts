@@ -652,6 +652,39 @@ const PAGE = {
   "not-drawn": ["nedesenată", "non tracée", "não desenhada"],
   "not-finite": ["nu este finită", "non finie", "não finita"],
   degenerate: ["degenerată", "dégénérée", "degenerada"],
+  "blue: the view volume; green: boxes in view; red, dashed: boxes that are culled": [
+    "albastru: volumul de vizualizare; verde: cutii care se văd; roșu, întrerupt: cutii eliminate",
+    "bleu : le volume de vue ; vert : boîtes en vue ; rouge, tireté : boîtes éliminées",
+    "azul: o volume de vista; verde: caixas à vista; vermelho, tracejado: caixas descartadas",
+  ],
+  // Misprints, projectors, normals, depths
+  what: ["ce", "quoi", "o quê"],
+  "right form": ["forma corectă", "forme juste", "forma certa"],
+  result: ["rezultat", "résultat", "resultado"],
+  "as printed": ["cum este tipărit", "tel qu’imprimé", "como impresso"],
+  "result as printed": ["rezultatul celui tipărit", "résultat de l’imprimé", "resultado do impresso"],
+  "Where the notes err": ["Unde greșesc notele", "Où les notes se trompent", "Onde as notas erram"],
+  "Two points of the projector": ["Două puncte ale proiectorului", "Deux points du projecteur", "Dois pontos do projetor"],
+  point: ["punct", "point", "ponto"],
+  "Before the transformation, four divisions show that P and Q lie on one projector. After it x′ and y′ are equal, and the larger z′ is nearer.": [
+    "Înainte de transformare, patru împărțiri arată că P și Q se află pe același proiector. După ea x′ și y′ sunt egale, iar z′ mai mare este mai aproape.",
+    "Avant la transformation, quatre divisions montrent que P et Q sont sur un même projecteur. Après, x′ et y′ sont égaux, et le plus grand z′ est le plus proche.",
+    "Antes da transformação, quatro divisões mostram que P e Q estão no mesmo projetor. Depois dela x′ e y′ são iguais, e o maior z′ é o mais próximo.",
+  ],
+  "Normals at the corners": ["Normalele în colțuri", "Normales aux sommets", "Normais nos cantos"],
+  "as the file has them": ["cele din fișier", "celles du fichier", "as do ficheiro"],
+  "made from the faces": ["făcute din fețe", "faites à partir des faces", "feitas a partir das faces"],
+  none: ["niciuna", "aucune", "nenhuma"],
+  "Crease angle": ["Unghiul muchiilor", "Angle d’arête vive", "Ângulo de vinco"],
+  "for normals that are made": ["pentru normale făcute", "pour des normales calculées", "para normais calculadas"],
+  "Faces that differ by less than the crease angle share the mean of their normals; between others there is an edge.": [
+    "Fețele care diferă cu mai puțin decât unghiul muchiilor împart media normalelor lor; între celelalte este o muchie.",
+    "Les faces qui diffèrent de moins que l’angle d’arête vive partagent la moyenne de leurs normales ; entre les autres il y a une arête.",
+    "Faces que diferem menos do que o ângulo de vinco partilham a média das suas normais; entre as outras há uma aresta.",
+  ],
+  "Inspect a pixel to see the depths round it.": ["Inspectați un pixel pentru adâncimile din jurul lui.", "Inspectez un pixel pour voir les profondeurs autour.", "Inspecione um píxel para ver as profundidades à volta."],
+  "Inspect a pixel to see the depths of all facets over it.": ["Inspectați un pixel pentru adâncimile tuturor fațetelor de peste el.", "Inspectez un pixel pour voir les profondeurs de toutes ses facettes.", "Inspecione um píxel para ver as profundidades de todas as facetas sobre ele."],
+  nearest: ["cea mai apropiată", "la plus proche", "a mais próxima"],
 } as const satisfies Record<string, readonly [string, string, string]>;
 
 export const TABLE = { ...PAGE, ...ENGINE };

@@ -243,6 +243,78 @@ test("two pictures are compared", async (page) => {
   await page.getByRole("img", { name: "Difference" }).waitFor();
 });
 
+test("a comparison steps through both pictures", async (page) => {
+  await open(page, `${SMALL}&page=visibility&settings.visibility=warnock&b.settings.visibility=painter&compare=side`);
+  const [a, b] = [await pictureOf(page, "Picture A"), await pictureOf(page, "Picture B")];
+  await page.waitForFunction(() => Number(document.querySelector('input[type="range"]').max) > 1);
+  await page.getByRole("button", { name: "First step" }).click();
+  await ready(page);
+  await eventually(async () => (await pictureOf(page, "Picture B")) !== b, true);
+  assert.notEqual(await pictureOf(page, "Picture A"), a);
+  await page.getByRole("button", { name: "Last step" }).click();
+  await eventually(() => pictureOf(page, "Picture A"), a);
+  await eventually(() => pictureOf(page, "Picture B"), b);
+});
+
+test("terms of the lights are shown one by one", async (page) => {
+  await open(page, `${SMALL}&page=illumination`);
+  const whole = await pictureOf(page);
+  const seen = new Set([whole]);
+  for (const name of ["Ambient term", "Diffuse term", "Specular term"]) {
+    await page.getByRole("group", { name: "Channels shown" }).getByRole("radio", { name }).check();
+    await eventually(async () => (await pictureOf(page)) !== whole, true);
+    await ready(page);
+    seen.add(await pictureOf(page));
+  }
+  assert.equal(seen.size, 4);
+  await page.getByRole("group", { name: "Channels shown" }).getByRole("radio", { name: "Colour", exact: true }).check();
+  await eventually(() => pictureOf(page), whole);
+});
+
+test("a pixel of the z-buffer has depths, projector and misprints", async (page) => {
+  await open(page, `${SMALL}&page=pipeline&pixel=97,50`);
+  const projector = page.getByRole("table", { name: "Two points of the projector" });
+  await projector.waitFor();
+  assert.equal(await projector.locator("tbody tr").count(), 2);
+  const depths = page.getByRole("table", { name: "Depths" });
+  await depths.waitFor();
+  assert.equal(await depths.locator("tbody tr").count(), 9);
+  await page.getByRole("link", { name: "Illumination" }).click();
+  await page.getByText("Where the notes err").click();
+  await page.getByRole("table", { name: "Where the notes err" }).waitFor();
+  await open(page, `${SMALL}&page=pipeline&second=on`);
+  await page.locator('[aria-label="Second view"] svg g.kept').first().waitFor();
+});
+
+test("exercises speak the language of the page", async (page) => {
+  const texts = async (lang) => {
+    await open(page, `${SMALL}&page=exercises&lang=${lang}`);
+    return page.locator(".exercises strong, .exercises span").allTextContents();
+  };
+  const english = await texts("en");
+  assert.ok(english.length >= 38);
+  for (const lang of ["ro", "fr", "pt"]) {
+    const same = (await texts(lang)).filter((text) => english.includes(text));
+    assert.deepEqual(same, [], lang);
+  }
+});
+
+test("exercise P8 wants a pixel with two cubes", async (page) => {
+  await open(page, "exercise=P8&page=pipeline");
+  const region = page.getByRole("region", { name: "Exercise", exact: true });
+  const check = async (text) => {
+    await region.getByRole("button", { name: "Check" }).click();
+    await region.getByText(text).waitFor();
+  };
+  await check("no pixel is inspected");
+  await page.getByRole("spinbutton", { name: "Pixel x" }).fill("5");
+  await page.getByRole("spinbutton", { name: "Pixel y" }).fill("5");
+  await check("fewer than two faces");
+  await page.getByRole("spinbutton", { name: "Pixel x" }).fill("390");
+  await page.getByRole("spinbutton", { name: "Pixel y" }).fill("200");
+  await check("Passed");
+});
+
 test("figure and slide have no menus, and lead to the Lab", async (page) => {
   for (const layout of ["figure", "slide"]) {
     await open(page, `${SMALL}&settings.visibility=warnock&layout=${layout}`);

@@ -5,6 +5,7 @@
 use crate::answer::Answer;
 use serde_json::json;
 use std::fmt::Write;
+use vitral::internals::math::DVec4;
 use vitral::internals::scene::framing::{depth_range, frame_from};
 use vitral::{Aabb, Camera, DMat4, DVec3, Error, LightKind, Renderer, Viewpoint};
 
@@ -26,13 +27,17 @@ pub(crate) fn overview(renderer: &mut Renderer, second: Option<&Viewpoint>) -> A
 
     // Draw lines where the other camera sees them.
     let [width, height] = [renderer.settings.picture.width, renderer.settings.picture.height];
+    let seen_by_camera = clip_from_world(&camera, renderer);
     let clip_from_world = clip_from_world(&outside, renderer);
     let screen = Screen { clip_from_world, size: [f64::from(width), f64::from(height)] };
     let mut svg = format!(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">"#);
     for instance in renderer.world().instances.iter().filter(|i| !i.bounds.is_empty()) {
-        screen.cuboid(&mut svg, instance.bounds.corners(), "box");
+        let corners = instance.bounds.corners();
+        let plane = beyond(&corners, &seen_by_camera);
+        let (class, told) = plane.map_or(("box kept", ""), |plane| ("box culled", plane));
+        screen.cuboid(&mut svg, corners, class, &[instance.mesh.name.as_str(), told].join(" ").trim());
     }
-    screen.cuboid(&mut svg, volume, "volume");
+    screen.cuboid(&mut svg, volume, "volume", "");
     for light in lights.iter().filter(|light| light.enabled) {
         if let LightKind::Point { position } | LightKind::Spot { position, .. } = light.kind {
             screen.point(&mut svg, position, "light", &light.name);
@@ -48,6 +53,20 @@ pub(crate) fn overview(renderer: &mut Renderer, second: Option<&Viewpoint>) -> A
     let missing = || Error::usage("this picture has no colours", "");
     let pixels = picture.frame.color.as_ref().ok_or_else(missing)?.data().as_flattened().to_vec();
     Ok((json!({"width": width, "height": height, "drawing": svg}), vec![pixels]))
+}
+
+/// The plane of the view volume beyond which a whole box lies.
+fn beyond(corners: &[DVec3; 8], clip_from_world: &DMat4) -> Option<&'static str> {
+    let clip = corners.map(|corner| *clip_from_world * corner.extend(1.0));
+    let planes: [(&str, fn(&DVec4) -> f64); 6] = [
+        ("left", |c| c.w + c.x),
+        ("right", |c| c.w - c.x),
+        ("bottom", |c| c.w + c.y),
+        ("top", |c| c.w - c.y),
+        ("near", |c| c.w - c.z),
+        ("far", |c| c.z),
+    ];
+    planes.iter().find(|(_, inside)| clip.iter().all(|corner| inside(corner) < 0.0)).map(|(name, _)| *name)
 }
 
 /// World to clip for what a camera sees of the scene.
@@ -88,30 +107,49 @@ impl Screen {
     }
 
     /// The twelve edges of a box; corners differ in x by the first bit of their number, in y by the second, in z by the third.
-    fn cuboid(&self, svg: &mut String, corners: [DVec3; 8], class: &str) {
+    fn cuboid(&self, svg: &mut String, corners: [DVec3; 8], class: &str, name: &str) {
+        // Writing to a String cannot fail.
+        let _ = write!(svg, r#"<g class="{class}"><title>{}</title>"#, plain(name));
         let at = corners.map(|corner| self.place(corner));
         for (from, bit) in
             (0..8usize).flat_map(|from| [1, 2, 4].map(|bit| (from, bit))).filter(|(from, bit)| from & bit == 0)
         {
             if let (Some([x1, y1]), Some([x2, y2])) = (at[from], at[from | bit]) {
-                // Writing to a String cannot fail.
-                let _ = write!(svg, r#"<line class="{class}" x1="{x1:.2}" y1="{y1:.2}" x2="{x2:.2}" y2="{y2:.2}"/>"#);
+                let _ = write!(svg, r#"<line x1="{x1:.2}" y1="{y1:.2}" x2="{x2:.2}" y2="{y2:.2}"/>"#);
             }
         }
+        svg.push_str("</g>");
     }
 
     /// A dot with its name.
     fn point(&self, svg: &mut String, at: DVec3, class: &str, name: &str) {
         let Some([x, y]) = self.place(at) else { return };
-        let name = name.replace('&', "&amp;").replace('<', "&lt;");
+        let name = plain(name);
         // Writing to a String cannot fail.
         let _ = write!(svg, r#"<circle class="{class}" cx="{x:.2}" cy="{y:.2}" r="4"><title>{name}</title></circle>"#);
     }
 }
 
+/// A text inside XML.
+fn plain(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn p10_a_box_is_culled_by_the_plane_that_it_lies_beyond() {
+        let clip_from_world = Camera::look_at([0.0, 0.0, 10.0], [0.0; 3]).transform(1.0, (1.0, 20.0)).clip_from_world();
+        let cube = |x: f64, z: f64| {
+            Aabb { min: DVec3::new(x - 1.0, -1.0, z - 1.0), max: DVec3::new(x + 1.0, 1.0, z + 1.0) }.corners()
+        };
+        assert_eq!(beyond(&cube(0.0, 0.0), &clip_from_world), None);
+        assert_eq!(beyond(&cube(-20.0, 0.0), &clip_from_world), Some("left"));
+        assert_eq!(beyond(&cube(20.0, 0.0), &clip_from_world), Some("right"));
+        assert_eq!(beyond(&cube(0.0, -30.0), &clip_from_world), Some("far"));
+    }
 
     #[test]
     fn places_are_where_the_picture_shows_them() {

@@ -107,7 +107,9 @@ fn the_scene_is_seen_from_outside_with_its_view_volume() {
     let state = small("builtin:scene0", json!({}));
     let (told, planes) = ask(&mut lab, json!({"want": "overview", "state": state}));
     let drawing = told["drawing"].as_str().unwrap();
-    assert_eq!(drawing.matches("class=\"volume\"").count(), 12);
+    let volume = drawing.split("<g class=\"volume\">").nth(1).unwrap().split("</g>").next().unwrap();
+    assert_eq!(volume.matches("<line").count(), 12);
+    assert_eq!(drawing.matches("<g class=\"box kept\">").count(), 5);
     assert!(drawing.contains("class=\"eye\"") && drawing.contains("<title>LIGHT0</title>"), "{drawing}");
     let (own, picture) = ask(&mut lab, json!({"want": "picture", "state": state}));
     assert!(own["width"] == told["width"] && planes[0].len() == picture[0].len() && planes != picture);

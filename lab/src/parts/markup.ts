@@ -1,6 +1,8 @@
 // Drawings (SVG) and formulas (MathML) of the engine as elements. Only what draws is taken over:
 // names inside come from files of the user.
 
+import { translated } from "../words.ts";
+
 const SVG = "http://www.w3.org/2000/svg";
 const MATH = "http://www.w3.org/1998/Math/MathML";
 
@@ -26,7 +28,8 @@ function copyOf(from: Element, namespace: string, allowed: Set<string>): Element
       const copied = copyOf(child, namespace, allowed);
       if (copied) to.append(copied);
     } else if (child.nodeType === Node.TEXT_NODE) {
-      to.append(child.textContent ?? "");
+      const text = child.textContent ?? "";
+      to.append(name === "mtext" ? translated(text) : text);
     }
   }
   return to;
@@ -36,13 +39,13 @@ function copyOf(from: Element, namespace: string, allowed: Set<string>): Element
 const cache = new Map<string, Element | null>();
 
 function elementOf(text: string, namespace: string, allowed: Set<string>, use: string): Element | null {
-  const key = `${use} ${text}`;
+  const key = `${document.documentElement.lang} ${use} ${text}`;
   const known = cache.get(key);
   if (known !== undefined) return known;
   const whole = text.includes("xmlns") ? text : text.replace(/^\s*<(svg|math)/, `<$1 xmlns="${namespace}"`);
   const parsed = new DOMParser().parseFromString(whole, "application/xml").documentElement;
   const made = parsed.namespaceURI === namespace ? copyOf(parsed, namespace, allowed) : null;
-  if (cache.size > 20) cache.clear();
+  if (cache.size > 100) cache.clear();
   cache.set(key, made);
   return made;
 }

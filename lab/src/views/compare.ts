@@ -7,6 +7,7 @@ import { equal } from "../json.ts";
 import { COMPARISONS, type Comparison } from "../link.ts";
 import { button, check, combo, group } from "../parts/fields.ts";
 import { table } from "../parts/table.ts";
+import { stepWords } from "../stepwords.ts";
 import { t } from "../words.ts";
 import { show, stage } from "./picture.ts";
 import { combos } from "./settings.ts";
@@ -68,9 +69,10 @@ export function comparison(app: App): TemplateResult {
     ...(compare === "swipe" ? { clip: divider } : {}),
     ...(compare === "blink" && !showsB ? { clip: 100 } : {}),
   });
+  const stepB = app.lab.step !== null && app.hasSteps && app.stepB ? ` · ${t("{0} of {1}: {2}", app.stepB.value.number, app.stepB.value.total, stepWords(app.stepB.value))}` : "";
   const caption = (name: string, content: unknown) => html`<div class="captioned"><p class="caption">${name}</p>${content}</div>`;
   return html`<div class=${`pair ${compare}`}>
-    ${isStacked ? html`<div class="stack">${a}${b}</div>` : html`${caption("A", a)}${caption("B", b)}`}
+    ${isStacked ? html`<div class="stack">${a}${b}</div>` : html`${caption("A", a)}${caption(`B${stepB}`, b)}`}
     ${compare === "difference"
       ? caption(
           t("Difference"),

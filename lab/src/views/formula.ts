@@ -67,13 +67,13 @@ export function formulaRegion(app: App): TemplateResult {
 function printed(app: App): unknown {
   const rows = objects(app.answerTo("explain")?.ok["printed"]).map((row): Cell[] => [
     partsTranslated(String(row["what"])),
-    formula(String(row["right"]), `right ${String(row["what"])}`),
+    html`${formula(String(row["right"]), `right ${String(row["what"])}`)}`,
     valueText(row["right-value"]),
-    formula(String(row["printed"]), `printed ${String(row["what"])}`),
+    html`${formula(String(row["printed"]), `printed ${String(row["what"])}`)}`,
     valueText(row["printed-value"]),
   ]);
   if (!rows.length) return nothing;
-  const columns = [t("what"), t("right"), t("result"), t("as printed"), t("result as printed")];
+  const columns = [t("what"), t("right form"), t("result"), t("as printed"), t("result as printed")];
   return html`<details>
     <summary>${t("Where the notes err")}</summary>
     ${table({ name: t("Where the notes err"), columns, rows })}

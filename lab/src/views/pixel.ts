@@ -95,7 +95,10 @@ function decisionWords(decision: JsonObject): string[] {
 
 const askKey = (app: App) => JSON.stringify({ want: "ask-all", state: app.state, pixel: app.lab.pixel });
 
-const three = (v: Json | undefined) => numbers(v).slice(0, 3).map((n) => number(Number(n.toPrecision(4)))).join(" ");
+/** Light below this is no light in any picture. */
+const TINY = 1e-7;
+
+const three = (v: Json | undefined) => numbers(v).slice(0, 3).map((n) => number(Math.abs(n) < TINY ? 0 : Number(n.toPrecision(4)))).join(" ");
 
 function light(app: App, explanation: JsonObject): unknown {
   const whole = isObject(explanation["light"]) ? explanation["light"] : {};

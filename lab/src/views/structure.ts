@@ -310,7 +310,9 @@ function depthTable(d: JsonObject): unknown {
     Number(d["y"]) + y,
     ...Array.from({ length: size }, (_, x) => {
       const [b, a] = [before[y * size + x] ?? 0, after[y * size + x] ?? 0];
-      return a === b ? a.toFixed(3) : html`<ins title=${b.toFixed(5)}>${a.toFixed(3)}</ins>`;
+      // Depths lie between 0 and 1.
+      const text = a.toFixed(3).replace(/^0/, "");
+      return a === b ? text : html`<ins title=${b.toFixed(5)}>${text}</ins>`;
     }),
   ]);
   return table({ name: t("Depths"), columns: [t("row"), ...Array.from({ length: size }, (_, x) => String(Number(d["x"]) + x))], rows, caption: true });

@@ -35,7 +35,7 @@ pub(crate) fn overview(renderer: &mut Renderer, second: Option<&Viewpoint>) -> A
         let corners = instance.bounds.corners();
         let plane = beyond(&corners, &seen_by_camera);
         let (class, told) = plane.map_or(("box kept", ""), |plane| ("box culled", plane));
-        screen.cuboid(&mut svg, corners, class, &[instance.mesh.name.as_str(), told].join(" ").trim());
+        screen.cuboid(&mut svg, corners, class, [instance.mesh.name.as_str(), told].join(" ").trim());
     }
     screen.cuboid(&mut svg, volume, "volume", "");
     for light in lights.iter().filter(|light| light.enabled) {
@@ -58,15 +58,9 @@ pub(crate) fn overview(renderer: &mut Renderer, second: Option<&Viewpoint>) -> A
 /// The plane of the view volume beyond which a whole box lies.
 fn beyond(corners: &[DVec3; 8], clip_from_world: &DMat4) -> Option<&'static str> {
     let clip = corners.map(|corner| *clip_from_world * corner.extend(1.0));
-    let planes: [(&str, fn(&DVec4) -> f64); 6] = [
-        ("left", |c| c.w + c.x),
-        ("right", |c| c.w - c.x),
-        ("bottom", |c| c.w + c.y),
-        ("top", |c| c.w - c.y),
-        ("near", |c| c.w - c.z),
-        ("far", |c| c.z),
-    ];
-    planes.iter().find(|(_, inside)| clip.iter().all(|corner| inside(corner) < 0.0)).map(|(name, _)| *name)
+    let distances = |c: &DVec4| [c.w + c.x, c.w - c.x, c.w + c.y, c.w - c.y, c.w - c.z, c.z];
+    let names = ["left", "right", "bottom", "top", "near", "far"];
+    (0..6).find(|&plane| clip.iter().all(|corner| distances(corner)[plane] < 0.0)).map(|plane| names[plane])
 }
 
 /// World to clip for what a camera sees of the scene.

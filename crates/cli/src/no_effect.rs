@@ -40,7 +40,7 @@ const FLAT: &str = "with --shading flat each face has its own normal";
 const PARALLEL: &str = "the projection is parallel";
 
 /// What does nothing beside what. Rows of one option stand together; the first that holds is told.
-const ROWS: [Row; 54] = [
+const ROWS: [Row; 57] = [
     row("--samples", gives_samples, Case::makes_no_color, "channels of data have one sample a pixel"),
     row("--background-color", |a| a.picture.background_color.is_some(), Case::makes_no_color, DATA),
     row("--no-background", |a| a.picture.no_background, Case::makes_no_color, DATA),

@@ -13,7 +13,7 @@ use vitral::{
 };
 
 /// Options of `vitral draw`.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct DrawArgs {
     #[arg(required_unless_present = "load_state", value_name = "MODEL", help = model_help())]
@@ -45,7 +45,7 @@ pub(crate) struct DrawArgs {
 }
 
 /// Lines, fills and their looks.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Lines")]
 pub(crate) struct LineArgs {
     /// The algorithm of visibility. Those of the course draw their own polygons in their own order, with all their cuts, as lines of the
@@ -77,7 +77,7 @@ pub(crate) struct LineArgs {
 }
 
 /// How surfaces are filled.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Surfaces (with --style filled and filled-lines)")]
 pub(crate) struct FillArgs {
     /// What colours tell [default: shading]
@@ -166,7 +166,7 @@ pub(crate) enum Hidden {
 }
 
 /// The sheet.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Page")]
 pub(crate) struct PageArgs {
     /// The sheet: fit, for a drawing of 180 mm and no more paper than it needs, A0 to A6, or WxHmm [default: fit]
@@ -254,7 +254,7 @@ pub(crate) enum Sheet {
 }
 
 /// Statistics, warnings, progress.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Reports")]
 pub(crate) struct DrawReportArgs {
     /// Counters and times as JSON on standard error

@@ -54,27 +54,7 @@ fn draw(
     let load_seconds = start.elapsed().as_secs_f64();
 
     // Draw.
-    let is_opaque = renderer.opacities().iter().all(|&opacity| opacity == 1.0);
-    if args.fill.transparency && is_opaque && !args.report.quiet {
-        report::warnings(&["--transparency: the models have no transparent surfaces".to_owned()]);
-    }
-    let mut views = None;
-    let made = if !args.page.views.is_empty() {
-        let (drawn, layout) = draw_sheet::draw(args, &renderer, &settings)?;
-        views = Some(draw_sheet::stats_of(args, &layout));
-        Made::Exact(drawn)
-    } else {
-        settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
-        let made = match args.polygons() {
-            Some(algorithm) => Made::Polygons(Box::new(draw_polygons::draw(args, algorithm, &renderer, &settings)?)),
-            None => Made::Exact(match args.surfaces() {
-                Some(fill) => renderer.draw_filled(&settings, &fill)?,
-                None => renderer.draw(&settings)?,
-            }),
-        };
-        check_fits(args, &settings, made.drawing())?;
-        made
-    };
+    let (made, views) = make(args, &renderer, &mut settings)?;
     let draw_seconds = start.elapsed().as_secs_f64() - load_seconds;
 
     // Write.
@@ -102,21 +82,47 @@ fn draw(
     Ok(())
 }
 
+/// Makes the drawing, and tells where the views of a sheet are.
+pub(crate) fn make(
+    args: &DrawArgs,
+    renderer: &Renderer,
+    settings: &mut DrawingSettings,
+) -> Result<(Made, Option<serde_json::Value>), Failure> {
+    let is_opaque = renderer.opacities().iter().all(|&opacity| opacity == 1.0);
+    if args.fill.transparency && is_opaque && !args.report.quiet {
+        report::warnings(&["--transparency: the models have no transparent surfaces".to_owned()]);
+    }
+    if !args.page.views.is_empty() {
+        let (drawn, layout) = draw_sheet::draw(args, renderer, settings)?;
+        return Ok((Made::Exact(drawn), Some(draw_sheet::stats_of(args, &layout))));
+    }
+    settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
+    let made = match args.polygons() {
+        Some(algorithm) => Made::Polygons(Box::new(draw_polygons::draw(args, algorithm, renderer, settings)?)),
+        None => Made::Exact(match args.surfaces() {
+            Some(fill) => renderer.draw_filled(settings, &fill)?,
+            None => renderer.draw(settings)?,
+        }),
+    };
+    check_fits(args, settings, made.drawing())?;
+    Ok((made, None))
+}
+
 /// A drawing, by whom it was made.
-enum Made {
+pub(crate) enum Made {
     Exact(Drawn),
     Polygons(Box<PolygonDrawing>),
 }
 
 impl Made {
-    fn drawing(&self) -> &Drawing {
+    pub(crate) fn drawing(&self) -> &Drawing {
         match self {
             Self::Exact(drawn) => &drawn.drawing,
             Self::Polygons(drawn) => &drawn.drawing,
         }
     }
 
-    fn into_drawing(self) -> Drawing {
+    pub(crate) fn into_drawing(self) -> Drawing {
         match self {
             Self::Exact(drawn) => drawn.drawing,
             Self::Polygons(drawn) => drawn.drawing,
@@ -143,7 +149,7 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
 }
 
 /// The state with the projection of drawings: a parallel one, unless that is said or the camera has an angle of view.
-fn projected(args: &DrawArgs, state: &State, world: &World) -> State {
+pub(crate) fn projected(args: &DrawArgs, state: &State, world: &World) -> State {
     let mut state = state.clone();
     if args.page.views.is_empty() {
         state.viewpoint = state.viewpoint.or_own(world);
@@ -155,7 +161,7 @@ fn projected(args: &DrawArgs, state: &State, world: &World) -> State {
 }
 
 /// The settings of the drawing: its lines, hidden layers and sheet.
-fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
+pub(crate) fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
     let usual = DrawingSettings::default();
     let lines = &args.lines;
     let has_lines = args.style() != Style::Filled;

@@ -4,6 +4,7 @@ use crate::args::OsmesaEnvArgs;
 use crate::report::{self, Failure};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// The library's name at run time.
 const LIBRARY: &str = "libOSMesa.so.8";
@@ -12,6 +13,14 @@ const LIBRARY: &str = "libOSMesa.so.8";
 /// there for programs in `target/PROFILE/deps` too.
 const PLACES: [&str; 5] = [".", "../lib", "../lib/vitral", "../osmesa", "../../osmesa"];
 
+/// Where the library is, if the program that runs the command knows.
+static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+
+/// Says in which folder the library lies, for programs that bring it along. The first word counts.
+pub fn osmesa_lies_in(folder: PathBuf) {
+    let _ = FOLDER.set(folder);
+}
+
 /// Exit code for what is missing.
 const MISSING: u8 = 3;
 
@@ -19,7 +28,8 @@ const MISSING: u8 = 3;
 pub(crate) fn run(args: &OsmesaEnvArgs) -> Result<u8, Failure> {
     let program = std::env::current_exe().ok();
     let beside = program.as_deref().and_then(Path::parent);
-    let folder = find(args.lib.as_deref(), beside)?;
+    let brought = FOLDER.get().filter(|folder| folder.join(LIBRARY).is_file());
+    let folder = find(args.lib.as_deref().or(brought.map(PathBuf::as_path)), beside)?;
     let before = std::env::var_os("LD_LIBRARY_PATH");
     report::print(line(&folder, before.as_deref())?.as_bytes()).map(|()| 0)
 }

@@ -13,7 +13,7 @@ use vitral::{
 };
 
 /// Options of `vitral render`.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct RenderArgs {
     #[arg(required_unless_present_any = ["load_state", "exercise"], value_name = "MODEL", help = model_help())]
@@ -37,7 +37,7 @@ pub(crate) struct RenderArgs {
 }
 
 /// Where pictures go.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
     /// Where the picture goes: .png .jpg .ppm .npy, or `-` for a PNG on standard output; {model} and {frame:4} expand;
@@ -88,7 +88,7 @@ pub(crate) struct OutputArgs {
 }
 
 /// Size, background, quality.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Picture")]
 pub(crate) struct PictureArgs {
     /// Width and height in pixels, 1024x768 or 1024,768 [default: 1024x768]
@@ -109,7 +109,7 @@ pub(crate) struct PictureArgs {
 }
 
 /// How the picture is made.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Algorithms")]
 pub(crate) struct AlgorithmArgs {
     /// How the visible surfaces are found [default: z-buffer]
@@ -201,7 +201,7 @@ pub(crate) struct AlgorithmArgs {
 }
 
 /// Lights and materials.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Light and materials")]
 pub(crate) struct LightArgs {
     /// Light sources on or off [default: on]
@@ -248,7 +248,7 @@ fn material_help() -> String {
 }
 
 /// The viewer.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(
     next_help_heading = "Camera (without any, the model is framed; a scene file with one camera and a built-in figure have their own)"
 )]
@@ -293,7 +293,7 @@ pub(crate) struct CameraArgs {
 }
 
 /// The course's program Lab3D.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Lab3D")]
 pub(crate) struct LabArgs {
     /// Start from the scene, lights and settings of an exercise of the course; models and options override them
@@ -310,7 +310,7 @@ pub(crate) struct LabArgs {
 }
 
 /// The eye of Lab3D.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Lab3D")]
 pub(crate) struct EyeArgs {
     /// Turn the eye, which looks along -z at first: degrees about x, then y, then z. Alone it frames the model
@@ -325,7 +325,7 @@ pub(crate) struct EyeArgs {
 const OTHER_CAMERAS: [&str; 5] = ["view", "camera_index", "camera_position", "camera_focal_point", "camera_direction"];
 
 /// Files and limits.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Files and limits")]
 pub(crate) struct ProcessArgs {
     /// Let models name files outside their folder
@@ -355,7 +355,7 @@ pub(crate) struct ProcessArgs {
 }
 
 /// Statistics, explanations, traces, progress.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Reports")]
 pub(crate) struct ReportArgs {
     /// Counters and times as JSON on standard error: the seconds of each stage of each frame, and of loading, dumps and the

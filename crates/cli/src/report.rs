@@ -22,7 +22,7 @@ const SIZES: [&str; 3] = ["--size", "--width", "--height"];
 
 /// Why `vitral` ends early.
 #[derive(Debug)]
-pub(crate) struct Failure {
+pub struct Failure {
     /// The exit code.
     code: u8,
     /// `FILE: WHERE: WHAT`; `None`: nothing is to be said.
@@ -60,6 +60,21 @@ impl Failure {
             std::io::ErrorKind::BrokenPipe => Self { code: 0, message: None, hint: None },
             _ => Self { code: 5, message: Some(format!("standard output: {error}")), hint: None },
         }
+    }
+
+    /// The exit code of the command.
+    pub fn code(&self) -> u8 {
+        self.code
+    }
+
+    /// What is wrong, `FILE: WHERE: WHAT`; empty if nothing is to be said.
+    pub fn message(&self) -> &str {
+        self.message.as_deref().unwrap_or_default()
+    }
+
+    /// What may help.
+    pub fn hint(&self) -> Option<&str> {
+        self.hint.as_deref()
     }
 
     /// Tells the user, and gives the exit code.

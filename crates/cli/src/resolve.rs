@@ -92,7 +92,7 @@ pub(crate) fn overlay_files(state: &mut State, args: &ProcessArgs) -> Result<(),
 }
 
 /// Lays the options over the state.
-fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Failure> {
+pub(crate) fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Failure> {
     if !args.models.is_empty() {
         state.models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
     }

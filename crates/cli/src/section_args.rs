@@ -11,7 +11,7 @@ const MOST_PLANES: usize = 8;
 const LEAST_DISTANCE: f64 = 0.1;
 
 /// Sections and exploded views.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Sections")]
 pub(crate) struct SectionArgs {
     /// Take away what lies on the side of a plane to which its normal points: a point of the plane and the normal, in the model's

@@ -10,6 +10,7 @@ pub(crate) fn complete(renderer: &mut Renderer, state: &State) -> Answer {
     let (view_angle, parallel_height) = match camera.projection {
         Projection::Perspective { view_angle } => (Some(view_angle.to_degrees()), None),
         Projection::Parallel { height } => (None, Some(height)),
+        Projection::Window { .. } => (None, None),
     };
     let answer = json!({
         "state": state,

@@ -20,6 +20,9 @@ pub trait Cached: Any + Send + Sync {
     /// How long the value serves.
     const REUSE: Reuse = Reuse::Scene;
 
+    /// Whether the value depends on where instances are. Such values are dropped when instances move.
+    const PLACED: bool = true;
+
     /// How many reusable results the value holds, for the statistics: 1 unless it gathers results of many meshes.
     fn results(&self) -> usize {
         1
@@ -50,6 +53,8 @@ type Slot<T> = Mutex<Option<(<T as Cached>::Key, Arc<T>)>>;
 /// A slot whose type is not known.
 trait AnySlot: Any + Send + Sync {
     fn reuse(&self) -> Reuse;
+    fn is_placed(&self) -> bool;
+    fn has_key(&self) -> bool;
     fn results(&self) -> usize;
     fn clear(&self);
 }
@@ -60,6 +65,14 @@ const UNPOISONED: &str = "no thread panics while it builds a cached value";
 impl<T: Cached> AnySlot for Slot<T> {
     fn reuse(&self) -> Reuse {
         T::REUSE
+    }
+
+    fn is_placed(&self) -> bool {
+        T::PLACED
+    }
+
+    fn has_key(&self) -> bool {
+        TypeId::of::<T::Key>() != TypeId::of::<()>()
     }
 
     fn results(&self) -> usize {
@@ -115,6 +128,20 @@ impl Cache {
         });
     }
 
+    /// A cache of another session of the same scene. Both share what depends on the scene alone and is cached by now: it is the
+    /// same for both, however lights and cameras differ.
+    pub(crate) fn fork(&self) -> Self {
+        let slots = self.slots.lock().expect(UNPOISONED);
+        let is_shared = |slot: &dyn AnySlot| slot.reuse() == Reuse::Scene && !slot.has_key();
+        let shared = slots.iter().filter(|(_, slot)| is_shared(&***slot)).map(|(id, slot)| (*id, Arc::clone(slot)));
+        Self { slots: Mutex::new(shared.collect()) }
+    }
+
+    /// Drops what depends on where instances are. Caches that share a slot keep it.
+    pub(crate) fn forget_placed(&mut self) {
+        self.slots.get_mut().expect(UNPOISONED).retain(|_, slot| !slot.is_placed());
+    }
+
     /// How many results of earlier frames are there to be used again.
     pub fn results(&self) -> usize {
         let mut results = 0;
@@ -146,6 +173,7 @@ pub struct PerMesh<T>(Vec<OnceLock<T>>);
 
 impl<T: Any + Send + Sync> Cached for PerMesh<T> {
     type Key = ();
+    const PLACED: bool = false;
 
     fn results(&self) -> usize {
         self.0.iter().filter(|value| value.get().is_some()).count()
@@ -230,6 +258,21 @@ mod tests {
         cache.forget_frames();
         assert_eq!((cache.results(), cache.get::<Tree>()), (0, None));
         assert!(cache.get::<Solved>().is_some());
+    }
+
+    #[test]
+    fn a_fork_shares_what_depends_on_the_scene_alone() {
+        let mut cache = Cache::default();
+        tree(&cache, 1);
+        cache.insert((), Arc::new(Solved));
+        let of_meshes = || Ok::<_, Infallible>(PerMesh::<u8>::new(3));
+        let Ok(known) = cache.get_or_build((), of_meshes);
+        let fork = cache.fork();
+        assert!(fork.get::<Tree>().is_none() && fork.get::<Solved>().is_none(), "a key, and memory");
+        assert!(Arc::ptr_eq(&known, &fork.get::<PerMesh<u8>>().unwrap()));
+        // What is known of meshes stays when they move.
+        cache.forget_placed();
+        assert!(cache.get::<Tree>().is_none() && cache.get::<PerMesh<u8>>().is_some());
     }
 
     #[test]

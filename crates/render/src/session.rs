@@ -11,18 +11,19 @@ use std::sync::{Arc, Mutex, OnceLock};
 use vitral_exec::Workers;
 use vitral_frame::Frame;
 use vitral_light::AlphaMode;
-use vitral_math::{Aabb, DMat4, Mat4, Vec3};
+use vitral_math::{Aabb, DMat4, DVec4, Mat4, Vec3};
 use vitral_raster::{BackFaces, Batch, ScreenVertex, Tile, TileGrid, Unsorted};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
-use vitral_scene::{Attribute, Instance, Part, Scene, SharedPlanes, Solids, World, tangents};
+use vitral_scene::{Attribute, Instance, NodeTransform, Part, Scene, SharedPlanes, Solids, World, tangents};
 
-/// A scene made ready for many frames. The scene cannot change under it: edit a copy and make a new session.
+/// A scene made ready for many frames. Its nodes may be moved ([`Session::place`]); all else cannot change under it: edit a copy and
+/// make a new session.
 #[derive(Debug)]
 pub struct Session {
     pub(crate) scene: Arc<Scene>,
     pub(crate) world: World,
-    meshes: Vec<MeshKnowledge>,
+    meshes: Arc<Vec<MeshKnowledge>>,
     planes: OnceLock<SharedPlanes>,
     pub(crate) grid: Option<TileGrid>,
     pub(crate) spare_vertices: Mutex<Vec<Vec<ScreenVertex>>>,
@@ -101,8 +102,12 @@ impl Session {
             }
         }
         let world = World::with_workers(&scene, workers)?;
-        let meshes = scene.meshes.iter().map(|_| MeshKnowledge::default()).collect();
-        Ok(Self {
+        let meshes = Arc::new(scene.meshes.iter().map(|_| MeshKnowledge::default()).collect());
+        Ok(Self::assemble(scene, world, meshes, Cache::default()))
+    }
+
+    fn assemble(scene: Arc<Scene>, world: World, meshes: Arc<Vec<MeshKnowledge>>, cache: Cache) -> Self {
+        Self {
             scene,
             world,
             meshes,
@@ -113,8 +118,43 @@ impl Session {
             spare_unsorted: Mutex::default(),
             spare_picture: Mutex::default(),
             spare_tiles: Mutex::default(),
-            cache: Cache::default(),
-        })
+            cache,
+        }
+    }
+
+    /// Another session of the same scene, for another thread. Both share what is known of the meshes, whichever finds it out, and
+    /// the structures over the scene that there are by now.
+    #[must_use]
+    pub fn fork(&self) -> Self {
+        let (scene, meshes) = (Arc::clone(&self.scene), Arc::clone(&self.meshes));
+        Self::assemble(scene, self.world.clone(), meshes, self.cache.fork())
+    }
+
+    /// Moves nodes: each of `nodes` gets the transform to its parent that stands beside it. What is known of the meshes stays;
+    /// what depends on where they are is found out anew when it is needed.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a node that is not there, and for a transform that is not affine; nothing is moved then.
+    pub fn place(&mut self, nodes: &[(u32, DMat4)]) -> Result<(), Error> {
+        let count = self.scene.nodes.len();
+        for (node, transform) in nodes {
+            if *node as usize >= count {
+                return Err(Error::Scene(format!("there is no node {node}, there are {count}")));
+            }
+            if !transform.is_finite() || transform.row(3) != DVec4::W {
+                return Err(Error::Scene(format!("the transform of node {node} is no finite affine matrix")));
+            }
+        }
+
+        // Move the nodes of this session's scene.
+        let scene = Arc::make_mut(&mut self.scene);
+        for &(node, transform) in nodes {
+            scene.nodes[node as usize].transform = NodeTransform::Matrix(transform);
+        }
+        self.world = self.world.moved(scene)?;
+        self.planes = OnceLock::new();
+        self.cache.forget_placed();
+        Ok(())
     }
 
     /// Takes back a picture that is not needed any more; the next one of its size is made in the same memory.
@@ -211,7 +251,7 @@ impl Session {
     /// Forgets what the steps of a picture have found out for earlier ones: each picture of the steps is the first. Light from
     /// other surfaces stays, which has no steps, and the background.
     pub(crate) fn forget(&mut self) {
-        self.meshes.iter_mut().for_each(|known| *known = MeshKnowledge::default());
+        self.meshes = Arc::new(self.scene.meshes.iter().map(|_| MeshKnowledge::default()).collect());
         self.planes = OnceLock::new();
         self.cache.forget_frames();
     }

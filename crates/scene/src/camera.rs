@@ -39,6 +39,14 @@ pub enum Projection {
         /// Height of the picture in world units.
         height: f64,
     },
+    /// Projectors through the position, and a picture whose middle need not lie on the direction of view, as of a measured
+    /// camera. The picture keeps this window whatever its aspect, so pixels need not be square.
+    Window {
+        /// Left and right border of the picture at the distance 1, view space, in this order.
+        across: [f64; 2],
+        /// Lower and upper border at the distance 1, in this order.
+        upwards: [f64; 2],
+    },
 }
 
 /// A camera made ready for a viewport.
@@ -79,6 +87,16 @@ impl Camera {
         Self { projection: Projection::Perspective { view_angle }, ..self }
     }
 
+    /// In perspective as a measured camera sees: the focal lengths and the principal point, both in pixels of a picture of
+    /// `size` pixels. The principal point counts from the picture's top left corner, so that `size / 2` is the middle.
+    #[must_use]
+    pub fn with_intrinsics(self, focal: [f64; 2], principal: [f64; 2], size: [u32; 2]) -> Self {
+        let size = size.map(f64::from);
+        let across = [-principal[0] / focal[0], (size[0] - principal[0]) / focal[0]];
+        let upwards = [(principal[1] - size[1]) / focal[1], principal[1] / focal[1]];
+        Self { projection: Projection::Window { across, upwards }, ..self }
+    }
+
     /// With clipping planes at these distances along the direction of view, `0 < near < far`.
     #[must_use]
     pub fn with_clip(self, near: f64, far: f64) -> Self {
@@ -102,18 +120,26 @@ impl Camera {
     /// of view that holds the scene; it chooses the clipping planes where the camera has none of its own.
     pub fn transform(&self, aspect: f64, depths: (f64, f64)) -> ViewTransform {
         let (near, far) = self.clip.unwrap_or_else(|| self.fitted_clip(depths));
-        let perspective = matches!(self.projection, Projection::Perspective { .. });
+        let perspective = !matches!(self.projection, Projection::Parallel { .. });
+        // z_clip = (near z_view + near far) / (far - near): w = near at the near plane, 0 at the far plane.
+        let central = |focal: [f64; 2], middle: [f64; 2]| {
+            let (a, b) = (near / (far - near), near * far / (far - near));
+            DMat4::from_cols(
+                DVec4::new(focal[0], 0.0, 0.0, 0.0),
+                DVec4::new(0.0, focal[1], 0.0, 0.0),
+                DVec4::new(middle[0], middle[1], a, -1.0),
+                DVec4::new(0.0, 0.0, b, 0.0),
+            )
+        };
         let clip_from_view = match self.projection {
             Projection::Perspective { view_angle } => {
                 let focal = 1.0 / func::tan(view_angle * 0.5);
-                // z_clip = (near z_view + near far) / (far - near): w = near at the near plane, 0 at the far plane.
-                let (a, b) = (near / (far - near), near * far / (far - near));
-                DMat4::from_cols(
-                    DVec4::new(focal / aspect, 0.0, 0.0, 0.0),
-                    DVec4::new(0.0, focal, 0.0, 0.0),
-                    DVec4::new(0.0, 0.0, a, -1.0),
-                    DVec4::new(0.0, 0.0, b, 0.0),
-                )
+                central([focal / aspect, focal], [0.0, 0.0])
+            }
+            Projection::Window { across, upwards } => {
+                let size = [across, upwards].map(|[low, high]| high - low);
+                let sum = [across, upwards].map(|[low, high]| low + high);
+                central(size.map(|s| 2.0 / s), [sum[0] / size[0], sum[1] / size[1]])
             }
             Projection::Parallel { height } => {
                 let (sx, sy, sz) = (2.0 / (height * aspect), 2.0 / height, 1.0 / (far - near));
@@ -136,7 +162,7 @@ impl Camera {
         let margin = if margin > 0.0 { margin } else { 1e-9 };
         match self.projection {
             Projection::Parallel { .. } => (nearest - margin, farthest + margin),
-            Projection::Perspective { .. } => {
+            Projection::Perspective { .. } | Projection::Window { .. } => {
                 let far = if farthest + margin > 0.0 { farthest + margin } else { 1e-6 };
                 ((nearest - margin).max(far * 1e-4), far)
             }
@@ -145,6 +171,12 @@ impl Camera {
 }
 
 impl ViewTransform {
+    /// The distance along the direction of view at a depth of a picture, 1 on the near plane and 0 on the far plane.
+    pub fn distance_at(&self, depth: f32) -> f64 {
+        let (a, b) = (self.clip_from_view.z_axis.z, self.clip_from_view.w_axis.z);
+        if self.perspective { b / (f64::from(depth) + a) } else { (b - f64::from(depth)) / a }
+    }
+
     /// World to clip.
     pub fn clip_from_world(&self) -> DMat4 {
         self.clip_from_view * self.view_from_world
@@ -183,10 +215,32 @@ mod tests {
                 let p = clip * DVec4::new(0.0, 0.0, z, 1.0);
                 assert!((p.z / p.w - depth).abs() < 1e-12 && p.w > 0.0, "{projection:?} at z = {z}: {p}");
             }
+            let view = camera(projection).transform(1.0, (0.0, 0.0));
+            assert_eq!([1.0, 0.0].map(|depth| (view.distance_at(depth) * 1e9).round() / 1e9), [1.0, 10.0]);
             let right = clip * DVec4::new(1.0, 0.0, 0.0, 1.0);
             let up = clip * DVec4::new(0.0, 1.0, 0.0, 1.0);
             assert!(right.x > 0.0 && up.y > 0.0);
         }
+    }
+
+    #[test]
+    fn a_measured_camera_puts_its_axis_on_the_principal_point() {
+        let measured = camera(Projection::Parallel { height: 1.0 }).with_intrinsics([200.0, 100.0], [30.0, 80.0], [320, 240]);
+        let clip = measured.transform(4.0 / 3.0, (0.0, 0.0)).clip_from_world();
+        let pixel = |x: f64, y: f64, z: f64| {
+            let p = clip * DVec4::new(x, y, z, 1.0);
+            [(p.x / p.w + 1.0) * 160.0, (1.0 - p.y / p.w) * 120.0]
+        };
+        // One unit aside at the distance 5 is a fifth of a focal length; down is a larger row.
+        for (place, [x, y]) in [((0.0, 0.0, 0.0), [30.0, 80.0]), ((1.0, -2.0, 0.0), [70.0, 120.0])] {
+            let [px, py] = pixel(place.0, place.1, place.2);
+            assert!((px - x).abs() < 1e-9 && (py - y).abs() < 1e-9, "{px} {py}");
+        }
+        // With the principal point in the middle it is the usual camera of that angle.
+        let middle = measured.with_intrinsics([120.0, 120.0], [160.0, 120.0], [320, 240]);
+        let usual = camera(Projection::Perspective { view_angle: std::f64::consts::FRAC_PI_2 });
+        let [a, b] = [middle, usual].map(|c| c.transform(4.0 / 3.0, (0.0, 0.0)).clip_from_view);
+        assert!(a.abs_diff_eq(b, 1e-12), "{a} {b}");
     }
 
     #[test]

@@ -18,6 +18,9 @@ impl Camera {
                 Projection::Perspective { view_angle: (view_angle / factor).clamp(1e-6, 3.1) }
             }
             Projection::Parallel { height } => Projection::Parallel { height: height / factor },
+            Projection::Window { across, upwards } => {
+                Projection::Window { across: about_middle(across, factor), upwards: about_middle(upwards, factor) }
+            }
         };
         Self { projection, ..*self }
     }
@@ -50,6 +53,10 @@ impl Camera {
                 let height = 2.0 * distance * func::tan(0.5 * view_angle);
                 Self { projection: Projection::Parallel { height }, ..*self }
             }
+            Projection::Window { upwards: [low, high], .. } => {
+                let height = self.position.distance(self.focal_point) * (high - low);
+                Self { projection: Projection::Parallel { height }, ..*self }
+            }
         }
     }
 
@@ -70,6 +77,12 @@ impl Camera {
     fn turned(&self, rotation: DQuat, view_up: DVec3) -> Self {
         Self { position: self.focal_point + rotation * (self.position - self.focal_point), view_up, ..*self }
     }
+}
+
+/// A window's borders brought nearer to their middle by a factor.
+fn about_middle([low, high]: [f64; 2], factor: f64) -> [f64; 2] {
+    let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5 / factor);
+    [middle - half, middle + half]
 }
 
 #[cfg(test)]
@@ -102,6 +115,9 @@ mod tests {
         let c = camera();
         assert_eq!(c.zoomed(2.0).projection, Projection::Perspective { view_angle: 0.5 });
         assert_eq!(c.zoomed(0.0), c);
+        let window = Camera { projection: Projection::Window { across: [-1.0, 3.0], upwards: [0.0, 2.0] }, ..c };
+        assert_eq!(window.zoomed(2.0).projection, Projection::Window { across: [0.0, 2.0], upwards: [0.5, 1.5] });
+        assert_eq!(window.orthographic().projection, Projection::Parallel { height: 10.0 });
         assert_eq!(c.zoomed(f64::NAN), c);
         assert_eq!(c.with_direction(DVec3::new(-3.0, 0.0, 0.0)).position, DVec3::new(6.0, 2.0, 3.0));
         assert_eq!(c.with_direction(DVec3::ZERO), c);

@@ -421,6 +421,7 @@ mod tests {
                     let half = match camera.projection {
                         Projection::Perspective { view_angle } => func::tan(view_angle * 0.5) * -p.z,
                         Projection::Parallel { height } => height * 0.5,
+                        Projection::Window { .. } => unreachable!("framing makes none"),
                     };
                     most.max((p.x / (half * aspect)).abs()).max((p.y / half).abs())
                 })

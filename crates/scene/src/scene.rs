@@ -1,6 +1,6 @@
 //! The scene graph: nodes with transforms, each of which may show a mesh, carry a light or a camera.
 
-use crate::{Axis, Camera, Mesh};
+use crate::{Axis, Camera, Mesh, WorldError};
 use std::sync::Arc;
 use vitral_frame::Texture;
 use vitral_light::{Light, Material};
@@ -171,6 +171,22 @@ impl Scene {
             }
         }
         self.warnings.extend(other.warnings);
+    }
+
+    /// Makes every shown node a root where it is in the world, so that nodes can be moved one by one. Instances, lights and cameras
+    /// keep their order; a node that is not shown stays as it is.
+    ///
+    /// # Errors
+    /// A graph that is no tree, see [`WorldError`].
+    pub fn flatten(&mut self) -> Result<(), WorldError> {
+        let placed = crate::world::placed_nodes(self)?;
+        self.roots = placed.iter().map(|(node, _)| *node).collect();
+        for (node, world_from_node) in placed {
+            let node = &mut self.nodes[node as usize];
+            node.transform = NodeTransform::Matrix(world_from_node);
+            node.children.clear();
+        }
+        Ok(())
     }
 
     /// The upward axis that models such as the first one usually have.

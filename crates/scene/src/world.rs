@@ -115,20 +115,34 @@ impl World {
         // Compute the boxes of meshes once, however many instances they have.
         let run_bounds: Vec<Vec<Aabb>> = scene.meshes.iter().map(|m| m.run_bounds(workers)).collect();
         let bounds: Vec<Aabb> = scene.meshes.iter().zip(&run_bounds).map(|(m, runs)| m.bounds_from(runs)).collect();
-        let mut world = Self { lights: scene.lights.clone(), bounds: Aabb::EMPTY, run_bounds, ..Self::default() };
-        check_roots(scene)?;
+        Self::place(scene, run_bounds, &bounds)
+    }
 
-        // Walk with a stack of our own: a deep graph must not overflow the thread's.
-        let mut seen = vec![false; scene.nodes.len()];
+    /// The world of a scene whose meshes are those of this world's scene, and whose nodes may be elsewhere. What is known of the
+    /// meshes is kept.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    ///
+    /// # Panics
+    /// If the scene has another number of meshes.
+    pub fn moved(&self, scene: &Scene) -> Result<Self, WorldError> {
+        assert_eq!(scene.meshes.len(), self.run_bounds.len(), "the meshes stay");
+        let mut bounds = vec![None; scene.meshes.len()];
+        for instance in &self.instances {
+            bounds[instance.mesh_index as usize] = Some(instance.model_bounds);
+        }
+        let known = bounds.into_iter().zip(scene.meshes.iter().zip(&self.run_bounds));
+        let bounds: Vec<Aabb> = known.map(|(known, (m, runs))| known.unwrap_or_else(|| m.bounds_from(runs))).collect();
+        Self::place(scene, self.run_bounds.clone(), &bounds)
+    }
+
+    /// Walks the graph. `run_bounds` and `bounds` are the boxes of the scene's meshes.
+    fn place(scene: &Scene, run_bounds: Vec<Vec<Aabb>>, bounds: &[Aabb]) -> Result<Self, WorldError> {
+        let mut world = Self { lights: scene.lights.clone(), bounds: Aabb::EMPTY, run_bounds, ..Self::default() };
         let mut cameras: Vec<(u32, Camera)> = Vec::new();
-        let mut stack: Vec<(u32, DMat4)> = scene.roots.iter().rev().map(|&r| (r, DMat4::IDENTITY)).collect();
-        while let Some((index, world_from_parent)) = stack.pop() {
+        for (index, world_from_node) in placed_nodes(scene)? {
             let node = &scene.nodes[index as usize];
-            check_references(scene, index, node)?;
-            if std::mem::replace(&mut seen[index as usize], true) {
-                return Err(WorldError::NotATree { node: index });
-            }
-            let world_from_node = world_from_parent * node.transform.matrix();
             if let Some(m) = node.mesh {
                 let (mesh, model_bounds) = (&scene.meshes[m as usize], bounds[m as usize]);
                 world.add_instance(index, m, mesh, model_bounds, world_from_node)?;
@@ -139,7 +153,6 @@ impl World {
             if let Some(c) = node.camera {
                 cameras.push((c, camera_in_world(&scene.cameras[c as usize], &world_from_node)));
             }
-            stack.extend(node.children.iter().rev().map(|&c| (c, world_from_node)));
         }
 
         // Put the cameras in the order of the scene's list.
@@ -199,6 +212,27 @@ impl World {
     }
 }
 
+/// The nodes that are shown, depth first, each with its matrix to the world.
+pub(crate) fn placed_nodes(scene: &Scene) -> Result<Vec<(u32, DMat4)>, WorldError> {
+    check_roots(scene)?;
+
+    // Walk with a stack of our own: a deep graph must not overflow the thread's.
+    let mut placed = Vec::with_capacity(scene.nodes.len());
+    let mut seen = vec![false; scene.nodes.len()];
+    let mut stack: Vec<(u32, DMat4)> = scene.roots.iter().rev().map(|&r| (r, DMat4::IDENTITY)).collect();
+    while let Some((index, world_from_parent)) = stack.pop() {
+        let node = &scene.nodes[index as usize];
+        check_references(scene, index, node)?;
+        if std::mem::replace(&mut seen[index as usize], true) {
+            return Err(WorldError::NotATree { node: index });
+        }
+        let world_from_node = world_from_parent * node.transform.matrix();
+        placed.push((index, world_from_node));
+        stack.extend(node.children.iter().rev().map(|&c| (c, world_from_node)));
+    }
+    Ok(placed)
+}
+
 /// That all roots are nodes.
 fn check_roots(scene: &Scene) -> Result<(), WorldError> {
     let count = scene.nodes.len();
@@ -235,6 +269,26 @@ fn camera_in_world(camera: &Camera, world_from_node: &DMat4) -> Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_flat_scene_has_the_same_world() {
+        let mut scene = crate::builtin::scene("cubs").unwrap();
+        // Hang all there is below a node that is turned, with a light and a camera.
+        let roots = std::mem::take(&mut scene.roots);
+        let turned = crate::NodeTransform::Matrix(DMat4::from_rotation_y(0.3));
+        scene.cameras.push(Camera::look_at([1.0, 2.0, 3.0], [0.0; 3]));
+        let (light, camera) = (Some(Light::default()), Some(scene.cameras.len() as u32 - 1));
+        scene.add_root(Node { transform: turned, children: roots, light, camera, ..Node::default() });
+        let nested = World::new(&scene).unwrap();
+        scene.flatten().unwrap();
+        assert!(scene.nodes.iter().all(|node| node.children.is_empty()));
+        for flat in [World::new(&scene).unwrap(), nested.moved(&scene).unwrap()] {
+            let places = |world: &World| world.instances.iter().map(|i| (i.node, i.world_from_model)).collect::<Vec<_>>();
+            assert_eq!(places(&flat), places(&nested));
+            assert_eq!((&flat.lights, &flat.cameras, flat.bounds), (&nested.lights, &nested.cameras, nested.bounds));
+            assert_eq!((flat.facet_count, flat.surface_count), (nested.facet_count, nested.surface_count));
+        }
+    }
 
     #[test]
     fn a_bad_index_is_told_with_the_node_that_has_it() {

@@ -233,7 +233,7 @@ impl Renderer {
     pub fn drawing_window(&self) -> Option<f64> {
         match self.frame_camera().projection {
             Projection::Parallel { height } => Some(height * self.aspect().max(1.0)),
-            Projection::Perspective { .. } => None,
+            Projection::Perspective { .. } | Projection::Window { .. } => None,
         }
     }
 }

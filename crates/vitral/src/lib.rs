@@ -49,6 +49,7 @@
 #![forbid(unsafe_code)]
 
 mod algorithms;
+mod batch;
 pub mod bench;
 mod drawing;
 pub mod dump;
@@ -74,6 +75,7 @@ mod system_clock;
 mod viewpoint;
 
 pub use algorithms::algorithms;
+pub use batch::Batch;
 pub use drawing::{ColorBy, DrawingFormat, FillSettings};
 pub use error::Error;
 pub use exercise::{EXERCISES, Exercise};
@@ -119,7 +121,7 @@ pub use vitral_render::{
 pub use vitral_scene::builtin::solids;
 pub use vitral_scene::{
     Attribute, Axis, Camera, Faces, Lens, Mesh, Node, NodeTransform, Part, Projection, Scene, SectionPlane, View,
-    World, lab, section, walkthrough,
+    ViewTransform, World, lab, section, walkthrough,
 };
 
 /// The programs of `docs/library.md`, as tests.

@@ -5,14 +5,16 @@ use std::path::Path;
 use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
 use vitral_light::{Light, LightKind, Rgb};
-use vitral_math::{DQuat, DVec3};
+use vitral_math::{DMat4, DQuat, DVec3};
 use vitral_raster::SamplePattern;
 use vitral_render::stats::CullCounters;
 use vitral_render::trace::replay::WatchedSteps;
 use vitral_render::{
     ColorSpace, Execution, Global, PreparedView, Session, Settings, Shot, radiosity, render, watch_steps,
 };
-use vitral_scene::{Axis, Camera, Lens, LightMeter, Scene, View, World, default_lights, framing};
+use vitral_scene::{
+    Axis, Camera, Lens, LightMeter, Scene, View, ViewTransform, World, default_lights, depth_range, framing,
+};
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
 ///
@@ -188,6 +190,36 @@ impl Renderer {
         self.session = Session::with_workers(Arc::new(scene), &self.execution.workers)?;
         self.meter = LightMeter::read(self.session.world());
         Ok(())
+    }
+
+    /// Moves nodes of the scene: each of `nodes` gets the transform to its parent that stands beside it. What is known of the meshes
+    /// stays, so that moving a few of many parts costs little; [`Scene::flatten`] makes nodes independent of each other.
+    ///
+    /// # Errors
+    /// A node that is not there, and a transform that is not affine; nothing is moved then.
+    pub fn place(&mut self, nodes: &[(u32, DMat4)]) -> Result<(), Error> {
+        self.session.place(nodes)?;
+        self.meter = LightMeter::read(self.session.world());
+        Ok(())
+    }
+
+    /// A renderer with the same scene, settings and budget, for another thread, which does all of its work. What either finds out
+    /// about the meshes serves both.
+    #[must_use]
+    pub fn fork(&self) -> Self {
+        Self {
+            settings: self.settings.clone(),
+            lights: self.lights.clone(),
+            light_edits: self.light_edits.clone(),
+            session: self.session.fork(),
+            execution: Execution { workers: Workers::single(), ..self.execution.clone() },
+            ..*self
+        }
+    }
+
+    /// From the world to the picture that `camera` sees, with clipping planes fitted to the scene where it has none.
+    pub fn view_transform(&self, camera: &Camera) -> ViewTransform {
+        camera.transform(self.aspect(), depth_range(camera, &self.world().bounds))
     }
 
     /// Width by height of the picture.

@@ -1,4 +1,4 @@
-//! Developer commands: `cargo xtask test | check | circles | bless | lab | osmesa | clients | sanitize | vectors | compare | sheets`.
+//! Developer commands: `cargo xtask test | check | circles | bless | lab | osmesa | wheel | clients | sanitize | vectors | compare | sheets`.
 #![forbid(unsafe_code)]
 
 mod bless;
@@ -8,6 +8,7 @@ mod compare;
 mod lab;
 mod osmesa;
 mod prepare;
+mod python;
 mod sanitize;
 mod sheets;
 mod shell;
@@ -27,6 +28,7 @@ cargo xtask circles [CRATE...] [--all]
 cargo xtask bless [FILTER]        write the golden images anew (of the tests whose name contains FILTER)
 cargo xtask lab                   build the Lab: its page, its engine, and target/release/vitral with both inside
 cargo xtask osmesa                build libOSMesa and lay it out in target/osmesa
+cargo xtask wheel                 build the Python package: one wheel, in target/wheels
 cargo xtask clients               run MuJoCo, Gymnasium, PyOpenGL, GLFW and a C program with it and with Mesa's, compare
 cargo xtask sanitize [TOOL...]    Miri, Valgrind and the sanitizers watch libOSMesa (miri, valgrind, thread, address)
 cargo xtask vectors               look for vector operations that became calls in the release build
@@ -50,6 +52,7 @@ fn main() -> ExitCode {
         ["sanitize", tools @ ..] => sanitize::run_all(tools),
         ["lab"] => lab::run_all(),
         ["osmesa"] => osmesa::run_all(),
+        ["wheel"] => python::wheel(),
         ["vectors"] => vectors::run_all(),
         ["compare", "draw", options @ ..] => compare::draw::run(options),
         ["compare", options @ ..] => compare::run(options),

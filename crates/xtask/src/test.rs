@@ -3,7 +3,7 @@
 use crate::shell::{self, Outcome, cargo};
 use crate::spent::{Spent, Stopwatch};
 use crate::tally::{Program, Reader, Tally};
-use crate::{lab, prepare, wasm};
+use crate::{lab, prepare, python, wasm};
 use std::io::{BufRead, BufReader};
 use std::process::Command;
 use std::time::Instant;
@@ -49,6 +49,12 @@ pub(crate) fn run() -> Outcome {
     // Build the Lab's page and try it in a browser.
     let page = Stopwatch::start();
     checks.extend(lab::test_all(prepared.no_wasm.as_deref()));
+    let page = page.spent();
+
+    // Build the Python package and test it.
+    let package = Stopwatch::start();
+    checks.extend(python::test_all());
+    let package = package.spent();
     for check in checks {
         println!("test {} ... {}", check.name, check.result);
         match check.result {
@@ -59,10 +65,14 @@ pub(crate) fn run() -> Outcome {
     }
 
     list_skipped(&reader.reasons);
-    list_spent(
-        &[("build", build), ("tests", tests), ("WebAssembly", web_assembly), ("the Lab", page.spent())],
-        reader.programs,
-    );
+    let steps = [
+        ("build", build),
+        ("tests", tests),
+        ("WebAssembly", web_assembly),
+        ("the Lab", page),
+        ("the Python package", package),
+    ];
+    list_spent(&steps, reader.programs);
     close(tally)
 }
 

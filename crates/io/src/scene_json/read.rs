@@ -98,11 +98,14 @@ fn check_camera(camera: &Camera, path: &str, report: &Report<'_>) -> Result<(), 
             (view_angle > 0.0 && view_angle < std::f64::consts::PI, "0 < view-angle < 3.14159")
         }
         Projection::Parallel { height } => (height > 0.0, "0 < height"),
+        Projection::Window { across, upwards } => {
+            (across[0] < across[1] && upwards[0] < upwards[1], "across and upwards from the smaller to the larger border")
+        }
     };
     if !lens {
         return Err(report.at(format!("{path}.projection"), format!("{field} is needed")));
     }
-    let perspective = matches!(camera.projection, Projection::Perspective { .. });
+    let perspective = !matches!(camera.projection, Projection::Parallel { .. });
     match camera.clip {
         Some((near, far)) if near >= far || (perspective && near <= 0.0) => {
             Err(report.at(format!("{path}.clip"), "near < far is needed, and 0 < near for a perspective"))

@@ -20,6 +20,7 @@ pub(crate) struct BackgroundRows {
 impl Cached for BackgroundRows {
     type Key = BackgroundKey;
     const REUSE: Reuse = Reuse::Session;
+    const PLACED: bool = false;
 }
 
 impl BackgroundRows {

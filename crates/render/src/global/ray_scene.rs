@@ -43,7 +43,7 @@ impl<'a> RayScene<'a> {
             constants,
             structure,
             workers,
-            sky: Sky { stretch, perspective: view.view.perspective },
+            sky: Sky { stretch, middle: -view.view.clip_from_view.z_axis.y, perspective: view.view.perspective },
             view_from_world: DMat3::from_mat4(view.view.view_from_world),
             pixel: 2.0 / (stretch * f64::from(view.viewport.height)),
         }

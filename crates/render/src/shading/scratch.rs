@@ -25,6 +25,7 @@ pub(super) struct SpareScratch(Mutex<Vec<Scratch>>);
 impl Cached for SpareScratch {
     type Key = ();
     const REUSE: Reuse = Reuse::Session;
+    const PLACED: bool = false;
 }
 
 impl SpareScratch {

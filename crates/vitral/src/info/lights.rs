@@ -4,7 +4,7 @@ use super::{quoted, short, triple};
 use serde::Serialize;
 use std::fmt;
 use vitral_light::{AreaShape, Attenuation, Light, LightKind};
-use vitral_math::DVec3;
+use vitral_math::{DVec3, func};
 use vitral_scene::{Camera, Projection};
 
 /// A light, world space. What its kind does not have is left out of the JSON form.
@@ -158,6 +158,10 @@ impl CameraInfo {
         let (projection, view_angle_degrees, height) = match camera.projection {
             Projection::Perspective { view_angle } => ("perspective", Some(view_angle.to_degrees()), None),
             Projection::Parallel { height } => ("parallel", None, Some(height)),
+            Projection::Window { upwards: [low, high], .. } => {
+                let angle = func::atan2(high, 1.0) - func::atan2(low, 1.0);
+                ("window", Some(angle.to_degrees()), None)
+            }
         };
         let [position, focal_point, view_up] =
             [camera.position, camera.focal_point, camera.view_up].map(|v| v.to_array());

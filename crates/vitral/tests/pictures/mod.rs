@@ -24,3 +24,4 @@ mod steps;
 mod translucent;
 mod transparency;
 mod traps;
+mod window;

@@ -25,7 +25,7 @@ const FLOORS: [(&str, u32, u32); 16] = [
     ("vitral-lab", 4, 1),
     ("vitral-lab-wasm", 4, 2),
     ("vitral-osmesa", 4, 1),
-    ("vitral-python", 4, 1),
+    ("vitral-python", 4, 2),
 ];
 
 /// Crates beside the house: they may use everything, nothing in the house may use them outside of tests.

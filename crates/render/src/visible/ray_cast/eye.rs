@@ -36,9 +36,10 @@ pub(super) struct Eye {
     forward: DVec3,
     /// From pixels to view space at distance 1 (perspective) or anywhere (parallel).
     scale: [f64; 2],
-    half_size: [f64; 2],
     /// What rounding does to view coordinates.
     view_rounding: [f64; 2],
+    /// The pixel on the direction of view.
+    middle: [f64; 2],
     /// Half a beam's width on the world's axes: what it has at the eye, and its growth with the distance.
     width: DVec3,
     growth: DVec3,
@@ -61,6 +62,8 @@ impl Eye {
         let p = &view.view.clip_from_view;
         let half_size = [f64::from(view.viewport.width) * 0.5, f64::from(view.viewport.height) * 0.5];
         let scale = [1.0 / (p.x_axis.x * half_size[0]), 1.0 / (p.y_axis.y * half_size[1])];
+
+        let middle = [half_size[0] * (1.0 - p.z_axis.x), half_size[1] * (1.0 + p.z_axis.y)];
 
         // Widen beams by what rounding does to clip coordinates, and by a hair on the screen.
         let [ex, ey, ez, ew] = clip_rounding(view);
@@ -86,7 +89,7 @@ impl Eye {
             up,
             forward,
             scale,
-            half_size,
+            middle,
             view_rounding,
             width,
             growth,
@@ -101,7 +104,7 @@ impl Eye {
     /// Where a ray through `(x, y)` in 1/256 pixel leads in view space, at distance 1 (perspective) or anywhere.
     fn aside(&self, x: i32, y: i32) -> [f64; 2] {
         let pixel = |v: i32| f64::from(v) / f64::from(SUBPIXEL);
-        [(pixel(x) - self.half_size[0]) * self.scale[0], (self.half_size[1] - pixel(y)) * self.scale[1]]
+        [(pixel(x) - self.middle[0]) * self.scale[0], (self.middle[1] - pixel(y)) * self.scale[1]]
     }
 
     /// The beam through the sample at `(x, y)` in 1/256 pixel. Its parameter counts from [`Self::start`].

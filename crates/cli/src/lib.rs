@@ -1,0 +1,97 @@
+//! The `vitral` command: a model file in, a picture out. No rendering logic lives here; everything is in crate `vitral`.
+//!
+//! A library, so that other programs offer the same command ([`command`]) and take the same options ([`options`]).
+#![forbid(unsafe_code)]
+
+mod args;
+mod bench_command;
+mod bench_drawings;
+mod bench_plot;
+mod bench_report;
+mod bench_rows;
+mod choices;
+mod command_line;
+mod compare_command;
+mod depth_cue;
+mod draw_args;
+mod draw_checks;
+mod draw_command;
+mod draw_file;
+mod draw_polygons;
+mod draw_sheet;
+mod exit;
+mod fields;
+mod help;
+mod info_command;
+mod interrupt;
+mod lab;
+mod lab_args;
+mod light_spec;
+mod no_effect;
+pub mod options;
+mod osmesa_env_command;
+mod outputs;
+mod progress;
+mod render_args;
+mod render_command;
+mod report;
+mod resolve;
+mod section_args;
+mod step_pictures;
+mod tables;
+mod trace_file;
+mod unbuilt;
+mod values;
+
+use args::{Cli, Verb};
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser};
+use std::ffi::OsString;
+
+pub use osmesa_env_command::osmesa_lies_in;
+pub use report::Failure;
+
+/// Runs the command with these arguments, of which the first is its own name; gives the exit code.
+pub fn command(arguments: Vec<OsString>) -> u8 {
+    run(arguments).unwrap_or_else(|failure| failure.tell())
+}
+
+fn run(arguments: Vec<OsString>) -> Result<u8, Failure> {
+    let typed = args::with_verb(arguments);
+    let cli = match Cli::try_parse_from(typed) {
+        Ok(cli) => cli,
+        // Help and version are results, not errors.
+        Err(e) if matches!(e.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
+            let text = if use_color() { e.render().ansi().to_string() } else { e.render().to_string() };
+            return report::print(text.as_bytes()).map(|()| 0);
+        }
+        Err(e) if e.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            eprint!("{}", e.render());
+            return Ok(2);
+        }
+        Err(e) => return Err(e.into()),
+    };
+    match cli.verb {
+        Verb::Render(args) => render_command::run(&args),
+        Verb::Draw(args) => draw_command::run(&args),
+        Verb::Lab(args) => lab::run(&args),
+        Verb::Info(args) => info_command::run(&args),
+        Verb::Compare(args) => compare_command::run(&args),
+        Verb::Bench(args) => bench_command::run(&args),
+        Verb::Algorithms(args) => tables::algorithms(&args),
+        Verb::Formats(args) => tables::formats(&args),
+        Verb::OsmesaEnv(args) => osmesa_env_command::run(&args),
+        Verb::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "vitral", &mut script);
+            report::print(&script).map(|()| 0)
+        }
+        Verb::Man => tables::manual().and_then(|page| report::print(&page)).map(|()| 0),
+    }
+}
+
+/// Colours on a terminal, unless `NO_COLOR` is set to something.
+fn use_color() -> bool {
+    use std::io::IsTerminal;
+    std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+}

@@ -1,0 +1,5 @@
+"""``python -m vitral``: the command ``vitral``."""
+
+from ._command import main
+
+main()

@@ -1,0 +1,7 @@
+"""``python -m vitral.osmesa PROGRAM ...``"""
+
+import sys
+
+from . import run
+
+run(sys.argv[1:])

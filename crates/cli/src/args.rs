@@ -1,5 +1,6 @@
 //! The command line as typed: verbs, and the options of all verbs but `render`.
 
+use crate::batch_args::{BatchArgs, BatchWorkerArgs};
 use crate::draw_args::DrawArgs;
 use crate::help::{EXIT_CODES, model_help};
 use crate::lab_args::LabPageArgs;
@@ -34,6 +35,10 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Make a vector drawing of one or more models: visible and hidden lines
     Draw(Box<DrawArgs>),
+    /// Make many pictures and drawings, side by side; a batch that was cut short goes on where it was
+    Batch(Box<BatchArgs>),
+    #[command(hide = true)]
+    BatchWorker(BatchWorkerArgs),
     /// Open the Lab in a browser: the course's algorithms to watch, step through and question
     Lab(LabPageArgs),
     /// Tell what is in a model file
@@ -176,7 +181,7 @@ pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi:
     }
     let Some(first) = arguments.get(1).and_then(|a| a.to_str()) else { return arguments };
     let general = ["-h", "--help", "-V", "--version"].contains(&first);
-    let is_verb = crate::unbuilt::verb(first) || Cli::command().get_subcommands().any(|c| c.get_name() == first);
+    let is_verb = Cli::command().get_subcommands().any(|c| c.get_name() == first);
     let is_word = first.starts_with(|c: char| c.is_ascii_alphabetic()) && !first.contains(['.', '/', '\\', ':', '{']);
     let is_model = !is_word || std::path::Path::new(first).exists();
     if !general && !is_verb && is_model {

@@ -5,6 +5,7 @@ use crate::draw_file::{DrawFile, check_fits, scaled_page};
 use crate::draw_polygons;
 use crate::draw_sheet;
 use crate::interrupt;
+use crate::kept_models;
 use crate::progress::Progress;
 use crate::report::{self, Failure};
 use crate::resolve::{execution_within, overlay_files, save_state, set_lights, set_viewpoint};
@@ -43,7 +44,7 @@ fn draw(
     start: Instant,
 ) -> Result<(), Failure> {
     // Read the models.
-    let scene = state.load_scene_on(&execution.workers)?;
+    let scene = kept_models::scene(state, &execution.workers)?;
     let scene = args.section.apply(scene, &execution)?;
     if !args.report.quiet {
         report::warnings(&scene.warnings);

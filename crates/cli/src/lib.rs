@@ -4,6 +4,8 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod batch;
+mod batch_args;
 mod bench_command;
 mod bench_drawings;
 mod bench_plot;
@@ -24,6 +26,7 @@ mod fields;
 mod help;
 mod info_command;
 mod interrupt;
+mod kept_models;
 mod lab;
 mod lab_args;
 mod light_spec;
@@ -40,24 +43,34 @@ mod section_args;
 mod step_pictures;
 mod tables;
 mod trace_file;
-mod unbuilt;
 mod values;
 
 use args::{Cli, Verb};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser};
 use std::ffi::OsString;
+use std::sync::OnceLock;
 
 pub use osmesa_env_command::osmesa_lies_in;
 pub use report::Failure;
 
-/// Runs the command with these arguments, of which the first is its own name; gives the exit code.
-pub fn command(arguments: Vec<OsString>) -> u8 {
-    run(arguments).unwrap_or_else(|failure| failure.tell())
+/// What starts this command in a process of its own, where that is not the program of this process.
+static PROGRAM: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// Says how the command is started, as a program and its first arguments, where it is part of another program.
+pub fn started_by(program: Vec<OsString>) {
+    // Who says it first knows best.
+    let _ = PROGRAM.set(program);
 }
 
-fn run(arguments: Vec<OsString>) -> Result<u8, Failure> {
-    let typed = args::with_verb(arguments);
+/// Runs the command with these arguments, of which the first is its own name; gives the exit code.
+pub fn command(arguments: Vec<OsString>) -> u8 {
+    dispatch(arguments).unwrap_or_else(|failure| failure.tell())
+}
+
+/// Runs the verb that is typed.
+fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
+    let typed = batch_args::arrange(args::with_verb(arguments));
     let cli = match Cli::try_parse_from(typed) {
         Ok(cli) => cli,
         // Help and version are results, not errors.
@@ -74,6 +87,8 @@ fn run(arguments: Vec<OsString>) -> Result<u8, Failure> {
     match cli.verb {
         Verb::Render(args) => render_command::run(&args),
         Verb::Draw(args) => draw_command::run(&args),
+        Verb::Batch(args) => batch::run(&args),
+        Verb::BatchWorker(args) => batch::worker::run(&args),
         Verb::Lab(args) => lab::run(&args),
         Verb::Info(args) => info_command::run(&args),
         Verb::Compare(args) => compare_command::run(&args),

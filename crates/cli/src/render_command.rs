@@ -2,6 +2,7 @@
 
 use crate::compare_command;
 use crate::interrupt;
+use crate::kept_models;
 use crate::no_effect;
 use crate::outputs::model_name;
 use crate::progress::Progress;
@@ -97,7 +98,7 @@ fn timed<T>(seconds: &mut Map<String, Value>, name: &str, work: impl FnOnce() ->
 
 /// A renderer with the models, the settings and a solution of radiosity as asked for, and the warnings of the files.
 fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<(Renderer, Vec<String>), Failure> {
-    let scene = plan.state.load_scene_on(&execution.workers)?;
+    let scene = kept_models::scene(&plan.state, &execution.workers)?;
     let mut warnings = scene.warnings.clone();
     if !args.report.quiet {
         report::warnings(&warnings);

@@ -4,6 +4,7 @@ use crate::exit::{exit_code, hint};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::io::Write;
 use std::path::Path;
+use std::sync::{Mutex, MutexGuard};
 
 /// Warnings that are shown before the rest is only counted.
 const MOST_WARNINGS: usize = 10;
@@ -109,10 +110,6 @@ impl From<clap::Error> for Failure {
             _ => "",
         };
         match error.kind() {
-            ErrorKind::InvalidSubcommand if crate::unbuilt::verb(context(ContextKind::InvalidSubcommand)) => {
-                let verb = context(ContextKind::InvalidSubcommand);
-                return Self::usage(format!("{verb}: this verb is not there yet"));
-            }
             ErrorKind::InvalidSubcommand => {
                 let word = context(ContextKind::InvalidSubcommand);
                 let similar = match error.get(ContextKind::SuggestedSubcommand) {
@@ -141,8 +138,29 @@ impl From<clap::Error> for Failure {
     }
 }
 
+/// What is kept instead of being told: standard output, and the lines of standard error.
+static KEPT: Mutex<Option<(Vec<u8>, Vec<String>)>> = Mutex::new(None);
+
+/// Keeps what is told until it is taken.
+pub(crate) fn keep() {
+    *kept() = Some(<(Vec<u8>, Vec<String>)>::default());
+}
+
+/// What was told since: standard output, and the lines of standard error.
+pub(crate) fn take() -> (Vec<u8>, Vec<String>) {
+    kept().take().unwrap_or_default()
+}
+
+fn kept() -> MutexGuard<'static, Option<(Vec<u8>, Vec<String>)>> {
+    KEPT.lock().expect("no thread panics while it keeps what is told")
+}
+
 /// Writes to standard output and flushes it.
 pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
+    if let Some((printed, _)) = kept().as_mut() {
+        printed.extend_from_slice(bytes);
+        return Ok(());
+    }
     let mut out = std::io::stdout().lock();
     out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
 }
@@ -195,6 +213,10 @@ fn marked(warning: &str) -> String {
 /// One line on standard error. If that cannot be written there is nobody left to tell.
 fn say(mark: &str, text: &str) {
     let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if let Some((_, told)) = kept().as_mut() {
+        told.push(if mark == "hint: " { format!("{mark}{text}") } else { text });
+        return;
+    }
     let _ = writeln!(std::io::stderr().lock(), "{mark}{text}");
 }
 

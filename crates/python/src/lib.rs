@@ -21,8 +21,16 @@ use std::path::PathBuf;
 
 /// Runs the command ``vitral`` with these arguments, of which the first is its name; gives its exit code.
 #[pyfunction]
-#[pyo3(signature = (arguments, library=None))]
-fn command(py: Python<'_>, arguments: Vec<OsString>, library: Option<PathBuf>) -> u8 {
+#[pyo3(signature = (arguments, library=None, program=None))]
+fn command(
+    py: Python<'_>,
+    arguments: Vec<OsString>,
+    library: Option<PathBuf>,
+    program: Option<Vec<OsString>>,
+) -> u8 {
+    if let Some(program) = program {
+        vitral_cli::started_by(program);
+    }
     if let Some(library) = library {
         vitral_cli::osmesa_lies_in(library);
     }

@@ -1,5 +1,6 @@
 //! The command as users meet it: a process with files, standard streams and an exit code.
 
+mod batch;
 mod choices;
 mod drawing;
 mod polygons;

@@ -11,4 +11,5 @@ from ._vitral import command
 def main() -> None:
     """Runs the command with the process's arguments and ends the process."""
     library = Path(__file__).parent / "osmesa" / "lib"
-    sys.exit(command(["vitral", *sys.argv[1:]], library))
+    program = [sys.executable, "-m", "vitral"]
+    sys.exit(command(["vitral", *sys.argv[1:]], library, program))

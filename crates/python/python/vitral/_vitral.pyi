@@ -20,7 +20,9 @@ def load(
     format: str | None = None,
     **options: _Option,
 ) -> Scene: ...
-def command(arguments: Sequence[_Path], library: _Path | None = None) -> int: ...
+def command(
+    arguments: Sequence[_Path], library: _Path | None = None, program: Sequence[_Path] | None = None
+) -> int: ...
 
 @final
 class Scene:

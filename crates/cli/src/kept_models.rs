@@ -1,0 +1,88 @@
+//! Models that were read last, for a process that does many jobs, and the files that a job read.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use vitral::{Error, FolderResolver, LoadOptions, ResolveError, Resolver, Scene, State, Workers};
+
+/// Models that are kept.
+const MOST_KEPT: usize = 4;
+
+/// What is kept; nothing unless somebody wants it.
+static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
+
+#[derive(Default)]
+struct Kept {
+    /// The models, the one that was asked for last in front.
+    models: Vec<Model>,
+    /// The files that were read for the scene that was asked for last.
+    files: Vec<String>,
+}
+
+struct Model {
+    key: String,
+    scene: Scene,
+    files: Vec<String>,
+}
+
+/// Keeps models from now on.
+pub(crate) fn keep() {
+    *KEPT.lock().expect("no thread panics while it keeps a model") = Some(Kept::default());
+}
+
+/// The files that the last scene was read from.
+pub(crate) fn files() -> Vec<String> {
+    let kept = KEPT.lock().expect("no thread panics while it keeps a model");
+    kept.as_ref().map(|kept| kept.files.clone()).unwrap_or_default()
+}
+
+/// The scene of a state, of models that are kept where they can be.
+pub(crate) fn scene(state: &State, workers: &Workers) -> Result<Scene, Error> {
+    let mut kept = KEPT.lock().expect("no thread panics while it keeps a model");
+    let Some(kept) = kept.as_mut() else { return state.load_scene_on(workers) };
+    kept.files.clear();
+    state.load_scene_by(|model| {
+        let key = format!("{model} {}", serde_json::to_string(&state.load).unwrap_or_default());
+        match kept.models.iter().position(|known| known.key == key) {
+            Some(place) => kept.models[..=place].rotate_right(1),
+            None => {
+                kept.models.truncate(MOST_KEPT - 1);
+                kept.models.insert(0, read(model, key, &state.load, workers)?);
+            }
+        }
+        kept.files.extend(kept.models[0].files.iter().cloned());
+        Ok(kept.models[0].scene.clone())
+    })
+}
+
+/// Reads a model, and notes which files that takes.
+fn read(model: &str, key: String, options: &LoadOptions, workers: &Workers) -> Result<Model, Error> {
+    if model.starts_with("builtin:") {
+        let scene = vitral::load_on(model, options, workers)?;
+        return Ok(Model { key, scene, files: Vec::new() });
+    }
+    let path = Path::new(model);
+    let bytes = vitral::read(path, options.max_file_bytes)?;
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let files = Arc::new(Mutex::new(vec![model.to_owned()]));
+    let inner = FolderResolver::new(&folder, options.allow_external, options.max_file_bytes);
+    let noting = Noting { inner, folder, files: Arc::clone(&files) };
+    let scene = vitral::load_bytes_with(&bytes, model, &noting, options)?;
+    let files = files.lock().expect("no thread panics while it notes a file").clone();
+    Ok(Model { key, scene, files })
+}
+
+/// A resolver that notes what it was asked for.
+struct Noting {
+    inner: FolderResolver,
+    folder: PathBuf,
+    files: Arc<Mutex<Vec<String>>>,
+}
+
+impl Resolver for Noting {
+    fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
+        let bytes = self.inner.read(path)?;
+        let place = self.folder.join(path).to_string_lossy().into_owned();
+        self.files.lock().expect("no thread panics while it notes a file").push(place);
+        Ok(bytes)
+    }
+}

@@ -1,7 +1,7 @@
 """The build backend of the Python package: maturin's, with vitral's libOSMesa put into the wheel first.
 
-``VITRAL_PROFILE`` names the cargo profile (``release`` if it is not set). ``VITRAL_OSMESA`` names a library that was built already, or is
-empty for a wheel without one.
+``VITRAL_PROFILE`` names the cargo profile (``release`` if it is not set). ``VITRAL_OSMESA`` names a library that was built
+already, or is empty for a wheel without one.
 """
 
 from __future__ import annotations
@@ -50,7 +50,17 @@ def _built_library() -> Path | None:
         return Path(given) if given else None
     if not sys.platform.startswith("linux"):
         return None
-    command = ["cargo", "rustc", "--locked", "--profile", _profile(), "--package", "vitral-osmesa", "--lib", "--crate-type", "cdylib"]
+    command = [
+        "cargo",
+        "rustc",
+        "--profile",
+        _profile(),
+        "--package",
+        "vitral-osmesa",
+        "--lib",
+        "--crate-type",
+        "cdylib",
+    ]
     if _profile() == "release":
         command += ["--", *OPTIONS]
     subprocess.run(command, cwd=ROOT, check=True)
@@ -59,8 +69,10 @@ def _built_library() -> Path | None:
 
 
 def _put_library_into_package() -> None:
-    """Lays the library into the package, and beside it a small one of the name that some programs load, which is linked with it: two copies
-    would be two OpenGLs in one process."""
+    """Lays the library into the package, and beside it a small one of the name that some programs load.
+
+    The small one is linked with the library: two copies would be two OpenGLs in one process.
+    """
     folder = ROOT / "crates/python/python/vitral/osmesa/lib"
     shutil.rmtree(folder, ignore_errors=True)
     library = _built_library()

@@ -82,7 +82,7 @@ fn typed(purpose: Purpose, given: &[(String, Given)]) -> Result<Vec<String>, Fai
     words.push(format!("--output={}", if purpose == Purpose::Draw { "-" } else { "picture.png" }));
     for (name, given) in given {
         let long = name.replace('_', "-");
-        let argument = verb.get_arguments().find(|a| a.get_long() == Some(&long) && purpose.takes(a));
+        let argument = verb.get_arguments().find(|a| a.get_long() == Some(long.as_str()) && purpose.takes(a));
         let argument = argument.ok_or_else(|| unknown(purpose, name))?;
 
         // A switch is there or not; `on` and `off` are values.
@@ -241,10 +241,9 @@ impl Request {
     /// # Errors
     /// A format that is not there, or cannot hold what was asked for.
     pub fn encode(&self, drawing: Drawing, file: PathBuf) -> Result<Vec<u8>, Failure> {
-        // The options are those that the format is checked with.
-        let given = self.args.output.clone();
+        // Options are checked anew: some suit a drawing and not every format.
         let mut args = self.args.clone();
-        args.output = if file.as_os_str().is_empty() { given } else { file };
+        args.output = file;
         let file = DrawFile::new(&args, &self.state)?;
         Ok(file.encode(drawing, settings_of(&args)?.margin))
     }

@@ -49,7 +49,9 @@ fn clip(near: Option<f64>, far: Option<f64>, perspective: bool) -> PyResult<Opti
         (Some(near), Some(far)) if near < far && (near > 0.0 || !perspective) && (near - far).is_finite() => {
             Ok(Some((near, far)))
         }
-        _ => Err(PyValueError::new_err("near and far: both or none are needed, near < far, and near > 0 in perspective")),
+        _ => {
+            Err(PyValueError::new_err("near and far: both or none are needed, near < far, and near > 0 in perspective"))
+        }
     }
 }
 
@@ -146,7 +148,9 @@ impl PyCamera {
         let [x, y, z] = axes;
         let is_rigid = axes.iter().all(|axis| (axis.length() - 1.0).abs() < RIGID) && x.cross(y).abs_diff_eq(z, RIGID);
         if !is_rigid {
-            return Err(PyValueError::new_err("world_from_camera: a rotation and a translation are needed, without scale"));
+            return Err(PyValueError::new_err(
+                "world_from_camera: a rotation and a translation are needed, without scale",
+            ));
         }
         let eye = pose.w_axis.truncate();
         let camera = Camera { clip: clip(near, far, true)?, ..Camera::look_at(eye, eye - z).with_up(y) };
@@ -227,7 +231,8 @@ impl PyCamera {
     }
 
     fn __repr__(&self) -> String {
-        let [eye, target] = [self.camera.position, self.camera.focal_point].map(|p| format!("({}, {}, {})", p.x, p.y, p.z));
+        let [eye, target] =
+            [self.camera.position, self.camera.focal_point].map(|p| format!("({}, {}, {})", p.x, p.y, p.z));
         format!("<vitral.Camera at {eye} looking at {target}>")
     }
 
@@ -237,7 +242,8 @@ impl PyCamera {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let this = slf.get();
-        let text = serde_json::to_string(&(this.camera, this.intrinsics)).map_err(|e| PyValueError::new_err(e.to_string()))?;
+        let text =
+            serde_json::to_string(&(this.camera, this.intrinsics)).map_err(|e| PyValueError::new_err(e.to_string()))?;
         Ok((slf.get_type().getattr("_from_state")?, PyTuple::new(slf.py(), [text])?))
     }
 

@@ -124,7 +124,8 @@ impl<'py> Target<'py> {
         [width, height]: [u32; 2],
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Self> {
-        let shape: Vec<usize> = pictures.into_iter().chain([height as usize, width as usize]).chain(channel.components()).collect();
+        let shape: Vec<usize> =
+            pictures.into_iter().chain([height as usize, width as usize]).chain(channel.components()).collect();
         Ok(match channel {
             Channel::Rgb | Channel::Rgba => Self::Bytes(array(py, channel, &shape, out)?),
             Channel::Ids | Channel::Faces | Channel::Materials => Self::Numbers(array(py, channel, &shape, out)?),
@@ -148,9 +149,9 @@ impl<'py> Target<'py> {
     /// The array.
     fn array(self) -> Bound<'py, PyAny> {
         match self {
-            Self::Bytes(array) => (*array).clone().into_any(),
-            Self::Floats(array) => (*array).clone().into_any(),
-            Self::Numbers(array) => (*array).clone().into_any(),
+            Self::Bytes(array) => (**array).clone().into_any(),
+            Self::Floats(array) => (**array).clone().into_any(),
+            Self::Numbers(array) => (**array).clone().into_any(),
         }
     }
 
@@ -176,7 +177,8 @@ fn array<'py, T: Element>(
     let name = channel.name();
     let wanted = shown(&shape.iter().copied().map(Some).collect::<Vec<_>>());
     let dtype = numpy::dtype::<T>(py);
-    let needed = format!("out: the channel {name} needs a writeable C-contiguous array of dtype {dtype} and shape {wanted}");
+    let needed =
+        format!("out: the channel {name} needs a writeable C-contiguous array of dtype {dtype} and shape {wanted}");
     let Ok(untyped) = out.cast::<numpy::PyUntypedArray>() else {
         return Err(PyTypeError::new_err(format!("{needed}, got {}", out.get_type().name()?)));
     };

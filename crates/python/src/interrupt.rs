@@ -40,11 +40,12 @@ pub(crate) fn run<R: Send>(py: Python<'_>, cancel: &AtomicBool, work: impl FnOnc
     py.detach(|| {
         thread::scope(|scope| {
             let (done, finished) = sync_channel::<()>(1);
-            let started = thread::Builder::new().stack_size(STACK).name("vitral".to_owned()).spawn_scoped(scope, || {
-                // Dropped when the work has ended, however it ends.
-                let _done = done;
-                work()
-            });
+            let started =
+                thread::Builder::new().stack_size(STACK).name("vitral".to_owned()).spawn_scoped(scope, || {
+                    // Dropped when the work has ended, however it ends.
+                    let _done = done;
+                    work()
+                });
             let worker = started.map_err(|e| pyo3::exceptions::PyOSError::new_err(e.to_string()))?;
             let mut raised = None;
             while let Err(RecvTimeoutError::Timeout) = finished.recv_timeout(INTERVAL) {

@@ -79,7 +79,8 @@ fn faces(value: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Faces> {
     let first = value.get_item(0)?;
     let is_array = value.hasattr("dtype")?;
     let corners = first.len().unwrap_or(0);
-    let is_even = is_array || (0..rows).all(|row| value.get_item(row).and_then(|row| row.len()).is_ok_and(|n| n == corners));
+    let is_even =
+        is_array || (0..rows).all(|row| value.get_item(row).and_then(|row| row.len()).is_ok_and(|n| n == corners));
     if is_even {
         let (shape, indices) = numbers::<i64>(value, "faces", &[None, None])?;
         if shape[1] < 3 {
@@ -95,7 +96,10 @@ fn faces(value: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Faces> {
     let polygon = |polygon: Bound<'_, PyAny>| {
         let (shape, corners) = numbers::<i64>(&polygon, "faces", &[None])?;
         if shape[0] < 3 {
-            return Err(PyValueError::new_err(format!("faces: a polygon has at least three corners, got {}", shape[0])));
+            return Err(PyValueError::new_err(format!(
+                "faces: a polygon has at least three corners, got {}",
+                shape[0]
+            )));
         }
         corners.into_iter().map(index).collect()
     };

@@ -115,7 +115,12 @@ impl PyRenderer {
     }
 
     /// A picture from a camera; also for turntables.
-    pub(crate) fn make_picture(&self, py: Python<'_>, camera: Option<Camera>, channels: &[Channel]) -> PyResult<PyPicture> {
+    pub(crate) fn make_picture(
+        &self,
+        py: Python<'_>,
+        camera: Option<Camera>,
+        channels: &[Channel],
+    ) -> PyResult<PyPicture> {
         let request = Channel::request(channels);
         self.work(py, move |engine| {
             engine.renderer.settings.picture.channels = request;
@@ -128,7 +133,11 @@ impl PyRenderer {
 }
 
 /// The options with the size among them.
-fn with_size(height: Option<u32>, width: Option<u32>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<(String, Given)>> {
+fn with_size(
+    height: Option<u32>,
+    width: Option<u32>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Vec<(String, Given)>> {
     let mut given = values::options(options)?;
     let has_resolution = given.iter().any(|(name, _)| name == "resolution");
     if (height.is_some() || width.is_some()) && has_resolution {
@@ -391,7 +400,8 @@ impl PyRenderer {
         }
         let class = camera.get_type().name()?;
         let camera = camera.cast::<PyCamera>();
-        let camera = camera.map_err(|_| PyTypeError::new_err(format!("cameras: a Camera or None is needed, not {class}")))?;
+        let camera =
+            camera.map_err(|_| PyTypeError::new_err(format!("cameras: a Camera or None is needed, not {class}")))?;
         Ok(self.camera(Some(camera)))
     }
 
@@ -410,7 +420,9 @@ impl PyRenderer {
                 let outs: Vec<_> = out.try_iter()?.collect::<PyResult<_>>()?;
                 if outs.len() != channels.len() {
                     let (given, needed) = (outs.len(), channels.len());
-                    return Err(PyValueError::new_err(format!("out: {needed} arrays are needed, one a channel, got {given}")));
+                    return Err(PyValueError::new_err(format!(
+                        "out: {needed} arrays are needed, one a channel, got {given}"
+                    )));
                 }
                 outs.into_iter().map(Some).collect()
             }

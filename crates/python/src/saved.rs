@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::Arc;
-use vitral::{
-    Attribute, Axis, Camera, DMat4, Encoding, Faces, Light, Material, Mesh, Node, NodeTransform, Part, Plane, Scene, Texture,
-};
 use vitral::internals::scene::FreePart;
+use vitral::{
+    Attribute, Axis, Camera, DMat4, Encoding, Faces, Light, Material, Mesh, Node, NodeTransform, Part, Plane, Scene,
+    Texture,
+};
 
 /// The version of the form.
 const VERSION: u32 = 1;

@@ -11,7 +11,9 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral::internals::render::Error as RenderError;
-use vitral::{DMat4, Error, LoadOptions, MaterialOverride, NoFiles, Scene, TextureRef, World, info, load_bytes_with, load_on};
+use vitral::{
+    DMat4, Error, LoadOptions, MaterialOverride, NoFiles, Scene, TextureRef, World, info, load_bytes_with, load_on,
+};
 use vitral_cli::options::{Given, Purpose, Resolved};
 
 /// Meshes, materials, lights, and instances that place meshes in the world.
@@ -115,7 +117,8 @@ impl Source {
         if source.extract::<Vec<u8>>().is_ok() && !source.is_instance_of::<pyo3::types::PyList>() {
             return Err(usage("source: bytes need a format", "such as format=\"stl\""));
         }
-        let paths: PyResult<Vec<PathBuf>> = source.try_iter().and_then(|items| items.map(|item| item?.extract()).collect());
+        let paths: PyResult<Vec<PathBuf>> =
+            source.try_iter().and_then(|items| items.map(|item| item?.extract()).collect());
         let class = source.get_type().name()?;
         let needed = format!("source: a path, a list of paths, or bytes with a format are needed, not {class}");
         paths.map(Self::Paths).map_err(|_| PyTypeError::new_err(needed))
@@ -302,7 +305,8 @@ impl PyScene {
     fn set_transforms(&self, instances: Vec<usize>, transforms: &Bound<'_, PyAny>) -> PyResult<()> {
         let shape = [Some(instances.len()), Some(4), Some(4)];
         let (_, numbers) = values::numbers::<f64>(transforms, "transforms", &shape)?;
-        let matrices = numbers.chunks(16).map(|rows| values::affine(rows, "transforms")).collect::<PyResult<Vec<_>>>()?;
+        let matrices =
+            numbers.chunks(16).map(|rows| values::affine(rows, "transforms")).collect::<PyResult<Vec<_>>>()?;
         let mut data = self.lock();
         let nodes = data.nodes_of(&instances)?;
         data.flatten().map_err(Trouble::from)?;

@@ -108,7 +108,8 @@ pub(crate) fn shown(shape: &[Option<usize>]) -> String {
 
 /// A matrix of 16 numbers, row by row, that keeps points points.
 pub(crate) fn affine(rows: &[f64], name: &str) -> PyResult<DMat4> {
-    let matrix: [f64; 16] = rows.try_into().map_err(|_| PyValueError::new_err(format!("{name}: 16 numbers are needed")))?;
+    let matrix: [f64; 16] =
+        rows.try_into().map_err(|_| PyValueError::new_err(format!("{name}: 16 numbers are needed")))?;
     let matrix = DMat4::from_cols_array(&matrix).transpose();
     if !matrix.is_finite() || matrix.row(3).to_array() != [0.0, 0.0, 0.0, 1.0] {
         let needed = "finite numbers and a last row of 0, 0, 0, 1 are needed (row-major, column vectors)";

@@ -16,13 +16,13 @@ pytestmark = pytest.mark.skipif(not LIBRARY.exists(), reason="the package was bu
 
 INSTALL = "import vitral.osmesa\nvitral.osmesa.install()\n"
 
-MODEL = '''
+MODEL = """
 <mujoco><worldbody>
   <light pos="0 0 4"/>
   <geom type="sphere" size=".5" rgba="1 0 0 1"/>
   <camera name="eye" pos="0 -3 0" xyaxes="1 0 0 0 0 1"/>
 </worldbody></mujoco>
-'''
+"""
 
 MUJOCO = f'''
 import mujoco
@@ -36,7 +36,7 @@ red, green, blue = pixels[24, 32].tolist()
 assert pixels.shape == (48, 64, 3) and red > 50 and green < red / 2, pixels[24, 32]
 '''
 
-GYMNASIUM = '''
+GYMNASIUM = """
 import gymnasium
 import numpy
 
@@ -51,16 +51,16 @@ if __name__ == "__main__":
         environments.close()
         assert len(pictures) == 2 and pictures[0].shape == (48, 64, 3)
         assert numpy.ptp(pictures[0]) > 50 and (pictures[0] == pictures[1]).mean() > 0.9
-'''
+"""
 
-DM_CONTROL = '''
+DM_CONTROL = """
 from dm_control import mujoco
 physics = mujoco.Physics.from_xml_string(MODEL)
 pixels = physics.render(48, 64, camera_id=0)
 assert pixels.shape == (48, 64, 3) and pixels[24, 32, 0] > 50 > pixels[24, 32, 1], pixels[24, 32]
-'''
+"""
 
-PYOPENGL = '''
+PYOPENGL = """
 import ctypes
 import numpy
 from OpenGL import GL, arrays
@@ -73,9 +73,9 @@ GL.glClearColor(1, 0.5, 0, 1)
 GL.glClear(GL.GL_COLOR_BUFFER_BIT)
 GL.glFinish()
 assert pixels[4, 4].tolist() == [255, 128, 0, 255], pixels[4, 4]
-'''
+"""
 
-GLFW = '''
+GLFW = """
 import glfw
 glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
 if not glfw.init():
@@ -85,7 +85,7 @@ window = glfw.create_window(16, 16, "a", None, None)
 assert window
 glfw.make_context_current(window)
 assert glfw.get_proc_address("glClear")
-'''
+"""
 
 PROGRAMS = {
     "mujoco": ("mujoco", MUJOCO),

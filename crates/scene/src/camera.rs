@@ -225,7 +225,8 @@ mod tests {
 
     #[test]
     fn a_measured_camera_puts_its_axis_on_the_principal_point() {
-        let measured = camera(Projection::Parallel { height: 1.0 }).with_intrinsics([200.0, 100.0], [30.0, 80.0], [320, 240]);
+        let measured =
+            camera(Projection::Parallel { height: 1.0 }).with_intrinsics([200.0, 100.0], [30.0, 80.0], [320, 240]);
         let clip = measured.transform(4.0 / 3.0, (0.0, 0.0)).clip_from_world();
         let pixel = |x: f64, y: f64, z: f64| {
             let p = clip * DVec4::new(x, y, z, 1.0);

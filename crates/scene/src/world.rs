@@ -283,7 +283,8 @@ mod tests {
         scene.flatten().unwrap();
         assert!(scene.nodes.iter().all(|node| node.children.is_empty()));
         for flat in [World::new(&scene).unwrap(), nested.moved(&scene).unwrap()] {
-            let places = |world: &World| world.instances.iter().map(|i| (i.node, i.world_from_model)).collect::<Vec<_>>();
+            let places =
+                |world: &World| world.instances.iter().map(|i| (i.node, i.world_from_model)).collect::<Vec<_>>();
             assert_eq!(places(&flat), places(&nested));
             assert_eq!((&flat.lights, &flat.cameras, flat.bounds), (&nested.lights, &nested.cameras, nested.bounds));
             assert_eq!((flat.facet_count, flat.surface_count), (nested.facet_count, nested.surface_count));

@@ -121,7 +121,8 @@ mod tests {
         let mut renderer = Renderer::with_execution(scene, execution(3)).unwrap();
         renderer.settings = renderer.settings.with_size(40, 30);
         let cameras = renderer.turntable_cameras(5).into_iter().map(Some).collect();
-        let moves = (0..10).map(|i| DMat4::from_rotation_y(f64::from(i) * 0.2) * DMat4::from_translation(DVec3::X)).collect();
+        let moves =
+            (0..10).map(|i| DMat4::from_rotation_y(f64::from(i) * 0.2) * DMat4::from_translation(DVec3::X)).collect();
         (renderer, cameras, moves)
     }
 

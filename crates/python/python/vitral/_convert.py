@@ -72,9 +72,7 @@ def _add_trimesh_material(scene: Scene, visual: Any) -> tuple[int, Any]:
     color = np.asarray(material.main_color, dtype=float)[:3] / 255
     linear = np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
     diffuse = (1, 1, 1) if texture is not None else tuple(float(c) for c in linear)
-    number = scene.add_material(
-        name=getattr(material, "name", None) or "", texture=texture, diffuse=diffuse
-    )
+    number = scene.add_material(name=getattr(material, "name", None) or "", texture=texture, diffuse=diffuse)
     uv = getattr(visual, "uv", None)
     if uv is None:
         return number, None

@@ -14,7 +14,11 @@ pub(super) struct Sky {
 impl Sky {
     /// The row in which a direction (view space) leaves a picture of `rows` rows.
     pub(super) fn row(&self, direction: DVec3, rows: usize) -> usize {
-        let up = if self.perspective { direction.y / (-direction.z).max(1e-9) * self.stretch + self.middle } else { direction.y };
+        let up = if self.perspective {
+            direction.y / (-direction.z).max(1e-9) * self.stretch + self.middle
+        } else {
+            direction.y
+        };
         let from_top = (1.0 - up.clamp(-1.0, 1.0)) * 0.5;
         ((from_top * rows as f64) as usize).min(rows - 1)
     }

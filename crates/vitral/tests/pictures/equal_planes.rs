@@ -93,7 +93,9 @@ fn of_a_sheet_with_two_sides_the_one_that_faces_the_viewer_is_seen() {
             let towards = place.transform_vector3(DVec3::Z);
             let direction = match camera.projection {
                 Projection::Parallel { .. } => camera.position - camera.focal_point,
-                Projection::Perspective { .. } | Projection::Window { .. } => camera.position - place.transform_point3(DVec3::ZERO),
+                Projection::Perspective { .. } | Projection::Window { .. } => {
+                    camera.position - place.transform_point3(DVec3::ZERO)
+                }
             };
             let from_front = towards.dot(direction) > 0.0;
             for algorithm in VISIBILITY {

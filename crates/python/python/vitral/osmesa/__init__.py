@@ -1,6 +1,7 @@
 """OpenGL for existing programs: vitral's ``libOSMesa.so.8``.
 
-``install()`` at the top of a program, ``python -m vitral.osmesa program.py``, or ``eval "$(vitral osmesa-env)"`` in a shell.
+``install()`` at the top of a program, ``python -m vitral.osmesa program.py``, or ``eval "$(vitral osmesa-env)"`` in a
+shell.
 """
 
 from __future__ import annotations
@@ -53,10 +54,11 @@ def _loaded() -> list[str]:
 def install() -> Path:
     """Makes this process, and those that it starts, use vitral's OpenGL; gives the library's path.
 
-    To be called before ``mujoco``, ``gymnasium``'s MuJoCo environments, ``dm_control`` or ``OpenGL`` are imported. It sets
-    ``MUJOCO_GL``, ``PYOPENGL_PLATFORM`` and, for processes that are started, ``LD_LIBRARY_PATH``, and loads the library.
+    To be called before ``mujoco``, ``gymnasium``'s MuJoCo environments, ``dm_control`` or ``OpenGL`` are imported. It
+    sets ``MUJOCO_GL``, ``PYOPENGL_PLATFORM`` and, for processes that are started, ``LD_LIBRARY_PATH``, and loads the
+    library.
 
-    Raises :class:`vitral.Error` if one of these modules is there already with another OpenGL, or another libOSMesa is loaded.
+    Raises :class:`vitral.Error` if one of these modules is there already, or another libOSMesa is loaded.
     """
     global _library
     library = folder() / _NAME

@@ -22,12 +22,7 @@ use std::path::PathBuf;
 /// Runs the command ``vitral`` with these arguments, of which the first is its name; gives its exit code.
 #[pyfunction]
 #[pyo3(signature = (arguments, library=None, program=None))]
-fn command(
-    py: Python<'_>,
-    arguments: Vec<OsString>,
-    library: Option<PathBuf>,
-    program: Option<Vec<OsString>>,
-) -> u8 {
+fn command(py: Python<'_>, arguments: Vec<OsString>, library: Option<PathBuf>, program: Option<Vec<OsString>>) -> u8 {
     if let Some(program) = program {
         vitral_cli::started_by(program);
     }

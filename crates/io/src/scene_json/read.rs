@@ -98,9 +98,10 @@ fn check_camera(camera: &Camera, path: &str, report: &Report<'_>) -> Result<(), 
             (view_angle > 0.0 && view_angle < std::f64::consts::PI, "0 < view-angle < 3.14159")
         }
         Projection::Parallel { height } => (height > 0.0, "0 < height"),
-        Projection::Window { across, upwards } => {
-            (across[0] < across[1] && upwards[0] < upwards[1], "across and upwards from the smaller to the larger border")
-        }
+        Projection::Window { across, upwards } => (
+            across[0] < across[1] && upwards[0] < upwards[1],
+            "across and upwards from the smaller to the larger border",
+        ),
     };
     if !lens {
         return Err(report.at(format!("{path}.projection"), format!("{field} is needed")));

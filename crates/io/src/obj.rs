@@ -70,19 +70,20 @@ fn load_in_pieces(
         return Err(Error::malformed(file, Place::Line(line), "no statement of an OBJ file"));
     }
 
-    // Check all indices, and leave out what leads nowhere.
+    // Check all indices, and leave out what leads nowhere: attributes first, while each corner is still there to be found in the
+    // text.
     if let Some(error) = error {
         return Err(error);
     }
     let mut totals = stitch::Totals::new(&chunks, file)?;
     let text_of = (&pieces[..], &first_lines[..]);
+    if stitch::leave_out_bad_attributes(&mut chunks, &totals, text_of, &mut warnings, workers) {
+        totals = stitch::Totals::new(&chunks, file)?;
+    }
     if stitch::leave_out_bad_elements(&mut chunks, &totals, text_of, file, (&mut warnings, workers))? {
         totals = stitch::Totals::new(&chunks, file)?;
     }
     let events = materials::Events::new(&chunks, &pieces, &first_lines);
-    if stitch::leave_out_bad_attributes(&mut chunks, &totals, text_of, &mut warnings, workers) {
-        totals = stitch::Totals::new(&chunks, file)?;
-    }
 
     // Read the positions of a model far away once more.
     let boxes = workers.map(chunks.len(), |i| far::bounds(&chunks[i].positions));

@@ -74,7 +74,7 @@ impl<'a> Records<'a> {
             warnings.note("", Place::Byte(end as u64), what);
             return Ok(in_a_row(announced));
         }
-        if announced > room && rest != 0 {
+        if announced > room && (rest != 0 || room == 0) {
             let what = format!("the file ends here: {announced} triangles are announced, {room} are there");
             return Err(Error::malformed(file, Place::Byte(size as u64), what));
         }

@@ -18,8 +18,8 @@
 //! or blends in others), `map_Pr`, `map_Pm` (linear), `bump` or `map_Bump` (a height map, or a normal map, which programs
 //! write there, too), `map_Ks` (linear), `map_Ke`
 //! (sRGB), `map_d` (linear; the channel that `-imfchan` names, else alpha where the image has any, else luminance) and
-//! `norm` (a normal map). Options stand before the name or behind it. Of them `-s`, `-o`, `-clamp`, `-bm` (of bump maps) and `-imfchan` are obeyed; others, if they would change
-//! the picture, are told. Texture coordinates of OBJ run upwards, ours run downwards from the image's top: the loader
+//! `norm` (a normal map). Options stand before the name or behind it. Of them `-s`, `-o`, `-clamp`, `-bm` (of bump maps) and
+//! `-imfchan` are obeyed; others, if they would change the picture, are told. Texture coordinates of OBJ run upwards, ours run downwards from the image's top: the loader
 //! turns `v` to `1 - v`, and so scale and offset along v become `s v + 1 - s - o`.
 //!
 //! Source: \[MTL\].

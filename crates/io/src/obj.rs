@@ -9,7 +9,8 @@
 //! The file becomes one mesh and one node; each run of faces with one group (or object) and one material is a part.
 //!
 //! * `v x y z [w]`: `w` is left out. Six or seven numbers: a colour `r g b` follows (sRGB, `0..=1`, or
-//!   `0..=255` where they look like bytes: `color_range`); or ZBrush's comments `#MRGB` have them. `vt u [v [w]]`: `v` runs upwards in the file and becomes `1 - v`.
+//!   `0..=255` where they look like bytes: `color_range`); or ZBrush's comments `#MRGB` have them.
+//!   `vt u [v [w]]`: `v` runs upwards in the file and becomes `1 - v`.
 //! * `f`, `fo`: any number of corners, `v`, `v/vt`, `v//vn`, `v/vt/vn`. Fewer than three corners: warning, left out.
 //!   Corners without texture coordinates get `(0, 0)`; corners without a normal, in a file that has some, the face's.
 //! * `l`, `p`: free lines and points, with the material in force. A file of vertices alone is a point cloud.

@@ -4,6 +4,23 @@ use std::sync::Arc;
 use vitral_light::{AlphaMode, Material, Reflectance};
 use vitral_scene::{Mesh, Scene};
 
+/// Makes colours opaque that would leave nothing of a mesh to be seen: all of them have alpha 0, which programs write that do
+/// not know alpha. Warns of it.
+pub(crate) fn ignore_clear_colors(scene: &mut Scene, file: &str) {
+    let is_clear = |mesh: &Mesh| {
+        let colors = mesh.colors.as_ref().filter(|colors| !colors.values.is_empty());
+        colors.is_some_and(|colors| colors.values.iter().all(|color| color[3] == 0.0))
+    };
+    let clear: Vec<usize> = (0..scene.meshes.len()).filter(|&number| is_clear(&scene.meshes[number])).collect();
+    for &number in &clear {
+        let colors = Arc::make_mut(&mut scene.meshes[number]).colors.as_mut();
+        colors.into_iter().flat_map(|colors| &mut colors.values).for_each(|color| color[3] = 1.0);
+    }
+    if !clear.is_empty() {
+        scene.warnings.push(format!("{file}: all colours have alpha 0 and would be invisible; alpha is ignored"));
+    }
+}
+
 /// Gives parts without a material one if their mesh has colours; where some of these are not opaque it blends, if `alpha_counts`.
 pub(crate) fn give_materials(scene: &mut Scene, alpha_counts: bool) {
     let bare = |mesh: &Mesh| mesh.colors.is_some() && mesh.parts.iter().any(|part| part.material.is_none());
@@ -50,6 +67,10 @@ mod tests {
             assert_eq!(material.alpha_mode, mode);
             assert!(matches!(material.reflectance, Reflectance::Phong { kd: [1.0, 1.0, 1.0], .. }), "{material:?}");
         }
+        let clear = load(square("0").as_bytes(), "square.off", &NoFiles, &Workers::single()).unwrap();
+        assert_eq!(clear.materials[0].alpha_mode, AlphaMode::Opaque);
+        assert_eq!(clear.meshes[0].colors.as_ref().unwrap().values[0][3], 1.0);
+        assert!(clear.warnings[0].contains("alpha 0"), "{:?}", clear.warnings);
         let plain = load(b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a.off", &NoFiles, &Workers::single()).unwrap();
         assert!(plain.materials.is_empty());
     }

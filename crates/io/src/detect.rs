@@ -40,6 +40,7 @@ impl Format {
             None => match FOREIGN_EXTENSIONS.iter().find(|(e, _)| *e == extension) {
                 Some((_, name)) => Err(not_read(file, name)),
                 None if off_header::begins_bare(Cursor::new(&head)) => Ok(Self::Off),
+                None if stl_size::is_unfinished(bytes) => Ok(Self::Stl),
                 None => Err(not_read(file, "this format")),
             },
         }
@@ -187,7 +188,8 @@ fn by_text(head: &[u8]) -> Option<Format> {
     if off_header::Header::begin(word).is_some() {
         return Some(Format::Off);
     }
-    if word.eq_ignore_ascii_case(b"solid") && !head.contains(&0) {
+    let begins_facet = word.eq_ignore_ascii_case(b"facet") && cursor.word().eq_ignore_ascii_case(b"normal");
+    if (word.eq_ignore_ascii_case(b"solid") || begins_facet) && !head.contains(&0) {
         return Some(Format::Stl);
     }
     (obj_statement::begins(start) && !head.contains(&0)).then_some(Format::Obj)
@@ -230,6 +232,8 @@ mod tests {
             assert_eq!(detect(&stl, "x"), Format::Stl);
         }
         assert_eq!(detect(b"\xEF\xBB\xBFply\nformat", "-"), Format::Ply);
+        assert_eq!(detect(b"facet normal 0 0 1\nouter loop", "-"), Format::Stl);
+        assert_eq!(detect(&vec![0; 84 + 150], "-"), Format::Stl, "written into a pipe");
         for text in ["vp 0 1\nv 0 0 0", "# c\ncstype bezier\ndeg 3 \\\n3\nv 1 2 3", "mg 0\nlod 1\nbevel on\ng a\n"] {
             assert_eq!(detect(text.as_bytes(), "-"), Format::Obj, "{text}");
         }

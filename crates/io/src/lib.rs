@@ -15,10 +15,14 @@
     )
 )]
 
+#[cfg(any(feature = "obj", feature = "off", feature = "ply"))]
+mod color_range;
 mod colored;
 mod detect;
 pub mod encode;
 mod error;
+#[cfg(any(feature = "obj", feature = "off", feature = "ply", feature = "stl"))]
+mod far;
 mod file_name;
 mod format;
 #[cfg(feature = "gltf")]

@@ -38,16 +38,19 @@ pub(crate) fn load(
         #[cfg(not(all(feature = "gltf", feature = "obj", feature = "stl", feature = "ply", feature = "off")))]
         _ => Err(Error::Unsupported { file: file.to_owned(), what: format.left_out() }),
     };
-    Some(scene.map(|scene| completed(scene, format, workers)))
+    Some(scene.map(|scene| completed(scene, format, file, workers)))
 }
 
 /// The scene with what its format implies and its file does not say.
-fn completed(mut scene: Scene, format: Format, workers: &Workers) -> Scene {
+fn completed(mut scene: Scene, format: Format, file: &str, workers: &Workers) -> Scene {
     scene.meshes.iter_mut().for_each(|mesh| normals::make_measurable(mesh, workers));
     scene.ups = vec![if format == Format::Stl { Axis::PlusZ } else { Axis::PlusY }];
 
     // The default material of glTF is opaque, whatever the alpha of `COLOR_0`.
     let alpha_counts = !matches!(format, Format::Gltf | Format::Glb);
+    if alpha_counts {
+        colored::ignore_clear_colors(&mut scene, file);
+    }
     colored::give_materials(&mut scene, alpha_counts);
     scene
 }

@@ -11,16 +11,21 @@
 //! opaque materials. `Tr 1` without `d` is opaque, with a warning: MeshLab means that by it, and nobody wants a surface that
 //! is not seen.
 //!
-//! Maps: `map_Kd` (sRGB; its alpha counts only in a material that `d` makes transparent), `map_Ks` (linear), `map_Ke`
+//! A material with `Pr` (roughness) or `Pm` (metal), or maps of them, is one of metallic-roughness with the base colour `Kd`;
+//! what is missing follows from `Ns` as Blender writes it, `Ns = 1000 (1 - roughness)^2`, or is 0.5 and 0.
+//!
+//! Maps: `map_Kd` (sRGB; its alpha, unless `map_d` is there, blends in a material that `d` makes transparent and cuts out
+//! or blends in others), `map_Pr`, `map_Pm` (linear), `bump` or `map_Bump` (a height map, or a normal map, which programs
+//! write there, too), `map_Ks` (linear), `map_Ke`
 //! (sRGB), `map_d` (linear; the channel that `-imfchan` names, else alpha where the image has any, else luminance) and
-//! `norm` (a normal map). Of their options `-s`, `-o`, `-clamp` and `-imfchan` are obeyed; others, if they would change
-//! the picture, are told. Texture coordinates of OBJ run upwards, ours run downwards from the image's top: the loader
+//! `norm` (a normal map). Options stand before the name or behind it. Of them `-s`, `-o`, `-clamp`, `-bm` (of bump maps) and
+//! `-imfchan` are obeyed; others, if they would change the picture, are told. Texture coordinates of OBJ run upwards, ours run downwards from the image's top: the loader
 //! turns `v` to `1 - v`, and so scale and offset along v become `s v + 1 - s - o`.
 //!
 //! Source: \[MTL\].
 
 use crate::Place;
-use crate::text::{self, Cursor, to_utf8};
+use crate::text::{self, Cursor, is_blank, to_utf8};
 use crate::textures::{Channel, Requests, Usage};
 use crate::warnings::Warnings;
 use vitral_frame::{Sampler, Wrap};
@@ -45,6 +50,11 @@ pub(crate) struct MtlMaterial {
     map_ke: Option<Map>,
     map_d: Option<Map>,
     norm: Option<Map>,
+    pr: Option<f32>,
+    pm: Option<f32>,
+    map_pr: Option<Map>,
+    map_pm: Option<Map>,
+    bump: Option<Map>,
 }
 
 /// A texture statement.
@@ -56,6 +66,8 @@ struct Map {
     offset: [f32; 2],
     clamp: bool,
     channel: Option<Channel>,
+    /// The bump multiplier.
+    strength: Option<f32>,
 }
 
 /// The least index of refraction that the format knows.
@@ -129,6 +141,14 @@ impl MtlMaterial {
             b"map_ke" => self.map_ke = map(cursor, warnings),
             b"map_d" => self.map_d = map(cursor, warnings),
             b"norm" => self.norm = map(cursor, warnings),
+            b"pr" => self.pr = number(cursor, warnings).map(|r| share(r, "Pr", line, warnings)).or(self.pr),
+            b"pm" => self.pm = number(cursor, warnings).map(|m| share(m, "Pm", line, warnings)).or(self.pm),
+            b"map_pr" => self.map_pr = map(cursor, warnings),
+            b"map_pm" => self.map_pm = map(cursor, warnings),
+            b"bump" | b"map_bump" => self.bump = map(cursor, warnings).or(self.bump.take()),
+            // What changes nothing is no loss.
+            b"pc" | b"pcr" | b"ps" | b"aniso" | b"anisor"
+                if cursor.word_at(cursor.offset()).iter().all(|b| matches!(b, b'0' | b'.')) => {}
             // The ambient map follows the diffuse one; only another image would make a difference.
             b"map_ka" => {
                 let ambient = map(cursor, warnings).map(|m| m.path);
@@ -137,9 +157,8 @@ impl MtlMaterial {
                         .note("map_Ka", Place::Line(line), || "map_Ka is not used: ambient light takes map_Kd".into());
                 }
             }
-            b"bump" | b"map_bump" | b"disp" | b"map_disp" | b"decal" | b"map_ns" | b"map_tr" | b"map_ni" | b"refl"
-            | b"map_refl" | b"map_aat" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc" | b"pcr" | b"aniso"
-            | b"anisor" | b"map_pr" | b"map_pm" | b"map_ps" => {
+            b"disp" | b"map_disp" | b"decal" | b"map_ns" | b"map_tr" | b"map_ni" | b"refl" | b"map_refl"
+            | b"map_aat" | b"sharpness" | b"ps" | b"pc" | b"pcr" | b"aniso" | b"anisor" | b"map_ps" => {
                 warnings.note("mtl unused", Place::Line(line), || format!("`{}` is not used", show(keyword)));
             }
             _ => warnings.note("mtl unknown", Place::Line(line), || format!("unknown statement `{}`", show(keyword))),
@@ -153,6 +172,7 @@ impl MtlMaterial {
         let map_ks = self.map_ks.as_ref().filter(|_| shiny);
         let ks = if shiny { self.ks.unwrap_or(if map_ks.is_some() { [1.0; 3] } else { [0.0; 3] }) } else { [0.0; 3] };
         let (opacity, filter) = (self.opacity(), self.filter());
+        let is_metallic_roughness = self.has_roughness();
         let is_transparent = opacity < 1.0 || self.map_d.is_some();
 
         // With a map of its own for opacity, the diffuse map's alpha must not count a second time.
@@ -164,20 +184,24 @@ impl MtlMaterial {
                 ..TextureRef::new(requests.add(library, m.line, &m.path, usage))
             })
         };
+        let normal_texture = match (&self.norm, &self.bump) {
+            (None, Some(_)) => texture(&self.bump, Usage::Bump),
+            _ => texture(&self.norm, Usage::Data),
+        };
+        let normal_scale = self.norm.as_ref().or(self.bump.as_ref()).and_then(|m| m.strength).unwrap_or(1.0);
         let opacity_usage = Usage::Grey(self.map_d.as_ref().and_then(|m| m.channel).unwrap_or(Channel::Matte));
         Material {
             name: self.name.clone(),
-            reflectance: Reflectance::Phong {
-                ka: self.ka.unwrap_or([0.2; 3]),
-                kd: self.kd.unwrap_or(if self.map_kd.is_some() { [1.0; 3] } else { [0.8; 3] }),
-                ks,
-                shininess: self.ns.unwrap_or(10.0).max(1.0),
-            },
+            reflectance: if is_metallic_roughness { self.metallic_roughness() } else { self.phong(ks) },
             emission: self.ke.unwrap_or(if self.map_ke.is_some() { [1.0; 3] } else { [0.0; 3] }),
             opacity,
             filter,
             alpha_mode: if is_transparent { AlphaMode::Blend } else { AlphaMode::Opaque },
-            ior: self.ni.unwrap_or(1.0),
+            ior: self.ni.filter(|ni| !is_metallic_roughness || *ni > 1.0).unwrap_or(if is_metallic_roughness {
+                1.5
+            } else {
+                1.0
+            }),
             // The models with ray-traced reflection.
             mirror: matches!(self.illum, Some(3..=7)),
             unlit: !lit,
@@ -185,9 +209,46 @@ impl MtlMaterial {
             specular_texture: texture(&map_ks.cloned(), Usage::Data),
             emission_texture: texture(&self.map_ke, Usage::Color),
             opacity_texture: texture(&self.map_d, opacity_usage),
-            normal_texture: texture(&self.norm, Usage::Data),
+            metallic_roughness_texture: self.roughness_texture(library, requests),
+            normal_texture,
+            normal_scale,
             ..Material::default()
         }
+    }
+
+    /// Whether the material is one of metallic-roughness.
+    fn has_roughness(&self) -> bool {
+        self.pr.is_some() || self.pm.is_some() || self.map_pr.is_some() || self.map_pm.is_some()
+    }
+
+    fn diffuse(&self) -> [f32; 3] {
+        self.kd.unwrap_or(if self.map_kd.is_some() { [1.0; 3] } else { [0.8; 3] })
+    }
+
+    fn phong(&self, ks: [f32; 3]) -> Reflectance {
+        let (ka, shininess) = (self.ka.unwrap_or([0.2; 3]), self.ns.unwrap_or(10.0).max(1.0));
+        Reflectance::Phong { ka, kd: self.diffuse(), ks, shininess }
+    }
+
+    fn metallic_roughness(&self) -> Reflectance {
+        // A map multiplies; without a factor it counts as it is.
+        let from_shininess = self.ns.map(|ns| 1.0 - (ns.clamp(0.0, 1000.0) / 1000.0).sqrt());
+        let roughness = if self.map_pr.is_some() { 1.0 } else { from_shininess.unwrap_or(0.5) };
+        let metallic = if self.map_pm.is_some() { 1.0 } else { 0.0 };
+        Reflectance::MetallicRoughness {
+            base_color: self.diffuse(),
+            metallic: self.pm.filter(|_| self.map_pm.is_none()).unwrap_or(metallic),
+            roughness: self.pr.filter(|_| self.map_pr.is_none()).unwrap_or(roughness),
+        }
+    }
+
+    /// The maps of roughness and metal as one texture, placed as the first of them.
+    fn roughness_texture(&self, library: &str, requests: &mut Requests) -> Option<TextureRef> {
+        let mut image = |map: &Option<Map>| map.as_ref().map(|m| requests.image(library, m.line, &m.path));
+        let images = [image(&self.map_pr), image(&self.map_pm)];
+        let map = self.map_pr.as_ref().or(self.map_pm.as_ref())?;
+        let number = requests.add_metallic_roughness(images);
+        Some(TextureRef { transform: map.transform(), sampler: map.sampler(), ..TextureRef::new(number) })
     }
 
     /// The colour of what passes, apart from how much: `kt` times it is `Tf` where `Tf` gives both.
@@ -286,20 +347,22 @@ pub(crate) fn file_name(text: &str) -> String {
     text.trim_matches('"').replace("\\ ", " ").replace('\\', "/")
 }
 
-/// A texture statement: options, then a file name that may hold blanks.
+/// A texture statement: options, a file name that may hold blanks, and options that belong before it.
 fn map(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<Map> {
     let line = cursor.line();
-    let mut map = Map { path: String::new(), line, scale: [1.0; 2], offset: [0.0; 2], clamp: false, channel: None };
-    loop {
-        let mut ahead = *cursor;
-        let option = ahead.word();
-        let known = option.first() == Some(&b'-') && map.option(&option.to_ascii_lowercase(), &mut ahead, warnings);
-        if !known {
-            break;
-        }
-        *cursor = ahead;
-    }
-    map.path = file_name(&text::name(cursor.rest_of_line()));
+    let mut map = Map {
+        path: String::new(),
+        line,
+        scale: [1.0; 2],
+        offset: [0.0; 2],
+        clamp: false,
+        channel: None,
+        strength: None,
+    };
+    map.options(cursor, warnings);
+    let rest = cursor.rest_of_line();
+    let name = map.options_behind(rest, line, warnings).map_or(rest, |end| rest[..end].trim_ascii_end());
+    map.path = file_name(&text::name(name));
     if map.path.is_empty() {
         warnings.note("map name", Place::Line(line), || "texture statement without a file name".into());
         return None;
@@ -308,6 +371,38 @@ fn map(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<Map> {
 }
 
 impl Map {
+    /// Reads all options from the cursor on.
+    fn options(&mut self, cursor: &mut Cursor, warnings: &mut Warnings) {
+        loop {
+            let mut ahead = *cursor;
+            let option = ahead.word();
+            let known =
+                option.first() == Some(&b'-') && self.option(&option.to_ascii_lowercase(), &mut ahead, warnings);
+            if !known {
+                return;
+            }
+            *cursor = ahead;
+        }
+    }
+
+    /// Reads options behind the name of a file, and tells where they begin: behind a word with an extension, if nothing else
+    /// follows. A name may hold anything that looks like an option otherwise.
+    fn options_behind(&mut self, rest: &[u8], line: u64, warnings: &mut Warnings) -> Option<usize> {
+        let begins = |&k: &usize| rest[k] == b'-' && is_blank(rest[k - 1]) && rest[..k].contains(&b'.');
+        let start = (1..rest.len()).find(begins)?;
+        let (mut with_options, mut own) = (self.clone(), Warnings::default());
+        // A word in place of the name ends them.
+        let text = [&rest[start..], b" /"].concat();
+        let mut cursor = Cursor::at_line(&text, line);
+        with_options.options(&mut cursor, &mut own);
+        if cursor.word() != b"/" || !cursor.at_line_end() {
+            return None;
+        }
+        *self = with_options;
+        warnings.append(own, 0);
+        Some(start)
+    }
+
     /// Reads an option's values; false if there is no such option.
     fn option(&mut self, option: &[u8], cursor: &mut Cursor, warnings: &mut Warnings) -> bool {
         let place = Place::Line(cursor.line());
@@ -330,7 +425,7 @@ impl Map {
             }
             b"-blendu" | b"-blendv" => unused(!cursor.word().eq_ignore_ascii_case(b"on")),
             b"-cc" => unused(cursor.word().eq_ignore_ascii_case(b"on")),
-            b"-bm" => unused(cursor.float().is_some_and(|b| b != 1.0)),
+            b"-bm" => self.strength = cursor.float().filter(|b| b.is_finite()).or(self.strength),
             b"-boost" => unused(cursor.float().is_some_and(|b| b != 0.0)),
             b"-texres" => unused(cursor.float().is_some()),
             b"-type" | b"-colorspace" => unused(!cursor.word().is_empty()),
@@ -432,15 +527,43 @@ mod tests {
     #[test]
     fn map_options_turn_with_v() {
         let (m, requests, warnings) = one(
-            "newmtl a\nmap_Kd -s 2 3 1 -o .5 .25 -clamp on -mm 0 1 .\\my wood 1.png\nmap_d -imfchan r x.png\nbump b.png",
+            "newmtl a\nmap_Kd -s 2 3 1 -o .5 .25 -clamp on -mm 0 1 .\\my wood 1.png\nmap_d -imfchan r x.png\ndecal b.png",
         );
         let base = m.base_texture.unwrap();
         assert_eq!(base.transform, [[2.0, 0.0, 0.5], [0.0, 3.0, -2.25]]);
         assert_eq!(base.sampler.wrap_s, Wrap::ClampToEdge);
         assert_eq!(requests.paths(), ["./my wood 1.png", "x.png"]);
-        assert_eq!(warnings, ["m.mtl: line 4: `bump` is not used"]);
+        assert_eq!(warnings, ["m.mtl: line 4: `decal` is not used"]);
         assert_eq!(one("newmtl a\nmap_Kd -s 1 2 2nd.png").1.paths(), ["2nd.png"]);
         assert_eq!(one("newmtl a\nmap_Kd -strange.png").1.paths(), ["-strange.png"]);
+    }
+
+    #[test]
+    fn options_may_stand_behind_the_name() {
+        let (m, requests, warnings) =
+            one("newmtl a\nmap_Kd my t.png -clamp on -s 2 3\nmap_Ks a -b.png\nmap_Ke b.png -o x");
+        let base = m.base_texture.unwrap();
+        assert_eq!((base.sampler.wrap_s, base.transform), (Wrap::ClampToEdge, [[2.0, 0.0, 0.0], [0.0, 3.0, -2.0]]));
+        assert_eq!((requests.paths(), warnings.len()), (vec!["my t.png", "a -b.png", "b.png -o x"], 0));
+    }
+
+    #[test]
+    fn roughness_and_metal_make_the_other_form() {
+        let form = |text: &str| one(text).0.reflectance;
+        let expected =
+            |metallic, roughness| Reflectance::MetallicRoughness { base_color: [0.5; 3], metallic, roughness };
+        assert_eq!(form("newmtl a\nKd .5\nPr 0.25\nPm 1"), expected(1.0, 0.25));
+        assert_eq!(form("newmtl a\nKd .5\nNs 250\nPm 1"), expected(1.0, 0.5));
+        assert_eq!(form("newmtl a\nKd .5\nPm 0"), expected(0.0, 0.5));
+        let (m, requests, warnings) = one(
+            "newmtl a\nKd .5\nPr .1\nmap_Pr r.png\nmap_Pm -s 2 2 m.png\nmap_Bump -bm 0.5 n.png\nPc 0.0\nNi 1.0\naniso 0",
+        );
+        assert_eq!((m.reflectance, m.ior), (expected(1.0, 1.0), 1.5));
+        assert_eq!((m.normal_scale, warnings.len()), (0.5, 0), "{warnings:?}");
+        assert!(m.normal_texture.is_some() && m.metallic_roughness_texture.is_some());
+        assert_eq!(requests.paths().len(), 3);
+        assert_eq!(one("newmtl a\nPc 0.5").2, ["m.mtl: line 2: `Pc` is not used"]);
+        assert!(one("newmtl a\nbump b.png\nnorm n.png").1.paths() == ["n.png"]);
     }
 
     #[test]

@@ -2,12 +2,13 @@
 //!
 //! The first word says what a vertex line holds, in this order: `[ST][C][N][4]OFF`: position (four homogeneous
 //! coordinates with `4`), normal with `N`, colour with `C`, texture coordinates with `ST`. Prefixes in another order and lower
-//! case, which exist, mean the same. A line with the numbers of vertices, faces and edges follows (all three are required; the
-//! last is not used; some files have the first of them glued to the word, `OFF8 6 12`), then each vertex and each face: the
+//! case, which exist, mean the same. A line with the numbers of vertices, faces and edges follows (the last may be
+//! missing; it is not used; some files have the first of them glued to the word, `OFF8 6 12`), then each vertex and each face: the
 //! corner count, the corners, and possibly a colour. Both begin a line and may go on over several, but a colour that may be left
 //! out is on the line of what is before it. `#` begins a comment.
 //!
-//! Colours are sRGB, `0..=255` if any of the file exceeds 1, else `0..=1`; those of faces count if vertices have none.
+//! Colours are sRGB, `0..=255` where they look like bytes, else `0..=1` (`color_range`); those of faces count if vertices have
+//! none.
 //! Texture coordinates run upwards and are turned to `1 - v`. Faces with fewer than three corners are left out with a
 //! warning. Binary and `n`-dimensional files are not read.
 //!
@@ -15,9 +16,11 @@
 //! Cost: `O(bytes)`; counts in the file allocate nothing.
 //! Source: \[OFF\].
 
+use crate::color_range::ColorRange;
+use crate::far;
 use crate::file_name::stem;
 use crate::format::off_header::Header;
-use crate::mesh_scene::with_mesh;
+use crate::mesh_scene::with_mesh_at;
 use crate::text::{Cursor, to_utf8};
 use crate::warnings::Warnings;
 use crate::{Error, Place};
@@ -32,7 +35,21 @@ use vitral_scene::{Attribute, Mesh, Part, Scene};
 /// and `n`-dimensional files.
 pub fn load(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
     let text = to_utf8(bytes);
-    let mut reader = Reader { cursor: Cursor::new(&text), file, warnings: Warnings::default() };
+    let (mut scene, offset) = read(&text, file, None, workers)?;
+    if offset.is_some() {
+        (scene, _) = read(&text, file, offset, workers)?;
+    }
+    Ok(scene)
+}
+
+/// Reads the text, and takes an offset from each position. Without one, gives that of a model far from the origin.
+fn read(
+    text: &[u8],
+    file: &str,
+    offset: Option<[f64; 3]>,
+    workers: &Workers,
+) -> Result<(Scene, Option<[f64; 3]>), Error> {
+    let mut reader = Reader { cursor: Cursor::new(text), file, warnings: Warnings::default(), offset };
     let header = reader.header()?;
     let [vertices, faces] = reader.counts()?;
     let mut lists = Lists::default();
@@ -47,9 +64,10 @@ pub fn load(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error>
         reader.warnings.note("", place, || "what follows the last face is left out".to_owned());
     }
 
+    let wanted = far::offset(&lists.positions).filter(|_| offset.is_none());
+    let mesh = lists.into_mesh(stem(file), header, &mut reader.warnings, workers);
     let scene = Scene { warnings: reader.warnings.into_messages(file), ..Scene::default() };
-    let name = stem(file);
-    Ok(with_mesh(scene, lists.into_mesh(name, header, workers), file))
+    Ok((with_mesh_at(scene, mesh, offset, file), wanted))
 }
 
 /// Everything read so far.
@@ -70,6 +88,8 @@ struct Reader<'a> {
     cursor: Cursor<'a>,
     file: &'a str,
     warnings: Warnings,
+    /// What is taken from each position.
+    offset: Option<[f64; 3]>,
 }
 
 impl<'a> Reader<'a> {
@@ -111,9 +131,10 @@ impl<'a> Reader<'a> {
             return Err(self.error("the file ends here, the numbers of vertices, faces and edges are required"));
         }
         let mut counts = [0; 3];
-        for count in &mut counts {
+        for (k, count) in counts.iter_mut().enumerate() {
             *count = match self.cursor.integer() {
                 Some(n @ 0..) => n as u64,
+                None if k == 2 && self.cursor.at_line_end() => 0,
                 _ => return Err(self.error("the numbers of vertices, faces and edges are required")),
             };
         }
@@ -146,9 +167,22 @@ impl<'a> Reader<'a> {
 
     /// Numbers that belong together, on one line or several.
     fn floats<const N: usize>(&mut self, what: &str) -> Result<[f32; N], Error> {
-        let mut values = [0.0; N];
+        self.numbers(Cursor::float, what)
+    }
+
+    /// The same in double precision.
+    fn doubles<const N: usize>(&mut self, what: &str) -> Result<[f64; N], Error> {
+        self.numbers(Cursor::double, what)
+    }
+
+    fn numbers<T: Copy + Default, const N: usize>(
+        &mut self,
+        read: impl Fn(&mut Cursor<'a>) -> Option<T>,
+        what: &str,
+    ) -> Result<[T; N], Error> {
+        let mut values = [T::default(); N];
         for (k, value) in values.iter_mut().enumerate() {
-            *value = match self.here_or_below(Cursor::float) {
+            *value = match self.here_or_below(&read) {
                 Some(value) => value,
                 None => return Err(self.no_number(k, what, N)),
             };
@@ -176,7 +210,10 @@ impl<'a> Reader<'a> {
         self.content("a vertex")?;
         let position = if header.homogeneous {
             let [x, y, z, w] = self.floats("vertex")?;
-            [x / w, y / w, z / w]
+            let offset = self.offset.unwrap_or_default();
+            std::array::from_fn(|k| (f64::from([x, y, z][k]) / f64::from(w) - offset[k]) as f32)
+        } else if let Some(offset) = self.offset {
+            far::moved(self.doubles("vertex")?, offset)
         } else {
             self.floats("vertex")?
         };
@@ -254,13 +291,13 @@ impl<'a> Reader<'a> {
 }
 
 impl Lists {
-    fn into_mesh(self, name: String, header: Header, workers: &Workers) -> Mesh {
+    fn into_mesh(self, name: String, header: Header, warnings: &mut Warnings, workers: &Workers) -> Mesh {
         let built = crate::polygons::build(&self.positions, &self.sizes, self.corners, workers);
         let colors = if header.color {
-            Some(Attribute::per_vertex(decode(&self.colors)))
+            Some(Attribute::per_vertex(decode(&self.colors, warnings)))
         } else if self.face_colors.iter().any(Option::is_some) {
             let colors: Vec<[f32; 4]> = self.face_colors.iter().map(|c| c.unwrap_or([f32::NAN; 4])).collect();
-            Some(Attribute { values: decode(&colors), corners: Some(built.per_face(&self.sizes)) })
+            Some(Attribute { values: decode(&colors, warnings), corners: Some(built.per_face(&self.sizes)) })
         } else {
             None
         };
@@ -281,16 +318,20 @@ impl Lists {
     }
 }
 
-/// Linear colours from encoded ones; NaN is 1 (white, opaque).
-fn decode(encoded: &[[f32; 4]]) -> Vec<[f32; 4]> {
-    let largest = encoded.as_flattened().iter().fold(0.0f32, |m, &c| m.max(c));
-    let scale = if largest > 1.0 { 255.0 } else { 1.0 };
-    let unit = |c: f32| if c.is_nan() { 1.0 } else { (c / scale).clamp(0.0, 1.0) };
+/// Linear colours from encoded ones; NaN is 1 (white, opaque). Bytes are whole numbers as the format has them; other values
+/// above 1 are told.
+fn decode(encoded: &[[f32; 4]], warnings: &mut Warnings) -> Vec<[f32; 4]> {
+    let range = ColorRange::of(encoded.iter().flat_map(|c| [c[0], c[1], c[2]]));
+    let (scale, alpha_scale) = (range.scale(), ColorRange::of(encoded.iter().map(|c| c[3])).scale());
+    if let Some(what) = range.oddity("colours").filter(|_| !range.is_whole) {
+        warnings.note("", Place::File, || what);
+    }
+    let unit = |c: f32, scale: f32| if c.is_nan() { 1.0 } else { (c / scale).clamp(0.0, 1.0) };
     encoded
         .iter()
-        .map(|c| {
-            let [r, g, b, a] = c.map(unit);
-            [linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), a]
+        .map(|&[r, g, b, a]| {
+            let [r, g, b] = [r, g, b].map(|c| linear_from_srgb(unit(c, scale)));
+            [r, g, b, unit(a, alpha_scale)]
         })
         .collect()
 }
@@ -390,10 +431,8 @@ mod tests {
     #[test]
     fn false_announcements_are_refused() {
         let refusal = |text: &str| read(text).unwrap_err().to_string();
-        assert_eq!(
-            refusal("OFF\n3 4\n0 0 0\n"),
-            "t.off: line 2: the numbers of vertices, faces and edges are required"
-        );
+        assert_eq!(refusal("OFF\n3 4\n0 0 0\n"), "t.off: line 2: 3 vertices are announced, the file has 7 bytes left");
+        assert_eq!(refusal("OFF\n3\n0 0 0\n"), "t.off: line 2: the numbers of vertices, faces and edges are required");
         assert_eq!(
             refusal("OFF\n9999999999 0 0\n"),
             "t.off: line 2: 9999999999 vertices are announced, the file has 1 bytes left"

@@ -2,11 +2,12 @@
 //!
 //! The header (`header`) lists elements (`vertex`, `face`, …), each with a count and properties: scalars of eight
 //! types, or lists of them. The data are text, one line an element (`ascii`), or binary in either byte order
-//! (`binary`). Both hand each element to `Content` as a `Row`: a fixed set of slots for what vitral understands,
+//! (`binary`). Text whose values run over line ends is read, too. Both hand each element to `Content` as a `Row`: a fixed set of slots for what vitral understands,
 //! and the list of corners. Binary data of the usual layouts go past the rows, block by block on all threads.
 //!
 //! * `vertex`: `x y z`, `nx ny nz`, `red green blue [alpha]` (sRGB; bytes in integers of 32 bits, others up to their
-//!   type's largest value; floats `0..=1`, or `0..=255` if any exceeds 1),
+//!   type's largest value; 16 bits hold bytes if none exceeds 255; floats `0..=1`,
+//!   or `0..=255` where they look like bytes: `color_range`),
 //!   `s t`, `u v`, `texture_u texture_v` (upwards, turned to `1 - v`).
 //! * `face`: `vertex_indices` or `vertex_index`; its colours count where vertices have none. Fewer than three corners:
 //!   warning, left out.
@@ -31,7 +32,7 @@ mod header;
 mod layout;
 mod textured;
 
-use crate::mesh_scene::with_mesh;
+use crate::mesh_scene::with_mesh_at;
 use crate::warnings::Warnings;
 use crate::{Error, Place, Resolver};
 use content::{Content, Reading};
@@ -53,15 +54,16 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
     let mut content = Content::new(&header, &layouts, file)?;
     let mut reading = Reading { header: &header, layouts: &layouts, file, warnings: &mut warnings };
     match header.encoding {
-        Encoding::Ascii => ascii::read(bytes, &mut reading, &mut content)?,
+        Encoding::Ascii => content = ascii::read(bytes, &mut reading)?,
         Encoding::LittleEndian | Encoding::BigEndian => binary::read(bytes, &mut reading, &mut content, workers)?,
     }
     content.decode_colors(&mut warnings, workers);
     let runs = content.texture_runs();
+    let offset = content.offset;
     let mut mesh = content.into_mesh(file, workers)?;
     let mut scene = Scene { warnings: warnings.into_messages(file), ..Scene::default() };
     textured::add(&mut mesh, &mut scene, &runs, &header.textures, file, resolver, workers);
-    Ok(with_mesh(scene, mesh, file))
+    Ok(with_mesh_at(scene, mesh, offset, file))
 }
 
 /// Warns of elements and properties that are passed over.

@@ -1,79 +1,42 @@
 //! STL, the format of stereolithography: a soup of triangles, in ASCII or binary.
 //!
-//! A binary file is an 80-byte header, a 32-bit count `n` and `n` records of 50 bytes: normal, three corners (12
-//! little-endian `f32`), 16 attribute bits. Headers that begin with `solid` exist, so the size decides: a file of
-//! exactly `84 + 50 n` bytes is binary. An ASCII file is one or more `solid NAME … endsolid`, each of which becomes a
-//! part of the one mesh.
+//! A binary file is an 80-byte header, a 32-bit count and a record for each triangle (`binary`). Headers that begin with
+//! `solid` exist, so the size decides: a file of exactly `84 + 50 n` bytes is binary. An ASCII file is one or more
+//! `solid NAME … endsolid`, each of which becomes a part of the one mesh (`ascii`).
 //!
 //! Corners at equal positions are welded (`weld`), since without shared vertices there are neither edges nor
-//! smooth shading. Facet normals are left out: they follow from the corners and are wrong in many files. The attribute
-//! bits, which some programs use for colours in incompatible ways, are left out with a warning.
+//! smooth shading. Facet normals are left out: they follow from the corners and are wrong in many files.
 //!
 //! In:   bytes. Out: one mesh in model space.
 //! Cost: `O(bytes)`, welding included; records are read where they lie.
 //! Source: \[STL\].
 
-use crate::file_name::stem;
-use crate::format::stl_size::{HEADER, RECORD, claimed, is_binary_size};
-use crate::mesh_scene::with_mesh;
-use crate::text::{self, Cursor, to_utf8};
-use crate::warnings::Warnings;
-use crate::weld::weld;
+mod ascii;
+mod binary;
+
+use crate::format::stl_size::is_binary_size;
+use crate::text::{Cursor, to_utf8};
 use crate::{Error, Place};
 use vitral_exec::Workers;
-use vitral_scene::{Mesh, Part, Scene};
+use vitral_scene::Scene;
 
 /// Reads an STL file of either kind.
 ///
 /// # Errors
-/// [`Error::Malformed`] with the byte at which a binary file ends too early, or the line of what is not STL in an ASCII
-/// one.
+/// [`Error::Malformed`] with the byte at which a binary file ends too early or stops making sense, or the line of what is
+/// not STL in an ASCII one.
 pub fn load(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
-    if is_binary_size(bytes) || !is_ascii(bytes) { binary(bytes, file, workers) } else { ascii(bytes, file, workers) }
+    let is_text = !is_binary_size(bytes) && is_ascii(bytes);
+    if is_text { ascii::read(bytes, file, workers) } else { binary::read(bytes, file, workers) }
 }
 
-/// Text that begins with `solid`. Binary data that happens to begin so has zero bytes early: in its count, its normals.
+/// Text that begins with `solid` or, where that line is lost, with `facet`. Binary data that happens to begin so has zero
+/// bytes early: in its count, its normals.
 fn is_ascii(bytes: &[u8]) -> bool {
     let head = to_utf8(&bytes[..bytes.len().min(1024)]);
     let mut cursor = Cursor::new(&head);
-    cursor.next_content() && cursor.word().eq_ignore_ascii_case(b"solid") && !head.contains(&0)
-}
-
-fn binary(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
-    let size = bytes.len();
-    let Some(count) = claimed(bytes) else {
-        let what = format!("the file ends here: a binary STL file has at least {HEADER} bytes");
-        return Err(Error::malformed(file, Place::Byte(size as u64), what));
-    };
-    let (records, rest) = bytes[HEADER..].as_chunks::<RECORD>();
-    let mut warnings = Warnings::default();
-    let count_wide = u64::from(count);
-    if (records.len() as u64) < count_wide {
-        let what = format!("the file ends here: {count} triangles are announced, {} are there", records.len());
-        return Err(Error::malformed(file, Place::Byte(size as u64), what));
-    }
-    if records.len() as u64 > count_wide || !rest.is_empty() {
-        let end = HEADER as u64 + RECORD as u64 * count_wide;
-        warnings
-            .note("", Place::Byte(end), || format!("{} bytes after the last triangle are left out", size as u64 - end));
-    }
-    let records = &records[..count as usize];
-    check_count(records.len(), file)?;
-
-    let corners = |t: usize| {
-        let (numbers, _) = records[t][12..48].as_chunks::<12>();
-        [0, 1, 2].map(|k| {
-            let (words, _) = numbers[k].as_chunks::<4>();
-            [0, 1, 2].map(|axis| f32::from_le_bytes(words[axis]))
-        })
-    };
-    let (positions, triangles) = weld(records.len(), corners, workers);
-    if records.iter().any(|r| r[48..50] != [0, 0]) {
-        warnings.note("", Place::File, || "attribute bits (colours) of the facets are not used".to_owned());
-    }
-    let parts = vec![Part { name: String::new(), triangles: 0..count, material: None }];
-    let mesh = Mesh { name: stem(file), positions, triangles, parts, ..Mesh::default() };
-    Ok(with_mesh(Scene { warnings: warnings.into_messages(file), ..Scene::default() }, mesh, file))
+    let begins = |word: &[u8]| word.eq_ignore_ascii_case(b"solid") || word.eq_ignore_ascii_case(b"facet");
+    cursor.next_content() && begins(cursor.word()) && !head.contains(&0)
 }
 
 fn check_count(triangles: usize, file: &str) -> Result<(), Error> {
@@ -81,150 +44,6 @@ fn check_count(triangles: usize, file: &str) -> Result<(), Error> {
         return Ok(());
     }
     Err(Error::malformed(file, Place::File, format!("{triangles} triangles, at most 1431655765 can be read")))
-}
-
-fn ascii(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
-    let text = to_utf8(bytes);
-    let mut reader = Reader { cursor: Cursor::new(&text), file, soup: Vec::new(), solids: Vec::new() };
-    let mut warnings = Warnings::default();
-    reader.read(&mut warnings)?;
-    check_count(reader.soup.len(), file)?;
-    let Reader { soup, solids, .. } = reader;
-    let (positions, triangles) = weld(soup.len(), |t| soup[t], workers);
-    let ends = solids.iter().skip(1).map(|s| s.1).chain([soup.len() as u32]);
-    let parts = solids.iter().zip(ends);
-    let parts = parts.map(|((name, first), end)| Part { name: name.clone(), triangles: *first..end, material: None });
-    let parts = parts.filter(|p| !p.triangles.is_empty()).collect();
-    let mesh = Mesh { name: stem(file), positions, triangles, parts, ..Mesh::default() };
-    Ok(with_mesh(Scene { warnings: warnings.into_messages(file), ..Scene::default() }, mesh, file))
-}
-
-/// Reads ASCII STL word by word: line breaks mean nothing but the end of a solid's name, and not even that where a facet
-/// follows on the line.
-struct Reader<'a> {
-    cursor: Cursor<'a>,
-    file: &'a str,
-    soup: Vec<[[f32; 3]; 3]>,
-    /// Name and first triangle of each solid.
-    solids: Vec<(String, u32)>,
-}
-
-impl<'a> Reader<'a> {
-    fn read(&mut self, warnings: &mut Warnings) -> Result<(), Error> {
-        let mut open = false;
-        loop {
-            let line = self.cursor.line();
-            let word = self.word();
-            match word.to_ascii_lowercase().as_slice() {
-                b"" => break,
-                b"solid" => {
-                    let name = self.name_before(&[b"facet", b"normal"]);
-                    self.solids.push((name, self.soup.len() as u32));
-                    open = true;
-                }
-                b"endsolid" => {
-                    self.name_before(&[b"solid"]);
-                    open = false;
-                }
-                b"facet" if open => self.facet(warnings)?,
-                b"color" | b"colour" => {
-                    self.cursor.rest_of_line();
-                    warnings.note("color", Place::Line(line), || "colours are not used".to_owned());
-                }
-                _ => return Err(self.unexpected(word, if open { "`facet` or `endsolid`" } else { "`solid`" })),
-            }
-        }
-        if open {
-            warnings.note("", Place::Line(self.cursor.line()), || "the file ends without `endsolid`".to_owned());
-        }
-        Ok(())
-    }
-
-    /// The next word of the text, on whatever line; empty at its end.
-    fn word(&mut self) -> &'a [u8] {
-        loop {
-            let word = self.cursor.word();
-            if !word.is_empty() || self.cursor.at_end() {
-                return word;
-            }
-            self.cursor.next_line();
-        }
-    }
-
-    /// The rest of the line up to these words in a row, if facets follow there.
-    fn name_before(&mut self, words: &[&[u8]]) -> String {
-        let (start, mut ahead) = (self.cursor, self.cursor);
-        let rest = ahead.rest_of_line();
-        let has_facet = rest.windows(5).any(|w| w.eq_ignore_ascii_case(b"facet"));
-        let mut name = Vec::new();
-        if has_facet {
-            loop {
-                let mut after = self.cursor;
-                if words.iter().all(|word| after.word().eq_ignore_ascii_case(word)) {
-                    return text::name(&name.join(&b' ')).into_owned();
-                }
-                match self.cursor.word() {
-                    b"" => break,
-                    word => name.push(word),
-                }
-            }
-        }
-        self.cursor = start;
-        text::name(self.cursor.rest_of_line()).into_owned()
-    }
-
-    fn unexpected(&self, word: &[u8], wanted: &str) -> Error {
-        let seen = match word {
-            b"" => "the file ends here".to_owned(),
-            word => format!("`{}`", String::from_utf8_lossy(&word[..word.len().min(40)])),
-        };
-        Error::malformed(self.file, Place::Line(self.cursor.line()), format!("{seen}, {wanted} is required"))
-    }
-
-    fn expect(&mut self, wanted: &str) -> Result<(), Error> {
-        let word = self.word();
-        if word.eq_ignore_ascii_case(wanted.as_bytes()) {
-            return Ok(());
-        }
-        Err(self.unexpected(word, &format!("`{wanted}`")))
-    }
-
-    /// Goes behind `outer`, over what stands for a normal.
-    fn skip_normal(&mut self) -> Result<(), Error> {
-        for _ in 0..3 {
-            if self.word().eq_ignore_ascii_case(b"outer") {
-                return Ok(());
-            }
-        }
-        self.expect("outer")
-    }
-
-    /// What follows `facet`: a normal, which is passed over, and a loop of three vertices.
-    fn facet(&mut self, warnings: &mut Warnings) -> Result<(), Error> {
-        self.expect("normal")?;
-        self.skip_normal()?;
-        self.expect("loop")?;
-        let mut triangle = [[0.0; 3]; 3];
-        for corner in &mut triangle {
-            self.expect("vertex")?;
-            for coordinate in corner {
-                let Some(value) = self.cursor.float() else {
-                    let word = self.cursor.word();
-                    return Err(self.unexpected(word, "a coordinate"));
-                };
-                *coordinate = value;
-            }
-            if self.cursor.take_ill_formed() {
-                warnings.note("number", Place::Line(self.cursor.line()), || {
-                    "ill-formed number; only its beginning counts".to_owned()
-                });
-            }
-        }
-        self.expect("endloop")?;
-        self.expect("endfacet")?;
-        self.soup.push(triangle);
-        Ok(())
-    }
 }
 
 #[cfg(test)]
@@ -302,12 +121,98 @@ mod tests {
             "t.stl: byte 183: the file ends here: 2 triangles are announced, 1 are there"
         );
         assert!(refusal(&whole[..50]).starts_with("t.stl: byte 50: the file ends here: a binary"));
-        assert_eq!(
-            refusal(b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n"),
-            "t.stl: line 4: the file ends here, a coordinate is required"
-        );
+        let told = "t.stl: line 5: the file ends here, `vertex` or `endloop` is required";
+        assert_eq!(refusal(b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n"), told);
         assert_eq!(refusal(b"solid\n vertex"), "t.stl: line 2: `vertex`, `facet` or `endsolid` is required");
+        assert_eq!(
+            refusal(b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1,2,3 4 5\n"),
+            "t.stl: line 4: `1,2,3`, a coordinate is required"
+        );
         let longer = [whole, vec![7; 60]].concat();
         assert_eq!(read(&longer).unwrap().warnings, ["t.stl: byte 184: 60 bytes after the last triangle are left out"]);
+    }
+
+    #[test]
+    fn the_size_decides_where_the_count_is_wrong() {
+        let mut bytes = binary_file(b"x", &TWO);
+        for count in [0u32, 1, 3, 7_000_000, u32::MAX] {
+            bytes[80..84].copy_from_slice(&count.to_le_bytes());
+            let scene = read(&bytes).unwrap();
+            let told = "triangles are announced, the 2 are read that the file has room for";
+            assert_eq!(scene.meshes[0].triangles.len(), 2);
+            assert_eq!(scene.warnings, [format!("t.stl: byte 80: {count} {told}")]);
+        }
+
+        // Data that are no numbers are no triangles.
+        bytes[84 + 50 + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+        let refusal = read(&bytes).unwrap_err().to_string();
+        assert!(refusal.starts_with("t.stl: byte 134: 4294967295 triangles are announced"), "{refusal}");
+    }
+
+    #[test]
+    fn bytes_behind_facets_are_skipped() {
+        let whole = binary_file(b"x", &TWO);
+        let mut bytes = whole[..84].to_vec();
+        for (record, more) in whole[84..].chunks(50).zip([&b"abc"[..], b""]) {
+            bytes.extend(&record[..48]);
+            bytes.extend((more.len() as u16).to_le_bytes());
+            bytes.extend(more);
+        }
+        let scene = read(&bytes).unwrap();
+        assert_eq!(scene.meshes[0], read(&whole).unwrap().meshes[0]);
+        assert_eq!(scene.warnings, ["t.stl: attribute bytes behind the facets are skipped"]);
+    }
+
+    #[test]
+    fn facets_have_the_colours_of_both_dialects() {
+        let colored = |header: &[u8], bits: [u16; 2]| {
+            let mut bytes = binary_file(header, &TWO);
+            bytes[84 + 48..84 + 50].copy_from_slice(&bits[0].to_le_bytes());
+            bytes[84 + 98..84 + 100].copy_from_slice(&bits[1].to_le_bytes());
+            let scene = read(&bytes).unwrap();
+            let mesh = &scene.meshes[0];
+            mesh.check().unwrap();
+            let colors = mesh.colors.as_ref().map(|c| [0, 1].map(|t| c.at(t, &mesh.triangles)[0]));
+            (colors, scene.warnings.len())
+        };
+        let [red, blue, white] = [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [1.0; 4]];
+
+        // VisCAM: bit 15 says that there is a colour, blue is lowest.
+        assert_eq!(colored(b"viscam", [0x8000 | 31 << 10, 0x8000 | 31]), (Some([red, blue]), 0));
+        assert_eq!(colored(b"viscam", [0, 0x8000 | 31]), (Some([white, blue]), 0));
+        assert_eq!(colored(b"numbers", [1, 2]), (None, 1));
+
+        // Magics: bit 15 says that the object's colour counts, red is lowest.
+        let header = b"x COLOR=\0\0\xff\xff,MATERIAL=";
+        assert_eq!(colored(header, [31, 0x8000]), (Some([red, blue]), 0));
+        assert_eq!(colored(header, [0, 0]), (Some([blue, blue]), 0));
+    }
+
+    #[test]
+    fn ascii_files_vary() {
+        let corners = "vertex 0 0 0\nvertex 2 0 0\nvertex 2 2 0\n";
+        let triangle = |text: String, warning: &str| {
+            let scene = read(text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {e}"));
+            assert_eq!(scene.meshes[0].triangles.len(), 1, "{text}");
+            assert!(scene.warnings.len() == 1 && scene.warnings[0].contains(warning), "{text}: {:?}", scene.warnings);
+        };
+        let (head, foot) = ("facet normal 0 0 1\nouter loop\n", "endloop\nendfacet\n");
+        triangle(format!("solid\n{head}{corners}end loop\nendfacet\nendsolid\n"), "`end loop` is taken for `endloop`");
+        triangle(format!("solid\n{head}{corners}endloop\nend facet\nend solid a\n"), "(and 1 more of the kind)");
+        triangle(format!("# c\nsolid\n{head}{corners}{foot}# d\nendsolid\n"), "comments are no part");
+        triangle(
+            format!("solid\n{head}{corners}endfacet\nendsolid\n"),
+            "`endfacet` where `vertex` or `endloop` is due",
+        );
+        triangle(format!("solid\n{head}{corners}endloop\nendsolid\n"), "`endsolid` where `endfacet` is due");
+        triangle(format!("solid\nfacet normal 0 0 1\n{corners}{foot}endsolid\n"), "`vertex` where `outer loop` is due");
+        triangle(format!("solid\nouter loop\n{corners}{foot}endsolid\n"), "where `facet` or `endsolid` is due");
+        triangle(format!("{head}{corners}{foot}endsolid\n"), "`facet` where `solid` is due");
+        triangle(format!("solid\n{head}{corners}{foot}{head}vertex 1 1"), "ends within its last facet; it is left out");
+        triangle(format!("solid\n{head}{corners}{foot}{head}{corners}"), "ends within its last facet; it is left out");
+        triangle(format!("solid\n{head}{corners}{foot}{head}vertex 1 1 0\n{foot}endsolid"), "a facet with 1 corners");
+        let four = read(format!("solid\n{head}{corners}vertex 0 2 0\n{foot}endsolid\n").as_bytes()).unwrap();
+        assert_eq!(four.meshes[0].triangles, [[0, 1, 2], [0, 2, 3]]);
+        assert!(four.warnings[0].contains("a facet with 4 corners"), "{:?}", four.warnings);
     }
 }

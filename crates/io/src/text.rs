@@ -4,6 +4,8 @@
 //! a 64-bit integer; when that integer is below 2^53 and the power of ten at most 10^22, one exact `f64` product or
 //! quotient is the correctly rounded `f64` (Clinger 1990). It is also the correctly rounded `f32`, unless it lies
 //! exactly between two of them or is subnormal; these rare cases, and longer numbers, go to the standard library.
+//! Numbers in foreign spellings go there, too: with a decimal comma (`0,5`), with Fortran's exponents (`2.0D+00`, and
+//! `0.25-101`, where three digits leave no room for the letter).
 //!
 //! Cost: one look at each byte.
 
@@ -289,8 +291,23 @@ impl<'a> Cursor<'a> {
         self.bytes[start..self.at].trim_ascii()
     }
 
-    /// The next number as `f32`, or `None` (and no step) if the next word does not begin as one. Anything glued to the
-    /// number is skipped and noted for [`Self::take_ill_formed`]. Reads `nan`, `inf` and MSVC's `1.#QNAN` too.
+    /// The next number in double precision; otherwise as [`Self::float`].
+    pub(crate) fn double(&mut self) -> Option<f64> {
+        self.skip_blanks();
+        let start = self.at;
+        let single = self.float()?;
+
+        // Read the same bytes once more. What the library does not know has no more digits than single precision.
+        let word = self.bytes[start..self.at].trim_ascii();
+        let spelled = foreign_spelling(word);
+        let word = spelled.as_deref().unwrap_or(word);
+        let parsed = std::str::from_utf8(word).ok().and_then(|text| text.parse::<f64>().ok());
+        Some(parsed.filter(|value| value.is_finite()).unwrap_or(f64::from(single)))
+    }
+
+    /// The next number as `f32`, or `None` (and no step) if the next word does not begin as one or has commas that could
+    /// part numbers. Anything else glued to the number is skipped and noted for [`Self::take_ill_formed`]. Reads `nan`,
+    /// `inf` and MSVC's `1.#QNAN` too.
     #[inline]
     pub(crate) fn float(&mut self) -> Option<f32> {
         self.skip_blanks();
@@ -328,7 +345,7 @@ impl<'a> Cursor<'a> {
             None => long_float(&self.bytes[start..at]),
         };
         let next = self.peek();
-        if is_blank(next) || next == b'\n' { Some(value) } else { Some(self.tail_of_float(value)) }
+        if is_blank(next) || next == b'\n' { Some(value) } else { self.tail_of_float(start, value) }
     }
 
     /// The digits at `at`, appended to `mantissa` (which wraps round: the caller counts); gives their number.
@@ -380,26 +397,36 @@ impl<'a> Cursor<'a> {
         }
     }
 
+    /// The number that began at `start` and whose head is `value`, with something behind it.
     #[cold]
-    fn tail_of_float(&mut self, value: f32) -> f32 {
-        let start = self.at;
-        if self.is_continuation(start) {
-            return value;
+    fn tail_of_float(&mut self, start: usize, value: f32) -> Option<f32> {
+        let end = self.at;
+        if self.is_continuation(end) {
+            return Some(value);
         }
         let tail = self.word().to_ascii_uppercase();
-        match tail.as_slice() {
+        let word = &self.bytes[start..self.at];
+        if let Some(spelled) = foreign_spelling(word) {
+            return Some(long_float(&spelled));
+        }
+        Some(match tail.as_slice() {
             [b'#', b'I', b'N', b'F', ..] => f32::INFINITY.copysign(value),
             [b'#', b'Q' | b'S' | b'I', ..] => f32::NAN,
             // A comment may follow without a blank.
             [b'#', ..] => {
-                self.at = start;
+                self.at = end;
                 value
+            }
+            // `1,2,3` may be one number or three.
+            [b',', b'0'..=b'9', ..] => {
+                self.at = start;
+                return None;
             }
             _ => {
                 self.ill_formed = true;
                 value
             }
-        }
+        })
     }
 
     /// The next integer, saturated at 2^62, or `None` (and no step) if there is none. It may be followed by anything.
@@ -446,6 +473,36 @@ fn exact(mantissa: u64, digits: usize, power: i32) -> Option<f32> {
     if half_way || subnormal { None } else { Some(value as f32) }
 }
 
+/// `word` as the standard library spells numbers, if it has a decimal comma between digits or an exponent of Fortran's.
+#[cold]
+fn foreign_spelling(word: &[u8]) -> Option<Vec<u8>> {
+    let is_digit = |k: usize| word.get(k).is_some_and(u8::is_ascii_digit);
+    let mut spelled = word.to_vec();
+
+    // Turn a comma into a point where there is no point.
+    let comma = word.iter().position(|&b| b == b',');
+    if let Some(k) = comma {
+        if k == 0 || !is_digit(k - 1) || !is_digit(k + 1) || word.contains(&b'.') {
+            return None;
+        }
+        spelled[k] = b'.';
+    }
+
+    // Turn a `D` into an `e`, or put one before a sign that three digits follow.
+    let exponent = word.iter().position(|b| b.eq_ignore_ascii_case(&b'd'));
+    if let Some(k) = exponent {
+        spelled[k] = b'e';
+    }
+    let sign = word.iter().rposition(|b| matches!(b, b'+' | b'-')).filter(|&k| k > 0 && k + 4 == word.len());
+    let bare = sign.filter(|&k| is_digit(k - 1) || word[k - 1] == b'.');
+    if let Some(k) = bare {
+        spelled.insert(k, b'e');
+    }
+    let is_foreign = comma.is_some() || exponent.is_some() || bare.is_some();
+    let is_number = || std::str::from_utf8(&spelled).is_ok_and(|text| text.parse::<f64>().is_ok());
+    (is_foreign && is_number()).then_some(spelled)
+}
+
 #[cold]
 fn long_float(token: &[u8]) -> f32 {
     // The token has the standard library's grammar; it is ASCII.
@@ -488,6 +545,47 @@ mod tests {
         assert_eq!((cursor.float(), cursor.take_ill_formed()), (Some(3.1), true));
         assert_eq!((cursor.float(), cursor.take_ill_formed()), (Some(7.0), false));
         assert_eq!((cursor.float(), cursor.take_ill_formed()), (Some(1.0), true));
+    }
+
+    #[test]
+    fn foreign_spellings_of_numbers_are_read() {
+        for (text, value) in [
+            ("0,5", 0.5),
+            ("-12,25", -12.25),
+            ("1,5e-3", 1.5e-3),
+            ("2.0D+00", 2.0),
+            ("2d0", 2.0),
+            ("-1.25d-2", -1.25e-2),
+            ("1,5D1", 15.0),
+            ("0.25+003", 250.0),
+            ("2.-003", 0.002),
+        ] {
+            let mut cursor = Cursor::new(text.as_bytes());
+            assert_eq!(
+                (cursor.float(), cursor.take_ill_formed(), cursor.at_end()),
+                (Some(value), false, true),
+                "{text}"
+            );
+        }
+        for text in ["1,2,3", "1.5,2.5", "0.5,1,2"] {
+            let mut cursor = Cursor::new(text.as_bytes());
+            assert_eq!((cursor.float(), cursor.word()), (None, text.as_bytes()), "it may be several numbers");
+        }
+        for (text, head) in [("1, 2", 1.0), ("2d", 2.0), ("3.1+e2", 3.1), ("2.0Dx", 2.0), ("1+22", 1.0)] {
+            let mut cursor = Cursor::new(text.as_bytes());
+            assert_eq!((cursor.float(), cursor.take_ill_formed()), (Some(head), true), "{text}");
+        }
+    }
+
+    #[test]
+    fn doubles_keep_what_singles_round_away() {
+        for (text, value) in
+            [("4500067.8900001", 4_500_067.890_000_1), ("500012,34", 500_012.34), ("1.5D7 2", 1.5e7), ("-.25#", -0.25)]
+        {
+            assert_eq!(Cursor::new(text.as_bytes()).double(), Some(value), "{text}");
+        }
+        assert!(Cursor::new(b"nan").double().unwrap().is_nan());
+        assert_eq!((Cursor::new(b"1e999").double(), Cursor::new(b"x").double()), (Some(f64::INFINITY), None));
     }
 
     #[test]

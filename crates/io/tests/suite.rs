@@ -7,3 +7,4 @@ mod gltf_extensions;
 mod malformed;
 mod models;
 mod scene_json;
+mod wild;

@@ -104,6 +104,27 @@ impl Resolver for FolderResolver {
             Err(e) => Err(told(&e)),
         }
     }
+
+    fn in_other_case(&self, path: &str) -> Option<String> {
+        // Follow the path name by name: as it stands where that is there, else the first in order that differs in case alone.
+        let relative = folded(Path::new(path))?;
+        let (mut folder, mut found) = (self.folder.clone(), Vec::new());
+        for component in relative.components() {
+            let wanted = component.as_os_str().to_str()?;
+            let name =
+                if folder.join(wanted).exists() { wanted.to_owned() } else { name_in_other_case(&folder, wanted)? };
+            folder.push(&name);
+            found.push(name);
+        }
+        Some(found.join("/")).filter(|found| found != path)
+    }
+}
+
+/// The first name in `folder`, in order, that differs from `wanted` in case alone.
+fn name_in_other_case(folder: &Path, wanted: &str) -> Option<String> {
+    let lower = wanted.to_lowercase();
+    let names = fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    names.filter(|name| name.to_lowercase() == lower).min()
 }
 
 /// Everything that `file` holds; `None` if that is more than `limit` bytes.
@@ -253,6 +274,20 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("vitral-files-{name}-{}", std::process::id()));
         fs::create_dir_all(folder.join("model/textures")).unwrap();
         folder
+    }
+
+    #[test]
+    fn names_in_other_case_are_found_in_order() {
+        let folder = folder("case");
+        for name in ["textures/Wood.PNG", "b.MTL", "B.mtl"] {
+            fs::write(folder.join("model").join(name), name).unwrap();
+        }
+        let resolver = FolderResolver::new(folder.join("model"), false, 100);
+        let other = |path: &str| resolver.in_other_case(path);
+        assert_eq!(other("TEXTURES/wood.png").as_deref(), Some("textures/Wood.PNG"));
+        assert_eq!(other("b.mtl").as_deref(), Some("B.mtl"), "the first in order");
+        assert_eq!([other("none.png"), other("../model/b.mtl"), other("textures/Wood.PNG")], [None, None, None]);
+        fs::remove_dir_all(folder).unwrap();
     }
 
     #[test]

@@ -4,6 +4,7 @@ use crate::Error;
 use crate::names::{self, list};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use vitral_frame::Texture;
 use vitral_light::{AlphaMode, Material, Reflectance, Transmission};
 use vitral_scene::Scene;
 
@@ -59,6 +60,9 @@ enum Failure {
     Form,
 }
 
+/// The property that takes away the holes which the alpha of a texture makes, and its meaning. It needs the scene's textures.
+const TEXTURE_ALPHA: (&str, &str) = ("texture-alpha", "ignore: the base texture's alpha counts for nothing");
+
 /// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` or a name in sRGB.
 const PROPERTIES: [(&str, &str, Setter); 23] = [
     ("color", "diffuse and ambient, or base colour", set_color),
@@ -92,7 +96,7 @@ const PROPERTIES: [(&str, &str, Setter); 23] = [
 
 /// Name and meaning of every property that can be changed.
 pub fn material_properties() -> impl Iterator<Item = (&'static str, &'static str)> {
-    PROPERTIES.iter().map(|(name, meaning, _)| (*name, *meaning))
+    PROPERTIES.iter().map(|(name, meaning, _)| (*name, *meaning)).chain([TEXTURE_ALPHA])
 }
 
 /// Sets `property` of the materials called `name` (all with `*`; `default` stands for surfaces without material) to
@@ -101,8 +105,11 @@ pub fn material_properties() -> impl Iterator<Item = (&'static str, &'static str
 /// # Errors
 /// [`Error::Usage`] for a name, property or value that is not there; the hint lists what there is.
 pub fn override_material(scene: &mut Scene, name: &str, property: &str, value: &str) -> Result<(), Error> {
+    if property == TEXTURE_ALPHA.0 {
+        return ignore_texture_alpha(scene, name, value);
+    }
     let Some((_, meaning, set)) = PROPERTIES.iter().find(|(p, ..)| *p == property) else {
-        let hint = format!("there are {}", list(PROPERTIES.iter().map(|(p, ..)| *p)));
+        let hint = format!("there are {}", list(material_properties().map(|(p, _)| p)));
         return Err(Error::usage(format!("materials have no property `{property}`"), hint));
     };
     let found = find(scene, name)?;
@@ -125,6 +132,30 @@ pub fn override_material(scene: &mut Scene, name: &str, property: &str, value: &
             Reflectance::MetallicRoughness { .. } => "it has color, base-color, metallic, roughness",
         };
         return Err(Error::usage(format!("material `{name}` has no `{property}`"), hint));
+    }
+    Ok(())
+}
+
+/// Gives materials base textures without alpha. What is opaque apart from its texture is opaque then.
+fn ignore_texture_alpha(scene: &mut Scene, name: &str, value: &str) -> Result<(), Error> {
+    if value != "ignore" {
+        let what = format!("`{name}.texture-alpha={value}`: ignore is required");
+        return Err(Error::usage(what, format!("{}: {}", TEXTURE_ALPHA.0, TEXTURE_ALPHA.1)));
+    }
+    for index in find(scene, name)? {
+        let material = &mut scene.materials[index];
+        if material.opacity == 1.0 && material.opacity_texture.is_none() {
+            material.alpha_mode = AlphaMode::Opaque;
+        }
+        let Some(base) = &mut material.base_texture else { continue };
+        let Some(texture) = scene.textures.get(base.texture as usize).filter(|texture| !texture.levels.is_empty())
+        else {
+            continue;
+        };
+        let opaque = texture.levels[0].map(|&[r, g, b, _]| [r, g, b, 255]);
+        base.texture = scene.textures.len() as u32;
+        let texture = Texture::new(texture.name.clone(), opaque, texture.encoding);
+        scene.textures.push(Arc::new(texture));
     }
     Ok(())
 }
@@ -331,6 +362,22 @@ mod tests {
         assert!((grey(false) - 0.2159).abs() < 1e-4 && (grey(true) - 128.0 / 255.0).abs() < 1e-6);
         let other = MaterialOverride::parse("ball.transmission=translucent").unwrap();
         assert_eq!(other.raw(), other);
+    }
+
+    #[test]
+    fn holes_of_a_texture_can_be_closed() {
+        let mut scene = load_builtin("sphere").unwrap();
+        let leaf = vitral_frame::Plane::from_rows(2, 1, vec![[9, 8, 7, 0], [1, 2, 3, 255]]).unwrap();
+        scene.textures.push(Arc::new(Texture::new("leaf".to_owned(), leaf, vitral_frame::Encoding::Srgb)));
+        let number = scene.textures.len() as u32 - 1;
+        scene.materials[0].base_texture = Some(vitral_light::TextureRef::new(number));
+        scene.materials[0].alpha_mode = AlphaMode::Mask { cutoff: 0.5 };
+        assert!(change(&mut scene, "ball.texture-alpha=cut").unwrap_err().to_string().contains("ignore is required"));
+        change(&mut scene, "ball.texture-alpha=ignore").unwrap();
+        let ball = &scene.materials[0];
+        assert_eq!(ball.alpha_mode, AlphaMode::Opaque);
+        let texture = &scene.textures[ball.base_texture.unwrap().texture as usize];
+        assert_eq!(texture.levels[0].data(), [[9, 8, 7, 255], [1, 2, 3, 255]]);
     }
 
     #[test]

@@ -92,6 +92,10 @@ impl Resolver for Noted {
         }
         Ok(bytes)
     }
+
+    fn in_other_case(&self, path: &str) -> Option<String> {
+        self.folder.in_other_case(path)
+    }
 }
 
 /// The error of a file that cannot be written.

@@ -3,6 +3,7 @@
 //! Cost: one read of each buffer that is there; nothing is copied out of a GLB.
 
 use super::document::Document;
+use crate::resolve::read_first;
 use crate::uri::{self, Target};
 use crate::{Error, Place, Resolver};
 use gltf::json::Root;
@@ -13,18 +14,23 @@ use std::borrow::Cow;
 /// used: only extensions that are not read have any for it.
 pub(crate) struct Buffers<'a> {
     data: Vec<Option<Cow<'a, [u8]>>>,
+    /// What is odd about the names of their files.
+    pub(crate) warnings: Vec<String>,
 }
 
 impl<'a> Buffers<'a> {
     /// Fetches every buffer.
     pub(crate) fn fetch(document: &Document<'a>, file: &str, resolver: &dyn Resolver) -> Result<Self, Error> {
         let mut data = Vec::with_capacity(document.root.buffers.len());
+        let mut warnings = Vec::new();
         for (i, buffer) in document.root.buffers.iter().enumerate() {
             let place = Place::Json(format!("buffers[{i}]"));
             let bytes = match (&buffer.uri, document.binary) {
                 (Some(uri), _) => {
                     let target = uri::resolve(uri).map_err(|what| Error::malformed(file, place.clone(), what))?;
-                    Cow::Owned(read_target(target, file, resolver)?)
+                    let (bytes, oddity) = read_target(target, file, resolver)?;
+                    warnings.extend(oddity);
+                    Cow::Owned(bytes)
                 }
                 (None, Some(binary)) if i == 0 => Cow::Borrowed(binary),
                 (None, _) => {
@@ -38,7 +44,7 @@ impl<'a> Buffers<'a> {
             }
             data.push(Some(bytes));
         }
-        Ok(Self { data })
+        Ok(Self { data, warnings })
     }
 
     /// Bytes of all buffers together.
@@ -75,15 +81,28 @@ fn compression(view: &View) -> Option<&'static str> {
     ["EXT_meshopt_compression", "KHR_meshopt_compression"].into_iter().find(|name| others.contains_key(*name))
 }
 
-/// The bytes that a URI of a model stands for.
-pub(crate) fn read_target(target: Target, file: &str, resolver: &dyn Resolver) -> Result<Vec<u8>, Error> {
-    match target {
-        Target::Inline(bytes) => Ok(bytes),
-        Target::File(path) => resolver.read(&path).map_err(|why| Error::Missing {
-            file: file.to_owned(),
-            needed: path,
-            why: why.to_string(),
-        }),
+/// The bytes that a URI of a model stands for, and what is odd about the name of the file that has them. A name that is not there
+/// is looked for with `/` between folders, as MTL names are, and then by its last part beside the model.
+pub(crate) fn read_target(
+    target: Target,
+    file: &str,
+    resolver: &dyn Resolver,
+) -> Result<(Vec<u8>, Option<String>), Error> {
+    let path = match target {
+        Target::Inline(bytes) => return Ok((bytes, None)),
+        Target::File(path) => path,
+    };
+    let slashed = path.replace('\\', "/");
+    let bare = slashed.rsplit('/').next().unwrap_or(&slashed).to_owned();
+    let mut names = vec![path.clone(), slashed, bare];
+    names.dedup();
+    match read_first(resolver, &names) {
+        Ok(found) => {
+            let moved = || format!("there is no `{path}`; `{}` is read", found.name);
+            let oddity = found.oddity.or_else(|| (found.name != path).then(moved));
+            Ok((found.bytes, oddity.map(|what| format!("{file}: {what}"))))
+        }
+        Err(why) => Err(Error::Missing { file: file.to_owned(), needed: path, why: why.to_string() }),
     }
 }
 

@@ -22,9 +22,10 @@ pub(crate) const WEBP: &str = "EXT_texture_webp";
 pub(crate) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Extensions that change what is read; a file may require them.
-const SUPPORTED: [&str; 11] = [
+const SUPPORTED: [&str; 12] = [
     WEBP,
     INSTANCING,
+    VISIBILITY,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
@@ -36,6 +37,9 @@ const SUPPORTED: [&str; 11] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];
+
+/// The extension that hides nodes.
+pub(crate) const VISIBILITY: &str = "KHR_node_visibility";
 
 /// Extensions that only change how a surface looks: without them it is seen all the same, so a file that requires one is
 /// shown, with a warning.
@@ -58,6 +62,44 @@ pub(crate) struct Document<'a> {
     pub(crate) binary: Option<&'a [u8]>,
     /// Optional extensions that are not read and the like.
     pub(crate) warnings: Vec<String>,
+    /// Where nodes far from the origin are, in the precision of the text: number, translation.
+    pub(crate) far_nodes: Vec<(usize, [f64; 3])>,
+}
+
+/// Distance from which single precision shows in where a node is: its digits are 1/1024 apart.
+const FAR: f32 = 8192.0;
+
+/// The places of a document's nodes in double precision. The types of the `gltf` crate have single.
+#[derive(Default, serde::Deserialize)]
+#[serde(default)]
+struct Places {
+    nodes: Vec<NodePlace>,
+}
+
+#[derive(Default, serde::Deserialize)]
+#[serde(default)]
+struct NodePlace {
+    translation: Option<[f64; 3]>,
+    matrix: Option<Vec<f64>>,
+}
+
+/// The nodes that are so far from the origin that it matters; the text is read once more if there are any.
+fn far_nodes(root: &Root, text: &[u8]) -> Vec<(usize, [f64; 3])> {
+    let is_far = |node: &json::Node| {
+        let of_matrix = node.matrix.map(|m| [m[12], m[13], m[14]]);
+        let translation = node.translation.or(of_matrix).unwrap_or_default();
+        translation.iter().any(|c| c.is_finite() && c.abs() > FAR)
+    };
+    if !root.nodes.iter().any(is_far) {
+        return Vec::new();
+    }
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let places: Places = serde_json::from_slice(text).unwrap_or_default();
+    let translations = places.nodes.into_iter().enumerate().filter_map(|(n, place)| {
+        let of_matrix = place.matrix.filter(|m| m.len() == 16).map(|m| [m[12], m[13], m[14]]);
+        Some((n, of_matrix.or(place.translation)?))
+    });
+    translations.filter(|(n, _)| root.nodes.get(*n).is_some_and(is_far)).collect()
 }
 
 /// Reads and checks glTF JSON or a GLB container.
@@ -74,7 +116,8 @@ pub(crate) fn parse<'a>(bytes: &'a [u8], file: &str) -> Result<Document<'a>, Err
     }
     let warnings = check_extensions(&root, file)?;
     check_indices(&root, file)?;
-    Ok(Document { root, binary, warnings })
+    let far_nodes = far_nodes(&root, text);
+    Ok(Document { root, binary, warnings, far_nodes })
 }
 
 /// Refuses all versions but 2.x.

@@ -2,13 +2,14 @@
 //!
 //! The way of the data: `document.rs` takes the container apart and checks every index (`untidy.rs` helps it); `buffers.rs` fetches bytes;
 //! `accessor.rs` makes typed arrays of them; `geometry.rs`, `mesh.rs`, `normals.rs` and `deform.rs` make meshes;
-//! `texture.rs` and `material.rs` say what they look like; `node.rs` and `instances.rs` say where they are.
+//! `texture.rs` and `material.rs` say what they look like; `node.rs`, `animation.rs` and `instances.rs` say where they are.
 //!
 //! In:   the file's bytes and a resolver for the files that it names. Out: a [`Scene`].
 //! Cost: linear in the bytes; meshes and images are made on all workers.
 //! Source: [glTF 2.0], and the extensions named in `document.rs`.
 
 mod accessor;
+mod animation;
 mod block;
 mod budget;
 mod buffers;
@@ -47,9 +48,10 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
     }
     let mut document = document::parse(bytes, file)?;
     let mut warnings = std::mem::take(&mut document.warnings);
-    let buffers = Buffers::fetch(&document, file, resolver)?;
+    let mut buffers = Buffers::fetch(&document, file, resolver)?;
+    warnings.append(&mut buffers.warnings);
     let source = Source { root: &document.root, buffers: &buffers, file };
-    let tree = Tree::read(&source, &mut warnings)?;
+    let tree = Tree::read(&source, &document.far_nodes, &mut warnings)?;
 
     // Materials first: they know which images are wanted.
     let mut wanted = texture::Wanted::default();

@@ -1,9 +1,11 @@
-//! The node tree: transforms, which scene is shown, cameras and lights.
+//! The node tree: transforms, which scene is shown, which nodes are hidden, cameras and lights.
 //!
 //! Cost: linear in the number of nodes; nothing recurses, so a deep tree is no danger.
-//! Source: [glTF 2.0], sections 3.5, 3.10; KHR_lights_punctual.
+//! Source: [glTF 2.0], sections 3.5, 3.10; KHR_lights_punctual, KHR_node_visibility.
 
 use super::accessor::Source;
+use super::animation;
+use super::document::VISIBILITY;
 use crate::Error;
 use gltf::json::Node as JsonNode;
 use gltf::json::camera::{Camera as JsonCamera, Type as CameraType};
@@ -30,32 +32,73 @@ pub(crate) struct Tree {
 
 impl Tree {
     /// Checks that the nodes form trees and finds what the scene shows.
-    pub(crate) fn read(source: &Source<'_>, warnings: &mut Vec<String>) -> Result<Self, Error> {
+    /// Nodes that `KHR_node_visibility` hides are left out with all that is below them. `far_nodes` are places in double
+    /// precision.
+    pub(crate) fn read(
+        source: &Source<'_>,
+        far_nodes: &[(usize, [f64; 3])],
+        warnings: &mut Vec<String>,
+    ) -> Result<Self, Error> {
         let nodes = &source.root.nodes;
-        let children: Vec<Vec<usize>> =
+        let mut children: Vec<Vec<usize>> =
             nodes.iter().map(|n| n.children.iter().flatten().map(|c| c.value()).collect()).collect();
         let parents = parents(source, &children)?;
-        let transforms = nodes
+        let mut transforms = nodes
             .iter()
             .enumerate()
             .map(|(i, node)| transform(source, node, i, warnings))
             .collect::<Result<Vec<_>, _>>()?;
+        for &(n, place) in far_nodes {
+            match &mut transforms[n] {
+                NodeTransform::Matrix(matrix) => matrix.w_axis = DVec3::from_array(place).extend(1.0),
+                NodeTransform::Parts { translation, .. } => *translation = DVec3::from_array(place),
+            }
+        }
 
         // Place every node, parents first; whoever is not reached from a node without parent lies on a cycle.
         let order = depth_first(&children, (0..nodes.len()).filter(|&n| parents[n].is_none()));
-        let mut worlds = vec![DMat4::IDENTITY; nodes.len()];
         let mut reached = vec![false; nodes.len()];
-        for &n in &order {
-            worlds[n] = parents[n].map_or(DMat4::IDENTITY, |p| worlds[p]) * transforms[n].matrix();
-            reached[n] = true;
-        }
+        order.iter().for_each(|&n| reached[n] = true);
         if let Some(n) = reached.iter().position(|r| !r) {
             return Err(source.error(format!("nodes[{n}]"), "the node is its own ancestor"));
         }
-        let roots = roots(source, &parents, warnings);
+        let mut worlds = worlds(&order, &parents, &transforms);
+
+        // Show the first animation where nothing can be seen at rest.
+        if !animation::has_extent(source, &worlds)
+            && let Some(moved) = animation::at_start(source, &transforms)
+        {
+            let moved_worlds = self::worlds(&order, &parents, &moved);
+            if animation::has_extent(source, &moved_worlds) {
+                (transforms, worlds) = (moved, moved_worlds);
+                let what = "nothing has any extent at rest; the first animation is shown at time 0";
+                warnings.push(format!("{}: animations[0]: {what}", source.file));
+            }
+        }
+
+        // Find what the scene shows, without what is hidden.
+        let mut roots = roots(source, &parents, warnings);
+        for list in children.iter_mut().chain([&mut roots]) {
+            list.retain(|&n| is_visible(&nodes[n]));
+        }
         let shown = depth_first(&children, roots.iter().copied());
         Ok(Self { shown, roots, children, transforms, worlds })
     }
+}
+
+/// The placement of every node in the world. `order` has parents before their children.
+fn worlds(order: &[usize], parents: &[Option<usize>], transforms: &[NodeTransform]) -> Vec<DMat4> {
+    let mut worlds = vec![DMat4::IDENTITY; transforms.len()];
+    for &n in order {
+        worlds[n] = parents[n].map_or(DMat4::IDENTITY, |p| worlds[p]) * transforms[n].matrix();
+    }
+    worlds
+}
+
+/// Whether the node is not hidden by itself.
+fn is_visible(node: &JsonNode) -> bool {
+    let visible = node.extensions.as_ref().and_then(|e| e.others.get(VISIBILITY)?.get("visible")?.as_bool());
+    visible.unwrap_or(true)
 }
 
 /// The parent of each node; two parents are an error.

@@ -39,7 +39,7 @@ pub(crate) struct Wanted {
 }
 
 /// A texture, and what is odd about its image.
-pub(crate) type Loaded = (Texture, Option<String>);
+pub(crate) type Loaded = (Texture, Vec<String>);
 
 /// How a material's property refers to a texture.
 pub(crate) struct Reference<'a> {
@@ -133,13 +133,16 @@ fn load_image(source: &Source<'_>, index: usize, meaning: Meaning, resolver: &dy
     let entry = &source.root.images[index];
     let path = format!("images[{index}]");
     let mut name = name_or(&entry.name, "image", index);
+    let mut odd_name = None;
     let (plane, odd) = match (&entry.uri, entry.buffer_view) {
         (Some(text), _) => {
             let target = uri::resolve(text).map_err(|what| source.error(path, what))?;
             if let Target::File(file) = &target {
                 name.clone_from(file);
             }
-            image::decode_texture(&read_target(target, source.file, resolver)?, &format!("{}: {name}", source.file))?
+            let (bytes, oddity) = read_target(target, source.file, resolver)?;
+            odd_name = oddity;
+            image::decode_texture(&bytes, &format!("{}: {name}", source.file))?
         }
         (None, Some(view)) => {
             let bytes = source.buffers.view(source.root, view.value(), source.file)?;
@@ -153,7 +156,7 @@ fn load_image(source: &Source<'_>, index: usize, meaning: Meaning, resolver: &dy
         Meaning::Data => (plane, Encoding::Linear),
         Meaning::Transmission(factor) => (plane.map(|&[r, ..]| opaque_part(r, factor)), Encoding::Linear),
     };
-    Ok((Texture::new(name, plane, encoding), odd))
+    Ok((Texture::new(name, plane, encoding), odd_name.into_iter().chain(odd).collect()))
 }
 
 /// The texel of an opacity texture for one that transmits `red` of 255, times `factor`.

@@ -1,12 +1,16 @@
 //! One piece of an OBJ file: its lines, read without knowing the lines before.
+//!
+//! ZBrush writes colours of vertices as comments, `#MRGB` and eight hexadecimal digits for each vertex in order: a mask, red,
+//! green, blue.
 
 use crate::Place;
+use crate::far;
 use crate::format::obj_statement::Statement;
 use crate::text::{Cursor, is_blank};
 use crate::warnings::Warnings;
 use std::ops::Range;
 
-/// A corner without a texture coordinate or normal.
+/// A corner without a texture coordinate or normal, or with the index of a vertex that no file can have.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// Set in an index that counts from the piece's beginning (`index - RELATIVE - ORIGIN`), clear in an absolute one.
@@ -81,6 +85,49 @@ impl FaceList {
         self.v.len() - 2 * self.count
     }
 
+    /// Takes away the faces with a vertex that is `bad`. Gives for each face whether it stays; `None` if all do.
+    pub(super) fn leave_out_faces(&mut self, bad: impl Fn(u32) -> bool) -> Option<Vec<bool>> {
+        if !self.v.iter().any(|&v| bad(v)) {
+            return None;
+        }
+        let old = std::mem::take(self);
+        (self.vt_like_v, self.vn_like_v) = (old.vt_like_v, old.vn_like_v);
+        let mut stays = Vec::with_capacity(old.count);
+        let mut start = 0;
+        for f in 0..old.count {
+            let size = old.sizes.get(f).map_or(3, |&size| size as usize);
+            let corners = start..start + size;
+            start += size;
+            let good = !old.v[corners.clone()].iter().any(|&v| bad(v));
+            stays.push(good);
+            if !good {
+                continue;
+            }
+
+            // Copy what the corners have.
+            let normals = old.vn.get(corners.clone());
+            self.count += 1;
+            self.bare += usize::from(normals.is_none_or(|vn| vn.contains(&NONE)));
+            self.vn.extend(normals.unwrap_or_default());
+            self.vt.extend(old.vt.get(corners.clone()).unwrap_or_default());
+            self.v.extend(&old.v[corners]);
+            if !old.sizes.is_empty() {
+                self.sizes.push(size as u32);
+            }
+        }
+
+        // Lists that say nothing are empty.
+        if self.sizes.iter().all(|&size| size == 3) {
+            self.sizes.clear();
+        }
+        for list in [&mut self.vt, &mut self.vn] {
+            if list.iter().all(|&index| index == NONE) {
+                list.clear();
+            }
+        }
+        Some(stays)
+    }
+
     /// Takes the texture coordinates that are `bad` away from their corners; tells of how many.
     pub(super) fn leave_out_uvs(&mut self, bad: impl Fn(u32) -> bool) -> usize {
         let count = leave_out(&mut self.vt, bad);
@@ -127,6 +174,10 @@ pub(super) struct Chunk {
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) normals: Vec<[f32; 3]>,
     pub(super) faces: FaceList,
+    /// Colours of vertices as ZBrush writes them, in order.
+    pub(super) zbrush_colors: Vec<[u8; 3]>,
+    /// What is wrong with the first index of a vertex that no file can have, and its line.
+    pub(super) impossible: Option<(u64, String)>,
     /// Free line segments, packed, with the line they are on.
     pub(super) lines: Vec<([u32; 2], u64)>,
     /// Free points, packed, with the line they are on.
@@ -156,9 +207,51 @@ impl Chunk {
         chunk
     }
 
+    /// Takes away faces, free line segments and free points with a vertex that is `bad`; tells of how many.
+    pub(super) fn leave_out(&mut self, bad: impl Fn(u32) -> bool) -> [usize; 3] {
+        let faces = self.faces.leave_out_faces(&bad).unwrap_or_default();
+        let lines: Vec<bool> = self.lines.iter().map(|(ends, _)| !ends.iter().any(|&end| bad(end))).collect();
+        let points: Vec<bool> = self.points.iter().map(|&(point, _)| !bad(point)).collect();
+        let mut keep = lines.iter();
+        self.lines.retain(|_| keep.next() == Some(&true));
+        let mut keep = points.iter();
+        self.points.retain(|_| keep.next() == Some(&true));
+
+        // Count anew what comes before each event.
+        let left = |stays: &[bool], before: u32| {
+            let gone = stays.iter().take(before as usize).filter(|stays| !**stays).count();
+            before - gone as u32
+        };
+        let mut triangles = vec![0u32];
+        triangles.extend((0..self.faces.count).scan(0, |sum, f| {
+            *sum += self.faces.sizes.get(f).map_or(1, |&size| size - 2);
+            Some(*sum)
+        }));
+        for event in &mut self.events {
+            event.face = left(&faces, event.face);
+            event.triangle = triangles[event.face as usize];
+            event.free_line = left(&lines, event.free_line);
+            event.free_point = left(&points, event.free_point);
+        }
+        [faces, lines, points].map(|stays| stays.iter().filter(|stays| !**stays).count())
+    }
+
     /// The line within the piece, from 1, of the face that has corner number `corner` of the piece.
     pub(super) fn line_of_corner(text: &[u8], corner: usize) -> u64 {
         Self::default().read_until(text, corner)
+    }
+
+    /// Reads the positions once more, in double precision, less an offset. They were found sound before.
+    pub(super) fn read_positions(&mut self, text: &[u8], offset: [f64; 3]) {
+        let mut cursor = Cursor::new(text);
+        self.positions.clear();
+        while cursor.next_content() {
+            if Statement::of(cursor.word()) == Statement::Position {
+                let position = [0; 3].map(|_| cursor.double().unwrap_or(f64::NAN));
+                self.positions.push(far::moved(position, offset));
+            }
+            cursor.next_line();
+        }
     }
 
     /// Reads lines until there are more than `corners` face corners; gives the line reached.
@@ -170,7 +263,8 @@ impl Chunk {
             let line = cursor.line();
             match cursor.peek() {
                 b'\n' if cursor.at_end() => break,
-                b'\n' | b'#' => {}
+                b'\n' => {}
+                b'#' => self.comment(&mut cursor),
                 _ => self.statement(text, &mut cursor),
             }
             if cursor.take_ill_formed() {
@@ -184,6 +278,18 @@ impl Chunk {
         }
         self.line_count = cursor.line() - 1;
         cursor.line()
+    }
+
+    /// Takes the colours out of a comment of ZBrush's.
+    fn comment(&mut self, cursor: &mut Cursor) {
+        let mut ahead = *cursor;
+        if ahead.word() != b"#MRGB" {
+            return;
+        }
+        let (digits, _) = ahead.word().as_chunks::<8>();
+        let channel = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok();
+        let color = |d: &[u8; 8]| Some([channel(&d[2..4])?, channel(&d[4..6])?, channel(&d[6..8])?]);
+        self.zbrush_colors.extend(digits.iter().map_while(color));
     }
 
     fn statement(&mut self, text: &[u8], cursor: &mut Cursor) {
@@ -321,7 +427,7 @@ impl Chunk {
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     #[inline]
     fn corner(&mut self, cursor: &mut Cursor) -> Result<[u32; 3], String> {
-        let v = self.index(cursor, self.positions.len(), "vertex")?;
+        let v = self.vertex_index(cursor)?;
         let (mut vt, mut vn) = (NONE, NONE);
         if cursor.peek() == b'/' {
             cursor.advance(1);
@@ -350,11 +456,16 @@ impl Chunk {
         Ok(index)
     }
 
+    /// The index of a vertex: [`NONE`] for one that no file can have.
     #[inline]
-    fn index(&mut self, cursor: &mut Cursor, count: usize, what: &str) -> Result<u32, String> {
+    fn vertex_index(&mut self, cursor: &mut Cursor) -> Result<u32, String> {
         let start = cursor.offset();
-        let index = self.written_index(cursor, what)?;
-        pack(index, count).ok_or_else(|| no_index(index, cursor.word_at(start), what))
+        let index = self.written_index(cursor, "vertex")?;
+        Ok(pack(index, self.positions.len()).unwrap_or_else(|| {
+            let told = || (cursor.line(), no_index(index, cursor.word_at(start), "vertex"));
+            self.impossible.get_or_insert_with(told);
+            NONE
+        }))
     }
 
     /// An index of what a corner can do without: [`NONE`] with a warning for one that no file can have.

@@ -2,8 +2,9 @@
 
 use super::chunk::{Change, Chunk};
 use crate::mtl::{self, MtlMaterial};
+use crate::resolve::read_first;
 use crate::text::{self, without_comment};
-use crate::textures::Requests;
+use crate::textures::{Alpha, Loaded, Requests};
 use crate::warnings::Warnings;
 use crate::{Place, Resolver};
 use std::borrow::Cow;
@@ -11,7 +12,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_frame::Texture;
-use vitral_light::Material;
+use vitral_light::{AlphaMode, Material};
 use vitral_scene::{FreePart, Mesh, Part};
 
 /// A stretch of triangles with one name and one material.
@@ -91,10 +92,11 @@ impl<'a> Events<'a> {
         }
     }
 
-    /// Gives the mesh its parts and smoothing groups. `index`: the scene's material for each one used.
-    pub(super) fn apply(&self, mesh: &mut Mesh, index: &[Option<u32>]) {
+    /// Gives the mesh its parts and smoothing groups.
+    pub(super) fn apply(&self, mesh: &mut Mesh, library: &Library) {
         let total = mesh.triangles.len() as u32;
-        let material = |m: Option<usize>| m.and_then(|m| index[m]);
+        let index = &library.index;
+        let material = |m: Option<usize>| m.map_or(library.single, |m| index[m]);
         let ends = self.runs.iter().skip(1).map(|r| r.first_triangle).chain([total]);
         let parts = self.runs.iter().zip(ends).map(|(run, end)| Part {
             name: run.name.clone().into_owned(),
@@ -106,6 +108,10 @@ impl<'a> Events<'a> {
         for (&(first, chosen), end) in self.free.iter().zip(ends) {
             FreePart::extend(&mut mesh.line_parts, first[0]..end[0], index[chosen]);
             FreePart::extend(&mut mesh.point_parts, first[1]..end[1], index[chosen]);
+        }
+        if library.single.is_some() {
+            FreePart::extend(&mut mesh.line_parts, 0..self.free_count[0], library.single);
+            FreePart::extend(&mut mesh.point_parts, 0..self.free_count[1], library.single);
         }
 
         // Each group reaches to the next statement.
@@ -127,6 +133,8 @@ pub(super) struct Library {
     pub(super) textures: Vec<Arc<Texture>>,
     /// For each used material, its index in `materials`.
     pub(super) index: Vec<Option<u32>>,
+    /// The material of a file that chooses none and whose library has a single one.
+    pub(super) single: Option<u32>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -190,10 +198,17 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
         }
     }
 
+    if events.used.is_empty()
+        && let [(source, material)] = known.materials.as_slice()
+    {
+        library.materials.push(Material { name: material.name.clone(), ..material.build(source, &mut requests) });
+        library.single = Some(0);
+    }
+
     // Replace requests by textures; a material does without one that cannot be had.
     let loaded = requests.load(resolver, workers);
     for material in &mut library.materials {
-        replace_textures(material, &loaded.index);
+        take_textures(material, &loaded);
     }
     library.textures = loaded.textures;
     library.warnings.splice(0..0, warnings.into_messages(file));
@@ -201,16 +216,21 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
     library
 }
 
-fn replace_textures(material: &mut Material, index: &[Option<u32>]) {
-    for slot in [
-        &mut material.base_texture,
-        &mut material.specular_texture,
-        &mut material.emission_texture,
-        &mut material.opacity_texture,
-        &mut material.normal_texture,
-    ] {
+/// Replaces the requests in a material by textures.
+fn take_textures(material: &mut Material, loaded: &Loaded) {
+    // The alpha of a texture makes holes in a surface that is opaque otherwise.
+    if material.alpha_mode == AlphaMode::Opaque
+        && let Some(base) = &material.base_texture
+    {
+        material.alpha_mode = match loaded.alpha[base.texture as usize] {
+            Alpha::None => AlphaMode::Opaque,
+            Alpha::Hard => AlphaMode::Mask { cutoff: 0.5 },
+            Alpha::Soft => AlphaMode::Blend,
+        };
+    }
+    for slot in material.texture_slots_mut() {
         if let Some(texture) = slot {
-            match index[texture.texture as usize] {
+            match loaded.index[texture.texture as usize] {
                 Some(found) => texture.texture = found,
                 None => *slot = None,
             }
@@ -219,49 +239,55 @@ fn replace_textures(material: &mut Material, index: &[Option<u32>]) {
 }
 
 /// The libraries of one `mtllib` line: the whole rest of the line as one name, else this without a comment, else each of its
-/// words, else what is called as the last part of the path, which may be that of another machine.
+/// words, else what is called as the last part of the path, which may be that of another machine. What is in other case
+/// comes last.
 fn read_libraries(line: u64, names: &str, resolver: &dyn Resolver, warnings: &mut Warnings) -> Vec<(String, Vec<u8>)> {
     let plain = without_comment(names);
-    if plain.len() < names.len() {
-        let whole = mtl::file_name(names);
-        if let Ok(bytes) = resolver.read(&whole) {
-            return vec![(whole, bytes)];
+    let whole = &mtl::file_name(plain);
+    let mut wholes = vec![mtl::file_name(names), whole.clone()];
+    wholes.dedup();
+    for name in wholes {
+        if let Ok(bytes) = resolver.read(&name) {
+            return vec![(name, bytes)];
         }
     }
-    let whole = &mtl::file_name(plain);
-    let mut missing = |name: &str, why: &crate::ResolveError| {
-        warnings.note("", Place::Line(line), || format!("material library `{name}` is left out: {why}"));
-    };
-    let why = match resolver.read(whole) {
-        Ok(bytes) => return vec![(whole.to_owned(), bytes)],
-        Err(why) => why,
-    };
+
+    // Try the words, where there are several.
     let words = words(plain);
     let mut found = Vec::new();
     let mut failures = Vec::new();
-    if words.len() > 1 {
-        for word in words {
-            match resolver.read(&word) {
-                Ok(bytes) => found.push((word, bytes)),
-                Err(why) => failures.push((word, why)),
-            }
+    for word in words.into_iter().filter(|word| word != whole) {
+        match read_first(resolver, std::slice::from_ref(&word)) {
+            Ok(file) => found.push(file),
+            Err(why) => failures.push((word, why)),
         }
     }
 
-    if found.is_empty()
-        && let Some((_, bare)) = whole.rsplit_once('/')
-        && let Ok(bytes) = resolver.read(bare)
-    {
-        return vec![(bare.to_owned(), bytes)];
+    // Else try the last part of the path.
+    let mut why = None;
+    if found.is_empty() {
+        let bare = whole.rsplit('/').next().unwrap_or(whole);
+        match read_first(resolver, &[whole.clone(), bare.to_owned()]) {
+            Ok(file) => {
+                found.push(file);
+                failures.clear();
+            }
+            Err(e) => why = Some(e),
+        }
     }
 
     // Tell what is missing: the words, where some of them were found or quotes part them, else the whole.
-    if found.is_empty() && !whole.contains('"') {
-        missing(whole, &why);
-    } else {
-        failures.iter().for_each(|(word, why)| missing(word, why));
+    let mut missing = |name: &str, why: &crate::ResolveError| {
+        warnings.note("", Place::Line(line), || format!("material library `{name}` is left out: {why}"));
+    };
+    match &why {
+        Some(why) if !whole.contains('"') => missing(whole, why),
+        _ => failures.iter().for_each(|(word, why)| missing(word, why)),
     }
-    found
+    for oddity in found.iter_mut().filter_map(|file| file.oddity.take()) {
+        warnings.note("", Place::Line(line), || oddity);
+    }
+    found.into_iter().map(|file| (file.name, file.bytes)).collect()
 }
 
 /// The names on a line; a blank between quotes or behind `\` belongs to a name.

@@ -1,11 +1,12 @@
 //! Puts the pieces of an OBJ file together: bases for the indices, one array of each kind, triangles.
 
 use super::chunk::{Chunk, FaceList, NONE, unpack};
+use crate::color_range::ColorRange;
 use crate::triangulate::triangulate;
 use crate::warnings::Warnings;
 use crate::{Error, Place};
 use vitral_exec::Workers;
-use vitral_math::color::linear_from_srgb;
+use vitral_math::color::{linear_from_srgb, linear_from_srgb_table};
 use vitral_scene::{Attribute, Corners, Faces, Mesh};
 
 /// How many values of each kind come before a piece.
@@ -76,7 +77,7 @@ impl Totals {
 
 /// Whether an index of a piece before which `base` values were read leads nowhere, of `total` in the file.
 fn is_bad(packed: u32, base: usize, total: usize) -> bool {
-    !(0..total as i64).contains(&unpack(packed, base as u32))
+    packed == NONE || !(0..total as i64).contains(&unpack(packed, base as u32))
 }
 
 /// What is wrong with an index that leads nowhere, of `total` things called `what`.
@@ -88,27 +89,62 @@ fn nowhere(index: i64, total: usize, what: &str) -> String {
     }
 }
 
-/// The first index of a vertex in the file that leads nowhere, as an error.
-pub(super) fn first_bad_index(
-    chunks: &[Chunk],
+/// Takes away faces, free lines and free points with a vertex that leads nowhere, with a warning; true if there were any, so
+/// that the totals change.
+///
+/// # Errors
+/// The first of them, if no face, line or point of the file stays.
+pub(super) fn leave_out_bad_elements(
+    chunks: &mut [Chunk],
     totals: &Totals,
     (pieces, first_lines): (&[&[u8]], &[u64]),
     file: &str,
-    workers: &Workers,
-) -> Option<Error> {
+    (warnings, workers): (&mut Warnings, &Workers),
+) -> Result<bool, Error> {
     let total = totals.sum().v;
-    let of_chunks = workers.map(chunks.len(), |i| {
-        let (chunk, base) = (&chunks[i], totals.bases[i].v);
-        let in_faces = chunk.faces.v.iter().position(|&p| is_bad(p, base, total));
-        let in_faces = in_faces.map(|c| (Chunk::line_of_corner(pieces[i], c), chunk.faces.v[c]));
-        let ends =
-            chunk.lines.iter().flat_map(|(ends, line)| ends.map(|e| (e, *line))).chain(chunk.points.iter().copied());
-        let in_free = ends.filter(|(packed, _)| is_bad(*packed, base, total)).map(|(packed, line)| (line, packed));
-        let (line, packed) = in_faces.into_iter().chain(in_free).min_by_key(|found| found.0)?;
-        let what = nowhere(unpack(packed, base as u32), total, "vertices");
-        Some(Error::malformed(file, Place::Line(line + first_lines[i]), what))
+    let first = workers.map(chunks.len(), |i| first_bad_vertex(&chunks[i], totals.bases[i].v, total, pieces[i]));
+    let Some((line, what)) = first.iter().zip(first_lines).find_map(|(first, before)| {
+        let (line, what) = first.as_ref()?;
+        Some((line + before, what.clone()))
+    }) else {
+        return Ok(false);
+    };
+
+    // Take away what is bad, piece by piece.
+    let jobs: Vec<_> = chunks.iter_mut().zip(&totals.bases).zip(&first).filter(|(_, first)| first.is_some()).collect();
+    let counts = std::sync::Mutex::new([0usize; 3]);
+    workers.for_each(jobs, |((chunk, base), _)| {
+        let gone = chunk.leave_out(|packed| is_bad(packed, base.v, total));
+        let mut counts = counts.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        (0..3).for_each(|kind| counts[kind] += gone[kind]);
     });
-    of_chunks.into_iter().flatten().next()
+    let counts = counts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+
+    // Refuse a file of which nothing is left.
+    let place = Place::Line(line);
+    let none_left = |c: &Chunk| c.faces.count == 0 && c.lines.is_empty() && c.points.is_empty();
+    if chunks.iter().all(none_left) {
+        return Err(Error::malformed(file, place, what));
+    }
+    let kinds = ["face", "line", "point"].iter().zip(counts).filter(|(_, count)| *count > 0);
+    let list = kinds.map(|(kind, n)| format!("{n} {kind}{}", if n == 1 { "" } else { "s" })).collect::<Vec<_>>();
+    let verb = if counts.iter().sum::<usize>() == 1 { "is" } else { "are" };
+    warnings
+        .note("", place, || format!("{what}; {} with vertices that are not there {verb} left out", list.join(", ")));
+    Ok(true)
+}
+
+/// The first index of a vertex in a piece that leads nowhere: its line within the piece, and what is wrong with it.
+fn first_bad_vertex(chunk: &Chunk, base: usize, total: usize, text: &[u8]) -> Option<(u64, String)> {
+    let in_faces = chunk.faces.v.iter().position(|&p| is_bad(p, base, total));
+    let in_faces = in_faces.map(|c| (Chunk::line_of_corner(text, c), chunk.faces.v[c]));
+    let ends = chunk.lines.iter().flat_map(|(ends, line)| ends.map(|e| (e, *line))).chain(chunk.points.iter().copied());
+    let in_free = ends.filter(|(packed, _)| is_bad(*packed, base, total)).map(|(packed, line)| (line, packed));
+    let (line, packed) = in_faces.into_iter().chain(in_free).min_by_key(|found| found.0)?;
+    match &chunk.impossible {
+        Some((_, what)) if packed == NONE => Some((line, what.clone())),
+        _ => Some((line, nowhere(unpack(packed, base as u32), total, "vertices"))),
+    }
 }
 
 /// Takes texture coordinates and normals that lead nowhere away from their corners, with a warning; true if there were any, so
@@ -172,7 +208,8 @@ struct FaceArrays {
 /// Makes the mesh. All indices must have been checked.
 pub(super) fn stitch(mut chunks: Vec<Chunk>, totals: &Totals, warnings: &mut Warnings, workers: &Workers) -> Mesh {
     let sum = totals.sum();
-    let colors = totals.has_colors.then(|| linear_colors(&mut chunks, totals, warnings, workers));
+    let zbrush = zbrush_colors(&chunks, totals, warnings);
+    let colors = totals.has_colors.then(|| linear_colors(&mut chunks, totals, warnings, workers)).or(zbrush);
     let positions = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.positions)), sum.v, workers);
     let mut uvs = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.uvs)), sum.vt, workers);
     let mut normals = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.normals)), sum.vn, workers);
@@ -195,8 +232,8 @@ pub(super) fn stitch(mut chunks: Vec<Chunk>, totals: &Totals, warnings: &mut War
         uvs: if totals.has_uvs { vec![Attribute { values: uvs, corners: uv_corners }] } else { Vec::new() },
         normals: (totals.has_normals || cloud_normals)
             .then_some(Attribute { values: normals, corners: normal_corners }),
+        colors_from_srgb: colors.is_some(),
         colors: colors.map(Attribute::per_vertex),
-        colors_from_srgb: totals.has_colors,
         lines,
         points: if no_elements { (0..sum.v as u32).collect() } else { points },
         positions,
@@ -279,10 +316,11 @@ where
 
 /// Vertex colours as linear RGBA; vertices without a colour are white.
 fn linear_colors(chunks: &mut [Chunk], totals: &Totals, warnings: &mut Warnings, workers: &Workers) -> Vec<[f32; 4]> {
-    let largest = chunks.iter().flat_map(|c| c.colors.as_flattened()).fold(0.0f32, |m, &c| m.max(c));
-    let scale = if largest > 1.0 { 255.0 } else { 1.0 };
-    if largest > 1.0 {
-        warnings.note("", Place::File, || "vertex colours exceed 1 and are read as 0 to 255".to_owned());
+    let of_chunks = workers.map(chunks.len(), |i| ColorRange::of(chunks[i].colors.as_flattened().iter().copied()));
+    let range = of_chunks.into_iter().fold(ColorRange::default(), ColorRange::union);
+    let scale = range.scale();
+    if let Some(what) = range.oddity("vertex colours") {
+        warnings.note("", Place::File, || what);
     }
     let mut colors = vec![[1.0f32; 4]; totals.sum().v];
     let mut rest = colors.as_mut_slice();
@@ -296,6 +334,25 @@ fn linear_colors(chunks: &mut [Chunk], totals: &Totals, warnings: &mut Warnings,
         }
     });
     colors
+}
+
+/// The vertex colours that ZBrush writes as comments, if there is one for each vertex.
+fn zbrush_colors(chunks: &[Chunk], totals: &Totals, warnings: &mut Warnings) -> Option<Vec<[f32; 4]>> {
+    let count: usize = chunks.iter().map(|c| c.zbrush_colors.len()).sum();
+    if count == 0 {
+        return None;
+    }
+    if count != totals.sum().v || totals.has_colors {
+        let what = || format!("{count} colours (#MRGB) for {} vertices are not used", totals.sum().v);
+        warnings.note("", Place::File, what);
+        return None;
+    }
+    let table = linear_from_srgb_table();
+    let linear = |rgb: &[u8; 3]| {
+        let [r, g, b] = rgb.map(|c| table[usize::from(c)]);
+        [r, g, b, 1.0]
+    };
+    Some(chunks.iter().flat_map(|c| &c.zbrush_colors).map(linear).collect())
 }
 
 impl Job<'_> {

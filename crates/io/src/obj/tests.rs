@@ -95,6 +95,9 @@ fn vertex_colours_are_linear() {
     let bytes = read("v 0 0 0 255 0 0\nv 1 0 0 0 255 0\nv 0 1 0 0 0 255\nf 1 2 3");
     assert_eq!(bytes.meshes[0].colors.as_ref().unwrap().values[1], [0.0, 1.0, 0.0, 1.0]);
     assert_eq!(bytes.warnings, ["t.obj: vertex colours exceed 1 and are read as 0 to 255"]);
+    let above = read("v 0 0 0 1.000001 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3");
+    assert_eq!(above.meshes[0].colors.as_ref().unwrap().values[0], [1.0, 0.0, 0.0, 1.0]);
+    assert_eq!(above.warnings, ["t.obj: vertex colours exceed 1 and are clamped"]);
 }
 
 #[test]
@@ -152,13 +155,33 @@ fn attributes_that_lead_nowhere_are_left_out() {
 }
 
 #[test]
-fn indices_that_lead_nowhere_are_errors() {
+fn elements_with_vertices_that_are_not_there_are_left_out() {
+    let text = format!(
+        "{SQUARE}vt 0 0\nvn 0 0 1\ng a\nf 1 2 3\ng b\nf 1/1/1 2/1/1 9/1/1\nf 1 2 3 4\ng c\nf 1 2 0\ns 1\nf 2 3 4\nl 1 2 7 3\np -9 4\n"
+    );
+    for piece in [1, 60, PIECE] {
+        let s = load_in_pieces(text.as_bytes(), "t.obj", &NoFiles, &Workers::single(), piece).unwrap();
+        let m = &s.meshes[0];
+        m.check().unwrap();
+        let parts: Vec<_> = m.parts.iter().map(|p| (p.name.as_str(), p.triangles.clone())).collect();
+        assert_eq!(parts, [("a", 0..1), ("b", 1..3), ("c", 3..4)]);
+        assert_eq!((&m.smoothing_groups, m.uvs.len(), m.normals.is_none()), (&Some(vec![0, 0, 1]), 0, true));
+        assert_eq!((&m.lines, &m.points), (&vec![[0, 1]], &vec![3]));
+        let told = "2 faces, 2 lines, 1 point with vertices that are not there are left out";
+        assert_eq!(s.warnings, [format!("t.obj: line 10: index 9, the file has 4 vertices; {told}")]);
+    }
+    let one = read(&format!("{SQUARE}f 0 1 2\nf 1 2 3"));
+    assert!(one.warnings[0].ends_with("; 1 face with vertices that are not there is left out"), "{:?}", one.warnings);
+}
+
+#[test]
+fn files_without_a_sound_element_are_refused() {
     assert_eq!(refusal(&format!("{SQUARE}\nf 1 2 5")), "t.obj: line 6: index 5, the file has 4 vertices");
     assert!(refusal(&format!("{SQUARE}f 1 2 -5")).starts_with("t.obj: line 5: the index counts back 1 vertices"));
     assert!(refusal(&format!("{SQUARE}f 1 2 0")).starts_with("t.obj: line 5: vertex index 0: indices begin with 1"));
-    assert_eq!(refusal(&format!("{SQUARE}f 1 2 9\nf 1 x 2")), "t.obj: line 5: index 9, the file has 4 vertices");
+    assert_eq!(refusal(&format!("{SQUARE}f 1 2 9\nf 1 x 2")), "t.obj: line 6: `x` is not a vertex index");
     assert_eq!(refusal(&format!("{SQUARE}f 1 x 2\nf 1 2 9")), "t.obj: line 5: `x` is not a vertex index");
-    assert_eq!(refusal(&format!("{SQUARE}l 1 2\n l 3 7")), "t.obj: line 6: index 7, the file has 4 vertices");
+    assert_eq!(refusal(&format!("{SQUARE}l 1 9\n l 3 7")), "t.obj: line 5: index 9, the file has 4 vertices");
     assert_eq!(refusal("v 1 2"), "t.obj: line 1: a vertex has 2 coordinates, three are required");
     assert_eq!(refusal("v 1 2 # 3"), "t.obj: line 1: a vertex has 2 coordinates, three are required");
     assert_eq!(refusal("v a b c"), "t.obj: line 1: `a` is not a number, a vertex needs three");
@@ -232,6 +255,48 @@ impl Resolver for Folder {
         let file = self.0.iter().find(|(name, _)| *name == path).ok_or(ResolveError::NotFound)?;
         Ok(file.1.as_bytes().to_vec())
     }
+}
+
+#[test]
+fn the_only_material_of_the_library_is_used_where_none_is_chosen() {
+    let folder = Folder(&[("one.mtl", "newmtl a\nKd 1 0 0"), ("two.mtl", "newmtl b\nnewmtl c")]);
+    let materials = |library: &str, more: &str| {
+        let text = format!("mtllib {library}\n{SQUARE}{more}f 1 2 3\nl 1 2\n");
+        let s = load(text.as_bytes(), "t.obj", &folder, &Workers::single()).unwrap();
+        s.meshes[0].check().unwrap();
+        (s.meshes[0].parts[0].material, s.meshes[0].line_parts.len(), s.materials.len())
+    };
+    assert_eq!(materials("one.mtl", ""), (Some(0), 1, 1));
+    assert_eq!(materials("two.mtl", ""), (None, 0, 0));
+    assert_eq!(materials("one.mtl two.mtl", ""), (None, 0, 0));
+    assert_eq!(materials("one.mtl", "usemtl none\n"), (None, 0, 0));
+}
+
+#[test]
+fn a_model_far_away_keeps_its_shape() {
+    let near = mesh("v 0.25 0 0\nv 1 0 0\nv 0 1.125 0\nf 1 2 3");
+    let text = "v 10000000.25 0 4500000\nv 10000001 0 4500000 # c\nv 10000000,0 \\\n1.125 45.0D5\nf 1 2 3";
+    for piece in [1, PIECE] {
+        let s = load_in_pieces(text.as_bytes(), "t.obj", &NoFiles, &Workers::single(), piece).unwrap();
+        let world = vitral_scene::World::new(&s).unwrap();
+        let corners = world.corners_of_facet(0).map(|c| c.to_array());
+        assert_eq!(corners, [[10_000_000.25, 0.0, 4.5e6], [10_000_001.0, 0.0, 4.5e6], [1e7, 1.125, 4.5e6]]);
+        assert!(s.meshes[0].positions.as_flattened().iter().all(|c| c.abs() < 8.0), "{:?}", s.meshes[0].positions);
+        assert_eq!((&s.meshes[0].triangles, s.warnings.len()), (&near.triangles, 0));
+    }
+}
+
+#[test]
+fn colours_of_zbrush_belong_to_the_vertices_in_order() {
+    let text = format!("{SQUARE}#MRGB ffFF0000ff00ff00\n#MRGB 000000ffffffffff\nf 1 2 3 4\n");
+    for piece in [1, 60, PIECE] {
+        let s = load_in_pieces(text.as_bytes(), "t.obj", &NoFiles, &Workers::single(), piece).unwrap();
+        let colors = s.meshes[0].colors.as_ref().unwrap();
+        let expected = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [1.0; 4]];
+        assert_eq!((colors.values.as_slice(), s.warnings.len()), (&expected[..], 0));
+    }
+    let few = read(&format!("{SQUARE}#MRGB ffff0000\nf 1 2 3"));
+    assert!(few.meshes[0].colors.is_none() && few.warnings[0].contains("1 colours (#MRGB) for 4 vertices"));
 }
 
 #[test]

@@ -1,17 +1,53 @@
 //! The data of a text PLY file: one line an element. An element whose line ends too early goes on on the next, with a
-//! warning.
+//! warning. If the file cannot be read so, it may be wrapped: then all values are one sequence, whatever the lines.
 
 use super::content::{Content, Reading, Row};
 use super::header::{Element, Kind, Property, Type};
 use super::layout::{Layout, Role};
+use crate::far;
 use crate::text::{Cursor, is_blank, to_utf8};
 use crate::warnings::Warnings;
 use crate::{Error, Place};
 
-/// Reads all elements.
-pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content) -> Result<(), Error> {
+/// What line ends mean.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Lines {
+    /// Each element begins on one.
+    Elements,
+    /// Nothing: values follow each other.
+    Wrapped,
+}
+
+/// Reads all elements, those of a model far from the origin once more.
+pub(super) fn read(bytes: &[u8], reading: &mut Reading) -> Result<Content, Error> {
     let text = to_utf8(&bytes[reading.header.data..]);
-    let mut cursor = Cursor::at_line(&text, reading.header.data_line);
+    let before = reading.warnings.clone();
+    let content = read_with(&text, reading, None)?;
+    match far::offset(&content.positions) {
+        None => Ok(content),
+        offset => {
+            *reading.warnings = before;
+            read_with(&text, reading, offset)
+        }
+    }
+}
+
+/// Reads all elements, and takes an offset from each position.
+fn read_with(text: &[u8], reading: &mut Reading, offset: Option<[f64; 3]>) -> Result<Content, Error> {
+    let before = reading.warnings.clone();
+    let mut content = Content { offset, ..Content::new(reading.header, reading.layouts, reading.file)? };
+    let Err(error) = read_elements(text, reading, &mut content, Lines::Elements) else { return Ok(content) };
+
+    // Read it as wrapped; what is wrong with it is told of the usual form.
+    *reading.warnings = before;
+    let place = Place::Line(reading.header.data_line);
+    reading.warnings.note("", place, || "values run over line ends; they are read one after the other".to_owned());
+    let mut content = Content { offset, ..Content::new(reading.header, reading.layouts, reading.file)? };
+    read_elements(text, reading, &mut content, Lines::Wrapped).map_or(Err(error), |()| Ok(content))
+}
+
+fn read_elements(text: &[u8], reading: &mut Reading, content: &mut Content, lines: Lines) -> Result<(), Error> {
+    let mut cursor = Cursor::at_line(text, reading.header.data_line);
     let mut row = Row::default();
     for (element, layout) in reading.header.elements.iter().zip(reading.layouts) {
         // Elements without properties have no data; every other one has a line.
@@ -41,7 +77,7 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content) -
                 return Err(Error::malformed(reading.file, Place::Line(cursor.line()), what));
             }
             let place = Place::Line(cursor.line());
-            let result = read_row(&mut cursor, element, layout, &mut row, reading.warnings)
+            let result = read_row(&mut cursor, (element, layout), &mut row, lines, reading.warnings)
                 .and_then(|()| content.push(layout.role, &row, || place.clone(), reading.warnings));
             if let Err(what) = result {
                 return Err(Error::malformed(reading.file, place, what));
@@ -49,11 +85,16 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content) -
             if cursor.take_ill_formed() {
                 reading.warnings.note("number", place, || "ill-formed number; only its beginning counts".to_owned());
             }
-            cursor.next_line();
+            if lines == Lines::Elements {
+                cursor.next_line();
+            }
         }
     }
     if next_row(&mut cursor) {
         let place = Place::Line(cursor.line());
+        if lines == Lines::Wrapped {
+            return Err(Error::malformed(reading.file, place, "values follow the last element"));
+        }
         reading.warnings.note("", place, || "what follows the last element is left out".to_owned());
     }
     Ok(())
@@ -76,21 +117,27 @@ fn next_row(cursor: &mut Cursor) -> bool {
 /// Reads an element into `row`.
 fn read_row(
     cursor: &mut Cursor,
-    element: &Element,
-    layout: &Layout,
+    (element, layout): (&Element, &Layout),
     row: &mut Row,
+    lines: Lines,
     warnings: &mut Warnings,
 ) -> Result<(), String> {
     row.clear();
+    let is_wrapped = lines == Lines::Wrapped;
     for (property, &target) in element.properties.iter().zip(&layout.targets) {
         match property.kind {
             Kind::Scalar(kind) => {
+                if is_wrapped {
+                    next_row(cursor);
+                }
                 let value = next_number(cursor, kind, property, warnings)?;
                 row.store(target, value, kind);
             }
             Kind::List { item, .. } => {
                 cursor.skip_blanks();
-                if cursor.peek() == b'\n' {
+                if is_wrapped {
+                    next_row(cursor);
+                } else if cursor.peek() == b'\n' {
                     let line = cursor.line();
                     warnings.note("no list", Place::Line(line), || {
                         format!("the line ends before the list `{}`; taken as empty", property.name)
@@ -101,6 +148,9 @@ fn read_row(
                     return Err(missing(cursor, &property.name));
                 };
                 for _ in 0..count {
+                    if is_wrapped {
+                        next_row(cursor);
+                    }
                     let value = next_number(cursor, item, property, warnings)?;
                     row.store_item(target, value)?;
                 }
@@ -108,7 +158,7 @@ fn read_row(
         }
     }
     cursor.skip_blanks();
-    if cursor.peek() != b'\n' && layout.role != Role::Unknown {
+    if !is_wrapped && cursor.peek() != b'\n' && layout.role != Role::Unknown {
         let line = cursor.line();
         warnings.note("row tail", Place::Line(line), || "more values than the element has; left out".to_owned());
     }
@@ -162,5 +212,5 @@ fn number(cursor: &mut Cursor, kind: Type) -> Option<f64> {
             return value.map(|v| v as f64);
         }
     }
-    cursor.float().map(f64::from)
+    if kind == Type::F64 { cursor.double() } else { cursor.float().map(f64::from) }
 }

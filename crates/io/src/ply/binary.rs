@@ -8,6 +8,7 @@
 use super::content::{Content, Reading, Row};
 use super::header::{Element, Encoding, Kind, Type};
 use super::layout::{Layout, Role, Target, slot};
+use crate::far;
 use crate::{Error, Place};
 use std::sync::atomic::{AtomicBool, Ordering};
 use vitral_exec::Workers;
@@ -120,7 +121,16 @@ impl FixedRows<'_> {
 
     fn vertices(&self, content: &mut Content, workers: &Workers) {
         let count = content.vertex_count;
-        content.positions = self.column(self.fields(slot::POSITION), count, workers, |v| v);
+        let fields = self.fields(slot::POSITION);
+        content.positions = self.column(fields, count, workers, |v| v);
+
+        // Read doubles of a model far away once more.
+        if fields.iter().flatten().any(|field| field.1 == Type::F64)
+            && let Some(offset) = far::offset(&content.positions)
+        {
+            content.positions = self.moved_positions(fields, offset, count, workers);
+            content.offset = Some(offset);
+        }
         if let Some(normals) = &mut content.normals {
             *normals = self.column(self.fields(slot::NORMAL), count, workers, |v| v);
         }
@@ -130,6 +140,25 @@ impl FixedRows<'_> {
         if let Some(colors) = &mut content.colors {
             (*colors, content.has_linear_colors) = self.colors(count, workers);
         }
+    }
+
+    /// The positions of all rows, less an offset.
+    fn moved_positions(
+        &self,
+        fields: [Option<Field>; 3],
+        offset: [f64; 3],
+        count: usize,
+        workers: &Workers,
+    ) -> Vec<[f32; 3]> {
+        let mut out = vec![[0.0f32; 3]; count];
+        workers.for_each_chunk(&mut out, BLOCK, |block, out| {
+            let rows = self.bytes[block * BLOCK * self.stride..].chunks_exact(self.stride);
+            for (out, row) in out.iter_mut().zip(rows) {
+                let value = |f: Option<Field>| f.map_or(0.0, |(at, kind)| scalar(&row[at..], kind, self.big));
+                *out = far::moved(fields.map(value), offset);
+            }
+        });
+        out
     }
 
     /// One attribute of all rows. Fields that a row lacks are 1 (alpha).

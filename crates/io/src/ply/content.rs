@@ -2,6 +2,8 @@
 
 use super::header::{Header, Type};
 use super::layout::{Layout, Role, Target, slot};
+use crate::color_range::ColorRange;
+use crate::far;
 use crate::file_name::stem;
 use crate::polygons;
 use crate::warnings::Warnings;
@@ -72,6 +74,8 @@ fn whole(value: f64) -> Result<i64, String> {
 pub(super) struct Content {
     pub(super) vertex_count: usize,
     pub(super) positions: Vec<[f32; 3]>,
+    /// What was taken from each position.
+    pub(super) offset: Option<[f64; 3]>,
     pub(super) normals: Option<Vec<[f32; 3]>>,
     /// Encoded, until [`Content::decode_colors`].
     pub(super) colors: Option<Vec<[f32; 4]>>,
@@ -184,7 +188,10 @@ impl Content {
     fn push_vertex(&mut self, row: &Row) {
         let number = |slot: usize| row.slots[slot] as f32;
         let three = |first: usize| [number(first), number(first + 1), number(first + 2)];
-        self.positions.push(three(slot::POSITION));
+        self.positions.push(match self.offset {
+            Some(offset) => far::moved([row.slots[0], row.slots[1], row.slots[2]], offset),
+            None => three(slot::POSITION),
+        });
         if let Some(normals) = &mut self.normals {
             normals.push(three(slot::NORMAL));
         }
@@ -245,22 +252,19 @@ impl Content {
             _ => return,
         };
 
-        // Find the largest colour and the largest alpha.
-        let most = |a: [f32; 2], b: [f32; 2]| [a[0].max(b[0]), a[1].max(b[1])];
+        // Find the range of the colours and that of their alpha.
         let of_blocks = workers.map(colors.len().div_ceil(COLORS), |block| {
-            let colors = colors[block * COLORS..].iter().take(COLORS);
-            colors.map(|&[r, g, b, a]| [r.max(g).max(b), a]).fold([0.0; 2], most)
+            let colors = &colors[block * COLORS..colors.len().min((block + 1) * COLORS)];
+            let rgb = ColorRange::of(colors.iter().flat_map(|c| [c[0], c[1], c[2]]));
+            [rgb, ColorRange::of(colors.iter().map(|c| c[3]))]
         });
-        let largest = of_blocks.into_iter().fold([0.0; 2], most);
+        let union = |a: [ColorRange; 2], b: [ColorRange; 2]| [a[0].union(b[0]), a[1].union(b[1])];
+        let ranges = of_blocks.into_iter().fold([ColorRange::default(); 2], union);
 
-        // Values above the type's usual range are taken as 0 to its wide one.
-        let scale = [0, 1].map(|k| match self.color_types[k] {
-            Some(kind) if largest[k] > 1.0 => (kind.wide_scale() / kind.full_scale()) as f32,
-            _ => 1.0,
-        });
-        if let Some(kind) = self.color_types[0].filter(|_| scale[0] > 1.0) {
-            let (full, wide) = (kind.full_scale(), kind.wide_scale());
-            warnings.note("", Place::File, || format!("colours exceed {full} and are read as 0 to {wide}"));
+        // Find what a full channel is.
+        let scale = [0, 1].map(|k| self.color_types[k].map_or(1.0, |kind| full_channel(kind, ranges[k])));
+        if let Some(what) = self.color_types[0].and_then(|kind| oddity(kind, ranges[0])) {
+            warnings.note("", Place::File, || what);
         }
 
         // Decode in place.
@@ -342,6 +346,37 @@ impl Content {
         self.sizes.splice(0..0, std::iter::repeat_n(3, self.triangles.len()));
         let triangles = std::mem::take(&mut self.triangles);
         self.corners.splice(0..0, triangles.into_flattened());
+    }
+}
+
+/// What a full channel is, in terms of the type's usual full channel. Values above that are taken as 0 to the type's wide
+/// range, floats where they look like bytes; 16 bits that hold nothing above 255 are bytes.
+fn full_channel(kind: Type, range: ColorRange) -> f32 {
+    let (full, wide) = (kind.full_scale() as f32, kind.wide_scale() as f32);
+    match kind {
+        _ if kind.is_float() => range.scale(),
+        Type::I16 | Type::U16 if holds_bytes(kind, range) => 255.0 / full,
+        _ if range.largest > 1.0 => wide / full,
+        _ => 1.0,
+    }
+}
+
+/// Whether a channel of 16 bits holds nothing above 255.
+fn holds_bytes(kind: Type, range: ColorRange) -> bool {
+    let is_wide = matches!(kind, Type::I16 | Type::U16);
+    is_wide && range.largest > 0.0 && f64::from(range.largest) * kind.full_scale() < 255.5
+}
+
+/// The warning about colours outside their type's usual range.
+fn oddity(kind: Type, range: ColorRange) -> Option<String> {
+    let (full, wide) = (kind.full_scale(), kind.wide_scale());
+    match kind {
+        _ if kind.is_float() => range.oddity("colours"),
+        _ if holds_bytes(kind, range) => {
+            Some("colours of 16 bits do not exceed 255 and are read as 0 to 255".to_owned())
+        }
+        _ if range.largest > 1.0 && wide > full => Some(format!("colours exceed {full} and are read as 0 to {wide}")),
+        _ => None,
     }
 }
 

@@ -115,6 +115,12 @@ impl Resolver for Below<'_> {
     fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
         self.inner.read(&join(self.folder, path))
     }
+
+    fn in_other_case(&self, path: &str) -> Option<String> {
+        let found = self.inner.in_other_case(&join(self.folder, path))?;
+        let below = if self.folder.is_empty() { Some(found.as_str()) } else { found.strip_prefix(self.folder) };
+        Some(below?.trim_start_matches('/').to_owned())
+    }
 }
 
 /// `path` as seen from where `folder` is seen from, without `.` and without `..` behind a name. Absolute paths stay as

@@ -15,6 +15,11 @@ impl Resolver for Folder {
         }
         std::fs::read(self.0.join(path)).map_err(|_| ResolveError::NotFound)
     }
+
+    fn in_other_case(&self, path: &str) -> Option<String> {
+        let names = std::fs::read_dir(&self.0).ok()?.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        names.filter(|name| name != path && name.eq_ignore_ascii_case(path)).min()
+    }
 }
 
 /// The shared models, or `None` with a printed line where they are absent.

@@ -1,5 +1,6 @@
 //! The `vitral` command: a model file in, a picture out. No rendering logic lives here; everything is in crate `vitral`.
 
+mod allocator;
 mod args;
 mod bench_command;
 mod bench_drawings;
@@ -24,7 +25,11 @@ mod interrupt;
 mod lab;
 mod lab_args;
 mod light_spec;
+mod machine;
+mod manual;
+mod models;
 mod no_effect;
+mod no_effect_camera;
 mod osmesa_env_command;
 mod outputs;
 mod progress;
@@ -33,6 +38,7 @@ mod render_command;
 mod report;
 mod resolve;
 mod section_args;
+mod similar;
 mod step_pictures;
 mod tables;
 mod trace_file;
@@ -40,8 +46,8 @@ mod unbuilt;
 mod values;
 
 use args::{Cli, Verb};
+use clap::FromArgMatches;
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser};
 use report::Failure;
 
 fn main() {
@@ -52,7 +58,8 @@ fn main() {
 
 fn run() -> Result<u8, Failure> {
     let typed = args::with_verb(std::env::args_os().collect());
-    let cli = match Cli::try_parse_from(typed) {
+    let parsed = args::command().try_get_matches_from(typed).and_then(|matches| Cli::from_arg_matches(&matches));
+    let cli = match parsed {
         Ok(cli) => cli,
         // Help and version are results, not errors.
         Err(e) if matches!(e.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
@@ -77,10 +84,10 @@ fn run() -> Result<u8, Failure> {
         Verb::OsmesaEnv(args) => osmesa_env_command::run(&args),
         Verb::Completions { shell } => {
             let mut script = Vec::new();
-            clap_complete::generate(shell, &mut Cli::command(), "vitral", &mut script);
+            clap_complete::generate(shell, &mut args::command(), "vitral", &mut script);
             report::print(&script).map(|()| 0)
         }
-        Verb::Man => tables::manual().and_then(|page| report::print(&page)).map(|()| 0),
+        Verb::Man(args) => manual::run(&args),
     }
 }
 

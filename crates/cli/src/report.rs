@@ -1,6 +1,8 @@
 //! What the user is told: results on standard output, everything else on standard error, one line each.
 
+use crate::allocator::output_is_closed;
 use crate::exit::{exit_code, hint};
+use crate::similar::for_missing;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::io::Write;
 use std::path::Path;
@@ -54,6 +56,26 @@ impl Failure {
         self
     }
 
+    /// With a hint, unless there is a better one.
+    #[must_use]
+    pub(crate) fn or_hint(mut self, hint: impl FnOnce() -> String) -> Self {
+        self.hint = self.hint.or_else(|| Some(hint()));
+        self
+    }
+
+    /// With the model's name in front, unless the message begins with it.
+    #[must_use]
+    pub(crate) fn about(mut self, model: &Path) -> Self {
+        let name = model.to_string_lossy();
+        self.message = self.message.map(|text| if text.starts_with(&*name) { text } else { format!("{name}: {text}") });
+        self
+    }
+
+    /// What the user is told, and the exit code.
+    pub(crate) fn as_json(&self) -> serde_json::Value {
+        serde_json::json!({"error": self.message, "exit-code": self.code})
+    }
+
     /// Standard output cannot be written. A reader that has gone away had enough, which is no failure.
     pub(crate) fn standard_output(error: &std::io::Error) -> Self {
         match error.kind() {
@@ -104,7 +126,8 @@ impl From<clap::Error> for Failure {
                     Some(ContextValue::Strings(names)) => names.first(),
                     _ => None,
                 };
-                let hint = similar.map_or(HELP.to_owned(), |name| format!("there is the verb `{name}`"));
+                let verb = similar.map(|name| format!("there is the verb `{name}`"));
+                let hint = verb.or_else(|| for_missing(Path::new(word))).unwrap_or_else(|| HELP.to_owned());
                 return Self::usage(format!("{word}: there is no such verb, and no file of that name")).with_hint(hint);
             }
             ErrorKind::UnknownArgument if SIZES.contains(&context(ContextKind::InvalidArg)) => {
@@ -128,6 +151,9 @@ impl From<clap::Error> for Failure {
 
 /// Writes to standard output and flushes it.
 pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
+    if output_is_closed() {
+        return Err(Failure::with_code(5, "standard output: it is closed"));
+    }
     let mut out = std::io::stdout().lock();
     out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
 }
@@ -139,12 +165,18 @@ pub(crate) fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Whether a file's name means standard output.
 pub(crate) fn is_standard(file: &Path) -> bool {
-    file.as_os_str() == "-"
+    file.as_os_str() == "-" || cfg!(unix) && file == Path::new("/dev/stdout")
 }
 
 /// Prints a value as JSON, ending with a new line.
 pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     print(&json(value))
+}
+
+/// A value as JSON whose numbers have the digits that they need: in `serde_json::to_value`, 0.8 in single precision has sixteen.
+pub(crate) fn to_value(value: &impl serde::Serialize) -> Result<serde_json::Value, Failure> {
+    let text = serde_json::to_vec(value).map_err(|e| Failure::other(e.to_string()))?;
+    serde_json::from_slice(&text).map_err(|e| Failure::other(e.to_string()))
 }
 
 /// A value as indented JSON, ending with a new line.

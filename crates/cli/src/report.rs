@@ -173,10 +173,29 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     print(&json(value))
 }
 
-/// A value as JSON whose numbers have the digits that they need: in `serde_json::to_value`, 0.8 in single precision has sixteen.
+/// A value as JSON whose numbers have the digits that they need: numbers of single precision, such as the corners of a mesh, are
+/// told as a file has them, 0.8 and not 0.800000011920929.
 pub(crate) fn to_value(value: &impl serde::Serialize) -> Result<serde_json::Value, Failure> {
-    let text = serde_json::to_vec(value).map_err(|e| Failure::other(e.to_string()))?;
-    serde_json::from_slice(&text).map_err(|e| Failure::other(e.to_string()))
+    let mut value = serde_json::to_value(value).map_err(|e| Failure::other(e.to_string()))?;
+    shorten(&mut value);
+    Ok(value)
+}
+
+/// Gives each number that single precision holds exactly its shortest digits there.
+fn shorten(value: &mut serde_json::Value) {
+    use serde_json::Value;
+    match value {
+        Value::Array(list) => list.iter_mut().for_each(shorten),
+        Value::Object(fields) => fields.values_mut().for_each(shorten),
+        Value::Number(number) => {
+            let single = number.as_f64().filter(|_| number.is_f64()).map(|v| (v, v as f32));
+            let exact = single.filter(|(v, single)| f64::from(*single) == *v).map(|(_, single)| single.to_string());
+            if let Some(short) = exact.and_then(|text| text.parse().ok()).and_then(serde_json::Number::from_f64) {
+                *number = short;
+            }
+        }
+        Value::Null | Value::Bool(_) | Value::String(_) => {}
+    }
 }
 
 /// A value as indented JSON, ending with a new line.

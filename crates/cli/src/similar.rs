@@ -22,7 +22,7 @@ pub(crate) fn for_missing(path: &Path) -> Option<String> {
     let files = beside(folder.unwrap_or(Path::new(".")), &path.file_name()?.to_string_lossy());
     let files: Vec<String> =
         files.iter().map(|name| folder.unwrap_or(Path::new("")).join(name).display().to_string()).collect();
-    let scene = scene(&text).map(|name| format!("builtin:{name}"));
+    let scene = scene(&text).filter(|_| path.extension().is_none()).map(|name| format!("builtin:{name}"));
     let meant: Vec<String> = files.into_iter().chain(scene).collect();
     if meant.is_empty() { None } else { Some(format!("did you mean {}?", meant.join(" or "))) }
 }

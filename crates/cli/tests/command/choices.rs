@@ -132,12 +132,10 @@ fn options_without_effect_are_told_and_change_nothing() {
         (wires, &["--light-edit", "LIGHT0.diffuse=red"], "edges alone"),
         (wires, &["--light-intensity", "2"], "edges alone"),
         (wires, &["--lighting", "off"], "edges alone"),
-        (wires, &["--global", "ray-trace"], "edges alone"),
         (wires, &["--visibility", "bsp"], "all edges are drawn"),
         (wires, &["--depth-bits", "16"], "all edges are drawn"),
         (data, &["--lighting", "off"], black),
         (data, &["--global", "radiosity"], black),
-        (constant, &["--lighting", "off"], own),
         (&["builtin:cubs", "--light", "ambient:", "--shadows", "map"], &["--shadow-map-size", "64"], "no light casts"),
         (&["builtin:cubs"], &["--together"], "there is one model"),
     ] {

@@ -39,7 +39,7 @@ pub(crate) enum Verb {
     Batch(Box<BatchArgs>),
     #[command(hide = true)]
     BatchWorker(BatchWorkerArgs),
-    /// Open the Lab in a browser: the course's algorithms to watch, step through and question
+    /// Open the Lab in a browser: the classical algorithms to watch, step through and question
     Lab(LabPageArgs),
     /// Tell what is in a model file
     Info(InfoArgs),
@@ -58,8 +58,16 @@ pub(crate) enum Verb {
         /// The shell
         shell: clap_complete::Shell,
     },
-    /// Print the manual page
-    Man,
+    /// Print the manual, or write a page for each verb
+    Man(ManArgs),
+}
+
+/// Options of `vitral man`.
+#[derive(Args, Debug)]
+pub(crate) struct ManArgs {
+    /// Write vitral.1, vitral-render.1, ... into this folder [default: one page on standard output]
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: Option<PathBuf>,
 }
 
 /// Options of `vitral info`.
@@ -133,7 +141,8 @@ pub(crate) struct BenchArgs {
     /// Seconds for each algorithm; one that cannot finish says so in its row, and the others go on
     #[arg(long, value_name = "S", value_parser = values::positive, default_value_t = 20.0)]
     pub(crate) time_limit: f64,
-    /// Memory that each algorithm may take, such as 512M or 1G
+    /// Memory that each algorithm may take, such as 512M or 1G [default: the machine's, or what its control group allows, where Linux
+    /// tells]
     #[arg(long, value_name = "B", value_parser = values::bytes)]
     pub(crate) max_memory: Option<u64>,
     /// Let models name files outside their folder
@@ -170,6 +179,17 @@ pub(crate) struct OsmesaEnvArgs {
     pub(crate) lib: Option<PathBuf>,
 }
 
+/// The definition of the command line, with choices in upper and lower case alike.
+pub(crate) fn command() -> clap::Command {
+    // Options that take no value cannot have a case.
+    let any_case = |verb: clap::Command| {
+        verb.mut_args(
+            |argument| if argument.get_action().takes_values() { argument.ignore_case(true) } else { argument },
+        )
+    };
+    Cli::command().mut_subcommands(any_case)
+}
+
 /// The arguments with the verb `render` put in where none was typed: `vitral MODEL -o OUT`. What is neither a verb nor looks like
 /// a model stays, to be refused as a verb. `help VERB` becomes `VERB --help`.
 pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi::OsString> {
@@ -179,15 +199,37 @@ pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi:
         arguments.push("--help".into());
         return arguments;
     }
-    let Some(first) = arguments.get(1).and_then(|a| a.to_str()) else { return arguments };
+    let Some(first) = arguments.get(1).map(|a| a.to_string_lossy().into_owned()) else { return arguments };
+    let is_path = std::path::Path::new(&arguments[1]).exists();
+    let first = first.as_str();
     let general = ["-h", "--help", "-V", "--version"].contains(&first);
     let is_verb = Cli::command().get_subcommands().any(|c| c.get_name() == first);
     let is_word = first.starts_with(|c: char| c.is_ascii_alphabetic()) && !first.contains(['.', '/', '\\', ':', '{']);
-    let is_model = !is_word || std::path::Path::new(first).exists();
+    let is_model = !is_word || is_path;
     if !general && !is_verb && is_model {
-        arguments.insert(1, "render".into());
+        let verb = if names_drawing(&arguments) { "draw" } else { "render" };
+        arguments.insert(1, verb.into());
     }
     arguments
+}
+
+/// Whether the arguments have an output whose extension is that of a drawing.
+fn names_drawing(arguments: &[std::ffi::OsString]) -> bool {
+    let mut texts = arguments.iter().map(|argument| argument.to_string_lossy());
+    while let Some(text) = texts.next() {
+        let output = match (&*text, text.strip_prefix("--output="), text.strip_prefix("-o")) {
+            ("--", ..) => return false,
+            ("-o" | "--output", ..) => texts.next().map(|next| next.into_owned()),
+            (_, Some(value), _) => Some(value.to_owned()),
+            (_, None, Some(value)) => Some(value.trim_start_matches('=').to_owned()),
+            _ => None,
+        };
+        let extension = output.as_deref().and_then(|name| std::path::Path::new(name).extension()?.to_str());
+        if extension.is_some_and(|extension| vitral::DrawingFormat::from_extension(extension).is_some()) {
+            return true;
+        }
+    }
+    false
 }
 
 #[cfg(test)]
@@ -215,6 +257,10 @@ mod tests {
             (&["inof", "a.obj"], "inof"),
             (&["src", "-o", "b.png"], "render"),
             (&["builtin:teapot"], "render"),
+            (&["a.obj", "-o", "b.svg"], "draw"),
+            (&["a.obj", "--output={model}.pdf"], "draw"),
+            (&["-ob.DXF", "a.obj"], "draw"),
+            (&["a.svg", "-o", "b.png"], "render"),
             (&["help"], "--help"),
             (&["help", "info"], "info"),
             (&["--help"], "--help"),

@@ -6,6 +6,7 @@ use crate::bench_report;
 use crate::bench_rows::{Row, differing, rows};
 use crate::command_line;
 use crate::interrupt;
+use crate::models::{self, ReadLimits};
 use crate::report::{self, Failure};
 use crate::resolve::set_viewpoint;
 use crate::values;
@@ -30,14 +31,14 @@ pub(crate) fn run(args: &BenchArgs) -> Result<u8, Failure> {
 
 fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {
     // The model.
-    let models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
+    let models = models::in_unicode(&args.models);
     let mut state = State { models, ..State::default() };
     state.load.allow_external = args.allow_external;
     set_viewpoint(&mut state.viewpoint, &args.camera, &args.eye);
     let settings = &mut state.settings;
     ([settings.picture.width, settings.picture.height], settings.picture.samples) = (args.resolution, args.samples);
     settings.check().map_err(|e| vitral::Error::from(vitral::RenderError::from(e)))?;
-    let scene = state.load_scene_on(&execution.workers)?;
+    let scene = models::load_scene(&state, &args.models, &execution, ReadLimits::default())?;
     if !args.quiet {
         report::warnings(&scene.warnings);
     }

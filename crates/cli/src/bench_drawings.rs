@@ -5,9 +5,10 @@
 
 use crate::args::BenchArgs;
 use crate::command_line;
+use crate::models::{self, ReadLimits};
 use crate::report::{self, Failure};
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use vitral::{
     Budget, DMat4, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, Error, Execution, Faces, FillSettings,
     Lens, Limit, LineClass, Material, Mesh, PageSize, PolygonOrder, PolygonSettings, RenderError, Renderer, Scene,
@@ -104,12 +105,12 @@ fn subjects(args: &BenchArgs, execution: &Execution) -> Result<Vec<Subject>, Fai
     ];
 
     // Load the others.
-    let named = args.models.iter().map(|model| model.to_string_lossy().into_owned());
-    for model in BUILT_IN.into_iter().map(str::to_owned).chain(named) {
-        let mut state = State { models: vec![model.clone()], ..State::default() };
+    for model in BUILT_IN.into_iter().map(PathBuf::from).chain(args.models.iter().cloned()) {
+        let models = [model];
+        let mut state = State { models: models::in_unicode(&models), ..State::default() };
         state.load.allow_external = args.allow_external;
-        let scene = state.load_scene_on(&execution.workers)?;
-        all.push(Subject { name: format!("`{model}`"), scene, view: View::Iso, pictures: None });
+        let scene = models::load_scene(&state, &models, execution, ReadLimits::default())?;
+        all.push(Subject { name: format!("`{}`", state.models[0]), scene, view: View::Iso, pictures: None });
     }
     Ok(all)
 }
@@ -165,7 +166,9 @@ fn measured(
     // Each drawing has the whole budget for itself.
     let budget = || {
         let renewed: Budget = execution.budget.renewed();
-        renewed.with_time_limit(Some(args.time_limit)).with_memory_limit(args.max_memory)
+        renewed
+            .with_time_limit(Some(args.time_limit))
+            .with_memory_limit(args.max_memory.or_else(crate::machine::memory))
     };
     let page = DrawingSettings { lines: vitral::LineClasses::EMPTY, ..DrawingSettings::default() };
 
@@ -256,7 +259,7 @@ fn line(row: &Row) -> String {
 
 fn head(args: &BenchArgs, execution: &Execution) -> String {
     format!(
-        "# Polygons of the course's algorithms, and exact drawings\n\n\
+        "# Polygons of the classical algorithms, and exact drawings\n\n\
          Written by `{}`, and not by hand.\n\n\
          `vitral draw --algorithm painter`, `bsp` and `weiler-atherton` write the polygons that these algorithms come to, in their own\n\
          order. The lists of painter's algorithm and of a BSP tree go from back to front: all polygons are in them, and what is painted\n\

@@ -18,7 +18,7 @@ pub(crate) fn rows(args: &BenchArgs, renderer: &Renderer, entrants: &[Entrant]) 
         settings: &renderer.settings,
         frames: args.frames as usize + 1,
         time_limit: Some(args.time_limit),
-        memory_limit: args.max_memory,
+        memory_limit: args.max_memory.or_else(crate::machine::memory),
     };
     let mut rows = Vec::new();
     for (i, entrant) in entrants.iter().enumerate() {

@@ -4,8 +4,8 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::internals::render::choice::Row;
 use vitral::{
-    Acceleration, Channel, Choice, ColorBy, ColorSpace, Global, Illumination, Interpolation, Normals, Seams, Shading,
-    Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
+    Acceleration, Channel, Choice, ColorBy, ColorSpace, Global, Illumination, Interpolation, Normals, PictureFormat,
+    Seams, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
 };
 
 /// The algorithm that finds the visible surfaces of a drawing.
@@ -24,7 +24,7 @@ type Named<T> = (T, &'static str, &'static str);
 const NORMALS: [Named<Normals>; 3] = [
     (Normals::File, "file", "the file's, or made where it has none"),
     (Normals::Made, "made", "made anew by the crease angle alone"),
-    (Normals::None, "none", "no normals are given, as in exercise 5.2"),
+    (Normals::None, "none", "(0, 0, 1) everywhere, as OpenGL has it where a program gives none"),
 ];
 
 /// A parser that accepts the names of a table and gives the values that they name.
@@ -35,7 +35,7 @@ fn of<T: Copy + Send + Sync + 'static>(table: impl IntoIterator<Item = Named<T>>
         help => PossibleValue::new(name).help(help),
     };
     PossibleValuesParser::new(table.iter().map(shown).collect::<Vec<_>>()).map(move |name| {
-        let found = table.iter().find(|row| row.1 == name);
+        let found = table.iter().find(|row| row.1.eq_ignore_ascii_case(&name));
         found.expect("the parser let only names of the table through").0
     })
 }
@@ -103,6 +103,11 @@ pub(crate) fn view() -> impl TypedValueParser<Value = View> {
 
 pub(crate) fn channel() -> impl TypedValueParser<Value = Channel> {
     of(Channel::ALL.iter().copied())
+}
+
+/// Formats of pictures, by their first extension.
+pub(crate) fn picture_format() -> impl TypedValueParser<Value = PictureFormat> {
+    of(PictureFormat::ALL.map(|(format, _, extensions)| (format, extensions[0], "")))
 }
 
 pub(crate) fn transparency_model() -> impl TypedValueParser<Value = Transparency> {

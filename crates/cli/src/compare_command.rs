@@ -1,12 +1,13 @@
 //! `vitral compare A B`: how far two pictures are apart.
 
 use crate::args::CompareArgs;
+use crate::outputs::format_of;
 use crate::report::{self, DIFFERENT, Failure};
 use serde::Serialize;
 use serde_json::json;
 use std::path::Path;
 use vitral::internals::frame::compare::{self, Component, Difference, SizeMismatch};
-use vitral::{PictureFormat, Plane, picture};
+use vitral::{PictureFormat, Plane};
 
 /// Largest picture file that is read, in bytes.
 const MAX_FILE_BYTES: u64 = 1 << 30;
@@ -16,7 +17,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<u8, Failure> {
     if args.first == Path::new("-") && args.second == Path::new("-") {
         return Err(Failure::usage("compare: standard input holds only one picture"));
     }
-    if args.json && args.diff.as_deref() == Some(Path::new("-")) {
+    if args.json && args.diff.as_deref().is_some_and(report::is_standard) {
         return Err(Failure::usage("--json and --diff - both want standard output"));
     }
     let format = args.diff.as_deref().map(difference_format).transpose()?;
@@ -43,7 +44,7 @@ fn between<T: Component + Serialize>(
     }
     if args.json {
         report::print_json(&as_json(&found))?;
-    } else if !args.quiet && args.diff.as_deref() != Some(Path::new("-")) {
+    } else if !args.quiet && !args.diff.as_deref().is_some_and(report::is_standard) {
         let text = found.as_ref().map_or_else(SizeMismatch::to_string, Difference::to_string);
         report::print(format!("{text}\n").as_bytes())?;
     }
@@ -118,10 +119,7 @@ fn as_json<T: Component + Serialize>(found: &Result<Difference<T>, SizeMismatch>
 }
 
 fn difference_format(path: &Path) -> Result<PictureFormat, Failure> {
-    match path == Path::new("-") {
-        true => Ok(PictureFormat::Png),
-        false => Ok(PictureFormat::from_path(path)?),
-    }
+    format_of(path, None)
 }
 
 fn write_picture(path: &Path, plane: &Plane<[u8; 4]>, format: PictureFormat) -> Result<(), Failure> {
@@ -132,7 +130,7 @@ fn write_picture(path: &Path, plane: &Plane<[u8; 4]>, format: PictureFormat) -> 
         ..vitral::Frame::default()
     };
     let bytes = vitral::Picture::from(frame).encode(format)?;
-    if path == Path::new("-") { report::print(&bytes) } else { Ok(picture::write(path, &bytes)?) }
+    report::write(path, &bytes)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::choices::{self, DrawingAlgorithm};
 use crate::help::{EXIT_CODES, model_help};
 use crate::render_args::{CameraArgs, EyeArgs, LightArgs, ProcessArgs, ProgressWhen};
 use crate::section_args::SectionArgs;
+use crate::similar::not_one_of;
 use crate::values;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -18,9 +19,13 @@ use vitral::{
 pub(crate) struct DrawArgs {
     #[arg(required_unless_present = "load_state", value_name = "MODEL", help = model_help())]
     pub(crate) models: Vec<PathBuf>,
-    /// Where the drawing goes: .svg, .pdf, .dxf, .hpgl or .plt; or `-` for an SVG on standard output; {model} expands
+    /// Where the drawing goes: .svg, .pdf, .dxf, .hpgl or .plt; or `-` for an SVG on standard output; {model} expands.
+    /// Several models are one scene, or with {model} a drawing each
     #[arg(long, short, value_name = "OUT", required = true)]
     pub(crate) output: PathBuf,
+    /// Put several models into one scene, although --output has {model} [default: a drawing of each, then]
+    #[arg(long)]
+    pub(crate) together: bool,
     #[command(flatten)]
     pub(crate) lines: LineArgs,
     #[command(flatten)]
@@ -48,7 +53,7 @@ pub(crate) struct DrawArgs {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Lines")]
 pub(crate) struct LineArgs {
-    /// The algorithm of visibility. Those of the course draw their own polygons in their own order, with all their cuts, as lines of the
+    /// The algorithm of visibility. The classical ones draw their own polygons in their own order, with all their cuts, as lines of the
     /// class smooth; in a list from back to front, later polygons cover earlier ones [default: exact]
     #[arg(long, value_name = "NAME", value_parser = choices::drawing_algorithm())]
     pub(crate) algorithm: Option<DrawingAlgorithm>,
@@ -280,20 +285,20 @@ fn lines_help() -> String {
 
 /// `contour,crease`, or `all`.
 fn line_classes(text: &str) -> Result<LineClasses, String> {
-    if text == "all" {
+    if text.eq_ignore_ascii_case("all") {
         return Ok(LineClasses::ALL);
     }
     let class = |word: &str| {
-        let found = LineClass::ALL.iter().map(|row| row.0).find(|class| class.name() == word);
+        let found = LineClass::ALL.iter().map(|row| row.0).find(|class| class.name().eq_ignore_ascii_case(word));
         let names: Vec<_> = LineClass::ALL.iter().map(|row| row.1).collect();
-        found.ok_or_else(|| format!("`{word}` is not one of {}; or all alone", names.join(", ")))
+        found.ok_or_else(|| not_one_of(word, &names, "; or all alone"))
     };
     text.split(',').map(class).collect()
 }
 
 /// `fit`, `A4`, or `210x297mm`.
 fn page_size(text: &str) -> Result<Sheet, String> {
-    if text == "fit" {
+    if text.eq_ignore_ascii_case("fit") {
         return Ok(Sheet::Fit);
     }
     let series = [("A0", [841, 1189]), ("A1", [594, 841]), ("A2", [420, 594]), ("A3", [297, 420])];

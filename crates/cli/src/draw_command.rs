@@ -5,11 +5,13 @@ use crate::draw_file::{DrawFile, check_fits, scaled_page};
 use crate::draw_polygons;
 use crate::draw_sheet;
 use crate::interrupt;
-use crate::kept_models;
+use crate::models::{self, ReadLimits};
+use crate::outputs::expand;
 use crate::progress::Progress;
 use crate::report::{self, Failure};
 use crate::resolve::{execution_within, overlay_files, save_state, set_lights, set_viewpoint};
 use serde_json::json;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use vitral::{
     Drawing, DrawingSettings, Drawn, LineClass, LineClasses, PageSize, PolygonDrawing, Renderer, State, World,
@@ -19,32 +21,64 @@ use vitral::{
 pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     let start = Instant::now();
     let state = state_of(args)?;
-    let file = DrawFile::new(args, &state)?;
-    let mut settings = settings_of(args)?;
-    settings.page = file.page_above_title(settings.page, settings.margin)?;
+    let models = models::named(&args.models, &state);
+    let apart = models::are_apart(&models, args.together, [args.output.as_path()]);
+    let sheets = if apart { models.iter().map(|model| vec![model.clone()]).collect() } else { vec![models.clone()] };
+    let jobs: Vec<Job> = sheets.into_iter().map(|models| Job::new(args, &state, models)).collect::<Result<_, _>>()?;
+    if apart {
+        models::check_files(&models, |name| Ok(expand(args.output.as_os_str(), name, 0)?.into()))?;
+    }
     if let Some(path) = &args.process.save_state {
-        save_state(&state, path)?;
+        save_state(&state, &models, path)?;
     }
 
-    let listener = Progress::stages(args.report.progress.unwrap_or_default(), args.report.quiet);
+    // Draw, each model by itself if these are the sheets.
+    let (when, quiet) = (args.report.progress.unwrap_or_default(), args.report.quiet);
+    let listener = Progress::stages(when, quiet).filter(|_| !apart);
     let execution = execution_within(&args.process, listener)?;
     interrupt::heed(&execution.budget.clone(), || {
-        draw(args, &state, settings, &file, execution, start)?;
-        Ok(0)
+        if !apart {
+            return jobs.iter().try_for_each(|job| draw(args, job, execution.clone(), start)).map(|()| 0);
+        }
+        let mut progress = Progress::new(when, quiet, jobs.len() as u64, "drawings");
+        let mut jobs = jobs.iter();
+        let (_, code) = models::for_each(&models, &execution.budget, |_| {
+            let execution = vitral::Execution { budget: execution.budget.renewed(), ..execution.clone() };
+            let drawn = jobs.next().map_or(Ok(()), |job| draw(args, job, execution, Instant::now()));
+            progress.step();
+            drawn
+        });
+        progress.finish();
+        Ok(code)
     })
 }
 
+/// A drawing to make.
+struct Job {
+    state: State,
+    /// The models' names as typed.
+    models: Vec<PathBuf>,
+    file: DrawFile,
+    settings: DrawingSettings,
+}
+
+impl Job {
+    /// The drawing of these models, checked as far as it can be before the work.
+    fn new(args: &DrawArgs, state: &State, models: Vec<PathBuf>) -> Result<Self, Failure> {
+        let state = State { models: models::in_unicode(&models), ..state.clone() };
+        let file = DrawFile::new(args, &state, models.first().map_or(Path::new(""), PathBuf::as_path))?;
+        let mut settings = settings_of(args)?;
+        settings.page = file.page_above_title(settings.page, settings.margin)?;
+        Ok(Self { state, models, file, settings })
+    }
+}
+
 /// Reads the models, draws, writes.
-fn draw(
-    args: &DrawArgs,
-    state: &State,
-    mut settings: DrawingSettings,
-    file: &DrawFile,
-    execution: vitral::Execution,
-    start: Instant,
-) -> Result<(), Failure> {
+fn draw(args: &DrawArgs, job: &Job, execution: vitral::Execution, start: Instant) -> Result<(), Failure> {
     // Read the models.
-    let scene = kept_models::scene(state, &execution.workers)?;
+    let Job { state, models, file, settings } = job;
+    let mut settings = settings.clone();
+    let scene = models::load_scene(state, models, &execution, ReadLimits::of(&args.process))?;
     let scene = args.section.apply(scene, &execution)?;
     if !args.report.quiet {
         report::warnings(&scene.warnings);
@@ -136,7 +170,7 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
     let mut state = State::default();
     overlay_files(&mut state, &args.process)?;
     if !args.models.is_empty() {
-        state.models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
+        state.models = models::in_unicode(&args.models);
     }
     set_viewpoint(&mut state.viewpoint, &args.camera, &args.eye);
     set_lights(&mut state, &args.light)?;

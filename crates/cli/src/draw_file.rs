@@ -5,7 +5,7 @@ use crate::draw_checks;
 use crate::draw_sheet;
 use crate::outputs::{expand, model_name};
 use crate::report::{self, Failure};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use vitral::{
     Drawing, DrawingFormat, DrawingOptions, DrawingSettings, LineClass, PageSize, State, TitleBlock, for_plotter,
     simplify,
@@ -34,8 +34,8 @@ pub(crate) struct DrawFile {
 
 impl DrawFile {
     /// The file to write, after a check of everything that can be checked before the work.
-    pub(crate) fn new(args: &DrawArgs, state: &State) -> Result<Self, Failure> {
-        let (path, format) = place(args, state)?;
+    pub(crate) fn new(args: &DrawArgs, state: &State, model: &Path) -> Result<Self, Failure> {
+        let (path, format) = place(args, model)?;
         draw_checks::check(args, state, format)?;
 
         // Choose the pens.
@@ -104,7 +104,7 @@ impl DrawFile {
 }
 
 /// The path and the format of its extension.
-fn place(args: &DrawArgs, state: &State) -> Result<(PathBuf, DrawingFormat), Failure> {
+fn place(args: &DrawArgs, model: &Path) -> Result<(PathBuf, DrawingFormat), Failure> {
     if report::is_standard(&args.output) {
         if args.process.save_state.as_deref().is_some_and(report::is_standard) {
             return Err(Failure::usage("--output - and --save-state - both want standard output"));
@@ -112,8 +112,8 @@ fn place(args: &DrawArgs, state: &State) -> Result<(PathBuf, DrawingFormat), Fai
         return Ok((args.output.clone(), DrawingFormat::Svg));
     }
     // Fill the model's name in.
-    let model = model_name(state.models.first().map_or("", String::as_str));
-    let path = PathBuf::from(expand(&args.output.to_string_lossy(), &model, 0)?);
+    let model = model_name(model);
+    let path = PathBuf::from(expand(args.output.as_os_str(), &model, 0)?);
 
     // Find the format.
     let extension = path.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();

@@ -1,7 +1,6 @@
 //! What an error of the library means for the command: its exit code, and the hint that is shown below it.
 
-use std::path::Path;
-use vitral::internals::io::{FormatKind, formats};
+use crate::similar;
 use vitral::internals::raster::MAX_SIDE;
 use vitral::{Error, InputError, Limit, RenderError, SettingsError};
 
@@ -41,9 +40,8 @@ pub(crate) fn exit_code(error: &Error) -> u8 {
 pub(crate) fn hint(error: &Error) -> Option<String> {
     let text = match error {
         Error::Usage { hint, .. } | Error::Unsupported { hint, .. } => hint.clone(),
-        Error::Read { path, source } if source.kind() == std::io::ErrorKind::NotFound && is_model(path) => {
-            let names: Vec<_> = vitral::builtin_names().iter().map(|(name, _)| *name).collect();
-            format!("scenes without a file: builtin:{}", names.join(", builtin:"))
+        Error::Read { path, source } if source.kind() == std::io::ErrorKind::NotFound => {
+            return similar::for_missing(path);
         }
         Error::Input(InputError::Missing { why, .. }) if why.contains("outside") => {
             "if you trust the model, --allow-external lets it read files outside its folder".to_owned()
@@ -68,14 +66,6 @@ pub(crate) fn hint(error: &Error) -> Option<String> {
     Some(text).filter(|t| !t.is_empty())
 }
 
-/// Whether a file's name may be that of a model.
-fn is_model(path: &Path) -> bool {
-    let Some(extension) = path.extension() else { return true };
-    formats()
-        .iter()
-        .any(|f| f.kind != FormatKind::Picture && f.extensions.iter().any(|e| extension.eq_ignore_ascii_case(e)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,10 +75,10 @@ mod tests {
     #[test]
     fn every_kind_has_the_exit_code_of_the_table() {
         let not_found = || std::io::Error::from(std::io::ErrorKind::NotFound);
-        let path = PathBuf::from("a.obj");
+        let path = PathBuf::from("nowhere-at-all.obj");
         let read = Error::Read { path: path.clone(), source: not_found() };
         assert_eq!(exit_code(&read), 3);
-        assert!(hint(&read).unwrap().contains("builtin:teapot"));
+        assert_eq!(hint(&read), None);
         assert_eq!(exit_code(&Error::Write { path: path.clone(), source: not_found() }), 5);
         assert_eq!(exit_code(&Error::TooLarge { path, limit: 9 }), 7);
         let code_of_io = |e: InputError| exit_code(&e.into());

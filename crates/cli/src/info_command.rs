@@ -20,14 +20,15 @@ pub(crate) fn run(args: &InfoArgs) -> Result<u8, Failure> {
             found.warnings.clear();
         }
         if args.json {
-            let mut value = serde_json::to_value(&found).map_err(|e| Failure::other(e.to_string()))?;
+            let mut value = report::to_value(&found)?;
             if let Value::Object(fields) = &mut value {
                 fields.insert("file".to_owned(), json!(model.to_string_lossy()));
             }
             models.push(value);
         } else {
             let text = found.to_string();
-            report::print(format!("{}\n{}\n", model.display(), text.trim_end()).as_bytes())?;
+            report::print(model.as_os_str().as_encoded_bytes())?;
+            report::print(format!("\n{}\n", text.trim_end()).as_bytes())?;
         }
     }
     if args.json {

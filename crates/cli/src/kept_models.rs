@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
-use vitral::{Error, FolderResolver, LoadOptions, ResolveError, Resolver, Scene, State, Workers};
+use vitral::{Error, FolderResolver, LoadOptions, ResolveError, Resolver, Scene, Workers};
 
 /// Models that are kept.
 const MOST_KEPT: usize = 4;
@@ -35,38 +35,42 @@ pub(crate) fn files() -> Vec<String> {
     kept.as_ref().map(|kept| kept.files.clone()).unwrap_or_default()
 }
 
-/// The scene of a state, of models that are kept where they can be.
-pub(crate) fn scene(state: &State, workers: &Workers) -> Result<Scene, Error> {
+/// A new scene begins.
+pub(crate) fn begin() {
+    if let Some(kept) = KEPT.lock().expect("no thread panics while it keeps a model").as_mut() {
+        kept.files.clear();
+    }
+}
+
+/// A model of the scene: a kept one, where it can be.
+pub(crate) fn load(name: &Path, options: &LoadOptions, workers: &Workers) -> Result<Scene, Error> {
     let mut kept = KEPT.lock().expect("no thread panics while it keeps a model");
-    let Some(kept) = kept.as_mut() else { return state.load_scene_on(workers) };
-    kept.files.clear();
-    state.load_scene_by(|model| {
-        let key = format!("{model} {}", serde_json::to_string(&state.load).unwrap_or_default());
-        match kept.models.iter().position(|known| known.key == key) {
-            Some(place) => kept.models[..=place].rotate_right(1),
-            None => {
-                kept.models.truncate(MOST_KEPT - 1);
-                kept.models.insert(0, read(model, key, &state.load, workers)?);
-            }
+    let Some(kept) = kept.as_mut() else { return vitral::load_on(name, options, workers) };
+    let key = format!("{name:?} {}", serde_json::to_string(options).unwrap_or_default());
+    match kept.models.iter().position(|known| known.key == key) {
+        Some(place) => kept.models[..=place].rotate_right(1),
+        None => {
+            kept.models.truncate(MOST_KEPT - 1);
+            kept.models.insert(0, read(name, key, options, workers)?);
         }
-        kept.files.extend(kept.models[0].files.iter().cloned());
-        Ok(kept.models[0].scene.clone())
-    })
+    }
+    kept.files.extend(kept.models[0].files.iter().cloned());
+    Ok(kept.models[0].scene.clone())
 }
 
 /// Reads a model, and notes which files that takes.
-fn read(model: &str, key: String, options: &LoadOptions, workers: &Workers) -> Result<Model, Error> {
-    if model.starts_with("builtin:") {
-        let scene = vitral::load_on(model, options, workers)?;
+fn read(path: &Path, key: String, options: &LoadOptions, workers: &Workers) -> Result<Model, Error> {
+    let name = path.to_string_lossy().into_owned();
+    if name.starts_with("builtin:") {
+        let scene = vitral::load_on(path, options, workers)?;
         return Ok(Model { key, scene, files: Vec::new() });
     }
-    let path = Path::new(model);
     let bytes = vitral::read(path, options.max_file_bytes)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let files = Arc::new(Mutex::new(vec![model.to_owned()]));
+    let files = Arc::new(Mutex::new(vec![name.clone()]));
     let inner = FolderResolver::new(&folder, options.allow_external, options.max_file_bytes);
     let noting = Noting { inner, folder, files: Arc::clone(&files) };
-    let scene = vitral::load_bytes_with(&bytes, model, &noting, options)?;
+    let scene = vitral::load_bytes_with(&bytes, &name, &noting, options)?;
     let files = files.lock().expect("no thread panics while it notes a file").clone();
     Ok(Model { key, scene, files })
 }

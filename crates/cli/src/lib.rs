@@ -1,8 +1,8 @@
 //! The `vitral` command: a model file in, a picture out. No rendering logic lives here; everything is in crate `vitral`.
 //!
 //! A library, so that other programs offer the same command ([`command`]) and take the same options ([`options`]).
-#![forbid(unsafe_code)]
 
+pub mod allocator;
 mod args;
 mod batch;
 mod batch_args;
@@ -30,7 +30,11 @@ mod kept_models;
 mod lab;
 mod lab_args;
 mod light_spec;
+mod machine;
+mod manual;
+mod models;
 mod no_effect;
+mod no_effect_camera;
 pub mod options;
 mod osmesa_env_command;
 mod outputs;
@@ -40,14 +44,15 @@ mod render_command;
 mod report;
 mod resolve;
 mod section_args;
+mod similar;
 mod step_pictures;
 mod tables;
 mod trace_file;
 mod values;
 
 use args::{Cli, Verb};
+use clap::FromArgMatches;
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser};
 use std::ffi::OsString;
 use std::sync::OnceLock;
 
@@ -71,7 +76,8 @@ pub fn command(arguments: Vec<OsString>) -> u8 {
 /// Runs the verb that is typed.
 fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
     let typed = batch_args::arrange(args::with_verb(arguments));
-    let cli = match Cli::try_parse_from(typed) {
+    let parsed = args::command().try_get_matches_from(typed).and_then(|matches| Cli::from_arg_matches(&matches));
+    let cli = match parsed {
         Ok(cli) => cli,
         // Help and version are results, not errors.
         Err(e) if matches!(e.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
@@ -98,10 +104,10 @@ fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
         Verb::OsmesaEnv(args) => osmesa_env_command::run(&args),
         Verb::Completions { shell } => {
             let mut script = Vec::new();
-            clap_complete::generate(shell, &mut Cli::command(), "vitral", &mut script);
+            clap_complete::generate(shell, &mut args::command(), "vitral", &mut script);
             report::print(&script).map(|()| 0)
         }
-        Verb::Man => tables::manual().and_then(|page| report::print(&page)).map(|()| 0),
+        Verb::Man(args) => manual::run(&args),
     }
 }
 

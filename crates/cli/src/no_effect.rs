@@ -4,12 +4,13 @@
 //! typed with the value that it has anyway, is never told; nor are options that by their nature leave pictures as they are
 //! (`--cull`, `--coherence`, `--threads`, ...).
 
+use crate::no_effect_camera;
 use crate::render_args::RenderArgs;
 use std::sync::Arc;
 use vitral::{
-    AlphaMode, AreaShape, Camera, ColorSpace, Global, Illumination, Interpolation, Light, LightKind, Lines, Normals,
-    Projection, Renderer, Scene, Settings, Shading, State, Transmission, Transparency, TransparencyOrder, View,
-    Viewpoint,
+    AlphaMode, AreaShape, Camera, Channels, ColorSpace, Global, Illumination, Interpolation, Light, LightKind, Lines,
+    Normals, Projection, Renderer, Scene, Settings, Shading, State, Transmission, Transparency, TransparencyOrder,
+    View, Viewpoint,
 };
 
 /// A row of the table: an option, a condition under which it has no effect, and the reason.
@@ -37,10 +38,11 @@ const OPAQUE: &str = "with --transparency none every surface is opaque";
 const SOLID: &str = "the models have no transparent surfaces";
 const NO_CASTER: &str = "no light casts shadows";
 const FLAT: &str = "with --shading flat each face has its own normal";
+const ALL_EDGES: &str = "all edges are drawn, the hidden ones, too (--wireframe-hidden-line leaves these out)";
 const PARALLEL: &str = "the projection is parallel";
 
 /// What does nothing beside what. Rows of one option stand together; the first that holds is told.
-const ROWS: [Row; 57] = [
+const ROWS: &[Row] = &[
     row("--samples", gives_samples, Case::makes_no_color, "channels of data have one sample a pixel"),
     row("--background-color", |a| a.picture.background_color.is_some(), Case::makes_no_color, DATA),
     row("--no-background", |a| a.picture.no_background, Case::makes_no_color, DATA),
@@ -66,6 +68,19 @@ const ROWS: [Row; 57] = [
     row("--transparency-order", gives_order, Case::is_opaque, OPAQUE),
     row("--transparency-order", gives_order, Case::is_solid, SOLID),
     row("--kay-exponent", |a| a.algorithms.kay_exponent.is_some(), Case::is_solid, SOLID),
+    row("--kay-exponent", |a| a.algorithms.kay_exponent.is_some(), Case::makes_no_color, DATA),
+    row("--kay-exponent", |a| a.algorithms.kay_exponent.is_some(), Case::draws_wires, WIRES),
+    row("--global", gives_global, |c| c.makes_no_color() && !c.shows_shadows(), DATA),
+    row("--max-depth", |a| a.algorithms.max_depth.is_some(), Case::makes_no_color, DATA),
+    row("--patch-size", |a| a.algorithms.patch_size.is_some(), Case::makes_no_color, DATA),
+    row("--iterations", |a| a.algorithms.iterations.is_some(), Case::makes_no_color, DATA),
+    row("--visibility", gives_visibility, |c| c.draws_all_edges() && c.has_no_steps(), ALL_EDGES),
+    row("--depth-bits", |a| a.algorithms.depth_bits.is_some(), |c| c.draws_all_edges() && c.has_no_steps(), ALL_EDGES),
+    row("--shadow-map-size", |a| a.algorithms.shadow_map_size.is_some(), |c| !c.casts_shadows(), NO_CASTER),
+    row("--shadow-cascades", |a| a.algorithms.shadow_cascades.is_some(), |c| !c.casts_shadows(), NO_CASTER),
+    row("--volume-counting", |a| a.algorithms.volume_counting.is_some(), |c| !c.casts_shadows(), NO_CASTER),
+    row("--together", |a| a.output.together, |c| c.models < 2, "there is one model"),
+    row("--scatter-samples", gives_scatter, Case::makes_no_color, DATA),
     row("--scatter-samples", gives_scatter, Case::is_opaque, OPAQUE),
     row("--scatter-samples", gives_scatter, |c| !c.scatters(), "the models have no translucent surfaces"),
     row("--shadows", gives_shadows, |c| c.makes_no_color() && !c.shows_shadows(), DATA),
@@ -81,6 +96,11 @@ const ROWS: [Row; 57] = [
     row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.makes_no_color() && !c.shows_shadows(), DATA),
     row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.is_dark() && !c.shows_shadows(), DARK),
     row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.is_constant() && !c.shows_shadows(), CONSTANT),
+    row("--light", |a| !a.light.light.is_empty(), |c| c.draws_wires() && !c.shows_shadows(), WIRES),
+    row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.draws_wires() && !c.shows_shadows(), WIRES),
+    row("--lighting", gives_lighting, Case::makes_no_color, DATA),
+    row("--lighting", gives_lighting, Case::draws_wires, WIRES),
+    row("--light-intensity", gives_intensity, Case::draws_wires, WIRES),
     row("--light-intensity", gives_intensity, Case::makes_no_color, DATA),
     row("--light-intensity", gives_intensity, Case::is_dark, DARK),
     row("--light-intensity", gives_intensity, Case::is_constant, CONSTANT),
@@ -99,6 +119,18 @@ const ROWS: [Row; 57] = [
     row("--up", |a| a.camera.up.is_some(), Case::has_own_up, "--camera-index brings its own, and nothing turns"),
     row("--camera-view-angle", |a| a.camera.camera_view_angle.is_some(), Case::is_parallel_without_angle, PARALLEL),
 ];
+
+fn gives_lighting(args: &RenderArgs) -> bool {
+    args.light.lighting == Some(false)
+}
+
+fn gives_global(args: &RenderArgs) -> bool {
+    args.algorithms.global.is_some_and(|model| model != Global::None)
+}
+
+fn gives_visibility(args: &RenderArgs) -> bool {
+    args.algorithms.visibility.is_some_and(|algorithm| algorithm != Settings::default().visibility)
+}
 
 fn gives_samples(args: &RenderArgs) -> bool {
     args.picture.samples.is_some_and(|count| count != Settings::default().picture.samples)
@@ -165,6 +197,10 @@ struct Case {
     viewpoint: Viewpoint,
     /// Views are made from all around.
     turns: bool,
+    /// How many models there are.
+    models: usize,
+    /// The steps of the visibility algorithm are written.
+    traces: bool,
     settings: Settings,
     scene: Arc<Scene>,
     camera: Camera,
@@ -179,6 +215,8 @@ impl Case {
             files: args.output.panels || args.output.export_shadow_polygons.is_some(),
             viewpoint: state.viewpoint.clone(),
             turns: state.turntable.is_some(),
+            models: state.models.len(),
+            traces: args.report.trace.is_some() || args.report.structure.is_some() || args.output.steps_video.is_some(),
             settings: renderer.settings.clone(),
             scene: Arc::clone(renderer.scene()),
             camera,
@@ -204,6 +242,17 @@ impl Case {
 
     fn draws_wires(&self) -> bool {
         matches!(self.settings.picture.lines, Lines::Wireframe | Lines::WireframeHiddenLine)
+    }
+
+    fn draws_all_edges(&self) -> bool {
+        self.settings.picture.lines == Lines::Wireframe
+    }
+
+    /// Whether nothing but a colour picture comes of the visibility algorithm.
+    fn has_no_steps(&self) -> bool {
+        let channels = self.settings.picture.channels;
+        let only_color = Channels { color: true, ..Channels::default() };
+        channels == only_color && !self.traces && !self.told
     }
 
     fn is_dark(&self) -> bool {
@@ -279,13 +328,20 @@ impl Case {
 }
 
 /// A warning for each option that was typed and changes nothing.
-pub(crate) fn warnings(args: &RenderArgs, state: &State, renderer: &Renderer) -> Vec<String> {
+pub(crate) fn warnings(args: &RenderArgs, state: &State, renderer: &mut Renderer) -> Vec<String> {
     // Of each option tell the first row that holds.
     let case = Case::new(args, state, renderer);
     let mut told: Vec<(&str, &str)> = Vec::new();
-    for row in &ROWS {
+    for row in ROWS {
         if told.iter().all(|(option, _)| *option != row.option) && (row.given)(args) && (row.idle)(&case) {
             told.push((row.option, row.why));
+        }
+    }
+
+    // The camera's options are tried.
+    for (option, why) in no_effect_camera::idle(&args.camera, state, renderer) {
+        if told.iter().all(|(other, _)| *other != option) && (option != "--view" || gives_view(args)) {
+            told.push((option, why));
         }
     }
     told.into_iter().map(|(option, why)| format!("{option}: no effect, {why}")).collect()

@@ -10,7 +10,7 @@ use crate::report::Failure;
 use crate::resolve::{execution_within, set_lights, set_options, set_viewpoint};
 use clap::error::{ContextKind, ContextValue};
 use clap::{ArgAction, CommandFactory, Parser};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use vitral::{Camera, Drawing, Execution, Renderer, State};
 
 /// What an option is given as.
@@ -204,7 +204,7 @@ impl Request {
         set_lights(&mut state, &args.light)?;
         let shading = &mut state.settings.shading;
         shading.illumination = args.fill.illumination.unwrap_or(shading.illumination);
-        DrawFile::new(&args, &state)?;
+        DrawFile::new(&args, &state, model_of(&state))?;
         settings_of(&args)?;
         Ok(Self { state, args: *args })
     }
@@ -228,7 +228,7 @@ impl Request {
         if camera.is_some() {
             drawer.camera = camera;
         }
-        let file = DrawFile::new(args, &self.state)?;
+        let file = DrawFile::new(args, &self.state, model_of(&self.state))?;
         let mut settings = settings_of(args)?;
         settings.page = file.page_above_title(settings.page, settings.margin)?;
         let (made, _) = draw_command::make(args, &drawer, &mut settings)?;
@@ -244,9 +244,14 @@ impl Request {
         // Options are checked anew: some suit a drawing and not every format.
         let mut args = self.args.clone();
         args.output = file;
-        let file = DrawFile::new(&args, &self.state)?;
+        let file = DrawFile::new(&args, &self.state, model_of(&self.state))?;
         Ok(file.encode(drawing, settings_of(&args)?.margin))
     }
+}
+
+/// The first model of a state.
+fn model_of(state: &State) -> &Path {
+    Path::new(state.models.first().map_or("", String::as_str))
 }
 
 #[cfg(test)]

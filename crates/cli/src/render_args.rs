@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
     Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Global, Illumination, Interpolation, LightEdit,
-    LightTerm, MaterialOverride, Normals, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility,
-    VolumeCounting,
+    LightTerm, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Transparency, TransparencyOrder, View,
+    Visibility, VolumeCounting,
 };
 
 /// Options of `vitral render`.
@@ -40,10 +40,18 @@ pub(crate) struct RenderArgs {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
-    /// Where the picture goes: .png .jpg .ppm .npy, or `-` for a PNG on standard output; {model} and {frame:4} expand;
-    /// repeatable, one for each --channel
+    /// Where the picture goes: .png .jpg .ppm .npy .webp, or `-` for a PNG on standard output; {model} and {frame:4} expand.
+    /// A turntable without {frame} is an animation as .gif .webp .apng, and one picture after the other on standard output.
+    /// Several models are one scene, or with {model} a picture each. Repeatable, one for each --channel
     #[arg(long, short, value_name = "OUT", required_unless_present_any = ["dump", "save_state", "pixel", "export_shadow_polygons", "steps_video"])]
     pub(crate) output: Vec<PathBuf>,
+    /// Put several models into one scene, although --output has {model} [default: a picture of each, then]
+    #[arg(long)]
+    pub(crate) together: bool,
+    /// The format, whatever the name says; one for all outputs, or one for each [default: by the extension; png for `-`, devices
+    /// and pipes]
+    #[arg(long, value_name = "FORMAT", value_parser = choices::picture_format())]
+    pub(crate) format: Vec<PictureFormat>,
     /// What is written; the n-th goes to the n-th --output [default: color]
     #[arg(long, value_name = "CHANNEL", value_parser = choices::channel())]
     pub(crate) channel: Vec<Channel>,
@@ -51,15 +59,19 @@ pub(crate) struct OutputArgs {
     /// pixel; what the step is about is outlined [default: all steps over the finished picture]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) step: Option<u32>,
-    /// Write the picture after one step after the other into these files; {frame} or {frame:4} expands
+    /// Write the picture after one step after the other into these files, where {frame} or {frame:4} expands, or into an
+    /// animation as .gif, .webp or .apng
     #[arg(long, value_name = "OUT", conflicts_with_all = ["turntable", "panels"])]
     pub(crate) steps_video: Option<PathBuf>,
     /// The most pictures of --steps-video, over all steps evenly, the last one among them; 0 makes one for each step [default: 240]
     #[arg(long, value_name = "N", requires = "steps_video", allow_negative_numbers = true)]
     pub(crate) steps_frames: Option<u32>,
-    /// N views around the model; --output needs {frame} [default: one picture]
+    /// N views around the model; --output needs {frame}, or a format that can be animated [default: one picture]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=1_000_000u32), allow_negative_numbers = true)]
     pub(crate) turntable: Option<u32>,
+    /// Frames a second of an animation as .gif, .webp or .apng [default: 25]
+    #[arg(long, value_name = "N", value_parser = values::frame_rate, allow_negative_numbers = true)]
+    pub(crate) frame_rate: Option<f64>,
     /// Only these frames of the turntable, counted from 0: 3 or 0-9
     #[arg(long, value_name = "FIRST-LAST", value_parser = values::frames, requires = "turntable")]
     pub(crate) frames: Option<RangeInclusive<u32>>,
@@ -69,8 +81,8 @@ pub(crate) struct OutputArgs {
     /// How far a channel may be apart from the reference, 0 to 1 of its range [default: 0]
     #[arg(long, value_name = "F", value_parser = values::share, requires = "reference", allow_negative_numbers = true)]
     pub(crate) reference_threshold: Option<f64>,
-    /// Write the notes' figure of the shadow algorithm instead of one picture: six panels, each of the size of a picture;
-    /// for --shadows map and object-precision
+    /// Write a figure of the shadow algorithm instead of one picture, as textbooks have it: six panels from the light's view to the
+    /// finished picture, each of the size of a picture; for --shadows map and object-precision
     #[arg(long)]
     pub(crate) panels: bool,
     /// Write the solution of radiosity into this file, for pictures from other cameras
@@ -83,7 +95,7 @@ pub(crate) struct OutputArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) dump: Option<PathBuf>,
     /// Write the polygons that the shadow algorithm works with (volumes, shadows on polygons, or lit polygons) into this OBJ file
-    #[arg(long, value_name = "FILE", value_parser = values::obj_file)]
+    #[arg(long, value_name = "FILE", value_parser = values::obj_file())]
     pub(crate) export_shadow_polygons: Option<PathBuf>,
 }
 
@@ -296,7 +308,8 @@ pub(crate) struct CameraArgs {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Lab3D")]
 pub(crate) struct LabArgs {
-    /// Start from the scene, lights and settings of an exercise of the course; models and options override them
+    /// Start from the scene, lights and settings of an exercise with Lab3D, the program of the graphics course that vitral follows;
+    /// models and options override them
     #[arg(long, value_name = "NUMBER", value_parser = choices::exercise())]
     pub(crate) exercise: Option<&'static str>,
     #[command(flatten)]
@@ -346,10 +359,10 @@ pub(crate) struct ProcessArgs {
     /// Threads; 0 means as many as the process may use [default: what VITRAL_THREADS says, else 0]
     #[arg(long, value_name = "N", value_parser = values::threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<usize>,
-    /// Seconds until the work stops with exit code 7
+    /// Seconds until the work stops with exit code 7; for each model where each gives a picture
     #[arg(long, value_name = "S", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<f64>,
-    /// Memory allowed, such as 512M or 1G
+    /// Memory allowed, such as 512M or 1G [default: the machine's, or what its control group allows, where Linux tells]
     #[arg(long, value_name = "B", value_parser = values::bytes, allow_negative_numbers = true)]
     pub(crate) max_memory: Option<u64>,
 }

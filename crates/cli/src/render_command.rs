@@ -2,9 +2,9 @@
 
 use crate::compare_command;
 use crate::interrupt;
-use crate::kept_models;
+use crate::models::{self, ReadLimits};
 use crate::no_effect;
-use crate::outputs::model_name;
+use crate::outputs::{Output, model_name};
 use crate::progress::Progress;
 use crate::render_args::{RenderArgs, ReportArgs};
 use crate::report::{self, DIFFERENT, Failure};
@@ -12,6 +12,9 @@ use crate::resolve::{Plan, execution_within, resolve, save_state};
 use crate::step_pictures;
 use crate::trace_file::Onlooker;
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use vitral::explain::{Deciders, Explanation, explain};
 use vitral::internals::frame::compare;
@@ -31,16 +34,112 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     let start = Instant::now();
     let plan = resolve(args)?;
     if let Some(file) = &args.process.save_state {
-        save_state(&plan.state, file)?;
+        save_state(&plan.state, &plan.models, file)?;
     }
-    let one_frame = plan.frames.end() == plan.frames.start();
-    let listener = Progress::stages(args.report.progress.unwrap_or_default(), args.report.quiet);
-    let execution = execution_within(&args.process, listener.filter(|_| one_frame))?;
-    interrupt::heed(&execution.budget.clone(), || render(args, &plan, execution, start))
+    let pictures =
+        u64::from(plan.frames.end() - plan.frames.start() + 1) * if plan.apart { plan.models.len() as u64 } else { 1 };
+    let (when, quiet) = (args.report.progress.unwrap_or_default(), args.report.quiet);
+    let listener = Progress::stages(when, quiet).filter(|_| pictures == 1);
+    let execution = execution_within(&args.process, listener)?;
+    let unit = if plan.apart { "pictures" } else { "frames" };
+    let mut progress = Progress::new(when, quiet, pictures, unit);
+    interrupt::heed(&execution.budget.clone(), || {
+        let code = if plan.apart {
+            render_apart(args, &plan, &execution, &mut progress)
+        } else {
+            render(args, &plan, execution, start, &mut progress).and_then(|done| tell(args, done))
+        };
+        progress.finish();
+        code
+    })
 }
 
-/// Renders the frames of the plan, and reports about them.
-fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: Instant) -> Result<u8, Failure> {
+/// Renders the models one after the other, each as if it were alone; gives the exit code of the first failure.
+fn render_apart(
+    args: &RenderArgs,
+    plan: &Plan,
+    execution: &vitral::Execution,
+    progress: &mut Progress,
+) -> Result<u8, Failure> {
+    let start = Instant::now();
+    let frames = u64::from(plan.frames.end() - plan.frames.start() + 1);
+    let mut begun = 0;
+    let (done, code) = models::for_each(&plan.models, &execution.budget, |model| {
+        // What a model before left out counts as done.
+        progress.advance_to(begun * frames);
+        begun += 1;
+        let models = vec![model.to_owned()];
+        let mut plan = Plan { models, ..plan.clone() };
+        plan.state.models = models::in_unicode(&plan.models);
+        let execution = vitral::Execution { budget: execution.budget.renewed(), ..execution.clone() };
+        render(args, &plan, execution, Instant::now(), progress)
+    });
+    progress.advance_to(begun * frames);
+
+    // Report about all.
+    let (mut outputs, mut results, mut stats) = (Vec::new(), Vec::new(), Vec::new());
+    for (model, done) in plan.models.iter().zip(done) {
+        let mut result = match done {
+            Ok(mut done) => {
+                done.stats["model"] = json!(model.to_string_lossy());
+                stats.push(done.stats);
+                outputs.extend(done.result["outputs"].as_array().into_iter().flatten().cloned());
+                done.result
+            }
+            Err(failure) => failure.as_json(),
+        };
+        result["model"] = json!(model.to_string_lossy());
+        results.push(result);
+    }
+    let stats = json!({"models": stats, "total-seconds": start.elapsed().as_secs_f64()});
+    write_stats(&args.report, &stats)?;
+    if args.report.json {
+        let mut result = json!({"outputs": outputs, "models": results});
+        if args.report.stats {
+            result["stats"] = stats;
+        }
+        report::print_json(&result)?;
+    }
+    Ok(code)
+}
+
+/// What came of one scene.
+struct Done {
+    /// Counters and times.
+    stats: Value,
+    /// Files and warnings.
+    result: Value,
+    explained: Option<Explanation>,
+    /// A picture differs from the reference.
+    different: bool,
+}
+
+/// Reports about one scene; gives the exit code.
+fn tell(args: &RenderArgs, done: Done) -> Result<u8, Failure> {
+    let Done { stats, mut result, explained, different } = done;
+    write_stats(&args.report, &stats)?;
+    if args.report.json {
+        if args.report.stats {
+            result["stats"] = stats;
+        }
+        if let Some(explained) = &explained {
+            result["pixel"] = report::to_value(explained)?;
+        }
+        report::print_json(&result)?;
+    } else if let Some(explained) = &explained {
+        report::print(explained.to_string().as_bytes())?;
+    }
+    Ok(if different { DIFFERENT } else { 0 })
+}
+
+/// Renders the frames of the plan.
+fn render(
+    args: &RenderArgs,
+    plan: &Plan,
+    execution: vitral::Execution,
+    start: Instant,
+    progress: &mut Progress,
+) -> Result<Done, Failure> {
     let mut seconds = Map::new();
     let loaded = timed(&mut seconds, "load", || load(args, plan, execution));
     let (mut renderer, mut warnings) = loaded?;
@@ -61,31 +160,42 @@ fn render(args: &RenderArgs, plan: &Plan, execution: vitral::Execution, start: I
         let write = || vitral::picture::write(file, vitral::shadow_polygons(&renderer)?.as_bytes());
         timed(&mut seconds, "shadow-polygons", write)?;
     }
-    let drawn = timed(&mut seconds, "frames", || draw_traced(args, plan, &mut renderer, &cameras))?;
+    let drawn = timed(&mut seconds, "frames", || draw_traced(args, plan, &mut renderer, &cameras, progress))?;
     let explain = |pixel| timed(&mut seconds, "pixel", || explain_pixel(args, &renderer, first, pixel));
     let explained = args.report.pixel.map(explain).transpose()?;
 
     warnings.extend(drawn.warnings);
+    if args.report.verbose {
+        report::line(&times(&seconds, &drawn.frames));
+    }
     let stats = json!({
         "load-seconds": load_seconds,
         "seconds": seconds,
         "frames": drawn.frames,
         "total-seconds": start.elapsed().as_secs_f64(),
     });
-    write_stats(&args.report, &stats)?;
-    if args.report.json {
-        let mut result = json!({"outputs": drawn.written, "warnings": warnings});
-        if args.report.stats {
-            result["stats"] = stats;
-        }
-        if let Some(explained) = &explained {
-            result["pixel"] = json!(explained);
-        }
-        report::print_json(&result)?;
-    } else if let Some(explained) = &explained {
-        report::print(explained.to_string().as_bytes())?;
+    let result = json!({"outputs": drawn.written, "warnings": warnings});
+    Ok(Done { stats, result, explained, different: drawn.different })
+}
+
+/// Where the time went: loading and what else was done once, then the stages of all frames together, the longest first.
+fn times(once: &Map<String, Value>, frames: &[Value]) -> String {
+    let mut stages: BTreeMap<&str, f64> = BTreeMap::new();
+    for (name, value) in frames.iter().filter_map(|frame| frame["seconds"].as_object()).flatten() {
+        *stages.entry(name).or_default() += value.as_f64().unwrap_or(0.0);
     }
-    Ok(if drawn.different { DIFFERENT } else { 0 })
+    let mut stages: Vec<(&str, f64)> = stages.into_iter().filter(|(_, seconds)| *seconds > 0.0).collect();
+    stages.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let tell = |(name, seconds): (&str, f64)| format!("{name} {seconds:.3} s");
+    let once = once
+        .iter()
+        .map(|(name, value)| tell((name.as_str(), value.as_f64().unwrap_or(0.0))))
+        .collect::<Vec<_>>()
+        .join(", ");
+    match stages.is_empty() {
+        true => format!("time: {once}"),
+        false => format!("time: {once} ({})", stages.into_iter().map(tell).collect::<Vec<_>>().join(", ")),
+    }
 }
 
 /// What `work` gives; its seconds go into `seconds` under this name.
@@ -98,7 +208,7 @@ fn timed<T>(seconds: &mut Map<String, Value>, name: &str, work: impl FnOnce() ->
 
 /// A renderer with the models, the settings and a solution of radiosity as asked for, and the warnings of the files.
 fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<(Renderer, Vec<String>), Failure> {
-    let scene = kept_models::scene(&plan.state, &execution.workers)?;
+    let scene = models::load_scene(&plan.state, &plan.models, &execution, ReadLimits::of(&args.process))?;
     let mut warnings = scene.warnings.clone();
     if !args.report.quiet {
         report::warnings(&warnings);
@@ -106,7 +216,7 @@ fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<
     execution.budget.check("loading")?;
     let mut renderer = Renderer::with_execution(scene, execution)?;
     plan.state.apply(&mut renderer)?;
-    let idle = no_effect::warnings(args, &plan.state, &renderer);
+    let idle = no_effect::warnings(args, &plan.state, &mut renderer);
     if !args.report.quiet {
         report::warnings(&idle);
     }
@@ -120,13 +230,19 @@ fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<
 }
 
 /// Draws the pictures, if any are wanted, with a trace of the steps and a picture of the structure if these are; saves the solution of radiosity.
-fn draw_traced(args: &RenderArgs, plan: &Plan, renderer: &mut Renderer, cameras: &[Camera]) -> Result<Drawn, Failure> {
+fn draw_traced(
+    args: &RenderArgs,
+    plan: &Plan,
+    renderer: &mut Renderer,
+    cameras: &[Camera],
+    progress: &mut Progress,
+) -> Result<Drawn, Failure> {
     let has_frames = plan.frames.end() > plan.frames.start();
     let mut onlooker = Onlooker::new(&args.report, renderer, has_frames)?;
     let mut drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
         Drawn::default()
     } else {
-        draw(args, plan, renderer, cameras, onlooker.as_mut())?
+        draw(args, plan, renderer, cameras, onlooker.as_mut(), progress)?
     };
     if let Some(output) = &plan.steps_video {
         let camera = &cameras[*plan.frames.start() as usize];
@@ -169,16 +285,28 @@ struct Drawn {
     different: bool,
 }
 
+impl Drawn {
+    /// A file was written.
+    fn note_file(&mut self, args: &RenderArgs, output: &Output, path: &Path) {
+        self.written.push(path.to_string_lossy().into_owned());
+        if args.report.verbose && !output.is_standard() {
+            report::line(&format!("wrote {}", path.display()));
+        }
+    }
+}
+
 fn draw(
     args: &RenderArgs,
     plan: &Plan,
     renderer: &mut Renderer,
     cameras: &[Camera],
     mut onlooker: Option<&mut Onlooker>,
+    progress: &mut Progress,
 ) -> Result<Drawn, Failure> {
     let (model, options) = (model_of(plan), encode_options(plan));
-    let count = u64::from(plan.frames.end() - plan.frames.start() + 1);
-    let mut progress = Progress::new(args.report.progress.unwrap_or_default(), args.report.quiet, count);
+    let count = plan.frames.end() - plan.frames.start() + 1;
+    let animate = |output: &Output| output.animation(count, args.output.frame_rate, &options);
+    let mut animations = plan.outputs.iter().map(animate).collect::<Result<Vec<_>, _>>()?;
     let mut drawn = Drawn::default();
     for number in plan.frames.clone() {
         let camera = &cameras[number as usize];
@@ -201,18 +329,19 @@ fn draw(
         let render_seconds = (encode_start - render_start).as_secs_f64();
         let wanted = plan.reference.as_ref().is_none_or(|expected| differs(args, expected, &rendered.frame));
         drawn.different |= wanted && plan.reference.is_some();
-        for output in plan.outputs.iter().filter(|_| wanted) {
+        for (output, animation) in plan.outputs.iter().zip(&mut animations).filter(|_| wanted) {
+            if let Some(animation) = animation {
+                animation.add(&rendered.frame)?;
+                continue;
+            }
             let path = output.path(&model, number)?;
             output.write(&path, &rendered.frame, &EncodeOptions { exposure: rendered.exposure, ..options })?;
-            drawn.written.push(path.to_string_lossy().into_owned());
-            if args.report.verbose && !output.is_standard() {
-                report::line(&format!("wrote {}", path.display()));
-            }
+            drawn.note_file(args, output, &path);
         }
-        if args.report.stats || args.report.stats_file.is_some() {
-            let mut stats = serde_json::to_value(&rendered.stats).map_err(|e| Failure::other(e.to_string()))?;
+        if args.report.stats || args.report.stats_file.is_some() || args.report.verbose {
+            let mut stats = report::to_value(&rendered.stats)?;
             stats["frame"] = json!(number);
-            stats["exposure"] = json!(rendered.exposure);
+            stats["exposure"] = report::to_value(&rendered.exposure)?;
             if args.output.panels {
                 // The stages are those of the last panel.
                 stats["seconds"]["panels"] = json!(render_seconds);
@@ -223,13 +352,19 @@ fn draw(
         renderer.recycle(rendered);
         progress.step();
     }
-    progress.finish();
+    for (output, animation) in plan.outputs.iter().zip(animations) {
+        if let Some(animation) = animation {
+            let path = output.path(&model, *plan.frames.start())?;
+            output.write_bytes(&path, &animation.finish()?)?;
+            drawn.note_file(args, output, &path);
+        }
+    }
     Ok(drawn)
 }
 
 /// The model's name in names of files.
-fn model_of(plan: &Plan) -> String {
-    model_name(plan.state.models.first().map_or("", String::as_str))
+fn model_of(plan: &Plan) -> OsString {
+    model_name(plan.models.first().map_or(Path::new(""), PathBuf::as_path))
 }
 
 /// How pictures are encoded.

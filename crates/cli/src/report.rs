@@ -1,6 +1,8 @@
 //! What the user is told: results on standard output, everything else on standard error, one line each.
 
+use crate::allocator::output_is_closed;
 use crate::exit::{exit_code, hint};
+use crate::similar::for_missing;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::io::Write;
 use std::path::Path;
@@ -53,6 +55,26 @@ impl Failure {
     pub(crate) fn with_hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
         self
+    }
+
+    /// With a hint, unless there is a better one.
+    #[must_use]
+    pub(crate) fn or_hint(mut self, hint: impl FnOnce() -> String) -> Self {
+        self.hint = self.hint.or_else(|| Some(hint()));
+        self
+    }
+
+    /// With the model's name in front, unless the message begins with it.
+    #[must_use]
+    pub(crate) fn about(mut self, model: &Path) -> Self {
+        let name = model.to_string_lossy();
+        self.message = self.message.map(|text| if text.starts_with(&*name) { text } else { format!("{name}: {text}") });
+        self
+    }
+
+    /// What the user is told, and the exit code.
+    pub(crate) fn as_json(&self) -> serde_json::Value {
+        serde_json::json!({"error": self.message, "exit-code": self.code})
     }
 
     /// Standard output cannot be written. A reader that has gone away had enough, which is no failure.
@@ -116,7 +138,8 @@ impl From<clap::Error> for Failure {
                     Some(ContextValue::Strings(names)) => names.first(),
                     _ => None,
                 };
-                let hint = similar.map_or(HELP.to_owned(), |name| format!("there is the verb `{name}`"));
+                let verb = similar.map(|name| format!("there is the verb `{name}`"));
+                let hint = verb.or_else(|| for_missing(Path::new(word))).unwrap_or_else(|| HELP.to_owned());
                 return Self::usage(format!("{word}: there is no such verb, and no file of that name")).with_hint(hint);
             }
             ErrorKind::UnknownArgument if SIZES.contains(&context(ContextKind::InvalidArg)) => {
@@ -161,6 +184,9 @@ pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
         printed.extend_from_slice(bytes);
         return Ok(());
     }
+    if output_is_closed() {
+        return Err(Failure::with_code(5, "standard output: it is closed"));
+    }
     let mut out = std::io::stdout().lock();
     out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
 }
@@ -172,12 +198,37 @@ pub(crate) fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Whether a file's name means standard output.
 pub(crate) fn is_standard(file: &Path) -> bool {
-    file.as_os_str() == "-"
+    file.as_os_str() == "-" || cfg!(unix) && file == Path::new("/dev/stdout")
 }
 
 /// Prints a value as JSON, ending with a new line.
 pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     print(&json(value))
+}
+
+/// A value as JSON whose numbers have the digits that they need: numbers of single precision, such as the corners of a mesh, are
+/// told as a file has them, 0.8 and not 0.800000011920929.
+pub(crate) fn to_value(value: &impl serde::Serialize) -> Result<serde_json::Value, Failure> {
+    let mut value = serde_json::to_value(value).map_err(|e| Failure::other(e.to_string()))?;
+    shorten(&mut value);
+    Ok(value)
+}
+
+/// Gives each number that single precision holds exactly its shortest digits there.
+fn shorten(value: &mut serde_json::Value) {
+    use serde_json::Value;
+    match value {
+        Value::Array(list) => list.iter_mut().for_each(shorten),
+        Value::Object(fields) => fields.values_mut().for_each(shorten),
+        Value::Number(number) => {
+            let single = number.as_f64().filter(|_| number.is_f64()).map(|v| (v, v as f32));
+            let exact = single.filter(|(v, single)| f64::from(*single) == *v).map(|(_, single)| single.to_string());
+            if let Some(short) = exact.and_then(|text| text.parse().ok()).and_then(serde_json::Number::from_f64) {
+                *number = short;
+            }
+        }
+        Value::Null | Value::Bool(_) | Value::String(_) => {}
+    }
 }
 
 /// A value as indented JSON, ending with a new line.

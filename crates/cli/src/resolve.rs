@@ -2,7 +2,9 @@
 
 use crate::compare_command;
 use crate::light_spec;
-use crate::outputs::{Output, model_name};
+use crate::machine;
+use crate::models;
+use crate::outputs::{FRAMES_HINT, Output, model_name};
 use crate::render_args::{
     AlgorithmArgs, CameraArgs, EyeArgs, LabArgs, LightArgs, PictureArgs, ProcessArgs, RenderArgs,
 };
@@ -23,10 +25,14 @@ use vitral::{
 const MAX_STATE_BYTES: u64 = 64 << 20;
 
 /// All that `vitral render` is to do.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Plan {
     /// Models, viewpoint, lights, settings.
     pub(crate) state: State,
+    /// The models' names as typed.
+    pub(crate) models: Vec<PathBuf>,
+    /// Whether each model gives pictures of its own.
+    pub(crate) apart: bool,
     /// Where the channels go.
     pub(crate) outputs: Vec<Output>,
     /// Which frames of how many.
@@ -46,7 +52,7 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     set_options(&mut state, args)?;
 
     // Outputs decide which channels are rendered.
-    let outputs = Output::pair(&args.output.output, &args.output.channel)?;
+    let outputs = Output::pair(&args.output.output, &args.output.channel, &args.output.format)?;
     let mut channels = Channels { color: args.output.reference.is_some() || outputs.is_empty(), ..Channels::default() };
     outputs.iter().for_each(|o| o.channel.request(&mut channels));
     state.settings.picture.channels = channels;
@@ -58,13 +64,52 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     check_background_and_pixel(args, &state, &outputs)?;
     step_pictures::check(args, &outputs)?;
     let video = args.output.steps_video.as_deref();
-    let steps_video = video.map(|pattern| Output::sequence("--steps-video", pattern)).transpose()?;
+    let steps_video =
+        video.map(|pattern| Output::sequence("--steps-video", pattern, &args.output.format)).transpose()?;
 
     let views = state.turntable.unwrap_or(1).clamp(1, 1_000_000) as u32;
-    let frames = frames_of(args, views, &outputs)?;
-    check_files(args, &state, outputs.iter().chain(&steps_video), &frames)?;
+    let frames = frames_of(args, views, &outputs, steps_video.as_ref())?;
+    let models = models::named(&args.models, &state);
+    let patterns = outputs.iter().chain(&steps_video).map(Output::pattern);
+    let apart = models::are_apart(&models, args.output.together, patterns);
+    if apart {
+        check_models_apart(args, &models, outputs.iter().chain(&steps_video), *frames.start())?;
+    }
+    let checked = if apart { &models[..] } else { &models[..models.len().min(1)] };
+    check_files(args, checked, outputs.iter().chain(&steps_video), &frames)?;
     let reference = args.output.reference.as_deref().map(compare_command::read).transpose()?;
-    Ok(Plan { state, outputs, frames, views, steps_video, reference })
+    Ok(Plan { state, models, apart, outputs, frames, views, steps_video, reference })
+}
+
+/// Refuses what cannot be done for each of several models: reports about one scene, outputs that all would write.
+fn check_models_apart<'o>(
+    args: &RenderArgs,
+    models: &[PathBuf],
+    outputs: impl Iterator<Item = &'o Output>,
+    frame: u32,
+) -> Result<(), Failure> {
+    let (output, report) = (&args.output, &args.report);
+    let of_one_scene = [
+        ("--dump", output.dump.is_some()),
+        ("--export-shadow-polygons", output.export_shadow_polygons.is_some()),
+        ("--save-radiosity", output.save_radiosity.is_some()),
+        ("--load-radiosity", output.load_radiosity.is_some()),
+        ("--reference", output.reference.is_some()),
+        ("--pixel", report.pixel.is_some()),
+        ("--trace", report.trace.is_some()),
+        ("--structure", report.structure.is_some()),
+    ];
+    if let Some((option, _)) = of_one_scene.iter().find(|(_, given)| *given) {
+        return Err(models::refuse_for_each(option));
+    }
+    for output in outputs {
+        if !output.names_models() {
+            let what = format!("--output {}: each model would be written there", output.pattern().display());
+            return Err(Failure::usage(what).with_hint("put {model} into its name, or add --together"));
+        }
+        models::check_files(models, |model| output.path(model, frame))?;
+    }
+    Ok(())
 }
 
 /// How to compute, within the limits that were typed; `listener` is told how far it is.
@@ -73,7 +118,10 @@ pub(crate) fn execution_within(
     listener: Option<Arc<vitral::Progress>>,
 ) -> Result<Execution, Failure> {
     let mut execution = values::execution_from(process.threads)?;
-    execution.budget = execution.budget.with_time_limit(process.time_limit).with_memory_limit(process.max_memory);
+    execution.budget = execution
+        .budget
+        .with_time_limit(process.time_limit)
+        .with_memory_limit(process.max_memory.or_else(machine::memory));
     if let Some(listener) = listener {
         execution.budget = execution.budget.with_progress(listener);
     }
@@ -94,7 +142,7 @@ pub(crate) fn overlay_files(state: &mut State, args: &ProcessArgs) -> Result<(),
 /// Lays the options over the state.
 pub(crate) fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Failure> {
     if !args.models.is_empty() {
-        state.models = args.models.iter().map(|m| m.to_string_lossy().into_owned()).collect();
+        state.models = models::in_unicode(&args.models);
     }
     if let Some(number) = args.lab.exercise {
         state.start_exercise(number)?;
@@ -168,18 +216,32 @@ fn check_background_and_pixel(args: &RenderArgs, state: &State, outputs: &[Outpu
 }
 
 /// The frames to render of a turntable with this many views; each needs a name of its own.
-fn frames_of(args: &RenderArgs, views: u32, outputs: &[Output]) -> Result<RangeInclusive<u32>, Failure> {
+fn frames_of(
+    args: &RenderArgs,
+    views: u32,
+    outputs: &[Output],
+    steps_video: Option<&Output>,
+) -> Result<RangeInclusive<u32>, Failure> {
     let frames = args.output.frames.clone().unwrap_or(0..=views - 1);
     if *frames.end() >= views {
         return Err(Failure::usage(format!("--frames {}: the turntable has {views} frames", frames.end()))
             .with_hint("they are counted from 0"));
     }
-    if frames.end() > frames.start()
-        && let Some(one) = outputs.iter().find(|o| !o.names_frames())
+    if frames.end() > frames.start() && outputs.iter().any(|o| !o.holds_frames()) {
+        let what = format!("--output holds one picture, the turntable has {views}");
+        return Err(Failure::usage(what).with_hint(FRAMES_HINT));
+    }
+    if let Some(animation) = outputs.iter().find(|o| frames.end() > frames.start() && o.is_animation())
+        && args.output.reference.is_some()
     {
-        let hint = "put {frame} or {frame:4} into its name";
-        let name = if one.is_standard() { "standard output" } else { "--output" };
-        return Err(Failure::usage(format!("{name} holds one picture, the turntable has {views}")).with_hint(hint));
+        let what = format!("--reference: {} holds several pictures", animation.pattern().display());
+        return Err(Failure::usage(what).with_hint("compare single frames"));
+    }
+    let several = frames.end() > frames.start() || args.output.steps_video.is_some();
+    let is_animated = outputs.iter().chain(steps_video).any(Output::is_animation);
+    if args.output.frame_rate.is_some() && !(several && is_animated) {
+        return Err(Failure::usage("--frame-rate: no animation is written")
+            .with_hint("give --turntable or --steps-video, and a .gif, .webp or .apng"));
     }
     Ok(frames)
 }
@@ -187,12 +249,15 @@ fn frames_of(args: &RenderArgs, views: u32, outputs: &[Output]) -> Result<RangeI
 /// Whether all that is written has a place: nobody wants to hear of a mistyped folder after hours of work.
 fn check_files<'o>(
     args: &RenderArgs,
-    state: &State,
+    models: &[PathBuf],
     mut outputs: impl Iterator<Item = &'o Output>,
     frames: &RangeInclusive<u32>,
 ) -> Result<(), Failure> {
-    let model = model_name(state.models.first().map_or("", String::as_str));
-    outputs.try_for_each(|output| output.check_places(&model, frames.clone()))?;
+    let names: Vec<_> = match models {
+        [] => vec![model_name(Path::new(""))],
+        models => models.iter().map(|model| model_name(model)).collect(),
+    };
+    outputs.try_for_each(|output| names.iter().try_for_each(|model| output.check_places(model, frames.clone())))?;
     let stats = args.report.stats_file.as_ref().filter(|file| !report::is_standard(file));
     let files = [stats, args.output.save_radiosity.as_ref(), args.output.export_shadow_polygons.as_ref()];
     files.into_iter().flatten().try_for_each(|file| Ok(vitral::picture::check_place(file)?))
@@ -219,7 +284,11 @@ fn check_standard_output(args: &RenderArgs, outputs: &[Output]) -> Result<(), Fa
 }
 
 /// Writes the state into the file that `--save-state` names.
-pub(crate) fn save_state(state: &State, file: &Path) -> Result<(), Failure> {
+pub(crate) fn save_state(state: &State, models: &[PathBuf], file: &Path) -> Result<(), Failure> {
+    if let Some(odd) = models.iter().find(|model| model.to_str().is_none()) {
+        let what = format!("--save-state: the name {} is not Unicode, which JSON cannot hold", odd.display());
+        return Err(Failure::usage(what).with_hint("rename the model, or name a link to it"));
+    }
     let mut state = state.clone();
     if let Some(folder) = file.parent().filter(|_| !report::is_standard(file)) {
         state.leave_for(folder);
@@ -245,7 +314,8 @@ pub(crate) fn read_state(file: &Path, option: &str) -> Result<String, Failure> {
     let bytes = vitral::read(file, MAX_STATE_BYTES).map_err(|e| {
         let is_missing = matches!(&e, vitral::Error::Read { source, .. } if source.kind() == ErrorKind::NotFound);
         let failure = Failure::from(e);
-        if is_missing { failure.with_hint(format!("{option} takes a file that --save-state wrote")) } else { failure }
+        let hint = || format!("{option} takes a file that --save-state wrote");
+        if is_missing { failure.or_hint(hint) } else { failure }
     })?;
     let not_text = |_| vitral::Error::State {
         file: file.to_string_lossy().into_owned(),

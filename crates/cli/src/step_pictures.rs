@@ -42,7 +42,7 @@ pub(crate) fn after_step(
 pub(crate) fn video(
     args: &RenderArgs,
     output: &Output,
-    model: &str,
+    model: &std::ffi::OsStr,
     renderer: &mut Renderer,
     camera: &Camera,
     options: &EncodeOptions,
@@ -51,7 +51,9 @@ pub(crate) fn video(
     let steps = watched.steps.len();
     let most = args.output.steps_frames.map_or(MOST_FRAMES, |most| if most == 0 { steps } else { most as usize });
     let count = steps.min(most).max(1);
-    let mut progress = Progress::new(args.report.progress.unwrap_or_default(), args.report.quiet, count as u64);
+    let mut progress =
+        Progress::new(args.report.progress.unwrap_or_default(), args.report.quiet, count as u64, "pictures");
+    let mut animation = output.animation(count as u32, args.output.frame_rate, options)?;
     let (mut replay, mut written) = (Replay::new(&watched), Vec::new());
     for number in 0..count {
         renderer.execution().budget.check("the steps' pictures")?;
@@ -59,10 +61,19 @@ pub(crate) fn video(
         replay.go_to(((number + 1) * steps / count).saturating_sub(1));
         let (width, height) = (watched.image.width(), watched.image.height());
         let frame = Frame { width, height, steps: Some(replay.picture()), ..Frame::default() };
-        let path = output.path(model, number as u32)?;
-        output.write(&path, &frame, options)?;
-        written.push(path.to_string_lossy().into_owned());
+        if let Some(animation) = &mut animation {
+            animation.add(&frame)?;
+        } else {
+            let path = output.path(model, number as u32)?;
+            output.write(&path, &frame, options)?;
+            written.push(path.to_string_lossy().into_owned());
+        }
         progress.step();
+    }
+    if let Some(animation) = animation {
+        let path = output.path(model, 0)?;
+        output.write_bytes(&path, &animation.finish()?)?;
+        written.push(path.to_string_lossy().into_owned());
     }
     progress.finish();
     Ok(written)

@@ -1,8 +1,7 @@
-//! What there is: algorithms, formats, the manual page. All of it comes from the tables that the renderer uses.
+//! What there is: algorithms and formats. All of it comes from the tables that the renderer uses.
 
-use crate::args::{Cli, ListArgs};
+use crate::args::ListArgs;
 use crate::report::{self, Failure};
-use clap::CommandFactory;
 use serde_json::json;
 use std::fmt::Write;
 use vitral::internals::render::registry;
@@ -111,19 +110,4 @@ pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
         let _ = writeln!(text, "  {:<30} {about}", format!("builtin:{name}"));
     }
     report::print(text.as_bytes()).map(|()| 0)
-}
-
-/// `vitral man`: one page for the command and its verbs.
-pub(crate) fn manual() -> Result<Vec<u8>, Failure> {
-    let mut page = Vec::new();
-    let mut command = Cli::command();
-    command.build();
-    let written = clap_mangen::Man::new(command.clone()).render(&mut page).and_then(|()| {
-        command.get_subcommands().filter(|c| !c.is_hide_set()).try_for_each(|verb| {
-            let title = format!("vitral-{}", verb.get_name());
-            clap_mangen::Man::new(verb.clone()).title(title).render(&mut page)
-        })
-    });
-    written.map_err(|e| Failure::other(format!("the manual page: {e}")))?;
-    Ok(page)
 }

@@ -40,6 +40,8 @@ impl Onlooker {
         }
         let open = |path: &PathBuf| {
             let out: Box<dyn Write + Send> = if is_standard(path) {
+                // Tells where nothing is open.
+                report::print(&[])?;
                 Box::new(std::io::stdout())
             } else {
                 Box::new(File::create(path).map_err(|e| failure(path, &e))?)

@@ -2,6 +2,8 @@
 
 use crate::exit::hint;
 use crate::report::Failure;
+use crate::similar::not_one_of;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -56,8 +58,11 @@ pub(crate) fn threads(text: &str) -> Result<usize, String> {
 pub(crate) fn threads_or_environment(asked: Option<usize>) -> Result<usize, Failure> {
     match (asked, std::env::var("VITRAL_THREADS")) {
         (Some(count), _) => Ok(count),
-        (None, Ok(text)) => threads(&text).map_err(|e| Failure::usage(format!("VITRAL_THREADS={text}: {e}"))),
-        (None, Err(_)) => Ok(0),
+        // Empty is as good as not set.
+        (None, Ok(text)) if !text.trim().is_empty() => {
+            threads(&text).map_err(|e| Failure::usage(format!("VITRAL_THREADS={text}: {e}")))
+        }
+        (None, _) => Ok(0),
     }
 }
 
@@ -65,7 +70,9 @@ pub(crate) fn threads_or_environment(asked: Option<usize>) -> Result<usize, Fail
 /// instruction set than the best.
 pub(crate) fn execution_from(threads: Option<usize>) -> Result<Execution, Failure> {
     let execution = execution(threads_or_environment(threads)?);
-    let level = level_from_environment().map_err(Failure::usage)?;
+    // Empty is as good as not set.
+    let is_set = std::env::var_os("VITRAL_SIMD").is_some_and(|name| !name.is_empty());
+    let level = if is_set { level_from_environment().map_err(Failure::usage)? } else { execution.level };
     Ok(Execution { level, ..execution })
 }
 
@@ -131,11 +138,11 @@ pub(crate) fn bytes(text: &str) -> Result<u64, String> {
 pub(crate) fn culling(text: &str) -> Result<Culling, String> {
     let mut culling = Culling { frustum: false, back_face: false };
     for word in text.split(',') {
-        match word {
+        match &*word.to_ascii_lowercase() {
             "frustum" => culling.frustum = true,
             "back-face" => culling.back_face = true,
-            "none" if text == "none" => {}
-            _ => return Err(format!("`{word}` is not one of frustum, back-face; or none alone")),
+            "none" if word == text => {}
+            _ => return Err(not_one_of(word, &["frustum", "back-face"], "; or none alone")),
         }
     }
     Ok(culling)
@@ -147,18 +154,26 @@ pub(crate) struct CoherenceList(pub(crate) Option<Vec<Coherence>>);
 
 /// Kinds of coherence with commas between them, or `all`, or `none`.
 pub(crate) fn coherence(text: &str) -> Result<CoherenceList, String> {
-    match text {
+    match &*text.to_ascii_lowercase() {
         "none" => return Ok(CoherenceList(Some(Vec::new()))),
         // Each algorithm has kinds of its own: a list of all would name some that it has not.
         "all" => return Ok(CoherenceList(None)),
         _ => {}
     }
     let kind = |word: &str| {
-        let found = Coherence::ALL.iter().find(|(_, name)| *name == word).map(|(kind, _)| *kind);
+        let is_named = |(_, name): &&(_, &str)| name.eq_ignore_ascii_case(word);
         let names: Vec<_> = Coherence::ALL.iter().map(|(_, name)| *name).collect();
-        found.ok_or_else(|| format!("`{word}` is not one of {}; or all or none alone", names.join(", ")))
+        let found = Coherence::ALL.iter().find(is_named).map(|(kind, _)| *kind);
+        found.ok_or_else(|| not_one_of(word, &names, "; or all or none alone"))
     };
     text.split(',').map(kind).collect::<Result<_, _>>().map(|kinds| CoherenceList(Some(kinds)))
+}
+
+/// Frames a second.
+pub(crate) fn frame_rate(text: &str) -> Result<f64, String> {
+    number(text).and_then(|v| {
+        if (0.1..=100.0).contains(&v) { Ok(v) } else { Err("a number from 0.1 to 100 is required".to_owned()) }
+    })
 }
 
 /// A pixel, `x,y` from the top left.
@@ -175,12 +190,12 @@ pub(crate) fn pixel(text: &str) -> Result<[u32; 2], String> {
 /// once with each acceleration structure.
 pub(crate) fn deciders(text: &str) -> Result<Deciders, String> {
     let all = Entrant::all();
-    if text == "all" {
+    if text.eq_ignore_ascii_case("all") {
         return Ok(Deciders::Named(all));
     }
     let mut named = Vec::new();
     for name in text.split(',').map(str::trim) {
-        let chosen: Visibility = name.parse().map_err(|unknown: UnknownName| {
+        let chosen: Visibility = name.to_ascii_lowercase().parse().map_err(|unknown: UnknownName| {
             let nearest = unknown.suggestion.map(|name| format!("; did you mean `{name}`?")).unwrap_or_default();
             format!("`{name}` is not one of all, {}{nearest}", unknown.choices)
         })?;
@@ -217,8 +232,11 @@ fn with_hint(error: vitral::Error) -> String {
 }
 
 /// The name of an OBJ file.
-pub(crate) fn obj_file(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
+pub(crate) fn obj_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(as_obj_file)
+}
+
+fn as_obj_file(path: PathBuf) -> Result<PathBuf, String> {
     let is_obj = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
     if is_obj { Ok(path) } else { Err("only .obj files are written".to_owned()) }
 }

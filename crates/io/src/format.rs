@@ -164,8 +164,10 @@ pub fn formats() -> Vec<FormatRow> {
     rows.push(FormatRow { write: coded, ..jpeg });
     rows.push(texture("TGA", &["tga"], "Truevision TGA, as textures"));
     rows.push(texture("BMP", &["bmp"], "Windows bitmap, as textures"));
-    rows.push(texture("GIF", &["gif"], "GIF, the first picture, as textures"));
-    rows.push(texture("WebP", &["webp"], "WebP, the first picture, as textures"));
+    let written = |name, extensions, description| FormatRow { write: coded, ..texture(name, extensions, description) };
+    rows.push(written("GIF", &["gif"], "GIF of 256 colours, turntables as animations; the first picture as textures"));
+    rows.push(written("WebP", &["webp"], "WebP, lossless, turntables as animations; the first picture as textures"));
+    rows.push(picture("APNG", &["apng"], "PNG with turntables as animations", false));
     rows.push(texture("TIFF", &["tif", "tiff"], "TIFF, the first picture, as textures"));
     rows.push(texture("DDS", &["dds"], "DirectDraw surface, packed by S3TC (DXT1, DXT3, DXT5), as textures"));
     rows.push(picture(

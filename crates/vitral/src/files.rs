@@ -210,7 +210,7 @@ fn read_standard_input(limit: u64) -> Result<Vec<u8>, Error> {
 /// [`Error::Write`]; nothing is left behind then.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let failed = |source| not_written(path, source);
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let target = followed(path);
     match fs::metadata(&target) {
         Ok(old) if old.is_dir() => return Err(failed(std::io::Error::from(ErrorKind::IsADirectory))),
         Ok(old) if !old.is_file() => return fs::write(&target, bytes).map_err(failed),
@@ -226,9 +226,23 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     })
 }
 
+/// Where a file of this name is: what a link points to, whether that is there or not.
+fn followed(path: &Path) -> PathBuf {
+    /// As many links as Linux follows.
+    const MOST_LINKS: usize = 40;
+    let mut place = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(target) = fs::read_link(&place) else { break };
+        place = place.parent().unwrap_or(Path::new("")).join(target);
+    }
+    // What the kernel says of its own links (`/dev/stdout`) need not be a name.
+    fs::canonicalize(path).unwrap_or(place)
+}
+
 /// Why a file cannot be written, in words: a folder that is not there is called that.
 fn not_written(path: &Path, source: std::io::Error) -> Error {
-    let folder = path.parent().filter(|f| source.kind() == ErrorKind::NotFound && !f.as_os_str().is_empty());
+    let place = followed(path);
+    let folder = place.parent().filter(|f| source.kind() == ErrorKind::NotFound && !f.as_os_str().is_empty());
     let source = match folder.filter(|f| !f.exists()) {
         Some(folder) => std::io::Error::new(source.kind(), format!("there is no folder `{}`", folder.display())),
         None => source,
@@ -241,7 +255,8 @@ fn not_written(path: &Path, source: std::io::Error) -> Error {
 /// # Errors
 /// [`Error::Write`], as [`write`] would give it for want of a folder, or because the name is that of one.
 pub(crate) fn check_place(path: &Path) -> Result<(), Error> {
-    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let place = followed(path);
+    let folder = place.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match fs::metadata(path) {
         Ok(old) if old.is_dir() => Err(not_written(path, ErrorKind::IsADirectory.into())),
         // A new name in a folder, or a link that points to none yet.
@@ -369,6 +384,27 @@ mod tests {
         let closed = FolderResolver::new(folder.join("model"), false, 4);
         assert!(closed.read("a").unwrap_err().to_string().contains("more than 4"));
         assert!(closed.read("textures").unwrap_err().to_string().contains("regular"));
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_to_what_they_point_to() {
+        use std::os::unix::fs::symlink;
+        let folder = folder("links");
+        fs::write(folder.join("old"), b"old").unwrap();
+        for (link, target) in [("a", "old"), ("b", "new"), ("c", "b"), ("d", "none/new")] {
+            symlink(target, folder.join(link)).unwrap();
+        }
+        symlink(folder.join("model/far"), folder.join("e")).unwrap();
+        for (link, target) in [("a", "old"), ("b", "new"), ("c", "new"), ("e", "model/far")] {
+            assert!(check_place(&folder.join(link)).is_ok(), "{link}");
+            write(&folder.join(link), link.as_bytes()).unwrap();
+            assert_eq!(fs::read(folder.join(target)).unwrap(), link.as_bytes());
+            assert!(fs::symlink_metadata(folder.join(link)).unwrap().is_symlink(), "{link} stays a link");
+        }
+        let told = [check_place(&folder.join("d")), write(&folder.join("d"), b"x")].map(|e| e.unwrap_err().to_string());
+        assert!(told[0] == told[1] && told[0].contains("there is no folder `"), "{told:?}");
         fs::remove_dir_all(folder).unwrap();
     }
 

@@ -8,7 +8,7 @@ use crate::{Error, Frame, Stats, files};
 use std::path::Path;
 use std::str::FromStr;
 use vitral_frame::Plane;
-use vitral_io::encode::{self, PngOptions};
+use vitral_io::encode::{self, AnimationFormat, PngOptions};
 use vitral_render::{Channels, ColorSpace, Rendered};
 
 /// A picture and how it came about.
@@ -64,7 +64,7 @@ impl Picture {
         self.frame.color.as_ref().map_or(&[], |plane| plane.data().as_flattened())
     }
 
-    /// Writes the colours in the format that the path's extension names: `.png`, `.jpg` or `.ppm`. The file appears
+    /// Writes the colours in the format that the path's extension names, such as `.png`, `.jpg` or `.webp`. The file appears
     /// complete or not at all.
     ///
     /// # Errors
@@ -203,15 +203,24 @@ pub enum PictureFormat {
     Ppm,
     /// Numbers for numpy; every channel but colour.
     Npy,
+    /// At most 256 colours, pixels opaque or transparent; animated for several pictures.
+    Gif,
+    /// Lossless, with transparency; animated for several pictures.
+    WebP,
+    /// A PNG, animated for several pictures.
+    Apng,
 }
 
 impl PictureFormat {
     /// All formats, each with its name and extensions.
-    pub const ALL: [(Self, &'static str, &'static [&'static str]); 4] = [
+    pub const ALL: [(Self, &'static str, &'static [&'static str]); 7] = [
         (Self::Png, "PNG", &["png"]),
         (Self::Jpeg, "JPEG", &["jpg", "jpeg"]),
         (Self::Ppm, "PPM", &["ppm"]),
         (Self::Npy, "NPY", &["npy"]),
+        (Self::Gif, "GIF", &["gif"]),
+        (Self::WebP, "WebP", &["webp"]),
+        (Self::Apng, "APNG", &["apng"]),
     ];
 
     /// The format that a path's extension names.
@@ -236,6 +245,26 @@ impl PictureFormat {
     /// The format of an extension in lower case, without the dot.
     pub fn from_extension(extension: &str) -> Option<Self> {
         Self::ALL.iter().find(|f| f.2.contains(&extension)).map(|f| f.0)
+    }
+
+    /// Whether files of the format keep transparency.
+    pub fn has_transparency(self) -> bool {
+        matches!(self, Self::Png | Self::Apng | Self::WebP | Self::Gif)
+    }
+
+    /// The format of an [`Animation`], if files of this one can be that.
+    fn animated(self) -> Option<AnimationFormat> {
+        match self {
+            Self::Gif => Some(AnimationFormat::Gif),
+            Self::WebP => Some(AnimationFormat::WebP),
+            Self::Apng => Some(AnimationFormat::Apng),
+            Self::Png | Self::Jpeg | Self::Ppm | Self::Npy => None,
+        }
+    }
+
+    /// Whether a file can hold several pictures, shown one after the other.
+    pub fn is_animated(self) -> bool {
+        self.animated().is_some()
     }
 
     /// Its name.
@@ -268,7 +297,8 @@ impl Default for EncodeOptions {
 pub fn check(channel: Channel, format: PictureFormat) -> Result<(), Error> {
     let instead = match (channel, format) {
         (Channel::Color | Channel::Steps, PictureFormat::Npy) => ".png, .jpg or .ppm",
-        (Channel::Depth, PictureFormat::Jpeg | PictureFormat::Ppm) => ".png or .npy",
+        (Channel::Depth, PictureFormat::Png | PictureFormat::Npy) => return Ok(()),
+        (Channel::Depth, _) => ".png or .npy",
         _ => return Ok(()),
     };
     Err(Error::Unsupported {
@@ -336,6 +366,51 @@ pub fn encode_with(
     }
 }
 
+/// One channel of several frames as an animation that plays for ever.
+#[derive(Debug)]
+pub struct Animation {
+    channel: Channel,
+    inner: encode::Animation,
+}
+
+impl Animation {
+    /// An animation of `count` frames, `rate` of them a second.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a format without animations, or a channel that it cannot hold.
+    pub fn new(
+        channel: Channel,
+        format: PictureFormat,
+        count: u32,
+        rate: f64,
+        options: &EncodeOptions,
+    ) -> Result<Self, Error> {
+        check(channel, format)?;
+        let animated = format.animated().ok_or_else(|| Error::Unsupported {
+            what: format!("a {} holds one picture", format.name()),
+            hint: "choose .gif, .webp or .apng".to_owned(),
+        })?;
+        let srgb = options.srgb && channel == Channel::Color;
+        Ok(Self { channel, inner: encode::Animation::new(animated, count, rate, srgb) })
+    }
+
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a frame without the channel; one of a size that does not fit.
+    pub fn add(&mut self, frame: &Frame) -> Result<(), Error> {
+        Ok(self.inner.add(&shown(frame, self.channel)?)?)
+    }
+
+    /// The whole file.
+    ///
+    /// # Errors
+    /// An animation that lacks frames.
+    pub fn finish(self) -> Result<Vec<u8>, Error> {
+        Ok(self.inner.finish()?)
+    }
+}
+
 /// A channel as it looks in a picture: RGBA in the display's encoding, straight opacity.
 ///
 /// # Errors
@@ -374,12 +449,14 @@ fn picture(
 ) -> Result<Vec<u8>, Error> {
     Ok(match format {
         // Ids and normals do not depend on lights.
-        PictureFormat::Png if options.exposure != 1.0 && png.srgb => {
+        PictureFormat::Png | PictureFormat::Apng if options.exposure != 1.0 && png.srgb => {
             encode::png_with_text(plane, png, &[("Exposure", &options.exposure.to_string())])?
         }
-        PictureFormat::Png => encode::png(plane, png)?,
+        PictureFormat::Png | PictureFormat::Apng => encode::png(plane, png)?,
         PictureFormat::Jpeg => encode::jpeg(plane, options.jpeg_quality)?,
         PictureFormat::Ppm => encode::ppm(plane)?,
+        PictureFormat::Gif => encode::gif(plane)?,
+        PictureFormat::WebP => encode::webp(plane)?,
         PictureFormat::Npy => unreachable!("callers write numbers themselves"),
     })
 }
@@ -458,20 +535,25 @@ mod tests {
             Err(Error::Usage { .. }) => "not requested",
             Err(other) => panic!("{other}"),
         };
-        const ALL: [&str; 4] = ["held"; 4];
-        const NONE: [&str; 4] = ["not requested"; 4];
+        const ALL: [&str; 5] = ["held"; 5];
+        const NONE: [&str; 5] = ["not requested"; 5];
         use {Channel as C, PictureFormat as P};
         for (channel, expected) in [
-            (C::Color, ["held", "held", "held", "unsupported"]),
-            (C::Depth, ["held", "unsupported", "unsupported", "held"]),
+            (C::Color, ["held", "held", "held", "unsupported", "held"]),
+            (C::Depth, ["held", "unsupported", "unsupported", "held", "unsupported"]),
             (C::Surface, ALL),
             (C::Normal, ALL),
-            (C::Steps, ["held", "held", "held", "unsupported"]),
+            (C::Steps, ["held", "held", "held", "unsupported", "held"]),
             (C::Object, NONE),
             (C::CastShadow, ALL),
             (C::AttachedShadow, NONE),
         ] {
-            assert_eq!([P::Png, P::Jpeg, P::Ppm, P::Npy].map(|f| code(channel, f)), expected, "{}", channel.name());
+            assert_eq!(
+                [P::Png, P::Jpeg, P::Ppm, P::Npy, P::Gif].map(|f| code(channel, f)),
+                expected,
+                "{}",
+                channel.name()
+            );
         }
     }
 

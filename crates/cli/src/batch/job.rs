@@ -139,7 +139,7 @@ fn matching(args: &BatchArgs, commands: &Commands) -> Result<Vec<Job>, Failure> 
     let pattern = args.output.as_deref().unwrap_or_default();
     let job = |file: &std::path::PathBuf| {
         let model = file.to_string_lossy().into_owned();
-        let output = pattern.replace("{model}", &model_name(&model));
+        let output = pattern.replace("{model}", &model_name(file).to_string_lossy());
         Job { id: model.clone(), task: commands.task(vec![model], output, &Map::new()) }
     };
     Ok(files.iter().map(job).collect())

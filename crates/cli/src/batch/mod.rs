@@ -86,7 +86,7 @@ fn do_all(args: &BatchArgs, waiting: &[&Job], record: PathBuf, told: &mut Told<'
     let processes = if args.jobs == 0 { cores } else { args.jobs as usize };
     let threads = (cores / processes.min(waiting.len().max(1))).max(1);
     let pool = Pool { processes, threads, record, stop: &stop };
-    told.progress = Some(Progress::new(args.progress.unwrap_or_default(), args.quiet, waiting.len() as u64));
+    told.progress = Some(Progress::new(args.progress.unwrap_or_default(), args.quiet, waiting.len() as u64, "jobs"));
     let mut trouble = None;
     pool.run(waiting, |id, task, reply| {
         let reported = told.replied(id, task, reply);
@@ -162,7 +162,7 @@ impl Told<'_> {
     fn say(&self, about: &str, lines: &[String]) {
         let say = || lines.iter().for_each(|line| report::line(&format!("{about}: {line}")));
         match &self.progress {
-            Some(Progress::Bar(bar)) => bar.suspend(say),
+            Some(Progress::Bar(bar, _)) => bar.suspend(say),
             _ => say(),
         }
     }

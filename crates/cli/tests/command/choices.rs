@@ -122,6 +122,22 @@ fn options_without_effect_are_told_and_change_nothing() {
         (&["builtin:scene0", "--shading", "flat"], &["--normals", "made"], "its own normal"),
         (&["builtin:sphere", "--camera-index", "0"], &["--view", "top"], "say from where"),
         (&["builtin:sphere", "--camera-direction=1,0,-1"], &["--view", "top"], "say from where"),
+        (&["builtin:sphere", "--camera-position=5,4,3", "--camera-view-up=0,1,0"], &["--view", "top"], "from where"),
+        (
+            &["builtin:sphere", "--camera-position=5,4,3", "--camera-view-up=0,1,0"],
+            &["--up", "-Z"],
+            "other options of the camera",
+        ),
+        (wires, &["--light", "ambient:"], "edges alone"),
+        (wires, &["--light-edit", "LIGHT0.diffuse=red"], "edges alone"),
+        (wires, &["--light-intensity", "2"], "edges alone"),
+        (wires, &["--lighting", "off"], "edges alone"),
+        (wires, &["--visibility", "bsp"], "all edges are drawn"),
+        (wires, &["--depth-bits", "16"], "all edges are drawn"),
+        (data, &["--lighting", "off"], black),
+        (data, &["--global", "radiosity"], black),
+        (&["builtin:cubs", "--light", "ambient:", "--shadows", "map"], &["--shadow-map-size", "64"], "no light casts"),
+        (&["builtin:cubs"], &["--together"], "there is one model"),
     ] {
         let ((plain, before), (with, told)) = (picture(rest), picture(&[rest, option].concat()));
         let expected = format!("{}: warning: no effect, ", option[0].split('=').next().unwrap());
@@ -140,6 +156,11 @@ fn options_without_effect_are_told_and_change_nothing() {
         &["builtin:lens", "--transparency", "kay", "--kay-exponent", "2", "--transparency-order", "sorted"],
         &["builtin:scene0", "--shadows", "volume", "--light-intensity", "2", "--interpolation", "linear"],
         &["builtin:scene0", "--camera-index", "0", "--camera-orthographic", "--camera-view-angle", "50"],
+        &["builtin:scene0", "--camera-position=5,4,3", "--up", "+Z"],
+        &["builtin:scene0", "--camera-position=5,4,3", "--camera-view-up=0,1,0", "--camera-focal-point=0,0,0"],
+        &["builtin:scene0", "--camera-direction=-1,-1,-1", "--camera-view-up=0,0,1"],
+        &["builtin:scene0", "--view", "top", "--up", "+X"],
+        &["builtin:cubs", "--wireframe-hidden-line", "--visibility", "bsp"],
     ] {
         let (_, told) = picture(arguments);
         assert!(!told.contains("no effect"), "{arguments:?}: {told}");

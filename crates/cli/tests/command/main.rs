@@ -2,8 +2,13 @@
 
 mod batch;
 mod choices;
+mod course;
 mod drawing;
+mod models;
+mod names;
+mod outputs;
 mod polygons;
+mod process;
 mod reports;
 mod sections;
 
@@ -227,9 +232,9 @@ fn exit_codes() {
         (&["missing.obj", "-o", "x.png"], 3, "missing.obj: "),
         (&["bad.obj", "-o", "x.png"], 3, "bad.obj: line 2: "),
         (&["empty.stl", "-o", "x.png"], 3, "empty file"),
-        (&["builtin:nothing", "-o", "x.png"], 3, "builtin:teapot"),
+        (&["builtin:nothing", "-o", "x.png"], 3, "`vitral formats` lists the built-in scenes"),
         (&["a.dae", "-o", "x.png"], 4, "readable are glTF"),
-        (&["a.obj", "-o", "x.gif"], 4, ".gif"),
+        (&["a.obj", "-o", "x.bmp"], 4, ".bmp"),
         (&["a.obj", "-o", "no/such/folder/x.png"], 5, "no/such/folder/x.png"),
         (&["a.obj", "-o", "x.png", "--max-memory", "1K"], 7, "limit"),
     ];

@@ -5,6 +5,9 @@
 //! | [`png()`] | pictures with or without transparency |
 //! | [`png16_gray`] | depth and the like as 16-bit grey |
 //! | [`jpeg()`] | small opaque pictures |
+//! | [`gif()`] | pictures of few colours |
+//! | [`webp()`] | small lossless pictures |
+//! | [`Animation`] | turntables as GIF, APNG or WebP |
 //! | [`ppm()`] | the simplest format there is |
 //! | [`npy_f32`], [`npy_f32x3`], [`npy_u32`] | channels without loss, for numpy |
 //! | [`svg()`] | drawings for browsers and drawing programs |
@@ -15,7 +18,9 @@
 //! Those of pictures take planes with the top row first and straight alpha; all give the whole file. [`simplify()`], [`for_plotter`]
 //! and [`TitleBlock`] change a drawing before it is written.
 
+mod animation;
 mod dxf;
+mod gif;
 mod hpgl;
 mod jpeg;
 mod npy;
@@ -28,7 +33,9 @@ mod ppm;
 mod simplify;
 mod svg;
 mod title_block;
+mod webp;
 
+pub use animation::{Animation, AnimationFormat, gif, webp};
 pub use dxf::dxf;
 pub use hpgl::hpgl;
 pub use jpeg::jpeg;

@@ -10,6 +10,8 @@
 use super::pixels::check_sides;
 use crate::Error;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter, SrgbRenderingIntent};
+use std::io::Write;
+use std::sync::{Arc, Mutex, PoisonError};
 use vitral_frame::Plane;
 
 /// What a PNG says about itself.
@@ -75,17 +77,60 @@ pub fn png16_gray(plane: &Plane<u16>) -> Result<Vec<u8>, Error> {
     write(size, form, data.as_flattened(), options, &[])
 }
 
-fn write(
-    [width, height]: [u32; 2],
+/// An APNG that grows picture by picture and plays for ever.
+pub(super) struct Animated {
+    writer: png::Writer<Shared>,
+    file: Shared,
+}
+
+/// Bytes that the writer and its owner have in common: `png` does not give them back.
+#[derive(Clone, Default)]
+struct Shared(Arc<Mutex<Vec<u8>>>);
+
+impl Write for Shared {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Animated {
+    /// A file for so many pictures with transparency.
+    pub(super) fn new([width, height]: [u32; 2], count: u32, options: PngOptions) -> Result<Self, Error> {
+        let file = Shared::default();
+        let mut encoder = Encoder::new(file.clone(), width, height);
+        encoder.set_animated(count, 0).map_err(failed)?;
+        let writer = begin(encoder, (ColorType::Rgba, BitDepth::Eight), options, &[])?;
+        Ok(Self { writer, file })
+    }
+
+    /// Adds a picture, shown for so many milliseconds.
+    pub(super) fn add(&mut self, picture: &Plane<[u8; 4]>, milliseconds: u16) -> Result<(), Error> {
+        self.writer.set_frame_delay(milliseconds, 1000).map_err(failed)?;
+        self.writer.write_image_data(picture.data().as_flattened()).map_err(failed)
+    }
+
+    /// The whole file.
+    pub(super) fn finish(self) -> Result<Vec<u8>, Error> {
+        self.writer.finish().map_err(failed)?;
+        Ok(std::mem::take(&mut *self.file.0.lock().unwrap_or_else(PoisonError::into_inner)))
+    }
+}
+
+fn failed(error: png::EncodingError) -> Error {
+    Error::Encode { what: format!("PNG: {error}") }
+}
+
+/// Writes all that stands before the pixels.
+fn begin<W: Write>(
+    mut encoder: Encoder<'_, W>,
     (color, depth): (ColorType, BitDepth),
-    data: &[u8],
     options: PngOptions,
     texts: &[(&str, &str)],
-) -> Result<Vec<u8>, Error> {
-    check_sides(width, height, i32::MAX as u32, "PNG")?;
-    let failed = |e: png::EncodingError| Error::Encode { what: format!("PNG: {e}") };
-    let mut out = Vec::with_capacity(data.len() / 4 + 1024);
-    let mut encoder = Encoder::new(&mut out, width, height);
+) -> Result<png::Writer<W>, Error> {
     encoder.set_color(color);
     encoder.set_depth(depth);
     encoder.set_compression(Compression::Fast);
@@ -97,7 +142,19 @@ fn write(
     for &(keyword, text) in texts {
         encoder.add_text_chunk(keyword.to_owned(), text.to_owned()).map_err(failed)?;
     }
-    let mut writer = encoder.write_header().map_err(failed)?;
+    encoder.write_header().map_err(failed)
+}
+
+fn write(
+    [width, height]: [u32; 2],
+    (color, depth): (ColorType, BitDepth),
+    data: &[u8],
+    options: PngOptions,
+    texts: &[(&str, &str)],
+) -> Result<Vec<u8>, Error> {
+    check_sides(width, height, i32::MAX as u32, "PNG")?;
+    let mut out = Vec::with_capacity(data.len() / 4 + 1024);
+    let mut writer = begin(Encoder::new(&mut out, width, height), (color, depth), options, texts)?;
     writer.write_image_data(data).map_err(failed)?;
     writer.finish().map_err(failed)?;
     Ok(out)

@@ -129,7 +129,7 @@ named!(Interpolation, "interpolation", [
 
 named!(ColorSpace, "colour space", [
     Srgb: "srgb", "linear light, encoded as sRGB";
-    Raw: "raw", "the course's arithmetic, straight to bytes";
+    Raw: "raw", "intensities from 0 to 1 straight to bytes, without the curve of sRGB: what textbooks compute by hand";
 ]);
 
 named!(Lines, "way to draw edges", [

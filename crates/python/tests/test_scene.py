@@ -106,7 +106,7 @@ def test_a_scene_can_be_pickled(two_squares: vitral.Scene) -> None:
     mesh = two_squares.add_mesh(square, [[0, 1, 2]], uvs=[[0, 1], [1, 1], [0.5, 0]], material=material)
     two_squares.add_instance(mesh)
     two_squares.add_light(vitral.Light.point(position=(1, 2, 3)))
-    for scene in (two_squares, vitral.load("builtin:teapot"), vitral.load("builtin:glass")):
+    for scene in (two_squares, vitral.load("builtin:teapot"), vitral.load("builtin:refraction")):
         again = pickle.loads(pickle.dumps(scene))
         assert again.info() == scene.info()
         pictures = [vitral.Renderer(s, height=24, width=32, samples=1).render() for s in (scene, again)]

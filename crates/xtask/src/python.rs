@@ -13,7 +13,7 @@ const BUILDERS: [&str; 2] = ["maturin>=1.9,<2", "numpy"];
 const TESTERS: [&str; 3] = ["pytest", "mypy", "ruff"];
 
 /// Other people's programs that the tests use where they can be had; tests that miss one say so and are skipped.
-const CLIENTS: [&str; 6] = ["trimesh", "mujoco", "gymnasium", "dm_control", "PyOpenGL", "glfw"];
+const CLIENTS: [&str; 7] = ["trimesh", "mujoco", "gymnasium", "imageio", "dm_control", "PyOpenGL", "glfw"];
 
 /// The package's own sources and tests.
 const SOURCES: &str = "crates/python";

@@ -256,20 +256,21 @@ impl PyScene {
     /// >>> import numpy, vitral
     /// >>> vitral.Scene().add_mesh(numpy.zeros((3, 3)), [[0, 1, 2]])
     /// 0
-    #[pyo3(signature = (vertices, faces, *, normals=None, uvs=None, colors=None, material=None, name="", crease_angle=40.0))]
-    #[allow(clippy::too_many_arguments)]
+    #[pyo3(
+        signature = (vertices, faces, *, material=None, name="", crease_angle=40.0, **attributes),
+        text_signature = "($self, vertices, faces, *, normals=None, uvs=None, colors=None, material=None, name='', crease_angle=40.0)"
+    )]
     fn add_mesh(
         &self,
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
-        normals: Option<&Bound<'_, PyAny>>,
-        uvs: Option<&Bound<'_, PyAny>>,
-        colors: Option<&Bound<'_, PyAny>>,
         material: Option<u32>,
         name: &str,
         crease_angle: f64,
+        attributes: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<u32> {
-        let given = mesh_input::Given { vertices, faces, normals, uvs, colors, material, name, crease_angle };
+        let mut given = mesh_input::Given::new(vertices, faces, attributes)?;
+        (given.material, given.name, given.crease_angle) = (material, name, crease_angle);
         let mesh = given.mesh()?;
         let mut data = self.lock();
         if let Some(material) = material.filter(|&m| m as usize >= data.scene.materials.len()) {

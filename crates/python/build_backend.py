@@ -1,7 +1,7 @@
 """The build backend of the Python package: maturin's, with vitral's libOSMesa put into the wheel first.
 
-``VITRAL_PROFILE`` names the cargo profile (``release`` if it is not set). ``VITRAL_OSMESA`` names a library that was built
-already, or is empty for a wheel without one.
+``VITRAL_PROFILE`` names the cargo profile (``release`` if it is not set). ``VITRAL_OSMESA`` names a library that was
+built already, or is empty for a wheel without one.
 """
 
 from __future__ import annotations

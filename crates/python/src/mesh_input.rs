@@ -1,24 +1,57 @@
 //! Meshes and textures from arrays.
 
+use crate::scene::CREASE_DEGREES;
 use crate::values::{numbers, shown};
 use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use vitral::internals::math::color::linear_from_srgb;
 use vitral::{Attribute, Encoding, Mesh, Plane, Texture};
 
 /// What a mesh is made of.
 pub(crate) struct Given<'a, 'py> {
-    pub(crate) vertices: &'a Bound<'py, PyAny>,
-    pub(crate) faces: &'a Bound<'py, PyAny>,
-    pub(crate) normals: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) uvs: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) colors: Option<&'a Bound<'py, PyAny>>,
+    vertices: &'a Bound<'py, PyAny>,
+    faces: &'a Bound<'py, PyAny>,
+    normals: Option<Bound<'py, PyAny>>,
+    uvs: Option<Bound<'py, PyAny>>,
+    colors: Option<Bound<'py, PyAny>>,
     pub(crate) material: Option<u32>,
     pub(crate) name: &'a str,
     pub(crate) crease_angle: f64,
 }
 
-impl Given<'_, '_> {
+impl<'a, 'py> Given<'a, 'py> {
+    /// Vertices and faces, and attributes by their names.
+    pub(crate) fn new(
+        vertices: &'a Bound<'py, PyAny>,
+        faces: &'a Bound<'py, PyAny>,
+        attributes: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Self> {
+        let mut given = Self {
+            vertices,
+            faces,
+            normals: None,
+            uvs: None,
+            colors: None,
+            material: None,
+            name: "",
+            crease_angle: CREASE_DEGREES,
+        };
+        for (name, value) in attributes.into_iter().flatten() {
+            let name: String = name.extract()?;
+            let attribute = match name.as_str() {
+                "normals" => &mut given.normals,
+                "uvs" => &mut given.uvs,
+                "colors" => &mut given.colors,
+                _ => {
+                    return Err(PyTypeError::new_err(format!("add_mesh() got an unexpected keyword argument '{name}'")));
+                }
+            };
+            *attribute = Some(value).filter(|value| !value.is_none());
+        }
+        Ok(given)
+    }
+
     /// The mesh, checked.
     pub(crate) fn mesh(&self) -> PyResult<Mesh> {
         if !(0.0..=180.0).contains(&self.crease_angle) {
@@ -32,14 +65,14 @@ impl Given<'_, '_> {
         }
 
         // Take the attributes over.
-        if let Some(uvs) = self.uvs {
+        if let Some(uvs) = &self.uvs {
             let (_, uvs) = numbers::<f32>(uvs, "uvs", &[Some(count), Some(2)])?;
             mesh = mesh.with_uvs(uvs.as_chunks::<2>().0.to_vec());
         }
-        if let Some(colors) = self.colors {
+        if let Some(colors) = &self.colors {
             mesh.colors = Some(Attribute::per_vertex(vertex_colors(colors, count)?));
         }
-        if let Some(normals) = self.normals {
+        if let Some(normals) = &self.normals {
             let (_, normals) = numbers::<f32>(normals, "normals", &[Some(count), Some(3)])?;
             mesh = mesh.with_normals(normals.as_chunks::<3>().0.to_vec());
         }

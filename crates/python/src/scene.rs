@@ -13,6 +13,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral::internals::render::Error as RenderError;
 use vitral::{
     DMat4, Error, LoadOptions, MaterialOverride, NoFiles, Scene, TextureRef, World, info, load_bytes_with, load_on,
+    material_properties,
 };
 use vitral_cli::options::{Given, Purpose, Resolved};
 
@@ -205,12 +206,19 @@ impl PyScene {
             set(&mut one, "metallic", "0")?;
         }
         for (key, value) in options {
-            let property = match key.as_str() {
-                "diffuse" => "kd".to_owned(),
-                "specular" => "ks".to_owned(),
-                "ambient" => "ka".to_owned(),
-                _ => key.replace('_', "-"),
+            let property = match COEFFICIENTS.iter().find(|(name, _)| *name == key) {
+                Some((_, property)) => (*property).to_owned(),
+                None => key.replace('_', "-"),
             };
+            if !material_properties().any(|(known, _)| known == property) {
+                let names = COEFFICIENTS.iter().map(|(name, _)| (*name).to_owned());
+                let names = names.chain(material_properties().map(|(name, _)| name.replace('-', "_")));
+                let names: Vec<String> = names.collect();
+                return Err(usage(
+                    format!("materials have no property {key}"),
+                    format!("there are {}", names.join(", ")),
+                ));
+            }
             let value = match value {
                 Given::Switch(on) => on.to_string(),
                 Given::Text(text) => text,
@@ -248,20 +256,21 @@ impl PyScene {
     /// >>> import numpy, vitral
     /// >>> vitral.Scene().add_mesh(numpy.zeros((3, 3)), [[0, 1, 2]])
     /// 0
-    #[pyo3(signature = (vertices, faces, *, normals=None, uvs=None, colors=None, material=None, name="", crease_angle=40.0))]
-    #[allow(clippy::too_many_arguments)]
+    #[pyo3(
+        signature = (vertices, faces, *, material=None, name="", crease_angle=40.0, **attributes),
+        text_signature = "($self, vertices, faces, *, normals=None, uvs=None, colors=None, material=None, name='', crease_angle=40.0)"
+    )]
     fn add_mesh(
         &self,
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
-        normals: Option<&Bound<'_, PyAny>>,
-        uvs: Option<&Bound<'_, PyAny>>,
-        colors: Option<&Bound<'_, PyAny>>,
         material: Option<u32>,
         name: &str,
         crease_angle: f64,
+        attributes: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<u32> {
-        let given = mesh_input::Given { vertices, faces, normals, uvs, colors, material, name, crease_angle };
+        let mut given = mesh_input::Given::new(vertices, faces, attributes)?;
+        (given.material, given.name, given.crease_angle) = (material, name, crease_angle);
         let mesh = given.mesh()?;
         let mut data = self.lock();
         if let Some(material) = material.filter(|&m| m as usize >= data.scene.materials.len()) {
@@ -405,6 +414,9 @@ impl PyScene {
         Ok(scene)
     }
 }
+
+/// Properties of Phong's model by their full names.
+const COEFFICIENTS: [(&str, &str); 3] = [("diffuse", "kd"), ("specular", "ks"), ("ambient", "ka")];
 
 /// Sets a property of the only material.
 fn set(scene: &mut Scene, property: &str, value: &str) -> Result<(), Trouble> {

@@ -65,7 +65,7 @@ def test_wrong_input_names_what_is_needed() -> None:
 
 def test_polygons_of_several_lengths_keep_their_faces() -> None:
     scene = vitral.Scene()
-    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 2, 0]]
+    corners: list[list[float]] = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 2, 0]]
     scene.add_instance(scene.add_mesh(corners, [[0, 1, 2, 3], [3, 2, 4]]))
     assert (scene.info()["faces"], scene.info()["triangles"]) == (2, 3)
 
@@ -103,14 +103,14 @@ def test_a_scene_can_be_pickled(two_squares: vitral.Scene) -> None:
     image[0, 0] = 255, 0, 0
     material = two_squares.add_material(name="checked", texture=image, unlit=True, color=(1, 1, 1))
     square = [[-1, -1, 1], [1, -1, 1], [0, 1, 1]]
-    mesh = two_squares.add_mesh(square, [[0, 1, 2]], uvs=[[0, 1], [1, 1], [0.5, 0]], material=material)
+    mesh = two_squares.add_mesh(square, [[0, 1, 2]], uvs=np.array([[0, 1], [1, 1], [0.5, 0]]), material=material)
     two_squares.add_instance(mesh)
     two_squares.add_light(vitral.Light.point(position=(1, 2, 3)))
-    for scene in (two_squares, vitral.load("builtin:teapot"), vitral.load("builtin:glass")):
+    for scene in (two_squares, vitral.load("builtin:teapot"), vitral.load("builtin:refraction")):
         again = pickle.loads(pickle.dumps(scene))
         assert again.info() == scene.info()
-        pictures = [vitral.Renderer(s, height=24, width=32, samples=1).render() for s in (scene, again)]
-        assert np.array_equal(*pictures)
+        first, second = (vitral.Renderer(s, height=24, width=32, samples=1).render() for s in (scene, again))
+        assert np.array_equal(first, second)
 
 
 class FakeGraph:

@@ -1,9 +1,10 @@
 //! `cargo xtask lab`: the Lab's engine as WebAssembly, its page by npm, and a `vitral` with both inside.
 
+use crate::checks::{Check, CheckResult};
 use crate::prepare::{self, WASM_TARGET};
 use crate::shell::{Outcome, cargo, command, repository, run, target_folder};
 use crate::test;
-use crate::wasm::{self, Check, CheckResult};
+use crate::wasm;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};

@@ -3,6 +3,7 @@
 
 mod bless;
 mod check;
+mod checks;
 mod clients;
 mod compare;
 mod lab;

@@ -1,5 +1,6 @@
 //! `cargo xtask test`: everything that can fail, then what it took, then one line with the count.
 
+use crate::checks::CheckResult;
 use crate::shell::{self, Outcome, cargo};
 use crate::spent::{Spent, Stopwatch};
 use crate::tally::{Program, Reader, Tally};
@@ -53,14 +54,14 @@ pub(crate) fn run() -> Outcome {
 
     // Build the Python package and test it.
     let package = Stopwatch::start();
-    checks.extend(python::test_all());
+    checks.extend(python::test_all(PROFILE));
     let package = package.spent();
     for check in checks {
         println!("test {} ... {}", check.name, check.result);
         match check.result {
-            wasm::CheckResult::Passed => tally.passed += 1,
-            wasm::CheckResult::Failed(_) => tally.failed += 1,
-            wasm::CheckResult::Skipped(_) => tally.skipped += 1,
+            CheckResult::Passed => tally.passed += 1,
+            CheckResult::Failed(_) => tally.failed += 1,
+            CheckResult::Skipped(_) => tally.skipped += 1,
         }
     }
 

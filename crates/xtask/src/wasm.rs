@@ -4,6 +4,7 @@
 //! its bytes is compared with that of the native program. Crates are compiled once for each variant; the native program is what
 //! the tests have built.
 
+use crate::checks::{Check, CheckResult};
 use crate::prepare::WASM_TARGET;
 use crate::shell::{cargo, command, output, run, target_folder};
 use crate::test::PROFILE;
@@ -16,29 +17,6 @@ const OPT_LEVEL: &str = "1";
 /// Flags of modules with vectors, and the folder below cargo's in which they are built.
 pub(crate) const SIMD: &str = "-C target-feature=+simd128";
 const SIMD_FOLDER: &str = "wasm-simd128";
-
-/// How one check ended.
-pub(crate) enum CheckResult {
-    Passed,
-    Failed(String),
-    Skipped(String),
-}
-
-impl std::fmt::Display for CheckResult {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Passed => write!(f, "ok"),
-            Self::Failed(why) => write!(f, "FAILED\n{why}"),
-            Self::Skipped(why) => write!(f, "skipped: {why}"),
-        }
-    }
-}
-
-/// A check with its name.
-pub(crate) struct Check {
-    pub(crate) name: &'static str,
-    pub(crate) result: CheckResult,
-}
 
 /// A set of compiler flags.
 struct Variant {

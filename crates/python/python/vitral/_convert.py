@@ -36,7 +36,7 @@ def from_trimesh(source: Any) -> Scene:
 def _add_trimesh(scene: Scene, mesh: Any, name: str) -> int:
     if not hasattr(mesh, "vertices") or not hasattr(mesh, "faces"):
         raise TypeError(f"a trimesh.Trimesh or trimesh.Scene is needed, not {type(mesh).__name__}")
-    visual = getattr(mesh, "visual", None)
+    visual: Any = getattr(mesh, "visual", None)
     kind = getattr(visual, "kind", None)
     material = None
     colors = uvs = None

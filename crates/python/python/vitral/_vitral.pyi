@@ -5,6 +5,19 @@ from typing import Any, Literal, TypeAlias, final, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+__all__ = [
+    "Camera",
+    "Drawing",
+    "Light",
+    "Picture",
+    "Renderer",
+    "Scene",
+    "Turntable",
+    "__version__",
+    "command",
+    "load",
+]
+
 _Path: TypeAlias = str | os.PathLike[str]
 _Color: TypeAlias = str | float | Sequence[float] | NDArray[np.floating[Any]]
 _Channel: TypeAlias = Literal[

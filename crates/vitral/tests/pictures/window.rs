@@ -22,7 +22,7 @@ fn a_window_shows_its_part_of_the_whole_picture() {
         ("teapot", Global::None, Shadows::NONE),
         ("cubs", Global::None, Shadows::MAP),
         ("mirrors", Global::RayTrace, Shadows::RAY),
-        ("glass", Global::None, Shadows::NONE),
+        ("refraction", Global::None, Shadows::NONE),
     ] {
         let mut whole = renderer(name, 96);
         whole.settings.global.model = global;

@@ -20,7 +20,8 @@ _VARIABLES = {"MUJOCO_GL": "osmesa", "PYOPENGL_PLATFORM": "osmesa"}
 #: Modules that choose their OpenGL when they are imported.
 _CHOOSERS = ("OpenGL.platform", "OpenGL.GL", "mujoco.gl_context", "dm_control._render")
 
-_library: ctypes.CDLL | None = None
+#: Keeps the libraries.
+_libraries: list[ctypes.CDLL] = []
 
 
 def folder() -> Path:
@@ -60,39 +61,27 @@ def install() -> Path:
 
     Raises :class:`vitral.Error` if one of these modules is there already, or another libOSMesa is loaded.
     """
-    global _library
     library = folder() / _NAME
     others = [path for path in _loaded() if not os.path.samefile(Path(path).parent, folder())]
     if others:
         hint = "call vitral.osmesa.install() before anything that loads it"
         raise Error(f"another libOSMesa is loaded: {others[0]}", hint)
-    if _library is not None:
+    if _libraries:
         return library
     early = [name for name in _CHOOSERS if name in sys.modules]
     if early:
         hint = "call vitral.osmesa.install() before it is imported, or run `python -m vitral.osmesa PROGRAM`"
         raise Error(f"{early[0].split('.')[0]} is imported already, and has chosen its OpenGL", hint)
 
-    # Programs find a library of this name that is loaded, whatever their paths are.
+    # Programs that are started look here.
     os.environ.update(_VARIABLES)
     before = [part for part in os.environ.get("LD_LIBRARY_PATH", "").split(":") if part]
     path = [str(folder()), *(part for part in before if part != str(folder()))]
     os.environ["LD_LIBRARY_PATH"] = ":".join(path)
-    _library = ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
-    _teach_ctypes()
+
+    # This process finds a library that is loaded by its name, whatever its paths are. Both names lead to one library.
+    _libraries.extend(ctypes.CDLL(str(folder() / name), mode=ctypes.RTLD_GLOBAL) for name in (_NAME, "libOSMesa.so"))
     return library
-
-
-def _teach_ctypes() -> None:
-    """Has ``ctypes.util.find_library("OSMesa")``, which PyOpenGL and MuJoCo ask, find the loaded library."""
-    import ctypes.util
-
-    find = ctypes.util.find_library
-
-    def find_library(name: str) -> str | None:
-        return str(folder() / _NAME) if name == "OSMesa" else find(name)
-
-    ctypes.util.find_library = find_library
 
 
 def run(arguments: list[str]) -> None:

@@ -44,7 +44,9 @@ impl<'a, 'py> Given<'a, 'py> {
                 "uvs" => &mut given.uvs,
                 "colors" => &mut given.colors,
                 _ => {
-                    return Err(PyTypeError::new_err(format!("add_mesh() got an unexpected keyword argument '{name}'")));
+                    return Err(PyTypeError::new_err(format!(
+                        "add_mesh() got an unexpected keyword argument '{name}'"
+                    )));
                 }
             };
             *attribute = Some(value).filter(|value| !value.is_none());

@@ -164,7 +164,7 @@ impl PyCamera {
         };
         let (_, k) = values::numbers::<f64>(intrinsics, "intrinsics", &[Some(3), Some(3)])?;
         let is_plain = [k[1], k[3], k[6], k[7]].iter().all(|&v| v == 0.0) && k[8] == 1.0;
-        if !is_plain || !(k[0] > 0.0 && k[4] > 0.0) || !k.iter().all(|v| v.is_finite()) {
+        if !(is_plain && k[0] > 0.0 && k[4] > 0.0 && k.iter().all(|v| v.is_finite())) {
             let needed = "[[fx, 0, cx], [0, fy, cy], [0, 0, 1]] with fx and fy above 0 is needed";
             return Err(PyValueError::new_err(format!("intrinsics: {needed}")));
         }

@@ -38,6 +38,7 @@ mod no_effect_camera;
 pub mod options;
 mod osmesa_env_command;
 mod outputs;
+mod program;
 mod progress;
 mod render_args;
 mod render_command;
@@ -54,19 +55,10 @@ use args::{Cli, Verb};
 use clap::FromArgMatches;
 use clap::error::ErrorKind;
 use std::ffi::OsString;
-use std::sync::OnceLock;
 
 pub use osmesa_env_command::osmesa_lies_in;
+pub use program::started_by;
 pub use report::Failure;
-
-/// What starts this command in a process of its own, where that is not the program of this process.
-static PROGRAM: OnceLock<Vec<OsString>> = OnceLock::new();
-
-/// Says how the command is started, as a program and its first arguments, where it is part of another program.
-pub fn started_by(program: Vec<OsString>) {
-    // Who says it first knows best.
-    let _ = PROGRAM.set(program);
-}
 
 /// Runs the command with these arguments, of which the first is its own name; gives the exit code.
 pub fn command(arguments: Vec<OsString>) -> u8 {
@@ -94,7 +86,7 @@ fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
         Verb::Render(args) => render_command::run(&args),
         Verb::Draw(args) => draw_command::run(&args),
         Verb::Batch(args) => batch::run(&args),
-        Verb::BatchWorker(args) => batch::worker::run(&args),
+        Verb::BatchWorker(args) => batch::worker::run(&args, dispatch),
         Verb::Lab(args) => lab::run(&args),
         Verb::Info(args) => info_command::run(&args),
         Verb::Compare(args) => compare_command::run(&args),

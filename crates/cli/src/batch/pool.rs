@@ -3,11 +3,12 @@
 
 use super::job::{Job, Task};
 use super::worker::{Order, Reply};
+use crate::program;
 use crate::report::Failure;
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, mpsc};
 
@@ -112,9 +113,9 @@ impl Pool<'_> {
         match started.ask(&order) {
             Some(reply) => Ok(reply),
             None => {
-                let ended = process.take().map_or_else(String::new, Process::how_it_ended);
+                let (code, ended) = process.take().map_or_else(Default::default, Process::how_it_ended);
                 Ok(Reply {
-                    code: BROUGHT_DOWN,
+                    code: code.unwrap_or(BROUGHT_DOWN),
                     outputs: Vec::new(),
                     told: vec![format!("it brought its process down: {ended}")],
                     seconds: 0.0,
@@ -134,14 +135,7 @@ struct Process {
 impl Process {
     fn start(pool: &Pool<'_>) -> Result<Self, Failure> {
         let failed = |e: std::io::Error| Failure::other(format!("no process can be started for jobs: {e}"));
-        let mut command = match crate::PROGRAM.get().and_then(|program| program.split_first()) {
-            Some((program, first)) => {
-                let mut command = Command::new(program);
-                command.args(first);
-                command
-            }
-            None => Command::new(std::env::current_exe().map_err(failed)?),
-        };
+        let mut command = program::command().map_err(failed)?;
         command.arg("batch-worker").arg("--record").arg(&pool.record).arg(format!("--threads={}", pool.threads));
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
         let orders = child.stdin.take().expect("it is a pipe");
@@ -159,10 +153,17 @@ impl Process {
         serde_json::from_str(&line).ok()
     }
 
-    fn how_it_ended(mut self) -> String {
+    /// Its exit code, if it ended by itself and with a failure, and that in words.
+    fn how_it_ended(mut self) -> (Option<u8>, String) {
         // A process that talks nonsense is not used any more, either.
-        let _ = self.child.kill();
-        self.child.wait().map_or_else(|e| e.to_string(), |status| status.to_string())
+        drop(self.orders);
+        match self.child.wait() {
+            Ok(status) => {
+                let code = status.code().and_then(|code| u8::try_from(code).ok());
+                (code.filter(|code| *code != 0), status.to_string())
+            }
+            Err(e) => (None, e.to_string()),
+        }
     }
 
     /// Ends it by the end of its orders.

@@ -5,11 +5,12 @@
 
 use super::record::{self, Entry, hash_of};
 use crate::batch_args::BatchWorkerArgs;
+use crate::kept_models;
 use crate::report::{self, Failure};
-use crate::{dispatch, kept_models};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::io::{BufRead, Write};
 use std::sync::mpsc;
 use std::time::Instant;
@@ -36,8 +37,11 @@ pub(crate) struct Reply {
     pub(crate) seconds: f64,
 }
 
-/// Does jobs until there are no more.
-pub(crate) fn run(args: &BatchWorkerArgs) -> Result<u8, Failure> {
+/// Runs a command.
+type Dispatch = fn(Vec<OsString>) -> Result<u8, Failure>;
+
+/// Does jobs until there are no more, each by `dispatch`.
+pub(crate) fn run(args: &BatchWorkerArgs, dispatch: Dispatch) -> Result<u8, Failure> {
     // Read orders beside the work: their end is the end of this process, whatever it is at.
     let (send, orders) = mpsc::channel::<Order>();
     std::thread::spawn(move || {
@@ -52,7 +56,7 @@ pub(crate) fn run(args: &BatchWorkerArgs) -> Result<u8, Failure> {
 
     kept_models::keep();
     for order in orders {
-        let reply = serde_json::to_string(&done(order, args)).expect("keys are strings");
+        let reply = serde_json::to_string(&done(order, args, dispatch)).expect("keys are strings");
         let mut out = std::io::stdout().lock();
         if writeln!(out, "{reply}").and_then(|()| out.flush()).is_err() {
             break;
@@ -62,7 +66,7 @@ pub(crate) fn run(args: &BatchWorkerArgs) -> Result<u8, Failure> {
 }
 
 /// Does a job, and puts it on record.
-fn done(order: Order, args: &BatchWorkerArgs) -> Reply {
+fn done(order: Order, args: &BatchWorkerArgs, dispatch: Dispatch) -> Reply {
     let start = Instant::now();
     let is_picture = order.command.first().is_some_and(|verb| verb == "render");
     let mut typed = vec!["vitral".to_owned()];

@@ -2,7 +2,7 @@
 //!
 //! Source: the course, notes P, P7, P17 and P19 to P22.
 
-use super::{Exercise, NO_PIXEL, Solution, wants};
+use super::exercise::{Exercise, NO_PIXEL, Solution, wants};
 use vitral::Visibility;
 use vitral::internals::render::trace::{Step, WindowVerdict};
 

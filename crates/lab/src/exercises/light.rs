@@ -2,7 +2,7 @@
 //!
 //! Source: the course, notes L, L8, L9 and L20, and notes P, P37 and P40.
 
-use super::{Exercise, NO_PIXEL, wants};
+use super::exercise::{Exercise, NO_PIXEL, wants};
 use std::collections::BTreeMap;
 use vitral::internals::math::func;
 use vitral::{Attenuation, Reflectance, Shading};

@@ -2,7 +2,7 @@
 //!
 //! Source: the course, notes L, chapters 4 and 5.
 
-use super::{Exercise, wants};
+use super::exercise::{Exercise, wants};
 use vitral::{Light, LightKind, Normals};
 
 pub(super) const EXERCISES: [Exercise; 5] = [

@@ -2,7 +2,7 @@
 //!
 //! Source: the course, notes P, P8, P10 and P14.
 
-use super::{Exercise, NO_PIXEL, wants};
+use super::exercise::{Exercise, NO_PIXEL, wants};
 
 pub(super) const EXERCISES: [Exercise; 3] = [
     Exercise {

@@ -7,7 +7,7 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-/// How often signals are looked for. A picture stops within milliseconds of its flag, so Ctrl-C takes less than 0.1 s.
+/// How often signals are looked for: what this adds to the time in which a picture stops.
 const INTERVAL: Duration = Duration::from_millis(20);
 
 /// The stack of the thread that works, as large as that of a main thread.

@@ -77,7 +77,7 @@ impl Job {
 fn draw(args: &DrawArgs, job: &Job, execution: vitral::Execution, start: Instant) -> Result<(), Failure> {
     // Read the models.
     let Job { state, models, file, settings } = job;
-    let mut settings = settings.clone();
+    let mut settings = *settings;
     let scene = models::load_scene(state, models, &execution, ReadLimits::of(&args.process))?;
     let scene = args.section.apply(scene, &execution)?;
     if !args.report.quiet {

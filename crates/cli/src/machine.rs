@@ -12,7 +12,7 @@ pub(crate) fn memory() -> Option<u64> {
 fn memory_by(read: &dyn Fn(&str) -> Option<String>) -> Option<u64> {
     let physical = read("/proc/meminfo").as_deref().and_then(physical);
     let groups = read("/proc/self/cgroup").unwrap_or_default();
-    let limits = groups.lines().flat_map(|line| group_files(line)).filter_map(|file| read(&file)?.trim().parse().ok());
+    let limits = groups.lines().flat_map(group_files).filter_map(|file| read(&file)?.trim().parse().ok());
     limits.chain(physical).min()
 }
 

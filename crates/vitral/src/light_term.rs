@@ -56,7 +56,7 @@ mod tests {
         (renderer.settings.picture.width, renderer.settings.picture.height) = (48, 36);
         renderer.settings.picture.color_space = ColorSpace::Raw;
         renderer.settings.picture.samples = 1;
-        renderer.settings.picture.background = crate::Background::Color([0.0; 3]);
+        renderer.settings.picture.background = crate::Background::Color { color: [0.0; 3] };
         let mut pixels = |term: Option<LightTerm>| {
             renderer.light_term = term;
             renderer.render().unwrap().frame.color.unwrap().data().to_vec()

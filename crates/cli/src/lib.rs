@@ -11,6 +11,7 @@ mod bench_drawings;
 mod bench_plot;
 mod bench_report;
 mod bench_rows;
+mod blank;
 mod choices;
 mod command_line;
 mod compare_command;

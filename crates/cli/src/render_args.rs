@@ -78,6 +78,9 @@ pub(crate) struct OutputArgs {
     /// Write only if the colour picture differs from this one, with exit code 6
     #[arg(long, value_name = "IMG")]
     pub(crate) reference: Option<PathBuf>,
+    /// End with exit code 6 if nothing of the models is seen in a picture
+    #[arg(long)]
+    pub(crate) fail_if_blank: bool,
     /// How far a channel may be apart from the reference, 0 to 1 of its range [default: 0]
     #[arg(long, value_name = "F", value_parser = values::share, requires = "reference", allow_negative_numbers = true)]
     pub(crate) reference_threshold: Option<f64>,

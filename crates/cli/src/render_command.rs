@@ -1,5 +1,6 @@
 //! `vitral render`: models in, pictures out.
 
+use crate::blank;
 use crate::compare_command;
 use crate::interrupt;
 use crate::models::{self, ReadLimits};
@@ -281,7 +282,7 @@ struct Drawn {
     written: Vec<String>,
     /// What is not as it was asked for.
     warnings: Vec<String>,
-    /// A picture differs from the reference.
+    /// A picture differs from the reference, or is blank and must not be.
     different: bool,
 }
 
@@ -319,6 +320,9 @@ fn draw(
         if let Some(step) = args.output.step {
             step_pictures::after_step(renderer, camera, step, &mut rendered.frame)?;
         }
+        let blank = blank::why(renderer, &rendered).map(str::to_owned);
+        drawn.different |= blank.is_some() && args.output.fail_if_blank;
+        rendered.warnings.extend(blank);
         // A turntable's frames mostly share their warnings.
         let news: Vec<_> = rendered.warnings.iter().filter(|w| !drawn.warnings.contains(*w)).cloned().collect();
         if !args.report.quiet {

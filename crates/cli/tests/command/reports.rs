@@ -181,3 +181,19 @@ fn statistics_are_told_apart_from_the_result_and_in_it() {
     let without = json(&render(&folder, &["builtin:cubs", "-o", "a.png", "--json"]));
     assert!(without.get("stats").is_none(), "{without}");
 }
+
+#[test]
+fn a_picture_on_which_nothing_is_seen_says_why() {
+    let folder = Folder::new("blank");
+    folder.file("clear.mtl", "newmtl m\nKd 0.8 0.1 0.1\nd 0\n");
+    folder.file("clear.obj", "mtllib clear.mtl\nv 0 0 0\nv 2 0 0\nv 2 2 0\nusemtl m\nf 1 2 3\n");
+    let clear = render(&folder, &["clear.obj", "-o", "a.png"]);
+    assert!(code(&clear) == 0 && errors(&clear).contains("the opacity of all surfaces is 0"), "{}", errors(&clear));
+    let failed = render(&folder, &["clear.obj", "-o", "a.png", "--fail-if-blank"]);
+    assert!(code(&failed) == 6 && folder.has("a.png"), "{}", errors(&failed));
+    let away = ["builtin:cubs", "--camera-position", "0,0,9", "--camera-focal-point", "0,0,20", "-o", "b.png"];
+    let away = render(&folder, &[&away[..], &["--fail-if-blank"]].concat());
+    assert!(code(&away) == 6 && errors(&away).contains("outside of the view"), "{}", errors(&away));
+    let seen = render(&folder, &["builtin:cubs", "-o", "c.png", "--fail-if-blank"]);
+    assert!(code(&seen) == 0 && !errors(&seen).contains("nothing is seen"), "{}", errors(&seen));
+}

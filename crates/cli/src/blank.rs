@@ -16,7 +16,7 @@ pub(crate) fn why(renderer: &Renderer, picture: &Picture) -> Option<&'static str
     let is_clear = |material: Option<u32>| material.is_some_and(|m| opacities.get(m as usize) == Some(&0.0));
     let materials: Vec<Option<u32>> = materials.collect();
     if !materials.is_empty() && materials.iter().all(|&material| is_clear(material)) {
-        return Some("nothing is seen: the opacity of all surfaces is 0");
+        return Some("nothing is seen, since the opacity of all surfaces is 0");
     }
     if stats.picture.covered_pixels > 0 || stats.picture.layer_samples > 0 || stats.picture.pixels == 0 {
         return None;
@@ -25,14 +25,14 @@ pub(crate) fn why(renderer: &Renderer, picture: &Picture) -> Option<&'static str
     // What became of the triangles.
     let (cull, geometry) = (&stats.cull, &stats.geometry);
     Some(if cull.triangles_culled + geometry.outside >= cull.triangles {
-        "nothing is seen: all surfaces lie outside of the view"
+        "nothing is seen, since all surfaces lie outside of the view"
     } else if geometry.set_up > 0 {
-        "nothing is seen: no surface covers the middle of a sample, or all that do are cut out by textures"
+        "nothing is seen, since no surface covers the middle of a sample, or all that do are cut out by textures"
     } else if geometry.back_facing > 0 {
-        "nothing is seen: all surfaces in view are turned away (their backs are not shown)"
+        "nothing is seen, since all surfaces in view are turned away (their backs are not shown)"
     } else if geometry.no_sample > 0 {
-        "nothing is seen: the surfaces in view are too small to cover a sample"
+        "nothing is seen, since the surfaces in view are too small to cover a sample"
     } else {
-        "nothing is seen: the surfaces in view have no area"
+        "nothing is seen, since the surfaces in view have no area"
     })
 }

@@ -247,7 +247,8 @@ fn exit_codes() {
     }
     assert_eq!(code(&folder.run(&["render", "a.obj", "-o", "x.png", "--resolution", "0x4"])), 2);
     assert_eq!(code(&folder.run(&["render", "a.obj", "-o", "x.png", "--resolution", "99999x4"])), 7);
-    assert_eq!(code(&folder.run(&["batch", "a.obj"])), 2);
+    assert_eq!(code(&folder.run(&["batch"])), 2);
+    assert_eq!(code(&folder.run(&["batch", "a.obj", "--dry-run"])), 1);
     if cfg!(not(feature = "lab")) {
         let output = folder.run(&["lab", "a.obj"]);
         assert!(code(&output) == 4 && errors(&output).contains("cargo xtask lab"), "{}", errors(&output));

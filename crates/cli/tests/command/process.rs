@@ -14,8 +14,8 @@ fn by_shell(folder: &Folder, before: &str, arguments: &str) -> Output {
 #[test]
 fn memory_that_runs_out_is_a_limit() {
     let folder = Folder::new("memory");
-    // 200 MB of addresses hold the program, but not a picture of 4096 x 4096 pixels.
-    let large = "builtin:cubs -o x.png --resolution 4096x4096 --threads 1";
+    // 200 MB of addresses hold the program, but not a picture of 12000 x 12000 pixels.
+    let large = "builtin:cubs -o x.png --resolution 12000x12000 --threads 1";
     let output = by_shell(&folder, "ulimit -v 200000", large);
     let told = errors(&output);
     assert_eq!(code(&output), 7, "{told}");

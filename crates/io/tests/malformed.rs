@@ -29,7 +29,7 @@ const TABLE: &[(&str, Expected)] = &[
     ("assimp-invalid/malformed.obj", Warned(&["line 23: index 12, the file has 8 vertices; 2 faces with"])),
     ("assimp-invalid/malformed2.obj", Warned(&["line 22: unknown material", "line 23: a face with 0 corners"])),
     ("assimp-invalid/readme.txt", Refused(&["is not read"])),
-    ("off/invalid.off", Refused(&["line 8", "index 4, the file has 3 vertices"])),
+    ("off/invalid.off", Refused(&["line 8", "index 20, the file has 3 vertices"])),
     ("gltf/IndexOutOfRange/", Refused(&["ndex"])),
     ("gltf/IncorrectVertexArrays/", Refused(&["Cube.gltf"])),
     ("gltf/MissingBin/", Refused(&["BoxTextured0.bin"])),

@@ -12,7 +12,7 @@ use vitral::Error;
 type Example = (&'static str, &'static str);
 
 /// The examples of each verb; the first row is that of the command.
-const EXAMPLES: [(&str, &[Example]); 12] = [
+const EXAMPLES: [(&str, &[Example]); 13] = [
     (
         "vitral",
         &[

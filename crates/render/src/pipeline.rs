@@ -223,7 +223,14 @@ impl<'a> FrameContext<'a> {
         let deep = self.deep_image(constants, mark_colors, tracer.is_some())?;
         let mut picture = self.take_picture(constants.view.session);
         let rows = TileRows::new(viewport, &mut picture);
-        let mut sink = ColorSink::new(constants, mark_colors, tracer.as_ref().map(|t| t as &dyn Tracer), deep, rows);
+        let mut sink = ColorSink::new(
+            constants,
+            mark_colors,
+            tracer.as_ref().map(|t| t as &dyn Tracer),
+            deep,
+            rows,
+            &execution.budget,
+        );
         if settings.picture.channels.passes {
             sink.show_passes();
         }
@@ -267,13 +274,13 @@ impl<'a> FrameContext<'a> {
         let tables = DecodeTables::new(settings.picture.color_space);
         let shadows = self.shadows(&view)?;
         let constants = self.constants(&view, shadows.as_deref(), None, &tables);
-        let sink = ChannelSink::new(&constants, settings.picture.channels, grid.tiles.len());
+        let sink = ChannelSink::new(&constants, settings.picture.channels, grid.tiles.len(), &execution.budget);
         let resolved = self.visibility().resolve(&view, None, &mut grid, execution, &sink)?;
         if !settings.picture.channels.color {
             // Beside a colour picture, its numbers count.
             (stats.cull, stats.geometry, stats.visibility) = (cull, resolved.geometry, resolved.counters);
         }
-        Assembler { viewport, workers: &execution.workers }.data(&sink.tiles, settings.picture.channels, frame);
+        Assembler { viewport, workers: &execution.workers }.data(&sink.finish()?, settings.picture.channels, frame);
         drop(constants);
         drop(shadows);
         drop(view);

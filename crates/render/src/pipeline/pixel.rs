@@ -65,7 +65,14 @@ pub fn examine_pixel(
     let deep = context.deep_image(&constants, &mark_colors, !needs_all)?;
     let mut picture = vec![[0; 4]; viewport.width as usize * viewport.height as usize];
     let rows = TileRows::new(viewport, &mut picture);
-    let inner = ColorSink::new(&constants, &mark_colors, tracer.as_ref().map(|t| t as &dyn Tracer), deep, rows);
+    let inner = ColorSink::new(
+        &constants,
+        &mark_colors,
+        tracer.as_ref().map(|t| t as &dyn Tracer),
+        deep,
+        rows,
+        &execution.budget,
+    );
     let sink = TileCopy { inner: &inner, wanted: tile, copy: Mutex::default() };
     let drawn = (!mark_colors.is_empty()).then_some(&marks);
     context.visibility().resolve(&view, drawn, &mut grid, execution, &sink)?;

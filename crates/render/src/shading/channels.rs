@@ -4,6 +4,7 @@
 use super::FrameConstants;
 use super::batch::each_eight;
 use super::collect::InFront;
+use super::deadline::Deadline;
 use super::facets::FacetTable;
 use super::geometry::surface;
 use super::points::{Points, Source};
@@ -14,6 +15,7 @@ use crate::Channels;
 use crate::marks::MarkColors;
 use crate::visible::{TileSink, nearer};
 use std::sync::Mutex;
+use vitral_exec::{Budget, Limit};
 use vitral_frame::Frame;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{Simd, dispatch};
@@ -35,12 +37,25 @@ pub(crate) struct DataPlanes {
 pub(crate) struct ChannelSink<'a> {
     constants: &'a FrameConstants<'a>,
     wanted: Channels,
-    pub tiles: Vec<Mutex<DataPlanes>>,
+    tiles: Vec<Mutex<DataPlanes>>,
+    deadline: Deadline<'a>,
 }
 
 impl<'a> ChannelSink<'a> {
-    pub(crate) fn new(constants: &'a FrameConstants<'a>, wanted: Channels, tile_count: usize) -> Self {
-        Self { constants, wanted, tiles: (0..tile_count).map(|_| Mutex::default()).collect() }
+    pub(crate) fn new(
+        constants: &'a FrameConstants<'a>,
+        wanted: Channels,
+        tile_count: usize,
+        budget: &'a Budget,
+    ) -> Self {
+        let tiles = (0..tile_count).map(|_| Mutex::default()).collect();
+        Self { constants, wanted, tiles, deadline: Deadline::new(budget) }
+    }
+
+    /// The planes of all tiles, when all were handed over.
+    pub(crate) fn finish(self) -> Result<Vec<Mutex<DataPlanes>>, Limit> {
+        self.deadline.into_result()?;
+        Ok(self.tiles)
     }
 }
 
@@ -50,6 +65,9 @@ impl TileSink for ChannelSink<'_> {
     }
 
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
+        if self.deadline.is_over() {
+            return;
+        }
         let mut planes = DataPlanes::default();
         let with_cut_outs = self.with_cut_outs(tile, layers);
         let tile = with_cut_outs.as_ref().unwrap_or(tile);

@@ -4,6 +4,7 @@ use super::behind::DeepImage;
 use super::buffers::{self, BufferPlanes};
 use super::collect::InFront;
 use super::composite::Composer;
+use super::deadline::Deadline;
 use super::scratch::{Scratch, SpareScratch};
 use super::shade::shade;
 use super::tile_rows::TileRows;
@@ -13,7 +14,7 @@ use crate::marks::MarkColors;
 use crate::stats::PictureCounters;
 use crate::visible::{Peel, TileSink};
 use std::sync::{Arc, Mutex};
-use vitral_exec::{Limit, Workers};
+use vitral_exec::{Budget, Limit, Workers};
 use vitral_raster::{LayerList, TILE_PIXELS, Tile};
 
 /// Shades tiles into display colours.
@@ -32,6 +33,7 @@ pub(crate) struct ColorSink<'a> {
     /// The session's.
     spare: Arc<SpareScratch>,
     counters: Mutex<PictureCounters>,
+    deadline: Deadline<'a>,
 }
 
 /// The pictures of each tile after each pass.
@@ -51,6 +53,7 @@ impl<'a> ColorSink<'a> {
         tracer: Option<&'a dyn Tracer>,
         deep: Option<DeepImage<'a>>,
         tiles: TileRows<'a>,
+        budget: &'a Budget,
     ) -> Self {
         Self {
             constants,
@@ -62,6 +65,7 @@ impl<'a> ColorSink<'a> {
             buffers: Vec::new(),
             spare: SpareScratch::of(constants.view.session),
             counters: Mutex::default(),
+            deadline: Deadline::new(budget),
         }
     }
 
@@ -81,6 +85,7 @@ impl<'a> ColorSink<'a> {
 
     /// When all tiles were handed over: composes what was kept until the whole picture is there. Gives what else is shown.
     pub(crate) fn finish(self, workers: &Workers) -> Result<Shown, Limit> {
+        self.deadline.into_result()?;
         let shown = Shown { passes: self.passes, buffers: self.buffers };
         let Some(deep) = self.deep else {
             self.tiles.check();
@@ -117,6 +122,9 @@ impl TileSink for ColorSink<'_> {
     }
 
     fn tile_in_passes(&self, index: usize, tile: &Tile, pass: &mut dyn FnMut(&mut Peel) -> bool) {
+        if self.deadline.is_over() {
+            return;
+        }
         let mut scratch = self.spare.take();
         let Scratch { points, facets, lit, .. } = &mut scratch;
         let constants = self.constants;
@@ -143,6 +151,10 @@ impl TileSink for ColorSink<'_> {
     }
 
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
+        if self.deadline.is_over() {
+            return;
+        }
+
         // Fill a tile without a surface.
         let empty = !tile.touched && layers.sample_count() == 0 && layers.lost() == 0;
         if empty && self.deep.is_none() && self.buffers.is_empty() {

@@ -27,6 +27,7 @@ mod color_only;
 mod color_sink;
 mod composite;
 mod corners;
+mod deadline;
 mod depth_cue;
 mod examine;
 mod facets;

@@ -2,11 +2,12 @@
 
 use super::common::{all_channels, colors, exact, exact_builtin, limit, on_z, one, settings_error, sun};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use vitral::internals::render::registry::SHADOWS;
 use vitral::{
-    AlphaMode, Budget, Camera, Channels, DMat4, DVec3, Error, Faces, Frame, Light, LightKind, Limit, Material, Mesh,
-    Node, NodeTransform, Projection, Reflectance, RenderError, Renderer, Scene, SettingsError, Shadows, SystemClock,
-    Viewpoint, Visibility, load_builtin, solids,
+    AlphaMode, Budget, Camera, Channel, Channels, Clock, DMat4, DVec3, Error, Faces, Frame, Light, LightKind, Limit,
+    Material, Mesh, Node, NodeTransform, Projection, Reflectance, RenderError, Renderer, Scene, SettingsError, Shadows,
+    SystemClock, Viewpoint, Visibility, Workers, load_builtin, solids,
 };
 
 #[test]
@@ -221,6 +222,44 @@ fn limits_stop_the_work() {
     // After a limit the renderer still works.
     renderer.execution_mut().budget = Budget::default();
     assert!(colors(&mut renderer) == colors(&mut exact_builtin("cubs", 64, 64)));
+}
+
+/// Each look at this clock takes a second.
+struct Ticking(AtomicU64);
+
+impl Clock for Ticking {
+    fn seconds(&self) -> f64 {
+        self.0.fetch_add(1, Ordering::Relaxed) as f64
+    }
+}
+
+#[test]
+fn limits_stop_shading_between_tiles() {
+    let mut renderer = exact_builtin("cubs", 256, 256);
+    renderer.execution_mut().workers = Workers::single();
+    let render = |renderer: &mut Renderer, limit: f64| {
+        let clock = Arc::new(Ticking(AtomicU64::new(0)));
+        renderer.execution_mut().budget = Budget::new(clock.clone()).with_time_limit(Some(limit));
+        let result = renderer.render();
+        (result.map(drop), clock.0.load(Ordering::Relaxed))
+    };
+    for channel in [Channel::Color, Channel::Normal] {
+        renderer.settings.picture.channels = Channels { color: false, ..Channels::default() };
+        channel.request(&mut renderer.settings.picture.channels);
+        let (result, ticks) = render(&mut renderer, 1e9);
+        assert!(result.is_ok() && ticks > 64, "{ticks} ticks, 64 tiles");
+
+        // Wherever in the tiles time is over, the rest is left out.
+        let mut in_shading = 0;
+        for limit in 1..ticks {
+            if let (Err(Error::Render(RenderError::Limit(Limit::Time { stage: "shading", .. }))), _) =
+                render(&mut renderer, limit as f64)
+            {
+                in_shading += 1;
+            }
+        }
+        assert!(in_shading >= 60, "{channel:?}: {in_shading} of 64 tiles");
+    }
 }
 
 #[test]

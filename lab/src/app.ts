@@ -3,16 +3,16 @@
 
 import { Address } from "./address.ts";
 import type { Agreement, Catalog, Complete, Picture, Plane, Recording, Result, Step } from "./answers.ts";
-import { Engine, Refusal, Superseded, type Answer, type UserFile } from "./engine.ts";
+import { Engine, Refusal, Superseded, wordsOf, type Answer } from "./engine.ts";
 import { at, equal, isObject, put, type Json, type JsonObject } from "./json.ts";
 import { LAB, pack, read, stateOfB, unpack, write, type Lab, type Language, type Problem, type Situation } from "./link.ts";
+import { OpenDialogs } from "./open-dialogs.ts";
+import { OwnFiles } from "./own-files.ts";
 import { Playback } from "./playback.ts";
-import { hashOf, missingModels, nameOf, overlay, stateIn } from "./states.ts";
+import { missingModels, overlay } from "./states.ts";
 import { setLanguage, t } from "./words.ts";
 
 export type History = "replace" | "push";
-
-export type DialogName = "lights" | "materials" | "camera" | "keyboard" | "language" | "about";
 
 /** Milliseconds of rest before work that is not urgent begins. */
 const REST = 150;
@@ -26,6 +26,8 @@ export class App {
   engine: Engine;
   readonly address = new Address(this);
   readonly playback = new Playback(this);
+  readonly dialogs = new OpenDialogs(this);
+  readonly own = new OwnFiles(this);
   catalog: Catalog | undefined;
   situation: Situation = { state: {}, b: {}, lab: { ...LAB } };
 
@@ -54,13 +56,9 @@ export class App {
   isDragging = false;
   isRecording = false;
   sameCamera = true;
-  dialogs: DialogName[] = [];
   alert = "";
   message = "";
-  /** The user's files that are models. */
-  models = new Set<string>();
   hasKeys = true;
-  files = new Map<string, Uint8Array>();
   /** Models of the user that the link names and that are not here. */
   missing: string[] = [];
   exerciseResult: { id: string; passed: boolean; text: string; differs: string[] } | null = null;
@@ -297,7 +295,7 @@ export class App {
   /** Takes fields out of a situation until the engine accepts it; says which. */
   private async dropRefused(situation: Situation, form: URLSearchParams): Promise<string[]> {
     const told: string[] = [];
-    this.missing = missingModels(situation.state, this.files);
+    this.missing = missingModels(situation.state, this.own.contents);
     if (this.missing.length) return told;
     const refusal = await this.refusalOf(situation.state);
     if (refusal) {
@@ -328,7 +326,7 @@ export class App {
     return told;
   }
 
-  private async refusalOf(state: JsonObject): Promise<Refusal | null> {
+  async refusalOf(state: JsonObject): Promise<Refusal | null> {
     try {
       await this.engine.ask(`try ${Math.random()}`, { want: "complete", state, lang: this.language });
       return null;
@@ -348,7 +346,7 @@ export class App {
     if (!this.catalog) return;
     setLanguage(this.language);
     document.documentElement.lang = this.language;
-    this.missing = missingModels(this.state, this.files);
+    this.missing = missingModels(this.state, this.own.contents);
     if (this.missing.length) return;
     const state = this.state;
     const key = this.key();
@@ -621,96 +619,22 @@ export class App {
     this.setLab({ pixel });
   }
 
-  // ---- Files ----
-
-  async openFiles(list: UserFile[]) {
-    // A state file replaces the state.
-    if (list.length === 1 && list[0]!.name.endsWith(".json")) {
-      const state = stateIn(list[0]!.bytes);
-      if (state) {
-        const refusal = await this.refusalOf(overlay(this.catalog!.defaults, state));
-        if (refusal) return this.fail(`${list[0]!.name}: ${refusal.message}`);
-        return this.openState(state);
-      }
-    }
-    for (const { name, bytes } of list) this.files.set(name, bytes);
-    const all = [...this.files].map(([name, bytes]) => ({ name, bytes }));
-    try {
-      const { ok } = await this.engine.give(all);
-      this.recording = undefined;
-      this.wanted.clear();
-      const told = (ok["files"] as JsonObject[]).filter((f) => list.some(({ name }) => name === f["name"]));
-      const names = told.filter((f) => f["model"] === true).map((f) => `file:${f["name"]}#${f["hash"]}`);
-      for (const f of told) if (f["model"] === true) this.models.add(String(f["name"]));
-      this.hashes = new Map((ok["files"] as JsonObject[]).map((f) => [String(f["name"]), String(f["hash"])]));
-      const lacking = told.flatMap((f) => (f["missing"] as string[] | undefined) ?? []);
-      if (lacking.length) this.fail(t("Files that the model names are missing: {0}", [...new Set(lacking)].join(", ")));
-      else this.alert = "";
-      this.takeFiles(names, list);
-    } catch (e) {
-      this.fail(wordsOf(e));
-    }
+  /** Files came: what was asked for may have other answers. */
+  forgetAnswers() {
+    this.recording = undefined;
+    this.wanted.clear();
   }
 
-  hashes = new Map<string, string>();
-
-  /** Shows models that came, or gives a link what it waited for. */
-  private takeFiles(names: string[], list: UserFile[]) {
-    const waiting = missingModels(this.state, new Map());
-    const known = (model: string) => names.includes(model) || this.hashes.get(nameOf(model)) === hashOf(model);
-    const other = waiting.filter((model) => list.some((f) => f.name === nameOf(model)) && !known(model));
-    const wasMissing = this.missing.length > 0;
-    if (wasMissing && other.length) {
-      this.fail(t("{0} is another file than the one that the link means", nameOf(other[0]!)));
-      for (const model of other) this.files.delete(nameOf(model));
-      this.effects();
-      return;
-    }
-    if (wasMissing && waiting.every(known)) {
-      this.alert = "";
-      this.effects();
-      this.changed();
-      return;
-    }
-    if (names.length) this.openModels(names);
-    else {
-      this.plane = this.finished = undefined;
-      this.effects();
-      this.changed();
-    }
-  }
-
-  // ---- Dialogs ----
-
-  private readonly openers = new Map<DialogName, Element | null>();
-
-  openDialog(name: DialogName, opener: Element | null = document.activeElement) {
-    this.openers.set(name, opener);
-    this.dialogs = [...this.dialogs.filter((d) => d !== name), name];
+  /** Shows what is there once more, with other files. */
+  showAnew() {
+    this.plane = this.finished = undefined;
+    this.effects();
     this.changed();
-    setTimeout(() => {
-      const dialog = document.querySelector(`dialog[data-name="${name}"]`);
-      dialog?.querySelector<HTMLElement>("select, input, button")?.focus();
-    }, 60);
-  }
-
-  closeDialog(name: DialogName) {
-    this.dialogs = this.dialogs.filter((d) => d !== name);
-    this.changed();
-    const opener = this.openers.get(name);
-    const isThere = opener instanceof HTMLElement && opener.isConnected && opener.offsetParent !== null;
-    const back = isThere ? opener : document.querySelector<HTMLElement>('[role="application"]');
-    setTimeout(() => back?.focus(), 30);
   }
 }
 
 function planeOf(picture: Picture, bytes: Uint8Array | undefined): Plane {
   return { bytes: bytes ?? new Uint8Array(), width: picture.width, height: picture.height };
-}
-
-export function wordsOf(error: unknown): string {
-  if (error instanceof Refusal) return error.hint ? `${error.message} (${error.hint})` : error.message;
-  return error instanceof Error ? error.message : String(error);
 }
 
 function tell({ key, what }: Problem): string {

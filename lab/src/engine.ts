@@ -20,6 +20,12 @@ export class Refusal extends Error {
   }
 }
 
+/** What to tell of an error. */
+export function wordsOf(error: unknown): string {
+  if (error instanceof Refusal) return error.hint ? `${error.message} (${error.hint})` : error.message;
+  return error instanceof Error ? error.message : String(error);
+}
+
 /** A request was replaced by a newer one of the same name. */
 export class Superseded extends Error {}
 

@@ -11,7 +11,7 @@ export function pickFiles(app: App) {
   const input = document.createElement("input");
   input.type = "file";
   input.multiple = true;
-  input.onchange = async () => app.openFiles(await readAll([...(input.files ?? [])]));
+  input.onchange = async () => app.own.open(await readAll([...(input.files ?? [])]));
   input.click();
 }
 
@@ -29,7 +29,7 @@ export function acceptDrops(app: App) {
     const files = [...(e.dataTransfer?.files ?? [])];
     if (!files.length) return;
     e.preventDefault();
-    void readAll(files).then((list) => app.openFiles(list));
+    void readAll(files).then((list) => app.own.open(list));
   });
 }
 

@@ -36,8 +36,8 @@ function actions(app: App): Record<string, () => void> {
   const others: Record<string, () => void> = {
     c: () => setComparison(app, app.lab.compare === "none" ? "side" : "none"),
     p: () => app.inspect(app.cross ?? app.lab.pixel ?? [Math.floor(app.width / 2), Math.floor(app.height / 2)]),
-    l: () => app.openDialog("lights"),
-    "?": () => app.openDialog("keyboard"),
+    l: () => app.dialogs.open("lights"),
+    "?": () => app.dialogs.open("keyboard"),
   };
   const stepping = app.hasSteps && app.stepCount > 0 ? steps : {};
   return { ...stepping, ...(isFull ? others : {}), r: () => resetView(app) };

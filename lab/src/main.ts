@@ -3,6 +3,7 @@
 import { render } from "lit-html";
 import type { Catalog } from "./answers.ts";
 import { App } from "./app.ts";
+import type { UserFile } from "./engine.ts";
 import { acceptDrops, startFiles } from "./files.ts";
 import { talkToParent } from "./frame.ts";
 import { listenToKeys } from "./keys.ts";
@@ -68,15 +69,11 @@ async function start() {
 }
 
 /** Names the models that were served by the content of their files. */
-async function takeStartFiles(app: App, files: { name: string; bytes: Uint8Array }[]) {
-  for (const { name, bytes } of files) app.files.set(name, bytes);
-  const { ok } = await app.engine.give(files);
-  const hashes = new Map((ok["files"] as { name: string; hash: string; model: boolean }[]).map((f) => [f.name, f]));
-  app.hashes = new Map([...hashes].map(([name, f]) => [name, f.hash]));
-  for (const [name, f] of hashes) if (f.model) app.models.add(name);
+async function takeStartFiles(app: App, files: UserFile[]) {
+  await app.own.give(files);
   app.start.models = (app.start.models ?? []).map((m) => {
-    const found = m.startsWith("file:") ? hashes.get(m.slice(5)) : undefined;
-    return found ? `${m}#${found.hash}` : m;
+    const hash = m.startsWith("file:") ? app.own.hashes.get(m.slice(5)) : undefined;
+    return hash === undefined ? m : `${m}#${hash}`;
   });
 }
 

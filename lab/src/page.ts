@@ -3,7 +3,8 @@
 import { html, nothing, type TemplateResult } from "lit-html";
 import { ref } from "lit-html/directives/ref.js";
 import { drawing } from "./parts/markup.ts";
-import { type App, type DialogName } from "./app.ts";
+import type { App } from "./app.ts";
+import type { DialogName } from "./open-dialogs.ts";
 import { nameOf } from "./states.ts";
 import { aboutDialog, cameraDialog, keyboardDialog, languageDialog } from "./dialogs/others.ts";
 import { lightsDialog } from "./dialogs/lights.ts";
@@ -160,7 +161,7 @@ export function page(app: App): TemplateResult {
       ${messages(app)}
       <main>${pictures(app)}</main>
       ${layout === "figure" && app.hasSteps ? html`<div class="regions">${structure(app)}</div>` : nothing} ${status(app)}
-      ${app.dialogs.map((d) => DIALOGS[d](app))}
+      ${app.dialogs.all.map((d) => DIALOGS[d](app))}
     </div>`;
   }
   return html`<div class="lab full">
@@ -174,6 +175,6 @@ export function page(app: App): TemplateResult {
       ${settings(app)}
       <div class="regions">${regions(app)}</div>
     </div>
-    ${status(app)} ${app.dialogs.map((d) => DIALOGS[d](app))}
+    ${status(app)} ${app.dialogs.all.map((d) => DIALOGS[d](app))}
   </div>`;
 }

@@ -1,6 +1,7 @@
 // Saving to files and copying to the clipboard.
 
-import { wordsOf, type App } from "./app.ts";
+import type { App } from "./app.ts";
+import { wordsOf } from "./engine.ts";
 import { t } from "./words.ts";
 
 /** The model's name without kind, hash and ending. */

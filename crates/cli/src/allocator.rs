@@ -20,7 +20,7 @@ static TAKEN: AtomicUsize = AtomicUsize::new(0);
 /// Bytes that it may have while models are read.
 static ALLOWED: AtomicUsize = AtomicUsize::new(usize::MAX);
 
-/// The system's memory. A request that it refuses, or one beyond what is allowed, ends the process. For programs, not for libraries.
+/// The system's memory. A refused request, or one beyond the allowed bytes, ends the process. For programs, not for libraries.
 #[derive(Debug)]
 pub struct Exiting;
 
@@ -63,7 +63,7 @@ fn take(size: usize) {
     }
 }
 
-/// Counts what is given back.
+/// Counts bytes that are given back.
 fn give_back(size: usize) {
     if size >= COUNTED_FROM {
         TAKEN.fetch_sub(size, Ordering::Relaxed);

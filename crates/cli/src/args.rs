@@ -141,7 +141,7 @@ pub(crate) struct BenchArgs {
     /// Seconds for each algorithm; one that cannot finish says so in its row, and the others go on
     #[arg(long, value_name = "S", value_parser = values::positive, default_value_t = 20.0)]
     pub(crate) time_limit: f64,
-    /// Memory that each algorithm may take, such as 512M or 1G [default: the machine's, or what its control group allows, where Linux
+    /// Memory that each algorithm may take, such as 512M or 1G [default: the machine's, or its control group's limit, where Linux
     /// tells]
     #[arg(long, value_name = "B", value_parser = values::bytes)]
     pub(crate) max_memory: Option<u64>,

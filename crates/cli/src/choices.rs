@@ -4,8 +4,8 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::internals::render::choice::Row;
 use vitral::{
-    Acceleration, Channel, Choice, ColorBy, ColorSpace, Global, Illumination, Interpolation, Normals, PictureFormat,
-    Seams, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
+    Acceleration, Channel, Choice, ColorBy, ColorSpace, Global, Illumination, Interpolation, LightTerm, Normals,
+    PictureFormat, Seams, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
 };
 
 /// The algorithm that finds the visible surfaces of a drawing.
@@ -43,6 +43,10 @@ fn of<T: Copy + Send + Sync + 'static>(table: impl IntoIterator<Item = Named<T>>
 /// A parser that accepts the names of the rows of a table of the registry.
 fn rows<T: Row + Sync>() -> impl TypedValueParser<Value = Choice<T>> {
     of(Choice::<T>::all().map(|choice| (choice, choice.name(), choice.description())))
+}
+
+pub(crate) fn light_term() -> impl TypedValueParser<Value = LightTerm> {
+    of(LightTerm::ALL.map(|(term, name)| (term, name, "")))
 }
 
 pub(crate) fn exercise() -> impl TypedValueParser<Value = &'static str> {

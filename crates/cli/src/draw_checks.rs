@@ -82,6 +82,7 @@ fn check_polygons(args: &DrawArgs) -> Result<(), Failure> {
 
 /// Options of sheets, and cameras beside the cameras of a sheet.
 fn check_sheet(args: &DrawArgs, state: &State) -> Result<(), Failure> {
+    // Refuse orders of views where there is one view, and views that are there twice.
     let views = &args.page.views;
     if views.is_empty() {
         let one_view = "--angle: there is one view only";
@@ -91,6 +92,8 @@ fn check_sheet(args: &DrawArgs, state: &State) -> Result<(), Failure> {
         let name = names::view_name(views[i]);
         return Err(Failure::usage(format!("--views: {name} is there twice")).with_hint("name each view once"));
     }
+
+    // Refuse what each view has of its own.
     let Viewpoint { view, up, orthographic, .. } = state.viewpoint;
     if let Some(view) = view.filter(|_| !args.perspective) {
         let hint = format!("leave out --view, and give --views {},...", names::view_name(view));
@@ -183,6 +186,7 @@ fn check_sections(args: &DrawArgs) -> Result<(), Failure> {
 
 /// Options that the format of the file cannot express.
 fn check_file(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> {
+    // Refuse what this format cannot hold.
     let (page, has_lines_alone) = (&args.page, args.page.plotter || !format.has_fills());
     let has_regions = args.style() != Style::HiddenLine || args.overlaps();
     first(&[
@@ -213,6 +217,7 @@ fn check_file(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> {
 
 /// Options of surfaces that are not filled, and of light on colours without light.
 fn check_surfaces(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> {
+    // List the options of light and of fills.
     let (fill, light) = (&args.fill, &args.light);
     let of_light = [
         (fill.shades.is_some(), "--shades"),

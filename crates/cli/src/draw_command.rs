@@ -19,6 +19,7 @@ use vitral::{
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
+    // Plan the drawings: one of all models, or one of each.
     let start = Instant::now();
     let state = state_of(args)?;
     let models = models::named(&args.models, &state);

@@ -20,12 +20,6 @@ pub(crate) fn heed(budget: &Budget, work: impl FnOnce() -> Result<u8, Failure>) 
     if cancelled.load(Ordering::Relaxed) { Ok(INTERRUPTED) } else { result }
 }
 
-/// Ends the process at Ctrl-C, for work that has no end of its own.
-#[cfg(feature = "lab")]
-pub(crate) fn end_at_ctrl_c() {
-    listen(Arc::default());
-}
-
 /// What Ctrl-C sets: the flag of the work at hand.
 static FLAG: Mutex<Option<Arc<AtomicBool>>> = Mutex::new(None);
 
@@ -37,7 +31,7 @@ pub(crate) fn is_asked() -> bool {
     IS_ASKED.load(Ordering::Relaxed)
 }
 
-/// Listens for Ctrl-C for work that asks [`is_asked`].
+/// Lets Ctrl-C end the process, soon after work that asks [`is_asked`] knows of it.
 pub(crate) fn watch() {
     listen(Arc::default());
 }

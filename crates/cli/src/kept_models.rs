@@ -1,8 +1,10 @@
 //! Models that were read last, for a process that does many jobs, and the files that a job read.
 
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
-use vitral::{Error, FolderResolver, LoadOptions, ResolveError, Resolver, Scene, Workers};
+use crate::hashes::hash_of_bytes;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Mutex;
+use vitral::{Error, LoadOptions, ReadFile, Scene, Workers};
 
 /// Models that are kept.
 const MOST_KEPT: usize = 4;
@@ -14,14 +16,14 @@ static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
 struct Kept {
     /// The models, the one that was asked for last in front.
     models: Vec<Model>,
-    /// The files that were read for the scene that was asked for last.
-    files: Vec<String>,
+    /// The files that the scene at hand was read from, with the hashes of their contents.
+    files: BTreeMap<String, String>,
 }
 
 struct Model {
     key: String,
     scene: Scene,
-    files: Vec<String>,
+    files: BTreeMap<String, String>,
 }
 
 /// Keeps models from now on.
@@ -29,8 +31,8 @@ pub(crate) fn keep() {
     *KEPT.lock().expect("no thread panics while it keeps a model") = Some(Kept::default());
 }
 
-/// The files that the last scene was read from.
-pub(crate) fn files() -> Vec<String> {
+/// The files that the last scene was read from, with the hashes of their contents.
+pub(crate) fn files() -> BTreeMap<String, String> {
     let kept = KEPT.lock().expect("no thread panics while it keeps a model");
     kept.as_ref().map(|kept| kept.files.clone()).unwrap_or_default()
 }
@@ -54,39 +56,16 @@ pub(crate) fn load(name: &Path, options: &LoadOptions, workers: &Workers) -> Res
             kept.models.insert(0, read(name, key, options, workers)?);
         }
     }
-    kept.files.extend(kept.models[0].files.iter().cloned());
+    kept.files.extend(kept.models[0].files.clone());
     Ok(kept.models[0].scene.clone())
 }
 
 /// Reads a model, and notes which files that takes.
-fn read(path: &Path, key: String, options: &LoadOptions, workers: &Workers) -> Result<Model, Error> {
-    let name = path.to_string_lossy().into_owned();
-    if name.starts_with("builtin:") {
-        let scene = vitral::load_on(path, options, workers)?;
-        return Ok(Model { key, scene, files: Vec::new() });
-    }
-    let bytes = vitral::read(path, options.max_file_bytes)?;
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let files = Arc::new(Mutex::new(vec![name.clone()]));
-    let inner = FolderResolver::new(&folder, options.allow_external, options.max_file_bytes);
-    let noting = Noting { inner, folder, files: Arc::clone(&files) };
-    let scene = vitral::load_bytes_with(&bytes, &name, &noting, options)?;
-    let files = files.lock().expect("no thread panics while it notes a file").clone();
-    Ok(Model { key, scene, files })
-}
-
-/// A resolver that notes what it was asked for.
-struct Noting {
-    inner: FolderResolver,
-    folder: PathBuf,
-    files: Arc<Mutex<Vec<String>>>,
-}
-
-impl Resolver for Noting {
-    fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
-        let bytes = self.inner.read(path)?;
-        let place = self.folder.join(path).to_string_lossy().into_owned();
-        self.files.lock().expect("no thread panics while it notes a file").push(place);
-        Ok(bytes)
-    }
+fn read(name: &Path, key: String, options: &LoadOptions, workers: &Workers) -> Result<Model, Error> {
+    let files = Mutex::new(BTreeMap::new());
+    let scene = vitral::load_telling(name, options, workers, &|file: ReadFile<'_>| {
+        let path = file.path.to_string_lossy().into_owned();
+        files.lock().expect("no thread panics while it notes a file").insert(path, hash_of_bytes(file.bytes));
+    })?;
+    Ok(Model { key, scene, files: files.into_inner().expect("no thread panicked while it noted a file") })
 }

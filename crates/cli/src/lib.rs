@@ -24,6 +24,7 @@ mod draw_polygons;
 mod draw_sheet;
 mod exit;
 mod fields;
+mod hashes;
 mod help;
 mod info_command;
 mod interrupt;

@@ -9,7 +9,7 @@ use crate::render_args::RenderArgs;
 use crate::report::Failure;
 use crate::resolve::{execution_within, set_lights, set_options, set_viewpoint};
 use clap::error::{ContextKind, ContextValue};
-use clap::{ArgAction, CommandFactory, Parser};
+use clap::{Arg, ArgAction, CommandFactory, Parser};
 use std::path::{Path, PathBuf};
 use vitral::{Camera, Drawing, Execution, Renderer, State};
 
@@ -53,7 +53,7 @@ impl Purpose {
     }
 
     /// Whether an option of the verb is meant for this purpose; the others are about files, reports and processes.
-    fn takes(self, argument: &clap::Arg) -> bool {
+    fn takes(self, argument: &Arg) -> bool {
         let name = argument.get_long().unwrap_or_default();
         let heading = argument.get_help_heading().unwrap_or_default();
         let is_of_loading = OF_LOADING.contains(&name);
@@ -85,22 +85,28 @@ fn typed(purpose: Purpose, given: &[(String, Given)]) -> Result<Vec<String>, Fai
         let argument = verb.get_arguments().find(|a| a.get_long() == Some(long.as_str()) && purpose.takes(a));
         let argument = argument.ok_or_else(|| unknown(purpose, name))?;
 
-        // A switch is there or not; `on` and `off` are values.
-        let is_switch = matches!(argument.get_action(), ArgAction::SetTrue);
-        let may_be_bare = is_switch || argument.get_num_args().is_some_and(|range| range.min_values() == 0);
-        match given {
-            Given::Switch(false) if may_be_bare => {}
-            Given::Switch(true) if may_be_bare => words.push(format!("--{long}")),
-            Given::Switch(on) => words.push(format!("--{long}={}", if *on { "on" } else { "off" })),
-            _ if is_switch => return Err(Failure::usage(format!("{name}: True or False is required"))),
-            Given::Text(text) => words.push(format!("--{long}={text}")),
-            Given::List(texts) if matches!(argument.get_action(), ArgAction::Append) => {
-                words.extend(texts.iter().map(|text| format!("--{long}={text}")));
-            }
-            Given::List(texts) => words.push(format!("--{long}={}", texts.join(","))),
-        }
+        words.extend(option_words(argument, &long, given).map_err(|why| Failure::usage(format!("{name}: {why}")))?);
     }
     Ok(words)
+}
+
+/// An option as it is typed on the command line, if it is given at all; else what it requires.
+pub(crate) fn option_words(argument: &Arg, long: &str, given: &Given) -> Result<Vec<String>, &'static str> {
+    // A switch is there or not; `on` and `off` are values.
+    let is_switch = matches!(argument.get_action(), ArgAction::SetTrue);
+    let may_be_bare = is_switch || argument.get_num_args().is_some_and(|range| range.min_values() == 0);
+    let with = |value: &str| vec![format!("--{long}={value}")];
+    Ok(match given {
+        Given::Switch(false) if may_be_bare => Vec::new(),
+        Given::Switch(true) if may_be_bare => vec![format!("--{long}")],
+        Given::Switch(on) => with(if *on { "on" } else { "off" }),
+        _ if is_switch => return Err("True or False is required"),
+        Given::Text(text) => with(text),
+        Given::List(texts) if matches!(argument.get_action(), ArgAction::Append) => {
+            texts.iter().flat_map(|text| with(text)).collect()
+        }
+        Given::List(texts) => with(&texts.join(",")),
+    })
 }
 
 /// The error for an option that is not there, with the most similar one.

@@ -30,6 +30,7 @@ impl Output {
         channels: &[Channel],
         formats: &[PictureFormat],
     ) -> Result<Vec<Self>, Failure> {
+        // Refuse numbers that do not fit together, and outputs that write over each other.
         let channels = if channels.is_empty() && outputs.len() == 1 { &[Channel::Color] } else { channels };
         if channels.len() != outputs.len() {
             let counts = format!("{} --channel for {} --output", channels.len(), outputs.len());
@@ -43,6 +44,8 @@ impl Output {
             let name = if report::is_standard(twice.1) { "standard output".into() } else { twice.1.to_string_lossy() };
             return Err(Failure::usage(format!("{name} cannot hold two pictures")));
         }
+
+        // Pair each output with its channel and format.
         let make = |(number, (pattern, &channel)): (usize, (&PathBuf, &Channel))| {
             let format = format_of(pattern, formats.get(number).or(formats.first()).copied())?;
             picture::check(channel, format)?;
@@ -188,6 +191,7 @@ pub(crate) fn expand(pattern: &OsStr, model: &OsStr, frame: u32) -> Result<OsStr
         Failure::usage(format!("--output {}: an unknown place in braces", pattern.display()))
             .with_hint("{model}, {frame} and {frame:4} are filled in")
     };
+    // Copy the pattern up to the first brace, then fill in one place after the other.
     let mut out = OsString::new();
     let mut pieces = split_at(pattern, b'{').into_iter();
     out.extend(pieces.next());

@@ -235,8 +235,8 @@ pub(crate) struct LightArgs {
     /// exposure that a picture shows well]
     #[arg(long, value_name = "FACTOR", value_parser = values::intensity, allow_negative_numbers = true)]
     pub(crate) light_intensity: Option<f32>,
-    /// One term of all lights alone: ambient, diffuse or specular [default: all three]
-    #[arg(long, value_name = "TERM")]
+    /// One term of all lights alone [default: all three]
+    #[arg(long, value_name = "TERM", value_parser = choices::light_term())]
     pub(crate) light_term: Option<LightTerm>,
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material, help = material_help())]
     pub(crate) material: Vec<MaterialOverride>,
@@ -365,7 +365,7 @@ pub(crate) struct ProcessArgs {
     /// Seconds until the work stops with exit code 7; for each model where each gives a picture
     #[arg(long, value_name = "S", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<f64>,
-    /// Memory allowed, such as 512M or 1G [default: the machine's, or what its control group allows, where Linux tells]
+    /// Memory allowed, such as 512M or 1G [default: the machine's, or its control group's limit, where Linux tells]
     #[arg(long, value_name = "B", value_parser = values::bytes, allow_negative_numbers = true)]
     pub(crate) max_memory: Option<u64>,
 }

@@ -62,6 +62,7 @@ fn render_apart(
     execution: &vitral::Execution,
     progress: &mut Progress,
 ) -> Result<u8, Failure> {
+    // Render each model with limits of its own.
     let start = Instant::now();
     let frames = u64::from(plan.frames.end() - plan.frames.start() + 1);
     let mut begun = 0;
@@ -141,6 +142,7 @@ fn render(
     start: Instant,
     progress: &mut Progress,
 ) -> Result<Done, Failure> {
+    // Read the models.
     let mut seconds = Map::new();
     let loaded = timed(&mut seconds, "load", || load(args, plan, execution));
     let (mut renderer, mut warnings) = loaded?;
@@ -149,6 +151,8 @@ fn render(
         let triangles = renderer.world().facet_count;
         report::line(&format!("read {triangles} triangles in {load_seconds:.3} s"));
     }
+
+    // Write what goes beside pictures.
     let cameras = match plan.state.turntable {
         Some(_) => renderer.turntable_cameras(plan.views as usize),
         None => vec![renderer.frame_camera()],
@@ -161,10 +165,13 @@ fn render(
         let write = || vitral::picture::write(file, vitral::shadow_polygons(&renderer)?.as_bytes());
         timed(&mut seconds, "shadow-polygons", write)?;
     }
+
+    // Render the frames, and explain a pixel of the first.
     let drawn = timed(&mut seconds, "frames", || draw_traced(args, plan, &mut renderer, &cameras, progress))?;
     let explain = |pixel| timed(&mut seconds, "pixel", || explain_pixel(args, &renderer, first, pixel));
     let explained = args.report.pixel.map(explain).transpose()?;
 
+    // Sum up.
     warnings.extend(drawn.warnings);
     if args.report.verbose {
         report::line(&times(&seconds, &drawn.frames));
@@ -238,6 +245,7 @@ fn draw_traced(
     cameras: &[Camera],
     progress: &mut Progress,
 ) -> Result<Drawn, Failure> {
+    // Render, and let a trace look on.
     let has_frames = plan.frames.end() > plan.frames.start();
     let mut onlooker = Onlooker::new(&args.report, renderer, has_frames)?;
     let mut drawn = if plan.outputs.is_empty() && args.output.reference.is_none() {
@@ -245,6 +253,8 @@ fn draw_traced(
     } else {
         draw(args, plan, renderer, cameras, onlooker.as_mut(), progress)?
     };
+
+    // Write what came of it besides pictures.
     if let Some(output) = &plan.steps_video {
         let camera = &cameras[*plan.frames.start() as usize];
         let options = encode_options(plan);
@@ -310,6 +320,7 @@ fn draw(
     let mut animations = plan.outputs.iter().map(animate).collect::<Result<Vec<_>, _>>()?;
     let mut drawn = Drawn::default();
     for number in plan.frames.clone() {
+        // Render it.
         let camera = &cameras[number as usize];
         let render_start = Instant::now();
         let mut rendered =
@@ -320,15 +331,18 @@ fn draw(
         if let Some(step) = args.output.step {
             step_pictures::after_step(renderer, camera, step, &mut rendered.frame)?;
         }
+
+        // Tell its warnings; a turntable's frames mostly share them.
         let blank = blank::why(renderer, &rendered).map(str::to_owned);
         drawn.different |= blank.is_some() && args.output.fail_if_blank;
         rendered.warnings.extend(blank);
-        // A turntable's frames mostly share their warnings.
         let news: Vec<_> = rendered.warnings.iter().filter(|w| !drawn.warnings.contains(*w)).cloned().collect();
         if !args.report.quiet {
             report::warnings(&news);
         }
         drawn.warnings.extend(news);
+
+        // Write it, if it is none that is there already.
         let encode_start = Instant::now();
         let render_seconds = (encode_start - render_start).as_secs_f64();
         let wanted = plan.reference.as_ref().is_none_or(|expected| differs(args, expected, &rendered.frame));
@@ -342,6 +356,8 @@ fn draw(
             output.write(&path, &rendered.frame, &EncodeOptions { exposure: rendered.exposure, ..options })?;
             drawn.note_file(args, output, &path);
         }
+
+        // Keep its counters.
         if args.report.stats || args.report.stats_file.is_some() || args.report.verbose {
             let mut stats = report::to_value(&rendered.stats)?;
             stats["frame"] = json!(number);
@@ -356,6 +372,8 @@ fn draw(
         renderer.recycle(rendered);
         progress.step();
     }
+
+    // Write the animations.
     for (output, animation) in plan.outputs.iter().zip(animations) {
         if let Some(animation) = animation {
             let path = output.path(&model, *plan.frames.start())?;

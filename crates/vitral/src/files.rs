@@ -120,6 +120,36 @@ impl Resolver for FolderResolver {
     }
 }
 
+/// A file that a model is read from: its own, or one that it names.
+#[derive(Clone, Copy, Debug)]
+pub struct ReadFile<'a> {
+    /// As the model calls it, from its folder; of the model's own file the last part of its path.
+    pub name: &'a str,
+    /// Where it was found.
+    pub path: &'a Path,
+    /// All of it.
+    pub bytes: &'a [u8],
+}
+
+/// The files beside a model, each of which is told when it is read.
+pub(crate) struct ToldFiles<'a> {
+    pub(crate) folder: FolderResolver,
+    pub(crate) tell: &'a (dyn Fn(ReadFile<'_>) + Sync),
+}
+
+impl Resolver for ToldFiles<'_> {
+    fn read(&self, name: &str) -> Result<Vec<u8>, ResolveError> {
+        let bytes = self.folder.read(name)?;
+        let path = self.folder.locate(name)?;
+        (self.tell)(ReadFile { name, path: &path, bytes: &bytes });
+        Ok(bytes)
+    }
+
+    fn in_other_case(&self, name: &str) -> Option<String> {
+        self.folder.in_other_case(name)
+    }
+}
+
 /// The first name in `folder`, in order, that differs from `wanted` in case alone.
 fn name_in_other_case(folder: &Path, wanted: &str) -> Option<String> {
     let lower = wanted.to_lowercase();

@@ -79,11 +79,12 @@ pub use batch::Batch;
 pub use drawing::{ColorBy, DrawingFormat, FillSettings};
 pub use error::Error;
 pub use exercise::{EXERCISES, Exercise};
-pub use files::{FolderResolver, read};
+pub use files::{FolderResolver, ReadFile, read};
 pub use light_edit::{LightEdit, light_fields};
 pub use light_term::LightTerm;
 pub use load::{
-    LoadOptions, Normals, builtin_names, load, load_builtin, load_bytes, load_bytes_with, load_on, load_with,
+    LoadOptions, Normals, builtin_names, load, load_builtin, load_bytes, load_bytes_with, load_on, load_telling,
+    load_with,
 };
 pub use material_override::{MaterialOverride, material_properties, override_material};
 pub use panels::panels;

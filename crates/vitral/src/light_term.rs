@@ -1,7 +1,6 @@
 //! One term of the lights alone: what the ambient, the diffuse or the specular part of all lights adds to a picture.
 
 use serde::{Deserialize, Serialize};
-use std::str::FromStr;
 use vitral_light::Light;
 
 /// A part of every light.
@@ -36,15 +35,6 @@ impl LightTerm {
     }
 }
 
-impl FromStr for LightTerm {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let found = Self::ALL.iter().find(|(_, name)| *name == text);
-        found.map(|(term, _)| *term).ok_or_else(|| format!("choose ambient, diffuse or specular, not `{text}`"))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -70,7 +60,5 @@ mod tests {
                 assert!((sum.min(255) - i32::from(pixel[k])).abs() <= 2, "{i}: {sum} {pixel:?}");
             }
         }
-        assert_eq!("specular".parse(), Ok(LightTerm::Specular));
-        assert!("shine".parse::<LightTerm>().is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! From a path to a scene: read, understand, and make the normals that the file lacks.
 
-use crate::files::{self, FolderResolver};
+use crate::files::{self, FolderResolver, ReadFile, ToldFiles};
 use crate::{Error, Scene, Workers};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -84,6 +84,19 @@ pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene,
 /// # Errors
 /// As [`load`].
 pub fn load_on(path: impl AsRef<Path>, options: &LoadOptions, workers: &Workers) -> Result<Scene, Error> {
+    load_telling(path, options, workers, &|_| {})
+}
+
+/// [`load_on`] that tells of each file that is read, the model's own first; a file may be told more than once.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_telling(
+    path: impl AsRef<Path>,
+    options: &LoadOptions,
+    workers: &Workers,
+    tell: &(dyn Fn(ReadFile<'_>) + Sync),
+) -> Result<Scene, Error> {
     let path = path.as_ref();
     let name = path.to_string_lossy();
     if let Some(builtin) = name.strip_prefix("builtin:") {
@@ -93,8 +106,11 @@ pub fn load_on(path: impl AsRef<Path>, options: &LoadOptions, workers: &Workers)
     }
     let bytes = files::read_with(path, options.max_file_bytes, workers)?;
     let name = if name == "-" { "standard input".into() } else { name };
+    let last = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    tell(ReadFile { name: &last, path, bytes: &bytes });
     let folder = path.parent().unwrap_or(Path::new(""));
-    let resolver = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
+    let folder = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
+    let resolver = ToldFiles { folder, tell };
     let mut scene = vitral_io::load(&bytes, &name, &resolver, workers)?;
     // The file is not needed any more, and normals take room.
     drop(bytes);

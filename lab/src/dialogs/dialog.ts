@@ -2,7 +2,8 @@
 
 import { html, type TemplateResult } from "lit-html";
 import { ref } from "lit-html/directives/ref.js";
-import type { App, DialogName } from "../app.ts";
+import type { App } from "../app.ts";
+import type { DialogName } from "../open-dialogs.ts";
 import { t } from "../words.ts";
 
 /** Opens without modality once it is there. */
@@ -12,7 +13,7 @@ const opened = (e: Element | undefined) => {
 };
 
 export function dialog(app: App, name: DialogName, title: string, content: unknown): TemplateResult {
-  const close = () => app.closeDialog(name);
+  const close = () => app.dialogs.close(name);
   const keys = (e: KeyboardEvent) => {
     if (e.key !== "Escape") return;
     e.preventDefault();

@@ -19,7 +19,7 @@ function place(app: App, row: JsonObject): Cell {
     const number = Number(setting.slice(7));
     const open = () => {
       app.lightNumber = number;
-      app.openDialog("lights");
+      app.dialogs.open("lights");
     };
     return html`<button type="button" class="link" @click=${open}>${t("Lights…")}</button>`;
   }
@@ -29,7 +29,7 @@ function place(app: App, row: JsonObject): Cell {
     if (material) return spin("n", value, (v) => setMaterial(app, material, "shininess", String(v)), { name: t("Shininess"), min: 0, max: 1000 });
   }
   if (setting.startsWith("materials.")) {
-    return html`<button type="button" class="link" @click=${() => app.openDialog("materials")}>${t("Materials…")}</button>`;
+    return html`<button type="button" class="link" @click=${() => app.dialogs.open("materials")}>${t("Materials…")}</button>`;
   }
   const value = at(app.state, setting);
   if (typeof value === "number") return spin(setting, value, (v) => app.set({ [setting]: v }));

@@ -76,9 +76,9 @@ function menus(app: App): Menu[] {
         radio("OpenGL", isOpenGL, () => set(OPENGL)),
         radio(t("Classical"), isClassical, () => set(classical)),
         LINE,
-        item(t("Lights…"), () => app.openDialog("lights", menuButton(2))),
-        item(t("Materials…"), () => app.openDialog("materials", menuButton(2))),
-        item(t("Camera…"), () => app.openDialog("camera", menuButton(2))),
+        item(t("Lights…"), () => app.dialogs.open("lights", menuButton(2))),
+        item(t("Materials…"), () => app.dialogs.open("materials", menuButton(2))),
+        item(t("Camera…"), () => app.dialogs.open("camera", menuButton(2))),
       ],
     },
     {
@@ -99,9 +99,9 @@ function menus(app: App): Menu[] {
     {
       name: t("Help"),
       entries: [
-        item(t("Keyboard"), () => app.openDialog("keyboard", menuButton(4))),
-        item(t("Language"), () => app.openDialog("language", menuButton(4))),
-        item(t("About"), () => app.openDialog("about", menuButton(4))),
+        item(t("Keyboard"), () => app.dialogs.open("keyboard", menuButton(4))),
+        item(t("Language"), () => app.dialogs.open("language", menuButton(4))),
+        item(t("About"), () => app.dialogs.open("about", menuButton(4))),
       ],
     },
   ];

@@ -165,7 +165,7 @@ export function illumination(app: App): TemplateResult {
         <div>
           ${curve(t("Attenuation curve"), pointsOf(app, "attenuation"), attenuated !== null ? [distance, attenuated] : null, ["d = 0", "10"])}
           <p class="caption">f_att = min(1, 1 / (${c[0]} + ${c[1]} d + ${c[2]} d²))</p>
-          <button type="button" @click=${() => app.openDialog("lights")}>${t("Lights…")}</button>
+          <button type="button" @click=${() => app.dialogs.open("lights")}>${t("Lights…")}</button>
         </div>
       </div>
     </section>`;

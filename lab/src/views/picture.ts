@@ -249,7 +249,7 @@ function handles(app: App): unknown {
       @dblclick=${(e: Event) => {
         e.stopPropagation();
         app.lightNumber = number;
-        app.openDialog("lights");
+        app.dialogs.open("lights");
       }}
     >
       ${number}

@@ -99,8 +99,8 @@ function model(app: App, picture: Picture): TemplateResult {
     text: name.replace("builtin:", ""),
     title: tooltip(about),
   }));
-  const own = [...app.hashes].map(([name, hash]) => ({ value: JSON.stringify([`file:${name}#${hash}`]), text: name }));
-  const all = [...builtin, ...own.filter((o) => app.models.has(o.text))];
+  const own = [...app.own.hashes].map(([name, hash]) => ({ value: JSON.stringify([`file:${name}#${hash}`]), text: name }));
+  const all = [...builtin, ...own.filter((o) => app.own.models.has(o.text))];
   const joined = models.map((m) => nameOf(String(m)).replace("builtin:", "")).join(" + ");
   const list = all.some((o) => o.value === value) ? all : [...all, { value, text: joined }];
   return combo(t("Model"), value, list, (v) => {

@@ -2,9 +2,11 @@
 
 use crate::args::Cli;
 use crate::batch_args::{BatchArgs, option, takes_value};
+use crate::hashes::hexadecimal;
+use crate::options::{Given, option_words};
 use crate::outputs::model_name;
 use crate::report::Failure;
-use clap::{ArgAction, CommandFactory};
+use clap::CommandFactory;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
@@ -53,11 +55,6 @@ impl Task {
     }
 }
 
-/// Bytes in hexadecimal digits.
-pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 /// A job as it is written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -78,6 +75,7 @@ enum Models {
 
 /// All jobs of the command line, in their order.
 pub(crate) fn all(args: &BatchArgs) -> Result<Vec<Job>, Failure> {
+    // Read the options for all jobs, then the jobs.
     let commands = Commands::new(&args.options)?;
     let jobs = match &args.file {
         Some(file) => written(&text_of(file)?, &commands),
@@ -124,6 +122,7 @@ fn written(text: &str, commands: &Commands) -> Vec<Job> {
 
 /// Jobs of files that match patterns, in the order of their names.
 fn matching(args: &BatchArgs, commands: &Commands) -> Result<Vec<Job>, Failure> {
+    // Collect the files, each once.
     let mut files = Vec::new();
     for pattern in &args.glob {
         let found = glob::glob(pattern).map_err(|e| Failure::usage(format!("--glob {pattern}: {e}")))?;
@@ -136,6 +135,8 @@ fn matching(args: &BatchArgs, commands: &Commands) -> Result<Vec<Job>, Failure> 
     }
     files.sort();
     files.dedup();
+
+    // Name the output of each.
     let pattern = args.output.as_deref().unwrap_or_default();
     let job = |file: &std::path::PathBuf| {
         let model = file.to_string_lossy().into_owned();
@@ -160,7 +161,7 @@ fn check_outputs(jobs: &[Job]) -> Result<(), Failure> {
 /// Makes commands of jobs.
 struct Commands {
     cli: clap::Command,
-    /// Options for every job that does not say otherwise: their names, and what is typed.
+    /// Options for every job that does not say otherwise: the name of each, and the words as typed.
     defaults: Vec<(String, Vec<String>)>,
 }
 
@@ -170,6 +171,7 @@ impl Commands {
         let mut defaults = Vec::new();
         let mut rest = options.iter().map(|word| word.to_string_lossy().into_owned());
         while let Some(word) = rest.next() {
+            // Find the option by its name.
             let name = word.strip_prefix("--").map(|name| name.split_once('=').map_or(name, |(name, _)| name));
             let name = name
                 .filter(|name| !name.is_empty())
@@ -179,6 +181,8 @@ impl Commands {
             if NOT_IN_A_BATCH.contains(&name) {
                 return Err(Failure::usage(format!("--{name} has no place in a batch")));
             }
+
+            // Take its value along.
             let mut typed = vec![word.clone()];
             if takes_value(found) && !word.contains('=') {
                 typed.extend(rest.next());
@@ -201,12 +205,16 @@ impl Commands {
         let wanted =
             self.defaults.iter().filter(|(name, _)| option(known, name).is_some() && !options.contains_key(name));
         command.extend(wanted.flat_map(|(_, typed)| typed.iter().cloned()));
+
+        // Add the job's own, the output and the models.
         for (name, value) in options {
             let found = option(known, name).ok_or_else(|| format!("vitral {verb} has no option `{name}`"))?;
             if NOT_IN_A_BATCH.contains(&name.as_str()) {
                 return Err(format!("the option `{name}` has no place in a batch"));
             }
-            command.extend(typed(name, value, found.get_action())?);
+            if let Some(given) = given(name, value)? {
+                command.extend(option_words(found, name, &given).map_err(|why| format!("the option `{name}`: {why}"))?);
+            }
         }
         command.extend(["--output".to_owned(), output.clone(), "--progress".to_owned(), "never".to_owned()]);
         command.push("--".to_owned());
@@ -221,28 +229,23 @@ fn is_drawing(output: &str) -> bool {
     ["svg", "pdf", "dxf", "hpgl", "plt"].iter().any(|drawing| extension.eq_ignore_ascii_case(drawing))
 }
 
-/// An option as it is typed.
-fn typed(name: &str, value: &Value, action: &ArgAction) -> Result<Vec<String>, String> {
-    let one = |value: &Value| match value {
+/// The value of an option; `None` for `null`.
+fn given(name: &str, value: &Value) -> Result<Option<Given>, String> {
+    let text = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Number(number) => Ok(number.to_string()),
-        Value::Bool(is_on) => Ok(if *is_on { "on" } else { "off" }.to_owned()),
         _ => Err(format!("the option `{name}` has no value that can be: {value}")),
     };
-    match (action, value) {
-        (ArgAction::SetTrue, Value::Bool(true)) => Ok(vec![format!("--{name}")]),
-        (ArgAction::SetTrue, Value::Bool(false)) | (_, Value::Null) => Ok(Vec::new()),
-        (ArgAction::SetTrue, other) => Err(format!("the option `{name}` is true or false, not {other}")),
-        (ArgAction::Append, Value::Array(values)) => {
-            values.iter().map(|value| Ok(format!("--{name}={}", one(value)?))).collect()
+    Ok(match value {
+        Value::Null => None,
+        Value::Bool(is_on) => Some(Given::Switch(*is_on)),
+        Value::Array(values) => {
+            let texts = values.iter().map(text).collect::<Result<Vec<_>, _>>()?;
+            // A size is one value.
+            Some(if name == "resolution" { Given::Text(texts.join("x")) } else { Given::List(texts) })
         }
-        (_, Value::Array(values)) => {
-            let parts = values.iter().map(one).collect::<Result<Vec<_>, _>>()?;
-            let between = if name == "resolution" { "x" } else { "," };
-            Ok(vec![format!("--{name}={}", parts.join(between))])
-        }
-        (_, value) => Ok(vec![format!("--{name}={}", one(value)?)]),
-    }
+        value => Some(Given::Text(text(value)?)),
+    })
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `job.rs` | what there is to do |
-//! | `record.rs` | what is done |
-//! | `pool.rs` | processes side by side, and who does what |
-//! | `worker.rs` | such a process |
+//! | `job.rs` | jobs, and their commands |
+//! | `record.rs` | the record of finished jobs |
+//! | `pool.rs` | processes side by side, and the share of each |
+//! | `worker.rs` | a process that does jobs |
 
 mod job;
 mod pool;
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &BatchArgs) -> Result<u8, Failure> {
     let path = record_of(args);
     let mut record = Record::read(&path).map_err(|e| Failure::with_code(3, format!("{}: {e}", path.display())))?;
 
-    // Tell apart what is done, what cannot be, and what is to do.
+    // Report jobs that are finished or impossible, and collect the others.
     let mut told = Told { args, counts: Counts::default(), progress: None };
     let mut waiting = Vec::new();
     for job in &jobs {

@@ -155,7 +155,7 @@ impl Process {
 
     /// Its exit code, if it ended by itself and with a failure, and that in words.
     fn how_it_ended(mut self) -> (Option<u8>, String) {
-        // A process that talks nonsense is not used any more, either.
+        // A process whose replies cannot be read ends with its orders.
         drop(self.orders);
         match self.child.wait() {
             Ok(status) => {

@@ -1,9 +1,9 @@
-//! The record of what is done: a line of JSON for each job that was, with what it read and wrote. A job is done if its last line has
-//! the hash of the job, and all files that it names have the contents that they had.
+//! The record of finished jobs: a line of JSON for each, with the files that it read and wrote. A job counts as finished while all
+//! files of its last line have the contents that they had.
 
-use super::job::{Task, hexadecimal};
+use super::job::Task;
+use crate::hashes::hash_of;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
@@ -53,18 +53,6 @@ impl Record {
         let mut files = entry.outputs.iter().chain(&entry.inputs);
         let hashes = &mut self.hashes;
         files.all(|(path, hash)| hashes.entry(path.clone()).or_insert_with(|| hash_of(path)).as_ref() == Some(hash))
-    }
-}
-
-/// The hash of a file's content; `None` if it cannot be read.
-pub(crate) fn hash_of(path: impl AsRef<Path>) -> Option<String> {
-    let mut file = File::open(path).ok()?;
-    let (mut hash, mut piece) = (Sha256::new(), vec![0; 1 << 16]);
-    loop {
-        match file.read(&mut piece).ok()? {
-            0 => return Some(hexadecimal(&hash.finalize())),
-            count => hash.update(&piece[..count]),
-        }
     }
 }
 

@@ -1,15 +1,15 @@
 //! A process that does jobs one after the other, as `vitral batch` hands them in: a line of JSON each way.
 //!
-//! A job is the command that it would be by itself. What it prints is kept; models that the job before read are not read again. Done
-//! jobs go into the record before they are reported. The process ends when nobody is left to report to.
+//! A job is a command of its own, whose output is kept back. Models stay in memory for the jobs that follow. A finished job goes onto
+//! the record before it is reported. The process ends when nobody is left to report to.
 
-use super::record::{self, Entry, hash_of};
+use super::record::{self, Entry};
 use crate::batch_args::BatchWorkerArgs;
+use crate::hashes::hash_of;
 use crate::kept_models;
 use crate::report::{self, Failure};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::io::{BufRead, Write};
 use std::sync::mpsc;
@@ -100,14 +100,11 @@ fn done(order: Order, args: &BatchWorkerArgs, dispatch: Dispatch) -> Reply {
     };
     let seconds = start.elapsed().as_secs_f64();
     if code == 0 {
-        let hashes = |paths: &mut dyn Iterator<Item = String>| -> BTreeMap<String, String> {
-            paths.filter_map(|path| Some((path.clone(), hash_of(&path)?))).collect()
-        };
         let entry = Entry {
             job: order.job,
             id: order.id,
-            inputs: hashes(&mut kept_models::files().into_iter()),
-            outputs: hashes(&mut outputs.iter().cloned()),
+            inputs: kept_models::files(),
+            outputs: outputs.iter().filter_map(|path| Some((path.clone(), hash_of(path)?))).collect(),
             seconds,
             vitral: env!("CARGO_PKG_VERSION").to_owned(),
         };

@@ -6,7 +6,7 @@ use crate::resolve::read_state;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Mutex;
-use vitral::{Error, FolderResolver, LoadOptions, ResolveError, Resolver, State, load_bytes_with};
+use vitral::{Error, LoadOptions, State, Workers, load_telling};
 
 /// A file that the page gets.
 pub(super) struct GivenFile {
@@ -55,15 +55,19 @@ impl Begin {
             self.models.push(text.into_owned());
             return Ok(());
         }
-        let bytes = vitral::read(model, options.max_file_bytes)?;
-        let name = model.file_name().unwrap_or(model.as_os_str()).to_string_lossy().into_owned();
-        let folder = model.parent().unwrap_or(Path::new(""));
-        let folder = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
-        let noted = Noted { folder, files: Mutex::default() };
-        load_bytes_with(&bytes, &name, &noted, &LoadOptions { make_normals: false, ..options.clone() })?;
-        self.files.extend(noted.files.into_inner().unwrap_or_default());
-        self.models.push(format!("file:{name}"));
-        self.files.push(GivenFile { name, bytes });
+        let files = Mutex::new(Vec::<GivenFile>::new());
+        let options = LoadOptions { make_normals: false, ..options.clone() };
+        load_telling(model, &options, &Workers::new(0), &|file| {
+            let mut files = files.lock().expect("no thread panics while it notes a file");
+            if files.iter().all(|known| known.name != file.name) {
+                files.push(GivenFile { name: file.name.to_owned(), bytes: file.bytes.to_vec() });
+            }
+        })?;
+
+        // The model's own file was read first.
+        let files = files.into_inner().expect("no thread panicked while it noted a file");
+        self.models.extend(files.first().map(|own| format!("file:{}", own.name)));
+        self.files.extend(files);
         Ok(())
     }
 
@@ -73,28 +77,6 @@ impl Begin {
         let files: Vec<Value> = self.files.iter().enumerate().filter_map(file).collect();
         let text = json!({"models": self.models, "files": files, "state": self.state}).to_string();
         format!(r#"<script type="application/json" id="lab-start">{}</script>"#, text.replace("</", "<\\/"))
-    }
-}
-
-/// Notes the files that a model reads.
-struct Noted {
-    folder: FolderResolver,
-    files: Mutex<Vec<GivenFile>>,
-}
-
-impl Resolver for Noted {
-    fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError> {
-        let bytes = self.folder.read(path)?;
-        if let Ok(mut files) = self.files.lock()
-            && files.iter().all(|file| file.name != path)
-        {
-            files.push(GivenFile { name: path.to_owned(), bytes: bytes.clone() });
-        }
-        Ok(bytes)
-    }
-
-    fn in_other_case(&self, path: &str) -> Option<String> {
-        self.folder.in_other_case(path)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::begin::Begin;
 use super::site::{FILES, PAGE, START};
-use crate::interrupt::end_at_ctrl_c;
+use crate::interrupt;
 use crate::lab_args::LabPageArgs;
 use crate::report::{self, Failure};
 use axum::Router;
@@ -46,7 +46,7 @@ pub(super) fn serve(args: &LabPageArgs, begin: Begin) -> Result<u8, Failure> {
         let site = Arc::new(Site { page: page.into(), models, hosts });
         let router = Router::new().fallback(answer).with_state(Arc::clone(&site));
         let router = router.layer(middleware::from_fn_with_state(site, guard));
-        end_at_ctrl_c();
+        interrupt::watch();
         axum::serve(listener, router).await.map_err(told)?;
         Ok(0)
     })

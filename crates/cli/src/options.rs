@@ -100,7 +100,7 @@ pub(crate) fn option_words(argument: &Arg, long: &str, given: &Given) -> Result<
         Given::Switch(false) if may_be_bare => Vec::new(),
         Given::Switch(true) if may_be_bare => vec![format!("--{long}")],
         Given::Switch(on) => with(if *on { "on" } else { "off" }),
-        _ if is_switch => return Err("True or False is required"),
+        _ if is_switch => return Err("true or false is required"),
         Given::Text(text) => with(text),
         Given::List(texts) if matches!(argument.get_action(), ArgAction::Append) => {
             texts.iter().flat_map(|text| with(text)).collect()

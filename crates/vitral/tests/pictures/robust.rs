@@ -217,7 +217,7 @@ fn limits_stop_the_work() {
     std::thread::sleep(std::time::Duration::from_millis(2));
     assert!(matches!(limit(&mut renderer), Limit::Time { .. }));
     renderer.execution_mut().budget = Budget::default();
-    renderer.execution().budget.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+    renderer.execution().budget.cancel_flag().store(true, Ordering::Relaxed);
     assert!(matches!(limit(&mut renderer), Limit::Cancelled { .. }));
     // After a limit the renderer still works.
     renderer.execution_mut().budget = Budget::default();

@@ -18,6 +18,7 @@ const ODD: [[f64; 3]; 2] = [[0.3, 0.5, 0.8], [-0.6, 0.2, -0.7]];
 
 /// The options of the camera that were typed and make no difference, with the reason.
 pub(crate) fn idle(args: &CameraArgs, state: &State, renderer: &mut Renderer) -> Vec<(&'static str, &'static str)> {
+    let own = seen(state, renderer);
     let mut tried: Vec<(&str, Trials)> = Vec::new();
     if args.view.is_some() {
         tried.push(("--view", VIEWS.iter().map(|&(view, _)| of(move |v| v.view = Some(view))).collect()));
@@ -34,12 +35,13 @@ pub(crate) fn idle(args: &CameraArgs, state: &State, renderer: &mut Renderer) ->
     };
     try_points("--camera-focal-point", args.camera_focal_point.is_some(), |v, value| v.focal_point = value);
     try_points("--camera-view-up", args.camera_view_up.is_some(), |v, value| v.view_up = value);
-    if args.camera_index.is_some() {
+    // The camera that a scene has anyway may be named.
+    let viewpoint = Viewpoint { camera_index: state.viewpoint.camera_index, ..Viewpoint::default() };
+    if args.camera_index.is_some() && seen(&State { viewpoint, ..state.clone() }, renderer) != own {
         tried.push(("--camera-index", vec![of(|v| v.camera_index = None)]));
     }
 
     // Compare what is seen by each.
-    let own = seen(state, renderer);
     let mut idle = Vec::new();
     for (option, trials) in tried {
         let is_same = |trial: &dyn Fn(&mut Viewpoint), renderer: &mut Renderer| {

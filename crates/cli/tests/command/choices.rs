@@ -32,7 +32,7 @@ fn a_scene_file_with_one_camera_is_seen_from_it() {
     folder.file("two.json", scene(&format!("{camera}, {camera}")));
     let picture = |arguments: &[&str]| {
         let output = render(&folder, &[arguments, &["-o", "a.png"]].concat());
-        assert_eq!(code(&output), 0, "{}", errors(&output));
+        assert!(code(&output) == 0 && errors(&output).is_empty(), "{arguments:?}: {}", errors(&output));
         folder.read("a.png")
     };
     let own = picture(&["one.json"]);

@@ -22,6 +22,9 @@ use crate::{Execution, PreparedView};
 use vitral_exec::Limit;
 use vitral_raster::{TileGrid, TileLists};
 
+/// The stage, for the budget.
+const STAGE: &str = "visibility";
+
 /// See the module.
 #[derive(Clone, Copy, Debug)]
 pub struct ZBuffer;
@@ -41,7 +44,7 @@ impl VisibleSurface for ZBuffer {
         let rounds = front_end.rounds();
         execution.budget.begin("rounds of triangles", rounds.len() as u64);
         for (number, round) in rounds.iter().enumerate() {
-            execution.budget.check("visibility")?;
+            execution.budget.check(STAGE)?;
 
             // Bring the round's triangles to the screen, sorted by tile.
             let start = execution.budget.elapsed();
@@ -53,7 +56,8 @@ impl VisibleSurface for ZBuffer {
             // Draw them, tile by tile; the last round finishes the tiles.
             let round = Round { batches, is_first: number == 0, is_last: number + 1 == rounds.len() };
             execution.workers.for_each_chunk(&mut grid.tiles, 1, |index, tile| {
-                if !view.makes_tile(index) {
+                // At a limit the rest of the tiles is left out.
+                if !view.makes_tile(index) || execution.budget.check(STAGE).is_err() {
                     return;
                 }
                 if sink.keeps_tiles() || rounds.len() > 1 {
@@ -65,6 +69,7 @@ impl VisibleSurface for ZBuffer {
                     });
                 }
             });
+            execution.budget.check(STAGE)?;
             give_back(view.session, tiles.keep_layers(round.batches)?);
             execution.budget.advance();
         }

@@ -252,7 +252,7 @@ fn limits_stop_shading_between_tiles() {
         // Wherever in the tiles time is over, the rest is left out.
         let mut in_shading = 0;
         for limit in 1..ticks {
-            if let (Err(Error::Render(RenderError::Limit(Limit::Time { stage: "shading", .. }))), _) =
+            if let (Err(Error::Render(RenderError::Limit(Limit::Time { stage: "shading" | "visibility", .. }))), _) =
                 render(&mut renderer, limit as f64)
             {
                 in_shading += 1;

@@ -4,8 +4,9 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::internals::render::choice::Row;
 use vitral::{
-    Acceleration, Channel, Choice, ColorBy, ColorSpace, Global, Illumination, Interpolation, LightTerm, Normals,
-    PictureFormat, Seams, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
+    Acceleration, Channel, Choice, ColorBy, ColorSpace, Environment, FileColors, Global, Illumination, Interpolation,
+    LightTerm, Normals, PictureFormat, Seams, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility,
+    VolumeCounting, names,
 };
 
 /// The algorithm that finds the visible surfaces of a drawing.
@@ -20,6 +21,11 @@ pub(crate) enum DrawingAlgorithm {
 
 /// A value, its name, one line that explains it (may be empty).
 type Named<T> = (T, &'static str, &'static str);
+
+const FILE_COLORS: [Named<FileColors>; 2] = [
+    (FileColors::Srgb, "srgb", "as displays show them"),
+    (FileColors::Linear, "linear", "coefficients of linear light"),
+];
 
 const NORMALS: [Named<Normals>; 3] = [
     (Normals::File, "file", "the file's, or made where it has none"),
@@ -122,8 +128,16 @@ pub(crate) fn color_space() -> impl TypedValueParser<Value = ColorSpace> {
     of(ColorSpace::ALL.iter().copied())
 }
 
+pub(crate) fn environment() -> impl TypedValueParser<Value = Environment> {
+    of(Environment::ALL.iter().copied())
+}
+
 pub(crate) fn interpolation() -> impl TypedValueParser<Value = Interpolation> {
     of(Interpolation::ALL.iter().copied())
+}
+
+pub(crate) fn file_colors() -> impl TypedValueParser<Value = FileColors> {
+    of(FILE_COLORS)
 }
 
 pub(crate) fn normals() -> impl TypedValueParser<Value = Normals> {

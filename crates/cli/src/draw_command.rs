@@ -14,7 +14,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use vitral::{
-    Drawing, DrawingSettings, Drawn, LineClass, LineClasses, PageSize, PolygonDrawing, Renderer, State, World,
+    Drawing, DrawingSettings, Drawn, LineClass, LineClasses, PageSize, PolygonDrawing, Renderer, State, View, World,
 };
 
 /// Runs the verb; gives the exit code.
@@ -184,7 +184,8 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
     Ok(state)
 }
 
-/// The state with the projection of drawings: a parallel one, unless that is said or the camera has an angle of view.
+/// The state with the projection of drawings: a parallel one, unless that is said or the camera has an angle of view. What is
+/// framed for it is seen at equal angles to all axes, if no side is said.
 pub(crate) fn projected(args: &DrawArgs, state: &State, world: &World) -> State {
     let mut state = state.clone();
     if args.page.views.is_empty() {
@@ -193,6 +194,9 @@ pub(crate) fn projected(args: &DrawArgs, state: &State, world: &World) -> State 
     let viewpoint = &mut state.viewpoint;
     let has_angle = viewpoint.view_angle_degrees.is_some() || viewpoint.camera_index.is_some();
     viewpoint.orthographic = !args.perspective && (!args.page.views.is_empty() || viewpoint.orthographic || !has_angle);
+    if viewpoint.orthographic && viewpoint.is_framed() {
+        viewpoint.view.get_or_insert(View::Iso);
+    }
     state
 }
 

@@ -4,13 +4,18 @@ use crate::args::InfoArgs;
 use crate::report::{self, Failure};
 use crate::values;
 use serde_json::{Value, json};
-use vitral::{LoadOptions, Workers, info, load_on};
+use vitral::{FileColors, LoadOptions, Workers, info, load_on};
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &InfoArgs) -> Result<u8, Failure> {
     let workers = Workers::new(values::threads_or_environment(args.threads)?);
-    // Normals that the file has not would be told as if it had.
-    let options = LoadOptions { allow_external: args.allow_external, make_normals: false, ..LoadOptions::default() };
+    // Normals that the file has not would be told as if it had, and colours are told as the file gives them.
+    let options = LoadOptions {
+        allow_external: args.allow_external,
+        make_normals: false,
+        file_colors: FileColors::Linear,
+        ..LoadOptions::default()
+    };
     let mut models = Vec::new();
     for model in &args.models {
         let scene = load_on(model, &options, &workers)?;

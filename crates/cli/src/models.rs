@@ -58,12 +58,13 @@ pub(crate) fn load_scene(
 ) -> Result<Scene, Error> {
     let _held = limits.memory.map(allocator::hold);
     let (state, models, workers) = (state.clone(), models.to_vec(), execution.workers.clone());
+    let load = state.load_options();
     let read = move || {
         let mut names = models.iter();
         kept_models::begin();
         state.load_scene_by(|text| {
             let name = names.next().map_or(Path::new(text), PathBuf::as_path);
-            kept_models::load(name, &state.load, &workers)
+            kept_models::load(name, &load, &workers)
         })
     };
     let Some(limit) = limits.time else { return read() };

@@ -7,9 +7,9 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
-    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Global, Illumination, Interpolation, LightEdit,
-    LightTerm, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Transparency, TransparencyOrder, View,
-    Visibility, VolumeCounting,
+    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Environment, FileColors, Global, Illumination,
+    Interpolation, LightEdit, LightTerm, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Transparency,
+    TransparencyOrder, View, Visibility, VolumeCounting,
 };
 
 /// Options of `vitral render`.
@@ -219,6 +219,12 @@ pub(crate) struct AlgorithmArgs {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Light and materials")]
 pub(crate) struct LightArgs {
+    /// What surfaces of metal and with roughness (glTF, MTL's Pr and Pm) mirror [default: sky]
+    #[arg(long, value_name = "KIND", value_parser = choices::environment())]
+    pub(crate) environment: Option<Environment>,
+    /// How the colours of materials in MTL files are meant [default: srgb; linear with --color-space raw]
+    #[arg(long, value_name = "KIND", value_parser = choices::file_colors())]
+    pub(crate) file_colors: Option<FileColors>,
     /// Light sources on or off [default: on]
     #[arg(long, value_name = "on|off", value_parser = values::switch, action = ArgAction::Set)]
     pub(crate) lighting: Option<bool>,
@@ -268,7 +274,7 @@ fn material_help() -> String {
     next_help_heading = "Camera (without any, the model is framed; a scene file with one camera and a built-in figure have their own)"
 )]
 pub(crate) struct CameraArgs {
-    /// The side from which the model is framed [default: iso]
+    /// The side from which the model is framed [default: three-quarter; iso for parallel drawings]
     #[arg(long, value_name = "SIDE", value_parser = choices::view())]
     pub(crate) view: Option<View>,
     /// Which way is up: +X -X +Y -Y +Z -Z [default: +Y, or +Z where the first model is STL]

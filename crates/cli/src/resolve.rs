@@ -17,8 +17,8 @@ use std::sync::Arc;
 use vitral::internals::render::registry;
 use vitral::internals::render::trace::structure::drawer;
 use vitral::{
-    Background, Channel, Channels, ColorSpace, Execution, Global, Lines, Normals, Plane, Settings, State, Transparency,
-    Viewpoint, Visibility,
+    Background, Channel, Channels, ColorSpace, Execution, FileColors, Global, Lines, Normals, Plane, Settings, State,
+    Transparency, Viewpoint, Visibility,
 };
 
 /// Largest configuration or state file, in bytes.
@@ -456,6 +456,12 @@ fn no_radiosity(option: &str) -> Failure {
 }
 
 pub(crate) fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Failure> {
+    if args.file_colors == Some(FileColors::Srgb) && state.settings.picture.color_space == ColorSpace::Raw {
+        return Err(Failure::usage("--file-colors srgb: raw colours are the numbers of the file")
+            .with_hint("leave it out, or leave out --color-space raw"));
+    }
+    state.settings.shading.environment = args.environment.unwrap_or(state.settings.shading.environment);
+    state.load.file_colors = args.file_colors.unwrap_or(state.load.file_colors);
     state.settings.shading.lighting = args.lighting.unwrap_or(state.settings.shading.lighting);
     if !args.light.is_empty() {
         let raw = state.settings.picture.color_space == ColorSpace::Raw;

@@ -5,8 +5,8 @@
 //! and refractions belong to ray tracing: from 3 to 7 the surface is a mirror, in the proportion `Ks`; `Ni` bends light). Without `illum`, a `Ks` gives highlights.
 //!
 //! What the format leaves open is chosen here: missing `Ka` is 0.2, `Kd` 0.8, `Ks` 0, `Ns` 10, `Ni` 1; `Ns` below 1
-//! counts as 1 (an exponent of 0 would paint the whole surface with its highlight); colours are taken as linear
-//! coefficients, as they stand. Opacity is `d`, else `1 - Tr`, else, for the transparent models (`illum` 4, 6, 7, 9),
+//! counts as 1 (an exponent of 0 would paint the whole surface with its highlight); colours are those of
+//! displays (sRGB), as the programs that write them show them. Opacity is `d`, else `1 - Tr`, else, for the transparent models (`illum` 4, 6, 7, 9),
 //! `1 - mean(Tf)`, and the filter is the hue of `Tf`; elsewhere `Tf` is ignored, as exporters write `Tf 1 1 1` into
 //! opaque materials. `Tr 1` without `d` is opaque, with a warning: MeshLab means that by it, and nobody wants a surface that
 //! is not seen.
@@ -14,7 +14,7 @@
 //! A material with `Pr` (roughness) or `Pm` (metal), or maps of them, is one of metallic-roughness with the base colour `Kd`;
 //! what is missing follows from `Ns` as Blender writes it, `Ns = 1000 (1 - roughness)^2`, or is 0.5 and 0.
 //!
-//! Maps: `map_Kd` (sRGB; its alpha, unless `map_d` is there, blends in a material that `d` makes transparent and cuts out
+//! Maps: `map_Kd` (shown alone: many programs leave the colour of their viewport in `Kd`, which is kept as the tint; sRGB; its alpha, unless `map_d` is there, blends in a material that `d` makes transparent and cuts out
 //! or blends in others), `map_Pr`, `map_Pm` (linear), `bump` or `map_Bump` (a height map, or a normal map, which programs
 //! write there, too), `map_Ks` (linear), `map_Ke`
 //! (sRGB), `map_d` (linear; the channel that `-imfchan` names, else alpha where the image has any, else luminance) and
@@ -193,6 +193,8 @@ impl MtlMaterial {
         Material {
             name: self.name.clone(),
             reflectance: if is_metallic_roughness { self.metallic_roughness() } else { self.phong(ks) },
+            srgb_colors: true,
+            texture_tint: self.kd.filter(|kd| self.map_kd.is_some() && *kd != [1.0; 3]),
             emission: self.ke.unwrap_or(if self.map_ke.is_some() { [1.0; 3] } else { [0.0; 3] }),
             opacity,
             filter,
@@ -222,7 +224,7 @@ impl MtlMaterial {
     }
 
     fn diffuse(&self) -> [f32; 3] {
-        self.kd.unwrap_or(if self.map_kd.is_some() { [1.0; 3] } else { [0.8; 3] })
+        if self.map_kd.is_some() { [1.0; 3] } else { self.kd.unwrap_or([0.8; 3]) }
     }
 
     fn phong(&self, ks: [f32; 3]) -> Reflectance {
@@ -574,7 +576,10 @@ mod tests {
         };
         assert_eq!(kd("newmtl a\nmap_Kd a.png"), ([1.0; 3], [0.0; 3]));
         assert_eq!(kd("newmtl a\nmap_Kd a.png\nmap_Ks b.png"), ([1.0; 3], [1.0; 3]));
-        assert_eq!(kd("newmtl a\nKd .5 .5 .5\nmap_Kd a.png").0, [0.5; 3]);
+        // A colour beside a texture is kept apart.
+        assert_eq!(kd("newmtl a\nKd .5 .5 .5\nmap_Kd a.png").0, [1.0; 3]);
+        assert_eq!(one("newmtl a\nKd .5 .5 .5\nmap_Kd a.png").0.texture_tint, Some([0.5; 3]));
+        assert_eq!(one("newmtl a\nKd 1 1 1\nmap_Kd a.png").0.texture_tint, None);
         assert_eq!(kd("newmtl a").0, [0.8; 3]);
         assert_eq!(one("newmtl a\nmap_Ke a.png").0.emission, [1.0; 3]);
     }

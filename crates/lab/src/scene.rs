@@ -51,7 +51,8 @@ impl Stage {
 
     /// A renderer of its own, which knows nothing of earlier pictures, on one thread.
     pub(crate) fn renderer(&self, state: &State, files: &Files) -> Result<Renderer, Error> {
-        let scene = state.load_scene_by(|model| files.load(model, &state.load))?;
+        let load = state.load_options();
+        let scene = state.load_scene_by(|model| files.load(model, &load))?;
         let budget = Budget::new(Arc::clone(&self.clock));
         let execution = Execution { workers: Workers::single(), level: Level::new(), budget, observer: None };
         let mut renderer = Renderer::with_execution(scene, execution)?;

@@ -17,6 +17,7 @@ mod material;
 mod phong;
 mod prepared;
 mod refraction;
+mod sky;
 mod surface;
 mod terms;
 mod translucency;
@@ -29,6 +30,7 @@ pub use material::{AlphaMode, Material, Reflectance, TextureRef, Transmission, c
 pub use phong::{Phong, phong};
 pub use prepared::{Arrival, DIRECTION_ROUNDING, Incident, PreparedLight};
 pub use refraction::transmitted;
+pub use sky::Sky;
 pub use surface::{Reflected, Surface, reflect};
 pub use terms::{Highlight, LightTerms, ambient_term, microfacet_terms, phong_terms, sum_of_terms};
 pub use translucency::{scattered, scattering_exponent, transmitted_light};

@@ -3,8 +3,9 @@
 use crate::Rgb;
 use serde::{Deserialize, Serialize};
 use vitral_frame::Sampler;
+use vitral_math::color::linear_from_srgb;
 
-/// A surface's optical properties. All colours are linear RGB coefficients.
+/// A surface's optical properties. All colours are linear RGB coefficients, but for [`srgb_colors`](Self::srgb_colors).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Material {
@@ -12,6 +13,12 @@ pub struct Material {
     pub name: String,
     /// The reflection coefficients, in the form in which the file gave them.
     pub reflectance: Reflectance,
+    /// The colours are those of displays (sRGB), as programs write them into MTL files, until
+    /// [`decode_colors`](Self::decode_colors) makes coefficients of them.
+    pub srgb_colors: bool,
+    /// The diffuse (or base) colour that the file gave beside a base texture, which is shown alone. Linear RGB, but for
+    /// [`srgb_colors`](Self::srgb_colors).
+    pub texture_tint: Option<Rgb>,
     /// Light that the surface sends out by itself (ki), RGB.
     pub emission: Rgb,
     /// 1: opaque, 0: invisible. With `kt` of the course, `opacity = 1 - kt`.
@@ -62,6 +69,8 @@ impl Default for Material {
         Self {
             name: String::new(),
             reflectance: Reflectance::default(),
+            srgb_colors: false,
+            texture_tint: None,
             emission: [0.0; 3],
             opacity: 1.0,
             kt_min: 0.0,
@@ -231,6 +240,33 @@ impl Material {
 }
 
 impl Material {
+    /// Makes linear coefficients of display colours. Values above 1, as of lamps, stay.
+    pub fn decode_colors(&mut self) {
+        if !std::mem::take(&mut self.srgb_colors) {
+            return;
+        }
+        let decode = |color: &mut Rgb| {
+            *color = color.map(|c| if c < 1.0 { linear_from_srgb(c) } else { c });
+        };
+        match &mut self.reflectance {
+            Reflectance::Phong { ka, kd, ks, .. } => [ka, kd, ks].into_iter().for_each(decode),
+            Reflectance::MetallicRoughness { base_color, .. } => decode(base_color),
+        }
+        decode(&mut self.emission);
+        decode(&mut self.filter);
+        self.texture_tint.iter_mut().for_each(decode);
+    }
+
+    /// Lets the colour that the file gave beside the base texture multiply it, as the letter of MTL has it. Changes nothing
+    /// where there is none.
+    pub fn multiply_texture(&mut self) {
+        let Some(tint) = self.texture_tint.take() else { return };
+        match &mut self.reflectance {
+            Reflectance::Phong { kd, .. } => *kd = tint,
+            Reflectance::MetallicRoughness { base_color, .. } => *base_color = tint,
+        }
+    }
+
     /// Every place for a texture, to change.
     pub fn texture_slots_mut(&mut self) -> [&mut Option<TextureRef>; 7] {
         [
@@ -277,6 +313,31 @@ pub fn constant_color(material: &Material) -> Rgb {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn display_colours_become_coefficients_once() {
+        let mut material = Material {
+            reflectance: Reflectance::Phong { ka: [0.2; 3], kd: [0.69, 0.2, 0.0], ks: [1.0; 3], shininess: 10.0 },
+            srgb_colors: true,
+            texture_tint: Some([0.5; 3]),
+            emission: [5.0, 0.5, 0.0],
+            ..Material::default()
+        };
+        let written = material.clone();
+        material.decode_colors();
+        let Reflectance::Phong { kd, ks, .. } = material.reflectance else { panic!("the form stays") };
+        assert!((kd[0] - 0.433_6).abs() < 1e-3 && (kd[1] - 0.033_1).abs() < 1e-3 && kd[2] == 0.0, "{kd:?}");
+        assert!(ks == [1.0; 3] && material.emission[0] == 5.0, "what a display shows whole, or cannot show, stays");
+        assert!((material.emission[1] - 0.214).abs() < 1e-3);
+        let decoded = material.clone();
+        material.decode_colors();
+        assert_eq!(material, decoded);
+        assert_ne!(written, decoded);
+
+        material.multiply_texture();
+        let Reflectance::Phong { kd, .. } = material.reflectance else { panic!("the form stays") };
+        assert!((kd[0] - 0.214).abs() < 1e-3 && material.texture_tint.is_none());
+    }
 
     #[test]
     fn p30_the_constant_model_is_one_value_per_object() {

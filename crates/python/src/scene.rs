@@ -127,15 +127,15 @@ impl Source {
 
     fn load(self, resolved: &Resolved) -> Result<Scene, Trouble> {
         let mut state = resolved.state.clone();
-        let execution = resolved.execution()?;
+        let (load, execution) = (state.load_options(), resolved.execution()?);
         Ok(match self {
             Self::Paths(paths) => {
                 state.models = paths.iter().map(|path| path.to_string_lossy().into_owned()).collect();
-                state.load_scene_by(|model| load_on(model, &state.load, &execution.workers))?
+                state.load_scene_by(|model| load_on(model, &load, &execution.workers))?
             }
             Self::Bytes(bytes, name) => {
                 state.models = vec![name];
-                state.load_scene_by(|name| load_bytes_with(&bytes, name, &NoFiles, &state.load))?
+                state.load_scene_by(|name| load_bytes_with(&bytes, name, &NoFiles, &load))?
             }
         })
     }
@@ -143,7 +143,8 @@ impl Source {
 
 /// Reads a scene: a path, a list of paths, ``"builtin:NAME"``, or bytes with their ``format`` (``"stl"``, ``"glb"``, ``"obj"``, ...).
 ///
-/// Options are those of the command line: ``normals``, ``crease_angle`` (degrees), ``material`` (``"NAME.PROPERTY=VALUE"`` or a list),
+/// Options are those of the command line: ``normals``, ``crease_angle`` (degrees), ``file_colors`` (``"srgb"`` or ``"linear"``: how MTL
+/// files mean their colours), ``material`` (``"NAME.PROPERTY=VALUE"`` or a list),
 /// ``allow_external``, ``all_rotation``, ``all_translation``, ``max_memory``, ``threads``.
 ///
 /// Raises :class:`InputError` for a file that is missing or malformed, with its ``path`` and ``where``; :class:`UnsupportedError` for a

@@ -39,9 +39,9 @@ pub use pipeline::{
 pub use prepare::PreparedView;
 pub use session::Session;
 pub use settings::{
-    Background, Channels, ColorSpace, Culling, DepthCue, Global, GlobalSettings, Interpolation, Lines, PictureSettings,
-    Settings, SettingsError, Shading, ShadingSettings, ShadowSettings, Transparency, TransparencyOrder,
-    TransparencySettings, VolumeCounting,
+    Background, Channels, ColorSpace, Culling, DepthCue, Environment, Global, GlobalSettings, Interpolation, Lines,
+    PictureSettings, Settings, SettingsError, Shading, ShadingSettings, ShadowSettings, Transparency,
+    TransparencyOrder, TransparencySettings, VolumeCounting,
 };
 pub use stats::Stats;
 

@@ -2,7 +2,7 @@
 //!
 //! Idea: deal the corners of faces to buckets of vertices. Most vertices take the average of all their faces. Only where a
 //! face is far from that average are corners listed by vertex (a counting sort). There, each face is averaged with those
-//! that the rule allows: faces within the crease angle of *it*, or faces of its smoothing group. Faces that end up with
+//! that the rule allows: faces within the crease angle of *it*, of its smoothing group where there are groups. Faces that end up with
 //! the same sum share one normal.
 //!
 //! In:   a mesh, welded vertices.
@@ -56,11 +56,11 @@ struct Scratch {
 /// differ by more than the whole one. By groups all vertices with faces are marked. Returns whether any is.
 fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Vec<bool>) -> bool {
     let has_faces = |degree: &u32| *degree > 0;
-    let Rule::Angle { half, .. } = rule else {
+    if rule.groups.is_some() {
         apart.clear();
         apart.extend(bucket.around.degrees.iter().map(has_faces));
         return apart.contains(&true);
-    };
+    }
     apart.clear();
     apart.resize(normals.len(), false);
 
@@ -73,7 +73,7 @@ fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Ve
     }
 
     // Mark vertices with a face far from the mean.
-    bucket.for_each_crease(normals, half, |v| apart[v] = true);
+    bucket.for_each_crease(normals, rule.half, |v| apart[v] = true);
     apart.contains(&true)
 }
 

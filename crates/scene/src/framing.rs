@@ -3,7 +3,9 @@
 //! Idea: a corner of the box at sideways offset `x` and height `y` from the line of view is inside the picture if it
 //! is at least `|x| / tan(horizontal half angle)` and `|y| / tan(vertical half angle)` in front of the eye. Each of
 //! the eight corners so tells how far back the eye must be; the largest answer fits the box exactly, where the
-//! sphere round the box would leave much of the picture empty.
+//! sphere round the box would leave much of the picture empty. The points of a model seldom lie evenly round the middle of
+//! their box, least in perspective, so for them the eye also moves sideways: what the right side needs less what the left side
+//! needs, halved, brings both margins to the same width, and the mean of both is the distance.
 //!
 //! In:   a box in world space, which way is up, the side to look from, the shape of the picture.
 //! Out:  a [`Camera`] with its focal point in the middle of the box.
@@ -20,8 +22,10 @@ pub const FILL: f64 = 0.9;
 /// The side that a camera looks from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum View {
-    /// From the front, the right and above, at equal angles to all three axes.
+    /// From the front, a bit of the right and 20 degrees above, as things on a table are looked at.
     #[default]
+    ThreeQuarter,
+    /// From the front, the right and above, at equal angles to all three axes.
     Iso,
     /// From the front, with the model's right side on the right.
     Front,
@@ -43,6 +47,8 @@ impl View {
         let (up, front) = (up.vector(), up.front());
         let right = up.cross(front);
         match self {
+            // 20 degrees above, and 38 to the right, so that the sides of a box differ.
+            Self::ThreeQuarter => ((front + right * 0.78 + up * 0.46).normalize(), up),
             Self::Iso => ((front + right + up).normalize(), up),
             Self::Front => (front, up),
             Self::Back => (-front, up),
@@ -90,7 +96,7 @@ pub fn frame_from(bounds: &Aabb, eye: DVec3, view_up: DVec3, lens: Lens, aspect:
 }
 
 /// As [`frame_from`], fitting all finite points of a world instead of the corners of the box round it: closer where the
-/// model leaves the corners of its box empty.
+/// model leaves the corners of its box empty, and with the same margins left and right, above and below.
 pub fn frame_world(
     world: &World,
     eye: DVec3,
@@ -104,8 +110,8 @@ pub fn frame_world(
         return frame_from(&world.bounds, eye, view_up, lens, aspect, fill);
     }
     let fit = Fit::new(&world.bounds, eye, view_up, lens, aspect, fill);
-    let need = greatest_need(world, |point| fit.need(point), workers);
-    fit.camera(need)
+    let needs = [0, 1, 2, 3].map(|side| greatest_need(world, |point| fit.sides(point)[side], workers));
+    fit.centered(needs)
 }
 
 /// As [`frame_world`], for pictures in which the model turns about `axis` (unit) through the middle of its box: what all finite
@@ -126,32 +132,32 @@ pub fn frame_turning(
         return fit.camera(bounds.corners().into_iter().map(|corner| turning.need(corner)).fold(0.0, f64::max));
     }
     let need = greatest_need(world, |point| turning.need(point), workers);
-    fit.camera(need)
+    fit.camera(need.max(0.0))
 }
 
 /// How far the finite points of a world reach from `center` in a direction (unit); at least 0.
 pub fn reach(world: &World, center: DVec3, direction: DVec3, workers: &Workers) -> f64 {
-    greatest_need(world, |point| (point - center).dot(direction), workers)
+    greatest_need(world, |point| (point - center).dot(direction), workers).max(0.0)
 }
 
-/// The greatest of what the finite points of a world need.
+/// The greatest of what the finite points of a world need; negative infinity without points.
 ///
 /// What a point needs must be convex: no point of a box needs more than its neediest corner then, and runs of triangles are looked
 /// at neediest box first, until no box can need more than a point that was seen.
 fn greatest_need(world: &World, need: impl Fn(DVec3) -> f64 + Sync, workers: &Workers) -> f64 {
     let of_vertices = |instance: &Instance, vertices: &[u32]| {
         let points = vertices.iter().map(|&v| instance.world_from_model.transform_point3(instance.mesh.position(v)));
-        points.filter(|p| p.is_finite()).fold(0.0, |most, p| need(p).max(most))
+        points.filter(|p| p.is_finite()).fold(f64::NEG_INFINITY, |most, p| need(p).max(most))
     };
     let mut runs = Vec::new();
-    let mut seen = 0.0f64;
+    let mut seen = f64::NEG_INFINITY;
     for instance in &world.instances {
         let (lines, points) = (instance.mesh.lines.as_flattened(), &instance.mesh.points);
         seen = seen.max(of_vertices(instance, lines)).max(of_vertices(instance, points));
         for (run, bounds) in world.run_bounds[instance.mesh_index as usize].iter().enumerate() {
             if !bounds.is_empty() {
                 let corners = bounds.corners().map(|c| need(instance.world_from_model.transform_point3(c)));
-                runs.push((corners.into_iter().fold(0.0, f64::max), instance, run));
+                runs.push((corners.into_iter().fold(f64::NEG_INFINITY, f64::max), instance, run));
             }
         }
     }
@@ -159,7 +165,7 @@ fn greatest_need(world: &World, need: impl Fn(DVec3) -> f64 + Sync, workers: &Wo
     let (mut rest, mut batch) = (runs.as_slice(), 16);
     loop {
         // A hair more, for what rounding may do to corners.
-        let open = rest[..rest.len().min(batch)].partition_point(|(most, ..)| most * (1.0 + 1e-9) >= seen);
+        let open = rest[..rest.len().min(batch)].partition_point(|(most, ..)| most + 1e-9 * most.abs() >= seen);
         if open == 0 {
             return seen;
         }
@@ -213,6 +219,22 @@ impl Fit {
         let p = self.view_from_world.transform_vector3(point - self.camera.focal_point);
         let flat = (p.y.abs() * self.per_height).max(p.x.abs() * self.per_width);
         if self.lens == Lens::Parallel { flat } else { p.z + flat }
+    }
+
+    /// As [`Self::need`], for the right side of the picture, the left one, above and below.
+    fn sides(&self, point: DVec3) -> [f64; 4] {
+        let p = self.view_from_world.transform_vector3(point - self.camera.focal_point);
+        let depth = if self.lens == Lens::Parallel { 0.0 } else { p.z };
+        [p.x * self.per_width, -p.x * self.per_width, p.y * self.per_height, -p.y * self.per_height].map(|n| depth + n)
+    }
+
+    /// The camera that gives the neediest point of each side (see [`Self::sides`]) its room, with equal margins on opposite sides.
+    fn centered(self, [right, left, above, below]: [f64; 4]) -> Camera {
+        let need = (0.5 * (right + left)).max(0.5 * (above + below));
+        let aside = DVec3::new(0.5 * (right - left) / self.per_width, 0.5 * (above - below) / self.per_height, 0.0);
+        let aside = self.view_from_world.inverse().transform_vector3(aside);
+        let camera = self.camera(need);
+        Camera { position: camera.position + aside, focal_point: camera.focal_point + aside, ..camera }
     }
 
     /// The camera that gives the neediest point its room.
@@ -304,7 +326,8 @@ mod tests {
     use std::f64::consts::TAU;
     use vitral_math::DQuat;
 
-    const VIEWS: [View; 7] = [View::Iso, View::Front, View::Back, View::Left, View::Right, View::Top, View::Bottom];
+    const VIEWS: [View; 8] =
+        [View::ThreeQuarter, View::Iso, View::Front, View::Back, View::Left, View::Right, View::Top, View::Bottom];
     const AXES: [Axis; 6] = [Axis::PlusX, Axis::MinusX, Axis::PlusY, Axis::MinusY, Axis::PlusZ, Axis::MinusZ];
 
     /// The largest |x| and |y| of the box's corners in the picture; 1 is its border.
@@ -372,6 +395,28 @@ mod tests {
     }
 
     #[test]
+    fn margins_are_equal_on_opposite_sides() {
+        // A cone that stands on its tip, far from the middle of its box as a picture shows it.
+        let mut cone = solids::sphere(1.0, 32, 16);
+        cone.positions.iter_mut().for_each(|p| *p = [p[0] * (p[1] + 1.0) + 0.3 * p[1], p[1], p[2] * (p[1] + 1.0)]);
+        let points: Vec<_> = cone.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
+        let world = World::new(&crate::Scene::from_mesh(cone)).unwrap();
+        for (lens, aspect) in [(Lens::default(), 1.0), (Lens::default(), 2.5), (Lens::Parallel, 0.5)] {
+            let (eye, up) = View::ThreeQuarter.eye_and_up(Axis::PlusY);
+            let camera = frame_world(&world, eye, up, lens, aspect, FILL, &Workers::single());
+            let clip = camera.transform(aspect, depth_range(&camera, &world.bounds)).clip_from_world();
+            let seen: Vec<_> = points.iter().map(|p| clip * p.extend(1.0)).map(|p| [p.x / p.w, p.y / p.w]).collect();
+            let margins = [0, 1].map(|k| {
+                let most = |sign: f64| 1.0 - seen.iter().map(|p| sign * p[k]).fold(f64::MIN, f64::max);
+                (most(-1.0), most(1.0))
+            });
+            let tight = margins.iter().filter(|(a, b)| (a - 0.1).abs() < 1e-6 && (b - 0.1).abs() < 1e-6).count();
+            assert!(tight >= 1, "{margins:?}");
+            assert!(margins.iter().all(|(a, b)| (a - b).abs() < 0.05 && a.min(*b) > 0.1 - 1e-6), "{margins:?}");
+        }
+    }
+
+    #[test]
     fn boxes_without_extent_and_odd_numbers_still_give_a_camera() {
         let point = Aabb { min: DVec3::ONE, max: DVec3::ONE };
         for bounds in [Aabb::EMPTY, point, Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY }] {
@@ -388,7 +433,7 @@ mod tests {
         #[test]
         fn p3_a_framed_box_fills_exactly_its_part_of_the_picture(
             min in prop::array::uniform3(-10.0f64..10.0), size in prop::array::uniform3(0.01f64..20.0),
-            view in 0usize..7, axis in 0usize..6, aspect in 0.2f64..5.0, angle in 0.1f64..2.0, parallel: bool,
+            view in 0usize..8, axis in 0usize..6, aspect in 0.2f64..5.0, angle in 0.1f64..2.0, parallel: bool,
         ) {
             let min = DVec3::from_array(min);
             let bounds = Aabb { min, max: min + DVec3::from_array(size) };
@@ -402,7 +447,7 @@ mod tests {
         #[test]
         fn what_turns_stays_in_the_picture_and_fills_it(
             size in prop::array::uniform3(0.1f64..9.0), at in prop::array::uniform3(-3.0f64..3.0),
-            view in 0usize..7, axis in 0usize..6, aspect in 0.4f64..2.5, parallel: bool, ball: bool, aside in 0.0f64..0.4,
+            view in 0usize..8, axis in 0usize..6, aspect in 0.4f64..2.5, parallel: bool, ball: bool, aside in 0.0f64..0.4,
         ) {
             let mut mesh = if ball { solids::sphere(1.0, 24, 12) } else { solids::cuboid(DVec3::ONE) };
             for p in mesh.positions.iter_mut() {

@@ -4,8 +4,8 @@
 //! its own (Newell) normal, however many triangles it was cut into; it is weighted by its angle at the vertex, so that
 //! a surface gets the same normals whether a file holds it as quads or as triangles. Plain averaging over triangles
 //! would lean towards the side that happens to be cut through the vertex. Faces that meet at more than the crease
-//! angle are not averaged; where the file has smoothing groups, these decide instead of the angle: faces of one group
-//! (not 0) are smooth together, all others have creases between them.
+//! angle are not averaged. Where the file has smoothing groups, faces of different groups, or of group 0, have creases
+//! between them, too; programs write one group for all faces of a box, so that within a group the angle still counts.
 //!
 //! In:   a mesh, model space; equal positions count as one vertex, so that seams stay smooth.
 //! Out:  unit normals in [`Mesh::normals`]; one per vertex where no vertex needs two, else with corner indices.
@@ -79,7 +79,7 @@ pub fn face_normals(mesh: &Mesh, workers: &Workers) -> Vec<[f32; 3]> {
 fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> (Attribute<[f32; 3]>, Option<Solids>) {
     let weld = Weld::new(&mesh.positions, workers);
     let rule = match &mesh.smoothing_groups {
-        Some(groups) if groups.len() == mesh.face_count() => Rule::Groups(groups),
+        Some(groups) if groups.len() == mesh.face_count() => Rule::within(crease_angle).in_groups(groups),
         _ if crease_angle.is_nan() || crease_angle >= PI => {
             return (Attribute::per_vertex(smooth(mesh, &weld, &face_data(mesh, workers), workers)), None);
         }

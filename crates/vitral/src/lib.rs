@@ -83,8 +83,8 @@ pub use files::{FolderResolver, ReadFile, read};
 pub use light_edit::{LightEdit, light_fields};
 pub use light_term::LightTerm;
 pub use load::{
-    LoadOptions, Normals, builtin_names, load, load_builtin, load_bytes, load_bytes_with, load_on, load_telling,
-    load_with,
+    FileColors, LoadOptions, Normals, builtin_names, load, load_builtin, load_bytes, load_bytes_with, load_on,
+    load_telling, load_with,
 };
 pub use material_override::{MaterialOverride, material_properties, override_material};
 pub use panels::panels;
@@ -114,10 +114,10 @@ pub use vitral_math::{Aabb, DMat4, DQuat, DVec3};
 pub use vitral_render::catalogue::PolygonOrder;
 pub use vitral_render::stats::VisibilityCounters;
 pub use vitral_render::{
-    Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue, Error as RenderError,
-    Execution, Global, GlobalSettings, Interpolation, Lines, PictureSettings, Settings, SettingsError, Shading,
-    ShadingSettings, ShadowSettings, Shadows, Stats, Transparency, TransparencyOrder, TransparencySettings,
-    UnknownName, Visibility, VolumeCounting,
+    Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue, Environment,
+    Error as RenderError, Execution, Global, GlobalSettings, Interpolation, Lines, PictureSettings, Settings,
+    SettingsError, Shading, ShadingSettings, ShadowSettings, Shadows, Stats, Transparency, TransparencyOrder,
+    TransparencySettings, UnknownName, Visibility, VolumeCounting,
 };
 pub use vitral_scene::builtin::solids;
 pub use vitral_scene::{

@@ -23,6 +23,8 @@ pub struct LoadOptions {
     /// Where normals are made: faces that differ by more than this angle have an edge between them, radians, `0..=π`; `None`:
     /// [`CREASE_ANGLE`](Self::CREASE_ANGLE).
     pub crease_angle: Option<f64>,
+    /// How colours of materials are meant whose format does not say.
+    pub file_colors: FileColors,
     /// Make the normals that the file lacks; otherwise such meshes are shaded facet by facet.
     pub make_normals: bool,
     /// Which normals are used.
@@ -37,6 +39,7 @@ impl Default for LoadOptions {
         Self {
             allow_external: false,
             crease_angle: None,
+            file_colors: FileColors::Srgb,
             make_normals: true,
             normals: Normals::File,
             max_file_bytes: 4 << 30,
@@ -47,6 +50,17 @@ impl Default for LoadOptions {
 impl LoadOptions {
     /// 40 degrees, which keep the rims of a 9-sided cylinder smooth and the edges of an octagonal prism sharp.
     pub const CREASE_ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
+}
+
+/// How the colours of materials in MTL files are meant, which the format leaves open.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FileColors {
+    /// As displays show them: those of the programs that wrote the files.
+    #[default]
+    Srgb,
+    /// Coefficients of linear light.
+    Linear,
 }
 
 /// Which normals are used.
@@ -157,8 +171,14 @@ pub fn builtin_names() -> &'static [(&'static str, &'static str)] {
     builtin::names()
 }
 
-/// Sees to the normals.
+/// Sees to colours and normals.
 fn finish(scene: &mut Scene, options: &LoadOptions, workers: &Workers) {
+    for material in &mut scene.materials {
+        match options.file_colors {
+            FileColors::Srgb => material.decode_colors(),
+            FileColors::Linear => material.srgb_colors = false,
+        }
+    }
     match options.normals {
         Normals::None => lab::exercise_5_2(scene),
         Normals::File if !options.make_normals => {}

@@ -64,7 +64,7 @@ enum Failure {
 const TEXTURE_ALPHA: (&str, &str) = ("texture-alpha", "ignore: the base texture's alpha counts for nothing");
 
 /// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` or a name in sRGB.
-const PROPERTIES: [(&str, &str, Setter); 23] = [
+const PROPERTIES: [(&str, &str, Setter); 24] = [
     ("color", "diffuse and ambient, or base colour", set_color),
     ("ka", "ambient coefficient", |m, v| phong(m, |ka, _, _, _| ka, v)),
     ("kd", "diffuse coefficient", |m, v| phong(m, |_, kd, _, _| kd, v)),
@@ -92,6 +92,11 @@ const PROPERTIES: [(&str, &str, Setter); 23] = [
     }),
     ("normal-scale", "strength of the normal texture", |m, v| put(&mut m.normal_scale, number(v))),
     ("textures", "false drops them", set_textures),
+    (
+        "texture-tint",
+        "multiply: the colour that the file gives beside the base texture multiplies it",
+        set_texture_tint,
+    ),
 ];
 
 /// Name and meaning of every property that can be changed.
@@ -318,6 +323,15 @@ fn set_textures(material: &mut Material, value: &str) -> Result<(), Failure> {
         return Err(Failure::Value("false"));
     }
     material.texture_slots_mut().into_iter().for_each(|slot| *slot = None);
+    material.multiply_texture();
+    Ok(())
+}
+
+fn set_texture_tint(material: &mut Material, value: &str) -> Result<(), Failure> {
+    if value != "multiply" {
+        return Err(Failure::Value("multiply"));
+    }
+    material.multiply_texture();
     Ok(())
 }
 

@@ -5,7 +5,8 @@ use vitral_math::color::linear_from_srgb;
 use vitral_scene::{Axis, View};
 
 /// All standard views, the default first.
-pub const VIEWS: [(View, &str); 7] = [
+pub const VIEWS: [(View, &str); 8] = [
+    (View::ThreeQuarter, "three-quarter"),
     (View::Iso, "iso"),
     (View::Front, "front"),
     (View::Back, "back"),
@@ -17,7 +18,7 @@ pub const VIEWS: [(View, &str); 7] = [
 
 /// The name of a view.
 pub fn view_name(view: View) -> &'static str {
-    VIEWS.iter().find(|(v, _)| *v == view).map_or("iso", |(_, name)| name)
+    VIEWS.iter().find(|(v, _)| *v == view).map_or("three-quarter", |(_, name)| name)
 }
 
 /// The view of this name.

@@ -10,7 +10,7 @@ use vitral_raster::SamplePattern;
 use vitral_render::stats::CullCounters;
 use vitral_render::trace::replay::WatchedSteps;
 use vitral_render::{
-    ColorSpace, Execution, Global, PreparedView, Session, Settings, Shot, radiosity, render, watch_steps,
+    ColorSpace, Environment, Execution, Global, PreparedView, Session, Settings, Shot, radiosity, render, watch_steps,
 };
 use vitral_scene::{
     Axis, Camera, Lens, LightMeter, Scene, View, ViewTransform, World, default_lights, depth_range, framing,
@@ -313,6 +313,15 @@ impl Renderer {
         lights
     }
 
+    /// The settings, without what the sky adds where only other [`light_term`](Self::light_term)s are shown.
+    fn picture_settings(&self) -> Settings {
+        let mut settings = self.settings.clone();
+        if self.light_term.is_some_and(|term| term != LightTerm::Specular) {
+            settings.shading.environment = Environment::None;
+        }
+        settings
+    }
+
     /// Global ambient light of a picture: the scene's own and [`ambient`](Self::ambient); none where another
     /// [`light_term`](Self::light_term) is chosen.
     pub fn frame_ambient(&self) -> Rgb {
@@ -340,7 +349,8 @@ impl Renderer {
         self.check_light_edits(camera)?;
         let lights = self.frame_lights(camera);
         let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
-        let mut rendered = render(&mut self.session, &shot, &self.settings, &self.execution)?;
+        let settings = self.picture_settings();
+        let mut rendered = render(&mut self.session, &shot, &settings, &self.execution)?;
         let exposure = self.exposure();
         if exposure != 1.0 {
             rendered.warnings.push(format!(

@@ -5,7 +5,8 @@
 
 use crate::load::load_on;
 use crate::{
-    Error, Light, LightEdit, LightTerm, LoadOptions, MaterialOverride, Renderer, Scene, Settings, Viewpoint, Workers,
+    Error, FileColors, Light, LightEdit, LightTerm, LoadOptions, MaterialOverride, Renderer, Scene, Settings,
+    Viewpoint, Workers,
 };
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -211,7 +212,14 @@ impl State {
     /// # Errors
     /// As [`load_scene`](Self::load_scene).
     pub fn load_scene_on(&self, workers: &Workers) -> Result<Scene, Error> {
-        self.load_scene_by(|model| load_on(model, &self.load, workers))
+        self.load_scene_by(|model| load_on(model, &self.load_options(), workers))
+    }
+
+    /// How models are read for this picture: [`State::load`], but for raw colours, which are the numbers of the file.
+    pub fn load_options(&self) -> LoadOptions {
+        let raw = self.settings.picture.color_space == ColorSpace::Raw;
+        let file_colors = if raw { FileColors::Linear } else { self.load.file_colors };
+        LoadOptions { file_colors, ..self.load.clone() }
     }
 
     /// [`load_scene`](Self::load_scene) where models are no paths: `load` reads one by its name, as [`State::load`] says.

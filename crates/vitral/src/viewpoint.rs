@@ -11,7 +11,7 @@ use vitral_scene::lab::LabView;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Viewpoint {
-    /// The side a framed model is seen from; `None`: [`View::Iso`], or the scene's own camera where nothing else is said either.
+    /// The side a framed model is seen from; `None`: [`View::ThreeQuarter`], or the scene's own camera where nothing else is said either.
     #[serde(with = "serde_view")]
     pub view: Option<View>,
     /// Which way is up; `None`: as is usual for the first model's format.
@@ -131,7 +131,7 @@ impl Viewpoint {
     }
 
     /// Whether the model is framed, and the camera moved at most.
-    fn is_framed(&self) -> bool {
+    pub fn is_framed(&self) -> bool {
         let framed = Self {
             view: self.view,
             up: self.up,

@@ -53,7 +53,7 @@ export function description(app: App, picture: "a" | "b" = "a"): string {
   const models = (of("models") as string[] | undefined) ?? [];
   const names = models.map((m) => m.replace(/^(builtin|file):/, "").replace(/#.*$/, "")).map((m) => m.charAt(0).toUpperCase() + m.slice(1));
   const view = of("viewpoint.view");
-  const from = typeof view === "string" && view !== "iso" ? t(`seen from the ${view}` as Parameters<typeof t>[0]) : "";
+  const from = typeof view === "string" && !["three-quarter", "iso"].includes(view) ? t(`seen from the ${view}` as Parameters<typeof t>[0]) : "";
   const lights = app.complete?.value.lights.filter((l) => l["enabled"] !== false && (l["kind"] as JsonObject)["type"] !== "ambient").length;
   const light = of("settings.lighting") === false ? t("unlit") : lights === undefined ? "" : lights === 1 ? t("1 light") : t("{0} lights", lights);
   const shading = of("settings.lighting") === false ? "" : t("{0} shading", String(of("settings.shading")));

@@ -40,14 +40,14 @@ fn a_scene_file_with_one_camera_is_seen_from_it() {
     // The sphere has a camera of its own, which is not the file's.
     let framed = picture(&["none.json"]);
     assert_eq!(framed, picture(&["two.json"]));
-    assert_eq!(framed, picture(&["one.json", "--view", "iso"]));
+    assert_eq!(framed, picture(&["one.json", "--view", "three-quarter"]));
     for option in
         ["--eye-rotation=0,0,0", "--camera-zoom-factor=2", "--camera-direction=0,0,-1", "--camera-view-angle=20"]
     {
         assert_eq!(picture(&["one.json", option]), picture(&["none.json", option]), "{option}");
     }
     // A state says what was chosen, and what was not.
-    for view in [&[][..], &["--view", "iso"]] {
+    for view in [&[][..], &["--view", "three-quarter"]] {
         let first = picture(&[&["one.json", "--save-state", "s.json"], view].concat());
         assert_eq!(first, picture(&["--load-state", "s.json"]), "{view:?}");
     }

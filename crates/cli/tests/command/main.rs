@@ -106,7 +106,7 @@ fn p25_a_bench_has_a_row_for_every_algorithm_and_goes_on_after_a_limit() {
         told["algorithms"][0]["geometry"].clone()
     };
     let framed = seen(&[]);
-    assert_eq!(framed, seen(&["--view", "iso"]));
+    assert_eq!(framed, seen(&["--view", "three-quarter"]));
     for camera in [&["--camera-zoom-factor", "6"][..], &["--eye-rotation", "0,80,0"], &["--view", "top"]] {
         assert_ne!(framed, seen(camera), "{camera:?}");
     }

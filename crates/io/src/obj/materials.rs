@@ -236,6 +236,11 @@ fn take_textures(material: &mut Material, loaded: &Loaded) {
             }
         }
     }
+
+    // Without its texture the surface has the colour that was given beside it.
+    if material.base_texture.is_none() {
+        material.multiply_texture();
+    }
 }
 
 /// The libraries of one `mtllib` line: the whole rest of the line as one name, else this without a comment, else each of its

@@ -40,6 +40,17 @@ pub enum Global {
     Radiosity,
 }
 
+/// What surfaces with metallic-roughness materials mirror of their surroundings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Environment {
+    /// A soft sky over a darker ground ([`Sky`](vitral_light::Sky)), which turns with the camera like the default lights.
+    #[default]
+    Sky,
+    /// Nothing: they show highlights alone.
+    None,
+}
+
 /// How values between vertices are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -120,6 +131,11 @@ named!(Shading, "shading model", [
 named!(VolumeCounting, "way to count shadow volumes", [
     ZFail: "z-fail", "at infinity, behind what is seen";
     ZPass: "z-pass", "at the viewer";
+]);
+
+named!(Environment, "environment", [
+    Sky: "sky", "a soft sky over a darker ground";
+    None: "none", "nothing: metals show highlights alone";
 ]);
 
 named!(Interpolation, "interpolation", [

@@ -59,6 +59,7 @@ flat! {
     "iterations" => global.iterations;
     "lighting" => shading.lighting;
     "interpolation" => shading.interpolation;
+    "environment" => shading.environment;
     "color-space" => picture.color_space;
     "transparency" => transparency.model;
     "kay-exponent" => transparency.kay_exponent;

@@ -9,7 +9,7 @@ mod error;
 mod flat;
 mod picture;
 
-pub use choices::{ColorSpace, Global, Interpolation, Lines, Shading, Transparency, VolumeCounting};
+pub use choices::{ColorSpace, Environment, Global, Interpolation, Lines, Shading, Transparency, VolumeCounting};
 pub use error::SettingsError;
 pub use picture::{Background, Channels, DepthCue, PictureSettings};
 
@@ -75,6 +75,8 @@ pub struct ShadingSettings {
     pub model: Shading,
     /// How values between vertices are found.
     pub interpolation: Interpolation,
+    /// What polished surfaces mirror of their surroundings.
+    pub environment: Environment,
     /// Light sources on; off shows each surface's own colour.
     pub lighting: bool,
 }
@@ -86,6 +88,7 @@ impl Default for ShadingSettings {
             illumination: Illumination::default(),
             model: Shading::default(),
             interpolation: Interpolation::default(),
+            environment: Environment::default(),
             lighting: true,
         }
     }

@@ -226,6 +226,10 @@ impl Examination<'_> {
         let coefficients = Coefficients::from_numbers(material.model, wanted.coefficients.numbers().map(number));
         let seen = |j: usize| visibility.get(j).copied().unwrap_or([1.0; 3]);
         let lights = constants.lights.iter().enumerate();
+        let microfacet = match &coefficients {
+            Coefficients::Microfacet(m) => Some(*m),
+            Coefficients::Empirical(_) => None,
+        };
         let (terms, ambient, coefficients): (Vec<_>, _, _) = match coefficients {
             Coefficients::Empirical(k) => {
                 let model = match material.model {
@@ -246,7 +250,13 @@ impl Examination<'_> {
                 (terms, ambient, CoefficientValues::Microfacet { base_color, metallic, roughness, occlusion })
             }
         };
-        let sum = sum_of_terms(ambient, &terms);
+        let sky = constants.sky.filter(|_| material.mirrors_sky);
+        let environment = match (sky, microfacet) {
+            (Some(sky), Some(m)) => Some(sky.mirrored(&s, &m)),
+            _ => None,
+        };
+        let mut sum = sum_of_terms(ambient, &terms);
+        environment.into_iter().for_each(|mirrored| sum.specular = sum.specular + mirrored);
         let lights = constants.light_numbers.iter().zip(terms);
         Evaluation {
             corner: wanted.corner,
@@ -257,6 +267,7 @@ impl Examination<'_> {
             coefficients,
             ambient,
             lights: lights.map(|(&light, terms)| NumberedTerms { light, terms }).collect(),
+            environment: environment.map(V3::to_array),
             diffuse: sum.diffuse.to_array(),
             specular: sum.specular.to_array(),
         }

@@ -8,11 +8,13 @@ use crate::radiosity::Solution;
 use crate::shadow::Shadows;
 use crate::transparency::Lay;
 use crate::{
-    ColorSpace, DepthCue, Execution, Global, Interpolation, PerMesh, PreparedView, Settings, Shading, Transparency,
+    ColorSpace, DepthCue, Environment, Execution, Global, Interpolation, PerMesh, PreparedView, Settings, Shading,
+    Transparency,
 };
 use std::convert::Infallible;
 use std::sync::Arc;
-use vitral_light::{Light, Material, PreparedLight, Rgb};
+use vitral_light::{Light, Material, PreparedLight, Rgb, Sky};
+use vitral_math::DVec3;
 use vitral_math::lanes::Level;
 use vitral_raster::SamplePattern;
 
@@ -35,6 +37,8 @@ pub(crate) struct FrameConstants<'a> {
     follows: Vec<bool>,
     /// Global ambient light.
     pub ambient: Rgb,
+    /// What polished surfaces mirror.
+    pub sky: Option<Sky>,
     pub shading: Shading,
     pub interpolation: Interpolation,
     pub raw: bool,
@@ -94,6 +98,7 @@ impl<'a> FrameConstants<'a> {
             radiosity,
             follows,
             ambient,
+            sky: sky(view, settings),
             shading: settings.shading.model,
             interpolation: settings.shading.interpolation,
             raw,
@@ -143,6 +148,13 @@ impl<'a> FrameConstants<'a> {
         let last = self.materials.len() - 1;
         &self.materials[index.map_or(last, |m| (m as usize).min(last))]
     }
+}
+
+/// The sky that polished surfaces mirror. Radiosity, which computes what surfaces light each other with, does without.
+fn sky(view: &PreparedView<'_>, settings: &Settings) -> Option<Sky> {
+    let wanted = settings.shading.environment == Environment::Sky && settings.global.model != Global::Radiosity;
+    let up = view.view.view_from_world.transform_vector3(view.camera.view_up).normalize_or(DVec3::Y);
+    wanted.then(|| Sky { up: up.as_vec3().to_array() })
 }
 
 /// Depth cueing in a view of the whole scene.

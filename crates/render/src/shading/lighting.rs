@@ -9,7 +9,7 @@ use super::geometry::every;
 use super::hits::Along;
 use super::model::Model;
 use crate::shadow::Parts;
-use vitral_light::{Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, cook_torrance};
+use vitral_light::{Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, Sky, cook_torrance};
 use vitral_math::lanes::{self, Floats, Lanes, Simd, V3};
 
 /// Reflection coefficients at points, a lane each.
@@ -68,6 +68,8 @@ impl<T: Lanes> Coefficients<T> {
 pub(crate) struct Lighting<'a> {
     lights: &'a [PreparedLight],
     ambient: Rgb,
+    /// What polished surfaces mirror, where rays do not show it.
+    sky: Option<&'a Sky>,
     illumination: Illumination,
     perspective: bool,
     /// The rays that see the points, if it is not the eye.
@@ -160,7 +162,13 @@ impl Lighting<'_> {
                 );
                 vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit, grazing)
             }
-            Coefficients::Microfacet(m) => cook_torrance(self.lights, self.ambient, &surface, m, lit),
+            Coefficients::Microfacet(m) => {
+                let mut reflected = cook_torrance(self.lights, self.ambient, &surface, m, lit);
+                if let Some(sky) = self.sky {
+                    reflected.specular = reflected.specular + sky.mirrored(&surface, m);
+                }
+                reflected
+            }
         }
     }
 }
@@ -171,6 +179,7 @@ pub(super) fn lighting<'a>(eight: &ShadingBatch8<'a>, constants: &'a FrameConsta
     Lighting {
         lights: &constants.lights,
         ambient: constants.ambient,
+        sky: constants.sky.as_ref().filter(|_| eight.material.mirrors_sky),
         illumination: match eight.material.model {
             Model::Empirical(illumination) => illumination,
             _ => Illumination::Phong,

@@ -4,7 +4,7 @@ use super::model::Model;
 use crate::display::DecodeTables;
 use crate::{Global, PreparedView, Settings};
 use vitral_frame::Texture;
-use vitral_light::{AlphaMode, Material, TextureRef, Transmission, scattering_exponent};
+use vitral_light::{AlphaMode, Material, Reflectance, TextureRef, Transmission, scattering_exponent};
 
 /// A texture as a material uses it, ready to sample.
 pub(crate) struct TextureConstants<'a> {
@@ -30,6 +30,8 @@ pub(crate) struct MaterialConstants<'a> {
     pub soft_cut: bool,
     /// Alpha matters.
     pub blend: bool,
+    /// It mirrors the soft sky, where rays do not show what is there.
+    pub mirrors_sky: bool,
     /// Rays that meet it are followed on.
     pub follows: bool,
     /// It is translucent: the exponent with which it scatters what passes.
@@ -55,8 +57,11 @@ impl<'a> MaterialConstants<'a> {
             AlphaMode::Mask { cutoff } => (Some(AlphaMode::least_opacity(cutoff)), false),
             AlphaMode::Blend => (None, settings.transparency.model.sees_through()),
         };
+        let traced = settings.global.model == Global::RayTrace;
+        let mut material = material.clone();
+        material.mirror |= traced && is_polished_metal(&material);
         Self {
-            model: Model::of_material(material, settings.shading.illumination, settings.shading.lighting),
+            model: Model::of_material(&material, settings.shading.illumination, settings.shading.lighting),
             base: texture(material.base_texture),
             specular: texture(material.specular_texture),
             emission: texture(material.emission_texture),
@@ -65,14 +70,24 @@ impl<'a> MaterialConstants<'a> {
             occlusion: texture(material.occlusion_texture),
             normal: texture(material.normal_texture),
             cutoff,
-            soft_cut: cutoff.is_some() && view.pattern.len() > 1 && settings.global.model != Global::RayTrace,
+            soft_cut: cutoff.is_some() && view.pattern.len() > 1 && !traced,
             blend,
-            follows: settings.global.model == Global::RayTrace && (cutoff.is_some() || blend || material.mirror),
+            mirrors_sky: !(traced && material.mirror),
+            follows: traced && (cutoff.is_some() || blend || material.mirror),
             scatters: (blend && material.transmission == Transmission::Translucent)
                 .then(|| scattering_exponent(&material.reflectance)),
-            material: material.clone(),
+            material,
         }
     }
+}
+
+/// Whether rays that a surface mirrors show its surroundings sharply: a metal that is all but smooth.
+fn is_polished_metal(material: &Material) -> bool {
+    const MOST_ROUGHNESS: f32 = 0.2;
+    const LEAST_METALLIC: f32 = 0.5;
+    let varies = material.metallic_roughness_texture.is_some();
+    matches!(material.reflectance, Reflectance::MetallicRoughness { metallic, roughness, .. }
+        if !varies && metallic >= LEAST_METALLIC && roughness <= MOST_ROUGHNESS)
 }
 
 impl MaterialConstants<'_> {

@@ -135,7 +135,9 @@ pub struct Evaluation {
     pub lights: Vec<NumberedTerms>,
     /// Sum of the ambient and diffuse terms, in this order: the scene's ambient light, then each light's ambient and diffuse term.
     pub diffuse: Rgb,
-    /// Sum of the specular terms.
+    /// What it mirrors of the soft sky round the scene, with metallic-roughness materials.
+    pub environment: Option<Rgb>,
+    /// Sum of the specular terms, and of what it mirrors of the sky.
     pub specular: Rgb,
 }
 

@@ -39,58 +39,65 @@ impl Fan {
         values.clear();
         self.members.clear();
         self.members.extend(corners.iter().map(member));
-        match rule {
-            Rule::Groups(groups) => {
+        self.slots.clear();
+        match rule.groups {
+            None => self.extend_by_angle(rule, &mut values),
+            Some(groups) => {
                 let group = corners.iter().map(|c| groups[faces[c.face as usize] as usize]);
-                self.keyed.clear();
-                self.keyed.extend(group.zip(0..));
-                self.by_group(&mut values);
+                let keyed: Vec<_> = group.zip(0..).collect();
+                self.by_group(keyed, rule, &mut values);
             }
-            Rule::Angle { whole, half } if corners.len() > CELL_THRESHOLD => {
-                self.keyed.clear();
-                self.keyed.extend(self.members.iter().map(|m| cell(m.direction)).zip(0..));
-                let cells = self.merge_cells();
-                self.by_angle(whole, half, &mut values);
-                // From cells back to faces.
-                let of_cell = std::mem::take(&mut self.slots);
-                self.slots.extend(cells.iter().map(|&c| of_cell[c as usize]));
-            }
-            Rule::Angle { whole, half } => self.by_angle(whole, half, &mut values),
         }
         self.values = values;
     }
 
+    /// Finds the normal of each member in each group, and of each face without a group.
+    fn by_group(&mut self, mut keyed: Vec<(u32, u32)>, rule: Rule, values: &mut Vec<[f32; 3]>) {
+        keyed.sort_unstable();
+        let all = std::mem::take(&mut self.members);
+        let mut slots = vec![0; all.len()];
+        for group in keyed.chunk_by(|a, b| a.0 == b.0 && a.0 != 0) {
+            self.members.clear();
+            self.members.extend(group.iter().map(|k| all[k.1 as usize]));
+            self.slots.clear();
+            self.extend_by_angle(rule, values);
+            group.iter().zip(&self.slots).for_each(|(k, slot)| slots[k.1 as usize] = *slot);
+        }
+        self.slots = slots;
+    }
+
+    /// Finds the normal of each member, with those within the angle; many members are gathered into cells first.
+    fn extend_by_angle(&mut self, rule: Rule, values: &mut Vec<[f32; 3]>) {
+        if self.members.len() <= CELL_THRESHOLD {
+            return self.by_angle(rule, values);
+        }
+        self.keyed.clear();
+        self.keyed.extend(self.members.iter().map(|m| cell(m.direction)).zip(0..));
+        let cells = self.merge_cells();
+        self.by_angle(rule, values);
+
+        // Go back from cells to faces.
+        let of_cell = std::mem::take(&mut self.slots);
+        self.slots.extend(cells.iter().map(|&c| of_cell[c as usize]));
+    }
+
     /// Finds the normal of each member, with those within the angle.
-    fn by_angle(&mut self, whole: f32, half: f32, values: &mut Vec<[f32; 3]>) {
-        self.slots.clear();
+    fn by_angle(&mut self, rule: Rule, values: &mut Vec<[f32; 3]>) {
+        let Rule { whole, half, .. } = rule;
+        // Where many faces meet, few of their normals are equal.
+        let from = if values.len() <= CELL_THRESHOLD { 0 } else { values.len() };
         let all = total(self.members.iter());
         let near = |mean: &[f32; 3]| self.members.iter().all(|m| is_near(*mean, m.direction, half));
         if let Some(mean) = unit(all).filter(near) {
-            values.push(mean);
-            self.slots.resize(self.members.len(), 0);
+            let slot = share(values, from, mean);
+            self.slots.resize(self.members.len(), slot);
             return;
         }
         for m in &self.members {
             let near = self.members.iter().filter(|o| dot(m.direction, o.direction) >= whole);
             let normal = if m.direction == [0.0; 3] { unit(all) } else { unit(total(near)).or(Some(m.direction)) };
-            let slot = share(values, 0, normal.unwrap_or(DEFAULT_NORMAL));
+            let slot = share(values, from, normal.unwrap_or(DEFAULT_NORMAL));
             self.slots.push(slot);
-        }
-    }
-
-    /// One normal for each group (`keyed` holds the groups), one for each face without a group.
-    fn by_group(&mut self, values: &mut Vec<[f32; 3]>) {
-        self.keyed.sort_unstable();
-        let few = self.keyed.len() <= CELL_THRESHOLD;
-        self.slots.clear();
-        self.slots.resize(self.keyed.len(), 0);
-        for group in self.keyed.chunk_by(|a, b| a.0 == b.0 && a.0 != 0) {
-            let members = || group.iter().map(|k| &self.members[k.1 as usize]);
-            let direction = members().map(|m| m.direction).find(|d| *d != [0.0; 3]);
-            let normal = unit(total(members())).or(direction).unwrap_or(DEFAULT_NORMAL);
-            let from = if few { 0 } else { values.len() };
-            let slot = share(values, from, normal);
-            group.iter().for_each(|k| self.slots[k.1 as usize] = slot);
         }
     }
 

@@ -159,6 +159,9 @@ fn evaluation(f: &mut fmt::Formatter<'_>, e: &Evaluation) -> fmt::Result {
         let (ambient, diffuse, specular) = (three(t.ambient), three(t.diffuse), three(t.specular));
         writeln!(f, "      ambient {ambient}, diffuse {diffuse}, specular {specular}")?;
     }
+    if let Some(environment) = e.environment {
+        writeln!(f, "    mirrored sky {}", three(environment))?;
+    }
     writeln!(f, "    sum: diffuse {}, specular {}", three(e.diffuse), three(e.specular))
 }
 

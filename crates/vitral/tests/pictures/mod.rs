@@ -14,6 +14,7 @@ mod hidden_line;
 mod interpolation;
 mod lighting;
 mod lists;
+mod looks;
 mod marks;
 mod normal_maps;
 mod pixel_light;

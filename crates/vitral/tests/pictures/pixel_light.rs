@@ -66,6 +66,10 @@ fn reflected(e: &Value) -> [[f32; 3]; 2] {
         diffuse = each(|c| diffuse[c] + single(&light["diffuse"][c]));
         specular = each(|c| specular[c] + single(&light["specular"][c]));
     }
+    if !e["environment"].is_null() {
+        let sky = rgb(&e["environment"]);
+        specular = each(|c| specular[c] + sky[c]);
+    }
     assert_eq!((diffuse, specular), (rgb(&e["diffuse"]), rgb(&e["specular"])), "{e}");
     [diffuse, specular]
 }

@@ -1,6 +1,6 @@
 //! Pictures on which nothing of the models is seen, and why.
 
-use vitral::{Lines, Picture, Renderer};
+use vitral::{Frame, Lines, Picture, Renderer};
 
 /// Why no surface of the models is in the picture; `None` if one is, or if there are none.
 pub(crate) fn why(renderer: &Renderer, picture: &Picture) -> Option<&'static str> {
@@ -21,6 +21,9 @@ pub(crate) fn why(renderer: &Renderer, picture: &Picture) -> Option<&'static str
     if stats.picture.covered_pixels > 0 || stats.picture.layer_samples > 0 || stats.picture.pixels == 0 {
         return None;
     }
+    if picture.frame.color.is_none() && data_show(&picture.frame) {
+        return None;
+    }
 
     // What became of the triangles.
     let (cull, geometry) = (&stats.cull, &stats.geometry);
@@ -35,4 +38,15 @@ pub(crate) fn why(renderer: &Renderer, picture: &Picture) -> Option<&'static str
     } else {
         "nothing is seen, since the surfaces in view have no area"
     })
+}
+
+/// Whether a picture without colours, of which no pixels are counted, shows a surface in its data, or has none that could tell.
+fn data_show(frame: &Frame) -> bool {
+    let Frame { depth, surface, object, material, normal, .. } = frame;
+    let ids = [surface, object, material].into_iter().flatten();
+    let tells = depth.is_some() || normal.is_some() || ids.clone().next().is_some();
+    let is_near = depth.iter().any(|plane| plane.data().iter().any(|&depth| depth > 0.0));
+    let has_normal = normal.iter().any(|plane| plane.data().iter().any(|&normal| normal != [0.0; 3]));
+    let has_id = ids.into_iter().any(|plane| plane.data().iter().any(|&id| id != Frame::BACKGROUND));
+    !tells || is_near || has_normal || has_id
 }

@@ -191,9 +191,21 @@ fn a_picture_on_which_nothing_is_seen_says_why() {
     assert!(code(&clear) == 0 && errors(&clear).contains("the opacity of all surfaces is 0"), "{}", errors(&clear));
     let failed = render(&folder, &["clear.obj", "-o", "a.png", "--fail-if-blank"]);
     assert!(code(&failed) == 6 && folder.has("a.png"), "{}", errors(&failed));
-    let away = ["builtin:cubs", "--camera-position", "0,0,9", "--camera-focal-point", "0,0,20", "-o", "b.png"];
-    let away = render(&folder, &[&away[..], &["--fail-if-blank"]].concat());
+    let away_words =
+        |name| ["builtin:cubs", "--camera-position", "0,0,9", "--camera-focal-point", "0,0,20", "-o", name];
+    let away = render(&folder, &[&away_words("b.png")[..], &["--fail-if-blank"]].concat());
     assert!(code(&away) == 6 && errors(&away).contains("outside of the view"), "{}", errors(&away));
     let seen = render(&folder, &["builtin:cubs", "-o", "c.png", "--fail-if-blank"]);
     assert!(code(&seen) == 0 && !errors(&seen).contains("nothing is seen"), "{}", errors(&seen));
+
+    // Data tell it, too, where no colours are asked for.
+    for channel in ["depth", "id", "normal", "steps"] {
+        let command = ["builtin:cubs", "-o", "c.npy", "--channel", channel, "--fail-if-blank"];
+        let command =
+            if channel == "steps" { command.map(|word| if word == "c.npy" { "c.png" } else { word }) } else { command };
+        let seen = render(&folder, &command);
+        assert!(code(&seen) == 0 && errors(&seen).is_empty(), "{channel}: {}", errors(&seen));
+    }
+    let depth = render(&folder, &[&["--channel", "depth", "--fail-if-blank"], &away_words("d.npy")[..]].concat());
+    assert!(code(&depth) == 6 && errors(&depth).contains("outside of the view"), "{}", errors(&depth));
 }

@@ -1,7 +1,8 @@
 //! Golden pictures: small references in `tests/golden`, byte for byte, at every instruction set and thread count.
 
 use vitral::{
-    Background, Execution, Global, Illumination, Lines, Renderer, Scene, Shading, Shadows, Transparency, panels,
+    Background, DMat4, DVec3, DepthCue, Execution, Global, Illumination, Light, Lines, Material, Renderer, Scene,
+    Shading, Shadows, Transparency, panels, solids,
 };
 use vitral_testkit::fixture::repository;
 use vitral_testkit::golden::{Tolerance, check_everywhere};
@@ -143,4 +144,61 @@ fn radiosity() {
         r.settings.global.model = Global::Radiosity;
         (r.settings.global.patch_size, r.settings.global.iterations) = (Some(0.3), Some(16));
     });
+}
+
+/// The scene of glass and lights, small.
+fn room(file: &str, change: impl Fn(&mut Renderer)) {
+    golden(file, builtin("scene0"), |r| {
+        (r.settings.picture.width, r.settings.picture.height) = (120, 90);
+        change(r);
+    });
+}
+
+#[test]
+fn models_and_orders_of_transparency() {
+    let glass = |file: &str, change: fn(&mut Renderer)| {
+        golden(file, example("glassDoorCabinet/glassDoorCabinet.obj"), |r| {
+            (r.settings.picture.width, r.settings.picture.height) = (120, 90);
+            change(r);
+        });
+    };
+    glass("glass-kay", |r| r.settings.transparency.model = Transparency::Kay);
+    glass("glass-filtered", |r| r.settings.transparency.model = Transparency::Filtered);
+    glass("glass-two-buffer", |r| r.settings.transparency.order = "two-buffer".parse().unwrap());
+}
+
+#[test]
+fn depth_cueing() {
+    room("scene0-depth-cue", |r| r.settings.picture.depth_cue = Some(DepthCue::default()));
+}
+
+#[test]
+fn other_shadows() {
+    for shadows in ["ray", "scan-line", "object-precision"] {
+        room(&format!("scene0-shadows-{shadows}"), |r| r.settings.shadows.algorithm = shadows.parse().unwrap());
+    }
+    room("scene0-shadows-cascades", |r| {
+        r.settings.shadows.algorithm = Shadows::MAP;
+        (r.settings.shadows.map_size, r.settings.shadows.cascades) = (256, 3);
+    });
+    let lamp = Light::disc([3.0, 7.0, 2.0], [-3.0, -7.0, -2.0], 1.0);
+    room("scene0-shadows-area", |r| {
+        r.settings.shadows.algorithm = Shadows::RAY;
+        r.settings.shadows.light_samples = 4;
+        r.lights = Some(vec![lamp.clone()]);
+    });
+}
+
+/// Polished, brushed and rough metal under the sky that they mirror.
+#[test]
+fn metals() {
+    let mut scene = Scene::default();
+    for (k, roughness) in [0.05, 0.3, 0.7].into_iter().enumerate() {
+        let base_color = [[0.9, 0.9, 0.9], [1.0, 0.77, 0.34], [0.95, 0.64, 0.54]][k];
+        let material = Some(scene.add_material(Material::metal(base_color, roughness)));
+        let mut ball = solids::sphere(1.0, 32, 16);
+        ball.parts.iter_mut().for_each(|part| part.material = material);
+        scene.add_mesh(ball, DMat4::from_translation(DVec3::X * 2.2 * k as f64));
+    }
+    golden("metals", scene, |r| (r.settings.picture.width, r.settings.picture.height) = (180, 80));
 }

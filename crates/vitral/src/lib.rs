@@ -116,7 +116,7 @@ pub use vitral_render::stats::VisibilityCounters;
 pub use vitral_render::{
     Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue, Error as RenderError,
     Execution, Global, GlobalSettings, Interpolation, Lines, PictureSettings, Settings, SettingsError, Shading,
-    ShadingSettings, ShadowSettings, Shadows, Stats, Transparency, TransparencyOrder, TransparencySettings,
+    ShadingSettings, ShadowSettings, Shadows, Stats, Terminator, Transparency, TransparencyOrder, TransparencySettings,
     UnknownName, Visibility, VolumeCounting,
 };
 pub use vitral_scene::builtin::solids;

@@ -5,8 +5,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::internals::render::choice::Row;
 use vitral::{
     Acceleration, Channel, Choice, ColorBy, ColorSpace, Environment, FileColors, Global, Illumination, Interpolation,
-    LightTerm, Normals, PictureFormat, Seams, Shading, Shadows, Transparency, TransparencyOrder, View, Visibility,
-    VolumeCounting, names,
+    LightTerm, Normals, PictureFormat, Seams, Shading, Shadows, Terminator, Transparency, TransparencyOrder, View,
+    Visibility, VolumeCounting, names,
 };
 
 /// The algorithm that finds the visible surfaces of a drawing.
@@ -142,6 +142,10 @@ pub(crate) fn file_colors() -> impl TypedValueParser<Value = FileColors> {
 
 pub(crate) fn normals() -> impl TypedValueParser<Value = Normals> {
     of(NORMALS)
+}
+
+pub(crate) fn terminator() -> impl TypedValueParser<Value = Terminator> {
+    of(Terminator::ALL.iter().copied())
 }
 
 pub(crate) fn volume_counting() -> impl TypedValueParser<Value = VolumeCounting> {

@@ -79,6 +79,7 @@ const ROWS: &[Row] = &[
     row("--shadow-map-size", |a| a.algorithms.shadow_map_size.is_some(), |c| !c.casts_shadows(), NO_CASTER),
     row("--shadow-cascades", |a| a.algorithms.shadow_cascades.is_some(), |c| !c.casts_shadows(), NO_CASTER),
     row("--volume-counting", |a| a.algorithms.volume_counting.is_some(), |c| !c.casts_shadows(), NO_CASTER),
+    row("--terminator", |a| a.algorithms.terminator.is_some(), |c| !c.casts_shadows(), NO_CASTER),
     row("--together", |a| a.output.together, |c| c.models < 2, "there is one model"),
     row("--scatter-samples", gives_scatter, Case::makes_no_color, DATA),
     row("--scatter-samples", gives_scatter, Case::is_opaque, OPAQUE),

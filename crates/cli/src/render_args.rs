@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
     Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Environment, FileColors, Global, Illumination,
-    Interpolation, LightEdit, LightTerm, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Transparency,
-    TransparencyOrder, View, Visibility, VolumeCounting,
+    Interpolation, LightEdit, LightTerm, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Terminator,
+    Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
 };
 
 /// Options of `vitral render`.
@@ -181,6 +181,9 @@ pub(crate) struct AlgorithmArgs {
     /// Where shadow volumes are counted from, where --shadows finds them [default: z-fail]
     #[arg(long, value_name = "WAY", value_parser = choices::volume_counting())]
     pub(crate) volume_counting: Option<VolumeCounting>,
+    /// Where light ends on round bodies made of facets, with shadows [default: soft]
+    #[arg(long, value_name = "WAY", value_parser = choices::terminator())]
+    pub(crate) terminator: Option<Terminator>,
     /// Light from other surfaces [default: none]
     #[arg(long, value_name = "NAME", value_parser = choices::global())]
     pub(crate) global: Option<Global>,
@@ -311,6 +314,9 @@ pub(crate) struct CameraArgs {
     /// Parallel projection
     #[arg(long)]
     pub(crate) camera_orthographic: bool,
+    /// Show only what is at these distances from the viewer, along the direction of view [default: all in front of the viewer]
+    #[arg(long, value_name = "NEAR,FAR", value_parser = values::distances, allow_hyphen_values = true)]
+    pub(crate) camera_clip: Option<(f64, f64)>,
 }
 
 /// The course's program Lab3D.

@@ -428,6 +428,10 @@ fn set_shadows(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Fail
     if args.light_samples.is_some() && settings.shadows.algorithm.is_none {
         return Err(Failure::usage("--light-samples: no shadows are looked for").with_hint("add --shadows ray"));
     }
+    if args.terminator.is_some() && settings.shadows.algorithm.is_none {
+        return Err(Failure::usage("--terminator: no shadows are looked for").with_hint("add --shadows ray"));
+    }
+    settings.shadows.terminator = args.terminator.unwrap_or(settings.shadows.terminator);
     settings.shadows.light_samples = args.light_samples.unwrap_or(settings.shadows.light_samples);
     let of_maps = [("--shadow-map-size", args.shadow_map_size), ("--shadow-cascades", args.shadow_cascades)];
     if let Some((option, _)) =
@@ -493,6 +497,7 @@ pub(crate) fn set_viewpoint(viewpoint: &mut Viewpoint, args: &CameraArgs, eye: &
     viewpoint.direction = args.camera_direction.map(|p| p.to_array()).or(viewpoint.direction);
     viewpoint.view_angle_degrees = args.camera_view_angle.or(viewpoint.view_angle_degrees);
     viewpoint.orthographic |= args.camera_orthographic;
+    viewpoint.clip = args.camera_clip.or(viewpoint.clip);
     viewpoint.zoom_factor = args.camera_zoom_factor.unwrap_or(viewpoint.zoom_factor);
     viewpoint.azimuth_degrees = args.camera_azimuth_angle.unwrap_or(viewpoint.azimuth_degrees);
     viewpoint.elevation_degrees = args.camera_elevation_angle.unwrap_or(viewpoint.elevation_degrees);

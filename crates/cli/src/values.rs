@@ -24,6 +24,12 @@ pub(crate) fn intensity(text: &str) -> Result<f32, String> {
     })
 }
 
+/// Two distances, the nearer first.
+pub(crate) fn distances(text: &str) -> Result<(f64, f64), String> {
+    let [near, far] = numbers(text)?;
+    if near < far { Ok((near, far)) } else { Err("two distances are required, the nearer first".to_owned()) }
+}
+
 /// A share, `0..=1`.
 pub(crate) fn share(text: &str) -> Result<f64, String> {
     number(text)

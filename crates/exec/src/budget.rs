@@ -151,6 +151,11 @@ impl Budget {
         self
     }
 
+    /// The seconds that are allowed.
+    pub fn time_limit(&self) -> Option<f64> {
+        self.time_limit
+    }
+
     /// Allows `bytes` to be charged in all.
     #[must_use]
     pub fn with_memory_limit(mut self, bytes: Option<u64>) -> Self {

@@ -29,7 +29,7 @@ pub use mapping::{microfacet_from_phong, phong_from_microfacet};
 pub use material::{AlphaMode, Material, Reflectance, TextureRef, Transmission, constant_color};
 pub use phong::{Phong, phong};
 pub use prepared::{Arrival, DIRECTION_ROUNDING, Incident, PreparedLight};
-pub use refraction::transmitted;
+pub use refraction::{reflected_share, transmitted};
 pub use sky::Sky;
 pub use surface::{Reflected, Surface, reflect};
 pub use terms::{Highlight, LightTerms, ambient_term, microfacet_terms, phong_terms, sum_of_terms};

@@ -207,6 +207,11 @@ impl PreparedLight {
         Some((shape.mean(position, n) * law).positive().min(position.x.splat(BRIGHTEST * BRIGHTEST)))
     }
 
+    /// Whether it is an area light.
+    pub fn has_area(&self) -> bool {
+        matches!(self.source, Source::Area(_))
+    }
+
     /// Unit direction from `position` to the light at `at`, and the attenuation over that distance.
     #[inline(always)]
     fn arrive<T: Lanes>(&self, position: V3<T>, at: [f32; 3]) -> (V3<T>, T) {

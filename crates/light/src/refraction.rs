@@ -23,6 +23,14 @@ pub fn transmitted(n: DVec3, l: DVec3, eta_r: f64) -> Option<DVec3> {
     (radicand >= 0.0).then(|| n * (eta_r * cos_i - radicand.sqrt()) - l * eta_r)
 }
 
+/// The share of light that a clear surface reflects, of both polarisations in equal parts, by Fresnel's formulas: of a ray
+/// at these cosines to the normal, before and behind the surface; `eta_r = η1 / η2`.
+pub fn reflected_share(cos_before: f64, cos_behind: f64, eta_r: f64) -> f64 {
+    let across = (eta_r * cos_before - cos_behind) / (eta_r * cos_before + cos_behind);
+    let within = (eta_r * cos_behind - cos_before) / (eta_r * cos_behind + cos_before);
+    (0.5 * (across * across + within * within)).clamp(0.0, 1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,6 +80,19 @@ mod tests {
         // Into the denser medium everything passes, even a ray that grazes.
         let grazing = transmitted(DVec3::Z, tilted(90.0), 1.0 / 1.5).unwrap();
         assert!((-grazing.x - 1.0 / 1.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn clear_surfaces_reflect_what_fresnel_says() {
+        // 4 % head on, whichever way.
+        assert!((reflected_share(1.0, 1.0, 1.0 / 1.5) - 0.04).abs() < 1e-12);
+        assert!((reflected_share(1.0, 1.0, 1.5) - 0.04).abs() < 1e-12);
+        // At Brewster's angle, whose tangent is 1.5, one polarisation passes whole: half of (1.25 / 3.25)^2 is left.
+        let (before, behind) = (1.0 / 3.25f64.sqrt(), 1.5 / 3.25f64.sqrt());
+        let half = 0.5 * (1.25f64 / 3.25) * (1.25 / 3.25);
+        assert!((reflected_share(before, behind, 1.0 / 1.5) - half).abs() < 1e-12);
+        // All of it at a grazing angle.
+        assert_eq!(reflected_share(0.0, 0.7, 1.0 / 1.5), 1.0);
     }
 
     proptest! {

@@ -40,7 +40,7 @@ pub use prepare::PreparedView;
 pub use session::Session;
 pub use settings::{
     Background, Channels, ColorSpace, Culling, DepthCue, Environment, Global, GlobalSettings, Interpolation, Lines,
-    PictureSettings, Settings, SettingsError, Shading, ShadingSettings, ShadowSettings, Transparency,
+    PictureSettings, Settings, SettingsError, Shading, ShadingSettings, ShadowSettings, Terminator, Transparency,
     TransparencyOrder, TransparencySettings, VolumeCounting,
 };
 pub use stats::Stats;

@@ -66,7 +66,6 @@ pub fn render(
     let viewport = settings.check()?;
     check_size(session, settings)?;
     let direct = (settings.global.model == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
-    let left_out = direct.as_ref().and_then(|direct| lamps::left_out(shot.lights, direct));
     if settings.global.model == Global::RayTrace {
         check_indices(session.scene())?;
     }
@@ -81,8 +80,7 @@ pub fn render(
     FrameContext { shot, settings, viewport, execution }.render_channels(session, &mut stats, &mut frame)?;
     stats.picture.pixels = u64::from(viewport.width) * u64::from(viewport.height);
     stats.seconds.total = execution.budget.elapsed() - start;
-    let mut warnings = warnings(&stats, session, settings, &execution.workers);
-    warnings.extend(left_out);
+    let warnings = warnings(&stats, session, settings, &execution.workers);
     Ok(Rendered { frame, stats, warnings })
 }
 

@@ -244,6 +244,8 @@ pub struct RadiosityCounters {
     pub shots: u64,
     /// Light not yet sent on, as a part of what has not left the scene.
     pub residual: f64,
+    /// It ended before its time, at a time limit.
+    pub stopped: bool,
     /// Light that was there in the beginning.
     pub emitted: f64,
     /// Light that surfaces kept.

@@ -154,14 +154,18 @@ impl Camera {
         ViewTransform { view_from_world: self.view_from_world(), clip_from_view, near, far, perspective }
     }
 
-    /// Clipping planes a little outside `depths`; for a perspective the near plane stays in front of the eye.
+    /// Clipping planes a little outside `depths`; for a perspective the near plane stays in front of the eye, in a parallel view it
+    /// goes through the position at the nearest.
     fn fitted_clip(&self, (nearest, farthest): (f64, f64)) -> (f64, f64) {
         let usable = nearest.is_finite() && farthest.is_finite() && nearest <= farthest;
         let (nearest, farthest) = if usable { (nearest, farthest) } else { (0.1, 100.0) };
         let margin = ((farthest - nearest) * 0.01).max(farthest.abs().max(nearest.abs()) * 1e-4);
         let margin = if margin > 0.0 { margin } else { 1e-9 };
         match self.projection {
-            Projection::Parallel { .. } => (nearest - margin, farthest + margin),
+            Projection::Parallel { .. } => {
+                let near = (nearest - margin).max(0.0);
+                (near, (farthest + margin).max(near + margin))
+            }
             Projection::Perspective { .. } | Projection::Window { .. } => {
                 let far = if farthest + margin > 0.0 { farthest + margin } else { 1e-6 };
                 ((nearest - margin).max(far * 1e-4), far)

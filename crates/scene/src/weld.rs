@@ -2,7 +2,8 @@
 //!
 //! Idea: file formats repeat a position at every seam of normals or texture coordinates. The mesh keeps its vertices;
 //! neighbourhood is asked of *representatives*: of all vertices with one position, the first. Positions are equal if
-//! their coordinates are (`-0 = 0`); there is no tolerance, so welding is transitive and never closes a real gap.
+//! their coordinates are; what is smaller than the rounding of the mesh's largest coordinate counts as 0, such as the sine of a
+//! half turn at a sphere's pole. There is no other tolerance, so welding is transitive and never closes a real gap.
 //!
 //! In:   positions, model space.
 //! Out:  for each vertex the first vertex with the same position.
@@ -27,9 +28,10 @@ impl Weld {
     /// Finds equal positions. NaN is equal to itself here, bit for bit.
     pub fn new(positions: &[[f32; 3]], workers: &Workers) -> Self {
         let (_, count) = shift_and_count(positions.len());
-        let source = Hashed { positions, count: count as u64 };
+        let zero = zero(positions);
+        let source = Hashed { positions, zero, count: count as u64 };
         let buckets = Buckets::deal(&source, count, workers);
-        let repeated = workers.map(count, |b| repeated_in_bucket(positions, &buckets, b));
+        let repeated = workers.map(count, |b| repeated_in_bucket(positions, zero, &buckets, b));
 
         // Write down the repeated ones, bucket by bucket: each vertex is in one bucket only.
         let mut representative: Vec<u32> = (0..positions.len() as u32).collect();
@@ -51,14 +53,24 @@ impl Weld {
     }
 }
 
-/// A position as bits, with -0 made 0.
-fn key(p: [f32; 3]) -> [u32; 3] {
-    p.map(|c| (c + 0.0).to_bits())
+/// Coordinates count as 0 up to this part of the largest one: two steps of single precision there, as far as the sine of a
+/// whole turn is from 0.
+const ROUNDING: f32 = 1.0 / (1 << 22) as f32;
+
+/// The coordinates that count as 0 in these positions.
+fn zero(positions: &[[f32; 3]]) -> f32 {
+    let finite = positions.as_flattened().iter().filter(|c| c.is_finite());
+    ROUNDING * finite.fold(0.0f32, |most, c| most.max(c.abs()))
+}
+
+/// A position as bits, with what is at most `zero` made 0.
+fn key(p: [f32; 3], zero: f32) -> [u32; 3] {
+    p.map(|c| if c.abs() <= zero { 0 } else { c.to_bits() })
 }
 
 /// A well-mixed hash of a position.
-fn hash(p: [f32; 3]) -> u64 {
-    let [x, y, z] = key(p).map(u64::from);
+fn hash(p: [f32; 3], zero: f32) -> u64 {
+    let [x, y, z] = key(p, zero).map(u64::from);
     let mut h = (x | y << 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     h = (h ^ h >> 32 ^ z).wrapping_mul(0xd6e8_feb8_6659_fd93);
     h ^ h >> 32
@@ -67,6 +79,7 @@ fn hash(p: [f32; 3]) -> u64 {
 /// Vertices with the upper half of their hash, dealt by the lower half.
 struct Hashed<'a> {
     positions: &'a [[f32; 3]],
+    zero: f32,
     count: u64,
 }
 
@@ -77,7 +90,7 @@ impl Source<[u32; 2]> for Hashed<'_> {
 
     fn visit(&self, range: Range<usize>, mut put: impl FnMut(usize, [u32; 2])) {
         for i in range {
-            let h = hash(self.positions[i]);
+            let h = hash(self.positions[i], self.zero);
             let bucket = ((h & 0xffff_ffff) * self.count) >> 32;
             put(bucket as usize, [i as u32, (h >> 32) as u32]);
         }
@@ -85,14 +98,14 @@ impl Source<[u32; 2]> for Hashed<'_> {
 }
 
 /// Pairs of a vertex and the first vertex at its position, for every vertex of bucket `b` that is not the first.
-fn repeated_in_bucket(positions: &[[f32; 3]], buckets: &Buckets<[u32; 2]>, b: usize) -> Vec<[u32; 2]> {
+fn repeated_in_bucket(positions: &[[f32; 3]], zero: f32, buckets: &Buckets<[u32; 2]>, b: usize) -> Vec<[u32; 2]> {
     const FREE: u32 = u32::MAX;
     let total: usize = buckets.pieces(b).map(<[_]>::len).sum();
     let mask = (total * 2).next_power_of_two() - 1;
     let mut table = vec![FREE; mask + 1];
     let mut repeated = Vec::new();
     for &[vertex, h] in buckets.pieces(b).flatten() {
-        let position = key(positions[vertex as usize]);
+        let position = key(positions[vertex as usize], zero);
         let mut slot = h as usize & mask;
         loop {
             let seen = table[slot];
@@ -100,7 +113,7 @@ fn repeated_in_bucket(positions: &[[f32; 3]], buckets: &Buckets<[u32; 2]>, b: us
                 table[slot] = vertex;
                 break;
             }
-            if key(positions[seen as usize]) == position {
+            if key(positions[seen as usize], zero) == position {
                 repeated.push([vertex, seen]);
                 break;
             }
@@ -123,6 +136,13 @@ mod tests {
         assert_eq!(Weld::new(&[], &Workers::single()).distinct, 0);
         let nan = Weld::new(&[[f32::NAN; 3]; 2], &Workers::single());
         assert_eq!(nan.representative, [0, 0]);
+    }
+
+    #[test]
+    fn what_rounding_leaves_of_a_zero_is_one() {
+        // The pole of a sphere of radius 5, and the seam, by sines of half and whole turns.
+        let p = [[0.0, 5.0, 0.0], [4.4e-7, 5.0, -8.7e-7], [-6e-16, 5.0, 0.0], [1e-5, 5.0, 0.0], [0.0, 5.000_001, 0.0]];
+        assert_eq!(Weld::new(&p, &Workers::single()).representative, [0, 0, 0, 3, 4]);
     }
 
     #[test]

@@ -116,8 +116,8 @@ pub use vitral_render::stats::VisibilityCounters;
 pub use vitral_render::{
     Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue, Environment,
     Error as RenderError, Execution, Global, GlobalSettings, Interpolation, Lines, PictureSettings, Settings,
-    SettingsError, Shading, ShadingSettings, ShadowSettings, Shadows, Stats, Transparency, TransparencyOrder,
-    TransparencySettings, UnknownName, Visibility, VolumeCounting,
+    SettingsError, Shading, ShadingSettings, ShadowSettings, Shadows, Stats, Terminator, Transparency,
+    TransparencyOrder, TransparencySettings, UnknownName, Visibility, VolumeCounting,
 };
 pub use vitral_scene::builtin::solids;
 pub use vitral_scene::{

@@ -77,7 +77,9 @@ impl Viewpoint {
     #[must_use]
     pub fn or_own(&self, world: &World) -> Self {
         match world.own_camera {
-            Some(own) if *self == Self::default() => Self { camera_index: Some(own), ..Self::default() },
+            Some(own) if Self { clip: None, ..self.clone() } == Self::default() => {
+                Self { camera_index: Some(own), ..self.clone() }
+            }
             _ => self.clone(),
         }
     }

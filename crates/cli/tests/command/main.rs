@@ -218,6 +218,8 @@ fn exit_codes() {
         ),
         (&["a.obj", "--shadows", "volume", "--export-shadow-polygons", "s.stl"], 2, "only .obj files are written"),
         (&["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"], 2, "are `ray`: choose volume"),
+        (&["a.obj", "-o", "x.png", "--terminator", "exact"], 2, "--terminator: no shadows are looked for"),
+        (&["a.obj", "-o", "x.png", "--camera-clip", "3,2"], 2, "two distances are required, the nearer first"),
         (&["a.obj", "-o", "x.png", "--shadows", "ray", "--shadow-map-size", "512"], 2, "no shadow maps are drawn"),
         (&["a.obj", "-o", "x.png", "--shadow-cascades", "4"], 2, "add --shadows map"),
         (&["a.obj", "-o", "x.png", "--shadows", "map", "--shadow-map-size", "9000"], 2, "16 to 8192"),

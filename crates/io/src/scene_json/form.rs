@@ -4,11 +4,11 @@
 use crate::json_message::plain_message;
 use crate::{Error, Place};
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, IntoDeserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
 use vitral_frame::Encoding;
-use vitral_light::{Light, Material};
+use vitral_light::{AlphaMode, Light, Material};
 use vitral_scene::{Camera, LightForm};
 
 /// The version of the form, the value of the root key `vitral-scene`.
@@ -21,7 +21,7 @@ pub(super) struct SceneForm {
     pub(super) vitral_scene: u32,
     #[serde(default, deserialize_with = "objects")]
     pub(super) meshes: Vec<MeshForm>,
-    #[serde(default, deserialize_with = "objects")]
+    #[serde(default, deserialize_with = "materials")]
     pub(super) materials: Vec<Material>,
     #[serde(default, deserialize_with = "objects")]
     pub(super) textures: Vec<TextureForm>,
@@ -60,6 +60,58 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
 /// A list of objects.
 fn objects<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
     Ok(Vec::<Object<T>>::deserialize(deserializer)?.into_iter().map(|object| object.0).collect())
+}
+
+/// A list of materials. An opacity below 1 blends, unless the file says how it is used.
+fn materials<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Material>, D::Error> {
+    Ok(Vec::<MaterialForm>::deserialize(deserializer)?.into_iter().map(|form| form.0).collect())
+}
+
+/// A material of a scene file.
+struct MaterialForm(Material);
+
+impl<'de> Deserialize<'de> for MaterialForm {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Fields;
+        impl<'de> Visitor<'de> for Fields {
+            type Value = MaterialForm;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, fields: A) -> Result<MaterialForm, A::Error> {
+                let mut says_mode = false;
+                let watched = Watched { fields, says_mode: &mut says_mode };
+                let mut material = Material::deserialize(MapAccessDeserializer::new(watched))?;
+                if !says_mode && material.opacity < 1.0 {
+                    material.alpha_mode = AlphaMode::Blend;
+                }
+                Ok(MaterialForm(material))
+            }
+        }
+        deserializer.deserialize_map(Fields)
+    }
+}
+
+/// The fields of a material; notes whether `alpha-mode` is one of them.
+struct Watched<'a, A> {
+    fields: A,
+    says_mode: &'a mut bool,
+}
+
+impl<'de, A: MapAccess<'de>> MapAccess<'de> for Watched<'_, A> {
+    type Error = A::Error;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, A::Error> {
+        let Some(key) = self.fields.next_key::<String>()? else { return Ok(None) };
+        *self.says_mode |= key == "alpha-mode";
+        seed.deserialize(key.into_deserializer()).map(Some)
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, A::Error> {
+        self.fields.next_value_seed(seed)
+    }
 }
 
 /// A light, or null for none.

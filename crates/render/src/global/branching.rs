@@ -8,8 +8,8 @@ use super::surface::Surface;
 use crate::shading::{Bounce, ShadedPoints, Strata};
 use crate::shadow::{Place, hash};
 use crate::stats::TracingCounters;
-use vitral_light::transmitted;
-use vitral_math::DVec3;
+use vitral_light::{reflected_share, transmitted};
+use vitral_math::{DVec3, func};
 
 /// A surface that a ray met: its light and properties, by number.
 pub(super) struct RayHit<'a> {
@@ -17,6 +17,35 @@ pub(super) struct RayHit<'a> {
     pub(super) at: usize,
     /// Whether the ray came from the side from which the facet's corners run clockwise.
     pub(super) from_behind: bool,
+    /// The light that was found so far for the point whose colour the ray adds to.
+    pub(super) so_far: [f32; 4],
+}
+
+/// How steep the sRGB encoding is in the dark, and from this linear value on.
+const STEEPEST: (f32, f64) = (12.92, 0.003_130_8);
+
+/// By how much more a branch must count than in the dark to be seen where a point already has this colour: sRGB encodes the same
+/// light in smaller steps there. It is the darkest channel that decides.
+fn ease([r, g, b, _]: [f32; 4], raw: bool) -> f32 {
+    let darkest = f64::from(r.min(g).min(b).min(1.0));
+    if raw || darkest <= STEEPEST.1 {
+        return 1.0;
+    }
+    // The derivative of 1.055 c^(1/2.4) - 0.055.
+    let slope = 1.055 / 2.4 * func::pow(darkest, 1.0 / 2.4 - 1.0);
+    (STEEPEST.0 / slope as f32).max(1.0)
+}
+
+/// The shares of light that a surface mirrors and lets pass, together at most 1. A clear surface that bends light mirrors as
+/// much as `fresnel` says, in the hue of its specular colour; of all others too much is scaled down.
+fn shares(mirror: [f32; 3], passes: [f32; 3], fresnel: Option<f64>) -> ([f32; 3], [f32; 3]) {
+    let most = mirror[0].max(mirror[1]).max(mirror[2]);
+    if let (Some(share), true) = (fresnel, most > 0.0) {
+        let share = share as f32;
+        return (mirror.map(|m| m / most * share), passes.map(|p| p * (1.0 - share)));
+    }
+    let scale = [0, 1, 2].map(|k| 1.0 / (mirror[k] + passes[k]).max(1.0));
+    ([0, 1, 2].map(|k| mirror[k] * scale[k]), [0, 1, 2].map(|k| passes[k] * scale[k]))
 }
 
 /// See the module.
@@ -39,26 +68,45 @@ impl Branching<'_> {
         rays: &mut Rays,
         counters: &mut TracingCounters,
     ) {
-        let RayHit { lit, at, from_behind } = *met;
+        let RayHit { lit, at, from_behind, so_far } = *met;
         let Bounce { normal, mirror, place } = lit.bounces[at];
         let alpha = lit.colors[at][3];
         let passes = lit.passes.get(at).copied().unwrap_or([1.0 - alpha; 3]);
+        let surface = self.scene.surface(ray, normal, &place);
+        let least = ray.least * ease(so_far, self.scene.constants.raw);
+
+        // Find how the ray goes on behind the surface, and the shares of the light.
+        let pile = ray.pile.map(|pile| piles.get(pile).1).unwrap_or_default();
+        let is_last = pile.len() <= ray.layer as usize;
+        let way = (is_last && (passes != [0.0; 3] || alpha < 1.0))
+            .then(|| self.through(ray, &surface, (place.facet, from_behind), pile));
+        let fresnel = match &way {
+            Some(Way::Bent(_, _, share)) => Some(*share),
+            Some(Way::None) => Some(1.0),
+            Some(Way::Straight(_)) | None => None,
+        };
+        let (mirror, passes) = shares(mirror, passes, fresnel);
         let weight = |part: [f32; 4]| [0, 1, 2, 3].map(|k| ray.weight[k] * part[k]);
         let passing = weight([passes[0], passes[1], passes[2], 1.0 - alpha]);
         let haze = Haze::new(self.scene.constants, ray.row, place.position + self.scene.structure.triangles().center);
         // The colour that it fades into was added with the surface's own light.
         let mut mirrored = weight([mirror[0], mirror[1], mirror[2], 0.0].map(|m| m * haze.kept));
-        let surface = self.scene.surface(ray, normal, &place);
         let go_on = Branch { own: place.facet, travelled, seed: place.seed, pile: None, ..*ray };
         let next = |towards: DVec3| place.position + towards * self.scene.clearance(place.position);
 
-        if counts(passing, ray.least) {
+        if counts(passing, least) {
             let branch = Branch { weight: passing, origin: next(-surface.facet), ..go_on };
-            let pile = ray.pile.map(|pile| piles.get(pile).1).unwrap_or_default();
-            if pile.len() > ray.layer as usize {
+            if !is_last {
                 let branch = Branch { weight: passing, seed: place.seed, ..*ray };
                 self.pass_to_next(&branch, (&surface, &haze), &place, rays, counters);
-            } else if !self.pass(ray, &branch, (&surface, &haze), from_behind, pile, rays, counters) {
+            } else if !self.pass(
+                ray,
+                &branch,
+                (&surface, &haze),
+                way.unwrap_or(Way::Straight(ray.media)),
+                rays,
+                counters,
+            ) {
                 counters.total_reflections += 1;
                 let passing = rays.fade(ray.target, passing, &haze);
                 mirrored = [0, 1, 2, 3].map(|k| mirrored[k] + passing[k]);
@@ -67,7 +115,7 @@ impl Branching<'_> {
             counters.stopped_by_weight += 1;
             rays.end(ray.target, passing);
         }
-        if counts(mirrored, ray.least) {
+        if counts(mirrored, least) {
             if ray.depth < self.max_depth {
                 counters.mirrored += 1;
                 let (origin, depth) = (next(surface.facet), ray.depth + 1);
@@ -90,14 +138,13 @@ impl Branching<'_> {
         ray: &Branch,
         branch: &Branch,
         (surface, haze): (&Surface, &Haze),
-        from_behind: bool,
-        pile: &[u32],
+        way: Way,
         rays: &mut Rays,
         counters: &mut TracingCounters,
     ) -> bool {
-        let (direction, media, bent) = match self.through(ray, surface, (branch.own, from_behind), pile) {
+        let (direction, media, bent) = match way {
             Way::Straight(media) => (ray.direction, media, false),
-            Way::Bent(direction, media) => (direction, media, true),
+            Way::Bent(direction, media, _) => (direction, media, true),
             Way::None => return false,
         };
         let branch = Branch { media, ..*branch };
@@ -185,16 +232,39 @@ impl Branching<'_> {
         if (eta - 1.0).abs() < 1e-6 {
             return Way::Straight(then);
         }
-        let bent = transmitted(surface.n, -ray.direction, eta).filter(|t| t.dot(surface.facet) < 0.0);
-        let bent = bent.or_else(|| transmitted(surface.facet, -ray.direction, eta));
-        bent.map_or(Way::None, |direction| Way::Bent(direction.normalize(), then))
+        let bent = |n: DVec3| Some((n, transmitted(n, -ray.direction, eta)?.normalize()));
+        let smooth = bent(surface.n).filter(|(_, t)| t.dot(surface.facet) < 0.0);
+        let Some((n, direction)) = smooth.or_else(|| bent(surface.facet)) else { return Way::None };
+        let share = reflected_share(-n.dot(ray.direction), -n.dot(direction), eta);
+        Way::Bent(direction, then, share)
     }
 }
 
 /// How a ray goes on behind a surface.
 enum Way {
     Straight(Media),
-    Bent(DVec3, Media),
+    /// With the share that is mirrored.
+    Bent(DVec3, Media, f64),
     /// Total internal reflection.
     None,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_mirrored_and_what_passes_are_one_at_most() {
+        assert_eq!(shares([0.5; 3], [0.8, 0.5, 0.3], None), ([0.5 / 1.3, 0.5, 0.5], [0.8 / 1.3, 0.5, 0.3]));
+        let (mirror, passes) = shares([0.5, 0.25, 0.0], [0.8; 3], Some(0.04));
+        assert_eq!((mirror, passes), ([0.04, 0.02, 0.0], [0.8 * 0.96; 3]));
+        assert_eq!(shares([0.0; 3], [0.9; 3], Some(0.04)), ([0.0; 3], [0.9; 3]), "glass that shows no images");
+    }
+
+    #[test]
+    fn branches_must_count_more_where_the_picture_is_bright() {
+        assert_eq!((ease([0.0; 4], false), ease([1.0; 4], true)), (1.0, 1.0));
+        // The slope at 0.2 is 1.12.
+        assert!((ease([0.9, 0.2, 0.5, 1.0], false) - 12.92 / 1.124).abs() < 0.01);
+    }
 }

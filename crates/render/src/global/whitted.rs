@@ -3,12 +3,14 @@
 //! A ray that meets a mirror goes on in the direction in which the mirror reflects it; one that meets glass goes on behind
 //! it, bent as the two media ask; each of them may meet a mirror or glass again. What a pixel shows is a tree of such rays:
 //! `I = I_local + ks I_mirrored + kt I_transmitted`, where `I_local` is what the local model says about each surface, with
-//! shadow rays. Where no light gets through a surface at that angle (total internal reflection), all of it is mirrored.
+//! shadow rays. Where no light gets through a surface at that angle (total internal reflection), all of it is mirrored. What is
+//! mirrored and what passes are never more than what came: mirrors that bend light share it as Fresnel says, and where `ks` and
+//! `kt` are together more than 1, both are scaled.
 //!
 //! A tree's rays are followed generation by generation, those of many samples together: what a generation hits is sorted by
 //! object and material, and goes eight at a time through the very formulas, textures and shadows of surfaces that the eye
-//! sees. Each ray carries the weight with which its light counts; a branch ends where that is less than can be seen, or
-//! after `max-depth` turns. Straight ways, through sheets or through glass whose index is that of its surroundings,
+//! sees. Each ray carries the weight with which its light counts; a branch ends where that is less than can be seen beside the
+//! light that the point already has, or after `max-depth` turns. Straight ways, through sheets or through glass whose index is that of its surroundings,
 //! are no turns.
 //!
 //! A translucent surface scatters what passes it: the ray goes on as many, in directions round that of clear glass; those
@@ -177,7 +179,8 @@ impl<'a> Whitted<'a> {
                 row: Some(points.place[target as usize][1] as u32),
                 seed: bounce.place.seed,
             };
-            let met = RayHit { lit, at: target as usize, from_behind };
+            let so_far = lit.colors[target as usize];
+            let met = RayHit { lit, at: target as usize, from_behind, so_far };
             if let Some(writer) = writer {
                 writer.meets(&eye_ray, Some((number, travelled)), lit.colors[target as usize]);
             }
@@ -298,7 +301,8 @@ impl<'a> Whitted<'a> {
             }
             if scene.constants.follows(hit.place.facet) {
                 let travelled = ray.travelled + ray.origin.distance(hit.place.position);
-                let met = RayHit { lit: met, at: i, from_behind: *from_behind };
+                let so_far = colors[ray.target as usize];
+                let met = RayHit { lit: met, at: i, from_behind: *from_behind, so_far };
                 let before = (next.len(), counters.total_reflections);
                 self.branching.branch(ray, travelled, &met, piles, next, counters);
                 if let Some(writer) = writer {

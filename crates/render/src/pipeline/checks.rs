@@ -1,12 +1,13 @@
 //! What a scene must not ask for together with the settings, and what the user has to know about a picture.
 
-use crate::TransparencyOrder;
 use crate::radiosity::enclosure::{has_holes, partly_transparent};
 use crate::radiosity::lamps;
 use crate::{Error, Global, Session, Settings, SettingsError, Stats};
+use crate::{Transparency, TransparencyOrder};
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use vitral_exec::Workers;
-use vitral_light::Illumination;
+use vitral_light::{AlphaMode, Illumination, Material, Transmission};
 use vitral_scene::Scene;
 
 /// Indices of refraction must be ones.
@@ -65,7 +66,14 @@ pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, wo
             )
         }));
     }
-    if settings.global.model == Global::Radiosity && session.scene.materials.iter().any(partly_transparent) {
+    if stats.radiosity.stopped {
+        let left = 100.0 * stats.radiosity.residual;
+        warnings.push(format!(
+            "radiosity ended at the time limit: {left:.1} % of the light was still on its way, and is guessed; raise --time-limit for the rest"
+        ));
+    }
+    if settings.global.model == Global::Radiosity && lamps::made_of(&session.scene, &session.world, partly_transparent)
+    {
         let glass = "radiosity takes glass of an opacity of 0.5 and more for opaque, and does without all other";
         warnings.push(glass.to_owned());
     }
@@ -73,6 +81,7 @@ pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, wo
         let holes = "radiosity knows holes of cut-out surfaces by 16 samples of each element, and glass in textures as all or nothing";
         warnings.push(holes.to_owned());
     }
+    warnings.extend(unused_transparency(session, settings));
     let picture = &stats.picture;
     let shown = picture.covered_pixels + picture.shaded_points + picture.layer_samples > 0;
     if settings.picture.channels.color && !shown && !session.world.bounds.is_empty() {
@@ -82,5 +91,39 @@ pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, wo
         let allowed = settings.transparency.layer_memory >> 20;
         warnings.push(format!("transparent layers behind others were dropped, they need more than {allowed} MiB"));
     }
+    warnings
+}
+
+/// What materials say about transparency that the settings leave out, for one material each.
+fn unused_transparency(session: &Session, settings: &Settings) -> Vec<String> {
+    if !settings.picture.channels.color {
+        return Vec::new();
+    }
+    let model = settings.transparency.model;
+    let parts = session.world.instances.iter().flat_map(|instance| &instance.mesh.parts);
+    let used = parts.filter(|part| !part.triangles.is_empty()).filter_map(|part| part.material);
+    let used: BTreeSet<u32> = used.collect();
+    let used: Vec<&Material> = used.iter().filter_map(|&m| session.scene.materials.get(m as usize)).collect();
+    let first = |of: &dyn Fn(&Material) -> bool| {
+        used.iter().find(|m| of(m)).map(|m| match &*m.name {
+            "" => "a material without a name".to_owned(),
+            name => format!("material `{name}`"),
+        })
+    };
+    let is_blended = |m: &Material| m.alpha_mode == AlphaMode::Blend && m.opacity < 1.0;
+    let mut warnings = Vec::new();
+    if model.sees_through() && !model.tints() {
+        let filter = first(&|m| is_blended(m) && m.filter != [1.0; 3]);
+        let said = |name| format!("the filter of {name} colours nothing without --transparency filtered");
+        warnings.extend(filter.map(said));
+    }
+    if model.sees_through() && model != Transparency::Kay {
+        let least = first(&|m| is_blended(m) && m.kt_min > 0.0);
+        let said = |name| format!("kt-min of {name} counts for nothing without --transparency kay");
+        warnings.extend(least.map(said));
+    }
+    let scattering = first(&|m| m.transmission == Transmission::Translucent && m.alpha_mode != AlphaMode::Blend);
+    let said = |name| format!("{name} is translucent, but lets no light pass: give it an opacity below 1");
+    warnings.extend(scattering.map(said));
     warnings
 }

@@ -30,13 +30,15 @@ pub struct Element {
     pub reflectance: Color,
 }
 
-/// A triangle that sends light.
+/// A triangle that sends light, or a group of small ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Patch {
-    /// Middle.
+    /// Middle; of a group the middle of the element that is nearest to the group's.
     pub center: DVec3,
-    /// Unit normal of the front.
+    /// Unit normal of the front there.
     pub normal: DVec3,
+    /// It is a group; the corners are those of one of them.
+    pub is_group: bool,
     /// Corners, counter-clockwise seen from the front.
     pub corners: [DVec3; 3],
 }

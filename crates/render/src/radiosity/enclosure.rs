@@ -11,11 +11,13 @@
 
 use super::direct::Direct;
 use super::element::{Color, Element, Patch, Row, turned};
+use super::lamps::lamps;
 use super::neighbours::Neighbours;
 use super::parts::{PARTS, middle};
 use super::patch::{NONE, Trees, area};
 use super::surface::{Surface, Surfaces};
 use super::targets::Targets;
+use super::walls;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::{Place, facet as facet_of};
@@ -67,7 +69,7 @@ pub(super) fn takes_part(material: Option<&Material>) -> bool {
 }
 
 /// Quadtrees over the facets that take part.
-pub(super) fn trees(session: &Session, longest: f64) -> Result<Trees, Limit> {
+pub(super) fn trees(session: &Session, longest: f64, execution: &Execution) -> Result<Trees, Limit> {
     let (world, center) = (&session.world, Triangles::center_of(&session.world));
     let corners = |number: u32| {
         let instance = &world.instances[world.instance_of_facet(number)];
@@ -79,7 +81,10 @@ pub(super) fn trees(session: &Session, longest: f64) -> Result<Trees, Limit> {
         (sound && part).then_some(corners)
     };
     let limit = Limit::Work { needed: 2 * MOST_ELEMENTS as u64, limit: MOST_ELEMENTS as u64, stage: "cutting patches" };
-    Trees::new(world.facet_count, corners, longest, MOST_ELEMENTS).ok_or(limit)
+    let facets: Vec<_> = (0..world.facet_count).map(corners).collect();
+    let pieces = walls::cut(&facets, longest, world.bounds.diagonal(), execution)?;
+    let corners = |number: u32| facets[number as usize];
+    Trees::with_pieces(world.facet_count, corners, pieces, longest, MOST_ELEMENTS).ok_or(limit)
 }
 
 /// The leaves of trees, and what each sends out by itself on front and back.
@@ -105,10 +110,16 @@ fn elements(
 /// The patches that the elements are parts of.
 fn patches(trees: &Trees, elements: &[Element]) -> Vec<Patch> {
     // A patch's own node comes before those of its elements.
-    let none = Patch { center: DVec3::ZERO, normal: DVec3::Z, corners: [DVec3::ZERO; 3] };
+    let none = Patch { center: DVec3::ZERO, normal: DVec3::Z, is_group: false, corners: [DVec3::ZERO; 3] };
     let mut patches = vec![none; trees.patches as usize];
     for (number, node) in trees.nodes.iter().enumerate().rev().filter(|(_, node)| node.patch != NONE) {
         patches[node.patch as usize].corners = trees.places(number as u32);
+    }
+    let mut facets = vec![NONE; patches.len()];
+    for element in elements {
+        let (facet, patch) = (trees.nodes[element.node as usize].facet, element.patch as usize);
+        patches[patch].is_group |= facets[patch] != NONE && facets[patch] != facet;
+        facets[patch] = facet;
     }
 
     // Add up the elements' middles, weighted by their areas.
@@ -119,11 +130,22 @@ fn patches(trees: &Trees, elements: &[Element]) -> Vec<Patch> {
         *area += element.area;
     }
 
-    // Turn the corners to the front. Of a patch that is cut out nothing is asked.
-    for (patch, area) in patches.iter_mut().zip(areas) {
-        if area > 0.0 {
-            patch.center /= area;
+    patches.iter_mut().zip(&areas).filter(|(_, area)| **area > 0.0).for_each(|(patch, area)| patch.center /= *area);
+
+    // A group looks from a place on its surface.
+    let middles: Vec<DVec3> = patches.iter().map(|patch| patch.center).collect();
+    let mut nearest = vec![f64::INFINITY; patches.len()];
+    for element in elements.iter().filter(|e| e.there != 0) {
+        let number = element.patch as usize;
+        let (patch, distance) = (&mut patches[number], element.center.distance_squared(middles[number]));
+        if patch.is_group && distance < nearest[number] {
+            nearest[number] = distance;
+            (patch.center, patch.normal) = (element.center, element.normal);
         }
+    }
+
+    // Turn the corners to the front. Of a patch that is cut out nothing is asked.
+    for patch in &mut patches {
         let [a, b, c] = patch.corners;
         if (b - a).cross(c - a).dot(patch.normal) < 0.0 {
             patch.corners = [a, c, b];
@@ -149,10 +171,27 @@ impl Enclosure {
         let there: Vec<u16> = elements.iter().map(|e| e.there).collect();
         let (targets, neighbours) = (Targets::with_holes(&trees, &there), Neighbours::new(&elements));
         let tree = Bvh::of(&targets.session, execution)?;
-        let emission = own.into_flattened();
+        let mut emission = own.into_flattened();
+        // What a light of the picture stands for sends nothing by itself.
+        let mut stood_for = vec![false; session.world.facet_count as usize];
+        for lamp in lamps(session) {
+            if settings.shading.lighting && lights.iter().any(|light| light.enabled && light.kind == lamp.light.kind) {
+                lamp.facets.iter().for_each(|&f| stood_for[f as usize] = true);
+            }
+        }
+        for (element, sides) in elements.iter().zip(emission.as_chunks_mut::<2>().0) {
+            if stood_for[trees.facet_of_piece(trees.nodes[element.node as usize].facet) as usize] {
+                *sides = [[0.0; 3]; 2];
+            }
+        }
         let mut enclosure = Self { trees, elements, patches, emission, direct: Vec::new(), targets, neighbours, tree };
         enclosure.add_direct(session, lights, settings, execution)?;
         Ok(enclosure)
+    }
+
+    /// Whether an element is a whole facet that is small as against a patch.
+    pub(super) fn is_small(&self, element: usize) -> bool {
+        self.elements[element].patch < self.trees.groups
     }
 
     /// The sides of elements that a place sees, for the elements that it sees.
@@ -178,7 +217,7 @@ impl Enclosure {
             let side = Place {
                 position: element.center,
                 normal: element.normal * turned(i),
-                facet: self.trees.nodes[element.node as usize].facet,
+                facet: self.trees.facet_of_piece(self.trees.nodes[element.node as usize].facet),
                 seed: i as u32,
                 pixel: None,
             };

@@ -1,16 +1,18 @@
-//! Lamps that are there twice: as an area light for the local models, and as a surface that shines for radiosity.
+//! Surfaces that shine, as area lights: what they light directly is found for each point of the picture, by rays and without
+//! elements, so that shadows are sharp where they are sharp.
 //!
-//! A light of the scene is left out if at least half of it lies on surfaces that shine to the same side. Lights that were
-//! chosen for the picture stay, wherever they are.
+//! That is for few lamps, which shine evenly. Many small ones, and those whose light is a texture, send their light from
+//! element to element as all other surfaces do. A light of the scene is left out if at least half of it lies on surfaces that
+//! shine to the same side: it stands for them. Lights that were chosen for the picture stay, wherever they are.
 //!
-//! In:   a session, lights. Out: the lights that light surfaces directly, and which were left out.
+//! In:   a session, lights. Out: the lights that light surfaces directly, and the facets that they stand for.
 //! Cost: area lights times facets that shine.
 
 use super::enclosure::takes_part;
 use crate::Session;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::{facet as facet_of, weights};
-use vitral_light::{AreaShape, Light, LightKind, Material};
+use vitral_light::{AreaShape, Attenuation, Light, LightKind, Material};
 use vitral_math::DVec3;
 use vitral_scene::{Scene, World};
 
@@ -38,7 +40,18 @@ fn shining(material: &Material) -> bool {
     takes_part(Some(material)) && material.emission.iter().any(|&e| e > 0.0)
 }
 
-/// The lights that light surfaces directly: without ambient light, and without those that surfaces stand for.
+/// More lamps than these are no lights: each would be asked for at each point.
+const MOST_LAMPS: usize = 16;
+
+/// A surface that shines, as a light.
+pub(super) struct Lamp {
+    /// Its facets.
+    pub(super) facets: Vec<u32>,
+    pub(super) light: Light,
+}
+
+/// The lights that light surfaces directly: without ambient light, without those that surfaces stand for, and with those
+/// that stand for surfaces.
 pub(crate) fn direct_lights(session: &Session, lights: &[Light]) -> Vec<Light> {
     let own = |light: &Light| session.world.lights.iter().any(|own| own.kind == light.kind);
     let twice = |light: &Light| match &light.kind {
@@ -50,24 +63,88 @@ pub(crate) fn direct_lights(session: &Session, lights: &[Light]) -> Vec<Light> {
         enabled: light.enabled && !twice(light),
         ..light.clone()
     });
-    direct.collect()
+    direct.chain(lamps(session).into_iter().map(|lamp| lamp.light)).collect()
 }
 
-/// A sentence on lights that are on, and not among the `direct` ones.
-pub(crate) fn left_out(lights: &[Light], direct: &[Light]) -> Option<String> {
-    let left_out =
-        lights.iter().zip(direct).enumerate().filter(|(_, (light, direct))| light.enabled && !direct.enabled);
-    let names = left_out.map(|(number, (light, _))| match &*light.name {
-        "" => format!("number {number}"),
-        name => format!("`{name}`"),
-    });
-    let names: Vec<String> = names.collect();
-    let on = "on surfaces that shine themselves";
-    match &*names {
-        [] => None,
-        [name] => Some(format!("radiosity does without the area light {name}, which lies {on}")),
-        _ => Some(format!("radiosity does without the area lights {}, which lie {on}", names.join(", "))),
+/// The surfaces that shine, as lights; none if there are many.
+pub(super) fn lamps(session: &Session) -> Vec<Lamp> {
+    let mut lamps = Vec::new();
+    for instance in &session.world.instances {
+        for part in &instance.mesh.parts {
+            let material = part.material.and_then(|m| session.scene.materials.get(m as usize));
+            let Some(material) = material.filter(|m| shines_evenly(m)) else { continue };
+            let mut before: Option<(u32, [DVec3; 3], DVec3)> = None;
+            for triangle in part.triangles.clone() {
+                let (corners, normal) = facet_of(instance, triangle, DVec3::ZERO);
+                let facet = instance.first_facet + triangle;
+                if normal == DVec3::ZERO || !corners.iter().all(|c| c.is_finite()) {
+                    continue;
+                }
+                // Two halves of a quadrilateral are one lamp.
+                let whole = before.filter(|(_, _, n)| n.dot(normal) > 1.0 - 1e-9);
+                let whole = whole.and_then(|(other, first, _)| Some((other, quadrilateral(&first, &corners, normal)?)));
+                if let Some((other, outline)) = whole {
+                    let sides = if material.double_sided { 2 } else { 1 };
+                    lamps.truncate(lamps.len() - sides);
+                    push(&mut lamps, vec![other, facet], &outline, material);
+                    before = None;
+                } else {
+                    push(&mut lamps, vec![facet], &turned_to(corners, normal), material);
+                    before = Some((facet, turned_to(corners, normal), normal));
+                }
+                if lamps.len() > 2 * MOST_LAMPS {
+                    return Vec::new();
+                }
+            }
+        }
     }
+    if lamps.len() > MOST_LAMPS { Vec::new() } else { lamps }
+}
+
+/// Corners counter-clockwise round a normal.
+fn turned_to([a, b, c]: [DVec3; 3], normal: DVec3) -> [DVec3; 3] {
+    if (b - a).cross(c - a).dot(normal) < 0.0 { [a, c, b] } else { [a, b, c] }
+}
+
+/// The convex outline of two triangles that share an edge, counter-clockwise round their normal.
+fn quadrilateral(first: &[DVec3; 3], second: &[DVec3; 3], normal: DVec3) -> Option<[DVec3; 4]> {
+    let apart = second.iter().copied().find(|p| !first.contains(p))?;
+    let lone = (0..3).find(|&k| !second.contains(&first[k]))?;
+    if second.iter().filter(|p| first.contains(p)).count() != 2 {
+        return None;
+    }
+    let outline = [first[lone], first[(lone + 1) % 3], apart, first[(lone + 2) % 3]];
+    let turns = |k: usize| {
+        let [a, b, c] = [outline[k], outline[(k + 1) % 4], outline[(k + 2) % 4]];
+        (b - a).cross(c - b).dot(normal) > 0.0
+    };
+    (0..4).all(turns).then_some(outline)
+}
+
+/// Adds the lights of a shape that shines to its front, or to both sides.
+fn push(lamps: &mut Vec<Lamp>, facets: Vec<u32>, outline: &[DVec3], material: &Material) {
+    let fan = outline.windows(2).skip(1).map(|pair| (pair[0] - outline[0]).cross(pair[1] - outline[0]));
+    let area = 0.5 * fan.sum::<DVec3>().length();
+    // A white surface that a light of intensity 1 faces receives 1: a lamp of radiosity B sends B A / π along its axis.
+    let diffuse = material.emission.map(|e| (f64::from(e.max(0.0)) * area / std::f64::consts::PI) as f32);
+    let backwards = outline.iter().rev().copied().collect();
+    let sides = [outline.to_vec(), backwards];
+    for corners in sides.into_iter().take(if material.double_sided { 2 } else { 1 }) {
+        let light = Light {
+            name: material.name.clone(),
+            kind: LightKind::Area { shape: AreaShape::Polygon { corners } },
+            diffuse,
+            specular: [0.0; 3],
+            attenuation: Attenuation::InverseSquare,
+            ..Light::default()
+        };
+        lamps.push(Lamp { facets: facets.clone(), light });
+    }
+}
+
+/// Whether a material's surfaces send out the same light everywhere.
+fn shines_evenly(material: &Material) -> bool {
+    shining(material) && material.emission_texture.is_none() && !material.is_layered()
 }
 
 fn lies_on_a_lamp(session: &Session, shape: &AreaShape) -> bool {
@@ -135,13 +212,12 @@ mod tests {
     use vitral_math::DMat4;
     use vitral_scene::builtin::{self, solids};
 
-    /// The Cornell box, whose lamp is there twice, changed.
-    fn left_out_of(change: &dyn Fn(&mut Scene)) -> Option<String> {
+    /// Whether the light of the Cornell box, changed, is left out because the lamp stands for it.
+    fn is_left_out(change: &dyn Fn(&mut Scene)) -> bool {
         let mut scene = builtin::scene("cornell").unwrap();
         change(&mut scene);
         let session = Session::new(Arc::new(scene)).unwrap();
-        let lights = &session.world.lights;
-        left_out(lights, &direct_lights(&session, lights))
+        !direct_lights(&session, &session.world.lights)[0].enabled
     }
 
     fn corners(scene: &mut Scene) -> &mut Vec<DVec3> {
@@ -153,22 +229,36 @@ mod tests {
 
     #[test]
     fn only_area_lights_on_surfaces_that_shine_are_left_out() {
-        let said = left_out_of(&|_| ()).expect("the lamp is there twice");
-        assert!(said.contains("the area light `lamp`, which"), "{said}");
+        assert!(is_left_out(&|_| ()), "the lamp is there twice");
         let mut disc = AreaShape::Disc { center: DVec3::new(0.278, 0.5478, -0.28), normal: DVec3::NEG_Y, radius: 0.04 };
-        assert!(left_out_of(&|scene| scene.lights[0].kind = LightKind::Area { shape: disc.clone() }).is_some());
+        assert!(is_left_out(&|scene| scene.lights[0].kind = LightKind::Area { shape: disc.clone() }));
         let AreaShape::Disc { normal, .. } = &mut disc else { unreachable!() };
         *normal = DVec3::Y;
-        assert!(left_out_of(&|scene| scene.lights[0].kind = LightKind::Area { shape: disc.clone() }).is_none());
-        assert!(left_out_of(&|scene| corners(scene).iter_mut().for_each(|c| c.y -= 0.01)).is_none(), "below the lamp");
-        assert!(left_out_of(&|scene| corners(scene).iter_mut().for_each(|c| c.x += 0.1)).is_none(), "beside it");
+        assert!(!is_left_out(&|scene| scene.lights[0].kind = LightKind::Area { shape: disc.clone() }));
+        assert!(!is_left_out(&|scene| corners(scene).iter_mut().for_each(|c| c.y -= 0.01)), "below the lamp");
+        assert!(!is_left_out(&|scene| corners(scene).iter_mut().for_each(|c| c.x += 0.1)), "beside it");
         // A lamp that is no surface of the scene.
         let dark = |scene: &mut Scene| {
             let lamp = scene.materials.iter().position(|m| m.emission != [0.0; 3]).unwrap();
             let emission = std::mem::take(&mut scene.materials[lamp].emission);
             scene.add_material(Material { emission, ..Material::default() });
         };
-        assert!(left_out_of(&dark).is_none(), "a material that nothing is made of");
+        assert!(!is_left_out(&dark), "a material that nothing is made of");
+    }
+
+    #[test]
+    fn a_lamp_is_one_light_of_its_outline_and_as_bright() {
+        let session = Session::new(Arc::new(builtin::scene("cornell").unwrap())).unwrap();
+        let lamps = lamps(&session);
+        assert_eq!(lamps.len(), 1, "two triangles");
+        let LightKind::Area { shape: AreaShape::Polygon { corners } } = &lamps[0].light.kind else { panic!() };
+        assert_eq!((corners.len(), lamps[0].facets.len()), (4, 2));
+        let area = (corners[1] - corners[0]).length() * (corners[2] - corners[1]).length();
+        let emission = session.scene.materials.iter().find(|m| m.emission != [0.0; 3]).unwrap().emission;
+        for k in 0..3 {
+            let expected = f64::from(emission[k]) * area / std::f64::consts::PI;
+            assert!((f64::from(lamps[0].light.diffuse[k]) / expected - 1.0).abs() < 1e-5);
+        }
     }
 
     #[test]

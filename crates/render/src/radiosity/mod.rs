@@ -26,6 +26,7 @@ pub mod progressive;
 pub mod solution;
 mod surface;
 pub mod targets;
+mod walls;
 
 pub use lamps::shines;
 pub use solution::Solution;
@@ -52,8 +53,14 @@ pub const RESIDUAL: f64 = 0.002;
 const ROUGH: f64 = 0.2;
 /// How often elements are cut again.
 const ROUNDS: usize = 2;
+/// What is told while it goes on.
+const STAGE: &str = "radiosity";
 /// Thousandths of the progress at which the rough solutions and the last one begin, about as they take time.
 const BEGINNINGS: [u64; ROUNDS + 1] = [0, 100, 250];
+/// The part of the time limit after which a solution ends as it is: the rest is for the picture.
+const SOLVING: f64 = 0.75;
+/// Elements are cut while their longest edge is more than this part of a patch's.
+const FINEST: f64 = 0.25;
 /// Elements over which light changes by more than this part of the mean are cut.
 const CONTRAST: f64 = 0.5;
 
@@ -121,30 +128,50 @@ fn solve(
     counters: &mut RadiosityCounters,
 ) -> Result<Solution, Limit> {
     let start = execution.budget.elapsed();
+    let limit = execution.budget.time_limit().map(|limit| SOLVING * limit);
+    let execution = &Execution { budget: execution.budget.clone().with_time_limit(limit), ..execution.clone() };
     let diagonal = session.world.bounds.diagonal();
     let hemicubes = HEMICUBES.map(|side| Hemicube::new(side, diagonal));
     let longest = settings.global.patch_size.unwrap_or(diagonal / 16.0);
     let most = settings.global.iterations.unwrap_or(u64::MAX);
+    execution.budget.progress(STAGE, 0, 1000);
 
     // Solve roughly, and cut elements where light changes fast.
-    let mut enclosure = enclosed(enclosure::trees(session, longest)?, session, lights, settings, execution)?;
+    let mut enclosure = enclosed(enclosure::trees(session, longest, execution)?, session, lights, settings, execution)?;
+    let mut stopped = None;
     for round in 0..ROUNDS {
         let part = part_of(execution, BEGINNINGS[round]..BEGINNINGS[round + 1]);
         let rough = progressive::solve(&enclosure, &hemicubes[..ROUGH_HEMICUBES], ROUGH, most, &part)?;
+        if rough.stopped {
+            stopped = Some(rough);
+            break;
+        }
         let contrasts = contrasts(&enclosure, &rough);
-        let cut: Vec<_> = enclosure.elements.iter().zip(contrasts).filter(|(_, c)| *c > CONTRAST).collect();
+        let is_coarse = |node: u32| patch::longest_edge(enclosure.trees.places(node)) > FINEST * longest;
+        let changing = enclosure.elements.iter().zip(contrasts).filter(|(_, contrast)| *contrast > CONTRAST);
+        let cut: Vec<u32> = changing.map(|(element, _)| element.node).filter(|&node| is_coarse(node)).collect();
         if cut.is_empty() {
             break;
         }
-        let mut trees = std::mem::take(&mut enclosure.trees);
-        cut.iter().for_each(|(element, _)| trees.split(element.node as usize));
+        let mut trees = enclosure.trees.clone();
+        cut.into_iter().for_each(|node| trees.split(node as usize));
         trees.balance();
-        enclosure = enclosed(trees, session, lights, settings, execution)?;
+        match enclosed(trees, session, lights, settings, execution) {
+            Ok(finer) => enclosure = finer,
+            Err(Limit::Time { .. }) => {
+                stopped = Some(Progress { stopped: true, ..rough });
+                break;
+            }
+            Err(limit) => return Err(limit),
+        }
     }
 
     // Solve.
     let last = part_of(execution, BEGINNINGS[ROUNDS]..1000);
-    let progress = progressive::solve(&enclosure, &hemicubes, RESIDUAL, most, &last)?;
+    let progress = match stopped {
+        Some(progress) => progress,
+        None => progressive::solve(&enclosure, &hemicubes, RESIDUAL, most, &last)?,
+    };
     let solution = Solution::new(&enclosure, &progress).with_key(fingerprint_of(lights, settings));
     *counters = counted(&enclosure, &progress, execution.budget.elapsed() - start);
     Ok(solution)
@@ -157,6 +184,7 @@ fn counted(enclosure: &Enclosure, progress: &Progress, seconds: f64) -> Radiosit
         elements: enclosure.elements.len() as u64,
         shots: progress.shots,
         residual: progress.residual,
+        stopped: progress.stopped,
         emitted: progress.emitted,
         absorbed: progress.absorbed,
         escaped: progress.escaped,
@@ -270,5 +298,39 @@ impl Session {
         let solution = Solution::from_bytes(bytes, self.fingerprint())?;
         self.cache.insert((), Arc::new(LoadedSolution(Arc::new(solution))));
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicU64, Ordering};
+    use vitral_exec::{Budget, Clock};
+    use vitral_scene::builtin;
+
+    /// A second passes at each look.
+    struct Tick(AtomicU64);
+
+    impl Clock for Tick {
+        fn seconds(&self) -> f64 {
+            self.0.fetch_add(1, Ordering::Relaxed) as f64
+        }
+    }
+
+    #[test]
+    fn at_a_time_limit_a_solution_is_what_was_found_so_far() {
+        let session = Session::new(Arc::new(builtin::scene("cornell").unwrap())).unwrap();
+        let lights = lamps::direct_lights(&session, &session.world.lights);
+        let solved = |limit: Option<f64>| {
+            let budget = Budget::new(Arc::new(Tick(AtomicU64::new(0)))).with_time_limit(limit);
+            let (execution, mut counters) =
+                (Execution { budget, ..Execution::default() }, RadiosityCounters::default());
+            let settings = Settings::default();
+            solve(&session, &lights, &settings, &execution, &mut counters).map(|_| counters)
+        };
+        let whole = solved(None).unwrap();
+        assert!(!whole.stopped && whole.residual <= RESIDUAL, "{whole:?}");
+        let part = solved(Some(400.0)).unwrap();
+        assert!(part.stopped && part.residual > RESIDUAL && part.shots < whole.shots, "{part:?}");
     }
 }

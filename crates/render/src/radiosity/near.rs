@@ -44,6 +44,9 @@ struct Sender {
 /// Puts the factors of near elements right in what the hemicube on a side of a patch sees.
 pub(super) fn refined(enclosure: &Enclosure, seen: Row, shooter: usize, execution: &Execution) -> Row {
     let patch = &enclosure.patches[shooter / 2];
+    if patch.is_group {
+        return seen;
+    }
     let [a, b, c] = patch.corners;
     let corners = if shooter.is_multiple_of(2) { [a, b, c] } else { [a, c, b] };
     let sender = Sender {

@@ -5,13 +5,15 @@
 //! changes fast patches are cut further, into the *elements*, which receive it. So each facet is a small grid of quadtrees.
 //! Vertices on edges are shared by all facets that share the edge, and the trees are kept balanced: across an edge, levels
 //! differ by one at most. A leaf whose neighbour is finer has a vertex in the middle of its edge; whoever interpolates cuts
-//! it there, so that there are no T-junctions.
+//! it there, so that there are no T-junctions. Facets much smaller than a patch are patches in groups: those in one cell of a grid
+//! that face one axis.
 //!
 //! In:   facets, world space less the scene's middle. Out: the trees.
 //! Cost: linear in leaves.
 //! Source: \[Cohen & Wallace 1993\], chapter 8; \[Cohen et al. 1988\] for patches and elements.
 
-use std::collections::HashMap;
+use super::walls::Pieces;
+use std::collections::{BTreeMap, HashMap};
 use vitral_math::DVec3;
 
 /// No node.
@@ -20,6 +22,13 @@ pub(super) const NONE: u32 = u32::MAX;
 const CUTS: [u32; 2] = [1, MOST_CUTS];
 /// Most of these parts.
 pub(super) const MOST_CUTS: u32 = 3;
+
+/// Leaves whose longest edge is less than this part of the longest of patches may be a patch together with others.
+const SMALL: f64 = 0.5;
+/// So many patches of several leaves at most: each looks at the whole scene from either side.
+const MOST_GROUPS: usize = 2048;
+/// By how much coarser the grid becomes where there are more.
+const COARSER: f64 = 1.25;
 
 /// A triangle of some size.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +58,14 @@ pub struct Trees {
     pub cuts: u32,
     /// How many patches there are.
     pub patches: u32,
+    /// Those of them, the first, that are groups of small facets.
+    pub(super) groups: u32,
+    /// How far around small facets tell about each other's light.
+    pub(super) reach: f64,
+    /// Facets that walls cut, in pieces: these have trees in place of the facets.
+    pub(super) pieces: Pieces,
+    /// How many facets there are, without pieces.
+    pub(super) facets: u32,
     middles: HashMap<[u32; 2], u32>,
 }
 
@@ -56,29 +73,51 @@ impl Trees {
     /// Trees for each of the facets that `corners` gives corners for, with no edge longer than `longest`. `None`: there
     /// would be more than `most` leaves.
     pub fn new(facets: u32, corners: impl Fn(u32) -> Option<[DVec3; 3]>, longest: f64, most: usize) -> Option<Self> {
+        Self::with_pieces(facets, corners, Pieces::default(), longest, most)
+    }
+
+    /// The same, where some facets are cut in pieces.
+    pub(super) fn with_pieces(
+        count: u32,
+        corners: impl Fn(u32) -> Option<[DVec3; 3]>,
+        pieces: Pieces,
+        longest: f64,
+        most: usize,
+    ) -> Option<Self> {
+        // Pieces come behind all facets, in place of their own.
+        let mut is_cut = vec![false; count as usize];
+        pieces.facets.iter().for_each(|&f| is_cut[f as usize] = true);
+        let (facets, own) = (count + pieces.facets.len() as u32, pieces.corners.clone());
+        let corners = |f: u32| match f.checked_sub(count) {
+            Some(piece) => Some(own[piece as usize]),
+            None if is_cut[f as usize] => None,
+            None => corners(f),
+        };
+
         let lengths: Vec<f64> = (0..facets).filter_map(|f| Some(longest_edge(corners(f)?))).collect();
         let leaves = |cuts: u32| lengths.iter().map(|length| leaves(length / longest, cuts)).sum::<f64>();
         let cuts = CUTS.into_iter().fold(CUTS[0], |best, cuts| if leaves(cuts) < leaves(best) { cuts } else { best });
         if leaves(cuts) > most as f64 {
             return None;
         }
-        let mut trees = Self { roots: vec![NONE; facets as usize], cuts, ..Self::default() };
+        let mut trees = Self { roots: vec![NONE; facets as usize], cuts, pieces, facets: count, ..Self::default() };
         trees.plant_all(facets, corners);
         trees.split_longer(longest, most)?;
         trees.balance();
-        trees.number_patches();
+        trees.number_patches(longest);
         Some(trees)
     }
 
     /// Makes the roots of all facets; facets with a corner at one place share its vertex.
     fn plant_all(&mut self, facets: u32, corners: impl Fn(u32) -> Option<[DVec3; 3]>) {
-        let mut welded: HashMap<[u64; 3], u32> = HashMap::new();
+        let mut welded: HashMap<([u64; 3], u32), u32> = HashMap::new();
         let mut edges: HashMap<[u32; 2], u32> = HashMap::new();
         for facet in 0..facets {
             let Some(corners) = corners(facet) else { continue };
-            let corners = corners.map(|p| {
+            let corners = [0, 1, 2u8].map(|k| {
+                let p = corners[usize::from(k)];
                 // Adding 0 makes -0 to 0.
-                let key = (p + 0.0).to_array().map(f64::to_bits);
+                let key = ((p + 0.0).to_array().map(f64::to_bits), self.pieces.side(facet, k));
                 *welded.entry(key).or_insert_with(|| {
                     self.vertices.push(p);
                     self.vertices.len() as u32 - 1
@@ -104,14 +143,51 @@ impl Trees {
         Some(())
     }
 
-    /// Makes each leaf a patch.
-    fn number_patches(&mut self) {
-        for node in &mut self.nodes {
-            if node.children == NONE {
-                node.patch = self.patches;
-                self.patches += 1;
-            }
+    /// Makes each leaf a patch. Facets much smaller than `longest` that lie together and face about the same way are one.
+    fn number_patches(&mut self, longest: f64) {
+        // Find leaves that are small as against a patch, and how coarse a grid leaves few groups of them.
+        // Pieces of one facet may be on two sides of a wall.
+        let whole = &self.roots[..self.facets as usize];
+        let roots = whole.iter().filter(|&&root| root != NONE).flat_map(|&root| root..root + self.cuts * self.cuts);
+        let is_leaf = |n: &u32| self.nodes[*n as usize].children == NONE;
+        let is_small = |n: &u32| longest_edge(self.places(*n)) < SMALL * longest;
+        let small: Vec<u32> = roots.filter(is_leaf).filter(is_small).collect();
+        let mut size = longest;
+        let mut groups = self.groups(&small, size);
+        while groups.len() > MOST_GROUPS && size < 1e9 * longest {
+            size *= COARSER;
+            groups = self.groups(&small, size);
         }
+
+        // Number the groups, and then the other leaves.
+        (self.groups, self.reach) = (groups.len() as u32, 0.5 * size);
+        for members in groups.into_values() {
+            members.into_iter().for_each(|n| self.nodes[n as usize].patch = self.patches);
+            self.patches += 1;
+        }
+        for node in self.nodes.iter_mut().filter(|node| node.children == NONE && node.patch == NONE) {
+            node.patch = self.patches;
+            self.patches += 1;
+        }
+    }
+
+    /// Leaves by the cell of a grid that they are in, and the axis that they face.
+    fn groups(&self, leaves: &[u32], size: f64) -> BTreeMap<([i64; 3], u8), Vec<u32>> {
+        let mut groups: BTreeMap<([i64; 3], u8), Vec<u32>> = BTreeMap::new();
+        for &leaf in leaves {
+            let [a, b, c] = self.places(leaf);
+            let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a).to_array());
+            let axis = (0..3).fold(0, |most, k| if normal[k].abs() > normal[most].abs() { k } else { most });
+            let faces = 2 * axis as u8 + u8::from(normal[axis] < 0.0);
+            let cell = (middle / size).floor().to_array().map(|c| c as i64);
+            groups.entry((cell, faces)).or_default().push(leaf);
+        }
+        groups
+    }
+
+    /// The facet of the scene to which a facet of these trees belongs, itself or as a piece.
+    pub fn facet_of_piece(&self, facet: u32) -> u32 {
+        facet.checked_sub(self.facets).map_or(facet, |piece| self.pieces.facets[piece as usize])
     }
 
     /// The leaves.
@@ -254,7 +330,7 @@ impl Trees {
 /// What lengths may be too long by, as a part: that of rounding.
 const ROUNDING: f64 = 1e-12;
 
-fn longest_edge([a, b, c]: [DVec3; 3]) -> f64 {
+pub(super) fn longest_edge([a, b, c]: [DVec3; 3]) -> f64 {
     a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 

@@ -48,6 +48,8 @@ pub struct Progress {
     pub shots: u64,
     /// Light not yet sent on, as a part of what has not left the scene.
     pub residual: f64,
+    /// It ended before its time, at a time limit.
+    pub stopped: bool,
     /// Light that left the scene, of all colours.
     pub escaped: f64,
     /// Light that was sent out in the beginning, of all colours.
@@ -68,8 +70,10 @@ const FEW: usize = 8192;
 /// Shoots until at most `residual` of the light that stays in the scene is left, or `most` shots were made. Of the `hemicubes`, at least one, from
 /// coarse to fine, the finest are for the patches with the most light, whose errors show the most.
 ///
+/// At a limit of time it ends with what was found so far.
+///
 /// # Errors
-/// A limit of the budget.
+/// Another limit of the budget.
 pub fn solve(
     enclosure: &Enclosure,
     hemicubes: &[Hemicube],
@@ -93,12 +97,19 @@ pub fn solve(
         if finished {
             break;
         }
-        execution.budget.check("radiosity")?;
+        if stops(execution.budget.check("radiosity"))?.is_none() {
+            progress.stopped = true;
+            break;
+        }
 
         // Choose the first shooters; later ones were chosen in the step before.
         if shooters.is_empty() {
             shooters = shooting.choose(&unsent, staying, progress.shots);
-            seen = shooting.look(&shooters, &known)?;
+            let Some(first) = stops(shooting.look(&shooters, &known))? else {
+                progress.stopped = true;
+                break;
+            };
+            seen = first;
         }
 
         // Take their light and choose the next ones by what is left without it.
@@ -113,13 +124,27 @@ pub fn solve(
         };
         let ((), next_seen) = execution.workers.join(receive, || shooting.look(&next, &known));
         shooters.iter().zip(seen).for_each(|(&(side, _), seen)| known.keep(side, seen));
-        (shooters, seen) = (next, next_seen?);
+        let Some(next_seen) = stops(next_seen)? else {
+            progress.note_residual(&unsent);
+            progress.stopped = true;
+            break;
+        };
+        (shooters, seen) = (next, next_seen);
     }
     // Nobody guesses at a finished solution: the guess is wrong wherever light does not get.
     if progress.residual > residual {
         progress.ambient = ambient(enclosure, &unsent);
     }
     Ok(progress)
+}
+
+/// `None` at a limit of time.
+fn stops<T>(result: Result<T, Limit>) -> Result<Option<T>, Limit> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(Limit::Time { .. }) => Ok(None),
+        Err(limit) => Err(limit),
+    }
 }
 
 /// The power that each side of each patch has to send in the beginning.

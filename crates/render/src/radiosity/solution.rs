@@ -19,12 +19,39 @@ use vitral_light::Rgb;
 use vitral_math::DVec3;
 
 /// First bytes of a stored solution.
-const MAGIC: &[u8; 20] = b"vitral radiosity 4\n\0";
+const MAGIC: &[u8; 20] = b"vitral radiosity 5\n\0";
 /// Elements whose normals are apart by less than 30 degrees are one surface.
 const SAME_SURFACE: f64 = 0.866;
+/// How far elements may be off the plane of another one to tell about its light, as a part of how far they may be along it.
+const BESIDE: f64 = 0.5;
 
 /// Light at the corners of an element and at the middles of its edges (0 to 1, 1 to 2, 2 to 0).
 type Six = [Rgb; 6];
+
+/// A piece of a facet.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    facet: u32,
+    /// How the facet's corners count in the weights of the piece's.
+    inner: [[f32; 3]; 3],
+}
+
+impl Piece {
+    fn new(facet: u32, own: [DVec3; 3], whole: [DVec3; 3]) -> Self {
+        let doubled = (own[1] - own[0]).cross(own[2] - own[0]);
+        let square = doubled.length_squared().max(f64::MIN_POSITIVE);
+        let inner = [0, 1, 2].map(|k| {
+            let (a, b) = (own[(k + 1) % 3], own[(k + 2) % 3]);
+            whole.map(|p| ((b - a).cross(p - a).dot(doubled) / square) as f32)
+        });
+        Self { facet, inner }
+    }
+
+    /// Weights in the piece of a point with these weights in the facet; some are below 0 outside.
+    fn weights(&self, w: [f32; 3]) -> [f32; 3] {
+        self.inner.map(|row| row[0] * w[0] + row[1] * w[1] + row[2] * w[2])
+    }
+}
 
 /// See the module.
 #[derive(Clone, Debug)]
@@ -37,6 +64,8 @@ pub struct Solution {
     light: Vec<[Six; 2]>,
     /// For each node its place among the leaves.
     leaf: Vec<u32>,
+    /// Pieces of facets that walls cut; their roots come behind those of all facets.
+    pieces: Vec<Piece>,
     ambient: Rgb,
     /// What tells the lights that it was found for from others.
     key: u64,
@@ -62,7 +91,9 @@ impl Solution {
             })
             .collect();
         let ambient = progress.ambient.map(|c| c as f32);
-        Self::assemble(trees.nodes.clone(), (trees.roots.clone(), trees.cuts), light, ambient)
+        let pieces = trees.pieces.facets.iter().zip(&trees.pieces.corners).zip(&trees.pieces.wholes);
+        let pieces = pieces.map(|((&facet, own), whole)| Piece::new(facet, *own, *whole)).collect();
+        Self { pieces, ..Self::assemble(trees.nodes.clone(), (trees.roots.clone(), trees.cuts), light, ambient) }
     }
 
     /// The same, marked with what tells its lights from others.
@@ -81,11 +112,12 @@ impl Solution {
             leaves += u32::from(n.children == NONE);
             leaves.wrapping_sub(1)
         });
-        Self { leaf: leaf.collect(), nodes, roots, cuts, light, ambient, key: 0 }
+        Self { leaf: leaf.collect(), pieces: Vec::new(), nodes, roots, cuts, light, ambient, key: 0 }
     }
 
     /// Light that arrives at a point of a facet, on its front or back. Nothing for facets that take no part.
     pub fn irradiance(&self, facet: u32, weights: [f32; 3], front: bool) -> Rgb {
+        let (facet, weights) = self.piece_at(facet, weights);
         let Some(&root) = self.roots.get(facet as usize).filter(|&&root| root != NONE) else { return [0.0; 3] };
         let (root_in_facet, mut weights) = within(weights, self.cuts);
         let mut at = root + root_in_facet;
@@ -99,6 +131,20 @@ impl Solution {
         [0, 1, 2].map(|c| {
             let light: f32 = (0..3).map(|k| inside[k] * six[corners[k]][c]).sum();
             light.max(0.0) + self.ambient[c]
+        })
+    }
+
+    /// The piece of a facet at a point, and the point's weights there; the facet itself if it is whole.
+    fn piece_at(&self, facet: u32, weights: [f32; 3]) -> (u32, [f32; 3]) {
+        let first = self.pieces.partition_point(|piece| piece.facet < facet);
+        let own = self.pieces[first..].iter().take_while(|piece| piece.facet == facet);
+        let least = |w: &[f32; 3]| w[0].min(w[1]).min(w[2]);
+        let inside = own.map(|piece| piece.weights(weights)).enumerate();
+        // On the border between two, the one that the point is more in.
+        let best = inside.max_by(|(_, a), (_, b)| least(a).total_cmp(&least(b)));
+        best.map_or((facet, weights), |(i, w)| {
+            let number = self.roots.len() - self.pieces.len() + first + i;
+            (number as u32, w.map(|w| w.max(0.0)))
         })
     }
 
@@ -123,10 +169,15 @@ impl Solution {
             bytes.extend((count as u32).to_le_bytes());
         }
         bytes.extend(self.cuts.to_le_bytes());
+        bytes.extend((self.pieces.len() as u32).to_le_bytes());
         let numbers = self.nodes.iter().flat_map(|n| [n.children, n.facet, n.patch]).chain(self.roots.iter().copied());
         numbers.for_each(|n| bytes.extend(n.to_le_bytes()));
         let floats = self.light.as_flattened().as_flattened().as_flattened().iter().chain(&self.ambient);
         floats.for_each(|f| bytes.extend(f.to_le_bytes()));
+        for piece in &self.pieces {
+            bytes.extend(piece.facet.to_le_bytes());
+            piece.inner.as_flattened().iter().for_each(|f| bytes.extend(f.to_le_bytes()));
+        }
         bytes
     }
 
@@ -143,12 +194,15 @@ impl Solution {
         }
         let (key, rest) = rest.split_first_chunk::<8>().ok_or_else(|| bad("the file is cut off"))?;
         let (words, extra) = rest.as_chunks::<4>();
-        if words.len() < 7 || !extra.is_empty() {
+        if words.len() < 8 || !extra.is_empty() {
             return Err(bad("the file is cut off"));
         }
         let word = |i: usize| u32::from_le_bytes(words[i]);
-        let [nodes, roots, leaves] = [word(0), word(1), word(2)].map(|n| n as usize);
-        if nodes.saturating_mul(3).saturating_add(roots).saturating_add(leaves.saturating_mul(36)) != words.len() - 7 {
+        let [nodes, roots, leaves, pieces] = [word(0), word(1), word(2), word(4)].map(|n| n as usize);
+        let sizes = [(nodes, 3), (roots, 1), (leaves, 36), (pieces, 10)];
+        let needed =
+            sizes.into_iter().fold(8usize, |sum, (count, size)| sum.saturating_add(count.saturating_mul(size)));
+        if needed != words.len() || pieces > roots {
             return Err(bad("the file's length is not that of its contents"));
         }
         let cuts = word(3);
@@ -156,9 +210,11 @@ impl Solution {
             return Err(bad("facets cannot be cut in so many parts"));
         }
 
-        // Read nodes, roots and light, one after the other.
-        let (node_words, rest) = words[4..].split_at(3 * nodes);
-        let (root_words, light_words) = rest.split_at(roots);
+        // Read nodes, roots, light and pieces, one after the other.
+        let (node_words, rest) = words[5..].split_at(3 * nodes);
+        let (root_words, rest) = rest.split_at(roots);
+        let (light_words, piece_words) = rest.split_at(36 * leaves + 3);
+        let pieces = stored_pieces(piece_words)?;
         let nodes = stored_nodes(node_words, leaves)?;
         let roots: Vec<u32> = root_words.iter().map(|word| u32::from_le_bytes(*word)).collect();
         let count = nodes.len() as u64;
@@ -166,7 +222,8 @@ impl Solution {
             return Err(bad("a facet's trees are not there"));
         }
         let (light, ambient) = stored_light(light_words, leaves)?;
-        Ok(Self::assemble(nodes, (roots, cuts), light, ambient).with_key(u64::from_le_bytes(*key)))
+        let solution = Self { pieces, ..Self::assemble(nodes, (roots, cuts), light, ambient) };
+        Ok(solution.with_key(u64::from_le_bytes(*key)))
     }
 }
 
@@ -207,6 +264,22 @@ fn stored_light(words: &[[u8; 4]], leaves: usize) -> Result<(Vec<[Six; 2]>, Rgb)
     Ok((light, color(12 * leaves)))
 }
 
+/// The pieces that were stored as these words.
+fn stored_pieces(words: &[[u8; 4]]) -> Result<Vec<Piece>, Error> {
+    let piece = |words: &[[u8; 4]; 10]| {
+        let float = |i: usize| f32::from_le_bytes(words[1 + i]);
+        let inner = [0, 1, 2].map(|row| [0, 1, 2].map(|column| float(3 * row + column)));
+        Piece { facet: u32::from_le_bytes(words[0]), inner }
+    };
+    let pieces: Vec<Piece> = words.as_chunks::<10>().0.iter().map(piece).collect();
+    if !pieces.is_sorted_by_key(|p| p.facet)
+        || !pieces.iter().all(|p| p.inner.as_flattened().iter().all(|w| w.is_finite()))
+    {
+        return Err(bad("pieces of facets that are none"));
+    }
+    Ok(pieces)
+}
+
 /// The elements round each vertex.
 struct Around {
     starts: Vec<u32>,
@@ -236,6 +309,9 @@ impl Around {
     fn mean(&self, enclosure: &Enclosure, progress: &Progress, vertex: u32, own: usize, side: usize) -> Rgb {
         let range = self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize;
         let normal: DVec3 = enclosure.elements[own].normal;
+        if enclosure.is_small(own) {
+            return mean_near(enclosure, progress, enclosure.trees.vertices[vertex as usize], own, side);
+        }
         let (mut sum, mut weight): (Color, f64) = ([0.0; 3], 0.0);
         for &e in &self.elements[range] {
             let element = &enclosure.elements[e as usize];
@@ -250,6 +326,28 @@ impl Around {
         }
         progress.irradiance[2 * own + side].map(|c| c as f32)
     }
+}
+
+/// The mean light of all elements near a point that face about as element `own`. Few pixels of a hemicube show a small element:
+/// only many of them together tell what light arrives.
+fn mean_near(enclosure: &Enclosure, progress: &Progress, point: DVec3, own: usize, side: usize) -> Rgb {
+    let (normal, radius) = (enclosure.elements[own].normal, enclosure.trees.reach);
+    let (mut sum, mut weight): (Color, f64) = ([0.0; 3], 0.0);
+    enclosure.neighbours.visit(&enclosure.elements, point, radius, |e| {
+        let element = &enclosure.elements[e as usize];
+        let (way, cos) = (element.center - point, element.normal.dot(normal));
+        // What lies beside the plane is another surface, such as the board of a shelf below.
+        let beside = 1.0 - way.dot(normal).abs() / (BESIDE * radius);
+        let near = 1.0 - way.length_squared() / (radius * radius);
+        if cos > 0.0 && beside > 0.0 && near > 0.0 {
+            let counts = element.area * cos * cos * beside * near;
+            let irradiance = progress.irradiance[2 * e as usize + side];
+            (0..3).for_each(|k| sum[k] += irradiance[k] * counts);
+            weight += counts;
+        }
+    });
+    let own = progress.irradiance[2 * own + side];
+    [0, 1, 2].map(|k| if weight > 0.0 { sum[k] / weight } else { own[k] } as f32)
 }
 
 /// Mixes bytes into a fingerprint.
@@ -289,7 +387,7 @@ mod tests {
         damaged[last..].copy_from_slice(&f32::NAN.to_le_bytes());
         assert!(Solution::from_bytes(&damaged, 77).unwrap_err().to_string().contains("finite"));
         let mut circle = bytes.clone();
-        circle[MAGIC.len() + 8 + 16] = 0;
+        circle[MAGIC.len() + 36] = 0;
         assert!(Solution::from_bytes(&circle, 77).is_err(), "a node that is its own child");
     }
 }

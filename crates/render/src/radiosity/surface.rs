@@ -65,7 +65,7 @@ impl<'a> Surfaces<'a> {
 
     /// Looks at a leaf.
     pub(super) fn of(&self, trees: &Trees, node: u32) -> Surface {
-        let facet = trees.nodes[node as usize].facet;
+        let facet = trees.facet_of_piece(trees.nodes[node as usize].facet);
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
         let triangle = (facet - instance.first_facet) as usize;
@@ -203,7 +203,7 @@ mod tests {
         square.parts.iter_mut().for_each(|p| p.material = Some(material));
         scene.add_mesh(square, vitral_math::DMat4::IDENTITY);
         let session = Session::new(Arc::new(scene)).unwrap();
-        let trees = crate::radiosity::enclosure::trees(&session, 0.4).unwrap();
+        let trees = crate::radiosity::enclosure::trees(&session, 0.4, &crate::Execution::default()).unwrap();
         let surfaces = Surfaces::new(&session, settings);
         trees.leaves().into_iter().map(|leaf| (middle(trees.places(leaf)), surfaces.of(&trees, leaf))).collect()
     }

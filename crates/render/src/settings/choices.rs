@@ -14,6 +14,17 @@ pub enum VolumeCounting {
     ZPass,
 }
 
+/// Where light ends on surfaces that facets only stand for, with shadows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Terminator {
+    /// Where the interpolated normal turns away.
+    #[default]
+    Soft,
+    /// Where the facet or the interpolated normal turns away.
+    Exact,
+}
+
 /// Where illumination is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -136,6 +147,11 @@ named!(VolumeCounting, "way to count shadow volumes", [
 named!(Environment, "environment", [
     Sky: "sky", "a soft sky over a darker ground";
     None: "none", "nothing: metals show highlights alone";
+]);
+
+named!(Terminator, "terminator", [
+    Soft: "soft", "light ends where the interpolated normal turns away: round bodies of few facets have a smooth border";
+    Exact: "exact", "light ends where the facet turns away, too: steps along the facets";
 ]);
 
 named!(Interpolation, "interpolation", [

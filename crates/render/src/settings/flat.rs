@@ -53,6 +53,7 @@ flat! {
     "shadow-map-size" => shadows.map_size;
     "shadow-cascades" => shadows.cascades;
     "volume-counting" => shadows.volume_counting;
+    "terminator" => shadows.terminator;
     "global" => global.model;
     "max-depth" => global.max_depth;
     "patch-size" => global.patch_size;

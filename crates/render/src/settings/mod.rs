@@ -9,7 +9,9 @@ mod error;
 mod flat;
 mod picture;
 
-pub use choices::{ColorSpace, Environment, Global, Interpolation, Lines, Shading, Transparency, VolumeCounting};
+pub use choices::{
+    ColorSpace, Environment, Global, Interpolation, Lines, Shading, Terminator, Transparency, VolumeCounting,
+};
 pub use error::SettingsError;
 pub use picture::{Background, Channels, DepthCue, PictureSettings};
 
@@ -107,12 +109,21 @@ pub struct ShadowSettings {
     pub cascades: u32,
     /// Where shadow volumes are counted from; only for them. `None`: [`VolumeCounting::ZFail`].
     pub volume_counting: Option<VolumeCounting>,
+    /// Where light ends on surfaces that facets only stand for.
+    pub terminator: Terminator,
 }
 
 impl Default for ShadowSettings {
     /// No shadows.
     fn default() -> Self {
-        Self { algorithm: Shadows::default(), light_samples: 16, map_size: 2048, cascades: 1, volume_counting: None }
+        Self {
+            algorithm: Shadows::default(),
+            light_samples: 16,
+            map_size: 2048,
+            cascades: 1,
+            volume_counting: None,
+            terminator: Terminator::default(),
+        }
     }
 }
 

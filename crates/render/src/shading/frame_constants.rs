@@ -3,8 +3,10 @@
 use super::face_table::FaceTable;
 use super::instance_constants::InstanceConstants;
 use super::material_constants::MaterialConstants;
+use super::terminator::SoftTerminator;
 use crate::display::{BackgroundRows, DecodeTables, Fade};
 use crate::radiosity::Solution;
+use crate::settings::Terminator;
 use crate::shadow::Shadows;
 use crate::transparency::Lay;
 use crate::{
@@ -31,6 +33,8 @@ pub(crate) struct FrameConstants<'a> {
     pub light_numbers: Vec<usize>,
     /// What says which part of a light arrives; `None` without shadows.
     pub shadows: Option<&'a dyn Shadows>,
+    /// What softens the border of attached shadows; `None` without shadows, and where it is to be exact.
+    pub(super) terminator: Option<Box<dyn Shadows + 'a>>,
     /// Light from other surfaces; `None` without radiosity.
     pub radiosity: Option<&'a Solution>,
     /// For each facet whether rays that meet it are followed on; empty without ray tracing.
@@ -87,6 +91,9 @@ impl<'a> FrameConstants<'a> {
         let make = || Ok::<_, Infallible>(BackgroundRows::new(&key));
         let Ok(background) = session.cache.get_or_build(key, make);
         let prepared = lights.iter().map(|l| PreparedLight::new(l, &view.view.view_from_world)).enumerate();
+        let soft = shadows.is_some() && settings.shadows.terminator == Terminator::Soft;
+        let terminator = || Box::new(SoftTerminator::new(view, lights, settings, execution)) as Box<dyn Shadows + 'a>;
+        let terminator = soft.then(terminator);
         let (light_numbers, lights) = prepared.filter_map(|(i, l)| Some((i, l?))).unzip();
         Self {
             view,
@@ -95,6 +102,7 @@ impl<'a> FrameConstants<'a> {
             lights,
             light_numbers,
             shadows,
+            terminator,
             radiosity,
             follows,
             ambient,

@@ -48,10 +48,12 @@ mod scattering;
 mod scratch;
 mod shade;
 mod shaded_points;
+mod shadow_edges;
 mod shadowed;
 mod slots;
 mod subject;
 mod surface_parameters;
+mod terminator;
 mod tile_rows;
 mod tracer;
 

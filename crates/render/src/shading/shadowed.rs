@@ -8,9 +8,12 @@ use super::facets::FacetTable;
 use super::geometry::{F, Surface, point_weights, surface};
 use super::material_constants::MaterialConstants;
 use super::points::Points;
+use super::shadow_edges::{self, Questions};
 use super::slots::Slots;
 use super::subject::Subject;
-use crate::shadow::{Parts, Place, Places, Placing, grey};
+use super::terminator;
+use crate::shadow::{Parts, Place, Places, Placing, Shadows, grey};
+use std::cell::Cell;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Simd, V3};
 
@@ -36,20 +39,66 @@ pub(crate) fn light_visibility<S: Simd>(
             #[inline(always)]
             || {
                 let slots = Slots::of_points(points, eight, records, subject.first_facet);
-                let weights = if subject.viewing.screen_linear() {
-                    let mut surface = surface(simd, &facets.records, &slots);
-                    surface.screen_linear = true;
-                    surface.place_weights()
-                } else {
-                    point_weights(simd, &facets.records, &slots)
-                };
+                let weights = place_weights(simd, subject, facets, &slots);
                 let facets = std::array::from_fn(|lane| &corners[slots.record[lane] as usize]);
                 let places = placing.places(simd, (&slots.triangle, facets), &weights, [&slots.x, &slots.y]);
                 all.push(places, eight.len());
             },
         );
     }
-    light_visibility_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays)
+    let [mut seen, behind] =
+        light_visibility_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays);
+
+    // Near edges of shadows each sample counts.
+    if constants.view.pattern.len() > 1 && !constants.shadows.is_some_and(Shadows::is_smooth) {
+        let asked = Cell::new(0);
+        let place = |questions: &Questions| {
+            let mut places = Places::with_capacity(questions.numbers.len());
+            let all: Vec<(u32, [f32; 2])> =
+                questions.numbers.iter().copied().zip(questions.screen.iter().copied()).collect();
+            for eight in all.chunks(LANES) {
+                simd.vectorize(
+                    #[inline(always)]
+                    || {
+                        let mut slots =
+                            Slots { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
+                        for lane in 0..LANES {
+                            let (number, [x, y]) = eight[lane.min(eight.len() - 1)];
+                            slots.record[lane] = facets.of_point[number as usize];
+                            slots.triangle[lane] = points.facet[order[number as usize] as usize] - subject.first_facet;
+                            (slots.x[lane], slots.y[lane]) = (x, y);
+                        }
+                        let weights = place_weights(simd, subject, facets, &slots);
+                        let facets = std::array::from_fn(|lane| &corners[slots.record[lane] as usize]);
+                        let screen = [&slots.x, &slots.y];
+                        let eight_places = placing.places(simd, (&slots.triangle, facets), &weights, screen);
+                        places.push(eight_places, eight.len());
+                    },
+                );
+            }
+            places
+        };
+        let ask = |places: &Places| {
+            let mut rays = 0;
+            let parts = light_visibility_at(constants, places, &mut rays);
+            asked.set(asked.get() + rays);
+            parts
+        };
+        shadow_edges::soften(constants, points, order, &mut seen, place, ask);
+        *rays += asked.get();
+    }
+    [seen, behind]
+}
+
+/// Weights of the facets' corners at eight points on the screen.
+#[inline(always)]
+fn place_weights<S: Simd>(simd: S, subject: &Subject<'_>, facets: &FacetTable, slots: &Slots) -> [F<S>; 3] {
+    if !subject.viewing.screen_linear() {
+        return point_weights(simd, &facets.records, slots);
+    }
+    let mut surface = surface(simd, &facets.records, slots);
+    surface.screen_linear = true;
+    surface.place_weights()
 }
 
 /// Which part of each light reaches these places, and if `both`, the other side of their facets; empty without shadows.
@@ -70,12 +119,13 @@ pub(crate) fn light_visibility_on_sides(
 /// Which part of each light reaches these places; empty without shadows. Adds the rays that it took.
 fn light_visibility_at(constants: &FrameConstants<'_>, places: &Places, rays: &mut u64) -> Vec<Parts> {
     let Some(shadows) = constants.shadows else { return Vec::new() };
-    let of_light = |&light: &usize| {
+    let of_light = |(number, &light): (usize, &usize)| {
         let mut parts = Parts::new(places.len(), [0.0; 3]);
         shadows.arriving(light, places, &mut parts, rays);
+        terminator::soften(constants, number, places, &mut parts, rays);
         parts
     };
-    constants.light_numbers.iter().map(of_light).collect()
+    constants.light_numbers.iter().enumerate().map(of_light).collect()
 }
 
 /// Where eight points are in the world.

@@ -96,6 +96,11 @@ struct Prepared {
 }
 
 impl Shadows for Prepared {
+    fn is_smooth(&self) -> bool {
+        // Texels are filtered.
+        true
+    }
+
     fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
         match &self.maps.0[light] {
             LightMaps::Unhindered => parts.fill([1.0; 3]),

@@ -40,10 +40,15 @@ use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4};
 
 /// Shadows of one set of lights in one scene.
-pub trait Shadows: Sync {
+pub trait Shadows: Send + Sync {
     /// Which part of each colour of the light of this number reaches each of the places, `0..=1`, into as many `parts`.
     /// Other places in the same call do not change the answer. Adds the rays that it took.
     fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64);
+
+    /// Whether answers change little from pixel to pixel, so that samples of one pixel have the same.
+    fn is_smooth(&self) -> bool {
+        false
+    }
 
     /// Hands on the polygons that it works with; nothing where [`ShadowInfo::polygons`](crate::catalogue::ShadowInfo::polygons) says so.
     fn draw(&self, _: &mut dyn FnMut(Drawn<'_>)) {}

@@ -19,12 +19,12 @@ use super::hash::hash;
 use super::occluders::Occluders;
 use super::places::{Parts, Place, Places};
 use super::rounding::{clearance, horizon};
-use super::sources::{Shares, Source};
+use super::sources::{Area, Shares, Source};
 use super::{ShadowAlgorithm, Shadows};
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::{Counters, packet};
-use crate::{Execution, Session, Settings};
+use crate::{Execution, Global, Session, Settings};
 use vitral_exec::Limit;
 use vitral_light::{Light, Rgb};
 use vitral_math::lanes::{LANES, Level, Simd, dispatch};
@@ -38,6 +38,8 @@ struct Prepared<'a> {
     structure: AnyStructure,
     occluders: Occluders<'a>,
     sources: Vec<Source>,
+    /// The same in more cells, for points where those of `sources` disagree; without it, points choose their places by chance.
+    finer: Option<Vec<Source>>,
     level: Level,
 }
 
@@ -58,11 +60,17 @@ impl ShadowAlgorithm for RayShadows {
         }
         let structure = AnyStructure::new(acceleration, session, execution)?;
         let center = structure.triangles().center;
-        let sources = lights.iter().map(|l| Source::new(l, settings.shadows.light_samples, center)).collect();
+        let of = |samples: u32| lights.iter().map(|l| Source::new(l, samples, center)).collect::<Vec<_>>();
+        let sources = of(settings.shadows.light_samples);
+        let finer = (settings.global.model == Global::Radiosity).then(|| of(FINER * settings.shadows.light_samples));
         let (occluders, level) = (Occluders::new(session, settings), execution.level);
-        Ok(Box::new(Prepared { structure, occluders, sources, level }))
+        Ok(Box::new(Prepared { structure, occluders, sources, finer, level }))
     }
 }
+
+/// So many times as many cells where those of an area light disagree, with radiosity: lamps there are large, and light that goes
+/// on from surfaces is smooth, so that chance would show as noise.
+const FINER: u32 = 8;
 
 /// Places whose rays are made ready before the first is followed.
 const TOGETHER: usize = 64;
@@ -85,17 +93,12 @@ impl Shadows for Prepared<'_> {
                 Source::Area(area) => {
                     for (place, part) in asking.zip(&mut *found) {
                         let seed = hash(place.seed ^ hash(light as u32));
-                        let emitters = (0..area.count()).map(|i| area.emitter(i, seed));
-                        let counting: Vec<_> = emitters.filter(|e| e.weight(&place) > 0.0).collect();
-                        let ways = counting.iter().map(|e| (place, e.at.truncate() - place.position));
-                        let mut passing = vec![[0.0; 3]; counting.len()];
-                        self.passing(&mut feelers, ways, true, &mut passing);
-                        *rays += feelers.len() as u64;
-                        let mut shares = Shares::default();
-                        for (emitter, passing) in counting.iter().zip(passing) {
-                            shares.add(emitter.weight(&place), || passing);
+                        let seed = if self.finer.is_some() { 0 } else { seed };
+                        *part = self.area_part(area, &place, seed, &mut feelers, rays);
+                        let finer = self.finer.as_ref().map(|finer| &finer[light]);
+                        if let (Some(Source::Area(finer)), true) = (finer, part.iter().any(|&p| p > 0.0 && p < 1.0)) {
+                            *part = self.area_part(finer, &place, seed, &mut feelers, rays);
                         }
-                        *part = shares.part();
                     }
                     feelers.clear();
                 }
@@ -120,6 +123,21 @@ struct Feeler {
 }
 
 impl Prepared<'_> {
+    /// The part of an area light that arrives at a place: a ray to each cell. Adds the rays.
+    fn area_part(&self, area: &Area, place: &Place, seed: u32, feelers: &mut Vec<Feeler>, rays: &mut u64) -> Rgb {
+        let emitters = (0..area.count()).map(|i| area.emitter(i, seed));
+        let counting: Vec<_> = emitters.filter(|e| e.weight(place) > 0.0).collect();
+        let ways = counting.iter().map(|e| (*place, e.at.truncate() - place.position));
+        let mut passing = vec![[0.0; 3]; counting.len()];
+        self.passing(feelers, ways, true, &mut passing);
+        *rays += feelers.len() as u64;
+        let mut shares = Shares::default();
+        for (emitter, passing) in counting.iter().zip(passing) {
+            shares.add(emitter.weight(place), || passing);
+        }
+        shares.part()
+    }
+
     /// What passes from each of these places along its way, to the way's end or to infinity, into as many `parts`. Leaves in
     /// `feelers` the rays that were followed for it.
     fn passing(

@@ -44,6 +44,8 @@ pub(super) struct Area {
     cells: Vec<DVec2>,
     /// Sides of a cell.
     size: DVec2,
+    /// Places within the cells that are the same for all points.
+    even: Vec<DVec2>,
     origin: DVec3,
     axes: [DVec3; 2],
     /// Unit normal.
@@ -152,7 +154,8 @@ impl Area {
                 let (x, y) = normal.any_orthonormal_pair();
                 let (cells, size) = cells([DVec2::NEG_ONE, DVec2::ONE], 1.0, samples, |_| true);
                 let axes = [x * *radius, y * *radius];
-                Some(Self { shape: Shape::Disc, cells, size, origin: *middle - center, axes, normal })
+                let even = even(&cells, size);
+                Some(Self { shape: Shape::Disc, cells, size, even, origin: *middle - center, axes, normal })
             }
             AreaShape::Polygon { corners } => Self::polygon(corners, samples, center),
         }
@@ -172,7 +175,16 @@ impl Area {
         let share = area / (extent.x * extent.y);
         let (cells, size) = cells(bounds, share, samples, |p| contains(&flat, p));
         let origin = corners[0] - center;
-        (!cells.is_empty()).then_some(Self { shape: Shape::Polygon(flat), cells, size, origin, axes: [x, y], normal })
+        let even = even(&cells, size);
+        (!cells.is_empty()).then_some(Self {
+            shape: Shape::Polygon(flat),
+            cells,
+            size,
+            even,
+            origin,
+            axes: [x, y],
+            normal,
+        })
     }
 
     /// How many places are asked.
@@ -180,15 +192,13 @@ impl Area {
         self.cells.len()
     }
 
-    /// A place in cell `i`, by the chance that `seed` gives.
+    /// A place in cell `i`, by the chance that `seed` gives; for 0 the places are spread evenly.
     pub(super) fn emitter(&self, i: usize, seed: u32) -> Emitter {
         Emitter { at: self.place(i, seed).extend(1.0), normal: self.normal }
     }
 
     fn place(&self, i: usize, seed: u32) -> DVec3 {
-        let chance = hash(seed ^ hash(i as u32 + 1));
-        let [u, v] = [chance & 0xffff, chance >> 16].map(|bits| (f64::from(bits) + 0.5) / 65_536.0);
-        let p = self.cells[i] + self.size * dvec2(u, v);
+        let p = self.cells[i] + self.size * if seed == 0 { self.even[i] } else { by_chance(i, seed) };
         let p = match &self.shape {
             Shape::Disc => disc_from_square(p),
             Shape::Polygon(corners) if contains(corners, p) => p,
@@ -197,6 +207,27 @@ impl Area {
         };
         self.origin + self.axes[0] * p.x + self.axes[1] * p.y
     }
+}
+
+/// A place in the unit square for each cell, where all points see the same places. Cells of one row lie at different heights in
+/// theirs, and those of one column at different widths: along either axis the places are spread as evenly as their number
+/// allows, so that edges of shadows are as wide as by any number of places.
+fn even(cells: &[DVec2], size: DVec2) -> Vec<DVec2> {
+    let low = cells.iter().fold(DVec2::INFINITY, |low, c| low.min(*c));
+    let high = cells.iter().fold(DVec2::NEG_INFINITY, |high, c| high.max(*c));
+    let counts = ((high - low) / size).round() + DVec2::ONE;
+    let within = |cell: &DVec2| {
+        let number = ((*cell - low) / size).round();
+        dvec2((number.y + 0.5) / counts.y, (number.x + 0.5) / counts.x)
+    };
+    cells.iter().map(within).collect()
+}
+
+/// A place in the unit square for cell `i`, another for each seed.
+fn by_chance(i: usize, seed: u32) -> DVec2 {
+    let chance = hash(seed ^ hash(i as u32 + 1));
+    let [u, v] = [chance & 0xffff, chance >> 16].map(|bits| (f64::from(bits) + 0.5) / 65_536.0);
+    dvec2(u, v)
 }
 
 /// About `samples` cells, as square as may be, whose middles are `inside`; `share` of the rectangle is.
@@ -266,6 +297,17 @@ mod tests {
             seen[y * 4 + x] += 1;
         }
         assert_eq!(seen, [1; 16]);
+    }
+
+    #[test]
+    fn the_same_places_for_all_points_are_spread_evenly_along_both_axes() {
+        let corners = [[0., 0.], [4., 0.], [4., 4.], [0., 4.]].map(|[x, y]| dvec3(x, y, 0.0)).to_vec();
+        let square = area(AreaShape::Polygon { corners }, 16);
+        for axis in 0..2 {
+            let mut along: Vec<f64> = (0..16).map(|i| square.place(i, 0)[axis]).collect();
+            along.sort_by(f64::total_cmp);
+            assert!(along.iter().zip(0..).all(|(v, i)| (v - (f64::from(i) + 0.5) / 4.0).abs() < 1e-12), "{along:?}");
+        }
     }
 
     #[test]

@@ -21,6 +21,7 @@ mod pixel_light;
 mod ray_trace;
 mod realism;
 mod robust;
+mod scene_files;
 mod steps;
 mod translucent;
 mod transparency;

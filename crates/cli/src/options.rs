@@ -36,8 +36,16 @@ pub enum Purpose {
 }
 
 /// Options of reading, by their names on the command line.
-const OF_LOADING: [&str; 6] =
-    ["normals", "crease-angle", "material", "allow-external", "all-rotation", "all-translation"];
+const OF_LOADING: [&str; 8] = [
+    "normals",
+    "crease-angle",
+    "material",
+    "allow-external",
+    "all-rotation",
+    "all-translation",
+    "animation",
+    "animation-time",
+];
 
 /// Limits and threads.
 const OF_EXECUTION: [&str; 3] = ["threads", "time-limit", "max-memory"];

@@ -9,7 +9,7 @@ use std::io::Write;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Exit code of a limit that was reached.
-const LIMIT: i32 = 7;
+pub(crate) const LIMIT: u8 = 7;
 
 /// Smaller requests are not counted: together they are little beside a mesh or a texture.
 const COUNTED_FROM: usize = 1 << 10;
@@ -90,7 +90,7 @@ fn end(what: std::fmt::Arguments<'_>) -> ! {
     let _ = writeln!(rest, "hint: fewer models, smaller textures, a smaller picture or fewer samples need less memory");
     let left = rest.len();
     let _ = std::io::stderr().lock().write_all(&line[..line.len() - left]);
-    std::process::exit(LIMIT)
+    std::process::exit(i32::from(LIMIT))
 }
 
 /// Allows the process so many bytes, as long as this lives.
@@ -100,6 +100,11 @@ impl Drop for Held {
     fn drop(&mut self) {
         ALLOWED.store(usize::MAX, Ordering::Relaxed);
     }
+}
+
+/// Bytes that the process has, of requests that are counted.
+pub(crate) fn taken() -> u64 {
+    TAKEN.load(Ordering::Relaxed) as u64
 }
 
 /// Holds the process to so many bytes: one that asks for more ends with exit code 7.

@@ -4,6 +4,7 @@ use crate::batch_args::{BatchArgs, BatchWorkerArgs};
 use crate::draw_args::DrawArgs;
 use crate::help::{EXIT_CODES, model_help};
 use crate::lab_args::LabPageArgs;
+use crate::read_probe::ReadProbeArgs;
 use crate::render_args::{CameraArgs, EyeArgs, RenderArgs};
 use crate::values;
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -39,6 +40,8 @@ pub(crate) enum Verb {
     Batch(Box<BatchArgs>),
     #[command(hide = true)]
     BatchWorker(BatchWorkerArgs),
+    #[command(hide = true)]
+    ReadProbe(ReadProbeArgs),
     /// Open the Lab in a browser: the classical algorithms to watch, step through and question
     Lab(LabPageArgs),
     /// Tell what is in a model file

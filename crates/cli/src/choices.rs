@@ -55,6 +55,11 @@ pub(crate) fn light_term() -> impl TypedValueParser<Value = LightTerm> {
     of(LightTerm::ALL.map(|(term, name)| (term, name, "")))
 }
 
+/// Whether a dim light from the viewer is added where it is needed.
+pub(crate) fn fill_light() -> impl TypedValueParser<Value = bool> {
+    of([(true, "auto", ""), (false, "none", "")])
+}
+
 pub(crate) fn exercise() -> impl TypedValueParser<Value = &'static str> {
     of(vitral::EXERCISES.map(|exercise| (exercise.number, exercise.number, exercise.task)))
 }

@@ -284,7 +284,7 @@ fn lines_help() -> String {
 }
 
 /// `contour,crease`, or `all`.
-fn line_classes(text: &str) -> Result<LineClasses, String> {
+pub(crate) fn line_classes(text: &str) -> Result<LineClasses, String> {
     if text.eq_ignore_ascii_case("all") {
         return Ok(LineClasses::ALL);
     }

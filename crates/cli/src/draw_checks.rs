@@ -228,6 +228,7 @@ fn check_surfaces(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure>
         (!light.light_edit.is_empty(), "--light-edit"),
         (light.light_intensity.is_some(), "--light-intensity"),
         (light.light_term.is_some(), "--light-term"),
+        (light.fill_light.is_some(), "--fill-light"),
     ];
     let of_fills = [
         (fill.color_by.is_some(), "--color-by"),

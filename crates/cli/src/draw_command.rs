@@ -9,7 +9,7 @@ use crate::models::{self, ReadLimits};
 use crate::outputs::expand;
 use crate::progress::Progress;
 use crate::report::{self, Failure};
-use crate::resolve::{execution_within, overlay_files, save_state, set_lights, set_viewpoint};
+use crate::resolve::{execution_within, overlay_files, save_state, set_lights, set_reading, set_viewpoint};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -61,25 +61,28 @@ struct Job {
     models: Vec<PathBuf>,
     file: DrawFile,
     settings: DrawingSettings,
+    /// It is one of several.
+    apart: bool,
 }
 
 impl Job {
     /// The drawing of these models, checked as far as it can be before the work.
     fn new(args: &DrawArgs, state: &State, models: Vec<PathBuf>) -> Result<Self, Failure> {
+        let apart = models::named(&args.models, state).len() > models.len();
         let state = State { models: models::in_unicode(&models), ..state.clone() };
         let file = DrawFile::new(args, &state, models.first().map_or(Path::new(""), PathBuf::as_path))?;
         let mut settings = settings_of(args)?;
         settings.page = file.page_above_title(settings.page, settings.margin)?;
-        Ok(Self { state, models, file, settings })
+        Ok(Self { state, models, file, settings, apart })
     }
 }
 
 /// Reads the models, draws, writes.
 fn draw(args: &DrawArgs, job: &Job, execution: vitral::Execution, start: Instant) -> Result<(), Failure> {
     // Read the models.
-    let Job { state, models, file, settings } = job;
+    let Job { state, models, file, settings, apart } = job;
     let mut settings = *settings;
-    let scene = models::load_scene(state, models, &execution, ReadLimits::of(&args.process))?;
+    let scene = models::load_scene(state, models, &execution, ReadLimits::of(&args.process).among_others(*apart))?;
     let scene = args.section.apply(scene, &execution)?;
     if !args.report.quiet {
         report::warnings(&scene.warnings);
@@ -177,7 +180,7 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
     set_lights(&mut state, &args.light)?;
     let shading = &mut state.settings.shading;
     shading.illumination = args.fill.illumination.unwrap_or(shading.illumination);
-    state.load.allow_external |= args.process.allow_external;
+    set_reading(&mut state, &args.process);
     if let Some(limit) = args.process.max_memory {
         state.load.max_file_bytes = state.load.max_file_bytes.min(limit);
     }

@@ -3,6 +3,7 @@
 //! A library, so that other programs offer the same command ([`command`]) and take the same options ([`options`]).
 
 pub mod allocator;
+mod animation_frames;
 mod args;
 mod batch;
 mod batch_args;
@@ -42,6 +43,7 @@ mod osmesa_env_command;
 mod outputs;
 mod program;
 mod progress;
+mod read_probe;
 mod render_args;
 mod render_command;
 mod report;
@@ -89,6 +91,7 @@ fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
         Verb::Draw(args) => draw_command::run(&args),
         Verb::Batch(args) => batch::run(&args),
         Verb::BatchWorker(args) => batch::worker::run(&args, dispatch),
+        Verb::ReadProbe(args) => read_probe::run(&args),
         Verb::Lab(args) => lab::run(&args),
         Verb::Info(args) => info_command::run(&args),
         Verb::Compare(args) => compare_command::run(&args),

@@ -15,8 +15,12 @@
 //! `gl,constant,linear,quadratic`, or `range,distance`.
 
 use crate::fields::Fields;
+use crate::similar::not_one_of;
 use vitral::light_text::{attenuation, corners, direction, half_angle, intensity, not_negative, switch, vector};
 use vitral::{AreaShape, Attenuation, Light, LightKind};
+
+/// The kinds of light.
+const KINDS: [&str; 5] = ["ambient", "directional", "point", "spot", "area"];
 
 /// Half angle of a spot light's cone in degrees where none is given.
 const CUTOFF: f64 = 30.0;
@@ -75,7 +79,7 @@ impl LightFields<'_> {
     }
 
     fn kind_of_light(&mut self) -> Result<LightKind, String> {
-        match self.kind {
+        match self.kind.to_lowercase().as_str() {
             "ambient" => Ok(LightKind::Ambient),
             "directional" => Ok(LightKind::Directional { direction: self.need("direction", direction)? }),
             "point" => Ok(LightKind::Point { position: self.need("position", vector)? }),
@@ -90,7 +94,7 @@ impl LightFields<'_> {
                 })
             }
             "area" => Ok(LightKind::Area { shape: self.area_shape()? }),
-            other => Err(format!("`{other}` is no kind of light: ambient, directional, point, spot, area")),
+            _ => Err(not_one_of(self.kind, &KINDS, "")),
         }
     }
 
@@ -131,6 +135,13 @@ mod tests {
     }
 
     #[test]
+    fn kinds_and_fields_have_no_case() {
+        let typed = |text| parse(text, false).unwrap();
+        assert_eq!(typed("POINT:Position=1,2,3,Diffuse=red"), typed("point:position=1,2,3,diffuse=red"));
+        assert_eq!(parse("Spot:position=0,0,0,POSITION=1,1,1", false).unwrap_err(), "`POSITION` is given twice");
+    }
+
+    #[test]
     fn every_kind() {
         assert_eq!(parse("ambient:ambient=0.3", false).unwrap().ambient, [0.3; 3]);
         assert_eq!(parse("point:position=0,0,0,diffuse=red", false).unwrap().specular, [1.0, 0.0, 0.0]);
@@ -159,7 +170,11 @@ mod tests {
     #[test]
     fn errors_say_what_is_wrong() {
         for (text, expected) in [
-            ("lamp", "`lamp` is no kind of light: ambient, directional, point, spot, area"),
+            ("lamp", "`lamp` is not one of ambient, directional, point, spot, area"),
+            (
+                "Poin:position=1,2,3",
+                "`Poin` is not one of ambient, directional, point, spot, area; did you mean `point`?",
+            ),
             ("point", "a light of kind `point` needs `position`"),
             ("point:1,2,3", "`1` has no key: key=value is required"),
             ("point:position=1,2", "position: 3 numbers are required, `1,2` has 2"),

@@ -3,6 +3,7 @@
 use crate::allocator;
 use crate::kept_models;
 use crate::outputs::{has_model, model_name};
+use crate::read_probe;
 use crate::render_args::ProcessArgs;
 use crate::report::{self, Failure};
 use std::collections::BTreeMap;
@@ -36,12 +37,19 @@ pub(crate) struct ReadLimits {
     time: Option<f64>,
     /// Bytes of the process.
     memory: Option<u64>,
+    /// Other models go on where the memory is not enough.
+    goes_on: bool,
 }
 
 impl ReadLimits {
     /// The limits that were typed.
     pub(crate) fn of(args: &ProcessArgs) -> Self {
-        Self { time: args.time_limit, memory: args.max_memory }
+        Self { time: args.time_limit, memory: args.max_memory, goes_on: false }
+    }
+
+    /// For one of several models, `apart` from the others.
+    pub(crate) fn among_others(self, apart: bool) -> Self {
+        Self { goes_on: apart, ..self }
     }
 }
 
@@ -55,7 +63,12 @@ pub(crate) fn load_scene(
     models: &[PathBuf],
     execution: &Execution,
     limits: ReadLimits,
-) -> Result<Scene, Error> {
+) -> Result<Scene, Failure> {
+    if let (Some(bytes), true) = (limits.memory, limits.goes_on) {
+        let left = limits.time.map_or(f64::INFINITY, |limit| limit - execution.budget.elapsed());
+        let threads = execution.workers.threads();
+        models.iter().try_for_each(|model| read_probe::check(model, &state.load, threads, bytes, left))?;
+    }
     let _held = limits.memory.map(allocator::hold);
     let (state, models, workers) = (state.clone(), models.to_vec(), execution.workers.clone());
     let load = state.load_options();
@@ -67,7 +80,7 @@ pub(crate) fn load_scene(
             kept_models::load(name, &load, &workers)
         })
     };
-    let Some(limit) = limits.time else { return read() };
+    let Some(limit) = limits.time else { return Ok(read()?) };
 
     // Wait for another thread as long as there is time.
     let reached = || Error::from(Limit::Time { limit, stage: "loading", achieved: Achieved::default() });
@@ -79,8 +92,8 @@ pub(crate) fn load_scene(
         let _ = told.send(read());
     });
     match reader {
-        Ok(_) => waiting.recv_timeout(left).unwrap_or_else(|_| Err(reached())),
-        Err(source) => Err(Error::Read { path: "a thread that reads".into(), source }),
+        Ok(_) => Ok(waiting.recv_timeout(left).unwrap_or_else(|_| Err(reached()))?),
+        Err(source) => Err(Error::Read { path: "a thread that reads".into(), source }.into()),
     }
 }
 

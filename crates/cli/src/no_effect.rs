@@ -33,6 +33,7 @@ const DARK: &str = "with --lighting off surfaces show their own colours";
 const CONSTANT: &str = "with --illumination constant surfaces show their own colours";
 const AMBIENT: &str = "with --illumination ambient no light comes from anywhere in particular";
 const DATA: &str = "no colour picture is made";
+const NO_EDGES: &str = "no edges are drawn: add --edges, --wireframe or --wireframe-hidden-line";
 const WIRES: &str = "edges alone are drawn, in one colour";
 const OPAQUE: &str = "with --transparency none every surface is opaque";
 const SOLID: &str = "the models have no transparent surfaces";
@@ -50,6 +51,9 @@ const ROWS: &[Row] = &[
     row("--depth-cue", |a| a.algorithms.depth_cue.is_some(), Case::makes_no_color, DATA),
     row("--edges", |a| a.algorithms.edges, Case::makes_no_color, DATA),
     row("--wireframe-hidden-line", |a| a.algorithms.wireframe_hidden_line, Case::makes_no_color, DATA),
+    row("--line-width", |a| a.algorithms.line_width.is_some(), |c| !c.has_lines(), "there are no lines: add --edges"),
+    row("--edge-color", |a| a.algorithms.edge_color.is_some(), |c| !c.draws_edges(), NO_EDGES),
+    row("--edge-classes", |a| a.algorithms.edge_classes.is_some(), |c| !c.draws_edges(), NO_EDGES),
     row("--illumination", gives_illumination, Case::makes_no_color, DATA),
     row("--illumination", gives_illumination, Case::draws_wires, WIRES),
     row("--illumination", gives_illumination, |c| c.is_dark() && !c.is_constant(), DARK),
@@ -113,6 +117,9 @@ const ROWS: &[Row] = &[
     row("--environment", |a| a.light.environment.is_some(), Case::is_dark, DARK),
     row("--file-colors", |a| a.light.file_colors.is_some(), Case::makes_no_color, DATA),
     row("--file-colors", |a| a.light.file_colors.is_some(), Case::draws_wires, WIRES),
+    row("--fill-light", gives_fill_light, Case::makes_no_color, DATA),
+    row("--fill-light", gives_fill_light, Case::is_dark, DARK),
+    row("--fill-light", gives_fill_light, Case::is_constant, CONSTANT),
     row("--normals", gives_normals, |c| c.makes_no_color() && !c.shows_normals(), DATA),
     row("--normals", gives_normals, |c| c.draws_wires() && !c.shows_normals(), WIRES),
     row("--normals", gives_normals, |c| c.is_dark() && c.is_solid() && !c.shows_normals(), DARK),
@@ -125,6 +132,10 @@ const ROWS: &[Row] = &[
     row("--up", |a| a.camera.up.is_some(), Case::has_own_up, "--camera-index brings its own, and nothing turns"),
     row("--camera-view-angle", |a| a.camera.camera_view_angle.is_some(), Case::is_parallel_without_angle, PARALLEL),
 ];
+
+fn gives_fill_light(args: &RenderArgs) -> bool {
+    args.light.fill_light == Some(false)
+}
 
 fn gives_lighting(args: &RenderArgs) -> bool {
     args.light.lighting == Some(false)
@@ -248,6 +259,15 @@ impl Case {
 
     fn draws_wires(&self) -> bool {
         matches!(self.settings.picture.lines, Lines::Wireframe | Lines::WireframeHiddenLine)
+    }
+
+    fn draws_edges(&self) -> bool {
+        self.settings.picture.lines != Lines::None
+    }
+
+    /// Whether edges are drawn, or the model has lines of its own.
+    fn has_lines(&self) -> bool {
+        self.draws_edges() || self.scene.meshes.iter().any(|mesh| !mesh.lines.is_empty())
     }
 
     fn draws_all_edges(&self) -> bool {

@@ -36,8 +36,17 @@ pub enum Purpose {
 }
 
 /// Options of reading, by their names on the command line.
-const OF_LOADING: [&str; 7] =
-    ["normals", "crease-angle", "file-colors", "material", "allow-external", "all-rotation", "all-translation"];
+const OF_LOADING: [&str; 9] = [
+    "normals",
+    "crease-angle",
+    "file-colors",
+    "material",
+    "allow-external",
+    "all-rotation",
+    "all-translation",
+    "animation",
+    "animation-time",
+];
 
 /// Limits and threads.
 const OF_EXECUTION: [&str; 3] = ["threads", "time-limit", "max-memory"];

@@ -6,8 +6,8 @@ use std::io::IsTerminal;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A short bar, and a message that is cut where a terminal is narrow.
-const TEMPLATE: &str = "{bar:20} {wide_msg}";
+/// A short bar, and a message that is cut where a terminal is narrow: it begins with what matters most. 40 columns hold per cent and time.
+const TEMPLATE: &str = "{bar:12} {wide_msg}";
 
 /// Tells how many pictures are done.
 pub(crate) enum Progress {
@@ -59,7 +59,7 @@ impl Progress {
             match &bar {
                 Some(bar) => {
                     bar.set_length(total);
-                    bar.set_message(stage.text(done, total));
+                    bar.set_message(stage.text_beside_bar(done, total));
                     bar.set_position(done);
                     if done >= total {
                         bar.finish_and_clear();
@@ -78,7 +78,7 @@ impl Progress {
             Self::Silent => {}
             Self::Bar(bar, counted) => {
                 counted.done = count;
-                bar.set_message(counted.text());
+                bar.set_message(counted.text_beside_bar());
                 bar.set_position(count);
             }
             Self::Lines(counted) => counted.done = count,
@@ -117,8 +117,20 @@ fn bar(length: u64) -> ProgressBar {
 impl Counted {
     /// `picture 3 of 8, 37 %, 5 s left`.
     fn text(&self) -> String {
-        let Self { unit, total, done, start } = self;
-        format!("{} {done} of {total}, {}", unit.trim_end_matches('s'), share(*done, *total, start.elapsed()))
+        format!("{}, {}", self.position(), self.share())
+    }
+
+    /// `37 %, 5 s left, picture 3 of 8`.
+    fn text_beside_bar(&self) -> String {
+        format!("{}, {}", self.share(), self.position())
+    }
+
+    fn position(&self) -> String {
+        format!("{} {} of {}", self.unit.trim_end_matches('s'), self.done, self.total)
+    }
+
+    fn share(&self) -> String {
+        share(self.done, self.total, self.start.elapsed())
     }
 }
 
@@ -145,8 +157,16 @@ impl Stage {
 
     /// `ray tracing: 40 %, 12 s left`.
     fn text(&self, done: u64, total: u64) -> String {
-        let elapsed = self.start.map_or(Duration::ZERO, |start| start.elapsed());
-        format!("{}: {}", self.name, share(done, total, elapsed))
+        format!("{}: {}", self.name, self.share(done, total))
+    }
+
+    /// `40 %, 12 s left, ray tracing`.
+    fn text_beside_bar(&self, done: u64, total: u64) -> String {
+        format!("{}, {}", self.share(done, total), self.name)
+    }
+
+    fn share(&self, done: u64, total: u64) -> String {
+        share(done, total, self.start.map_or(Duration::ZERO, |start| start.elapsed()))
     }
 }
 
@@ -181,6 +201,20 @@ mod tests {
         assert_eq!(after(1, 60), "12 %, 7 min 0 s left");
         assert_eq!(after(1, 3600), "12 %, 7 h 0 min left");
         assert_eq!((after(0, 5), after(8, 5)), ("0 %".to_owned(), "100 %".to_owned()));
+    }
+
+    #[test]
+    fn per_cent_and_time_come_first_where_the_end_may_be_cut() {
+        let start = Some(Instant::now());
+        let stage = Stage { name: "radiosity".to_owned(), start, done: 8, tenth: 0 };
+        assert_eq!(
+            (stage.text(8, 8), stage.text_beside_bar(8, 8)),
+            ("radiosity: 100 %".into(), "100 %, radiosity".into())
+        );
+        let counted = Counted { unit: "pictures", total: 3, done: 0, start: Instant::now() };
+        assert_eq!(counted.text_beside_bar(), "0 %, picture 0 of 3");
+        // The longest numbers beside the bar of 12 columns and a space.
+        assert!("99 %, 59 min 59 s left".len() + 13 <= 40);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The options of `vitral render` as typed. What was not typed is `None`, so that files can fill it in.
 
+use crate::draw_args::line_classes;
 use crate::help::{EXIT_CODES, model_help};
 use crate::{choices, depth_cue, light_spec, values};
 use clap::{ArgAction, Args, ValueEnum};
@@ -8,8 +9,8 @@ use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
     Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Environment, FileColors, Global, Illumination,
-    Interpolation, LightEdit, LightTerm, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Terminator,
-    Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
+    Interpolation, LightEdit, LightTerm, LineClass, LineClasses, MaterialOverride, Normals, PictureFormat, Shading,
+    Shadows, Terminator, Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
 };
 
 /// Options of `vitral render`.
@@ -68,12 +69,18 @@ pub(crate) struct OutputArgs {
     pub(crate) steps_frames: Option<u32>,
     /// N views around the model; --output needs {frame}, or a format that can be animated [default: one picture]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=1_000_000u32), allow_negative_numbers = true)]
+    #[arg(group = "sequence")]
     pub(crate) turntable: Option<u32>,
+    /// N pictures of an animation of a glTF file, from --animation-time to its end, seen by one camera; --output as for --turntable.
+    /// The file is read for each
+    #[arg(long, value_name = "N", value_parser = values::whole(1..=1_000_000u32), allow_negative_numbers = true)]
+    #[arg(group = "sequence", conflicts_with_all = ["steps_video", "trace", "structure", "dump", "reference"])]
+    pub(crate) animation_frames: Option<u32>,
     /// Frames a second of an animation as .gif, .webp or .apng [default: 25]
     #[arg(long, value_name = "N", value_parser = values::frame_rate, allow_negative_numbers = true)]
     pub(crate) frame_rate: Option<f64>,
-    /// Only these frames of the turntable, counted from 0: 3 or 0-9
-    #[arg(long, value_name = "FIRST-LAST", value_parser = values::frames, requires = "turntable")]
+    /// Only these frames of the turntable or animation, counted from 0: 3 or 0-9
+    #[arg(long, value_name = "FIRST-LAST", value_parser = values::frames, requires = "sequence")]
     pub(crate) frames: Option<RangeInclusive<u32>>,
     /// Write only if the colour picture differs from this one, with exit code 6
     #[arg(long, value_name = "IMG")]
@@ -210,6 +217,14 @@ pub(crate) struct AlgorithmArgs {
     /// Surfaces with their edges, and the lines in which faces penetrate each other
     #[arg(long, group = "lines")]
     pub(crate) edges: bool,
+    /// Width of edges and of the model's own lines in pixels, 0.1 to 64 [default: 1.3]
+    #[arg(long, value_name = "PX", value_parser = values::line_width, allow_negative_numbers = true)]
+    pub(crate) line_width: Option<f32>,
+    /// Colour of edges: a name, #rrggbb, or r,g,b from 0 to 1 [default: dark on a light background and the other way round]
+    #[arg(long, value_name = "COLOR", value_parser = values::color)]
+    pub(crate) edge_color: Option<[f32; 3]>,
+    #[arg(long, value_name = "LIST", value_parser = line_classes, help = edge_classes_help())]
+    pub(crate) edge_classes: Option<LineClasses>,
     /// Which normals are used [default: file]
     #[arg(long, value_name = "KIND", value_parser = choices::normals())]
     pub(crate) normals: Option<Normals>,
@@ -247,8 +262,22 @@ pub(crate) struct LightArgs {
     /// One term of all lights alone [default: all three]
     #[arg(long, value_name = "TERM", value_parser = choices::light_term())]
     pub(crate) light_term: Option<LightTerm>,
+    /// What lights models whose own lights leave black all that is seen: auto, a dim light from the viewer with a warning, or none
+    /// [default: auto]
+    #[arg(long, value_name = "auto|none", value_parser = choices::fill_light(), conflicts_with = "light")]
+    pub(crate) fill_light: Option<bool>,
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material, help = material_help())]
     pub(crate) material: Vec<MaterialOverride>,
+}
+
+/// The help of `--edge-classes`.
+fn edge_classes_help() -> String {
+    let names: Vec<&str> = LineClass::ALL.iter().map(|row| row.1).collect();
+    format!(
+        "Which edges are drawn with --edges and the wireframes: a list of {}, as in `vitral draw --lines`, with creases above 30 \
+         degrees; smooth means every edge of a face [default: all]",
+        names.join(", ")
+    )
 }
 
 /// The help of `--light-edit`.
@@ -359,6 +388,12 @@ pub(crate) struct ProcessArgs {
     /// Let models name files outside their folder
     #[arg(long)]
     pub(crate) allow_external: bool,
+    /// Show an animation of a glTF file, by its number from 0 or its name; `vitral info` lists them [default: the pose of the file]
+    #[arg(long, value_name = "N|NAME")]
+    pub(crate) animation: Option<String>,
+    /// The moment of the animation in seconds, of the first one if none is named [default: 0]
+    #[arg(long, value_name = "S", value_parser = values::not_negative, allow_negative_numbers = true)]
+    pub(crate) animation_time: Option<f64>,
     /// Defaults from this file [default: $XDG_CONFIG_HOME/vitral/config.json]
     #[arg(long, value_name = "FILE", conflicts_with = "no_config")]
     pub(crate) config: Option<PathBuf>,

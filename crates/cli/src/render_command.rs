@@ -1,5 +1,6 @@
 //! `vitral render`: models in, pictures out.
 
+use crate::animation_frames::Moments;
 use crate::blank;
 use crate::compare_command;
 use crate::interrupt;
@@ -155,7 +156,7 @@ fn render(
     // Write what goes beside pictures.
     let cameras = match plan.state.turntable {
         Some(_) => renderer.turntable_cameras(plan.views as usize),
-        None => vec![renderer.frame_camera()],
+        None => vec![renderer.frame_camera(); plan.views as usize],
     };
     let first = &cameras[*plan.frames.start() as usize];
     if let Some(folder) = &args.output.dump {
@@ -216,7 +217,12 @@ fn timed<T>(seconds: &mut Map<String, Value>, name: &str, work: impl FnOnce() ->
 
 /// A renderer with the models, the settings and a solution of radiosity as asked for, and the warnings of the files.
 fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<(Renderer, Vec<String>), Failure> {
-    let scene = models::load_scene(&plan.state, &plan.models, &execution, ReadLimits::of(&args.process))?;
+    let scene = models::load_scene(
+        &plan.state,
+        &plan.models,
+        &execution,
+        ReadLimits::of(&args.process).among_others(plan.apart),
+    )?;
     let mut warnings = scene.warnings.clone();
     if !args.report.quiet {
         report::warnings(&warnings);
@@ -319,9 +325,11 @@ fn draw(
     let animate = |output: &Output| output.animation(count, args.output.frame_rate, &options);
     let mut animations = plan.outputs.iter().map(animate).collect::<Result<Vec<_>, _>>()?;
     let mut drawn = Drawn::default();
+    let moments = Moments::new((&args.output, &args.process), &plan.state, &plan.models, renderer);
     for number in plan.frames.clone() {
         // Render it.
         let camera = &cameras[number as usize];
+        moments.iter().try_for_each(|moments| moments.show(number, renderer))?;
         let render_start = Instant::now();
         let mut rendered =
             if args.output.panels { vitral::panels(renderer, camera)? } else { renderer.render_from(camera)? };

@@ -1,5 +1,6 @@
 //! From options as typed to a whole plan: defaults, then the configuration file, then the state file, then the options.
 
+use crate::animation_frames;
 use crate::compare_command;
 use crate::light_spec;
 use crate::machine;
@@ -37,7 +38,7 @@ pub(crate) struct Plan {
     pub(crate) outputs: Vec<Output>,
     /// Which frames of how many.
     pub(crate) frames: RangeInclusive<u32>,
-    /// Views of the whole turn; 1 without a turntable.
+    /// Views of the whole turn or animation; else 1.
     pub(crate) views: u32,
     /// Where the pictures after one step after the other go.
     pub(crate) steps_video: Option<Output>,
@@ -67,11 +68,17 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     let steps_video =
         video.map(|pattern| Output::sequence("--steps-video", pattern, &args.output.format)).transpose()?;
 
-    let views = state.turntable.unwrap_or(1).clamp(1, 1_000_000) as u32;
+    if args.output.animation_frames.is_some() {
+        state.turntable = None;
+        state.load.animation_time = state.load.animation_time.or(Some(0.0));
+    }
+    let turned = state.turntable.unwrap_or(1).clamp(1, 1_000_000) as u32;
+    let views = args.output.animation_frames.unwrap_or(turned);
     let frames = frames_of(args, views, &outputs, steps_video.as_ref())?;
     let models = models::named(&args.models, &state);
     let patterns = outputs.iter().chain(&steps_video).map(Output::pattern);
     let apart = models::are_apart(&models, args.output.together, patterns);
+    animation_frames::check(&args.output, &models, apart)?;
     if apart {
         check_models_apart(args, &models, outputs.iter().chain(&steps_video), *frames.start())?;
     }
@@ -158,7 +165,7 @@ pub(crate) fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Fa
     set_lights(state, &args.light)?;
     set_viewpoint(&mut state.viewpoint, &args.camera, &args.lab.eye);
     set_lab(state, &args.lab);
-    state.load.allow_external |= args.process.allow_external;
+    set_reading(state, &args.process);
     if let Some(limit) = args.process.max_memory {
         state.load.max_file_bytes = state.load.max_file_bytes.min(limit);
         // Layers are dropped with a warning rather than that the picture fails.
@@ -215,20 +222,21 @@ fn check_background_and_pixel(args: &RenderArgs, state: &State, outputs: &[Outpu
     Ok(())
 }
 
-/// The frames to render of a turntable with this many views; each needs a name of its own.
+/// The frames to render of a turntable or animation with this many views; each needs a name of its own.
 fn frames_of(
     args: &RenderArgs,
     views: u32,
     outputs: &[Output],
     steps_video: Option<&Output>,
 ) -> Result<RangeInclusive<u32>, Failure> {
+    let sequence = if args.output.animation_frames.is_some() { "animation" } else { "turntable" };
     let frames = args.output.frames.clone().unwrap_or(0..=views - 1);
     if *frames.end() >= views {
-        return Err(Failure::usage(format!("--frames {}: the turntable has {views} frames", frames.end()))
+        return Err(Failure::usage(format!("--frames {}: the {sequence} has {views} frames", frames.end()))
             .with_hint("they are counted from 0"));
     }
     if frames.end() > frames.start() && outputs.iter().any(|o| !o.holds_frames()) {
-        let what = format!("--output holds one picture, the turntable has {views}");
+        let what = format!("--output holds one picture, the {sequence} has {views}");
         return Err(Failure::usage(what).with_hint(FRAMES_HINT));
     }
     if let Some(animation) = outputs.iter().find(|o| frames.end() > frames.start() && o.is_animation())
@@ -241,7 +249,7 @@ fn frames_of(
     let is_animated = outputs.iter().chain(steps_video).any(Output::is_animation);
     if args.output.frame_rate.is_some() && !(several && is_animated) {
         return Err(Failure::usage("--frame-rate: no animation is written")
-            .with_hint("give --turntable or --steps-video, and a .gif, .webp or .apng"));
+            .with_hint("give --turntable, --animation-frames or --steps-video, and a .gif, .webp or .apng"));
     }
     Ok(frames)
 }
@@ -382,6 +390,9 @@ fn set_surfaces(settings: &mut Settings, args: &AlgorithmArgs) {
     if let Some((_, chosen)) = lines.into_iter().find(|l| l.0) {
         settings.picture.lines = chosen;
     }
+    settings.picture.line_width = args.line_width.unwrap_or(settings.picture.line_width);
+    settings.picture.edge_color = args.edge_color.or(settings.picture.edge_color);
+    settings.picture.edge_classes = args.edge_classes.unwrap_or(settings.picture.edge_classes);
 }
 
 fn set_transparency(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
@@ -459,6 +470,13 @@ fn no_radiosity(option: &str) -> Failure {
     Failure::usage(format!("{option}: radiosity is not computed")).with_hint("add --global radiosity")
 }
 
+/// How models are read.
+pub(crate) fn set_reading(state: &mut State, args: &ProcessArgs) {
+    state.load.allow_external |= args.allow_external;
+    state.load.animation = args.animation.clone().or(state.load.animation.take());
+    state.load.animation_time = args.animation_time.or(state.load.animation_time);
+}
+
 pub(crate) fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Failure> {
     if args.file_colors == Some(FileColors::Srgb) && state.settings.picture.color_space == ColorSpace::Raw {
         return Err(Failure::usage("--file-colors srgb: raw colours are the numbers of the file")
@@ -475,6 +493,7 @@ pub(crate) fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Fail
     state.light_edits.extend(args.light_edit.iter().cloned());
     state.light_intensity = args.light_intensity.or(state.light_intensity);
     state.light_term = args.light_term.or(state.light_term);
+    state.fill_light = args.fill_light.unwrap_or(state.fill_light);
     state.materials.extend(args.material.iter().cloned());
     Ok(())
 }

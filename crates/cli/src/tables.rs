@@ -91,7 +91,16 @@ pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
             .collect();
         let builtin: Vec<_> = vitral::builtin_names()
             .iter()
-            .map(|(name, about)| json!({"name": format!("builtin:{name}"), "description": about}))
+            .map(|(name, about)| {
+                let parameters: Vec<_> = vitral::builtin_parameters(name)
+                    .iter()
+                    .map(|p| {
+                        let [least, most] = p.range;
+                        json!({"name": p.name, "description": p.about, "least": least, "most": most, "default": p.default})
+                    })
+                    .collect();
+                json!({"name": format!("builtin:{name}"), "description": about, "parameters": parameters})
+            })
             .collect();
         return report::print_json(&json!({"formats": list, "builtin": builtin})).map(|()| 0);
     }
@@ -108,6 +117,11 @@ pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
     text.push_str("\nScenes that need no file\n");
     for (name, about) in vitral::builtin_names() {
         let _ = writeln!(text, "  {:<30} {about}", format!("builtin:{name}"));
+        let parameters: Vec<String> = vitral::builtin_parameters(name).iter().map(ToString::to_string).collect();
+        if !parameters.is_empty() {
+            let example = format!("builtin:{name}?{}=N", vitral::builtin_parameters(name)[0].name);
+            let _ = writeln!(text, "  {:<30} {example}: {}", "", parameters.join(", "));
+        }
     }
     report::print(text.as_bytes()).map(|()| 0)
 }

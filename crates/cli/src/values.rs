@@ -50,6 +50,13 @@ pub(crate) fn half_turn(text: &str) -> Result<f64, String> {
     })
 }
 
+/// A width of lines in pixels.
+pub(crate) fn line_width(text: &str) -> Result<f32, String> {
+    intensity(text).and_then(|v| {
+        if (0.1..=64.0).contains(&v) { Ok(v) } else { Err("a number from 0.1 to 64 is required".to_owned()) }
+    })
+}
+
 /// An exponent above 0, in single precision.
 pub(crate) fn exponent(text: &str) -> Result<f32, String> {
     intensity(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err("a number above 0 is required".to_owned()) })

@@ -20,71 +20,9 @@
 //! Source: the classes are those of [Bénard & Hertzmann 2019], section 2.
 
 use crate::page_mesh::{Source, Triangle};
-use std::ops::BitOr;
 use vitral_frame::drawing::LineClass;
 
-/// A set of line classes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Classes(u8);
-
-impl Classes {
-    /// No class.
-    pub const EMPTY: Self = Self(0);
-    /// What drawings show if nothing else is said.
-    pub const USUAL: Self = Self(
-        1 << LineClass::Contour as u8
-            | 1 << LineClass::Boundary as u8
-            | 1 << LineClass::Crease as u8
-            | 1 << LineClass::Material as u8
-            | 1 << LineClass::Intersection as u8
-            | 1 << LineClass::Section as u8,
-    );
-    /// Every edge of a face.
-    pub const ALL: Self = Self(0x7f);
-
-    /// The set of one class.
-    pub fn one(class: LineClass) -> Self {
-        Self(1 << class as u8)
-    }
-
-    /// Whether a class is in the set.
-    pub fn has(self, class: LineClass) -> bool {
-        self.0 >> class as u8 & 1 == 1
-    }
-
-    /// Whether no class is in the set.
-    pub fn is_empty(self) -> bool {
-        self == Self::EMPTY
-    }
-
-    /// What is in both.
-    #[must_use]
-    pub fn common(self, other: Self) -> Self {
-        Self(self.0 & other.0)
-    }
-
-    /// The most important class in the set: sections are drawn as such, whatever else they are.
-    pub fn first(self) -> Option<LineClass> {
-        if self.has(LineClass::Section) {
-            return Some(LineClass::Section);
-        }
-        LineClass::ALL.iter().map(|row| row.0).find(|&class| self.has(class))
-    }
-}
-
-impl BitOr for Classes {
-    type Output = Self;
-
-    fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-}
-
-impl FromIterator<LineClass> for Classes {
-    fn from_iter<I: IntoIterator<Item = LineClass>>(classes: I) -> Self {
-        classes.into_iter().fold(Self::EMPTY, |set, class| set | Self::one(class))
-    }
-}
+pub use vitral_frame::LineClasses as Classes;
 
 /// A face at an edge.
 #[derive(Clone, Copy)]
@@ -190,15 +128,5 @@ mod tests {
         assert_eq!(hidden(&[(1, UP, 0, false), (-1, near, 0, true)]), [LineClass::Contour]);
         assert_eq!(hidden(&[(1, UP, 0, false)]), [LineClass::Boundary, LineClass::Smooth]);
         assert_eq!(hidden(&[(1, UP, 0, false), (1, UP, 0, true), (1, UP, 0, true)]).len(), 2, "not two faces");
-    }
-
-    #[test]
-    fn sets_have_an_order() {
-        assert_eq!(Classes::ALL.first(), Some(LineClass::Section));
-        let uncut: Classes = [LineClass::Smooth, LineClass::Contour].into_iter().collect();
-        assert_eq!(uncut.first(), Some(LineClass::Contour));
-        assert_eq!((Classes::EMPTY.first(), Classes::USUAL.has(LineClass::Smooth)), (None, false));
-        let two: Classes = [LineClass::Smooth, LineClass::Material].into_iter().collect();
-        assert_eq!(two.common(Classes::USUAL), Classes::one(LineClass::Material));
     }
 }

@@ -5,10 +5,12 @@
 pub mod compare;
 pub mod drawing;
 mod frame;
+mod line_classes;
 mod plane;
 pub mod texture;
 
 pub use drawing::Drawing;
 pub use frame::{Frame, TwoBuffers};
+pub use line_classes::LineClasses;
 pub use plane::Plane;
 pub use texture::{Encoding, Filter, MipFilter, Sampler, Texture, Wrap, decode_table};

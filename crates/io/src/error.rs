@@ -56,6 +56,14 @@ pub enum Error {
         /// The format or feature.
         what: String,
     },
+    /// Something was asked for that the file does not have.
+    #[error("{what}")]
+    Absent {
+        /// What was asked for.
+        what: String,
+        /// What there is.
+        hint: String,
+    },
     /// A picture that cannot be written in the wanted format.
     #[error("{what}")]
     Encode {

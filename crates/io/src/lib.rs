@@ -71,8 +71,35 @@ use vitral_scene::{Scene, normals};
 /// [`Error::Malformed`] says where the file breaks the rules of its format, [`Error::Missing`] names a file that it
 /// cannot do without, [`Error::Unsupported`] a format or feature that is not read.
 pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
+    load_at(bytes, file, resolver, workers, None)
+}
+
+/// A moment of an animation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// Which animation: its number, from 0, or its name.
+    pub animation: String,
+    /// Since it began; before the first keyframe and after the last one nothing moves.
+    pub seconds: f64,
+}
+
+/// [`load`] at a moment of an animation, which glTF files may have.
+///
+/// # Errors
+/// As [`load`]; [`Error::Absent`] for an animation that the file does not have.
+pub fn load_at(
+    bytes: &[u8],
+    file: &str,
+    resolver: &dyn Resolver,
+    workers: &Workers,
+    moment: Option<&Moment>,
+) -> Result<Scene, Error> {
     let format = Format::detect(bytes, file)?;
-    if let Some(model) = models::load(format, bytes, file, resolver, workers) {
+    if let (Some(moment), false) = (moment, matches!(format, Format::Gltf | Format::Glb)) {
+        let what = format!("{file}: no animation `{}`", moment.animation);
+        return Err(Error::Absent { what, hint: "glTF files have animations".to_owned() });
+    }
+    if let Some(model) = models::load(format, bytes, file, resolver, workers, moment) {
         return model;
     }
     let mut scene = scene_json::load(bytes, file, resolver, workers)?;

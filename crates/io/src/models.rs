@@ -11,7 +11,7 @@ use crate::off;
 use crate::ply;
 #[cfg(feature = "stl")]
 use crate::stl;
-use crate::{Error, Format, Resolver, colored};
+use crate::{Error, Format, Moment, Resolver, colored};
 use vitral_exec::Workers;
 use vitral_scene::{Axis, Scene, normals};
 
@@ -22,10 +22,11 @@ pub(crate) fn load(
     file: &str,
     resolver: &dyn Resolver,
     workers: &Workers,
+    moment: Option<&Moment>,
 ) -> Option<Result<Scene, Error>> {
     let scene = match format {
         #[cfg(feature = "gltf")]
-        Format::Gltf | Format::Glb => gltf::load(bytes, file, resolver, workers),
+        Format::Gltf | Format::Glb => gltf::load_at(bytes, file, resolver, workers, moment),
         #[cfg(feature = "obj")]
         Format::Obj => obj::load(bytes, file, resolver, workers),
         #[cfg(feature = "stl")]

@@ -157,8 +157,12 @@ impl MtlMaterial {
                         .note("map_Ka", Place::Line(line), || "map_Ka is not used: ambient light takes map_Kd".into());
                 }
             }
+            b"pc" | b"pcr" => {
+                let what = || format!("`{}` is not used: clear coats are not shown", show(keyword));
+                warnings.note("mtl coat", Place::Line(line), what);
+            }
             b"disp" | b"map_disp" | b"decal" | b"map_ns" | b"map_tr" | b"map_ni" | b"refl" | b"map_refl"
-            | b"map_aat" | b"sharpness" | b"ps" | b"pc" | b"pcr" | b"aniso" | b"anisor" | b"map_ps" => {
+            | b"map_aat" | b"sharpness" | b"ps" | b"aniso" | b"anisor" | b"map_ps" => {
                 warnings.note("mtl unused", Place::Line(line), || format!("`{}` is not used", show(keyword)));
             }
             _ => warnings.note("mtl unknown", Place::Line(line), || format!("unknown statement `{}`", show(keyword))),
@@ -564,7 +568,7 @@ mod tests {
         assert_eq!((m.normal_scale, warnings.len()), (0.5, 0), "{warnings:?}");
         assert!(m.normal_texture.is_some() && m.metallic_roughness_texture.is_some());
         assert_eq!(requests.paths().len(), 3);
-        assert_eq!(one("newmtl a\nPc 0.5").2, ["m.mtl: line 2: `Pc` is not used"]);
+        assert_eq!(one("newmtl a\nPc 0.5").2, ["m.mtl: line 2: `Pc` is not used: clear coats are not shown"]);
         assert!(one("newmtl a\nbump b.png\nnorm n.png").1.paths() == ["n.png"]);
     }
 

@@ -98,6 +98,7 @@ fn full_materials() -> Vec<Material> {
         ior: 1.33,
         mirror: true,
         double_sided: true,
+        front_only: true,
         unlit: true,
         base_texture: Some(TextureRef::new(0)),
         specular_texture: Some(reference),

@@ -3,6 +3,7 @@
 mod common;
 mod encode;
 mod gltf;
+mod gltf_animation;
 mod gltf_extensions;
 mod malformed;
 mod models;

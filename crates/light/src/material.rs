@@ -40,6 +40,9 @@ pub struct Material {
     pub mirror: bool,
     /// Both sides are visible and lit, whatever the mesh's closedness.
     pub double_sided: bool,
+    /// Seen from the front alone, as glTF's `doubleSided: false` has it: the viewer looks through its back faces. Shadows, rays and
+    /// radiosity take it as solid. Counts for nothing where `double_sided` is set.
+    pub front_only: bool,
     /// Shown with its base colour alone, without any light.
     pub unlit: bool,
     /// Multiplies the diffuse (or base) colour; its alpha multiplies `opacity`.
@@ -81,6 +84,7 @@ impl Default for Material {
             ior: 1.5,
             mirror: false,
             double_sided: false,
+            front_only: false,
             unlit: false,
             base_texture: None,
             specular_texture: None,

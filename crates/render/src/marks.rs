@@ -14,19 +14,23 @@
 //! Marks are layers in front of the surfaces. Opaque dots hide what lies behind them, else clouds of points would be layers by
 //! the million.
 //!
-//! Pictures with edges also show the lines in which faces penetrate each other ([`penetrations`]).
+//! Which edges are drawn is decided by their class (`edge_choice.rs`). Pictures with edges also show the lines in which faces
+//! penetrate each other ([`penetrations`]).
 //!
 //! In:   visible instances, model space. Out: [`Marks`] on the screen, and the colour of each.
 //! Cost: linear in lines and points.
 //! Source: opacity by distance from the line is [Gupta & Sproull 1981]'s, here with a ramp and sample by sample; the polygon
 //! offset is that of the GL specification in spirit, a fixed number of pixels in depth.
 
+mod edge_choice;
 pub mod penetrations;
 
 use crate::display::Fade;
-use crate::{Background, Execution, Interpolation, Lines, PreparedView, Settings};
+use crate::{Background, Execution, Interpolation, Lines, PictureSettings, PreparedView, Settings};
+use edge_choice::EdgeChoice;
 use penetrations::Penetrations;
 use vitral_exec::Limit;
+use vitral_frame::drawing::LineClass;
 use vitral_light::{AlphaMode, Reflectance};
 use vitral_math::color::{linear_from_srgb, srgb_from_linear};
 use vitral_math::{DMat4, Mat4, Vec2, Vec3, Vec4};
@@ -34,13 +38,12 @@ use vitral_raster::geometry::transform_point;
 use vitral_raster::{Batch, CornerPosition, snap};
 use vitral_scene::{FreePart, Instance};
 
-/// Width of strokes in pixels.
-const STROKE: f32 = 1.3;
-/// Width of a stroke's soft border in pixels, half of it within [`STROKE`].
+/// Width of a stroke's soft border in pixels, half of it within the stroke.
 const SOFT: f32 = 0.5;
 /// Side of dots in pixels.
 const DOT: f32 = 3.0;
-/// How many pixels' depth a mark lies in front of its place.
+/// How many pixels' depth a mark lies in front of its place. Those of wider lines lie the farther in front: their borders are farther
+/// from the edge, where faces may be nearer.
 const LIFT: f64 = 2.5;
 /// Colour of faces' edges, display encoding.
 const EDGE: [f32; 3] = [0.11, 0.12, 0.14];
@@ -73,6 +76,8 @@ pub struct MarkColors {
     ends: Vec<[Vec2; 2]>,
     /// Samples within a pixel, pixels; none where borders are not soft.
     samples: Vec<Vec2>,
+    /// Width of strokes, pixels.
+    width: f32,
 }
 
 /// How the colour of a line goes over from its first end to its second.
@@ -133,7 +138,7 @@ impl MarkColors {
         let of_sample = |&sample: &Vec2| {
             let from = from + sample;
             let t = (from.dot(way) * inverse).clamp(0.0, 1.0);
-            (((STROKE + SOFT) * 0.5 - (from - way * t).length()) / SOFT).clamp(0.0, 1.0)
+            (((self.width + SOFT) * 0.5 - (from - way * t).length()) / SOFT).clamp(0.0, 1.0)
         };
         let add = |(sum, hit): (f32, f32), covered: f32| (sum + covered, hit + f32::from(u8::from(covered > 0.0)));
         let (sum, hit) = self.samples.iter().map(of_sample).fold((0.0, 0.0), add);
@@ -193,9 +198,10 @@ pub(crate) fn build(
     let (world, count) = (&view.session.world, view.pattern.len());
     let samples =
         if count == 1 { Vec::new() } else { (0..count).map(|s| Vec2::from(view.pattern.offset(s))).collect() };
-    let half = if samples.is_empty() { STROKE } else { STROKE + SOFT } * 0.5;
-    let colors = MarkColors { first: world.facet_count, samples, fade, ..MarkColors::default() };
-    let (drawn, clip_from_model, lift) = (Marks::default(), Mat4::IDENTITY, Lift::new(view));
+    let width = settings.picture.line_width;
+    let half = if samples.is_empty() { width } else { width + SOFT } * 0.5;
+    let colors = MarkColors { first: world.facet_count, samples, fade, width, ..MarkColors::default() };
+    let (drawn, clip_from_model, lift) = (Marks::default(), Mat4::IDENTITY, Lift::new(view, width));
     let pen = Pen { view, drawn, clip_from_model, lift, half };
 
     // Draw edges, lines and points, instance by instance.
@@ -203,7 +209,8 @@ pub(crate) fn build(
     for prepared in &view.instances {
         drawing.instance(&world.instances[prepared.instance]);
     }
-    if matches!(settings.picture.lines, Lines::Edges | Lines::WireframeHiddenLine) {
+    let shows_penetrations = settings.picture.edge_classes.has(LineClass::Intersection);
+    if shows_penetrations && matches!(settings.picture.lines, Lines::Edges | Lines::WireframeHiddenLine) {
         drawing.penetrations(&*Penetrations::of(view.session, execution)?);
     }
     let Drawing { pen: Pen { drawn: mut marks, .. }, colors, .. } = drawing;
@@ -253,7 +260,9 @@ impl Drawing<'_, '_> {
     /// Draws the edges of faces, as long as there are ids.
     fn edges(&mut self, subject: &Subject<'_>) {
         let color = self.edge_color();
-        for edge in self.view.session.edges(subject.instance.mesh_index, &self.execution.workers) {
+        let chosen = EdgeChoice::new(self.view, subject.instance, self.settings, &self.execution.workers);
+        let edges = self.view.session.edges(subject.instance.mesh_index, &self.execution.workers);
+        for edge in edges.iter().filter(|edge| chosen.has(edge)) {
             let Some(id) = self.colors.next(color) else { break };
             if let Some(drawn) = self.pen.stroke(edge.ends.map(|i| subject.positions[i as usize]), id) {
                 self.colors.place(&drawn, edge.ends.map(|i| subject.depth(i)));
@@ -264,7 +273,8 @@ impl Drawing<'_, '_> {
     /// Colour of edges in the space of composition.
     fn edge_color(&self) -> [f32; 4] {
         let raw = self.settings.picture.color_space == crate::ColorSpace::Raw;
-        let color = edge_color(&self.settings.picture.background);
+        let picture = &self.settings.picture;
+        let color = picture.edge_color.unwrap_or_else(|| edge_color(&picture.background));
         let [r, g, b] = if raw { color } else { color.map(linear_from_srgb) };
         [r, g, b, 1.0]
     }
@@ -403,14 +413,16 @@ struct Lift {
 }
 
 impl Lift {
-    fn new(view: &PreparedView<'_>) -> Self {
+    /// For lines of this width, pixels.
+    fn new(view: &PreparedView<'_>, width: f32) -> Self {
+        let pixels = LIFT * f64::from(width / PictureSettings::LINE_WIDTH).max(1.0);
         let (clip_from_view, height) = (view.view.clip_from_view, f64::from(view.viewport.height));
         // Vertical size of a pixel: at distance 1 for a perspective, anywhere for a parallel projection.
         let pixel = 2.0 / (clip_from_view.y_axis.y * height);
         if view.view.perspective {
-            Self { offset: clip_from_view.z_axis.z, scale: 1.0 - (LIFT * pixel).min(0.5), shift: 0.0 }
+            Self { offset: clip_from_view.z_axis.z, scale: 1.0 - (pixels * pixel).min(0.5), shift: 0.0 }
         } else {
-            Self { offset: 0.0, scale: 1.0, shift: LIFT * pixel * clip_from_view.z_axis.z }
+            Self { offset: 0.0, scale: 1.0, shift: pixels * pixel * clip_from_view.z_axis.z }
         }
     }
 

@@ -69,6 +69,8 @@ pub struct PreparedView<'a> {
 struct Class {
     layered: bool,
     double_sided: bool,
+    /// Back faces are not seen, whether the mesh is closed or not.
+    front_only: bool,
 }
 
 impl<'a> PreparedView<'a> {
@@ -302,7 +304,11 @@ pub fn mirrors(transform: &DMat4) -> bool {
 
 /// The opacity class of a material.
 fn class(material: Option<&Material>, transparency: Transparency) -> Class {
-    Class { layered: is_layered(material, transparency), double_sided: material.is_some_and(|m| m.double_sided) }
+    Class {
+        layered: is_layered(material, transparency),
+        double_sided: material.is_some_and(|m| m.double_sided),
+        front_only: material.is_some_and(|m| m.front_only && !m.double_sided),
+    }
 }
 
 /// What instances are prepared with.
@@ -326,6 +332,9 @@ impl<'a> Preparation<'_, 'a> {
         }
         let drops = self.settings.cull.back_face && is_outside(instance, self.camera, self.view);
         let back_faces = |class: Class| {
+            if class.front_only && !self.settings.shows_all_backs {
+                return BackFaces::Dropped;
+            }
             if !drops || class.double_sided || class.layered {
                 return BackFaces::Kept;
             }

@@ -20,13 +20,13 @@ use vitral_math::lanes::V3;
 use vitral_math::{DMat4, DVec3, func};
 
 /// Points at which light is measured.
-const POINTS: u32 = 4096;
+pub(crate) const POINTS: u32 = 4096;
 /// Readings between these need no exposure: half-lit white surfaces are a dark grey, or the best lit ones are just white.
 const SHOWN: [f64; 2] = [0.125, 0.5];
 /// Multiples of these, less their whole parts, fill a square evenly: the inverses of the root of `x³ = x + 1` and of its square.
 const SPREAD: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 /// Shares of red, green and blue in the brightness of linear colours ([sRGB]).
-const BRIGHTNESS: [f32; 3] = [0.2126, 0.7152, 0.0722];
+pub(crate) const BRIGHTNESS: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
 /// Light on the surfaces of a world, measured once and good for any ambient light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,7 +86,7 @@ fn reading(world: &World, photometric: bool) -> f64 {
 }
 
 /// A point in an instance's triangle with the unit normal there and the triangle's area, world space; none if it has no area.
-fn surface_point(instance: &Instance, triangle: u32, number: u32) -> Option<(DVec3, DVec3, f64)> {
+pub(crate) fn surface_point(instance: &Instance, triangle: u32, number: u32) -> Option<(DVec3, DVec3, f64)> {
     let [a, b, c] = instance.corners(triangle);
     let twice = (b - a).cross(c - a);
     let area = twice.length();

@@ -30,8 +30,19 @@ pub struct Scene {
     pub ambient: [f32; 3],
     /// Which ways are up in models of the formats that the scene comes from, each once, that of the first model first.
     pub ups: Vec<Axis>,
+    /// The animations of the files. The scene is one moment of at most one of them: that at which it was read.
+    pub animations: Vec<Animation>,
     /// What was odd in the files, for the user to read.
     pub warnings: Vec<String>,
+}
+
+/// An animation that a file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Animation {
+    /// Its name, or its kind and number.
+    pub name: String,
+    /// When it ends, seconds.
+    pub seconds: f64,
 }
 
 /// A place in the scene graph.
@@ -170,6 +181,7 @@ impl Scene {
                 self.ups.push(up);
             }
         }
+        self.animations.extend(other.animations);
         self.warnings.extend(other.warnings);
     }
 

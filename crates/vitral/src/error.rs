@@ -70,7 +70,10 @@ pub enum Error {
 
 impl From<vitral_io::Error> for Error {
     fn from(error: vitral_io::Error) -> Self {
-        Self::Input(error)
+        match error {
+            vitral_io::Error::Absent { what, hint } => Self::Usage { what, hint },
+            other => Self::Input(other),
+        }
     }
 }
 

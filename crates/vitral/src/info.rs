@@ -47,6 +47,8 @@ pub struct Info {
     pub default_lights: bool,
     /// The cameras.
     pub cameras: Vec<CameraInfo>,
+    /// The animations, which `--animation` takes by number or name.
+    pub animations: Vec<AnimationInfo>,
     /// Global ambient light.
     pub ambient: [f32; 3],
     /// What was odd in the files.
@@ -203,6 +205,16 @@ pub struct TextureInfo {
     pub height: u32,
 }
 
+/// An animation in a line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct AnimationInfo {
+    /// Its name, or its kind and number.
+    pub name: String,
+    /// When it ends, seconds.
+    pub duration: f64,
+}
+
 /// Counts what is in a scene.
 ///
 /// # Errors
@@ -240,6 +252,7 @@ pub fn info_on(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
         exposure: LightMeter::read(&world).exposure(scene.ambient),
         default_lights: world.lights.is_empty() && scene.ambient == [0.0; 3],
         cameras: world.cameras.iter().map(CameraInfo::of).collect(),
+        animations: scene.animations.iter().map(animation_info).collect(),
         ambient: scene.ambient,
         warnings: warnings(scene, &meshes),
         meshes,
@@ -263,6 +276,10 @@ fn bounds(world: &World) -> Aabb {
         Aabb::from_points(positions.map(|p| matrix.transform_point3(p)))
     };
     world.instances.iter().map(seen).fold(Aabb::EMPTY, |all, one| all.union(&one))
+}
+
+fn animation_info(animation: &vitral_scene::Animation) -> AnimationInfo {
+    AnimationInfo { name: animation.name.clone(), duration: animation.seconds }
 }
 
 fn texture_info(texture: &vitral_frame::Texture) -> TextureInfo {
@@ -291,12 +308,21 @@ fn warnings(scene: &Scene, meshes: &[MeshInfo]) -> Vec<String> {
         warn(mesh.non_manifold_edges, edge, "with more than two triangles");
         warn(mesh.inconsistent_edges, edge, "at which neighbours disagree about the outside");
         let boundary = ("boundary edge:", "boundary edges:");
-        warn(mesh.boundary_edges, boundary, "it is open, so its back faces are drawn too");
+        let backs =
+            if shows_backs(scene, index) { "it is open, so its back faces are drawn too" } else { "it is open" };
+        warn(mesh.boundary_edges, boundary, backs);
     }
     // Meshes of one name that are odd in the same way.
     let told = |(warning, times)| if times > 1 { format!("{warning} ({times} such meshes)") } else { warning };
     warnings.extend(found.into_iter().map(told));
     warnings
+}
+
+/// Whether a mesh has faces that are seen from behind.
+fn shows_backs(scene: &Scene, mesh: usize) -> bool {
+    let material = |m: Option<u32>| m.and_then(|m| scene.materials.get(m as usize));
+    let parts = &scene.meshes[mesh].parts;
+    parts.is_empty() || parts.iter().any(|p| material(p.material).is_none_or(|m| m.double_sided || !m.front_only))
 }
 
 /// A mesh by its name, else by that of a node that shows it, else by its number.
@@ -356,6 +382,9 @@ impl fmt::Display for Info {
             writeln!(f, "ambient light {}", triple(self.ambient.map(f64::from)))?;
         }
         self.cameras.iter().try_for_each(|camera| writeln!(f, "camera: {camera}"))?;
+        for (number, a) in self.animations.iter().enumerate() {
+            writeln!(f, "animation {number}: {}, {} s", quoted(&a.name), short(a.duration))?;
+        }
         self.warnings.iter().try_for_each(|w| writeln!(f, "warning: {w}"))
     }
 }

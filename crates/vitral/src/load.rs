@@ -5,8 +5,9 @@ use crate::{Error, Scene, Workers};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
-use vitral_io::{NoFiles, Resolver};
-use vitral_scene::{Mesh, builtin, lab, normals};
+use vitral_io::{Moment, NoFiles, Resolver};
+use vitral_scene::builtin::{self, BuiltinError};
+use vitral_scene::{Mesh, lab, normals};
 
 /// Meshes with fewer triangles than this, and than a fair share of all, get their normals side by side; larger ones share the
 /// threads one after the other.
@@ -18,6 +19,11 @@ const TINY_MESH: usize = 1 << 11;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
 pub struct LoadOptions {
+    /// The animation that is shown, of glTF files: its number, from 0, or its name; `None`: the first where there is a time, else
+    /// models are at rest.
+    pub animation: Option<String>,
+    /// The moment of the animation, in seconds; `None`: its beginning.
+    pub animation_time: Option<f64>,
     /// The model may name files outside its folder.
     pub allow_external: bool,
     /// Where normals are made: faces that differ by more than this angle have an edge between them, radians, `0..=π`; `None`:
@@ -37,6 +43,8 @@ impl Default for LoadOptions {
     /// Files of the model's folder up to 4 GiB.
     fn default() -> Self {
         Self {
+            animation: None,
+            animation_time: None,
             allow_external: false,
             crease_angle: None,
             file_colors: FileColors::Srgb,
@@ -50,6 +58,15 @@ impl Default for LoadOptions {
 impl LoadOptions {
     /// 40 degrees, which keep the rims of a 9-sided cylinder smooth and the edges of an octagonal prism sharp.
     pub const CREASE_ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
+
+    /// The moment at which models are shown, if not at rest.
+    fn moment(&self) -> Option<Moment> {
+        let is_wanted = self.animation.is_some() || self.animation_time.is_some();
+        is_wanted.then(|| Moment {
+            animation: self.animation.clone().unwrap_or_else(|| "0".to_owned()),
+            seconds: self.animation_time.unwrap_or(0.0),
+        })
+    }
 }
 
 /// How the colours of materials in MTL files are meant, which the format leaves open.
@@ -125,7 +142,7 @@ pub fn load_telling(
     let folder = path.parent().unwrap_or(Path::new(""));
     let folder = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
     let resolver = ToldFiles { folder, tell };
-    let mut scene = vitral_io::load(&bytes, &name, &resolver, workers)?;
+    let mut scene = vitral_io::load_at(&bytes, &name, &resolver, workers, options.moment().as_ref())?;
     // The file is not needed any more, and normals take room.
     drop(bytes);
     finish(&mut scene, options, workers);
@@ -152,18 +169,28 @@ pub fn load_bytes_with(
     options: &LoadOptions,
 ) -> Result<Scene, Error> {
     let workers = Workers::new(0);
-    let mut scene = vitral_io::load(bytes, name, resolver, &workers)?;
+    let mut scene = vitral_io::load_at(bytes, name, resolver, &workers, options.moment().as_ref())?;
     finish(&mut scene, options, &workers);
     Ok(scene)
 }
 
-/// A scene that needs no file.
+/// A scene that needs no file: `NAME` or `NAME?PARAMETER=NUMBER&...`.
 ///
 /// # Errors
-/// [`Error::Read`] for a name that is not among [`builtin_names`].
+/// [`Error::Read`] for a name that is not among [`builtin_names`], [`Error::Usage`] for what is not among [`builtin_parameters`].
 pub fn load_builtin(name: &str) -> Result<Scene, Error> {
-    let none = || std::io::Error::new(std::io::ErrorKind::NotFound, "there is no such scene");
-    builtin::scene(name).ok_or_else(|| Error::Read { path: format!("builtin:{name}").into(), source: none() })
+    builtin::parse(name).map_err(|error| match error {
+        BuiltinError::Name => {
+            let source = std::io::Error::new(std::io::ErrorKind::NotFound, error);
+            Error::Read { path: format!("builtin:{name}").into(), source }
+        }
+        BuiltinError::Parameter { what, hint } => Error::Usage { what, hint },
+    })
+}
+
+/// The numbers that the scene of this name takes.
+pub fn builtin_parameters(name: &str) -> &'static [builtin::Parameter] {
+    builtin::parameters(name)
 }
 
 /// The names of the scenes that need no file, each with a line on what it shows.

@@ -85,7 +85,7 @@ const PROPERTIES: [(&str, &str, Setter); 24] = [
     ("filter", "colour of light that passes (--transparency filtered)", |m, v| put(&mut m.filter, filter(v))),
     ("ior", "index of refraction, above 0", set_ior),
     ("mirror", "true, false: shows mirror images (--global ray-trace)", |m, v| put(&mut m.mirror, boolean(v))),
-    ("double-sided", "true, false", |m, v| put(&mut m.double_sided, boolean(v))),
+    ("double-sided", "true, false: seen from the front alone", set_sides),
     ("unlit", "true, false", |m, v| put(&mut m.unlit, boolean(v))),
     ("occlusion-strength", "how much the occlusion texture counts, 0 to 1", |m, v| {
         put(&mut m.occlusion_strength, unit(v))
@@ -190,6 +190,13 @@ fn find(scene: &mut Scene, name: &str) -> Result<Vec<usize>, Error> {
         format!("there are {}", list(names))
     };
     Err(Error::usage(format!("there is no material `{name}`"), hint))
+}
+
+/// Both sides, or the front alone.
+fn set_sides(material: &mut Material, text: &str) -> Result<(), Failure> {
+    material.double_sided = boolean(text)?;
+    material.front_only = !material.double_sided;
+    Ok(())
 }
 
 fn put<T>(place: &mut T, value: Result<T, Failure>) -> Result<(), Failure> {

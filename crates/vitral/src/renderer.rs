@@ -13,7 +13,8 @@ use vitral_render::{
     ColorSpace, Environment, Execution, Global, PreparedView, Session, Settings, Shot, radiosity, render, watch_steps,
 };
 use vitral_scene::{
-    Axis, Camera, Lens, LightMeter, Scene, View, ViewTransform, World, default_lights, depth_range, framing,
+    Axis, Camera, Lens, LightMeter, Scene, View, ViewTransform, World, default_lights, depth_range, fill_light,
+    framing, leaves_dark,
 };
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
@@ -49,6 +50,8 @@ pub struct Renderer {
     pub light_intensity: Option<f32>,
     /// One term of all lights alone; `None`: all three.
     pub light_term: Option<LightTerm>,
+    /// Scenes whose own lights leave all that is seen black get a dim light from the viewer, with a warning.
+    pub fill_light: bool,
     /// Global ambient light, on top of the scene's own.
     pub ambient: Rgb,
     session: Session,
@@ -150,6 +153,7 @@ impl Renderer {
             light_edits: Vec::new(),
             light_intensity: None,
             light_term: None,
+            fill_light: true,
             ambient: [0.0; 3],
             meter: LightMeter::read(session.world()),
             session,
@@ -287,8 +291,23 @@ impl Renderer {
                 self.fixed_lights()
             }
             None if self.world().lights.is_empty() => default_lights(camera),
-            None => self.world().lights.clone(),
+            None => {
+                let mut lights = self.world().lights.clone();
+                lights.extend(self.needs_fill_light(camera).then(|| fill_light(camera)));
+                lights
+            }
         }
+    }
+
+    /// Whether the scene's own lights leave all black that `camera` may see, and nobody has said that they should. Radiosity, whose
+    /// solution must not depend on the camera, and raw colours, which are made of the file's numbers, are left alone.
+    fn needs_fill_light(&self, camera: &Camera) -> bool {
+        let is_chosen = self.lights.is_some() || !self.light_edits.is_empty() || !self.fill_light;
+        let is_lit = self.settings.shading.lighting && self.settings.picture.color_space != ColorSpace::Raw;
+        let is_free = self.settings.global.model != Global::Radiosity && !self.world().lights.is_empty();
+        let (ambient, exposure) = (self.frame_ambient(), self.exposure());
+        let materials = &self.scene().materials;
+        !is_chosen && is_lit && is_free && leaves_dark(self.world(), materials, camera, exposure, ambient)
     }
 
     /// The factor that brings the scene's photometric lights to where pictures show them, for the ambient light of the next
@@ -356,6 +375,10 @@ impl Renderer {
             rendered.warnings.push(format!(
                 "the scene's photometric lights are multiplied by {exposure:.4e} for the picture (--light-intensity 1 leaves them)"
             ));
+        }
+        if self.needs_fill_light(camera) {
+            let what = "the scene's own lights reach nothing that is seen: a dim light from the viewer is added";
+            rendered.warnings.push(format!("{what} (--fill-light none leaves it dark)"));
         }
         Ok(Picture { exposure, ..Picture::new(rendered, self.settings.picture.color_space) })
     }

@@ -51,6 +51,8 @@ pub struct State {
     pub light_intensity: Option<f32>,
     /// One term of all lights alone; `null`: all three.
     pub light_term: Option<LightTerm>,
+    /// Scenes whose own lights leave all that is seen black get a dim light from the viewer.
+    pub fill_light: bool,
     /// Global ambient light on top of the scene's own.
     pub ambient: [f32; 3],
     /// How pictures are made.
@@ -89,6 +91,7 @@ impl Default for State {
             light_edits: Vec::new(),
             light_intensity: None,
             light_term: None,
+            fill_light: true,
             ambient: [0.0; 3],
             settings: Settings::default(),
             turntable: None,
@@ -258,6 +261,7 @@ impl State {
         renderer.lights.clone_from(&self.lights);
         renderer.light_intensity = self.light_intensity;
         renderer.light_term = self.light_term;
+        renderer.fill_light = self.fill_light;
         renderer.ambient = self.ambient;
         let usual_up = renderer.scene().usual_up();
         match self.turntable {

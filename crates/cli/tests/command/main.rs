@@ -4,6 +4,7 @@ mod batch;
 mod choices;
 mod course;
 mod drawing;
+mod files;
 mod models;
 mod names;
 mod outputs;

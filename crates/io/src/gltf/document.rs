@@ -54,6 +54,14 @@ const LOOKS: [&str; 8] = [
     "KHR_materials_volume",
 ];
 
+/// Extensions that pack meshes and textures, and the command of glTF Transform that writes the file without them.
+const COMPRESSED: [(&str, &str); 4] = [
+    ("KHR_draco_mesh_compression", "cp"),
+    ("EXT_meshopt_compression", "cp"),
+    ("KHR_meshopt_compression", "cp"),
+    ("KHR_texture_basisu", "ktxdecompress"),
+];
+
 /// A document whose indices are all in range, except those of `scene` and of image sources, which may be absent.
 #[derive(Debug)]
 pub(crate) struct Document<'a> {
@@ -210,7 +218,12 @@ fn check_extensions(root: &Root, file: &str) -> Result<Vec<String>, Error> {
     let (looks, required): (Vec<_>, Vec<_>) =
         unknown(&root.extensions_required).into_iter().partition(|name| LOOKS.contains(&name.as_str()));
     if !required.is_empty() {
-        let what = format!("requires {}, which is not supported", required.join(", "));
+        let unpacked =
+            |name: &String| COMPRESSED.iter().find(|(packed, _)| packed == name).map(|(_, command)| *command);
+        let commands: std::collections::BTreeSet<&str> = required.iter().filter_map(unpacked).collect();
+        let unpack: Vec<String> =
+            commands.iter().map(|c| format!("; `gltf-transform {c} IN.glb OUT.glb` unpacks it")).collect();
+        let what = format!("requires {}, which is not supported{}", required.join(", "), unpack.concat());
         return Err(Error::Unsupported { file: file.to_owned(), what });
     }
     let mut used = unknown(&root.extensions_used);
@@ -348,7 +361,14 @@ mod tests {
         let draco = r#","extensionsRequired":["KHR_draco_mesh_compression"]}"#;
         assert_eq!(
             error(&format!("{head}{draco}")),
-            "a.gltf: requires KHR_draco_mesh_compression, which is not supported"
+            "a.gltf: requires KHR_draco_mesh_compression, which is not supported; `gltf-transform cp IN.glb OUT.glb` unpacks it"
+        );
+        let both =
+            r#","extensionsRequired":["EXT_meshopt_compression","KHR_draco_mesh_compression","KHR_texture_basisu"]}"#;
+        let told = error(&format!("{head}{both}"));
+        assert!(
+            told.matches(" cp ").count() == 1 && told.contains("`gltf-transform ktxdecompress IN.glb OUT.glb`"),
+            "{told}"
         );
     }
 

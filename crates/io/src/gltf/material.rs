@@ -46,6 +46,7 @@ pub(crate) fn read(
         alpha_mode,
         opacity,
         double_sided: json.double_sided,
+        front_only: !json.double_sided,
         ..Material::default()
     };
 

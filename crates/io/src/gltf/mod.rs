@@ -26,7 +26,7 @@ mod texture;
 mod untidy;
 
 use crate::mesh_scene::{is_blank, nothing_to_show};
-use crate::{Error, Place, Resolver};
+use crate::{Error, Moment, Place, Resolver};
 use accessor::Source;
 use buffers::Buffers;
 use mesh::{Plan, Pose};
@@ -43,6 +43,20 @@ use vitral_scene::{Node, Scene};
 /// [`Error::Missing`], a required extension that is not read [`Error::Unsupported`]. Everything else that is odd (a
 /// missing image, bad normals, an empty scene) is a warning in the scene.
 pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
+    load_at(bytes, file, resolver, workers, None)
+}
+
+/// [`load`] at a moment of an animation.
+///
+/// # Errors
+/// As [`load`]; [`Error::Absent`] for an animation that the file does not have.
+pub fn load_at(
+    bytes: &[u8],
+    file: &str,
+    resolver: &dyn Resolver,
+    workers: &Workers,
+    moment: Option<&Moment>,
+) -> Result<Scene, Error> {
     if bytes.is_empty() {
         return Err(Error::malformed(file, Place::File, "empty file"));
     }
@@ -51,7 +65,7 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
     let mut buffers = Buffers::fetch(&document, file, resolver)?;
     warnings.append(&mut buffers.warnings);
     let source = Source { root: &document.root, buffers: &buffers, file };
-    let tree = Tree::read(&source, &document.far_nodes, &mut warnings)?;
+    let tree = Tree::read(&source, &document.far_nodes, moment, &mut warnings)?;
 
     // Materials first: they know which images are wanted.
     let mut wanted = texture::Wanted::default();
@@ -63,7 +77,7 @@ pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers
     let (poses, meshes) = meshes?;
     let textures = texture::settle(&mut materials, images, &mut warnings);
 
-    let mut scene = Scene { materials, textures, ..Scene::default() };
+    let mut scene = Scene { materials, textures, animations: animation::list(&source), ..Scene::default() };
     for (mesh, told) in meshes {
         scene.meshes.push(Arc::new(mesh));
         warnings.extend(told);
@@ -87,7 +101,7 @@ fn build_meshes(source: &Source<'_>, tree: &Tree, workers: &Workers) -> Result<(
     let mut poses: Vec<Pose> = Vec::new();
     let mut used: Vec<usize> = Vec::new();
     let mut seen = std::collections::BTreeMap::new();
-    for pose in tree.shown.iter().filter_map(|&n| pose_of(source, n)) {
+    for pose in tree.shown.iter().filter_map(|&n| pose_of(source, tree, n)) {
         let bits: Vec<u32> = pose.weights.iter().map(|w| w.to_bits()).collect();
         seen.entry((pose.mesh, pose.skin, bits)).or_insert_with(|| {
             used.push(pose.mesh);
@@ -136,10 +150,11 @@ fn skin_matrices(source: &Source<'_>, tree: &Tree, poses: &[Pose]) -> Result<Vec
 }
 
 /// The mesh that a node shows, and how.
-fn pose_of(source: &Source<'_>, node: usize) -> Option<Pose> {
-    let node = &source.root.nodes[node];
+fn pose_of(source: &Source<'_>, tree: &Tree, n: usize) -> Option<Pose> {
+    let node = &source.root.nodes[n];
     let mesh = node.mesh?.value();
-    let weights = node.weights.as_ref().or(source.root.meshes[mesh].weights.as_ref());
+    let at_rest = node.weights.as_ref().or(source.root.meshes[mesh].weights.as_ref());
+    let weights = tree.poses.weights[n].as_ref().or(at_rest);
     let weights = weights.filter(|w| w.iter().any(|&w| w != 0.0)).cloned().unwrap_or_default();
     Some(Pose { mesh, weights, skin: node.skin.map(|s| s.value()) })
 }
@@ -173,11 +188,11 @@ fn add_nodes(source: &Source<'_>, tree: &Tree, poses: &[Pose], scene: &mut Scene
         let json = &root.nodes[n];
         let mut node = Node {
             name: json.name.clone().unwrap_or_default(),
-            transform: tree.transforms[n],
+            transform: tree.poses.transforms[n],
             children: tree.children[n].iter().map(|&c| numbers[c]).collect(),
             ..Node::default()
         };
-        if let Some(pose) = pose_of(source, n) {
+        if let Some(pose) = pose_of(source, tree, n) {
             let mesh = mesh_numbers.get(&(pose.mesh, pose.skin, weight_bits(&pose))).copied();
             if pose.skin.is_some() { skinned.push((node.name.clone(), mesh)) } else { node.mesh = mesh }
         }

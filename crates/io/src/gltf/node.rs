@@ -4,9 +4,9 @@
 //! Source: [glTF 2.0], sections 3.5, 3.10; KHR_lights_punctual, KHR_node_visibility.
 
 use super::accessor::Source;
-use super::animation;
+use super::animation::{self, NodePoses};
 use super::document::VISIBILITY;
-use crate::Error;
+use crate::{Error, Moment};
 use gltf::json::Node as JsonNode;
 use gltf::json::camera::{Camera as JsonCamera, Type as CameraType};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType};
@@ -24,8 +24,8 @@ pub(crate) struct Tree {
     pub(crate) roots: Vec<usize>,
     /// Children of every node.
     pub(crate) children: Vec<Vec<usize>>,
-    /// Placement of every node in its parent.
-    pub(crate) transforms: Vec<NodeTransform>,
+    /// Placement and morph weights of every node.
+    pub(crate) poses: NodePoses,
     /// Placement of every node in the world, shown or not.
     pub(crate) worlds: Vec<DMat4>,
 }
@@ -33,10 +33,11 @@ pub(crate) struct Tree {
 impl Tree {
     /// Checks that the nodes form trees and finds what the scene shows.
     /// Nodes that `KHR_node_visibility` hides are left out with all that is below them. `far_nodes` are places in double
-    /// precision.
+    /// precision. Nodes are at rest, or where they are at a `moment`.
     pub(crate) fn read(
         source: &Source<'_>,
         far_nodes: &[(usize, [f64; 3])],
+        moment: Option<&Moment>,
         warnings: &mut Vec<String>,
     ) -> Result<Self, Error> {
         let nodes = &source.root.nodes;
@@ -62,15 +63,22 @@ impl Tree {
         if let Some(n) = reached.iter().position(|r| !r) {
             return Err(source.error(format!("nodes[{n}]"), "the node is its own ancestor"));
         }
-        let mut worlds = worlds(&order, &parents, &transforms);
+        let mut poses = NodePoses { weights: vec![None; transforms.len()], transforms };
+        let mut worlds = worlds(&order, &parents, &poses.transforms);
 
-        // Show the first animation where nothing can be seen at rest.
-        if !animation::has_extent(source, &worlds)
-            && let Some(moved) = animation::at_start(source, &transforms)
-        {
-            let moved_worlds = self::worlds(&order, &parents, &moved);
-            if animation::has_extent(source, &moved_worlds) {
-                (transforms, worlds) = (moved, moved_worlds);
+        // Move the nodes to where they are at the moment. Where nothing can be seen at rest, show the first animation.
+        if let Some(moment) = moment {
+            let number = animation::find(source, moment)?;
+            animation::apply(source, number, moment.seconds, &mut poses)?;
+            worlds = self::worlds(&order, &parents, &poses.transforms);
+        } else if !source.root.animations.is_empty() && !animation::has_extent(source, &worlds) {
+            let mut moved = poses.clone();
+            let moved_worlds = animation::apply(source, 0, 0.0, &mut moved)
+                .map(|()| self::worlds(&order, &parents, &moved.transforms))
+                .ok()
+                .filter(|worlds| animation::has_extent(source, worlds));
+            if let Some(moved_worlds) = moved_worlds {
+                (poses, worlds) = (moved, moved_worlds);
                 let what = "nothing has any extent at rest; the first animation is shown at time 0";
                 warnings.push(format!("{}: animations[0]: {what}", source.file));
             }
@@ -82,7 +90,7 @@ impl Tree {
             list.retain(|&n| is_visible(&nodes[n]));
         }
         let shown = depth_first(&children, roots.iter().copied());
-        Ok(Self { shown, roots, children, transforms, worlds })
+        Ok(Self { shown, roots, children, poses, worlds })
     }
 }
 

@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 use vitral_exec::Workers;
-use vitral_scene::{Scene, builtin};
+use vitral_scene::Scene;
+use vitral_scene::builtin::{self, BuiltinError};
 
 /// Scene files inside each other.
 const MAX_DEPTH: usize = 8;
@@ -74,7 +75,7 @@ impl<'a> Origin<'a> {
         let bytes = self.resolver.read(&full).map_err(|e| missing(e.to_string()))?;
         let folder = full.rfind('/').map_or("", |slash| &full[..slash]);
         let below = Below { inner: self.resolver, folder };
-        match models::load(Format::detect(&bytes, &full)?, &bytes, &full, &below, self.workers) {
+        match models::load(Format::detect(&bytes, &full)?, &bytes, &full, &below, self.workers, None) {
             Some(scene) => Ok(Reference::Scene(self.keep(full, scene?))),
             None if self.chain.len() >= MAX_DEPTH => Err(missing(format!("scene files are read {MAX_DEPTH} deep"))),
             None => {
@@ -99,8 +100,13 @@ impl<'a> Origin<'a> {
             return Ok(Arc::clone(scene));
         }
         let names = || builtin::names().iter().map(|n| n.0).collect::<Vec<_>>().join(", ");
-        let unknown = || Error::malformed(file, place, format!("no built-in scene `{name}`; there are {}", names()));
-        let scene = builtin::scene(name).ok_or_else(unknown)?;
+        let scene = builtin::parse(name).map_err(|error| {
+            let what = match error {
+                BuiltinError::Name => format!("no built-in scene `{name}`; there are {}", names()),
+                BuiltinError::Parameter { what, hint } => format!("{what}; {hint}"),
+            };
+            Error::malformed(file, place, what)
+        })?;
         Ok(self.keep(key, scene))
     }
 }

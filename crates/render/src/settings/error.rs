@@ -18,6 +18,15 @@ pub enum SettingsError {
     /// Number of samples.
     #[error("{0} samples a pixel: 1 to 16, or 32, are possible")]
     Samples(u32),
+    /// Width of lines.
+    #[error("lines {0} pixels wide: 0.1 to 64 are possible")]
+    LineWidth(f32),
+    /// Colour of edges.
+    #[error("the colour of edges: r,g,b from 0 to 1 are required")]
+    EdgeColor,
+    /// Edges of no class.
+    #[error("no class of edges: at least one is required")]
+    EdgeClasses,
     /// The exponent of Kay's model.
     #[error("an exponent of {0} in Kay's model of transparency: a number above 0 is required")]
     KayExponent(f32),

@@ -69,6 +69,9 @@ flat! {
     "layer-memory" => transparency.layer_memory;
     "depth-cue" => picture.depth_cue;
     "lines" => picture.lines;
+    "line-width" => picture.line_width;
+    "edge-color" => picture.edge_color;
+    "edge-classes" => picture.edge_classes;
     "background" => picture.background;
     "channels" => picture.channels;
 }

@@ -42,6 +42,8 @@ pub struct Settings {
     pub depth_bits: Option<u32>,
     /// What is thrown away early.
     pub cull: Culling,
+    /// Materials that show their front alone are seen from behind, too: for views from lights, to which every face is solid.
+    pub shows_all_backs: bool,
     /// How light is reflected, and where that is computed.
     pub shading: ShadingSettings,
     /// What keeps light away.

@@ -2,6 +2,7 @@
 
 use super::{ColorSpace, Lines, SettingsError};
 use serde::{Deserialize, Serialize};
+use vitral_frame::LineClasses;
 use vitral_raster::Viewport;
 
 /// Size, samples, colours and channels of a picture.
@@ -21,6 +22,12 @@ pub struct PictureSettings {
     pub depth_cue: Option<DepthCue>,
     /// Edges instead of, or on top of, surfaces.
     pub lines: Lines,
+    /// Width of edges and of the model's own lines in pixels, `0.1..=64`.
+    pub line_width: f32,
+    /// Colour of edges in the display's encoding, `0..=1`; `None`: dark on light ground and the other way round.
+    pub edge_color: Option<[f32; 3]>,
+    /// Which edges are drawn, where some are; at least one class.
+    pub edge_classes: LineClasses,
     /// Which planes of the frame are wanted.
     pub channels: Channels,
 }
@@ -36,16 +43,31 @@ impl Default for PictureSettings {
             background: Background::default(),
             depth_cue: None,
             lines: Lines::default(),
+            line_width: Self::LINE_WIDTH,
+            edge_color: None,
+            edge_classes: LineClasses::ALL,
             channels: Channels::default(),
         }
     }
 }
 
 impl PictureSettings {
+    /// Width of lines where nothing is said, pixels: a little more than one, so that slanted ones do not look thin.
+    pub const LINE_WIDTH: f32 = 1.3;
+
     /// The picture's pixels, if all numbers are in their ranges.
     pub(super) fn check(&self) -> Result<Viewport, SettingsError> {
         if !matches!(self.samples, 1..=16 | 32) {
             return Err(SettingsError::Samples(self.samples));
+        }
+        if !(0.1..=64.0).contains(&self.line_width) {
+            return Err(SettingsError::LineWidth(self.line_width));
+        }
+        if self.edge_color.is_some_and(|color| !color.iter().all(|c| (0.0..=1.0).contains(c))) {
+            return Err(SettingsError::EdgeColor);
+        }
+        if self.edge_classes.is_empty() {
+            return Err(SettingsError::EdgeClasses);
         }
         self.depth_cue.map_or(Ok(()), |cue| cue.check(&self.background))?;
         let (width, height) = (self.width, self.height);

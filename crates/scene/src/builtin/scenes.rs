@@ -69,9 +69,9 @@ pub(super) fn cubs() -> Scene {
 }
 
 /// One sphere of radius 1 at the origin.
-pub(super) fn sphere() -> Scene {
+pub(super) fn sphere(slices: u32, stacks: u32) -> Scene {
     let mut scene = lab_scene(DVec3::ZERO, 5.0);
-    place(&mut scene, solids::sphere(1.0, 96, 48), plastic("ball", [0.75, 0.2, 0.15], 60.0), DVec3::ZERO);
+    place(&mut scene, solids::sphere(1.0, slices, stacks), plastic("ball", [0.75, 0.2, 0.15], 60.0), DVec3::ZERO);
     scene
 }
 
@@ -112,9 +112,9 @@ pub(super) fn scene1() -> Scene {
 }
 
 /// The teapot alone.
-pub(super) fn teapot_scene() -> Scene {
+pub(super) fn teapot_scene(divisions: u32) -> Scene {
     let mut scene = Scene::default();
-    place(&mut scene, super::teapot(12), plastic("teapot", [0.72, 0.66, 0.58], 60.0), DVec3::ZERO);
+    place(&mut scene, super::teapot(divisions), plastic("teapot", [0.72, 0.66, 0.58], 60.0), DVec3::ZERO);
     scene
 }
 

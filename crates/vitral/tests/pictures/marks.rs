@@ -2,7 +2,9 @@
 
 use super::common::{colors, exact, one};
 use vitral::internals::scene::FreePart;
-use vitral::{Camera, DVec3, Interpolation, Lines, Material, Mesh, Projection, TransparencyOrder, solids};
+use vitral::{
+    Camera, DVec3, Interpolation, LineClass, LineClasses, Lines, Material, Mesh, Projection, TransparencyOrder, solids,
+};
 
 /// Seen along z from `distance`, or without a perspective.
 fn camera(distance: f64, perspective: bool) -> Camera {
@@ -224,4 +226,95 @@ fn lines_shine_with_their_emission() {
     let black = vitral::Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess: 1.0 };
     let glowing = Material { reflectance: black, emission: [1.0, 0.0, 0.0], ..Material::default() };
     assert_eq!(middle_row(exact(one(mesh, glowing), 81, 81), camera(4.0, false))[40], [255, 0, 0, 255]);
+}
+
+/// Pixels of edges of the wanted classes, in a colour that nothing else has; seen from `eye`, one sample a pixel.
+fn edge_pixels(mesh: Mesh, eye: DVec3, classes: &[LineClass], width: f32) -> usize {
+    let mut renderer = exact(one(mesh, Material::default()), 200, 200);
+    let picture = &mut renderer.settings.picture;
+    picture.lines = Lines::WireframeHiddenLine;
+    (picture.line_width, picture.edge_color) = (width, Some([1.0, 0.0, 1.0]));
+    picture.edge_classes = classes.iter().copied().collect();
+    let projection = Projection::Parallel { height: 4.0 };
+    renderer.camera = Some(Camera { projection, ..Camera::look_at(eye, DVec3::ZERO) });
+    colors(&mut renderer).iter().filter(|c| **c == [255, 0, 255, 255]).count()
+}
+
+#[test]
+fn edges_are_as_wide_as_asked_for() {
+    let square = || solids::plane(2.0, 2.0, 1, 1);
+    // Four sides of 100 pixels, with the corners: 100 w * 4, and more by the ends.
+    for width in [1.0f32, 2.0, 5.0, 12.0] {
+        let count = edge_pixels(square(), DVec3::new(0.0, 5.0, 1e-9), &[LineClass::Boundary], width) as f32;
+        let expected = (100.0 + width) * (100.0 + width) - (100.0 - width) * (100.0 - width);
+        assert!((count / expected - 1.0).abs() < 0.05, "{width}: {count} of {expected}");
+    }
+}
+
+#[test]
+fn wide_edges_are_not_eaten_by_the_faces_that_meet_in_them() {
+    let eye = DVec3::new(3.0, 2.0, 4.0);
+    let cube = |width| edge_pixels(solids::cuboid(DVec3::ONE), eye, &[LineClass::Smooth], width) as f32;
+    let ratio = cube(8.0) / cube(2.0);
+    assert!((3.5..4.1).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn classes_choose_the_edges() {
+    use LineClass::{Boundary, Contour, Crease, Material as Border, Smooth};
+    let eye = DVec3::new(3.0, 2.0, 4.0);
+    let cube = |classes: &[LineClass]| edge_pixels(solids::cuboid(DVec3::ONE), eye, classes, 1.0);
+
+    // Nine edges of a cube are seen, six of them are its outline.
+    assert_eq!([cube(&[Boundary]), cube(&[Border])], [0, 0]);
+    let (outline, creases) = (cube(&[Contour]), cube(&[Crease]));
+    assert_eq!(creases, cube(&[Smooth]));
+    assert!(outline > 0 && (1.3..1.7).contains(&(creases as f64 / outline as f64)), "{creases} and {outline}");
+
+    // Of a sheet of four squares the border is a boundary; the cross within is neither crease nor contour.
+    let above = DVec3::new(0.0, 5.0, 1e-9);
+    let sheet = |classes: &[LineClass]| edge_pixels(solids::plane(2.0, 2.0, 2, 2), above, classes, 1.0);
+    assert_eq!([sheet(&[Crease]), sheet(&[Contour])], [0, 0]);
+    let (border, all) = (sheet(&[Boundary]) as f64, sheet(&[Smooth]) as f64);
+    assert!((1.4..1.6).contains(&(all / border)), "{all} and {border}");
+
+    // A ball has an outline and no creases.
+    let ball = |classes: &[LineClass]| edge_pixels(solids::sphere(1.0, 32, 16), eye, classes, 1.0);
+    assert_eq!(ball(&[Crease]), 0);
+    assert!((100..700).contains(&ball(&[Contour])), "{}", ball(&[Contour]));
+}
+
+#[test]
+fn borders_of_materials_are_a_class() {
+    let mut scene = vitral::Scene::default();
+    let mut floor = solids::checkerboard(2.0, 2);
+    for part in &mut floor.parts {
+        part.material = Some(scene.add_material(Material::default()));
+    }
+    scene.add_mesh(floor, vitral::DMat4::IDENTITY);
+    let mut renderer = exact(scene, 200, 200);
+    let picture = &mut renderer.settings.picture;
+    (picture.lines, picture.line_width, picture.edge_color) = (Lines::Edges, 1.0, Some([1.0, 0.0, 1.0]));
+    picture.edge_classes = LineClasses::one(LineClass::Material);
+    let projection = Projection::Parallel { height: 4.0 };
+    renderer.camera = Some(Camera { projection, ..Camera::look_at(DVec3::new(0.0, 5.0, 1e-9), DVec3::ZERO) });
+    let count = colors(&mut renderer).iter().filter(|c| **c == [255, 0, 255, 255]).count();
+    // The cross of two lines of 100 pixels.
+    assert!((190..=210).contains(&count), "{count}");
+}
+
+#[test]
+fn edges_of_backs_that_are_not_seen_are_not_drawn() {
+    let count = |lines, front_only, y: f64| {
+        let material = Material { front_only, ..Material::default() };
+        let mut renderer = exact(one(solids::plane(2.0, 2.0, 2, 2), material), 100, 100);
+        (renderer.settings.picture.lines, renderer.settings.picture.edge_color) = (lines, Some([1.0, 0.0, 1.0]));
+        renderer.camera = Some(Camera::look_at(DVec3::new(0.1, y, 0.2), DVec3::ZERO));
+        colors(&mut renderer).iter().filter(|c| **c == [255, 0, 255, 255]).count()
+    };
+    for lines in [Lines::Edges, Lines::WireframeHiddenLine] {
+        assert!(count(lines, true, 6.0) > 50 && count(lines, false, -6.0) > 50);
+        assert_eq!(count(lines, true, -6.0), 0);
+    }
+    assert!(count(Lines::Wireframe, true, -6.0) > 50, "hidden ones, too");
 }

@@ -10,6 +10,8 @@ mod depth_cue;
 mod determinism;
 mod drawn_surfaces;
 mod equal_planes;
+mod fill_light;
+mod front_only;
 mod hidden_line;
 mod interpolation;
 mod lighting;

@@ -83,9 +83,11 @@ def _put_library_into_package() -> None:
     with tempfile.TemporaryDirectory() as scratch:
         empty = Path(scratch) / "empty.c"
         empty.write_text("")
-        options = ["-shared", "-nostdlib", "-Wl,-soname,libOSMesa.so", "-Wl,--no-as-needed", "-Wl,-rpath,$ORIGIN"]
-        linked = [str(empty), f"-L{folder}", f"-l:{LIBRARY}", "-o", str(folder / "libOSMesa.so")]
-        subprocess.run([os.environ.get("CC", "cc"), *options, *linked], check=True)
+        # What programs look for that were linked with no number, or with that of Mesa's library before version 9.
+        for name in ("libOSMesa.so", "libOSMesa.so.6"):
+            options = ["-shared", "-nostdlib", f"-Wl,-soname,{name}", "-Wl,--no-as-needed", "-Wl,-rpath,$ORIGIN"]
+            linked = [str(empty), f"-L{folder}", f"-l:{LIBRARY}", "-o", str(folder / name)]
+            subprocess.run([os.environ.get("CC", "cc"), *options, *linked], check=True)
 
 
 def _configured(settings: dict[str, Any] | None) -> dict[str, Any]:

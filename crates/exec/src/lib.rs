@@ -10,10 +10,12 @@ mod charge;
 mod placement;
 mod spare;
 mod started;
+mod surround;
 mod workers;
 
 pub use budget::{Achieved, Budget, Clock, Limit, MAX_STEPS, NoClock, Progress};
 pub use charge::Charge;
 pub use spare::Spare;
 pub use started::{Started, born_of_fork, forked, hold_for_fork};
+pub use surround::surround_thread_starts;
 pub use workers::Workers;

@@ -10,6 +10,8 @@
 #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
 use crate::placement::Placement;
 #[cfg(feature = "threads")]
+use crate::surround::start_threads;
+#[cfg(feature = "threads")]
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -88,7 +90,7 @@ impl Started {
             drop(outcome);
             GOING_ON.fetch_sub(1, SeqCst);
         };
-        match thread::Builder::new().name("vitral-ahead".into()).spawn(run) {
+        match start_threads(|| thread::Builder::new().name("vitral-ahead".into()).spawn(run)) {
             Ok(_) => Ok(started),
             Err(_) => give_back(lock(&work).take().expect("no thread took it")),
         }

@@ -52,7 +52,7 @@ impl Workers {
                 let placement = Arc::clone(&placement);
                 builder.start_handler(move |_| placement.register())
             };
-            if let Ok(pool) = builder.build() {
+            if let Ok(pool) = crate::surround::start_threads(|| builder.build()) {
                 return Self {
                     threads,
                     pool: Some(Arc::new(pool)),

@@ -45,6 +45,8 @@ pub struct Context {
     pub(crate) default_framebuffer: DefaultFramebuffer,
     /// Recorded passes.
     pub(crate) recorder: Recorder,
+    /// `VERSION` begins with 2.1.
+    pub(crate) says_2_1: bool,
 }
 
 impl Context {
@@ -68,6 +70,7 @@ impl Context {
             framebuffers: FramebufferBindings::default(),
             default_framebuffer: DefaultFramebuffer::default(),
             recorder: Recorder::default(),
+            says_2_1: false,
         }
     }
 }

@@ -9,10 +9,31 @@ pub trait ClientMemory: Send + Sync + std::fmt::Debug {
     fn read(&self, address: usize, out: &mut [u8]) -> bool;
     /// Copies `bytes` to `address`. `false` if that range is not the client's.
     fn write(&self, address: usize, bytes: &[u8]) -> bool;
+    /// Whether `length` bytes from `address` on are still the client's, asked before a picture is stored or loaded in a call that
+    /// does not say so.
+    fn is_there(&self, address: usize, length: usize) -> bool {
+        let _ = (address, length);
+        true
+    }
     /// Hands a buffer's bytes to the client and returns their address (not 0), where it may read and write them.
     fn map(&self, bytes: Vec<u8>) -> usize;
     /// Takes mapped bytes back; `None` if nothing is mapped there.
     fn unmap(&self, address: usize) -> Option<Vec<u8>>;
+}
+
+/// Memory of at least so many bytes is asked for before it is taken: less can nearly always be had.
+pub(crate) const LARGE: usize = 1 << 20;
+
+/// Whether so many bytes can be had. What cannot is an error of the program, and not the end of the process.
+pub(crate) fn can_have(bytes: usize) -> bool {
+    if bytes < LARGE {
+        return true;
+    }
+    let mut memory = Vec::<u8>::new();
+    let reserved = memory.try_reserve_exact(bytes).is_ok();
+    // Without this the compiler may leave out memory that nobody uses.
+    std::hint::black_box(&memory);
+    reserved
 }
 
 /// A bounded piece of memory at a made-up address, for tests and fuzzing. Mapped buffers lie behind it.
@@ -94,6 +115,11 @@ mod tests {
         assert!(arena.write(1006, &[1, 2]) && arena.read(1006, &mut two));
         assert_eq!(two, [1, 2]);
         assert!(!arena.read(1007, &mut two) && !arena.read(999, &mut two) && !arena.read(usize::MAX, &mut two));
+    }
+
+    #[test]
+    fn wild_amounts_cannot_be_had() {
+        assert!(can_have(0) && can_have(LARGE) && !can_have(usize::MAX / 2));
     }
 
     #[test]

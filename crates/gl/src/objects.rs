@@ -1,5 +1,6 @@
 //! Objects that contexts may share.
 
+use crate::names::NameRange;
 pub use crate::names::Names;
 use crate::pixels::{RenderbufferHandle, SamplerHandle, TextureHandle};
 pub use crate::vertices::{Buffer, BufferHandle, List, ListNames};
@@ -9,6 +10,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// The object store of one or more contexts.
 #[derive(Debug, Default)]
 pub struct Shared {
+    /// Where names of objects are taken from.
+    pub(crate) names: NameRange,
     /// Buffer objects.
     pub buffers: Mutex<Names<BufferHandle>>,
     /// Display lists.
@@ -28,6 +31,12 @@ pub struct Shared {
 }
 
 impl Shared {
+    /// An empty store, whose names differ from those of other stores: see [`crate::names`]. A default store begins with 1.
+    pub fn with_own_names() -> Self {
+        let names = NameRange::next();
+        Self { names, fences: Mutex::new(crate::api::Fences::after(names.first() as usize - 1)), ..Self::default() }
+    }
+
     /// Tells all contexts that attached images may have new storage.
     pub(crate) fn storage_changed(&self) {
         self.storage_epoch.fetch_add(1, Ordering::Relaxed);

@@ -311,7 +311,7 @@ fn the_constant_colour_is_clamped_where_it_is_used() {
 fn colours_of_fragments_may_be_clamped_on_their_way_to_floats() {
     let mut c = Stage::with_buffer(2, 2, gl::RGBA, gl::FLOAT);
     for (clamped, expected) in [(false, 3.0), (true, 1.0)] {
-        c.state.clamp_fragments = clamped;
+        c.set_fragment_clamp(clamped);
         let at = c.put(&[[3.0f32; 4]; 4]);
         c.raster_pos_2f(-1.0, -1.0);
         c.draw_pixels(2, 2, gl::RGBA, gl::FLOAT, at);

@@ -13,4 +13,5 @@ mod gathering;
 mod lines;
 mod operations;
 mod passes;
+mod situations;
 mod specification;

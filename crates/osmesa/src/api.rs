@@ -2,7 +2,8 @@
 
 use crate::attributes::{Attributes, tokens};
 use crate::current::{call, current, replace};
-use crate::environment::{say, tell};
+use crate::environment::{gives_1_5_for_2_1, say, tell};
+use crate::floating::in_default_environment;
 use crate::handle::{Handle, Machine};
 use crate::procedure::{Procedure, procedures};
 use std::ffi::{CStr, c_char, c_void};
@@ -23,9 +24,11 @@ const MOST_ATTRIBUTES: usize = 64;
 
 /// Runs `body`; a panic ends here, with `otherwise`.
 fn guarded<R>(name: &str, otherwise: R, body: impl FnOnce() -> R) -> R {
-    catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|_| {
-        say(&format!("{name}: this is a fault of vitral"));
-        otherwise
+    in_default_environment(|| {
+        catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|_| {
+            say(&format!("{name}: this is a fault of vitral"));
+            otherwise
+        })
     })
 }
 
@@ -58,7 +61,7 @@ unsafe fn create(name: &str, attributes: Result<Attributes, String>, share: *con
         // SAFETY: promised by the caller.
         Ok(attributes) => Handle::create(attributes, unsafe { share.as_ref() }),
         Err(why) => {
-            tell(&format!("{name}: {why}"));
+            say(&format!("{name}: {why}"));
             ptr::null()
         }
     })
@@ -102,7 +105,7 @@ pub(crate) unsafe extern "C" fn OSMesaCreateContextAttribs(list: *const i32, sha
         pairs.push((attribute, unsafe { list.add(2 * pairs.len() + 1).read_unaligned() }));
     }
     // SAFETY: promised by the client.
-    unsafe { create("OSMesaCreateContextAttribs", Attributes::from_list(&pairs), share) }
+    unsafe { create("OSMesaCreateContextAttribs", Attributes::from_list(&pairs, gives_1_5_for_2_1), share) }
 }
 
 /// # Safety
@@ -298,7 +301,7 @@ pub(crate) extern "C" fn OSMesaColorClamp(enable: u8) {
         // SAFETY: the current context is alive and this thread's.
         if let Some(machine) = unsafe { machine(current()) } {
             machine.context.flush_vertices();
-            machine.context.state.clamp_fragments = enable != 0;
+            machine.context.set_fragment_clamp(enable != 0);
         }
     });
 }

@@ -42,6 +42,8 @@ pub(crate) struct Attributes {
     pub(crate) stencil_bits: i32,
     /// 0 or 16.
     pub(crate) accum_bits: i32,
+    /// OpenGL 2.0 or 2.1 was asked for, and `GL_VERSION` says so.
+    pub(crate) says_2_1: bool,
 }
 
 impl Attributes {
@@ -62,11 +64,12 @@ impl Attributes {
             1..=16 if stencil == 0 => 16,
             _ => 24,
         };
-        Ok(Self { format, depth_bits, stencil_bits, accum_bits: if accum > 0 { 16 } else { 0 } })
+        let accum_bits = if accum > 0 { 16 } else { 0 };
+        Ok(Self { format, depth_bits, stencil_bits, accum_bits, says_2_1: false })
     }
 
-    /// Reads pairs of attribute and value, in the order given.
-    pub(crate) fn from_list(pairs: &[(i32, i32)]) -> Result<Self, String> {
+    /// Reads pairs of attribute and value, in the order given. `lenient`: 1.5 is given to who asks for 2.0 or 2.1.
+    pub(crate) fn from_list(pairs: &[(i32, i32)], lenient: impl Fn() -> bool) -> Result<Self, String> {
         let (mut format, mut depth, mut stencil, mut accum) = (RGBA.cast_signed(), 0, 0, 0);
         let (mut profile, mut major, mut minor) = (COMPAT_PROFILE, 1, 0);
         for &(attribute, value) in pairs {
@@ -88,13 +91,25 @@ impl Attributes {
             return Err(format!("there is no OpenGL {major}.{minor}"));
         }
         if profile == CORE_PROFILE {
-            return Err(format!("OpenGL {major}.{minor} core was asked for, there is the compatibility profile alone"));
+            return Err(format!(
+                "OpenGL {major}.{minor} core was asked for, there is the compatibility profile of 1.5 alone: no shaders"
+            ));
         }
-        if (major, minor) > VERSION {
-            let (has_major, has_minor) = VERSION;
-            return Err(format!("OpenGL {major}.{minor} was asked for, there is {has_major}.{has_minor}"));
+        if (major, minor) <= VERSION {
+            return Self::new(format, depth, stencil, accum);
         }
-        Self::new(format, depth, stencil, accum)
+
+        // A program may say 2.1 and use nothing of it: the user knows.
+        let (has_major, has_minor) = VERSION;
+        let refused =
+            format!("OpenGL {major}.{minor} was asked for, there is {has_major}.{has_minor}, without shaders");
+        match (major, minor) {
+            (2, 0 | 1) if lenient() => Ok(Self { says_2_1: true, ..Self::new(format, depth, stencil, accum)? }),
+            (2, 0 | 1) => {
+                Err(format!("{refused}; VITRAL_GL_COMPAT=2.1 gives 1.5 to a program that does not need more"))
+            }
+            _ => Err(refused),
+        }
     }
 
     /// Whether buffers may have this type of component.
@@ -124,7 +139,7 @@ mod tests {
 
     #[test]
     fn versions_and_profiles_beyond_ours_are_refused() {
-        let made = |pairs: &[(i32, i32)]| Attributes::from_list(pairs).is_ok();
+        let made = |pairs: &[(i32, i32)]| Attributes::from_list(pairs, || false).is_ok();
         assert!(made(&[]));
         assert!(made(&[(FORMAT, 2), (DEPTH_BITS, 24), (PROFILE, COMPAT_PROFILE)]));
         assert!(made(&[(CONTEXT_MAJOR_VERSION, 1), (CONTEXT_MINOR_VERSION, 5)]));
@@ -139,6 +154,18 @@ mod tests {
         ] {
             assert!(!made(&refused), "{refused:?}");
         }
+    }
+
+    #[test]
+    fn who_asks_for_2_1_gets_1_5_if_the_user_says_so() {
+        let asked = |major, minor, lenient| {
+            Attributes::from_list(&[(CONTEXT_MAJOR_VERSION, major), (CONTEXT_MINOR_VERSION, minor)], || lenient)
+        };
+        assert_eq!(asked(2, 1, true).map(|made| made.says_2_1), Ok(true));
+        assert_eq!(asked(2, 0, true).map(|made| made.says_2_1), Ok(true));
+        assert_eq!(asked(1, 4, true).map(|made| made.says_2_1), Ok(false));
+        assert!(asked(2, 1, false).is_err_and(|why| why.contains("VITRAL_GL_COMPAT=2.1")));
+        assert!(asked(3, 0, true).is_err_and(|why| !why.contains("COMPAT")));
     }
 
     #[test]

@@ -1,29 +1,50 @@
 //! The calling thread's context, and the way of every call into it.
 
 use crate::environment;
+use crate::floating::in_default_environment;
 use crate::handle::Handle;
 use crate::messages::{Messages, Waiting};
 use std::any::Any;
 use std::cell::Cell;
+use std::ffi::c_void;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use vitral_gl::{Context, enums};
 
-/// Lets go of the current context when the thread ends. Kept apart from the pointer, so that reading that costs nothing.
-struct AtThreadEnd;
+thread_local! {
+    static CURRENT: Cell<*const Handle> = const { Cell::new(ptr::null()) };
+}
 
-impl Drop for AtThreadEnd {
-    fn drop(&mut self) {
+/// The key of threads that have had a context, made with the first one.
+static KEY: OnceLock<Option<libc::pthread_key_t>> = OnceLock::new();
+
+/// Rounds in which the C library calls the destructors of keys, at least (`PTHREAD_DESTRUCTOR_ITERATIONS`).
+const ROUNDS: usize = 4;
+
+/// Lets go of the current context when the thread ends, in the last round: destructors of the client find it current.
+extern "C" fn at_thread_end(rounds: *mut c_void) {
+    let rounds = rounds.addr() + 1;
+    if rounds < ROUNDS {
+        count_rounds(rounds);
+    } else {
         // The client's buffer may be gone by now: nothing is stored.
         // SAFETY: null.
         unsafe { replace(ptr::null()) };
     }
 }
 
-thread_local! {
-    static CURRENT: Cell<*const Handle> = const { Cell::new(ptr::null()) };
-    static AT_THREAD_END: AtThreadEnd = const { AtThreadEnd };
+/// Has [`at_thread_end`] called when the calling thread ends, or in the next round of destructors.
+fn count_rounds(rounds: usize) {
+    let key = KEY.get_or_init(|| {
+        let mut key = 0;
+        // SAFETY: writes the key. The library is linked to be never unloaded (`build.rs`), so that the function stays.
+        (unsafe { libc::pthread_key_create(&raw mut key, Some(at_thread_end)) } == 0).then_some(key)
+    });
+    if let Some(key) = *key {
+        // SAFETY: the key was made, and is never deleted. The value is a number.
+        unsafe { libc::pthread_setspecific(key, ptr::without_provenance(rounds)) };
+    }
 }
 
 /// The calling thread's context, or null.
@@ -39,8 +60,7 @@ pub(crate) unsafe fn replace(handle: *const Handle) {
     // SAFETY: promised by the caller.
     if let Some(handle) = unsafe { handle.as_ref() } {
         handle.acquire();
-        // A thread that is ending has nothing to register any more.
-        let _ = AT_THREAD_END.try_with(|_| ());
+        count_rounds(1);
     }
     let before = CURRENT.replace(handle);
     if !before.is_null() {
@@ -58,10 +78,10 @@ pub(crate) fn call<R: Default>(name: &'static str, body: impl FnOnce(&mut Contex
     // SAFETY: the machine belongs to this thread. Calls do not nest: `body` runs no code of the client, whose debug
     // callback is called below, when this borrow has ended.
     let context = unsafe { &mut (*handle.machine()).context };
-    let result = match catch_unwind(AssertUnwindSafe(|| body(context))) {
+    let result = in_default_environment(|| match catch_unwind(AssertUnwindSafe(|| body(context))) {
         Ok(result) => result,
         Err(cause) => panicked(context, name, cause),
-    };
+    });
     if handle.messages.any() {
         deliver(handle);
     }

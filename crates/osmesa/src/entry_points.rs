@@ -87,6 +87,7 @@ entry_points! {
     glCallList => [call_list](list: u32) -> ();
     glCallLists => [call_lists](n: i32, type_: u32, lists: usize) -> ();
     glCheckFramebufferStatus glCheckFramebufferStatusEXT => check_framebuffer_status(target: u32) -> u32;
+    glClampColorARB glClampColor => clamp_color(target: u32, clamp: u32) -> ();
     glClear => clear(mask: u32) -> ();
     glClearAccum => clear_accum(red: f32, green: f32, blue: f32, alpha: f32) -> ();
     glClearColor => clear_color(red: f32, green: f32, blue: f32, alpha: f32) -> ();
@@ -167,6 +168,7 @@ entry_points! {
     glDisableClientState => [disable_client_state](array: u32) -> ();
     glDrawArrays glDrawArraysEXT => [draw_arrays](mode: u32, first: i32, count: i32) -> ();
     glDrawBuffer => draw_buffer(buf: u32) -> ();
+    glDrawBuffersARB glDrawBuffers glDrawBuffersATI => draw_buffers(n: i32, bufs: usize) -> ();
     glDrawElements => [draw_elements](mode: u32, count: i32, type_: u32, indices: usize) -> ();
     glDrawElementsBaseVertex => [draw_elements_base_vertex](mode: u32, count: i32, type_: u32, indices: usize, basevertex: i32) -> ();
     glDrawPixels => draw_pixels(width: i32, height: i32, format: u32, type_: u32, pixels: usize) -> ();
@@ -411,6 +413,8 @@ entry_points! {
     glPopMatrix => [pop_matrix]() -> ();
     glPopName => [pop_name]() -> ();
     glPrioritizeTextures glPrioritizeTexturesEXT => prioritize_textures(n: i32, textures: usize, priorities: usize) -> ();
+    glPrimitiveRestartIndexNV => [primitive_restart_index_nv](index: u32) -> ();
+    glPrimitiveRestartNV => [primitive_restart_nv]() -> ();
     glPushAttrib => push_attrib(mask: u32) -> ();
     glPushClientAttrib => push_client_attrib(mask: u32) -> ();
     glPushDebugGroup => push_debug_group(source: u32, id: u32, length: i32, message: usize) -> ();
@@ -485,8 +489,10 @@ entry_points! {
     glSelectBuffer => select_buffer(size: i32, buffer: usize) -> ();
     glShadeModel => [shade_model](mode: u32) -> ();
     glStencilFunc => stencil_func(func: u32, ref_: i32, mask: u32) -> ();
+    glStencilFuncSeparate => stencil_func_separate(face: u32, func: u32, ref_: i32, mask: u32) -> ();
     glStencilFuncSeparateATI => stencil_func_separate_ati(frontfunc: u32, backfunc: u32, ref_: i32, mask: u32) -> ();
     glStencilMask => stencil_mask(mask: u32) -> ();
+    glStencilMaskSeparate => stencil_mask_separate(face: u32, mask: u32) -> ();
     glStencilOp => stencil_op(fail: u32, zfail: u32, zpass: u32) -> ();
     glStencilOpSeparateATI glStencilOpSeparate => stencil_op_separate_ati(face: u32, sfail: u32, dpfail: u32, dppass: u32) -> ();
     glTexCoord1d => [tex_coord_1d](s: f64) -> ();

@@ -1,4 +1,4 @@
-//! Environment variables: `VITRAL_THREADS` and `VITRAL_GL_DEBUG`.
+//! Environment variables: `VITRAL_THREADS`, `VITRAL_GL_DEBUG` and `VITRAL_GL_COMPAT`.
 
 use std::sync::OnceLock;
 
@@ -22,6 +22,16 @@ fn threads_of(text: &str) -> Option<usize> {
 pub(crate) fn debug() -> bool {
     static DEBUG: OnceLock<bool> = OnceLock::new();
     *DEBUG.get_or_init(|| std::env::var_os("VITRAL_GL_DEBUG").is_some_and(|value| !value.is_empty() && value != "0"))
+}
+
+/// Whether programs that ask for OpenGL 2.0 or 2.1 get 1.5: `VITRAL_GL_COMPAT` is 2.1.
+pub(crate) fn gives_1_5_for_2_1() -> bool {
+    let Ok(text) = std::env::var("VITRAL_GL_COMPAT") else { return false };
+    let asked = text.trim() == "2.1";
+    if !asked && !text.trim().is_empty() {
+        say(&format!("VITRAL_GL_COMPAT={text} has no meaning: 2.1 is the one value"));
+    }
+    asked
 }
 
 /// A line on standard error, if the user asked for that.

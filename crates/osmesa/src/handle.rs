@@ -48,7 +48,7 @@ impl Handle {
     pub(crate) fn create(attributes: Attributes, share: Option<&Self>) -> *const Self {
         let (shared, memory) = match share {
             Some(other) => (Arc::clone(&other.shared), Arc::clone(&other.memory)),
-            None => Default::default(),
+            None => (Arc::new(Shared::with_own_names()), Arc::default()),
         };
         let messages = Arc::<Messages>::default();
         let mut context = Context::new(Arc::<ProcessMemory>::clone(&memory), Arc::clone(&shared));
@@ -56,7 +56,10 @@ impl Handle {
         context.set_merging(true);
         context.set_debug_printer(environment::debug().then_some(environment::say as fn(&str)));
         context.set_debug_hook(Some(messages.hook()));
-        let Attributes { format, depth_bits, stencil_bits, accum_bits } = attributes;
+        let Attributes { format, depth_bits, stencil_bits, accum_bits, .. } = attributes;
+        if attributes.says_2_1 {
+            context.say_2_1();
+        }
         context.configure_default_framebuffer(format, depth_bits, stencil_bits, accum_bits);
         let machine = UnsafeCell::new(Machine { context, attributes, depths: Vec::new() });
         Box::into_raw(Box::new(Self { messages, shared, memory, users: AtomicUsize::new(1), machine }))

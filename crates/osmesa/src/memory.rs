@@ -31,9 +31,15 @@ impl ClientMemory for ProcessMemory {
         true
     }
 
+    fn is_there(&self, address: usize, length: usize) -> bool {
+        crate::presence::is_there(address, length)
+    }
+
     fn map(&self, mut bytes: Vec<u8>) -> usize {
-        // An empty vector has no address of its own.
-        bytes.reserve(1);
+        // An empty vector has no address of its own. Others stay where they are: a large one may not be had twice.
+        if bytes.capacity() == 0 {
+            bytes.reserve(1);
+        }
         let mut bytes = ManuallyDrop::new(bytes);
         let address = bytes.as_mut_ptr().expose_provenance();
         let mut mapped = self.mapped.lock().unwrap_or_else(PoisonError::into_inner);

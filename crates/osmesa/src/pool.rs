@@ -6,7 +6,7 @@ use crate::environment;
 use std::ptr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicPtr, Ordering};
-use vitral_exec::{Workers, born_of_fork, forked, hold_for_fork};
+use vitral_exec::{Workers, born_of_fork, forked, hold_for_fork, surround_thread_starts};
 use vitral_math::lanes::{Level, level_from_environment};
 use vitral_raster::forward::Runner;
 
@@ -57,6 +57,7 @@ pub(crate) fn runner() -> Arc<Runner> {
             environment::say("no memory to be told of forks: do not fork while something is drawn");
         }
     }
+    surround_thread_starts(crate::signals::blocked);
     let runner = Arc::new(Runner::new(Workers::new(environment::threads()), level));
     let made = Box::into_raw(Box::new(Pool { process, runner }));
     match POOL.compare_exchange(found, made, Ordering::AcqRel, Ordering::Acquire) {

@@ -6,6 +6,9 @@ use std::path::Path;
 /// What programs are linked with; the name that is looked for at run time.
 const SONAME: &str = "libOSMesa.so.8";
 
+/// Further names: what linkers look for, and what programs were linked with before Mesa 9.
+const LINKS: [&str; 2] = ["libOSMesa.so", "libOSMesa.so.6"];
+
 /// What the stripped library's file stays under, in bytes: it is copied into images of containers and packages.
 const BELOW: u64 = 5_000_000;
 
@@ -38,7 +41,7 @@ pub(crate) fn run_all() -> Outcome {
 
     let shown = relative(&folder);
     println!("{shown}/{SONAME}: {:.2} MB", size()? as f64 / 1e6);
-    println!("{shown}/libOSMesa.so, {shown}/include/GL/osmesa.h, {shown}/pkgconfig/osmesa.pc");
+    println!("{shown}/libOSMesa.so, {shown}/libOSMesa.so.6, {shown}/include/GL/osmesa.h, {shown}/pkgconfig/osmesa.pc");
     println!();
     println!("Run a program with it:");
     println!("  eval \"$(cargo run --release --quiet -- osmesa-env --lib {shown})\"");
@@ -72,12 +75,14 @@ fn lay_out(built: &Path, folder: &Path) -> std::io::Result<()> {
     let fresh = folder.join(format!("{SONAME}.new"));
     std::fs::copy(built, &fresh)?;
     std::fs::rename(&fresh, &library)?;
-    let link = folder.join("libOSMesa.so");
-    let _ = std::fs::remove_file(&link);
-    #[cfg(unix)]
-    std::os::unix::fs::symlink(SONAME, &link)?;
-    #[cfg(not(unix))]
-    std::fs::copy(&library, &link)?;
+    for name in LINKS {
+        let link = folder.join(name);
+        let _ = std::fs::remove_file(&link);
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(SONAME, &link)?;
+        #[cfg(not(unix))]
+        std::fs::copy(&library, &link)?;
+    }
     std::fs::copy(repository().join("crates/osmesa/include/GL/osmesa.h"), folder.join("include/GL/osmesa.h"))?;
     std::fs::write(folder.join("pkgconfig/osmesa.pc"), PKG_CONFIG)
 }
@@ -94,7 +99,7 @@ mod tests {
         for content in ["one", "two"] {
             std::fs::write(&built, content).unwrap();
             lay_out(&built, &folder).unwrap();
-            for name in [SONAME, "libOSMesa.so"] {
+            for name in [SONAME, "libOSMesa.so", "libOSMesa.so.6"] {
                 assert_eq!(std::fs::read_to_string(folder.join(name)).unwrap(), content);
             }
         }

@@ -10,7 +10,7 @@ pub(super) fn index_in(token: u32, first: u32, count: usize) -> Option<usize> {
 }
 
 /// The server capabilities that are there once, but lights, clip planes and evaluators.
-pub(super) const SINGLE_CAPABILITIES: [u32; 35] = [
+pub(super) const SINGLE_CAPABILITIES: [u32; 36] = [
     gl::ALPHA_TEST,
     gl::AUTO_NORMAL,
     gl::BLEND,
@@ -36,6 +36,7 @@ pub(super) const SINGLE_CAPABILITIES: [u32; 35] = [
     gl::POLYGON_OFFSET_POINT,
     gl::POLYGON_SMOOTH,
     gl::POLYGON_STIPPLE,
+    gl::RASTER_POSITION_UNCLIPPED_IBM,
     gl::RESCALE_NORMAL,
     gl::SAMPLE_ALPHA_TO_COVERAGE,
     gl::SAMPLE_ALPHA_TO_ONE,
@@ -136,6 +137,7 @@ impl Context {
             gl::POLYGON_OFFSET_FILL => &mut s.polygons.offset_enabled[2],
             gl::POLYGON_SMOOTH => &mut s.polygons.smooth,
             gl::POLYGON_STIPPLE => &mut s.polygons.stipple,
+            gl::RASTER_POSITION_UNCLIPPED_IBM => &mut s.raster_position_unclipped,
             gl::RESCALE_NORMAL => &mut s.matrices.rescale_normal,
             gl::TEXTURE_CUBE_MAP_SEAMLESS => &mut s.cube_map_seamless,
             _ => return None,
@@ -145,6 +147,9 @@ impl Context {
     /// The switch of a client capability.
     pub(super) fn client_capability(&mut self, cap: u32) -> Option<&mut bool> {
         let client = &mut self.client;
+        if cap == gl::PRIMITIVE_RESTART_NV {
+            return Some(&mut client.restart.0);
+        }
         let array = match cap {
             gl::VERTEX_ARRAY => &mut client.vertex,
             gl::NORMAL_ARRAY => &mut client.normal,

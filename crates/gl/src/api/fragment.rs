@@ -102,6 +102,57 @@ impl Context {
         });
     }
 
+    /// `glStencilFuncSeparate`.
+    pub fn stencil_func_separate(&mut self, face: u32, func: u32, reference: i32, mask: u32) {
+        self.listable(move |c| {
+            let call = "glStencilFuncSeparate";
+            if !c.may_set(call) {
+                return;
+            }
+            let Some(chosen) = faces(face) else { return c.refuse_enum(call, "face", face) };
+            if c.check_enum(call, "func", func, &COMPARISONS) {
+                for side in (0..2).filter(|side| chosen[*side]) {
+                    let face = &mut c.state.stencil.faces[side];
+                    (face.func, face.reference, face.value_mask) = (func, reference, mask);
+                }
+            }
+        });
+    }
+
+    /// `glStencilMaskSeparate`.
+    pub fn stencil_mask_separate(&mut self, face: u32, mask: u32) {
+        self.listable(move |c| {
+            let call = "glStencilMaskSeparate";
+            if !c.may_set(call) {
+                return;
+            }
+            let Some(chosen) = faces(face) else { return c.refuse_enum(call, "face", face) };
+            for side in (0..2).filter(|side| chosen[*side]) {
+                c.state.stencil.faces[side].write_mask = mask;
+            }
+        });
+    }
+
+    /// `OSMesaColorClamp`: whether colours of fragments are clamped even on their way to buffers of floats.
+    pub fn set_fragment_clamp(&mut self, on: bool) {
+        self.state.color_buffer.clamps[1] = if on { gl::TRUE } else { gl::FIXED_ONLY };
+    }
+
+    /// `glClampColorARB`.
+    pub fn clamp_color(&mut self, target: u32, clamp: u32) {
+        self.listable(move |c| {
+            let call = "glClampColorARB";
+            let targets = [gl::CLAMP_VERTEX_COLOR, gl::CLAMP_FRAGMENT_COLOR, gl::CLAMP_READ_COLOR];
+            if c.may_set(call)
+                && c.check_enum(call, "target", target, &targets)
+                && c.check_enum(call, "clamp", clamp, &[gl::TRUE, gl::FALSE, gl::FIXED_ONLY])
+                && let Some(which) = targets.iter().position(|&t| t == target)
+            {
+                c.state.color_buffer.clamps[which] = clamp;
+            }
+        });
+    }
+
     /// `glStencilFuncSeparateATI`.
     pub fn stencil_func_separate_ati(&mut self, front: u32, back: u32, reference: i32, mask: u32) {
         self.listable(move |c| {
@@ -148,7 +199,7 @@ impl Context {
     plain_call!(index_mask(mask: u32), "glIndexMask", |c| c.state.color_buffer.index_mask = mask);
     plain_call!(depth_mask(flag: u8), "glDepthMask", |c| c.state.depth.write = flag != 0);
     plain_call!(clear_color(red: f32, green: f32, blue: f32, alpha: f32), "glClearColor", |c| {
-        c.state.color_buffer.clear = [red, green, blue, alpha].map(unit)
+        c.state.color_buffer.clear = [red, green, blue, alpha]
     });
     plain_call!(clear_accum(red: f32, green: f32, blue: f32, alpha: f32), "glClearAccum", |c| {
         c.state.color_buffer.accum_clear = [red, green, blue, alpha].map(|v| if v >= -1.0 { v.min(1.0) } else { -1.0 })
@@ -198,6 +249,11 @@ mod tests {
         assert_eq!(c.state.stencil.back().ops[2], gl::DECR);
         c.enable(gl::STENCIL_TEST_TWO_SIDE_EXT);
         assert_eq!((c.state.stencil.back().ops[2], c.state.stencil.back().write_mask), (gl::INVERT, u32::MAX));
+        c.stencil_func_separate(gl::BACK, gl::EQUAL, 9, 1);
+        c.stencil_mask_separate(gl::FRONT, 3);
+        let faces = c.state.stencil.faces;
+        assert_eq!([faces[0].func, faces[1].func], [gl::ALWAYS, gl::EQUAL]);
+        assert_eq!([faces[0].write_mask, faces[1].write_mask], [3, 0x0F]);
         c.stencil_func_separate_ati(gl::LESS, gl::GREATER, 3, 7);
         assert_eq!((c.state.stencil.faces[0].func, c.state.stencil.faces[1].func), (gl::LESS, gl::GREATER));
     }
@@ -206,7 +262,9 @@ mod tests {
     fn values_are_clamped() {
         let mut c = context();
         c.clear_color(2.0, -1.0, 0.5, f32::NAN);
-        assert_eq!(c.state.color_buffer.clear, [1.0, 0.0, 0.5, 0.0]);
+        let at = crate::api::testing::RESULT;
+        c.get_floatv(gl::COLOR_CLEAR_VALUE, at);
+        assert_eq!(crate::api::testing::take::<f32, 4>(&c), [1.0, 0.0, 0.5, 0.0]);
         c.clear_accum(2.0, -2.0, 0.5, -0.5);
         assert_eq!(c.state.color_buffer.accum_clear, [1.0, -1.0, 0.5, -0.5]);
         c.clear_depth(1.5);

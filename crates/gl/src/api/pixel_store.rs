@@ -8,8 +8,14 @@ impl Context {
     /// `glPixelStoref`.
     pub fn pixel_storef(&mut self, pname: u32, param: f32) {
         // A logical parameter is true for anything but 0, so it must not be rounded to it.
-        let logical =
-            matches!(pname, gl::UNPACK_SWAP_BYTES | gl::UNPACK_LSB_FIRST | gl::PACK_SWAP_BYTES | gl::PACK_LSB_FIRST);
+        let logical = matches!(
+            pname,
+            gl::UNPACK_SWAP_BYTES
+                | gl::UNPACK_LSB_FIRST
+                | gl::PACK_SWAP_BYTES
+                | gl::PACK_LSB_FIRST
+                | gl::PACK_INVERT_MESA
+        );
         let value = if logical { i32::from(param != 0.0) } else { param.round() as i32 };
         self.store("glPixelStoref", pname, value);
     }
@@ -29,6 +35,7 @@ impl Context {
             gl::UNPACK_LSB_FIRST => store_logical(&mut client.unpack.lsb_first, value),
             gl::PACK_SWAP_BYTES => store_logical(&mut client.pack.swap_bytes, value),
             gl::PACK_LSB_FIRST => store_logical(&mut client.pack.lsb_first, value),
+            gl::PACK_INVERT_MESA => store_logical(&mut client.pack.invert, value),
             gl::UNPACK_ALIGNMENT => store_alignment(&mut client.unpack, value),
             gl::PACK_ALIGNMENT => store_alignment(&mut client.pack, value),
             gl::UNPACK_ROW_LENGTH => store_count(&mut client.unpack.row_length, value),

@@ -56,10 +56,10 @@ impl Context {
         if n < 0 {
             return self.refuse_value(call, "the number of names is negative");
         }
-        let mut name = 1;
+        let mut name = self.shared.names.first();
         for i in 0..n as usize {
             while self.queries.names.contains_key(&name) {
-                name += 1;
+                name = name.wrapping_add(1).max(1);
             }
             let at = ids.checked_add(i * 4).filter(|_| ids != 0);
             if !at.is_some_and(|at| self.memory.write(at, bytemuck::bytes_of(&name))) {

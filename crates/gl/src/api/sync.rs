@@ -16,6 +16,11 @@ pub(crate) struct Fences {
 }
 
 impl Fences {
+    /// None so far; the first will have the handle after `last`.
+    pub(crate) fn after(last: usize) -> Self {
+        Self { names: Vec::new(), last }
+    }
+
     /// Where in the list a fence is.
     fn find(&self, sync: usize) -> Option<usize> {
         self.names.binary_search(&sync).ok()

@@ -7,20 +7,23 @@ use crate::state::{Combine, MAX_TEXTURE_UNITS};
 use crate::{Context, enums as gl};
 
 const MODES: [u32; 6] = [gl::MODULATE, gl::REPLACE, gl::DECAL, gl::BLEND, gl::ADD, gl::COMBINE];
-/// Of RGB; alpha has the first six.
-const FUNCTIONS: [u32; 10] = [
+/// Of RGB; alpha has the first nine.
+const FUNCTIONS: [u32; 13] = [
     gl::REPLACE,
     gl::MODULATE,
     gl::ADD,
     gl::ADD_SIGNED,
     gl::INTERPOLATE,
     gl::SUBTRACT,
+    gl::MODULATE_ADD_ATI,
+    gl::MODULATE_SIGNED_ADD_ATI,
+    gl::MODULATE_SUBTRACT_ATI,
     gl::DOT3_RGB,
     gl::DOT3_RGBA,
     gl::DOT3_RGB_EXT,
     gl::DOT3_RGBA_EXT,
 ];
-const SOURCES: [u32; 4] = [gl::TEXTURE, gl::CONSTANT, gl::PRIMARY_COLOR, gl::PREVIOUS];
+const SOURCES: [u32; 6] = [gl::TEXTURE, gl::CONSTANT, gl::PRIMARY_COLOR, gl::PREVIOUS, gl::ZERO, gl::ONE];
 /// Of RGB; alpha has the first two.
 const OPERANDS: [u32; 4] = [gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA, gl::SRC_COLOR, gl::ONE_MINUS_SRC_COLOR];
 
@@ -125,7 +128,7 @@ impl Context {
         let (good, field) = match (pname, combine_slot(pname)) {
             (_, Some(slot)) => (accepts(slot, value), slot_of(&mut environment.combine, slot)),
             (gl::COMBINE_RGB, _) => (FUNCTIONS.contains(&value), &mut environment.combine.functions[0]),
-            (gl::COMBINE_ALPHA, _) => (FUNCTIONS[..6].contains(&value), &mut environment.combine.functions[1]),
+            (gl::COMBINE_ALPHA, _) => (FUNCTIONS[..9].contains(&value), &mut environment.combine.functions[1]),
             _ => (MODES.contains(&value), &mut environment.mode),
         };
         if good {

@@ -89,7 +89,7 @@ impl Context {
 
     /// `ACCUM` and `LOAD`: from the read buffer.
     fn accumulate(&mut self, value: f32, load: bool, clip: [i32; 4]) {
-        let Some(surfaces) = self.read_surfaces("glAccum", true) else { return };
+        let Some(surfaces) = self.read_surfaces("glAccum", true, None) else { return };
         let source = surfaces.color.and_then(|s| s.color).filter(|_| self.framebuffers.read == 0);
         let (Some(source), Some(plane)) = (source, self.default_framebuffer.accum()) else { return };
         let source = lock(&source);
@@ -107,7 +107,7 @@ impl Context {
     /// `RETURN`: to the draw buffer, through the colour mask.
     fn return_accum(&mut self, value: f32, clip: [i32; 4]) {
         // Counts as a draw.
-        if self.draw_target().is_none() {
+        if self.draw_target(None).is_none() {
             return;
         }
         self.flush_recorded();
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn two_half_frames_make_one() {
         let mut c = context_with(4, 4);
-        assert!(c.draw_target().is_some());
+        assert!(c.draw_target(None).is_some());
         if let ColorPlane::Rgba8(plane) = &mut *lock(&c.draw_color().unwrap().0) {
             plane.set(1, 1, 0, u32::from_le_bytes([255, 100, 0, 255]));
         }

@@ -1,11 +1,11 @@
 //! Names of textures: generate, bind, delete; the texture that a unit samples.
 
 use super::image::lock;
-use super::names;
 use super::sampler::SamplerHandle;
 use super::texture::{ImageTarget, TextureHandle, TextureObject, slot_of};
 use crate::Context;
 use crate::enums::*;
+use crate::names::MAX_NAMES;
 use crate::state::MAX_TEXTURE_UNITS;
 use std::sync::{Arc, Mutex};
 use vitral_raster::forward::Texture;
@@ -95,7 +95,7 @@ impl Context {
             self.record_error(INVALID_VALUE, call, "n is negative");
             return Vec::new();
         };
-        if address == 0 || count > names::MAX_NAMES {
+        if address == 0 || count > MAX_NAMES {
             return Vec::new();
         }
         let mut names = vec![0u32; count];
@@ -112,7 +112,7 @@ impl Context {
         }
         match usize::try_from(count) {
             Err(_) => self.record_error(INVALID_VALUE, call, "n is negative"),
-            Ok(count) if count > names::MAX_NAMES => self.record_error(OUT_OF_MEMORY, call, "n is too large"),
+            Ok(count) if count > MAX_NAMES => self.record_error(OUT_OF_MEMORY, call, "n is too large"),
             Ok(count) => return Some(count),
         }
         None
@@ -121,7 +121,7 @@ impl Context {
     /// `glGenTextures`.
     pub fn gen_textures(&mut self, n: i32, textures: usize) {
         if let Some(count) = self.name_count("glGenTextures", n) {
-            let names = names::generate(&mut lock(&self.shared.textures), count);
+            let names = self.shared.names.generate(&mut lock(&self.shared.textures), count);
             self.write_names(&names, textures);
         }
     }

@@ -193,11 +193,11 @@ impl Context {
         if read.status == FRAMEBUFFER_COMPLETE {
             blit.check(&read, &draw)?;
         }
-        let Some(read) = self.read_surfaces(CALL, false) else { return Ok(()) };
+        let Some(read) = self.read_surfaces(CALL, false, None) else { return Ok(()) };
         let (Some(from), Some(to)) = (read.size, draw.size) else { return Ok(()) };
         let plan = blit.plan(from, self.scissored(to), self.workers());
         // The copy counts as a draw, and happens at once.
-        if blit.mask == 0 || blit.is_empty() || self.draw_target().is_none() {
+        if blit.mask == 0 || blit.is_empty() || self.draw_target(None).is_none() {
             return Ok(());
         }
         self.flush_recorded();

@@ -104,6 +104,23 @@ impl Context {
         self.listable(move |c| c.set_buffer("glReadBuffer", src, false));
     }
 
+    /// `glDrawBuffersARB`: of one buffer at most.
+    pub fn draw_buffers(&mut self, n: i32, bufs: usize) {
+        const CALL: &str = "glDrawBuffersARB";
+        let named = match n {
+            0 => Some([NONE]),
+            1 => crate::api::read_tokens::<1>(&*self.memory, bufs),
+            _ => None,
+        };
+        self.listable(move |c| match named {
+            Some([FRONT_AND_BACK | FRONT | BACK | LEFT | RIGHT]) if c.framebuffers.draw != 0 => {
+                c.record_error(INVALID_ENUM, CALL, "the token may name several buffers");
+            }
+            Some([buffer]) => c.set_buffer(CALL, buffer, true),
+            None => c.record_error(INVALID_VALUE, CALL, "there is one draw buffer, which must be in readable memory"),
+        });
+    }
+
     fn set_buffer(&mut self, call: &str, buffer: u32, draw: bool) {
         if !self.outside_begin(call) {
             return;
@@ -175,7 +192,7 @@ mod tests {
         assert_eq!(error(true, COLOR_ATTACHMENT0), INVALID_OPERATION);
         assert_eq!(error(true, 0x1234), INVALID_ENUM);
         assert_eq!(error(true, NONE), NO_ERROR);
-        assert!(c.draw_target().unwrap().color.is_none());
+        assert!(c.draw_target(None).unwrap().color.is_none());
     }
 
     #[test]

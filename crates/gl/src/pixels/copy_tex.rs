@@ -72,7 +72,9 @@ impl Context {
             return Err((INVALID_ENUM, "a proxy has no texels"));
         }
         self.may_get_image(checked.target)?;
-        let Some(surfaces) = self.read_surfaces(arguments.call, true) else { return Ok(()) };
+        let [width, height, _] = checked.size.map(u32::cast_signed);
+        let area = Some([x, y, width, height]);
+        let Some(surfaces) = self.read_surfaces(arguments.call, true, area) else { return Ok(()) };
         if !has_source(&surfaces, &checked.format) {
             return Err((INVALID_OPERATION, "the read framebuffer has no such buffer"));
         }
@@ -80,12 +82,12 @@ impl Context {
         let r = inside(&surfaces, x, y, size[0] as i32, size[1] as i32);
         if r.size == size[..2] {
             let data = self.copy_texels(&surfaces, &checked.format, &r);
-            self.store_image(&checked, data);
+            self.store_image(arguments.call, &checked, data);
             return Ok(());
         }
         // Texels from outside the framebuffer are undefined.
         let data = self.copy_texels(&surfaces, &checked.format, &r);
-        self.store_image(&checked, None);
+        self.store_image(arguments.call, &checked, None);
         let target = self.target_texture(checked.target);
         if let (Some(data), false) = (data, r.size.contains(&0)) {
             let mut target = lock(&target);
@@ -110,7 +112,8 @@ impl Context {
 
     fn exec_copy_tex_sub_image(&mut self, arguments: &BoxArguments, x: i32, y: i32) -> Result<(), Failure> {
         let mut checked = self.check_box(arguments)?;
-        let Some(surfaces) = self.read_surfaces(arguments.call, true) else { return Ok(()) };
+        let area = Some([x, y, checked.size[0] as i32, checked.size[1] as i32]);
+        let Some(surfaces) = self.read_surfaces(arguments.call, true, area) else { return Ok(()) };
         if !has_source(&surfaces, &checked.format) {
             return Err((INVALID_OPERATION, "the read framebuffer has no such buffer"));
         }
@@ -205,7 +208,7 @@ mod tests {
     #[test]
     fn colours_reach_the_texture() {
         let mut c = context_with(2, 2);
-        assert!(c.draw_target().is_some());
+        assert!(c.draw_target(None).is_some());
         if let ColorPlane::Rgba8(plane) = &mut *lock(&c.draw_color().unwrap().0) {
             plane.write_row(0, 1, &[0x0403_0201, 0x0807_0605]);
         }

@@ -4,13 +4,12 @@
 //! The client's buffer is touched in the calls alone that are documented to do so; it may be gone at any other time.
 
 use super::attachments::{Surface, Surfaces};
-use super::decode;
+use super::client_buffer::{ClientBuffer, LoadedTiles};
 use super::encode;
 use super::format::PixelFormat;
 use super::image::{Shared, lock, new_color_plane};
 use super::internal_format::{InternalFormat, Storage};
 use super::store::MAX_IMAGE_BYTES;
-use super::texels::{color_from_word, word_from_color};
 use crate::Context;
 use crate::enums::*;
 use std::sync::{Arc, Mutex};
@@ -26,101 +25,6 @@ pub const OSMESA_BGR: u32 = 0x4;
 /// `OSMESA_RGB_565`.
 pub const OSMESA_RGB_565: u32 = 0x5;
 
-/// The client's buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct ClientBuffer {
-    address: usize,
-    kind: u32,
-    format: u32,
-    viewport: Viewport,
-    /// Pixels from row to row; 0 is the width.
-    row_length: usize,
-    y_up: bool,
-}
-
-impl ClientBuffer {
-    /// Which component is at each place of a pixel.
-    fn places(&self) -> &'static [usize] {
-        match self.format {
-            OSMESA_BGRA => &[2, 1, 0, 3],
-            OSMESA_ARGB => &[3, 0, 1, 2],
-            RGB => &[0, 1, 2],
-            OSMESA_BGR => &[2, 1, 0],
-            _ => &[0, 1, 2, 3],
-        }
-    }
-
-    fn pixel_bytes(&self) -> usize {
-        match self.kind {
-            UNSIGNED_SHORT_5_6_5 => 2,
-            UNSIGNED_BYTE => self.places().len(),
-            UNSIGNED_SHORT => 2 * self.places().len(),
-            _ => 4 * self.places().len(),
-        }
-    }
-
-    fn stride(&self) -> usize {
-        let length = if self.row_length == 0 { self.viewport.width as usize } else { self.row_length };
-        length * self.pixel_bytes()
-    }
-
-    /// The address of window row `y`.
-    fn row(&self, y: u32) -> Option<usize> {
-        let row = if self.y_up { y } else { self.viewport.height - 1 - y };
-        self.stride().checked_mul(row as usize)?.checked_add(self.address)
-    }
-
-    /// Appends colours as the client's pixels.
-    fn pack(&self, colors: &[[f32; 4]], out: &mut Vec<u8>) {
-        let first = out.len();
-        out.resize(first + colors.len() * self.pixel_bytes(), 0);
-        let out = &mut out[first..];
-        if self.kind == UNSIGNED_SHORT_5_6_5 {
-            let format = PixelFormat { format: RGB, kind: UNSIGNED_SHORT_5_6_5 };
-            encode::colors(colors, format, out);
-            return;
-        }
-        encode::components(colors, self.places(), self.kind, out);
-    }
-
-    fn pack_words(&self, words: &[u32], out: &mut Vec<u8>) {
-        if self.kind != UNSIGNED_BYTE {
-            let colors: Vec<_> = words.iter().map(|&w| color_from_word(w)).collect();
-            return self.pack(&colors, out);
-        }
-        match *self.places() {
-            [0, 1, 2, 3] if cfg!(target_endian = "little") => out.extend_from_slice(bytemuck::cast_slice(words)),
-            [a, b, c, d] => place(words, out, |w| [w[a], w[b], w[c], w[d]]),
-            [a, b, c] => place(words, out, |w| [w[a], w[b], w[c]]),
-            _ => {}
-        }
-    }
-
-    /// The colour of one of the client's pixels; alpha is 1 where there is none.
-    fn unpack(&self, pixel: &[u8]) -> [f32; 4] {
-        if self.kind == UNSIGNED_SHORT_5_6_5 {
-            let v = u16::from_ne_bytes([pixel[0], pixel[1]]);
-            let part = |shift: u32, largest: u16| f32::from((v >> shift) & largest) / f32::from(largest);
-            return [part(11, 31), part(5, 63), part(0, 31), 1.0];
-        }
-        let mut numbers = Vec::with_capacity(4);
-        decode::numbers(pixel, self.kind, &mut numbers);
-        let mut color = [0.0, 0.0, 0.0, 1.0];
-        self.places().iter().zip(numbers).for_each(|(&place, number)| color[place] = number);
-        color
-    }
-}
-
-/// Appends the bytes that `pixel` makes of each word's.
-#[inline]
-fn place<const N: usize>(words: &[u32], out: &mut Vec<u8>, pixel: impl Fn([u8; 4]) -> [u8; N]) {
-    let first = out.len();
-    out.resize(first + N * words.len(), 0);
-    for (bytes, word) in out[first..].chunks_exact_mut(N).zip(words) {
-        bytes.copy_from_slice(&pixel(word.to_le_bytes()));
-    }
-}
-
 /// The planes of framebuffer 0.
 #[derive(Debug, Default)]
 pub(crate) struct DefaultFramebuffer {
@@ -130,7 +34,7 @@ pub(crate) struct DefaultFramebuffer {
     accum_bits: i32,
     row_length: usize,
     y_down: bool,
-    buffer: Option<ClientBuffer>,
+    pub(super) buffer: Option<ClientBuffer>,
     /// What the planes were made for: size, and type of the client's components.
     made_for: Option<(Viewport, u32)>,
     color: Option<Surface>,
@@ -138,9 +42,9 @@ pub(crate) struct DefaultFramebuffer {
     stencil: Option<Surface>,
     accum: Option<Plane<[f32; 4]>>,
     /// Something was drawn since the planes were stored.
-    drawn: bool,
-    /// The planes hold what the client's buffer held.
-    loaded: bool,
+    pub(super) drawn: bool,
+    /// Where the colours hold what the client's buffer held.
+    pub(super) loaded: LoadedTiles,
     was_current: bool,
     version: u64,
 }
@@ -162,7 +66,7 @@ impl DefaultFramebuffer {
 
     /// Notes that all colours are about to be overwritten.
     pub(crate) fn set_loaded(&mut self) {
-        self.loaded = true;
+        self.loaded.set_all();
     }
 
     /// `ACCUM_RED_BITS` ...
@@ -190,6 +94,16 @@ impl DefaultFramebuffer {
             color: self.color.clone().filter(|_| named),
             depth: self.depth.clone(),
             stencil: self.stencil.clone(),
+        }
+    }
+
+    /// Notes that nothing is loaded, and that no colours differ from the buffer's where nothing will be.
+    pub(super) fn forget_loaded(&mut self) {
+        self.loaded.clear();
+        let Some(plane) = self.color_plane() else { return };
+        match &mut *lock(&plane) {
+            ColorPlane::Rgba8(plane) => plane.tiles.iter_mut().for_each(|tile| _ = tile.take_changed()),
+            ColorPlane::RgbaF32(plane) => plane.tiles.iter_mut().for_each(|tile| _ = tile.take_changed()),
         }
     }
 
@@ -225,7 +139,7 @@ impl DefaultFramebuffer {
         self.version += 1;
     }
 
-    fn color_plane(&self) -> Option<Shared<ColorPlane>> {
+    pub(super) fn color_plane(&self) -> Option<Shared<ColorPlane>> {
         self.color.as_ref()?.color.clone()
     }
 }
@@ -301,16 +215,17 @@ impl Context {
         if fb.buffer == Some(new) {
             return true;
         }
-        // The buffer before may be gone: what was drawn to it since the last store is not stored.
+        // The buffer before may be gone: what was drawn to it since the last store is not stored, and nothing is loaded.
+        self.default_framebuffer.loaded.set_all();
         self.flush_recorded();
         let fb = &mut self.default_framebuffer;
         fb.drawn = false;
         fb.buffer = Some(new);
-        fb.loaded = false;
         fb.version += 1;
         if fb.made_for != Some((viewport, kind)) {
             fb.make_planes(viewport, kind);
         }
+        fb.forget_loaded();
         if !fb.was_current {
             fb.was_current = true;
             self.state.viewport.rect = [0, 0, width, height];
@@ -321,7 +236,7 @@ impl Context {
 
     /// Lets go of the client's buffer, after storing what was drawn. Call it before another context becomes current.
     pub fn release(&mut self) {
-        self.store_default_framebuffer();
+        self.store_unasked();
         // Contexts with the same objects must see what was drawn to them.
         self.flush_recorded();
         let fb = &mut self.default_framebuffer;
@@ -334,7 +249,7 @@ impl Context {
         self.store_default_framebuffer();
         let fb = &mut self.default_framebuffer;
         fb.row_length = row_length;
-        fb.loaded = false;
+        fb.forget_loaded();
         if let Some(buffer) = &mut fb.buffer {
             buffer.row_length = row_length;
         }
@@ -345,7 +260,7 @@ impl Context {
         self.store_default_framebuffer();
         let fb = &mut self.default_framebuffer;
         fb.y_down = !y_up;
-        fb.loaded = false;
+        fb.forget_loaded();
         if let Some(buffer) = &mut fb.buffer {
             buffer.y_up = y_up;
         }
@@ -396,95 +311,16 @@ impl Context {
         }
         Some(DepthCopy { width, height, bytes_per_value, bytes })
     }
-
-    /// Takes the client's pixels into the plane where they are not what the plane would store: only once until the
-    /// next [`Self::store_default_framebuffer`].
-    pub(crate) fn load_default_framebuffer(&mut self) {
-        let fb = &mut self.default_framebuffer;
-        let (Some(buffer), Some(plane)) = (fb.buffer, fb.color_plane()) else { return };
-        if std::mem::replace(&mut fb.loaded, true) {
-            return;
-        }
-        let mut plane = lock(&plane);
-        let width = buffer.viewport.width as usize;
-        let bytes = buffer.pixel_bytes();
-        let (mut words, mut colors) = (vec![0; width], vec![[0.0; 4]; width]);
-        let mut ours = Vec::with_capacity(width * bytes);
-        let mut theirs = vec![0; width * bytes];
-        for y in 0..buffer.viewport.height {
-            let Some(address) = buffer.row(y) else { return };
-            ours.clear();
-            match &*plane {
-                ColorPlane::Rgba8(plane) => {
-                    plane.read_row(0, y, 0, &mut words);
-                    buffer.pack_words(&words, &mut ours);
-                }
-                ColorPlane::RgbaF32(plane) => {
-                    plane.read_row(0, y, 0, &mut colors);
-                    buffer.pack(&colors, &mut ours);
-                }
-            }
-            if !self.memory.read(address, &mut theirs) {
-                return;
-            }
-            if ours == theirs {
-                continue;
-            }
-            let pixels = theirs.chunks_exact(bytes).zip(ours.chunks_exact(bytes)).enumerate();
-            for (x, (theirs, _)) in pixels.filter(|(_, (theirs, ours))| theirs != ours) {
-                colors[x] = buffer.unpack(theirs);
-                words[x] = word_from_color(colors[x]);
-            }
-            match &mut *plane {
-                ColorPlane::Rgba8(plane) => plane.write_row(0, y, &words),
-                ColorPlane::RgbaF32(plane) => plane.write_row(0, y, &colors),
-            }
-        }
-    }
-
-    /// Runs what is recorded and writes the colours to the client's buffer, if something was drawn. To be called by
-    /// `Flush`, `Finish` and whatever lets the client look.
-    pub fn store_default_framebuffer(&mut self) {
-        self.flush_vertices();
-        if !self.default_framebuffer.drawn {
-            return;
-        }
-        self.flush_recorded();
-        let fb = &mut self.default_framebuffer;
-        fb.drawn = false;
-        let (Some(buffer), Some(plane)) = (fb.buffer, fb.color_plane()) else { return };
-        // The client may draw into its buffer from now on.
-        fb.loaded = false;
-        let plane = lock(&plane);
-        let width = buffer.viewport.width as usize;
-        let (mut words, mut colors) = (vec![0; width], vec![[0.0; 4]; width]);
-        let mut bytes = Vec::with_capacity(width * buffer.pixel_bytes());
-        for y in 0..buffer.viewport.height {
-            bytes.clear();
-            match &*plane {
-                ColorPlane::Rgba8(plane) => {
-                    plane.read_row(0, y, 0, &mut words);
-                    buffer.pack_words(&words, &mut bytes);
-                }
-                ColorPlane::RgbaF32(plane) => {
-                    plane.read_row(0, y, 0, &mut colors);
-                    buffer.pack(&colors, &mut bytes);
-                }
-            }
-            if !buffer.row(y).is_some_and(|address| self.memory.write(address, &bytes)) {
-                return;
-            }
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::testing::{BASE, context, get, put};
+    use super::super::texels::color_from_word;
     use super::*;
 
     fn fill(c: &mut Context, x: u32, y: u32, word: u32) {
-        assert!(c.draw_target().is_some());
+        assert!(c.draw_target(None).is_some());
         let plane = c.default_framebuffer.color_plane().unwrap();
         match &mut *lock(&plane) {
             ColorPlane::Rgba8(plane) => plane.set(x, y, 0, word),

@@ -182,7 +182,7 @@ impl Context {
             self.raster_draws(COPY_PIXEL_TOKEN);
             return;
         }
-        let Some(from) = self.read_surfaces(CALL, true) else { return };
+        let Some(from) = self.read_surfaces(CALL, true, Some([x, y, width, height])) else { return };
         let r = inside(&from, x, y, width, height);
         if !self.raster_draws(COPY_PIXEL_TOKEN) || r.size.contains(&0) {
             return;

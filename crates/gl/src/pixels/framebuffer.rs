@@ -3,7 +3,6 @@
 use super::Failure;
 use super::attachments::{Attached, DEPTH_POINT, FramebufferObject, STENCIL_POINT};
 use super::image::lock;
-use super::names;
 use super::renderbuffer::RenderbufferHandle;
 use super::target::Resolved;
 use super::texture::{ImageTarget, TextureHandle, slot};
@@ -60,7 +59,7 @@ impl Context {
     /// `glGenFramebuffers`.
     pub fn gen_framebuffers(&mut self, n: i32, framebuffers: usize) {
         if let Some(count) = self.name_count("glGenFramebuffers", n) {
-            let names = names::generate(&mut self.framebuffers.objects, count);
+            let names = self.shared.names.generate(&mut self.framebuffers.objects, count);
             self.write_names(&names, framebuffers);
         }
     }

@@ -180,7 +180,7 @@ mod tests {
         c.draw_buffer(NONE);
         c.read_buffer(NONE);
         assert_eq!(c.check_framebuffer_status(FRAMEBUFFER), FRAMEBUFFER_COMPLETE);
-        let target = c.draw_target().unwrap();
+        let target = c.draw_target(None).unwrap();
         assert!(target.color.is_none() && target.stencil.is_none());
         let sampled = c.sampled_texture(0).unwrap();
         let Texels::DepthPlane(plane) = sampled.faces[0][0].texels() else { panic!() };

@@ -5,8 +5,10 @@
 //! draw. Depths of an attached level stay in their plane: the sampler reads it.
 
 use super::internal_format::{InternalFormat, Storage};
+use super::s3tc::Blocks;
 use super::store::MAX_IMAGE_BYTES;
 use super::texels::{self, TexelData, color_from_word, stored_depth};
+use crate::memory::{LARGE, can_have};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral_raster::Viewport;
@@ -47,12 +49,24 @@ pub(crate) struct TextureImage {
     writes: Arc<AtomicU64>,
     /// `writes` when `level` was last made from `colors`.
     synced: u64,
+    /// The blocks that the texels were given as, as long as they are the same.
+    pub blocks: Option<Blocks>,
 }
 
 impl TextureImage {
     /// An image without defined texels.
     pub(crate) fn new(format: InternalFormat, size: [u32; 3], border: u32) -> Self {
-        Self { format, size, border, level: None, colors: Vec::new(), stencil: None, writes: Arc::default(), synced: 0 }
+        Self {
+            format,
+            size,
+            border,
+            level: None,
+            colors: Vec::new(),
+            stencil: None,
+            writes: Arc::default(),
+            synced: 0,
+            blocks: None,
+        }
     }
 
     /// Size as `usize`.
@@ -68,6 +82,19 @@ impl TextureImage {
     pub(crate) fn fits(format: &InternalFormat, size: [u32; 3]) -> bool {
         let bytes = size.iter().try_fold(format.texel_bytes(), |n, &s| n.checked_mul(s as usize));
         bytes.is_some_and(|n| n <= MAX_IMAGE_BYTES)
+    }
+
+    /// Takes the memory of a large image's texels, which are all 0; whether it could be had. That of small ones, and of what
+    /// framebuffers draw depths to, comes when it is needed.
+    pub(crate) fn allocate(&mut self) -> bool {
+        if self.bytes() < LARGE || !self.format.is_color() {
+            return true;
+        }
+        let there = can_have(self.bytes());
+        if there {
+            self.level = Some(self.blank_level());
+        }
+        there
     }
 
     /// Size of its texels in memory.
@@ -190,6 +217,7 @@ impl TextureImage {
         if !self.format.is_color() || layer >= self.size[2] as usize {
             return None;
         }
+        self.blocks = None;
         self.colors.resize(self.size[2] as usize, None);
         if let Some(plane) = &self.colors[layer] {
             return Some(plane.clone());
@@ -240,6 +268,7 @@ impl TextureImage {
 
     /// Puts a box of texels at `origin` (borders count). Everything recorded must have run.
     pub(crate) fn write(&mut self, origin: [usize; 3], size: [usize; 3], data: &TexelData) {
+        self.blocks = None;
         let full = self.full();
         if origin == [0; 3] && size == full && self.colors.is_empty() {
             self.replace(data.clone());

@@ -52,6 +52,8 @@ pub(crate) struct Bits {
 impl InternalFormat {
     /// The format of a texture. `None` if it is none, or a specific compressed format.
     pub(crate) fn of_texture(token: u32) -> Option<Self> {
+        // Texels that are not given as blocks are not compressed.
+        let token = super::s3tc::base(token);
         let (base, storage) = color(token).or_else(|| depth(token))?;
         // A generic compressed format that is not compressed becomes its base format.
         let token = match token {
@@ -316,7 +318,7 @@ mod tests {
         assert_eq!(bits(LUMINANCE16_ALPHA16).luminance, 16);
         assert_eq!(bits(DEPTH32F_STENCIL8), Bits { depth: 32, stencil: 8, ..Bits::default() });
         assert_eq!(InternalFormat::of_texture(COMPRESSED_RGB).unwrap().token, RGB);
-        assert!(InternalFormat::of_texture(COMPRESSED_RGB_S3TC_DXT1_EXT).is_none());
+        assert_eq!(InternalFormat::of_texture(COMPRESSED_RGB_S3TC_DXT1_EXT).unwrap().token, RGB);
         assert_eq!(InternalFormat::of_texture(COMPRESSED_SRGB_EXT).unwrap().storage, Storage::Srgb8);
         assert_eq!(InternalFormat::of_renderbuffer(LUMINANCE8).unwrap().bits().luminance, 8);
         assert!(InternalFormat::of_renderbuffer(COMPRESSED_RGB).is_none());

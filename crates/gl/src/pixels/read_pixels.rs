@@ -148,6 +148,7 @@ fn encode_colors(
     format: PixelFormat,
     r: &Rectangle,
     transfer: &Transfer<'_>,
+    clamps: bool,
 ) -> Vec<u8> {
     let pixel = format.pixel_bytes();
     if let ColorPlane::Rgba8(plane) = plane
@@ -164,7 +165,7 @@ fn encode_colors(
             encode::words(words, format, bytes);
         });
     }
-    let clamps = stored.component_type() != FLOAT || !matches!(format.kind, FLOAT | HALF_FLOAT_ARB);
+    let clamps = clamps || stored.component_type() != FLOAT || !matches!(format.kind, FLOAT | HALF_FLOAT_ARB);
     encoded(workers, format, r, |[x, y], bytes| {
         let colors = &mut [[0.0; 4]; TILE][..bytes.len() / pixel];
         read_color_row(plane, stored, [x, y], colors);
@@ -183,12 +184,13 @@ fn encode_rectangle(
     format: PixelFormat,
     r: &Rectangle,
     transfer: &Transfer<'_>,
+    clamps: bool,
 ) -> Vec<u8> {
     let content = format.content();
     if matches!(content, Content::Color | Content::Index) {
         let Some(surface) = &surfaces.color else { return Vec::new() };
         let Some(plane) = &surface.color else { return Vec::new() };
-        return encode_colors(workers, &lock(plane), &surface.format, format, r, transfer);
+        return encode_colors(workers, &lock(plane), &surface.format, format, r, transfer, clamps);
     }
     let of_depth = surfaces.depth.as_ref().filter(|_| content != Content::Stencil);
     let of_stencil = surfaces.stencil.as_ref().filter(|_| content != Content::Depth);
@@ -260,7 +262,7 @@ impl Context {
             Ok(format) => format,
             Err((error, why)) => return self.record_error(error, CALL, why),
         };
-        let Some(surfaces) = self.read_surfaces(CALL, true) else { return };
+        let Some(surfaces) = self.read_surfaces(CALL, true, Some([x, y, width, height])) else { return };
         if !has_content(&surfaces, format.content()) {
             return self.record_error(INVALID_OPERATION, CALL, "the read framebuffer has no such buffer");
         }
@@ -271,10 +273,18 @@ impl Context {
         {
             return;
         }
-        let bytes = encode_rectangle(&self.workers(), &surfaces, format, &r, &Transfer::new(&self.state.pixel));
+        let clamps = self.state.color_buffer.clamps[2] == TRUE;
+        let mut bytes =
+            encode_rectangle(&self.workers(), &surfaces, format, &r, &Transfer::new(&self.state.pixel), clamps);
+        let mut skip = r.skip;
+        if self.client.pack.invert {
+            // MESA_pack_invert: the first row is the highest.
+            skip[1] = height as usize - r.size[1] - r.skip[1];
+            bytes = bytes.chunks_exact(r.size[0] * format.pixel_bytes()).rev().flatten().copied().collect();
+        }
         let region = Region {
             full: [width as usize, height as usize, 1],
-            origin: [r.skip[0], r.skip[1], 0],
+            origin: [skip[0], skip[1], 0],
             size: [r.size[0], r.size[1], 1],
             volume: false,
         };
@@ -307,7 +317,7 @@ mod tests {
     #[test]
     fn pixels_outside_stay_as_they_were() {
         let mut c = context_with(2, 1);
-        assert!(c.draw_target().is_some());
+        assert!(c.draw_target(None).is_some());
         if let ColorPlane::Rgba8(plane) = &mut *lock(&c.draw_color().unwrap().0) {
             plane.write_row(0, 0, &[0x0403_0201, 0x0807_0605]);
         }

@@ -2,9 +2,10 @@
 
 use super::image::{Shared, lock, new_color_plane};
 use super::internal_format::{Bits, InternalFormat};
-use super::names;
+
 use crate::Context;
 use crate::enums::*;
+use crate::memory::can_have;
 use crate::state::{MAX_SAMPLES, MAX_TEXTURE_SIZE};
 use std::sync::{Arc, Mutex};
 use vitral_raster::Viewport;
@@ -62,7 +63,7 @@ impl Context {
     /// `glGenRenderbuffers`.
     pub fn gen_renderbuffers(&mut self, n: i32, renderbuffers: usize) {
         if let Some(count) = self.name_count("glGenRenderbuffers", n) {
-            let names = names::generate(&mut lock(&self.shared.renderbuffers), count);
+            let names = self.shared.names.generate(&mut lock(&self.shared.renderbuffers), count);
             self.write_names(&names, renderbuffers);
         }
     }
@@ -184,6 +185,10 @@ impl Context {
         let Some(renderbuffer) = self.bound_renderbuffer(call) else { return };
         let samples = if samples == 0 { 0 } else { MAX_SAMPLES };
         let viewport = Viewport::new(width as u32, height as u32);
+        let pixels = width as usize * height as usize * samples.max(1);
+        if !can_have(pixels * format.texel_bytes()) {
+            return self.record_error(OUT_OF_MEMORY, call, "there is no memory for so many samples");
+        }
         let mut renderbuffer = lock(&renderbuffer);
         renderbuffer.asked = Some((format, [width, height], samples));
         renderbuffer.storage = viewport.map(|v| RenderbufferStorage::new(format, v, samples));

@@ -4,7 +4,6 @@
 //! Source: the ARB_sampler_objects specification.
 
 use super::image::lock;
-use super::names;
 use super::tex_parameter::{Value, get, integers, read_vector, set};
 use super::texture::{TextureParameters, slot};
 use crate::Context;
@@ -49,7 +48,7 @@ impl Context {
         let Some(count) = self.name_count("glGenSamplers", count) else { return };
         let names = {
             let mut objects = lock(&self.shared.samplers);
-            let names = names::generate(&mut objects, count);
+            let names = self.shared.names.generate(&mut objects, count);
             for &name in &names {
                 let object = SamplerObject { name, parameters: TextureParameters::new(slot::TWO) };
                 objects.insert(name, Some(Arc::new(Mutex::new(object))));

@@ -3,8 +3,8 @@
 use super::Failure;
 use super::format::PixelFormat;
 use crate::Context;
-use crate::enums::{BITMAP, INVALID_OPERATION};
-use crate::memory::ClientMemory;
+use crate::enums::{BITMAP, INVALID_OPERATION, OUT_OF_MEMORY};
+use crate::memory::{ClientMemory, can_have};
 use crate::state::PixelStore;
 use std::ops::{Deref, DerefMut};
 
@@ -245,6 +245,11 @@ impl Context {
         let bound = !self.client.unpack.buffer.is_none();
         if (address == 0 && !bound) || (self.inside_begin() && !self.lists.recording) {
             return Ok(None);
+        }
+        // The pixels, and what is made of them: rarely more.
+        let bytes = size.iter().try_fold(2 * format.pixel_bytes(), |n, &side| n.checked_mul(side));
+        if !bytes.is_some_and(can_have) {
+            return Err((OUT_OF_MEMORY, "there is no memory for so many pixels"));
         }
         let (memory, address) = self.unpack_memory(address, format.element_bytes())?;
         let region = Region::whole(size, volume);

@@ -17,6 +17,9 @@ struct Key {
     default_version: u64,
 }
 
+/// All pixels.
+const EVERYWHERE: [i32; 4] = [0, 0, i32::MAX, i32::MAX];
+
 /// Where draws go.
 #[derive(Clone, Debug)]
 pub(crate) struct Resolved {
@@ -56,9 +59,14 @@ impl Context {
     }
 
     /// The planes that draws go to: of the bound framebuffer object or framebuffer 0. `None` if it is incomplete (see
-    /// [`Self::draw_framebuffer_complete`]), has no size, or draws nowhere. To be called for each recorded command:
-    /// the target counts as drawn to from then on.
-    pub(crate) fn draw_target(&mut self) -> Option<Target> {
+    /// [`Self::draw_framebuffer_complete`]), has no size, or draws nowhere.
+    pub(crate) fn target(&mut self) -> Option<Target> {
+        self.resolve().target.clone()
+    }
+
+    /// The same for a command that changes pixels of `area` (x0, y0, x1, y1, the last two exclusive) or, without it, any. To be
+    /// called for each recorded command: the target counts as drawn to from then on.
+    pub(crate) fn draw_target(&mut self, area: Option<[i32; 4]>) -> Option<Target> {
         let resolved = self.resolve();
         let target = resolved.target.clone();
         let default_color = resolved.default_color;
@@ -66,17 +74,10 @@ impl Context {
             writes.fetch_add(1, Ordering::Relaxed);
         }
         if default_color {
-            self.load_default_framebuffer();
+            self.load_default_framebuffer(area.unwrap_or(EVERYWHERE));
             self.default_framebuffer.set_drawn();
         }
         target
-    }
-
-    /// To be called when something comes that is drawn later: the client may free its buffer before, or write to it.
-    pub(crate) fn will_draw(&mut self) {
-        if self.resolve().default_color {
-            self.load_default_framebuffer();
-        }
     }
 
     /// Whether the draw framebuffer is complete; records the error if not.
@@ -100,11 +101,20 @@ impl Context {
 
     /// Where colours are clamped on their way to the draw buffer.
     pub(crate) fn clamping(&mut self) -> Clamping {
-        let fragments = self.state.clamp_fragments;
+        let fragments = self.state.color_buffer.clamps[1] == TRUE;
         match self.resolve().surfaces.color.as_ref().map(|c| c.format.component_type()) {
             Some(FLOAT) if fragments => Clamping::Fragments,
             Some(FLOAT) => Clamping::None,
             _ => Clamping::Results,
+        }
+    }
+
+    /// Whether colours of vertices are clamped on their way to the draw buffer.
+    pub(crate) fn clamps_vertices(&mut self) -> bool {
+        match self.state.color_buffer.clamps[0] {
+            TRUE => true,
+            FIXED_ONLY => self.resolve().surfaces.color.as_ref().is_none_or(|c| c.format.component_type() != FLOAT),
+            _ => false,
         }
     }
 
@@ -128,9 +138,9 @@ impl Context {
         self.resolve().surfaces.clone()
     }
 
-    /// The planes that reads come from, when everything recorded has run. Records errors: an incomplete framebuffer,
-    /// or, if `single`, a multisampled one.
-    pub(crate) fn read_surfaces(&mut self, call: &str, single: bool) -> Option<Surfaces> {
+    /// The planes that reads of `area` (x, y, width, height) come from, when everything recorded has run. Records errors: an
+    /// incomplete framebuffer, or, if `single`, a multisampled one.
+    pub(crate) fn read_surfaces(&mut self, call: &str, single: bool, area: Option<[i32; 4]>) -> Option<Surfaces> {
         let surfaces = self.surfaces_of(self.framebuffers.read, false);
         if surfaces.status != FRAMEBUFFER_COMPLETE {
             self.record_error(INVALID_FRAMEBUFFER_OPERATION, call, "the read framebuffer is not complete");
@@ -142,7 +152,8 @@ impl Context {
         }
         self.flush_recorded();
         if self.framebuffers.read == 0 && surfaces.color.is_some() {
-            self.load_default_framebuffer();
+            let ends = |[x, y, width, height]: [i32; 4]| [x, y, x.saturating_add(width), y.saturating_add(height)];
+            self.load_default_framebuffer(area.map_or(EVERYWHERE, ends));
         }
         Some(surfaces)
     }

@@ -52,7 +52,7 @@ impl ImageArguments {
             .filter(|&l| l < target.max_levels())
             .ok_or((INVALID_VALUE, "level is negative or larger than the target allows"))?;
         let format = InternalFormat::of_texture(self.internal)
-            .ok_or((unknown_format_error(self.internal), "internalformat is not an internal format"))?;
+            .ok_or((INVALID_VALUE, "internalformat is not an internal format"))?;
         if !(0..=1).contains(&self.border) || (target.slot == slot::RECTANGLE && self.border != 0) {
             return Err((INVALID_VALUE, "border is neither 0 nor 1, or not 0 of a rectangle"));
         }
@@ -97,15 +97,6 @@ pub(super) fn check_shape(target: ImageTarget, format: &InternalFormat, size: [u
     Ok(())
 }
 
-/// Known tokens that are no internal format here give `INVALID_ENUM`: specific compressed formats.
-fn unknown_format_error(token: u32) -> u32 {
-    match token {
-        COMPRESSED_RGB_S3TC_DXT1_EXT..=COMPRESSED_RGBA_S3TC_DXT5_EXT
-        | COMPRESSED_SRGB_S3TC_DXT1_EXT..=COMPRESSED_SRGB_ALPHA_S3TC_DXT5_EXT => INVALID_ENUM,
-        _ => INVALID_VALUE,
-    }
-}
-
 /// Whether pixels of `format` may become texels of `internal`.
 pub(crate) fn formats_agree(format: PixelFormat, internal: &InternalFormat) -> Result<(), Failure> {
     let fits = match format.content() {
@@ -120,8 +111,11 @@ pub(crate) fn formats_agree(format: PixelFormat, internal: &InternalFormat) -> R
 
 impl Context {
     /// Stores a checked image; without texels they are undefined.
-    pub(crate) fn store_image(&mut self, checked: &CheckedImage, data: Option<texels::TexelData>) {
+    pub(crate) fn store_image(&mut self, call: &str, checked: &CheckedImage, data: Option<texels::TexelData>) {
         let mut image = TextureImage::new(checked.format, checked.size, checked.border);
+        if data.is_none() && !image.allocate() {
+            return self.record_error(OUT_OF_MEMORY, call, "there is no memory for the image");
+        }
         self.image_came(image.bytes());
         if let Some(data) = data.filter(|_| !checked.size.contains(&0)) {
             image.replace(data);
@@ -187,7 +181,7 @@ impl Context {
             Ok(checked) => {
                 let transfer = Transfer::new(&self.state.pixel);
                 let data = image.map(|image| texels::from_client(&self.workers(), image, &checked.format, &transfer));
-                self.store_image(&checked, data);
+                self.store_image(arguments.call, &checked, data);
             }
         }
     }
@@ -197,12 +191,14 @@ impl Context {
         match checked {
             // What does not fit clears the proxy's state, other mistakes are errors as always.
             Err((error, why)) => self.record_error(error, arguments.call, why),
-            Ok(checked) => {
-                let image =
-                    (!checked.too_large).then(|| TextureImage::new(checked.format, checked.size, checked.border));
-                self.textures.proxies[checked.target.slot].set_image(0, checked.level, image);
-            }
+            Ok(checked) => self.set_proxy_image(&checked),
         }
+    }
+
+    /// Gives a proxy what a checked image would be.
+    pub(crate) fn set_proxy_image(&mut self, checked: &CheckedImage) {
+        let image = (!checked.too_large).then(|| TextureImage::new(checked.format, checked.size, checked.border));
+        self.textures.proxies[checked.target.slot].set_image(0, checked.level, image);
     }
 
     /// `glTexImage1D`.
@@ -346,7 +342,7 @@ mod tests {
         assert_eq!(error(TEXTURE_3D, 0, RGBA, 4, 0, RGBA, FLOAT), INVALID_ENUM);
         assert_eq!(error(TEXTURE_2D, 20, RGBA, 4, 0, RGBA, FLOAT), INVALID_VALUE);
         assert_eq!(error(TEXTURE_2D, 0, 99, 4, 0, RGBA, FLOAT), INVALID_VALUE);
-        assert_eq!(error(TEXTURE_2D, 0, COMPRESSED_RGB_S3TC_DXT1_EXT, 4, 0, RGBA, FLOAT), INVALID_ENUM);
+        assert_eq!(error(TEXTURE_2D, 0, COMPRESSED_RGB_S3TC_DXT1_EXT, 4, 0, RGBA, FLOAT), NO_ERROR);
         assert_eq!(error(TEXTURE_2D, 0, RGBA, -1, 0, RGBA, FLOAT), INVALID_VALUE);
         assert_eq!(error(TEXTURE_2D, 0, RGBA, i32::MAX, 0, RGBA, FLOAT), INVALID_VALUE);
         assert_eq!(error(TEXTURE_2D, 0, RGBA, 4, 2, RGBA, FLOAT), INVALID_VALUE);

@@ -84,7 +84,16 @@ pub(super) fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Val
     match pname {
         TEXTURE_WRAP_S | TEXTURE_WRAP_T | TEXTURE_WRAP_R => {
             let axis = [TEXTURE_WRAP_S, TEXTURE_WRAP_T, TEXTURE_WRAP_R].iter().position(|&t| t == pname).unwrap_or(0);
-            let all = [CLAMP, CLAMP_TO_EDGE, CLAMP_TO_BORDER, REPEAT, MIRRORED_REPEAT];
+            let all = [
+                CLAMP,
+                CLAMP_TO_EDGE,
+                CLAMP_TO_BORDER,
+                REPEAT,
+                MIRRORED_REPEAT,
+                MIRROR_CLAMP_EXT,
+                MIRROR_CLAMP_TO_EDGE_EXT,
+                MIRROR_CLAMP_TO_BORDER_EXT,
+            ];
             p.wrap[axis] = token_of(value, if rectangle { &all[..3] } else { &all })?;
         }
         TEXTURE_MIN_FILTER => {

@@ -14,10 +14,12 @@ use crate::enums::*;
 /// A level's parameter. Levels without an image have the initial values.
 fn level_parameter(texture: &mut TextureObject, face: usize, level: usize, pname: u32) -> Result<i32, Failure> {
     let image = texture.image(face, level);
+    let blocks = image.as_ref().and_then(|i| i.blocks.clone());
     let (size, border, token, bits, kind) = match &image {
         Some(i) => (i.size, i.border, i.format.token, i.format.bits(), i.format.component_type()),
         None => ([0; 3], 0, 1, Bits::default(), NONE),
     };
+    let token = blocks.as_ref().map_or(token, |blocks| blocks.token);
     let of = |bits: i32| if bits > 0 { kind as i32 } else { NONE as i32 };
     Ok(match pname {
         TEXTURE_WIDTH => size[0] as i32,
@@ -40,14 +42,15 @@ fn level_parameter(texture: &mut TextureObject, face: usize, level: usize, pname
         TEXTURE_LUMINANCE_TYPE_ARB => of(bits.luminance),
         TEXTURE_INTENSITY_TYPE_ARB => of(bits.intensity),
         TEXTURE_DEPTH_TYPE_ARB => of(bits.depth),
-        TEXTURE_COMPRESSED => 0,
+        TEXTURE_COMPRESSED => i32::from(blocks.is_some()),
+        TEXTURE_COMPRESSED_IMAGE_SIZE if blocks.is_some() => blocks.map_or(0, |blocks| blocks.bytes.len() as i32),
         TEXTURE_COMPRESSED_IMAGE_SIZE => return Err((INVALID_OPERATION, "the image is not compressed")),
         _ => return Err((INVALID_ENUM, "pname is not a parameter of a level")),
     })
 }
 
 impl Context {
-    fn query_target(&self, target: u32, level: i32, proxies: bool) -> Result<(ImageTarget, usize), Failure> {
+    pub(crate) fn query_target(&self, target: u32, level: i32, proxies: bool) -> Result<(ImageTarget, usize), Failure> {
         let target = ImageTarget::new(target, None)
             .filter(|t| proxies || !t.proxy)
             .ok_or((INVALID_ENUM, "target is not an image target of this call"))?;
@@ -161,18 +164,6 @@ impl Context {
         self.pack_into(pixels, format.element_bytes(), |memory, address| {
             write_region(memory, &self.client.pack, format, &region, address, bytes)
         })
-    }
-
-    /// `glGetCompressedTexImage`: no image is compressed.
-    pub fn get_compressed_tex_image(&mut self, target: u32, level: i32, _img: usize) {
-        const CALL: &str = "glGetCompressedTexImage";
-        if !self.outside_begin(CALL) {
-            return;
-        }
-        match self.query_target(target, level, false) {
-            Err((error, why)) => self.record_error(error, CALL, why),
-            Ok(_) => self.record_error(INVALID_OPERATION, CALL, "the image is not compressed"),
-        }
     }
 }
 

@@ -69,7 +69,7 @@ impl Context {
         let fits = TextureImage::fits(&format, size) && !beyond && !is_skewed(target, size);
         if target.proxy {
             let proxy = &mut self.textures.proxies[target.slot];
-            proxy.allocate(format, if fits { levels as usize } else { 0 }, size);
+            proxy.set_images(format, if fits { levels as usize } else { 0 }, size);
             return Ok(());
         }
         let texture = self.target_texture(target);
@@ -83,7 +83,9 @@ impl Context {
         if !fits {
             return Err((if beyond { INVALID_VALUE } else { OUT_OF_MEMORY }, "the images are too large"));
         }
-        texture.allocate(format, levels as usize, size);
+        if !texture.allocate(format, levels as usize, size) {
+            return Err((OUT_OF_MEMORY, "there is no memory for the images"));
+        }
         texture.immutable = true;
         texture.parameters.bound_levels(levels as usize);
         drop(texture);

@@ -1,4 +1,4 @@
-//! `TexSubImage`: new texels for a part of an image; and compressed images, of which there are none.
+//! `TexSubImage`: new texels for a part of an image.
 
 use super::Failure;
 use super::format::PixelFormat;
@@ -10,7 +10,12 @@ use super::texture::ImageTarget;
 use super::transfer::Transfer;
 use crate::Context;
 use crate::enums::*;
+use crate::memory::can_have;
 use std::borrow::Cow;
+
+/// Most bytes of texels that are copied for a change of a few of them, since draws that wait need the old ones: to copy more takes
+/// longer than to run a small pass. Measured: benches/results/2026-11-29-gl-updates.md.
+const MOST_COPIED: usize = 64 << 10;
 
 /// The arguments that all forms of `TexSubImage` share. Offsets count from the border.
 #[derive(Clone, Copy, Debug)]
@@ -79,13 +84,22 @@ impl Context {
             return;
         }
         let texture = self.target_texture(checked.target);
+        let changed: usize = checked.size.iter().product::<usize>() * checked.format.texel_bytes();
         let copied = {
             let mut texture = lock(&texture);
             // Without the snapshot, texels that no draw waits for change in place.
             texture.touch();
             texture.image(checked.target.face, checked.level).map_or(0, |image| image.copied_bytes())
         };
-        self.image_came(copied);
+        if copied.saturating_sub(changed) > MOST_COPIED {
+            // What waits has the old texels. To draw it costs less than to copy them all.
+            self.flush_recorded();
+        } else {
+            self.image_came(copied);
+        }
+        if copied > 0 && !can_have(copied) {
+            return self.record_error(OUT_OF_MEMORY, "glTexSubImage", "there is no memory for a copy of the texture");
+        }
         // A plane must not change under recorded draws.
         let in_plane = lock(&texture).image(checked.target.face, checked.level).is_some_and(|image| image.has_planes());
         if in_plane {
@@ -192,113 +206,6 @@ impl Context {
         let (offset, size) = ([xoffset, yoffset, zoffset], [width, height, depth]);
         self.tex_sub_image(BoxArguments { call, dimensions: 3, target, level, offset, size }, format, type_, pixels);
     }
-
-    /// There is no compressed format: every such call is an error.
-    fn no_compressed(&mut self, call: &'static str, size: i32) {
-        self.listable(move |c| {
-            if !c.outside_begin(call) {
-                return;
-            }
-            if size < 0 {
-                c.record_error(INVALID_VALUE, call, "imageSize is negative");
-            } else {
-                c.record_error(INVALID_ENUM, call, "the format is not a supported compressed format");
-            }
-        });
-    }
-
-    /// `glCompressedTexImage1D`.
-    pub fn compressed_tex_image_1d(
-        &mut self,
-        _target: u32,
-        _level: i32,
-        _internalformat: u32,
-        _width: i32,
-        _border: i32,
-        image_size: i32,
-        _data: usize,
-    ) {
-        self.no_compressed("glCompressedTexImage1D", image_size);
-    }
-
-    /// `glCompressedTexImage2D`.
-    pub fn compressed_tex_image_2d(
-        &mut self,
-        _target: u32,
-        _level: i32,
-        _internalformat: u32,
-        _width: i32,
-        _height: i32,
-        _border: i32,
-        image_size: i32,
-        _data: usize,
-    ) {
-        self.no_compressed("glCompressedTexImage2D", image_size);
-    }
-
-    /// `glCompressedTexImage3D`.
-    pub fn compressed_tex_image_3d(
-        &mut self,
-        _target: u32,
-        _level: i32,
-        _internalformat: u32,
-        _width: i32,
-        _height: i32,
-        _depth: i32,
-        _border: i32,
-        image_size: i32,
-        _data: usize,
-    ) {
-        self.no_compressed("glCompressedTexImage3D", image_size);
-    }
-
-    /// `glCompressedTexSubImage1D`.
-    pub fn compressed_tex_sub_image_1d(
-        &mut self,
-        _target: u32,
-        _level: i32,
-        _xoffset: i32,
-        _width: i32,
-        _format: u32,
-        image_size: i32,
-        _data: usize,
-    ) {
-        self.no_compressed("glCompressedTexSubImage1D", image_size);
-    }
-
-    /// `glCompressedTexSubImage2D`.
-    pub fn compressed_tex_sub_image_2d(
-        &mut self,
-        _target: u32,
-        _level: i32,
-        _xoffset: i32,
-        _yoffset: i32,
-        _width: i32,
-        _height: i32,
-        _format: u32,
-        image_size: i32,
-        _data: usize,
-    ) {
-        self.no_compressed("glCompressedTexSubImage2D", image_size);
-    }
-
-    /// `glCompressedTexSubImage3D`.
-    pub fn compressed_tex_sub_image_3d(
-        &mut self,
-        _target: u32,
-        _level: i32,
-        _xoffset: i32,
-        _yoffset: i32,
-        _zoffset: i32,
-        _width: i32,
-        _height: i32,
-        _depth: i32,
-        _format: u32,
-        image_size: i32,
-        _data: usize,
-    ) {
-        self.no_compressed("glCompressedTexSubImage3D", image_size);
-    }
 }
 
 #[cfg(test)]
@@ -375,12 +282,5 @@ mod tests {
         assert_eq!(c.error, NO_ERROR);
         c.tex_image_2d(TEXTURE_2D, 0, RGBA as i32, 4, 4, 0, RGBA, UNSIGNED_BYTE, BASE);
         assert_eq!(c.error, INVALID_OPERATION);
-    }
-
-    #[test]
-    fn nothing_is_compressed() {
-        let mut c = context();
-        c.compressed_tex_image_2d(TEXTURE_2D, 0, COMPRESSED_RGB_S3TC_DXT1_EXT, 4, 4, 0, 8, BASE);
-        assert_eq!(c.error, INVALID_ENUM);
     }
 }

@@ -88,6 +88,9 @@ impl TextureParameters {
             CLAMP_TO_EDGE => Wrap::ClampToEdge,
             CLAMP_TO_BORDER => Wrap::ClampToBorder,
             MIRRORED_REPEAT => Wrap::MirroredRepeat,
+            MIRROR_CLAMP_EXT => Wrap::MirrorClamp,
+            MIRROR_CLAMP_TO_EDGE_EXT => Wrap::MirrorClampToEdge,
+            MIRROR_CLAMP_TO_BORDER_EXT => Wrap::MirrorClampToBorder,
             _ => Wrap::Repeat,
         };
         let compare = match self.compare_func {
@@ -168,8 +171,18 @@ impl TextureObject {
         levels[level] = image;
     }
 
-    /// Gives every face `levels` images, the first of `size`, each of half the size before.
-    pub(crate) fn allocate(&mut self, format: InternalFormat, levels: usize, size: [u32; 3]) {
+    /// Gives every face `levels` images, the first of `size`, each of half the size before. Whether there was memory.
+    pub(crate) fn allocate(&mut self, format: InternalFormat, levels: usize, size: [u32; 3]) -> bool {
+        self.set_images(format, levels, size);
+        let there = self.faces.iter_mut().flatten().flatten().all(TextureImage::allocate);
+        if !there {
+            self.set_images(format, 0, size);
+        }
+        there
+    }
+
+    /// The same without texels.
+    pub(crate) fn set_images(&mut self, format: InternalFormat, levels: usize, size: [u32; 3]) {
         self.touch();
         let sizes: Vec<_> =
             std::iter::successors(Some(size), |&size| Some(self.next_size(size))).take(levels).collect();

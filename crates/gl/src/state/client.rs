@@ -56,6 +56,8 @@ pub struct PixelStore {
     pub skip_images: i32,
     /// `ALIGNMENT`: 1, 2, 4 or 8.
     pub alignment: i32,
+    /// `PACK_INVERT_MESA`: rows of what is read begin with the highest.
+    pub invert: bool,
     /// `PIXEL_PACK_BUFFER_BINDING` or `PIXEL_UNPACK_BUFFER_BINDING`: addresses are offsets in it, if there is one.
     pub buffer: BufferHandle,
 }
@@ -71,6 +73,7 @@ impl Default for PixelStore {
             skip_pixels: 0,
             skip_images: 0,
             alignment: 4,
+            invert: false,
             buffer: BufferHandle::NONE,
         }
     }
@@ -107,6 +110,8 @@ pub struct ClientState {
     pub unpack: PixelStore,
     /// How pixels are written to the client.
     pub pack: PixelStore,
+    /// `PRIMITIVE_RESTART_NV` and `PRIMITIVE_RESTART_INDEX_NV`.
+    pub restart: (bool, u32),
     /// `VERTEX_ARRAY_BINDING`; the arrays of the bound object are kept here while it is bound.
     pub vertex_array: u32,
 }
@@ -128,6 +133,7 @@ impl Default for ClientState {
             copy_buffers: [BufferHandle::NONE; 2],
             unpack: PixelStore::default(),
             pack: PixelStore::default(),
+            restart: (false, 0),
             vertex_array: 0,
         }
     }

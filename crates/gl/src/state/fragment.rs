@@ -161,6 +161,8 @@ pub struct ColorBuffer {
     pub accum_clear: [f32; 4],
     /// `DRAW_BUFFER` of the default framebuffer.
     pub draw_buffer: u32,
+    /// `CLAMP_VERTEX_COLOR`, `CLAMP_FRAGMENT_COLOR`, `CLAMP_READ_COLOR`: 1, 0 or `FIXED_ONLY`.
+    pub clamps: [u32; 3],
 }
 
 impl Default for ColorBuffer {
@@ -172,6 +174,7 @@ impl Default for ColorBuffer {
             index_mask: u32::MAX,
             accum_clear: [0.0; 4],
             draw_buffer: enums::FRONT,
+            clamps: [enums::TRUE, enums::FIXED_ONLY, enums::FIXED_ONLY],
         }
     }
 }

@@ -102,10 +102,10 @@ pub struct State {
     pub hints: [(u32, u32); 7],
     /// `LIST_BASE`.
     pub list_base: u32,
+    /// `RASTER_POSITION_UNCLIPPED_IBM`.
+    pub raster_position_unclipped: bool,
     /// `FRAMEBUFFER_SRGB`.
     pub framebuffer_srgb: bool,
-    /// `OSMesaColorClamp`: colours of fragments are clamped even on their way to buffers of floats.
-    pub clamp_fragments: bool,
     /// `DEBUG_OUTPUT`, `DEBUG_OUTPUT_SYNCHRONOUS`.
     pub debug_output: (bool, bool),
 }
@@ -157,9 +157,9 @@ impl Default for State {
                 hint(enums::GENERATE_MIPMAP_HINT),
                 hint(enums::TEXTURE_COMPRESSION_HINT),
             ],
+            raster_position_unclipped: false,
             list_base: 0,
             framebuffer_srgb: false,
-            clamp_fragments: false,
             debug_output: (false, false),
         }
     }

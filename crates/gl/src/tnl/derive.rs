@@ -128,6 +128,8 @@ fn source(token: u32) -> CombineSource {
         gl::CONSTANT => CombineSource::Constant,
         gl::PRIMARY_COLOR => CombineSource::PrimaryColor,
         gl::PREVIOUS => CombineSource::Previous,
+        gl::ZERO => CombineSource::Zero,
+        gl::ONE => CombineSource::One,
         unit => CombineSource::TextureUnit(unit.wrapping_sub(gl::TEXTURE0) as usize),
     }
 }
@@ -148,6 +150,9 @@ fn function(token: u32) -> CombineFunction {
         gl::ADD_SIGNED => CombineFunction::AddSigned,
         gl::INTERPOLATE => CombineFunction::Interpolate,
         gl::SUBTRACT => CombineFunction::Subtract,
+        gl::MODULATE_ADD_ATI => CombineFunction::ModulateAdd,
+        gl::MODULATE_SIGNED_ADD_ATI => CombineFunction::ModulateSignedAdd,
+        gl::MODULATE_SUBTRACT_ATI => CombineFunction::ModulateSubtract,
         gl::DOT3_RGB | gl::DOT3_RGB_EXT => CombineFunction::Dot3Rgb,
         gl::DOT3_RGBA | gl::DOT3_RGBA_EXT => CombineFunction::Dot3Rgba,
         _ => CombineFunction::Modulate,
@@ -195,6 +200,7 @@ impl Context {
         let units = self.sampled_units(target);
         let missing = self.missing_components();
         let (clamping, srgb, one) = (self.clamping(), self.encodes_srgb(), self.stored_one());
+        let unclamped_vertices = !self.clamps_vertices();
         let s = &self.state;
         let lit_apart = s.lighting.enabled && s.lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR;
         let logic = s.logic_op.0 || s.blend.is_logic_op();
@@ -226,6 +232,7 @@ impl Context {
             flat: s.lighting.shade_model == gl::FLAT,
             depth_clamp: s.depth_clamp,
             clamping,
+            unclamped_vertices,
             srgb,
             query: self.queries.active(),
         })

@@ -135,7 +135,8 @@ impl DrawGeometry {
         // Give all vertices the current colour if nothing varies.
         let stride = self.layout.stride;
         if self.layout.uniform {
-            let color = self.snapshot.current.color.map(|c| c.clamp(0.0, 1.0));
+            let limited = |c: f32| if self.snapshot.clamps { c.clamp(0.0, 1.0) } else { c };
+            let color = self.snapshot.current.color.map(limited);
             return records.chunks_exact_mut(stride).for_each(|record| {
                 record[0] = 1.0;
                 record[self.layout.color..].copy_from_slice(&color);

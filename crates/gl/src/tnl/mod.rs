@@ -1,5 +1,6 @@
 //! Transform and lighting; the recorder of passes.
 
+mod area;
 mod derive;
 mod emit;
 mod geometry;

@@ -117,7 +117,9 @@ impl Context {
         let window = WindowTransform::new(v.rect, range, zero_to_one, origin == gl::UPPER_LEFT);
         let [x, y, z, w] = vertex.clip;
         let depth_ok = self.state.depth_clamp || (z >= window.near * w && z <= w);
-        let inside = w > 0.0 && x.abs() <= w && y.abs() <= w && depth_ok && vertex.user.iter().all(|d| *d >= 0.0);
+        let in_view = x.abs() <= w && y.abs() <= w && depth_ok;
+        let in_view = in_view || self.state.raster_position_unclipped;
+        let inside = w > 0.0 && in_view && vertex.user.iter().all(|d| *d >= 0.0);
         if !inside {
             return RasterPosition { valid: false, ..self.state.raster_position };
         }

@@ -47,6 +47,9 @@ impl std::fmt::Debug for Recorder {
 /// Most vertices that wait before they are drawn.
 const MOST_WAITING: usize = 8 << 20;
 
+/// Most commands that wait before they are drawn: each keeps some 2 KiB of state.
+const MOST_COMMANDS: usize = 1 << 14;
+
 /// Most bytes of images that come before what waits is drawn. A program that gives a texture new images draw by draw would
 /// else fill the memory with those that it had.
 const MOST_IMAGES: usize = 64 << 20;
@@ -137,7 +140,8 @@ impl Context {
         if !self.draw_framebuffer_complete("draw") {
             return;
         }
-        let Some(target) = self.draw_target() else { return };
+        let area = self.drawn_area(&batch, given);
+        let Some(target) = self.draw_target(area) else { return };
         let fragment = self.fragment_state_for(Some(&target), false);
         let count = batch.positions.len();
         let Some(geometry) = self.draw_geometry(batch, sent, given, &fragment, &target) else { return };
@@ -147,12 +151,18 @@ impl Context {
 
     /// Records a command on the current draw target.
     pub(crate) fn record(&mut self, command: Command) {
-        let Some(target) = self.draw_target() else { return };
+        let area = match &command {
+            Command::Clear(clear) => Some(clear.clip),
+            Command::Image(image, state) => Some(image.bounds(state.clip)),
+            Command::Draw(..) => None,
+        };
+        let Some(target) = self.draw_target(area) else { return };
         self.record_on(target, command);
     }
 
     fn record_on(&mut self, target: Target, command: Command) {
-        if self.recorder.waiting > MOST_WAITING {
+        let commands = self.recorder.pass.as_ref().map_or(0, |pass| pass.commands.len());
+        if self.recorder.waiting > MOST_WAITING || commands >= MOST_COMMANDS {
             self.recorder.run();
         }
         if self.recorder.pass.as_ref().is_some_and(|pass| !pass.target.same(&target)) {
@@ -185,7 +195,7 @@ impl Context {
 
     /// The per-fragment state as it is now. `images` leaves out what pixel rectangles do not meet (polygon stipple).
     pub(crate) fn fragment_state(&mut self, images: bool) -> Arc<FragmentState> {
-        let target = self.draw_target();
+        let target = self.target();
         self.fragment_state_for(target.as_ref(), images)
     }
 
@@ -204,6 +214,7 @@ impl Context {
         let units: Vec<usize> = if shaded { fragment.units.iter().map(|u| u.index).collect() } else { Vec::new() };
         let fog = shaded && fragment.fog.is_some();
         let mut snapshot = VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
+        snapshot.clamps = !fragment.unclamped_vertices;
         let mut layout = if shaded { self.layout(fragment, &units, samples) } else { Layout::default() };
         let primitive = self.primitive_state(fragment, target)?;
         let small = sent == Sent::Now && batch.is_small();

@@ -85,6 +85,8 @@ pub(crate) struct VertexSnapshot {
     clip_planes: Vec<[f32; 4]>,
     /// The secondary colour is used although lighting is off.
     pub color_sum: bool,
+    /// Colours are brought into `0..=1`.
+    pub clamps: bool,
 }
 
 /// What depends on the modelview matrix.
@@ -141,6 +143,7 @@ impl VertexSnapshot {
             fog: fog.then_some(source),
             clip_planes,
             color_sum: state.color_sum,
+            clamps: true,
         }
     }
 }

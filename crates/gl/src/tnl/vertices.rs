@@ -140,6 +140,12 @@ fn dot4<S: Simd>(plane: &[f32; 4], p: &F4<S>) -> F<S> {
     p[0] * plane[0] + p[1] * plane[1] + p[2] * plane[2] + p[3] * plane[3]
 }
 
+/// A colour, brought into `0..=1` if it is to be clamped.
+#[inline(always)]
+fn limited<S: Simd>(clamps: bool, color: F4<S>) -> F4<S> {
+    if clamps { saturate4(color) } else { color }
+}
+
 #[inline(always)]
 fn saturate4<S: Simd>(c: F4<S>) -> F4<S> {
     let s = lanes::inlined(
@@ -284,20 +290,22 @@ pub(crate) fn colors<S: Simd>(
     let Some(lighting) = &snapshot.lighting else {
         let secondary = if snapshot.color_sum {
             let [r, g, b] = attribute(simd, &eight.batch.secondary, snapshot.current.secondary, &eight.vertices);
-            let c = saturate4([r, g, b, r]);
+            let c = limited(snapshot.clamps, [r, g, b, r]);
             Some(V3::new(c[0], c[1], c[2]))
         } else {
             None
         };
-        return Shaded { color: saturate4(color), secondary, back: None, fog };
+        return Shaded { color: limited(snapshot.clamps, color), secondary, back: None, fog };
     };
     let one = splat(simd, 1.0);
     let inverse = one / eye[3];
     let position = V3::new(eye[0] * inverse, eye[1] * inverse, eye[2] * inverse);
-    let (front, secondary) = lit(simd, lighting, &eight.faces.front, &lighting.tracked[0], &color, position, normal);
+    let clamps = snapshot.clamps;
+    let (front, secondary) =
+        lit(simd, lighting, &eight.faces.front, &lighting.tracked[0], &color, position, normal, clamps);
     let back = eight.faces.back.as_ref().map(
         #[inline(always)]
-        |face| lit(simd, lighting, face, &lighting.tracked[1], &color, position, -normal),
+        |face| lit(simd, lighting, face, &lighting.tracked[1], &color, position, -normal, clamps),
     );
     Shaded { color: front, secondary, back, fog }
 }
@@ -311,6 +319,7 @@ fn lit<S: Simd>(
     color: &F4<S>,
     position: V3<F<S>>,
     n: V3<F<S>>,
+    clamps: bool,
 ) -> (F4<S>, Option<V3<F<S>>>) {
     simd.vectorize(
         #[inline(always)]
@@ -347,11 +356,11 @@ fn lit<S: Simd>(
             let primary = diffuse + of(tracked.emission, &m.emission);
             let alpha = if tracked.diffuse { color[3] } else { row(&m.diffuse[3]) };
             if lighting.separate_specular {
-                let s = saturate4([specular.x, specular.y, specular.z, one]);
-                return (saturate4([primary.x, primary.y, primary.z, alpha]), Some(V3::new(s[0], s[1], s[2])));
+                let s = limited(clamps, [specular.x, specular.y, specular.z, one]);
+                return (limited(clamps, [primary.x, primary.y, primary.z, alpha]), Some(V3::new(s[0], s[1], s[2])));
             }
             let sum = primary + specular;
-            (saturate4([sum.x, sum.y, sum.z, alpha]), None)
+            (limited(clamps, [sum.x, sum.y, sum.z, alpha]), None)
         },
     )
 }

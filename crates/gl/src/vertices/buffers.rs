@@ -4,8 +4,7 @@
 //! was built from it is known to be stale. While a buffer is mapped its bytes are with the client.
 
 use super::client;
-use super::names::generate;
-use crate::memory::ClientMemory;
+use crate::memory::{ClientMemory, can_have};
 use crate::names::Names;
 use crate::{Context, enums};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -137,7 +136,7 @@ impl Buffer {
             return Err((enums::INVALID_ENUM, "usage is not one of buffers"));
         }
         let size = usize::try_from(size).map_err(|_| (enums::INVALID_VALUE, "size is negative"))?;
-        if size > MAX_SIZE || Vec::<u8>::new().try_reserve_exact(size).is_err() {
+        if size > MAX_SIZE || !can_have(size) {
             return Err(TOO_LARGE);
         }
         let bytes = if data == 0 { vec![0; size] } else { client::bytes(memory, data, size).ok_or(NOT_THERE)? };
@@ -153,6 +152,9 @@ impl Buffer {
         }
         if range.is_empty() {
             return Ok(());
+        }
+        if Arc::strong_count(&self.bytes) > 1 && !can_have(self.bytes.len()) {
+            return Err((enums::OUT_OF_MEMORY, "draws that wait need the data, and there is no memory for a copy"));
         }
         self.version = new_version();
         let there = data != 0 && memory.read(data, &mut Arc::make_mut(&mut self.bytes)[range]);
@@ -329,7 +331,7 @@ impl Context {
 
     /// `glGenBuffers`.
     pub fn gen_buffers(&mut self, n: i32, buffers: usize) {
-        self.give_names("glGenBuffers", n, buffers, |c, n| generate(&mut c.buffers(), n));
+        self.give_names("glGenBuffers", n, buffers, |c, n| c.shared.names.generate(&mut c.buffers(), n));
     }
 
     /// `glDeleteBuffers`.

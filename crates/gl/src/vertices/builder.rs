@@ -227,9 +227,6 @@ impl Context {
             self.flush_vertices();
         }
         self.take_in_lone();
-        if !self.builder.gathering {
-            self.will_draw();
-        }
         let builder = &mut self.builder;
         if !builder.gathering {
             builder.start();
@@ -266,7 +263,6 @@ impl Context {
         // What is indexed is cut as what lists hold.
         let sent = if batch.indices.is_some() { Sent::Listed } else { sent };
         if !self.builder.gathering {
-            self.will_draw();
             let given = Given::current(&self.state);
             let builder = &mut self.builder;
             (builder.sent, builder.given, builder.moved) = (sent, given, false);

@@ -11,6 +11,7 @@ use super::builder::Builder;
 use super::merge::merge_equal;
 use crate::Context;
 use crate::enums;
+use crate::memory::can_have;
 use crate::state::Current;
 use crate::vertex::VertexBatch;
 use std::sync::Arc;
@@ -64,7 +65,12 @@ pub(crate) struct Compiler {
     single: bool,
     /// A primitive without vertices ended, which draws nothing but may be an error.
     empty: bool,
+    /// There is no memory for more: nothing is kept.
+    out_of_memory: bool,
 }
+
+/// Vertices or items from which on memory for more is asked for before it is taken.
+const LONG: usize = 1 << 16;
 
 /// What is left of a draw of nothing: called between Begin and End, or with an incomplete framebuffer, even that is an error.
 pub(super) fn drawing_nothing(call: &'static str) -> Call {
@@ -74,8 +80,33 @@ pub(super) fn drawing_nothing(call: &'static str) -> Call {
 }
 
 impl Compiler {
+    /// Whether there was no memory for the list.
+    pub(crate) fn is_out_of_memory(&self) -> bool {
+        self.out_of_memory
+    }
+
+    /// Whether there is memory for one more vertex or item. Arrays that are full double, and what they hold is copied once more
+    /// where equal vertices are merged.
+    fn has_room(&mut self) -> bool {
+        let batch = &self.builder.batch;
+        let grows = |len: usize, capacity: usize| len >= LONG && len == capacity;
+        let vertices = grows(batch.positions.len(), batch.positions.capacity());
+        if !vertices && !grows(self.items.len(), self.items.capacity()) {
+            return !self.out_of_memory;
+        }
+        let attributes = 1 + (self.builder.seen.count_ones() as usize);
+        let bytes = if vertices { batch.positions.len() * attributes * size_of::<[f32; 4]>() } else { 0 };
+        if !can_have(4 * bytes + 3 * self.items.len() * size_of::<Item>()) {
+            *self = Self { out_of_memory: true, ..Self::default() };
+        }
+        !self.out_of_memory
+    }
+
     /// `Begin`.
     pub(crate) fn begin(&mut self, mode: u32) {
+        if !self.has_room() {
+            return;
+        }
         if self.inside() {
             self.write_out();
             self.items.push(Item::Begin(mode));
@@ -89,6 +120,9 @@ impl Compiler {
 
     /// `End`.
     pub(crate) fn end(&mut self) {
+        if !self.has_room() {
+            return;
+        }
         if self.builder.is_open() {
             self.builder.close();
             self.empty |= self.builder.batch.primitives.is_empty();
@@ -103,6 +137,9 @@ impl Compiler {
 
     /// `Vertex`.
     pub(crate) fn vertex(&mut self, position: [f32; 4]) {
+        if !self.has_room() {
+            return;
+        }
         if self.builder.is_open() {
             self.builder.vertex(position, &self.values);
             return;
@@ -115,6 +152,9 @@ impl Compiler {
 
     /// A call that sets an attribute.
     pub(crate) fn attribute(&mut self, which: usize, value: [f32; 4]) {
+        if !self.has_room() {
+            return;
+        }
         let bit = 1 << which;
         let new = CARRIED & !self.builder.seen & bit != 0;
         if new && !self.builder.batch.positions.is_empty() {
@@ -134,6 +174,9 @@ impl Compiler {
 
     /// Any other call.
     pub(crate) fn call(&mut self, call: Item) {
+        if !self.has_room() {
+            return;
+        }
         self.settle();
         self.items.push(call);
         self.known = 0;
@@ -141,6 +184,9 @@ impl Compiler {
 
     /// Vertices from arrays.
     pub(crate) fn batch(&mut self, mut batch: VertexBatch) {
+        if !self.has_room() {
+            return;
+        }
         self.settle();
         merge_equal(&mut batch);
         self.items.push(Item::Batch(Arc::new(batch)));

@@ -79,6 +79,24 @@ impl Context {
         }
     }
 
+    /// `glPrimitiveRestartNV`: ends the primitive and begins the same anew.
+    pub fn primitive_restart_nv(&mut self) {
+        if self.lists.recording {
+            self.listable(|c| c.restart_primitive());
+        } else {
+            self.restart_primitive();
+        }
+    }
+
+    fn restart_primitive(&mut self) {
+        if !self.inside_begin() {
+            return self.record_error(enums::INVALID_OPERATION, "glPrimitiveRestartNV", "no glBegin is open");
+        }
+        let mode = self.builder.mode();
+        self.exec_end();
+        self.exec_begin(mode);
+    }
+
     /// `glEdgeFlag`.
     pub fn edge_flag(&mut self, flag: u8) {
         self.attribute(EDGE, [f32::from(u8::from(flag != 0))]);

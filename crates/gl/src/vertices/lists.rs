@@ -2,6 +2,7 @@
 
 use super::client;
 use super::compile::{Call, Compiler, Item};
+use crate::names::NameRange;
 use crate::state::MAX_LIST_NESTING;
 use crate::vertex::{Given, Sent};
 use crate::{Context, enums};
@@ -116,11 +117,14 @@ impl Context {
             self.record_error(enums::INVALID_OPERATION, "glEndList", "no list is being compiled");
             return;
         };
-        let list = Arc::new(List { items: compiler.finish() });
         let name = self.lists.name;
+        (self.lists.name, self.lists.mode, self.lists.recording) = (0, 0, false);
+        if compiler.is_out_of_memory() {
+            return self.record_error(enums::OUT_OF_MEMORY, "glEndList", "there is no memory for so long a list");
+        }
+        let list = Arc::new(List { items: compiler.finish() });
         let old = self.list_names().insert(name, list);
         drop(old);
-        (self.lists.name, self.lists.mode, self.lists.recording) = (0, 0, false);
     }
 
     /// `glCallList`.
@@ -206,7 +210,7 @@ impl Context {
         if range == 0 {
             return 0;
         }
-        let first = if range <= MAX_RANGE { free_range(&self.list_names(), range) } else { None };
+        let first = if range <= MAX_RANGE { free_run(&self.list_names(), self.shared.names, range) } else { None };
         let Some(first) = first else {
             self.record_error(enums::OUT_OF_MEMORY, "glGenLists", &format!("no {range} names in a row are free"));
             return 0;
@@ -245,21 +249,23 @@ impl Context {
     }
 }
 
-/// The first of `range` free names in a row.
-fn free_range(names: &ListNames, range: u32) -> Option<u32> {
-    let mut first = 1u32;
-    if let Some((last, _)) = names.last_key_value()
-        && last.checked_add(range).is_some()
-    {
-        return Some(last + 1);
+/// The first of `count` free names in a row, in the range `own` if there is room.
+fn free_run(names: &ListNames, own: NameRange, count: u32) -> Option<u32> {
+    // Above all others of the range.
+    let highest = names.range(own.first()..=own.last()).next_back().map_or(own.first() - 1, |(name, _)| *name);
+    if own.last() - highest >= count {
+        return Some(highest + 1);
     }
+
+    // In the first gap, wherever that is.
+    let mut first = 1u32;
     for name in names.keys() {
-        if name - first >= range {
+        if name - first >= count {
             return Some(first);
         }
         first = name.checked_add(1)?;
     }
-    first.checked_add(range - 1).map(|_| first)
+    first.checked_add(count - 1).map(|_| first)
 }
 
 /// What `CallLists` adds to the list base.
@@ -441,11 +447,14 @@ mod tests {
     #[test]
     fn free_names_between_others_are_found() {
         let empty = Arc::new(List::default());
-        let names: ListNames = [2, 5, u32::MAX].map(|name| (name, empty.clone())).into();
-        assert_eq!(free_range(&names, 1), Some(1));
-        assert_eq!(free_range(&names, 2), Some(3));
-        assert_eq!(free_range(&names, 3), Some(6));
-        assert_eq!(free_range(&names, u32::MAX - 6), Some(6));
-        assert_eq!(free_range(&names, u32::MAX - 5), None);
+        let own = NameRange::default();
+        let mut names: ListNames = [2, 5, u32::MAX].map(|name| (name, empty.clone())).into();
+        assert_eq!(free_run(&names, own, 1), Some(6), "above all others");
+        names.insert(own.last(), empty.clone());
+        assert_eq!(free_run(&names, own, 1), Some(1));
+        assert_eq!(free_run(&names, own, 2), Some(3));
+        assert_eq!(free_run(&names, own, 3), Some(6));
+        assert_eq!(free_run(&names, own, own.last()), Some(own.last() + 1));
+        assert_eq!(free_run(&names, own, u32::MAX - own.last()), None);
     }
 }

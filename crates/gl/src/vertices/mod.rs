@@ -20,6 +20,7 @@ mod rect;
 pub(crate) use arrays::Arrays;
 pub use buffers::{Buffer, BufferHandle};
 pub(crate) use builder::Builder;
+pub(crate) use client::bytes as client_bytes;
 pub(crate) use feedback::Feedback;
 pub(crate) use lists::Lists;
 pub use lists::{List, ListNames};

@@ -1,20 +1,8 @@
 //! Generating and reading names of objects.
 
 use super::client;
-use crate::names::Names;
+use crate::names::MAX_NAMES;
 use crate::{Context, enums};
-
-/// How many names may be generated at once.
-const MAX_NAMES: usize = 1 << 22;
-
-/// Takes `n` unused names, the lowest that lie above all others if there is room.
-pub(super) fn generate<T>(names: &mut Names<T>, n: usize) -> Vec<u32> {
-    let last = names.last_key_value().map_or(0, |(name, _)| *name);
-    let first = if last as usize + n < u32::MAX as usize { last + 1 } else { 1 };
-    let free: Vec<u32> = (first..=u32::MAX).filter(|name| !names.contains_key(name)).take(n).collect();
-    names.extend(free.iter().map(|name| (*name, None)));
-    free
-}
 
 impl Context {
     /// The common part of `Gen*`: checks, takes names and writes them to the client.
@@ -55,19 +43,5 @@ impl Context {
             self.record_error(enums::INVALID_VALUE, call, "its names are not in the client's memory");
         }
         names.unwrap_or_default()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_new() {
-        let mut names: Names<()> = Names::new();
-        assert_eq!(generate(&mut names, 2), [1, 2]);
-        names.insert(u32::MAX, None);
-        assert_eq!(generate(&mut names, 2), [3, 4]);
-        assert_eq!(names.len(), 5);
     }
 }

@@ -58,6 +58,11 @@ impl Stage {
         at
     }
 
+    /// Writes where the client says.
+    pub(crate) fn raw_write(&mut self, address: usize, bytes: &[u8]) {
+        assert!(self.memory.write(address, bytes));
+    }
+
     /// Values from the client's memory.
     pub(crate) fn take<T: bytemuck::Pod>(&self, address: usize, count: usize) -> Vec<T> {
         let mut values = vec![T::zeroed(); count];

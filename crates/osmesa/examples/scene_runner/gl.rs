@@ -87,6 +87,7 @@ macro_rules! functions {
     ($($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)+) => {
         /// A library's functions.
         pub(crate) struct Gl {
+            library: usize,
             $($name: unsafe extern "C" fn($(<$kind as Parameter>::Passed),*) -> $result,)+
         }
 
@@ -105,6 +106,7 @@ macro_rules! functions {
                     return Err(why.unwrap_or_else(|| format!("{path}: cannot be loaded")));
                 }
                 Ok(Self {
+                    library: library.expose_provenance(),
                     $($name: {
                         let symbol = find(library, stringify!($name))?;
                         // SAFETY: the function of this name has this type, says the registry.
@@ -116,6 +118,13 @@ macro_rules! functions {
                         }
                     },)+
                 })
+            }
+
+            /// The address of an exported function, 0 if there is none.
+            pub(crate) fn exported(&self, name: &std::ffi::CStr) -> usize {
+                // SAFETY: the library is open, the name is terminated.
+                unsafe { libc::dlsym(std::ptr::with_exposed_provenance_mut(self.library), name.as_ptr()) }
+                    .expose_provenance()
             }
 
             $(
@@ -201,6 +210,8 @@ functions! {
     glDeleteFramebuffers(n: i32, framebuffers: &[u32]) -> ();
     glDeleteLists(list: u32, range: i32) -> ();
     glDeleteSamplers(count: i32, samplers: &[u32]) -> ();
+    glDeleteBuffers(n: i32, buffers: &[u32]) -> ();
+    glDeleteTextures(n: i32, textures: &[u32]) -> ();
     glDepthFunc(func: u32) -> ();
     glDepthMask(flag: u8) -> ();
     glDepthRange(n: f64, f: f64) -> ();
@@ -257,6 +268,7 @@ functions! {
     glGetMaterialfv(face: u32, pname: u32, params: &mut [f32]) -> ();
     glGetPixelMapfv(map: u32, values: &mut [f32]) -> ();
     glGetPolygonStipple(mask: &mut [u8]) -> ();
+    glGetString(name: u32) -> usize;
     glGetQueryObjectuiv(id: u32, pname: u32, params: &mut [u32]) -> ();
     glGetRenderbufferParameteriv(target: u32, pname: u32, params: &mut [i32]) -> ();
     glGetTexEnvfv(target: u32, pname: u32, params: &mut [f32]) -> ();

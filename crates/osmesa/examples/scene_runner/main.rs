@@ -15,6 +15,7 @@
 mod gl;
 mod lifecycle;
 mod scenes;
+mod situations;
 mod stage;
 
 use scenes::Scene;

@@ -89,10 +89,10 @@ GLAPI GLboolean GLAPIENTRY OSMesaGetDepthBuffer(OSMesaContext c, GLint *width, G
 /* The colour buffer of a context, with everything drawn. GL_FALSE if there is none. */
 GLAPI GLboolean GLAPIENTRY OSMesaGetColorBuffer(OSMesaContext c, GLint *width, GLint *height, GLint *format, void **buffer);
 
-/* The address of a function of OpenGL or OSMesa, NULL if there is none of this name. */
+/* The address of a function of OpenGL or OSMesa, NULL if there is none of this name, or it is beyond OpenGL 1.5 and the extensions. */
 GLAPI OSMESAproc GLAPIENTRY OSMesaGetProcAddress(const char *funcName);
 
-/* Accepted, without effect: colours of vertices are clamped always, colours in buffers of floats never. */
+/* Whether colours of fragments are clamped to 0..1 on their way to buffers of floats, too: off by default (see ARB_color_buffer_float). */
 GLAPI void GLAPIENTRY OSMesaColorClamp(GLboolean enable);
 
 /* Accepted, without effect: there are no filters. */

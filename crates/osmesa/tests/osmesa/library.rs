@@ -97,8 +97,71 @@ fn errors_are_told_on_request() {
     command.env("VITRAL_GL_DEBUG", "1").args(["--lifecycle", "attributes"]).arg(ours());
     let ended = run(&mut command);
     assert!(ended.fine && ended.errors.contains("core"), "{}", ended.errors);
-    let quiet = run(runner().args(["--lifecycle", "attributes"]).arg(ours()));
+    let quiet = run(runner().args(["--lifecycle", "functions"]).arg(ours()));
     assert_eq!(quiet.errors, "");
+    // A context that is refused is told always, with what to do.
+    let refused = run(runner().args(["--lifecycle", "compatible"]).arg(ours()));
+    assert!(refused.fine && refused.errors.contains("VITRAL_GL_COMPAT=2.1"), "{}", refused.errors);
+    assert_eq!(refused.errors.lines().count(), 1);
+}
+
+#[test]
+fn contexts_that_do_not_share_have_names_of_their_own() {
+    lifecycle("names", None);
+}
+
+#[test]
+fn signals_belong_to_the_program() {
+    for threads in ["1", "4"] {
+        lifecycle("signals", Some(threads));
+    }
+}
+
+#[test]
+fn pictures_do_not_depend_on_the_callers_floating_point_environment() {
+    for threads in ["1", "4"] {
+        lifecycle("floating-point", Some(threads));
+    }
+}
+
+#[test]
+fn a_freed_buffer_costs_its_picture() {
+    lifecycle("buffer-freed", None);
+}
+
+#[test]
+fn memory_that_cannot_be_had_is_an_error() {
+    lifecycle("out-of-memory", Some("1"));
+}
+
+#[test]
+fn draws_that_nobody_waits_for_take_little_memory() {
+    for threads in ["1", "4"] {
+        lifecycle("nobody-waits", Some(threads));
+    }
+}
+
+#[test]
+fn functions_beyond_1_5_are_not_handed_out() {
+    lifecycle("procedures", None);
+}
+
+#[test]
+fn contexts_of_2_1_are_given_on_request() {
+    let mut command = runner();
+    command.env("VITRAL_GL_COMPAT", "2.1").args(["--lifecycle", "compatible"]).arg(ours());
+    let ended = run(&mut command);
+    assert!(ended.fine && ended.errors.is_empty(), "{}", ended.errors);
+}
+
+#[test]
+fn destructors_of_a_thread_find_its_context() {
+    lifecycle("thread-end", None);
+}
+
+#[test]
+fn draws_that_wait_keep_the_texels_they_saw() {
+    lifecycle("part-of-a-texture", None);
 }
 
 /// Runs a tool of the binutils on the library.
@@ -121,9 +184,13 @@ fn exactly_the_functions_are_exported() {
     let tables = [include_str!("../../src/entry_points.rs"), include_str!("../../src/unsupported.rs")];
     let api = include_str!("../../src/api.rs").split_once("procedures! {\n").and_then(|(_, rest)| rest.split_once('}'));
     let functions = tables.into_iter().flat_map(str::split_whitespace).filter(|word| word.starts_with("gl"));
+    let logs =
+        include_str!("../../src/shader_logs.rs").lines().filter(|line| line.ends_with(" }") && line.contains("! { gl"));
+    let logs = logs.flat_map(str::split_whitespace).filter(|word| word.starts_with("gl"));
     let by_name = "OSMesaGetProcAddress";
     assert!(include_str!("../../src/procedures.rs").contains(&format!("procedures! {{ {by_name} }}")));
-    let mut expected: Vec<&str> = functions.chain(api.unwrap().0.split_whitespace()).chain([by_name]).collect();
+    let mut expected: Vec<&str> =
+        functions.chain(api.unwrap().0.split_whitespace()).chain([by_name]).chain(logs).collect();
     let mut found = names;
     expected.sort_unstable();
     found.sort_unstable();

@@ -55,6 +55,15 @@ impl<'a> TilePlanes<'a> {
         Self { color, depth, stencil, samples, ranges: DepthRanges::new() }
     }
 
+    /// Notes that the tile's colours may change.
+    pub(crate) fn set_changed(&mut self) {
+        match &mut self.color {
+            Some(ColorTile::Rgba8(tile)) => tile.set_changed(),
+            Some(ColorTile::RgbaF32(tile)) => tile.set_changed(),
+            None => {}
+        }
+    }
+
     /// The same planes, for a while.
     pub(crate) fn lend(&mut self) -> TilePlanes<'_> {
         let color = self.color.as_mut().map(|color| match color {

@@ -11,13 +11,13 @@ use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 use super::sample::Common;
 use super::shade::{Layout, Seen};
 use super::spare::{Assembly, Places};
-use super::state::{EnvironmentMode, FragmentState};
+use super::state::{Clamping, EnvironmentMode, FragmentState};
 use super::strips::{TileCopy, cut, rows};
 use super::texture::Texture;
 use super::tile::TileRun;
 use crate::geometry::TileLists;
 use crate::screen::Screen;
-use crate::{SUBPIXEL, SamplePattern, Viewport};
+use crate::{SUBPIXEL, SamplePattern, TILE, Viewport};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral_exec::Workers;
@@ -241,6 +241,8 @@ pub(crate) struct DrawContext<'a> {
     pub shaded: bool,
     /// A facet has one colour.
     pub constant: bool,
+    /// Colours may leave `0..=1` before they are stored.
+    pub unlimited: bool,
     /// Units with a common kind of texture.
     pub plain: Vec<(usize, Common<'a>)>,
     /// The unit whose texture a later draw shows with the same vertices, or an earlier one did.
@@ -442,31 +444,56 @@ impl Runner {
         let scale = depth.as_ref().map_or(1.0, |d| d.scale);
         let mut depths = plane_tiles(depth.as_mut().map(|d| d.resolved()), target.viewport);
         let mut stencils = plane_tiles(stencil.as_deref_mut(), target.viewport);
-        let planes = |_| {
-            let depth = depths.next().map(|d| (d, scale));
-            TilePlanes::new(colors.next(), depth, stencils.next(), target.samples)
-        };
-        let mut tiles: Vec<TilePlanes<'_>> = (0..count).map(planes).collect();
+
+        // Take the tiles in which something happens.
+        let across = target.viewport.tiles_x();
+        let mut tiles: Vec<(usize, TilePlanes<'_>)> = Vec::new();
+        for index in 0..count {
+            let (color, depth, stencil) = (colors.next(), depths.next(), stencils.next());
+            if items.iter().any(|item| item.touches(index, across)) {
+                let mut planes = TilePlanes::new(color, depth.map(|d| (d, scale)), stencil, target.samples);
+                planes.set_changed();
+                tiles.push((index, planes));
+            }
+        }
 
         // The first strip of a tile that is cut is drawn in the tile, the others in copies.
-        let (strips, cut) = cut(self.workers.threads(), count, items);
+        let (strips, cut) = cut(self.workers.threads(), tiles.iter().map(|(index, _)| *index), items);
         let others: Vec<(usize, Range<usize>)> =
-            cut.iter().flat_map(|&index| (1..strips).map(move |strip| (index, rows(strip, strips)))).collect();
-        let mut copies: Vec<TileCopy> = others.iter().map(|(index, _)| TileCopy::of(&tiles[*index])).collect();
+            cut.iter().flat_map(|&at| (1..strips).map(move |strip| (at, rows(strip, strips)))).collect();
+        let mut copies: Vec<TileCopy> = others.iter().map(|(at, _)| TileCopy::of(&tiles[*at].1)).collect();
+        let numbers: Vec<usize> = others.iter().map(|(at, _)| tiles[*at].0).collect();
         let run = |index, rows, planes, seen| TileRun::new(index, rows, target.viewport, planes, seen);
         let mut runs = Vec::with_capacity(tiles.len() + copies.len());
-        let mut seen = seen.iter_mut();
-        for (index, tile) in tiles.iter_mut().enumerate() {
-            let strips = if cut.contains(&index) { strips } else { 1 };
-            runs.push(run(index, rows(0, strips), tile.lend(), seen.next()));
+        let mut seen = seen.iter_mut().enumerate();
+        for (at, (index, tile)) in tiles.iter_mut().enumerate() {
+            let strips = if cut.contains(&at) { strips } else { 1 };
+            let seen = seen.find(|(number, _)| number == index).map(|(_, seen)| seen);
+            runs.push(run(*index, rows(0, strips), tile.lend(), seen));
         }
-        for ((index, rows), copy) in others.iter().zip(&mut copies) {
-            runs.push(run(*index, rows.clone(), copy.planes(scale, target.samples), None));
+        for ((index, (_, rows)), copy) in numbers.into_iter().zip(&others).zip(&mut copies) {
+            runs.push(run(index, rows.clone(), copy.planes(scale, target.samples), None));
         }
         let (many, one) = (pattern(target.samples), pattern(1));
         self.workers.for_each(runs, |mut run| run.run(self.level, items, &many, &one));
-        for ((index, rows), copy) in others.iter().zip(copies) {
-            copy.give_back(rows, &mut tiles[*index]);
+        for ((at, rows), copy) in others.iter().zip(copies) {
+            copy.give_back(rows, &mut tiles[*at].1);
+        }
+    }
+}
+
+impl Item<'_> {
+    /// Whether something may happen in tile number `index` of rows of `across` tiles.
+    fn touches(&self, index: usize, across: u32) -> bool {
+        let meets = |[x0, y0, x1, y1]: [i32; 4]| {
+            let side = TILE as i32;
+            let (x, y) = (index as i32 % across as i32 * side, index as i32 / across as i32 * side);
+            x0.max(x) < x1.min(x + side) && y0.max(y) < y1.min(y + side)
+        };
+        match self {
+            Item::Clear(clear) => meets(clear.clip),
+            Item::Image(image, state, _) => meets(image.bounds(state.clip)),
+            Item::Job { primitives, .. } => !primitives.batch.tile_range(index).is_empty(),
         }
     }
 }
@@ -547,6 +574,8 @@ fn draw_context<'a>(
         clip,
         multisample: samples > 1 && state.multisample,
         shaded,
+        unlimited: state.clamping == Clamping::None
+            && (state.unclamped_vertices || state.units.iter().any(|unit| unit.texture.is_float())),
         constant: geometry.layout().uniform
             || (state.flat && state.units.is_empty() && state.fog.is_none() && !state.color_sum),
         again: again.map(|shown| shown.unit),

@@ -24,6 +24,8 @@ pub struct PlaneTile<T> {
     surfaces: Vec<Option<Surface>>,
     /// How surfaces are read, once there is one.
     reading: Option<Reading<T>>,
+    /// Something may have changed since [`Self::take_changed`].
+    changed: bool,
 }
 
 /// What surfaces store for a sample: in a row of their block, and in all rows.
@@ -132,7 +134,18 @@ impl<T: Copy> PlaneTile<T> {
             surfaced: 0,
             surfaces: Vec::new(),
             reading: None,
+            changed: true,
         }
+    }
+
+    /// Whether something may have changed since this was last asked; a new tile has changed.
+    pub fn take_changed(&mut self) -> bool {
+        std::mem::take(&mut self.changed)
+    }
+
+    /// Notes that something may change.
+    pub(crate) fn set_changed(&mut self) {
+        self.changed = true;
     }
 
     /// The value of all samples, where nothing was written since they were cleared.
@@ -143,6 +156,7 @@ impl<T: Copy> PlaneTile<T> {
     /// Sets every sample. A tile that is drawn to in every frame keeps its memory.
     pub fn clear(&mut self, value: T) {
         (self.clear, self.cleared, self.single, self.surfaced) = (value, u64::MAX, 0, 0);
+        self.changed = true;
     }
 
     /// The value of a pixel's sample; `at` is the pixel's place `y * TILE + x` in the tile.
@@ -211,6 +225,7 @@ impl<T: Copy> PlaneTile<T> {
 
     /// All samples, as [`Self::read`] would give them, to read and write.
     pub fn stored(&mut self, samples: usize) -> &mut [T] {
+        self.changed = true;
         self.open(u64::MAX, false, samples).1
     }
 
@@ -354,6 +369,7 @@ impl<T: Copy> PlaneTile<T> {
 
     /// Copies everything to a tile of as many samples, or of one, for which `resolve` makes one value of a pixel's samples.
     pub fn copy_to(&self, samples: usize, target: &mut Self, target_samples: usize, resolve: Resolve<T>) {
+        target.changed = true;
         if samples == target_samples {
             target.values.clone_from(&self.values);
             (target.clear, target.cleared, target.single) = (self.clear, self.cleared, self.single);

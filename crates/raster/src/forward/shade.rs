@@ -351,7 +351,8 @@ impl<'a> Shader<'a> {
         let mut colors = [every_rgba(simd, [0.0; 4]); N];
         for i in 0..N {
             // Beyond the facet's border (a pixel's centre may be) colours are extrapolated: keep them in range.
-            colors[i] = saturate_rgba(self.four(simd, &weights[i], self.color_at()));
+            let color = self.four(simd, &weights[i], self.color_at());
+            colors[i] = if self.draw.state.unclamped_vertices { color } else { saturate_rgba(color) };
         }
         colors
     }

@@ -231,6 +231,9 @@ pub enum CombineFunction {
     AddSigned,
     Interpolate,
     Subtract,
+    ModulateAdd,
+    ModulateSignedAdd,
+    ModulateSubtract,
     Dot3Rgb,
     Dot3Rgba,
 }
@@ -245,6 +248,8 @@ pub enum CombineSource {
     Constant,
     PrimaryColor,
     Previous,
+    Zero,
+    One,
 }
 
 /// `OPERANDn`.
@@ -347,6 +352,8 @@ pub struct FragmentState {
     pub srgb: bool,
     /// Where colours in floating-point storage are clamped.
     pub clamping: Clamping,
+    /// Colours of vertices are not clamped.
+    pub unclamped_vertices: bool,
     /// Counts samples that pass.
     pub query: Option<Arc<AtomicU64>>,
 }

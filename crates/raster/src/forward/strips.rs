@@ -13,9 +13,9 @@ use std::ops::Range;
 /// Tiles with fewer entries in their lists than this are not worth copies.
 const LEAST: usize = 512;
 
-/// Into how many strips which tiles are cut for `threads` threads: a power of two, at most a strip for each row of blocks. Two
-/// for each thread, since one may have more in it than another.
-pub(crate) fn cut(threads: usize, tiles: usize, items: &[Item<'_>]) -> (usize, Vec<usize>) {
+/// Into how many strips which of the tiles are cut for `threads` threads: a power of two, at most a strip for each row of blocks. Two
+/// for each thread, since one may have more in it than another. Tiles are told by their place among `tiles`.
+pub(crate) fn cut(threads: usize, tiles: impl Iterator<Item = usize>, items: &[Item<'_>]) -> (usize, Vec<usize>) {
     let entries = |tile: usize| {
         let of_item = |item: &Item<'_>| match item {
             Item::Job { primitives, .. } => primitives.batch.tile_range(tile).len(),
@@ -26,7 +26,7 @@ pub(crate) fn cut(threads: usize, tiles: usize, items: &[Item<'_>]) -> (usize, V
     if threads < 2 {
         return (1, Vec::new());
     }
-    let full: Vec<usize> = (0..tiles).filter(|&tile| entries(tile) >= LEAST).collect();
+    let full: Vec<usize> = tiles.enumerate().filter(|&(_, tile)| entries(tile) >= LEAST).map(|(at, _)| at).collect();
     let share = 2 * threads / full.len().max(1);
     if share < 2 { (1, Vec::new()) } else { (1 << share.min(TILE / BLOCK).ilog2(), full) }
 }

@@ -146,6 +146,26 @@ pub enum Wrap {
     Clamp,
     ClampToEdge,
     ClampToBorder,
+    MirrorClamp,
+    MirrorClampToEdge,
+    MirrorClampToBorder,
+}
+
+impl Wrap {
+    /// Whether the image is mirrored once at 0, and clamped then.
+    pub(crate) fn mirrors_once(self) -> bool {
+        matches!(self, Self::MirrorClamp | Self::MirrorClampToEdge | Self::MirrorClampToBorder)
+    }
+
+    /// How coordinates are clamped once they are mirrored.
+    pub(crate) fn after_mirror(self) -> Self {
+        match self {
+            Self::MirrorClamp => Self::Clamp,
+            Self::MirrorClampToEdge => Self::ClampToEdge,
+            Self::MirrorClampToBorder => Self::ClampToBorder,
+            other => other,
+        }
+    }
 }
 
 /// Filters.
@@ -234,6 +254,11 @@ impl Texture {
     pub fn new(kind: TextureKind, format: BaseFormat, faces: Vec<Vec<Arc<Level>>>, sampler: Sampler) -> Self {
         let depth_mode = BaseFormat::Luminance;
         Self { kind, format, depth_mode, float_depth: false, faces, sampler, swizzle: None, cube: CubeFaces::default() }
+    }
+
+    /// Whether its texels may be any numbers.
+    pub(crate) fn is_float(&self) -> bool {
+        self.faces.iter().flatten().any(|level| matches!(level.texels(), Texels::RgbaF32(_)))
     }
 
     /// The depth planes among its levels.

@@ -13,7 +13,7 @@ use super::pass::{Clear, DrawContext, ImageColors, ImageFragments, Item, facet_o
 use super::plane::PlaneTile;
 use super::sample::sample;
 use super::shade::{CENTERS, Seen, Shader};
-use super::state::{Compare, FragmentState};
+use super::state::{Clamping, Compare, FragmentState};
 use super::tiny_eight::{FacetMemory, JobContext, by_eights};
 use super::wide::{Rgba, splat, splat_rgba};
 use crate::kernel::block::{Block, BlockSink};
@@ -285,8 +285,8 @@ impl<'a> TileRun<'a> {
 }
 
 impl ImageFragments {
-    /// The pixels it may touch, within `clip`.
-    fn bounds(&self, clip: [i32; 4]) -> [i32; 4] {
+    /// The pixels it may touch, within `clip`: x0, y0, x1, y1, the last two exclusive.
+    pub fn bounds(&self, clip: [i32; 4]) -> [i32; 4] {
         let span = |k: usize| {
             let end = self.origin[k] + self.zoom[k] * self.size[k] as f32;
             let (low, high) = (self.origin[k].min(end), self.origin[k].max(end));
@@ -343,7 +343,7 @@ fn image_color<S: Simd>(
             textures[unit.index % UNITS] = sample(simd, &unit.texture, None, coords, lod, bits);
         }
         for unit in &state.units {
-            color = environment(simd, unit, &textures, &primary, color);
+            color = environment(simd, unit, &textures, &primary, color, state.clamping != Clamping::None);
         }
     }
     if state.color_sum {

@@ -96,6 +96,7 @@ impl TinyFacets {
 pub(super) fn by_eights(draw: &DrawContext<'_>, run: &TileRun<'_>) -> bool {
     draw.ops.direct
         && !draw.layout.smooth[2]
+        && !draw.state.unclamped_vertices
         && matches!(run.planes.samples, 1 | SAMPLES)
         && !matches!(run.planes.color, Some(ColorTile::RgbaF32(_)))
 }

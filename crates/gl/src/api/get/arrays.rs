@@ -38,6 +38,7 @@ impl Context {
             gl::INDEX_ARRAY_COUNT_EXT => Value::integer(client.index.count),
             gl::TEXTURE_COORD_ARRAY_COUNT_EXT => Value::integer(texture.count),
             gl::EDGE_FLAG_ARRAY_COUNT_EXT => Value::integer(client.edge.count),
+            gl::PRIMITIVE_RESTART_INDEX_NV => Value::token(client.restart.1),
             gl::CLIENT_ACTIVE_TEXTURE => Value::token(gl::TEXTURE0 + client.active_unit as u32),
             gl::ARRAY_ELEMENT_LOCK_FIRST_EXT => Value::integer(self.locked_elements().0),
             gl::ARRAY_ELEMENT_LOCK_COUNT_EXT => Value::integer(self.locked_elements().1),

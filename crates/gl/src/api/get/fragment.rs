@@ -5,6 +5,7 @@ use crate::api::arguments::unit;
 use crate::api::capabilities::index_in;
 use crate::state::{PixelStore, target};
 use crate::{Context, enums as gl};
+use vitral_raster::forward::Clamping;
 
 impl Context {
     pub(super) fn get_texturing(&mut self, pname: u32) -> Option<Value> {
@@ -52,6 +53,9 @@ impl Context {
             gl::STENCIL_PASS_DEPTH_PASS => Value::token(face.ops[2]),
             gl::STENCIL_WRITEMASK => Value::token(face.write_mask),
             gl::STENCIL_CLEAR_VALUE => Value::integer(stencil.clear),
+            gl::STENCIL_BACK_REF => Value::integer(back.reference.clamp(0, largest)),
+            gl::STENCIL_BACK_VALUE_MASK => Value::token(back.value_mask),
+            gl::STENCIL_BACK_WRITEMASK => Value::token(back.write_mask),
             gl::STENCIL_BACK_FUNC_ATI => Value::token(back.func),
             gl::STENCIL_BACK_FAIL_ATI => Value::token(back.ops[0]),
             gl::STENCIL_BACK_PASS_DEPTH_FAIL_ATI => Value::token(back.ops[1]),
@@ -62,6 +66,7 @@ impl Context {
     }
 
     pub(super) fn get_blending(&mut self, pname: u32) -> Option<Value> {
+        let float = self.clamping() == Clamping::None;
         let blend = &self.state.blend;
         let buffer = &self.state.color_buffer;
         Some(match pname {
@@ -75,7 +80,11 @@ impl Context {
             gl::LOGIC_OP_MODE => Value::token(self.state.logic_op.1),
             gl::COLOR_WRITEMASK => Value::booleans(&buffer.mask),
             gl::INDEX_WRITEMASK => Value::token(buffer.index_mask),
-            gl::COLOR_CLEAR_VALUE => Value::normalized(&buffer.clear),
+            gl::COLOR_CLEAR_VALUE if float => Value::normalized(&buffer.clear),
+            gl::COLOR_CLEAR_VALUE => Value::normalized(&buffer.clear.map(unit)),
+            gl::CLAMP_VERTEX_COLOR => Value::token(buffer.clamps[0]),
+            gl::CLAMP_FRAGMENT_COLOR => Value::token(buffer.clamps[1]),
+            gl::CLAMP_READ_COLOR => Value::token(buffer.clamps[2]),
             gl::INDEX_CLEAR_VALUE => Value::float(buffer.clear_index),
             gl::ACCUM_CLEAR_VALUE => Value::normalized(&buffer.accum_clear),
             _ => return None,
@@ -115,6 +124,9 @@ impl Context {
             gl::STEREO | gl::INDEX_MODE => Value::boolean(false),
             gl::FRAMEBUFFER_SRGB_CAPABLE_EXT => Value::boolean(self.draws_srgb()),
             gl::RGBA_MODE => Value::boolean(true),
+            gl::RGBA_FLOAT_MODE_ARB => Value::boolean(self.clamping() != Clamping::Results),
+            gl::MAX_DRAW_BUFFERS => Value::integer(1),
+            gl::DRAW_BUFFER0 => Value::token(self.draw_buffer_token()),
             gl::DRAW_BUFFER => Value::token(self.draw_buffer_token()),
             gl::READ_BUFFER => Value::token(self.read_buffer_token()),
             gl::DRAW_FRAMEBUFFER_BINDING => Value::token(self.draw_framebuffer_name()),
@@ -155,6 +167,7 @@ fn is_stencil(pname: u32) -> bool {
     matches!(
         pname,
         gl::STENCIL_CLEAR_VALUE..=gl::STENCIL_WRITEMASK
+            | gl::STENCIL_BACK_REF..=gl::STENCIL_BACK_WRITEMASK
             | gl::STENCIL_BACK_FUNC_ATI..=gl::STENCIL_BACK_PASS_DEPTH_PASS_ATI
             | gl::ACTIVE_STENCIL_FACE_EXT
     )
@@ -177,6 +190,7 @@ fn pixel_store(pname: u32, unpack: &PixelStore, pack: &PixelStore) -> Option<Val
         gl::PACK_SKIP_ROWS => Value::integer(pack.skip_rows),
         gl::PACK_SKIP_PIXELS => Value::integer(pack.skip_pixels),
         gl::PACK_SKIP_IMAGES => Value::integer(pack.skip_images),
+        gl::PACK_INVERT_MESA => Value::boolean(pack.invert),
         gl::PACK_ALIGNMENT => Value::integer(pack.alignment),
         _ => return None,
     })

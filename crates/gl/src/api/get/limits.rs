@@ -7,6 +7,10 @@ use crate::{Context, enums as gl, state};
 /// What `DrawRangeElements` is fastest with.
 const MAX_ELEMENTS: i32 = 65536;
 
+/// Those that programs may choose for any image: with one bit of alpha is not among them.
+const COMPRESSED_FORMATS: [u32; 3] =
+    [gl::COMPRESSED_RGB_S3TC_DXT1_EXT, gl::COMPRESSED_RGBA_S3TC_DXT3_EXT, gl::COMPRESSED_RGBA_S3TC_DXT5_EXT];
+
 impl Context {
     pub(super) fn get_limits(&mut self, pname: u32) -> Option<Value> {
         let points = [1.0, state::MAX_POINT_SIZE];
@@ -52,8 +56,8 @@ fn texture_limit(pname: u32) -> Option<Value> {
         gl::MAX_3D_TEXTURE_SIZE => Value::size(state::MAX_3D_TEXTURE_SIZE),
         gl::MAX_TEXTURE_LOD_BIAS => Value::float(state::MAX_TEXTURE_LOD_BIAS),
         gl::MAX_TEXTURE_MAX_ANISOTROPY_EXT => Value::float(state::MAX_ANISOTROPY),
-        gl::NUM_COMPRESSED_TEXTURE_FORMATS => Value::integer(0),
-        gl::COMPRESSED_TEXTURE_FORMATS => Value::integers(&[]),
+        gl::NUM_COMPRESSED_TEXTURE_FORMATS => Value::size(COMPRESSED_FORMATS.len()),
+        gl::COMPRESSED_TEXTURE_FORMATS => Value::integers(&COMPRESSED_FORMATS.map(u32::cast_signed)),
         gl::MAX_SAMPLES => Value::size(state::MAX_SAMPLES),
         gl::MAX_COLOR_ATTACHMENTS => Value::size(state::MAX_COLOR_ATTACHMENTS),
         _ => return None,

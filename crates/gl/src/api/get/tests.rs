@@ -65,7 +65,7 @@ fn initial_tokens_and_integers() {
         (gl::DEBUG_GROUP_STACK_DEPTH, 1),
         (gl::CLIP_ORIGIN, gl::LOWER_LEFT),
         (gl::CLIP_DEPTH_MODE, gl::NEGATIVE_ONE_TO_ONE),
-        (gl::NUM_COMPRESSED_TEXTURE_FORMATS, 0),
+        (gl::NUM_COMPRESSED_TEXTURE_FORMATS, 3),
         (gl::CURRENT_RASTER_POSITION_VALID, 1),
     ] {
         assert_eq!(integers::<1>(&mut c, pname)[0] as u32, value, "{pname:x}");

@@ -10,7 +10,8 @@ pub(super) enum Vertices {
     /// In order.
     Range { first: usize, count: usize },
     /// By indices of a type, at an address (or offset in the buffer of that number), plus `base`.
-    Elements { count: usize, kind: u32, pointer: usize, buffer: u64, base: i32 },
+    /// The index `restart` begins the primitive anew.
+    Elements { count: usize, kind: u32, pointer: usize, buffer: u64, base: i32, restart: Option<u32> },
 }
 
 /// Everything that a batch depends on.

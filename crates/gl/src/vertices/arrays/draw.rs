@@ -3,6 +3,7 @@
 use super::POSITION;
 use super::cache::{Key, Vertices};
 use super::fetch::{Reader, Refusal, Run, Store, store};
+use crate::memory::can_have;
 use crate::state::ArrayPointer;
 use crate::vertex::{Given, Sent, VertexBatch};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
@@ -16,6 +17,9 @@ const BEFORE: Refusal = "an index with its base is negative or too large";
 
 /// The most vertices a draw may take.
 const MAX_VERTICES: usize = 1 << 28;
+
+/// Memory that a vertex of a draw takes, roughly: attributes, indices, what is found out about them.
+const BYTES_A_VERTEX: usize = 64;
 
 impl Context {
     /// `glDrawArrays`.
@@ -86,7 +90,8 @@ impl Context {
             return;
         }
         let buffer = self.client.element_buffer.id();
-        self.draw_vertices(call, mode, Vertices::Elements { count, kind, pointer, buffer, base });
+        let restart = self.client.restart.0.then_some(self.client.restart.1);
+        self.draw_vertices(call, mode, Vertices::Elements { count, kind, pointer, buffer, base, restart });
     }
 
     /// `glMultiDrawArrays`.
@@ -191,6 +196,10 @@ impl Context {
             self.record_error(enums::OUT_OF_MEMORY, call, &format!("{count} vertices are too many"));
             return;
         }
+        if !can_have(count * BYTES_A_VERTEX) {
+            self.record_error(enums::OUT_OF_MEMORY, call, &format!("there is no memory for {count} vertices"));
+            return;
+        }
         let batch = match self.array_batch(mode, vertices) {
             Ok(batch) => batch,
             Err(why) => {
@@ -253,15 +262,35 @@ impl Context {
         enabled.map(|(which, array)| (which, ArrayPointer { buffer: array.buffer.mark(), ..*array })).collect()
     }
 
+    /// Whether a draw may use an array. One that it does not use may be too short, or lie in memory that is gone.
+    fn may_use(&self, which: usize) -> bool {
+        let textured = |unit: usize| self.state.units[unit].enabled != [false; 5];
+        let drawn = !self.lists.recording && self.feedback.mode == enums::RENDER;
+        match which {
+            POSITION | COLOR | SECONDARY | FOG | EDGE | INDEX => true,
+            _ if !drawn => true,
+            NORMAL => self.state.lighting.enabled || (0..self.state.units.len()).any(textured),
+            _ => textured(which - TEX),
+        }
+    }
+
+    /// Whether at least one element of the positions lies in their buffer.
+    fn has_positions(reader: &Reader, arrays: &[(usize, ArrayPointer)]) -> bool {
+        arrays.iter().filter(|(which, _)| *which == POSITION).all(|(_, array)| reader.has_some(array))
+    }
+
     fn array_batch(&mut self, mode: u32, vertices: Vertices) -> Result<Arc<VertexBatch>, Refusal> {
         // Colour indices have no effect: whether and where they lie does not matter.
         let mut arrays = self.enabled_arrays();
-        arrays.retain(|(which, _)| *which != INDEX);
+        arrays.retain(|(which, _)| *which != INDEX && self.may_use(*which));
         let element_buffer = match vertices {
             Vertices::Elements { buffer, .. } => Some(buffer),
             Vertices::Range { .. } => None,
         };
         let reader = self.array_reader(&arrays, element_buffer.is_some())?;
+        if !Self::has_positions(&reader, &arrays) {
+            return Err("the buffer of positions holds none");
+        }
         let constant = element_buffer != Some(0) && arrays.iter().all(|(_, array)| !array.buffer.is_none());
         let versions = reader.stores.iter().map(|store| store.version).collect();
         let key = Key { mode, vertices, arrays, versions };
@@ -322,10 +351,20 @@ pub(super) fn build(
     vertices: Vertices,
 ) -> Result<(VertexBatch, Vec<Run>), Refusal> {
     let mut batch = VertexBatch::default();
-    let (runs, count) = match vertices {
-        Vertices::Range { first, count } => (vec![(first, count)], count),
-        Vertices::Elements { count, kind, pointer, buffer, base } => {
+    let mut pieces = Vec::new();
+    let runs = match vertices {
+        Vertices::Range { first, count } => {
+            pieces.push(count);
+            vec![(first, count)]
+        }
+        Vertices::Elements { count, kind, pointer, buffer, base, restart } => {
             let mut indices = reader.indices(buffer, kind, count, pointer)?;
+            if let Some(restart) = restart {
+                pieces.extend(indices.split(|&index| index == restart).map(<[u32]>::len));
+                indices.retain(|&index| index != restart);
+            } else {
+                pieces.push(count);
+            }
             if base != 0 {
                 for index in &mut indices {
                     *index = index.checked_add_signed(base).ok_or(BEFORE)?;
@@ -333,7 +372,7 @@ pub(super) fn build(
             }
             let runs = compact(&mut indices);
             batch.indices = Some(indices);
-            (runs, count)
+            runs
         }
     };
     for (which, array) in arrays {
@@ -351,7 +390,11 @@ pub(super) fn build(
             _ => batch.tex[which - TEX] = Some(reader.elements(array, &runs, false, [0.0, 0.0, 0.0, 1.0])?),
         }
     }
-    batch.add_primitive(mode, 0, count as u32);
+    let mut first = 0;
+    for count in pieces {
+        batch.add_primitive(mode, first, count as u32);
+        first += count as u32;
+    }
     Ok((batch, runs))
 }
 

@@ -37,6 +37,9 @@ const NOT_THERE: Refusal = "elements are not in the client's memory";
 /// Bytes of client memory that are read at once.
 const PIECE: usize = 1 << 16;
 
+/// Most bytes of a run of elements of which a buffer does not hold all: more is a mistake.
+const MOST_FILLED: usize = 1 << 24;
+
 /// Room made for elements before they are read; more comes as they arrive.
 const ROOM: usize = 1 << 20;
 
@@ -73,6 +76,11 @@ impl Reader {
         Ok(store.ok_or("a buffer was deleted")?.bytes.as_slice())
     }
 
+    /// Whether an array in a buffer begins there.
+    pub(super) fn has_some(&self, array: &ArrayPointer) -> bool {
+        array.buffer.is_none() || self.bytes(array.buffer.id()).is_ok_and(|bytes| array.pointer < bytes.len())
+    }
+
     /// The elements of `runs`, in order. Missing numbers come from `default`; `unit` maps whole numbers to 0..=1 or
     /// -1..=1.
     pub(super) fn elements<const N: usize>(
@@ -92,8 +100,17 @@ impl Reader {
             if !array.buffer.is_none() {
                 let span = layout.span(count).ok_or(OUTSIDE)?;
                 let end = start.checked_add(span).ok_or(OUTSIDE)?;
-                let bytes = self.bytes(array.buffer.id())?.get(start..end).ok_or(OUTSIDE)?;
-                layout.convert(bytes, count, unit, default, &mut elements);
+                let all = self.bytes(array.buffer.id())?;
+                if let Some(bytes) = all.get(start..end) {
+                    layout.convert(bytes, count, unit, default, &mut elements);
+                } else if span <= MOST_FILLED {
+                    // What the buffer does not hold reads as zero.
+                    let mut bytes = all.get(start..).unwrap_or_default().to_vec();
+                    bytes.resize(span, 0);
+                    layout.convert(&bytes, count, unit, default, &mut elements);
+                } else {
+                    return Err(OUTSIDE);
+                }
                 continue;
             }
             let at_once = if layout.is_sparse() { 1 } else { (PIECE / layout.stride).max(1) };

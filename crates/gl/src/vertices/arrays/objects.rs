@@ -2,7 +2,6 @@
 
 use crate::objects::BufferHandle;
 use crate::state::{ArrayPointer, ClientState, MAX_TEXTURE_UNITS};
-use crate::vertices::names::generate;
 use crate::{Context, enums};
 
 /// What an object holds.
@@ -53,7 +52,7 @@ impl Context {
 
     /// `glGenVertexArrays`.
     pub fn gen_vertex_arrays(&mut self, n: i32, arrays: usize) {
-        self.give_names("glGenVertexArrays", n, arrays, |c, n| generate(&mut c.arrays.objects, n));
+        self.give_names("glGenVertexArrays", n, arrays, |c, n| c.shared.names.generate(&mut c.arrays.objects, n));
     }
 
     /// `glDeleteVertexArrays`.

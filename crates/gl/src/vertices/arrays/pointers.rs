@@ -159,6 +159,10 @@ impl Context {
         if self.refused_inside_begin(call) {
             return;
         }
+        if array == enums::PRIMITIVE_RESTART_NV {
+            self.client.restart.0 = enabled;
+            return;
+        }
         let which = match array {
             enums::VERTEX_ARRAY => POSITION,
             enums::NORMAL_ARRAY => NORMAL,
@@ -184,6 +188,13 @@ impl Context {
     /// `glDisableClientState`.
     pub fn disable_client_state(&mut self, array: u32) {
         self.set_array_enabled("glDisableClientState", array, false);
+    }
+
+    /// `glPrimitiveRestartIndexNV`.
+    pub fn primitive_restart_index_nv(&mut self, index: u32) {
+        if !self.refused_inside_begin("glPrimitiveRestartIndexNV") {
+            self.client.restart.1 = index;
+        }
     }
 
     /// `glClientActiveTexture`.

@@ -2,7 +2,6 @@
 
 use super::UNITS;
 use crate::forward::state::{Combine, CombineFunction, CombineOperand, CombineSource, Unit};
-use crate::forward::wide::saturate_rgba;
 use vitral_math::lanes::{Floats, Lanes, Simd};
 
 /// What sources are taken from.
@@ -13,7 +12,7 @@ struct Sources<'a, V> {
     previous: &'a [V; 4],
 }
 
-/// The combined colour, scaled and clamped.
+/// The combined colour, scaled.
 #[inline(never)]
 pub(super) fn combine<S: Simd, V: Floats<S>>(
     simd: S,
@@ -44,7 +43,7 @@ pub(super) fn combine<S: Simd, V: Floats<S>>(
                 let b = [sources.alpha(state.alpha[0]), sources.alpha(state.alpha[1]), sources.alpha(state.alpha[2])];
                 component(state.functions[1], b[0], b[1], b[2]) * alpha_scale
             };
-            saturate_rgba([color[0] * color_scale, color[1] * color_scale, color[2] * color_scale, alpha])
+            [color[0] * color_scale, color[1] * color_scale, color[2] * color_scale, alpha]
         },
     )
 }
@@ -58,6 +57,8 @@ impl<V: Lanes> Sources<'_, V> {
             CombineSource::Constant => self.unit.color.map(|c| self.previous[0].splat(c)),
             CombineSource::PrimaryColor => *self.primary,
             CombineSource::Previous => *self.previous,
+            CombineSource::Zero => [self.previous[0].splat(0.0); 4],
+            CombineSource::One => [self.previous[0].splat(1.0); 4],
         }
     }
 
@@ -95,6 +96,9 @@ fn component<V: Lanes>(function: CombineFunction, a: V, b: V, c: V) -> V {
         CombineFunction::AddSigned => a + b - 0.5,
         CombineFunction::Interpolate => a * c + b * (a.splat(1.0) - c),
         CombineFunction::Subtract => a - b,
+        CombineFunction::ModulateAdd => a * c + b,
+        CombineFunction::ModulateSignedAdd => a * c + b - 0.5,
+        CombineFunction::ModulateSubtract => a * c - b,
     }
 }
 

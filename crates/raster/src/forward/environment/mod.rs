@@ -13,7 +13,7 @@ use vitral_math::lanes::{Floats, Lanes, Simd};
 /// How many texture units there are.
 pub(crate) const UNITS: usize = 8;
 
-/// The colour after `unit`, clamped to `0..=1`: `textures` are the texture colours of all units by their index,
+/// The colour after `unit`, brought into `0..=1` if it `clamps`: `textures` are the texture colours of all units by their index,
 /// `primary` is the colour before the first unit, `previous` the one before this unit.
 #[inline(always)]
 pub(crate) fn environment<S: Simd, V: Floats<S>>(
@@ -22,13 +22,15 @@ pub(crate) fn environment<S: Simd, V: Floats<S>>(
     textures: &[[V; 4]; UNITS],
     primary: &[V; 4],
     previous: [V; 4],
+    clamps: bool,
 ) -> [V; 4] {
     let texture = &textures[unit.index % UNITS];
-    match &unit.mode {
-        EnvironmentMode::Modulate => modulate(format_of(&unit.texture), texture, previous),
+    let color = match &unit.mode {
+        EnvironmentMode::Modulate => product(format_of(&unit.texture), texture, previous),
         EnvironmentMode::Combine(state) => combine::combine(simd, state, unit, textures, primary, &previous),
         mode => simple(simd, mode, format_of(&unit.texture), unit.color, texture, previous),
-    }
+    };
+    if clamps { saturate_rgba(color) } else { color }
 }
 
 /// The base format that decides: that of a depth texture is what its mode turns depths into.
@@ -53,11 +55,15 @@ fn keep_other_parts<V: Lanes>(format: BaseFormat, color: [V; 4], previous: [V; 4
     [r, g, b, if has_alpha { color[3] } else { previous[3] }]
 }
 
-/// `MODULATE`, the mode that nearly all programs use.
+/// `MODULATE`, the mode that nearly all programs use, clamped.
 #[inline(always)]
 pub(crate) fn modulate<V: Lanes>(format: BaseFormat, t: &[V; 4], p: [V; 4]) -> [V; 4] {
-    let product = [p[0] * t[0], p[1] * t[1], p[2] * t[2], p[3] * t[3]];
-    saturate_rgba(keep_other_parts(format, product, p))
+    saturate_rgba(product(format, t, p))
+}
+
+#[inline(always)]
+fn product<V: Lanes>(format: BaseFormat, t: &[V; 4], p: [V; 4]) -> [V; 4] {
+    keep_other_parts(format, [p[0] * t[0], p[1] * t[1], p[2] * t[2], p[3] * t[3]], p)
 }
 
 /// The other modes of OpenGL 1.1 and 1.3: `c` is the environment colour.
@@ -84,7 +90,7 @@ fn simple<S: Simd, V: Floats<S>>(
                 }
                 EnvironmentMode::Modulate | EnvironmentMode::Combine(_) => p,
             };
-            saturate_rgba(keep_other_parts(format, color, p))
+            keep_other_parts(format, color, p)
         },
     )
 }

@@ -36,7 +36,7 @@ fn run(level: Level, unit: &Unit) -> [f32; 4] {
         for i in 0..3 {
             textures[i] = splat_rgba(simd, TEXTURES[i]);
         }
-        let out = environment(simd, unit, &textures, &splat_rgba(simd, PRIMARY), splat_rgba(simd, PREVIOUS));
+        let out = environment(simd, unit, &textures, &splat_rgba(simd, PRIMARY), splat_rgba(simd, PREVIOUS), true);
         let lane = |v: F32x8<_>| v.to_array()[5];
         [lane(out[0]), lane(out[1]), lane(out[2]), lane(out[3])]
     })

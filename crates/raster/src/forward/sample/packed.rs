@@ -44,7 +44,7 @@ impl<'a> Packed<'a> {
             TextureKind::One => sampler.mag.is_linear() && sampler.min.is_linear(),
             kind => kind == TextureKind::Two,
         };
-        if !flat || texture.swizzle.is_some() {
+        if !flat || texture.swizzle.is_some() || sampler.wrap[..2].iter().any(|wrap| wrap.mirrors_once()) {
             return None;
         }
         let [width, height, _] = interior(first, dimensions(texture.kind));

@@ -183,10 +183,10 @@ fn with_rim(texture: &Texture, face: usize, level: usize) -> Box<[[u32; 2]]> {
     let texel = |words: &[u32], x: i32, y: i32| words.get((y * size + x) as usize).copied().unwrap_or(0);
     let sampler = &texture.sampler;
     let border = sampler.border_word();
-    let along = |axis: usize, at: i32| match sampler.wrap[axis] {
+    let along = |axis: usize, at: i32| match sampler.wrap[axis].after_mirror() {
         Wrap::Repeat => Some(at.rem_euclid(size)),
         Wrap::MirroredRepeat | Wrap::ClampToEdge => Some(at.clamp(0, size - 1)),
-        Wrap::Clamp | Wrap::ClampToBorder => (0..size).contains(&at).then_some(at),
+        _ => (0..size).contains(&at).then_some(at),
     };
     let beyond = |x: i32, y: i32| match neighbour(face as u32, x, y, size) {
         Some((face, x, y)) if sampler.seamless => texel(words(face as usize).0, x, y),

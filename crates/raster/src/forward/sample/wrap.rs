@@ -44,6 +44,11 @@ pub(super) fn position_in<S: Simd, V: Floats<S>>(simd: S, coordinate: V, texels:
             let mirrored = min(there_and_back, -there_and_back + 2.0);
             between(mirrored * texels, every(simd, 0.5), texels - 0.5)
         }
+        _ if wrap.mirrors_once() => {
+            // Within half a texel of 0 the two texels are one.
+            let mirrored = max(Lanes::abs(coordinate) * texels, every(simd, 0.5));
+            limited_in(simd, mirrored, texels, wrap.after_mirror())
+        }
         _ => limited_in(simd, coordinate * texels, texels, wrap),
     }
 }
@@ -79,7 +84,7 @@ pub(super) fn nearest<S: Simd>(simd: S, position: F32x8<S>, size: u32, wrap: Wra
 /// As [`nearest`] where each lane has an image of its own size.
 #[inline(always)]
 pub(super) fn nearest_in<S: Simd, V: Floats<S>>(position: V, texels: V, wrap: Wrap) -> V::Ints {
-    let last = if wrap == Wrap::ClampToBorder { texels } else { texels - 1.0 };
+    let last = if wrap.after_mirror() == Wrap::ClampToBorder { texels } else { texels - 1.0 };
     min(floor(position), last).to_int()
 }
 
@@ -97,10 +102,10 @@ pub(super) fn linear_in<S: Simd, V: Floats<S>>(simd: S, position: V, texels: V, 
     let near = floor(from_centre);
     let weight = from_centre - near;
     let far = near + one;
-    let (near, far) = match wrap {
+    let (near, far) = match wrap.after_mirror() {
         Wrap::Repeat => (select(near.simd_lt(zero), texels - one, near), select(far.simd_ge(texels), zero, far)),
         Wrap::MirroredRepeat | Wrap::ClampToEdge => (near, min(far, max(texels - one, zero))),
-        Wrap::Clamp | Wrap::ClampToBorder => (near, far),
+        _ => (near, far),
     };
     Axis { near: near.to_int(), far: far.to_int(), weight }
 }

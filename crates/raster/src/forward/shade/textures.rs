@@ -49,7 +49,7 @@ impl<'d> Shader<'d> {
         colors: &mut [[V; 4]; N],
     ) {
         // The mode that nearly all programs use needs no other unit's texture.
-        if !self.draw.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate) {
+        if self.draw.unlimited || !self.draw.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate) {
             return self.combined(simd, groups, colors);
         }
         for unit in &self.draw.state.units {
@@ -110,7 +110,7 @@ impl<'d> Shader<'d> {
                 for i in 0..N {
                     let primary = colors[i];
                     for unit in &self.draw.state.units {
-                        colors[i] = environment(simd, unit, &textures[i], &primary, colors[i]);
+                        colors[i] = environment(simd, unit, &textures[i], &primary, colors[i], !self.draw.unlimited);
                     }
                 }
             },

@@ -12,7 +12,18 @@ const BUILDERS: [&str; 2] = ["maturin>=1.9,<2", "numpy"];
 const TESTERS: [&str; 3] = ["pytest", "mypy", "ruff"];
 
 /// Other people's programs that the tests use where they can be had; tests that miss one say so and are skipped.
-const CLIENTS: [&str; 7] = ["trimesh", "mujoco", "gymnasium", "imageio", "dm_control", "PyOpenGL", "glfw"];
+const CLIENTS: [&str; 10] = [
+    "trimesh",
+    "mujoco",
+    "gymnasium",
+    "imageio",
+    "dm_control",
+    "PyOpenGL",
+    "glfw",
+    "ray[data]",
+    "nbclient",
+    "ipykernel",
+];
 
 /// The package's own sources and tests.
 const SOURCES: &str = "crates/python";
@@ -24,10 +35,17 @@ const BELOW: u64 = 15_000_000;
 pub(crate) fn wheel() -> Outcome {
     let python = environment(&BUILDERS)?;
     let folder = target_folder().join("wheels");
-    let wheel = build(&python, &folder, None)?;
+    let wheel = build(&python, &folder, None, &[])?;
     let bytes = std::fs::metadata(&wheel).map_err(|e| format!("{}: {e}", wheel.display()))?.len();
     println!("{}: {:.2} MB", crate::shell::relative(&wheel), bytes as f64 / 1e6);
     if bytes < BELOW { Ok(()) } else { Err(format!("the wheel has {bytes} bytes; it is to stay below {BELOW}")) }
+}
+
+/// Builds the wheel with this profile and a library that is there already, every file dated with this time; gives its path.
+pub(crate) fn wheel_of(folder: &Path, profile: &str, library: &Path, time: u64) -> Result<PathBuf, String> {
+    let python = environment(&BUILDERS)?;
+    let (library, time) = (library.display().to_string(), time.to_string());
+    build(&python, folder, Some(profile), &[("VITRAL_OSMESA", &library), ("SOURCE_DATE_EPOCH", &time)])
 }
 
 /// Builds and installs the package with this profile, then runs its tests, types, examples and the style of its sources.
@@ -46,7 +64,7 @@ pub(crate) fn test_all(profile: &str) -> Vec<Check> {
         let result = outcome.map_or_else(CheckResult::Failed, |()| CheckResult::Passed);
         Check { name, result }
     };
-    let installed = build(&python, &target_folder().join("python/wheels"), Some(profile)).and_then(|wheel| {
+    let installed = build(&python, &target_folder().join("python/wheels"), Some(profile), &[]).and_then(|wheel| {
         let wheel = wheel.display().to_string();
         install(&python, &["--force-reinstall", "--no-deps", &wheel])
     });
@@ -67,14 +85,14 @@ fn tool(python: &Path, words: &[&str]) -> Outcome {
     run(command(python).arg("-m").args(words).env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
-/// Builds a wheel into an empty folder; gives its path.
-fn build(python: &Path, folder: &Path, profile: Option<&str>) -> Result<PathBuf, String> {
+/// Builds a wheel into an empty folder, with these environment variables; gives its path.
+fn build(python: &Path, folder: &Path, profile: Option<&str>, variables: &[(&str, &str)]) -> Result<PathBuf, String> {
     let shown = |e: std::io::Error| format!("{}: {e}", folder.display());
     let _ = std::fs::remove_dir_all(folder);
     std::fs::create_dir_all(folder).map_err(shown)?;
     let mut pip = command(python);
     pip.args(["-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir"]);
-    pip.arg(folder).arg(repository());
+    pip.arg(folder).arg(repository()).envs(variables.iter().copied());
     if let Some(profile) = profile {
         pip.env("VITRAL_PROFILE", profile);
     }

@@ -34,6 +34,7 @@ cargo xtask wheel                 build the Python package: one wheel, in target
 cargo xtask dist [--profile NAME] [--no-lab]
                                   build what people install, in target/dist: archive, Debian package, wheel, bill of
                                   materials, checksums
+cargo xtask dist test             pack what the tests build, and try it in a bare root
 cargo xtask clients               run MuJoCo, Gymnasium, PyOpenGL, GLFW and a C program with it and with Mesa's, compare
 cargo xtask sanitize [TOOL...]    Miri, Valgrind and the sanitizers watch libOSMesa (miri, valgrind, thread, address)
 cargo xtask vectors               look for vector operations that became calls in the release build

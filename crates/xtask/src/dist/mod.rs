@@ -20,7 +20,7 @@ mod trial;
 
 use crate::checks::{Check, CheckResult};
 use crate::shell::{Outcome, cargo, command, output, profile_folder, relative, repository, run, target_folder};
-use crate::{lab, osmesa, python};
+use crate::{lab, osmesa, python, test};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -40,8 +40,12 @@ pub(crate) struct Built {
     time: u64,
 }
 
-/// Makes everything; `--profile NAME` builds with another profile than release, `--no-lab` leaves the Lab and its desktop entry out.
+/// Makes everything, or tries it by `test`; `--profile NAME` builds with another profile than release, `--no-lab` leaves the Lab and its desktop entry out.
 pub(crate) fn run_all(options: &[&str]) -> Outcome {
+    if options == ["test"] {
+        return try_out();
+    }
+
     // Read the options.
     let (mut profile, mut with_lab) = ("release", true);
     let mut words = options.iter();
@@ -74,6 +78,16 @@ pub(crate) fn run_all(options: &[&str]) -> Outcome {
         println!("without the Lab, and so without a desktop entry");
     }
     Ok(())
+}
+
+/// Runs the checks of `cargo xtask test` alone.
+fn try_out() -> Outcome {
+    let checks = test_all(test::PROFILE);
+    checks.iter().for_each(|check| println!("test {} ... {}", check.name, check.result));
+    match checks.iter().any(|check| matches!(check.result, CheckResult::Failed(_))) {
+        true => Err("some checks failed".to_owned()),
+        false => Ok(()),
+    }
 }
 
 /// Packs what this profile builds, twice, and tries both packages.

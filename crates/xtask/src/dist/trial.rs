@@ -160,7 +160,7 @@ impl Installed<'_> {
         for library in libraries {
             jail.args(["--ro-bind", library, library]);
         }
-        jail.args(["--chdir", "/out"]);
+        jail.args(["--proc", "/proc", "--chdir", "/out"]);
         jail
     }
 

@@ -46,6 +46,8 @@ pub(crate) enum Verb {
     Lab(LabPageArgs),
     /// Tell what is in a model file
     Info(InfoArgs),
+    /// Make the small picture of a model that file managers show
+    Thumbnail(ThumbnailArgs),
     /// Compare two pictures; exit code 6 when they differ
     Compare(CompareArgs),
     /// Measure every visible-surface algorithm on one model: time, memory, counters, agreement with the z-buffer
@@ -90,6 +92,24 @@ pub(crate) struct InfoArgs {
     /// No warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+/// Options of `vitral thumbnail`.
+///
+/// File managers call it as `vitral thumbnail %i %o %s`. The picture is a square PNG with a transparent background, whatever OUT is called.
+/// Configuration files have no say. A thumbnail may take 20 s and 1 GB.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct ThumbnailArgs {
+    /// The model file
+    #[arg(value_name = "IN")]
+    pub(crate) model: PathBuf,
+    /// Where the picture goes; its folder has to be there
+    #[arg(value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// Width and height in pixels, 1 to 4096
+    #[arg(value_name = "SIZE", value_parser = values::whole(1..=4096u32))]
+    pub(crate) size: u32,
 }
 
 /// Options of `vitral compare`.

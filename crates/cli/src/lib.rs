@@ -52,6 +52,7 @@ mod section_args;
 mod similar;
 mod step_pictures;
 mod tables;
+mod thumbnail_command;
 mod trace_file;
 mod values;
 
@@ -94,6 +95,7 @@ fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
         Verb::ReadProbe(args) => read_probe::run(&args),
         Verb::Lab(args) => lab::run(&args),
         Verb::Info(args) => info_command::run(&args),
+        Verb::Thumbnail(args) => thumbnail_command::run(&args),
         Verb::Compare(args) => compare_command::run(&args),
         Verb::Bench(args) => bench_command::run(&args),
         Verb::Algorithms(args) => tables::algorithms(&args),

@@ -12,7 +12,7 @@ use vitral::Error;
 type Example = (&'static str, &'static str);
 
 /// The examples of each verb; the first row is that of the command.
-const EXAMPLES: [(&str, &[Example]); 13] = [
+const EXAMPLES: [(&str, &[Example]); 14] = [
     (
         "vitral",
         &[
@@ -50,6 +50,10 @@ const EXAMPLES: [(&str, &[Example]); 13] = [
     ),
     ("lab", &[("vitral lab builtin:scene0", "The Lab, with a scene to begin with.")]),
     ("info", &[("vitral info builtin:scene0 --json", "What is in a scene, for programs.")]),
+    (
+        "thumbnail",
+        &[("vitral thumbnail part.stl part.png 256", "A picture of 256 x 256 pixels on a transparent background.")],
+    ),
     ("compare", &[("vitral compare a.png b.png --threshold 0.02 --diff d.png", "How far two pictures are apart.")]),
     ("bench", &[("vitral bench builtin:cubs --frames 3", "Time and counters of each algorithm.")]),
     ("algorithms", &[("vitral algorithms", "All algorithms, with their sources.")]),

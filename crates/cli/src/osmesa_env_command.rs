@@ -26,7 +26,9 @@ const MISSING: u8 = 3;
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &OsmesaEnvArgs) -> Result<u8, Failure> {
-    let program = std::env::current_exe().ok();
+    // Without `/proc`, the system does not tell where this program lies. Who started it may have.
+    let typed = || std::env::args_os().next().map(PathBuf::from).filter(|path| path.is_absolute());
+    let program = std::env::current_exe().ok().or_else(typed);
     let beside = program.as_deref().and_then(Path::parent);
     let brought = FOLDER.get().filter(|folder| folder.join(LIBRARY).is_file());
     let folder = find(args.lib.as_deref().or(brought.map(PathBuf::as_path)), beside)?;
@@ -43,7 +45,10 @@ fn find(chosen: Option<&Path>, beside: Option<&Path>) -> Result<PathBuf, Failure
     };
     let Some(folder) = places.iter().find(|folder| folder.join(LIBRARY).is_file()) else {
         let looked: Vec<String> = places.iter().map(|place| place.display().to_string()).collect();
-        let message = format!("{LIBRARY} is not in {}", looked.join(", "));
+        let message = match looked.is_empty() {
+            true => format!("{LIBRARY} is looked for beside this program, and nothing tells where that is"),
+            false => format!("{LIBRARY} is not in {}", looked.join(", ")),
+        };
         return Err(Failure::with_code(MISSING, message)
             .with_hint("`cargo xtask osmesa` makes it in target/osmesa; --lib DIR says where it is"));
     };
@@ -92,6 +97,7 @@ mod tests {
         let (bin, lib) = (top.join("bin"), top.join("lib"));
         std::fs::create_dir_all(&bin).unwrap();
         std::fs::create_dir_all(&lib).unwrap();
+        assert!(find(None, None).unwrap_err().message().contains("nothing tells"));
         assert!(find(None, Some(&bin)).is_err());
         assert!(find(Some(&lib), Some(&bin)).is_err());
         std::fs::write(lib.join(LIBRARY), "").unwrap();

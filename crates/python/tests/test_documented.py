@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import vitral
 import vitral.osmesa
+import vitral.ray
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "python.md"
 
@@ -19,6 +20,7 @@ def documented() -> Iterator[tuple[str, str | None]]:
     yield "vitral", vitral.__doc__
     yield "vitral.osmesa.install", vitral.osmesa.install.__doc__
     yield "vitral.osmesa.folder", vitral.osmesa.folder.__doc__
+    yield "vitral.ray.render", vitral.ray.render.__doc__
     for name in vitral.__all__:
         value = getattr(vitral, name)
         if name.startswith("__"):

@@ -22,9 +22,19 @@ const FOLDER: &str = "wasm-lab";
 
 /// Builds everything; the command lies in `target/release`.
 pub(crate) fn run_all() -> Outcome {
-    build_page()?;
-    build_engine()?;
+    build_inside()?;
     run(cargo().args(["build", "--release", "--package", "vitral-cli", "--features", "lab"]))
+}
+
+/// Builds what a `vitral` with the feature `lab` holds: the page and the engine.
+pub(crate) fn build_inside() -> Outcome {
+    build_page()?;
+    build_engine()
+}
+
+/// Whether that lies there.
+pub(crate) fn is_built() -> bool {
+    sources().join("dist").join(MODULE).exists()
 }
 
 /// The folder of the page's sources.

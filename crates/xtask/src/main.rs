@@ -1,4 +1,4 @@
-//! Developer commands: `cargo xtask test | check | circles | bless | lab | osmesa | wheel | clients | sanitize | vectors | compare | sheets`.
+//! Developer commands: `cargo xtask test | check | circles | bless | lab | osmesa | wheel | dist | clients | sanitize | vectors | compare | sheets`.
 #![forbid(unsafe_code)]
 
 mod bless;
@@ -6,6 +6,7 @@ mod check;
 mod checks;
 mod clients;
 mod compare;
+mod dist;
 mod lab;
 mod osmesa;
 mod prepare;
@@ -30,6 +31,10 @@ cargo xtask bless [FILTER]        write the golden images anew (of the tests who
 cargo xtask lab                   build the Lab: its page, its engine, and target/release/vitral with both inside
 cargo xtask osmesa                build libOSMesa and lay it out in target/osmesa
 cargo xtask wheel                 build the Python package: one wheel, in target/wheels
+cargo xtask dist [--profile NAME] [--no-lab]
+                                  build what people install, in target/dist: archive, Debian package, wheel, bill of
+                                  materials, checksums
+cargo xtask dist test             pack what the tests build, and try it in a bare root
 cargo xtask clients               run MuJoCo, Gymnasium, PyOpenGL, GLFW and a C program with it and with Mesa's, compare
 cargo xtask sanitize [TOOL...]    Miri, Valgrind and the sanitizers watch libOSMesa (miri, valgrind, thread, address)
 cargo xtask vectors               look for vector operations that became calls in the release build
@@ -54,6 +59,7 @@ fn main() -> ExitCode {
         ["lab"] => lab::run_all(),
         ["osmesa"] => osmesa::run_all(),
         ["wheel"] => python::wheel(),
+        ["dist", options @ ..] => dist::run_all(options),
         ["vectors"] => vectors::run_all(),
         ["compare", "draw", options @ ..] => compare::draw::run(options),
         ["compare", options @ ..] => compare::run(options),

@@ -1,7 +1,7 @@
 //! `cargo xtask osmesa`: builds libOSMesa and lays it out as a folder that programs can be pointed at.
 
-use crate::shell::{Outcome, cargo, relative, repository, run, target_folder};
-use std::path::Path;
+use crate::shell::{Outcome, cargo, profile_folder, relative, repository, run, target_folder};
+use std::path::{Path, PathBuf};
 
 /// What programs are linked with; the name that is looked for at run time.
 const SONAME: &str = "libOSMesa.so.8";
@@ -27,16 +27,7 @@ Cflags: -I${includedir}
 
 /// Builds the library in release and fills `target/osmesa`.
 pub(crate) fn run_all() -> Outcome {
-    // Names of its own functions are a sixth of the file, and of no use to programs. Entry points begin with a cache line: one
-    // that is called a million times a frame took up to 1.4 times as long where it did not.
-    let mut options = vec!["--", "-C", "strip=symbols", "-C", "llvm-args=-align-all-functions=6"];
-    if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
-        // There rustc brings a linker that can keep functions with the same code once.
-        options.extend(["-C", "link-arg=-Wl,--icf=all"]);
-    }
-    run(cargo().args(["rustc", "--release", "--package", "vitral-osmesa", "--lib"]).args(options))?;
-    let target = target_folder();
-    let (built, folder) = (target.join("release/libOSMesa.so"), target.join("osmesa"));
+    let (built, folder) = (build("release")?, target_folder().join("osmesa"));
     lay_out(&built, &folder).map_err(|e| format!("{}: {e}", folder.display()))?;
 
     let shown = relative(&folder);
@@ -50,6 +41,23 @@ pub(crate) fn run_all() -> Outcome {
     println!("  cc PROGRAM.c $(PKG_CONFIG_PATH={shown}/pkgconfig pkg-config --cflags --libs osmesa)");
     println!("docs/osmesa.md tells more.");
     Ok(())
+}
+
+/// Builds the library with a profile; gives its path.
+pub(crate) fn build(profile: &str) -> Result<PathBuf, String> {
+    let mut options = Vec::new();
+    if profile == "release" {
+        // Names of its own functions are a sixth of the file, and of no use to programs. Entry points begin with a cache line: one
+        // that is called a million times a frame took up to 1.4 times as long where it did not.
+        options.extend(["--", "-C", "strip=symbols", "-C", "llvm-args=-align-all-functions=6"]);
+        if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+            // There rustc brings a linker that can keep functions with the same code once.
+            options.extend(["-C", "link-arg=-Wl,--icf=all"]);
+        }
+    }
+    let words = ["rustc", "--profile", profile, "--package", "vitral-osmesa", "--lib", "--crate-type", "cdylib"];
+    run(cargo().args(words).args(options))?;
+    Ok(profile_folder(profile).join("libOSMesa.so"))
 }
 
 /// Whether the library in `target/osmesa` is as small as it is to stay; an error tells its size.

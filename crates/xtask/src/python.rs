@@ -12,7 +12,21 @@ const BUILDERS: [&str; 2] = ["maturin>=1.9,<2", "numpy"];
 const TESTERS: [&str; 3] = ["pytest", "mypy", "ruff"];
 
 /// Other people's programs that the tests use where they can be had; tests that miss one say so and are skipped.
-const CLIENTS: [&str; 7] = ["trimesh", "mujoco", "gymnasium", "imageio", "dm_control", "PyOpenGL", "glfw"];
+const CLIENTS: [&str; 10] = [
+    "trimesh",
+    "mujoco",
+    "gymnasium",
+    "imageio",
+    "dm_control",
+    "PyOpenGL",
+    "glfw",
+    "ray[data]",
+    "nbclient",
+    "ipykernel",
+];
+
+/// Programs that want a MuJoCo of their own, older than the newest.
+const OLDER: [&str; 5] = ["pytest", "mujoco<3.4", "robosuite", "dm_control", "PyOpenGL"];
 
 /// The package's own sources and tests.
 const SOURCES: &str = "crates/python";
@@ -22,18 +36,25 @@ const BELOW: u64 = 15_000_000;
 
 /// Builds the wheel in release, and tells its size.
 pub(crate) fn wheel() -> Outcome {
-    let python = environment(&BUILDERS)?;
+    let python = environment("venv", &BUILDERS)?;
     let folder = target_folder().join("wheels");
-    let wheel = build(&python, &folder, None)?;
+    let wheel = build(&python, &folder, None, &[])?;
     let bytes = std::fs::metadata(&wheel).map_err(|e| format!("{}: {e}", wheel.display()))?.len();
     println!("{}: {:.2} MB", crate::shell::relative(&wheel), bytes as f64 / 1e6);
     if bytes < BELOW { Ok(()) } else { Err(format!("the wheel has {bytes} bytes; it is to stay below {BELOW}")) }
 }
 
+/// Builds the wheel with this profile and a library that is there already, every file dated with this time; gives its path.
+pub(crate) fn wheel_of(folder: &Path, profile: &str, library: &Path, time: u64) -> Result<PathBuf, String> {
+    let python = environment("venv", &BUILDERS)?;
+    let (library, time) = (library.display().to_string(), time.to_string());
+    build(&python, folder, Some(profile), &[("VITRAL_OSMESA", &library), ("SOURCE_DATE_EPOCH", &time)])
+}
+
 /// Builds and installs the package with this profile, then runs its tests, types, examples and the style of its sources.
 pub(crate) fn test_all(profile: &str) -> Vec<Check> {
     let skipped = |why: String| vec![Check { name: "python", result: CheckResult::Skipped(why) }];
-    let python = match environment(&[&BUILDERS[..], &TESTERS].concat()) {
+    let python = match environment("venv", &[&BUILDERS[..], &TESTERS].concat()) {
         Ok(python) => python,
         Err(why) => return skipped(why),
     };
@@ -46,20 +67,35 @@ pub(crate) fn test_all(profile: &str) -> Vec<Check> {
         let result = outcome.map_or_else(CheckResult::Failed, |()| CheckResult::Passed);
         Check { name, result }
     };
-    let installed = build(&python, &target_folder().join("python/wheels"), Some(profile)).and_then(|wheel| {
+    let installed = build(&python, &target_folder().join("python/wheels"), Some(profile), &[]).and_then(|wheel| {
         let wheel = wheel.display().to_string();
-        install(&python, &["--force-reinstall", "--no-deps", &wheel])
+        install(&python, &["--force-reinstall", "--no-deps", &wheel]).map(|()| wheel)
     });
     let mut checks = vec![check("python::style", tool(&python, &["ruff", "check", SOURCES]))];
-    let is_installed = installed.is_ok();
-    checks.push(check("python::wheel", installed));
-    if is_installed {
+    let wheel = installed.as_ref().ok().cloned();
+    checks.push(check("python::wheel", installed.map(drop)));
+    if let Some(wheel) = wheel {
         let tests = format!("{SOURCES}/tests");
         checks.push(check("python::tests", tool(&python, &["pytest", "-rs", "-p", "no:cacheprovider", &tests])));
         checks.push(check("python::types", tool(&python, &["mypy"])));
         checks.push(check("python::stubs", tool(&python, &["mypy.stubtest", "vitral._vitral"])));
+        checks.push(Check { name: "python::older_programs", result: test_older(&wheel) });
     }
     checks
+}
+
+/// Tests OpenGL with programs that want an older MuJoCo, in an environment of their own.
+fn test_older(wheel: &str) -> CheckResult {
+    let python = environment("older", &OLDER)
+        .and_then(|python| install(&python, &["--force-reinstall", "--no-deps", wheel]).map(|()| python));
+    let python = match python {
+        Ok(python) => python,
+        Err(why) => return CheckResult::Skipped(why),
+    };
+    let tests = format!("{SOURCES}/tests/test_osmesa.py");
+    let which = ["-k", "dm_control or robosuite"];
+    let words = [&["pytest", "-rs", "-p", "no:cacheprovider"][..], &which, &[&tests]].concat();
+    tool(&python, &words).map_or_else(CheckResult::Failed, |()| CheckResult::Passed)
 }
 
 /// Runs a module of Python on the sources.
@@ -67,14 +103,14 @@ fn tool(python: &Path, words: &[&str]) -> Outcome {
     run(command(python).arg("-m").args(words).env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
-/// Builds a wheel into an empty folder; gives its path.
-fn build(python: &Path, folder: &Path, profile: Option<&str>) -> Result<PathBuf, String> {
+/// Builds a wheel into an empty folder, with these environment variables; gives its path.
+fn build(python: &Path, folder: &Path, profile: Option<&str>, variables: &[(&str, &str)]) -> Result<PathBuf, String> {
     let shown = |e: std::io::Error| format!("{}: {e}", folder.display());
     let _ = std::fs::remove_dir_all(folder);
     std::fs::create_dir_all(folder).map_err(shown)?;
     let mut pip = command(python);
     pip.args(["-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir"]);
-    pip.arg(folder).arg(repository());
+    pip.arg(folder).arg(repository()).envs(variables.iter().copied());
     if let Some(profile) = profile {
         pip.env("VITRAL_PROFILE", profile);
     }
@@ -88,9 +124,9 @@ fn build(python: &Path, folder: &Path, profile: Option<&str>) -> Result<PathBuf,
     wheels.next().ok_or_else(|| format!("{}: pip made no wheel", folder.display()))
 }
 
-/// The Python of a virtual environment in cargo's folder, with these packages.
-fn environment(packages: &[&str]) -> Result<PathBuf, String> {
-    let folder = target_folder().join("python/venv");
+/// The Python of a virtual environment of this name in cargo's folder, with these packages.
+fn environment(name: &str, packages: &[&str]) -> Result<PathBuf, String> {
+    let folder = target_folder().join("python").join(name);
     let python = folder.join("bin/python");
     if !python.exists() {
         let make = || output(command("python3").args(["-m", "venv"]).arg(&folder)).map(drop);

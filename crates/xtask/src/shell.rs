@@ -18,6 +18,11 @@ pub(crate) fn target_folder() -> PathBuf {
     repository().join(chosen)
 }
 
+/// Where programs of a profile lie.
+pub(crate) fn profile_folder(profile: &str) -> PathBuf {
+    target_folder().join(if profile == "dev" { "debug" } else { profile })
+}
+
 /// The cargo that runs us.
 pub(crate) fn cargo() -> Command {
     command(std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned()))

@@ -4,7 +4,7 @@ use crate::checks::CheckResult;
 use crate::shell::{self, Outcome, cargo};
 use crate::spent::{Spent, Stopwatch};
 use crate::tally::{Program, Reader, Tally};
-use crate::{lab, prepare, python, wasm};
+use crate::{dist, lab, prepare, python, wasm};
 use std::io::{BufRead, BufReader};
 use std::process::Command;
 use std::time::Instant;
@@ -56,6 +56,11 @@ pub(crate) fn run() -> Outcome {
     let package = Stopwatch::start();
     checks.extend(python::test_all(PROFILE));
     let package = package.spent();
+
+    // Pack what people install, and try it.
+    let packages = Stopwatch::start();
+    checks.extend(dist::test_all(PROFILE));
+    let packages = packages.spent();
     for check in checks {
         println!("test {} ... {}", check.name, check.result);
         match check.result {
@@ -72,6 +77,7 @@ pub(crate) fn run() -> Outcome {
         ("WebAssembly", web_assembly),
         ("the Lab", page),
         ("the Python package", package),
+        ("packages", packages),
     ];
     list_spent(&steps, reader.programs);
     close(tally)

@@ -153,7 +153,11 @@ impl Told<'_> {
 
     fn would_do(&self, id: &str, task: &Task) -> Result<(), Failure> {
         match self.args.json {
-            true => self.line(&json!({"id": id, "status": "waiting", "model": task.models, "outputs": [task.output]})),
+            // Other programs than this one hand jobs out, too: they need the job's hash and its command.
+            true => self.line(&json!({
+                "id": id, "status": "waiting", "model": task.models, "outputs": [task.output], "job": task.hash(),
+                "command": task.command,
+            })),
             false => report::print(format!("waits {id} {}\n", task.output).as_bytes()),
         }
     }

@@ -12,6 +12,7 @@ mod polygons;
 mod process;
 mod reports;
 mod sections;
+mod thumbnail;
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -3,14 +3,14 @@
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::Arc;
-use vitral::internals::scene::FreePart;
+use vitral::internals::scene::{Animation, FreePart};
 use vitral::{
     Attribute, Axis, Camera, DMat4, Encoding, Faces, Light, Material, Mesh, Node, NodeTransform, Part, Plane, Scene,
     Texture,
 };
 
 /// The version of the form.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 #[derive(Serialize, Deserialize)]
 struct Saved {
@@ -26,6 +26,8 @@ struct Saved {
     ambient: [f32; 3],
     ups: Vec<String>,
     warnings: Vec<String>,
+    /// Names, and ends in seconds.
+    animations: Vec<(String, f64)>,
 }
 
 type Values<T> = (Vec<T>, Option<Vec<[u32; 3]>>);
@@ -181,6 +183,7 @@ pub(crate) fn bytes(scene: &Scene) -> Result<Vec<u8>, String> {
         ambient: scene.ambient,
         ups: scene.ups.iter().map(Axis::to_string).collect(),
         warnings: scene.warnings.clone(),
+        animations: scene.animations.iter().map(|animation| (animation.name.clone(), animation.seconds)).collect(),
     };
     rmp_serde::to_vec_named(&saved).map_err(|e| e.to_string())
 }
@@ -204,5 +207,6 @@ pub(crate) fn scene(bytes: &[u8]) -> Result<Scene, String> {
         ambient: saved.ambient,
         ups: saved.ups.iter().filter_map(|up| up.parse().ok()).collect(),
         warnings: saved.warnings,
+        animations: saved.animations.into_iter().map(|(name, seconds)| Animation { name, seconds }).collect(),
     })
 }

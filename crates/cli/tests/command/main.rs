@@ -199,7 +199,7 @@ fn exit_codes() {
     folder.file("bad.obj", "v 0 0 0\nf 1 2 3\n");
     folder.file("empty.stl", "");
     folder.file("a.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://x\"></COLLADA>");
-    let cases: [(&[&str], i32, &str); 31] = [
+    let cases: [(&[&str], i32, &str); 33] = [
         (&["a.obj", "-o", "x.png"], 0, ""),
         (&["a.obj", "-o", "x.png", "--no-background"], 0, ""),
         (&["a.obj", "-o", "x.jpg", "--no-background"], 2, "--no-background: JPEG knows no transparency"),

@@ -174,7 +174,9 @@ fn the_combiner_multiplies_and_adds() {
     let mut c = Stage::new(2, 2);
     c.texture(&[(1, vec![[102, 102, 102, 255]])]);
     c.tex_envi(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, gl::COMBINE as i32);
-    for (name, source) in [(gl::SOURCE0_RGB, gl::TEXTURE), (gl::SOURCE1_RGB, gl::CONSTANT), (gl::SOURCE2_RGB, gl::PRIMARY_COLOR)] {
+    for (name, source) in
+        [(gl::SOURCE0_RGB, gl::TEXTURE), (gl::SOURCE1_RGB, gl::CONSTANT), (gl::SOURCE2_RGB, gl::PRIMARY_COLOR)]
+    {
         c.tex_envi(gl::TEXTURE_ENV, name, source as i32);
     }
     c.tex_envi(gl::TEXTURE_ENV, gl::OPERAND2_RGB, gl::SRC_COLOR as i32);
@@ -233,7 +235,16 @@ fn textures_are_mirrored_once() {
 fn primitives_begin_anew() {
     let mut c = Stage::new(8, 8);
     c.color_4f(1.0, 1.0, 1.0, 1.0);
-    let corners = c.put(&[[-1.0f32, -1.0], [-0.5, -1.0], [-1.0, 1.0], [-0.5, 1.0], [0.5, -1.0], [1.0, -1.0], [0.5, 1.0], [1.0, 1.0]]);
+    let corners = c.put(&[
+        [-1.0f32, -1.0],
+        [-0.5, -1.0],
+        [-1.0, 1.0],
+        [-0.5, 1.0],
+        [0.5, -1.0],
+        [1.0, -1.0],
+        [0.5, 1.0],
+        [1.0, 1.0],
+    ]);
     c.vertex_pointer(2, gl::FLOAT, 0, corners);
     c.enable_client_state(gl::VERTEX_ARRAY);
     let indices = c.put(&[0u16, 1, 2, 3, 0xffff, 4, 5, 6, 7]);

@@ -101,12 +101,13 @@ impl Attributes {
 
         // A program may say 2.1 and use nothing of it: the user knows.
         let (has_major, has_minor) = VERSION;
-        let refused = format!("OpenGL {major}.{minor} was asked for, there is {has_major}.{has_minor}, without shaders");
+        let refused =
+            format!("OpenGL {major}.{minor} was asked for, there is {has_major}.{has_minor}, without shaders");
         match (major, minor) {
-            (2, 0 | 1) if lenient() => {
-                Ok(Self { says_2_1: true, ..Self::new(format, depth, stencil, accum)? })
+            (2, 0 | 1) if lenient() => Ok(Self { says_2_1: true, ..Self::new(format, depth, stencil, accum)? }),
+            (2, 0 | 1) => {
+                Err(format!("{refused}; VITRAL_GL_COMPAT=2.1 gives 1.5 to a program that does not need more"))
             }
-            (2, 0 | 1) => Err(format!("{refused}; VITRAL_GL_COMPAT=2.1 gives 1.5 to a program that does not need more")),
             _ => Err(refused),
         }
     }

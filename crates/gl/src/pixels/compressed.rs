@@ -3,9 +3,9 @@
 use super::Failure;
 use super::image::lock;
 use super::s3tc::{self, Blocks, SIDE};
-use super::texels::TexelData;
 use super::tex_image::ImageArguments;
 use super::tex_sub_image::{BoxArguments, CheckedBox};
+use super::texels::TexelData;
 use crate::Context;
 use crate::enums::*;
 use crate::memory::can_have;
@@ -306,8 +306,12 @@ mod tests {
     use super::*;
 
     /// Four blocks of one colour each: red, green, blue, white.
-    const BLOCKS: [[u8; 8]; 4] =
-        [[0, 0xf8, 0, 0, 0, 0, 0, 0], [0xe0, 7, 0, 0, 0, 0, 0, 0], [0x1f, 0, 0, 0, 0, 0, 0, 0], [0xff, 0xff, 0, 0, 0, 0, 0, 0]];
+    const BLOCKS: [[u8; 8]; 4] = [
+        [0, 0xf8, 0, 0, 0, 0, 0, 0],
+        [0xe0, 7, 0, 0, 0, 0, 0, 0],
+        [0x1f, 0, 0, 0, 0, 0, 0, 0],
+        [0xff, 0xff, 0, 0, 0, 0, 0, 0],
+    ];
 
     fn texel(c: &mut Context, at: usize) -> [u8; 4] {
         c.get_tex_image(TEXTURE_2D, 0, RGBA, UNSIGNED_BYTE, BASE + 1024);
@@ -320,12 +324,10 @@ mod tests {
         put(&c, BASE, &BLOCKS.concat());
         let format = COMPRESSED_RGB_S3TC_DXT1_EXT;
         c.compressed_tex_image_2d(TEXTURE_2D, 0, format, 8, 6, 0, 32, BASE);
-        assert_eq!([0, 7, 40, 47].map(|at| texel(&mut c, at)), [
-            [255, 0, 0, 255],
-            [0, 255, 0, 255],
-            [0, 0, 255, 255],
-            [255, 255, 255, 255]
-        ]);
+        assert_eq!(
+            [0, 7, 40, 47].map(|at| texel(&mut c, at)),
+            [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]]
+        );
         let mut level = |pname| {
             c.get_tex_level_parameteriv(TEXTURE_2D, 0, pname, BASE + 512);
             read_u32(&c, BASE + 512)

@@ -274,7 +274,8 @@ impl Context {
             return;
         }
         let clamps = self.state.color_buffer.clamps[2] == TRUE;
-        let mut bytes = encode_rectangle(&self.workers(), &surfaces, format, &r, &Transfer::new(&self.state.pixel), clamps);
+        let mut bytes =
+            encode_rectangle(&self.workers(), &surfaces, format, &r, &Transfer::new(&self.state.pixel), clamps);
         let mut skip = r.skip;
         if self.client.pack.invert {
             // MESA_pack_invert: the first row is the highest.

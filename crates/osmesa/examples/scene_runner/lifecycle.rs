@@ -27,8 +27,7 @@ pub(crate) fn run(mode: &str, library: &str) -> Result<(), String> {
         "functions" => functions(&gl),
         "attributes" => attributes(&gl),
         "wild" => wild(&gl),
-        _ => situations::run(mode, Box::leak(Box::new(gl)))
-            .unwrap_or_else(|| Err("there is no such mode".to_owned())),
+        _ => situations::run(mode, Box::leak(Box::new(gl))).unwrap_or_else(|| Err("there is no such mode".to_owned())),
     }
 }
 

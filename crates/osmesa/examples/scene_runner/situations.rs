@@ -230,7 +230,11 @@ fn nobody_waits(gl: &Gl) -> Result<(), String> {
     let mut window = Window::new(gl);
     window.frame(gl)?;
     for i in 0..100_000_u32 {
-        if i % 2 == 0 { gl.glEnable(BLEND) } else { gl.glDisable(BLEND) }
+        if i % 2 == 0 {
+            gl.glEnable(BLEND)
+        } else {
+            gl.glDisable(BLEND)
+        }
         gl.glBegin(TRIANGLES);
         for k in 0..30_u8 {
             gl.glVertex2f(f32::from(k) * 0.03, f32::from(k % 3));
@@ -249,7 +253,8 @@ fn nobody_waits(gl: &Gl) -> Result<(), String> {
 fn procedures(gl: &Gl) -> Result<(), String> {
     let asked = |name: &CStr| gl.OSMesaGetProcAddress(name.to_bytes_with_nul()) != 0;
     same("shaders", [c"glCreateShader", c"glUseProgram", c"glVertexAttrib4fv"].map(asked), [false; 3])?;
-    let there = [c"glVertex3f", c"glGenFramebuffers", c"glStencilFuncSeparate", c"glDrawBuffersARB", c"glClampColorARB"];
+    let there =
+        [c"glVertex3f", c"glGenFramebuffers", c"glStencilFuncSeparate", c"glDrawBuffersARB", c"glClampColorARB"];
     same("what there is", there.map(asked), [true; 5])?;
     same("it is exported", gl.exported(c"glCreateShader") != 0, true)
 }

@@ -32,7 +32,11 @@ pub(crate) fn runner() -> Command {
     let path = build_folder().join("examples/scene_runner");
     assert!(path.exists(), "{} was not built", path.display());
     let mut command = Command::new(path);
-    command.stdin(Stdio::null()).env_remove("VITRAL_THREADS").env_remove("VITRAL_GL_DEBUG").env_remove("VITRAL_GL_COMPAT");
+    command
+        .stdin(Stdio::null())
+        .env_remove("VITRAL_THREADS")
+        .env_remove("VITRAL_GL_DEBUG")
+        .env_remove("VITRAL_GL_COMPAT");
     command
 }
 

@@ -184,11 +184,13 @@ fn exactly_the_functions_are_exported() {
     let tables = [include_str!("../../src/entry_points.rs"), include_str!("../../src/unsupported.rs")];
     let api = include_str!("../../src/api.rs").split_once("procedures! {\n").and_then(|(_, rest)| rest.split_once('}'));
     let functions = tables.into_iter().flat_map(str::split_whitespace).filter(|word| word.starts_with("gl"));
-    let logs = include_str!("../../src/shader_logs.rs").lines().filter(|line| line.ends_with(" }") && line.contains("! { gl"));
+    let logs =
+        include_str!("../../src/shader_logs.rs").lines().filter(|line| line.ends_with(" }") && line.contains("! { gl"));
     let logs = logs.flat_map(str::split_whitespace).filter(|word| word.starts_with("gl"));
     let by_name = "OSMesaGetProcAddress";
     assert!(include_str!("../../src/procedures.rs").contains(&format!("procedures! {{ {by_name} }}")));
-    let mut expected: Vec<&str> = functions.chain(api.unwrap().0.split_whitespace()).chain([by_name]).chain(logs).collect();
+    let mut expected: Vec<&str> =
+        functions.chain(api.unwrap().0.split_whitespace()).chain([by_name]).chain(logs).collect();
     let mut found = names;
     expected.sort_unstable();
     found.sort_unstable();

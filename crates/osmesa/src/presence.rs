@@ -8,7 +8,7 @@ pub(crate) fn is_there(address: usize, length: usize) -> bool {
         return true;
     }
     let Some(last) = address.checked_add(length - 1) else { return false };
-    is_mapped(address, last) && [address, last].into_iter().all(is_writable)
+    is_mapped(address, last) && are_writable([address, last])
 }
 
 /// As above.
@@ -30,9 +30,9 @@ fn is_mapped(first: usize, last: usize) -> bool {
     unsafe { libc::mincore(start, pages * page, resident.as_mut_ptr()) == 0 }
 }
 
-/// Whether a byte can be read and written: the kernel copies it to a pipe and back, and tells a fault as an error.
+/// Whether bytes can be read and written: the kernel copies them to a pipe and back, and tells a fault as an error.
 #[cfg(all(target_os = "linux", not(miri)))]
-fn is_writable(address: usize) -> bool {
+fn are_writable(addresses: [usize; 2]) -> bool {
     let mut ends = [0; 2];
     // SAFETY: writes two numbers.
     if unsafe { libc::pipe2(ends.as_mut_ptr(), libc::O_CLOEXEC | libc::O_NONBLOCK) } != 0 {
@@ -40,9 +40,10 @@ fn is_writable(address: usize) -> bool {
         return true;
     }
     let [from, to] = ends;
-    let byte = std::ptr::with_exposed_provenance_mut(address);
-    // SAFETY: the kernel checks the address; the byte comes back as it was.
-    let copied = unsafe { libc::write(to, byte, 1) == 1 && libc::read(from, byte, 1) == 1 };
+    let copied = addresses.into_iter().map(std::ptr::with_exposed_provenance_mut).all(|byte| {
+        // SAFETY: the kernel checks the address; the byte comes back as it was.
+        unsafe { libc::write(to, byte, 1) == 1 && libc::read(from, byte, 1) == 1 }
+    });
     // SAFETY: both ends were opened above.
     unsafe {
         libc::close(from);

@@ -62,13 +62,17 @@ impl ClientBuffer {
         start.checked_add(x as usize * self.pixel_bytes())
     }
 
-    /// Where the pixels of a part of the window lie: the lowest address, and the number of bytes to behind the highest.
-    fn extent(&self, part: &Part) -> Option<(usize, usize)> {
-        let last = part.x.end - 1;
-        let ends = [part.y.start, part.y.end - 1].map(|y| (self.pixel(part.x.start, y), self.pixel(last, y)));
-        let first = ends[0].0?.min(ends[1].0?);
-        let behind = ends[0].1?.max(ends[1].1?).checked_add(self.pixel_bytes())?;
-        Some((first, behind - first))
+    /// Whether the memory in which the pixels of parts of the window lie is still there.
+    fn is_there(&self, memory: &dyn ClientMemory, parts: &[Part]) -> bool {
+        let (mut first, mut behind) = (usize::MAX, 0);
+        for part in parts {
+            for y in [part.y.start, part.y.end - 1] {
+                let ends = (self.pixel(part.x.start, y), self.pixel(part.x.end - 1, y));
+                let (Some(start), Some(last)) = ends else { return false };
+                (first, behind) = (first.min(start), behind.max(last.saturating_add(self.pixel_bytes())));
+            }
+        }
+        memory.is_there(first, behind.saturating_sub(first))
     }
 
     /// Appends colours as the client's pixels.
@@ -286,14 +290,12 @@ impl Context {
         let (side, loaded) = (TILE as u32, &mut fb.loaded);
         let (rows, columns) = (y0 / side..y1.div_ceil(side), x0 / side..x1.div_ceil(side));
         let missing = parts(buffer.viewport, rows, columns, |tile| loaded.insert(tile));
-        if missing.is_empty() {
+        if missing.is_empty() || !buffer.is_there(&*self.memory, &missing) {
             return;
         }
         let mut plane = lock(&plane);
         for part in missing {
-            if !buffer.extent(&part).is_some_and(|(first, length)| self.memory.is_there(first, length))
-                || load(&buffer, &*self.memory, &mut plane, &part).is_none()
-            {
+            if load(&buffer, &*self.memory, &mut plane, &part).is_none() {
                 return;
             }
         }
@@ -324,9 +326,12 @@ impl Context {
         let mut plane = lock(&plane);
         let changed = changed_tiles(&mut plane);
         let (rows, columns) = (0..buffer.viewport.tiles_y(), 0..buffer.viewport.tiles_x());
-        for part in parts(buffer.viewport, rows, columns, |tile| changed[tile]) {
-            let there = asked || buffer.extent(&part).is_some_and(|(first, bytes)| self.memory.is_there(first, bytes));
-            if !there || store(&buffer, &*self.memory, &plane, &part).is_none() {
+        let parts = parts(buffer.viewport, rows, columns, |tile| changed[tile]);
+        if !asked && !buffer.is_there(&*self.memory, &parts) {
+            return;
+        }
+        for part in parts {
+            if store(&buffer, &*self.memory, &plane, &part).is_none() {
                 return;
             }
         }

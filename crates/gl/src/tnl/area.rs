@@ -37,8 +37,11 @@ impl Context {
 
         // Widen it by what points and lines reach beyond their vertices.
         let changing = s.points.attenuation != [1.0, 0.0, 0.0];
-        let widest =
-            if changing { MAX_POINT_SIZE } else { s.points.size.max(s.lines.width).clamp(1.0, MAX_POINT_SIZE) };
+        let widest = if changing {
+            MAX_POINT_SIZE
+        } else {
+            s.points.size.max(s.points.limits[0]).max(s.lines.width).clamp(1.0, MAX_POINT_SIZE)
+        };
         let around = widest + MARGIN;
         let [x, y, width, height] = s.viewport.rect.map(|v| v as f32);
         let pixel = |v: f32, start: f32, size: f32| start + (v + 1.0) / 2.0 * size;

@@ -220,6 +220,9 @@ pub(crate) struct AlgorithmArgs {
     /// Width of edges and of the model's own lines in pixels, 0.1 to 64 [default: 1.3]
     #[arg(long, value_name = "PX", value_parser = values::line_width, allow_negative_numbers = true)]
     pub(crate) line_width: Option<f32>,
+    /// Side of the model's own points in pixels, 0.1 to 64 [default: 3]
+    #[arg(long, value_name = "PX", value_parser = values::line_width, allow_negative_numbers = true)]
+    pub(crate) point_size: Option<f32>,
     /// Colour of edges: a name, #rrggbb, or r,g,b from 0 to 1 [default: dark on a light background and the other way round]
     #[arg(long, value_name = "COLOR", value_parser = values::color)]
     pub(crate) edge_color: Option<[f32; 3]>,

@@ -391,6 +391,7 @@ fn set_surfaces(settings: &mut Settings, args: &AlgorithmArgs) {
         settings.picture.lines = chosen;
     }
     settings.picture.line_width = args.line_width.unwrap_or(settings.picture.line_width);
+    settings.picture.point_size = args.point_size.unwrap_or(settings.picture.point_size);
     settings.picture.edge_color = args.edge_color.or(settings.picture.edge_color);
     settings.picture.edge_classes = args.edge_classes.unwrap_or(settings.picture.edge_classes);
 }

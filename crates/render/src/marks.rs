@@ -9,7 +9,8 @@
 //! sample near it is covered in part, by its distance from the line.
 //!
 //! Colours of vertices are interpolated along a line as on a face: as in space, or linearly on the screen where faces are.
-//! Of a material count its diffuse or base colour, its emission and its opacity, not its textures; lines are not lit.
+//! Of a material count its diffuse or base colour, its emission and its opacity, not its textures; lines are not lit, points
+//! are where they have normals (see [`cloud`]).
 //!
 //! Marks are layers in front of the surfaces. Opaque dots hide what lies behind them, else clouds of points would be layers by
 //! the million.
@@ -22,11 +23,14 @@
 //! Source: opacity by distance from the line is [Gupta & Sproull 1981]'s, here with a ramp and sample by sample; the polygon
 //! offset is that of the GL specification in spirit, a fixed number of pixels in depth.
 
+mod cloud;
 mod edge_choice;
 pub mod penetrations;
 
 use crate::display::Fade;
 use crate::{Background, Execution, Interpolation, Lines, PictureSettings, PreparedView, Settings};
+use cloud::Cloud;
+pub(crate) use cloud::PointLighting;
 use edge_choice::EdgeChoice;
 use penetrations::Penetrations;
 use vitral_exec::Limit;
@@ -40,8 +44,6 @@ use vitral_scene::{FreePart, Instance};
 
 /// Width of a stroke's soft border in pixels, half of it within the stroke.
 const SOFT: f32 = 0.5;
-/// Side of dots in pixels.
-const DOT: f32 = 3.0;
 /// How many pixels' depth a mark lies in front of its place. Those of wider lines lie the farther in front: their borders are farther
 /// from the edge, where faces may be nearer.
 const LIFT: f64 = 2.5;
@@ -193,6 +195,7 @@ pub(crate) fn build(
     view: &PreparedView<'_>,
     settings: &Settings,
     fade: Option<Fade>,
+    lighting: PointLighting<'_>,
     execution: &Execution,
 ) -> Result<(Marks, MarkColors), Limit> {
     let (world, count) = (&view.session.world, view.pattern.len());
@@ -202,10 +205,10 @@ pub(crate) fn build(
     let half = if samples.is_empty() { width } else { width + SOFT } * 0.5;
     let colors = MarkColors { first: world.facet_count, samples, fade, width, ..MarkColors::default() };
     let (drawn, clip_from_model, lift) = (Marks::default(), Mat4::IDENTITY, Lift::new(view, width));
-    let pen = Pen { view, drawn, clip_from_model, lift, half };
+    let pen = Pen { view, drawn, clip_from_model, lift, half, half_dot: settings.picture.point_size * 0.5 };
 
     // Draw edges, lines and points, instance by instance.
-    let mut drawing = Drawing { view, settings, execution, pen, colors };
+    let mut drawing = Drawing { view, settings, lighting, execution, pen, colors };
     for prepared in &view.instances {
         drawing.instance(&world.instances[prepared.instance]);
     }
@@ -223,6 +226,7 @@ pub(crate) fn build(
 struct Drawing<'v, 'a> {
     view: &'v PreparedView<'a>,
     settings: &'v Settings,
+    lighting: PointLighting<'v>,
     execution: &'v Execution,
     pen: Pen<'v, 'a>,
     colors: MarkColors,
@@ -316,11 +320,13 @@ impl Drawing<'_, '_> {
     fn points(&mut self, subject: &Subject<'_>) {
         let mesh = &subject.instance.mesh;
         let paint = Paint { view: self.view, instance: subject.instance, settings: self.settings };
+        let cloud = Cloud::new(self.view, subject.instance, self.settings, self.lighting);
         for (i, &point) in mesh.points.iter().enumerate() {
             let material = FreePart::material_of(&mesh.point_parts, i);
-            let color = paint.color(material, point);
+            let depth = subject.depth(point);
+            let color = cloud.shaded(paint.color(material, point), material, point, depth);
             let Some(id) = self.colors.next(color) else { break };
-            self.colors.place_dot(subject.depth(point));
+            self.colors.place_dot(depth);
             self.pen.dot(subject.positions[point as usize], id, color[3] >= 1.0);
         }
     }
@@ -442,6 +448,8 @@ struct Pen<'v, 'a> {
     lift: Lift,
     /// Half the width of strokes' triangles, pixels.
     half: f32,
+    /// Half the side of dots, pixels.
+    half_dot: f32,
 }
 
 impl Pen<'_, '_> {
@@ -473,7 +481,7 @@ impl Pen<'_, '_> {
             return;
         }
         let [p, z] = self.place(clip);
-        let h = DOT * 0.5;
+        let h = self.half_dot;
         let corner = |x: f32, y: f32| p + Vec2::new(x, y);
         self.quad([corner(-h, -h), corner(-h, h), corner(h, h), corner(h, -h)], [z; 4], id, opaque);
     }

@@ -185,7 +185,7 @@ impl<'a> FrameContext<'a> {
         watch.add_to(&mut stats.seconds.shadows);
         let constants = self.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
         watch.add_to(&mut stats.seconds.prepare);
-        let marks = marks::build(&view, settings, constants.fade, execution)?;
+        let marks = marks::build(&view, settings, constants.fade, constants.point_lighting(), execution)?;
         watch.add_to(&mut stats.seconds.marks);
 
         // Find what is visible, and shade each tile as it is finished.

@@ -57,7 +57,8 @@ pub fn examine_pixel(
         view.limit_to_tile(tile);
     }
     let constants = context.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
-    let (marks, mark_colors): (_, MarkColors) = marks::build(&whole, settings, constants.fade, execution)?;
+    let (marks, mark_colors): (_, MarkColors) =
+        marks::build(&whole, settings, constants.fade, constants.point_lighting(), execution)?;
 
     // Make the tile.
     let mut grid = TileGrid::new(viewport, constants.view.pattern.len());

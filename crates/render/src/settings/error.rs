@@ -21,6 +21,9 @@ pub enum SettingsError {
     /// Width of lines.
     #[error("lines {0} pixels wide: 0.1 to 64 are possible")]
     LineWidth(f32),
+    /// Size of points.
+    #[error("points {0} pixels large: 0.1 to 64 are possible")]
+    PointSize(f32),
     /// Colour of edges.
     #[error("the colour of edges: r,g,b from 0 to 1 are required")]
     EdgeColor,

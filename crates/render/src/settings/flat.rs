@@ -70,6 +70,7 @@ flat! {
     "depth-cue" => picture.depth_cue;
     "lines" => picture.lines;
     "line-width" => picture.line_width;
+    "point-size" => picture.point_size;
     "edge-color" => picture.edge_color;
     "edge-classes" => picture.edge_classes;
     "background" => picture.background;

@@ -28,6 +28,8 @@ pub struct PictureSettings {
     pub edge_color: Option<[f32; 3]>,
     /// Which edges are drawn, where some are; at least one class.
     pub edge_classes: LineClasses,
+    /// Side of the model's own points in pixels, `0.1..=64`.
+    pub point_size: f32,
     /// Which planes of the frame are wanted.
     pub channels: Channels,
 }
@@ -46,6 +48,7 @@ impl Default for PictureSettings {
             line_width: Self::LINE_WIDTH,
             edge_color: None,
             edge_classes: LineClasses::ALL,
+            point_size: Self::POINT_SIZE,
             channels: Channels::default(),
         }
     }
@@ -55,6 +58,9 @@ impl PictureSettings {
     /// Width of lines where nothing is said, pixels: a little more than one, so that slanted ones do not look thin.
     pub const LINE_WIDTH: f32 = 1.3;
 
+    /// Side of points where nothing is said, pixels.
+    pub const POINT_SIZE: f32 = 3.0;
+
     /// The picture's pixels, if all numbers are in their ranges.
     pub(super) fn check(&self) -> Result<Viewport, SettingsError> {
         if !matches!(self.samples, 1..=16 | 32) {
@@ -62,6 +68,9 @@ impl PictureSettings {
         }
         if !(0.1..=64.0).contains(&self.line_width) {
             return Err(SettingsError::LineWidth(self.line_width));
+        }
+        if !(0.1..=64.0).contains(&self.point_size) {
+            return Err(SettingsError::PointSize(self.point_size));
         }
         if self.edge_color.is_some_and(|color| !color.iter().all(|c| (0.0..=1.0).contains(c))) {
             return Err(SettingsError::EdgeColor);

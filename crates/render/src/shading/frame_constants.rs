@@ -5,6 +5,7 @@ use super::instance_constants::InstanceConstants;
 use super::material_constants::MaterialConstants;
 use super::terminator::SoftTerminator;
 use crate::display::{BackgroundRows, DecodeTables, Fade};
+use crate::marks::PointLighting;
 use crate::radiosity::Solution;
 use crate::settings::Terminator;
 use crate::shadow::Shadows;
@@ -121,6 +122,11 @@ impl<'a> FrameConstants<'a> {
             faces: session.per_mesh(),
             level: execution.level,
         }
+    }
+
+    /// The lights, for points.
+    pub(crate) fn point_lighting(&self) -> PointLighting<'_> {
+        PointLighting { lights: &self.lights, ambient: self.ambient }
     }
 
     /// Whether rays are followed at all.

@@ -32,7 +32,7 @@ fn shown(scene: Scene) -> [u8; 3] {
     (picture.width, picture.height, picture.samples) = (9, 9, 1);
     renderer.settings.shading.illumination = Illumination::Constant;
     renderer.view = View::Front;
-    let [r, g, b, _] = renderer.render().unwrap().frame.color.unwrap().at(4, 4);
+    let [r, g, b, _] = *renderer.render().unwrap().frame.color.unwrap().at(4, 4);
     [r, g, b]
 }
 
@@ -137,11 +137,51 @@ fn models_with_empirical_materials_mirror_no_sky() {
     assert!(picture(Environment::Sky) == picture(Environment::None));
 }
 
+/// A ball of points as a PLY file, with normals or without.
+fn ball_of_points(with_normals: bool) -> Scene {
+    let ball = solids::sphere(1.0, 96, 48);
+    let mut text = format!("ply\nformat ascii 1.0\nelement vertex {}\n", ball.positions.len());
+    let names = if with_normals { &["x", "y", "z", "nx", "ny", "nz"][..] } else { &["x", "y", "z"] };
+    names.iter().for_each(|name| text += &format!("property float {name}\n"));
+    text += "end_header\n";
+    for [x, y, z] in &ball.positions {
+        text += &format!("{x} {y} {z}");
+        text += &if with_normals { format!(" {x} {y} {z}\n") } else { "\n".to_owned() };
+    }
+    load_bytes_with(text.as_bytes(), "ball.ply", &Files(Vec::new()), &LoadOptions::default()).unwrap()
+}
+
+#[test]
+fn points_with_normals_are_lit_and_others_grow_paler_with_distance() {
+    let shown = |scene: Scene, lighting: bool| {
+        let mut renderer = sized(scene, 96, 96);
+        renderer.view = View::Front;
+        renderer.settings.shading.lighting = lighting;
+        renderer.settings.picture.point_size = 6.0;
+        renderer.render().unwrap().frame.color.unwrap()
+    };
+    let grey = |picture: &vitral::Plane<[u8; 4]>, x, y| i32::from(picture.at(x, y)[1]);
+    // The key light comes from the upper left, and below it is darkest.
+    let lit = shown(ball_of_points(true), true);
+    assert!(grey(&lit, 36, 30) > grey(&lit, 60, 80) + 60, "{} {}", grey(&lit, 36, 30), grey(&lit, 60, 80));
+    let unlit = shown(ball_of_points(true), false);
+    assert!(grey(&unlit, 36, 30) == grey(&unlit, 60, 70));
+
+    // In the middle the near side is seen, at the rim what is farther away.
+    let bare = shown(ball_of_points(false), true);
+    let rim = (0..20).map(|x| grey(&bare, x, 48)).min().unwrap();
+    assert!(grey(&bare, 48, 48) + 20 < rim, "{} {rim}", grey(&bare, 48, 48));
+
+    let mut large = sized(ball_of_points(true), 8, 8);
+    large.settings.picture.point_size = 0.0;
+    assert!(large.render().unwrap_err().to_string().contains("0.1 to 64"));
+}
+
 #[test]
 fn what_faces_down_is_not_black() {
     let mut renderer = sized(one(solids::cuboid(DVec3::ONE), Material::default()), 33, 33);
     renderer.view = View::Bottom;
-    let [r, g, b, _] = renderer.render().unwrap().frame.color.unwrap().at(16, 16);
+    let [r, g, b, _] = *renderer.render().unwrap().frame.color.unwrap().at(16, 16);
     assert!(r.min(g).min(b) > 60, "{r} {g} {b}");
 }
 
@@ -156,7 +196,7 @@ fn the_default_view_looks_slightly_down_and_centres_the_model() {
     Channel::Depth.request(&mut renderer.settings.picture.channels);
     let depth = renderer.render().unwrap().frame.depth.unwrap();
     let seen: Vec<(u32, u32)> =
-        (0..256).flat_map(|y| (0..256).map(move |x| (x, y))).filter(|&(x, y)| depth.at(x, y) > 0.0).collect();
+        (0..256).flat_map(|y| (0..256).map(move |x| (x, y))).filter(|&(x, y)| *depth.at(x, y) > 0.0).collect();
     let margins = |of: fn(&(u32, u32)) -> u32| {
         let (least, most) = (seen.iter().map(of).min().unwrap(), seen.iter().map(of).max().unwrap());
         (least, 255 - most)

@@ -88,6 +88,8 @@ fn full_materials() -> Vec<Material> {
     let glass = Material {
         name: "glass".to_owned(),
         reflectance: Reflectance::MetallicRoughness { base_color: [0.1, 0.2, 0.3], metallic: 0.4, roughness: 0.7 },
+        srgb_colors: true,
+        texture_tint: Some([0.2, 0.4, 0.6]),
         emission: [1.5, 0.0, 0.1],
         opacity: 0.3,
         kt_min: 0.2,
@@ -192,6 +194,7 @@ fn full_scene() -> Scene {
         ambient: [0.1, 0.2, 0.3],
         ups: Vec::new(),
         warnings: Vec::new(),
+        animations: Vec::new(),
     }
 }
 

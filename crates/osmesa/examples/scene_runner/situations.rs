@@ -91,7 +91,7 @@ unsafe extern "C" {
 /// Pictures do not depend on the caller's rounding mode, traps do not go off, and both are the caller's afterwards.
 fn floating_point(gl: &Gl) -> Result<(), String> {
     let mut window = Window::new(gl);
-    let mut draw = |mode: i32| {
+    let draw = |mode: i32| {
         // SAFETY: changes how this thread rounds.
         unsafe { fesetround(mode) };
         gl.glClear(COLOR_BUFFER_BIT | DEPTH_BUFFER_BIT);
@@ -149,7 +149,7 @@ fn buffer_freed(gl: &Gl) -> Result<(), String> {
         unsafe { libc::munmap(buffer, bytes) };
         if draws_after {
             gl.glBegin(TRIANGLES);
-            [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, y]| gl.glVertex2f(x, y));
+            [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].into_iter().for_each(|[x, y]| gl.glVertex2f(x, y));
             gl.glEnd();
         }
         second.make_current(gl);

@@ -25,8 +25,10 @@ pub(crate) fn check(args: &OutputArgs, models: &[PathBuf], apart: bool) -> Resul
         Some(_) if models.iter().any(|model| model == Path::new("-")) => {
             Err(Failure::usage(format!("{option}: standard input is read once")).with_hint("name the file"))
         }
-        Some(_) if models.len() > 1 && !apart => Err(Failure::usage(format!("{option}: it is for one model in a scene"))
-            .with_hint("put {model} into --output for an animation of each")),
+        Some(_) if models.len() > 1 && !apart => {
+            Err(Failure::usage(format!("{option}: it is for one model in a scene"))
+                .with_hint("put {model} into --output for an animation of each"))
+        }
         Some(_) => Ok(()),
     }
 }

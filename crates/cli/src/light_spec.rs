@@ -171,7 +171,10 @@ mod tests {
     fn errors_say_what_is_wrong() {
         for (text, expected) in [
             ("lamp", "`lamp` is not one of ambient, directional, point, spot, area"),
-            ("Poin:position=1,2,3", "`Poin` is not one of ambient, directional, point, spot, area; did you mean `point`?"),
+            (
+                "Poin:position=1,2,3",
+                "`Poin` is not one of ambient, directional, point, spot, area; did you mean `point`?",
+            ),
             ("point", "a light of kind `point` needs `position`"),
             ("point:1,2,3", "`1` has no key: key=value is required"),
             ("point:position=1,2", "position: 3 numbers are required, `1,2` has 2"),

@@ -207,7 +207,10 @@ mod tests {
     fn per_cent_and_time_come_first_where_the_end_may_be_cut() {
         let start = Some(Instant::now());
         let stage = Stage { name: "radiosity".to_owned(), start, done: 8, tenth: 0 };
-        assert_eq!((stage.text(8, 8), stage.text_beside_bar(8, 8)), ("radiosity: 100 %".into(), "100 %, radiosity".into()));
+        assert_eq!(
+            (stage.text(8, 8), stage.text_beside_bar(8, 8)),
+            ("radiosity: 100 %".into(), "100 %, radiosity".into())
+        );
         let counted = Counted { unit: "pictures", total: 3, done: 0, start: Instant::now() };
         assert_eq!(counted.text_beside_bar(), "0 %, picture 0 of 3");
         // The longest numbers beside the bar of 12 columns and a space.

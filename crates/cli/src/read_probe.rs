@@ -53,7 +53,11 @@ pub(crate) fn check(model: &Path, options: &LoadOptions, threads: usize, bytes: 
     let free = bytes.saturating_sub(allocator::taken());
     let mut command = program::command().map_err(failed)?;
     command.arg("read-probe").arg(format!("--max-memory={free}")).arg(format!("--threads={threads}"));
-    command.arg("--load").arg(serde_json::to_string(options).expect("every field has a JSON form")).arg("--").arg(model);
+    command
+        .arg("--load")
+        .arg(serde_json::to_string(options).expect("every field has a JSON form"))
+        .arg("--")
+        .arg(model);
     let mut child =
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().map_err(failed)?;
 
@@ -78,6 +82,7 @@ pub(crate) fn check(model: &Path, options: &LoadOptions, threads: usize, bytes: 
         // Without its words the failure is told in others.
         let _ = stderr.read_to_string(&mut told);
     }
-    let what = told.lines().next().and_then(|line| line.strip_prefix("vitral: ")).unwrap_or("the memory limit is reached");
+    let what =
+        told.lines().next().and_then(|line| line.strip_prefix("vitral: ")).unwrap_or("the memory limit is reached");
     Err(Failure::with_code(LIMIT, what).with_hint("smaller textures need less memory, or raise --max-memory"))
 }

@@ -9,8 +9,8 @@ use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
     Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Global, Illumination, Interpolation, LightEdit,
-    LightTerm, LineClass, LineClasses, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Transparency, TransparencyOrder, View,
-    Visibility, VolumeCounting,
+    LightTerm, LineClass, LineClasses, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Transparency,
+    TransparencyOrder, View, Visibility, VolumeCounting,
 };
 
 /// Options of `vitral render`.

@@ -217,7 +217,12 @@ fn timed<T>(seconds: &mut Map<String, Value>, name: &str, work: impl FnOnce() ->
 
 /// A renderer with the models, the settings and a solution of radiosity as asked for, and the warnings of the files.
 fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<(Renderer, Vec<String>), Failure> {
-    let scene = models::load_scene(&plan.state, &plan.models, &execution, ReadLimits::of(&args.process).among_others(plan.apart))?;
+    let scene = models::load_scene(
+        &plan.state,
+        &plan.models,
+        &execution,
+        ReadLimits::of(&args.process).among_others(plan.apart),
+    )?;
     let mut warnings = scene.warnings.clone();
     if !args.report.quiet {
         report::warnings(&warnings);

@@ -39,7 +39,10 @@ fn near(a: DVec3, b: DVec3) -> bool {
 fn straight_lines_steps_and_clamped_ends() {
     let values = [0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 4.0, 2.0, 0.0];
     let origin = |interpolation: &str, seconds| {
-        place(&at(&moved("translation", interpolation, &[1.0, 2.0, 4.0], 3, &values), "0", seconds).unwrap(), DVec3::ZERO)
+        place(
+            &at(&moved("translation", interpolation, &[1.0, 2.0, 4.0], 3, &values), "0", seconds).unwrap(),
+            DVec3::ZERO,
+        )
     };
     for (seconds, x, y) in [(0.0, 0.0, 0.0), (1.25, 1.0, 0.0), (2.0, 4.0, 0.0), (3.0, 4.0, 1.0), (9.0, 4.0, 2.0)] {
         assert_eq!(origin("LINEAR", seconds), DVec3::new(x, y, 0.0), "{seconds} s");
@@ -52,10 +55,8 @@ fn straight_lines_steps_and_clamped_ends() {
 #[test]
 fn cubic_splines_follow_their_tangents() {
     // In-tangent, value, out-tangent of two keyframes, 2 s apart.
-    let values = [
-        [[9.0, 9.0, 9.0], [0.0, 0.0, 0.0], [3.0, 0.0, 0.0]],
-        [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [9.0, 9.0, 9.0]],
-    ];
+    let values =
+        [[[9.0, 9.0, 9.0], [0.0, 0.0, 0.0], [3.0, 0.0, 0.0]], [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [9.0, 9.0, 9.0]]];
     let text = moved("translation", "CUBICSPLINE", &[0.0, 2.0], 3, values.as_flattened().as_flattened());
     // Half way both values weigh 1/2, the tangents 2 s times 1/8 and -1/8: x = 0.5 + 2 * 3/8, y = 2 * 1/8.
     assert!(near(place(&at(&text, "0", 1.0).unwrap(), DVec3::ZERO), DVec3::new(1.25, 0.25, 0.0)));

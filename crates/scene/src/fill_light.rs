@@ -44,9 +44,8 @@ pub fn leaves_dark(world: &World, materials: &[Material], camera: &Camera, expos
     }
 
     // Look for a point that is lit on the side of the viewer.
-    let lights: Vec<(PreparedLight, f32)> = enabled()
-        .filter_map(|light| Some((PreparedLight::new(light, &DMat4::IDENTITY)?, scale(light))))
-        .collect();
+    let lights: Vec<(PreparedLight, f32)> =
+        enabled().filter_map(|light| Some((PreparedLight::new(light, &DMat4::IDENTITY)?, scale(light)))).collect();
     let lit = |number: u32| {
         let facet = (u64::from(number) * u64::from(world.facet_count) / u64::from(POINTS)) as u32;
         let instance = &world.instances[world.instance_of_facet(facet)];

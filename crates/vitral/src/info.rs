@@ -308,7 +308,8 @@ fn warnings(scene: &Scene, meshes: &[MeshInfo]) -> Vec<String> {
         warn(mesh.non_manifold_edges, edge, "with more than two triangles");
         warn(mesh.inconsistent_edges, edge, "at which neighbours disagree about the outside");
         let boundary = ("boundary edge:", "boundary edges:");
-        let backs = if shows_backs(scene, index) { "it is open, so its back faces are drawn too" } else { "it is open" };
+        let backs =
+            if shows_backs(scene, index) { "it is open, so its back faces are drawn too" } else { "it is open" };
         warn(mesh.boundary_edges, boundary, backs);
     }
     // Meshes of one name that are odd in the same way.

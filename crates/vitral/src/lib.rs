@@ -83,8 +83,8 @@ pub use files::{FolderResolver, ReadFile, read};
 pub use light_edit::{LightEdit, light_fields};
 pub use light_term::LightTerm;
 pub use load::{
-    LoadOptions, Normals, builtin_names, builtin_parameters, load, load_builtin, load_bytes, load_bytes_with, load_on, load_telling,
-    load_with,
+    LoadOptions, Normals, builtin_names, builtin_parameters, load, load_builtin, load_bytes, load_bytes_with, load_on,
+    load_telling, load_with,
 };
 pub use material_override::{MaterialOverride, material_properties, override_material};
 pub use panels::panels;

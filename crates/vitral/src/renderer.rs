@@ -13,8 +13,8 @@ use vitral_render::{
     ColorSpace, Execution, Global, PreparedView, Session, Settings, Shot, radiosity, render, watch_steps,
 };
 use vitral_scene::{
-    Axis, Camera, Lens, LightMeter, Scene, View, ViewTransform, World, default_lights, depth_range, fill_light, framing,
-    leaves_dark,
+    Axis, Camera, Lens, LightMeter, Scene, View, ViewTransform, World, default_lights, depth_range, fill_light,
+    framing, leaves_dark,
 };
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).

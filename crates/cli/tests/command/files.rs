@@ -119,7 +119,8 @@ fn edges_have_a_width_a_colour_and_classes() {
 #[test]
 fn an_animation_gives_frames() {
     let (folder, model) = (Folder::new("frames"), fixture("anim.gltf"));
-    let output = render(&folder, &[&model, "--animation-frames", "3", "-o", "f{frame}.png", "--camera-position", "1,1,8"]);
+    let output =
+        render(&folder, &[&model, "--animation-frames", "3", "-o", "f{frame}.png", "--camera-position", "1,1,8"]);
     assert_eq!((code(&output), errors(&output)), (0, String::new()));
 
     // Each is the picture of its moment, by the same camera.

@@ -218,9 +218,11 @@ fn check_extensions(root: &Root, file: &str) -> Result<Vec<String>, Error> {
     let (looks, required): (Vec<_>, Vec<_>) =
         unknown(&root.extensions_required).into_iter().partition(|name| LOOKS.contains(&name.as_str()));
     if !required.is_empty() {
-        let unpacked = |name: &String| COMPRESSED.iter().find(|(packed, _)| packed == name).map(|(_, command)| *command);
+        let unpacked =
+            |name: &String| COMPRESSED.iter().find(|(packed, _)| packed == name).map(|(_, command)| *command);
         let commands: std::collections::BTreeSet<&str> = required.iter().filter_map(unpacked).collect();
-        let unpack: Vec<String> = commands.iter().map(|c| format!("; `gltf-transform {c} IN.glb OUT.glb` unpacks it")).collect();
+        let unpack: Vec<String> =
+            commands.iter().map(|c| format!("; `gltf-transform {c} IN.glb OUT.glb` unpacks it")).collect();
         let what = format!("requires {}, which is not supported{}", required.join(", "), unpack.concat());
         return Err(Error::Unsupported { file: file.to_owned(), what });
     }
@@ -361,9 +363,13 @@ mod tests {
             error(&format!("{head}{draco}")),
             "a.gltf: requires KHR_draco_mesh_compression, which is not supported; `gltf-transform cp IN.glb OUT.glb` unpacks it"
         );
-        let both = r#","extensionsRequired":["EXT_meshopt_compression","KHR_draco_mesh_compression","KHR_texture_basisu"]}"#;
+        let both =
+            r#","extensionsRequired":["EXT_meshopt_compression","KHR_draco_mesh_compression","KHR_texture_basisu"]}"#;
         let told = error(&format!("{head}{both}"));
-        assert!(told.matches(" cp ").count() == 1 && told.contains("`gltf-transform ktxdecompress IN.glb OUT.glb`"), "{told}");
+        assert!(
+            told.matches(" cp ").count() == 1 && told.contains("`gltf-transform ktxdecompress IN.glb OUT.glb`"),
+            "{told}"
+        );
     }
 
     #[test]

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 use vitral_exec::Workers;
-use vitral_scene::builtin::{self, BuiltinError};
 use vitral_scene::Scene;
+use vitral_scene::builtin::{self, BuiltinError};
 
 /// Scene files inside each other.
 const MAX_DEPTH: usize = 8;

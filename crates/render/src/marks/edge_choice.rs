@@ -47,7 +47,8 @@ impl<'a> EdgeChoice<'a> {
             material.and_then(|m| materials.get(m as usize)).is_some_and(|m| m.front_only && !m.double_sided)
         };
         let hides_backs = settings.picture.lines != Lines::Wireframe && mesh.parts.iter().any(|p| hides(p.material));
-        let front_only = if hides_backs { (0..materials.len()).map(|m| hides(Some(m as u32))).collect() } else { Vec::new() };
+        let front_only =
+            if hides_backs { (0..materials.len()).map(|m| hides(Some(m as u32))).collect() } else { Vec::new() };
 
         // Turn the faces to the viewer.
         let names_contours = classes.has(LineClass::Contour) && !classes.has(LineClass::Smooth);

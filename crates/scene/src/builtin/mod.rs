@@ -210,7 +210,8 @@ mod tests {
 
     #[test]
     fn what_a_scene_does_not_take_is_refused_with_what_it_takes() {
-        let taken = "builtin:sphere takes slices=96 (meridians, 3 to 4096), stacks=48 (belts from pole to pole, 2 to 4096)";
+        let taken =
+            "builtin:sphere takes slices=96 (meridians, 3 to 4096), stacks=48 (belts from pole to pole, 2 to 4096)";
         for (text, what) in [
             ("sphere?sides=8", "builtin:sphere takes no `sides`"),
             ("sphere?slices=2", "builtin:sphere: slices `2`: a whole number from 3 to 4096 is required"),

@@ -3,9 +3,8 @@
 use super::common::{colors, exact, on_z, one, poster, sun};
 use vitral::internals::render::registry::{SHADOWS, VISIBILITY};
 use vitral::{
-    AlphaMode, Camera, DMat4, DVec3, Light, Material, MaterialOverride, Mesh, NodeTransform,
-    Projection, Renderer, Scene,
-    override_material, solids,
+    AlphaMode, Camera, DMat4, DVec3, Light, Material, MaterialOverride, Mesh, NodeTransform, Projection, Renderer,
+    Scene, override_material, solids,
 };
 
 const RED: [f32; 3] = [1.0, 0.0, 0.0];

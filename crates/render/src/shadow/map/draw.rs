@@ -88,7 +88,8 @@ impl FirstPass<'_> {
 
     /// The settings of the view from the light: nothing but surfaces.
     fn view_settings(&self) -> Settings {
-        let settings = Settings { acceleration: None, depth_bits: None, shows_all_backs: true, ..self.settings.clone() };
+        let settings =
+            Settings { acceleration: None, depth_bits: None, shows_all_backs: true, ..self.settings.clone() };
         let settings = settings.with_visibility(Visibility::Z_BUFFER).with_lines(Lines::None);
         settings.with_background(Background::Transparent)
     }

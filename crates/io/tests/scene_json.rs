@@ -193,6 +193,7 @@ fn full_scene() -> Scene {
         own_camera: None,
         ambient: [0.1, 0.2, 0.3],
         ups: Vec::new(),
+        animations: Vec::new(),
         warnings: Vec::new(),
         animations: Vec::new(),
     }

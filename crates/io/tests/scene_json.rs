@@ -195,7 +195,6 @@ fn full_scene() -> Scene {
         ups: Vec::new(),
         animations: Vec::new(),
         warnings: Vec::new(),
-        animations: Vec::new(),
     }
 }
 

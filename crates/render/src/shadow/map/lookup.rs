@@ -539,7 +539,8 @@ mod tests {
                 return [1.0; 3];
             }
             let surface = std::array::from_fn(|k| [stored.depths[k][lane], stored.ends[k][lane]]);
-            map.four_apart(first.map(|v| v as i32), surface, [stored.shares[0][lane], stored.shares[1][lane]])
+            let shares = [stored.shares[0][lane], stored.shares[1][lane]];
+            map.four_apart(first.map(|v| v as i32), surface, stored.touching[lane], shares)
         })
     }
 

@@ -47,8 +47,9 @@ fn texel(texture: &Texture, level: usize, at: [i32; 3]) -> [f32; 4] {
     }
 }
 
-/// Table 3.19: the coordinate in texels after wrapping.
+/// Table 3.19 and EXT_texture_mirror_clamp: the coordinate in texels after wrapping.
 fn wrapped(s: f32, size: f32, wrap: Wrap) -> f32 {
+    let (s, wrap) = if wrap.mirrors_once() { (s.abs(), wrap.after_mirror()) } else { (s, wrap) };
     let half = 0.5 / size;
     size * match wrap {
         Wrap::Repeat => s - s.floor(),
@@ -60,6 +61,7 @@ fn wrapped(s: f32, size: f32, wrap: Wrap) -> f32 {
         Wrap::Clamp => s.clamp(0.0, 1.0),
         Wrap::ClampToEdge => s.clamp(half, 1.0 - half),
         Wrap::ClampToBorder => s.clamp(-half, 1.0 + half),
+        Wrap::MirrorClamp | Wrap::MirrorClampToEdge | Wrap::MirrorClampToBorder => unreachable!("mirrored above"),
     }
 }
 

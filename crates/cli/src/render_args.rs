@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
     Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Global, Illumination, Interpolation, LightEdit,
-    LightTerm, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Terminator, Transparency, TransparencyOrder, View,
-    Visibility, VolumeCounting,
+    LightTerm, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Terminator, Transparency, TransparencyOrder,
+    View, Visibility, VolumeCounting,
 };
 
 /// Options of `vitral render`.

@@ -99,8 +99,14 @@ impl Branching<'_> {
             if !is_last {
                 let branch = Branch { weight: passing, seed: place.seed, ..*ray };
                 self.pass_to_next(&branch, (&surface, &haze), &place, rays, counters);
-            } else if !self.pass(ray, &branch, (&surface, &haze), way.unwrap_or(Way::Straight(ray.media)), rays, counters)
-            {
+            } else if !self.pass(
+                ray,
+                &branch,
+                (&surface, &haze),
+                way.unwrap_or(Way::Straight(ray.media)),
+                rays,
+                counters,
+            ) {
                 counters.total_reflections += 1;
                 let passing = rays.fade(ray.target, passing, &haze);
                 mirrored = [0, 1, 2, 3].map(|k| mirrored[k] + passing[k]);

@@ -1,9 +1,9 @@
 //! What a scene must not ask for together with the settings, and what the user has to know about a picture.
 
-use crate::{Transparency, TransparencyOrder};
 use crate::radiosity::enclosure::{has_holes, partly_transparent};
 use crate::radiosity::lamps;
 use crate::{Error, Global, Session, Settings, SettingsError, Stats};
+use crate::{Transparency, TransparencyOrder};
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use vitral_exec::Workers;
@@ -72,7 +72,8 @@ pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, wo
             "radiosity ended at the time limit: {left:.1} % of the light was still on its way, and is guessed; raise --time-limit for the rest"
         ));
     }
-    if settings.global.model == Global::Radiosity && lamps::made_of(&session.scene, &session.world, partly_transparent) {
+    if settings.global.model == Global::Radiosity && lamps::made_of(&session.scene, &session.world, partly_transparent)
+    {
         let glass = "radiosity takes glass of an opacity of 0.5 and more for opaque, and does without all other";
         warnings.push(glass.to_owned());
     }

@@ -323,7 +323,8 @@ mod tests {
         let lights = lamps::direct_lights(&session, &session.world.lights);
         let solved = |limit: Option<f64>| {
             let budget = Budget::new(Arc::new(Tick(AtomicU64::new(0)))).with_time_limit(limit);
-            let (execution, mut counters) = (Execution { budget, ..Execution::default() }, RadiosityCounters::default());
+            let (execution, mut counters) =
+                (Execution { budget, ..Execution::default() }, RadiosityCounters::default());
             let settings = Settings::default();
             solve(&session, &lights, &settings, &execution, &mut counters).map(|_| counters)
         };

@@ -200,7 +200,8 @@ impl Solution {
         let word = |i: usize| u32::from_le_bytes(words[i]);
         let [nodes, roots, leaves, pieces] = [word(0), word(1), word(2), word(4)].map(|n| n as usize);
         let sizes = [(nodes, 3), (roots, 1), (leaves, 36), (pieces, 10)];
-        let needed = sizes.into_iter().fold(8usize, |sum, (count, size)| sum.saturating_add(count.saturating_mul(size)));
+        let needed =
+            sizes.into_iter().fold(8usize, |sum, (count, size)| sum.saturating_add(count.saturating_mul(size)));
         if needed != words.len() || pieces > roots {
             return Err(bad("the file's length is not that of its contents"));
         }
@@ -271,7 +272,8 @@ fn stored_pieces(words: &[[u8; 4]]) -> Result<Vec<Piece>, Error> {
         Piece { facet: u32::from_le_bytes(words[0]), inner }
     };
     let pieces: Vec<Piece> = words.as_chunks::<10>().0.iter().map(piece).collect();
-    if !pieces.is_sorted_by_key(|p| p.facet) || !pieces.iter().all(|p| p.inner.as_flattened().iter().all(|w| w.is_finite()))
+    if !pieces.is_sorted_by_key(|p| p.facet)
+        || !pieces.iter().all(|p| p.inner.as_flattened().iter().all(|w| w.is_finite()))
     {
         return Err(bad("pieces of facets that are none"));
     }

@@ -333,9 +333,8 @@ fn sides(facets: &[Option<[DVec3; 3]>], pieces: &Pieces, walls: &[[bool; 3]]) ->
     }
 
     // Join corners whose triangles share an edge from there without a wall.
-    let has_wall = |number: u32, edge: usize| {
-        (number as usize).checked_sub(facets.len()).is_some_and(|piece| walls[piece][edge])
-    };
+    let has_wall =
+        |number: u32, edge: usize| (number as usize).checked_sub(facets.len()).is_some_and(|piece| walls[piece][edge]);
     let mut sides = HashMap::new();
     for list in at_walls.values() {
         let mut group: Vec<usize> = (0..list.len()).collect();
@@ -375,8 +374,7 @@ mod tests {
     /// A square floor from 0 to 4 in two triangles, and the triangles of upright walls along these lines.
     fn floor_with(walls: &[[[f64; 2]; 2]]) -> Vec<Option<[DVec3; 3]>> {
         let at = |x: f64, z: f64| dvec3(x, 0.0, z);
-        let mut facets =
-            vec![[at(0.0, 0.0), at(0.0, 4.0), at(4.0, 4.0)], [at(0.0, 0.0), at(4.0, 4.0), at(4.0, 0.0)]];
+        let mut facets = vec![[at(0.0, 0.0), at(0.0, 4.0), at(4.0, 4.0)], [at(0.0, 0.0), at(4.0, 4.0), at(4.0, 0.0)]];
         for [[ax, az], [bx, bz]] in walls {
             let [a, b] = [at(*ax, *az), at(*bx, *bz)];
             facets.extend([[a, b, b + DVec3::Y], [a, b + DVec3::Y, a + DVec3::Y]]);

@@ -6,9 +6,9 @@ use super::material_constants::MaterialConstants;
 use super::terminator::SoftTerminator;
 use crate::display::{BackgroundRows, DecodeTables, Fade};
 use crate::radiosity::Solution;
+use crate::settings::Terminator;
 use crate::shadow::Shadows;
 use crate::transparency::Lay;
-use crate::settings::Terminator;
 use crate::{
     ColorSpace, DepthCue, Execution, Global, Interpolation, PerMesh, PreparedView, Settings, Shading, Transparency,
 };

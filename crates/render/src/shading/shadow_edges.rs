@@ -103,12 +103,11 @@ fn mark_edges(
     is_edge: &mut [bool],
 ) {
     // Mostly a group has one answer.
-    let all = (0..order.len()).map(|i| parts.get(i)).chain(beyond_parts.into_iter().flat_map(|parts| {
-        (0..beyond.numbers.len()).map(|i| parts.get(i))
-    }));
-    let [low, high] = all.map(grey).fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], part| {
-        [low.min(part), high.max(part)]
-    });
+    let all = (0..order.len())
+        .map(|i| parts.get(i))
+        .chain(beyond_parts.into_iter().flat_map(|parts| (0..beyond.numbers.len()).map(|i| parts.get(i))));
+    let [low, high] =
+        all.map(grey).fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], part| [low.min(part), high.max(part)]);
     if high - low <= differs {
         return;
     }

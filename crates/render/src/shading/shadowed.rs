@@ -54,12 +54,14 @@ pub(crate) fn light_visibility<S: Simd>(
         let asked = Cell::new(0);
         let place = |questions: &Questions| {
             let mut places = Places::with_capacity(questions.numbers.len());
-            let all: Vec<(u32, [f32; 2])> = questions.numbers.iter().copied().zip(questions.screen.iter().copied()).collect();
+            let all: Vec<(u32, [f32; 2])> =
+                questions.numbers.iter().copied().zip(questions.screen.iter().copied()).collect();
             for eight in all.chunks(LANES) {
                 simd.vectorize(
                     #[inline(always)]
                     || {
-                        let mut slots = Slots { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
+                        let mut slots =
+                            Slots { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
                         for lane in 0..LANES {
                             let (number, [x, y]) = eight[lane.min(eight.len() - 1)];
                             slots.record[lane] = facets.of_point[number as usize];

@@ -39,15 +39,13 @@ impl<'a> SoftTerminator<'a> {
         let (settings, execution) = (settings.clone(), Execution { observer: None, ..execution.clone() });
         Self { view, lights: lights.to_vec(), settings, execution, rays: OnceLock::new() }
     }
-
 }
 
 impl Shadows for SoftTerminator<'_> {
     /// Leaves places dark whose rays the budget does not allow.
     fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64) {
-        let prepare = || {
-            RayShadows.prepare(self.view.session, &self.lights, DVec4::Z, &self.settings, &self.execution).ok()
-        };
+        let prepare =
+            || RayShadows.prepare(self.view.session, &self.lights, DVec4::Z, &self.settings, &self.execution).ok();
         if let Some(shadows) = self.rays.get_or_init(prepare) {
             shadows.arriving(light, places, parts, rays);
         }
@@ -55,13 +53,7 @@ impl Shadows for SoftTerminator<'_> {
 }
 
 /// Finds what arrives of a light at those dark places whose interpolated normal faces it. `light` is its number in the frame.
-pub(super) fn soften(
-    constants: &FrameConstants<'_>,
-    light: usize,
-    places: &Places,
-    parts: &mut Parts,
-    rays: &mut u64,
-) {
+pub(super) fn soften(constants: &FrameConstants<'_>, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64) {
     let Some(soft) = &constants.terminator else { return };
     let to_view = DMat3::from_mat4(constants.view.view.view_from_world);
     let center = Triangles::center_of(&constants.view.session.world);

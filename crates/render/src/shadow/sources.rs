@@ -176,7 +176,15 @@ impl Area {
         let (cells, size) = cells(bounds, share, samples, |p| contains(&flat, p));
         let origin = corners[0] - center;
         let even = even(&cells, size);
-        (!cells.is_empty()).then_some(Self { shape: Shape::Polygon(flat), cells, size, even, origin, axes: [x, y], normal })
+        (!cells.is_empty()).then_some(Self {
+            shape: Shape::Polygon(flat),
+            cells,
+            size,
+            even,
+            origin,
+            axes: [x, y],
+            normal,
+        })
     }
 
     /// How many places are asked.

@@ -77,7 +77,18 @@ pub fn render(
     }
     stats.reused = session.known();
     let shot = &direct_shot(shot, direct.as_deref());
-    FrameContext { shot, settings, viewport, execution }.render_channels(session, &mut stats, &mut frame)?;
+    let context = FrameContext { shot, settings, viewport, execution };
+
+    // Solve for radiosity, which the session keeps. Where that ended at the time limit, the picture of what was found is drawn
+    // all the same.
+    if settings.picture.channels.color || settings.picture.channels.steps {
+        let mut watch = StopWatch::start(&execution.budget);
+        context.radiosity(session, &mut stats.radiosity)?;
+        watch.add_to(&mut stats.seconds.radiosity);
+    }
+    let limit = if stats.radiosity.stopped { None } else { execution.budget.time_limit() };
+    let drawing = Execution { budget: execution.budget.clone().with_time_limit(limit), ..execution.clone() };
+    FrameContext { execution: &drawing, ..context }.render_channels(session, &mut stats, &mut frame)?;
     stats.picture.pixels = u64::from(viewport.width) * u64::from(viewport.height);
     stats.seconds.total = execution.budget.elapsed() - start;
     let warnings = warnings(&stats, session, settings, &execution.workers);

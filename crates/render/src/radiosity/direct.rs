@@ -10,7 +10,7 @@ use super::element::Color;
 use super::parts::{PARTS, WHOLE, middle, parts, quarters};
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::{Parts, Place, Places, ShadowAlgorithm, Shadows, ray::RayShadows};
-use crate::{Execution, Session, Settings};
+use crate::{Execution, GlobalSettings, Session, Settings};
 use vitral_exec::Limit;
 use vitral_light::{Light, PreparedLight};
 use vitral_math::lanes::V3;
@@ -42,13 +42,20 @@ impl<'a> Direct<'a> {
         if prepared.is_empty() || !settings.shading.lighting {
             return Ok(None);
         }
-        let shadows = RayShadows.prepare(session, lights, DVec4::Z, settings, execution)?;
+        // Means over many places need no finer areas.
+        let settings = Settings { global: GlobalSettings::default(), ..settings.clone() };
+        let shadows = RayShadows.prepare(session, lights, DVec4::Z, &settings, execution)?;
         Ok(Some(Self { lights: prepared, shadows }))
     }
 
     /// What arrives on average at those parts of a triangle that are `there`; `side` says where it faces.
     pub(super) fn mean(&self, side: &Place, corners: [DVec3; 3], there: u16) -> Color {
         self.mean_at(side, corners, there, 0)
+    }
+
+    /// What arrives at the middle of a small element: many of them together tell the mean.
+    pub(super) fn middle(&self, side: &Place) -> Color {
+        self.arriving(std::slice::from_ref(side))[0]
     }
 
     fn mean_at(&self, side: &Place, corners: [DVec3; 3], there: u16, depth: u32) -> Color {

@@ -11,8 +11,8 @@ import argparse
 import importlib.util
 import json
 import os
+import resource
 import shutil
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -25,6 +25,9 @@ import vitral
 
 #: How many pictures a batch has, and of which size.
 PICTURES, SIDE = 1000, 84
+
+#: Pictures of a turntable, of which each is made in turns by Python and by Rust.
+TURN = 24
 
 #: A ball of 250 triangles, as a program that MuJoCo's part of this bench has, too.
 BALL = """
@@ -66,36 +69,45 @@ with mujoco.Renderer(model, SIDE, SIDE) as renderer:
         return renderer.render()
     assert np.ptp(picture(0)) > 50
     for i in range(10): picture(i)
-    start = time.perf_counter()
+    start, before = time.perf_counter(), time.process_time()
     for i in range(PICTURES): picture(i)
-    print(PICTURES / (time.perf_counter() - start))
+    print(PICTURES / (time.perf_counter() - start), (time.process_time() - before) / PICTURES * 1e3)
 """
 )
 
 
-def median(work: Callable[[], object], times: int) -> float:
-    """Milliseconds."""
+def timed(work: Callable[[], object]) -> float:
+    """Seconds."""
+    start = time.perf_counter()
     work()
-    seconds = []
-    for _ in range(times):
-        start = time.perf_counter()
-        work()
-        seconds.append(time.perf_counter() - start)
-    return statistics.median(seconds) * 1e3
+    return time.perf_counter() - start
 
 
-def process(code: str) -> float:
-    """Milliseconds of a fresh interpreter."""
-    return min(median(lambda: subprocess.run([sys.executable, "-c", code], check=True), 3) for _ in range(3))
+def processor(code: str) -> float:
+    """Milliseconds of processors that a fresh interpreter takes."""
+
+    def once() -> float:
+        before = children()
+        subprocess.run([sys.executable, "-c", code], check=True)
+        return children() - before
+
+    return min(once() for _ in range(5)) * 1e3
 
 
-def rust(size: str) -> float:
-    """Milliseconds of a picture by the Rust API."""
-    words = [sys.executable, "-m", "vitral", "bench", "builtin:teapot", "--visibility", "z-buffer", "--json"]
-    words += ["--resolution", size, "--samples", "4", "--frames", "50", "--quiet"]
-    report = json.loads(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
-    row = next(row for row in report["algorithms"] if row["algorithm"] == "z-buffer")
-    return float(row["median-seconds"]) * 1e3
+def children() -> float:
+    """Seconds of processors of all processes that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def rust(size: str) -> list[float]:
+    """Seconds of each picture of a turntable by the Rust API, as the command tells them."""
+    with tempfile.TemporaryDirectory() as scratch:
+        words = [sys.executable, "-m", "vitral", "render", "builtin:teapot", "--turntable", str(TURN), "--resolution", size]
+        words += ["--threads", "1", "--output", f"{scratch}/{{frame}}.ppm", "--stats-file", f"{scratch}/stats", "--quiet"]
+        subprocess.run(words, check=True)
+        stats = json.loads((Path(scratch) / "stats").read_text())
+    return [frame["seconds"]["total"] for frame in stats["frames"]]
 
 
 def articulated() -> vitral.Scene:
@@ -112,14 +124,17 @@ def articulated() -> vitral.Scene:
 
 
 def single_pictures() -> None:
-    """render() beside the Rust API, in turns."""
+    """render() beside the Rust API, in turns; of each picture the best of three."""
     teapot = vitral.load("builtin:teapot")
     for width, height in ((64, 64), (640, 480)):
-        renderer = vitral.Renderer(teapot, height=height, width=width)
-        camera = renderer.camera
-        times = [(median(lambda r=renderer, c=camera: r.render(c), 50), rust(f"{width}x{height}")) for _ in range(3)]
-        ours, theirs = (min(column) for column in zip(*times, strict=True))
-        print(f"render() {width} x {height}: {ours:.3f} ms, Rust {theirs:.3f} ms, ratio {ours / theirs:.2f}")
+        renderer = vitral.Renderer(teapot, height=height, width=width, threads=1)
+        cameras = renderer.turntable_cameras(TURN)
+        ours, theirs = [], []
+        for _ in range(3):
+            ours.append([timed(lambda r=renderer, c=camera: r.render(c)) for camera in cameras])
+            theirs.append(rust(f"{width}x{height}"))
+        python, native = (sum(map(min, zip(*rounds, strict=True))) / TURN * 1e3 for rounds in (ours, theirs))
+        print(f"render() {width} x {height}: {python:.3f} ms, Rust {native:.3f} ms, ratio {python / native:.2f}")
 
 
 def batches() -> None:
@@ -129,19 +144,18 @@ def batches() -> None:
     print(f"batch of {PICTURES} cameras at {SIDE} x {SIDE}, {len(scene)} instances, {triangles} triangles:")
     transforms = np.tile(scene.transforms, (PICTURES, 1, 1, 1))
     transforms[:, :, 2, 3] += np.linspace(0, 1, PICTURES)[:, None]
-    rates = {}
+    rates, processors = {}, {}
     for threads in (1, 2):
         renderer = vitral.Renderer(scene, height=SIDE, width=SIDE, samples=1, threads=threads)
         cameras = renderer.turntable_cameras(PICTURES)
         renderer.render_batch(cameras[:10])
         for name, moved in (("still", None), ("moving", transforms)):
-            times = []
-            for _ in range(3):
-                start = time.perf_counter()
-                renderer.render_batch(cameras, moved)
-                times.append(time.perf_counter() - start)
-            rates[threads, name] = PICTURES / min(times)
-            print(f"  {threads} threads, {name}: {rates[threads, name]:.0f} pictures a second")
+            before = time.process_time()
+            seconds = timed(lambda r=renderer, c=cameras, m=moved: r.render_batch(c, m))
+            each = (time.process_time() - before) / PICTURES * 1e3
+            rates[threads, name] = PICTURES / seconds
+            processors[threads, name] = each
+            print(f"  {threads} threads, {name}: {rates[threads, name]:.0f} pictures a second, {each:.2f} ms of processors each")
     for name in ("still", "moving"):
         print(f"  2 threads are {rates[2, name] / rates[1, name]:.2f} times as fast, {name}")
     if any(importlib.util.find_spec(name) is None for name in ("mujoco", "OpenGL")):
@@ -153,10 +167,10 @@ def batches() -> None:
     if ended.returncode:
         print(f"  MuJoCo failed: {ended.stderr.strip().splitlines()[-1]}")
         return
-    rate = float(ended.stdout)
-    for threads in (1, 2):
-        ratio = rates[threads, "moving"] / rate
-        print(f"  mujoco.Renderer: {rate:.0f} pictures a second; {threads} threads are {ratio:.1f} times as fast")
+    rate, each = map(float, ended.stdout.split())
+    print(f"  mujoco.Renderer, moving: {rate:.0f} pictures a second, {each:.2f} ms of processors each;", end=" ")
+    by_processors = each / processors[1, "moving"]
+    print(f"ours are {rates[2, 'moving'] / rate:.2f} times as fast, by processors {by_processors:.2f} times")
 
 
 def model_files(folder: Path | None, count: int) -> list[Path]:
@@ -169,17 +183,17 @@ def model_files(folder: Path | None, count: int) -> list[Path]:
     return [small[i % len(small)] for i in range(count)] if small else []
 
 
-def files(folder: Path | None) -> None:
-    """``vitral batch`` of 200 small models beside its parts and a shell loop over F3D."""
+def files(folder: Path | None, count: int) -> None:
+    """``vitral batch`` of small models beside its parts and a shell loop over F3D."""
     with tempfile.TemporaryDirectory() as name:
         # Copy models, each of which is read once.
         scratch = Path(name)
-        sources = model_files(folder, 200)
+        sources = model_files(folder, count)
         if not sources:
             points, faces = (lambda names: (exec(BALL, names), names["ball"]())[1])({})
             lines = ["v {} {} {}".format(*point) for point in points] + ["f {} {} {}".format(*face) for face in faces + 1]
             (scratch / "ball.obj").write_text("\n".join(lines) + "\n")
-            sources = [scratch / "ball.obj"] * 200
+            sources = [scratch / "ball.obj"] * count
         models = scratch / "models"
         models.mkdir()
         for i, source in enumerate(sources):
@@ -188,14 +202,15 @@ def files(folder: Path | None) -> None:
         # Time the batch, and the same pictures by one process with as many threads.
         command = [sys.executable, "-m", "vitral", "batch", "--glob", f"{models}/*", "--output", f"{scratch}/{{model}}.png"]
         command += ["--resolution", "256x256", "--json", "--quiet", "--record", f"{scratch}/record"]
-        start = time.perf_counter()
+        start, before = time.perf_counter(), children()
         ended = subprocess.run(command, capture_output=True, text=True)
-        seconds = time.perf_counter() - start
+        seconds, processors = time.perf_counter() - start, children() - before
         rows = [json.loads(line) for line in ended.stdout.splitlines()]
         done = [row for row in rows if row["status"] == "done"]
         parts = sum(row["seconds"] for row in done) / (os.cpu_count() or 1)
         print(f"vitral batch: {len(done)} of {len(rows)} models in {seconds:.2f} s, {len(done) / seconds:.0f} a second;", end=" ")
-        print(f"the jobs themselves {parts:.2f} s on {os.cpu_count()} processors, ratio {seconds / parts:.2f}")
+        print(f"the jobs themselves {parts:.2f} s on {os.cpu_count()} processors, ratio {seconds / parts:.2f};", end=" ")
+        print(f"{processors:.2f} s of processors")
 
         # The loop, with one display for all.
         if shutil.which("f3d") is None:
@@ -205,23 +220,25 @@ def files(folder: Path | None) -> None:
         words = ["sh", "-c", loop, "sh", str(models), str(scratch)]
         if "DISPLAY" not in os.environ:
             words = ["xvfb-run", "-a", *words]
-        start = time.perf_counter()
+        start, before = time.perf_counter(), children()
         subprocess.run(words, check=True, capture_output=True)
-        theirs = time.perf_counter() - start
-        print(f"a loop over f3d: {theirs:.2f} s, {theirs / seconds:.1f} times as long")
+        theirs, used = time.perf_counter() - start, children() - before
+        print(f"a loop over f3d: {theirs:.2f} s, {theirs / seconds:.1f} times as long;", end=" ")
+        print(f"{used:.2f} s of processors, {used / processors:.1f} times as much")
 
 
 def main() -> None:
     """Prints the figures."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--models", type=Path, help="a folder of models for the batch of files [default: balls]")
+    parser.add_argument("--count", type=int, default=200, help="how many models [default: 200]")
     arguments = parser.parse_args()
-    empty = process("pass")
-    print(f"import vitral: {process('import vitral') - empty:.0f} ms over an empty program,", end=" ")
-    print(f"numpy alone {process('import numpy') - empty:.0f} ms")
+    empty, numpy = processor("pass"), processor("import numpy")
+    print(f"import vitral: {processor('import vitral') - empty:.0f} ms of processors over an empty program,", end=" ")
+    print(f"numpy alone {numpy - empty:.0f} ms")
     single_pictures()
     batches()
-    files(arguments.models)
+    files(arguments.models, arguments.count)
 
 
 if __name__ == "__main__":

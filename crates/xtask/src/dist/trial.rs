@@ -153,7 +153,7 @@ impl Installed<'_> {
         Ok(())
     }
 
-    /// A program in the root, without environment, network or `/proc`.
+    /// A program in the root, without environment or network.
     fn jail(&self, libraries: &[String]) -> Command {
         let mut jail = command("bwrap");
         jail.args(["--unshare-all", "--clearenv", "--die-with-parent", "--bind"]).arg(&self.root).arg("/");

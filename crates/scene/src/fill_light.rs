@@ -16,12 +16,14 @@ use vitral_math::{DMat4, DVec3};
 
 /// What a white surface that faces the camera gets from the fill light.
 const DIM: f32 = 0.4;
+/// The direction to the light in view space, x right, y up, z to the viewer: a little from the upper left, so that faces differ.
+const TO_LIGHT: DVec3 = DVec3::new(-0.3, 0.4, 1.0);
 /// Light that a picture of 8 bits shows as black on white surfaces: half of the first step of sRGB.
 const BLACK: f32 = 0.5 / 255.0 / 12.92;
 
 /// The fill light for `camera`.
 pub fn fill_light(camera: &Camera) -> Light {
-    let direction = camera.focal_point - camera.position;
+    let direction = camera.view_from_world().inverse().transform_vector3(-TO_LIGHT);
     Light {
         name: "viewer".to_owned(),
         kind: LightKind::Directional { direction },

@@ -132,6 +132,10 @@ pub fn load_telling(
     let name = path.to_string_lossy();
     if let Some(builtin) = name.strip_prefix("builtin:") {
         let mut scene = load_builtin(builtin)?;
+        if let Some(moment) = options.moment() {
+            let what = format!("{name}: no animation `{}`", moment.animation);
+            return Err(Error::usage(what, "glTF files have animations"));
+        }
         finish(&mut scene, options, workers);
         return Ok(scene);
     }

@@ -377,7 +377,7 @@ impl Renderer {
             ));
         }
         if self.needs_fill_light(camera) {
-            let what = "the scene's own lights reach nothing that is seen: a dim light from the viewer is added";
+            let what = "the scene's own lights reach nothing that is seen; a dim light from the viewer is added";
             rendered.warnings.push(format!("{what} (--fill-light none leaves it dark)"));
         }
         Ok(Picture { exposure, ..Picture::new(rendered, self.settings.picture.color_space) })

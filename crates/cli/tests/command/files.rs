@@ -85,9 +85,9 @@ fn built_in_scenes_take_numbers() {
 fn a_model_that_needs_too_much_memory_does_not_end_the_others() {
     let folder = Folder::new("too-large");
     folder.file("a.obj", TRIANGLE);
-    // A million triangles of 50 bytes.
-    let mut large = vec![0u8; 84 + 50 * 1_000_000];
-    large[80..84].copy_from_slice(&1_000_000u32.to_le_bytes());
+    // 30 MB of triangles, of 50 bytes each: the file alone would fit.
+    let mut large = vec![0u8; 84 + 50 * 600_000];
+    large[80..84].copy_from_slice(&600_000u32.to_le_bytes());
     folder.file("large.stl", large);
     for (verb, end) in [("render", "png"), ("draw", "svg")] {
         let out = format!("{{model}}.{end}");
@@ -119,13 +119,34 @@ fn edges_have_a_width_a_colour_and_classes() {
 #[test]
 fn an_animation_gives_frames() {
     let (folder, model) = (Folder::new("frames"), fixture("anim.gltf"));
-    let output =
-        render(&folder, &[&model, "--animation-frames", "3", "-o", "f{frame}.png", "--camera-position", "1,1,8"]);
+    let output = render(
+        &folder,
+        &[
+            &model,
+            "--animation-frames",
+            "3",
+            "-o",
+            "f{frame}.png",
+            "--camera-position",
+            "1,1,8",
+            "--camera-focal-point",
+            "1,1,0",
+        ],
+    );
     assert_eq!((code(&output), errors(&output)), (0, String::new()));
 
     // Each is the picture of its moment, by the same camera.
     for (frame, seconds) in [(0, "0"), (1, "0.3333333333333333"), (2, "0.6666666666666666")] {
-        let alone = ["--animation-time", seconds, "--camera-position", "1,1,8", "-o", "alone.png"];
+        let alone = [
+            "--animation-time",
+            seconds,
+            "--camera-position",
+            "1,1,8",
+            "--camera-focal-point",
+            "1,1,0",
+            "-o",
+            "alone.png",
+        ];
         assert_eq!(code(&render(&folder, &[&[model.as_str()], &alone[..]].concat())), 0);
         assert!(folder.read(&format!("f{frame}.png")) == folder.read("alone.png"), "{frame}");
     }

@@ -4,7 +4,9 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::internals::render::choice::Row;
 use vitral::{
-    Acceleration, Channel, Choice, ColorBy, ColorSpace, Environment, FileColors, Global, Illumination, Interpolation, LightTerm, Normals, PictureFormat, Seams, Shading, Shadows, Terminator, Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
+    Acceleration, Channel, Choice, ColorBy, ColorSpace, Environment, FileColors, Global, Illumination, Interpolation,
+    LightTerm, Normals, PictureFormat, Seams, Shading, Shadows, Terminator, Transparency, TransparencyOrder, View,
+    Visibility, VolumeCounting, names,
 };
 
 /// The algorithm that finds the visible surfaces of a drawing.

@@ -8,7 +8,9 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
-    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Environment, FileColors, Global, Illumination, Interpolation, LightEdit, LightTerm, LineClass, LineClasses, MaterialOverride, Normals, PictureFormat, Shading, Shadows, Terminator, Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
+    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Environment, FileColors, Global, Illumination,
+    Interpolation, LightEdit, LightTerm, LineClass, LineClasses, MaterialOverride, Normals, PictureFormat, Shading,
+    Shadows, Terminator, Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
 };
 
 /// Options of `vitral render`.

@@ -31,6 +31,7 @@ pub mod image;
 mod json_message;
 mod mesh_scene;
 mod models;
+mod moment;
 #[cfg(feature = "obj")]
 mod mtl;
 #[cfg(feature = "obj")]
@@ -56,6 +57,7 @@ mod weld;
 
 pub use error::{Error, Place};
 pub use format::{Format, FormatKind, FormatRow, formats};
+pub use moment::Moment;
 pub use resolve::{NoFiles, ResolveError, Resolver};
 
 use vitral_exec::Workers;
@@ -72,15 +74,6 @@ use vitral_scene::{Scene, normals};
 /// cannot do without, [`Error::Unsupported`] a format or feature that is not read.
 pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
     load_at(bytes, file, resolver, workers, None)
-}
-
-/// A moment of an animation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Moment {
-    /// Which animation: its number, from 0, or its name.
-    pub animation: String,
-    /// Since it began; before the first keyframe and after the last one nothing moves.
-    pub seconds: f64,
 }
 
 /// [`load`] at a moment of an animation, which glTF files may have.

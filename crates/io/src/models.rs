@@ -3,6 +3,7 @@
 
 #[cfg(feature = "gltf")]
 use crate::gltf;
+use crate::moment::Moment;
 #[cfg(feature = "obj")]
 use crate::obj;
 #[cfg(feature = "off")]
@@ -11,7 +12,7 @@ use crate::off;
 use crate::ply;
 #[cfg(feature = "stl")]
 use crate::stl;
-use crate::{Error, Format, Moment, Resolver, colored};
+use crate::{Error, Format, Resolver, colored};
 use vitral_exec::Workers;
 use vitral_scene::{Axis, Scene, normals};
 

@@ -12,7 +12,8 @@
 
 use super::accessor::{Integers, Source};
 use super::document::name_or;
-use crate::{Error, Moment};
+use crate::Error;
+use crate::moment::Moment;
 use gltf::json::accessor::Type;
 use gltf::json::animation::{Animation as JsonAnimation, Channel, Interpolation, Property, Sampler};
 use gltf::json::validation::Checked;

@@ -26,7 +26,8 @@ mod texture;
 mod untidy;
 
 use crate::mesh_scene::{is_blank, nothing_to_show};
-use crate::{Error, Moment, Place, Resolver};
+use crate::moment::Moment;
+use crate::{Error, Place, Resolver};
 use accessor::Source;
 use buffers::Buffers;
 use mesh::{Plan, Pose};

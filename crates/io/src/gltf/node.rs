@@ -6,7 +6,8 @@
 use super::accessor::Source;
 use super::animation::{self, NodePoses};
 use super::document::VISIBILITY;
-use crate::{Error, Moment};
+use crate::Error;
+use crate::moment::Moment;
 use gltf::json::Node as JsonNode;
 use gltf::json::camera::{Camera as JsonCamera, Type as CameraType};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType};

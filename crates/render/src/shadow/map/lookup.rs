@@ -430,7 +430,7 @@ impl<S: Simd> Eight<S> {
         );
         let own = lanes::Lanes::select(bottom.simd_ge(half), pick(lit[2], lit[3]), pick(lit[0], lit[1]));
         let own_lit = own.simd_gt(zero);
-        (0..4).for_each(|k| beyond[k] = beyond[k] | (touching[k] & own_lit));
+        (0..4).for_each(|k| beyond[k] |= touching[k] & own_lit);
         let beside = differ & (beyond[0] | beyond[1] | beyond[2] | beyond[3]);
         if beside.to_bitmask() as u32 & asked == 0 {
             return part;

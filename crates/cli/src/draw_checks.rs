@@ -18,6 +18,9 @@ const SECTION_PLANE: &str = "add --section-plane 0,0,0,0,0,1";
 
 /// Refuses options that have no effect in a file of this format.
 pub(crate) fn check(args: &DrawArgs, state: &State, format: DrawingFormat) -> Result<(), Failure> {
+    if args.light.environment.is_some() {
+        return Err(Failure::usage("--environment: drawings mirror nothing").with_hint("leave it out"));
+    }
     check_polygons(args)?;
     check_sheet(args, state)?;
     check_lines(args)?;

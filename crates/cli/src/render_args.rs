@@ -240,7 +240,7 @@ pub(crate) struct AlgorithmArgs {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Light and materials")]
 pub(crate) struct LightArgs {
-    /// What surfaces of metal and with roughness (glTF, MTL's Pr and Pm) mirror [default: sky]
+    /// What surfaces of metal and with roughness (glTF, MTL's Pr and Pm) mirror [default: auto]
     #[arg(long, value_name = "KIND", value_parser = choices::environment())]
     pub(crate) environment: Option<Environment>,
     /// How the colours of materials in MTL files are meant [default: srgb; linear with --color-space raw]

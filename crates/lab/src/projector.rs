@@ -43,7 +43,7 @@ mod tests {
         let mut renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
         (renderer.settings.picture.width, renderer.settings.picture.height) = (640, 480);
         let camera = renderer.frame_camera();
-        for (pixel, surfaces) in [([390, 200], 2), ([320, 330], 1)] {
+        for (pixel, surfaces) in [([340, 200], 2), ([310, 320], 1)] {
             let told = explain(&renderer, &camera, pixel, &Deciders::Chosen, None).unwrap();
             assert_eq!(told.surfaces.len(), surfaces);
             let points = projector(&renderer, &camera, pixel, &told.surfaces);

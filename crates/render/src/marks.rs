@@ -10,7 +10,7 @@
 //!
 //! Colours of vertices are interpolated along a line as on a face: as in space, or linearly on the screen where faces are.
 //! Of a material count its diffuse or base colour, its emission and its opacity, not its textures; lines are not lit, points
-//! are where they have normals (see [`cloud`]).
+//! are where they have normals (`cloud.rs`).
 //!
 //! Marks are layers in front of the surfaces. Opaque dots hide what lies behind them, else clouds of points would be layers by
 //! the million.

@@ -87,7 +87,8 @@ fn write_geometry(
 ) -> Result<CullCounters, Error> {
     let lights = renderer.frame_lights(camera);
     let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
-    let corners = illuminate_corners(renderer.session(), &shot, &renderer.settings, renderer.execution(), None)?;
+    let corners =
+        illuminate_corners(renderer.session(), &shot, &renderer.picture_settings(), renderer.execution(), None)?;
     let mut counters = CullCounters::default();
     let view = renderer.prepared(camera, &mut counters)?;
     write_json(write, "3-cull.json", &scene::culled(&view, &counters))?;

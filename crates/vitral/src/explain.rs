@@ -260,7 +260,7 @@ pub fn explain(
     deciders: &Deciders,
     time_limit: Option<f64>,
 ) -> Result<Explanation, Error> {
-    let settings = &renderer.settings;
+    let settings = &renderer.picture_settings();
     if pixel[0] >= settings.picture.width || pixel[1] >= settings.picture.height {
         let size =
             format!("the picture has {} x {} pixels, counted from 0", settings.picture.width, settings.picture.height);
@@ -317,7 +317,7 @@ fn examined(
 
 /// Traces the rays through the centres of a tile's pixels, and looks on at one of them.
 fn rays(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budget) -> Result<Vec<TracedRay>, Error> {
-    let settings = renderer.settings.clone().with_samples(1).with_channels(Channels::default());
+    let settings = renderer.picture_settings().with_samples(1).with_channels(Channels::default());
     let onlooker = Arc::new(RayOnlooker { pixel, rays: Mutex::default() });
     let observer = Some(Arc::clone(&onlooker) as Arc<dyn Observer>);
     examined(renderer, camera, pixel, &settings, budget, observer)?;
@@ -406,7 +406,7 @@ fn gouraud(
     [column, row]: [u32; 2],
     facet: u32,
 ) -> Result<Option<Gouraud>, Error> {
-    let (settings, session, execution) = (&renderer.settings, renderer.session(), renderer.execution());
+    let (settings, session, execution) = (&renderer.picture_settings(), renderer.session(), renderer.execution());
     let view = renderer.prepared(camera, &mut CullCounters::default())?;
     let Some((clip, false)) = view.clipped(facet) else { return Ok(None) };
     let lights = renderer.frame_lights(camera);

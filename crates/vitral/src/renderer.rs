@@ -332,13 +332,24 @@ impl Renderer {
         lights
     }
 
-    /// The settings, without what the sky adds where only other [`light_term`](Self::light_term)s are shown.
-    fn picture_settings(&self) -> Settings {
+    /// The settings of a picture, with what is mirrored: by itself the sky belongs to the default lights, and it is part of the
+    /// specular [`light_term`](Self::light_term).
+    pub(crate) fn picture_settings(&self) -> Settings {
         let mut settings = self.settings.clone();
+        let environment = &mut settings.shading.environment;
+        if *environment == Environment::Auto && self.has_default_lights() {
+            *environment = Environment::Sky;
+        }
         if self.light_term.is_some_and(|term| term != LightTerm::Specular) {
-            settings.shading.environment = Environment::None;
+            *environment = Environment::None;
         }
         settings
+    }
+
+    /// Whether the lights of a picture are those for models that bring none, in the display's colours.
+    fn has_default_lights(&self) -> bool {
+        let scene_says = !self.world().lights.is_empty() || self.scene().ambient != [0.0; 3];
+        self.lights.is_none() && !scene_says && self.settings.picture.color_space != ColorSpace::Raw
     }
 
     /// Global ambient light of a picture: the scene's own and [`ambient`](Self::ambient); none where another

@@ -226,6 +226,13 @@ impl Viewpoint {
         }
         if let Some(position) = self.position.map(point) {
             camera.position = position;
+            // A viewer that is placed looks at the middle of the model, wherever the framed view looks.
+            let bounds = &renderer.world().bounds;
+            let is_framed =
+                self.camera_index.is_none() && self.eye_rotation.is_none() && self.eye_translation.is_none();
+            if is_framed && self.focal_point.is_none() && !bounds.is_empty() {
+                camera.focal_point = bounds.center();
+            }
         }
         if let Some(view_up) = self.view_up.map(point) {
             camera.view_up = view_up;

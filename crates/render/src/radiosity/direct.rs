@@ -53,11 +53,6 @@ impl<'a> Direct<'a> {
         self.mean_at(side, corners, there, 0)
     }
 
-    /// What arrives at the middle of a small element: many of them together tell the mean.
-    pub(super) fn middle(&self, side: &Place) -> Color {
-        self.arriving(std::slice::from_ref(side))[0]
-    }
-
     fn mean_at(&self, side: &Place, corners: [DVec3; 3], there: u16, depth: u32) -> Color {
         let numbers: Vec<usize> = (0..PARTS).filter(|part| there >> part & 1 == 1).collect();
         let parts = parts(corners);

@@ -13,7 +13,7 @@ use super::direct::Direct;
 use super::element::{Color, Element, Patch, Row, turned};
 use super::lamps::lamps;
 use super::neighbours::Neighbours;
-use super::parts::{PARTS, WHOLE, middle};
+use super::parts::{PARTS, middle};
 use super::patch::{NONE, Trees, area};
 use super::surface::{Surface, Surfaces};
 use super::targets::Targets;
@@ -221,11 +221,7 @@ impl Enclosure {
                 seed: i as u32,
                 pixel: None,
             };
-            if self.is_small(i / 2) && element.there == WHOLE {
-                direct.middle(&side)
-            } else {
-                direct.mean(&side, self.trees.places(element.node), element.there)
-            }
+            direct.mean(&side, self.trees.places(element.node), element.there)
         });
         for (i, arriving) in arriving.iter().enumerate() {
             let reflectance = self.elements[i / 2].reflectance;

@@ -55,8 +55,10 @@ pub enum Global {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Environment {
-    /// A soft sky over a darker ground ([`Sky`](vitral_light::Sky)), which turns with the camera like the default lights.
+    /// The sky, for pictures in the default lights; who makes pictures says which these are, and here it is nothing.
     #[default]
+    Auto,
+    /// A soft sky over a darker ground ([`Sky`](vitral_light::Sky)), which turns with the camera like the default lights.
     Sky,
     /// Nothing: they show highlights alone.
     None,
@@ -145,6 +147,7 @@ named!(VolumeCounting, "way to count shadow volumes", [
 ]);
 
 named!(Environment, "environment", [
+    Auto: "auto", "the sky where neither the scene nor the command names lights";
     Sky: "sky", "a soft sky over a darker ground";
     None: "none", "nothing: metals show highlights alone";
 ]);

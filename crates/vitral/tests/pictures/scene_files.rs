@@ -99,51 +99,6 @@ fn edges_of_shadows_have_as_many_levels_as_samples() {
     }
 }
 
-/// A floor, and a sheet over its left half up to x = 0, one unit above; a square light of side 0.8, two units above the sheet.
-fn under_a_sheet() -> Scene {
-    let mut scene = Scene::default();
-    for (width, at, kd) in [(8.0, DVec3::ZERO, 1.0), (4.0, DVec3::new(-2.0, 1.0, 0.0), 0.0)] {
-        let mut plane = solids::plane(width, 8.0, 1, 1);
-        let material = scene.add_material(matt(kd));
-        plane.parts.iter_mut().for_each(|p| p.material = Some(material));
-        scene.add_mesh(plane, DMat4::from_translation(at));
-    }
-    let corners = [[-0.4, -0.4], [0.4, -0.4], [0.4, 0.4], [-0.4, 0.4]];
-    let corners = corners.map(|[x, z]| DVec3::new(x, 3.0, z)).to_vec();
-    let kind = LightKind::Area { shape: AreaShape::Polygon { corners } };
-    scene.lights = vec![Light { kind, attenuation: Attenuation::None, ..sun(DVec3::Y, 0.9) }];
-    scene
-}
-
-#[test]
-fn penumbrae_are_as_wide_as_the_light_makes_them() {
-    // A light 0.8 wide, 2 above an edge that is 1 above the floor: a penumbra 0.4 wide, by similar triangles. Light grows
-    // evenly across it, so its standard deviation as a distribution is the width through the square root of 12.
-    for shadows in SHADOWS.iter().filter(|s| s.algorithm.is_some()) {
-        let mut renderer = exact(under_a_sheet(), 400, 4);
-        let projection = Projection::Parallel { height: 0.01 };
-        renderer.camera = Some(Camera {
-            position: DVec3::new(0.0, 0.5, 0.0),
-            focal_point: DVec3::ZERO,
-            view_up: DVec3::NEG_Z,
-            projection,
-            clip: Some((0.1, 1.0)),
-        });
-        renderer.settings.picture.samples = 1;
-        renderer.settings.shadows.algorithm = shadows.name.parse().unwrap();
-        let all = colors(&mut renderer);
-        let pixel = 0.01 / 4.0;
-        let row: Vec<f64> = (0..400).map(|x| (0..4).map(|y| f64::from(all[400 * y + x][0])).sum::<f64>()).collect();
-        let steps: Vec<(f64, f64)> =
-            row.windows(2).zip(0..).map(|(pair, x)| (f64::from(x) * pixel, pair[1] - pair[0])).collect();
-        let whole: f64 = steps.iter().map(|s| s.1).sum();
-        let mean = steps.iter().map(|(x, w)| x * w).sum::<f64>() / whole;
-        let square = steps.iter().map(|(x, w)| (x - mean) * (x - mean) * w).sum::<f64>() / whole;
-        let width = (12.0 * square).sqrt();
-        assert!((width / 0.4 - 1.0).abs() < 0.05, "{}: {width}", shadows.name);
-    }
-}
-
 #[test]
 fn coarse_round_bodies_have_a_smooth_border_of_light_by_all_shadows() {
     let mut scene = Scene::default();

@@ -31,7 +31,7 @@ pub struct Shared {
 }
 
 impl Shared {
-    /// An empty store, whose names differ from those of other stores: see [`crate::names`]. A default store begins with 1.
+    /// An empty store, whose names differ from those of other stores: see `names.rs`. A default store begins with 1.
     pub fn with_own_names() -> Self {
         let names = NameRange::next();
         Self { names, fences: Mutex::new(crate::api::Fences::after(names.first() as usize - 1)), ..Self::default() }

@@ -83,6 +83,11 @@ fn little_drawn_leaves_the_rest_to_the_program() {
     assert_eq!(c.take::<[u8; 4]>(at(200, 200), 1), [WHITE]);
     // What it wrote is there to be read and blended with.
     assert_eq!(c.pixel(200, 200), WHITE);
+    // Having been read it is still the program's.
+    c.raw_write(at(200, 200), &[1, 2, 3, 4]);
+    c.rectangle([-1.0, -1.0, -0.9, -0.9], 0.0);
+    c.finish();
+    assert_eq!(c.take::<[u8; 4]>(at(200, 200), 1), [[1, 2, 3, 4]]);
     c.raw_write(at(100, 100), &[0, 0, 255, 255]);
     c.enable(gl::BLEND);
     c.blend_func(gl::ONE, gl::ONE);

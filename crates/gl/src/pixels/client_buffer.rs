@@ -270,6 +270,17 @@ fn changed_tiles(plane: &mut ColorPlane) -> Vec<bool> {
     }
 }
 
+/// Takes the tiles of a part to hold what the client's buffer holds.
+fn take_as_stored(plane: &mut ColorPlane, viewport: Viewport, part: &Part) {
+    let side = TILE as u32;
+    let first = part.y.start / side * viewport.tiles_x();
+    let tiles = (first + part.x.start / side) as usize..(first + part.x.end.div_ceil(side)) as usize;
+    match plane {
+        ColorPlane::Rgba8(plane) => plane.tiles[tiles].iter_mut().for_each(|tile| _ = tile.take_changed()),
+        ColorPlane::RgbaF32(plane) => plane.tiles[tiles].iter_mut().for_each(|tile| _ = tile.take_changed()),
+    }
+}
+
 impl Context {
     /// Takes the client's pixels into the tiles of the plane that meet `area` (x0, y0, x1, y1, the last two exclusive): only once
     /// until the next [`Self::store_default_framebuffer`].
@@ -295,7 +306,9 @@ impl Context {
         }
         let mut plane = lock(&plane);
         for part in missing {
-            if load(&buffer, &*self.memory, &mut plane, &part).is_none() {
+            let there = load(&buffer, &*self.memory, &mut plane, &part).is_some();
+            take_as_stored(&mut plane, buffer.viewport, &part);
+            if !there {
                 return;
             }
         }

@@ -154,6 +154,10 @@ impl Context {
         if self.framebuffers.read == 0 && surfaces.color.is_some() {
             let ends = |[x, y, width, height]: [i32; 4]| [x, y, x.saturating_add(width), y.saturating_add(height)];
             self.load_default_framebuffer(area.map_or(EVERYWHERE, ends));
+            if !self.default_framebuffer.drawn {
+                // Nothing waits: the client may draw into its buffer before the next command.
+                self.default_framebuffer.loaded.clear();
+            }
         }
         Some(surfaces)
     }

@@ -302,13 +302,16 @@ fn thread_end(gl: &'static Gl) -> Result<(), String> {
     gl.OSMesaMakeCurrent(0, 0, 0, 0, 0);
     for key in [before, after] {
         FOUND.store(0, Ordering::SeqCst);
-        std::thread::scope(|scope| {
-            scope.spawn(|| {
+        // The end of a scope does not wait for the destructors of its threads, joining one does.
+        let ended = std::thread::scope(|scope| {
+            let thread = scope.spawn(|| {
                 window.make_current(gl);
                 // SAFETY: any value that is not null.
                 unsafe { libc::pthread_setspecific(key, std::ptr::without_provenance(1)) };
             });
+            thread.join()
         });
+        ended.map_err(|_| "the thread panicked".to_owned())?;
         same("the context in the destructor", FOUND.load(Ordering::SeqCst), window.context)?;
     }
     window.make_current(gl);

@@ -206,6 +206,8 @@ mod tests {
         c.buffer_data(enums::ARRAY_BUFFER, 12 * COUNT as isize, BASE, enums::STATIC_DRAW);
         c.normal_pointer(enums::FLOAT, 0, 0);
         c.enable_client_state(enums::NORMAL_ARRAY);
+        // Without it no normals are read.
+        c.enable(enums::LIGHTING);
         let batches: Vec<_> = (0..3).map(|_| draw(&mut c, false)).collect();
         assert!(Arc::ptr_eq(&batches[1], &batches[2]));
         c.buffer_sub_data(enums::ARRAY_BUFFER, 0, 4, BASE + 4);

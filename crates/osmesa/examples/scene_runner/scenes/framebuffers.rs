@@ -81,7 +81,7 @@ fn to_texture(gl: &mut Stage<'_>) {
 
 fn to_renderbuffer(gl: &mut Stage<'_>) {
     let object = framebuffer(gl);
-    renderbuffer(gl, COLOR_ATTACHMENT0, RGBA8, 0, 48);
+    let color = renderbuffer(gl, COLOR_ATTACHMENT0, RGBA8, 0, 48);
     renderbuffer(gl, DEPTH_ATTACHMENT, DEPTH_COMPONENT16, 0, 48);
     gl.glViewport(0, 0, 48, 48);
     gl.glClear(COLOR_BUFFER_BIT | DEPTH_BUFFER_BIT);
@@ -93,7 +93,7 @@ fn to_renderbuffer(gl: &mut Stage<'_>) {
     let mut pixels = vec![[0_u8; 4]; 48 * 48];
     gl.glReadPixels(0, 0, 48, 48, RGBA, UNSIGNED_BYTE, at_mut(&mut pixels));
     for name in [RENDERBUFFER_WIDTH, RENDERBUFFER_RED_SIZE, RENDERBUFFER_SAMPLES] {
-        gl.glBindRenderbuffer(RENDERBUFFER, 1);
+        gl.glBindRenderbuffer(RENDERBUFFER, color);
         let mut value = [-1];
         gl.glGetRenderbufferParameteriv(RENDERBUFFER, name, &mut value);
         gl.note(value[0]);

@@ -157,12 +157,31 @@ pub fn draw(
     workers: &Workers,
     budget: &Budget,
 ) -> Result<Drawn, Limit> {
+    draw_one_sided(world, camera, aspect, settings, surfaces, &[], workers, budget)
+}
+
+/// [`draw`] where faces of some materials show their front alone: from behind they hide nothing and are not filled. `front_only`
+/// says so of each material, by index; those beyond the end show both sides.
+///
+/// # Errors
+/// A limit of the budget.
+pub fn draw_one_sided(
+    world: &World,
+    camera: &Camera,
+    aspect: f64,
+    settings: &DrawingSettings,
+    surfaces: Option<&Surfaces<'_>>,
+    front_only: &[bool],
+    workers: &Workers,
+    budget: &Budget,
+) -> Result<Drawn, Limit> {
     let run = Run::new(workers, budget);
     let view = camera.transform(aspect, depth_range(camera, &world.bounds));
     let mut projected = projection::project(world, &view, aspect, &run)?;
     if let Some(surfaces) = surfaces {
         projected.let_through(|material| surfaces.opacity(material));
     }
+    projected.leave_out_backs(|material| front_only.get(material as usize).copied().unwrap_or(false));
     let mut mesh = edges::with_edges(projected, settings.crease_angle, settings.hide_tangent, &run)?;
     let caps = cuts::Caps::new(world);
     mesh.ranks = caps.ranks(&mesh);

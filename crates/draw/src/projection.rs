@@ -77,6 +77,17 @@ impl Projected {
     }
 }
 
+impl Projected {
+    /// Makes triangles neither hide nor show where a material that shows its front alone is seen from behind.
+    pub(crate) fn leave_out_backs(&mut self, is_front_only: impl Fn(u32) -> bool) {
+        for (facet, triangle) in self.facets.iter().zip(&mut self.triangles) {
+            if triangle.facing < 0 && is_front_only(self.sources[facet.source as usize].material) {
+                (triangle.hides, triangle.clear) = (false, false);
+            }
+        }
+    }
+}
+
 /// An instance on its way to the page.
 struct Placed<'w> {
     instance: &'w Instance,

@@ -6,7 +6,7 @@ use crate::{Camera, Error, Projection, Renderer};
 pub(crate) use colors::Colors;
 use std::collections::BTreeMap;
 use vitral_draw::sheet::{Sheet, SheetLayout};
-use vitral_draw::{DrawingSettings, Drawn, FaceLook, LitPolygons, PageSize, Seams, Surfaces, draw};
+use vitral_draw::{DrawingSettings, Drawn, FaceLook, LitPolygons, PageSize, Seams, Surfaces, draw_one_sided};
 use vitral_exec::Limit;
 use vitral_frame::Drawing;
 use vitral_io::encode::{self, DrawingOptions};
@@ -166,8 +166,11 @@ impl Renderer {
         fill: Option<&FillSettings>,
     ) -> Result<Drawn, Error> {
         let (world, execution) = (self.world(), self.execution());
+        let front_only: Vec<bool> =
+            self.scene().materials.iter().map(|material| material.front_only && !material.double_sided).collect();
         let Some(fill) = fill else {
-            return Ok(draw(world, camera, aspect, settings, None, &execution.workers, &execution.budget)?);
+            let (workers, budget) = (&execution.workers, &execution.budget);
+            return Ok(draw_one_sided(world, camera, aspect, settings, None, &front_only, workers, budget)?);
         };
         let colors = Colors::new(self, camera, fill);
         let palette = |look: &FaceLook| colors.of(look);
@@ -181,7 +184,8 @@ impl Renderer {
             by_face: fill.by_face,
             ..Surfaces::new(&palette)
         };
-        Ok(draw(world, camera, aspect, settings, Some(&surfaces), &execution.workers, &execution.budget)?)
+        let (workers, budget) = (&execution.workers, &execution.budget);
+        Ok(draw_one_sided(world, camera, aspect, settings, Some(&surfaces), &front_only, workers, budget)?)
     }
 
     /// The opacity of each material, 1 where it is not blended.

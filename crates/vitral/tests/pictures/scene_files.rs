@@ -4,8 +4,7 @@ use super::common::{colors, exact, sun};
 use std::collections::BTreeSet;
 use vitral::internals::render::registry::SHADOWS;
 use vitral::{
-    AreaShape, Attenuation, Camera, DMat4, DVec3, Global, Light, LightKind, Material, Projection, Reflectance,
-    Renderer, Scene, Shadows, Terminator, load_bytes, solids,
+    Camera, DMat4, DVec3, Global, Material, Reflectance, Renderer, Scene, Shadows, Terminator, load_bytes, solids,
 };
 
 fn fixture(bytes: &[u8], side: u32) -> Renderer {

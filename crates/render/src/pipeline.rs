@@ -318,15 +318,13 @@ impl<'a> FrameContext<'a> {
         }
     }
 
-    /// The chosen shadow algorithm, ready for the lights; `None` without shadows.
+    /// The chosen shadow algorithm, ready for the lights; `None` without shadows. Radiosity always has some: surfaces that shine
+    /// are lights there, and what stands in their way keeps their light from others.
     fn shadows<'v>(&self, view: &PreparedView<'v>) -> Result<Option<Box<dyn Shadows + 'v>>, Limit> {
-        shadow::prepare(
-            registry::shadows(self.settings.shadows.algorithm),
-            view,
-            self.shot.lights,
-            self.settings,
-            self.execution,
-        )
+        let chosen = self.settings.shadows.algorithm;
+        let needs_some = self.settings.global.model == Global::Radiosity && chosen.is_none;
+        let algorithm = if needs_some { crate::Shadows::RAY } else { chosen };
+        shadow::prepare(registry::shadows(algorithm), view, self.shot.lights, self.settings, self.execution)
     }
 
     /// What stays the same for all points of the frame.

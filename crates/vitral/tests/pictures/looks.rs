@@ -85,7 +85,7 @@ fn a_colour_beside_a_texture_multiplies_only_if_it_is_told_to() {
     assert_eq!(shown(scene.clone()), [255, 128, 0]);
     vitral::override_material(&mut scene, "a", "texture-tint", "multiply").unwrap();
     // 0.1 is 0.01 in linear light.
-    assert_eq!(shown(scene), [26, 10, 0]);
+    assert_eq!(shown(scene), [26, 7, 0]);
     // Without its texture the colour is all that there is.
     assert_eq!(shown(square("newmtl a\nKd 1 0 0\nmap_Kd gone.tga\n", &LoadOptions::default())), [255, 0, 0]);
 }

@@ -131,7 +131,11 @@ impl Lens {
         } else {
             Projection::Parallel { height: 2.0 * extent[1] }
         };
-        let view = camera.transform(f64::from(width) / f64::from(height), depth_range(&camera, &world.bounds));
+        let depths = depth_range(&camera, &world.bounds);
+        if !perspective {
+            camera.clip = all_round(depths);
+        }
+        let view = camera.transform(f64::from(width) / f64::from(height), depths);
         let view_from_world = view.view_from_world * DMat4::from_translation(Triangles::center_of(world));
         Self { camera, view, view_from_world, width, height, extent, perspective }
     }
@@ -191,6 +195,15 @@ fn far_away(towards: DVec3, world: &World) -> Camera {
     let center = Triangles::center_of(world);
     let projection = Projection::Parallel { height: 1.0 };
     Camera { position: center + towards, focal_point: center, view_up: DVec3::Y, projection, clip: None }
+}
+
+/// Clipping planes a little outside these depths, also those behind the viewer: light that is infinitely far away comes from
+/// behind all of the scene.
+fn all_round((nearest, farthest): (f64, f64)) -> Option<(f64, f64)> {
+    let margin = ((farthest - nearest) * 0.01).max(farthest.abs().max(nearest.abs()) * 1e-4);
+    let margin = if margin > 0.0 { margin } else { 1e-9 };
+    let usable = nearest.is_finite() && farthest.is_finite() && nearest <= farthest;
+    usable.then_some((nearest - margin, farthest + margin))
 }
 
 /// The viewer, moved sideways to this place of its view space.

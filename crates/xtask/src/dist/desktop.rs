@@ -36,7 +36,7 @@ pub(super) fn entry() -> String {
     format!(
         "[Desktop Entry]\nVersion=1.0\nType=Application\nName=Vitral\nGenericName=Laboratory of 3D rendering\n\
          Comment=Watch the classical algorithms of 3D graphics at work on a model\n\
-         TryExec=vitral\nExec=vitral lab %F\nIcon=vitral\nTerminal=true\nCategories=Graphics;3DGraphics;Education;\n\
+         TryExec=vitral\nExec=vitral lab %F\nIcon=vitral\nTerminal=true\nCategories=Graphics;3DGraphics;\n\
          Keywords=3D;model;render;stl;obj;ply;off;gltf;glb;\nMimeType={}\n",
         types()
     )

@@ -83,7 +83,7 @@ async function drag(context, fragment) {
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x + 5, y);
-  await settled(page);
+  await page.waitForTimeout(500);
   await page.evaluate(() => {
     window.seen.pictures.length = 0;
     window.seen.blocks.length = 0;
@@ -118,7 +118,7 @@ async function fullQuality(context) {
     await page.evaluate(() => (window.seen.pictures.length = 0));
     await stage.focus();
     const start = await page.evaluate(() => performance.now());
-    await page.keyboard.press("ArrowLeft");
+    await page.keyboard.press("Shift+ArrowLeft");
     await page.waitForFunction(() => window.seen.pictures.length > 0);
     times.push((await settled(page)) - start);
   }
@@ -209,7 +209,7 @@ async function growth(context, changes) {
   let first = 0;
   for (let i = 1; i <= changes; i++) {
     await stage.focus();
-    await page.keyboard.press(i % 2 ? "ArrowLeft" : "ArrowRight");
+    await page.keyboard.press(i % 2 ? "Shift+ArrowLeft" : "Shift+ArrowRight");
     await settled(page);
     if (i === 100) first = await used();
   }

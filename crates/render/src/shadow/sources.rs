@@ -211,14 +211,15 @@ impl Area {
 
 /// A place in the unit square for each cell, where all points see the same places. Cells of one row lie at different heights in
 /// theirs, and those of one column at different widths: along either axis the places are spread as evenly as their number
-/// allows, so that edges of shadows are as wide as by any number of places.
+/// allows. What one offset rises by along a row, the other falls by along a column, which makes a turned grid whose spread is the
+/// same in all directions: edges of shadows are as wide as by any number of places, however they run.
 fn even(cells: &[DVec2], size: DVec2) -> Vec<DVec2> {
     let low = cells.iter().fold(DVec2::INFINITY, |low, c| low.min(*c));
     let high = cells.iter().fold(DVec2::NEG_INFINITY, |high, c| high.max(*c));
     let counts = ((high - low) / size).round() + DVec2::ONE;
     let within = |cell: &DVec2| {
         let number = ((*cell - low) / size).round();
-        dvec2((number.y + 0.5) / counts.y, (number.x + 0.5) / counts.x)
+        dvec2((number.y + 0.5) / counts.y, (counts.x - number.x - 0.5) / counts.x)
     };
     cells.iter().map(within).collect()
 }

@@ -235,3 +235,41 @@ fn f27_the_penumbra_is_as_wide_as_the_light_times_b_over_a() {
     let share = 2.0 / std::f64::consts::PI * (t * (1.0 - t * t).sqrt() + std::f64::consts::FRAC_PI_6);
     assert!((slope / (0.2 / share) - 1.0).abs() < 0.03, "{slope}");
 }
+
+/// Width of the penumbra behind the edge of `penumbra` by all of its course: six times the integral of `f (1 - f)`, which for a
+/// part `f` of the light that rises evenly is where it rises.
+fn width(algorithm: &str, shape: AreaShape, samples: u32) -> f64 {
+    let scene = above_floor(solids::plane(4.0, 8.0, 1, 1), Material::default(), dvec3(-2.0, 1.0, 0.0));
+    let settings = Settings {
+        shadows: ShadowSettings { light_samples: samples, ..settings(algorithm).shadows },
+        ..settings(algorithm)
+    };
+    with_shadows(&scene, &[light(LightKind::Area { shape })], &settings, |arriving| {
+        // Chance differs from place to place, so that its mean is what is seen along the edge.
+        let seeds = if algorithm == "ray" { 1024_u32.div_ceil(samples) } else { 1 };
+        let part = |x: f64| {
+            let parts = (0..seeds).map(|seed| arriving(Place { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
+            f64::from(parts.sum::<f32>()) / f64::from(seeds)
+        };
+        let step = 1.0 / 400.0;
+        let course = (-200..200).map(|i| part((f64::from(i) + 0.5) * step));
+        course.map(|f| 6.0 * f * (1.0 - f) * step).sum()
+    })
+}
+
+#[test]
+fn f27_sixteen_samples_show_penumbrae_as_wide_as_they_are() {
+    let turned = |degrees: f64| {
+        let (sin, cos) = vitral_math::func::sin_cos(degrees.to_radians());
+        let corner = |x: f64, z: f64| dvec3(cos * x - sin * z, 3.0, sin * x + cos * z);
+        AreaShape::Polygon { corners: vec![corner(-0.4, -0.4), corner(0.4, -0.4), corner(0.4, 0.4), corner(-0.4, 0.4)] }
+    };
+    let disc = AreaShape::Disc { center: dvec3(0.0, 3.0, 0.0), normal: DVec3::NEG_Y, radius: 0.4 };
+    for shape in [turned(0.0), turned(20.0), turned(45.0), turned(-45.0), disc] {
+        let right = width("ray", shape.clone(), 4096);
+        for algorithm in names() {
+            let found = width(algorithm, shape.clone(), 16);
+            assert!((found / right - 1.0).abs() < 0.05, "{algorithm}, {shape:?}: {found}, {right} by 4096 rays");
+        }
+    }
+}

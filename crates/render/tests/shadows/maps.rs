@@ -103,6 +103,30 @@ fn shadows_of_maps_start_at_the_foot_and_let_nothing_through() {
 }
 
 #[test]
+fn no_dark_line_lies_where_a_wall_meets_the_floor_before_a_lamp() {
+    let scene = above_floor(solids::cuboid(dvec3(0.2, 3.0, 6.0)), Material::default(), dvec3(-1.9, 1.5, 0.0));
+    for (lamp_at, size) in [(dvec3(1.3, 2.1, 0.7), 512), (dvec3(0.2, 3.3, -1.9), 512), (dvec3(2.5, 1.0, 2.2), 256)] {
+        let settings =
+            Settings { shadows: ShadowSettings { map_size: size, ..settings("map").shadows }, ..settings("map") };
+        with_shadows(&scene, &[lamp(lamp_at)], &settings, |arriving| {
+            // Along the seam, on the floor and up the wall, ever closer to it.
+            for i in 0..400 {
+                let z = f64::from(i) / 400.0 * 5.0 - 2.5;
+                for away in [1e-3, 4e-3, 0.016, 0.064] {
+                    let floor = arriving(place(dvec3(-1.8 + away, 0.0, z), DVec3::Y));
+                    let wall = arriving(place(dvec3(-1.8, away, z), DVec3::X));
+                    let parts = [floor, wall];
+                    assert!(
+                        parts.iter().all(|&p| p > 0.9),
+                        "{lamp_at}, {size}: {away} from the seam at {z}: {parts:?}"
+                    );
+                }
+            }
+        });
+    }
+}
+
+#[test]
 fn maps_differ_from_rays_only_near_edges_of_shadows() {
     let (size, towards) = (512, dvec3(1.0, 2.0, -0.6).normalize());
     let (x, y) = towards.any_orthonormal_pair();

@@ -19,6 +19,9 @@ use vitral_raster::TILE;
 const LIFT: f64 = 0.5;
 /// How far behind a point's plane a surface may be and still count as its own, in texels.
 const BEYOND: f64 = 2.0;
+/// How far in front of a point's plane a surface may be and still only touch it, in texels, such as a wall that begins on a floor
+/// between a texel and the next.
+const TOUCHING: f64 = 4.0;
 /// Error of a texel's depth for each texel of depth that the plane rises over a texel: corners are rounded to 1/256
 /// texel, and two roundings may add up.
 const SLOPE_BIAS: f64 = 1.0 / 64.0;
@@ -35,6 +38,8 @@ struct Eight<S: Simd> {
     depths: [F64x8<S>; 4],
     /// What lies farther in the four texels than this is not the surface that the place is on.
     ends: [F64x8<S>; 4],
+    /// By how much less than its plane something may be deep that only touches it.
+    touching: F64x8<S>,
 }
 
 /// Where the four texels of eight places lie.
@@ -55,6 +60,9 @@ struct Answer {
     passing: Rgb,
     /// Whether the light sees only what is far behind, or nothing.
     beyond: bool,
+    /// Whether something opaque lies in front, and how deep it is.
+    dark: bool,
+    nearest: f64,
 }
 
 /// What maps answer to questions: the number of a map, and which of the places is asked about, which faces its light.
@@ -250,7 +258,8 @@ impl Map {
             apart &= apart - 1;
             let first = [eight.first[0][lane] as i32, eight.first[1][lane] as i32];
             let surface = std::array::from_fn(|k| [eight.depths[k][lane], eight.ends[k][lane]]);
-            let part = self.four_apart(first, surface, [eight.shares[0][lane], eight.shares[1][lane]]);
+            let shares = [eight.shares[0][lane], eight.shares[1][lane]];
+            let part = self.four_apart(first, surface, eight.touching[lane], shares);
             parts.iter_mut().zip(part).for_each(|(channel, part)| channel[lane] = part);
         }
     }
@@ -272,7 +281,7 @@ impl Map {
         let at = self.project(simd, point);
         let first = [(at[0] + 0.5).floor() - 1.0, (at[1] + 0.5).floor() - 1.0];
         let (depths, ends) = self.plane_depths(simd, point, normal, first, texel);
-        Eight { at, first, depths, ends }
+        Eight { at, first, depths, ends, touching: texel * TOUCHING }
     }
 
     /// Where points of view space are on the map, in texels; not a number behind the light.
@@ -345,11 +354,27 @@ impl Map {
     /// in each.
     ///
     /// A texel in which the light sees something far behind that surface tells nothing about it: there, it has come to its
-    /// end. Were such a texel lit, light would leak in where two walls of a closed room meet.
+    /// end. Were such a texel lit, light would leak in where two walls of a closed room meet. Where a wall begins, texels are dark
+    /// because of something that only touches the surface. They tell nothing about a place whose own texel is lit, or beside which
+    /// nothing else is dark and the surface itself is lit.
     #[inline(never)]
-    fn four_apart(&self, [left, top]: [i32; 2], surface: [[f64; 2]; 4], [right, bottom]: [f32; 2]) -> Rgb {
+    fn four_apart(
+        &self,
+        [left, top]: [i32; 2],
+        surface: [[f64; 2]; 4],
+        touching: f64,
+        [right, bottom]: [f32; 2],
+    ) -> Rgb {
         let at = |k: usize| self.passing_at([left + (k % 2) as i32, top + (k / 2) as i32], surface[k]);
-        let four = [at(0), at(1), at(2), at(3)];
+        let mut four = [at(0), at(1), at(2), at(3)];
+        let own = usize::from(right >= 0.5) + 2 * usize::from(bottom >= 0.5);
+        let touches = |(answer, [begin, _]): (&Answer, [f64; 2])| !answer.dark || answer.nearest >= begin - touching;
+        let only_touched = four.iter().zip(surface).all(touches) && four.iter().any(|a| !a.dark && !a.beyond);
+        if !four[own].dark || only_touched {
+            for (answer, [begin, _]) in four.iter_mut().zip(surface) {
+                answer.beyond |= answer.dark && answer.nearest >= begin - touching;
+            }
+        }
         let passing = four.map(|answer| answer.passing);
         if passing.iter().all(|part| *part == [1.0; 3]) || !four.iter().any(|answer| answer.beyond) {
             return [0, 1, 2].map(|k| blended(passing.map(|color| color[k]), right, bottom));
@@ -365,15 +390,16 @@ impl Map {
 
     /// What one texel says about a surface that begins and ends at these depths.
     fn passing_at(&self, place: [i32; 2], [begin, end]: [f64; 2]) -> Answer {
-        let Some((tile, texel)) = self.texel(place) else { return Answer { passing: [1.0; 3], beyond: true } };
+        let lit = Answer { passing: [1.0; 3], beyond: true, dark: false, nearest: f64::INFINITY };
+        let Some((tile, texel)) = self.texel(place) else { return lit };
         let nearest = f64::from(tile.depth.get(texel).copied().unwrap_or(f32::INFINITY));
         if nearest < begin {
-            Answer { passing: [0.0; 3], beyond: false }
+            Answer { passing: [0.0; 3], beyond: false, dark: true, nearest }
         } else if tile.layers.is_empty() {
-            Answer { passing: [1.0; 3], beyond: nearest > end }
+            Answer { beyond: nearest > end, nearest, ..lit }
         } else {
             // The surface itself may be among the transparent things.
-            Answer { passing: tile.filtered(texel, begin), beyond: false }
+            Answer { passing: tile.filtered(texel, begin), beyond: false, nearest, ..lit }
         }
     }
 }
@@ -386,17 +412,35 @@ impl<S: Simd> Eight<S> {
         // Compare the depths.
         let (one, zero) = (F32x8::splat(simd, 1.0), F32x8::splat(simd, 0.0));
         let (mut lit, mut beyond) = ([one; 4], [Mask8::splat(simd, false); 4]);
+        let mut touching = [Mask8::splat(simd, false); 4];
         for k in 0..4 {
             let texel = lanes::widened(simd, F32x8::from_slice(simd, &texels[k]));
             let dark = lanes_of(simd, texel.simd_lt(self.depths[k]).to_bitmask() as u32);
             lit[k] = lanes::Lanes::select(dark, zero, one);
             beyond[k] = lanes_of(simd, texel.simd_gt(self.ends[k]).to_bitmask() as u32) & !dark;
+            let touches = texel.simd_ge(self.depths[k] - self.touching);
+            touching[k] = lanes_of(simd, touches.to_bitmask() as u32) & dark;
         }
         let part = blended(lit, right, bottom);
 
         // Where answers differ, leave out texels that the surface does not reach: see `four_apart`, of which these are the
         // operations.
         let differ = part.simd_gt(zero) & part.simd_lt(one);
+        let half = F32x8::splat(simd, 0.5);
+        let pick = lanes::inlined(
+            #[inline(always)]
+            |a: F32x8<S>, b: F32x8<S>| lanes::Lanes::select(right.simd_ge(half), b, a),
+        );
+        let own = lanes::Lanes::select(bottom.simd_ge(half), pick(lit[2], lit[3]), pick(lit[0], lit[1]));
+        let mut only_touched = Mask8::splat(simd, true);
+        let mut some_lit = Mask8::splat(simd, false);
+        for k in 0..4 {
+            let is_lit = lit[k].simd_gt(zero);
+            only_touched &= is_lit | touching[k];
+            some_lit |= is_lit & !beyond[k];
+        }
+        let begins = own.simd_gt(zero) | (only_touched & some_lit);
+        (0..4).for_each(|k| beyond[k] |= touching[k] & begins);
         let beside = differ & (beyond[0] | beyond[1] | beyond[2] | beyond[3]);
         if beside.to_bitmask() as u32 & asked == 0 {
             return part;
@@ -418,6 +462,7 @@ struct Stored {
     first: [[f64; LANES]; 2],
     depths: [[f64; LANES]; 4],
     ends: [[f64; LANES]; 4],
+    touching: [f64; LANES],
     shares: [[f32; LANES]; 2],
 }
 
@@ -440,6 +485,7 @@ impl Stored {
             first: [store(eight.first[0]), store(eight.first[1])],
             depths: four(&eight.depths),
             ends: four(&eight.ends),
+            touching: store(eight.touching),
             shares: [shares[0].to_array(), shares[1].to_array()],
         }
     }
@@ -503,7 +549,8 @@ mod tests {
                 return [1.0; 3];
             }
             let surface = std::array::from_fn(|k| [stored.depths[k][lane], stored.ends[k][lane]]);
-            map.four_apart(first.map(|v| v as i32), surface, [stored.shares[0][lane], stored.shares[1][lane]])
+            let shares = [stored.shares[0][lane], stored.shares[1][lane]];
+            map.four_apart(first.map(|v| v as i32), surface, stored.touching[lane], shares)
         })
     }
 

@@ -2,7 +2,7 @@
 
 use crate::batch_args::{BatchArgs, BatchWorkerArgs};
 use crate::draw_args::DrawArgs;
-use crate::help::{EXIT_CODES, model_help};
+use crate::help::{self, EXIT_CODES, model_help, model_long_help};
 use crate::lab_args::LabPageArgs;
 use crate::read_probe::ReadProbeArgs;
 use crate::render_args::{CameraArgs, EyeArgs, RenderArgs};
@@ -20,7 +20,7 @@ use vitral::Visibility;
     version,
     arg_required_else_help = true,
     disable_help_subcommand = true,
-    max_term_width = 120
+    max_term_width = help::WIDTH
 )]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct Cli {
@@ -78,7 +78,7 @@ pub(crate) struct ManArgs {
 /// Options of `vitral info`.
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
-    #[arg(required = true, value_name = "MODEL", help = model_help())]
+    #[arg(required = true, value_name = "MODEL", help = model_help(), long_help = model_long_help())]
     pub(crate) models: Vec<PathBuf>,
     /// One JSON object on standard output
     #[arg(long)]
@@ -137,47 +137,54 @@ pub(crate) struct CompareArgs {
 
 /// Options of `vitral bench`.
 #[derive(Args, Debug)]
-#[command(after_help = EXIT_CODES)]
+#[command(after_help = EXIT_CODES, next_help_heading = help::MEASUREMENT)]
 pub(crate) struct BenchArgs {
-    #[arg(required_unless_present = "report", value_name = "MODEL", help = model_help())]
+    #[arg(required_unless_present = "report", value_name = "MODEL", help = model_help(), long_help = model_long_help())]
     pub(crate) models: Vec<PathBuf>,
-    /// Measure growth over the number of polygons and of pixels on a scene of its own, and write visibility-report.md
-    /// with its plots into this folder
+    /// Measure how time grows with the number of polygons and of pixels, on a scene of its own, and
+    /// write visibility-report.md with plots into this folder
     #[arg(long, value_name = "DIR", conflicts_with_all = ["json", "resolution", "samples", "visibility", "CameraArgs", "EyeArgs"])]
     pub(crate) report: Option<PathBuf>,
-    /// With --report: compare the polygons of painter, bsp and weiler-atherton with exact drawings, of scenes of its own and of the
-    /// models, and write drawing-report.md with its pictures
+    /// With --report: compare the polygons of painter, bsp and weiler-atherton with exact drawings,
+    /// of its own scenes and of the models, and write drawing-report.md with its pictures
     #[arg(long, requires = "report")]
     pub(crate) drawings: bool,
-    /// Only these algorithms, and the z-buffer; repeatable [default: all]
+    /// Measure only these algorithms and the z-buffer; repeatable [default: all]
     #[arg(long, value_name = "NAME", value_parser = crate::choices::visibility())]
     pub(crate) visibility: Vec<Visibility>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", value_parser = values::resolution, default_value = "1024x768")]
     pub(crate) resolution: [u32; 2],
-    /// Samples a pixel, 1 to 16, or 32
+    /// Samples per pixel, 1 to 16, or 32
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::samples)]
     pub(crate) samples: u32,
-    /// Pictures that the median is taken of, after a first one
+    /// Pictures whose median time is taken, after a first one that is not counted
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = values::whole(1..=1000u32))]
     pub(crate) frames: u32,
-    /// Seconds for each algorithm; one that cannot finish says so in its row, and the others go on
+    /// Seconds for each algorithm; one that does not finish says so in its row, and the others go
+    /// on
+    #[arg(help_heading = help::LIMITS)]
     #[arg(long, value_name = "S", value_parser = values::positive, default_value_t = 20.0)]
     pub(crate) time_limit: f64,
-    /// Memory that each algorithm may take, such as 512M or 1G [default: the machine's, or its control group's limit, where Linux
-    /// tells]
+    /// Memory that each algorithm may take, such as 512M or 1G [default: the limit of the machine
+    /// or control group, where Linux tells it]
+    #[arg(help_heading = help::LIMITS)]
     #[arg(long, value_name = "B", value_parser = values::bytes)]
     pub(crate) max_memory: Option<u64>,
-    /// Let models name files outside their folder
+    /// Let models read files outside their folder
+    #[arg(help_heading = help::FILES)]
     #[arg(long)]
     pub(crate) allow_external: bool,
-    /// Threads; 0 means as many as the process may use [default: what VITRAL_THREADS says, else 0]
+    /// Threads; 0 means as many as the process may use [default: VITRAL_THREADS, else 0]
+    #[arg(help_heading = help::LIMITS)]
     #[arg(long, value_name = "N", value_parser = values::threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<usize>,
-    /// One JSON object on standard output
+    /// Print the results as one JSON object on standard output
+    #[arg(help_heading = help::REPORTS)]
     #[arg(long)]
     pub(crate) json: bool,
-    /// No warnings and no progress
+    /// Print no warnings and no progress
+    #[arg(help_heading = help::REPORTS)]
     #[arg(long, short)]
     pub(crate) quiet: bool,
     #[command(flatten)]
@@ -205,35 +212,36 @@ pub(crate) struct OsmesaEnvArgs {
 /// The definition of the command line, with choices in upper and lower case alike.
 pub(crate) fn command() -> clap::Command {
     // Options that take no value cannot have a case.
-    let any_case = |verb: clap::Command| {
-        verb.mut_args(
-            |argument| if argument.get_action().takes_values() { argument.ignore_case(true) } else { argument },
-        )
-    };
-    Cli::command().mut_subcommands(any_case)
+    let any_case =
+        |option: clap::Arg| if option.get_action().takes_values() { option.ignore_case(true) } else { option };
+    Cli::command().mut_subcommands(|verb| help::with_groups(verb.mut_args(any_case)))
 }
 
 /// The arguments with the verb `render` put in where none was typed: `vitral MODEL -o OUT`. What is neither a verb nor looks like
-/// a model stays, to be refused as a verb. `help VERB` becomes `VERB --help`.
+/// a model stays, to be refused as a verb. `help VERB GROUP` becomes `VERB --help GROUP`.
 pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi::OsString> {
     if arguments.get(1).is_some_and(|a| a == "help") {
         arguments.remove(1);
-        arguments.truncate(2);
-        arguments.push("--help".into());
+        arguments.truncate(3);
+        arguments.insert(arguments.len().min(2), "--help".into());
         return arguments;
     }
     let Some(first) = arguments.get(1).map(|a| a.to_string_lossy().into_owned()) else { return arguments };
-    let is_path = std::path::Path::new(&arguments[1]).exists();
     let first = first.as_str();
     let general = ["-h", "--help", "-V", "--version"].contains(&first);
     let is_verb = Cli::command().get_subcommands().any(|c| c.get_name() == first);
-    let is_word = first.starts_with(|c: char| c.is_ascii_alphabetic()) && !first.contains(['.', '/', '\\', ':', '{']);
-    let is_model = !is_word || is_path;
-    if !general && !is_verb && is_model {
+    if !general && !is_verb && may_be_model(&arguments[1]) {
         let verb = if names_drawing(&arguments) { "draw" } else { "render" };
         arguments.insert(1, verb.into());
     }
     arguments
+}
+
+/// Whether a word may be the name of a model: it is no plain word, or there is a file of that name.
+pub(crate) fn may_be_model(word: &std::ffi::OsStr) -> bool {
+    let text = word.to_string_lossy();
+    let is_plain = text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.contains(['.', '/', '\\', ':', '{']);
+    !is_plain || std::path::Path::new(word).exists()
 }
 
 /// Whether the arguments have an output whose extension is that of a drawing.

@@ -87,7 +87,7 @@ impl FromStr for Shard {
         match parts {
             Some((i, n)) if (1..=n).contains(&i) => Ok(Self { index: i - 1, count: n }),
             Some((0, _)) => Err("parts are counted from 1".to_owned()),
-            _ => Err("I/N is wanted, such as 1/4".to_owned()),
+            _ => Err("I/N is required, such as 1/4".to_owned()),
         }
     }
 }

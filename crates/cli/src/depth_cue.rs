@@ -16,7 +16,9 @@ pub(crate) fn parse(text: &str) -> Result<DepthCue, String> {
         back_scale: fields.take("back-scale", share)?.map_or(default.back_scale, |s| s as f32),
     };
     match fields.unused() {
-        Some(key) => Err(format!("there is no `{key}`: color, front, back, front-scale, back-scale are known")),
+        Some(key) => {
+            Err(format!("there is no key `{key}`; the keys are color, front, back, front-scale and back-scale"))
+        }
         None => Ok(cue),
     }
 }

@@ -337,9 +337,9 @@ fn page_size(text: &str) -> Result<Sheet, String> {
     let side = |side: &str| values::positive(side).ok().filter(|&side| side <= 10_000.0);
     match sides.and_then(|(width, height)| Some([side(width)?, side(height)?])) {
         Some(size) => Ok(Sheet::Size(size)),
-        None => {
-            Err(format!("`{text}` is no sheet: fit, A0 to A6, or a size of up to 10 m such as 200x100mm is required"))
-        }
+        None => Err(format!(
+            "`{text}` is not a sheet: fit, A0 to A6, or a size of up to 10 m such as 200x100mm is required"
+        )),
     }
 }
 
@@ -363,7 +363,7 @@ fn stroke(text: &str) -> Result<(String, f64), String> {
 
 /// `1:2`, `2:1` or `0.5`.
 fn scale(text: &str) -> Result<f64, String> {
-    let wrong = || format!("`{text}` is no scale: 1:2, 2:1 or a number above 0 is required");
+    let wrong = || format!("`{text}` is not a scale: 1:2, 2:1 or a number above 0 is required");
     let ratio = match text.split_once(':') {
         Some((paper, model)) => values::positive(paper).and_then(|paper| Ok(paper / values::positive(model)?)),
         None => values::positive(text),
@@ -384,9 +384,9 @@ fn title_row(text: &str) -> Result<(String, String), String> {
     let row = (key.to_owned(), value.to_owned());
     match TitleBlock::new(std::slice::from_ref(&row)) {
         Ok(_) => Ok(row),
-        Err(letter) => {
-            Err(format!("there are no strokes for `{letter}`; letters are A to Z, a to z, 0 to 9 and punctuation"))
-        }
+        Err(letter) => Err(format!(
+            "there are there is no stroke letter for `{letter}`; letters are A to Z, a to z, 0 to 9 and punctuation"
+        )),
     }
 }
 

@@ -53,7 +53,9 @@ impl SectionArgs {
     pub(crate) fn check(&self) -> Result<(), Failure> {
         let count = self.section_plane.len();
         if count > MOST_PLANES {
-            return Err(Failure::usage(format!("--section-plane: {count} planes, at most {MOST_PLANES} are possible")));
+            return Err(Failure::usage(format!(
+                "--section-plane: {count} planes are given, at most {MOST_PLANES} are possible"
+            )));
         }
         Ok(())
     }
@@ -81,7 +83,8 @@ impl SectionArgs {
         let warning = match scene.nodes.iter().any(|node| node.mesh.is_some()) {
             false => Some("--section-plane: nothing is left of the model"),
             true if !scene.is_cut() => Some("--section-plane: no plane cuts the model"),
-            true => (!scene.has_caps()).then_some("--section-plane: no body is closed, so there is no cap to hatch"),
+            true => (!scene.has_caps())
+                .then_some("--section-plane: no cut body is closed, so there is no cut surface to hatch"),
         };
         scene.warnings.extend(warning.map(str::to_owned));
         Ok(scene)
@@ -94,7 +97,7 @@ fn plane(text: &str) -> Result<SectionPlane, String> {
     let &[x, y, z, nx, ny, nz] = &numbers[..] else {
         return Err("six numbers X,Y,Z,NX,NY,NZ are required, such as 0,0,0,0,0,1".to_owned());
     };
-    SectionPlane::new([x, y, z], [nx, ny, nz]).ok_or_else(|| "a normal NX,NY,NZ of some length is required".to_owned())
+    SectionPlane::new([x, y, z], [nx, ny, nz]).ok_or_else(|| "the normal NX,NY,NZ must not be 0,0,0".to_owned())
 }
 
 /// `45,2mm` or `none`.
@@ -119,7 +122,7 @@ mod tests {
     fn planes_and_hatching_are_read() {
         assert_eq!(plane("1,2,-3,0,0,5").ok(), SectionPlane::new([1.0, 2.0, -3.0], [0.0, 0.0, 1.0]));
         assert!(plane("1,2,3").unwrap_err().contains("six numbers"));
-        assert!(plane("0,0,0,0,0,0").unwrap_err().contains("some length") && plane("0,0,0,0,0,x").is_err());
+        assert!(plane("0,0,0,0,0,0").unwrap_err().contains("must not be 0,0,0") && plane("0,0,0,0,0,x").is_err());
         assert_eq!(hatch("45,2mm"), Ok(Hatching::Lines(Hatch::default())));
         assert_eq!(hatch("405,2"), hatch("45,2mm"));
         assert_eq!(hatch("none"), Ok(Hatching::None));

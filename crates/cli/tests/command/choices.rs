@@ -120,8 +120,8 @@ fn options_without_effect_are_told_and_change_nothing() {
         (&["builtin:cubs", "--light", "ambient:"], &["--shadows", "ray"], "no light casts shadows"),
         (&["builtin:scene0", "--shadows", "ray"], &["--light-samples", "4"], "no light has an area"),
         (&["builtin:scene0", "--shading", "flat"], &["--normals", "made"], "its own normal"),
-        (&["builtin:sphere", "--camera-index", "0"], &["--view", "top"], "say from where"),
-        (&["builtin:sphere", "--camera-direction=1,0,-1"], &["--view", "top"], "say from where"),
+        (&["builtin:sphere", "--camera-index", "0"], &["--view", "top"], "decides the view"),
+        (&["builtin:sphere", "--camera-direction=1,0,-1"], &["--view", "top"], "decides the view"),
         (&["builtin:sphere", "--camera-position=5,4,3", "--camera-view-up=0,1,0"], &["--view", "top"], "from where"),
         (
             &["builtin:sphere", "--camera-position=5,4,3", "--camera-view-up=0,1,0"],

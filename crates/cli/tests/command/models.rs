@@ -88,7 +88,7 @@ fn what_one_scene_gives_is_refused_for_several() {
         (&["--reference", "a.png"], "--reference"),
         (
             &["--channel", "color", "--channel", "depth", "-o", "d.npy"],
-            "--output d.npy: each model would be written there",
+            "--output d.npy: every model would be written to this file",
         ),
     ] {
         let output = bare(&folder, &[&two, arguments].concat());

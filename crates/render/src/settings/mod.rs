@@ -400,7 +400,7 @@ mod tests {
         assert_eq!(settings.check().map(|v| (v.width, v.height)), Ok((64, 48)));
         assert!(settings.casts_rays(), "shadows by rays cast them");
         let error = settings.with_samples(17).check().unwrap_err();
-        assert_eq!(error.to_string(), "17 samples a pixel: 1 to 16, or 32, are possible");
+        assert_eq!(error.to_string(), "17 samples per pixel: 1 to 16, or 32, are possible");
     }
 
     #[test]

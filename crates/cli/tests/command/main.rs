@@ -392,7 +392,7 @@ fn the_help_goes_into_pipes() {
 #[test]
 fn each_verb_has_help_in_two_sizes_and_by_groups() {
     let folder = Folder::new("groups");
-    folder.write("a.obj", TRIANGLE);
+    folder.file("a.obj", TRIANGLE);
     let help = |arguments: &[&str]| {
         let output = folder.run(arguments);
         assert_eq!((code(&output), errors(&output).as_str()), (0, ""), "{arguments:?}");

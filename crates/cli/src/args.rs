@@ -36,15 +36,15 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Make a vector drawing of one or more models: visible and hidden lines
     Draw(Box<DrawArgs>),
-    /// Make many pictures and drawings, side by side; a batch that was cut short goes on where it was
+    /// Make many pictures and drawings in parallel; a batch that was interrupted continues
     Batch(Box<BatchArgs>),
     #[command(hide = true)]
     BatchWorker(BatchWorkerArgs),
     #[command(hide = true)]
     ReadProbe(ReadProbeArgs),
-    /// Open the Lab in a browser: the classical algorithms to watch, step through and question
+    /// Open the Lab in a browser: watch the classical algorithms step by step
     Lab(LabPageArgs),
-    /// Tell what is in a model file
+    /// Show what is in a model file
     Info(InfoArgs),
     /// Make the small picture of a model that file managers show
     Thumbnail(ThumbnailArgs),
@@ -70,7 +70,7 @@ pub(crate) enum Verb {
 /// Options of `vitral man`.
 #[derive(Args, Debug)]
 pub(crate) struct ManArgs {
-    /// Write vitral.1, vitral-render.1, ... into this folder [default: one page on standard output]
+    /// Folder for vitral.1, vitral-render.1, ... [default: one page on standard output]
     #[arg(value_name = "DIR")]
     pub(crate) folder: Option<PathBuf>,
 }
@@ -80,16 +80,16 @@ pub(crate) struct ManArgs {
 pub(crate) struct InfoArgs {
     #[arg(required = true, value_name = "MODEL", help = model_help(), long_help = model_long_help())]
     pub(crate) models: Vec<PathBuf>,
-    /// One JSON object on standard output
+    /// Print one JSON object on standard output
     #[arg(long)]
     pub(crate) json: bool,
-    /// Let models name files outside their folder
+    /// Let models read files outside their folder
     #[arg(long)]
     pub(crate) allow_external: bool,
-    /// Threads; 0 means as many as the process may use [default: what VITRAL_THREADS says, else 0]
+    /// Threads; 0 means as many as the process may use [default: VITRAL_THREADS, else 0]
     #[arg(long, value_name = "N", value_parser = values::threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<usize>,
-    /// No warnings
+    /// Print no warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }
@@ -97,14 +97,14 @@ pub(crate) struct InfoArgs {
 /// Options of `vitral thumbnail`.
 ///
 /// File managers call it as `vitral thumbnail %i %o %s`. The picture is a square PNG with a transparent background, whatever OUT is called.
-/// Configuration files have no say. A thumbnail may take 20 s and 1 GB.
+/// No configuration file is read. A thumbnail may take 20 s and 1 GB of memory; beyond that it fails with exit code 7.
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct ThumbnailArgs {
     /// The model file
     #[arg(value_name = "IN")]
     pub(crate) model: PathBuf,
-    /// Where the picture goes; its folder has to be there
+    /// Where the picture goes; its folder must exist
     #[arg(value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Width and height in pixels, 1 to 4096
@@ -121,13 +121,13 @@ pub(crate) struct CompareArgs {
     /// The actual picture, or `-` for standard input
     #[arg(value_name = "B")]
     pub(crate) second: PathBuf,
-    /// How far a channel may be apart, 0 to 1 of its range, before a pixel counts as different
+    /// How far a channel may differ before its pixel counts as different, from 0 to 1 of the range
     #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = values::share, allow_negative_numbers = true)]
     pub(crate) threshold: f64,
-    /// Write a picture of the difference: the first one in grey, differing pixels in red
+    /// Write a picture of the difference: the first picture in grey, with differing pixels in red
     #[arg(long, value_name = "OUT")]
     pub(crate) diff: Option<PathBuf>,
-    /// One JSON object on standard output
+    /// Print one JSON object on standard output
     #[arg(long)]
     pub(crate) json: bool,
     /// Print nothing
@@ -196,7 +196,7 @@ pub(crate) struct BenchArgs {
 /// Options of the lists.
 #[derive(Args, Debug)]
 pub(crate) struct ListArgs {
-    /// One JSON object on standard output
+    /// Print one JSON object on standard output
     #[arg(long)]
     pub(crate) json: bool,
 }

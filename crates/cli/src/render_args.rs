@@ -237,7 +237,7 @@ pub(crate) struct AlgorithmArgs {
     #[arg(help_heading = help::GLOBAL)]
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) patch_size: Option<f64>,
-    /// Patches that may send light, with --global radiosity [default: until 0.2 % of what stays is left]
+    /// The most patches that send light, with --global radiosity [default: until 0.2 % of the light is left to send]
     #[arg(help_heading = help::GLOBAL)]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=u64::MAX), allow_negative_numbers = true)]
     pub(crate) iterations: Option<u64>,

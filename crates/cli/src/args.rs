@@ -218,9 +218,12 @@ pub(crate) fn command() -> clap::Command {
 }
 
 /// The arguments with the verb `render` put in where none was typed: `vitral MODEL -o OUT`. What is neither a verb nor looks like
-/// a model stays, to be refused as a verb. `help VERB GROUP` becomes `VERB --help GROUP`.
+/// a model stays, to be refused as a verb. `help VERB GROUP` and `--help VERB GROUP` become
+/// `VERB --help GROUP`.
 pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi::OsString> {
-    if arguments.get(1).is_some_and(|a| a == "help") {
+    let is_verb = |word: &str| Cli::command().get_subcommands().any(|c| c.get_name() == word);
+    let names_verb = arguments.get(2).and_then(|word| word.to_str()).is_some_and(is_verb);
+    if arguments.get(1).is_some_and(|a| a == "help" || a == "--help" && names_verb) {
         arguments.remove(1);
         arguments.truncate(3);
         arguments.insert(arguments.len().min(2), "--help".into());
@@ -229,8 +232,7 @@ pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi:
     let Some(first) = arguments.get(1).map(|a| a.to_string_lossy().into_owned()) else { return arguments };
     let first = first.as_str();
     let general = ["-h", "--help", "-V", "--version"].contains(&first);
-    let is_verb = Cli::command().get_subcommands().any(|c| c.get_name() == first);
-    if !general && !is_verb && may_be_model(&arguments[1]) {
+    if !general && !is_verb(first) && may_be_model(&arguments[1]) {
         let verb = if names_drawing(&arguments) { "draw" } else { "render" };
         arguments.insert(1, verb.into());
     }
@@ -294,6 +296,7 @@ mod tests {
             (&["a.svg", "-o", "b.png"], "render"),
             (&["help"], "--help"),
             (&["help", "info"], "info"),
+            (&["--help", "info"], "info"),
             (&["--help"], "--help"),
         ] {
             assert_eq!(with(words).as_deref(), Some(expected));

@@ -34,10 +34,10 @@ mod tests {
         assert_eq!((cue.front, cue.back, cue.back_scale), (Some(2.0), Some(9.5), 0.0));
         assert_eq!((cue.color, cue.front_scale), (Some([0.0, 0.5, 1.0]), 1.0));
         for (text, part) in [
-            ("near=1", "no `near`"),
+            ("near=1", "no key `near`"),
             ("front=-1", "front: "),
             ("back-scale=2", "0 to 1"),
-            ("color=nowhere", "no colour"),
+            ("color=nowhere", "not a colour"),
             ("5", "no key"),
             ("front=1,front=2", "twice"),
         ] {

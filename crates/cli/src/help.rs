@@ -173,29 +173,26 @@ pub(crate) fn asked_for(words: &[OsString]) -> Result<Option<StyledStr>, Failure
     let behind = position.and_then(|at| words.get(at + 1)).filter(|word| !word.to_string_lossy().starts_with('-'));
     let command = args::command();
     let Some(verb) = words.get(1).and_then(|word| command.find_subcommand(word)) else {
-        return behind.map(|word| of_verb(&command, &word.to_string_lossy())).transpose();
+        return behind.map_or(Ok(None), |word| Err(unknown_verb(&command, &word.to_string_lossy())));
     };
     let name = verb.get_name();
     match behind.map(|word| (group_of(verb, word), word)) {
         // What may be a model is none of help's words.
-        Some((None, word)) if args::may_be_model(word) => of_groups(name, is_short),
+        Some((None, word)) if args::may_be_model(word) => Ok(summary(name, is_short)),
         Some((None, word)) => Err(unknown(verb, &word.to_string_lossy())),
-        Some((Some(None), _)) => Ok(Some(everything(name, is_short))),
+        Some((Some(None), _)) => Ok(essential(name).map(|_| everything(name, is_short))),
         Some((Some(Some(group)), _)) => Ok(Some(of_group(name, group, is_short))),
-        None => of_groups(name, is_short),
+        None => Ok(summary(name, is_short)),
     }
 }
 
-/// `vitral --help VERB`: the help of a verb.
-fn of_verb(command: &Command, word: &str) -> Result<StyledStr, Failure> {
+/// The error for a word behind `vitral --help` that is no verb.
+fn unknown_verb(command: &Command, word: &str) -> Failure {
     let verbs: Vec<&str> =
         command.get_subcommands().filter(|verb| !verb.is_hide_set()).map(Command::get_name).collect();
-    if !verbs.contains(&word) {
-        let meant = nearest(word, verbs.iter().copied()).map(|verb| format!("; did you mean `{verb}`?"));
-        let text = format!("--help {word}: there is no such verb{}", meant.unwrap_or_default());
-        return Err(Failure::usage(text).with_hint(format!("the verbs are {}", verbs.join(", "))));
-    }
-    Ok(of_groups(word, false)?.unwrap_or_else(|| everything(word, false)))
+    let meant = nearest(word, verbs.iter().copied()).map(|verb| format!("; did you mean `{verb}`?"));
+    let text = format!("--help {word}: there is no such verb{}", meant.unwrap_or_default());
+    Failure::usage(text).with_hint(format!("the verbs are {}", verbs.join(", ")))
 }
 
 /// The groups of a verb.
@@ -240,8 +237,8 @@ fn unknown(verb: &Command, word: &str) -> Failure {
 }
 
 /// The summary of a verb: the options that most people need, examples, the list of groups. `None` for a verb without groups.
-fn of_groups(name: &str, is_short: bool) -> Result<Option<StyledStr>, Failure> {
-    let Some(essential) = essential(name) else { return Ok(None) };
+fn summary(name: &str, is_short: bool) -> Option<StyledStr> {
+    let essential = essential(name)?;
     let command = args::command();
     let verb = command.find_subcommand(name).expect("verbs with groups are verbs");
 
@@ -259,10 +256,19 @@ fn of_groups(name: &str, is_short: bool) -> Result<Option<StyledStr>, Failure> {
     for group in groups(verb) {
         let _ = writeln!(after, "  {:<13} {}", group.name, group.about);
     }
-    let _ = write!(after, "\n{EXIT_CODES}");
-    let shown = |option: &Arg| option.is_positional() || essential.contains(&option.get_id().as_str());
-    let change = |option: Arg| if shown(&option) { option.help_heading("Options") } else { option.hide(true) };
-    Ok(Some(rendered(name, true, |verb| verb.mut_args(change).after_help(after.clone()))))
+    if !is_short {
+        let _ = write!(after, "\n{EXIT_CODES}");
+    }
+    let change = |option: Arg| {
+        if option.is_positional() {
+            option
+        } else if essential.contains(&option.get_id().as_str()) {
+            option.help_heading("Options")
+        } else {
+            option.hide(true)
+        }
+    };
+    Some(rendered(name, true, |verb| verb.mut_args(change).after_help(after)))
 }
 
 /// The options of one group.
@@ -272,7 +278,8 @@ fn of_group(name: &str, group: &Group, is_short: bool) -> StyledStr {
     let about = format!("{}: {}", group.heading, group.about);
     rendered(name, is_short, |verb| {
         let verb = verb.mut_args(|option| if is_in(&option) { option } else { option.hide(true) });
-        verb.about(about.clone()).long_about(about.clone()).after_help(after.clone())
+        let usage = format!("vitral {name} [OPTIONS] [MODEL]...");
+        verb.override_usage(usage).about(about.clone()).long_about(about).after_help(after)
     })
 }
 
@@ -324,41 +331,49 @@ mod tests {
         }
     }
 
+    /// The options that a help text defines, by their long names.
+    fn defined(text: &str) -> Vec<&str> {
+        // An option stands two columns in, or six where it has no short name; its text begins farther to the right.
+        let option = |line| {
+            let line: &str = line;
+            let start =
+                line.strip_prefix("      --").or_else(|| line.strip_prefix("  -")?.split_once(", --").map(|p| p.1));
+            start.map(|name| name.split([' ', '[', '=']).next().unwrap_or_default())
+        };
+        text.lines().filter_map(option).collect()
+    }
+
     #[test]
     fn each_group_shows_its_own_options_alone() {
         let command = args::command();
         for (name, _) in ESSENTIAL {
             let verb = command.find_subcommand(name).unwrap();
-            let all = help(&format!("vitral {name} --help all")).unwrap();
+            let named = |group: Option<&Group>| -> Vec<&str> {
+                let is_in = |option: &&Arg| group.is_none_or(|group| option.get_help_heading() == Some(group.heading));
+                verb.get_arguments().filter(is_in).filter_map(Arg::get_long).collect()
+            };
             for group in groups(verb) {
                 let text = help(&format!("vitral {name} --help {}", group.name)).unwrap();
-                for option in verb.get_arguments().filter(|option| !option.is_positional()) {
-                    let long = format!("--{}", option.get_long().unwrap());
-                    let begins =
-                        |text: &str| text.lines().any(|line| line.split([' ', '=', '[']).any(|word| word == long));
-                    let is_in = option.get_help_heading() == Some(group.heading);
-                    let starts = |line: &str| line.trim_start().trim_start_matches(|c| c != '-').starts_with('-');
-                    let definition = text.lines().filter(|line| starts(line) && line.starts_with("  ")).any(|line| {
-                        let start = line.trim_start();
-                        start.starts_with('-') && start.split([' ', '=', '[']).any(|word| word == long)
-                    });
-                    assert_eq!(definition, is_in, "{name} {}: {long}", group.name);
-                    assert!(begins(&all), "{long}");
-                }
+                assert_eq!(defined(&text), named(Some(group)), "{name} {}", group.name);
             }
+            let all = help(&format!("vitral {name} --help all")).unwrap();
+            let (mut shown, mut expected) = (defined(&all), named(None));
+            shown.sort_unstable();
+            expected.sort_unstable();
+            assert_eq!(shown, expected, "{name}");
         }
     }
 
     #[test]
-    fn a_summary_is_two_screens_and_the_short_form_one() {
+    fn a_summary_is_two_screens_and_the_short_form_about_one() {
         for (name, _) in ESSENTIAL {
-            for (option, most) in [("--help", 100), ("-h", 60)] {
+            for (option, most) in [("--help", 100), ("-h", 55)] {
                 let text = help(&format!("vitral {name} {option}")).unwrap();
                 let count = text.lines().count();
                 assert!((10..=most).contains(&count), "{name} {option}: {count} lines\n{text}");
                 let widest = text.lines().map(|line| line.chars().count()).max().unwrap();
                 assert!(widest <= WIDTH, "{name} {option}: {widest} columns\n{text}");
-                assert!(text.contains(&format!("vitral {name}")) && text.contains("Exit codes"), "{text}");
+                assert!(text.contains(&format!("vitral {name}")) && text.contains("by group"), "{text}");
             }
         }
         // What has no groups is no longer than that.
@@ -391,7 +406,7 @@ mod tests {
     #[test]
     fn the_word_behind_may_be_a_model_or_another_option() {
         let summary = help("vitral render --help").unwrap();
-        for other in ["render a.obj --help", "render --help a.obj", "render --help --shadows map", "--help render"] {
+        for other in ["render a.obj --help", "render --help a.obj", "render --help --shadows map"] {
             assert_eq!(help(&format!("vitral {other}")).unwrap(), summary, "{other}");
         }
         let group = help("vitral render a.obj --help Camera").unwrap();

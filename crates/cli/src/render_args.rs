@@ -130,15 +130,19 @@ pub(crate) struct OutputArgs {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = help::PICTURE)]
 pub(crate) struct PictureArgs {
-    /// Width and height in pixels, such as 1024x768 or 1024,768 [default: 1024x768]
+    /// Width and height in pixels [default: 1024x768]
+    ///
+    /// 1024x768 and 1024,768 mean the same
     #[arg(long, value_name = "WxH", value_parser = values::resolution, allow_hyphen_values = true)]
     pub(crate) resolution: Option<[u32; 2]>,
-    /// Samples per pixel, 1 to 16, or 32; 1 means no anti-aliasing [default: 4]
+    /// Samples per pixel, 1 to 16, or 32 [default: 4]
     ///
-    /// 32 samples are a coverage mask of 4 x 8
+    /// 1 means no anti-aliasing; 32 samples are a coverage mask of 4 x 8
     #[arg(long, value_name = "N", value_parser = values::samples, allow_negative_numbers = true)]
     pub(crate) samples: Option<u32>,
-    /// Background: a name, #rrggbb, or r,g,b from 0 to 1 [default: a soft gradient]
+    /// Background: a name, #rrggbb or r,g,b [default: a soft gradient]
+    ///
+    /// r, g and b are numbers from 0 to 1
     #[arg(long, value_name = "COLOR", value_parser = values::color, conflicts_with = "no_background")]
     pub(crate) background_color: Option<[f32; 3]>,
     /// Leave the background transparent
@@ -175,7 +179,7 @@ pub(crate) struct AlgorithmArgs {
     /// Formula for the light that a surface reflects [default: auto]
     #[arg(long, value_name = "MODEL", value_parser = choices::illumination())]
     pub(crate) illumination: Option<Illumination>,
-    /// Where that formula is computed: per pixel, vertex or face [default: phong]
+    /// Where illumination is computed: per pixel, vertex or face [default: phong]
     #[arg(long, value_name = "MODEL", value_parser = choices::shading())]
     pub(crate) shading: Option<Shading>,
     /// How values are interpolated between vertices [default: perspective]
@@ -258,7 +262,9 @@ pub(crate) struct AlgorithmArgs {
     #[arg(help_heading = help::LINES)]
     #[arg(long, group = "lines")]
     pub(crate) wireframe_hidden_line: bool,
-    /// Draw surfaces with their edges, and the lines where faces penetrate each other
+    /// Draw surfaces with their edges
+    ///
+    /// The lines where faces penetrate each other are drawn, too
     #[arg(help_heading = help::LINES)]
     #[arg(long, group = "lines")]
     pub(crate) edges: bool,
@@ -345,7 +351,7 @@ fn light_edit_help() -> String {
     let fields: Vec<&str> = vitral::light_fields().map(|(name, _)| name).collect();
     format!(
         "Change one field of one light, such as LIGHT0.diffuse=1,0,0, and keep its others; repeatable. LIGHT is a light's name, or \
-         its number from 0 (2 or LIGHT2), * for all; FIELD is one of {} (docs/materials.md tells what they mean)",
+         its number from 0 (2 or LIGHT2), * for all; FIELD is one of {} (docs/materials.md explains them)",
         fields.join(", ")
     )
 }
@@ -355,7 +361,7 @@ fn material_help() -> String {
     let properties: Vec<&str> = vitral::material_properties().map(|(name, _)| name).collect();
     format!(
         "Override a material's property, such as glass.opacity=0.5; repeatable. NAME is a material's, * for all, default for \
-         surfaces without material; PROPERTY is one of {} (docs/materials.md tells what they mean)",
+         surfaces without material; PROPERTY is one of {} (docs/materials.md explains them)",
         properties.join(", ")
     )
 }
@@ -367,7 +373,9 @@ pub(crate) struct CameraArgs {
     /// Side from which the model is framed [default: three-quarter; iso for parallel drawings]
     #[arg(long, value_name = "SIDE", value_parser = choices::view())]
     pub(crate) view: Option<View>,
-    /// Axis that points up: +X -X +Y -Y +Z -Z [default: +Y, or +Z where the first model is STL]
+    /// Axis that points up [default: +Y; +Z where the first model is STL]
+    ///
+    /// One of +X -X +Y -Y +Z -Z
     #[arg(long, value_name = "AXIS", value_parser = clap::value_parser!(Axis), allow_hyphen_values = true)]
     pub(crate) up: Option<Axis>,
     /// Use camera N of the model, counted from 0

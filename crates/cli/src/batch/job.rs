@@ -283,7 +283,7 @@ mod tests {
         assert!(why("{").contains("cannot be read"));
         assert!(why(r#"{"model": "a", "output": "a.png", "size": 3}"#).contains("size"));
         assert!(why(r#"{"model": "a", "output": "a.png", "options": {"sampels": 3}}"#).contains("`sampels`"));
-        assert!(why(r#"{"model": "a", "output": "a.png", "options": {"json": true}}"#).contains("no place"));
+        assert!(why(r#"{"model": "a", "output": "a.png", "options": {"json": true}}"#).contains("cannot be used"));
         assert!(why(r#"{"model": "a", "output": "-"}"#).contains("writes a file"));
         assert!(why(r#"{"model": "a", "output": "a.png", "options": {"samples": {}}}"#).contains("samples"));
         let twice = jobs("{\"model\": \"a\", \"output\": \"x.png\"}\n{\"model\": \"b\", \"output\": \"x.png\"}", &[]);

@@ -122,11 +122,15 @@ fn options_without_effect_are_told_and_change_nothing() {
         (&["builtin:scene0", "--shading", "flat"], &["--normals", "made"], "its own normal"),
         (&["builtin:sphere", "--camera-index", "0"], &["--view", "top"], "decides the view"),
         (&["builtin:sphere", "--camera-direction=1,0,-1"], &["--view", "top"], "decides the view"),
-        (&["builtin:sphere", "--camera-position=5,4,3", "--camera-view-up=0,1,0"], &["--view", "top"], "from where"),
+        (
+            &["builtin:sphere", "--camera-position=5,4,3", "--camera-view-up=0,1,0"],
+            &["--view", "top"],
+            "decide the view",
+        ),
         (
             &["builtin:sphere", "--camera-position=5,4,3", "--camera-view-up=0,1,0"],
             &["--up", "-Z"],
-            "other options of the camera",
+            "other camera options",
         ),
         (wires, &["--light", "ambient:"], "edges alone"),
         (wires, &["--light-edit", "LIGHT0.diffuse=red"], "edges alone"),

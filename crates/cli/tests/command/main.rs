@@ -219,7 +219,7 @@ fn exit_codes() {
             "choose volume, scan-line, object-precision",
         ),
         (&["a.obj", "--shadows", "volume", "--export-shadow-polygons", "s.stl"], 2, "only .obj files are written"),
-        (&["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"], 2, "are `ray`: choose volume"),
+        (&["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"], 2, "is `ray`: choose volume"),
         (&["a.obj", "-o", "x.png", "--terminator", "exact"], 2, "--terminator: no shadows are computed"),
         (&["a.obj", "-o", "x.png", "--camera-clip", "3,2"], 2, "two distances are required, the nearer first"),
         (&["a.obj", "-o", "x.png", "--shadows", "ray", "--shadow-map-size", "512"], 2, "no shadow maps are drawn"),
@@ -613,7 +613,7 @@ fn the_stages_can_be_dumped() {
 fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
     let folder = Folder::new("transparency");
     for (arguments, what, hint) in [
-        (&["--transparency-order", "back-to-front"][..], "`z-buffer` makes none", "--visibility bsp or painter"),
+        (&["--transparency-order", "back-to-front"][..], "`z-buffer` does not", "--visibility bsp or painter"),
         (&["--transparency-order", "sorted", "--global", "ray-trace"], "`sorted`", "leave out --transparency-order"),
         (
             &["--material", "glass.transmission=translucent", "--transparency-order", "two-buffer"],
@@ -628,7 +628,7 @@ fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
         (&["--kay-exponent", "2"], "it needs Kay's model of transparency", "add --transparency kay"),
         (&["--transparency", "kay", "--kay-exponent", "0"], "above 0", ""),
         (&["--material", "glass.kt-min=2"], "a number from 0 to 1 is required", "kt-min: what passes"),
-        (&["--depth-cue=near=2"], "no `near`", "back-scale"),
+        (&["--depth-cue=near=2"], "no key `near`", "back-scale"),
         (&["--depth-cue=front=2,back=1"], "farther away", ""),
         (&["--depth-cue", "--no-background"], "colour to fade into", ""),
         (&["--normals", "none", "--crease-angle", "30"], "no normals are made", ""),

@@ -82,8 +82,8 @@ fn what_one_scene_gives_is_refused_for_several() {
 
     let two = ["a.obj", "builtin:cubs", "-o", "{model}.png"];
     for (arguments, said) in [
-        (&["--pixel", "1,1"][..], "--pixel: it is for one scene"),
-        (&["--trace", "t"], "--trace: it is for one scene"),
+        (&["--pixel", "1,1"][..], "--pixel: it works with one scene"),
+        (&["--trace", "t"], "--trace: it works with one scene"),
         (&["--dump", "d"], "hint: add --together"),
         (&["--reference", "a.png"], "--reference"),
         (

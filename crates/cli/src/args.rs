@@ -2,7 +2,7 @@
 
 use crate::batch_args::{BatchArgs, BatchWorkerArgs};
 use crate::draw_args::DrawArgs;
-use crate::help::{EXIT_CODES, model_help};
+use crate::help::{self, EXIT_CODES, model_help, model_long_help};
 use crate::lab_args::LabPageArgs;
 use crate::read_probe::ReadProbeArgs;
 use crate::render_args::{CameraArgs, EyeArgs, RenderArgs};
@@ -20,7 +20,7 @@ use vitral::Visibility;
     version,
     arg_required_else_help = true,
     disable_help_subcommand = true,
-    max_term_width = 120
+    max_term_width = help::WIDTH
 )]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct Cli {
@@ -36,15 +36,15 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Make a vector drawing of one or more models: visible and hidden lines
     Draw(Box<DrawArgs>),
-    /// Make many pictures and drawings, side by side; a batch that was cut short goes on where it was
+    /// Make many pictures and drawings in parallel; a batch that was interrupted continues
     Batch(Box<BatchArgs>),
     #[command(hide = true)]
     BatchWorker(BatchWorkerArgs),
     #[command(hide = true)]
     ReadProbe(ReadProbeArgs),
-    /// Open the Lab in a browser: the classical algorithms to watch, step through and question
+    /// Open the Lab in a browser: watch the classical algorithms step by step
     Lab(LabPageArgs),
-    /// Tell what is in a model file
+    /// Show what is in a model file
     Info(InfoArgs),
     /// Make the small picture of a model that file managers show
     Thumbnail(ThumbnailArgs),
@@ -70,7 +70,7 @@ pub(crate) enum Verb {
 /// Options of `vitral man`.
 #[derive(Args, Debug)]
 pub(crate) struct ManArgs {
-    /// Write vitral.1, vitral-render.1, ... into this folder [default: one page on standard output]
+    /// Folder for vitral.1, vitral-render.1, ... [default: one page on standard output]
     #[arg(value_name = "DIR")]
     pub(crate) folder: Option<PathBuf>,
 }
@@ -78,18 +78,18 @@ pub(crate) struct ManArgs {
 /// Options of `vitral info`.
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
-    #[arg(required = true, value_name = "MODEL", help = model_help())]
+    #[arg(required = true, value_name = "MODEL", help = model_help(), long_help = model_long_help())]
     pub(crate) models: Vec<PathBuf>,
-    /// One JSON object on standard output
+    /// Print one JSON object on standard output
     #[arg(long)]
     pub(crate) json: bool,
-    /// Let models name files outside their folder
+    /// Let models read files outside their folder
     #[arg(long)]
     pub(crate) allow_external: bool,
-    /// Threads; 0 means as many as the process may use [default: what VITRAL_THREADS says, else 0]
+    /// Threads; 0 means as many as the process may use [default: VITRAL_THREADS, else 0]
     #[arg(long, value_name = "N", value_parser = values::threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<usize>,
-    /// No warnings
+    /// Print no warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }
@@ -97,14 +97,14 @@ pub(crate) struct InfoArgs {
 /// Options of `vitral thumbnail`.
 ///
 /// File managers call it as `vitral thumbnail %i %o %s`. The picture is a square PNG with a transparent background, whatever OUT is called.
-/// Configuration files have no say. A thumbnail may take 20 s and 1 GB.
+/// No configuration file is read. A thumbnail may take 20 s and 1 GB of memory; beyond that it fails with exit code 7.
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct ThumbnailArgs {
     /// The model file
     #[arg(value_name = "IN")]
     pub(crate) model: PathBuf,
-    /// Where the picture goes; its folder has to be there
+    /// Where the picture goes; its folder must exist
     #[arg(value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Width and height in pixels, 1 to 4096
@@ -121,13 +121,13 @@ pub(crate) struct CompareArgs {
     /// The actual picture, or `-` for standard input
     #[arg(value_name = "B")]
     pub(crate) second: PathBuf,
-    /// How far a channel may be apart, 0 to 1 of its range, before a pixel counts as different
+    /// How far a channel may differ before its pixel counts as different, from 0 to 1 of the range
     #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = values::share, allow_negative_numbers = true)]
     pub(crate) threshold: f64,
-    /// Write a picture of the difference: the first one in grey, differing pixels in red
+    /// Write a picture of the difference: the first picture in grey, with differing pixels in red
     #[arg(long, value_name = "OUT")]
     pub(crate) diff: Option<PathBuf>,
-    /// One JSON object on standard output
+    /// Print one JSON object on standard output
     #[arg(long)]
     pub(crate) json: bool,
     /// Print nothing
@@ -137,47 +137,54 @@ pub(crate) struct CompareArgs {
 
 /// Options of `vitral bench`.
 #[derive(Args, Debug)]
-#[command(after_help = EXIT_CODES)]
+#[command(after_help = EXIT_CODES, next_help_heading = help::MEASUREMENT)]
 pub(crate) struct BenchArgs {
-    #[arg(required_unless_present = "report", value_name = "MODEL", help = model_help())]
+    #[arg(required_unless_present = "report", value_name = "MODEL", help = model_help(), long_help = model_long_help())]
     pub(crate) models: Vec<PathBuf>,
-    /// Measure growth over the number of polygons and of pixels on a scene of its own, and write visibility-report.md
-    /// with its plots into this folder
+    /// Measure how time grows with the number of polygons and of pixels, on a scene of its own, and
+    /// write visibility-report.md with plots into this folder
     #[arg(long, value_name = "DIR", conflicts_with_all = ["json", "resolution", "samples", "visibility", "CameraArgs", "EyeArgs"])]
     pub(crate) report: Option<PathBuf>,
-    /// With --report: compare the polygons of painter, bsp and weiler-atherton with exact drawings, of scenes of its own and of the
-    /// models, and write drawing-report.md with its pictures
+    /// With --report: compare the polygons of painter, bsp and weiler-atherton with exact drawings,
+    /// of its own scenes and of the models, and write drawing-report.md with its pictures
     #[arg(long, requires = "report")]
     pub(crate) drawings: bool,
-    /// Only these algorithms, and the z-buffer; repeatable [default: all]
+    /// Measure only these algorithms and the z-buffer; repeatable [default: all]
     #[arg(long, value_name = "NAME", value_parser = crate::choices::visibility())]
     pub(crate) visibility: Vec<Visibility>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", value_parser = values::resolution, default_value = "1024x768")]
     pub(crate) resolution: [u32; 2],
-    /// Samples a pixel, 1 to 16, or 32
+    /// Samples per pixel, 1 to 16, or 32
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::samples)]
     pub(crate) samples: u32,
-    /// Pictures that the median is taken of, after a first one
+    /// Pictures whose median time is taken, after a first one that is not counted
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = values::whole(1..=1000u32))]
     pub(crate) frames: u32,
-    /// Seconds for each algorithm; one that cannot finish says so in its row, and the others go on
+    /// Seconds for each algorithm; one that does not finish says so in its row, and the others go
+    /// on
+    #[arg(help_heading = help::LIMITS)]
     #[arg(long, value_name = "S", value_parser = values::positive, default_value_t = 20.0)]
     pub(crate) time_limit: f64,
-    /// Memory that each algorithm may take, such as 512M or 1G [default: the machine's, or its control group's limit, where Linux
-    /// tells]
+    /// Memory that each algorithm may take, such as 512M or 1G [default: the limit of the machine
+    /// or control group, where Linux tells it]
+    #[arg(help_heading = help::LIMITS)]
     #[arg(long, value_name = "B", value_parser = values::bytes)]
     pub(crate) max_memory: Option<u64>,
-    /// Let models name files outside their folder
+    /// Let models read files outside their folder
+    #[arg(help_heading = help::FILES)]
     #[arg(long)]
     pub(crate) allow_external: bool,
-    /// Threads; 0 means as many as the process may use [default: what VITRAL_THREADS says, else 0]
+    /// Threads; 0 means as many as the process may use [default: VITRAL_THREADS, else 0]
+    #[arg(help_heading = help::LIMITS)]
     #[arg(long, value_name = "N", value_parser = values::threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<usize>,
-    /// One JSON object on standard output
+    /// Print the results as one JSON object on standard output
+    #[arg(help_heading = help::REPORTS)]
     #[arg(long)]
     pub(crate) json: bool,
-    /// No warnings and no progress
+    /// Print no warnings and no progress
+    #[arg(help_heading = help::REPORTS)]
     #[arg(long, short)]
     pub(crate) quiet: bool,
     #[command(flatten)]
@@ -189,7 +196,7 @@ pub(crate) struct BenchArgs {
 /// Options of the lists.
 #[derive(Args, Debug)]
 pub(crate) struct ListArgs {
-    /// One JSON object on standard output
+    /// Print one JSON object on standard output
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -205,35 +212,38 @@ pub(crate) struct OsmesaEnvArgs {
 /// The definition of the command line, with choices in upper and lower case alike.
 pub(crate) fn command() -> clap::Command {
     // Options that take no value cannot have a case.
-    let any_case = |verb: clap::Command| {
-        verb.mut_args(
-            |argument| if argument.get_action().takes_values() { argument.ignore_case(true) } else { argument },
-        )
-    };
-    Cli::command().mut_subcommands(any_case)
+    let any_case =
+        |option: clap::Arg| if option.get_action().takes_values() { option.ignore_case(true) } else { option };
+    Cli::command().mut_subcommands(|verb| help::with_groups(verb.mut_args(any_case)))
 }
 
 /// The arguments with the verb `render` put in where none was typed: `vitral MODEL -o OUT`. What is neither a verb nor looks like
-/// a model stays, to be refused as a verb. `help VERB` becomes `VERB --help`.
+/// a model stays, to be refused as a verb. `help VERB GROUP` and `--help VERB GROUP` become
+/// `VERB --help GROUP`.
 pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi::OsString> {
-    if arguments.get(1).is_some_and(|a| a == "help") {
+    let is_verb = |word: &str| Cli::command().get_subcommands().any(|c| c.get_name() == word);
+    let names_verb = arguments.get(2).and_then(|word| word.to_str()).is_some_and(is_verb);
+    if arguments.get(1).is_some_and(|a| a == "help" || a == "--help" && names_verb) {
         arguments.remove(1);
-        arguments.truncate(2);
-        arguments.push("--help".into());
+        arguments.truncate(3);
+        arguments.insert(arguments.len().min(2), "--help".into());
         return arguments;
     }
     let Some(first) = arguments.get(1).map(|a| a.to_string_lossy().into_owned()) else { return arguments };
-    let is_path = std::path::Path::new(&arguments[1]).exists();
     let first = first.as_str();
     let general = ["-h", "--help", "-V", "--version"].contains(&first);
-    let is_verb = Cli::command().get_subcommands().any(|c| c.get_name() == first);
-    let is_word = first.starts_with(|c: char| c.is_ascii_alphabetic()) && !first.contains(['.', '/', '\\', ':', '{']);
-    let is_model = !is_word || is_path;
-    if !general && !is_verb && is_model {
+    if !general && !is_verb(first) && may_be_model(&arguments[1]) {
         let verb = if names_drawing(&arguments) { "draw" } else { "render" };
         arguments.insert(1, verb.into());
     }
     arguments
+}
+
+/// Whether a word may be the name of a model: it is no plain word, or there is a file of that name.
+pub(crate) fn may_be_model(word: &std::ffi::OsStr) -> bool {
+    let text = word.to_string_lossy();
+    let is_plain = text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.contains(['.', '/', '\\', ':', '{']);
+    !is_plain || std::path::Path::new(word).exists()
 }
 
 /// Whether the arguments have an output whose extension is that of a drawing.
@@ -286,6 +296,7 @@ mod tests {
             (&["a.svg", "-o", "b.png"], "render"),
             (&["help"], "--help"),
             (&["help", "info"], "info"),
+            (&["--help", "info"], "info"),
             (&["--help"], "--help"),
         ] {
             assert_eq!(with(words).as_deref(), Some(expected));

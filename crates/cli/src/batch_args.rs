@@ -12,13 +12,13 @@ use std::str::FromStr;
 /// Options of `vitral batch`.
 ///
 /// A job is a line of JSON: {"model": "a.glb", "output": "out/a.png", "options": {"resolution": "256x256"}, "id": "a"}. `model` may be
-/// a list; `options` are those of `vitral render`, or of `vitral draw` where the output is a drawing; `options` and `id` may be left
-/// out. Paths begin in the current folder. All other options of render and draw that are given here count for every job that does not
-/// say otherwise.
+/// a list. `options` are those of `vitral render`, or of `vitral draw` where the output is a drawing; `options` and `id` may be left
+/// out. Paths are relative to the current folder. Options of render and draw that are typed beside those below hold for every job
+/// that does not set them itself.
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct BatchArgs {
-    /// The jobs, one JSON object a line; `-` is standard input
+    /// The jobs, one JSON object per line; `-` is standard input
     #[arg(value_name = "JOBS", required_unless_present = "glob")]
     pub(crate) file: Option<PathBuf>,
     /// Make a job of each file that matches, as in 'models/**/*.stl'; repeatable
@@ -27,31 +27,31 @@ pub(crate) struct BatchArgs {
     /// With --glob: where each picture goes; {model} is the file's name without its extension
     #[arg(long, short, value_name = "PATH", requires = "glob")]
     pub(crate) output: Option<String>,
-    /// Do the I-th of N parts of the jobs, I from 1 to N: a job is in the same part wherever it is done
+    /// Do only the I-th of N parts of the jobs, I from 1 to N. Each job is in the same part on every machine
     #[arg(long, value_name = "I/N")]
     pub(crate) shard: Option<Shard>,
     /// Processes that work at the same time; 0 means as many as there are cores
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::whole(0..=4096u32))]
     pub(crate) jobs: u32,
-    /// One JSON object for each job on standard output
+    /// Print one JSON object for each job on standard output
     #[arg(long)]
     pub(crate) json: bool,
-    /// Go on after a job that failed; this is the default
+    /// Go on after a job that failed (the default)
     #[arg(long, conflicts_with = "fail_fast")]
     pub(crate) keep_going: bool,
     /// Stop at the first job that fails
     #[arg(long)]
     pub(crate) fail_fast: bool,
-    /// Tell what would be done, and do nothing
+    /// Print what would be done, and do nothing
     #[arg(long)]
     pub(crate) dry_run: bool,
-    /// The record of what is done [default: JOBS with .done.jsonl for its extension; batch.done.jsonl with --glob or standard input]
+    /// File that records which jobs are done [default: JOBS with .done.jsonl for its extension; batch.done.jsonl with --glob or standard input]
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
-    /// How far the batch is: on a terminal, always or never
+    /// When to show how far the batch is [default: auto]
     #[arg(long, value_name = "WHEN")]
     pub(crate) progress: Option<ProgressWhen>,
-    /// No warnings, no summary
+    /// Print no warnings and no summary
     #[arg(long, short)]
     pub(crate) quiet: bool,
     /// Options of render and draw for every job
@@ -87,7 +87,7 @@ impl FromStr for Shard {
         match parts {
             Some((i, n)) if (1..=n).contains(&i) => Ok(Self { index: i - 1, count: n }),
             Some((0, _)) => Err("parts are counted from 1".to_owned()),
-            _ => Err("I/N is wanted, such as 1/4".to_owned()),
+            _ => Err("I/N is required, such as 1/4".to_owned()),
         }
     }
 }

@@ -20,10 +20,8 @@ pub(crate) fn run(args: &BenchArgs) -> Result<u8, Failure> {
     let execution = values::execution_from(args.threads)?;
     interrupt::heed(&execution.budget.clone(), || match &args.report {
         Some(folder) if args.drawings => bench_drawings::write(args, folder, &execution),
-        Some(_) if !args.models.is_empty() => {
-            Err(Failure::usage("--report: it has a scene of its own")
-                .with_hint("leave the models out, or add --drawings"))
-        }
+        Some(_) if !args.models.is_empty() => Err(Failure::usage("--report: it measures a scene of its own")
+            .with_hint("leave the models out, or add --drawings")),
         Some(folder) => bench_report::write(args, folder, &execution),
         None => bench(args, execution),
     })

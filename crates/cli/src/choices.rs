@@ -23,14 +23,14 @@ pub(crate) enum DrawingAlgorithm {
 type Named<T> = (T, &'static str, &'static str);
 
 const FILE_COLORS: [Named<FileColors>; 2] = [
-    (FileColors::Srgb, "srgb", "as displays show them"),
-    (FileColors::Linear, "linear", "coefficients of linear light"),
+    (FileColors::Srgb, "srgb", "colours as displays show them, with the curve of sRGB"),
+    (FileColors::Linear, "linear", "coefficients for linear light"),
 ];
 
 const NORMALS: [Named<Normals>; 3] = [
-    (Normals::File, "file", "the file's, or made where it has none"),
-    (Normals::Made, "made", "made anew by the crease angle alone"),
-    (Normals::None, "none", "(0, 0, 1) everywhere, as OpenGL has it where a program gives none"),
+    (Normals::File, "file", "those of the file; computed where it has none"),
+    (Normals::Made, "made", "computed from the faces and --crease-angle, whatever the file has"),
+    (Normals::None, "none", "(0, 0, 1) everywhere, the value in OpenGL where a program gives no normals"),
 ];
 
 /// A parser that accepts the names of a table and gives the values that they name.

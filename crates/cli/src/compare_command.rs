@@ -15,10 +15,10 @@ const MAX_FILE_BYTES: u64 = 1 << 30;
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &CompareArgs) -> Result<u8, Failure> {
     if args.first == Path::new("-") && args.second == Path::new("-") {
-        return Err(Failure::usage("compare: standard input holds only one picture"));
+        return Err(Failure::usage("compare: only one of the two pictures can come from standard input"));
     }
     if args.json && args.diff.as_deref().is_some_and(report::is_standard) {
-        return Err(Failure::usage("--json and --diff - both want standard output"));
+        return Err(Failure::usage("--json and --diff - both write to standard output"));
     }
     let format = args.diff.as_deref().map(difference_format).transpose()?;
     let (first, second) = (Picture::read(&args.first)?, Picture::read(&args.second)?);

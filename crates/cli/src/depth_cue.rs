@@ -16,7 +16,9 @@ pub(crate) fn parse(text: &str) -> Result<DepthCue, String> {
         back_scale: fields.take("back-scale", share)?.map_or(default.back_scale, |s| s as f32),
     };
     match fields.unused() {
-        Some(key) => Err(format!("there is no `{key}`: color, front, back, front-scale, back-scale are known")),
+        Some(key) => {
+            Err(format!("there is no key `{key}`; the keys are color, front, back, front-scale and back-scale"))
+        }
         None => Ok(cue),
     }
 }
@@ -32,10 +34,10 @@ mod tests {
         assert_eq!((cue.front, cue.back, cue.back_scale), (Some(2.0), Some(9.5), 0.0));
         assert_eq!((cue.color, cue.front_scale), (Some([0.0, 0.5, 1.0]), 1.0));
         for (text, part) in [
-            ("near=1", "no `near`"),
+            ("near=1", "no key `near`"),
             ("front=-1", "front: "),
             ("back-scale=2", "0 to 1"),
-            ("color=nowhere", "no colour"),
+            ("color=nowhere", "not a colour"),
             ("5", "no key"),
             ("front=1,front=2", "twice"),
         ] {

@@ -1,7 +1,7 @@
 //! The options of `vitral draw` as typed.
 
 use crate::choices::{self, DrawingAlgorithm};
-use crate::help::{EXIT_CODES, model_help};
+use crate::help::{self, EXIT_CODES, model_help, model_long_help};
 use crate::render_args::{CameraArgs, EyeArgs, LightArgs, ProcessArgs, ProgressWhen};
 use crate::section_args::SectionArgs;
 use crate::similar::not_one_of;
@@ -17,13 +17,18 @@ use vitral::{
 #[derive(Args, Clone, Debug, Default)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct DrawArgs {
-    #[arg(required_unless_present = "load_state", value_name = "MODEL", help = model_help())]
+    #[arg(required_unless_present = "load_state", value_name = "MODEL", help = model_help(), long_help = model_long_help())]
     pub(crate) models: Vec<PathBuf>,
-    /// Where the drawing goes: .svg, .pdf, .dxf, .hpgl or .plt; or `-` for an SVG on standard output; {model} expands.
-    /// Several models are one scene, or with {model} a drawing each
+    /// Where the drawing goes: .svg, .pdf, .dxf, .hpgl or .plt; or `-` for an SVG on standard
+    /// output
+    ///
+    /// {model} expands. Several models make one scene, or with {model} a drawing each
+    #[arg(help_heading = help::OUTPUT)]
     #[arg(long, short, value_name = "OUT", required = true)]
     pub(crate) output: PathBuf,
-    /// Put several models into one scene, although --output has {model} [default: a drawing of each, then]
+    /// Put several models into one scene, although --output has {model} [default: a drawing of each
+    /// model]
+    #[arg(help_heading = help::OUTPUT)]
     #[arg(long)]
     pub(crate) together: bool,
     #[command(flatten)]
@@ -40,8 +45,8 @@ pub(crate) struct DrawArgs {
     pub(crate) camera: CameraArgs,
     #[command(flatten)]
     pub(crate) eye: EyeArgs,
-    /// A perspective drawing; with --camera-view-angle, too [default: parallel projection]
-    #[arg(long, conflicts_with = "camera_orthographic", help_heading = "Camera (without any, the model is framed)")]
+    /// A perspective drawing; --camera-view-angle makes one, too [default: parallel projection]
+    #[arg(long, conflicts_with = "camera_orthographic", help_heading = help::CAMERA)]
     pub(crate) perspective: bool,
     #[command(flatten)]
     pub(crate) process: ProcessArgs,
@@ -51,30 +56,36 @@ pub(crate) struct DrawArgs {
 
 /// Lines, fills and their looks.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Lines")]
+#[command(next_help_heading = help::LINES)]
 pub(crate) struct LineArgs {
-    /// The algorithm of visibility. The classical ones draw their own polygons in their own order, with all their cuts, as lines of the
-    /// class smooth; in a list from back to front, later polygons cover earlier ones [default: exact]
+    /// Algorithm that finds the visible parts [default: exact]
+    ///
+    /// The classical algorithms draw their own polygons in their own order, with all their cuts, as
+    /// lines of the class smooth; in a list from back to front, later polygons cover earlier ones
     #[arg(long, value_name = "NAME", value_parser = choices::drawing_algorithm())]
     pub(crate) algorithm: Option<DrawingAlgorithm>,
-    /// What the drawing is made of [default: hidden-line; filled-lines with another --algorithm than exact]
+    /// What is drawn: lines, filled regions or both [default: hidden-line; filled-lines with
+    /// another --algorithm than exact]
     #[arg(long, value_name = "STYLE", value_enum)]
     pub(crate) style: Option<Style>,
-    #[arg(long, value_name = "LIST", value_parser = line_classes, help = lines_help())]
+    #[arg(long, value_name = "LIST", value_parser = line_classes, help = LINES_HELP, long_help = lines_help())]
     pub(crate) lines: Option<LineClasses>,
-    /// What becomes of hidden lines [default: none]
+    /// How hidden lines are drawn [default: none]
     #[arg(long, value_name = "HOW", value_enum)]
     pub(crate) hidden: Option<Hidden>,
-    /// Draw lines behind at most N faces; 0 means any number; with --hidden [default: 0]
+    /// Draw hidden lines behind at most N faces; 0 means any number; with --hidden [default: 0]
     #[arg(long, value_name = "N", value_parser = values::whole(0..=u32::MAX), allow_negative_numbers = true)]
     pub(crate) hidden_max_layers: Option<u32>,
-    /// Edges at a larger angle are creases, 0 (all) to 180 (none) [default: 30]
+    /// Edges between faces that meet at a larger angle are creases, 0 (all) to 180 (none) [default:
+    /// 30]
     #[arg(long, value_name = "DEGREES", value_parser = values::half_turn, allow_negative_numbers = true)]
     pub(crate) crease_angle: Option<f64>,
-    /// Leave out tangent edges: those between two faces whose normals agree within a degree, unless they are contours
+    /// Leave out tangent edges, between two faces whose normals differ by less than a degree,
+    /// unless they are contours
     #[arg(long)]
     pub(crate) hide_tangent: bool,
-    /// The most segments of lines and outlines, before --simplify and dashes; more end the work with exit code 7
+    /// The most segments of lines and outlines, before --simplify and dashes; beyond it the work
+    /// ends with exit code 7
     #[arg(long, value_name = "N", value_parser = values::whole(1..=u64::MAX), allow_negative_numbers = true)]
     pub(crate) max_segments: Option<u64>,
     #[arg(long, value_name = "CLASS=MM", value_parser = stroke, help = stroke_help())]
@@ -83,28 +94,33 @@ pub(crate) struct LineArgs {
 
 /// How surfaces are filled.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Surfaces (with --style filled and filled-lines)")]
+#[command(next_help_heading = help::SURFACES)]
 pub(crate) struct FillArgs {
-    /// What colours tell [default: shading]
+    /// What the colours of regions show [default: shading]
     #[arg(long, value_name = "WHAT", value_parser = choices::color_by())]
     pub(crate) color_by: Option<ColorBy>,
-    /// Steps of brightness of shaded faces, 1 to 256: faces of one material and step become one region [default: 32]
+    /// Steps of brightness of shaded faces, 1 to 256: faces of one material and one step become one
+    /// region [default: 32]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=256u32), allow_negative_numbers = true)]
     pub(crate) shades: Option<u32>,
-    /// How light is reflected, as in `render` [default: auto]
+    /// Formula for the light that a surface reflects, as in `render` [default: auto]
     #[arg(long, value_name = "MODEL", value_parser = choices::illumination())]
     pub(crate) illumination: Option<Illumination>,
-    /// Cut faces where shadows fall, and shade both parts: shadows of all lights that cast some, of area lights as of a point. SVG files
-    /// tell the lights that do not reach a region as data-shadow
+    /// Cut faces where shadows fall, and shade both parts
+    ///
+    /// All lights that cast shadows count, area lights as points. SVG files name the lights that do
+    /// not reach a region as data-shadow
     #[arg(long)]
     pub(crate) shadows: bool,
-    /// Draw transparent materials as layers of their opacity over the surfaces behind them [default: all surfaces are opaque]
+    /// Draw transparent materials as translucent layers over the surfaces behind them [default: all
+    /// surfaces are opaque]
     #[arg(long)]
     pub(crate) transparency: bool,
-    /// Blend transparent layers and the surfaces behind them into opaque regions, for programs without opacity
+    /// Blend transparent layers and the surfaces behind them into opaque regions, for programs
+    /// without opacity
     #[arg(long, requires = "transparency")]
     pub(crate) flatten: bool,
-    /// How regions meet [default: under]
+    /// Whether neighbouring regions overlap [default: under]
     #[arg(long, value_name = "HOW", value_parser = choices::seams())]
     pub(crate) seams: Option<Seams>,
 }
@@ -172,43 +188,51 @@ pub(crate) enum Hidden {
 
 /// The sheet.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Page")]
+#[command(next_help_heading = help::PAGE)]
 pub(crate) struct PageArgs {
-    /// The sheet: fit, for a drawing of 180 mm and no more paper than it needs, A0 to A6, or WxHmm [default: fit]
+    /// The sheet: fit, A0 to A6, or WxHmm [default: fit]
+    ///
+    /// fit is a drawing 180 mm long, on no more paper than it needs
     #[arg(long, value_name = "SIZE", value_parser = page_size)]
     pub(crate) page: Option<Sheet>,
-    /// The sheet with its longer side across
+    /// Turn the sheet, with its longer side across
     #[arg(long, requires = "page")]
     pub(crate) landscape: bool,
-    /// Distance of the drawing from the border of the sheet in millimetres [default: 5]
+    /// Distance between the drawing and the border of the sheet in millimetres [default: 5]
     #[arg(long, value_name = "MM", value_parser = margin, allow_negative_numbers = true)]
     pub(crate) margin: Option<f64>,
-    /// Millimetres on paper to millimetres of the model, as 1:2 or .5; not in perspective [default: as large as the sheet]
+    /// Scale, such as 1:2 or .5: millimetres on paper to millimetres of the model; not in
+    /// perspective [default: as large as the sheet allows]
     #[arg(long, value_name = "RATIO", value_parser = scale, conflicts_with = "perspective")]
     pub(crate) scale: Option<f64>,
-    /// The unit of the model's coordinates [default: mm]
+    /// Unit of the model's coordinates [default: mm]
     #[arg(long, value_name = "UNIT", value_enum, requires = "scale")]
     pub(crate) unit: Option<ModelUnit>,
-    /// The step of coordinates in millimetres: 1, .1, .01 or .001 [default: .001]
+    /// Step of coordinates in millimetres: 1, .1, .01 or .001 [default: .001]
     #[arg(long, value_name = "MM", value_parser = decimals)]
     pub(crate) precision: Option<u8>,
-    /// Leave out corners of lines that are at most MM from the line without them [default: 0]
+    /// Leave out corners of lines that are at most MM from the simplified line [default: 0]
     #[arg(long, value_name = "MM", value_parser = values::not_negative, allow_negative_numbers = true)]
     pub(crate) simplify: Option<f64>,
-    /// A sheet with several views to one scale, 15 mm apart, placed by --angle: a list of front, back, left, right, top, bottom
-    /// and iso. The last comes into a free corner; with --scale it may get a smaller one. Below them is the symbol of the projection
+    /// Several views on one sheet: a list of front, back, left, right, top, bottom and iso
+    ///
+    /// They have one scale, are 15 mm apart and are placed by --angle, with the symbol of the
+    /// projection below. iso goes into a free corner; with --scale it may get a smaller one
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = crate::choices::view())]
     pub(crate) views: Vec<View>,
-    /// The method of projection of --views [default: first]
+    /// Method of projection of --views [default: first]
     #[arg(long, value_name = "METHOD", value_enum)]
     pub(crate) angle: Option<Angle>,
     /// A row of a table below the drawing, in strokes on a layer of their own; repeatable
     #[arg(long, value_name = "KEY=VALUE", value_parser = title_row)]
     pub(crate) title_block: Vec<(String, String)>,
-    /// For a plotter: lines alone, joined, each once, with short ways in the air; dashes as lines. HP-GL is always so
+    /// Write for a plotter: lines alone
+    ///
+    /// Lines are joined and each is drawn once, with short ways of the raised pen; dashes are lines
+    /// of their own. HP-GL is always like this
     #[arg(long)]
     pub(crate) plotter: bool,
-    /// Filled regions of SVG files tell the id of their surface as data-face
+    /// Write the id of the surface of each filled region into SVG files, as data-face
     #[arg(long)]
     pub(crate) svg_ids: bool,
 }
@@ -260,18 +284,21 @@ pub(crate) enum Sheet {
 
 /// Statistics, warnings, progress.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Reports")]
+#[command(next_help_heading = help::REPORTS)]
 pub(crate) struct DrawReportArgs {
-    /// Counters and times as JSON on standard error
+    /// Print counters and times as JSON on standard error
     #[arg(long)]
     pub(crate) stats: bool,
-    /// No warnings
+    /// Print no warnings
     #[arg(long, short)]
     pub(crate) quiet: bool,
-    /// A progress bar [default: auto]
+    /// When to show a progress bar [default: auto]
     #[arg(long, value_name = "WHEN", value_enum)]
     pub(crate) progress: Option<ProgressWhen>,
 }
+
+/// The short help of `--lines`.
+const LINES_HELP: &str = "Which lines are drawn: a list of classes, or all [default: contour,boundary,crease,material,intersection; section with --section-plane]";
 
 /// The help of `--lines`.
 fn lines_help() -> String {
@@ -310,9 +337,9 @@ fn page_size(text: &str) -> Result<Sheet, String> {
     let side = |side: &str| values::positive(side).ok().filter(|&side| side <= 10_000.0);
     match sides.and_then(|(width, height)| Some([side(width)?, side(height)?])) {
         Some(size) => Ok(Sheet::Size(size)),
-        None => {
-            Err(format!("`{text}` is no sheet: fit, A0 to A6, or a size of up to 10 m such as 200x100mm is required"))
-        }
+        None => Err(format!(
+            "`{text}` is not a sheet: fit, A0 to A6, or a size of up to 10 m such as 200x100mm is required"
+        )),
     }
 }
 
@@ -336,7 +363,7 @@ fn stroke(text: &str) -> Result<(String, f64), String> {
 
 /// `1:2`, `2:1` or `0.5`.
 fn scale(text: &str) -> Result<f64, String> {
-    let wrong = || format!("`{text}` is no scale: 1:2, 2:1 or a number above 0 is required");
+    let wrong = || format!("`{text}` is not a scale: 1:2, 2:1 or a number above 0 is required");
     let ratio = match text.split_once(':') {
         Some((paper, model)) => values::positive(paper).and_then(|paper| Ok(paper / values::positive(model)?)),
         None => values::positive(text),
@@ -357,9 +384,9 @@ fn title_row(text: &str) -> Result<(String, String), String> {
     let row = (key.to_owned(), value.to_owned());
     match TitleBlock::new(std::slice::from_ref(&row)) {
         Ok(_) => Ok(row),
-        Err(letter) => {
-            Err(format!("there are no strokes for `{letter}`; letters are A to Z, a to z, 0 to 9 and punctuation"))
-        }
+        Err(letter) => Err(format!(
+            "there are there is no stroke letter for `{letter}`; letters are A to Z, a to z, 0 to 9 and punctuation"
+        )),
     }
 }
 

@@ -19,7 +19,7 @@ const SECTION_PLANE: &str = "add --section-plane 0,0,0,0,0,1";
 /// Refuses options that have no effect in a file of this format.
 pub(crate) fn check(args: &DrawArgs, state: &State, format: DrawingFormat) -> Result<(), Failure> {
     if args.light.environment.is_some() {
-        return Err(Failure::usage("--environment: drawings mirror nothing").with_hint("leave it out"));
+        return Err(Failure::usage("--environment: drawings show no reflections").with_hint("leave it out"));
     }
     check_polygons(args)?;
     check_sheet(args, state)?;
@@ -72,7 +72,7 @@ fn check_polygons(args: &DrawArgs) -> Result<(), Failure> {
 
     // The polygons are drawn as the algorithm made them.
     let changing = [
-        (args.fill.transparency, "--transparency", "all polygons are opaque"),
+        (args.fill.transparency, "--transparency", "polygons are always opaque"),
         (args.fill.seams.is_some(), "--seams", "polygons are drawn as they are"),
         (args.overlaps() && args.page.simplify.is_some(), "--simplify", "polygons are drawn as they are"),
         (!args.page.views.is_empty(), "--views", "the polygons are those of one view"),
@@ -93,21 +93,21 @@ fn check_sheet(args: &DrawArgs, state: &State) -> Result<(), Failure> {
     }
     if let Some(i) = (1..views.len()).find(|&i| views[..i].contains(&views[i])) {
         let name = names::view_name(views[i]);
-        return Err(Failure::usage(format!("--views: {name} is there twice")).with_hint("name each view once"));
+        return Err(Failure::usage(format!("--views: {name} is named twice")).with_hint("name each view once"));
     }
 
     // Refuse what each view has of its own.
     let Viewpoint { view, up, orthographic, .. } = state.viewpoint;
     if let Some(view) = view.filter(|_| !args.perspective) {
         let hint = format!("leave out --view, and give --views {},...", names::view_name(view));
-        return Err(Failure::usage("--view: the views of a sheet are those of --views").with_hint(hint));
+        return Err(Failure::usage("--view: --views names the views of a sheet").with_hint(hint));
     }
     let has_camera = state.viewpoint != (Viewpoint { view, up, orthographic, ..Viewpoint::default() });
     let orthographic_views = views.iter().filter(|&&view| view != View::Iso).count();
     first(&[
         (
             args.page.angle.is_some() && orthographic_views < 2,
-            "--angle: a sheet with one orthographic view has no order of views",
+            "--angle: it orders orthographic views, and there is only one",
             "leave it out, or add views such as top,right",
         ),
         (
@@ -169,10 +169,10 @@ fn check_sections(args: &DrawArgs) -> Result<(), Failure> {
     first(&[
         (
             args.lines.lines.is_some_and(names_section) && !is_cut,
-            "--lines section: there is no plane of section",
+            "--lines section: there is no section plane",
             SECTION_PLANE,
         ),
-        (has_pen(args, "section") && !is_cut, "--stroke section: there is no plane of section", SECTION_PLANE),
+        (has_pen(args, "section") && !is_cut, "--stroke section: there is no section plane", SECTION_PLANE),
         (
             has_pen(args, "hatch") && !is_hatched,
             "--stroke hatch: there is no hatching",
@@ -195,25 +195,25 @@ fn check_file(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> {
     first(&[
         (
             args.overlaps() && has_lines_alone,
-            "--algorithm: in a list, later polygons cover earlier ones, and plotters, DXF and HP-GL have lines alone",
+            "--algorithm: in a list, later polygons cover earlier ones, and plotters, DXF and HP-GL only draw lines",
             "choose weiler-atherton or exact; or .svg or .pdf",
         ),
         (
             args.style() == Style::Filled && has_lines_alone,
-            "--style filled: plotters, DXF and HP-GL have lines alone",
+            "--style filled: plotters, DXF and HP-GL only draw lines",
             FILLED_LINES,
         ),
         (
             !args.lines.stroke.is_empty() && format == DrawingFormat::Dxf,
-            "--stroke: DXF of release 12 has no widths of lines",
+            "--stroke: DXF (release 12) cannot store line widths",
             "choose .svg, .pdf or .hpgl",
         ),
         (
             page.precision.is_some() && format == DrawingFormat::Hpgl,
-            "--precision: HP-GL has steps of 1/40 mm",
+            "--precision: HP-GL always has steps of 1/40 mm",
             "leave it out, or choose .svg, .pdf or .dxf",
         ),
-        (page.svg_ids && format != DrawingFormat::Svg, "--svg-ids: only SVG files tell ids", "choose .svg"),
+        (page.svg_ids && format != DrawingFormat::Svg, "--svg-ids: only SVG files can hold ids", "choose .svg"),
         (page.svg_ids && (!has_regions || has_lines_alone), "--svg-ids: no regions are drawn", "add --style filled"),
     ])
 }
@@ -246,7 +246,7 @@ fn check_surfaces(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure>
         return refuse(name, "no surfaces are filled", "give --style filled or filled-lines, in an .svg or .pdf");
     }
     if let Some(name) = typed(&of_light).filter(|_| fill.color_by.is_some_and(|by| by != ColorBy::Shading)) {
-        return refuse(name, "these colours have no light", "give --color-by shading");
+        return refuse(name, "only --color-by shading depends on light", "give --color-by shading");
     }
     first(&[(
         fill.shadows && light.lighting == Some(false),

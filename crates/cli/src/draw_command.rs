@@ -231,14 +231,13 @@ pub(crate) fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
 fn page_of(args: &PageArgs) -> Result<PageSize, Failure> {
     let Some(Sheet::Size([width, height])) = args.page else {
         if args.landscape {
-            return Err(Failure::usage("--landscape: a sheet that fits the drawing cannot be turned")
-                .with_hint("give --page A4"));
+            return Err(Failure::usage("--landscape: it needs a sheet with a fixed size").with_hint("give --page A4"));
         }
         return Ok(PageSize::default());
     };
     let margin = args.margin.unwrap_or(DrawingSettings::default().margin);
     if 2.0 * margin >= width.min(height) {
-        return Err(Failure::usage(format!("--margin {margin}: nothing is left of a sheet of {width} x {height} mm")));
+        return Err(Failure::usage(format!("--margin {margin}: no room is left on a sheet of {width} x {height} mm")));
     }
     let (shorter, longer) = (width.min(height), width.max(height));
     Ok(match args.landscape {

@@ -58,8 +58,9 @@ impl DrawFile {
         let symbol = draw_sheet::projection_symbol(args);
         let has_block = symbol.is_some() || !rows.is_empty();
         let title = has_block.then(|| TitleBlock::with_figure(rows, symbol.as_ref()));
-        let title =
-            title.transpose().map_err(|letter| Failure::usage(format!("--title-block: no strokes for `{letter}`")))?;
+        let title = title
+            .transpose()
+            .map_err(|letter| Failure::usage(format!("--title-block: there is no stroke letter for `{letter}`")))?;
         Ok(Self { path, format, options, plotter: args.page.plotter, tolerance, title })
     }
 
@@ -78,7 +79,7 @@ impl DrawFile {
     /// What the format leaves out of a drawing, or that there is nothing in it.
     pub(crate) fn warning(&self, drawing: &Drawing) -> Option<String> {
         if drawing.lines.is_empty() && drawing.regions.is_empty() && drawing.points.is_empty() {
-            let what = "nothing is drawn: the models have no surface or line that this style shows";
+            let what = "the drawing is empty: the models have no surface or line that this style shows";
             return Some(format!("{}: {what} (--style lines draws free points, too)", self.path.display()));
         }
         let is_left_out = !drawing.regions.is_empty() && (self.plotter || !self.format.has_fills());
@@ -107,7 +108,7 @@ impl DrawFile {
 fn place(args: &DrawArgs, model: &Path) -> Result<(PathBuf, DrawingFormat), Failure> {
     if report::is_standard(&args.output) {
         if args.process.save_state.as_deref().is_some_and(report::is_standard) {
-            return Err(Failure::usage("--output - and --save-state - both want standard output"));
+            return Err(Failure::usage("--output - and --save-state - both write to standard output"));
         }
         return Ok((args.output.clone(), DrawingFormat::Svg));
     }
@@ -120,8 +121,8 @@ fn place(args: &DrawArgs, model: &Path) -> Result<(PathBuf, DrawingFormat), Fail
     let Some(format) = DrawingFormat::from_extension(&extension) else {
         let names = DrawingFormat::ALL.iter().flat_map(|(_, names)| names.iter().map(|name| format!(".{name}")));
         let names: Vec<String> = names.collect();
-        let what = format!("{}: not a format of drawings", path.display());
-        return Err(Failure::with_code(UNSUPPORTED, what).with_hint(format!("written are {}", names.join(", "))));
+        let what = format!("{}: drawings are not written in this format", path.display());
+        return Err(Failure::with_code(UNSUPPORTED, what).with_hint(format!("choose {}", names.join(", "))));
     };
     vitral::picture::check_place(&path)?;
     Ok((path, format))
@@ -133,7 +134,7 @@ pub(crate) fn scaled_page(args: &DrawArgs, page: PageSize, window: Option<f64>) 
     let Some(scale) = args.page.scale else { return Ok(page) };
     let Some(window) = window else {
         return Err(
-            Failure::usage("--scale: nothing is to scale in perspective").with_hint("add --camera-orthographic")
+            Failure::usage("--scale: a perspective drawing has no scale").with_hint("add --camera-orthographic")
         );
     };
     let sheet = match page {

@@ -15,10 +15,10 @@ pub(crate) fn draw(
     let lines: usize = renderer.world().instances.iter().map(|instance| instance.mesh.lines.len()).sum();
     let mut warnings = Vec::new();
     if lines > 0 {
-        warnings.push(format!("--algorithm {algorithm} knows polygons alone: {lines} free lines are not drawn"));
+        warnings.push(format!("--algorithm {algorithm} draws polygons only: {lines} free lines are not drawn"));
     }
     if !args.section.section_plane.is_empty() {
-        warnings.push(format!("--algorithm {algorithm} knows polygons alone: cuts are not hatched"));
+        warnings.push(format!("--algorithm {algorithm} draws polygons only: cuts are not hatched"));
     }
     if !args.report.quiet {
         report::warnings(&warnings);

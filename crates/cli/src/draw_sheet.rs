@@ -64,7 +64,7 @@ fn failure(args: &DrawArgs, error: Error) -> Failure {
         }
         Error::Sheet(SheetError::TooLarge { size, room, .. }) => {
             let what = format!(
-                "--views: {:.1} x {:.1} mm of gaps, and room for {:.1} x {:.1} mm",
+                "--views: the gaps between views need {:.1} x {:.1} mm, the sheet has room for {:.1} x {:.1} mm",
                 size[0], size[1], room[0], room[1]
             );
             Failure::usage(what).with_hint("choose a larger --page, a smaller --margin, or fewer views")

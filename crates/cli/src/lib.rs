@@ -23,6 +23,7 @@ mod draw_command;
 mod draw_file;
 mod draw_polygons;
 mod draw_sheet;
+mod examples;
 mod exit;
 mod fields;
 mod hashes;
@@ -72,13 +73,15 @@ pub fn command(arguments: Vec<OsString>) -> u8 {
 
 /// Runs the verb that is typed.
 fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
-    let typed = batch_args::arrange(args::with_verb(arguments));
-    let parsed = args::command().try_get_matches_from(typed).and_then(|matches| Cli::from_arg_matches(&matches));
+    let typed = help::split(batch_args::arrange(args::with_verb(arguments)));
+    let parsed = args::command().try_get_matches_from(&typed).and_then(|matches| Cli::from_arg_matches(&matches));
     let cli = match parsed {
         Ok(cli) => cli,
         // Help and version are results, not errors.
         Err(e) if matches!(e.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
-            let text = if use_color() { e.render().ansi().to_string() } else { e.render().to_string() };
+            let asked = if e.kind() == ErrorKind::DisplayHelp { help::asked_for(&typed)? } else { None };
+            let text = asked.unwrap_or_else(|| e.render());
+            let text = if use_color() { text.ansi().to_string() } else { text.to_string() };
             return report::print(text.as_bytes()).map(|()| 0);
         }
         Err(e) if e.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {

@@ -99,7 +99,7 @@ pub(crate) fn load_scene(
 
 /// Refuses an option whose one file or answer would come from each of several models.
 pub(crate) fn refuse_for_each(option: &str) -> Failure {
-    Failure::usage(format!("{option}: it is for one scene, and each model gives a picture of its own"))
+    Failure::usage(format!("{option}: it works with one scene, and each model is a scene of its own here"))
         .with_hint("add --together, or leave {model} out of --output")
 }
 

@@ -31,7 +31,7 @@ const fn row(option: &'static str, given: fn(&RenderArgs) -> bool, idle: fn(&Cas
 
 const DARK: &str = "with --lighting off surfaces show their own colours";
 const CONSTANT: &str = "with --illumination constant surfaces show their own colours";
-const AMBIENT: &str = "with --illumination ambient no light comes from anywhere in particular";
+const AMBIENT: &str = "with --illumination ambient no light has a direction";
 const DATA: &str = "no colour picture is made";
 const NO_EDGES: &str = "no edges are drawn: add --edges, --wireframe or --wireframe-hidden-line";
 const WIRES: &str = "edges alone are drawn, in one colour";
@@ -39,12 +39,12 @@ const OPAQUE: &str = "with --transparency none every surface is opaque";
 const SOLID: &str = "the models have no transparent surfaces";
 const NO_CASTER: &str = "no light casts shadows";
 const FLAT: &str = "with --shading flat each face has its own normal";
-const ALL_EDGES: &str = "all edges are drawn, the hidden ones, too (--wireframe-hidden-line leaves these out)";
+const ALL_EDGES: &str = "all edges are drawn, hidden ones included (--wireframe-hidden-line leaves them out)";
 const PARALLEL: &str = "the projection is parallel";
 
 /// What does nothing beside what. Rows of one option stand together; the first that holds is told.
 const ROWS: &[Row] = &[
-    row("--samples", gives_samples, Case::makes_no_color, "channels of data have one sample a pixel"),
+    row("--samples", gives_samples, Case::makes_no_color, "data channels have one sample per pixel"),
     row("--background-color", |a| a.picture.background_color.is_some(), Case::makes_no_color, DATA),
     row("--no-background", |a| a.picture.no_background, Case::makes_no_color, DATA),
     row("--color-space", gives_color_space, Case::makes_no_color, DATA),
@@ -128,8 +128,13 @@ const ROWS: &[Row] = &[
     row("--crease-angle", gives_crease, |c| c.draws_wires() && !c.shows_normals(), WIRES),
     row("--crease-angle", gives_crease, |c| c.is_dark() && c.is_solid() && !c.shows_normals(), DARK),
     row("--crease-angle", gives_crease, |c| c.is_flat() && c.is_solid() && !c.shows_normals(), FLAT),
-    row("--view", gives_view, Case::has_camera, "--camera-index and --camera-direction say from where"),
-    row("--up", |a| a.camera.up.is_some(), Case::has_own_up, "--camera-index brings its own, and nothing turns"),
+    row("--view", gives_view, Case::has_camera, "--camera-index or --camera-direction decides the view"),
+    row(
+        "--up",
+        |a| a.camera.up.is_some(),
+        Case::has_own_up,
+        "the camera of --camera-index has an upward direction of its own",
+    ),
     row("--camera-view-angle", |a| a.camera.camera_view_angle.is_some(), Case::is_parallel_without_angle, PARALLEL),
 ];
 

@@ -5,7 +5,7 @@ use vitral::names::VIEWS;
 use vitral::{Axis, Camera, Light, Renderer, State, Viewpoint};
 
 /// Why such an option changes nothing.
-const WHY: &str = "the other options of the camera say from where the scene is seen";
+const WHY: &str = "the other camera options decide the view";
 
 /// Views of a turntable that are looked at.
 const VIEWS_AROUND: usize = 4;

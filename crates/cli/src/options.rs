@@ -5,6 +5,7 @@ use crate::args::{Cli, Verb};
 use crate::draw_args::DrawArgs;
 use crate::draw_command::{self, projected, settings_of};
 use crate::draw_file::DrawFile;
+use crate::help;
 use crate::render_args::RenderArgs;
 use crate::report::Failure;
 use crate::resolve::{execution_within, set_lights, set_options, set_viewpoint};
@@ -51,9 +52,22 @@ const OF_LOADING: [&str; 9] = [
 /// Limits and threads.
 const OF_EXECUTION: [&str; 3] = ["threads", "time-limit", "max-memory"];
 
-/// Beginnings of the headings whose options pictures and drawings have in common with no other purpose.
-const HEADINGS: [&str; 9] =
-    ["Picture", "Algorithms", "Light and materials", "Camera", "Lab3D", "Lines", "Surfaces", "Sections", "Page"];
+/// The groups of options that make pictures and drawings what they are.
+const GROUPS: [&str; 13] = [
+    help::PICTURE,
+    help::ALGORITHMS,
+    help::TRANSPARENCY,
+    help::SHADOWS,
+    help::GLOBAL,
+    help::LINES,
+    help::SURFACES,
+    help::LIGHTS,
+    help::MATERIALS,
+    help::SECTIONS,
+    help::PAGE,
+    help::CAMERA,
+    help::LAB3D,
+];
 
 impl Purpose {
     /// The verb that has these options.
@@ -66,7 +80,7 @@ impl Purpose {
         let name = argument.get_long().unwrap_or_default();
         let heading = argument.get_help_heading().unwrap_or_default();
         let is_of_loading = OF_LOADING.contains(&name);
-        let is_of_views = HEADINGS.iter().any(|start| heading.starts_with(start)) && name != "exercise";
+        let is_of_views = GROUPS.contains(&heading) && name != "exercise";
         match self {
             Self::Load => is_of_loading || OF_EXECUTION.contains(&name),
             Self::Render => !is_of_loading && (is_of_views || OF_EXECUTION.contains(&name)),

@@ -46,11 +46,11 @@ fn find(chosen: Option<&Path>, beside: Option<&Path>) -> Result<PathBuf, Failure
     let Some(folder) = places.iter().find(|folder| folder.join(LIBRARY).is_file()) else {
         let looked: Vec<String> = places.iter().map(|place| place.display().to_string()).collect();
         let message = match looked.is_empty() {
-            true => format!("{LIBRARY} is looked for beside this program, and nothing tells where that is"),
+            true => format!("{LIBRARY} is looked for beside this program, and the system does not tell where that is"),
             false => format!("{LIBRARY} is not in {}", looked.join(", ")),
         };
         return Err(Failure::with_code(MISSING, message)
-            .with_hint("`cargo xtask osmesa` makes it in target/osmesa; --lib DIR says where it is"));
+            .with_hint("`cargo xtask osmesa` builds it into target/osmesa; --lib DIR names the folder where it is"));
     };
     folder.canonicalize().map_err(|e| Failure::with_code(MISSING, format!("{}: {e}", folder.display())))
 }
@@ -97,7 +97,7 @@ mod tests {
         let (bin, lib) = (top.join("bin"), top.join("lib"));
         std::fs::create_dir_all(&bin).unwrap();
         std::fs::create_dir_all(&lib).unwrap();
-        assert!(find(None, None).unwrap_err().message().contains("nothing tells"));
+        assert!(find(None, None).unwrap_err().message().contains("does not tell where"));
         assert!(find(None, Some(&bin)).is_err());
         assert!(find(Some(&lib), Some(&bin)).is_err());
         std::fs::write(lib.join(LIBRARY), "").unwrap();

@@ -38,7 +38,7 @@ impl Output {
         }
         if formats.len() > 1 && formats.len() != outputs.len() {
             let counts = format!("{} --format for {} --output", formats.len(), outputs.len());
-            return Err(Failure::usage(counts).with_hint("one is for all outputs, else the n-th for the n-th output"));
+            return Err(Failure::usage(counts).with_hint("give one format for all outputs, or one for each"));
         }
         if let Some(twice) = outputs.iter().enumerate().find(|(i, o)| outputs[..*i].contains(o) && !is_null(o)) {
             let name = if report::is_standard(twice.1) { "standard output".into() } else { twice.1.to_string_lossy() };
@@ -58,7 +58,7 @@ impl Output {
     pub(crate) fn sequence(option: &str, pattern: &Path, formats: &[PictureFormat]) -> Result<Self, Failure> {
         let output = Self::pair(&[pattern.to_owned()], &[Channel::Steps], &formats[..formats.len().min(1)])?.remove(0);
         if !output.holds_frames() {
-            let what = format!("{option} {}: several pictures need names of their own", pattern.display());
+            let what = format!("{option} {}: several pictures cannot share this name", pattern.display());
             return Err(Failure::usage(what).with_hint(FRAMES_HINT));
         }
         Ok(output)
@@ -188,8 +188,8 @@ pub(crate) fn model_name(model: &Path) -> OsString {
 /// A name with `{model}` and `{frame}` or `{frame:4}` filled in.
 pub(crate) fn expand(pattern: &OsStr, model: &OsStr, frame: u32) -> Result<OsString, Failure> {
     let unknown = || {
-        Failure::usage(format!("--output {}: an unknown place in braces", pattern.display()))
-            .with_hint("{model}, {frame} and {frame:4} are filled in")
+        Failure::usage(format!("--output {}: the word in braces is not known", pattern.display()))
+            .with_hint("use {model}, {frame} or {frame:4}")
     };
     // Copy the pattern up to the first brace, then fill in one place after the other.
     let mut out = OsString::new();

@@ -18,7 +18,7 @@ const USAGE: u8 = 2;
 pub(crate) const DIFFERENT: u8 = 6;
 
 /// The hint where there is no better one.
-const HELP: &str = "`vitral --help` and `vitral VERB --help` tell what there is";
+const HELP: &str = "`vitral --help` and `vitral VERB --help` list what is possible";
 
 /// What other programs call `--resolution`.
 const SIZES: [&str; 3] = ["--size", "--width", "--height"];
@@ -138,14 +138,14 @@ impl From<clap::Error> for Failure {
                     Some(ContextValue::Strings(names)) => names.first(),
                     _ => None,
                 };
-                let verb = similar.map(|name| format!("there is the verb `{name}`"));
+                let verb = similar.map(|name| format!("did you mean the verb `{name}`?"));
                 let hint = verb.or_else(|| for_missing(Path::new(word))).unwrap_or_else(|| HELP.to_owned());
                 return Self::usage(format!("{word}: there is no such verb, and no file of that name")).with_hint(hint);
             }
             ErrorKind::UnknownArgument if SIZES.contains(&context(ContextKind::InvalidArg)) => {
                 let option = context(ContextKind::InvalidArg);
                 return Self::usage(format!("there is no option {option}"))
-                    .with_hint("--resolution 1024x768 gives the size of the picture");
+                    .with_hint("--resolution 1024x768 sets the size of the picture");
             }
             _ => {}
         }

@@ -111,7 +111,7 @@ fn check_models_apart<'o>(
     }
     for output in outputs {
         if !output.names_models() {
-            let what = format!("--output {}: each model would be written there", output.pattern().display());
+            let what = format!("--output {}: every model would be written to this file", output.pattern().display());
             return Err(Failure::usage(what).with_hint("put {model} into its name, or add --together"));
         }
         models::check_files(models, |model| output.path(model, frame))?;
@@ -188,7 +188,7 @@ fn check_pictures_are_made(args: &RenderArgs, state: &State, outputs: &[Output])
     }
     let visibility = state.settings.visibility;
     if args.report.structure.is_some() && drawer(visibility).is_none() {
-        let message = format!("--structure: the algorithm {visibility} builds no structure that is drawn");
+        let message = format!("--structure: the algorithm {visibility} builds no structure to draw");
         let drawn: Vec<_> = Visibility::all().filter(|v| drawer(*v).is_some()).map(|v| v.name).collect();
         return Err(Failure::usage(message).with_hint(format!("give --visibility {}", drawn.join(" or "))));
     }
@@ -211,7 +211,7 @@ fn check_pictures_are_made(args: &RenderArgs, state: &State, outputs: &[Output])
 /// Refuses a transparent background in a format without transparency, and a pixel outside the picture.
 fn check_background_and_pixel(args: &RenderArgs, state: &State, outputs: &[Output]) -> Result<(), Failure> {
     if let Some(opaque) = outputs.iter().find(|o| args.picture.no_background && !o.keeps_transparency()) {
-        let what = format!("--no-background: {} knows no transparency", opaque.format().name());
+        let what = format!("--no-background: {} files cannot be transparent", opaque.format().name());
         return Err(Failure::usage(what).with_hint("write a .png, or give --background-color"));
     }
     let [width, height] = [state.settings.picture.width, state.settings.picture.height];
@@ -236,7 +236,7 @@ fn frames_of(
             .with_hint("they are counted from 0"));
     }
     if frames.end() > frames.start() && outputs.iter().any(|o| !o.holds_frames()) {
-        let what = format!("--output holds one picture, the {sequence} has {views}");
+        let what = format!("--output has room for one picture, and the {sequence} has {views}");
         return Err(Failure::usage(what).with_hint(FRAMES_HINT));
     }
     if let Some(animation) = outputs.iter().find(|o| frames.end() > frames.start() && o.is_animation())
@@ -286,7 +286,7 @@ fn check_standard_output(args: &RenderArgs, outputs: &[Output]) -> Result<(), Fa
     ];
     let mut wanted = wanted.iter().filter(|(wants, _)| *wants).map(|(_, option)| option);
     match (wanted.next(), wanted.next()) {
-        (Some(one), Some(other)) => Err(Failure::usage(format!("{one} and {other} both want standard output"))),
+        (Some(one), Some(other)) => Err(Failure::usage(format!("{one} and {other} both write to standard output"))),
         _ => Ok(()),
     }
 }
@@ -399,7 +399,9 @@ fn set_surfaces(settings: &mut Settings, args: &AlgorithmArgs) {
 fn set_transparency(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
     settings.transparency.model = args.transparency.unwrap_or(settings.transparency.model);
     if args.kay_exponent.is_some() && settings.transparency.model != Transparency::Kay {
-        return Err(Failure::usage("--kay-exponent: transparency is not Kay's").with_hint("add --transparency kay"));
+        return Err(
+            Failure::usage("--kay-exponent: it needs Kay's model of transparency").with_hint("add --transparency kay")
+        );
     }
     settings.transparency.kay_exponent = args.kay_exponent.unwrap_or(settings.transparency.kay_exponent);
     settings.transparency.order = args.transparency_order.unwrap_or(settings.transparency.order);
@@ -438,10 +440,10 @@ fn set_global(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failu
 fn set_shadows(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
     settings.shadows.algorithm = args.shadows.unwrap_or(settings.shadows.algorithm);
     if args.light_samples.is_some() && settings.shadows.algorithm.is_none {
-        return Err(Failure::usage("--light-samples: no shadows are looked for").with_hint("add --shadows ray"));
+        return Err(Failure::usage("--light-samples: no shadows are computed").with_hint("add --shadows ray"));
     }
     if args.terminator.is_some() && settings.shadows.algorithm.is_none {
-        return Err(Failure::usage("--terminator: no shadows are looked for").with_hint("add --shadows ray"));
+        return Err(Failure::usage("--terminator: no shadows are computed").with_hint("add --shadows ray"));
     }
     settings.shadows.terminator = args.terminator.unwrap_or(settings.shadows.terminator);
     settings.shadows.light_samples = args.light_samples.unwrap_or(settings.shadows.light_samples);
@@ -480,8 +482,8 @@ pub(crate) fn set_reading(state: &mut State, args: &ProcessArgs) {
 
 pub(crate) fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Failure> {
     if args.file_colors == Some(FileColors::Srgb) && state.settings.picture.color_space == ColorSpace::Raw {
-        return Err(Failure::usage("--file-colors srgb: raw colours are the numbers of the file")
-            .with_hint("leave it out, or leave out --color-space raw"));
+        return Err(Failure::usage("--file-colors srgb: with --color-space raw, colours are the numbers in the file")
+            .with_hint("leave out one of the two"));
     }
     state.settings.shading.environment = args.environment.unwrap_or(state.settings.shading.environment);
     state.load.file_colors = args.file_colors.unwrap_or(state.load.file_colors);

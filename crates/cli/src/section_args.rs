@@ -1,5 +1,6 @@
 //! What `vitral draw` does to the model first: parts moved apart, planes of section, hatching.
 
+use crate::help;
 use crate::report::Failure;
 use crate::values;
 use clap::Args;
@@ -12,20 +13,28 @@ const LEAST_DISTANCE: f64 = 0.1;
 
 /// Sections and exploded views.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Sections")]
+#[command(next_help_heading = help::SECTIONS)]
 pub(crate) struct SectionArgs {
-    /// Take away what lies on the side of a plane to which its normal points: a point of the plane and the normal, in the model's
-    /// coordinates. Closed bodies get a cap with hatching, edges along the cut are lines of the class section; up to 8 planes cut
-    /// one after the other
+    /// Cut away the side of a plane to which its normal points; repeatable, up to 8 planes
+    ///
+    /// X,Y,Z is a point of the plane and NX,NY,NZ its normal, in the model's coordinates. The cut
+    /// through a closed body is hatched, and the edges along it are lines of the class section.
+    /// Several planes cut one after the other
     #[arg(long, value_name = "X,Y,Z,NX,NY,NZ", value_parser = plane, allow_hyphen_values = true)]
     pub(crate) section_plane: Vec<SectionPlane>,
-    /// Angle of hatching in degrees and distance of its lines on paper, or none. Each material has its own pattern: angles of 45,
-    /// 135, 30, 120, 60 and 150 degrees, then the same angles at 1.5 times the distance; each object without a material has one, too
-    /// [default: 45,2mm]
+    /// Angle of the hatching in degrees and distance of its lines on paper, or none [default:
+    /// 45,2mm]
+    ///
+    /// Each material has its own pattern: angles of 45, 135, 30, 120, 60 and 150 degrees, then the
+    /// same angles at 1.5 times the distance. Each object without a material has a pattern of its
+    /// own, too
     #[arg(long, value_name = "ANGLE,DISTANCE", value_parser = hatch, allow_hyphen_values = true, requires = "section_plane")]
     pub(crate) hatch: Option<Hatching>,
-    /// Move parts from the centre by F times their distance, before planes cut. Parts are objects of the scene; of a single one its
-    /// groups, or else its connected bodies
+    /// Exploded view: move parts from the centre by F times their distance from it, before planes
+    /// cut
+    ///
+    /// Parts are the objects of the scene; of a single object its groups, or else its connected
+    /// bodies
     #[arg(long, value_name = "F", value_parser = values::not_negative, allow_negative_numbers = true)]
     pub(crate) explode: Option<f64>,
 }
@@ -44,7 +53,9 @@ impl SectionArgs {
     pub(crate) fn check(&self) -> Result<(), Failure> {
         let count = self.section_plane.len();
         if count > MOST_PLANES {
-            return Err(Failure::usage(format!("--section-plane: {count} planes, at most {MOST_PLANES} are possible")));
+            return Err(Failure::usage(format!(
+                "--section-plane: {count} planes are given, at most {MOST_PLANES} are possible"
+            )));
         }
         Ok(())
     }
@@ -72,7 +83,8 @@ impl SectionArgs {
         let warning = match scene.nodes.iter().any(|node| node.mesh.is_some()) {
             false => Some("--section-plane: nothing is left of the model"),
             true if !scene.is_cut() => Some("--section-plane: no plane cuts the model"),
-            true => (!scene.has_caps()).then_some("--section-plane: no body is closed, so there is no cap to hatch"),
+            true => (!scene.has_caps())
+                .then_some("--section-plane: no cut body is closed, so there is no cut surface to hatch"),
         };
         scene.warnings.extend(warning.map(str::to_owned));
         Ok(scene)
@@ -85,7 +97,7 @@ fn plane(text: &str) -> Result<SectionPlane, String> {
     let &[x, y, z, nx, ny, nz] = &numbers[..] else {
         return Err("six numbers X,Y,Z,NX,NY,NZ are required, such as 0,0,0,0,0,1".to_owned());
     };
-    SectionPlane::new([x, y, z], [nx, ny, nz]).ok_or_else(|| "a normal NX,NY,NZ of some length is required".to_owned())
+    SectionPlane::new([x, y, z], [nx, ny, nz]).ok_or_else(|| "the normal NX,NY,NZ must not be 0,0,0".to_owned())
 }
 
 /// `45,2mm` or `none`.
@@ -110,7 +122,7 @@ mod tests {
     fn planes_and_hatching_are_read() {
         assert_eq!(plane("1,2,-3,0,0,5").ok(), SectionPlane::new([1.0, 2.0, -3.0], [0.0, 0.0, 1.0]));
         assert!(plane("1,2,3").unwrap_err().contains("six numbers"));
-        assert!(plane("0,0,0,0,0,0").unwrap_err().contains("some length") && plane("0,0,0,0,0,x").is_err());
+        assert!(plane("0,0,0,0,0,0").unwrap_err().contains("must not be 0,0,0") && plane("0,0,0,0,0,x").is_err());
         assert_eq!(hatch("45,2mm"), Ok(Hatching::Lines(Hatch::default())));
         assert_eq!(hatch("405,2"), hatch("45,2mm"));
         assert_eq!(hatch("none"), Ok(Hatching::None));

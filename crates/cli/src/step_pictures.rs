@@ -14,7 +14,7 @@ const MOST_FRAMES: usize = 240;
 pub(crate) fn check(args: &RenderArgs, outputs: &[Output]) -> Result<(), Failure> {
     if let Some(step) = args.output.step.filter(|_| outputs.iter().all(|o| o.channel != Channel::Steps)) {
         return Err(
-            Failure::usage(format!("--step {step}: no picture of steps is made")).with_hint("add --channel steps")
+            Failure::usage(format!("--step {step}: no picture of steps is written")).with_hint("add --channel steps")
         );
     }
     Ok(())

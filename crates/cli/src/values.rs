@@ -110,7 +110,7 @@ where
 
 /// `1024x768` or `1024,768`.
 pub(crate) fn resolution(text: &str) -> Result<[u32; 2], String> {
-    let wrong = || format!("`{text}` is no size: two whole numbers such as 1024x768 are required");
+    let wrong = || format!("`{text}` is not a size: two whole numbers such as 1024x768 are required");
     let (width, height) = text.split_once(['x', 'X', ',']).ok_or_else(wrong)?;
     match (width.trim().parse(), height.trim().parse()) {
         (Ok(width), Ok(height)) => Ok([width, height]),
@@ -125,13 +125,14 @@ pub(crate) fn color(text: &str) -> Result<[f32; 3], String> {
     }
     match numbers::<3>(text) {
         Ok(rgb) if rgb.iter().all(|c| (0.0..=1.0).contains(c)) => Ok(rgb.map(|c| c as f32)),
-        _ => Err(format!("`{text}` is no colour: a name, #rrggbb or r,g,b from 0 to 1 is required")),
+        _ => Err(format!("`{text}` is not a colour: a name, #rrggbb or r,g,b from 0 to 1 is required")),
     }
 }
 
 /// A number of bytes: `1000000`, `512M`, `1.5G` (powers of 1024).
 pub(crate) fn bytes(text: &str) -> Result<u64, String> {
-    let wrong = || format!("`{text}` is no amount of memory: a number with K, M or G behind it is required");
+    let wrong =
+        || format!("`{text}` is not an amount of memory: a number of bytes, or one followed by K, M or G, is required");
     let upper = text.trim().to_ascii_uppercase();
     let upper = upper.strip_suffix("IB").or_else(|| upper.strip_suffix('B')).unwrap_or(&upper);
     let (digits, unit) = match upper.chars().last() {
@@ -191,7 +192,7 @@ pub(crate) fn frame_rate(text: &str) -> Result<f64, String> {
 
 /// A pixel, `x,y` from the top left.
 pub(crate) fn pixel(text: &str) -> Result<[u32; 2], String> {
-    let wrong = || format!("`{text}` is no pixel: two whole numbers such as 320,240 are required");
+    let wrong = || format!("`{text}` is not a pixel: two whole numbers such as 320,240 are required");
     let (x, y) = text.split_once(',').ok_or_else(wrong)?;
     match (x.trim().parse(), y.trim().parse()) {
         (Ok(x), Ok(y)) => Ok([x, y]),
@@ -222,7 +223,7 @@ pub(crate) fn frames(text: &str) -> Result<RangeInclusive<u32>, String> {
     let (first, last) = text.split_once('-').unwrap_or((text, text));
     match (first.parse(), last.parse()) {
         (Ok(first), Ok(last)) if first <= last => Ok(first..=last),
-        _ => Err(format!("`{text}` names no frames: one number or two such as 0-9 are required")),
+        _ => Err(format!("`{text}` is not a range of frames: one number or two such as 0-9 are required")),
     }
 }
 

@@ -179,7 +179,7 @@ impl Commands {
             let found = ["render", "draw"].iter().find_map(|verb| option(cli.find_subcommand(verb)?, name));
             let found = found.ok_or_else(|| Failure::usage(format!("there is no option --{name}")))?;
             if NOT_IN_A_BATCH.contains(&name) {
-                return Err(Failure::usage(format!("--{name} has no place in a batch")));
+                return Err(Failure::usage(format!("--{name} cannot be used in a batch")));
             }
 
             // Take its value along.
@@ -210,7 +210,7 @@ impl Commands {
         for (name, value) in options {
             let found = option(known, name).ok_or_else(|| format!("vitral {verb} has no option `{name}`"))?;
             if NOT_IN_A_BATCH.contains(&name.as_str()) {
-                return Err(format!("the option `{name}` has no place in a batch"));
+                return Err(format!("the option `{name}` cannot be used in a batch"));
             }
             if let Some(given) = given(name, value)? {
                 command.extend(option_words(found, name, &given).map_err(|why| format!("the option `{name}`: {why}"))?);
@@ -283,7 +283,7 @@ mod tests {
         assert!(why("{").contains("cannot be read"));
         assert!(why(r#"{"model": "a", "output": "a.png", "size": 3}"#).contains("size"));
         assert!(why(r#"{"model": "a", "output": "a.png", "options": {"sampels": 3}}"#).contains("`sampels`"));
-        assert!(why(r#"{"model": "a", "output": "a.png", "options": {"json": true}}"#).contains("no place"));
+        assert!(why(r#"{"model": "a", "output": "a.png", "options": {"json": true}}"#).contains("cannot be used"));
         assert!(why(r#"{"model": "a", "output": "-"}"#).contains("writes a file"));
         assert!(why(r#"{"model": "a", "output": "a.png", "options": {"samples": {}}}"#).contains("samples"));
         let twice = jobs("{\"model\": \"a\", \"output\": \"x.png\"}\n{\"model\": \"b\", \"output\": \"x.png\"}", &[]);

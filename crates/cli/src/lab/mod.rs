@@ -27,6 +27,7 @@ pub(crate) fn run(args: &LabPageArgs) -> Result<u8, Failure> {
 pub(crate) fn run(args: &LabPageArgs) -> Result<u8, Failure> {
     let LabPageArgs { models: _, load_state: _, port: _, no_open: _, export: _, allow_external: _ } = args;
     const NOT_SUPPORTED: u8 = 4;
-    let what = "this build of vitral has no Lab inside";
-    Err(Failure::with_code(NOT_SUPPORTED, what).with_hint("`cargo xtask lab` builds one that has, with Node and npm"))
+    let what = "this build of vitral does not contain the Lab";
+    Err(Failure::with_code(NOT_SUPPORTED, what)
+        .with_hint("`cargo xtask lab` builds one that does; it needs Node and npm"))
 }

@@ -162,7 +162,7 @@ fn title_blocks_are_a_layer_below_the_drawing() {
 fn options_that_do_not_suit_the_file_are_told() {
     let folder = CubeFolder::new("mistakes");
     for (arguments, code, said) in [
-        (&["-o", "x.png"][..], 4, "written are .svg, .pdf, .dxf, .hpgl, .plt"),
+        (&["-o", "x.png"][..], 4, "choose .svg, .pdf, .dxf, .hpgl, .plt"),
         (&["-o", "x.svg", "--stroke", "outline=1"], 2, "`outline` is not one of contour, boundary"),
         (&["-o", "x.svg", "--stroke", "hidden=1"], 2, "add --hidden dashed"),
         (&["-o", "x.dxf", "--stroke", "contour=1"], 2, "choose .svg, .pdf or .hpgl"),
@@ -171,11 +171,11 @@ fn options_that_do_not_suit_the_file_are_told() {
         (&["-o", "x.svg", "--precision", ".3"], 2, "1, .1, .01 or .001 is required"),
         (&["-o", "x.svg", "--svg-ids"], 2, "add --style filled"),
         (&["-o", "x.pdf", "--style", "filled", "--svg-ids"], 2, "choose .svg"),
-        (&["-o", "x.svg", "--title-block", "Part=ß"], 2, "no strokes for `ß`"),
+        (&["-o", "x.svg", "--title-block", "Part=ß"], 2, "there is no stroke letter for `ß`"),
         (&["-o", "x.svg", "--title-block", "Part=Cube", "--page", "20x20mm"], 2, "leaves no room"),
         (&["-o", "x.svg", "--stroke", "title=1"], 2, "add --title-block"),
         (&["-o", "x.svg", "--unit", "m"], 2, "--scale"),
-        (&["-o", "x.svg", "--scale", "0:1"], 2, "is no scale"),
+        (&["-o", "x.svg", "--scale", "0:1"], 2, "is not a scale"),
         (&["-o", "x.svg", "--scale", "1:1", "--camera-view-angle", "30"], 2, "add --camera-orthographic"),
         (
             &["-o", "x.svg", "--view", "front", "--scale", "15:1", "--page", "A4"],
@@ -197,7 +197,7 @@ fn a_drawing_without_anything_in_it_is_told() {
     let folder = Folder::new("empty-drawing");
     folder.file("point.obj", "v 0 0 0\nv 1 1 0\np 1\np 2\n");
     let output = folder.run(&["draw", "point.obj", "--style", "filled", "-o", "x.svg"]);
-    assert!(output.status.success() && errors(&output).contains("nothing is drawn"), "{}", errors(&output));
+    assert!(output.status.success() && errors(&output).contains("the drawing is empty"), "{}", errors(&output));
     let output = folder.run(&["draw", "point.obj", "-o", "x.svg"]);
-    assert!(output.status.success() && !errors(&output).contains("nothing is drawn"), "{}", errors(&output));
+    assert!(output.status.success() && !errors(&output).contains("the drawing is empty"), "{}", errors(&output));
 }

@@ -202,9 +202,9 @@ fn exit_codes() {
     let cases: [(&[&str], i32, &str); 33] = [
         (&["a.obj", "-o", "x.png"], 0, ""),
         (&["a.obj", "-o", "x.png", "--no-background"], 0, ""),
-        (&["a.obj", "-o", "x.jpg", "--no-background"], 2, "--no-background: JPEG knows no transparency"),
+        (&["a.obj", "-o", "x.jpg", "--no-background"], 2, "--no-background: JPEG files cannot be transparent"),
         (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
-        (&["a.obj", "-o", "x.png", "--panels"], 2, "`none` have no panels: choose map, object-precision"),
+        (&["a.obj", "-o", "x.png", "--panels"], 2, "`none` has no figure of panels: choose map, object-precision"),
         (&["a.obj", "-o", "x.png", "--shadows", "map", "--panels"], 0, ""),
         (&["a.obj", "-o", "x.npy", "--channel", "depth", "--shadows", "map", "--panels"], 2, "not the channel depth"),
         (&["a.obj", "-o", "x.png", "--max-depth", "3"], 2, "--max-depth: no rays are traced"),
@@ -219,8 +219,8 @@ fn exit_codes() {
             "choose volume, scan-line, object-precision",
         ),
         (&["a.obj", "--shadows", "volume", "--export-shadow-polygons", "s.stl"], 2, "only .obj files are written"),
-        (&["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"], 2, "are `ray`: choose volume"),
-        (&["a.obj", "-o", "x.png", "--terminator", "exact"], 2, "--terminator: no shadows are looked for"),
+        (&["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"], 2, "is `ray`: choose volume"),
+        (&["a.obj", "-o", "x.png", "--terminator", "exact"], 2, "--terminator: no shadows are computed"),
         (&["a.obj", "-o", "x.png", "--camera-clip", "3,2"], 2, "two distances are required, the nearer first"),
         (&["a.obj", "-o", "x.png", "--shadows", "ray", "--shadow-map-size", "512"], 2, "no shadow maps are drawn"),
         (&["a.obj", "-o", "x.png", "--shadow-cascades", "4"], 2, "add --shadows map"),
@@ -286,7 +286,7 @@ fn mistakes_in_drawings_are_told() {
     let folder = Folder::new("drawing-mistakes");
     folder.file("a.obj", TRIANGLE);
     for (arguments, expected, said) in [
-        (&["-o", "x.png"][..], 4, "not a format of drawings"),
+        (&["-o", "x.png"][..], 4, "drawings are not written in this format"),
         (&["-o", "x.svg", "--explode", "-2"], 2, "--explode"),
         (&["-o", "x.svg", "--lines", "section"], 2, "add --section-plane"),
         (&["-o", "x.svg", "--shadows"], 2, "give --style filled"),
@@ -297,7 +297,7 @@ fn mistakes_in_drawings_are_told() {
         (&["-o", "x.svg", "--lines", "edges"], 2, "contour"),
         (&["-o", "x.svg", "--hidden-max-layers", "2"], 2, "--hidden dashed"),
         (&["-o", "x.svg", "--style", "filled", "--lines", "all"], 2, "filled-lines"),
-        (&["-o", "x.svg", "--page", "A4", "--margin", "200"], 2, "nothing is left"),
+        (&["-o", "x.svg", "--page", "A4", "--margin", "200"], 2, "no room is left"),
         (&["-o", "x.svg", "--landscape"], 2, "--page"),
         (&["-o", "x.svg", "--max-memory", "300"], 7, "memory"),
         (&["-o", "nowhere/x.svg"], 5, "nowhere"),
@@ -318,7 +318,7 @@ fn mistakes_in_outputs_are_told_before_the_work() {
     let volumes = ["--shadows", "volume", "--export-shadow-polygons", "no/s.obj"];
     // The model is missing, too: what is told is what was looked at first.
     for (arguments, expected, said) in [
-        (&["-o", "x{fr}.png"][..], 2, "an unknown place in braces"),
+        (&["-o", "x{fr}.png"][..], 2, "the word in braces is not known"),
         (&["-o", "x.npy"], 4, "the channel color cannot be written as NPY"),
         (&["-o", "x.jpg", "--channel", "depth"], 4, "the channel depth cannot be written as JPEG"),
         (&["-o", "no/x.png"], 5, "there is no folder `no`"),
@@ -347,7 +347,7 @@ fn mistakes_are_told_in_words_of_our_own() {
         (&["--samples", "17"][..], "a whole number from 1 to 16, or 32, is required".to_owned()),
         (&["--threads", "-1"], required("0 to 1024")),
         (&["--camera-index", "-1"], required("0 to 4294967295")),
-        (&["--resolution", "-5x5"], "`-5x5` is no size".to_owned()),
+        (&["--resolution", "-5x5"], "`-5x5` is not a size".to_owned()),
         (&["--size", "5x5"], "hint: --resolution".to_owned()),
         (&["--light-samples", "4"], "hint: add --shadows ray".to_owned()),
         (&["--camera-position", "1,1,1", "--camera-focal-point", "1,1,1"], "stands at its focal point".to_owned()),
@@ -359,7 +359,7 @@ fn mistakes_are_told_in_words_of_our_own() {
     let told = |arguments: &[&str]| errors(&folder.run(arguments));
     let verb = told(&["inof", "a.obj"]);
     assert!(
-        verb.contains("inof: there is no such verb, and no file of that name\nhint: there is the verb `info`"),
+        verb.contains("inof: there is no such verb, and no file of that name\nhint: did you mean the verb `info`?"),
         "{verb}"
     );
     assert!(told(&["a.obj", "-o", "a"]).contains("a: the name has no extension"));
@@ -379,7 +379,7 @@ fn the_help_goes_into_pipes() {
     let folder = Folder::new("help");
     assert!(String::from_utf8(folder.run(&["help"]).stdout).unwrap().contains("compare"));
     assert_eq!(folder.run(&["help", "render"]).stdout, folder.run(&["render", "--help"]).stdout);
-    let output = folder.run(&["render", "--help"]);
+    let output = folder.run(&["render", "--help", "all"]);
     let help = String::from_utf8(output.stdout).unwrap();
     assert!(help.contains("--visibility") && help.contains("z-buffer"));
     let words = help.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -387,6 +387,47 @@ fn the_help_goes_into_pipes() {
         assert!(words.contains(part), "{part}");
     }
     assert!(!help.contains('\u{1b}'), "no colours in a pipe");
+}
+
+#[test]
+fn each_verb_has_help_in_two_sizes_and_by_groups() {
+    let folder = Folder::new("groups");
+    folder.file("a.obj", TRIANGLE);
+    let help = |arguments: &[&str]| {
+        let output = folder.run(arguments);
+        assert_eq!((code(&output), errors(&output).as_str()), (0, ""), "{arguments:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let listed = help(&["--help"]);
+    let verbs = listed.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let starts_verb = |line: &&str| line.starts_with("  ") && !line.starts_with("   ");
+    let verbs: Vec<&str> = verbs.filter(starts_verb).filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(verbs.contains(&"render") && verbs.contains(&"thumbnail"), "{verbs:?}");
+    for verb in verbs {
+        // A summary of at most two screens, and a form that is no longer.
+        let (long, short) = (help(&[verb, "--help"]), help(&[verb, "-h"]));
+        assert!(long.lines().count() <= 100 && short.len() <= long.len(), "{verb}: {long}");
+        assert!(long.lines().chain(short.lines()).all(|line| line.chars().count() <= 100), "{verb}: {long}");
+        assert!(help(&[verb, "--help", "all"]).len() >= long.len() && help(&["help", verb]) == long);
+
+        // A group, in both forms; or a line that says there is none.
+        let output = folder.run(&[verb, "--help", "camera"]);
+        assert_eq!(folder.run(&[verb, "--help=camera"]).stdout, output.stdout);
+        if ["render", "draw", "bench"].contains(&verb) {
+            let text = String::from_utf8(output.stdout).unwrap();
+            assert!(text.contains("--camera-view-angle") && !text.contains("--threads"), "{verb}: {text}");
+        } else {
+            assert!(code(&output) == 2 && errors(&output).contains("have no groups"), "{}", errors(&output));
+        }
+        let output = folder.run(&[verb, "--help", "alg"]);
+        assert!(code(&output) == 2 && errors(&output).contains("hint: "), "{verb}: {}", errors(&output));
+    }
+    let told = errors(&folder.run(&["render", "--help", "alg"]));
+    assert!(told.contains("hint: did you mean `vitral render --help algorithms`?"), "{told}");
+    let algorithms = help(&["render", "--help", "algorithms"]);
+    assert!(algorithms.contains("--visibility") && !algorithms.contains("--camera"), "{algorithms}");
+    assert_eq!(help(&["a.obj", "--help=algorithms"]), algorithms);
+    assert_eq!(help(&["render", "a.obj", "--help"]), help(&["render", "--help"]));
 }
 
 #[test]
@@ -527,7 +568,7 @@ fn lists_and_pages() {
     // Built-in scenes are told wherever somebody may look for them.
     let (formats, page) = (text(&["formats"]), text(&["man"]).replace("\\-", "-"));
     let helps = ["render", "info", "bench"]
-        .map(|verb| text(&[verb, "--help"]).split_whitespace().collect::<Vec<_>>().join(" "));
+        .map(|verb| text(&[verb, "--help", "all"]).split_whitespace().collect::<Vec<_>>().join(" "));
     for (i, (name, about)) in vitral::builtin_names().iter().enumerate() {
         let line = formats.lines().find(|line| line.trim_start().starts_with(&format!("builtin:{name} ")));
         assert!(line.is_some_and(|line| line.ends_with(about)), "{name}");
@@ -572,7 +613,7 @@ fn the_stages_can_be_dumped() {
 fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
     let folder = Folder::new("transparency");
     for (arguments, what, hint) in [
-        (&["--transparency-order", "back-to-front"][..], "`z-buffer` makes none", "--visibility bsp or painter"),
+        (&["--transparency-order", "back-to-front"][..], "`z-buffer` does not", "--visibility bsp or painter"),
         (&["--transparency-order", "sorted", "--global", "ray-trace"], "`sorted`", "leave out --transparency-order"),
         (
             &["--material", "glass.transmission=translucent", "--transparency-order", "two-buffer"],
@@ -584,10 +625,10 @@ fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
         (&["--material", "glass.ior=0"], "a number above 0 is required", "ior: index of refraction"),
         (&["--material", "glass.filter=1,2,1"], "from 0 to 1", "filter: colour of light that passes"),
         (&["--scatter-samples", "0"], "1 to 4096", ""),
-        (&["--kay-exponent", "2"], "transparency is not Kay's", "add --transparency kay"),
+        (&["--kay-exponent", "2"], "it needs Kay's model of transparency", "add --transparency kay"),
         (&["--transparency", "kay", "--kay-exponent", "0"], "above 0", ""),
         (&["--material", "glass.kt-min=2"], "a number from 0 to 1 is required", "kt-min: what passes"),
-        (&["--depth-cue=near=2"], "no `near`", "back-scale"),
+        (&["--depth-cue=near=2"], "no key `near`", "back-scale"),
         (&["--depth-cue=front=2,back=1"], "farther away", ""),
         (&["--depth-cue", "--no-background"], "colour to fade into", ""),
         (&["--normals", "none", "--crease-angle", "30"], "no normals are made", ""),

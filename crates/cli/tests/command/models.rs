@@ -82,13 +82,13 @@ fn what_one_scene_gives_is_refused_for_several() {
 
     let two = ["a.obj", "builtin:cubs", "-o", "{model}.png"];
     for (arguments, said) in [
-        (&["--pixel", "1,1"][..], "--pixel: it is for one scene"),
-        (&["--trace", "t"], "--trace: it is for one scene"),
+        (&["--pixel", "1,1"][..], "--pixel: it works with one scene"),
+        (&["--trace", "t"], "--trace: it works with one scene"),
         (&["--dump", "d"], "hint: add --together"),
         (&["--reference", "a.png"], "--reference"),
         (
             &["--channel", "color", "--channel", "depth", "-o", "d.npy"],
-            "--output d.npy: each model would be written there",
+            "--output d.npy: every model would be written to this file",
         ),
     ] {
         let output = bare(&folder, &[&two, arguments].concat());

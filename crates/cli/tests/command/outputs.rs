@@ -40,7 +40,7 @@ fn the_format_may_be_said() {
         (&["-o", "a.png", "--format", "npy"], 4, "the channel color cannot be written as NPY"),
         (&["-o", "a.png", "--format", "tiff"], 2, "invalid value 'tiff'"),
         (&["-o", "a.gif", "--channel", "depth"], 4, "the channel depth cannot be written as GIF"),
-        (&["-o", "a.jpg", "--no-background", "--format", "jpg"], 2, "JPEG knows no transparency"),
+        (&["-o", "a.jpg", "--no-background", "--format", "jpg"], 2, "JPEG files cannot be transparent"),
     ] {
         let output = render(&folder, &[&["builtin:cubs"], arguments].concat());
         assert_eq!(code(&output), expected, "{arguments:?}: {}", errors(&output));

@@ -146,6 +146,6 @@ fn the_manual_has_a_page_for_each_verb() {
     assert!(page("vitral-render").contains("\\-\\-visibility") && !page("vitral-info").contains("\\-\\-visibility"));
     let whole = String::from_utf8(folder.run(&["man"]).stdout).unwrap();
     assert!(whole.starts_with(&page("vitral")) && whole.contains(&page("vitral-draw")));
-    let help = String::from_utf8(folder.run(&["render", "--help"]).stdout).unwrap();
+    let help = String::from_utf8(folder.run(&["render", "--help", "all"]).stdout).unwrap();
     assert!(!help.contains("course's arithmetic") && !help.contains("exercise 5.2"));
 }

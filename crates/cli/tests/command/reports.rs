@@ -47,7 +47,7 @@ fn pictures_after_steps_are_drawn_one_by_one() {
     assert_eq!(folder.read("s-06.png"), folder.read("late.png"));
 
     for (arguments, told) in [
-        (&["-o", "a.png", "--step", "3"][..], "--step 3: no picture of steps is made"),
+        (&["-o", "a.png", "--step", "3"][..], "--step 3: no picture of steps is written"),
         (&["--steps-video", "s.png"], "put {frame} or {frame:4} into its name"),
         (&["--steps-video", "nowhere/{frame}.png"], "nowhere"),
         (&["-o", "a.png", "--steps-frames", "3"], "--steps-video"),
@@ -167,7 +167,11 @@ fn standard_output_takes_state_statistics_and_trace() {
     }
     let both = render(&folder, &["builtin:cubs", "-o", "a.png", "--save-state", "-", "--stats-file", "-"]);
     assert_eq!(code(&both), 2);
-    assert!(errors(&both).contains("--save-state - and --stats-file - both want standard output"), "{}", errors(&both));
+    assert!(
+        errors(&both).contains("--save-state - and --stats-file - both write to standard output"),
+        "{}",
+        errors(&both)
+    );
 }
 
 #[test]

@@ -67,7 +67,7 @@ fn mistakes_are_told() {
         (&["--stroke", "section=1"], 2, "add --section-plane"),
         (&["--stroke", "hatch=1"], 2, "there is no hatching"),
         (&["--hatch", "45,2mm"], 2, "--section-plane"),
-        (&["--section-plane", "0,0,0,0,0,0"], 2, "a normal NX,NY,NZ of some length"),
+        (&["--section-plane", "0,0,0,0,0,0"], 2, "the normal NX,NY,NZ must not be 0,0,0"),
         (&["--section-plane", "0,0,0,1"], 2, "six numbers"),
         (&["--explode", "-1"], 2, "--explode"),
         (&[cut[0], cut[1], "--hatch", "45"], 2, "ANGLE,DISTANCE is required"),

@@ -16,28 +16,28 @@ pub enum SettingsError {
         height: u32,
     },
     /// Number of samples.
-    #[error("{0} samples a pixel: 1 to 16, or 32, are possible")]
+    #[error("{0} samples per pixel: 1 to 16, or 32, are possible")]
     Samples(u32),
     /// Width of lines.
-    #[error("lines {0} pixels wide: 0.1 to 64 are possible")]
+    #[error("lines of {0} pixels: a width from 0.1 to 64 is required")]
     LineWidth(f32),
     /// Size of points.
-    #[error("points {0} pixels large: 0.1 to 64 are possible")]
+    #[error("points of {0} pixels: a size from 0.1 to 64 is required")]
     PointSize(f32),
     /// Colour of edges.
-    #[error("the colour of edges: r,g,b from 0 to 1 are required")]
+    #[error("the colour of edges is out of range: r,g,b from 0 to 1 are required")]
     EdgeColor,
     /// Edges of no class.
-    #[error("no class of edges: at least one is required")]
+    #[error("no class of edges is chosen: at least one is required")]
     EdgeClasses,
     /// The exponent of Kay's model.
-    #[error("an exponent of {0} in Kay's model of transparency: a number above 0 is required")]
+    #[error("the exponent of Kay's model of transparency is {0}: a number above 0 is required")]
     KayExponent(f32),
     /// The numbers of depth cueing.
     #[error("depth cueing: {0}")]
     DepthCue(&'static str),
     /// A kind of coherence that the algorithm does not exploit.
-    #[error("`{visibility}` does not exploit {kind} coherence: choose of {choices}; or none")]
+    #[error("`{visibility}` does not use {kind} coherence: choose from {choices}, or none")]
     Coherence {
         /// The visibility algorithm.
         visibility: Visibility,
@@ -47,40 +47,42 @@ pub enum SettingsError {
         choices: String,
     },
     /// Bits of an integer depth.
-    #[error("integer depths of {0} bits: 8 to 32 are possible")]
+    #[error("integer depths of {0} bits: 8 to 32 bits are possible")]
     DepthBits(u32),
     /// Integer depths of an algorithm that has none.
-    #[error("only the z-buffer has integer depths, and `{0}` was chosen")]
+    #[error("integer depths need the visibility algorithm z-buffer, and `{0}` is chosen")]
     IntegerDepth(Visibility),
     /// Integer depths, and passes that compare depths of their own.
-    #[error("integer depths were chosen, and the order of transparency `{0}` compares others")]
+    #[error(
+        "the transparency order `{0}` compares depths of its own and cannot use integer depths: choose a-buffer, or leave the number of bits out"
+    )]
     PassesOfIntegers(&'static str),
     /// Turns of a ray.
-    #[error("{0} turns of a ray: 1 to 64 are possible")]
+    #[error("{0} reflections and refractions of a ray: 1 to 64 are possible")]
     MaxDepth(u32),
     /// Length of a patch's edge.
-    #[error("patches of {0}: a length above 0 is required")]
+    #[error("the longest edge of a patch is {0}: a length above 0 is required")]
     PatchSize(f64),
     /// Number of shots.
-    #[error("0 iterations: at least 1 is required")]
+    #[error("radiosity cannot work with 0 iterations: at least 1 is required")]
     Iterations,
     /// Light from other surfaces, but no surfaces.
-    #[error("without surfaces there is no global illumination")]
+    #[error("wireframes have no surfaces, which global illumination needs: choose one of them")]
     GlobalLines,
     /// Number of places on area lights.
-    #[error("{0} samples of a light: 1 to 4096 are possible")]
+    #[error("{0} samples per area light: 1 to 4096 are possible")]
     LightSamples(u32),
     /// Size of shadow maps.
-    #[error("shadow maps of {0} texels a side: 16 to 8192 are possible")]
+    #[error("shadow maps of {0} texels per side: 16 to 8192 are possible")]
     ShadowMapSize(u32),
     /// Number of cascades.
-    #[error("{0} cascades of shadow maps: 1 to 8 are possible")]
+    #[error("{0} shadow maps per light: 1 to 8 are possible")]
     ShadowCascades(u32),
     /// A way to count shadow volumes, but none.
-    #[error("a way to count shadow volumes was chosen, but the shadows are `{0}`: choose volume")]
+    #[error("a way to count shadow volumes is chosen, but the shadow algorithm is `{0}`: choose volume")]
     VolumeCounting(Shadows),
     /// The polygons of a shadow algorithm are wanted, but it works with none.
-    #[error("the shadows `{shadows}` work with no polygons: choose {choices}")]
+    #[error("the shadow algorithm `{shadows}` does not work with polygons: choose {choices}")]
     ShadowPolygons {
         /// Asked for.
         shadows: Shadows,
@@ -88,7 +90,7 @@ pub enum SettingsError {
         choices: String,
     },
     /// The polygons of a visibility algorithm are wanted, but it comes to none.
-    #[error("`{visibility}` comes to samples and not to polygons: choose {choices}")]
+    #[error("the visibility algorithm `{visibility}` finds samples, not polygons: choose {choices}")]
     Polygons {
         /// Asked for.
         visibility: Visibility,
@@ -96,7 +98,7 @@ pub enum SettingsError {
         choices: String,
     },
     /// The panels of a shadow algorithm are wanted, but it has none.
-    #[error("the shadows `{shadows}` have no panels: choose {choices}")]
+    #[error("the shadow algorithm `{shadows}` has no figure of panels: choose {choices}")]
     Panels {
         /// Asked for.
         shadows: Shadows,
@@ -108,7 +110,7 @@ pub enum SettingsError {
     CastShadow(String),
     /// An order that takes a list, but no list.
     #[error(
-        "the order of transparency `back-to-front` takes the list of a list-priority algorithm, and `{visibility}` makes none: choose {choices}"
+        "the transparency order `back-to-front` needs a visibility algorithm that sorts polygons, and `{visibility}` does not: choose {choices}"
     )]
     ListOrder {
         /// The visibility algorithm.
@@ -118,12 +120,12 @@ pub enum SettingsError {
     },
     /// An order of transparency, but rays find what is behind.
     #[error(
-        "the order of transparency `{0}` was chosen, but rays find what is behind transparent surfaces, one by one"
+        "the transparency order `{0}` has no effect on rays, which find what is behind transparent surfaces by themselves"
     )]
     OrderOfRays(&'static str),
     /// A translucent material, and an order of transparency that has no picture of what is behind.
     #[error(
-        "material `{material}` is translucent, which the order of transparency `{order}` cannot show: choose {choices}"
+        "material `{material}` is translucent, which the transparency order `{order}` cannot show: choose {choices}"
     )]
     Translucent {
         /// The material's name.
@@ -134,19 +136,17 @@ pub enum SettingsError {
         choices: String,
     },
     /// Pictures of passes are wanted, but there are none.
-    #[error(
-        "there are no passes with the order of transparency `{0}` and these algorithms: choose multi-pass, and neither rays nor brute-force"
-    )]
+    #[error("the transparency order `{0}` has no passes to show: choose multi-pass, and neither rays nor brute-force")]
     Passes(&'static str),
     /// The buffers of the two-buffer z-buffer are wanted, but there are none.
-    #[error("there are no two buffers with the order of transparency `{0}`: choose two-buffer")]
+    #[error("the transparency order `{0}` has no two buffers to show: choose two-buffer")]
     Buffers(&'static str),
     /// Number of scattered rays.
     #[error("{0} scattered rays: 1 to 4096 are possible")]
     ScatterSamples(u32),
     /// A structure for rays, but no rays.
     #[error(
-        "an acceleration structure was chosen, but `{visibility}` casts no rays, nor does anything else: choose the visibility \
+        "an acceleration structure is chosen, but `{visibility}` casts no rays, nor does anything else: choose the visibility \
          {choices}, the shadows ray, or the global illumination ray-trace"
     )]
     Acceleration {

@@ -400,7 +400,7 @@ mod tests {
         assert_eq!(settings.check().map(|v| (v.width, v.height)), Ok((64, 48)));
         assert!(settings.casts_rays(), "shadows by rays cast them");
         let error = settings.with_samples(17).check().unwrap_err();
-        assert_eq!(error.to_string(), "17 samples a pixel: 1 to 16, or 32, are possible");
+        assert_eq!(error.to_string(), "17 samples per pixel: 1 to 16, or 32, are possible");
     }
 
     #[test]
@@ -408,7 +408,7 @@ mod tests {
         let order = TransparencyOrder::BACK_TO_FRONT;
         let listed = Settings::default().with_transparency(Transparency::Linear, order);
         let error = listed.check().unwrap_err().to_string();
-        assert!(error.contains("`z-buffer` makes none: choose painter, bsp"), "{error}");
+        assert!(error.contains("`z-buffer` does not: choose painter, bsp"), "{error}");
         assert!(listed.with_visibility(Visibility::BSP).check().is_ok());
         let structure = Settings::default().with_acceleration(Acceleration::GRID).check().unwrap_err().to_string();
         assert!(structure.contains("choose the visibility ray-cast, the shadows ray"), "{structure}");

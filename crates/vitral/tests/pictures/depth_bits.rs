@@ -82,7 +82,7 @@ fn what_has_no_integer_depths_says_so() {
         told
     };
     let scan_line = told(|r| r.settings.visibility = Visibility::SCAN_LINE);
-    assert_eq!(scan_line, "only the z-buffer has integer depths, and `scan-line` was chosen");
+    assert_eq!(scan_line, "integer depths need the visibility algorithm z-buffer, and `scan-line` is chosen");
     let passes = told(|r| {
         r.settings = r.settings.clone().with_transparency(Transparency::Linear, TransparencyOrder::MULTI_PASS);
     });

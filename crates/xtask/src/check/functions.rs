@@ -51,17 +51,20 @@ impl<'a> EntryPoints<'a> {
 
 /// A function with its measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Function<'a> {
-    name: &'a str,
-    line: usize,
-    lines: usize,
+pub(super) struct Function<'a> {
+    pub(super) name: &'a str,
+    /// The line of `fn`.
+    pub(super) line: usize,
+    /// Lines from `fn` to the closing brace, both included.
+    pub(super) lines: usize,
+    /// Arguments, `self` among them.
     arguments: usize,
 }
 
 /// One line for each limit that a function breaks. `path` is relative to the repository's top, with `/`.
 pub(super) fn check(path: &str, text: &str, entry_points: &EntryPoints<'_>) -> Vec<String> {
     let mut violations = Vec::new();
-    if path.ends_with("/tests.rs") || path.starts_with("tests/") || path.contains("/tests/") {
+    if is_test_file(path) {
         return violations;
     }
     for function in functions(&without_tests(&tokens(text))) {
@@ -80,8 +83,13 @@ pub(super) fn check(path: &str, text: &str, entry_points: &EntryPoints<'_>) -> V
     violations
 }
 
+/// Whether the file holds nothing but tests.
+pub(super) fn is_test_file(path: &str) -> bool {
+    path.ends_with("/tests.rs") || path.starts_with("tests/") || path.contains("/tests/")
+}
+
 /// The functions with a name, in the order of the text. A function inside of another counts for both.
-fn functions<'a>(code: &[Token<'a>]) -> Vec<Function<'a>> {
+pub(super) fn functions<'a>(code: &[Token<'a>]) -> Vec<Function<'a>> {
     let text = |at: usize| code.get(at).map_or("", |token| token.text);
     let mut found = Vec::new();
     for start in (0..code.len()).filter(|&at| text(at) == "fn") {

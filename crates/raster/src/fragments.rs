@@ -43,6 +43,7 @@ impl<'a> FragmentSink<'a> {
         let samples = if MOST == 16 { self.pattern.len().min(MOST) } else { MOST };
         let infinity = F32x8::splat(simd, f32::INFINITY);
         let [top, end] = std::mem::replace(&mut self.rows, NO_ROWS);
+        // Bound each pixel's depths over its covered samples.
         for y in top..end {
             let seen = std::mem::take(&mut self.seen[y]);
             let (mut far, mut near, mut pixels, mut full) = (infinity, -infinity, 0u8, u8::MAX);

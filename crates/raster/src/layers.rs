@@ -141,6 +141,8 @@ impl LayerList {
             count += usize::from(seen);
             mask |= u32::from(seen) << s;
         }
+
+        // Gather the fragment, or spread it to the lists of its samples.
         let fragment = Fragment { start: start as u32, mask, count: count as u16, ..place };
         if self.gathers {
             self.depths.truncate(start + count);

@@ -335,6 +335,8 @@ impl<'a> Assembler<'a> {
     pub fn triangle(&mut self, corners: [u32; 3], provoking: u32) {
         let s = self.vertices.screen;
         let [a, b, c] = [s[corners[0] as usize], s[corners[1] as usize], s[corners[2] as usize]];
+
+        // Reject triangles outside the view volume, and clip those that cross it.
         let (any, all) = (a.flags | b.flags | c.flags, a.flags & b.flags & c.flags);
         if all & self.outside() != 0 || any & flag::NOT_FINITE != 0 {
             return;
@@ -342,6 +344,8 @@ impl<'a> Assembler<'a> {
         if any & CUT != 0 {
             return self.clipped(&corners, provoking, None);
         }
+
+        // Drop triangles without area, culled faces and those that cover no sample.
         let positions = [a.corner(), b.corner(), c.corner()];
         let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
         if area == 0 {
@@ -352,6 +356,8 @@ impl<'a> Assembler<'a> {
             return;
         }
         let Some(pixels) = self.pixels(&positions) else { return };
+
+        // Compute the depth plane and emit the facet.
         let plane = self.plane([a, b, c], area);
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
@@ -530,6 +536,8 @@ fn widened(corners: [CornerPosition; 3], boundary: [bool; 3], area: i64) -> Opti
         let border = if boundary[i] { SOFT_BORDER * scale } else { 0.0 };
         [nx, ny, nx * a.x as f32 + ny * a.y as f32 - border]
     });
+
+    // Intersect neighbouring edges, snapped to the grid and limited to the guard band.
     let whole = |v: f32| ((v / scale).clamp(-GUARD_BAND, GUARD_BAND) * scale + 0.5).floor() as i32;
     let wide: [CornerPosition; 3] = std::array::from_fn(|i| {
         let ([a, b, c], [d, e, f]) = (edges[(i + 2) % 3], edges[i]);
@@ -537,6 +545,8 @@ fn widened(corners: [CornerPosition; 3], boundary: [bool; 3], area: i64) -> Opti
         let (x, y) = ((c * e - b * f) / determinant, (a * f - c * d) / determinant);
         CornerPosition { x: whole(x), y: whole(y), z: corners[i].z }
     });
+
+    // Keep the triangle if it still has its orientation.
     let wide_area = Setup::doubled_area(wide[0], wide[1], wide[2]);
     (wide_area != 0 && (wide_area > 0) == (area > 0)).then_some(wide)
 }

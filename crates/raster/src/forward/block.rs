@@ -362,6 +362,7 @@ fn pass_rows<S: Simd>(
     passing: Passing,
     mask: &mut u64,
 ) -> u32 {
+    // Compare two rows of eight samples in each step.
     let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
     let (mut passed, mut changed) = (0, 0);
     for row in pairs(*mask) {
@@ -372,6 +373,7 @@ fn pass_rows<S: Simd>(
         let pass = passing.of(at_least, at_most) & (*mask >> (8 * row)) as u32 & 0xffff;
         passed |= u64::from(pass) << (8 * row);
         changed |= pass & !(at_least & at_most);
+        // Write the new depths where they pass.
         if test.write {
             let (low, high) = select(Mask16::from_bitmask(simd, u64::from(pass)), new, old).split();
             low.store_slice(first);
@@ -392,6 +394,8 @@ pub(crate) fn stencil<S: Simd>(
 ) {
     let samples = planes.samples;
     let Some(tile) = &mut planes.stencil else { return };
+
+    // Decide a tile that was only cleared with one test.
     if let Some(value) = tile.uniform() {
         // One value decides for all.
         let passes = simd.vectorize(
@@ -403,6 +407,8 @@ pub(crate) fn stencil<S: Simd>(
         }
         return;
     }
+
+    // Test the rows of the block, once for all samples if they agree.
     let together = all_alike(masks, samples);
     let (count, values) = tile.open(block.touched(), together, samples);
     simd.vectorize(
@@ -449,10 +455,14 @@ pub(crate) fn update_stencil<S: Simd>(
 ) {
     let samples = planes.samples;
     let Some(tile) = &mut planes.stencil else { return };
+
+    // Skip a replacement that changes nothing.
     let replaces = face.write_mask == 0xff && face.pass == StencilOp::Replace && covered == passed;
     if replaces && tile.uniform() == Some(face.reference) {
         return;
     }
+
+    // Update the rows of the block, once for all samples if they agree.
     let together = [covered, reached, passed].iter().all(|masks| all_alike(masks, samples));
     let (count, values) = tile.open(block.touched(), together, samples);
     simd.vectorize(
@@ -467,10 +477,13 @@ pub(crate) fn update_stencil<S: Simd>(
                     }
                     let at = (block.y + row) * TILE + block.x;
                     let stored = &mut plane[at..at + LANES];
+                    // Replace without reading what is stored.
                     if replaces {
                         replace_bytes(stored, covered, face.reference);
                         continue;
                     }
+
+                    // Apply the operations of the outcomes.
                     let masks = [covered, reached, passed].map(|bits| mask_of(simd, bits));
                     let old = load_stencil(simd, stored);
                     store_stencil(stencil_update(simd, face, old, masks[0], masks[1], masks[2]), stored);
@@ -506,6 +519,7 @@ pub(crate) fn colors<S: Simd>(
     let together = all_alike(masks, samples);
     simd.vectorize(
         #[inline(always)]
+        // Fill an aligned block that is covered whole.
         || {
             let replaces = ops.mixing == Mixing::Replace && ops.protected == 0;
             if replaces && together && masks[0] == u64::MAX && block.is_aligned() {

@@ -92,10 +92,13 @@ impl ColorGrid {
         places: &[[V; 2]; N],
         shade: &ShadeEight<'_>,
     ) -> [[V; 4]; N] {
+        // Find the grid cell of each place.
         let mut cells = [self.cell(simd, places[0]); N];
         for i in 1..N {
             cells[i] = self.cell(simd, places[i]);
         }
+
+        // Fetch the colours of vertices, shading those that are not cached.
         let words = lanes::inlined(
             #[inline(always)]
             |[i, j]: [i32; 2]| {
@@ -131,6 +134,8 @@ impl ColorGrid {
             }
             return out;
         }
+
+        // Otherwise interpolate cell by cell, each for all places in it.
         for i in 0..N {
             let cell = &cells[i];
             let mut rest = u32::MAX >> (u32::BITS as usize - V::LEN);
@@ -144,6 +149,8 @@ impl ColorGrid {
                     break;
                 }
             }
+
+            // Fetch the corners of the remaining places one by one.
             if rest != 0 {
                 out[i] = self.apart(simd, cell, &words);
             }
@@ -179,6 +186,7 @@ impl ColorGrid {
         cell: &Cell<S, V>,
         words: &impl Fn([i32; 2]) -> [f32; 4],
     ) -> [V; 4] {
+        // Fetch vertices lane by lane, as columns of a register.
         let (start, end) = self.ends();
         let (i, j, across) = (cell.i.as_slice(), cell.j.as_slice(), bits_of(cell.across));
         let fetch = lanes::inlined(
@@ -199,6 +207,8 @@ impl ColorGrid {
                 )
             },
         );
+
+        // Interpolate between the corners of each place's half of the cell.
         let middle = |lane: usize| {
             if across >> lane & 1 == 1 { [i[lane] + end, j[lane]] } else { [i[lane] + start, j[lane] + 1] }
         };

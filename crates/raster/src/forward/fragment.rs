@@ -216,12 +216,15 @@ fn mask_coverage<S: Simd>(
     bits: &mut [u32; SAMPLES],
     color: &mut Rgba<S>,
 ) {
+    // Apply the alpha test.
     if let Some(test) = state.alpha_test {
         let passed = bits_of(alpha_test(simd, test, color[3]));
         for s in 0..samples {
             bits[s] &= passed;
         }
     }
+
+    // Apply alpha to coverage and the sample mask.
     if samples > 1 && state.multisample {
         for s in 0..samples {
             if state.alpha_to_coverage {
@@ -249,12 +252,16 @@ impl TilePlanes<'_> {
         depths: &Depths<S>,
     ) -> [u32; SAMPLES] {
         let mut visible = *bits;
+
+        // Leave what the stencil test may change, and what always passes.
         let (Some(test), None, Some((tile, _))) = (state.depth, &state.stencil, &mut self.depth) else {
             return visible;
         };
         if test.func == Compare::Always {
             return visible;
         }
+
+        // Test each sample plane against the stored depths.
         for s in 0..self.samples {
             if bits[s] == 0 {
                 continue;
@@ -346,6 +353,7 @@ impl TilePlanes<'_> {
         bits: u32,
         depth: F32x8<S>,
     ) -> u32 {
+        // Run the stencil test.
         let samples = self.samples;
         let at = s * TILE_PIXELS + row.at;
         let covered = mask_of(simd, bits);
@@ -359,6 +367,8 @@ impl TilePlanes<'_> {
             reached = covered & passed;
             stencil = Some((face, stored, passed));
         }
+
+        // Run the depth test and write the depths that pass.
         let mut passed = reached;
         if let (Some(test), Some((tile, _))) = (state.depth, &mut self.depth) {
             let plain = test.func == Compare::Always;
@@ -372,6 +382,8 @@ impl TilePlanes<'_> {
                 }
             }
         }
+
+        // Update the stencil values by the outcomes.
         if let (Some((face, stored, stencil_passed)), Some(tile)) = (stencil, &mut self.stencil) {
             let updated = stencil_update(simd, &face, stored, covered, stencil_passed, passed);
             store_stencil(updated, &mut tile.stored(samples)[at..at + LANES]);
@@ -390,6 +402,8 @@ impl TilePlanes<'_> {
         color: &Rgba<S>,
     ) {
         let samples = self.samples;
+
+        // Pack and write sample by sample, by the format of the colour plane.
         match &mut self.color {
             None => {}
             Some(ColorTile::Rgba8(tile)) => {
@@ -483,12 +497,15 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
     simd.vectorize(
         #[inline(always)]
         || {
+            // Transpose eight stored pixels to components.
             let mut soa = [[0.0f32; LANES]; 4];
             for lane in 0..LANES {
                 for k in 0..4 {
                     soa[k][lane] = values[lane][k];
                 }
             }
+
+            // Clamp and blend.
             let clamped = state.clamping != Clamping::None;
             let color = if clamped { saturate_rgba(*color) } else { *color };
             let mut new = color;
@@ -508,6 +525,8 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
                 let both = new.as_flattened_mut().iter_mut().zip(soa.as_flattened());
                 both.for_each(|(new, &stored)| *new = logic_op_of_16_bits(op, *new, stored));
             }
+
+            // Write the components that no mask protects.
             for lane in 0..LANES {
                 for k in 0..4 {
                     if bits >> lane & 1 == 1 && !state.masked[k] {

@@ -281,16 +281,21 @@ impl Runner {
 
     /// Runs a pass.
     pub fn run(&self, pass: &Pass) {
+        // Cut the commands into jobs of about equal work.
         let (plans, order) = plan(&pass.commands);
         let forward = ForwardScreen {
             screens: [pattern(1), pass.target.pattern()].map(|p| screen(pass.target.viewport, &p)),
             viewport: pass.target.viewport,
             samples: pass.target.samples,
         };
+
+        // Leave a depth-only pass pending: its texels are computed when they are looked up.
         if let Some(kind) = self.pendable(pass) {
             let jobs = self.emit_all(&plans, 0..plans.len(), pass, &forward, Some(kind));
             return self.leave_pending(kind, pass, &plans, jobs);
         }
+
+        // Lock the planes that the pass samples, and find the textures that are shown repeatedly.
         let again = shown_again(&pass.commands);
         let sampled = sampled_planes(&pass.commands);
         let (sampled, mut depth) = hold(&sampled, pass.target.depth.as_ref());
@@ -303,6 +308,8 @@ impl Runner {
             let viewport = pass.target.viewport;
             seen.resize_with((viewport.tiles_x() * viewport.tiles_y()) as usize, Seen::default);
         }
+
+        // Assemble the primitives of each round, then walk the tiles.
         for round in rounds {
             let numbers = round.iter().filter_map(|item| match item {
                 PlanItem::Job(number) => Some(*number),
@@ -317,6 +324,8 @@ impl Runner {
             drop(items);
             self.spare.give(jobs);
         }
+
+        // Keep what was looked up for the next pass.
         if !seen.is_empty() {
             seen.truncate(MOST_SEEN);
             *lock(&self.seen) = seen;
@@ -349,6 +358,7 @@ impl Runner {
         out: &mut Primitives,
         pending: Option<PendingKind>,
     ) {
+        // Take an assembly's memory and empty it.
         let mut assembly = lock(&self.assemblies).pop().unwrap_or_default();
         assembly.exchange(out);
         out.pending = pending.is_some();
@@ -358,6 +368,8 @@ impl Runner {
         out.records.clear();
         out.grids.clear();
         out.grid_colors.clear();
+
+        // Emit the pieces of each draw.
         for (draw, (command, pieces)) in plan.pieces.iter().enumerate() {
             if let Command::Draw(geometry, _) = &commands[*command] {
                 for piece in pieces.clone() {
@@ -365,6 +377,8 @@ impl Runner {
                 }
             }
         }
+
+        // Bin the primitives, or keep them pending, and give the memory back.
         match pending {
             None => out.batch.finish(forward.screen(false)),
             Some(kind) => kind.finish(out, forward),
@@ -437,6 +451,7 @@ impl Runner {
         items: &[Item<'_>],
         seen: &mut [Seen],
     ) {
+        // Open the planes tile by tile.
         let mut color = target.color.as_ref().map(|p| lock(p));
         let mut stencil = target.stencil.as_ref().map(|p| lock(p));
         let count = (target.viewport.tiles_x() * target.viewport.tiles_y()) as usize;
@@ -463,6 +478,8 @@ impl Runner {
             cut.iter().flat_map(|&at| (1..strips).map(move |strip| (at, rows(strip, strips)))).collect();
         let mut copies: Vec<TileCopy> = others.iter().map(|(at, _)| TileCopy::of(&tiles[*at].1)).collect();
         let numbers: Vec<usize> = others.iter().map(|(at, _)| tiles[*at].0).collect();
+
+        // Run all strips in parallel.
         let run = |index, rows, planes, seen| TileRun::new(index, rows, target.viewport, planes, seen);
         let mut runs = Vec::with_capacity(tiles.len() + copies.len());
         let mut seen = seen.iter_mut().enumerate();
@@ -476,6 +493,8 @@ impl Runner {
         }
         let (many, one) = (pattern(target.samples), pattern(1));
         self.workers.for_each(runs, |mut run| run.run(self.level, items, &many, &one));
+
+        // Copy the strips back into their tiles.
         for ((at, rows), copy) in others.iter().zip(copies) {
             copy.give_back(rows, &mut tiles[*at].1);
         }
@@ -548,6 +567,7 @@ fn draw_context<'a>(
     pass: &Pass,
     (sampled, again): (&'a Held<'a>, &[Shown]),
 ) -> DrawContext<'a> {
+    // Borrow the depth planes that the draw samples.
     let mut planes = [None; UNITS];
     for unit in &state.units {
         if let Some(plane) = unit.texture.sole_plane() {
@@ -555,12 +575,18 @@ fn draw_context<'a>(
             planes[unit.index % UNITS] = guard.map(|(_, guard)| &**guard);
         }
     }
+
+    // Pack the textures that eight or sixteen lanes can sample at once.
     let plain = state.units.iter().filter(|unit| unit.texture.sampler.anisotropy <= 1.0);
     let plain: Vec<(usize, Common<'_>)> =
         plain.filter_map(|unit| Some((unit.index, Common::new(&unit.texture, planes[unit.index % UNITS])?))).collect();
     let is_flat =
         |shown: &Shown| plain.iter().any(|(unit, common)| *unit == shown.unit && matches!(common, Common::Flat(_)));
+
+    // Find the texture whose colours are kept for repeated draws.
     let again = textures_of(geometry, state).find(|shown| is_flat(shown) && again.contains(shown));
+
+    // Decide which fragment operations need colours.
     let samples = pass.target.samples;
     let clip = intersection(geometry.clip(), state.clip);
     let decides = state.alpha_test.is_some() || (state.alpha_to_coverage && samples > 1);
@@ -649,6 +675,7 @@ fn plan(commands: &[Command]) -> (Vec<Plan>, Vec<PlanItem>) {
             open = false;
             continue;
         };
+        // Append pieces to the open job until it is full.
         for piece in 0..geometry.pieces() {
             let weight = geometry.weight(piece);
             if !open || plans.last().is_none_or(|p| p.weight + weight > JOB && p.weight > 0) {

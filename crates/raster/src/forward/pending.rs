@@ -133,12 +133,16 @@ fn origin(viewport: Viewport, tile: u32) -> [u32; 2] {
 /// What a pass keeps whose target has this scale, if it can be left pending.
 pub(crate) fn pendable(pass: &Pass, scale: f32) -> Option<PendingKind> {
     use super::pass::{Command, intersection};
+
+    // The pass must begin by clearing all depths, and nothing else.
     let (first, rest) = pass.commands.split_first()?;
     let Command::Clear(clear) = first else { return None };
     let whole = [0, 0, pass.target.viewport.width as i32, pass.target.viewport.height as i32];
     if pass.target.samples != 1 || clear.clip != whole || clear.color.is_some() || clear.stencil.is_some() {
         return None;
     }
+
+    // Every draw must write depths alone, and all must keep the depth of the same side.
     let mut sign = 0.0;
     for command in rest {
         let Command::Draw(geometry, state) = command else { return None };
@@ -174,6 +178,7 @@ impl PendingDepth {
         workers: &Workers,
         level: Level,
     ) -> Self {
+        // Gather what may decide the texels of each tile, several tiles to a task.
         let PendingKind { sign, clear, scale } = kind;
         let jobs: Vec<PendingJob> =
             jobs.into_iter().map(|(primitives, draws)| PendingJob { primitives, draws }).collect();
@@ -182,6 +187,8 @@ impl PendingDepth {
             let range = piece * PIECE..((piece + 1) * PIECE).min(count);
             dispatch!(level, simd => tiles(simd, &jobs, range))
         });
+
+        // Join the lists of all tasks.
         let (mut tiles, mut bounds, mut touching) = (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
         for (piece_tiles, piece_bounds, piece_touching) in pieces {
             let first = touching.len();
@@ -192,6 +199,8 @@ impl PendingDepth {
             }));
             touching.extend(piece_touching);
         }
+
+        // Round the clear value as it is stored.
         let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
         Self {
             sign,
@@ -253,6 +262,8 @@ impl PendingDepth {
         known: Option<V>,
     ) -> V {
         const SHIFT: u32 = TILE.trailing_zeros();
+
+        // Look up the bound of each texel's tile: none of the tile's depths is better.
         let tile = (y >> SHIFT) * self.viewport.tiles_x() as i32 + (x >> SHIFT);
         let (tiles, mut bounds) = (tile.as_slice(), [f32::NEG_INFINITY; MOST_LANES]);
         for lane in 0..V::LEN {
@@ -260,6 +271,8 @@ impl PendingDepth {
                 bounds[lane] = *bound;
             }
         }
+
+        // Close the lanes that the bound or the clear value already decides.
         let best = self.best();
         let floors = match known {
             Some(known) => known * self.sign,
@@ -268,6 +281,8 @@ impl PendingDepth {
         let settled = known.is_some();
         let bounds = V::from_slice(simd, &bounds[..V::LEN]);
         let mut open = bits_of(bounds.simd_gt(floors) & bounds.simd_gt(every::<S, V>(simd, best))) & active;
+
+        // Visit the tiles of the open lanes.
         let mut depths = every(simd, best);
         while open != 0 {
             // All texels of a tile go together.
@@ -308,6 +323,7 @@ impl PendingDepth {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Start from what must be beaten; a settled lane is beaten by nothing.
                 let mut best = every(simd, best);
                 let next = lanes::inlined(
                     #[inline(always)]
@@ -316,6 +332,8 @@ impl PendingDepth {
                         if settled { select(best.simd_gt(floors), every(simd, f32::INFINITY), higher) } else { higher }
                     },
                 );
+
+                // Test the index's triangles, best first.
                 let mut above = next(best);
                 index.find(
                     simd,
@@ -498,6 +516,8 @@ fn tiles<S: Simd>(simd: S, jobs: &[PendingJob], range: Range<usize>) -> (Vec<Pen
     let (mut tiles, mut touching) = (Vec::with_capacity(range.len()), Vec::with_capacity(touched.len()));
     let mut bounds = Vec::with_capacity(range.len());
     let mut rest = touched.as_slice();
+
+    // Gather each tile's jobs, entries and best depth.
     for tile in range {
         let here = rest.iter().take_while(|t| t[0] as usize == tile).count();
         let (mine, after) = rest.split_at(here);

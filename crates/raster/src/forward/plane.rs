@@ -203,9 +203,13 @@ impl<T: Copy> PlaneTile<T> {
             let first = sample * TILE_PIXELS + at;
             return out.copy_from_slice(&self.values[first..=first + last]);
         }
+
+        // Fill a row that is cleared as a whole.
         if self.cleared & blocks == blocks {
             return out.fill(self.clear);
         }
+
+        // Copy block by block, each by the form it is stored in.
         let mut done = 0;
         while done < out.len() {
             let here = at + done;
@@ -340,6 +344,8 @@ impl<T: Copy> PlaneTile<T> {
         if from.clear != self.clear && blocks & from.cleared != 0 {
             from.open(blocks & from.cleared, true, samples);
         }
+
+        // Copy the planes of blocks that are stored as such.
         let surfaces = blocks & from.surfaced;
         if surfaces != 0 {
             self.reading = from.reading;
@@ -350,6 +356,8 @@ impl<T: Copy> PlaneTile<T> {
                 }
             }
         }
+
+        // Copy the values of the other blocks.
         let written = blocks & !from.cleared & !surfaces;
         if written != 0 {
             if self.values.is_empty() {
@@ -362,6 +370,8 @@ impl<T: Copy> PlaneTile<T> {
                 });
             }
         }
+
+        // Take over the form of each block.
         self.surfaced = self.surfaced & !blocks | surfaces;
         self.cleared = self.cleared & !blocks | from.cleared & blocks;
         self.single = self.single & !blocks | from.single & blocks;
@@ -370,6 +380,8 @@ impl<T: Copy> PlaneTile<T> {
     /// Copies everything to a tile of as many samples, or of one, for which `resolve` makes one value of a pixel's samples.
     pub fn copy_to(&self, samples: usize, target: &mut Self, target_samples: usize, resolve: Resolve<T>) {
         target.changed = true;
+
+        // Copy everything as it is for the same number of samples.
         if samples == target_samples {
             target.values.clone_from(&self.values);
             (target.clear, target.cleared, target.single) = (self.clear, self.cleared, self.single);
@@ -377,11 +389,15 @@ impl<T: Copy> PlaneTile<T> {
             target.surfaces.clone_from(&self.surfaces);
             return;
         }
+
+        // Mark everything cleared, then write what is not.
         target.clear(self.clear);
         let written = !self.cleared;
         if written == 0 {
             return;
         }
+
+        // Copy blocks with one value a pixel; copy a tile of such blocks at once.
         let stored = written & !self.surfaced;
         let plain = if samples == 1 { stored } else { stored & self.single };
         let values = target.replace(written, true, target_samples);
@@ -390,10 +406,14 @@ impl<T: Copy> PlaneTile<T> {
             return;
         }
         each_row(plain, |row| values[row..row + BLOCK].copy_from_slice(&self.values[row..row + BLOCK]));
+
+        // Evaluate blocks that are stored as planes.
         for block in (0..BLOCKS * BLOCKS).filter(|block| self.surfaced >> block & 1 == 1) {
             let alike = samples == 1 || self.is_alike(block);
             self.copy_surface(block, if alike { 1 } else { samples }, values, resolve);
         }
+
+        // Resolve the samples of the other blocks.
         each_row(stored & !plain, |row| {
             let sources = std::array::from_fn(|s| &self.values[s % samples * TILE_PIXELS + row..][..BLOCK]);
             resolve(sources, &mut values[row..row + BLOCK]);

@@ -474,6 +474,7 @@ impl<'a> Shader<'a> {
         any: u64,
         words: &mut BlockWords,
     ) -> u64 {
+        // Shade blocks with many covered pixels whole.
         self.prepare(simd, setup);
         if any.count_ones() > MANY && !lanes::is_oldest(simd.level()) {
             return self.whole(simd, (left, bottom), words) & any;
@@ -488,6 +489,8 @@ impl<'a> Shader<'a> {
                 rest &= rest - 1;
                 count += 1;
             }
+
+            // Shade the gathered pixels and scatter their colours.
             let mut out = [0; LANES];
             let pass = self.eight(simd, &places, (left, bottom), (1 << count) - 1, &mut out);
             for lane in 0..count {
@@ -514,10 +517,14 @@ impl<'a> Shader<'a> {
                     rows[pair] = y + (2 * pair) as f32;
                 }
                 let block = bottom % TILE / BLOCK * (TILE / BLOCK) + left % TILE / BLOCK;
+
+                // Interpolate the weights of all pairs of rows.
                 let mut weights = [self.weights(simd, x, rows[0]); BLOCK / 2];
                 for pair in 1..BLOCK / 2 {
                     weights[pair] = self.weights(simd, x, rows[pair]);
                 }
+
+                // Look up cached texture colours if the draw shows them repeatedly.
                 let mut seen = None;
                 if self.draw.again.is_some() {
                     self.see(simd, block, &weights);
@@ -617,6 +624,7 @@ impl<'a> Shader<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Multiply alpha by the coverage of the primitive's kind.
                 let mut pass = 0xff;
                 match self.shape() {
                     None => {}
@@ -631,6 +639,7 @@ impl<'a> Shader<'a> {
                         let (ux, uy) = (dx / length, dy / length);
                         let along = (x - from[0]) * ux + (y - from[1]) * uy;
                         let smooth = self.draw.layout.smooth[1];
+                        // Cover the part between the line's sides and ends.
                         if smooth {
                             let across = (x - from[0]) * -uy + (y - from[1]) * ux;
                             let coverage = overlap(across, -width * 0.5, width * 0.5);
@@ -638,6 +647,9 @@ impl<'a> Shader<'a> {
                             let ends = overlap(along, 0.0, length);
                             pass = bits_of((coverage * ends).simd_gt(splat(simd, 0.0)));
                         }
+
+                        // Apply the stipple pattern, as coverage if smooth and as on and off
+                        // otherwise.
                         match self.draw.layout.line_stipple {
                             Some(stippling) if smooth => {
                                 let pieces = along.to_array().map(|at| pieces(at, length, stipple, stippling));

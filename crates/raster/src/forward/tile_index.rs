@@ -94,6 +94,7 @@ impl TileIndex {
         mut floors: V,
         mut found: impl FnMut(&Setup, MaskOf<S, V>) -> V,
     ) {
+        // Gather the triangles that touch the blocks of the texels.
         let Texels { x, y, active } = *texels;
         let (column, row) = (x - self.origin[0], y - self.origin[1]);
         let block = (row >> BLOCK.trailing_zeros()) * BLOCKS as i32 + (column >> BLOCK.trailing_zeros());
@@ -103,6 +104,8 @@ impl TileIndex {
             bits |= self.blocks[block[rest.trailing_zeros() as usize % V::LEN] as usize % self.blocks.len()];
             rest &= rest - 1;
         }
+
+        // Test them, best bound first.
         let whole = lanes::inlined(
             #[inline(always)]
             |value| <V::Ints as SimdBase<S>>::splat(simd, value),
@@ -116,6 +119,8 @@ impl TileIndex {
             if !above.any_true() {
                 return;
             }
+
+            // Test coverage by the edge functions and the clip rectangle.
             let mut e = [zero; 3];
             for i in 0..3 {
                 let Edge { a, b } = triangle.edges[i];

@@ -160,6 +160,7 @@ impl TileRun<'_> {
         job: &JobContext<'_>,
         waiting: &mut TinyFacets,
     ) -> Option<Seen> {
+        // Cover the samples and evaluate their depths.
         let draw = &job.draws[waiting.draw as usize];
         let (eight, pattern) = (&mut waiting.eight, job.pattern(draw));
         let scale = self.planes.depth.as_ref().map_or(1.0, |d| d.1);
@@ -186,6 +187,7 @@ impl TileRun<'_> {
 
     /// Stencil test, which changes nothing.
     fn tiny_stencilled(&mut self, job: &JobContext<'_>, waiting: &TinyFacets, seen: &mut Seen) {
+        // Decide a tile that was only cleared with one test per facet.
         let draw = &job.draws[waiting.draw as usize];
         let (Some(test), Some(tile)) = (&draw.state.stencil, &mut self.planes.stencil) else { return };
         let face = |facet: usize| if waiting.facet(job.primitives, facet).back { &test.back } else { &test.front };
@@ -195,6 +197,8 @@ impl TileRun<'_> {
             }
             return;
         }
+
+        // Test the stored value of each covered sample.
         let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
         seen.alike &= count == 1;
         for (stored, masks) in stored.as_chunks::<TILE_PIXELS>().0.iter().zip(&mut seen.masks).take(count) {
@@ -218,12 +222,15 @@ impl TileRun<'_> {
         seen: &mut Seen,
         write: bool,
     ) -> bool {
+        // Decide whether depths are written.
         let (Some(mut rule), Some((tile, _))) = (draw.state.depth, &mut self.planes.depth) else { return false };
         let wanted = rule.write;
         rule.write &= write;
         if rule.write {
             self.planes.ranges.forget(seen.touched);
         }
+
+        // Test four sample planes, or one that stands for all.
         let mut changes = false;
         let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
         seen.alike &= count == 1;
@@ -234,6 +241,8 @@ impl TileRun<'_> {
         } else if let [plane, ..] = planes {
             changes = test(simd, eight, seen, rule, [plane], [0]);
         }
+
+        // Join the masks of the samples.
         seen.join();
         wanted && !write && changes
     }
@@ -270,14 +279,19 @@ impl TileRun<'_> {
         memory: &mut FacetMemory,
         seen: &mut Seen,
     ) {
+        // Skip draws that write no colours.
         let FacetMemory { scratch, words, each, pixels, waiting } = memory;
         let (eight, draw) = (&waiting.eight, &job.draws[waiting.draw as usize]);
         if !draw.shaded || seen.any == [0; LANES] {
             return;
         }
+
+        // Shade all facets at once if the draw allows it.
         if self.tiny_shaded(simd, job, waiting, seen, pixels, each) {
             return self.tiny_mixed(simd, draw, eight, seen, each, words);
         }
+
+        // Otherwise shade facet by facet.
         for facet in 0..eight.len() {
             if seen.any[facet] == 0 {
                 continue;
@@ -311,6 +325,8 @@ impl TileRun<'_> {
         for lane in 1..eight.len() {
             facets[lane] = waiting.facet(job.primitives, lane);
         }
+
+        // Take constant colours, or interpolate and sample for all facets.
         let mut shown = seen.any;
         if draw.constant {
             let mut words = [0; LANES];
@@ -329,6 +345,8 @@ impl TileRun<'_> {
         } else {
             return false;
         }
+
+        // Limit the masks to what passed the alpha test.
         for facet in 0..LANES {
             if shown[facet] != seen.any[facet] {
                 seen.limit(facet, shown[facet]);
@@ -497,6 +515,7 @@ fn test_by<const M: usize>(
     depths: [usize; M],
     passes: impl Fn(f32, f32) -> bool,
 ) -> bool {
+    // Test facets in their order, since two may lie in one pixel.
     let mut changes = false;
     for facet in 0..eight.len() {
         let (first, mut masks) = (eight.first(facet), seen.masks_of::<M>(facet));

@@ -122,6 +122,7 @@ impl NearestDepths {
     /// A facet that is at most eight pixels wide and whose edge functions fit into 32 bits.
     #[inline(always)]
     fn narrow<S: Simd, const CLIPPED: bool>(&mut self, simd: S, setup: &Setup, place: &Placed, columns: &Range<usize>) {
+        // Skip the facet if every block under its box holds nearer depths everywhere.
         let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
         let block = |x: usize, y: usize| y / BLOCK * BLOCKS + x / BLOCK;
         let own = block(x0, y0);
@@ -131,6 +132,8 @@ impl NearestDepths {
                 return;
             }
         }
+
+        // Set up the edge functions of a row of eight pixels at the facet's first row.
         let left = place.left();
         let (edges, corners) = place.edges();
         let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
@@ -140,6 +143,8 @@ impl NearestDepths {
             let constant = edges[i].constant(corners[i], [SUBPIXEL / 2; 2]);
             e[i] = lane * a + (constant + a * left as i32 + b * y0 as i32);
         }
+
+        // Walk the rows and merge the depths of covered pixels.
         let plane = self.plane(simd, setup, left);
         let beside = beside(simd, left, columns);
         for y in y0..=y1 {
@@ -154,6 +159,8 @@ impl NearestDepths {
                 e[i] += edges[i].b;
             }
         }
+
+        // Update the block's farthest depth from time to time.
         self.note(simd, own, (y1 - y0 + 1) as u32);
     }
 
@@ -175,6 +182,8 @@ impl NearestDepths {
         if any == 0 {
             return;
         }
+
+        // Walk thin facets along their longer axis instead of by blocks.
         let (edges, constants) = place.center_edges();
         if place.is_slender() {
             self.slender(simd, setup, place, (&edges, &constants));
@@ -195,14 +204,18 @@ impl NearestDepths {
             while rest != 0 {
                 let number = rest.trailing_zeros() as usize;
                 rest &= rest - 1;
+
+                // Evaluate the depth plane at the block's left column.
                 let (block, left) = (top / BLOCK * BLOCKS + number, number * BLOCK);
                 let plane = self.plane(simd, setup, left);
                 let beside = beside(simd, left, window);
+                // Merge full blocks without edge tests.
                 if full >> number & 1 == 1 {
                     for y in rows.clone() {
                         self.keep(simd, y * TILE + left, plane.row(y), CLIPPED.then_some(beside));
                     }
                 } else {
+                    // Step the edge functions down the rows that the facet reaches.
                     let at = constants_at(&edges, &constants, left);
                     let Some(rows) = reached_rows(simd, &edges, &at, top, &rows) else { continue };
                     let mut e = [across[0] + at[0], across[1] + at[1], across[2] + at[2]];
@@ -228,6 +241,7 @@ impl NearestDepths {
     /// A facet that is thin.
     #[inline(always)]
     fn slender<S: Simd>(&mut self, simd: S, setup: &Setup, place: &Placed, edges: (&[Edge; 3], &[i32; 3])) {
+        // Evaluate depths at the covered pixels and keep the nearer ones.
         let plane = self.plane(simd, setup, 0);
         let upright = place.is_upright();
         let nothing = F32x8::splat(simd, f32::NEG_INFINITY);

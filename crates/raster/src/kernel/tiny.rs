@@ -183,6 +183,7 @@ impl TinyEight {
         positions: [[i32; 2]; N],
         stored: impl Fn(F32x8<S>) -> F32x8<S>,
     ) -> [[u64; LANES]; SAMPLES] {
+        // Load the corners and the first pixel of each box.
         let zero = I32x8::splat(simd, 0);
         let [x, y] = self.corners(simd);
         let [left, top] = self.pixels(simd, 0);
@@ -217,6 +218,8 @@ impl TinyEight {
                 distance * (1.0 / SUBPIXEL as f32)
             },
         );
+
+        // Prepare the walk of one sample: edge functions and distances at the first pixel.
         let walk = lanes::inlined(
             #[inline(always)]
             |sample: usize| -> Walk<S, F32x8<S>> {
@@ -256,6 +259,7 @@ impl TinyEight {
         stored: &impl Fn(F32x8<S>) -> F32x8<S>,
         covered: &mut [[u64; LANES]; SAMPLES],
     ) {
+        // Start at the first pixel with an empty mask, whose two halves hold four rows each.
         let Walk { a, b, mut row, plane: [z, dz_dx, dz_dy, z_min, z_max], distance: [left, mut dy] } = walk;
         let [columns, rows] = self.size;
         let every = lanes::inlined(
@@ -263,6 +267,8 @@ impl TinyEight {
             |value: i32| <V::Ints as SimdBase<S>>::splat(simd, value),
         );
         let mut halves = [every(0); 2];
+
+        // Step through the rows and columns of the largest of the boxes.
         for r in 0..rows.min(BLOCK) {
             let (mut e, mut bit) = (row, every(1 << (8 * (r % 4))));
             let (line, mut dx) = (z + dy * dz_dy, left);
@@ -270,6 +276,7 @@ impl TinyEight {
                 // The sign is none only where no edge's is.
                 let outside = (e[0] | e[1] | e[2]) >> 31;
                 halves[r / 4] |= bit & !outside;
+                // Evaluate, clamp and store the depth.
                 let depth = line + dx * dz_dx;
                 let depth = lanes::Lanes::min(lanes::Lanes::max(depth, z_min), z_max);
                 let [] = V::by_eights(
@@ -282,17 +289,21 @@ impl TinyEight {
                         []
                     },
                 );
+                // Step one pixel to the right.
                 bit <<= 1;
                 dx += 1.0;
                 for i in 0..3 {
                     e[i] += a[i];
                 }
             }
+            // Step one row down.
             dy += 1.0;
             for i in 0..3 {
                 row[i] += b[i];
             }
         }
+
+        // Intersect the masks with the boxes.
         let (low, high) = (halves[0].as_slice(), halves[1].as_slice());
         for lane in 0..V::LEN {
             let inside = u64::from(low[lane].cast_unsigned()) | u64::from(high[lane].cast_unsigned()) << 32;
@@ -320,12 +331,16 @@ impl<S: Simd> Walk<S, F32x8<S>> {
     #[inline(always)]
     fn with(&self, other: &Self) -> Walk<S, F32x16<S>> {
         let (low, high) = (self, other);
+
+        // Join the edge functions, which differ between the samples.
         let ints = lanes::inlined(
             #[inline(always)]
             |low: [I32x8<S>; 3], high: [I32x8<S>; 3]| {
                 [low[0].combine(high[0]), low[1].combine(high[1]), low[2].combine(high[2])]
             },
         );
+
+        // Repeat the depth plane, which is the same.
         let [z, dz_dx, dz_dy, z_min, z_max] = low.plane;
         let twice = lanes::inlined(
             #[inline(always)]

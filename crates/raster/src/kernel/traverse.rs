@@ -170,6 +170,7 @@ fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
+    // Set up the edge functions of all samples.
     let edges = SampleEdges::<S, MOST>::new(simd, place, pattern);
     let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     let zero = I32x8::splat(simd, 0);
@@ -178,12 +179,14 @@ fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
         place,
         #[inline(always)]
         |block, full| {
+            // Skip a block whose samples all hide the facet.
             let hidden = sink.hiding().is_some_and(|tile| setup.z_max < tile.block_far[block.index()]);
             if hidden {
                 return;
             }
             for s in 0..edges.samples {
                 let plane = RowPlane::new(simd, setup, sink.first(s, block.x));
+                // Cover full blocks without edge tests.
                 if full {
                     let covered = zero.simd_eq(zero);
                     for row in block.rows.clone() {
@@ -203,11 +206,15 @@ fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
                 if reached == 0 {
                     continue;
                 }
+
+                // Cut the rows of the block to those that are reached.
                 let first = block.rows.start.max(reached.trailing_zeros() as usize);
                 let end = block.rows.end.min(32 - reached.leading_zeros() as usize);
                 for i in 0..3 {
                     e[i] += edges.edges[i].b * first as i32;
                 }
+
+                // Walk these rows, eight pixels at a time.
                 for row in first..end {
                     let covered = (e[0] | e[1] | e[2]).simd_ge(zero);
                     if covered.any_true() {
@@ -232,16 +239,21 @@ fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
+    // Skip the facet if the blocks under its box hide it.
     let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
     if y1 - y0 < BLOCK && sink.hiding().is_some_and(|tile| hides_box(tile, setup, [x0, y0], [x1, y1])) {
         return;
     }
+
+    // Let the sink note each sample's first position.
     let left = place.left();
     let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
     let mut firsts = [[0; 2]; MOST];
     for (s, first) in firsts[..samples].iter_mut().enumerate() {
         *first = sink.first(s, left);
     }
+
+    // Walk the rows of all samples.
     place.each_row::<S, (usize, RowPlane<S>), MOST>(
         simd,
         pattern,
@@ -337,6 +349,7 @@ impl Placed {
         mut begin: impl FnMut(usize) -> T,
         mut row: impl FnMut(&mut T, usize, Mask8<S>),
     ) {
+        // Set up edge functions for eight pixels of a row.
         let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
         let (left, [y0, y1]) = (self.left(), self.rows);
         let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
@@ -344,13 +357,18 @@ impl Placed {
         let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
         let zero = I32x8::splat(simd, 0);
         let [xs, ys] = pattern.axes();
+
+        // Walk each sample's rows from the top.
         for s in 0..samples {
+            // Move the edge functions to the sample's position in the first row.
             let mut e = across;
             for i in 0..3 {
                 let at_sample = edges[i].constant(corners[i], [xs[s], ys[s]]);
                 e[i] += at_sample + edges[i].a * left as i32 + edges[i].b * y0 as i32;
             }
             let mut begun = begin(s);
+
+            // Hand on the rows of which a pixel is covered.
             for y in y0..=y1 {
                 let covered = (e[0] | e[1] | e[2]).simd_ge(zero);
                 if covered.any_true() {
@@ -440,6 +458,8 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
     sink: &mut K,
 ) {
     let Some(place) = Placed::new(setup, tile, window, pattern) else { return };
+
+    // Set up the edge functions of all samples, then visit the blocks that the facet touches.
     let edges = SampleEdges::<S, MOST>::new(simd, &place, pattern);
     let mut masks = [0u64; MOST];
     edges.each_block(
@@ -450,6 +470,8 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
             if sink.rejects(setup, block) {
                 return;
             }
+
+            // Compute the coverage mask of each sample.
             let mut any = u64::MAX;
             if full {
                 masks = [u64::MAX; MOST];
@@ -460,6 +482,8 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
                     any |= *mask;
                 }
             }
+
+            // Hand the block on if a sample is covered.
             if any != 0 {
                 sink.cover(simd, setup, block, &masks[..edges.samples]);
             }
@@ -483,6 +507,9 @@ impl<S: Simd, const MOST: usize> SampleEdges<S, MOST> {
         let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
         let mut edges = [Edge { a: 0, b: 0 }; 3];
         let mut constants = [[0i32; MOST]; 3];
+
+        // Compute each edge's constant at each sample, in 32 bits where the triangle is small
+        // enough.
         let [xs, ys] = pattern.axes();
         if place.is_small() {
             let corners;

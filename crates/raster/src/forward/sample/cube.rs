@@ -28,13 +28,18 @@ pub(super) fn sample<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
+            // Choose the face and the point on it.
             let is_depth = matches!(level_of(texture, 0).map(|l| l.texels()), Some(Texels::Depth(_)));
             let direction = [coords[0], coords[1], coords[2]];
             let chart = Chart::new(simd, if is_depth { direction } else { turned(simd, direction, coords[3]) });
             let (face, point) = (chart.face(simd), chart.point());
+
+            // Sample a packed map if there is one.
             if let Some(packed) = PackedCube::new(texture) {
                 return packed.at(simd, (face, point), lod);
             }
+
+            // Otherwise filter texel by texel.
             let face = face.bitcast::<U32x8<S>>().to_array();
             let reference = is_depth.then(
                 #[inline(always)]
@@ -159,6 +164,8 @@ fn lookup<S: Simd>(
     let Some(shape) = level_of_face(texture, (face[first] % 6) as usize, level) else {
         return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
     };
+
+    // Find the texels and weights along both axes.
     let size = interior(shape, 2);
     let seamless = texture.sampler.seamless && shape.border == 0 && size[0] == size[1];
     let wrap = match (seamless, filtered) {
@@ -168,6 +175,8 @@ fn lookup<S: Simd>(
     };
     let x = Axis::new(simd, position(simd, point[0], size[0], wrap[0]), size[0], wrap[0], filtered);
     let y = Axis::new(simd, position(simd, point[1], size[1], wrap[1]), size[1], wrap[1], filtered);
+
+    // Filter eight lanes at once where all see the inside of one face.
     let one_face = bits_of(U32x8::from_slice(simd, face).simd_eq(face[first])) & lanes == lanes;
     let inside = bits_of(crosses(simd, &x, size[0]) | crosses(simd, &y, size[1])) & lanes == 0;
     if one_face
@@ -184,6 +193,8 @@ fn lookup<S: Simd>(
         };
         return words.finish(color);
     }
+
+    // Otherwise go lane by lane.
     let spot = Spot { level, shape, face, x, y, lanes, seamless, filtered, reference };
     general(simd, texture, &spot)
 }
@@ -237,6 +248,7 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
     simd.vectorize(
         #[inline(always)]
         || {
+            // Fetch the corners of each cell, each from the face it lies on.
             let image = Image::new(spot.shape);
             let border = splat_rgba(simd, image.raw(texture.sampler.border));
             let corners = if spot.filtered { 4 } else { 1 };
@@ -254,6 +266,8 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
                 colors[corner] = color;
                 missing[corner] = place.missing;
             }
+
+            // Fill the missing corners at the cube's corners and filter.
             if spot.filtered {
                 fill_missing(&mut colors, missing.map(|bits| mask_of(simd, bits)));
                 let lower = mix_rgba(colors[0], colors[1], spot.x.weight);
@@ -269,6 +283,7 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
 #[inline(always)]
 fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Place<S>) -> Rgba<S> {
     let index = place.index.to_array();
+    // Fetch packed words lane by lane.
     if let Some(first) = Words::new(spot.shape) {
         let mut words = [0u32; LANES];
         for lane in 0..LANES {
@@ -279,6 +294,8 @@ fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Place
         }
         return first.meaning(simd, U32x8::from_slice(simd, &words));
     }
+
+    // Fetch other texels as colours.
     let mut colors = [[0.0f32; 4]; LANES];
     for lane in 0..LANES {
         if spot.lanes >> lane & 1 == 1
@@ -303,6 +320,7 @@ struct Place<S: Simd> {
 /// Finds the texels `(x, y)` of the faces, which may lie one beyond their edges.
 #[inline(always)]
 fn place<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> Place<S> {
+    // Clamp the texel to the face.
     let Spot { shape, face, lanes, seamless, .. } = *spot;
     let (zero, last) = (I32x8::splat(simd, 0), I32x8::splat(simd, shape.size[0] as i32 - 1));
     let last_y = I32x8::splat(simd, shape.size[1] as i32 - 1);
@@ -352,6 +370,8 @@ pub(super) fn neighbour(face: u32, x: i32, y: i32, size: i32) -> Option<(u32, i3
         4 => [fold(sc), -fold(tc), major],
         _ => [-fold(sc), -fold(tc), -major],
     };
+
+    // Find the face whose plane the point lies on and its place there.
     let axis = p.iter().position(|c| c.abs() == size)?;
     let (face, sc, tc) = match (axis, p[axis] > 0) {
         (0, true) => (0, -p[2], -p[1]),

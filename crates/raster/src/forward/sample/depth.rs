@@ -109,6 +109,7 @@ pub(super) fn sample<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
+            // Divide by q and compare the texels with r.
             let [s, t, r, q] = coords;
             let point = [s / q, t / q, reference(texture, r / q)];
             let [value] = mipped(
@@ -182,10 +183,13 @@ fn lookup<S: Simd, const DIMENSIONS: usize>(
     point: [F32x8<S>; 3],
     lanes: u32,
 ) -> F32x8<S> {
+    // Find the texels and weights along the axes.
     let Some(shape) = level_of(texture, level) else { return splat(simd, 0.0) };
     let depths = Depths::new(shape, plane);
     let known = known(texture, &depths, point[2]);
     let axes = axes(simd, texture, shape, DIMENSIONS, linear, point);
+
+    // Compare each corner with the reference.
     let border = splat_rgba(simd, texture.sampler.border)[0];
     let corners = if linear { 1 << DIMENSIONS } else { 1 };
     let mut values = [border; 4];
@@ -194,6 +198,8 @@ fn lookup<S: Simd, const DIMENSIONS: usize>(
         let depth = select(outside, border, depths.at(simd, x, y, shape.size[0], lanes, known));
         values[corner] = compared(simd, texture, point[2], depth);
     }
+
+    // Filter the results of comparison.
     let mut count = corners;
     for k in 0..DIMENSIONS {
         count /= 2;

@@ -39,6 +39,8 @@ impl<'a> Packed<'a> {
         let first = levels.first()?;
         // What most textures of other kinds lack.
         let words = Words::new(first)?;
+
+        // Accept flat textures with wrap modes that the packed path knows.
         let sampler = &texture.sampler;
         let flat = match texture.kind {
             TextureKind::One => sampler.mag.is_linear() && sampler.min.is_linear(),
@@ -47,6 +49,8 @@ impl<'a> Packed<'a> {
         if !flat || texture.swizzle.is_some() || sampler.wrap[..2].iter().any(|wrap| wrap.mirrors_once()) {
             return None;
         }
+
+        // Every level must have half the size of the one before, no border and packed texels.
         let [width, height, _] = interior(first, dimensions(texture.kind));
         for (k, level) in levels.iter().enumerate() {
             let size = [(width >> k).max(1), (height >> k).max(1)];
@@ -117,6 +121,7 @@ impl<'a> Packed<'a> {
         places: &[([V; 2], V); N],
         active: u32,
     ) -> Option<[V::Words; N]> {
+        // Choose the levels of each group; give up if lanes differ.
         if self.first.is_encoded() || !self.levels[0].has_columns() {
             return None;
         }
@@ -137,6 +142,8 @@ impl<'a> Packed<'a> {
             (levels[i], fractions[i]) = ([first, first + 1], choice.fraction);
             several |= bits_of(choice.fraction.simd_gt(every::<S, V>(simd, 0.0))) != 0;
         }
+
+        // Compute addresses and weights for all groups and levels.
         let count = if several { 2 } else { 1 };
         let (mut at, mut weights) = ([[V::Ints::splat(simd, 0); 2]; N], [[[every(simd, 0.0); 2]; 2]; N]);
         let (mut beyond, mut reached) = ([[every(simd, 0.0); 2]; N], false);
@@ -152,6 +159,8 @@ impl<'a> Packed<'a> {
                 weights[i][k] = [x.weight, y.weight];
             }
         }
+
+        // Fetch the texels of all of them.
         let mut texels = [[[V::Words::splat(simd, 0); 4]; 2]; N];
         for i in 0..N {
             for k in 0..count {
@@ -164,6 +173,8 @@ impl<'a> Packed<'a> {
                 );
             }
         }
+
+        // Filter, then mix the levels.
         let mut words = [V::Words::splat(simd, 0); N];
         for i in 0..N {
             let filtered = lanes::inlined(
@@ -218,6 +229,8 @@ impl<'a> Packed<'a> {
         else {
             return self.mixed_halves(simd, place, level);
         };
+
+        // Fetch the four texels round each place and filter.
         let size = [every(simd, width as f32), every(simd, height as f32)];
         let [x, y] = self.linear(simd, place, size);
         let quads = quads::<S, V>(
@@ -227,6 +240,8 @@ impl<'a> Packed<'a> {
             y.near * (width as i32 + 1) + x.near,
         );
         let color = Halves::filter(simd, quads, [x.weight, y.weight]);
+
+        // Mix the border in where a wrap mode reaches it.
         match self.beyond(simd, place, size, true) {
             Some(share) => self.bordered(simd, color, share),
             None => color,
@@ -255,6 +270,7 @@ impl<'a> Packed<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Multiply the shares that lie inside along both axes.
                 let (zero, one) = (every::<S, V>(simd, 0.0), every(simd, 1.0));
                 let mut inside = one;
                 for k in 0..2 {
@@ -295,6 +311,7 @@ impl<'a> Packed<'a> {
     /// The texels round places, each on its lane's level, and the weights of those further on along both axes.
     #[inline(always)]
     fn mixed_quads<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], level: V) -> ([V::Words; 4], [V; 2]) {
+        // Find the texels and weights along both axes.
         let size = self.size_of(simd, level);
         let [x, y] = self.linear(simd, place, size);
         let (level, stride): (V::Ints, V::Ints) = (level.to_int(), size[0].to_int());
@@ -305,6 +322,8 @@ impl<'a> Packed<'a> {
         } else {
             self.levels[0].has_columns() && level.as_slice().iter().all(|l| self.get(*l).columns(1).is_some())
         };
+
+        // Fetch single texels where a level has no columns.
         if !have_columns {
             let words = lanes::inlined(
                 #[inline(always)]
@@ -313,6 +332,8 @@ impl<'a> Packed<'a> {
             let quads = [words(x.near, y.near), words(x.far, y.near), words(x.near, y.far), words(x.far, y.far)];
             return (quads, [x.weight, y.weight]);
         }
+
+        // Fetch pairs of columns, each lane from its level.
         let level = level.as_slice();
         let quads = quads::<S, V>(
             simd,
@@ -350,6 +371,7 @@ impl<'a> Packed<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Filter four texels, or take the nearest one.
                 let words = &self.first;
                 let [width, height] = self.size_of(simd, level);
                 let color = if filtered {
@@ -364,6 +386,8 @@ impl<'a> Packed<'a> {
                     let stride: V::Ints = width.to_int();
                     words.meaning(simd, self.words::<S, V>(simd, level.to_int(), y * stride + x))
                 };
+
+                // Mix the border in where a wrap mode reaches it.
                 match self.beyond(simd, place, [width, height], filtered) {
                     Some(share) => mix_rgba(color, every_rgba(simd, words.raw(self.sampler.border)), share),
                     None => color,

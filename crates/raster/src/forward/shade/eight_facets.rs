@@ -106,6 +106,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         (draw, primitives): (&'d DrawContext<'d>, &Primitives),
         tile: [u32; 2],
     ) -> Option<Self> {
+        // Gather 1 / w of the corners and refuse facets with strong perspective.
         let records = primitives.records.as_slice();
         let mut inverse_w = [[0.0; LANES]; 3];
         for (lane, facet) in facets.iter().enumerate() {
@@ -121,6 +122,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         if (inverse_w[0].simd_gt(least) | inverse_w[1].simd_gt(least) | inverse_w[2].simd_gt(least)).any_true() {
             return None;
         }
+
+        // Set up the colour of each facet.
         let color_at = |lane: usize| Shader::color_of(draw, facets[lane]);
         let zero = splat_rgba(simd, [0.0; 4]);
         let color = if draw.state.flat {
@@ -129,6 +132,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         } else {
             Numbers::of_corners(simd, records, facets, color_at)
         };
+
+        // Set up texture coordinates, which must need no division by q.
         let mut coordinates = [Numbers { base: zero, d1: zero, d2: zero }; MOST_UNITS];
         for (i, (unit, (_, common))) in draw.state.units.iter().zip(&draw.plain).enumerate() {
             let at = draw.layout.tex[unit.index]?;
@@ -140,6 +145,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             }
             coordinates[i % MOST_UNITS] = own;
         }
+
+        // Set up the fog coordinate.
         let mut fog = [zero[0]; 3];
         if let (Some(_), Some(at)) = (&draw.state.fog, draw.layout.fog) {
             // Four that lie within a record, and it among them.
@@ -160,6 +167,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         draw: &'d DrawContext<'d>,
         values: Values<S>,
     ) -> Self {
+        // Solve for the slopes of the barycentric weights in double precision.
         let [x, y] = eight.corners(simd);
         let double = lanes::inlined(
             #[inline(always)]
@@ -191,6 +199,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             |k: usize| double(lanes::Lanes::select(flat, splat(simd, 1.0), inverse_w[k])),
         );
         let [w0, w1, w2] = [weight(0), weight(1), weight(2)];
+
+        // Move the first corner to the window's coordinates.
         let (e1, e2) = (w1 - w0, w2 - w0);
         let origin = lanes::inlined(
             #[inline(always)]
@@ -199,6 +209,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                 absolute * (1.0 / SUBPIXEL as f32)
             },
         );
+
+        // Combine weights and 1 / w to three planes.
         Self {
             draw,
             origin: [origin(x[0], tile[0]), origin(y[0], tile[1])],
@@ -310,6 +322,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
     /// Looks textures up, for eight pixels at a time.
     #[inline(always)]
     fn look_up(&self, simd: S, pixels: &FacetPixels, shown: &mut [u64; LANES], words: &mut [[u32; LANES]; PLACES]) {
+        // Load the interpolated numbers of eight pixels.
         for start in (0..pixels.count).step_by(LANES) {
             let count = (pixels.count - start).min(LANES);
             let active = (1 << count) - 1;
@@ -318,6 +331,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                 |k: usize| F32x8::from_slice(simd, &pixels.numbers[k][start..start + LANES]),
             );
             let mut color = lanes::four(number);
+
+            // Modulate with the texture of each unit.
             for (i, (unit, (_, common))) in self.draw.state.units.iter().zip(&self.draw.plain).enumerate() {
                 let [a, b, c, d] = lanes::four(
                     #[inline(always)]
@@ -333,6 +348,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                 };
                 color = modulate(format_of(&unit.texture), &texture, color);
             }
+
+            // Apply fog and the alpha test.
             if let Some(state) = &self.draw.state.fog {
                 color = fog(state, color, number(FOG));
             }
@@ -340,6 +357,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             if let Some(test) = self.draw.state.alpha_test {
                 passed = bits_of(alpha_test(simd, test, color[3]));
             }
+
+            // Scatter the packed colours to their facets and places.
             let packed = pack::<S, F32x8<S>>(&color).to_array();
             for lane in 0..count {
                 let (place, facet) = (usize::from(pixels.places[start + lane]), pixels.facets[start + lane] as usize);
@@ -453,8 +472,11 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         coordinates: &Numbers<S>,
         [s, t, r, _]: Rgba<S>,
     ) -> Rgba<S> {
+        // Start with the level's bias.
         let chart = Chart::new(simd, [s, t, r]);
         let mut level = splat(simd, unit.lod_bias);
+
+        // Add the level of detail from the derivatives on the face.
         if packed.needs_lod() {
             let step = lanes::inlined(
                 #[inline(always)]

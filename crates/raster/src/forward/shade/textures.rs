@@ -94,6 +94,8 @@ impl<'d> Shader<'d> {
             || {
                 let (zero, one) = (every(simd, 0.0), every(simd, 1.0));
                 let mut textures = [[[zero; 4]; UNITS]; N];
+
+                // Sample all units first, as one may use another's texture.
                 for unit in &self.draw.state.units {
                     let (own, format) = (unit.index % UNITS, format_of(&unit.texture));
                     // White, modulated with a texture, is the texture's colour; but alpha alone comes with black.
@@ -107,6 +109,8 @@ impl<'d> Shader<'d> {
                         };
                     }
                 }
+
+                // Then apply the environments in the order of units.
                 for i in 0..N {
                     let primary = colors[i];
                     for unit in &self.draw.state.units {
@@ -154,6 +158,7 @@ impl<'d> Shader<'d> {
     /// A unit's texture at eight pixels.
     #[inline(never)]
     fn texture<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
+        // Sample textures of the common kinds by their packed form.
         let Eight { weights, active, .. } = eight;
         if let Some((common, at)) = self.common(unit) {
             return simd.vectorize(
@@ -174,6 +179,8 @@ impl<'d> Shader<'d> {
                 },
             );
         }
+
+        // Sample any other texture and swizzle its components.
         let color = simd.vectorize(
             #[inline(always)]
             || self.any(simd, eight, unit),
@@ -203,17 +210,23 @@ impl<'d> Shader<'d> {
     fn any<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
         let Eight { weights, active } = *eight;
         let weights = &weights;
+
+        // Interpolate the coordinates.
         let texture = &*unit.texture;
         let coords = match self.draw.layout.tex[unit.index % UNITS] {
             Some(at) => self.four(simd, weights, at),
             None => splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]),
         };
+
+        // Sample with the bias alone where no level of detail is needed.
         let bias = splat(simd, unit.lod_bias);
         let anisotropic = texture.sampler.anisotropy > 1.0;
         let plane = self.draw.planes[unit.index % UNITS];
         if !needs_lod(texture) && !anisotropic {
             return sample(simd, texture, plane, coords, bias, active);
         }
+
+        // Find the derivatives in texels, and sample by them.
         let [dx, dy] = self.steps(simd, weights, self.draw.layout.tex[unit.index % UNITS]);
         let steps = derivatives(simd, texture, coords, dx, dy);
         if anisotropic {
@@ -309,6 +322,7 @@ impl<'d> Shader<'d> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Take the colours that are kept from the last draw.
                 let format = format_of(&unit.texture);
                 if let Some(words) = groups.seen.filter(|_| self.draw.again == Some(unit.index)) {
                     for (color, words) in colors.iter_mut().zip(words.chunks_exact(V::LEN)) {
@@ -324,6 +338,8 @@ impl<'d> Shader<'d> {
                     }
                     return;
                 }
+
+                // Otherwise sample group by group.
                 for i in 0..N {
                     let (place, level) = places[i];
                     let texture = packed.at(simd, place, level, groups.active);
@@ -453,10 +469,13 @@ impl<'d> Shader<'d> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Divide the coordinates by q.
                 let d = &self.scratch.differences;
                 let q_at = (at + 3) % MOST;
                 let inverse_q = every::<S, V>(simd, 1.0) / self.value(simd, weights, q_at);
                 let place = [place[0] * inverse_q, place[1] * inverse_q];
+
+                // Sum the squares of the derivatives along both screen axes.
                 let mut squares: [V; 2] = [every(simd, 0.0); 2];
                 for axis in 0..2 {
                     let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);

@@ -235,6 +235,7 @@ impl Casters {
         place: DVec3,
         list: &[u32],
     ) -> Rgb {
+        // Narrow long lists to the filters near the way to the light.
         let triangles = self.filters.triangles();
         let near = near(light, triangles.extent);
         let mut nearer = Vec::new();
@@ -244,6 +245,8 @@ impl Casters {
         } else {
             list
         };
+
+        // Find the filters whose shadow volume holds the place.
         let hides = |t: &&u32| {
             let facet = triangles.facets[**t as usize];
             facet != own && Solid::new(&self.filter(**t), light, near).is_some_and(|s| s.contains(place))
@@ -251,6 +254,8 @@ impl Casters {
         let mut hits: Vec<_> = list.iter().filter(hides).map(|&t| (triangles.facets[t as usize], t)).collect();
         // In one order, as products are rounded.
         hits.sort_unstable();
+
+        // Multiply what each of them lets through where the way to the light crosses it.
         let passing = |&(facet, t): &(u32, u32)| {
             let corners = wide(&triangles.corners[t as usize]);
             let (normal, way) = (winding_normal(&corners), away(light, place));

@@ -107,6 +107,8 @@ impl Shadows for Prepared {
             LightMaps::Infinity { towards, map } if self.cascades.is_none() => {
                 lookup::arriving(self.level, map, towards.extend(0.0), places, parts);
             }
+
+            // Ask the cascades about the places that face the light.
             LightMaps::Infinity { towards, map } => {
                 parts.fill([0.0; 3]);
                 let facing = places.iter().enumerate().filter(|(_, place)| faces(place, towards.extend(0.0)));
@@ -122,6 +124,7 @@ impl Shadows for Prepared {
                 lookup::arriving(self.level, map, from.at, places, parts);
             }
             LightMaps::Places(emitters) => {
+                // Sum the shares of all positions of the light, each with its maps around it.
                 let mut shares = vec![Shares::default(); places.len()];
                 for (from, maps) in emitters {
                     let maps: Vec<_> = maps.iter().collect();

@@ -121,6 +121,8 @@ fn lift(corners: &[DVec3; 3], extent: f32) -> f64 {
 impl OfLight {
     fn new(from: Emitter, casters: &Casters, facets: usize, execution: &Execution) -> Result<Self, Limit> {
         let triangles = casters.triangles();
+
+        // Compute the lit polygons of several triangles a job.
         let jobs = triangles.count().div_ceil(TRIANGLES_A_JOB);
         let charged = Mutex::new(0u64);
         let budget = &execution.budget;
@@ -136,8 +138,12 @@ impl OfLight {
             *charged.lock().expect("no thread panics while it adds") += bytes;
             Ok(details)
         });
+
+        // Replace the charges of the jobs by that of the whole.
         budget.release(charged.into_inner().expect("no thread panics while it adds"));
         let details: Vec<Details> = details.into_iter().collect::<Result<_, Limit>>()?;
+
+        // Index the polygons by facet.
         let mut places = vec![Found { piece: u32::MAX, ..Found::default() }; facets];
         for (piece, found) in details.iter().enumerate() {
             for (i, found) in found.found.iter().enumerate() {
@@ -233,6 +239,7 @@ impl Shadows for Prepared<'_> {
         }
         let extent = casters.extent();
         let slack = f64::from(extent) * SLACK;
+        // Sum the shares of the light's positions that the place lies in a lit polygon of.
         for (number, place) in places.iter().enumerate() {
             let mut shares = Shares::default();
             for l in lights {

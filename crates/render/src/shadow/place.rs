@@ -112,6 +112,7 @@ impl<'a> Placing<'a> {
             (length * scale).store_slice(stored);
         }
 
+        // Pack corners, least weights and normals by facet.
         std::array::from_fn(|lane| {
             let [x, y, z] = [normals[0][lane], normals[1][lane], normals[2][lane]];
             let corner = |c: usize| {
@@ -180,6 +181,7 @@ impl<'a> Placing<'a> {
         weights: &[F32x8<S>; 3],
         screen: [&[f32; LANES]; 2],
     ) -> EightPlaces {
+        // Interpolate the positions and turn normals to the viewer.
         let position = position(simd, &facets, weights);
         let mut normal = wide_columns(
             simd,
@@ -189,6 +191,8 @@ impl<'a> Placing<'a> {
         if self.turns {
             self.turn_to_viewer(simd, &position, &mut normal);
         }
+
+        // Store the points lane by lane.
         let mut places = EightPlaces {
             position: [[0.0; LANES]; 3],
             normal: [[0.0; LANES]; 3],
@@ -206,6 +210,7 @@ impl<'a> Placing<'a> {
     /// Turns normals at these positions to the side that the viewer sees.
     #[inline(always)]
     fn turn_to_viewer<S: Simd>(&self, simd: S, position: &[F64x8<S>; 3], normal: &mut [F64x8<S>; 3]) {
+        // Find the direction to the eye.
         let (eye, perspective) = self.view.eye();
         let towards = if perspective {
             let eye = (eye - self.center).to_array();
@@ -220,6 +225,8 @@ impl<'a> Placing<'a> {
                 |k| F64x8::splat(simd, parallel[k]),
             )
         };
+
+        // Flip normals that face away from it.
         let cos = normal[0] * towards[0] + normal[1] * towards[1] + normal[2] * towards[2];
         let behind = cos.simd_lt(F64x8::splat(simd, 0.0));
         for axis in normal {
@@ -231,6 +238,7 @@ impl<'a> Placing<'a> {
 /// The positions with these weights of the facets' corners, kept from the edges.
 #[inline(always)]
 fn position<S: Simd>(simd: S, facets: &[&Facet; LANES], weights: &[F32x8<S>; 3]) -> [F64x8<S>; 3] {
+    // Widen the weights and the corners.
     let mut w = lanes::three(
         #[inline(always)]
         |c| lanes::widened(simd, weights[c]),
@@ -256,6 +264,8 @@ fn position<S: Simd>(simd: S, facets: &[&Facet; LANES], weights: &[F32x8<S>; 3])
         let least = corners[c][3] * sum;
         w[c] = (w[c] * sum).simd_lt(least * sum).select(least, w[c]);
     }
+
+    // Interpolate with the weights' sum made one.
     let inverse = F64x8::splat(simd, 1.0) / (w[0] + w[1] + w[2]);
     lanes::three(
         #[inline(always)]

@@ -78,6 +78,7 @@ const TOGETHER: usize = 64;
 impl Shadows for Prepared<'_> {
     fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64) {
         let mut feelers = Vec::with_capacity(TOGETHER);
+        // Trace several points at a time.
         for first in (0..places.len()).step_by(TOGETHER) {
             let mut found = [[1.0; 3]; TOGETHER];
             let found = &mut found[..TOGETHER.min(places.len() - first)];
@@ -103,6 +104,8 @@ impl Shadows for Prepared<'_> {
                     feelers.clear();
                 }
             }
+
+            // Count the rays and store the results.
             *rays += feelers.len() as u64;
             found.iter().enumerate().for_each(|(k, part)| parts.set(first + k, *part));
         }

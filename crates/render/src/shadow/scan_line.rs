@@ -91,6 +91,8 @@ impl Shadows for Prepared<'_> {
             return parts.fill([1.0; 3]);
         }
         parts.fill([0.0; 3]);
+
+        // Sort the points that face each position of the light.
         let extent = self.casters.extent();
         let mut work = Work::default();
         for emitter in lights {
@@ -111,6 +113,8 @@ impl Shadows for Prepared<'_> {
                 };
                 a.facet.cmp(&b.facet).then_with(by_pixel).then(a.index.cmp(&b.index))
             });
+
+            // Scan each facet's points and add what arrives.
             for part in points.chunk_by(|a, b| a.facet == b.facet) {
                 self.scan(part, from, &mut work, |point, filters| {
                     let place = places.get(point.index);
@@ -119,6 +123,8 @@ impl Shadows for Prepared<'_> {
                 });
             }
         }
+
+        // Divide by the weights of all positions.
         Shares::normalize(lights.iter().copied(), places, parts);
     }
 

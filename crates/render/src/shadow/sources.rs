@@ -162,15 +162,20 @@ impl Area {
     }
 
     fn polygon(corners: &[DVec3], samples: u32, center: DVec3) -> Option<Self> {
+        // Compute the area, the normal and axes along the longest side.
         let edges = || (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
         let normal: DVec3 = edges().map(|(a, b)| (a - corners[0]).cross(b - corners[0])).sum();
         let (area, normal) = (0.5 * normal.length(), normal.try_normalize()?);
         let longest = edges().map(|(a, b)| b - a).max_by(|a, b| a.length().total_cmp(&b.length()))?;
         let x = longest.try_normalize()?;
         let y = normal.cross(x);
+
+        // Flatten the polygon to its plane.
         let flat: Vec<DVec2> =
             corners.iter().map(|&c| dvec2((c - corners[0]).dot(x), (c - corners[0]).dot(y))).collect();
         let bounds = flat.iter().fold([flat[0]; 2], |[low, high], &p| [low.min(p), high.max(p)]);
+
+        // Choose cells so that about as many as asked for lie inside.
         let extent = bounds[1] - bounds[0];
         let share = area / (extent.x * extent.y);
         let (cells, size) = cells(bounds, share, samples, |p| contains(&flat, p));

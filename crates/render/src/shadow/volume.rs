@@ -77,16 +77,22 @@ impl ShadowAlgorithm for VolumeShadows {
         execution: &Execution,
     ) -> Result<Box<dyn Shadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
+
+        // Build the volumes, or take them from the cache.
         let volumes = session.cache.get_or_build(Key::new(lights, settings), || {
             Volumes::new(session, lights, &occluders, settings, execution)
         })?;
         let triangles = volumes.casters.triangles();
+
+        // Move the viewer by an odd amount, so that it lies on no side of a volume.
         let odd = ODD * (f64::from(triangles.extent) * 1e-4);
         let viewer = if viewer.w > 0.0 {
             (viewer.truncate() - triangles.center + odd).extend(1.0)
         } else {
             (viewer.truncate() + ODD * 1e-4).extend(0.0)
         };
+
+        // Count the volumes around the viewer, once for each position of the light.
         let counting = settings.shadows.volume_counting.unwrap_or_default();
         let around_viewer = volumes.lights.iter().map(|places| {
             let around = |l: &LightVolumes| match counting {
@@ -137,12 +143,15 @@ impl Shadows for Counting<'_> {
         }
         parts.fill([0.0; 3]);
         let mut batch = Batch::default();
+        // Count the volumes around all places that face the position of the light.
         for (place_of_light, &around_viewer) in volumes.iter().zip(&self.around_viewer[light]) {
             // Attached shadows, and a light in the facet's plane, need no count.
             let (from, extent) = (place_of_light.from, self.volumes.casters.extent());
             let light = from.at;
             let asked = places.iter().enumerate().filter(|(_, p)| faces(p, light));
             batch.reset(asked.map(|(i, p)| (i as u32, lifted(&p, extent))));
+
+            // Add what arrives where the count says that no volume holds the place.
             let lit = self.volumes.lit(place_of_light);
             let start = (self.counting, self.viewer, around_viewer);
             batch.count(self.level, &lit, start, |index, at, count, filters| {
@@ -153,6 +162,8 @@ impl Shadows for Counting<'_> {
                 }
             });
         }
+
+        // Divide by the weights of all positions.
         Shares::normalize(volumes.iter().map(|v| v.from), places, parts);
     }
 

@@ -78,6 +78,8 @@ fn look(
                     }
                 }
                 (tile.depth[at], tile.facet[at]) = nearest;
+
+                // Keep all layers in front of it.
                 for setup in layered.iter().filter(|s| s.covers(x, y)) {
                     let (depth, facet) = (setup.depth(x, y), setup.facet);
                     if nearer((depth, facet), nearest) {
@@ -87,6 +89,8 @@ fn look(
             }
         }
     }
+
+    // Count the work and report it.
     let rays = (rows * columns * view.pattern.len()) as u64;
     let triangle_tests = rays * facets.setups.len() as u64;
     let pixels = [tile.x, tile.y, columns as u32, rows as u32];

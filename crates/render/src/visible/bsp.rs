@@ -79,6 +79,7 @@ impl VisibleSurface for Bsp {
 
 impl PolygonAlgorithm for Bsp {
     fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit> {
+        // Set the facets up and take the tree from the cache.
         let facets = Facets::without_tiles(view, execution)?;
         let setups: Vec<&Setup> = facets.all().collect();
         let (tree, _) = tree_of(view, execution)?;
@@ -98,6 +99,8 @@ impl PolygonAlgorithm for Bsp {
                 let facets = tree.facets(fragment);
                 fragments.each_outline(fragment, |outline, _| list.push_convex(facets.to_vec(), outline));
             }
+
+            // Report the tree's size.
             list.wholes = tree.polygon_count();
             list.counters.tree_nodes = tree.node_count();
             list.counters.fragments = tree.fragment_count();
@@ -243,6 +246,8 @@ impl Fragments<'_> {
         if self.execution.observer.is_none() {
             return;
         }
+
+        // Report the fragments in the order in which they are painted.
         let tree = self.on_screen.tree;
         let nodes = tree.nodes_of_fragments();
         let listed = runs.iter().rev().flat_map(|run| run.listed.iter().rev());

@@ -99,6 +99,8 @@ pub(super) fn clip_outline(polygon: &mut Vec<[f64; 2]>, scratch: &mut Vec<[f64; 
     if !(cut.a + cut.b + cut.c).is_finite() {
         return;
     }
+
+    // Walk the outline: keep inner corners and add crossings.
     let Some(&(mut from)) = polygon.last() else { return };
     let mut d_from = cut.inside(from);
     let outside = |d: f64| d < 0.0;

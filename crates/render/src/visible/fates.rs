@@ -151,6 +151,8 @@ const SNAPPED: f64 = 2.0 / SUBPIXEL as f64;
 /// the order of the scene.
 pub(crate) fn candidates(view: &PreparedView<'_>, seen: &SeenPixel<'_>, wireframe: bool) -> Vec<Candidate> {
     let world = &view.session.world;
+
+    // Search all instances, whether they are drawn or not.
     let window = Window::new(&view.view, view.viewport, seen.place(), 1, SNAPPED);
     let mut found = Vec::new();
     for (index, instance) in world.instances.iter().enumerate() {
@@ -158,6 +160,7 @@ pub(crate) fn candidates(view: &PreparedView<'_>, seen: &SeenPixel<'_>, wirefram
         let bounds = &world.run_bounds[instance.mesh_index as usize];
         let prepared = view.instances.iter().find(|p| p.instance == index);
         let draws = || prepared.iter().flat_map(|p| p.opaque.iter().chain(&p.layered));
+        // Judge each triangle whose outline holds the pixel.
         for triangle in window.pyramid_of(instance).triangles(&instance.mesh, bounds, &[all]).into_iter().flatten() {
             let facet = instance.first_facet + triangle;
             let draw = draws().find(|d| d.ranges.iter().any(|range| range.contains(&triangle)));
@@ -180,6 +183,7 @@ fn common([a, b, c]: [u32; 3]) -> u32 {
 
 /// What becomes of a facet that a draw holds, and its nearest depth at the samples that it covers.
 fn fate(view: &PreparedView<'_>, draw: &Draw<'_>, facet: u32, seen: &SeenPixel<'_>) -> (Fate, Option<f32>) {
+    // Test what culling and clipping test, in their order.
     let flags = view.corner_flags(facet);
     let any = flags[0] | flags[1] | flags[2];
     if any & flag::NOT_FINITE != 0 {
@@ -216,6 +220,8 @@ fn fate(view: &PreparedView<'_>, draw: &Draw<'_>, facet: u32, seen: &SeenPixel<'
         let fate = if was_there { Fate::ClippedAway { planes: cutting } } else { Fate::BetweenSamples };
         return (fate, None);
     }
+
+    // Tell who is seen at the covered samples: the facet itself, or layers and others in front.
     let numbers = |samples: &[usize]| samples.iter().map(|&s| s as u32).collect::<Vec<_>>();
     let visible: Vec<usize> = covered.iter().copied().filter(|&s| seen.facet(s) == facet).collect();
     if !visible.is_empty() {

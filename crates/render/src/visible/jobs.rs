@@ -54,6 +54,7 @@ impl<'v, 'a> Jobs<'v, 'a> {
     /// Appends triangles.
     pub(super) fn push(&mut self, piece: &Piece<'v, 'a>, layered: bool) {
         let mut start = piece.range.start;
+        // Append to the open job, or begin one.
         while start < piece.range.end {
             let job = match self.jobs.last_mut() {
                 Some(job) if job.layered == layered && self.size < TRIANGLES_A_JOB => job,
@@ -65,6 +66,8 @@ impl<'v, 'a> Jobs<'v, 'a> {
             };
             let end = piece.range.end.min(start + (TRIANGLES_A_JOB - self.size));
             self.size += end - start;
+
+            // Extend the last piece if the triangles follow it.
             match job.pieces.last_mut() {
                 Some(last) if std::ptr::eq(last.draw, piece.draw) && last.range.end == start => last.range.end = end,
                 _ => job.pieces.push(Piece { range: start..end, ..piece.clone() }),

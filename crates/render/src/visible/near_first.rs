@@ -33,11 +33,14 @@ fn runs<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>]) -> (Vec<f64>, 
     let (mut distances, mut pieces) = (Vec::new(), Vec::new());
     let mut item = None;
     let mut forward = DVec4::ZERO;
+    // Take the depth axis of each instance.
     for piece in jobs.iter().filter(|job| !job.layered).flat_map(|job| &job.pieces) {
         let instance = &view.session.world.instances[view.instances[piece.item].instance];
         if item.replace(piece.item) != Some(piece.item) {
             forward = -(view.view.view_from_world * instance.world_from_model).row(2);
         }
+
+        // Cut the piece into runs, each with its nearest distance.
         let bounds = &view.session.world.run_bounds[instance.mesh_index as usize];
         let mut start = piece.range.start;
         while start < piece.range.end {
@@ -69,6 +72,8 @@ fn by_distance(distances: &[f64]) -> Vec<usize> {
     for i in 1..starts.len() {
         starts[i] += starts[i - 1];
     }
+
+    // Deal the runs, slice by slice.
     let mut order = vec![0; distances.len()];
     for (number, &distance) in distances.iter().enumerate() {
         let next = &mut starts[slice(distance)];

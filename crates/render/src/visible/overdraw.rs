@@ -63,6 +63,7 @@ impl Pixels<'_> {
         let [left, top] = self.origin;
         let [columns, rows] = self.within_box(setup);
         let (mut stays, mut hidden) = (Vec::new(), Vec::new());
+        // Compare at each pixel that the facet covers.
         for row in rows {
             for column in columns.clone() {
                 let pixel = [left + column as u32, top + row as u32];
@@ -76,6 +77,7 @@ impl Pixels<'_> {
                 if is_nearer {
                     *held = Some(came);
                 }
+                // Report the outcome, in detail where somebody watches the pixel.
                 extend(if is_nearer { &mut stays } else { &mut hidden }, pixel);
                 if execution.observer.as_ref().is_some_and(|observer| observer.watches(pixel)) {
                     let ((depth, facet), stays) = (came, held.map_or(came.1, |(_, facet)| facet));

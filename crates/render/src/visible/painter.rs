@@ -243,6 +243,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
         execution: &'f Execution,
         counters: &'c mut VisibilityCounters,
     ) -> Result<Self, Limit> {
+        // Choose the cells and charge for the lists.
         let cell = cell_size(&raster, wholes.len());
         let viewport = raster.viewport();
         let (columns, rows) = (viewport.width.div_ceil(cell), viewport.height.div_ceil(cell));
@@ -270,6 +271,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
             painted: Vec::new(),
             charged,
         };
+
+        // Enter all polygons.
         let mut outline = Vec::new();
         for whole in 0..wholes.len() {
             outline.clear();
@@ -330,6 +333,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
         if cell * 2 > self.cell {
             return;
         }
+
+        // Empty all cells.
         let viewport = self.raster.viewport();
         self.cell = cell;
         self.columns = viewport.width.div_ceil(cell);
@@ -341,6 +346,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
         self.done.resize(cells, 0);
         self.versions.clear();
         self.versions.resize(cells, 0);
+
+        // Enter the waiting polygons anew.
         for number in 0..self.polygons.len() as u32 {
             if self.states[number as usize] == State::Waiting {
                 let around = bounds(self.polygons[number as usize].points(&self.corners));
@@ -416,6 +423,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// Paints the marked polygons, and whatever has to come before them.
     fn paint_marked(&mut self) -> Result<(), Limit> {
+        // Work on the last marked polygon until nothing has to come before it.
         let mut steps = 0u32;
         while let Some(&top) = self.marked.last() {
             steps += 1;
@@ -431,6 +439,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
                 self.marked.pop();
                 continue;
             };
+
+            // Move the obstacle to the front, cut a cycle, or split.
             let solved = match (verdict, self.states[other as usize]) {
                 (Verdict::After, State::Marked) => self.cut_cycle(other),
                 (Verdict::After, _) => {
@@ -454,6 +464,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// Goes on with the comparisons of the last marked polygon, until one says that it cannot be painted yet.
     fn obstacle(&mut self) -> Result<Option<(u32, Verdict)>, Limit> {
+        // Continue where the last comparison stopped.
         let Some(top) = self.marked.last_mut() else { return Ok(None) };
         let (polygon, at) = (top.polygon, &mut top.progress);
         let p = &self.polygons[polygon as usize];
@@ -515,6 +526,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// The painted polygons in order, as pieces of facets.
     fn list(&self) -> Pieces {
+        // Cut each polygon's triangles by its cuts.
         let mut list = Pieces::default();
         for &number in &self.painted {
             let polygon = &self.polygons[number as usize];
@@ -525,6 +537,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
             });
             list.add_polygon(number, triangles, |_| cuts.iter().copied(), &self.raster);
         }
+
+        // Report the list in order.
         for (order, &number) in (0..).zip(&list.listed) {
             self.execution.tell(|| {
                 let polygon = &self.polygons[number as usize];

@@ -99,6 +99,7 @@ struct Divided {
 impl Divided {
     /// Looks at the windows of several tiles, from the whole picture down. What the lists take is charged to `memory`.
     fn new(facets: &Facets<'_, '_>, polygons: &Polygons<'_>, memory: &Charge<'_>) -> Result<Self, Limit> {
+        // Begin with the whole picture and all polygons.
         let view = facets.view();
         // Of the facets of a single tile no list of a larger window can be told.
         let observer = facets.execution().observer.clone().filter(|_| view.makes_all_tiles());
@@ -125,6 +126,8 @@ impl Divided {
                 (lists.own(start), lists.counters)
             });
             level = Vec::new();
+
+            // Draw windows with one polygon, and queue the parts of the others.
             for ((window, _), (own, counted)) in several.into_iter().zip(looked_at) {
                 divided.counters.add(&counted);
                 match own[..] {

@@ -59,6 +59,8 @@ impl VisibleSurface for WeilerAtherton {
         sink: &dyn TileSink,
     ) -> Result<Resolved, Limit> {
         let mut resolved = Resolved::default();
+
+        // Set the facets up and join them to polygons.
         let facets = Facets::new(view, execution, &mut resolved)?;
         let (setups, opaque) = facets.listed();
         let polygons = Polygons::new(setups.into_iter().take(opaque), view);
@@ -245,6 +247,7 @@ impl AreaSorting<'_> {
 
     /// Treats a list, and the inside lists that come of it, in the plain order.
     fn treat(&self, list: List, worker: &mut Worker) -> Result<(), Limit> {
+        // Work through inside lists depth first.
         let (mut charged, shown) = (list.bytes(), worker.found.bytes());
         let mut counted = worker.pairs;
         let mut frames = vec![Frame::new(list)];
@@ -259,6 +262,7 @@ impl AreaSorting<'_> {
                     frames.pop();
                 }
             }
+            // Account for memory from time to time.
             if worker.pairs.wrapping_sub(counted) > PAIRS_A_COUNT {
                 counted = worker.pairs;
                 let bytes = frames.iter().map(|frame| frame.list.bytes()).sum();
@@ -298,6 +302,7 @@ impl AreaSorting<'_> {
         }
         worker.near = near;
 
+        // Report the clip and count recursions.
         let again = inside.iter().any(|item| !item.clipped_with);
         worker.found.counters.recursions += u64::from(again);
         let clip = report.tell(self, front, &frame.list, &inside);
@@ -309,10 +314,13 @@ impl AreaSorting<'_> {
 
     /// Clips an item by another polygon: leaves the outside, and gives what is inside.
     fn clip(&self, item: &mut Item, front: &Polygon<'_>, worker: &mut Worker) -> Result<Option<Inside>, Limit> {
+        // Check the budget from time to time.
         worker.pairs = worker.pairs.wrapping_add(1);
         if worker.pairs.is_multiple_of(PAIRS_A_CHECK) {
             self.execution.budget.check(STAGE)?;
         }
+
+        // Clip the region.
         let back = &self.polygons[item.polygon as usize];
         let counters = &mut worker.found.counters;
         let part = match item.region.clip(&front.shape, &back.shape, &mut worker.work) {
@@ -323,6 +331,8 @@ impl AreaSorting<'_> {
                 inside
             }
         };
+
+        // Compare depths in the inside.
         counters.depth_comparisons += 1;
         let keep = |region, is_reduced| Item { region, is_reduced, ..*item };
         let margin = match relation(front, back, &part) {

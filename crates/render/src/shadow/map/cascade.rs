@@ -110,6 +110,7 @@ impl Cascades {
         // How much the next question's answer counts against this one's.
         let mut fades = Vec::with_capacity(questions.len());
         for &(whole, place) in questions {
+            // Choose the map of the slice where there is one, and of the next slice near its end.
             let position = places.position(place);
             let map = |slice: usize| {
                 let sharper = slices.get(slice).and_then(Option::as_ref).filter(|m| m.lens.holds(position));
@@ -165,6 +166,7 @@ fn cuts(near: f64, far: f64, perspective: bool, count: u32) -> Vec<f64> {
 fn lens(light: &LightMaps, solids: &[slice::Convex], world: &World, size: u32) -> Option<Lens> {
     let (whole, lens, middle) = match light {
         LightMaps::Infinity { towards, map } => {
+            // Fit a parallel lens to the slice.
             let corners: Vec<DVec3> = solids.iter().flat_map(slice::Convex::corners).collect();
             let middle = *corners.first()?;
             (&map.lens, Lens::parallel_round(*towards, &corners, &map.lens, world, size)?, middle)
@@ -180,6 +182,8 @@ fn lens(light: &LightMaps, solids: &[slice::Convex], world: &World, size: u32) -
         }
         LightMaps::Unhindered => return None,
     };
+
+    // Use it only where its texels are clearly smaller than those of the whole map.
     let middle = middle - Triangles::center_of(world);
     (lens.texel(middle) * PAYS <= whole.texel(middle)).then_some(lens)
 }

@@ -163,12 +163,16 @@ impl<'a> DepthSink<'a> {
         if self.is_given_up() {
             return;
         }
+
+        // Find the nearest opaque depths.
         let place = tile_origin(view, index);
         let opaque = batches.iter().filter(|(layered, _)| !layered).map(|(_, batch)| *batch);
         let level = self.execution.level;
         let nearest = nearest_depths(level, place, opaque, index);
         let far = nearest.far();
         let depths = nearest.into_depths();
+
+        // Collect the transparent layers in front of them.
         let mut layers = Vec::new();
         if batches.iter().any(|(layered, _)| *layered) {
             with_spare(spare, view.pattern.len(), |tile| {
@@ -183,6 +187,8 @@ impl<'a> DepthSink<'a> {
                 layers = self.layers(tile, &list);
             });
         }
+
+        // Store the tile.
         self.keep(index, depths, layers);
     }
 
@@ -208,6 +214,8 @@ impl<'a> DepthSink<'a> {
         let world_from_view = lens.view_from_world.inverse();
         // Facets come one after the other.
         let mut last = (NO_FACET, None);
+
+        // Convert each layer to a distance and what it lets through there.
         for layer in list.iter() {
             let [x, y] = [layer.at as usize % TILE, layer.at as usize / TILE].map(|k| k as u32);
             let [x, y] = [tile.x + x, tile.y + y];
@@ -221,6 +229,8 @@ impl<'a> DepthSink<'a> {
                 found.push((layer.facet, Layer { texel: layer.at, depth, passing }));
             }
         }
+
+        // Sort by texel and depth, and drop duplicates of a facet.
         found.sort_unstable_by(|(f, a): &(u32, Layer), (g, b)| {
             a.texel.cmp(&b.texel).then(a.depth.total_cmp(&b.depth)).then(f.cmp(g))
         });

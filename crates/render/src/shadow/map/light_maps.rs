@@ -99,6 +99,7 @@ impl LightMaps {
         }
         let source = Source::new(light, pass.settings.shadows.light_samples, Triangles::center_of(world));
         let emitters = source.places();
+        // Draw one map for a parallel light or a spot, and a cube of maps for any other position.
         match source {
             Source::Unhindered => Ok(Self::Unhindered),
             Source::Infinity(towards) => {

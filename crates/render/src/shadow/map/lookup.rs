@@ -156,6 +156,7 @@ impl Map {
     /// be.
     #[inline(always)]
     fn texels<S: Simd>(&self, simd: S, eight: &Eight<S>, mut asked: u32) -> ([[f32; LANES]; 4], u32) {
+        // Find the address of each place's four texels.
         let mut texels = [[f32::INFINITY; LANES]; 4];
         let Addresses { corner, tiles, first, together } = self.addresses(simd, eight);
         let mut apart = 0;
@@ -164,6 +165,7 @@ impl Map {
         while asked != 0 {
             let lane = asked.trailing_zeros() as usize % LANES;
             asked &= asked - 1;
+            // Fetch from several tiles where the four texels straddle a border.
             if together >> lane & 1 == 0 {
                 match self.texels_of_tiles([corner[0][lane], corner[1][lane]]) {
                     Some(found) => (0..4).for_each(|k| texels[k][lane] = found[k]),
@@ -171,6 +173,8 @@ impl Map {
                 }
                 continue;
             }
+
+            // Otherwise read all four from one tile, reusing the last place's.
             let tile = match current {
                 Some((number, tile)) if number == tiles[lane] => tile,
                 _ => self.tile(tiles[lane] as usize),
@@ -197,6 +201,8 @@ impl Map {
             #[inline(always)]
             |number: F64x8<S>| -> I32x8<S> { lanes::narrowed(simd, number).to_int() },
         );
+
+        // Find the upper left texel.
         let (left, top) = (whole(eight.first[0]), whole(eight.first[1]));
         let (size, shift) = (TILE as i32, TILE.trailing_zeros());
         let (x, y) = (left & (size - 1), top & (size - 1));
@@ -204,6 +210,8 @@ impl Map {
             #[inline(always)]
             |number: i32| I32x8::splat(simd, number),
         );
+
+        // Tell which places lie inside the map, and with all four texels in one tile.
         let (width, height) = (self.lens.width as i32 - 1, self.lens.height as i32 - 1);
         let inside = left.simd_ge(splat(0)) & top.simd_ge(splat(0));
         let inside = inside & left.simd_lt(splat(width)) & top.simd_lt(splat(height));

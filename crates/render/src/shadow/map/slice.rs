@@ -22,6 +22,7 @@ impl Convex {
     pub(super) fn cut(&mut self, plane: DVec4) {
         let height = |p: DVec3| plane.truncate().dot(p) + plane.w;
         let mut rim = Vec::new();
+        // Clip each face, and remember the crossings.
         for face in &mut self.0 {
             let mut kept = Vec::with_capacity(face.len() + 1);
             for (i, &a) in face.iter().enumerate() {

@@ -53,6 +53,7 @@ impl Detail {
 
     /// Whether a place in the plane of the facet with this root lies in a lit polygon, or beside one by no more than `slack`.
     pub(super) fn lights(&self, root: u32, place: DVec3, slack: f64) -> bool {
+        // Descend to the leaf that holds the place, and test its polygons.
         let mut node = root;
         loop {
             match &self.nodes[node as usize] {
@@ -131,6 +132,8 @@ impl Cutter<'_> {
 
     /// Adds a part of it, which these solids may reach.
     fn part(&mut self, polygon: Vec<DVec3>, solids: &[u32], mut cuts: Cuts) -> u32 {
+        // Keep the solids that reach the part; stop dividing when there are few or when cuts do not
+        // help.
         let Some(solids) = self.reaching(&polygon, solids) else { return self.detail.dark() };
         if solids.len() <= cuts.last / 4 * 3 {
             (cuts.last, cuts.in_vain) = (solids.len(), 0);
@@ -149,6 +152,8 @@ impl Cutter<'_> {
         if below.len() < 3 || above.len() < 3 {
             return self.clip(polygon, &solids);
         }
+
+        // Recurse into both halves.
         let lower = self.part(below, &solids, cuts);
         let upper = self.part(above, &solids, cuts);
         // Nothing to tell apart: two dark halves are a dark whole.
@@ -226,6 +231,8 @@ fn reach(polygon: &[DVec3], solid: &Solid, eps: f64) -> Reach {
 fn split(polygon: &[DVec3], value: impl Fn(DVec3) -> f64, eps: f64) -> [Vec<DVec3>; 2] {
     let mut parts = [Vec::with_capacity(polygon.len() + 1), Vec::with_capacity(polygon.len() + 1)];
     let mut reached = [false; 2];
+
+    // Distribute the corners, and add crossings to both parts.
     for (i, &p) in polygon.iter().enumerate() {
         let q = polygon[(i + 1) % polygon.len()];
         let (a, b) = (value(p), value(q));
@@ -242,6 +249,8 @@ fn split(polygon: &[DVec3], value: impl Fn(DVec3) -> f64, eps: f64) -> [Vec<DVec
             parts.iter_mut().for_each(|part| part.push(crossing));
         }
     }
+
+    // Drop parts that reach nowhere beyond the tolerance.
     for (part, reached) in parts.iter_mut().zip(reached) {
         if !reached {
             part.clear();

@@ -147,6 +147,7 @@ fn opaque_edges(world: &World, casters: &Casters, workers: &Workers) -> (Vec<Use
         let triangle = instance.mesh.triangles[(triangles.facets[i] - instance.first_facet) as usize];
         let number = triangle.map(|v| first + weld.representative[v as usize]);
         let corners = wide(corners);
+        // Order the ends of each edge, so that both neighbours find the same one.
         for k in 0..3 {
             let m = (k + 1) % 3;
             if number[k] == number[m] || corners[k] == corners[m] {

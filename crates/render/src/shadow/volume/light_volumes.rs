@@ -33,6 +33,8 @@ impl LightVolumes {
         execution: &Execution,
     ) -> Result<Self, Limit> {
         let light = from.at;
+
+        // Turn each triangle towards the light and find the silhouette's sides.
         execution.budget.check("shadow volumes")?;
         let turned = turned_all(light, near(light, triangles.extent), triangles, &execution.workers);
         let sides = surface.sides(light, &turned, triangles, &execution.workers);
@@ -48,6 +50,8 @@ impl LightVolumes {
             facets: (0..runs().len() as u32).collect(),
             ..*triangles
         };
+
+        // Build the tree and charge what it takes.
         let bytes = sides.len() as u64 * size_of::<Side>() as u64 + Bvh::bytes(sides.len() as u64);
         execution.budget.charge(bytes, "shadow volumes")?;
         execution.budget.release(bytes);
@@ -70,6 +74,7 @@ impl LightVolumes {
 
     /// Hands on caps and sides, cut where the scene is well left behind.
     pub(super) fn draw(&self, light: usize, casters: &Casters, triangles: &Triangles, take: &mut dyn FnMut(Drawn<'_>)) {
+        // Extend volumes well beyond the scene.
         let reach = f64::from(triangles.extent) * 2.0;
         let beyond = |p: DVec3| p + away(self.from.at, p).normalize_or_zero() * reach;
         let mut hand = |kind: &'static str, corners: &[DVec3]| {
@@ -82,6 +87,8 @@ impl LightVolumes {
             let [a, b, c] = wide(&triangles.corners[i]);
             if self.turned[i] > 0 { [a, b, c] } else { [a, c, b] }
         };
+
+        // Emit the near caps, the far caps and the sides.
         casting().for_each(|i| hand("near-cap", &towards(i)));
         for i in casting() {
             let [a, b, c] = towards(i).map(beyond);

@@ -103,10 +103,13 @@ impl<S: Simd> Paths<S> {
     /// Counts a side of volumes.
     #[inline(always)]
     pub(super) fn meet_side(&mut self, side: &Side) {
+        // Find the paths that cross the side's plane.
         let (enters, mut met) = self.crossing(side.plane);
         if met == 0 {
             return;
         }
+
+        // Keep those that pass between the rays along its two edges.
         let [a, b] = [side.a, side.b].map(
             #[inline(always)]
             |p| splat(self.simd, p - self.from),
@@ -116,6 +119,8 @@ impl<S: Simd> Paths<S> {
             |p| positive(self.simd, dot(self.normal, p)),
         );
         met &= if enters { !of_a & of_b } else { of_a & !of_b };
+
+        // Keep those on the inner side of the edge itself, and count them.
         if met != 0 {
             let left = self.left_of(a, b);
             met &= if enters { !left } else { left };

@@ -75,6 +75,7 @@ impl PolygonFacets {
 impl WorldPolygons {
     /// Joins the facets of a world. Charges the budget for [`Self::bytes`].
     pub(super) fn new(world: &World, planes: &SharedPlanes, execution: &Execution) -> Result<Self, Limit> {
+        // Charge for the worst case: each facet a polygon of its own.
         let count = world.facet_count as usize;
         let most = count as u64 * (3 * size_of::<DVec3>() + 4 * size_of::<u32>()) as u64;
         execution.budget.charge(most, "the BSP tree")?;
@@ -86,11 +87,15 @@ impl WorldPolygons {
             equations: in_world(planes),
             tolerance: world.bounds.size().length() * TOLERANCE,
         };
+
+        // Join the facets of each instance.
         for instance in &world.instances {
             let first = instance.first_facet;
             polygons.add_instance(instance, planes.of(first..first + instance.mesh.triangles.len() as u32));
         }
         polygons.end();
+
+        // Replace the worst case by what was used.
         execution.budget.release(most);
         execution.budget.charge(polygons.bytes(), "the BSP tree")?;
         Ok(polygons)
@@ -112,6 +117,8 @@ impl WorldPolygons {
         let mesh = &instance.mesh;
         let mirrored = mirrors(&instance.world_from_model);
         let mut growing: Vec<Growing> = Vec::new();
+
+        // Add lone triangles as they are, and join the triangles of larger faces.
         for face in 0..mesh.face_count() {
             let triangles = mesh.face_triangles(face);
             if triangles.len() == 1 {

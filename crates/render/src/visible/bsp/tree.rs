@@ -262,6 +262,8 @@ impl<'t> Builder<'t> {
     /// Begins the tree by axis planes, lets jobs finish its branches, and puts them together.
     fn of_all(&mut self, execution: &Execution) -> Result<Tree, Limit> {
         let polygons = self.polygons;
+
+        // Collect the polygons, and set those aside that no plane can order.
         let mut parts = Vec::with_capacity(polygons.len());
         for polygon in 0..polygons.len() as u32 {
             let corners = polygons.corners(polygon);
@@ -274,6 +276,8 @@ impl<'t> Builder<'t> {
             }
         }
         self.tree.loose = 0..self.tree.fragments.len() as u32;
+
+        // Cut along axis planes until the sets are small enough for a job.
         execution.budget.begin("polygons", parts.len() as u64);
         let job_size = (parts.len() / JOBS).max(256);
         let mut tasks = vec![Task { parts, parent: NONE, front: true }];
@@ -285,6 +289,8 @@ impl<'t> Builder<'t> {
                 None => jobs.push(task),
             }
         }
+
+        // Build all branches in parallel.
         let outer = &*self;
         let branches = execution.workers.map(jobs.len(), |i| {
             let mut builder = Builder { outer: Some(outer), ..Builder::new(polygons, execution) };
@@ -292,6 +298,8 @@ impl<'t> Builder<'t> {
             execution.budget.release(builder.charged);
             done.map(|()| builder.tree)
         });
+
+        // Attach the branches to the top of the tree.
         let mut tree = std::mem::take(&mut self.tree);
         for (job, branch) in jobs.iter().zip(branches) {
             tree.attach(job, branch?);
@@ -302,12 +310,15 @@ impl<'t> Builder<'t> {
 
     /// Builds what hangs below a job's set.
     fn branch(&mut self, parts: &[Part], points: &[DVec3]) -> Result<(), Limit> {
+        // Copy the parts' corners, which belong to the outer builder.
         let own = |part: &Part| {
             let first = self.points.len() as u32;
             self.points.extend(&points[part.first as usize..][..part.count as usize]);
             let cuts = if part.cuts == NONE { NONE } else { part.cuts | OUTER };
             Part { first, cuts, ..*part }
         };
+
+        // Cut large sets along axis planes and small ones along one of their own.
         let mut tasks = vec![Task { parts: parts.iter().map(own).collect(), parent: NONE, front: true }];
         while let Some(task) = tasks.pop() {
             if task.parts.is_empty() {
@@ -379,6 +390,7 @@ impl<'t> Builder<'t> {
 
     /// Makes a node of a plane and distributes the parts; the one at `splitter` gave the plane.
     fn cut(&mut self, task: Task, plane: Plane, splitter: Option<usize>, tasks: &mut Vec<Task>) -> Result<(), Limit> {
+        // Link the node to its parent.
         let node = self.tree.nodes.len() as u32;
         self.execution.budget.check("building the BSP tree")?;
         if node.is_multiple_of(256) || self.points.len() > self.accounted + (1 << 16) {
@@ -387,6 +399,8 @@ impl<'t> Builder<'t> {
         if let Some(parent) = self.tree.nodes.get_mut(task.parent as usize) {
             *(if task.front { &mut parent.front } else { &mut parent.back }) = node;
         }
+
+        // Distribute the parts, splitting those that cross the plane.
         self.sort_out(&task.parts, &plane, splitter);
         let (mut front, mut back) = (Vec::new(), Vec::new());
         let start = self.tree.fragments.len();
@@ -402,12 +416,16 @@ impl<'t> Builder<'t> {
                 }
             }
         }
+
+        // Sort the node's own polygons by the side that they face.
         let (polygons, normal) = (self.polygons, plane.equation.truncate());
         let placed = &mut self.tree.fragments[start..];
         let faces_front = |f: &Fragment| polygons.doubled_area(f.polygon).dot(normal) >= 0.0;
         placed.sort_by_cached_key(|f| (faces_front(f), std::cmp::Reverse(f.polygon)));
         let facing_front = (start + placed.partition_point(|f| !faces_front(f))) as u32;
         let fragments = start as u32..self.tree.fragments.len() as u32;
+
+        // Store the node and queue both sides.
         let splitter = splitter.map_or(NONE, |i| task.parts[i].polygon);
         let plane = plane.equation;
         self.tree.nodes.push(Node { plane, front: NONE, back: NONE, fragments, facing_front, splitter });
@@ -418,6 +436,7 @@ impl<'t> Builder<'t> {
 
     /// Finds where the parts of a set lie, into `sides`. The one at `splitter` gave the plane.
     fn sort_out(&mut self, parts: &[Part], plane: &Plane, splitter: Option<usize>) {
+        // Classify each part, and note the shared planes of those in the node's.
         self.sides.clear();
         self.coplanar.clear();
         for (i, part) in parts.iter().enumerate() {
@@ -449,9 +468,12 @@ impl<'t> Builder<'t> {
     /// Makes a part a fragment of the node that is being made. Of the planes that cut it on its way down, the tree keeps
     /// those that it is near to.
     fn place(&mut self, part: &Part) {
+        // Measure the part.
         let points = points_of(&self.points, part);
         let (low, high) = points.iter().fold((points[0], points[0]), |(l, h), &p| (l.min(p), h.max(p)));
         let clear = (high - low).max_element() * CLEAR;
+
+        // Walk up the planes that cut it and keep the near ones.
         let (first_cut, mut link) = (self.tree.cuts.len() as u32, part.cuts);
         while link != NONE {
             let outer = link & OUTER;
@@ -472,10 +494,13 @@ impl<'t> Builder<'t> {
 
     /// Cuts a part in the halves in front of and behind a plane.
     fn split(&mut self, part: &Part, plane: &Plane, node: u32) -> [Part; 2] {
+        // Reuse the lists of the last split.
         self.tree.splits += 1;
         let [mut front, mut back] = std::mem::take(&mut self.split);
         front.clear();
         back.clear();
+
+        // Walk the outline, and put crossings into both halves.
         let points = self.points_of(part);
         for (i, &to) in points.iter().enumerate() {
             let from = points[(i + points.len() - 1) % points.len()];
@@ -492,6 +517,8 @@ impl<'t> Builder<'t> {
                 back.push(to);
             }
         }
+
+        // Store both halves with the new cut.
         let halves = [(&front, true), (&back, false)].map(|(corners, positive)| {
             let cuts = self.links.len() as u32;
             self.links.push(CutLink { cut: Cut { node, positive }, before: part.cuts });
@@ -547,6 +574,8 @@ impl Tree {
         if branch.nodes.is_empty() {
             return;
         }
+
+        // Find how far the branch's indices move.
         let [nodes, fragments, cuts] =
             [self.nodes.len(), self.fragments.len(), self.cuts.len()].map(|length| length as u32);
         if let Some(parent) = self.nodes.get_mut(job.parent as usize) {
@@ -554,6 +583,8 @@ impl Tree {
         }
         let moved = |index: u32, by: u32| if index == NONE { NONE } else { index + by };
         let node = |index: u32| if index & OUTER == 0 { index + nodes } else { index & !OUTER };
+
+        // Append nodes, fragments and cuts with their indices moved.
         self.nodes.extend(branch.nodes.into_iter().map(|n| Node {
             front: moved(n.front, nodes),
             back: moved(n.back, nodes),

@@ -28,6 +28,7 @@ impl Sorting<'_, '_> {
 
     /// Cuts the circle of marked polygons that begins at `start`: somewhere along it, one is split by its neighbour.
     pub(super) fn cut_cycle(&mut self, start: u32) -> bool {
+        // Report the circle.
         self.counters.cycles += 1;
         let first = self.marked.iter().position(|m| m.polygon == start).unwrap_or(0);
         let last = self.marked.len() - 1;
@@ -93,11 +94,14 @@ impl Sorting<'_, '_> {
         by: u32,
         unmarked: Vec<u32>,
     ) {
+        // Retire the whole polygon.
         self.counters.splits += 1;
         self.finish(number, State::Split);
         let Polygon { whole, ref cuts, .. } = self.polygons[number as usize];
         let cuts = cuts.clone();
         let mut parts = [None; 2];
+
+        // Add both parts with the cuts that matter to them.
         for (part, (corners, cut)) in parts.iter_mut().zip(halves.iter().zip([line, line.opposite()])) {
             let first = self.cuts.len() as u32;
             for inherited in cuts.clone() {
@@ -113,6 +117,8 @@ impl Sorting<'_, '_> {
                 self.go_on(part, progress);
             }
         }
+
+        // Report the split.
         self.execution.tell(|| Step::Split {
             polygon: number,
             facet: self.facet(number),

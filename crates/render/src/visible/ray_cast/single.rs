@@ -114,6 +114,7 @@ pub(super) fn look<T: Structure>(
     tile: &mut Tile,
     layers: &mut LayerList,
 ) -> Result<VisibilityCounters, Limit> {
+    // Prepare the search, whose memory serves all rays of the tile.
     let mut counters = VisibilityCounters::default();
     let (stamps, none) = (cast.take_stamps(), [NONE; 2]);
     let tests = Tests::new(cast.execution);
@@ -121,6 +122,8 @@ pub(super) fn look<T: Structure>(
         RaySearch { cast, sample: [0; 2], nearest: BACKGROUND, setups: none, layers: Vec::new(), stamps, tests };
     let mut passed = cast.execution.observer.is_some().then(Vec::new);
     let (rows, columns) = size_in_picture(cast.view, tile);
+
+    // Follow one ray for each sample.
     for row in 0..rows {
         cast.execution.budget.check("ray casting")?;
         for column in 0..columns {
@@ -137,6 +140,7 @@ pub(super) fn look<T: Structure>(
                 let seen = search.layers.drain(..).filter(|c| nearer(*c, nearest));
                 seen.for_each(|(depth, facet)| layers.push(Layer { at: at as u32, depth, facet }));
             }
+            // Report the pixel.
             if let Some(passed) = &mut passed {
                 let (rays, boxes) = (samples as u64, counters.box_tests - before_pixel.0);
                 let (facets, through) = (search.tests.count - before_pixel.1, names(cast.structure, passed));

@@ -269,10 +269,12 @@ impl<'e> ActiveEdges<'e> {
         polygons: &[Polygon<'_>],
         counters: &mut VisibilityCounters,
     ) -> bool {
+        // Take the edges that begin on or above the line and do not end there.
         let joining = self.starting.partition_point(|e| usize::from(e.lines.start) <= number);
         let (begun, later) = self.starting.split_at(joining);
         for (i, edge) in begun.iter().enumerate().filter(|(_, e)| usize::from(e.lines.end) > number) {
             let outline = polygons[edge.polygon as usize].shape.outline();
+            // Advance a crossing that is known from the line above, or compute it.
             self.active.push(match self.crossings.get_mut(i) {
                 Some(Some(known)) => {
                     known.advance(self.spacing, outline, line.y);

@@ -43,6 +43,8 @@ fn polygon(polygon: &Polygon<'_>, surface: u32) -> TablePolygon {
 /// The edge table, of a band whose first row of pixels is `top`.
 fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -> Vec<Bucket> {
     let place = |line: &Line| [top + line.row as u32, line.sample as u32];
+
+    // Describe an edge by its first crossing and its slope.
     let entry = |edge: &Edge| {
         let (shape, line) = (polygons[edge.polygon as usize].shape, &lines[usize::from(edge.lines.start)]);
         let active = ActiveEdge::new(edge, shape.outline(), line.y, 0);
@@ -56,6 +58,8 @@ fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -
             last: place(&lines[usize::from(edge.lines.end) - 1]),
         }
     };
+
+    // Put edges that begin on one line into one bucket.
     let bucket = |edges: &[Edge]| {
         let [row, sample] = place(&lines[usize::from(edges[0].lines.start)]);
         Bucket { row, sample, edges: edges.iter().map(entry).collect() }

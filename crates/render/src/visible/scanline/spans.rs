@@ -125,11 +125,15 @@ impl<'s, 'f> Spans<'s, 'f> {
         if pixels.is_empty() {
             return;
         }
+
+        // Fill the span if one rival is left.
         if let [(_, winner)] = *rivals {
             self.last = winner;
             self.report(&pixels, SpanVerdict::ImpliedEdge, Some(winner));
             return self.fill_with(winner, pixels, line);
         }
+
+        // Test short spans sample by sample.
         if pixels.len() < LONG || !self.coherence.has(Coherence::ImpliedEdge) {
             return self.fill_by_samples(pixels, rivals, line);
         }
@@ -137,6 +141,8 @@ impl<'s, 'f> Spans<'s, 'f> {
         if rivals[1].1 < rivals[0].1 {
             rivals.swap(0, 1);
         }
+
+        // Cut the span at the line in which the two planes meet.
         let pair = [rivals[0].1, rivals[1].1];
         let shapes = pair.map(|p| self.polygons[p as usize].shape);
         let parts = self.implied.divide(pair, shapes, pixels.clone(), line.sample_x, line.y);
@@ -185,6 +191,7 @@ impl<'s, 'f> Spans<'s, 'f> {
 
     /// Finds the polygons that no other hides over the whole span, by their depths at its ends.
     fn find_rivals(&mut self, pixels: &Range<usize>, line: &Line) {
+        // Begin with a polygon that is likely to be near.
         let ends = [pixels.start, pixels.end - 1].map(|x| x as i32 * SUBPIXEL + line.sample_x);
         let by_depth = self.coherence.has(Coherence::Depth);
         let lucky = if !by_depth || self.polygons[self.last as usize].slot == OUT { self.inside[0] } else { self.last };
@@ -192,6 +199,8 @@ impl<'s, 'f> Spans<'s, 'f> {
         let (mut floor, near) = self.bring(lucky, line).range(ends);
         self.rivals.clear();
         self.rivals.push((near, lucky));
+
+        // Compare the others' ranges of depth with the floor.
         for i in 0..self.inside.len() {
             let p = self.inside[i];
             if p == lucky {
@@ -208,11 +217,14 @@ impl<'s, 'f> Spans<'s, 'f> {
                 floor = floor.max(far);
             }
         }
+
+        // Drop those that the last floor hides.
         self.rivals.retain(|&(near, _)| near >= floor);
     }
 
     /// Fills a span with one polygon; its triangles have their facets.
     fn fill_with(&mut self, polygon: u32, pixels: Range<usize>, line: &Line) {
+        // Fill one tile's part of the span after the other.
         let face = self.bring(polygon, line);
         let triangles = self.polygons[polygon as usize].shape.triangles();
         let mut x = pixels.start;
@@ -220,6 +232,7 @@ impl<'s, 'f> Spans<'s, 'f> {
             let end = pixels.end.min((x / TILE + 1) * TILE);
             let (tile, at) = (&mut self.tiles[x / TILE], place(x, line));
             tile.touched = true;
+            // Write the facet of each triangle.
             match triangles {
                 [only] => tile.facet[at..at + (end - x)].fill(only.facet),
                 several => {
@@ -229,6 +242,8 @@ impl<'s, 'f> Spans<'s, 'f> {
                     }
                 }
             }
+
+            // Write the depths.
             for (depth, x) in tile.depth[at..].iter_mut().zip(x..end) {
                 *depth = face.depth(x as i32 * SUBPIXEL + line.sample_x);
             }

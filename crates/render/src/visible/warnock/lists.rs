@@ -82,6 +82,7 @@ impl<'f> Lists<'f> {
 
     /// The step of a window whose list begins at `start`.
     fn step(&self, window: &Window, start: usize, disjoint: u32) -> Step {
+        // Name the case of the window.
         let list = self.from(start);
         let (verdict, drawn) = match list {
             [] => (WindowVerdict::Empty, None),
@@ -90,6 +91,8 @@ impl<'f> Lists<'f> {
             _ if window.is_pixel() => (WindowVerdict::Pixel, None),
             _ => (WindowVerdict::Cut, None),
         };
+
+        // Name the facets by how they lie to the window.
         let of = |entry: &Entry| self.polygons.get(entry.polygon as usize).facet();
         let facets = |relation| list.iter().filter(|e| e.relation == relation).map(of).collect();
         Step::Window {
@@ -127,6 +130,8 @@ impl<'f> Lists<'f> {
         if self.stack.len() - start < 2 {
             return;
         }
+
+        // Find the surrounder that is nearest at all corners.
         let surrounders = self.from(start).iter().filter(|e| e.relation == Relation::Surrounding).map(|e| e.polygon);
         let farthest = |p: u32| {
             let [near, far] = [f32::max, f32::min].map(|pick| {
@@ -145,6 +150,8 @@ impl<'f> Lists<'f> {
             _ => a,
         });
         let Some((_, _, front)) = front else { return };
+
+        // Drop what its plane hides at all corners.
         let (polygons, counters) = (self.polygons, &mut self.counters);
         let watched = self.execution.observer.is_some();
         let plane = CornerDepths::new(polygons.get(front as usize).plane(), samples);

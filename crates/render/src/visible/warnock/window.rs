@@ -61,6 +61,7 @@ impl Window {
     /// The four smaller windows, or two where it is too narrow for four. A window of several tiles is cut between tiles,
     /// nearest to its middle, one within a tile at powers of two.
     pub(super) fn parts(&self) -> Vec<Self> {
+        // Choose the cut of each side.
         let half = (self.x.len().max(self.y.len()).next_power_of_two() / 2) as u32;
         let tile = TILE as u32;
         let cut = |range: &Range<u32>| {
@@ -75,6 +76,8 @@ impl Window {
                 None => vec![range.clone()],
             }
         };
+
+        // Combine columns and rows to windows.
         let (columns, rows) = (cut(&self.x), cut(&self.y));
         let part = |(down, y): (usize, &Range<u32>), (across, x): (usize, &Range<u32>)| {
             let mut path = self.path.clone();
@@ -108,6 +111,7 @@ impl SampleBox {
 /// outline's edges has the other on its outer side, if they are disjoint.
 pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> Relation {
     let outside =
+        // Reject outlines beside the box.
         |k: usize, [low, high]: [i32; 2]| outline.iter().all(|v| v[k] < low) || outline.iter().all(|v| v[k] > high);
     if outside(0, samples.x) || outside(1, samples.y) {
         return Relation::Disjoint;
@@ -125,6 +129,8 @@ pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> Relation {
         }
         surrounds &= down[0].min(down[1]) + across[0].min(across[1]) >= inside;
     }
+
+    // Tell surrounding, contained and intersecting apart.
     let within = |k: usize, [low, high]: [i32; 2]| {
         let sides = low.div_euclid(SUBPIXEL) * SUBPIXEL..=(high.div_euclid(SUBPIXEL) + 1) * SUBPIXEL;
         outline.iter().all(|v| sides.contains(&v[k]))

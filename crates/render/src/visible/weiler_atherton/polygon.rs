@@ -60,6 +60,7 @@ pub(super) enum Relation {
 /// Looks at the corners of a region: between them depths are linear, apart from rounding and from the clamping to the
 /// facet's own range, for which there has to be room.
 pub(super) fn relation(front: &Polygon<'_>, back: &Polygon<'_>, region: &Region) -> Relation {
+    // Decide by the ranges of depth if they do not overlap.
     let (near, far) = (front.plane, back.plane);
     if near.z_min > far.z_max {
         return Relation::Hidden;
@@ -68,6 +69,8 @@ pub(super) fn relation(front: &Polygon<'_>, back: &Polygon<'_>, region: &Region)
         // Where ids of facets mix, each sample decides.
         return if front.facets[1] < back.facets[0] { Relation::Hidden } else { Relation::Visible };
     }
+
+    // Compare depths at all corners.
     let (mut smallest, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut margin, mut room) = (0.0f64, near.z_max > far.z_min);
     let (mut nearest_back, mut farthest_front) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -80,6 +83,8 @@ pub(super) fn relation(front: &Polygon<'_>, back: &Polygon<'_>, region: &Region)
         let rounding = front.rounding(place) + back.rounding(place);
         margin = if rounding <= margin { margin } else { rounding };
     }
+
+    // Compare the differences with the rounding.
     room &= farthest_front - margin > f64::from(far.z_min) && nearest_back + margin < f64::from(near.z_max);
     if smallest > margin && room {
         Relation::Hidden

@@ -88,6 +88,7 @@ impl Convex {
 
     /// A box round what this and another polygon have in common, a little too large.
     fn common_box(&self, other: &Self, [outline, clipped]: &mut [Vec<[f64; 2]>; 2]) -> Option<[f64; 4]> {
+        // Clip the outline by the other's lines, with some slack.
         outline.clear();
         outline.extend(self.corners.iter().map(|c| c.map(f64::from)));
         for line in &other.lines {
@@ -109,6 +110,8 @@ impl Convex {
                 return None;
             }
         }
+
+        // Bound what is left.
         let [x0, y0, x1, y1] = bounds(outline.iter().copied());
         Some([x0 - 1.0, y0 - 1.0, x1 + 1.0, y1 + 1.0])
     }
@@ -219,6 +222,7 @@ impl Region {
 
     /// Clips by a convex polygon. The region is a part of `whole`.
     pub(super) fn clip(&mut self, polygon: &Convex, whole: &Convex, work: &mut Workspace) -> Clipped {
+        // Reject by boxes.
         if !polygon.touches(self.bounds) {
             return Clipped::Outside;
         }
@@ -240,6 +244,8 @@ impl Region {
                 None => work.near.extend((0..).zip(&self.edges).filter(|(_, e)| e.touches(common)).map(|(i, _)| i)),
             }
         }
+
+        // Classify the near edges, and cut only if some cross.
         if let Some(trivial) = self.find_sides(polygon, is_all, work) {
             return trivial;
         }
@@ -268,6 +274,7 @@ impl Region {
 
     /// Cuts the near edges and finds the new ones.
     fn cut(&mut self, polygon: &Convex, work: &mut Workspace) -> Clipped {
+        // Cut each near edge into parts inside, before and behind.
         work.removed.clear();
         work.inside.clear();
         work.outside.clear();
@@ -281,6 +288,8 @@ impl Region {
                 work.outside.extend(before.into_iter().chain(behind));
             }
         }
+
+        // Close both regions along the polygon's sides.
         for side in 0..polygon.lines.len() {
             let line = polygon.lines[side];
             for inner in [true, false] {
@@ -290,12 +299,16 @@ impl Region {
                 });
             }
         }
+
+        // Tell whether one of the two is empty.
         if work.inside.is_empty() {
             return Clipped::Outside;
         }
         if work.outside.is_empty() && work.removed.len() == self.edge_count() {
             return Clipped::Inside;
         }
+
+        // Keep the outside and return the inside.
         self.become_outside(work);
         Clipped::Both(Self::of(&work.inside))
     }
@@ -368,11 +381,14 @@ impl Region {
         });
         crossings.retain(|crossing| crossing.1 != 0);
 
+        // Decide whether the side begins in the region.
         let starts_within = match (crossings.first(), ends) {
             (Some(first), _) => first.1 < 0,
             (None, Some(_)) => self.holds_beside(polygon.corners[side], &line, inner),
             (None, None) => false,
         };
+
+        // Emit the intervals between entering and leaving.
         let mut from = ends.filter(|_| starts_within).map(|ends| ends[0]);
         for &(place, change) in &crossings {
             if change > 0 {
@@ -389,11 +405,14 @@ impl Region {
 
     /// Whether the region holds a place infinitely little farther than `corner` along a line, and still less beside it.
     fn holds_beside(&self, corner: [i32; 2], line: &Line, inner: bool) -> bool {
+        // Reject corners outside the region's box.
         let place = corner.map(f64::from);
         let [x0, y0, x1, y1] = self.bounds;
         if place[0] < x0 - 1.0 || place[1] < y0 - 1.0 || place[0] > x1 + 1.0 || place[1] > y1 + 1.0 {
             return false;
         }
+
+        // Order places along the line, and beside it where that decides nothing.
         let axis = self.index.as_ref().map_or(1, |index| index.axis);
         let point = Point::corner(corner, [*line; 2]);
         let along = [line.b, -line.a].map(i64::from);
@@ -422,6 +441,8 @@ impl Region {
             let value = values.into_iter().find(|v| *v != 0).unwrap_or(0);
             (value > 0) == (slopes[1 - axis] > 0)
         };
+
+        // Count the crossings: an odd number means inside.
         let crossed = match &self.index {
             Some(index) => index.across(place[axis]).filter(|&i| is_crossed(&self.edges[i])).count(),
             None => self.edges.iter().filter(|edge| is_crossed(edge)).count(),
@@ -452,6 +473,8 @@ impl Region {
         // Sort the edges by where they begin.
         let mut edges: Vec<(Point, Edge)> = self.edges().map(|edge| (edge.end(0), *edge)).collect();
         edges.sort_by(|one, two| one.0.compare_both(&two.0));
+
+        // Walk one boundary from each edge that is not walked.
         let mut is_walked = vec![false; edges.len()];
         let mut outlines = Vec::new();
         for start in 0..edges.len() {
@@ -476,6 +499,8 @@ impl Region {
             }
             outlines.push(outline(&walk));
         }
+
+        // Put holes last.
         outlines.sort_by_key(|outline| outline.is_hole);
         outlines
     }
@@ -512,8 +537,12 @@ impl EdgeCut {
     /// `sides`: on which side of the polygon's lines the edge's ends lie.
     fn new<'s>(edge: &Edge, polygon: &Convex, sides: impl Iterator<Item = &'s [Ordering; 2]>) -> Self {
         use Ordering::{Equal, Greater, Less};
+
+        // Start with the whole edge.
         let own = [edge.end(0), edge.end(1)];
         let mut cut = Self { edge: *edge, ends: own, is_cut: [false; 2], is_along: false, is_outside: false };
+
+        // Cut it at each line of the polygon.
         for (line, sides) in polygon.lines.iter().zip(sides) {
             match sides {
                 [Equal, Equal] => cut.is_along = true,
@@ -536,6 +565,8 @@ impl EdgeCut {
                 _ => {}
             }
         }
+
+        // Drop an edge of which nothing is left.
         cut.is_outside = edge.line.compare(&cut.ends[0], &cut.ends[1]) != Less;
         cut
     }

@@ -67,6 +67,8 @@ impl Tree {
     fn node_step(&self, node: u32, parents: &[Option<(u32, PlaneSide)>]) -> Step {
         let n = &self.nodes[node as usize];
         let parent = parents[node as usize];
+
+        // Find the polygons on both sides; those on both were cut.
         let [front, back] = [n.front, n.back].map(|child| self.polygons_below(child));
         let mut coincident: Vec<u32> =
             n.fragments.clone().map(|fragment| self.fragments[fragment as usize].polygon).collect();

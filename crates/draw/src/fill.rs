@@ -119,6 +119,8 @@ pub(crate) fn regions(
     if surfaces.seams == Seams::Under && !surfaces.by_face {
         joined.splice(0..0, seams::ground(&parts.all, &joined));
     }
+
+    // Flatten clear layers if the page cannot be transparent.
     match surfaces.flatten && clear.is_some() {
         true => flatten::flattened(joined, &groups, &parts.all, surfaces.seams, run),
         false => Ok(joined.iter().flat_map(groups::Joined::regions).collect()),

@@ -49,6 +49,8 @@ impl Segment<'_> {
     fn covered_by(&self, number: u32, triangle: &Triangle) -> Option<Interval> {
         let [p, q] = self.ends;
         let mut covered = Interval { from: Place::START, to: Place::END, sides: Sides::Both };
+
+        // Narrow the interval by each side of the triangle.
         for side in 0..3 {
             let (u, v) = (triangle.corners[side], triangle.corners[(side + 1) % 3]);
             let (start, end) = (orient2d(u, v, p), orient2d(u, v, q));
@@ -59,6 +61,8 @@ impl Segment<'_> {
                 }
                 let along = |k: usize| (i64::from(q[k]) - i64::from(p[k])) * (i64::from(v[k]) - i64::from(u[k]));
                 covered.sides = if along(0) + along(1) > 0 { Sides::Left } else { Sides::Right };
+
+            // Move an end to where the edge crosses the side.
             } else if start < 0 || end < 0 {
                 let about = start as f64 / (start - end) as f64;
                 let place = Place { about, maker: Maker::Side { triangle: number, side: side as u8 } };
@@ -75,6 +79,7 @@ impl Segment<'_> {
     /// What of a covered part lies behind the triangle.
     #[inline]
     fn behind(&self, number: u32, triangle: &Triangle, covered: Interval) -> Option<Interval> {
+        // Reject edges whose ends both lie in front of the plane.
         let [p, q] = self.ends;
         let plane = triangle.plane();
         let (start, end) = (plane.side(p), plane.side(q));
@@ -82,6 +87,8 @@ impl Segment<'_> {
             return None;
         }
         let mut hidden = covered;
+
+        // Cut the interval at the crossing of the plane.
         if start * end < 0 {
             let (a, b) = (plane.height(p), plane.height(q));
             let place = Place { about: a as f64 / (a - b) as f64, maker: Maker::Plane { triangle: number } };

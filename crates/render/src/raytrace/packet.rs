@@ -57,11 +57,14 @@ impl<'r, S: Simd> Packet<'r, S> {
     /// Puts one to eight rays, in a space of half-width `extent`, into lanes.
     #[inline(always)]
     pub(crate) fn new(simd: S, rays: &'r [Ray], extent: f32) -> Self {
+        // Gather origins and directions by component.
         let component = lanes::inlined(
             #[inline(always)]
             |k: usize| [gathered(simd, rays, |r| r.origin[k]), gathered(simd, rays, |r| r.direction[k])],
         );
         let [x, y, z] = [component(0), component(1), component(2)];
+
+        // Enclose each ray in two lines on each axis, so that rounding cannot lose a box.
         let lines = [
             Lines::around(simd, x[0], x[1], extent),
             Lines::around(simd, y[0], y[1], extent),
@@ -72,6 +75,8 @@ impl<'r, S: Simd> Packet<'r, S> {
             #[inline(always)]
             |lines: &Lines<S>| [lines.inverse_upper_slope.simd_gt(zero), lines.inverse_lower_slope.simd_gt(zero)],
         );
+
+        // Share the shear of triangle tests if all rays have one main axis.
         let axes = rays[0].axes;
         let sheared = rays
             .iter()

@@ -55,6 +55,7 @@ impl<S: Simd> Pyramid<S> {
     /// than `extent`.
     #[inline(always)]
     pub fn new(simd: S, sides: &[Plane; 4], forward: DVec3, eye: DVec3, perspective: bool, extent: f64) -> Self {
+        // Round the planes outwards to single precision.
         let mut normal = [[0.0f32; LANES]; 3];
         let mut offset = [0.0f32; LANES];
         let mut lane = |i: usize, plane: Plane, slack: f64| {
@@ -66,6 +67,8 @@ impl<S: Simd> Pyramid<S> {
             let a = p.normal.abs();
             ((a.x + a.y + a.z) * extent + p.offset.abs()) * ROUNDING
         };
+
+        // Store the four sides, then the planes behind and ahead of the eye.
         for (i, side) in sides.iter().enumerate() {
             lane(i, *side, slack(*side));
         }
@@ -79,6 +82,8 @@ impl<S: Simd> Pyramid<S> {
             let normal = [normal[0][i], normal[1][i], normal[2][i]];
             Side { normal, offset: offset[i], corner: normal.map(|n| usize::from(n > 0.0)) }
         };
+
+        // Keep each plane with the corner of a box that lies farthest inside.
         let planes = [side(0), side(1), side(2), side(3), side(NEAR), side(AHEAD)];
         Self {
             planes,
@@ -107,6 +112,7 @@ impl<S: Simd> Probe for Pyramid<S> {
 
     #[inline(always)]
     fn enters_each(&self, boxes: &Boxes) -> ([f32; LANES], u64) {
+        // Evaluate the inner corner of eight boxes on each plane.
         let simd = self.offset.token();
         let value = lanes::inlined(
             #[inline(always)]
@@ -126,6 +132,8 @@ impl<S: Simd> Probe for Pyramid<S> {
         );
         // A box that is not there has no corner within.
         let there = F32x8::from_slice(simd, &boxes[0][0]).simd_le(F32x8::from_slice(simd, &boxes[0][1]));
+
+        // Return where each box begins and which are met.
         let met = lowest.simd_ge(zero).to_bitmask() & there.to_bitmask();
         ((zero - value(NEAR)).to_array(), met)
     }

@@ -167,6 +167,8 @@ impl<'a> Span<'a> {
                 middle += 1;
             }
         }
+
+        // Split the span, each side with its bounds.
         let (left, right) = items.split_at_mut(middle);
         let child = |items, first, side: usize| Span {
             items,
@@ -231,6 +233,7 @@ struct BinCut {
 impl BinCut {
     /// The cheapest of all borders between bins on all axes.
     fn cheapest(span: &Span<'_>) -> Option<Self> {
+        // Sort the items into bins along all axes.
         let bins = Bins::new(span);
         let mut filled = [[(Bounds::EMPTY, 0u32); BINS]; 3];
         for item in span.items.iter() {
@@ -241,6 +244,8 @@ impl BinCut {
                 *count += 1;
             }
         }
+
+        // Take the cheapest border of any axis.
         let mut best: Option<(f32, usize, usize, [Bounds; 2])> = None;
         for axis in (0..3).filter(|&k| bins.scale[k] > 0.0) {
             if let Some((cost, border, bounds)) = cheapest_border(&filled[axis][..bins.count])

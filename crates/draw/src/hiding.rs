@@ -61,9 +61,8 @@ impl Segment<'_> {
                 }
                 let along = |k: usize| (i64::from(q[k]) - i64::from(p[k])) * (i64::from(v[k]) - i64::from(u[k]));
                 covered.sides = if along(0) + along(1) > 0 { Sides::Left } else { Sides::Right };
-
-            // Move an end to where the edge crosses the side.
             } else if start < 0 || end < 0 {
+                // Move an end to where the edge crosses the side.
                 let about = start as f64 / (start - end) as f64;
                 let place = Place { about, maker: Maker::Side { triangle: number, side: side as u8 } };
                 if start < 0 && self.is_before(&covered.from, &place) {

@@ -63,12 +63,15 @@ pub fn render(
     settings: &Settings,
     execution: &Execution,
 ) -> Result<Rendered, Error> {
+    // Check the settings.
     let viewport = settings.check()?;
     check_size(session, settings)?;
     let direct = (settings.global.model == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
     if settings.global.model == Global::RayTrace {
         check_indices(session.scene())?;
     }
+
+    // Begin the picture; forget earlier frames if they must not be reused.
     let start = execution.budget.elapsed();
     let mut stats = Stats::default();
     let mut frame = Frame { width: viewport.width, height: viewport.height, ..Frame::default() };

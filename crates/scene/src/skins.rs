@@ -212,6 +212,7 @@ impl<'a> Skins<'a> {
 
     /// Looks at the edges whose lower vertex is in a bucket.
     pub(crate) fn look_at(&self, seen: &mut Seen, around: &Around) {
+        // Sort the sides of each triangle by their lower vertex.
         let Around { first_vertex, degrees, faces, welded } = around;
         seen.edges.clear();
         seen.further.clear();
@@ -233,6 +234,7 @@ impl<'a> Skins<'a> {
             }
         }
 
+        // Look at each edge: those with one or two uses, then those with more.
         let (edges, mut further) = (std::mem::take(&mut seen.edges), std::mem::take(&mut seen.further));
         for edge in edges.iter().filter(|edge| edge.count <= 2) {
             self.edge(seen, &edge.uses[..edge.count as usize]);
@@ -244,6 +246,8 @@ impl<'a> Skins<'a> {
             self.edge(seen, &all);
         }
         (seen.edges, seen.further) = (edges, further);
+
+        // Look at the edges of vertices with many neighbours, sorted by their ends.
         let mut long = std::mem::take(&mut seen.long);
         long.sort_unstable();
         let mut uses = Vec::new();

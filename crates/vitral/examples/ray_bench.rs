@@ -145,6 +145,7 @@ fn follow(structure: &impl Structure, rays: &[[Vec3; 2]], workers: &Workers) -> 
 }
 
 fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<(), Failure> {
+    // Time the structures, pictures through them, and single rays.
     let renderer = renderer(model, threads)?;
     let (workers, budget) = (&renderer.execution().workers, Budget::default());
     let triangles = Triangles::of(renderer.session(), renderer.execution())?;
@@ -170,6 +171,8 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
         .map(|place| triangles.facets.get(place as usize).copied().unwrap_or(u32::MAX))
         .collect();
     let differ = |a: &[u32], b: &[u32]| a.iter().zip(b).filter(|(a, b)| a != b).count();
+
+    // Report times, work and differences.
     let report = serde_json::json!({
         "triangles": triangles.count(),
         "rays": rays.len(),

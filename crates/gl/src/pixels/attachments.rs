@@ -110,6 +110,8 @@ impl Attached {
                 surface
             }
         };
+
+        // The image fits the point if it has the plane for it.
         let fits = match point {
             DEPTH_POINT => surface.depth.is_some(),
             STENCIL_POINT => surface.stencil.is_some(),

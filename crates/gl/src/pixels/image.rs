@@ -175,6 +175,8 @@ impl TextureImage {
         if self.colors.iter().all(Option::is_none) {
             return;
         }
+
+        // Copy the texels if a snapshot shares them.
         let [width, height] = [self.size[0] as usize, self.size[1] as usize];
         let texels = Arc::make_mut(level).texels_mut();
         for (layer, plane) in self.colors.iter().enumerate() {
@@ -182,6 +184,7 @@ impl TextureImage {
             let plane = lock(plane);
             let mut words = vec![0; width];
             let mut floats = vec![[0.0; 4]; width];
+            // Convert row by row.
             for y in 0..height {
                 let first = (layer * height + y) * width;
                 match (&*plane, &mut *texels) {

@@ -169,6 +169,8 @@ impl Context {
         if !self.renderbuffer_target(call, target) {
             return;
         }
+
+        // Check the format, the size and the samples.
         let Some(format) = InternalFormat::of_renderbuffer(internal) else {
             self.record_error(INVALID_ENUM, call, "internalformat cannot be rendered to");
             return;
@@ -182,6 +184,8 @@ impl Context {
             self.record_error(INVALID_VALUE, call, "samples is negative or larger than MAX_SAMPLES");
             return;
         }
+
+        // Check the memory.
         let Some(renderbuffer) = self.bound_renderbuffer(call) else { return };
         let samples = if samples == 0 { 0 } else { MAX_SAMPLES };
         let viewport = Viewport::new(width as u32, height as u32);
@@ -189,6 +193,8 @@ impl Context {
         if !can_have(pixels * format.texel_bytes()) {
             return self.record_error(OUT_OF_MEMORY, call, "there is no memory for so many samples");
         }
+
+        // Replace the storage.
         let mut renderbuffer = lock(&renderbuffer);
         renderbuffer.asked = Some((format, [width, height], samples));
         renderbuffer.storage = viewport.map(|v| RenderbufferStorage::new(format, v, samples));
@@ -202,9 +208,13 @@ impl Context {
             return;
         }
         let Some(renderbuffer) = self.bound_renderbuffer(CALL) else { return };
+
+        // Find the storage that was asked for.
         let asked = lock(&renderbuffer).asked;
         let (token, bits) = asked.map_or((RGBA, Bits::default()), |(format, ..)| (format.token, format.bits()));
         let ([width, height], samples) = asked.map_or(([0; 2], 0), |(_, size, samples)| (size, samples));
+
+        // Report the parameter.
         let value = match pname {
             RENDERBUFFER_WIDTH => width,
             RENDERBUFFER_HEIGHT => height,

@@ -197,12 +197,15 @@ fn clip(state: &State, target: &Target) -> [i32; 4] {
 impl Context {
     /// The per-fragment state as it is now. `images` leaves out what pixel rectangles do not meet (polygon stipple).
     pub(crate) fn fragment_state_for(&mut self, target: Option<&Target>, images: bool) -> Arc<FragmentState> {
+        // Derive what needs more than the state.
         let units = self.sampled_units(target);
         let missing = self.missing_components();
         let (clamping, srgb, one) = (self.clamping(), self.encodes_srgb(), self.stored_one());
         let unclamped_vertices = !self.clamps_vertices();
         let s = &self.state;
         let lit_apart = s.lighting.enabled && s.lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR;
+
+        // Translate the state.
         let logic = s.logic_op.0 || s.blend.is_logic_op();
         Arc::new(FragmentState {
             units,

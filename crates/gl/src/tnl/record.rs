@@ -208,14 +208,19 @@ impl Context {
         fragment: &FragmentState,
         target: &Target,
     ) -> Option<DrawGeometry> {
+        // Decide what the fragments need.
         let colored = target.color.is_some() && fragment.masked != [true; 4];
         let samples = target.samples > 1;
         let shaded = colored || fragment.alpha_test.is_some() || (fragment.alpha_to_coverage && samples);
         let units: Vec<usize> = if shaded { fragment.units.iter().map(|u| u.index).collect() } else { Vec::new() };
         let fog = shaded && fragment.fog.is_some();
+
+        // Take the snapshot of the vertex stages and lay vertex records out.
         let mut snapshot = VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
         snapshot.clamps = !fragment.unclamped_vertices;
         let mut layout = if shaded { self.layout(fragment, &units, samples) } else { Layout::default() };
+
+        // Triangulate batches that are drawn repeatedly.
         let primitive = self.primitive_state(fragment, target)?;
         let small = sent == Sent::Now && batch.is_small();
         let triangulation = (!small).then(|| batch.triangulation.get(&batch));
@@ -225,12 +230,16 @@ impl Context {
         if grid && snapshot.fog == Some(FogSource::Depth) {
             snapshot.fog = Some(FogSource::Ahead);
         }
+
+        // Use one colour for all fragments if nothing varies it.
         let colors_alone = shaded && layout.stride == layout.color + 4;
         layout.uniform = colors_alone && snapshot.lighting.is_none() && batch.colors.is_none();
         if grid && shaded && snapshot.lighting.is_some() {
             layout.grid = Some(layout.stride);
             layout.stride += 2;
         }
+
+        // Collect the sizes of points.
         let s = &self.state;
         let multisample = s.multisample && samples;
         let points = PointSizes {
@@ -258,6 +267,7 @@ impl Context {
 
     /// Where vertex records hold what. `samples`: the target has several a pixel.
     fn layout(&self, fragment: &FragmentState, units: &[usize], samples: bool) -> Layout {
+        // Lay colours out, then fog and texture coordinates.
         let s = &self.state;
         let two_side = s.lighting.enabled && s.lighting.model.two_side;
         let mut next = 1;
@@ -276,6 +286,8 @@ impl Context {
                 layout.sprites |= 1 << unit;
             }
         }
+
+        // Decide which primitives are smooth.
         layout.stride = next;
         let sharp = s.multisample && samples;
         layout.smooth =
@@ -286,6 +298,8 @@ impl Context {
 
     fn primitive_state(&self, fragment: &FragmentState, target: &Target) -> Option<PrimitiveState> {
         let s = &self.state;
+
+        // Find the transform to the window.
         let [x, y, w, h] = s.viewport.rect;
         if w <= 0 || h <= 0 {
             return None;
@@ -294,6 +308,8 @@ impl Context {
         let flipped = origin == gl::UPPER_LEFT;
         let range = [s.viewport.depth_range.near, s.viewport.depth_range.far];
         let window = WindowTransform::new([x, y, w, h], range, depth_mode == gl::ZERO_TO_ONE, flipped);
+
+        // Translate culling and polygon modes.
         let culled =
             |face: u32| s.polygons.cull && (s.polygons.cull_mode == face || s.polygons.cull_mode == gl::FRONT_AND_BACK);
         let mode = |token: u32| match token {
@@ -301,6 +317,8 @@ impl Context {
             gl::LINE => 1,
             _ => 2,
         };
+
+        // Limit the pixels to scissor and viewport.
         let multisample = s.multisample && target.samples > 1;
         let offset = |k: usize| if s.polygons.offset_enabled[k] { s.polygons.offset } else { [0.0; 2] };
         let c = fragment.clip;

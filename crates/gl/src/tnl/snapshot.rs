@@ -182,6 +182,8 @@ impl LightingSnapshot {
     fn new(state: &State, given: &Given, cache: &mut LightCache) -> Self {
         let lighting = &state.lighting;
         let material = lighting.color_material;
+
+        // Find the parameters that follow the colour.
         let tracked = |face: u32| {
             if !material.enabled || (material.face != gl::FRONT_AND_BACK && material.face != face) {
                 return Tracked::default();
@@ -193,6 +195,8 @@ impl LightingSnapshot {
                 emission: material.mode == gl::EMISSION,
             }
         };
+
+        // Collect the light model and the materials.
         let [r, g, b, _] = lighting.model.ambient;
         Self {
             lights: cache.prepare(&lighting.lights),
@@ -232,11 +236,14 @@ impl LightCache {
 }
 
 fn prepare(light: &crate::state::Light) -> Option<PreparedLight> {
+    // Scale the colours of a light at infinity by its cone.
     let [x, y, z, w] = light.position.map(f64::from);
     let [constant, linear, quadratic] = light.attenuation.map(f64::from);
     let position = DVec3::new(x, y, z) / w;
     let share = if w == 0.0 { cone_at_infinity(light) } else { 1.0 };
     let rgb = |c: [f32; 4]| [c[0] * share, c[1] * share, c[2] * share];
+
+    // Translate the kind of light.
     let (kind, attenuation) = if w == 0.0 {
         (LightKind::Directional { direction: -DVec3::new(x, y, z) }, Attenuation::None)
     } else if light.spot_cutoff == 180.0 {
@@ -248,6 +255,8 @@ fn prepare(light: &crate::state::Light) -> Option<PreparedLight> {
         let kind = LightKind::Spot { position, direction, cutoff, inner: cutoff, exponent };
         (kind, Attenuation::Gl { constant, linear, quadratic })
     };
+
+    // Prepare it in eye space.
     let light = Light {
         kind,
         attenuation,

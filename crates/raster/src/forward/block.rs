@@ -519,8 +519,8 @@ pub(crate) fn colors<S: Simd>(
     let together = all_alike(masks, samples);
     simd.vectorize(
         #[inline(always)]
-        // Fill an aligned block that is covered whole.
         || {
+            // Fill an aligned block that is covered whole.
             let replaces = ops.mixing == Mixing::Replace && ops.protected == 0;
             if replaces && together && masks[0] == u64::MAX && block.is_aligned() {
                 replace_block(simd, block, tile.replace(block.touched(), true, samples), words);

@@ -90,6 +90,7 @@ impl Pyramid {
 
     /// Whether a triangle reaches into it.
     pub(crate) fn meets(&self, corners: &[DVec3; 3]) -> bool {
+        // Test the corners against the sides: all beyond one side, or all inside.
         let distance = |side: &DVec4, p: DVec3| side.truncate().dot(p) + side.w;
         let mut is_inside = true;
         for side in &self.sides {

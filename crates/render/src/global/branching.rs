@@ -68,6 +68,7 @@ impl Branching<'_> {
         rays: &mut Rays,
         counters: &mut TracingCounters,
     ) {
+        // Look up the surface that was hit.
         let RayHit { lit, at, from_behind, so_far } = *met;
         let Bounce { normal, mirror, place } = lit.bounces[at];
         let alpha = lit.colors[at][3];
@@ -85,6 +86,8 @@ impl Branching<'_> {
             Some(Way::None) => Some(1.0),
             Some(Way::Straight(_)) | None => None,
         };
+
+        // Weigh the parts that pass and that are mirrored.
         let (mirror, passes) = shares(mirror, passes, fresnel);
         let weight = |part: [f32; 4]| [0, 1, 2, 3].map(|k| ray.weight[k] * part[k]);
         let passing = weight([passes[0], passes[1], passes[2], 1.0 - alpha]);
@@ -94,6 +97,7 @@ impl Branching<'_> {
         let go_on = Branch { own: place.facet, travelled, seed: place.seed, pile: None, ..*ray };
         let next = |towards: DVec3| place.position + towards * self.scene.clearance(place.position);
 
+        // Follow the light that passes.
         if counts(passing, least) {
             let branch = Branch { weight: passing, origin: next(-surface.facet), ..go_on };
             if !is_last {
@@ -115,6 +119,8 @@ impl Branching<'_> {
             counters.stopped_by_weight += 1;
             rays.end(ray.target, passing);
         }
+
+        // Follow the light that is mirrored.
         if counts(mirrored, least) {
             if ray.depth < self.max_depth {
                 counters.mirrored += 1;
@@ -142,18 +148,23 @@ impl Branching<'_> {
         rays: &mut Rays,
         counters: &mut TracingCounters,
     ) -> bool {
+        // Find direction and media behind the surface.
         let (direction, media, bent) = match way {
             Way::Straight(media) => (ray.direction, media, false),
             Way::Bent(direction, media, _) => (direction, media, true),
             Way::None => return false,
         };
         let branch = Branch { media, ..*branch };
+
+        // Pass straight on without a change of depth.
         let scatters = self.scene.scatters(branch.own);
         if !bent && scatters.is_none() {
             counters.passed += 1;
             rays.free.push(branch);
             return true;
         }
+
+        // Scatter or refract the ray; both go one generation deeper.
         let branch = Branch { weight: rays.fade(branch.target, branch.weight, haze), ..branch };
         if ray.depth >= self.max_depth {
             counters.stopped_by_depth += 1;

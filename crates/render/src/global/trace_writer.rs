@@ -50,6 +50,7 @@ impl TraceWriter<'_> {
         let index =
             |branch: &Branch| branch.media.innermost().map_or(1.0, |m| self.constants.material(Some(m)).material.ior);
         let degrees = |cos: f64| func::acos(cos.abs().min(1.0)).to_degrees();
+        // Name the way by which the ray leaves the surface.
         for branch in rays.free[before[0]..].iter().chain(&rays.piled[before[1]..]) {
             let passes = branch.direction.dot(surface.facet) < 0.0;
             let way = match passes {

@@ -83,6 +83,7 @@ impl<'a> Direct<'a> {
         let mut sums = vec![[0.0; 3]; places.len()];
         let all: Places = places.iter().copied().collect();
         for (number, light) in &self.lights {
+            // Compute what would arrive if nothing were in between.
             let unhidden = places.iter().map(|place| {
                 let (position, normal) = (three(place.position), three(place.normal));
                 light.irradiance(position, normal).unwrap_or_else(|| {
@@ -94,6 +95,8 @@ impl<'a> Direct<'a> {
             if unhidden.iter().all(|&light| light <= 0.0) {
                 continue;
             }
+
+            // Multiply by the visible part of the light.
             let mut visible = Parts::new(places.len(), [0.0; 3]);
             self.shadows.arriving(*number, &all, &mut visible, &mut 0);
             for (i, sum) in sums.iter_mut().enumerate() {

@@ -127,9 +127,12 @@ fn solve(
     execution: &Execution,
     counters: &mut RadiosityCounters,
 ) -> Result<Solution, Limit> {
+    // Reserve a part of the time for the solution.
     let start = execution.budget.elapsed();
     let limit = execution.budget.time_limit().map(|limit| SOLVING * limit);
     let execution = &Execution { budget: execution.budget.clone().with_time_limit(limit), ..execution.clone() };
+
+    // Choose hemicubes and the size of patches.
     let diagonal = session.world.bounds.diagonal();
     let hemicubes = HEMICUBES.map(|side| Hemicube::new(side, diagonal));
     let longest = settings.global.patch_size.unwrap_or(diagonal / 16.0);
@@ -252,6 +255,7 @@ fn mix_attributes<const N: usize>(mut hash: u64, attributes: &[Attribute<[f32; N
 impl Session {
     /// A number that tells this scene's shapes and what of its materials light depends on from others, for stored solutions.
     fn fingerprint(&self) -> u64 {
+        // Hash the geometry of each instance.
         let mut hash = FINGERPRINT;
         for instance in &self.world.instances {
             let matrix = instance.world_from_model.to_cols_array();
@@ -266,6 +270,8 @@ impl Session {
                 hash = solution::mix(hash, format!("{:?} {:?}", part.triangles, part.material).as_bytes());
             }
         }
+
+        // Hash the materials, and the textures that they use.
         let mut textures = BTreeSet::new();
         for m in &self.scene.materials {
             let surface = (&m.reflectance, m.emission, m.double_sided, m.opacity, &m.alpha_mode, m.filter);

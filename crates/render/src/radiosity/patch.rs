@@ -228,6 +228,7 @@ impl Trees {
 
     /// Makes a facet's roots; `edges` has the first of the vertices that cut an edge, from its lower end on.
     fn plant(&mut self, facet: u32, corners: [u32; 3], edges: &mut HashMap<[u32; 2], u32>) {
+        // Make each vertex once: a corner, one on an edge shared with neighbours, or one inside.
         let n = self.cuts;
         let mut vertices: HashMap<[u32; 3], u32> = HashMap::new();
         let mut vertex = |trees: &mut Self, steps: [u32; 3]| {
@@ -252,6 +253,8 @@ impl Trees {
                 }),
             }
         };
+
+        // Make the cells.
         for number in 0..n * n {
             let corners = Cell::numbered(number, n).corners().map(|steps| vertex(self, steps));
             self.nodes.push(Node { corners, children: NONE, facet, patch: NONE });

@@ -81,6 +81,7 @@ pub fn solve(
     most: u64,
     execution: &Execution,
 ) -> Result<Progress, Limit> {
+    // Start with the emitted light.
     let mut unsent = emitted_power(enclosure);
     let emitted = unsent.iter().map(power).sum();
     let irradiance = vec![[0.0; 3]; enclosure.emission.len()];

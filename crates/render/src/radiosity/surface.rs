@@ -65,6 +65,7 @@ impl<'a> Surfaces<'a> {
 
     /// Looks at a leaf.
     pub(super) fn of(&self, trees: &Trees, node: u32) -> Surface {
+        // Find the facet and its material.
         let facet = trees.facet_of_piece(trees.nodes[node as usize].facet);
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
@@ -82,6 +83,8 @@ impl<'a> Surfaces<'a> {
         // What is the same all over is looked at once.
         let varies = look.varies() || !opaque;
         let places = if varies { parts(own).map(middle).to_vec() } else { vec![middle(own)] };
+
+        // Sum over the parts that are not cut out.
         let mut surface = Surface { normal, there: 0, reflectance: [0.0; 3], emission: [[0.0; 3]; 2] };
         let mut count = 0.0;
         for (part, &place) in places.iter().enumerate() {
@@ -96,6 +99,8 @@ impl<'a> Surfaces<'a> {
         if !varies {
             surface.there = WHOLE;
         }
+
+        // Take the mean, and emit from both sides if the material has two.
         surface.reflectance = surface.reflectance.map(|c| (c / f64::max(count, 1.0)).clamp(0.0, MOST_REFLECTED));
         surface.emission[0] = surface.emission[0].map(|c| c / f64::max(count, 1.0));
         if material.double_sided {

@@ -182,8 +182,8 @@ impl Wide {
                     continue;
                 }
                 waiting.add(&node.below, &near.to_array(), met);
-            // Test a leaf's eight triangles, then intersect those that may be met exactly.
             } else {
+                // Test a leaf's eight triangles, then intersect those that may be met exactly.
                 let leaf = (next & !LEAF) as usize;
                 let places = range(&self.places[leaf]);
                 counters.triangles += places.len() as u64;

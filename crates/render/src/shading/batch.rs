@@ -66,6 +66,7 @@ pub(super) fn each_pair<S: Simd>(
     mut visit: impl FnMut(&ShadingBatch8<'_>, Option<&ShadingBatch8<'_>>),
 ) {
     for group in &points.groups {
+        // Make the records of the group's facets and find which lights reach its points.
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
@@ -74,6 +75,8 @@ pub(super) fn each_pair<S: Simd>(
         } else {
             [Vec::new(), Vec::new()]
         };
+
+        // Visit the points in pairs of eight.
         for (i, (order, records)) in order.chunks(2 * LANES).zip(facets.of_point.chunks(2 * LANES)).enumerate() {
             let count = order.len().min(LANES);
             let ((mine, next), (my_records, next_records)) = (order.split_at(count), records.split_at(count));

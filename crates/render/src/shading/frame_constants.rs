@@ -77,6 +77,7 @@ impl<'a> FrameConstants<'a> {
         tables: &'a DecodeTables,
         execution: &Execution,
     ) -> Self {
+        // Prepare instances and materials.
         let session = view.session;
         let raw = settings.picture.color_space == ColorSpace::Raw;
         let instances =
@@ -84,10 +85,14 @@ impl<'a> FrameConstants<'a> {
         let default = Material { name: "default".to_owned(), ..Material::default() };
         let materials = session.scene.materials.iter().chain([&default]);
         let materials: Vec<_> = materials.map(|m| MaterialConstants::new(m, view, settings, tables)).collect();
+
+        // Find the facets from which rays go on.
         let follows = match settings.global.model {
             Global::RayTrace => facets_that_follow(view, &materials),
             _ => Vec::new(),
         };
+
+        // Prepare the background and the lights.
         let key = (settings.picture.background, settings.picture.height, raw);
         let make = || Ok::<_, Infallible>(BackgroundRows::new(&key));
         let Ok(background) = session.cache.get_or_build(key, make);
@@ -96,6 +101,8 @@ impl<'a> FrameConstants<'a> {
         let terminator = || Box::new(SoftTerminator::new(view, lights, settings, execution)) as Box<dyn Shadows + 'a>;
         let terminator = soft.then(terminator);
         let (light_numbers, lights) = prepared.filter_map(|(i, l)| Some((i, l?))).unzip();
+
+        // Collect everything.
         Self {
             view,
             instances,

@@ -69,6 +69,7 @@ pub(crate) fn prepare<S: Simd>(
     hits: &[Hit],
     records: &mut [Record; LANES],
 ) -> (Slots, Along) {
+    // Spread the hits over the lanes; missing ones repeat the last.
     let along = Along::new(hits);
     let mut slots = Slots { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
     let mut weights = [[[0.0; LANES]; 3]; 3];
@@ -89,6 +90,8 @@ pub(crate) fn prepare<S: Simd>(
             lanes[corner][k] = F32x8::from_slice(simd, &weights[corner][k]);
         }
     }
+
+    // Write the facets' records.
     let model = model_corners(simd, &slots.triangle, subject.mesh);
     write_records(simd, &slots.triangle, subject, &model, Some(along.origin(simd)), lanes, [zero; 2], records);
     (slots, along)

@@ -119,6 +119,8 @@ fn mark_edges(
         let [low, high] = &mut ranges[slot];
         (*low, *high) = (low.min(grey(part)), high.max(grey(part)));
     };
+
+    // Enter the points and those beyond the border.
     for (number, &point) in order.iter().enumerate() {
         add(slot(points.place[point as usize]), parts.get(number));
     }
@@ -128,6 +130,8 @@ fn mark_edges(
         let slot = (slot(own) as isize + step(0, 1) + step(1, WIDE as isize)) as usize;
         beyond_parts.into_iter().for_each(|parts| add(slot, parts.get(i)));
     }
+
+    // Compare each pixel with its neighbours.
     for (number, &point) in order.iter().enumerate() {
         let middle = slot(points.place[point as usize]);
         let around = [middle - WIDE, middle, middle + WIDE].into_iter().flat_map(|row| row - 1..=row + 1);

@@ -31,6 +31,8 @@ pub(crate) fn light_visibility<S: Simd>(
     if constants.shadows.is_none() {
         return [Vec::new(), Vec::new()];
     }
+
+    // Place the points, eight at a time.
     let placing = placing(constants, subject);
     let corners = placing.facets(simd, facets.triangles());
     let mut all = Places::with_capacity(order.len());
@@ -46,6 +48,8 @@ pub(crate) fn light_visibility<S: Simd>(
             },
         );
     }
+
+    // Ask the shadow algorithm about all of them.
     let [mut seen, behind] =
         light_visibility_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays);
 
@@ -78,6 +82,8 @@ pub(crate) fn light_visibility<S: Simd>(
             }
             places
         };
+
+        // Count the rays of these samples.
         let ask = |places: &Places| {
             let mut rays = 0;
             let parts = light_visibility_at(constants, places, &mut rays);

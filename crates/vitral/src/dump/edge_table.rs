@@ -40,6 +40,7 @@ fn tell(step: &Step) -> String {
     let mut text = String::new();
     match step {
         Step::EdgeTable { rows: [first, end], polygons, buckets } => {
+            // Write the polygons, then the edges by the row in which they begin.
             let _ = writeln!(text, "rows {first} to {}", end - 1);
             let _ = writeln!(text, "  polygon table");
             for (number, p) in polygons.iter().enumerate() {
@@ -57,6 +58,7 @@ fn tell(step: &Step) -> String {
             }
         }
         Step::Line { row, active_edges, spans, .. } if !active_edges.is_empty() => {
+            // Write the active edges of the line and its spans.
             let _ = writeln!(text, "  row {row}");
             for e in active_edges {
                 let _ = writeln!(text, "    x {}: polygon {} edge {} (facet {})", e.x, e.polygon, e.edge, e.facet);

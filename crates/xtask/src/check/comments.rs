@@ -176,7 +176,7 @@ mod tests {
             "//! The list is no longer sorted.",
             "/* one line\nnot needed anymore */",
             "// Not needed any more.",
-            "// Goes on as before",
+            "// Sorted as before",
             "// This used to be slow.",
             "// Previously sorted.",
             "// Memory to use again.",

@@ -90,6 +90,7 @@ impl Reader {
         unit: bool,
         default: [f32; N],
     ) -> Result<Vec<[f32; N]>, Refusal> {
+        // Reserve memory only up to a limit, since counts come from the client.
         let layout = Layout::of(array);
         let count = runs.iter().map(|run| run.1).sum::<usize>();
         let mut elements = Vec::with_capacity(count.min(ROOM));
@@ -97,6 +98,8 @@ impl Reader {
         for &(first, count) in runs {
             let start = first.checked_mul(layout.stride).and_then(|start| start.checked_add(array.pointer));
             let mut start = start.ok_or(OUTSIDE)?;
+
+            // Convert elements of a buffer in place.
             if !array.buffer.is_none() {
                 let span = layout.span(count).ok_or(OUTSIDE)?;
                 let end = start.checked_add(span).ok_or(OUTSIDE)?;
@@ -113,6 +116,8 @@ impl Reader {
                 }
                 continue;
             }
+
+            // Read client memory piece by piece.
             let at_once = if layout.is_sparse() { 1 } else { (PIECE / layout.stride).max(1) };
             let mut left = count;
             while left > 0 {
@@ -126,6 +131,8 @@ impl Reader {
                 left -= n;
             }
         }
+
+        // Swap colours that come as blue, green, red.
         if array.size == BGRA && N > 2 {
             elements.iter_mut().for_each(|element| element.swap(0, 2));
         }
@@ -135,6 +142,7 @@ impl Reader {
     /// The fingerprint of all bytes of the client's memory that [`Self::elements`] would read for these arrays; `None` where it would read
     /// them one by one, or not at all.
     pub(super) fn fingerprint(&self, arrays: &[(usize, ArrayPointer)], runs: &[Run]) -> Option<Fingerprint> {
+        // Collect the ranges of memory.
         let mut ranges: Vec<Range<usize>> = Vec::new();
         for (_, array) in arrays.iter().filter(|(_, array)| array.buffer.is_none()) {
             let layout = Layout::of(array);
@@ -155,6 +163,8 @@ impl Reader {
             }
             overlap
         });
+
+        // Hash them.
         let mut fingerprint = Fingerprint::default();
         ranges.into_iter().try_for_each(|range| self.add_bytes(&mut fingerprint, range))?;
         Some(fingerprint)

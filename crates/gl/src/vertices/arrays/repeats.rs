@@ -70,10 +70,14 @@ impl Repeats {
     /// The batch of a draw of which something lies in the client's memory.
     pub(super) fn batch(&mut self, reader: &Reader, key: Key) -> Result<Arc<VertexBatch>, Refusal> {
         let built = || build(reader, &key.arrays, key.mode, key.vertices);
+
+        // Build small batches without comparison.
         let (Vertices::Range { count, .. } | Vertices::Elements { count, .. }) = key.vertices;
         if count < LEAST {
             return Ok(Arc::new(built()?.0));
         }
+
+        // Find the draw's entry; stop comparing draws that change every time.
         let known = self.entries.iter().rposition(|entry| entry.key.is_same_draw(&key));
         let mut entry = known.map_or_else(|| Entry::new(key.clone()), |at| self.entries.remove(at));
         entry.draws = entry.draws.wrapping_add(1);
@@ -81,12 +85,16 @@ impl Repeats {
             self.entries.push(entry);
             return Ok(Arc::new(built()?.0));
         }
+
+        // Reuse the batch if neither indices nor elements have changed.
         let indices = reader.index_fingerprint(key.vertices);
         let unchanged = entry.is_unchanged(&key, indices, reader);
         if unchanged && let Some(batch) = entry.batch.clone() {
             self.entries.push(entry);
             return Ok(batch);
         }
+
+        // Otherwise build it and note the fingerprints.
         let (batch, runs) = built()?;
         let batch = Arc::new(batch);
         if unchanged {

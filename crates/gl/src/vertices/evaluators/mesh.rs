@@ -89,11 +89,14 @@ impl Context {
     pub fn eval_mesh_2(&mut self, mode: u32, i1: i32, i2: i32, j1: i32, j2: i32) {
         const CALL: &str = "glEvalMesh2";
         self.listable(move |c| {
+            // Check the mode and the number of points.
             let (rows, columns) = (j1..=j2, i1..=i2);
             let known = matches!(mode, enums::POINT | enums::LINE | enums::FILL);
             if !c.mesh_allowed(CALL, known, len(&rows).saturating_mul(len(&columns))) {
                 return;
             }
+
+            // Draw strips of quads, lines along both directions, or points.
             match mode {
                 enums::FILL => {
                     for j in j1..j2 {

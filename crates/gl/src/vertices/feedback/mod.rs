@@ -172,6 +172,8 @@ impl Context {
         if self.refused_inside_begin(CALL) {
             return 0;
         }
+
+        // Check that the new mode has a buffer.
         let buffer = match mode {
             enums::RENDER => true,
             enums::FEEDBACK => self.feedback.buffer.is_some(),
@@ -185,6 +187,8 @@ impl Context {
             self.record_error(enums::INVALID_OPERATION, CALL, "that mode has no buffer");
             return 0;
         }
+
+        // Leave the old mode and reset the counters.
         let result = self.leave_mode();
         let feedback = &mut self.feedback;
         feedback.mode = mode;

@@ -90,6 +90,7 @@ fn plan(windows: &[Window], scale: f64, picture: &mut Picture) {
 
 /// The tree, level by level.
 fn tree(windows: &[Window], picture: &mut Picture) {
+    // Sort the windows by level.
     let levels = windows.iter().map(|w| w.depth + 1).max().unwrap_or(0);
     let by_level: Vec<Vec<&Window>> =
         (0..levels).map(|level| windows.iter().filter(|w| w.depth == level).collect()).collect();

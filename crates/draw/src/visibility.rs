@@ -241,7 +241,7 @@ impl Walk {
         Ok(())
     }
 
-    /// Asks the triangles of a list, the nearest first; breaks where nothing is visible any more, or at a limit.
+    /// Tests the triangles of a list, the nearest first; breaks when all of the edge is hidden, or at a limit.
     fn ask(
         &mut self,
         list: &[u32],

@@ -33,7 +33,7 @@ pub(crate) struct Given {
 }
 
 impl Given {
-    /// As it is now.
+    /// The current matrix and material.
     pub(crate) fn current(state: &State) -> Self {
         Self { modelview: state.matrices.modelview.top(), material: state.lighting.material }
     }

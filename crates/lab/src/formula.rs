@@ -115,6 +115,8 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
             row("occlusion".to_owned(), digits(occlusion), "how much ambient light arrives", None);
         }
     }
+
+    // List the ambient light of the scene.
     row(
         "IA ka".to_owned(),
         three(evaluation.ambient),
@@ -122,7 +124,7 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
         Some("ambient".to_owned()),
     );
 
-    // Each light.
+    // List the terms of each light.
     // List the light's colours, angles and terms.
     for of_light in &evaluation.lights {
         let (t, name) = (&of_light.terms, &lights[of_light.light]);

@@ -230,7 +230,7 @@ pub enum Step {
         there: Option<u32>,
         /// Its depth.
         there_depth: Option<f32>,
-        /// Which of the two is there now.
+        /// The facet that is kept, one of the two.
         stays: u32,
     },
     /// Warnock: a window was looked at.

@@ -75,7 +75,7 @@ impl Solids {
 }
 
 impl KnownSolidity {
-    /// `solids`, found out for the mesh as it is now.
+    /// `solids`, found out for the present mesh.
     pub(crate) fn new(mesh: &Mesh, solids: Solids, workers: &Workers) -> Self {
         Self { solids, surface: fingerprint(mesh, workers) }
     }
@@ -406,7 +406,7 @@ mod tests {
         assert_eq!(ball.solidity.as_ref().map(|known| known.solids.solidity), Some(alone));
         assert_eq!(fingerprint(&ball, &Workers::single()), fingerprint(&ball, &Workers::new(3)));
 
-        // The mesh still carries the old answer, which is none any more.
+        // The mesh still carries the old answer, which is stale.
         let mut turned = ball.clone();
         turned.triangles[5].swap(0, 1);
         assert!(!Solidity::of(&turned, &Workers::single()).consistent);

@@ -151,7 +151,7 @@ pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Res
     let seen = Seen::of(&grid, viewport, samples);
     let mut seconds = Vec::new();
     while seconds.len() + 1 < task.frames {
-        // A limit now only means fewer pictures.
+        // A limit here means fewer pictures, no failure.
         let Ok((more, _)) = picture(&mut grid) else { break };
         seconds.push(more);
     }

@@ -104,7 +104,7 @@ impl Attached {
                     writes: color.then(|| image.writes()),
                 };
                 if !had_planes {
-                    // A snapshot made before has texels that are no longer the truth.
+                    // The plane holds the image from here on: earlier snapshots have stale texels.
                     texture.touch();
                 }
                 surface

@@ -279,7 +279,7 @@ impl Context {
         }
     }
 
-    /// What framebuffer 0 is now.
+    /// The current properties of framebuffer 0.
     pub fn buffer_info(&self) -> BufferInfo {
         let fb = &self.default_framebuffer;
         let info = BufferInfo {

@@ -195,7 +195,7 @@ fn clip(state: &State, target: &Target) -> [i32; 4] {
 }
 
 impl Context {
-    /// The per-fragment state as it is now. `images` leaves out what pixel rectangles do not meet (polygon stipple).
+    /// The current per-fragment state. `images` leaves out what does not apply to pixel rectangles (polygon stipple).
     pub(crate) fn fragment_state_for(&mut self, target: Option<&Target>, images: bool) -> Arc<FragmentState> {
         // Derive what needs more than the state.
         let units = self.sampled_units(target);

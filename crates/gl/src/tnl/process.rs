@@ -58,7 +58,7 @@ pub(crate) enum Wanted {
 }
 
 impl Context {
-    /// Transforms and lights all vertices of a batch now.
+    /// Transforms and lights all vertices of a batch at once.
     pub(crate) fn process_batch<const UNITS: usize>(
         &mut self,
         batch: &VertexBatch,

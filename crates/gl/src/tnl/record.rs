@@ -193,7 +193,7 @@ impl Context {
         self.recorder.run();
     }
 
-    /// The per-fragment state as it is now. `images` leaves out what pixel rectangles do not meet (polygon stipple).
+    /// The current per-fragment state. `images` leaves out what does not apply to pixel rectangles (polygon stipple).
     pub(crate) fn fragment_state(&mut self, images: bool) -> Arc<FragmentState> {
         let target = self.target();
         self.fragment_state_for(target.as_ref(), images)
@@ -347,7 +347,7 @@ impl Context {
     }
 }
 
-/// Whether a pass can wait while `target`, a shadow map, is drawn: it is a picture that does not need what is there now.
+/// Whether a pass can wait while `target`, a shadow map, is drawn: it is a picture that does not need the target's present contents.
 fn may_wait_for(pass: &Pass, target: &Target) -> bool {
     let Some(map) = target.depth.as_ref().filter(|_| target.color.is_none()) else { return false };
     let same = pass.target.depth.as_ref().is_some_and(|depth| Arc::ptr_eq(depth, map));

@@ -50,7 +50,7 @@ pub struct BufferHandle {
     buffer: Option<Arc<Mutex<Buffer>>>,
 }
 
-/// Names are used again, buffers are not.
+/// Names are reused, buffers are not.
 impl PartialEq for BufferHandle {
     fn eq(&self, other: &Self) -> bool {
         self.id == other.id

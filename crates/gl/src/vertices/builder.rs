@@ -23,7 +23,7 @@ const LONG_ENOUGH: usize = 12 * 2730;
 /// How many batches are kept for their memory.
 const MOST_KEPT: usize = 16;
 
-/// Vertices of a batch whose memory is used again: fewer cost nothing to allocate, more are too much to keep.
+/// Vertices of a batch whose memory is reused: fewer cost nothing to allocate, more are too much to keep.
 const REUSED: std::ops::Range<usize> = 1 << 10..1 << 21;
 
 /// The primitive that is being given, and complete ones before it.
@@ -108,7 +108,7 @@ impl Builder {
         self.open = false;
     }
 
-    /// Begins a batch, in the memory of one that was drawn, if nobody needs that any more.
+    /// Begins a batch, in the memory of a drawn one if nobody else holds that.
     fn start(&mut self) {
         let free = self.drawn.iter().position(|drawn| Arc::strong_count(drawn) == 1);
         let Some(drawn) = free.and_then(|free| Arc::into_inner(self.drawn.swap_remove(free))) else { return };
@@ -221,7 +221,7 @@ impl Context {
         }
     }
 
-    /// Notes the state as it is now, for a primitive that begins.
+    /// Notes the current state for a primitive that begins.
     pub(super) fn gather(&mut self, sent: Sent) {
         if self.builder.sent != sent {
             self.flush_vertices();

@@ -41,7 +41,7 @@ const CALLS: u32 = 1 << 22;
 const MAX_RANGE: u32 = 1 << 22;
 
 impl Context {
-    /// Runs `call` now, or keeps it in the list that is being compiled, or both (`COMPILE_AND_EXECUTE`).
+    /// Runs `call` at once, or keeps it in the list that is being compiled, or both (`COMPILE_AND_EXECUTE`).
     pub(crate) fn listable(&mut self, call: impl Fn(&mut Self) + Send + Sync + 'static) {
         self.listed(call, Item::Call);
     }

@@ -58,7 +58,7 @@ impl GridColors {
         grid
     }
 
-    /// The two words of a vertex of an eight, which is shaded now if it was not; black where there is none.
+    /// The two words of a vertex of an eight, which is shaded at the first call; black where there is none.
     #[inline(always)]
     fn words(&self, eight: usize, lane: usize, shade: impl FnOnce() -> [[f32; 4]; LANES]) -> [u64; 2] {
         let (Some(known), Some(colors)) = (self.known.get(eight), self.colors.get(eight)) else { return [0; 2] };

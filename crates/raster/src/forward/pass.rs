@@ -198,7 +198,7 @@ impl Pass {
     }
 }
 
-/// Threads, instruction set and memory that passes use again.
+/// Threads, instruction set and memory that passes reuse.
 #[derive(Debug)]
 pub struct Runner {
     /// Threads.

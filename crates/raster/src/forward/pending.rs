@@ -416,7 +416,7 @@ impl PendingDepth {
         if depth > above && job.allows(setup, x, y) { depth } else { best }
     }
 
-    /// How the texels of a tile are found, of which now so many are asked for; none if it was asked for too seldom.
+    /// How the texels of a tile are found, of which this call looks up `count`; none if it is looked up too seldom.
     #[inline(always)]
     fn known(&self, tile: usize, count: u32) -> Option<&Known> {
         let pending = &self.tiles[tile];

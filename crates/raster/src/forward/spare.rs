@@ -1,4 +1,4 @@
-//! Memory that passes use again.
+//! Memory that passes reuse.
 //!
 //! What programs draw is much alike from frame to frame, so a job gets the memory of the job that had its place before: each
 //! grows to what its own place needs, not to what the largest does. Passes that stay pending have places of their own, since

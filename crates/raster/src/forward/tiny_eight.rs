@@ -262,7 +262,7 @@ impl TileRun<'_> {
         }
     }
 
-    /// Colours what is seen; what fails the alpha test no longer is.
+    /// Colours the visible pixels, and removes those that fail the alpha test from `seen`.
     #[inline(never)]
     fn tiny_colored<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory, seen: &mut Seen) {
         simd.vectorize(

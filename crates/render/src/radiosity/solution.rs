@@ -160,7 +160,7 @@ impl Solution {
         self.light.iter().map(|sides| sides.iter().map(contrast).fold(0.0, f64::max) / mean.max(1e-300)).collect()
     }
 
-    /// The solution as bytes, to be used again with the scene that has this fingerprint.
+    /// The solution as bytes, to be loaded with the scene that has this fingerprint.
     pub fn to_bytes(&self, fingerprint: u64) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend(fingerprint.to_le_bytes());

@@ -403,7 +403,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
         }
     }
 
-    /// Takes what is done out of the cells' lists. Places in these lists are no longer valid then.
+    /// Removes finished polygons from the cells' lists, which invalidates positions in these lists.
     fn tidy(&mut self) {
         for cell in self.stale.drain(..) {
             let done = &mut self.done[cell as usize];

@@ -178,7 +178,7 @@ impl Context {
         None
     }
 
-    /// Draws, or compiles what the arrays hold now.
+    /// Draws what the arrays hold at the call, or compiles it.
     fn draw_vertices(&mut self, call: &'static str, mode: u32, vertices: Vertices) {
         if self.refused_draw(call) {
             return;
@@ -222,7 +222,7 @@ impl Context {
         }
     }
 
-    /// Whether draws happen now, be they compiled or not.
+    /// Whether draws happen at the call, be they compiled or not.
     fn executes(&self) -> bool {
         !self.lists.recording || self.lists.mode == enums::COMPILE_AND_EXECUTE
     }
@@ -237,7 +237,7 @@ impl Context {
         });
     }
 
-    /// Whether an open Begin stands against a draw that happens now.
+    /// Whether an open Begin stands against a draw that happens at the call.
     fn refused_draw(&mut self, call: &'static str) -> bool {
         let refused = self.executes() && self.refused_inside_begin(call);
         if refused {

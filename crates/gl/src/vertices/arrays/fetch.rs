@@ -43,7 +43,7 @@ const MOST_FILLED: usize = 1 << 24;
 /// Room made for elements before they are read; more comes as they arrive.
 const ROOM: usize = 1 << 20;
 
-/// A buffer's data, as they are now.
+/// A buffer's present data.
 #[derive(Clone, Debug)]
 pub(super) struct Store {
     pub(super) buffer: u64,

@@ -253,8 +253,8 @@ impl<'d> Shader<'d> {
         steps
     }
 
-    /// Has the colours ready of the texture that the draw shows again, in a block of pixels, if they can be kept: looked up now or
-    /// before.
+    /// Looks up the colours of the texture that the draw shows repeatedly, in a block of pixels, unless the cache has them.
+    /// Leaves the block out of the cache if they cannot be kept.
     #[inline(always)]
     pub(super) fn see<S: Simd, V: Floats<S>, const N: usize>(
         &mut self,

@@ -302,7 +302,7 @@ impl Map {
     }
 
     /// Depths of the planes through points of view space in the four texels from `first` on, less what they may be wrong by;
-    /// and where what lies farther is not the surface any more. `texel` is the side of a texel at each point.
+    /// and where depths farther away belong to another surface. `texel` is the side of a texel at each point.
     #[inline(always)]
     fn plane_depths<S: Simd>(
         &self,

@@ -30,7 +30,7 @@ pub(super) struct Cast<'a, T> {
     pub(super) slack: [Vec<f32>; 2],
     pub(super) largest_slack: f32,
     pub(super) eye: Eye,
-    /// Lists to use again.
+    /// Lists to reuse.
     stamps: Mutex<Vec<Stamps>>,
 }
 

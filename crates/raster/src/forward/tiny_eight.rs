@@ -159,7 +159,7 @@ impl TileRun<'_> {
         simd: S,
         job: &JobContext<'_>,
         waiting: &mut TinyFacets,
-    ) -> Option<Seen> {
+    ) -> Option<LiveSamples> {
         // Cover the samples and evaluate their depths.
         let draw = &job.draws[waiting.draw as usize];
         let (eight, pattern) = (&mut waiting.eight, job.pattern(draw));
@@ -176,7 +176,7 @@ impl TileRun<'_> {
             |depth| stored_depth(simd, depth, scale),
         );
         // A draw without multisampling covers all samples of a pixel alike; where all have one value, one stands for all.
-        let mut seen = Seen { masks, any: [0; LANES], touched: 0, alike: N == 1 };
+        let mut seen = LiveSamples { masks, any: [0; LANES], touched: 0, alike: N == 1 };
         seen.settle(eight)?;
         if draw.state.stencil.is_some() {
             self.tiny_stencilled(job, waiting, &mut seen);
@@ -186,7 +186,7 @@ impl TileRun<'_> {
     }
 
     /// Stencil test, which changes nothing.
-    fn tiny_stencilled(&mut self, job: &JobContext<'_>, waiting: &TinyFacets, seen: &mut Seen) {
+    fn tiny_stencilled(&mut self, job: &JobContext<'_>, waiting: &TinyFacets, seen: &mut LiveSamples) {
         // Decide a tile that was only cleared with one test per facet.
         let draw = &job.draws[waiting.draw as usize];
         let (Some(test), Some(tile)) = (&draw.state.stencil, &mut self.planes.stencil) else { return };
@@ -219,7 +219,7 @@ impl TileRun<'_> {
         simd: S,
         draw: &DrawContext<'_>,
         eight: &TinyEight,
-        seen: &mut Seen,
+        seen: &mut LiveSamples,
         write: bool,
     ) -> bool {
         // Decide whether depths are written.
@@ -248,7 +248,7 @@ impl TileRun<'_> {
     }
 
     /// Writes depths of what is seen, if there are any.
-    fn tiny_written<const N: usize>(&mut self, eight: &TinyEight, seen: &Seen) {
+    fn tiny_written<const N: usize>(&mut self, eight: &TinyEight, seen: &LiveSamples) {
         let Some((tile, _)) = &mut self.planes.depth else { return };
         self.planes.ranges.forget(seen.touched);
         let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
@@ -264,7 +264,13 @@ impl TileRun<'_> {
 
     /// Colours the visible pixels, and removes those that fail the alpha test from `seen`.
     #[inline(never)]
-    fn tiny_colored<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory, seen: &mut Seen) {
+    fn tiny_colored<S: Simd>(
+        &mut self,
+        simd: S,
+        job: &JobContext<'_>,
+        memory: &mut FacetMemory,
+        seen: &mut LiveSamples,
+    ) {
         simd.vectorize(
             #[inline(always)]
             || self.tiny_colored_inlined(simd, job, memory, seen),
@@ -277,7 +283,7 @@ impl TileRun<'_> {
         simd: S,
         job: &JobContext<'_>,
         memory: &mut FacetMemory,
-        seen: &mut Seen,
+        seen: &mut LiveSamples,
     ) {
         // Skip draws that write no colours.
         let FacetMemory { scratch, words, each, pixels, waiting } = memory;
@@ -315,7 +321,7 @@ impl TileRun<'_> {
         simd: S,
         job: &JobContext<'_>,
         waiting: &TinyFacets,
-        seen: &mut Seen,
+        seen: &mut LiveSamples,
         pixels: &mut FacetPixels,
         each: &mut [[u32; LANES]; PLACES],
     ) -> bool {
@@ -362,7 +368,7 @@ impl TileRun<'_> {
         simd: S,
         draw: &DrawContext<'_>,
         eight: &TinyEight,
-        seen: &Seen,
+        seen: &LiveSamples,
         each: &[[u32; LANES]; PLACES],
         words: &mut BlockWords,
     ) {
@@ -388,7 +394,7 @@ impl TileRun<'_> {
 
 /// Pixels of eight tiny facets that still count.
 #[derive(Clone, Copy)]
-struct Seen {
+struct LiveSamples {
     /// Those of each facet, sample by sample.
     masks: [[u64; LANES]; SAMPLES],
     /// Those of which some samples are.
@@ -399,7 +405,7 @@ struct Seen {
     alike: bool,
 }
 
-impl Seen {
+impl LiveSamples {
     /// After masks have changed, brings the rest up to date.
     #[inline(always)]
     fn join(&mut self) {
@@ -456,7 +462,7 @@ impl Seen {
 fn bring<S: Simd, const M: usize>(
     simd: S,
     eight: &TinyEight,
-    seen: &Seen,
+    seen: &LiveSamples,
     adds: bool,
     each: &[[u32; LANES]; PLACES],
     values: [&mut [u32; TILE_PIXELS]; M],
@@ -484,7 +490,7 @@ fn bring<S: Simd, const M: usize>(
 fn test<S: Simd, const M: usize>(
     simd: S,
     eight: &TinyEight,
-    seen: &mut Seen,
+    seen: &mut LiveSamples,
     rule: DepthTest,
     stored: [&mut [f32; TILE_PIXELS]; M],
     depths: [usize; M],
@@ -509,7 +515,7 @@ fn test<S: Simd, const M: usize>(
 #[inline(always)]
 fn test_by<const M: usize>(
     eight: &TinyEight,
-    seen: &mut Seen,
+    seen: &mut LiveSamples,
     write: bool,
     stored: [&mut [f32; TILE_PIXELS]; M],
     depths: [usize; M],

@@ -9,7 +9,7 @@ use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, PendingKind, pendable};
 use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 use super::sample::Common;
-use super::shade::{Layout, Seen};
+use super::shade::{Layout, TexelCache};
 use super::spare::{Assembly, Places};
 use super::state::{Clamping, EnvironmentMode, FragmentState};
 use super::strips::{TileCopy, cut, rows};
@@ -208,7 +208,7 @@ pub struct Runner {
     spare: Places,
     spare_pending: Places,
     assemblies: Mutex<Vec<Assembly>>,
-    seen: Mutex<Vec<Seen>>,
+    seen: Mutex<Vec<TexelCache>>,
 }
 
 /// Triangles of a job.
@@ -304,9 +304,9 @@ impl Runner {
         let mut seen = Vec::new();
         if rounds.len() > 1 && !again.is_empty() {
             seen = std::mem::take(&mut *lock(&self.seen));
-            seen.iter_mut().for_each(Seen::clear);
+            seen.iter_mut().for_each(TexelCache::clear);
             let viewport = pass.target.viewport;
-            seen.resize_with((viewport.tiles_x() * viewport.tiles_y()) as usize, Seen::default);
+            seen.resize_with((viewport.tiles_x() * viewport.tiles_y()) as usize, TexelCache::default);
         }
 
         // Assemble the primitives of each round, then walk the tiles.
@@ -449,7 +449,7 @@ impl Runner {
         target: &Target,
         depth: &mut Option<MutexGuard<'_, DepthPlane>>,
         items: &[Item<'_>],
-        seen: &mut [Seen],
+        seen: &mut [TexelCache],
     ) {
         // Open the planes tile by tile.
         let mut color = target.color.as_ref().map(|p| lock(p));

@@ -6,7 +6,7 @@ mod textures;
 
 pub(crate) use eight_facets::{EightFacets, FacetPixels, go_together};
 
-pub(crate) use self::again::Seen;
+pub(crate) use self::again::TexelCache;
 use super::assemble::{Facet, FacetKind, Primitives, Shape};
 use super::block::BlockWords;
 use super::color_grid::ColorGrid;
@@ -108,7 +108,7 @@ fn last_of(records: &[f32], at: usize) -> [f32; LANES] {
 pub(crate) struct Scratch {
     interpolation: Interpolation,
     differences: Differences,
-    pub(super) seen: Seen,
+    pub(super) seen: TexelCache,
 }
 
 /// `1 / w` of a facet's corners differs much if it differs by more than this factor.

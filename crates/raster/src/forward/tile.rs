@@ -12,7 +12,7 @@ use super::hard_line::HardLine;
 use super::pass::{Clear, DrawContext, ImageColors, ImageFragments, Item, facet_of, intersection};
 use super::plane::PlaneTile;
 use super::sample::sample;
-use super::shade::{CENTERS, Seen, Shader};
+use super::shade::{CENTERS, Shader, TexelCache};
 use super::state::{Clamping, Compare, FragmentState};
 use super::tiny_eight::{FacetMemory, JobContext, by_eights};
 use super::wide::{Rgba, splat, splat_rgba};
@@ -35,7 +35,7 @@ pub(crate) struct TileRun<'a> {
     rows: Range<usize>,
     pub(super) planes: TilePlanes<'a>,
     /// What was seen in the tile before, if that is kept.
-    seen: Option<&'a mut Seen>,
+    seen: Option<&'a mut TexelCache>,
 }
 
 impl<'a> TileRun<'a> {
@@ -45,7 +45,7 @@ impl<'a> TileRun<'a> {
         rows: Range<usize>,
         viewport: Viewport,
         planes: TilePlanes<'a>,
-        seen: Option<&'a mut Seen>,
+        seen: Option<&'a mut TexelCache>,
     ) -> Self {
         let (side, across) = (TILE as u32, viewport.tiles_x());
         let (x, y) = (index as u32 % across * side, index as u32 / across * side);

@@ -17,7 +17,7 @@ const BLOCKS: usize = (TILE / BLOCK) * (TILE / BLOCK);
 
 /// What the colours of a texture within a facet depend on, but for the place. The texture lives as long as the pass.
 #[derive(Debug, PartialEq)]
-struct Sight {
+struct TexelCacheKey {
     texture: usize,
     /// Origin of the weights, bias of the level of detail, `w` of all corners and whether they have it in common, which numbers vary.
     facet: [u32; 6],
@@ -26,7 +26,7 @@ struct Sight {
     coordinates: [[u32; 3]; 3],
 }
 
-impl Sight {
+impl TexelCacheKey {
     /// With the unit's coordinates at `at` of the records.
     fn new(unit: &Unit, at: usize, i: &Interpolation, d: &Differences) -> Self {
         let coordinates = [at % MOST, (at + 1) % MOST, (at + 3) % MOST];
@@ -44,9 +44,9 @@ impl Sight {
 
 /// Texture colours of a tile's blocks, as bytes.
 #[derive(Debug, Default)]
-pub(crate) struct Seen {
+pub(crate) struct TexelCache {
     /// Those that there were in this tile.
-    sights: Vec<Sight>,
+    sights: Vec<TexelCacheKey>,
     /// That of the facet at hand is the last one.
     current: bool,
     /// Which sight is kept in a block, and its colours. Empty until something is kept.
@@ -56,7 +56,7 @@ pub(crate) struct Seen {
 /// No sight.
 const NONE: usize = usize::MAX;
 
-impl Seen {
+impl TexelCache {
     /// Forgets everything, but keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.sights.clear();
@@ -84,7 +84,7 @@ impl Seen {
     pub(super) fn look_at(&mut self, unit: &Unit, at: usize, i: &Interpolation, d: &Differences) {
         if !self.current {
             self.current = true;
-            self.sights.push(Sight::new(unit, at, i, d));
+            self.sights.push(TexelCacheKey::new(unit, at, i, d));
         }
     }
 

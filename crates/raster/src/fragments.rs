@@ -5,7 +5,7 @@
 
 use crate::layers::Fragment;
 use crate::samples::MOST_SAMPLES;
-use crate::sink::{Met, Row, first_sample};
+use crate::sink::{DepthTest8, Row, first_sample};
 use crate::{LayerList, RowPlane, RowSink, SamplePattern, Setup, TILE, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd, U32x8};
@@ -101,7 +101,7 @@ impl<S: Simd> RowSink<S> for FragmentSink<'_> {
         let row = Row::new(plane, sample, at, covered);
         // Where nothing opaque is, there is nothing to compare with.
         let seen = if self.tile.touched {
-            Met::new(simd, self.tile, U32x8::splat(simd, setup.facet), &row).wins
+            DepthTest8::new(simd, self.tile, U32x8::splat(simd, setup.facet), &row).wins
         } else {
             covered
         };

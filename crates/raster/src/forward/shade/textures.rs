@@ -17,7 +17,7 @@ use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, Simd};
 
 /// Eight pixels: where, and which of them matter.
-struct Eight<S: Simd> {
+struct SampleBatch8<S: Simd> {
     weights: Weights<F32x8<S>>,
     active: u32,
 }
@@ -25,7 +25,7 @@ struct Eight<S: Simd> {
 impl<V, const N: usize> Groups<'_, V, N> {
     /// The colours of group `i`, made for eight pixels at a time.
     #[inline(always)]
-    fn by_eights<S: Simd>(&self, simd: S, i: usize, f: impl Fn(&Eight<S>) -> Rgba<S>) -> [V; 4]
+    fn by_eights<S: Simd>(&self, simd: S, i: usize, f: impl Fn(&SampleBatch8<S>) -> Rgba<S>) -> [V; 4]
     where
         V: Floats<S>,
     {
@@ -34,7 +34,9 @@ impl<V, const N: usize> Groups<'_, V, N> {
             simd,
             [b1, b2, w],
             #[inline(always)]
-            |first, [b1, b2, w]| f(&Eight { weights: Weights { b1, b2, w }, active: self.active >> first & 0xff }),
+            |first, [b1, b2, w]| {
+                f(&SampleBatch8 { weights: Weights { b1, b2, w }, active: self.active >> first & 0xff })
+            },
         )
     }
 }
@@ -157,9 +159,9 @@ impl<'d> Shader<'d> {
 
     /// A unit's texture at eight pixels.
     #[inline(never)]
-    fn texture<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
+    fn texture<S: Simd>(&self, simd: S, eight: &SampleBatch8<S>, unit: &Unit) -> Rgba<S> {
         // Sample textures of the common kinds by their packed form.
-        let Eight { weights, active, .. } = eight;
+        let SampleBatch8 { weights, active, .. } = eight;
         if let Some((common, at)) = self.common(unit) {
             return simd.vectorize(
                 #[inline(always)]
@@ -207,8 +209,8 @@ impl<'d> Shader<'d> {
 
     /// Any texture: borders, volumes, cubes, depth, anisotropy.
     #[inline(always)]
-    fn any<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
-        let Eight { weights, active } = *eight;
+    fn any<S: Simd>(&self, simd: S, eight: &SampleBatch8<S>, unit: &Unit) -> Rgba<S> {
+        let SampleBatch8 { weights, active } = *eight;
         let weights = &weights;
 
         // Interpolate the coordinates.

@@ -5,7 +5,7 @@ use super::parts::Parts;
 use super::piece::PieceVertices;
 use super::snapshot::VertexSnapshot;
 use super::triangulation::Triangulation;
-use super::vertices::{Eight, shade};
+use super::vertices::{VertexBatch8, shade};
 use crate::enums as gl;
 use crate::primitive::Primitive;
 use crate::state;
@@ -159,7 +159,7 @@ impl DrawGeometry {
             let inverse_w = std::array::from_fn(|i| 1.0 / clip[own[used(i)] as usize][3]);
             let some = std::array::from_fn(|i| numbers[used(i)]);
             let faces = &*parts.faces(&some);
-            let some = Eight { vertices: some, count: end - lane, batch: &self.batch, transform, faces };
+            let some = VertexBatch8 { vertices: some, count: end - lane, batch: &self.batch, transform, faces };
             let records = &mut records[lane * stride..];
             dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &some, &inverse_w, records));
             lane = end;

@@ -1,7 +1,7 @@
 //! Vertices processed at once, for feedback, selection and the raster position.
 
 use super::snapshot::{LightCache, VertexSnapshot};
-use super::vertices::{Eight, LaneFaces, process};
+use super::vertices::{LaneFaces, VertexBatch8, process};
 use crate::Context;
 use crate::enums as gl;
 use crate::state::{MAX_TEXTURE_UNITS, RasterPosition};
@@ -79,7 +79,7 @@ impl Context {
             let count = LANES.min(batch.positions.len() - first);
             let vertices = std::array::from_fn(|lane| (first + lane.min(count - 1)) as u32);
             let faces = &LaneFaces::new(&snapshot, batch, &vertices);
-            let eight = Eight { vertices, count, batch, transform: &snapshot.transform, faces };
+            let eight = VertexBatch8 { vertices, count, batch, transform: &snapshot.transform, faces };
             dispatch!(level, simd => {
                 // Transpose the results to vertices.
                 let (_, shaded, tex) = process(simd, &snapshot, &eight);

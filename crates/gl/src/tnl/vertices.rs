@@ -15,7 +15,7 @@ type F<S> = F32x8<S>;
 type F4<S> = [F32x8<S>; 4];
 
 /// Up to eight vertices to be shaded.
-pub(crate) struct Eight<'a> {
+pub(crate) struct VertexBatch8<'a> {
     /// Numbers in the batch; unused lanes repeat one.
     pub vertices: [u32; LANES],
     /// How many there are.
@@ -171,7 +171,7 @@ pub(crate) fn shade<S: Simd>(
     simd: S,
     snapshot: &VertexSnapshot,
     layout: &Layout,
-    eight: &Eight<'_>,
+    eight: &VertexBatch8<'_>,
     inverse_w: &[f32; LANES],
     records: &mut [f32],
 ) {
@@ -237,7 +237,7 @@ pub(crate) fn shade<S: Simd>(
 }
 
 /// The front colours of up to eight vertices alone.
-pub(crate) fn front_colors<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &Eight<'_>) -> [[f32; LANES]; 4] {
+pub(crate) fn front_colors<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &VertexBatch8<'_>) -> [[f32; LANES]; 4] {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -252,7 +252,7 @@ pub(crate) fn front_colors<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &
 
 /// The normal in eye space, if anything needs it.
 #[inline(always)]
-fn eye_normal<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &Eight<'_>) -> V3<F<S>> {
+fn eye_normal<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &VertexBatch8<'_>) -> V3<F<S>> {
     let generates = snapshot
         .units
         .iter()
@@ -276,7 +276,7 @@ fn eye_normal<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &Eight<'_>) ->
 pub(crate) fn colors<S: Simd>(
     simd: S,
     snapshot: &VertexSnapshot,
-    eight: &Eight<'_>,
+    eight: &VertexBatch8<'_>,
     eye: &F4<S>,
     normal: V3<F<S>>,
 ) -> Shaded<S> {
@@ -392,7 +392,7 @@ fn texture<S: Simd>(
     simd: S,
     snapshot: &VertexSnapshot,
     unit: &UnitSnapshot,
-    eight: &Eight<'_>,
+    eight: &VertexBatch8<'_>,
     position: &F4<S>,
     eye: &F4<S>,
     n: V3<F<S>>,
@@ -434,7 +434,7 @@ fn generate<S: Simd>(simd: S, unit: &UnitSnapshot, position: &F4<S>, eye: &F4<S>
 pub(crate) fn process<S: Simd>(
     simd: S,
     snapshot: &VertexSnapshot,
-    eight: &Eight<'_>,
+    eight: &VertexBatch8<'_>,
 ) -> (F4<S>, Shaded<S>, [F4<S>; 8]) {
     let position: F4<S> = gather(simd, &eight.batch.positions, &eight.vertices);
     let eye = transform(&eight.transform.modelview, &position);

@@ -26,7 +26,7 @@ const SLOPE_BIAS: f64 = 1.0 / 64.0;
 const DEPTH_BIAS: f64 = 1.0 / (1 << 19) as f64;
 
 /// Where eight places are on a map, and how deep.
-struct Eight<S: Simd> {
+struct LookupBatch8<S: Simd> {
     /// In texels; not a number where the map does not tell.
     at: [F64x8<S>; 2],
     /// The upper left of the four texels whose middles are nearest.
@@ -155,7 +155,7 @@ impl Map {
     /// The depths of the four texels of each of these places, ∞ where nothing is; and in which of them something transparent may
     /// be.
     #[inline(always)]
-    fn texels<S: Simd>(&self, simd: S, eight: &Eight<S>, mut asked: u32) -> ([[f32; LANES]; 4], u32) {
+    fn texels<S: Simd>(&self, simd: S, eight: &LookupBatch8<S>, mut asked: u32) -> ([[f32; LANES]; 4], u32) {
         // Find the address of each place's four texels.
         let mut texels = [[f32::INFINITY; LANES]; 4];
         let Addresses { corner, tiles, first, together } = self.addresses(simd, eight);
@@ -196,7 +196,7 @@ impl Map {
 
     /// Where the four texels of each place lie.
     #[inline(always)]
-    fn addresses<S: Simd>(&self, simd: S, eight: &Eight<S>) -> Addresses {
+    fn addresses<S: Simd>(&self, simd: S, eight: &LookupBatch8<S>) -> Addresses {
         let whole = lanes::inlined(
             #[inline(always)]
             |number: F64x8<S>| -> I32x8<S> { lanes::narrowed(simd, number).to_int() },
@@ -265,7 +265,7 @@ impl Map {
 
     /// Finds where places are on the map, and how deep their planes are in the texels there.
     #[inline(always)]
-    fn locate<S: Simd>(&self, simd: S, places: &EightPlaces) -> Eight<S> {
+    fn locate<S: Simd>(&self, simd: S, places: &EightPlaces) -> LookupBatch8<S> {
         let lens = &self.lens;
         let matrix = &lens.view_from_world;
         let normal = rotated(matrix, load(simd, &places.normal));
@@ -280,7 +280,7 @@ impl Map {
         let at = self.project(simd, point);
         let first = [(at[0] + 0.5).floor() - 1.0, (at[1] + 0.5).floor() - 1.0];
         let (depths, ends) = self.plane_depths(simd, point, normal, first, texel);
-        Eight { at, first, depths, ends }
+        LookupBatch8 { at, first, depths, ends }
     }
 
     /// Where points of view space are on the map, in texels; not a number behind the light.
@@ -386,7 +386,7 @@ impl Map {
     }
 }
 
-impl<S: Simd> Eight<S> {
+impl<S: Simd> LookupBatch8<S> {
     /// The part of light that passes texels of these depths, blended by the places' `shares` to the right and below; exact for
     /// places whose bits are set in `asked`.
     #[inline(always)]
@@ -421,7 +421,7 @@ impl<S: Simd> Eight<S> {
     }
 }
 
-/// What [`Map::eight_apart`] needs of [`Eight`].
+/// What [`Map::eight_apart`] needs of [`LookupBatch8`].
 struct Stored {
     first: [[f64; LANES]; 2],
     depths: [[f64; LANES]; 4],
@@ -431,7 +431,7 @@ struct Stored {
 
 impl Stored {
     #[inline(always)]
-    fn new<S: Simd>(eight: &Eight<S>, shares: [F32x8<S>; 2]) -> Self {
+    fn new<S: Simd>(eight: &LookupBatch8<S>, shares: [F32x8<S>; 2]) -> Self {
         let store = lanes::inlined(
             #[inline(always)]
             |value: F64x8<S>| {

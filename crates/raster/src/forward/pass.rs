@@ -8,7 +8,7 @@ use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, PendingKind, pendable};
 use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
-use super::sample::Common;
+use super::sample::PackedTexture;
 use super::shade::{Layout, TexelCache};
 use super::spare::{Assembly, Places};
 use super::state::{Clamping, EnvironmentMode, FragmentState};
@@ -244,7 +244,7 @@ pub(crate) struct DrawContext<'a> {
     /// Colours may leave `0..=1` before they are stored.
     pub unlimited: bool,
     /// Units with a common kind of texture.
-    pub plain: Vec<(usize, Common<'a>)>,
+    pub plain: Vec<(usize, PackedTexture<'a>)>,
     /// The unit whose texture a later draw shows with the same vertices, or an earlier one did.
     pub again: Option<usize>,
     /// Depth planes that units sample.
@@ -578,10 +578,12 @@ fn draw_context<'a>(
 
     // Pack the textures that eight or sixteen lanes can sample at once.
     let plain = state.units.iter().filter(|unit| unit.texture.sampler.anisotropy <= 1.0);
-    let plain: Vec<(usize, Common<'_>)> =
-        plain.filter_map(|unit| Some((unit.index, Common::new(&unit.texture, planes[unit.index % UNITS])?))).collect();
-    let is_flat =
-        |shown: &Shown| plain.iter().any(|(unit, common)| *unit == shown.unit && matches!(common, Common::Flat(_)));
+    let plain: Vec<(usize, PackedTexture<'_>)> = plain
+        .filter_map(|unit| Some((unit.index, PackedTexture::new(&unit.texture, planes[unit.index % UNITS])?)))
+        .collect();
+    let is_flat = |shown: &Shown| {
+        plain.iter().any(|(unit, common)| *unit == shown.unit && matches!(common, PackedTexture::Flat(_)))
+    };
 
     // Find the texture whose colours are kept for repeated draws.
     let again = textures_of(geometry, state).find(|shown| is_flat(shown) && again.contains(shown));

@@ -3,7 +3,7 @@
 //! [`mip::derivatives`] tell how many texels of level 0 a step of one pixel crosses, [`mip::lod`] is the logarithm of the larger
 //! step, and [`sample`] reads the levels it calls for. Lanes that choose the same level are looked up together, so that
 //! a row of pixels on one surface takes one or two passes. Texels are fetched lane by lane, everything else is done in
-//! lanes. The [`Common`] kinds of textures have ways of their own, for eight lanes or sixteen. A lookup never fails: what is
+//! lanes. The [`PackedTexture`] kinds of textures have ways of their own, for eight lanes or sixteen. A lookup never fails: what is
 //! missing reads as opaque black, and a coordinate that is not finite reads the texel at the low edge.
 //!
 //! In:   interpolated coordinates (s, t, r, q), level of detail. Out: RGBA, straight alpha, linear light.
@@ -35,13 +35,13 @@ use vitral_math::lanes::{F32x8, Simd};
 
 /// A texture of a common kind, made ready for lookups.
 #[derive(Clone, Copy)]
-pub(crate) enum Common<'a> {
+pub(crate) enum PackedTexture<'a> {
     Flat(Packed<'a>),
     Cube(PackedCube<'a>),
     Shadow(PackedShadow<'a>),
 }
 
-impl<'a> Common<'a> {
+impl<'a> PackedTexture<'a> {
     /// `None` for textures of another kind; `plane` is that of a depth texture's only level.
     pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthPlane>) -> Option<Self> {
         match (texture.kind, plane) {

@@ -12,7 +12,7 @@ use crate::forward::environment::{format_of, modulate};
 use crate::forward::fragment_ops::compare::alpha_test;
 use crate::forward::fragment_ops::packed::pack;
 use crate::forward::pass::DrawContext;
-use crate::forward::sample::Common;
+use crate::forward::sample::PackedTexture;
 use crate::forward::sample::cube::{Chart, derivatives as derivatives_on_faces};
 use crate::forward::sample::mip::half_log2;
 use crate::forward::sample::packed::Packed;
@@ -140,7 +140,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             let own = Numbers::of_corners(simd, records, facets, |_| at);
             let undivided =
                 own.base[3].simd_eq(splat(simd, 1.0)) & own.d1[3].simd_eq(own.d2[3]) & own.d1[3].simd_eq(zero[3]);
-            if !matches!(common, Common::Shadow(_)) && !undivided.all_true() {
+            if !matches!(common, PackedTexture::Shadow(_)) && !undivided.all_true() {
                 return None;
             }
             coordinates[i % MOST_UNITS] = own;
@@ -254,7 +254,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         // Find the slopes of coordinates whose level of detail depends on them.
         let mut slopes = [None; MOST_UNITS];
         for (i, (_, common)) in self.draw.plain.iter().enumerate() {
-            if let Common::Flat(packed) = common
+            if let PackedTexture::Flat(packed) = common
                 && packed.needs_lod()
             {
                 slopes[i % MOST_UNITS] = Some(self.slopes(packed, &self.values.coordinates[i % MOST_UNITS]));
@@ -339,12 +339,12 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                     |k| number((4 + 4 * i + k) % FOG),
                 );
                 let texture = match common {
-                    Common::Flat(packed) => match packed.together(simd, &[([a, b], c)], active) {
+                    PackedTexture::Flat(packed) => match packed.together(simd, &[([a, b], c)], active) {
                         Some([words]) => packed.meaning(words),
                         None => packed.at(simd, [a, b], c, active),
                     },
-                    Common::Cube(packed) => packed.at(simd, (a.to_int(), [b, c]), d),
-                    Common::Shadow(packed) => packed.at(simd, [a, b, c], active),
+                    PackedTexture::Cube(packed) => packed.at(simd, (a.to_int(), [b, c]), d),
+                    PackedTexture::Shadow(packed) => packed.at(simd, [a, b, c], active),
                 };
                 color = modulate(format_of(&unit.texture), &texture, color);
             }
@@ -419,16 +419,16 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         &self,
         simd: S,
         weights: &Weights<S>,
-        (unit, common): (&Unit, &Common<'_>),
+        (unit, common): (&Unit, &PackedTexture<'_>),
         i: usize,
         slopes: &Option<[[[F32x8<S>; 2]; 2]; 2]>,
     ) -> Rgba<S> {
         let coordinates = &self.values.coordinates[i];
         let at = value(weights, coordinates);
         match common {
-            Common::Flat(_) => self.place(simd, weights, unit, coordinates, at, slopes),
-            Common::Cube(packed) => self.place_on_cube(simd, weights, (unit, packed), coordinates, at),
-            Common::Shadow(packed) => {
+            PackedTexture::Flat(_) => self.place(simd, weights, unit, coordinates, at, slopes),
+            PackedTexture::Cube(packed) => self.place_on_cube(simd, weights, (unit, packed), coordinates, at),
+            PackedTexture::Shadow(packed) => {
                 let [x, y, reference] = packed.place(simd, at);
                 [x, y, reference, reference]
             }

@@ -9,7 +9,7 @@ use crate::forward::sample::depth::PackedShadow;
 use crate::forward::sample::mip::{derivatives, half_log2, lod, needs_lod};
 use crate::forward::sample::packed::Packed;
 use crate::forward::sample::packed_cube::PackedCube;
-use crate::forward::sample::{Common, sample};
+use crate::forward::sample::{PackedTexture, sample};
 use crate::forward::state::{EnvironmentMode, Unit};
 use crate::forward::texture::{BaseFormat, Swizzle};
 use crate::forward::wide::{Rgba, every, max, splat, splat_rgba};
@@ -75,9 +75,9 @@ impl<'d> Shader<'d> {
         colors: &mut [[V; 4]; N],
     ) -> bool {
         match self.common(unit) {
-            Some((Common::Flat(packed), at)) => self.plain(simd, groups, (unit, packed, at), colors),
-            Some((Common::Cube(packed), at)) => self.cube(simd, groups, (unit, packed, at), colors),
-            Some((Common::Shadow(packed), at)) => self.shadow(simd, groups, (unit, packed, at), colors),
+            Some((PackedTexture::Flat(packed), at)) => self.plain(simd, groups, (unit, packed, at), colors),
+            Some((PackedTexture::Cube(packed), at)) => self.cube(simd, groups, (unit, packed, at), colors),
+            Some((PackedTexture::Shadow(packed), at)) => self.shadow(simd, groups, (unit, packed, at), colors),
             None => return false,
         }
         true
@@ -126,10 +126,10 @@ impl<'d> Shader<'d> {
     /// The texture of a unit and where its coordinates are in records, if it is of a common kind: two dimensions or a cube, 8
     /// bits a component, no texels of a border, no anisotropy, no q of a cube's that could turn directions round.
     #[inline(always)]
-    fn common(&self, unit: &Unit) -> Option<(&'d Common<'d>, usize)> {
+    fn common(&self, unit: &Unit) -> Option<(&'d PackedTexture<'d>, usize)> {
         let (_, packed) = self.draw.plain.iter().find(|(index, _)| *index == unit.index)?;
         let at = self.draw.layout.tex[unit.index % UNITS]?;
-        let turns = matches!(packed, Common::Cube(_)) && self.is_divided(at);
+        let turns = matches!(packed, PackedTexture::Cube(_)) && self.is_divided(at);
         (!turns).then_some((packed, at))
     }
 
@@ -166,16 +166,16 @@ impl<'d> Shader<'d> {
             return simd.vectorize(
                 #[inline(always)]
                 || match common {
-                    Common::Flat(packed) => {
+                    PackedTexture::Flat(packed) => {
                         let slopes = Slopes::new(self, packed, at);
                         let (place, level) = self.place(simd, weights, (unit, packed, at), &slopes);
                         packed.at(simd, place, level, *active)
                     }
-                    Common::Cube(packed) => {
+                    PackedTexture::Cube(packed) => {
                         let (place, level) = self.place_on_cube(simd, weights, (unit, packed, at));
                         packed.at(simd, place, level)
                     }
-                    Common::Shadow(packed) => {
+                    PackedTexture::Shadow(packed) => {
                         packed.at(simd, packed.place(simd, self.four(simd, weights, at)), *active)
                     }
                 },
@@ -266,7 +266,7 @@ impl<'d> Shader<'d> {
     ) {
         let draw = self.draw;
         let Some(unit) = draw.state.units.iter().find(|unit| draw.again == Some(unit.index)) else { return };
-        let Some((Common::Flat(packed), at)) = self.common(unit) else { return };
+        let Some((PackedTexture::Flat(packed), at)) = self.common(unit) else { return };
         let Scratch { interpolation, differences, seen } = &mut *self.scratch;
         seen.look_at(unit, at, interpolation, differences);
         if seen.get(block).is_some() {

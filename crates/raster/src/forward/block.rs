@@ -4,7 +4,7 @@
 //! done here in short loops, each over all samples of a block, with the same operations and the same results.
 
 use super::depth_ranges::{Verdict, verdict};
-use super::fragment::{ColorTile, FragmentOps, Mixing, SAMPLES, TilePlanes, stored, stored_depth};
+use super::fragment::{BlendPath, ColorTile, FragmentOps, SAMPLES, TilePlanes, stored, stored_depth};
 use super::fragment_ops::blend::blend_packed;
 use super::fragment_ops::compare::holds;
 use super::fragment_ops::logic::{logic_op, write_unprotected};
@@ -521,7 +521,7 @@ pub(crate) fn colors<S: Simd>(
         #[inline(always)]
         || {
             // Fill an aligned block that is covered whole.
-            let replaces = ops.mixing == Mixing::Replace && ops.protected == 0;
+            let replaces = ops.blend_path == BlendPath::Replace && ops.protected == 0;
             if replaces && together && masks[0] == u64::MAX && block.is_aligned() {
                 replace_block(simd, block, tile.replace(block.touched(), true, samples), words);
                 return;
@@ -548,14 +548,14 @@ pub(crate) fn colors<S: Simd>(
             for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
                 let mask = masks[s] << (BLOCK * below);
                 let plane = &mut plane[(block.y - below) * TILE + block.x..][..7 * TILE + LANES];
-                if ops.protected == 0 && ops.mixing.is_simple() {
+                if ops.protected == 0 && ops.blend_path.is_simple() {
                     each_two_rows(
                         simd,
                         words,
                         mask,
                         plane,
                         #[inline(always)]
-                        |new, old| ops.mixing.simply(new, old),
+                        |new, old| ops.blend_path.blend_fast(new, old),
                     );
                 } else {
                     write_seldom_rows(simd, words, (ops, state), mask, plane);
@@ -597,10 +597,10 @@ fn write_seldom_rows<S: Simd>(
                 stored,
                 #[inline(always)]
                 |new, old| {
-                    let mixed = match (ops.mixing, &state.blend) {
-                        (Mixing::Logic(op), _) => logic_op(op, new, old),
-                        (Mixing::General, Some(blend)) => blend_packed::<S, F32x16<S>>(simd, blend, new, old),
-                        (mixing, _) => mixing.simply(new, old),
+                    let mixed = match (ops.blend_path, &state.blend) {
+                        (BlendPath::Logic(op), _) => logic_op(op, new, old),
+                        (BlendPath::General, Some(blend)) => blend_packed::<S, F32x16<S>>(simd, blend, new, old),
+                        (blend_path, _) => blend_path.blend_fast(new, old),
                     };
                     write_unprotected(mixed, old, ops.protected)
                 },

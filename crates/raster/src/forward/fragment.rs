@@ -105,7 +105,7 @@ pub(crate) fn stored(depth: f32, scale: f32) -> f32 {
 
 /// How colours meet stored ones, decided once a draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Mixing {
+pub(crate) enum BlendPath {
     Replace,
     Add,
     AddScaled,
@@ -114,7 +114,7 @@ pub(crate) enum Mixing {
     Logic(LogicOp),
 }
 
-impl Mixing {
+impl BlendPath {
     /// Whether it is one of the ways that programs use most.
     #[inline(always)]
     pub(crate) fn is_simple(self) -> bool {
@@ -123,7 +123,7 @@ impl Mixing {
 
     /// What such a way stores where new words meet old ones.
     #[inline(always)]
-    pub(crate) fn simply<S: Simd, W: SimdInt<S, Element = u32>>(self, new: W, old: W) -> W {
+    pub(crate) fn blend_fast<S: Simd, W: SimdInt<S, Element = u32>>(self, new: W, old: W) -> W {
         match self {
             Self::Add => add_packed(new, old),
             Self::AddScaled => add_scaled_packed(new, old),
@@ -136,7 +136,7 @@ impl Mixing {
 /// The part of a draw's fragment state that needs some work first.
 #[derive(Debug)]
 pub(crate) struct FragmentOps {
-    pub(crate) mixing: Mixing,
+    pub(crate) blend_path: BlendPath,
     /// Bits of a packed colour that the mask keeps from being written.
     pub(crate) protected: u32,
     /// Nothing needs the row-by-row operations, see [`super::block`].
@@ -155,13 +155,13 @@ impl FragmentOps {
             _ => all,
         };
         let protected = protected_bits(state.masked);
-        let mixing = mixing(state);
+        let blend_path = blend_path(state);
         let writes_stencil = !state.stencil.is_none_or(|s| keeps(&s.front) && keeps(&s.back));
         // The alpha test comes before a stencil that changes.
         let by_rows = (writes_stencil && state.alpha_test.is_some()) || state.srgb || state.sample_coverage.is_some();
         let common = !(by_rows || state.alpha_to_coverage || state.alpha_to_one);
         let direct = common && !writes_stencil && state.query.is_none() && state.polygon_stipple.is_none();
-        Self { mixing, protected, common, direct, all_protected: state.masked == [true; 4], coverage }
+        Self { blend_path, protected, common, direct, all_protected: state.masked == [true; 4], coverage }
     }
 }
 
@@ -170,21 +170,21 @@ pub(crate) fn keeps(face: &StencilFace) -> bool {
     face.write_mask == 0 || [face.fail, face.depth_fail, face.pass] == [StencilOp::Keep; 3]
 }
 
-fn mixing(state: &FragmentState) -> Mixing {
+fn blend_path(state: &FragmentState) -> BlendPath {
     use BlendFactor::{One, OneMinusSrcAlpha, SrcAlpha, Zero};
     if let Some(op) = state.logic_op {
-        return Mixing::Logic(op);
+        return BlendPath::Logic(op);
     }
-    let Some(Blend { source, destination, equation, .. }) = state.blend else { return Mixing::Replace };
+    let Some(Blend { source, destination, equation, .. }) = state.blend else { return BlendPath::Replace };
     if equation != [BlendEquation::Add; 2] {
-        return Mixing::General;
+        return BlendPath::General;
     }
     match (source, destination) {
-        ([One, One], [Zero, Zero]) => Mixing::Replace,
-        ([One, One], [One, One]) => Mixing::Add,
-        ([SrcAlpha, SrcAlpha], [One, One]) => Mixing::AddScaled,
-        ([SrcAlpha, SrcAlpha], [OneMinusSrcAlpha, OneMinusSrcAlpha]) => Mixing::Mix,
-        _ => Mixing::General,
+        ([One, One], [Zero, Zero]) => BlendPath::Replace,
+        ([One, One], [One, One]) => BlendPath::Add,
+        ([SrcAlpha, SrcAlpha], [One, One]) => BlendPath::AddScaled,
+        ([SrcAlpha, SrcAlpha], [OneMinusSrcAlpha, OneMinusSrcAlpha]) => BlendPath::Mix,
+        _ => BlendPath::General,
     }
 }
 
@@ -443,10 +443,10 @@ fn write_packed<S: Simd>(
     values: &mut [u32],
 ) {
     let stored = U32x8::from_slice(simd, values);
-    let mut new = match (ops.mixing, &state.blend) {
-        (Mixing::General, Some(b)) => general_packed(simd, b, packed, stored),
-        (Mixing::Logic(op), _) => logic_op(op, packed, stored),
-        (mixing, _) => mixing.simply(packed, stored),
+    let mut new = match (ops.blend_path, &state.blend) {
+        (BlendPath::General, Some(b)) => general_packed(simd, b, packed, stored),
+        (BlendPath::Logic(op), _) => logic_op(op, packed, stored),
+        (blend_path, _) => blend_path.blend_fast(packed, stored),
     };
     if state.srgb && state.logic_op.is_none() {
         new = srgb_packed(simd, state, color, stored);

@@ -7,7 +7,7 @@
 
 use super::assemble::{Facet, Primitives};
 use super::block::{self, BlockWords, Passing, Words};
-use super::fragment::{ColorTile, Mixing, SAMPLES, stored_depth};
+use super::fragment::{BlendPath, ColorTile, SAMPLES, stored_depth};
 use super::fragment_ops::packed::add_words;
 use super::fragment_ops::stencil::stencil_holds;
 use super::pass::{DrawContext, facet_of};
@@ -373,8 +373,8 @@ impl TileRun<'_> {
         words: &mut BlockWords,
     ) {
         let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color else { return };
-        let adds = draw.ops.mixing == Mixing::Add;
-        if draw.ops.protected == 0 && (adds || draw.ops.mixing == Mixing::Replace) {
+        let adds = draw.ops.blend_path == BlendPath::Add;
+        if draw.ops.protected == 0 && (adds || draw.ops.blend_path == BlendPath::Replace) {
             let (count, values) = plane.open(seen.touched, seen.alike, self.planes.samples);
             let planes = values.as_chunks_mut::<TILE_PIXELS>().0;
             if let ([a, b, c, d, ..], SAMPLES) = (&mut *planes, count) {

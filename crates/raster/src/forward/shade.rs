@@ -4,7 +4,7 @@ mod again;
 mod eight_facets;
 mod textures;
 
-pub(crate) use eight_facets::{EightFacets, FacetPixels, go_together};
+pub(crate) use eight_facets::{EightFacets, FacetPixels, can_batch_facets};
 
 pub(crate) use self::again::TexelCache;
 use super::assemble::{Facet, FacetKind, Primitives, Shape};

@@ -11,7 +11,7 @@ use super::fragment::{BlendPath, ColorTile, SAMPLES, stored_depth};
 use super::fragment_ops::packed::add_words;
 use super::fragment_ops::stencil::stencil_holds;
 use super::pass::{DrawContext, facet_of};
-use super::shade::{EightFacets, FacetPixels, Scratch, Shader, go_together};
+use super::shade::{EightFacets, FacetPixels, Scratch, Shader, can_batch_facets};
 use super::state::{Compare, DepthTest};
 use super::tile::TileRun;
 use crate::kernel::tiny::{PLACES, TinyEight, pixel, places};
@@ -342,7 +342,7 @@ impl TileRun<'_> {
                 shown[lane] = if passes { shown[lane] } else { 0 };
             }
             places(shown.iter().fold(0, |all, mask| all | mask)).for_each(|place| each[place] = words);
-        } else if go_together(draw) {
+        } else if can_batch_facets(draw) {
             let tile = [self.x, self.y];
             let Some(colors) = EightFacets::new(simd, eight, &facets, (draw, job.primitives), tile) else {
                 return false;

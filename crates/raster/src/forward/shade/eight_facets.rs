@@ -84,7 +84,7 @@ struct Values<S: Simd> {
 }
 
 /// Whether a draw's colours are those of corners, textures of the common kinds and fog, and nothing else.
-pub(crate) fn go_together(draw: &DrawContext<'_>) -> bool {
+pub(crate) fn can_batch_facets(draw: &DrawContext<'_>) -> bool {
     let (state, layout) = (draw.state, draw.layout);
     let common = |unit: &Unit| unit.mode == EnvironmentMode::Modulate && layout.tex[unit.index].is_some();
     (state.fog.is_none() || layout.fog.is_some())
@@ -96,7 +96,7 @@ pub(crate) fn go_together(draw: &DrawContext<'_>) -> bool {
 }
 
 impl<'d, S: Simd> EightFacets<'d, S> {
-    /// Makes the facets of `eight` ready, in a tile whose first pixel is `tile`, for a draw whose colours [`go_together`].
+    /// Makes the facets of `eight` ready, in a tile whose first pixel is `tile`, for a draw whose colours [`can_batch_facets`].
     /// `None` if `1 / w` differs much at the corners of one, or coordinates must be divided: this needs more care.
     #[inline(always)]
     pub(crate) fn new(

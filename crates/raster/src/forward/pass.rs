@@ -10,7 +10,7 @@ use super::pending::{PendingDepth, PendingKind, pendable};
 use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
 use super::sample::PackedTexture;
 use super::shade::{Layout, TexelCache};
-use super::spare::{Assembly, Places};
+use super::spare::{Assembly, SparePrimitives};
 use super::state::{Clamping, EnvironmentMode, FragmentState};
 use super::strips::{TileCopy, cut, rows};
 use super::texture::Texture;
@@ -205,8 +205,8 @@ pub struct Runner {
     pub workers: Workers,
     /// Instruction set.
     pub level: Level,
-    spare: Places,
-    spare_pending: Places,
+    spare: SparePrimitives,
+    spare_pending: SparePrimitives,
     assemblies: Mutex<Vec<Assembly>>,
     seen: Mutex<Vec<TexelCache>>,
 }
@@ -272,8 +272,8 @@ impl Runner {
         Self {
             workers,
             level,
-            spare: Places::default(),
-            spare_pending: Places::default(),
+            spare: SparePrimitives::default(),
+            spare_pending: SparePrimitives::default(),
             assemblies: Mutex::default(),
             seen: Mutex::default(),
         }

@@ -10,9 +10,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// Memory of jobs, place by place.
 #[derive(Debug, Default)]
-pub(crate) struct Places(Mutex<Vec<Primitives>>);
+pub(crate) struct SparePrimitives(Mutex<Vec<Primitives>>);
 
-impl Places {
+impl SparePrimitives {
     /// Memory for this many jobs, each to be taken once.
     pub(crate) fn take(&self, count: usize) -> Vec<Mutex<Primitives>> {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -49,7 +49,7 @@ mod tests {
 
     #[test]
     fn a_job_gets_the_memory_of_its_place() {
-        let places = Places::default();
+        let places = SparePrimitives::default();
         let job = |capacity| Primitives { records: Vec::with_capacity(capacity), ..Primitives::default() };
         let capacities = |jobs: &[Mutex<Primitives>]| -> Vec<usize> {
             jobs.iter().map(|job| job.lock().unwrap().records.capacity()).collect()

@@ -257,7 +257,7 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
             for corner in 0..corners {
                 let x = if corner & 1 == 0 { spot.x.near } else { spot.x.far };
                 let y = if corner & 2 == 0 { spot.y.near } else { spot.y.far };
-                let place = place(simd, spot, x, y);
+                let place = texel_coords(simd, spot, x, y);
                 let mut color = texels(simd, texture, spot, &place);
                 color = select_rgba(place.outside, border, color);
                 if let Some(reference) = spot.reference {
@@ -281,7 +281,7 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
 
 /// One raw texel a lane, each from its face.
 #[inline(always)]
-fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Place<S>) -> Rgba<S> {
+fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &TexelCoords8<S>) -> Rgba<S> {
     let index = place.index.to_array();
     // Fetch packed words lane by lane.
     if let Some(first) = Words::new(spot.shape) {
@@ -308,7 +308,7 @@ fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Place
 }
 
 /// Texels of one corner.
-struct Place<S: Simd> {
+struct TexelCoords8<S: Simd> {
     face: [u32; LANES],
     index: I32x8<S>,
     /// Lanes of the border colour.
@@ -319,7 +319,7 @@ struct Place<S: Simd> {
 
 /// Finds the texels `(x, y)` of the faces, which may lie one beyond their edges.
 #[inline(always)]
-fn place<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> Place<S> {
+fn texel_coords<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> TexelCoords8<S> {
     // Clamp the texel to the face.
     let Spot { shape, face, lanes, seamless, .. } = *spot;
     let (zero, last) = (I32x8::splat(simd, 0), I32x8::splat(simd, shape.size[0] as i32 - 1));
@@ -329,7 +329,7 @@ fn place<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> Plac
     let beyond = outside.to_bitmask() as u32 & lanes;
     let index = y.min(last_y).max(zero) * shape.size[0] as i32 + x.min(last).max(zero);
     if !seamless || beyond == 0 {
-        return Place { face: *face, index, outside, missing: 0 };
+        return TexelCoords8 { face: *face, index, outside, missing: 0 };
     }
 
     // Few lanes cross an edge: one by one.
@@ -347,7 +347,7 @@ fn place<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> Plac
         }
     }
     let index = I32x8::from_slice(simd, &numbers);
-    Place { face: faces, index, outside: mask_of(simd, 0), missing }
+    TexelCoords8 { face: faces, index, outside: mask_of(simd, 0), missing }
 }
 
 /// The face and texel next to `face` at `(x, y)`, one of which lies one texel beyond `0..size`; `None` if both do.

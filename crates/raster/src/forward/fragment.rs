@@ -65,7 +65,7 @@ impl<'a> TilePlanes<'a> {
     }
 
     /// The same planes, for a while.
-    pub(crate) fn lend(&mut self) -> TilePlanes<'_> {
+    pub(crate) fn reborrow(&mut self) -> TilePlanes<'_> {
         let color = self.color.as_mut().map(|color| match color {
             ColorTile::Rgba8(tile) => ColorTile::Rgba8(tile),
             ColorTile::RgbaF32(tile) => ColorTile::RgbaF32(tile),

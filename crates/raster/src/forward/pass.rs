@@ -486,7 +486,7 @@ impl Runner {
         for (at, (index, tile)) in tiles.iter_mut().enumerate() {
             let strips = if cut.contains(&at) { strips } else { 1 };
             let seen = seen.find(|(number, _)| number == index).map(|(_, seen)| seen);
-            runs.push(run(*index, rows(0, strips), tile.lend(), seen));
+            runs.push(run(*index, rows(0, strips), tile.reborrow(), seen));
         }
         for ((index, (_, rows)), copy) in numbers.into_iter().zip(&others).zip(&mut copies) {
             runs.push(run(index, rows.clone(), copy.planes(scale, target.samples), None));

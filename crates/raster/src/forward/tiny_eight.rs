@@ -204,7 +204,7 @@ impl TileRun<'_> {
         for (stored, masks) in stored.as_chunks::<TILE_PIXELS>().0.iter().zip(&mut seen.masks).take(count) {
             for facet in 0..waiting.eight.len() {
                 let (face, first) = (face(facet), waiting.eight.first(facet));
-                for place in places(masks[facet]) {
+                for place in set_bits(masks[facet]) {
                     let holds = stencil_holds(face, stored[pixel(first, place) % TILE_PIXELS]);
                     masks[facet] &= !(u64::from(!holds) << place);
                 }
@@ -255,7 +255,7 @@ impl TileRun<'_> {
         for (sample, stored) in stored.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().enumerate().take(count) {
             for (facet, &mask) in seen.masks[sample].iter().enumerate().take(eight.len()) {
                 let first = eight.first(facet);
-                for place in places(mask) {
+                for place in set_bits(mask) {
                     stored[pixel(first, place) % TILE_PIXELS] = eight.depth(facet, place, sample % N);
                 }
             }
@@ -341,7 +341,7 @@ impl TileRun<'_> {
                 words[lane] = word;
                 shown[lane] = if passes { shown[lane] } else { 0 };
             }
-            places(shown.iter().fold(0, |all, mask| all | mask)).for_each(|place| each[place] = words);
+            set_bits(shown.iter().fold(0, |all, mask| all | mask)).for_each(|place| each[place] = words);
         } else if can_batch_facets(draw) {
             let tile = [self.x, self.y];
             let Some(colors) = EightFacets::new(simd, eight, &facets, (draw, job.primitives), tile) else {
@@ -385,7 +385,7 @@ impl TileRun<'_> {
             return;
         }
         for facet in (0..eight.len()).filter(|&facet| seen.any[facet] != 0) {
-            places(seen.any[facet]).for_each(|place| words[place % PLACES] = each[place % PLACES][facet]);
+            set_bits(seen.any[facet]).for_each(|place| words[place % PLACES] = each[place % PLACES][facet]);
             let (block, masks) = (eight.block(facet, seen.any[facet]), seen.masks.map(|masks| masks[facet]));
             block::colors(simd, &block, &mut self.planes, (&draw.ops, draw.state), &Words::Each(words), &masks);
         }
@@ -473,7 +473,7 @@ fn bring<S: Simd, const M: usize>(
             for facet in 0..eight.len() {
                 let (first, masks) = (eight.first(facet), seen.masks_of::<M>(facet));
                 for s in 0..M {
-                    for place in places(masks[s]) {
+                    for place in set_bits(masks[s]) {
                         let value = &mut values[s][pixel(first, place) % TILE_PIXELS];
                         let new = each[place % PLACES][facet];
                         *value = if adds { add_words(new, *value) } else { new };
@@ -526,7 +526,7 @@ fn test_by<const M: usize>(
     for facet in 0..eight.len() {
         let (first, mut masks) = (eight.first(facet), seen.masks_of::<M>(facet));
         for s in 0..M {
-            for place in places(masks[s]) {
+            for place in set_bits(masks[s]) {
                 let old = &mut stored[s][pixel(first, place) % TILE_PIXELS];
                 let new = eight.depth(facet, place, depths[s]);
                 let pass = passes(new, *old);

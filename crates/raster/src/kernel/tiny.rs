@@ -61,7 +61,7 @@ impl Default for TinyEight {
 
 /// The places whose bits are set, from the lowest on.
 #[inline(always)]
-pub(crate) fn places(mut bits: u64) -> impl Iterator<Item = usize> {
+pub(crate) fn set_bits(mut bits: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let place = (bits != 0).then_some(bits.trailing_zeros() as usize);
         bits &= bits.wrapping_sub(1);
@@ -396,7 +396,7 @@ mod tests {
                                     2.0 * eight.depth(triangle, place, sample),
                                 )
                             };
-                            found.extend(places(mask).map(pixel_of));
+                            found.extend(set_bits(mask).map(pixel_of));
                         }
                         let mut expected = Vec::new();
                         for (triangle, setup) in setups.iter().enumerate() {

@@ -234,7 +234,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         words: &mut [[u32; LANES]; PLACES],
     ) {
         if self.draw.state.units.is_empty() && self.draw.state.alpha_test.is_none() {
-            for place in places(shown.iter().fold(0, |all, mask| all | mask)) {
+            for place in set_bits(shown.iter().fold(0, |all, mask| all | mask)) {
                 let weights = self.weights(simd, eight, place, tile);
                 let mut color = value(&weights, &self.values.color);
                 if let Some(state) = &self.draw.state.fog {
@@ -272,7 +272,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         let lane = F32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
         // Interpolate at each place of the boxes where some facet shows.
-        for place in places(shown.iter().fold(0, |all, mask| all | mask)) {
+        for place in set_bits(shown.iter().fold(0, |all, mask| all | mask)) {
             let weights = self.weights(simd, eight, place, tile);
             let mut numbers = [splat(simd, 0.0); NUMBERS];
             let mut keep = lanes::inlined(

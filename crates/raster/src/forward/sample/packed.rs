@@ -115,7 +115,7 @@ impl<'a> Packed<'a> {
     /// linearly and those of a group need the same levels, as nearly always. Groups go through each step together: texels take long to
     /// come, and none needs wait for another's.
     #[inline(always)]
-    pub(crate) fn together<S: Simd, V: Floats<S>, const N: usize>(
+    pub(crate) fn sample_batch<S: Simd, V: Floats<S>, const N: usize>(
         &self,
         simd: S,
         places: &[([V; 2], V); N],

@@ -339,7 +339,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                     |k| number((4 + 4 * i + k) % FOG),
                 );
                 let texture = match common {
-                    PackedTexture::Flat(packed) => match packed.together(simd, &[([a, b], c)], active) {
+                    PackedTexture::Flat(packed) => match packed.sample_batch(simd, &[([a, b], c)], active) {
                         Some([words]) => packed.meaning(words),
                         None => packed.at(simd, [a, b], c, active),
                     },

@@ -291,7 +291,7 @@ impl<'d> Shader<'d> {
             #[inline(always)]
             || {
                 let places = self.places(simd, (unit, packed, at), weights);
-                packed.together(simd, &places, u32::MAX)
+                packed.sample_batch(simd, &places, u32::MAX)
             },
         )
     }
@@ -334,7 +334,7 @@ impl<'d> Shader<'d> {
                 }
                 // Places and levels of all groups come first: each takes long, but they need not wait for each other.
                 let places = self.places(simd, (unit, packed, at), &groups.weights);
-                if let Some(words) = packed.together(simd, &places, groups.active) {
+                if let Some(words) = packed.sample_batch(simd, &places, groups.active) {
                     for i in 0..N {
                         colors[i] = modulate(format, &packed.meaning(words[i]), colors[i]);
                     }

@@ -152,7 +152,7 @@ impl ColorGrid {
 
             // Fetch the corners of the remaining places one by one.
             if rest != 0 {
-                out[i] = self.apart(simd, cell, &words);
+                out[i] = self.interpolate_each(simd, cell, &words);
             }
         }
         out
@@ -180,7 +180,7 @@ impl ColorGrid {
 
     /// The colours of places in different cells.
     #[inline(always)]
-    fn apart<S: Simd, V: Floats<S>>(
+    fn interpolate_each<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
         cell: &Cell<S, V>,
@@ -287,9 +287,10 @@ mod tests {
 
     #[test]
     fn colours_are_those_of_the_small_triangles_and_shaded_once() {
-        let apart = [[0.0, 0.0], [0.3, 0.2], [7.3, 0.9], [8.5, 0.5], [2.9, 1.8], [19.0, 2.0], [7.9, 1.1], [1.0, 1.0]];
+        let interpolate_each =
+            [[0.0, 0.0], [0.3, 0.2], [7.3, 0.9], [8.5, 0.5], [2.9, 1.8], [19.0, 2.0], [7.9, 1.1], [1.0, 1.0]];
         let within = [0.0, 0.2, 0.4, 0.5, 0.7, 0.9, 0.1, 0.3].map(|x| [7.0 + x, 1.0 + x * x]);
-        for (rising, places) in [(false, apart), (true, apart), (false, within), (true, within)] {
+        for (rising, places) in [(false, interpolate_each), (true, interpolate_each), (false, within), (true, within)] {
             for (name, level) in available_levels() {
                 let mut colors = GridColors::default();
                 colors.add([9, 9], true);

@@ -132,11 +132,11 @@ impl Shape {
         let mut mean = point;
         if T::any(large) {
             let whole = match self.radius {
-                Some(radius) => zero.apart(
+                Some(radius) => zero.outlined(
                     #[inline(always)]
                     || self.disc(position, n, to, height, radius),
                 ),
-                None => zero.apart(
+                None => zero.outlined(
                     #[inline(always)]
                     || self.polygon(position, n, height),
                 ),

@@ -116,24 +116,24 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
     let Some(place) = Placed::new(setup, tile, &window, pattern) else { return };
     if place.columns[1] - place.columns[0] < LANES && place.is_small() {
         match pattern.len() {
-            1 => rows_apart::<S, K, 1>(simd, setup, &place, pattern, sink),
-            4 => rows_apart::<S, K, 4>(simd, setup, &place, pattern, sink),
-            32 => rows_apart::<S, K, 32>(simd, setup, &place, pattern, sink),
-            _ => rows_apart::<S, K, 16>(simd, setup, &place, pattern, sink),
+            1 => rows_outlined::<S, K, 1>(simd, setup, &place, pattern, sink),
+            4 => rows_outlined::<S, K, 4>(simd, setup, &place, pattern, sink),
+            32 => rows_outlined::<S, K, 32>(simd, setup, &place, pattern, sink),
+            _ => rows_outlined::<S, K, 16>(simd, setup, &place, pattern, sink),
         }
     } else {
         match pattern.len() {
-            1 => blocks_apart::<S, K, 1>(simd, setup, &place, pattern, sink),
-            4 => blocks_apart::<S, K, 4>(simd, setup, &place, pattern, sink),
-            32 => blocks_apart::<S, K, 32>(simd, setup, &place, pattern, sink),
-            _ => blocks_apart::<S, K, 16>(simd, setup, &place, pattern, sink),
+            1 => blocks_outlined::<S, K, 1>(simd, setup, &place, pattern, sink),
+            4 => blocks_outlined::<S, K, 4>(simd, setup, &place, pattern, sink),
+            32 => blocks_outlined::<S, K, 32>(simd, setup, &place, pattern, sink),
+            _ => blocks_outlined::<S, K, 16>(simd, setup, &place, pattern, sink),
         }
     }
 }
 
 /// [`walk_rows`] as a function of its own: all in one would be a function over which WebAssembly's compiler takes minutes.
 #[inline(never)]
-fn rows_apart<S: Simd, K: RowSink<S>, const MOST: usize>(
+fn rows_outlined<S: Simd, K: RowSink<S>, const MOST: usize>(
     simd: S,
     setup: &Setup,
     place: &Placed,
@@ -148,7 +148,7 @@ fn rows_apart<S: Simd, K: RowSink<S>, const MOST: usize>(
 
 /// [`walk_blocks`] as a function of its own.
 #[inline(never)]
-fn blocks_apart<S: Simd, K: RowSink<S>, const MOST: usize>(
+fn blocks_outlined<S: Simd, K: RowSink<S>, const MOST: usize>(
     simd: S,
     setup: &Setup,
     place: &Placed,

@@ -29,7 +29,7 @@ pub(crate) fn first_sample(tile: &Tile, pattern: &SamplePattern, sample: usize, 
     [(tile.x as usize + x) as i32 * SUBPIXEL + sx, tile.y as i32 * SUBPIXEL + sy]
 }
 
-/// What a facet met at eight samples.
+/// The depth test of a facet at eight samples.
 pub(crate) struct DepthTest8<S: Simd> {
     /// The facet is nearer than what was there; of equally near ones it is the lower.
     nearer: Mask8<S>,

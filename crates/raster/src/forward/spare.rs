@@ -8,7 +8,7 @@ use super::assemble::{PieceScratch, Primitives};
 use crate::Unsorted;
 use std::sync::{Mutex, PoisonError};
 
-/// Memory of jobs, place by place.
+/// Memory of jobs, by the number of the job.
 #[derive(Debug, Default)]
 pub(crate) struct SparePrimitives(Mutex<Vec<Primitives>>);
 

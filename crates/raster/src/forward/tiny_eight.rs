@@ -14,7 +14,7 @@ use super::pass::{DrawContext, facet_of};
 use super::shade::{EightFacets, FacetPixels, Scratch, Shader, can_batch_facets};
 use super::state::{Compare, DepthTest};
 use super::tile::TileRun;
-use crate::kernel::tiny::{PLACES, TinyEight, pixel, places};
+use crate::kernel::tiny::{PLACES, TinyEight, pixel, set_bits};
 use crate::{BLOCK, SamplePattern, TILE_PIXELS};
 use vitral_math::lanes::{LANES, Simd};
 
@@ -392,7 +392,7 @@ impl TileRun<'_> {
     }
 }
 
-/// Pixels of eight tiny facets that still count.
+/// The samples of eight tiny facets that have passed all tests so far.
 #[derive(Clone, Copy)]
 struct LiveSamples {
     /// Those of each facet, sample by sample.

@@ -59,7 +59,7 @@ impl Default for TinyEight {
     }
 }
 
-/// The places whose bits are set, from the lowest on.
+/// The positions of the set bits, from the lowest on.
 #[inline(always)]
 pub(crate) fn set_bits(mut bits: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {

@@ -53,7 +53,7 @@ pub(crate) struct TexelCache {
     blocks: Vec<(usize, BlockWords)>,
 }
 
-/// No sight.
+/// A block without cached colours.
 const NONE: usize = usize::MAX;
 
 impl TexelCache {

@@ -19,7 +19,7 @@ use crate::forward::sample::packed::Packed;
 use crate::forward::sample::packed_cube::PackedCube;
 use crate::forward::state::{EnvironmentMode, Unit};
 use crate::forward::wide::{Rgba, bits_of, max, saturate_rgba, splat, splat_rgba};
-use crate::kernel::tiny::{PLACES, TinyEight, places};
+use crate::kernel::tiny::{PLACES, TinyEight, set_bits};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, F64x8, I32x8, LANES, Simd};
 

@@ -81,8 +81,8 @@ impl KnownSolidity {
     }
 }
 
-/// With more corners at a vertex its sides are sorted.
-const MANY: u32 = 64;
+/// Corners at a vertex above which its sides are sorted instead of searched.
+const SORT_THRESHOLD: u32 = 64;
 /// Not an edge.
 const NONE: u32 = u32::MAX;
 
@@ -228,7 +228,9 @@ impl<'a> Skins<'a> {
                 let vertex = lower.wrapping_sub(*first_vertex) as usize;
                 match degrees.get(vertex) {
                     None => {}
-                    Some(&degree) if degree > MANY => seen.long.push((lower, Use::new(higher, face, from > to))),
+                    Some(&degree) if degree > SORT_THRESHOLD => {
+                        seen.long.push((lower, Use::new(higher, face, from > to)))
+                    }
                     Some(_) => seen.use_edge(vertex, Use::new(higher, face, from > to)),
                 }
             }

@@ -69,7 +69,7 @@ pub(crate) fn stippled(pattern: &[u32; 32], (left, bottom): (usize, usize)) -> u
 }
 
 /// Rows of a block that are computed together.
-const TWO: usize = 2;
+const ROWS_AT_ONCE: usize = 2;
 
 /// A triangle's depths in a block, for one of its samples: those of row `k` are `across + rows[k]`.
 #[derive(Clone, Copy)]
@@ -124,7 +124,7 @@ impl<'a, S: Simd> Test<'a, S> {
 #[inline(always)]
 fn pairs(mut mask: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
-        let row = mask.trailing_zeros() as usize / (TWO * BLOCK) * TWO;
+        let row = mask.trailing_zeros() as usize / (ROWS_AT_ONCE * BLOCK) * ROWS_AT_ONCE;
         let found = (mask != 0).then_some(row);
         mask &= !(0xffff_u64.wrapping_shl((BLOCK * row) as u32));
         found
@@ -133,7 +133,7 @@ fn pairs(mut mask: u64) -> impl Iterator<Item = usize> {
 
 /// Two rows of a tile's plane of samples, eight pixels each: those from `at` on.
 #[inline(always)]
-fn rows_from<T>(plane: &mut [T], at: usize) -> [&mut [T]; TWO] {
+fn rows_from<T>(plane: &mut [T], at: usize) -> [&mut [T]; ROWS_AT_ONCE] {
     let (first, second) = plane[at..at + TILE + LANES].split_at_mut(TILE);
     [&mut first[..LANES], second]
 }
@@ -310,7 +310,7 @@ fn fill<S: Simd>(simd: S, block: &Block, values: &mut [f32], count: usize, test:
     for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
         let slope = &test.slopes[s % SAMPLES];
         let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
-        for row in (0..BLOCK).step_by(TWO) {
+        for row in (0..BLOCK).step_by(ROWS_AT_ONCE) {
             let [first, second] = rows_from(plane, row * TILE);
             let (low, high) = slope.two_rows(simd, row, test.limits, test.scale).split();
             low.store_slice(first);
@@ -496,12 +496,12 @@ pub(crate) fn update_stencil<S: Simd>(
 /// Sets the bytes of a row whose bits are set.
 #[inline(always)]
 fn replace_bytes(row: &mut [u8], bits: u32, value: u8) {
-    const EACH: u64 = 0x0101_0101_0101_0101;
+    const LOW_BITS: u64 = 0x0101_0101_0101_0101;
     if let Some(row) = row.first_chunk_mut::<8>() {
         // Bit i of byte i, then all bits of the bytes that are not 0.
-        let single = (u64::from(bits) * EACH) & 0x8040_2010_0804_0201;
-        let mask = (((single | ((single & !(EACH << 7)) + (!(EACH << 7)))) >> 7) & EACH) * 0xff;
-        *row = ((u64::from_le_bytes(*row) & !mask) | ((u64::from(value) * EACH) & mask)).to_le_bytes();
+        let single = (u64::from(bits) * LOW_BITS) & 0x8040_2010_0804_0201;
+        let mask = (((single | ((single & !(LOW_BITS << 7)) + (!(LOW_BITS << 7)))) >> 7) & LOW_BITS) * 0xff;
+        *row = ((u64::from_le_bytes(*row) & !mask) | ((u64::from(value) * LOW_BITS) & mask)).to_le_bytes();
     }
 }
 
@@ -619,7 +619,7 @@ fn each_two_rows<S: Simd>(
     mix: impl Fn(U32x16<S>, U32x16<S>) -> U32x16<S>,
 ) {
     for row in pairs(mask) {
-        let new = U32x16::from_slice(simd, &words[BLOCK * row..BLOCK * (row + TWO)]);
+        let new = U32x16::from_slice(simd, &words[BLOCK * row..BLOCK * (row + ROWS_AT_ONCE)]);
         let [first, second] = rows_from(stored, row * TILE);
         let old = U32x8::from_slice(simd, first).combine(U32x8::from_slice(simd, second));
         let new = mix(new, old);

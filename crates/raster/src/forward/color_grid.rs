@@ -22,8 +22,8 @@ pub struct ColorGrid {
     rising: bool,
 }
 
-/// Places in more cells are looked up one by one.
-const FEW: usize = 3;
+/// Cells that a group of places is interpolated in cell by cell; places in further cells are interpolated one by one.
+const MAX_CELLS: usize = 3;
 
 /// Colours of eight vertices of a row: two words each, red and green, blue and alpha.
 type EightColors = [AtomicU64; 2 * LANES];
@@ -139,7 +139,7 @@ impl ColorGrid {
         for i in 0..N {
             let cell = &cells[i];
             let mut rest = u32::MAX >> (u32::BITS as usize - V::LEN);
-            for _ in 0..FEW {
+            for _ in 0..MAX_CELLS {
                 let lane = rest.trailing_zeros() as usize;
                 let one = [cell.i.as_slice()[lane], cell.j.as_slice()[lane]];
                 let there = cell.there(one);

@@ -61,14 +61,15 @@ enum Known {
     Drawn(Box<[f32; TILE_PIXELS]>),
 }
 
-/// So many lookups in a tile of many triangles go through boxes before it is drawn: small pictures have no more.
-const PATIENCE: u32 = 48;
+/// Lookups in a tile of many triangles after which it is drawn; before, each searches the boxes. Small pictures need no more.
+const DRAW_THRESHOLD: u32 = 48;
 
-/// So many lookups in a tile of few go through boxes before it has an index.
-const SHORT_PATIENCE: u32 = 24;
+/// Lookups in a tile of few triangles after which it gets an index; before, each searches the boxes.
+/// Measured: benches/results/2026-11-23-eights.md.
+const INDEX_THRESHOLD: u32 = 24;
 
-/// As many tiles are known only where a large picture asks: then it pays to know any tile at the first lookup.
-const MANY: u32 = 32;
+/// Number of drawn or indexed tiles that only a large picture reaches. From there on, every tile is prepared at its first lookup.
+const LARGE_PICTURE_TILES: u32 = 32;
 
 /// Tiles that a thread looks at in one go when a pass is left.
 const PIECE: usize = 256;
@@ -423,12 +424,12 @@ impl PendingDepth {
         pending.known.get().or_else(
             #[inline(always)]
             || {
-                let patience = if self.known.load(Ordering::Relaxed) >= MANY {
+                let patience = if self.known.load(Ordering::Relaxed) >= LARGE_PICTURE_TILES {
                     0
                 } else if pending.count as usize > tile_index::MOST {
-                    PATIENCE
+                    DRAW_THRESHOLD
                 } else {
-                    SHORT_PATIENCE
+                    INDEX_THRESHOLD
                 };
                 let patient = pending.asked.fetch_add(count, Ordering::Relaxed) < patience;
                 (!patient).then(|| pending.known.get_or_init(|| self.know(tile)))

@@ -212,8 +212,8 @@ impl Interpolation {
     }
 }
 
-/// From so many pixels of a block on all are coloured, which costs less for each.
-const MANY: u32 = 24;
+/// Blocks with more covered pixels are shaded whole, without compaction, which is cheaper per pixel.
+const WHOLE_BLOCK_THRESHOLD: u32 = 24;
 
 pub(super) const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
 
@@ -476,7 +476,7 @@ impl<'a> Shader<'a> {
     ) -> u64 {
         // Shade blocks with many covered pixels whole.
         self.prepare(simd, setup);
-        if any.count_ones() > MANY && !lanes::is_oldest(simd.level()) {
+        if any.count_ones() > WHOLE_BLOCK_THRESHOLD && !lanes::is_oldest(simd.level()) {
             return self.whole(simd, (left, bottom), words) & any;
         }
         let mut passed = 0u64;

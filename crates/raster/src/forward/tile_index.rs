@@ -13,8 +13,8 @@ use crate::{SUBPIXEL, Setup, TILE};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, Floats, MaskOf, Simd};
 
-/// As many triangles fit.
-pub(crate) const MOST: usize = u128::BITS as usize;
+/// Triangles that an index holds at most, one bit each.
+pub(crate) const MAX_TRIANGLES: usize = u128::BITS as usize;
 
 /// Texels along a side of a block.
 const BLOCK: usize = 8;
@@ -64,9 +64,9 @@ pub(crate) struct Texels<S: Simd, V: Floats<S>> {
 }
 
 impl TileIndex {
-    /// Of at most [`MOST`] candidates in the tile whose first texel is `origin`.
+    /// Of at most [`MAX_TRIANGLES`] candidates in the tile whose first texel is `origin`.
     pub(crate) fn new(origin: [i32; 2], mut candidates: Vec<Candidate<'_>>) -> Self {
-        candidates.truncate(MOST);
+        candidates.truncate(MAX_TRIANGLES);
         candidates.sort_by(|a, b| b.bound.total_cmp(&a.bound));
         let mut blocks = [0; BLOCKS * BLOCKS];
         for (number, candidate) in candidates.iter().enumerate() {
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn texels_find_the_triangles_that_cover_them_from_the_highest_bound_on() {
-        let setups = triangles(MOST as u32, 64);
+        let setups = triangles(MAX_TRIANGLES as u32, 64);
         let mut boxes = Boxes::default();
         boxes.resize(setups.len());
         setups.iter().enumerate().for_each(|(at, setup)| boxes.set(at, box_of(setup, [64, 64]), setup.z_max));

@@ -16,8 +16,8 @@ use std::ops::Range;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Mask8, Simd, dispatch};
 
-/// Rows walked in a block before its far depth is computed anew.
-const PATIENCE: u32 = 16;
+/// Rows walked in a block between two computations of its far depth.
+const ROWS_PER_UPDATE: u32 = 16;
 /// Blocks along a tile's side.
 const BLOCKS: usize = TILE / BLOCK;
 /// All of a tile.
@@ -268,7 +268,7 @@ impl NearestDepths {
     #[inline(always)]
     fn note<S: Simd>(&mut self, simd: S, block: usize, rows: u32) {
         self.walked[block] += rows;
-        if self.walked[block] < PATIENCE {
+        if self.walked[block] < ROWS_PER_UPDATE {
             return;
         }
         self.walked[block] = 0;

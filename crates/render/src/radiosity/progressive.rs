@@ -65,7 +65,7 @@ const STRONG: (f64, f64) = (512.0, 1.0 / 64.0);
 /// stays needs pixels, too.
 const MOST_LEAVING: f64 = 16.0;
 /// Elements that are few. More are smaller, and fewer pixels show each: hemicubes have so many times as many.
-const FEW: usize = 8192;
+const FEW_ELEMENTS: usize = 8192;
 
 /// Shoots until at most `residual` of the light that stays in the scene is left, or `most` shots were made. Of the `hemicubes`, at least one, from
 /// coarse to fine, the finest are for the patches with the most light, whose errors show the most.
@@ -243,7 +243,7 @@ fn receive(receivers: &[Receiver], seen: &Seen, sent: &Color, unsent: &mut [Colo
 fn fineness(hemicubes: &[Hemicube], part: f64, elements: usize) -> usize {
     let (last, (side, strong)) = (hemicubes.len() - 1, STRONG);
     let side = side.min(f64::from(hemicubes[last].side()));
-    let needed = side * side * (part / strong).min(1.0) * (elements as f64 / FEW as f64).max(1.0);
+    let needed = side * side * (part / strong).min(1.0) * (elements as f64 / FEW_ELEMENTS as f64).max(1.0);
     let enough = |hemicube: &Hemicube| f64::from(hemicube.side() * hemicube.side()) >= needed;
     hemicubes.iter().position(enough).unwrap_or(last)
 }
@@ -352,8 +352,8 @@ mod tests {
         for (part, expected) in
             [(1.0, 2), (strong, 2), (strong / 3.9, 2), (strong / 4.0, 1), (strong / 16.0, 0), (0.0, 0)]
         {
-            assert_eq!(fineness(&hemicubes, part, FEW), expected, "{part}");
-            assert_eq!(fineness(&hemicubes, part / 4.0, 4 * FEW), expected, "{part} of smaller elements");
+            assert_eq!(fineness(&hemicubes, part, FEW_ELEMENTS), expected, "{part}");
+            assert_eq!(fineness(&hemicubes, part / 4.0, 4 * FEW_ELEMENTS), expected, "{part} of smaller elements");
             assert_eq!(fineness(&hemicubes, part, 1), expected, "{part} of large elements");
         }
         assert_eq!(fineness(&hemicubes[..1], 1.0, 9), 0, "there is no finer one");

@@ -35,8 +35,8 @@ pub(super) struct Solid {
     pub(super) planes: [(DVec3, DVec3); 4],
 }
 
-/// Where more transparent triangles may filter the light on a facet, each place asks for its own.
-const MANY: usize = 512;
+/// Transparent triangles up to which all points of a facet share one list of filters; with more, each point searches its own.
+const MAX_SHARED_FILTERS: usize = 512;
 
 /// Whether `a` comes first: any order will do that is the same for all.
 #[inline(always)]
@@ -239,7 +239,7 @@ impl Casters {
         let triangles = self.filters.triangles();
         let near = near(light, triangles.extent);
         let mut nearer = Vec::new();
-        let list = if list.len() > MANY {
+        let list = if list.len() > MAX_SHARED_FILTERS {
             self.filters_near(&Shaft::between(place, place, light, triangles.extent), &mut nearer);
             &nearer
         } else {

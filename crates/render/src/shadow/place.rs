@@ -29,7 +29,7 @@ pub(crate) struct Facet {
 /// How far places keep from edges, in heights to which they are lifted: enough between walls that meet at 15 degrees.
 const MARGIN: f64 = 4.0;
 /// No least weight is larger: facets may be smaller than the margin.
-const MOST: f64 = 0.1;
+const MAX_LEAST_WEIGHT: f64 = 0.1;
 
 /// The margin in a world of this half-width.
 fn margin(extent: f64) -> f64 {
@@ -47,7 +47,7 @@ fn least_weights([a, b, c]: &[DVec3; 3], margin: f64) -> [f64; 3] {
 /// NaN, where there is no area, becomes a number.
 #[inline(always)]
 fn least_weight(weight: f64) -> f64 {
-    if weight < MOST { weight } else { MOST }
+    if weight < MAX_LEAST_WEIGHT { weight } else { MAX_LEAST_WEIGHT }
 }
 
 /// What all points of an object have in common.

@@ -140,11 +140,11 @@ impl<'a> Words<'a> {
     #[inline(always)]
     pub(super) fn finish<V: Lanes>(&self, color: [V; 4]) -> [V; 4] {
         // Times the reciprocal, which makes 1.0 of 255, and of a byte what rounds to that byte again.
-        const EACH: f32 = 1.0 / 255.0;
+        const UNIT: f32 = 1.0 / 255.0;
         let [r, g, b, a] = color;
         match self.decode {
-            None => [r * EACH, g * EACH, b * EACH, a * EACH],
-            Some(_) => [r, g, b, a * EACH],
+            None => [r * UNIT, g * UNIT, b * UNIT, a * UNIT],
+            Some(_) => [r, g, b, a * UNIT],
         }
     }
 }

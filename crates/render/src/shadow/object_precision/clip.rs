@@ -3,13 +3,13 @@
 use crate::shadow::casters::{Solid, box_around};
 use vitral_math::DVec3;
 
-/// As many solids are clipped one by one.
-const FEW: usize = 6;
+/// Solids up to which a part is not divided: they are clipped one by one.
+const MAX_CLIPPED: usize = 6;
 /// Cuts above a part.
 const DEEPEST: u32 = 40;
 /// Cuts in a row that may leave more than three quarters of the solids to a part. Where solids meet in a line, cutting goes on and on
 /// along it and separates none: they are clipped one by one, too.
-const PATIENCE: u32 = 6;
+const MAX_VAIN_CUTS: u32 = 6;
 
 /// A part of a facet.
 #[derive(Clone, Copy, Debug)]
@@ -140,7 +140,7 @@ impl Cutter<'_> {
         } else {
             cuts.in_vain += 1;
         }
-        if solids.len() <= FEW || cuts.depth == DEEPEST || cuts.in_vain > PATIENCE {
+        if solids.len() <= MAX_CLIPPED || cuts.depth == DEEPEST || cuts.in_vain > MAX_VAIN_CUTS {
             return self.clip(polygon, &solids);
         }
         cuts.depth += 1;

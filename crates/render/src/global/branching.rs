@@ -6,7 +6,7 @@ use super::ray_scene::RayScene;
 use super::rays::{Branch, Haze, Rays, counts};
 use super::surface::Surface;
 use crate::shading::{Bounce, ShadedPoints, Strata};
-use crate::shadow::{Place, hash};
+use crate::shadow::{SurfacePoint, hash};
 use crate::stats::TracingCounters;
 use vitral_light::{reflected_share, transmitted};
 use vitral_math::{DVec3, func};
@@ -183,7 +183,7 @@ impl Branching<'_> {
         &self,
         branch: &Branch,
         (surface, haze): (&Surface, &Haze),
-        place: &Place,
+        place: &SurfacePoint,
         rays: &mut Rays,
         counters: &mut TracingCounters,
     ) {

@@ -41,7 +41,7 @@ use crate::raytrace::intersect::Ray;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::{FrameConstants, Front, Hit, Points, ShadedPoints, Strata, Tracer, shade_hits};
-use crate::shadow::Place;
+use crate::shadow::SurfacePoint;
 use crate::stats::TracingCounters;
 use crate::visible::nearer;
 use crate::{Execution, Settings};
@@ -164,7 +164,7 @@ impl<'a> Whitted<'a> {
         for &target in targets {
             // Trace the eye's ray to the first surface.
             let bounce = lit.bounces[target as usize];
-            let Place { position, facet: number, .. } = bounce.place;
+            let SurfacePoint { position, facet: number, .. } = bounce.place;
             let (direction, travelled) = scene.eye_ray(position);
             let (corners, from_behind) = scene.seen(direction, number);
             let touches = front.touching.binary_search(&number).is_ok();

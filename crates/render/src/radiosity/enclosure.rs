@@ -20,7 +20,7 @@ use super::targets::Targets;
 use super::walls;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{Place, facet as facet_of};
+use crate::shadow::{SurfacePoint, facet as facet_of};
 use crate::{Execution, Session, Settings};
 use std::sync::Arc;
 use vitral_exec::Limit;
@@ -214,7 +214,7 @@ impl Enclosure {
         let Some(direct) = Direct::new(session, lights, settings, execution)? else { return Ok(()) };
         let arriving = execution.workers.map(self.emission.len(), |i| {
             let element = &self.elements[i / 2];
-            let side = Place {
+            let side = SurfacePoint {
                 position: element.center,
                 normal: element.normal * turned(i),
                 facet: self.trees.facet_of_piece(self.trees.nodes[element.node as usize].facet),

@@ -13,7 +13,7 @@ use super::shade::shade_hits;
 use super::shaded_points::ShadedPoints;
 use crate::PreparedView;
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{self, Place};
+use crate::shadow::{self, SurfacePoint};
 use vitral_exec::{Budget, Limit};
 use vitral_math::lanes::dispatch;
 use vitral_math::{DVec3, DVec4};
@@ -101,7 +101,7 @@ fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, cor
             (false, false) => in_view + DVec3::Z,
         };
         let seed = facet.wrapping_mul(0x9e37_79b9) ^ corner as u32;
-        let place = Place { position, normal, facet, seed, pixel: None };
+        let place = SurfacePoint { position, normal, facet, seed, pixel: None };
         hits.push(Hit { weights, origin: origin.as_vec3().to_array(), place, row: Some(row_of(view, at)) });
         corners.push(LitCorner { facet, corner: corner as u8, world: at, view: in_view, color: [0.0; 4] });
     }

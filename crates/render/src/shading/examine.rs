@@ -28,7 +28,7 @@ use crate::Shading;
 use crate::display::encode;
 use crate::marks::MarkColors;
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{Occluders, Place, blocker};
+use crate::shadow::{Occluders, SurfacePoint, blocker};
 use crate::transparency::MOST_SAMPLES;
 use vitral_light::{
     Illumination, Light, Microfacet, Phong, Reflected, Rgb, ambient_term, microfacet_terms, phong_terms, sum_of_terms,
@@ -292,7 +292,7 @@ impl Examination<'_> {
     }
 
     /// The shadow of each light at a place.
-    fn shadows(&self, visibility: &[Rgb], place: &Place) -> Vec<ShadowOfLight> {
+    fn shadows(&self, visibility: &[Rgb], place: &SurfacePoint) -> Vec<ShadowOfLight> {
         let session = self.constants.view.session;
         let of_light = |(&light, &visibility): (&usize, &Rgb)| {
             let mut shadow = ShadowOfLight { light, visibility, attached: false, blocker: None, distance: None };
@@ -444,7 +444,7 @@ fn finished(
 }
 
 /// Whether the facet of a place faces away from a light.
-fn faces_away(light: &Light, place: &Place, center: vitral_math::DVec3) -> bool {
+fn faces_away(light: &Light, place: &SurfacePoint, center: vitral_math::DVec3) -> bool {
     use vitral_light::{AreaShape, LightKind};
     let at = |p: vitral_math::DVec3| place.normal.dot(p - center - place.position) <= 0.0;
     match &light.kind {

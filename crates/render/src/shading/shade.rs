@@ -18,7 +18,7 @@ use super::surface_parameters::SurfaceParameters;
 use super::{depth_cue, flat, glow, gouraud, hits, phong, shadowed};
 use crate::Shading;
 use crate::radiosity::Solution;
-use crate::shadow::Places;
+use crate::shadow::SurfacePoints;
 use crate::transparency::{filtered, linear};
 use vitral_light::Reflected;
 use vitral_math::lanes::prelude::*;
@@ -102,7 +102,7 @@ pub(crate) fn shade_hits<S: Simd>(
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         let [light_visibility, behind] = if material.model.needs_light_visibility() {
-            let places: Places = order.iter().map(|&p| hits[p as usize].place).collect();
+            let places: SurfacePoints = order.iter().map(|&p| hits[p as usize].place).collect();
             shadowed::light_visibility_on_sides(constants, material.scatters.is_some(), places, &mut lit.shadow_rays)
         } else {
             [Vec::new(), Vec::new()]

@@ -10,7 +10,7 @@
 
 use super::FrameConstants;
 use super::points::{NO_POINT, Points, Source, samples_in};
-use crate::shadow::{Parts, Places, grey};
+use crate::shadow::{Parts, SurfacePoints, grey};
 use vitral_raster::TILE;
 
 /// What must differ between neighbours. Answers about area lights differ by chance, so it takes more.
@@ -41,8 +41,8 @@ pub(super) fn soften(
     points: &Points,
     order: &[u32],
     parts: &mut [Parts],
-    place: impl Fn(&Questions) -> Places,
-    ask: impl Fn(&Places) -> Vec<Parts>,
+    place: impl Fn(&Questions) -> SurfacePoints,
+    ask: impl Fn(&SurfacePoints) -> Vec<Parts>,
 ) {
     // Ask beyond the border of the tile.
     let mut beyond = Questions::new();

@@ -12,7 +12,7 @@ use super::shadow_edges::{self, Questions};
 use super::slots::Slots;
 use super::subject::Subject;
 use super::terminator;
-use crate::shadow::{Parts, Place, Places, Placing, Shadows, grey};
+use crate::shadow::{Parts, Placing, Shadows, SurfacePoint, SurfacePoints, grey};
 use std::cell::Cell;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Simd, V3};
@@ -35,7 +35,7 @@ pub(crate) fn light_visibility<S: Simd>(
     // Place the points, eight at a time.
     let placing = placing(constants, subject);
     let corners = placing.facets(simd, facets.triangles());
-    let mut all = Places::with_capacity(order.len());
+    let mut all = SurfacePoints::with_capacity(order.len());
     for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
         simd.vectorize(
             #[inline(always)]
@@ -57,7 +57,7 @@ pub(crate) fn light_visibility<S: Simd>(
     if constants.view.pattern.len() > 1 && !constants.shadows.is_some_and(Shadows::is_smooth) {
         let asked = Cell::new(0);
         let place = |questions: &Questions| {
-            let mut places = Places::with_capacity(questions.numbers.len());
+            let mut places = SurfacePoints::with_capacity(questions.numbers.len());
             let all: Vec<(u32, [f32; 2])> =
                 questions.numbers.iter().copied().zip(questions.screen.iter().copied()).collect();
             for eight in all.chunks(LANES) {
@@ -84,7 +84,7 @@ pub(crate) fn light_visibility<S: Simd>(
         };
 
         // Count the rays of these samples.
-        let ask = |places: &Places| {
+        let ask = |places: &SurfacePoints| {
             let mut rays = 0;
             let parts = light_visibility_at(constants, places, &mut rays);
             asked.set(asked.get() + rays);
@@ -112,7 +112,7 @@ fn place_weights<S: Simd>(simd: S, subject: &Subject<'_>, facets: &FacetTable, s
 pub(crate) fn light_visibility_on_sides(
     constants: &FrameConstants<'_>,
     both: bool,
-    places: Places,
+    places: SurfacePoints,
     rays: &mut u64,
 ) -> [Vec<Parts>; 2] {
     let seen = light_visibility_at(constants, &places, rays);
@@ -123,7 +123,7 @@ pub(crate) fn light_visibility_on_sides(
 }
 
 /// Which part of each light reaches these places; empty without shadows. Adds the rays that it took.
-fn light_visibility_at(constants: &FrameConstants<'_>, places: &Places, rays: &mut u64) -> Vec<Parts> {
+fn light_visibility_at(constants: &FrameConstants<'_>, places: &SurfacePoints, rays: &mut u64) -> Vec<Parts> {
     let Some(shadows) = constants.shadows else { return Vec::new() };
     let of_light = |(number, &light): (usize, &usize)| {
         let mut parts = Parts::new(places.len(), [0.0; 3]);
@@ -142,7 +142,7 @@ pub(super) fn world_places<S: Simd>(
     subject: &Subject<'_>,
     slots: &Slots,
     weights: &[F<S>; 3],
-) -> [Place; LANES] {
+) -> [SurfacePoint; LANES] {
     let placing = placing(constants, subject);
     let facets = placing.eight_facets(simd, &slots.triangle);
     let places = placing.places(simd, (&slots.triangle, facets.each_ref()), weights, [&slots.x, &slots.y]);

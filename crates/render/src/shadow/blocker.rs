@@ -7,7 +7,7 @@
 //! Cost: a box test for each run of triangles of the scene.
 //! Source: \[Möller & Trumbore 1997\].
 
-use super::{Occluders, Place, clearance, facet};
+use super::{Occluders, SurfacePoint, clearance, facet};
 use crate::Session;
 use crate::raytrace::triangles::Triangles;
 use std::ops::Range;
@@ -33,7 +33,12 @@ struct Feeler {
 
 /// The first facet that keeps light of `light` from `place`; on the way to its middle, if it has a shape. `None` for ambient light
 /// and where nothing stands.
-pub(crate) fn blocker(session: &Session, occluders: &Occluders<'_>, light: &Light, place: &Place) -> Option<Blocker> {
+pub(crate) fn blocker(
+    session: &Session,
+    occluders: &Occluders<'_>,
+    light: &Light,
+    place: &SurfacePoint,
+) -> Option<Blocker> {
     // Aim at the light, or along the way its light comes.
     let world = &session.world;
     let center = Triangles::center_of(world);

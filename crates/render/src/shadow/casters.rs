@@ -5,7 +5,7 @@
 //! numbers, so that their solids leave no gap.
 
 use super::occluders::Occluders;
-use super::places::Place;
+use super::places::SurfacePoint;
 use super::rounding::{clearance, horizon};
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::shaft::Shaft;
@@ -92,12 +92,12 @@ pub(super) fn near(light: DVec4, extent: f32) -> f64 {
 }
 
 /// Where a place is looked at: a little above its facet.
-pub(super) fn lifted(place: &Place, extent: f32) -> DVec3 {
+pub(super) fn lifted(place: &SurfacePoint, extent: f32) -> DVec3 {
     place.position + place.normal * clearance(place.position, f64::from(extent))
 }
 
 /// Whether a place looks at the light. If not it is in its own shadow.
-pub(super) fn faces(place: &Place, light: DVec4) -> bool {
+pub(super) fn faces(place: &SurfacePoint, light: DVec4) -> bool {
     -place.normal.dot(away(light, place.position)) > horizon(place.position, light)
 }
 

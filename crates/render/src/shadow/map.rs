@@ -33,7 +33,7 @@ mod tiles;
 
 use super::casters::faces;
 use super::occluders::Occluders;
-use super::places::{Parts, Place, Places};
+use super::places::{Parts, SurfacePoint, SurfacePoints};
 use super::sources::Shares;
 use super::{ShadowAlgorithm, Shadows};
 use crate::{Execution, PreparedView, Session, Settings};
@@ -101,7 +101,7 @@ impl Shadows for Prepared {
         true
     }
 
-    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
+    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut Parts, _: &mut u64) {
         match &self.maps.0[light] {
             LightMaps::Unhindered => parts.fill([1.0; 3]),
             LightMaps::Infinity { towards, map } if self.cascades.is_none() => {
@@ -116,21 +116,22 @@ impl Shadows for Prepared {
                 let answers = self.answers(light, &[map], &questions, places);
                 questions.iter().zip(answers).for_each(|((_, number), answer)| parts.set(*number, answer));
             }
-            LightMaps::Places(emitters)
+            LightMaps::Positions(emitters)
                 if self.cascades.is_none()
                     && let [(from, maps)] = &emitters[..]
                     && let [map] = &maps[..] =>
             {
                 lookup::arriving(self.level, map, from.at, places, parts);
             }
-            LightMaps::Places(emitters) => {
+            LightMaps::Positions(emitters) => {
                 // Sum the shares of all positions of the light, each with its maps around it.
                 let mut shares = vec![Shares::default(); places.len()];
                 for (from, maps) in emitters {
                     let maps: Vec<_> = maps.iter().collect();
                     let weights: Vec<_> = places.iter().map(|place| from.weight(&place)).collect();
                     // What no map sees is lit: nothing has this number.
-                    let seeing = |p: Place| maps.iter().position(|m| m.lens.sees(p.position)).unwrap_or(usize::MAX);
+                    let seeing =
+                        |p: SurfacePoint| maps.iter().position(|m| m.lens.sees(p.position)).unwrap_or(usize::MAX);
                     let asking = places.iter().zip(&weights).enumerate().filter(|(_, (_, weight))| **weight > 0.0);
                     let questions: Vec<_> = asking.map(|(number, (place, _))| (seeing(place), number)).collect();
                     let mut answers = self.answers(light, &maps, &questions, places).into_iter();
@@ -146,7 +147,7 @@ impl Shadows for Prepared {
 
 impl Prepared {
     /// What maps of the whole scene, or sharper ones in their place, answer to questions: which map, about which place.
-    fn answers(&self, light: usize, maps: &[&Map], questions: &[(usize, usize)], places: &Places) -> Vec<Rgb> {
+    fn answers(&self, light: usize, maps: &[&Map], questions: &[(usize, usize)], places: &SurfacePoints) -> Vec<Rgb> {
         match &self.cascades {
             Some(cascades) => cascades.answers(self.level, light, maps, questions, places),
             None => lookup::answers(self.level, maps, questions, places),

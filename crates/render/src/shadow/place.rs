@@ -6,7 +6,7 @@
 //! Places keep a hair's breadth from the facet's edges. On an edge itself a place, lifted off its facet, would stand in the
 //! plane of a wall that begins there, and rounding would say on which side.
 
-use super::places::EightPlaces;
+use super::places::SurfacePoints8;
 use super::rounding::clearance;
 use crate::PreparedView;
 use crate::prepare::mirrors;
@@ -180,7 +180,7 @@ impl<'a> Placing<'a> {
         (triangles, facets): (&[u32; LANES], [&Facet; LANES]),
         weights: &[F32x8<S>; 3],
         screen: [&[f32; LANES]; 2],
-    ) -> EightPlaces {
+    ) -> SurfacePoints8 {
         // Interpolate the positions and turn normals to the viewer.
         let position = position(simd, &facets, weights);
         let mut normal = wide_columns(
@@ -193,7 +193,7 @@ impl<'a> Placing<'a> {
         }
 
         // Store the points lane by lane.
-        let mut places = EightPlaces {
+        let mut places = SurfacePoints8 {
             position: [[0.0; LANES]; 3],
             normal: [[0.0; LANES]; 3],
             facet: triangles.map(|triangle| self.instance.first_facet + triangle),

@@ -17,7 +17,7 @@
 use super::casters::{near, turned, wide};
 use super::hash::hash;
 use super::occluders::Occluders;
-use super::places::{Parts, Place, Places};
+use super::places::{Parts, SurfacePoint, SurfacePoints};
 use super::rounding::{clearance, horizon};
 use super::sources::{Area, Shares, Source};
 use super::{ShadowAlgorithm, Shadows};
@@ -76,7 +76,7 @@ const FINER: u32 = 8;
 const TOGETHER: usize = 64;
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64) {
+    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut Parts, rays: &mut u64) {
         let mut feelers = Vec::with_capacity(TOGETHER);
         // Trace several points at a time.
         for first in (0..places.len()).step_by(TOGETHER) {
@@ -127,7 +127,14 @@ struct Feeler {
 
 impl Prepared<'_> {
     /// The part of an area light that arrives at a place: a ray to each cell. Adds the rays.
-    fn area_part(&self, area: &Area, place: &Place, seed: u32, feelers: &mut Vec<Feeler>, rays: &mut u64) -> Rgb {
+    fn area_part(
+        &self,
+        area: &Area,
+        place: &SurfacePoint,
+        seed: u32,
+        feelers: &mut Vec<Feeler>,
+        rays: &mut u64,
+    ) -> Rgb {
         let emitters = (0..area.count()).map(|i| area.emitter(i, seed));
         let counting: Vec<_> = emitters.filter(|e| e.weight(place) > 0.0).collect();
         let ways = counting.iter().map(|e| (*place, e.at.truncate() - place.position));
@@ -146,7 +153,7 @@ impl Prepared<'_> {
     fn passing(
         &self,
         feelers: &mut Vec<Feeler>,
-        ways: impl Iterator<Item = (Place, DVec3)>,
+        ways: impl Iterator<Item = (SurfacePoint, DVec3)>,
         ends: bool,
         parts: &mut [Rgb],
     ) {
@@ -167,7 +174,7 @@ impl Prepared<'_> {
 
     /// The ray from a place along `way`, the parameter of its end, and the light, homogeneous; or what arrives, where that is known
     /// without one.
-    fn feeler(&self, place: &Place, way: DVec3, ends: bool) -> Result<(Ray, f32, DVec4), Rgb> {
+    fn feeler(&self, place: &SurfacePoint, way: DVec3, ends: bool) -> Result<(Ray, f32, DVec4), Rgb> {
         // Attached shadow; also a light in the facet's plane, or at the very place.
         let light = if ends { (place.position + way).extend(1.0) } else { way.extend(0.0) };
         if place.normal.dot(way) <= horizon(place.position, light) {

@@ -17,7 +17,7 @@
 //! Source: [Cook, Porter & Carpenter 1984]; the disc after [Shirley & Chiu 1997], shares after [Heitz, Hill & McGuire 2018].
 
 use super::hash::hash;
-use super::places::{Parts, Place, Places};
+use super::places::{Parts, SurfacePoint, SurfacePoints};
 use super::rounding::horizon;
 use std::f64::consts::FRAC_PI_4;
 use vitral_light::{AreaShape, Light, LightKind, Rgb};
@@ -108,7 +108,7 @@ impl Source {
 
 impl Emitter {
     /// The place's share in what the facet of `place` gets of the light; 0 if it looks away, 1 for a light of one place.
-    pub(super) fn weight(&self, place: &Place) -> f32 {
+    pub(super) fn weight(&self, place: &SurfacePoint) -> f32 {
         let way = self.at.truncate() - place.position * self.at.w;
         let cos = place.normal.dot(way);
         if self.normal == DVec3::ZERO {
@@ -137,7 +137,11 @@ impl Shares {
     }
 
     /// Parts from what arrives at each of the places, weighted, and added in the order of the emitters.
-    pub(super) fn normalize(emitters: impl Iterator<Item = Emitter> + Clone, places: &Places, parts: &mut Parts) {
+    pub(super) fn normalize(
+        emitters: impl Iterator<Item = Emitter> + Clone,
+        places: &SurfacePoints,
+        parts: &mut Parts,
+    ) {
         for (number, place) in places.iter().enumerate() {
             let whole: f32 = emitters.clone().map(|e| e.weight(&place)).sum();
             parts.set(number, Self { lit: parts.get(number), whole }.part());

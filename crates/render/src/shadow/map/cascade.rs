@@ -23,7 +23,7 @@ use super::light_maps::{Key, LightMaps, Maps};
 use super::tiles::Map;
 use super::{lookup, slice};
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::places::Places;
+use crate::shadow::places::SurfacePoints;
 use crate::{Cached, Reuse};
 use vitral_exec::Limit;
 use vitral_light::Rgb;
@@ -99,7 +99,7 @@ impl Cascades {
         light: usize,
         maps: &[&Map],
         questions: &[(usize, usize)],
-        places: &Places,
+        places: &SurfacePoints,
     ) -> Vec<Rgb> {
         // Ask one map or two about each place. The slices' maps are numbered from the end of the others on.
         let slices = &self.maps[light];
@@ -171,7 +171,7 @@ fn lens(light: &LightMaps, solids: &[slice::Convex], world: &World, size: u32) -
             let middle = *corners.first()?;
             (&map.lens, Lens::parallel_round(*towards, &corners, &map.lens, world, size)?, middle)
         }
-        LightMaps::Places(places) => {
+        LightMaps::Positions(places) => {
             // All around a light, or from many places, there is no one map to be better than.
             let [(from, maps)] = &places[..] else { return None };
             let [map] = &maps[..] else { return None };

@@ -42,7 +42,7 @@ pub(super) enum LightMaps {
         map: Box<Map>,
     },
     /// Each place of a light with its maps.
-    Places(Vec<(Emitter, Vec<Map>)>),
+    SurfacePoints(Vec<(Emitter, Vec<Map>)>),
 }
 
 impl Key {
@@ -84,7 +84,7 @@ impl Maps {
             let maps = match maps {
                 LightMaps::Unhindered => Vec::new(),
                 LightMaps::Infinity { map, .. } => vec![*map],
-                LightMaps::Places(places) => places.into_iter().flat_map(|(_, maps)| maps).collect(),
+                LightMaps::Positions(places) => places.into_iter().flat_map(|(_, maps)| maps).collect(),
             };
             spare.extend(maps.into_iter().filter_map(|map| map.pending).flat_map(|pending| pending.batches));
         }
@@ -106,7 +106,7 @@ impl LightMaps {
                 let map = Box::new(pass.draw(Lens::parallel(towards, world, size))?);
                 Ok(Self::Infinity { towards, map })
             }
-            Source::Point(at) => Ok(Self::Places(vec![match spot_lens(light, at, pass) {
+            Source::Point(at) => Ok(Self::Positions(vec![match spot_lens(light, at, pass) {
                 Some(lens) => (emitters[0], vec![pass.draw(lens)?]),
                 None => maps_around(emitters[0], size, pass)?,
             }])),
@@ -115,7 +115,7 @@ impl LightMaps {
                 let side = side.max(LEAST_SIDE.min(size));
                 let pass = FirstPass { when: When::Before, ..pass };
                 let places = emitters.into_iter().map(|from| maps_around(from, side, pass));
-                Ok(Self::Places(places.collect::<Result<_, Limit>>()?))
+                Ok(Self::Positions(places.collect::<Result<_, Limit>>()?))
             }
         }
     }

@@ -7,7 +7,7 @@
 //! Cost: a constant number of operations a place.
 
 use super::tiles::{Map, MapTile};
-use crate::shadow::places::{EightPlaces, Parts, Places};
+use crate::shadow::places::{Parts, SurfacePoints, SurfacePoints8};
 use std::ops::{Add, Mul, Sub};
 use vitral_light::{DIRECTION_ROUNDING, Rgb};
 use vitral_math::lanes::prelude::*;
@@ -58,7 +58,7 @@ struct Answer {
 }
 
 /// What maps answer to questions: the number of a map, and which of the places is asked about, which faces its light.
-pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)], places: &Places) -> Vec<Rgb> {
+pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)], places: &SurfacePoints) -> Vec<Rgb> {
     let mut parts = vec![[1.0; 3]; questions.len()];
     let mut own: Vec<u32> = Vec::with_capacity(questions.len());
     for (number, map) in maps.iter().enumerate() {
@@ -71,14 +71,14 @@ pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)],
 
 /// What the only map of a light at one place (homogeneous) tells: the part of the light that arrives, none at places that face
 /// away.
-pub(super) fn arriving(level: Level, map: &Map, light: DVec4, places: &Places, parts: &mut Parts) {
+pub(super) fn arriving(level: Level, map: &Map, light: DVec4, places: &SurfacePoints, parts: &mut Parts) {
     dispatch!(level, simd => map.arriving(simd, light, places, parts));
 }
 
 impl Map {
     /// The part of light that arrives at each of the places.
     #[inline(always)]
-    fn arriving<S: Simd>(&self, simd: S, light: DVec4, places: &Places, parts: &mut Parts) {
+    fn arriving<S: Simd>(&self, simd: S, light: DVec4, places: &SurfacePoints, parts: &mut Parts) {
         let at = [light.x, light.y, light.z];
         // See `horizon`, of which these are the operations.
         let rounding = f64::from(DIRECTION_ROUNDING);
@@ -105,7 +105,7 @@ impl Map {
         &self,
         simd: S,
         own: &[u32],
-        (questions, places): (&[(usize, usize)], &Places),
+        (questions, places): (&[(usize, usize)], &SurfacePoints),
         parts: &mut [Rgb],
     ) {
         for asked in own.chunks(LANES) {
@@ -121,7 +121,7 @@ impl Map {
 
     /// The part of light that arrives at those of eight places whose bits are set in `asked`, which face it; others keep theirs.
     #[inline(always)]
-    fn passing<S: Simd>(&self, simd: S, places: &EightPlaces, asked: u32, parts: &mut [[f32; LANES]; 3]) {
+    fn passing<S: Simd>(&self, simd: S, places: &SurfacePoints8, asked: u32, parts: &mut [[f32; LANES]; 3]) {
         let eight = self.locate(simd, places);
 
         // Look at the texels. Outside of the map, and where it does not tell, all is lit.
@@ -265,7 +265,7 @@ impl Map {
 
     /// Finds where places are on the map, and how deep their planes are in the texels there.
     #[inline(always)]
-    fn locate<S: Simd>(&self, simd: S, places: &EightPlaces) -> LookupBatch8<S> {
+    fn locate<S: Simd>(&self, simd: S, places: &SurfacePoints8) -> LookupBatch8<S> {
         let lens = &self.lens;
         let matrix = &lens.view_from_world;
         let normal = rotated(matrix, load(simd, &places.normal));
@@ -492,7 +492,7 @@ fn rotated<S: Simd>(matrix: &DMat4, [x, y, z]: [F64x8<S>; 3]) -> [F64x8<S>; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shadow::Place;
+    use crate::shadow::SurfacePoint;
     use crate::shadow::casters::faces;
     use crate::shadow::map::draw::When;
     use crate::shadow::map::testing::teapot;
@@ -500,7 +500,7 @@ mod tests {
     use vitral_math::lanes::available_levels;
 
     /// What a map tells about eight places that face the light, each by itself.
-    fn one_by_one<S: Simd>(simd: S, map: &Map, places: &EightPlaces) -> [Rgb; LANES] {
+    fn one_by_one<S: Simd>(simd: S, map: &Map, places: &SurfacePoints8) -> [Rgb; LANES] {
         let eight = map.locate(simd, places);
         let share = |k: usize| lanes::narrowed(simd, eight.at[k] - 0.5 - eight.first[k]);
         let stored = Stored::new(&eight, [share(0), share(1)]);
@@ -528,9 +528,9 @@ mod tests {
             let place = |_| {
                 let position = dvec3(random(), random(), random()) * extent * 2.0;
                 let normal = dvec3(random(), random(), random()).normalize();
-                Place { position, normal, facet: 0, seed: 0, pixel: None }
+                SurfacePoint { position, normal, facet: 0, seed: 0, pixel: None }
             };
-            let places: Places = (0..20_003).map(place).collect();
+            let places: SurfacePoints = (0..20_003).map(place).collect();
             for (name, level) in available_levels() {
                 let mut parts = Parts::new(places.len(), [f32::NAN; 3]);
                 arriving(level, &map, towards.extend(0.0), &places, &mut parts);

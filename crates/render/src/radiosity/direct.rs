@@ -9,7 +9,7 @@
 use super::element::Color;
 use super::parts::{PARTS, WHOLE, middle, parts, quarters};
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{Parts, ShadowAlgorithm, Shadows, SurfacePoint, SurfacePoints, ray::RayShadows};
+use crate::shadow::{LightVisibility, ShadowAlgorithm, Shadows, SurfacePoint, SurfacePoints, ray::RayShadows};
 use crate::{Execution, GlobalSettings, Session, Settings};
 use vitral_exec::Limit;
 use vitral_light::{Light, PreparedLight};
@@ -97,7 +97,7 @@ impl<'a> Direct<'a> {
             }
 
             // Multiply by the visible part of the light.
-            let mut visible = Parts::new(places.len(), [0.0; 3]);
+            let mut visible = LightVisibility::new(places.len(), [0.0; 3]);
             self.shadows.arriving(*number, &all, &mut visible, &mut 0);
             for (i, sum) in sums.iter_mut().enumerate() {
                 let visible = visible.get(i);

@@ -9,7 +9,7 @@ use super::points::Points;
 use super::shadowed;
 use super::slots::Slots;
 use super::subject::{Subject, subject};
-use crate::shadow::Parts;
+use crate::shadow::LightVisibility;
 use vitral_math::lanes::{LANES, Simd};
 
 /// Up to eight points of one object and material.
@@ -23,9 +23,9 @@ pub(crate) struct ShadingBatch8<'a> {
     /// The rays that see them, if it is not the eye.
     pub along: Option<&'a Along>,
     /// Which part of each light reaches the points of the group; empty without shadows, or if the material does not need it.
-    pub light_visibility: &'a [Parts],
+    pub light_visibility: &'a [LightVisibility],
     /// The same for the other side of a translucent sheet.
-    pub light_visibility_behind: &'a [Parts],
+    pub light_visibility_behind: &'a [LightVisibility],
     /// The place of the first point in the group.
     pub first: usize,
 }

@@ -10,7 +10,7 @@
 
 use super::FrameConstants;
 use super::points::{NO_POINT, Points, Source, samples_in};
-use crate::shadow::{Parts, SurfacePoints, grey};
+use crate::shadow::{LightVisibility, SurfacePoints, grey};
 use vitral_raster::TILE;
 
 /// What must differ between neighbours. Answers about area lights differ by chance, so it takes more.
@@ -40,9 +40,9 @@ pub(super) fn soften(
     constants: &FrameConstants<'_>,
     points: &Points,
     order: &[u32],
-    parts: &mut [Parts],
+    parts: &mut [LightVisibility],
     place: impl Fn(&Questions) -> SurfacePoints,
-    ask: impl Fn(&SurfacePoints) -> Vec<Parts>,
+    ask: impl Fn(&SurfacePoints) -> Vec<LightVisibility>,
 ) {
     // Ask beyond the border of the tile.
     let mut beyond = Questions::new();
@@ -97,8 +97,8 @@ pub(super) fn soften(
 fn mark_edges(
     points: &Points,
     order: &[u32],
-    parts: &Parts,
-    (beyond, beyond_parts): (&Questions, Option<&Parts>),
+    parts: &LightVisibility,
+    (beyond, beyond_parts): (&Questions, Option<&LightVisibility>),
     differs: f32,
     is_edge: &mut [bool],
 ) {

@@ -12,7 +12,7 @@ use super::shadow_edges::{self, Questions};
 use super::slots::Slots;
 use super::subject::Subject;
 use super::terminator;
-use crate::shadow::{Parts, Placing, Shadows, SurfacePoint, SurfacePoints, grey};
+use crate::shadow::{LightVisibility, Placing, Shadows, SurfacePoint, SurfacePoints, grey};
 use std::cell::Cell;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Simd, V3};
@@ -27,7 +27,7 @@ pub(crate) fn light_visibility<S: Simd>(
     order: &[u32],
     facets: &FacetTable,
     rays: &mut u64,
-) -> [Vec<Parts>; 2] {
+) -> [Vec<LightVisibility>; 2] {
     if constants.shadows.is_none() {
         return [Vec::new(), Vec::new()];
     }
@@ -114,7 +114,7 @@ pub(crate) fn light_visibility_on_sides(
     both: bool,
     places: SurfacePoints,
     rays: &mut u64,
-) -> [Vec<Parts>; 2] {
+) -> [Vec<LightVisibility>; 2] {
     let seen = light_visibility_at(constants, &places, rays);
     if !both {
         return [seen, Vec::new()];
@@ -123,10 +123,10 @@ pub(crate) fn light_visibility_on_sides(
 }
 
 /// Which part of each light reaches these places; empty without shadows. Adds the rays that it took.
-fn light_visibility_at(constants: &FrameConstants<'_>, places: &SurfacePoints, rays: &mut u64) -> Vec<Parts> {
+fn light_visibility_at(constants: &FrameConstants<'_>, places: &SurfacePoints, rays: &mut u64) -> Vec<LightVisibility> {
     let Some(shadows) = constants.shadows else { return Vec::new() };
     let of_light = |(number, &light): (usize, &usize)| {
-        let mut parts = Parts::new(places.len(), [0.0; 3]);
+        let mut parts = LightVisibility::new(places.len(), [0.0; 3]);
         shadows.arriving(light, places, &mut parts, rays);
         terminator::soften(constants, number, places, &mut parts, rays);
         parts
@@ -161,7 +161,7 @@ fn placing<'a>(constants: &FrameConstants<'a>, subject: &Subject<'_>) -> Placing
 pub(crate) fn shadow_shares<S: Simd>(
     constants: &FrameConstants<'_>,
     surface: &Surface<F<S>>,
-    light_visibility: &[Parts],
+    light_visibility: &[LightVisibility],
     first: usize,
 ) -> [[f32; LANES]; 2] {
     let (position, normal) = (surface.position(), surface.interpolated_normal());

@@ -12,7 +12,9 @@
 use super::FrameConstants;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::ray::RayShadows;
-use crate::shadow::{Parts, ShadowAlgorithm, Shadows, SurfacePoint, SurfacePoints, facet as facet_of, weights};
+use crate::shadow::{
+    LightVisibility, ShadowAlgorithm, Shadows, SurfacePoint, SurfacePoints, facet as facet_of, weights,
+};
 use crate::{Execution, PreparedView, Settings};
 use std::sync::OnceLock;
 use vitral_light::Light;
@@ -43,7 +45,7 @@ impl<'a> SoftTerminator<'a> {
 
 impl Shadows for SoftTerminator<'_> {
     /// Leaves places dark whose rays the budget does not allow.
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut Parts, rays: &mut u64) {
+    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
         let prepare =
             || RayShadows.prepare(self.view.session, &self.lights, DVec4::Z, &self.settings, &self.execution).ok();
         if let Some(shadows) = self.rays.get_or_init(prepare) {
@@ -57,7 +59,7 @@ pub(super) fn soften(
     constants: &FrameConstants<'_>,
     light: usize,
     places: &SurfacePoints,
-    parts: &mut Parts,
+    parts: &mut LightVisibility,
     rays: &mut u64,
 ) {
     let Some(soft) = &constants.terminator else { return };
@@ -87,7 +89,7 @@ pub(super) fn soften(
         return;
     }
     let curved: SurfacePoints = curved.into_iter().collect();
-    let mut found = Parts::new(curved.len(), [0.0; 3]);
+    let mut found = LightVisibility::new(curved.len(), [0.0; 3]);
     soft.arriving(constants.light_numbers[light], &curved, &mut found, rays);
     numbers.into_iter().enumerate().for_each(|(i, number)| parts.set(number, found.get(i)));
 }

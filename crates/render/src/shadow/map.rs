@@ -33,7 +33,7 @@ mod tiles;
 
 use super::casters::faces;
 use super::occluders::Occluders;
-use super::places::{Parts, SurfacePoint, SurfacePoints};
+use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::sources::Shares;
 use super::{ShadowAlgorithm, Shadows};
 use crate::{Execution, PreparedView, Session, Settings};
@@ -101,7 +101,7 @@ impl Shadows for Prepared {
         true
     }
 
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut Parts, _: &mut u64) {
+    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         match &self.maps.0[light] {
             LightMaps::Unhindered => parts.fill([1.0; 3]),
             LightMaps::Infinity { towards, map } if self.cascades.is_none() => {

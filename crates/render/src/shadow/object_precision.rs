@@ -20,7 +20,7 @@ mod clip;
 
 use super::casters::{Casters, Solid, away, lifted, near, wide, winding_normal};
 use super::occluders::Occluders;
-use super::places::{Parts, SurfacePoints};
+use super::places::{LightVisibility, SurfacePoints};
 use super::rounding::clearance;
 use super::sources::{Emitter, Shares, Source};
 use super::{Drawn, Key, ShadowAlgorithm, Shadows};
@@ -231,7 +231,7 @@ impl Details {
 }
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut Parts, _: &mut u64) {
+    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let LitPolygons { casters, lights } = &*self.polygons;
         let lights = &lights[light];
         if lights.is_empty() {

@@ -148,9 +148,9 @@ impl FromIterator<SurfacePoint> for SurfacePoints {
 
 /// The part of each colour of a light that arrives at each of some places.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Parts(Vec<[[f32; LANES]; 3]>);
+pub struct LightVisibility(Vec<[[f32; LANES]; 3]>);
 
-impl Parts {
+impl LightVisibility {
     /// The same for `count` places, filled up to whole eights.
     pub fn new(count: usize, part: Rgb) -> Self {
         Self(vec![part.map(|channel| [channel; LANES]); count.div_ceil(LANES)])
@@ -220,14 +220,14 @@ mod tests {
             let back = places.turned();
             assert!(back.iter().zip(&all).all(|(b, a)| b.normal == -a.normal && b.position == a.position));
 
-            let mut parts = Parts::new(count, [0.5; 3]);
+            let mut parts = LightVisibility::new(count, [0.5; 3]);
             for i in 0..count {
                 parts.set(i, [i as f32, 0.0, 1.0]);
                 parts.add(i, 2.0, [1.0, 0.25, 0.0]);
             }
             assert!((0..count).all(|i| parts.get(i) == [i as f32 + 2.0, 0.5, 1.0]));
             parts.fill([1.0; 3]);
-            assert_eq!(parts, Parts::new(count, [1.0; 3]));
+            assert_eq!(parts, LightVisibility::new(count, [1.0; 3]));
         }
     }
 }

@@ -17,7 +17,7 @@
 use super::casters::{near, turned, wide};
 use super::hash::hash;
 use super::occluders::Occluders;
-use super::places::{Parts, SurfacePoint, SurfacePoints};
+use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::rounding::{clearance, horizon};
 use super::sources::{Area, Shares, Source};
 use super::{ShadowAlgorithm, Shadows};
@@ -76,7 +76,7 @@ const FINER: u32 = 8;
 const TOGETHER: usize = 64;
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut Parts, rays: &mut u64) {
+    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
         let mut feelers = Vec::with_capacity(TOGETHER);
         // Trace several points at a time.
         for first in (0..places.len()).step_by(TOGETHER) {

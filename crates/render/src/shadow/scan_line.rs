@@ -20,7 +20,7 @@ mod on_receivers;
 
 use super::casters::{Casters, Solid, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
-use super::places::{Parts, SurfacePoint, SurfacePoints};
+use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::sources::{Emitter, Shares, Source};
 use super::{Drawn, ShadowAlgorithm, Shadows};
 use crate::raytrace::shaft::Shaft;
@@ -85,7 +85,7 @@ struct Work {
 }
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut Parts, _: &mut u64) {
+    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let lights = &self.lights[light];
         if lights.is_empty() {
             return parts.fill([1.0; 3]);

@@ -17,7 +17,7 @@
 //! Source: [Cook, Porter & Carpenter 1984]; the disc after [Shirley & Chiu 1997], shares after [Heitz, Hill & McGuire 2018].
 
 use super::hash::hash;
-use super::places::{Parts, SurfacePoint, SurfacePoints};
+use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::rounding::horizon;
 use std::f64::consts::FRAC_PI_4;
 use vitral_light::{AreaShape, Light, LightKind, Rgb};
@@ -140,7 +140,7 @@ impl Shares {
     pub(super) fn normalize(
         emitters: impl Iterator<Item = Emitter> + Clone,
         places: &SurfacePoints,
-        parts: &mut Parts,
+        parts: &mut LightVisibility,
     ) {
         for (number, place) in places.iter().enumerate() {
             let whole: f32 = emitters.clone().map(|e| e.weight(&place)).sum();

@@ -30,7 +30,7 @@ mod paths;
 
 use super::casters::{Casters, faces, lifted};
 use super::occluders::Occluders;
-use super::places::{Parts, SurfacePoints};
+use super::places::{LightVisibility, SurfacePoints};
 use super::sources::{Shares, Source};
 use super::{Drawn, Key, ShadowAlgorithm, Shadows};
 use crate::{Cached, Execution, Session, Settings, VolumeCounting};
@@ -136,7 +136,7 @@ impl Volumes {
 }
 
 impl Shadows for Counting<'_> {
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut Parts, _: &mut u64) {
+    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let volumes = &self.volumes.lights[light];
         if volumes.is_empty() {
             return parts.fill([1.0; 3]);

@@ -120,7 +120,7 @@ fn ask_view(scene: &Scene, camera: &Camera, light: &Light, settings: &Settings, 
     let ready = algorithm.prepare_for(&view, std::slice::from_ref(light), settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
     let places: SurfacePoints = places.iter().map(|p| SurfacePoint { position: p.position - center, ..*p }).collect();
-    let mut parts = Parts::new(places.len(), [f32::NAN; 3]);
+    let mut parts = LightVisibility::new(places.len(), [f32::NAN; 3]);
     ready.arriving(0, &places, &mut parts, &mut 0);
     (0..places.len()).map(|place| parts.get(place)[0]).collect()
 }

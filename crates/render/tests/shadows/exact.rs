@@ -49,7 +49,7 @@ fn ask_all(scene: &Scene, light: &Light, settings: &Settings, viewer: DVec3, pla
     let ready = algorithm.prepare(&session, lights, viewer.extend(1.0), settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
     let moved: SurfacePoints = places.iter().map(|p| SurfacePoint { position: p.position - center, ..*p }).collect();
-    let mut parts = Parts::new(places.len(), [f32::NAN; 3]);
+    let mut parts = LightVisibility::new(places.len(), [f32::NAN; 3]);
     ready.arriving(0, &moved, &mut parts, &mut 0);
     (0..places.len()).map(|place| parts.get(place)[0]).collect()
 }

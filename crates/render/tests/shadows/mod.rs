@@ -12,7 +12,7 @@ use vitral_light::{AlphaMode, AreaShape, Light, LightKind, Material, Rgb};
 use vitral_math::lanes::available_levels;
 use vitral_math::{DMat4, DVec3, DVec4, dvec3};
 use vitral_render::raytrace::triangles::Triangles;
-use vitral_render::shadow::{self, Drawn, Parts, SurfacePoint, SurfacePoints};
+use vitral_render::shadow::{self, Drawn, LightVisibility, SurfacePoint, SurfacePoints};
 use vitral_render::{
     Channels, Execution, PictureSettings, Session, Settings, Shading, ShadowSettings, Shadows, Shot,
     TransparencySettings, VolumeCounting, registry, render,
@@ -70,7 +70,7 @@ fn with_colored_shadows<R>(
         let facet = if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };
         let places: SurfacePoints =
             [SurfacePoint { position: place.position - center, facet, ..place }].into_iter().collect();
-        let mut parts = Parts::new(1, [f32::NAN; 3]);
+        let mut parts = LightVisibility::new(1, [f32::NAN; 3]);
         ready.arriving(0, &places, &mut parts, &mut 0);
         parts.get(0)
     })

@@ -7,7 +7,7 @@
 //! Cost: a constant number of operations a place.
 
 use super::tiles::{Map, MapTile};
-use crate::shadow::places::{Parts, SurfacePoints, SurfacePoints8};
+use crate::shadow::places::{LightVisibility, SurfacePoints, SurfacePoints8};
 use std::ops::{Add, Mul, Sub};
 use vitral_light::{DIRECTION_ROUNDING, Rgb};
 use vitral_math::lanes::prelude::*;
@@ -71,14 +71,14 @@ pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)],
 
 /// What the only map of a light at one place (homogeneous) tells: the part of the light that arrives, none at places that face
 /// away.
-pub(super) fn arriving(level: Level, map: &Map, light: DVec4, places: &SurfacePoints, parts: &mut Parts) {
+pub(super) fn arriving(level: Level, map: &Map, light: DVec4, places: &SurfacePoints, parts: &mut LightVisibility) {
     dispatch!(level, simd => map.arriving(simd, light, places, parts));
 }
 
 impl Map {
     /// The part of light that arrives at each of the places.
     #[inline(always)]
-    fn arriving<S: Simd>(&self, simd: S, light: DVec4, places: &SurfacePoints, parts: &mut Parts) {
+    fn arriving<S: Simd>(&self, simd: S, light: DVec4, places: &SurfacePoints, parts: &mut LightVisibility) {
         let at = [light.x, light.y, light.z];
         // See `horizon`, of which these are the operations.
         let rounding = f64::from(DIRECTION_ROUNDING);
@@ -532,7 +532,7 @@ mod tests {
             };
             let places: SurfacePoints = (0..20_003).map(place).collect();
             for (name, level) in available_levels() {
-                let mut parts = Parts::new(places.len(), [f32::NAN; 3]);
+                let mut parts = LightVisibility::new(places.len(), [f32::NAN; 3]);
                 arriving(level, &map, towards.extend(0.0), &places, &mut parts);
                 let mut partly = 0;
                 for (number, eight) in places.eights().iter().enumerate() {

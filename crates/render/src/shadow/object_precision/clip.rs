@@ -116,7 +116,7 @@ enum Left {
     All,
     /// It covers it.
     Nothing,
-    Parts(Vec<Vec<DVec3>>),
+    LightVisibility(Vec<Vec<DVec3>>),
 }
 
 impl Cutter<'_> {
@@ -187,7 +187,7 @@ impl Cutter<'_> {
                 match less(&polygon, &self.solids[solid as usize], self.eps) {
                     Left::All => next.push(polygon),
                     Left::Nothing => {}
-                    Left::Parts(parts) => next.extend(parts),
+                    Left::Several(parts) => next.extend(parts),
                 }
             }
             left = next;
@@ -273,7 +273,7 @@ fn less(polygon: &[DVec3], solid: &Solid, eps: f64) -> Left {
         }
         inner = within;
     }
-    if outer.is_empty() { Left::Nothing } else { Left::Parts(outer) }
+    if outer.is_empty() { Left::Nothing } else { Left::Several(outer) }
 }
 
 #[cfg(test)]

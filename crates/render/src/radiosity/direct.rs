@@ -98,7 +98,7 @@ impl<'a> Direct<'a> {
 
             // Multiply by the visible part of the light.
             let mut visible = LightVisibility::new(places.len(), [0.0; 3]);
-            self.shadows.arriving(*number, &all, &mut visible, &mut 0);
+            self.shadows.light_visibility(*number, &all, &mut visible, &mut 0);
             for (i, sum) in sums.iter_mut().enumerate() {
                 let visible = visible.get(i);
                 (0..3).for_each(|k| sum[k] += f64::from(light.diffuse[k] * visible[k] * unhidden[i]));

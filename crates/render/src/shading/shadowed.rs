@@ -127,7 +127,7 @@ fn light_visibility_at(constants: &FrameConstants<'_>, places: &SurfacePoints, r
     let Some(shadows) = constants.shadows else { return Vec::new() };
     let of_light = |(number, &light): (usize, &usize)| {
         let mut parts = LightVisibility::new(places.len(), [0.0; 3]);
-        shadows.arriving(light, places, &mut parts, rays);
+        shadows.light_visibility(light, places, &mut parts, rays);
         terminator::soften(constants, number, places, &mut parts, rays);
         parts
     };

@@ -45,11 +45,11 @@ impl<'a> SoftTerminator<'a> {
 
 impl Shadows for SoftTerminator<'_> {
     /// Leaves places dark whose rays the budget does not allow.
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
         let prepare =
             || RayShadows.prepare(self.view.session, &self.lights, DVec4::Z, &self.settings, &self.execution).ok();
         if let Some(shadows) = self.rays.get_or_init(prepare) {
-            shadows.arriving(light, places, parts, rays);
+            shadows.light_visibility(light, places, parts, rays);
         }
     }
 }
@@ -90,7 +90,7 @@ pub(super) fn soften(
     }
     let curved: SurfacePoints = curved.into_iter().collect();
     let mut found = LightVisibility::new(curved.len(), [0.0; 3]);
-    soft.arriving(constants.light_numbers[light], &curved, &mut found, rays);
+    soft.light_visibility(constants.light_numbers[light], &curved, &mut found, rays);
     numbers.into_iter().enumerate().for_each(|(i, number)| parts.set(number, found.get(i)));
 }
 

@@ -101,11 +101,11 @@ impl Shadows for Prepared {
         true
     }
 
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         match &self.maps.0[light] {
             LightMaps::Unhindered => parts.fill([1.0; 3]),
             LightMaps::Infinity { towards, map } if self.cascades.is_none() => {
-                lookup::arriving(self.level, map, towards.extend(0.0), places, parts);
+                lookup::light_visibility(self.level, map, towards.extend(0.0), places, parts);
             }
 
             // Ask the cascades about the places that face the light.
@@ -121,7 +121,7 @@ impl Shadows for Prepared {
                     && let [(from, maps)] = &emitters[..]
                     && let [map] = &maps[..] =>
             {
-                lookup::arriving(self.level, map, from.at, places, parts);
+                lookup::light_visibility(self.level, map, from.at, places, parts);
             }
             LightMaps::Positions(emitters) => {
                 // Sum the shares of all positions of the light, each with its maps around it.

@@ -43,7 +43,7 @@ use vitral_math::{DVec3, DVec4};
 pub trait Shadows: Send + Sync {
     /// Which part of each colour of the light of this number reaches each of the places, `0..=1`, into as many `parts`.
     /// Other places in the same call do not change the answer. Adds the rays that it took.
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64);
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64);
 
     /// Whether answers change little from pixel to pixel, so that samples of one pixel have the same.
     fn is_smooth(&self) -> bool {

@@ -231,7 +231,7 @@ impl Details {
 }
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let LitPolygons { casters, lights } = &*self.polygons;
         let lights = &lights[light];
         if lights.is_empty() {

@@ -76,7 +76,7 @@ const FINER: u32 = 8;
 const TOGETHER: usize = 64;
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
         let mut feelers = Vec::with_capacity(TOGETHER);
         // Trace several points at a time.
         for first in (0..places.len()).step_by(TOGETHER) {

@@ -85,7 +85,7 @@ struct Work {
 }
 
 impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let lights = &self.lights[light];
         if lights.is_empty() {
             return parts.fill([1.0; 3]);

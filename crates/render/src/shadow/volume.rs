@@ -136,7 +136,7 @@ impl Volumes {
 }
 
 impl Shadows for Counting<'_> {
-    fn arriving(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let volumes = &self.volumes.lights[light];
         if volumes.is_empty() {
             return parts.fill([1.0; 3]);

@@ -121,7 +121,7 @@ fn ask_view(scene: &Scene, camera: &Camera, light: &Light, settings: &Settings, 
     let center = Triangles::center_of(session.world());
     let places: SurfacePoints = places.iter().map(|p| SurfacePoint { position: p.position - center, ..*p }).collect();
     let mut parts = LightVisibility::new(places.len(), [f32::NAN; 3]);
-    ready.arriving(0, &places, &mut parts, &mut 0);
+    ready.light_visibility(0, &places, &mut parts, &mut 0);
     (0..places.len()).map(|place| parts.get(place)[0]).collect()
 }
 

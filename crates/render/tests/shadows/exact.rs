@@ -50,7 +50,7 @@ fn ask_all(scene: &Scene, light: &Light, settings: &Settings, viewer: DVec3, pla
     let center = Triangles::center_of(session.world());
     let moved: SurfacePoints = places.iter().map(|p| SurfacePoint { position: p.position - center, ..*p }).collect();
     let mut parts = LightVisibility::new(places.len(), [f32::NAN; 3]);
-    ready.arriving(0, &moved, &mut parts, &mut 0);
+    ready.light_visibility(0, &moved, &mut parts, &mut 0);
     (0..places.len()).map(|place| parts.get(place)[0]).collect()
 }
 

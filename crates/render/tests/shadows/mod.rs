@@ -71,7 +71,7 @@ fn with_colored_shadows<R>(
         let places: SurfacePoints =
             [SurfacePoint { position: place.position - center, facet, ..place }].into_iter().collect();
         let mut parts = LightVisibility::new(1, [f32::NAN; 3]);
-        ready.arriving(0, &places, &mut parts, &mut 0);
+        ready.light_visibility(0, &places, &mut parts, &mut 0);
         parts.get(0)
     })
 }

@@ -71,14 +71,20 @@ pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)],
 
 /// What the only map of a light at one place (homogeneous) tells: the part of the light that arrives, none at places that face
 /// away.
-pub(super) fn arriving(level: Level, map: &Map, light: DVec4, places: &SurfacePoints, parts: &mut LightVisibility) {
-    dispatch!(level, simd => map.arriving(simd, light, places, parts));
+pub(super) fn light_visibility(
+    level: Level,
+    map: &Map,
+    light: DVec4,
+    places: &SurfacePoints,
+    parts: &mut LightVisibility,
+) {
+    dispatch!(level, simd => map.light_visibility(simd, light, places, parts));
 }
 
 impl Map {
     /// The part of light that arrives at each of the places.
     #[inline(always)]
-    fn arriving<S: Simd>(&self, simd: S, light: DVec4, places: &SurfacePoints, parts: &mut LightVisibility) {
+    fn light_visibility<S: Simd>(&self, simd: S, light: DVec4, places: &SurfacePoints, parts: &mut LightVisibility) {
         let at = [light.x, light.y, light.z];
         // See `horizon`, of which these are the operations.
         let rounding = f64::from(DIRECTION_ROUNDING);

@@ -110,7 +110,7 @@ impl<'a> Surfaces<'a> {
     }
 
     fn is_there(&self, facet: u32, corners: &[Vec3; 3], place: DVec3) -> bool {
-        self.occluders.passing(facet, corners, || place)[0] <= MOST_PASSING
+        self.occluders.transmittance(facet, corners, || place)[0] <= MOST_PASSING
     }
 }
 

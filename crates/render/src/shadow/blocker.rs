@@ -64,7 +64,7 @@ pub(crate) fn blocker(
                 let number = instance.first_facet + triangle;
                 let Some(t) = feeler.meets(number, &corners) else { continue };
                 let passing = || origin + feeler.way * t;
-                if occluders.passing(number, &corners.map(DVec3::as_vec3), passing) != [1.0; 3] {
+                if occluders.transmittance(number, &corners.map(DVec3::as_vec3), passing) != [1.0; 3] {
                     feeler.reach.end = t;
                     found = Some(Blocker { facet: number, distance: t * way.length() });
                 }

@@ -260,7 +260,7 @@ impl Casters {
             let corners = wide(&triangles.corners[t as usize]);
             let (normal, way) = (winding_normal(&corners), away(light, place));
             let along = normal.dot(corners[0] - place) / normal.dot(way);
-            occluders.passing(facet, &triangles.corners[t as usize], || place + way * along)
+            occluders.transmittance(facet, &triangles.corners[t as usize], || place + way * along)
         };
         hits.iter().map(passing).fold([1.0; 3], |left, part| [0, 1, 2].map(|k| left[k] * part[k]))
     }

@@ -55,12 +55,12 @@ impl<'a> Occluders<'a> {
 
     /// The part of light that passes the facet with these corners at `point` of it.
     #[inline(always)]
-    pub(crate) fn passing(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> Rgb {
-        if self.all_opaque { [0.0; 3] } else { self.passing_at(facet, corners, point()) }
+    pub(crate) fn transmittance(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> Rgb {
+        if self.all_opaque { [0.0; 3] } else { self.transmittance_at(facet, corners, point()) }
     }
 
     /// What passes the facet, if it is the same all over.
-    pub(super) fn passing_anywhere(&self, facet: u32) -> Option<Rgb> {
+    pub(super) fn transmittance_anywhere(&self, facet: u32) -> Option<Rgb> {
         let (mesh, _, material) = self.look(facet);
         let Some(material) = material else { return Some([0.0; 3]) };
         let textures = [material.base_texture, material.opacity_texture, metal_texture(material)];
@@ -78,7 +78,7 @@ impl<'a> Occluders<'a> {
         (&instance.mesh, triangle, material.map(|m| &self.session.scene.materials[m as usize]))
     }
 
-    fn passing_at(&self, facet: u32, corners: &[Vec3; 3], point: DVec3) -> Rgb {
+    fn transmittance_at(&self, facet: u32, corners: &[Vec3; 3], point: DVec3) -> Rgb {
         let (mesh, triangle, material) = self.look(facet);
         let Some(material) = material else { return [0.0; 3] };
 

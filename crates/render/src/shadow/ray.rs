@@ -86,10 +86,10 @@ impl Shadows for Prepared<'_> {
             match &self.sources[light] {
                 Source::Unhindered => {}
                 Source::Infinity(towards) => {
-                    self.passing(&mut feelers, asking.map(|place| (place, *towards)), false, found);
+                    self.transmittance(&mut feelers, asking.map(|place| (place, *towards)), false, found);
                 }
                 Source::Point(at) => {
-                    self.passing(&mut feelers, asking.map(|place| (place, *at - place.position)), true, found);
+                    self.transmittance(&mut feelers, asking.map(|place| (place, *at - place.position)), true, found);
                 }
                 Source::Area(area) => {
                     for (place, part) in asking.zip(&mut *found) {
@@ -139,7 +139,7 @@ impl Prepared<'_> {
         let counting: Vec<_> = emitters.filter(|e| e.weight(place) > 0.0).collect();
         let ways = counting.iter().map(|e| (*place, e.at.truncate() - place.position));
         let mut passing = vec![[0.0; 3]; counting.len()];
-        self.passing(feelers, ways, true, &mut passing);
+        self.transmittance(feelers, ways, true, &mut passing);
         *rays += feelers.len() as u64;
         let mut shares = Shares::default();
         for (emitter, passing) in counting.iter().zip(passing) {
@@ -150,7 +150,7 @@ impl Prepared<'_> {
 
     /// What passes from each of these places along its way, to the way's end or to infinity, into as many `parts`. Leaves in
     /// `feelers` the rays that were followed for it.
-    fn passing(
+    fn transmittance(
         &self,
         feelers: &mut Vec<Feeler>,
         ways: impl Iterator<Item = (SurfacePoint, DVec3)>,
@@ -239,7 +239,7 @@ impl packet::PacketVisitor for Passing<'_> {
             return;
         }
         let point = || (ray.origin + ray.direction * t).as_dvec3();
-        let passing = self.prepared.occluders.passing(facet, corners, point);
+        let passing = self.prepared.occluders.transmittance(facet, corners, point);
         let [r, g, b] = passing.map(f64::from);
         let left = self.left[lane];
         self.left[lane] = [left[0] * r, left[1] * g, left[2] * b];

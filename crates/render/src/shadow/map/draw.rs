@@ -222,9 +222,9 @@ impl<'a> DepthSink<'a> {
             if x < lens.width && y < lens.height {
                 let depth = lens.distance(layer.depth);
                 if last.0 != layer.facet {
-                    last = (layer.facet, self.occluders.passing_anywhere(layer.facet));
+                    last = (layer.facet, self.occluders.transmittance_anywhere(layer.facet));
                 }
-                let there = || self.passing(layer.facet, &world_from_view, [x, y], depth);
+                let there = || self.transmittance(layer.facet, &world_from_view, [x, y], depth);
                 let passing = last.1.unwrap_or_else(there);
                 found.push((layer.facet, Layer { texel: layer.at, depth, passing }));
             }
@@ -248,7 +248,7 @@ impl<'a> DepthSink<'a> {
     }
 
     /// What passes a facet in the middle of a texel.
-    fn passing(&self, facet: u32, world_from_view: &DMat4, texel: [u32; 2], depth: f32) -> Rgb {
+    fn transmittance(&self, facet: u32, world_from_view: &DMat4, texel: [u32; 2], depth: f32) -> Rgb {
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
         let triangle = instance.mesh.triangles[(facet - instance.first_facet) as usize];
@@ -257,7 +257,7 @@ impl<'a> DepthSink<'a> {
             (instance.world_from_model.transform_point3(dvec3(x, y, z)) - self.center).as_vec3()
         });
         let point = self.lens.point(texel.map(|k| f64::from(k) + 0.5), f64::from(depth));
-        self.occluders.passing(facet, &corners, || world_from_view.transform_point3(point))
+        self.occluders.transmittance(facet, &corners, || world_from_view.transform_point3(point))
     }
 }
 

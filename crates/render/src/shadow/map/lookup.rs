@@ -100,7 +100,7 @@ impl Map {
             let horizon = ((place * 2.0 + sum) * light.w + sum) * rounding;
             let asked = (along(0) + along(1) + along(2)).simd_gt(horizon).to_bitmask() as u32;
             if asked != 0 {
-                self.passing(simd, places, asked, parts);
+                self.transmittance(simd, places, asked, parts);
             }
         }
     }
@@ -118,7 +118,7 @@ impl Map {
             let number = |lane: usize| questions[asked[lane.min(asked.len() - 1)] as usize].1;
             let eight = places.pick(std::array::from_fn(number));
             let mut passing = [[0.0; LANES]; 3];
-            self.passing(simd, &eight, (1 << asked.len()) - 1, &mut passing);
+            self.transmittance(simd, &eight, (1 << asked.len()) - 1, &mut passing);
             for (lane, &question) in asked.iter().enumerate() {
                 parts[question as usize] = passing.map(|channel| channel[lane]);
             }
@@ -127,7 +127,7 @@ impl Map {
 
     /// The part of light that arrives at those of eight places whose bits are set in `asked`, which face it; others keep theirs.
     #[inline(always)]
-    fn passing<S: Simd>(&self, simd: S, places: &SurfacePoints8, asked: u32, parts: &mut [[f32; LANES]; 3]) {
+    fn transmittance<S: Simd>(&self, simd: S, places: &SurfacePoints8, asked: u32, parts: &mut [[f32; LANES]; 3]) {
         let eight = self.locate(simd, places);
 
         // Look at the texels. Outside of the map, and where it does not tell, all is lit.
@@ -362,7 +362,7 @@ impl Map {
     /// end. Were such a texel lit, light would leak in where two walls of a closed room meet.
     #[inline(never)]
     fn four_apart(&self, [left, top]: [i32; 2], surface: [[f64; 2]; 4], [right, bottom]: [f32; 2]) -> Rgb {
-        let at = |k: usize| self.passing_at([left + (k % 2) as i32, top + (k / 2) as i32], surface[k]);
+        let at = |k: usize| self.transmittance_at([left + (k % 2) as i32, top + (k / 2) as i32], surface[k]);
         let four = [at(0), at(1), at(2), at(3)];
         let passing = four.map(|answer| answer.passing);
         if passing.iter().all(|part| *part == [1.0; 3]) || !four.iter().any(|answer| answer.beyond) {
@@ -378,7 +378,7 @@ impl Map {
     }
 
     /// What one texel says about a surface that begins and ends at these depths.
-    fn passing_at(&self, place: [i32; 2], [begin, end]: [f64; 2]) -> Answer {
+    fn transmittance_at(&self, place: [i32; 2], [begin, end]: [f64; 2]) -> Answer {
         let Some((tile, texel)) = self.texel(place) else { return Answer { passing: [1.0; 3], beyond: true } };
         let nearest = f64::from(tile.depth.get(texel).copied().unwrap_or(f32::INFINITY));
         if nearest < begin {

@@ -103,7 +103,7 @@ impl Shadows for Prepared {
 
     fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         match &self.maps.0[light] {
-            LightMaps::Unhindered => parts.fill([1.0; 3]),
+            LightMaps::Unoccluded => parts.fill([1.0; 3]),
             LightMaps::Infinity { towards, map } if self.cascades.is_none() => {
                 lookup::light_visibility(self.level, map, towards.extend(0.0), places, parts);
             }

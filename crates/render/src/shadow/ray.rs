@@ -84,7 +84,7 @@ impl Shadows for Prepared<'_> {
             let found = &mut found[..TOGETHER.min(places.len() - first)];
             let asking = (first..first + found.len()).map(|number| places.get(number));
             match &self.sources[light] {
-                Source::Unhindered => {}
+                Source::Unoccluded => {}
                 Source::Infinity(towards) => {
                     self.transmittance(&mut feelers, asking.map(|place| (place, *towards)), false, found);
                 }

@@ -27,7 +27,7 @@ use vitral_math::{DVec2, DVec3, DVec4, dvec2, func};
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Source {
     /// It casts no shadows.
-    Unhindered,
+    Unoccluded,
     /// Unit vector towards the light.
     Infinity(DVec3),
     /// A point.
@@ -80,15 +80,15 @@ impl Source {
     /// The light's, with about `samples` cells, less `center`.
     pub(super) fn new(light: &Light, samples: u32, center: DVec3) -> Self {
         if !light.shadow || !light.enabled {
-            return Self::Unhindered;
+            return Self::Unoccluded;
         }
         match &light.kind {
-            LightKind::Ambient => Self::Unhindered,
+            LightKind::Ambient => Self::Unoccluded,
             LightKind::Directional { direction } => {
-                (-*direction).try_normalize().map_or(Self::Unhindered, Self::Infinity)
+                (-*direction).try_normalize().map_or(Self::Unoccluded, Self::Infinity)
             }
             LightKind::Point { position } | LightKind::Spot { position, .. } => Self::Point(*position - center),
-            LightKind::Area { shape } => Area::new(shape, samples, center).map_or(Self::Unhindered, Self::Area),
+            LightKind::Area { shape } => Area::new(shape, samples, center).map_or(Self::Unoccluded, Self::Area),
         }
     }
 }
@@ -98,7 +98,7 @@ impl Source {
     pub(super) fn places(&self) -> Vec<Emitter> {
         let only = |at: DVec4| vec![Emitter { at, normal: DVec3::ZERO }];
         match self {
-            Self::Unhindered => Vec::new(),
+            Self::Unoccluded => Vec::new(),
             Self::Infinity(towards) => only(towards.extend(0.0)),
             Self::Point(at) => only(at.extend(1.0)),
             Self::Area(area) => (0..area.count()).map(|i| area.emitter(i, 0)).collect(),

@@ -180,7 +180,7 @@ fn lens(light: &LightMaps, solids: &[slice::Convex], world: &World, size: u32) -
             let middle = corners.iter().sum::<DVec3>() / corners.len().max(1) as f64;
             (&map.lens, Lens::before(from.at.truncate(), &corners, world, size)?, middle)
         }
-        LightMaps::Unhindered => return None,
+        LightMaps::Unoccluded => return None,
     };
 
     // Use it only where its texels are clearly smaller than those of the whole map.

@@ -36,7 +36,7 @@ impl Cached for Maps {
 /// The maps of one light.
 #[derive(Debug)]
 pub(super) enum LightMaps {
-    Unhindered,
+    Unoccluded,
     Infinity {
         towards: DVec3,
         map: Box<Map>,
@@ -82,7 +82,7 @@ impl Maps {
         let mut spare = session.spare_batches.lock().expect("spare batches");
         for maps in self.0 {
             let maps = match maps {
-                LightMaps::Unhindered => Vec::new(),
+                LightMaps::Unoccluded => Vec::new(),
                 LightMaps::Infinity { map, .. } => vec![*map],
                 LightMaps::Positions(places) => places.into_iter().flat_map(|(_, maps)| maps).collect(),
             };
@@ -95,13 +95,13 @@ impl LightMaps {
     fn new(light: &Light, pass: FirstPass<'_>) -> Result<Self, Limit> {
         let (world, size) = (&pass.session.world, pass.settings.shadows.map_size);
         if world.bounds.is_empty() {
-            return Ok(Self::Unhindered);
+            return Ok(Self::Unoccluded);
         }
         let source = Source::new(light, pass.settings.shadows.light_samples, Triangles::center_of(world));
         let emitters = source.places();
         // Draw one map for a parallel light or a spot, and a cube of maps for any other position.
         match source {
-            Source::Unhindered => Ok(Self::Unhindered),
+            Source::Unoccluded => Ok(Self::Unoccluded),
             Source::Infinity(towards) => {
                 let map = Box::new(pass.draw(Lens::parallel(towards, world, size))?);
                 Ok(Self::Infinity { towards, map })

@@ -14,7 +14,7 @@ use crate::radiosity::{Solution, lamps, solution};
 use crate::shading::{
     BYTES_A_PIXEL, ChannelSink, ColorSink, DeepImage, FrameConstants, LitCorner, Shown, TileRows, Tracer, lit_corners,
 };
-use crate::shadow::{self, Shadows};
+use crate::shadow::{self, PreparedShadows};
 use crate::stats::{CullCounters, RadiosityCounters, Stats, TracingCounters};
 use crate::visible::{Resolved, VisibleSurface};
 use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, registry};
@@ -323,7 +323,7 @@ impl<'a> FrameContext<'a> {
 
     /// The chosen shadow algorithm, ready for the lights; `None` without shadows. Radiosity always has some: surfaces that shine
     /// are lights there, and what stands in their way keeps their light from others.
-    fn shadows<'v>(&self, view: &PreparedView<'v>) -> Result<Option<Box<dyn Shadows + 'v>>, Limit> {
+    fn shadows<'v>(&self, view: &PreparedView<'v>) -> Result<Option<Box<dyn PreparedShadows + 'v>>, Limit> {
         let chosen = self.settings.shadows.algorithm;
         let needs_some = self.settings.global.model == Global::Radiosity && chosen.is_none;
         let algorithm = if needs_some { crate::Shadows::RAY } else { chosen };
@@ -334,7 +334,7 @@ impl<'a> FrameContext<'a> {
     fn constants<'v>(
         &self,
         view: &'v PreparedView<'v>,
-        shadows: Option<&'v dyn Shadows>,
+        shadows: Option<&'v dyn PreparedShadows>,
         radiosity: Option<&'v Solution>,
         tables: &'v DecodeTables,
     ) -> FrameConstants<'v> {

@@ -9,7 +9,7 @@
 use super::element::Color;
 use super::parts::{PARTS, WHOLE, middle, parts, quarters};
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{LightVisibility, ShadowAlgorithm, Shadows, SurfacePoint, SurfacePoints, ray::RayShadows};
+use crate::shadow::{LightVisibility, PreparedShadows, ShadowAlgorithm, SurfacePoint, SurfacePoints, ray::RayShadows};
 use crate::{Execution, GlobalSettings, Session, Settings};
 use vitral_exec::Limit;
 use vitral_light::{Light, PreparedLight};
@@ -25,7 +25,7 @@ const MOST_DEPTH: u32 = 2;
 pub(super) struct Direct<'a> {
     /// With their numbers.
     lights: Vec<(usize, PreparedLight)>,
-    shadows: Box<dyn Shadows + 'a>,
+    shadows: Box<dyn PreparedShadows + 'a>,
 }
 
 impl<'a> Direct<'a> {

@@ -12,7 +12,7 @@ use super::shadow_edges::{self, Questions};
 use super::slots::Slots;
 use super::subject::Subject;
 use super::terminator;
-use crate::shadow::{LightVisibility, Placing, Shadows, SurfacePoint, SurfacePoints, grey};
+use crate::shadow::{LightVisibility, Placing, PreparedShadows, SurfacePoint, SurfacePoints, grey};
 use std::cell::Cell;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Simd, V3};
@@ -54,7 +54,7 @@ pub(crate) fn light_visibility<S: Simd>(
         light_visibility_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays);
 
     // Near edges of shadows each sample counts.
-    if constants.view.pattern.len() > 1 && !constants.shadows.is_some_and(Shadows::is_smooth) {
+    if constants.view.pattern.len() > 1 && !constants.shadows.is_some_and(PreparedShadows::is_smooth) {
         let asked = Cell::new(0);
         let place = |questions: &Questions| {
             let mut places = SurfacePoints::with_capacity(questions.numbers.len());

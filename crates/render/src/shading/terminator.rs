@@ -13,7 +13,7 @@ use super::FrameConstants;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::ray::RayShadows;
 use crate::shadow::{
-    LightVisibility, ShadowAlgorithm, Shadows, SurfacePoint, SurfacePoints, facet as facet_of, weights,
+    LightVisibility, PreparedShadows, ShadowAlgorithm, SurfacePoint, SurfacePoints, facet as facet_of, weights,
 };
 use crate::{Execution, PreparedView, Settings};
 use std::sync::OnceLock;
@@ -28,7 +28,7 @@ pub(crate) struct SoftTerminator<'a> {
     lights: Vec<Light>,
     settings: Settings,
     execution: Execution,
-    rays: OnceLock<Option<Box<dyn Shadows + 'a>>>,
+    rays: OnceLock<Option<Box<dyn PreparedShadows + 'a>>>,
 }
 
 impl<'a> SoftTerminator<'a> {
@@ -43,7 +43,7 @@ impl<'a> SoftTerminator<'a> {
     }
 }
 
-impl Shadows for SoftTerminator<'_> {
+impl PreparedShadows for SoftTerminator<'_> {
     /// Leaves places dark whose rays the budget does not allow.
     fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
         let prepare =

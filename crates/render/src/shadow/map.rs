@@ -35,7 +35,7 @@ use super::casters::faces;
 use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::sources::Shares;
-use super::{ShadowAlgorithm, Shadows};
+use super::{PreparedShadows, ShadowAlgorithm};
 use crate::{Execution, PreparedView, Session, Settings};
 use cascade::{Cascades, CascadesKey};
 use draw::{FirstPass, When};
@@ -60,7 +60,7 @@ impl ShadowAlgorithm for MapShadows {
         _: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let maps = Maps::of(session, lights, settings, execution)?;
         Ok(Box::new(Prepared { maps, cascades: None, level: execution.level }))
     }
@@ -71,7 +71,7 @@ impl ShadowAlgorithm for MapShadows {
         lights: &[Light],
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let session = view.session;
         let maps = Maps::of(session, lights, settings, execution)?;
         let (count, size) = (settings.shadows.cascades, settings.shadows.map_size);
@@ -95,7 +95,7 @@ struct Prepared {
     level: Level,
 }
 
-impl Shadows for Prepared {
+impl PreparedShadows for Prepared {
     fn is_smooth(&self) -> bool {
         // Texels are filtered.
         true

@@ -40,7 +40,7 @@ use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4};
 
 /// Shadows of one set of lights in one scene.
-pub trait Shadows: Send + Sync {
+pub trait PreparedShadows: Send + Sync {
     /// Which part of each colour of the light of this number reaches each of the places, `0..=1`, into as many `parts`.
     /// Other places in the same call do not change the answer. Adds the rays that it took.
     fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64);
@@ -82,7 +82,7 @@ pub trait ShadowAlgorithm: Sync {
         viewer: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit>;
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit>;
 
     /// Makes ready for a picture of this view: [`Self::prepare`], but for algorithms whose precision follows the viewer.
     ///
@@ -94,7 +94,7 @@ pub trait ShadowAlgorithm: Sync {
         lights: &[Light],
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         self.prepare(view.session, lights, view.viewer(), settings, execution)
     }
 }
@@ -164,7 +164,7 @@ pub(crate) fn prepare<'a>(
     lights: &[Light],
     settings: &Settings,
     execution: &Execution,
-) -> Result<Option<Box<dyn Shadows + 'a>>, Limit> {
+) -> Result<Option<Box<dyn PreparedShadows + 'a>>, Limit> {
     if !settings.shading.lighting && !settings.picture.channels.cast_shadow {
         return Ok(None);
     }

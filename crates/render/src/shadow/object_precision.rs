@@ -23,7 +23,7 @@ use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoints};
 use super::rounding::clearance;
 use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, Key, ShadowAlgorithm, Shadows};
+use super::{Drawn, Key, PreparedShadows, ShadowAlgorithm};
 use crate::raytrace::shaft::Shaft;
 use crate::{Cached, Execution, Session, Settings};
 use clip::{Cutter, Detail};
@@ -96,7 +96,7 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
         _: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
         let polygons = session.cache.get_or_build(Key::new(lights, settings), || {
             let casters = Casters::of(session, &occluders, execution)?;
@@ -230,7 +230,7 @@ impl Details {
     }
 }
 
-impl Shadows for Prepared<'_> {
+impl PreparedShadows for Prepared<'_> {
     fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let LitPolygons { casters, lights } = &*self.polygons;
         let lights = &lights[light];

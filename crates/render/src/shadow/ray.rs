@@ -20,7 +20,7 @@ use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::rounding::{clearance, horizon};
 use super::sources::{Area, Shares, Source};
-use super::{ShadowAlgorithm, Shadows};
+use super::{PreparedShadows, ShadowAlgorithm};
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::{Counters, packet};
@@ -51,7 +51,7 @@ impl ShadowAlgorithm for RayShadows {
         _: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let acceleration = settings.acceleration.unwrap_or_default();
         if acceleration.asks_all {
             let pixels = u64::from(settings.picture.width) * u64::from(settings.picture.height);
@@ -75,7 +75,7 @@ const FINER: u32 = 8;
 /// Places whose rays are made ready before the first is followed.
 const TOGETHER: usize = 64;
 
-impl Shadows for Prepared<'_> {
+impl PreparedShadows for Prepared<'_> {
     fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
         let mut feelers = Vec::with_capacity(TOGETHER);
         // Trace several points at a time.

@@ -22,7 +22,7 @@ use super::casters::{Casters, Solid, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, ShadowAlgorithm, Shadows};
+use super::{Drawn, PreparedShadows, ShadowAlgorithm};
 use crate::raytrace::shaft::Shaft;
 use crate::{Execution, Session, Settings, Transparency};
 use on_receivers::Receivers;
@@ -53,7 +53,7 @@ impl ShadowAlgorithm for ScanLineShadows {
         _: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
         let casters = Casters::of(session, &occluders, execution)?;
         let center = casters.triangles().center;
@@ -84,7 +84,7 @@ struct Work {
     dark: Vec<bool>,
 }
 
-impl Shadows for Prepared<'_> {
+impl PreparedShadows for Prepared<'_> {
     fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let lights = &self.lights[light];
         if lights.is_empty() {

@@ -32,7 +32,7 @@ use super::casters::{Casters, faces, lifted};
 use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoints};
 use super::sources::{Shares, Source};
-use super::{Drawn, Key, ShadowAlgorithm, Shadows};
+use super::{Drawn, Key, PreparedShadows, ShadowAlgorithm};
 use crate::{Cached, Execution, Session, Settings, VolumeCounting};
 use count::{Batch, Lit, ODD};
 pub(crate) use edges::Surface;
@@ -75,7 +75,7 @@ impl ShadowAlgorithm for VolumeShadows {
         viewer: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
 
         // Build the volumes, or take them from the cache.
@@ -135,7 +135,7 @@ impl Volumes {
     }
 }
 
-impl Shadows for Counting<'_> {
+impl PreparedShadows for Counting<'_> {
     fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let volumes = &self.volumes.lights[light];
         if volumes.is_empty() {

@@ -64,7 +64,8 @@ fn with_colored_shadows<R>(
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let algorithm = registry::shadows(settings.shadows.algorithm).unwrap();
     let execution = Execution::default();
-    let ready: Box<dyn shadow::Shadows> = algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
+    let ready: Box<dyn shadow::PreparedShadows> =
+        algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
     ask(&|place| {
         let facet = if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };

@@ -11,7 +11,7 @@
 //!
 //! The tree of `--visibility bsp` is another: it cuts polygons by the planes of polygons, and gives an order.
 //!
-//! In:   triangles. Out: [`Bsp`].
+//! In:   triangles. Out: [`KdTree`].
 //! Cost: `O(n log n)` to build; 16 bytes a node, and at most [`REFERENCES`] entries a triangle, whatever the scene.
 //! Source: [Kaplan 1985], the heuristic after [MacDonald & Booth 1990]. Departs from them: planes are tried at equal distances, not at every
 //!         triangle.
@@ -63,7 +63,7 @@ type Cell = [Vec3; 2];
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Bsp {
+pub struct KdTree {
     /// Least and largest coordinates of the root.
     root: Cell,
     /// How much cells overlap, to each side of a plane, so that rounding lets nothing slip through.
@@ -89,11 +89,11 @@ struct Build<'a> {
     budget: &'a Budget,
 }
 
-impl Cached for Bsp {
+impl Cached for KdTree {
     type Key = ();
 }
 
-impl Bsp {
+impl KdTree {
     /// The session's, built when first asked for: the views of a turntable share it.
     ///
     /// # Errors
@@ -299,20 +299,20 @@ impl Part {
     }
 }
 
-impl Bsp {
+impl KdTree {
     /// A leaf's entries.
     fn entries_of(&self, node: &Node) -> &[u32] {
         &self.entries[node.link as usize..(node.link + node.count) as usize]
     }
 }
 
-impl Follow for Bsp {
+impl Follow for KdTree {
     fn lend<U: StructureUser>(&self, user: U) -> U::Outcome {
         user.with_tree(self)
     }
 }
 
-impl Structure for Bsp {
+impl Structure for KdTree {
     const REPEATS: bool = true;
 
     fn triangles(&self) -> &Triangles {
@@ -346,7 +346,7 @@ impl Structure for Bsp {
     }
 }
 
-impl Tree for Bsp {
+impl Tree for KdTree {
     fn root(&self) -> Option<[[f32; 3]; 2]> {
         (self.triangles.count() > 0).then(|| self.root.map(|p| p.to_array()))
     }
@@ -406,8 +406,8 @@ mod tests {
     use vitral_math::vec3;
     use vitral_scene::{World, builtin};
 
-    fn build(triangles: Triangles, threads: usize) -> Bsp {
-        Bsp::build(&Arc::new(triangles), &Workers::new(threads), &Budget::default()).unwrap()
+    fn build(triangles: Triangles, threads: usize) -> KdTree {
+        KdTree::build(&Arc::new(triangles), &Workers::new(threads), &Budget::default()).unwrap()
     }
 
     #[test]

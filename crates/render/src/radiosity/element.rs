@@ -9,7 +9,7 @@ use vitral_math::DVec3;
 pub type Color = [f64; 3];
 
 /// The form factors from one side of an element to sides of others.
-pub type Row = Vec<(u32, f64)>;
+pub type FormFactors = Vec<(u32, f64)>;
 
 /// A small triangle.
 #[derive(Clone, Copy, Debug)]

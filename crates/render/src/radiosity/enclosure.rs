@@ -10,7 +10,7 @@
 //! Source: \[Goral et al. 1984\].
 
 use super::direct::Direct;
-use super::element::{Color, Element, Patch, Row, turned};
+use super::element::{Color, Element, FormFactors, Patch, turned};
 use super::lamps::lamps;
 use super::neighbours::Neighbours;
 use super::parts::{PARTS, middle};
@@ -195,7 +195,7 @@ impl Enclosure {
     }
 
     /// The sides of elements that a place sees, for the elements that it sees.
-    pub(super) fn sides(&self, mut seen: Row, place: DVec3) -> Row {
+    pub(super) fn sides(&self, mut seen: FormFactors, place: DVec3) -> FormFactors {
         for (number, _) in &mut seen {
             let element = &self.elements[*number as usize];
             *number = 2 * *number + u32::from(element.normal.dot(place - element.center) < 0.0);

@@ -9,7 +9,7 @@
 //! Cost: a search for neighbours; for each of those that face the patch up to 16 rays.
 //! Source: \[Wallace, Elmquist & Haines 1989\]. Departs from it: only near elements ask, and for all of the polygon.
 
-use super::element::{Row, turned};
+use super::element::{FormFactors, turned};
 use super::enclosure::Enclosure;
 use super::form_factor::from_point;
 use super::parts::quarters;
@@ -42,7 +42,7 @@ struct Sender {
 }
 
 /// Puts the factors of near elements right in what the hemicube on a side of a patch sees.
-pub(super) fn refined(enclosure: &Enclosure, seen: Row, shooter: usize, execution: &Execution) -> Row {
+pub(super) fn refined(enclosure: &Enclosure, seen: FormFactors, shooter: usize, execution: &Execution) -> FormFactors {
     // Describe the side that shoots.
     let patch = &enclosure.patches[shooter / 2];
     if patch.is_group {
@@ -58,7 +58,7 @@ pub(super) fn refined(enclosure: &Enclosure, seen: Row, shooter: usize, executio
     };
 
     // Compute the factors of near elements with rays.
-    let mut near = Row::new();
+    let mut near = FormFactors::new();
     enclosure.neighbours.visit(&enclosure.elements, patch.center, NEAR * sender.longest, |number| {
         let element = &enclosure.elements[number as usize];
         let cuts = if element.center.distance(patch.center) < NEXT * sender.longest { 2 } else { 1 };
@@ -75,7 +75,7 @@ pub(super) fn refined(enclosure: &Enclosure, seen: Row, shooter: usize, executio
     // Remove these elements from the hemicube's row.
     near.sort_unstable_by_key(|(side, _)| *side);
     let own = |side: u32| near.binary_search_by_key(&side, |(near, _)| *near).is_ok();
-    let (mut row, mut replaced) = (Row::with_capacity(seen.len() + near.len()), 0.0);
+    let (mut row, mut replaced) = (FormFactors::with_capacity(seen.len() + near.len()), 0.0);
     for (side, factor) in seen {
         if own(side) { replaced += factor } else { row.push((side, factor)) }
     }

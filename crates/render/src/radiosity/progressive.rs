@@ -20,7 +20,7 @@
 //! multiplications a shot for each element that it shows.
 //! Source: \[Cohen et al. 1988\]. Departs from it: there all hemicubes have the same pixels.
 
-use super::element::{Color, Element, Row, turned};
+use super::element::{Color, Element, FormFactors, turned};
 use super::enclosure::Enclosure;
 use super::hemicube::Hemicube;
 use super::near::refined;
@@ -249,7 +249,12 @@ fn fineness(hemicubes: &[Hemicube], part: f64, elements: usize) -> usize {
 }
 
 /// What a side of a patch sees: sides of elements.
-fn look(enclosure: &Enclosure, hemicube: &Hemicube, shooter: usize, execution: &Execution) -> Result<Row, Limit> {
+fn look(
+    enclosure: &Enclosure,
+    hemicube: &Hemicube,
+    shooter: usize,
+    execution: &Execution,
+) -> Result<FormFactors, Limit> {
     let patch = &enclosure.patches[shooter / 2];
     let from = (patch.center, patch.normal * turned(shooter));
     let seen = hemicube.look((&enclosure.targets, &enclosure.trees), from, shooter / 2, execution)?;
@@ -269,7 +274,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(fineness: usize, row: &Row) -> Self {
+    fn new(fineness: usize, row: &FormFactors) -> Self {
         let whole: f64 = row.iter().map(|(_, factor)| factor).sum();
         let row: Vec<(u32, f32)> = row.iter().map(|&(side, factor)| (side, factor as f32)).collect();
         let rounded: f64 = row.iter().map(|(_, factor)| f64::from(*factor)).sum();
@@ -362,12 +367,12 @@ mod tests {
 
     #[test]
     fn rounded_form_factors_have_the_sum_of_exact_ones() {
-        let row: Row = (0..1000).map(|i| (i, 1.0 / (f64::from(i) + 3.0))).collect();
+        let row: FormFactors = (0..1000).map(|i| (i, 1.0 / (f64::from(i) + 3.0))).collect();
         let seen = Seen::new(0, &row);
         let rounded: f64 = seen.row.iter().map(|(_, factor)| f64::from(*factor) * seen.scale).sum();
         let exact: f64 = row.iter().map(|(_, factor)| factor).sum();
         assert!((rounded - exact).abs() < 1e-13 * exact && seen.whole == exact);
-        assert_eq!(Seen::new(0, &Row::new()).whole, 0.0);
+        assert_eq!(Seen::new(0, &FormFactors::new()).whole, 0.0);
     }
 
     #[test]

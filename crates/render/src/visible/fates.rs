@@ -15,7 +15,7 @@ use vitral_scene::Instance;
 /// A plane of the view volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Plane {
+pub enum ClipPlane {
     /// Left of the picture.
     Left,
     /// Right of it.
@@ -30,7 +30,7 @@ pub enum Plane {
     Near,
 }
 
-impl Plane {
+impl ClipPlane {
     /// Each with its bit, see [`flag`].
     const BITS: [(Self, u32); 6] = [
         (Self::Left, flag::LEFT),
@@ -68,12 +68,12 @@ pub enum Fate {
     /// Frustum culling rejected the box round its object, or round its run of triangles.
     BoxCulled {
         /// The planes beyond which all its corners lie.
-        planes: Vec<Plane>,
+        planes: Vec<ClipPlane>,
     },
     /// All its corners lie beyond one plane of the view volume.
     OutsideFrustum {
         /// The planes for which that is so.
-        planes: Vec<Plane>,
+        planes: Vec<ClipPlane>,
     },
     /// A corner is not a finite number.
     NotFinite,
@@ -84,7 +84,7 @@ pub enum Fate {
     /// What clipping leaves of it does not reach the pixel.
     ClippedAway {
         /// The planes that cut it.
-        planes: Vec<Plane>,
+        planes: Vec<ClipPlane>,
     },
     /// It covers no sample of the pixel.
     BetweenSamples,
@@ -167,7 +167,7 @@ pub(crate) fn candidates(view: &PreparedView<'_>, seen: &SeenPixel<'_>, wirefram
             let (fate, depth) = match draw {
                 Some(draw) => fate(view, draw, facet, seen),
                 None if wireframe => (Fate::NotDrawn, None),
-                None => (Fate::BoxCulled { planes: Plane::of_flags(common(view.corner_flags(facet))) }, None),
+                None => (Fate::BoxCulled { planes: ClipPlane::of_flags(common(view.corner_flags(facet))) }, None),
             };
             found.push(Candidate { facet, depth, fate });
         }
@@ -190,10 +190,10 @@ fn fate(view: &PreparedView<'_>, draw: &Draw<'_>, facet: u32, seen: &SeenPixel<'
         return (Fate::NotFinite, None);
     }
     if common(flags) != 0 {
-        return (Fate::OutsideFrustum { planes: Plane::of_flags(common(flags)) }, None);
+        return (Fate::OutsideFrustum { planes: ClipPlane::of_flags(common(flags)) }, None);
     }
     let batch = view.set_up(facet, draw.back_faces);
-    let cutting = Plane::of_flags(any & (flag::NEAR | flag::FAR));
+    let cutting = ClipPlane::of_flags(any & (flag::NEAR | flag::FAR));
     let counted = &batch.counters;
     if counted.back_facing > 0 {
         return (Fate::BackFace, None);

@@ -206,12 +206,12 @@ impl<'a> Shooting<'a> {
     }
 
     /// What these sides see, by hemicubes that are at least as fine as theirs.
-    fn look(&self, shooters: &[(usize, usize)], known: &Known) -> Result<Vec<Arc<Seen>>, Limit> {
+    fn look(&self, shooters: &[(usize, usize)], known: &Known) -> Result<Vec<Arc<FormFactorRow>>, Limit> {
         let seen = self.execution.workers.map(shooters.len(), |i| match (&known.rows[shooters[i].0], shooters[i]) {
             (Some(seen), (_, fineness)) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
             (_, (side, fineness)) => {
                 let row = look(self.enclosure, &self.hemicubes[fineness], side, self.execution)?;
-                Ok(Arc::new(Seen::new(fineness, &row)))
+                Ok(Arc::new(FormFactorRow::new(fineness, &row)))
             }
         });
         seen.into_iter().collect()
@@ -219,7 +219,7 @@ impl<'a> Shooting<'a> {
 }
 
 /// Elements take their parts of what is sent to those that are seen.
-fn receive(receivers: &[Receiver], seen: &Seen, sent: &Color, unsent: &mut [Color], progress: &mut Progress) {
+fn receive(receivers: &[Receiver], seen: &FormFactorRow, sent: &Color, unsent: &mut [Color], progress: &mut Progress) {
     let (scaled, mut kept) = (sent.map(|s| s * seen.scale), [0.0; 3]);
     for &(side, factor) in &seen.row {
         let (side, factor) = (side as usize, f64::from(factor));
@@ -262,7 +262,7 @@ fn look(
 }
 
 /// What a side of a patch was found to see.
-struct Seen {
+struct FormFactorRow {
     /// The number of the hemicube.
     fineness: usize,
     /// Sides of elements, and form factors divided by `scale`.
@@ -273,7 +273,7 @@ struct Seen {
     whole: f64,
 }
 
-impl Seen {
+impl FormFactorRow {
     fn new(fineness: usize, row: &FormFactors) -> Self {
         let whole: f64 = row.iter().map(|(_, factor)| factor).sum();
         let row: Vec<(u32, f32)> = row.iter().map(|&(side, factor)| (side, factor as f32)).collect();
@@ -292,13 +292,13 @@ struct Receiver {
 
 /// What patches were found to see, for as long as there is room.
 struct Known {
-    rows: Vec<Option<Arc<Seen>>>,
+    rows: Vec<Option<Arc<FormFactorRow>>>,
     /// Factors that may still be kept.
     room: usize,
 }
 
 impl Known {
-    fn keep(&mut self, shooter: usize, seen: Arc<Seen>) {
+    fn keep(&mut self, shooter: usize, seen: Arc<FormFactorRow>) {
         let known = self.rows[shooter].as_ref();
         let (finer, room) =
             (known.is_none_or(|k| k.fineness < seen.fineness), known.map_or(0, |k| k.row.len()) + self.room);
@@ -368,16 +368,17 @@ mod tests {
     #[test]
     fn rounded_form_factors_have_the_sum_of_exact_ones() {
         let row: FormFactors = (0..1000).map(|i| (i, 1.0 / (f64::from(i) + 3.0))).collect();
-        let seen = Seen::new(0, &row);
+        let seen = FormFactorRow::new(0, &row);
         let rounded: f64 = seen.row.iter().map(|(_, factor)| f64::from(*factor) * seen.scale).sum();
         let exact: f64 = row.iter().map(|(_, factor)| factor).sum();
         assert!((rounded - exact).abs() < 1e-13 * exact && seen.whole == exact);
-        assert_eq!(Seen::new(0, &FormFactors::new()).whole, 0.0);
+        assert_eq!(FormFactorRow::new(0, &FormFactors::new()).whole, 0.0);
     }
 
     #[test]
     fn what_is_seen_is_kept_while_there_is_room_and_replaced_by_finer() {
-        let seen = |fineness, count: u32| Arc::new(Seen::new(fineness, &(0..count).map(|i| (i, 0.1)).collect()));
+        let seen =
+            |fineness, count: u32| Arc::new(FormFactorRow::new(fineness, &(0..count).map(|i| (i, 0.1)).collect()));
         let mut known = Known { rows: vec![None, None], room: 10 };
         known.keep(0, seen(1, 6));
         known.keep(1, seen(1, 5));

@@ -32,11 +32,11 @@ pub struct Collector {
     budget: Budget,
     /// A pixel at which each comparison of the z-buffer is kept.
     watched: Option<[u32; 2]>,
-    kept: Mutex<Kept>,
+    kept: Mutex<RecordedSteps>,
 }
 
 #[derive(Debug, Default)]
-struct Kept {
+struct RecordedSteps {
     steps: Vec<Step>,
     charged: u64,
     /// Where it gave up.

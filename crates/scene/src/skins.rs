@@ -43,7 +43,7 @@ impl Solids {
         let weld = Weld::new(&mesh.positions, workers);
         let Some(skins) = Skins::new(mesh, &weld) else { return Self::default() };
         let triangles = TriangleBuckets::new(mesh, &weld, workers);
-        let spare = Spare::<(Around, Seen)>::default();
+        let spare = Spare::<(Around, EdgeFindings)>::default();
         workers.map(triangles.count(), |b| {
             spare.lend(|(around, seen)| {
                 around.fill(&triangles, b);
@@ -130,7 +130,7 @@ impl Bits {
 
 /// What was seen of some of the edges.
 #[derive(Default)]
-pub(crate) struct Seen {
+pub(crate) struct EdgeFindings {
     some: bool,
     open: bool,
     twisted: bool,
@@ -155,7 +155,7 @@ struct Edge {
     older: u32,
 }
 
-impl Seen {
+impl EdgeFindings {
     fn use_edge(&mut self, vertex: usize, side: Use) {
         let mut at = self.newest[vertex];
         while let Some(edge) = self.edges.get_mut(at as usize) {
@@ -188,7 +188,7 @@ impl<'a> Skins<'a> {
     }
 
     /// Looks at an edge that these triangles use.
-    fn edge(&self, seen: &mut Seen, uses: &[Use]) {
+    fn edge(&self, seen: &mut EdgeFindings, uses: &[Use]) {
         seen.some = true;
         match uses {
             [a, b] => {
@@ -211,7 +211,7 @@ impl<'a> Skins<'a> {
     }
 
     /// Looks at the edges whose lower vertex is in a bucket.
-    pub(crate) fn look_at(&self, seen: &mut Seen, around: &Around) {
+    pub(crate) fn look_at(&self, seen: &mut EdgeFindings, around: &Around) {
         // Sort the sides of each triangle by their lower vertex.
         let Around { first_vertex, degrees, faces, welded } = around;
         seen.edges.clear();
@@ -262,8 +262,12 @@ impl<'a> Skins<'a> {
     }
 
     /// The answer, when all edges were looked at.
-    pub(crate) fn solids<'b>(self, seen: impl IntoIterator<Item = &'b Seen> + Clone, workers: &Workers) -> Solids {
-        let any = |of: fn(&Seen) -> bool| seen.clone().into_iter().any(of);
+    pub(crate) fn solids<'b>(
+        self,
+        seen: impl IntoIterator<Item = &'b EdgeFindings> + Clone,
+        workers: &Workers,
+    ) -> Solids {
+        let any = |of: fn(&EdgeFindings) -> bool| seen.clone().into_iter().any(of);
         let closed = any(|s| s.some) && !any(|s| s.open);
         let consistent = !any(|s| s.twisted);
         seen.into_iter().for_each(|seen| self.weigh_crossings(&seen.crossings));

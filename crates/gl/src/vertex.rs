@@ -15,7 +15,7 @@ use vitral_math::Mat4;
 
 /// Whether a batch is drawn at once or comes out of a display list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sent {
+pub enum Submission {
     /// By Begin and End, or from arrays.
     #[default]
     Now,

@@ -9,7 +9,7 @@ use super::snapshot::{FogSource, Generation, LightCache, VertexSnapshot};
 use crate::Context;
 use crate::enums as gl;
 use crate::state;
-use crate::vertex::{Given, Sent, VertexBatch};
+use crate::vertex::{Given, Submission, VertexBatch};
 use std::sync::{Arc, PoisonError};
 use vitral_exec::{Started, Workers};
 use vitral_math::Vec4;
@@ -136,7 +136,7 @@ impl Context {
     }
 
     /// Records the drawing of `batch` with a snapshot of the state.
-    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>, sent: Sent, given: &Given) {
+    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>, sent: Submission, given: &Given) {
         if !self.draw_framebuffer_complete("draw") {
             return;
         }
@@ -203,7 +203,7 @@ impl Context {
     fn draw_geometry(
         &mut self,
         batch: Arc<VertexBatch>,
-        sent: Sent,
+        sent: Submission,
         given: &Given,
         fragment: &FragmentState,
         target: &Target,
@@ -222,7 +222,7 @@ impl Context {
 
         // Triangulate batches that are drawn repeatedly.
         let primitive = self.primitive_state(fragment, target)?;
-        let small = sent == Sent::Now && batch.is_small();
+        let small = sent == Submission::Now && batch.is_small();
         let triangulation = (!small).then(|| batch.triangulation.get(&batch));
         // What draws depths alone into a texture is seldom looked at: it stays as it was given.
         let flat = triangulation.as_ref().is_some_and(|triangulation| triangulation.grid.is_some());
@@ -248,7 +248,7 @@ impl Context {
             attenuation: s.points.attenuation,
             fade: multisample.then_some(s.points.fade_threshold),
         };
-        let first_diagonal = sent == Sent::Now && batch.indices.is_none() && !fragment.flat;
+        let first_diagonal = sent == Submission::Now && batch.indices.is_none() && !fragment.flat;
         Some(DrawGeometry { triangulation, batch, grid, first_diagonal, snapshot, primitive, layout, points })
     }
 

@@ -12,7 +12,7 @@
 use super::attribute::{CARRIED, COLOR};
 use crate::primitive::is_independent;
 use crate::state::Current;
-use crate::vertex::{Given, Sent, VertexBatch};
+use crate::vertex::{Given, Submission, VertexBatch};
 use crate::{Context, enums};
 use std::sync::Arc;
 use vitral_math::Mat4;
@@ -42,7 +42,7 @@ pub(crate) struct Builder {
     /// With so many vertices the open primitive is long.
     pub(super) most: usize,
     /// Whether what is gathered is cut as what comes at once.
-    sent: Sent,
+    sent: Submission,
     /// As it was at the first Begin.
     given: Given,
     /// The modelview matrix may have changed since the last Begin.
@@ -216,13 +216,13 @@ impl Context {
         } else if mode > enums::POLYGON {
             self.record_error(enums::INVALID_ENUM, "glBegin", &format!("mode {mode:#x} is not a primitive"));
         } else if !self.refused_by_framebuffer("glBegin") {
-            self.gather(Sent::Now);
+            self.gather(Submission::Now);
             self.builder.open(mode);
         }
     }
 
     /// Notes the current state for a primitive that begins.
-    pub(super) fn gather(&mut self, sent: Sent) {
+    pub(super) fn gather(&mut self, sent: Submission) {
         if self.builder.sent != sent {
             self.flush_vertices();
         }
@@ -253,7 +253,7 @@ impl Context {
     }
 
     /// Whether a batch is gathered rather than drawn; if so, it has been.
-    pub(super) fn gathers(&mut self, batch: &Arc<VertexBatch>, sent: Sent) -> bool {
+    pub(super) fn gathers(&mut self, batch: &Arc<VertexBatch>, sent: Submission) -> bool {
         if !batch.is_small() || !self.builder.merging || self.feedback.mode != enums::RENDER {
             return false;
         }
@@ -261,7 +261,7 @@ impl Context {
             return true;
         }
         // What is indexed is cut as what lists hold.
-        let sent = if batch.indices.is_some() { Sent::Listed } else { sent };
+        let sent = if batch.indices.is_some() { Submission::Listed } else { sent };
         if !self.builder.gathering {
             let given = Given::current(&self.state);
             let builder = &mut self.builder;

@@ -5,7 +5,7 @@ use super::cache::{Key, Vertices};
 use super::fetch::{Reader, Refusal, Run, Store, store};
 use crate::memory::can_have;
 use crate::state::ArrayPointer;
-use crate::vertex::{Given, Sent, VertexBatch};
+use crate::vertex::{Given, Submission, VertexBatch};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::vertices::client;
 use crate::vertices::compile::{Item, drawing_nothing};
@@ -216,9 +216,9 @@ impl Context {
         if self.lists.recording {
             self.compile(|compiler| compiler.batch(Arc::unwrap_or_clone(batch.clone())));
         }
-        if self.executes() && !self.gathers(&batch, Sent::Now) {
+        if self.executes() && !self.gathers(&batch, Submission::Now) {
             self.flush_vertices();
-            self.draw_batch(batch, Sent::Now, &Given::current(&self.state));
+            self.draw_batch(batch, Submission::Now, &Given::current(&self.state));
         }
     }
 

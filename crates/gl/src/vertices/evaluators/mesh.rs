@@ -1,7 +1,7 @@
 //! Vertices from maps: single ones, points of a grid, meshes.
 
 use super::evaluate::{Evaluated, evaluate_1, evaluate_2};
-use crate::vertex::Sent;
+use crate::vertex::Submission;
 use crate::vertices::client::Component;
 use crate::{Context, enums};
 use std::ops::RangeInclusive;
@@ -139,7 +139,7 @@ impl Context {
 
     /// One primitive of a mesh.
     fn mesh_row(&mut self, primitive: u32, range: RangeInclusive<i32>, give: impl Fn(&mut Self, i32)) {
-        self.gather(Sent::Now);
+        self.gather(Submission::Now);
         self.builder.open(primitive);
         range.for_each(|i| give(self, i));
         self.builder.close();

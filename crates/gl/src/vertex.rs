@@ -25,14 +25,14 @@ pub enum Submission {
 
 /// What vertices are drawn with besides their attributes, where a batch does not say otherwise.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Given {
+pub(crate) struct CurrentState {
     /// Model to eye.
     pub modelview: Mat4,
     /// Front, back.
     pub material: [MaterialFace; 2],
 }
 
-impl Given {
+impl CurrentState {
     /// The current matrix and material.
     pub(crate) fn current(state: &State) -> Self {
         Self { modelview: state.matrices.modelview.top(), material: state.lighting.material }

@@ -16,7 +16,7 @@ use crate::grid::Grid;
 use crate::hiding::{Interval, Sides};
 use crate::layout::{Content, PageSize, lay_out};
 use crate::page_mesh::{Edge, NONE, PageMesh};
-use crate::place::{Place, Segment};
+use crate::place::{EdgePosition, Segment};
 use crate::run::Run;
 use crate::strokes::strokes;
 use std::ops::ControlFlow;
@@ -38,8 +38,8 @@ pub(crate) struct Fragment {
     pub(crate) edge: u32,
     /// Triangles in front of it.
     pub(crate) layers: u32,
-    pub(crate) from: Place,
-    pub(crate) to: Place,
+    pub(crate) from: EdgePosition,
+    pub(crate) to: EdgePosition,
 }
 
 /// Which parts of edges are wanted.
@@ -170,7 +170,7 @@ struct Walk {
     /// For each triangle the edge that asked it last.
     asked: Vec<u32>,
     /// Visible pieces of the edge, in no order.
-    pieces: Vec<(Place, Place)>,
+    pieces: Vec<(EdgePosition, EdgePosition)>,
     /// Hidden intervals of the edge.
     hidden: Vec<Interval>,
     changes: Vec<Change>,
@@ -181,7 +181,7 @@ struct Walk {
 /// Where a hidden interval begins or ends.
 #[derive(Clone, Copy)]
 struct Change {
-    place: Place,
+    place: EdgePosition,
     sides: Sides,
     by: i32,
 }
@@ -209,7 +209,7 @@ impl Walk {
         self.stats.edges += 1;
         self.pieces.clear();
         self.hidden.clear();
-        self.pieces.push((Place::START, Place::END));
+        self.pieces.push((EdgePosition::START, EdgePosition::END));
 
         // Subtract what the triangles hide, by the grid or one by one.
         let visible_only = most_layers == 0;
@@ -233,7 +233,7 @@ impl Walk {
         self.stats.intervals += self.hidden.len() as u64;
         if visible_only && self.pieces.len() <= MOST_PIECES {
             self.pieces.sort_by(|a, b| segment.compare(&a.0, &b.0));
-            let visible = |&(from, to): &(Place, Place)| Fragment { edge: number, layers: 0, from, to };
+            let visible = |&(from, to): &(EdgePosition, EdgePosition)| Fragment { edge: number, layers: 0, from, to };
             found.extend(self.pieces.iter().map(visible));
         } else {
             self.sweep(&segment, number, most_layers, found);
@@ -334,11 +334,11 @@ impl Walk {
             self.changes.push(Change { place: interval.from, sides: interval.sides, by: 1 });
             self.changes.push(Change { place: interval.to, sides: interval.sides, by: -1 });
         }
-        self.changes.push(Change { place: Place::END, sides: Sides::Both, by: 0 });
+        self.changes.push(Change { place: EdgePosition::END, sides: Sides::Both, by: 0 });
         self.changes.sort_by(|a, b| segment.compare(&a.place, &b.place));
 
         // Count the layers over both sides of the edge; the side with more of them tells.
-        let (mut counts, mut at) = ([0; 3], Place::START);
+        let (mut counts, mut at) = ([0; 3], EdgePosition::START);
         let first = found.len();
         for change in &self.changes {
             if segment.is_before(&at, &change.place) {

@@ -5,7 +5,7 @@ use super::vertices::{LaneFaces, VertexBatch8, process};
 use crate::Context;
 use crate::enums as gl;
 use crate::state::{MAX_TEXTURE_UNITS, RasterPosition};
-use crate::vertex::{Given, VertexBatch};
+use crate::vertex::{CurrentState, VertexBatch};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Level, dispatch};
 use vitral_raster::forward::WindowTransform;
@@ -67,7 +67,7 @@ impl Context {
         // Take a snapshot of the state.
         let units: Vec<usize> = (0..if wanted == Wanted::All { UNITS } else { 0 }).collect();
         let snapshot =
-            VertexSnapshot::new(&self.state, &Given::current(&self.state), &units, true, &mut LightCache::default());
+            VertexSnapshot::new(&self.state, &CurrentState::current(&self.state), &units, true, &mut LightCache::default());
         let mut planes = snapshot.transform.clip_planes.iter();
         let planes = self.state.clip_plane_enabled.map(|enabled| if enabled { planes.next() } else { None });
 

@@ -9,7 +9,7 @@ use super::snapshot::{FogSource, Generation, LightCache, VertexSnapshot};
 use crate::Context;
 use crate::enums as gl;
 use crate::state;
-use crate::vertex::{Given, Submission, VertexBatch};
+use crate::vertex::{CurrentState, Submission, VertexBatch};
 use std::sync::{Arc, PoisonError};
 use vitral_exec::{Started, Workers};
 use vitral_math::Vec4;
@@ -136,7 +136,7 @@ impl Context {
     }
 
     /// Records the drawing of `batch` with a snapshot of the state.
-    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>, sent: Submission, given: &Given) {
+    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>, sent: Submission, given: &CurrentState) {
         if !self.draw_framebuffer_complete("draw") {
             return;
         }

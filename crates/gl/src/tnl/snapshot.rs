@@ -2,7 +2,7 @@
 
 use crate::enums as gl;
 use crate::state::{Current, MaterialFace, State};
-use crate::vertex::Given;
+use crate::vertex::CurrentState;
 use std::sync::Arc;
 use vitral_light::{Attenuation, Light, LightKind, PreparedLight};
 use vitral_math::{DMat4, DVec3, Mat3, Mat4, Vec4, func};
@@ -125,7 +125,7 @@ impl VertexSnapshot {
     }
 
     /// Takes what is needed; `units` are the sampled units, `fog` whether fog is on, `lights` a cache.
-    pub(crate) fn new(state: &State, given: &Given, units: &[usize], fog: bool, lights: &mut LightCache) -> Self {
+    pub(crate) fn new(state: &State, given: &CurrentState, units: &[usize], fog: bool, lights: &mut LightCache) -> Self {
         let matrices = &state.matrices;
         let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
         let clip_planes: Vec<_> = planes.map(|(plane, _)| plane.map(|v| v as f32)).collect();
@@ -179,7 +179,7 @@ fn unit(state: &State, index: usize) -> UnitSnapshot {
 }
 
 impl LightingSnapshot {
-    fn new(state: &State, given: &Given, cache: &mut LightCache) -> Self {
+    fn new(state: &State, given: &CurrentState, cache: &mut LightCache) -> Self {
         let lighting = &state.lighting;
         let material = lighting.color_material;
 

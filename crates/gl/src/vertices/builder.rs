@@ -12,7 +12,7 @@
 use super::attribute::{CARRIED, COLOR};
 use crate::primitive::is_independent;
 use crate::state::Current;
-use crate::vertex::{Given, Submission, VertexBatch};
+use crate::vertex::{CurrentState, Submission, VertexBatch};
 use crate::{Context, enums};
 use std::sync::Arc;
 use vitral_math::Mat4;
@@ -232,7 +232,7 @@ impl Context {
             builder.start();
             builder.gathering = true;
             builder.sent = sent;
-            builder.given = Given::current(&self.state);
+            builder.given = CurrentState::current(&self.state);
         } else if builder.moved {
             builder.set_modelview(self.state.matrices.modelview.top());
         }
@@ -263,7 +263,7 @@ impl Context {
         // What is indexed is cut as what lists hold.
         let sent = if batch.indices.is_some() { Submission::Listed } else { sent };
         if !self.builder.gathering {
-            let given = Given::current(&self.state);
+            let given = CurrentState::current(&self.state);
             let builder = &mut self.builder;
             (builder.sent, builder.given, builder.moved) = (sent, given, false);
             (builder.lone, builder.gathering) = (Some(Arc::clone(batch)), true);

@@ -4,7 +4,7 @@ use super::client;
 use super::compile::{Call, Compiler, Item};
 use crate::names::NameRange;
 use crate::state::MAX_LIST_NESTING;
-use crate::vertex::{Given, Submission};
+use crate::vertex::{CurrentState, Submission};
 use crate::{Context, enums};
 use std::collections::BTreeMap;
 use std::sync::{Arc, MutexGuard, PoisonError};
@@ -188,7 +188,7 @@ impl Context {
             Item::Batch(batch) => {
                 if !self.refused_inside_begin("glBegin") && !self.gathers(batch, Submission::Listed) {
                     self.flush_vertices();
-                    self.draw_batch(batch.clone(), Submission::Listed, &Given::current(&self.state));
+                    self.draw_batch(batch.clone(), Submission::Listed, &CurrentState::current(&self.state));
                 }
             }
             Item::Attribute(which, value) => self.exec_attribute(*which, *value),

@@ -426,7 +426,7 @@ impl PendingDepth {
             || {
                 let patience = if self.known.load(Ordering::Relaxed) >= LARGE_PICTURE_TILES {
                     0
-                } else if pending.count as usize > tile_index::MOST {
+                } else if pending.count as usize > tile_index::MAX_TRIANGLES {
                     DRAW_THRESHOLD
                 } else {
                     INDEX_THRESHOLD
@@ -441,7 +441,7 @@ impl PendingDepth {
     fn know(&self, tile: usize) -> Known {
         let pending = &self.tiles[tile];
         self.known.fetch_add(1, Ordering::Relaxed);
-        if pending.count as usize > tile_index::MOST {
+        if pending.count as usize > tile_index::MAX_TRIANGLES {
             return Known::Drawn(self.draw(tile));
         }
         let mut candidates = Vec::with_capacity(pending.count as usize);

@@ -5,7 +5,7 @@ use super::cache::{Key, Vertices};
 use super::fetch::{Reader, Refusal, Run, Store, store};
 use crate::memory::can_have;
 use crate::state::ArrayPointer;
-use crate::vertex::{Given, Submission, VertexBatch};
+use crate::vertex::{CurrentState, Submission, VertexBatch};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::vertices::client;
 use crate::vertices::compile::{Item, drawing_nothing};
@@ -218,7 +218,7 @@ impl Context {
         }
         if self.executes() && !self.gathers(&batch, Submission::Now) {
             self.flush_vertices();
-            self.draw_batch(batch, Submission::Now, &Given::current(&self.state));
+            self.draw_batch(batch, Submission::Now, &CurrentState::current(&self.state));
         }
     }
 

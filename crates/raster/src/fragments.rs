@@ -39,8 +39,8 @@ impl<'a> FragmentSink<'a> {
 
     /// Hands the triangle at hand on.
     #[inline(always)]
-    fn flush<S: Simd, const MOST: usize>(&mut self, simd: S) {
-        let samples = if MOST == 16 { self.pattern.len().min(MOST) } else { MOST };
+    fn flush<S: Simd, const MAX: usize>(&mut self, simd: S) {
+        let samples = if MAX == 16 { self.pattern.len().min(MAX) } else { MAX };
         let infinity = F32x8::splat(simd, f32::INFINITY);
         let [top, end] = std::mem::replace(&mut self.rows, NO_ROWS);
         // Bound each pixel's depths over its covered samples.
@@ -65,13 +65,12 @@ impl<'a> FragmentSink<'a> {
             while full != 0 {
                 let lane = full.trailing_zeros() as usize % LANES;
                 full &= full - 1;
-                self.layers.push_fragment::<MOST>(place(lane), samples, |s| (true, depths[s][lane]));
+                self.layers.push_fragment::<MAX>(place(lane), samples, |s| (true, depths[s][lane]));
             }
             while rest != 0 {
                 let lane = rest.trailing_zeros() as usize % LANES;
                 rest &= rest - 1;
-                self.layers
-                    .push_fragment::<MOST>(place(lane), samples, |s| (seen[s] >> lane & 1 == 1, depths[s][lane]));
+                self.layers.push_fragment::<MAX>(place(lane), samples, |s| (seen[s] >> lane & 1 == 1, depths[s][lane]));
             }
         }
         self.layers.spread_at_limit();

@@ -121,10 +121,10 @@ impl LayerList {
         }
     }
 
-    /// Adds a fragment, given its place and facet, of a pixel with `samples` samples, at most `MOST`: `at` says whether it
+    /// Adds a fragment, given its place and facet, of a pixel with `samples` samples, at most `MAX`: `at` says whether it
     /// covers a sample, and its depth there.
     #[inline(always)]
-    pub(crate) fn push_fragment<const MOST: usize>(
+    pub(crate) fn push_fragment<const MAX: usize>(
         &mut self,
         place: Fragment,
         samples: usize,
@@ -132,12 +132,12 @@ impl LayerList {
     ) {
         // Depths are written in any case, and those kept where it is seen: no branch to guess.
         let start = self.depths.len();
-        self.depths.resize(start + MOST, 0.0);
-        let depths = &mut self.depths[start..start + MOST];
+        self.depths.resize(start + MAX, 0.0);
+        let depths = &mut self.depths[start..start + MAX];
         let (mut mask, mut count) = (0u32, 0usize);
-        for s in 0..samples.min(MOST) {
+        for s in 0..samples.min(MAX) {
             let (seen, depth) = at(s);
-            depths[count % MOST] = depth;
+            depths[count % MAX] = depth;
             count += usize::from(seen);
             mask |= u32::from(seen) << s;
         }

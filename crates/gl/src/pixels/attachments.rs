@@ -9,7 +9,7 @@ use crate::state::MAX_COLOR_ATTACHMENTS;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use vitral_raster::Viewport;
-use vitral_raster::forward::{ColorPlane, DepthPlane, StencilPlane};
+use vitral_raster::forward::{ColorPlane, DepthBuffer, StencilPlane};
 
 /// Index of the depth attachment; colours come first.
 pub(crate) const DEPTH_POINT: usize = MAX_COLOR_ATTACHMENTS;
@@ -66,7 +66,7 @@ pub(crate) struct Surface {
     /// 0 if not multisampled.
     pub samples: usize,
     pub color: Option<Shared<ColorPlane>>,
-    pub depth: Option<Shared<DepthPlane>>,
+    pub depth: Option<Shared<DepthBuffer>>,
     pub stencil: Option<Shared<StencilPlane>>,
     /// Counts draws to a texture's colours.
     pub writes: Option<Arc<AtomicU64>>,

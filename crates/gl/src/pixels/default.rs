@@ -14,7 +14,7 @@ use crate::Context;
 use crate::enums::*;
 use std::sync::{Arc, Mutex};
 use vitral_raster::Viewport;
-use vitral_raster::forward::{ColorPlane, DepthPlane, Plane, StencilPlane};
+use vitral_raster::forward::{ColorPlane, DepthBuffer, Plane, StencilPlane};
 
 /// `OSMESA_BGRA`.
 pub const OSMESA_BGRA: u32 = 0x1;
@@ -129,7 +129,7 @@ impl DefaultFramebuffer {
             };
             let format = InternalFormat { token, base: DEPTH_COMPONENT, storage: Storage::Depth(bits) };
             let scale = format.depth_scale();
-            let plane = DepthPlane::new(Plane::new(viewport, 1, scale), scale);
+            let plane = DepthBuffer::new(Plane::new(viewport, 1, scale), scale);
             Surface { depth: Some(Arc::new(Mutex::new(plane))), ..surface(format, viewport) }
         });
         self.stencil = (self.stencil_bits > 0).then(|| {

@@ -189,7 +189,7 @@ mod tests {
         let target = c.draw_target(None).unwrap();
         assert!(target.color.is_none() && target.stencil.is_none());
         let sampled = c.sampled_texture(0).unwrap();
-        let Texels::DepthPlane(plane) = sampled.faces[0][0].texels() else { panic!() };
+        let Texels::DepthBuffer(plane) = sampled.faces[0][0].texels() else { panic!() };
         assert!(std::sync::Arc::ptr_eq(plane, target.depth.as_ref().unwrap()));
         assert_eq!(c.error, NO_ERROR);
         c.bind_framebuffer_ext(FRAMEBUFFER, 0);

@@ -161,7 +161,7 @@ fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u3
         Texels::Srgb8(words) => words.iter().map(|&w| light_from_word(w)).collect(),
         Texels::RgbaF32(colors) => colors.clone(),
         Texels::Depth(depths) => depths.iter().map(|&d| [d, 0.0, 0.0, 0.0]).collect(),
-        Texels::DepthPlane(plane) => {
+        Texels::DepthBuffer(plane) => {
             let mut plane = lock(plane);
             plane.resolved();
             let [width, height] = [level.size[0], level.size[1]];

@@ -14,7 +14,7 @@ use crate::enums::*;
 use crate::memory::ClientMemory;
 use vitral_exec::Workers;
 use vitral_raster::TILE;
-use vitral_raster::forward::{ColorPlane, DepthPlane, Plane, StencilPlane};
+use vitral_raster::forward::{ColorPlane, DepthBuffer, Plane, StencilPlane};
 
 /// A rectangle of a framebuffer, and where it lies in the rectangle that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,7 +100,7 @@ fn each_row<T: Send>(workers: &Workers, r: &Rectangle, out: &mut [T], read: impl
 }
 
 /// Depths of a rectangle, 0..=1.
-pub(crate) fn read_depths(workers: &Workers, plane: &mut DepthPlane, r: &Rectangle) -> Vec<f32> {
+pub(crate) fn read_depths(workers: &Workers, plane: &mut DepthBuffer, r: &Rectangle) -> Vec<f32> {
     let (mut depths, scale) = (vec![0.0; r.size[0] * r.size[1]], plane.scale);
     let plane = &*plane.resolved();
     each_row(workers, r, &mut depths, |y, row| read_depth_row(plane, scale, [r.x, y], row));

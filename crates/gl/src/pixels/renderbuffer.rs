@@ -9,7 +9,7 @@ use crate::memory::can_have;
 use crate::state::{MAX_SAMPLES, MAX_TEXTURE_SIZE};
 use std::sync::{Arc, Mutex};
 use vitral_raster::Viewport;
-use vitral_raster::forward::{ColorPlane, DepthPlane, Plane, StencilPlane};
+use vitral_raster::forward::{ColorPlane, DepthBuffer, Plane, StencilPlane};
 
 /// A renderbuffer that attachments share.
 pub(crate) type RenderbufferHandle = Arc<Mutex<Renderbuffer>>;
@@ -26,7 +26,7 @@ pub(crate) struct RenderbufferStorage {
     /// Colours.
     pub color: Option<Shared<ColorPlane>>,
     /// Depths.
-    pub depth: Option<Shared<DepthPlane>>,
+    pub depth: Option<Shared<DepthBuffer>>,
     /// Stencil values.
     pub stencil: Option<Shared<StencilPlane>>,
 }
@@ -41,7 +41,7 @@ impl RenderbufferStorage {
             color: format.is_color().then(|| Arc::new(Mutex::new(new_color_plane(&format, viewport, planes)))),
             depth: format.has_depth().then(|| {
                 let plane = Plane::new(viewport, planes, 0.0);
-                Arc::new(Mutex::new(DepthPlane::new(plane, format.depth_scale())))
+                Arc::new(Mutex::new(DepthBuffer::new(plane, format.depth_scale())))
             }),
             stencil: format.has_stencil().then(|| Arc::new(Mutex::new(Plane::new(viewport, planes, 0)))),
         }

@@ -266,5 +266,5 @@ impl Context {
 fn draws_to(target: &Target, texture: &raster::Texture) -> bool {
     let Some(depth) = &target.depth else { return false };
     let levels = texture.faces.iter().flatten();
-    levels.into_iter().any(|level| matches!(level.texels(), raster::Texels::DepthPlane(p) if Arc::ptr_eq(p, depth)))
+    levels.into_iter().any(|level| matches!(level.texels(), raster::Texels::DepthBuffer(p) if Arc::ptr_eq(p, depth)))
 }

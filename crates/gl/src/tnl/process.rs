@@ -66,8 +66,13 @@ impl Context {
     ) -> Vec<ProcessedVertex<UNITS>> {
         // Take a snapshot of the state.
         let units: Vec<usize> = (0..if wanted == Wanted::All { UNITS } else { 0 }).collect();
-        let snapshot =
-            VertexSnapshot::new(&self.state, &CurrentState::current(&self.state), &units, true, &mut LightCache::default());
+        let snapshot = VertexSnapshot::new(
+            &self.state,
+            &CurrentState::current(&self.state),
+            &units,
+            true,
+            &mut LightCache::default(),
+        );
         let mut planes = snapshot.transform.clip_planes.iter();
         let planes = self.state.clip_plane_enabled.map(|enabled| if enabled { planes.next() } else { None });
 

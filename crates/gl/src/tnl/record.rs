@@ -204,7 +204,7 @@ impl Context {
         &mut self,
         batch: Arc<VertexBatch>,
         sent: Submission,
-        given: &Given,
+        given: &CurrentState,
         fragment: &FragmentState,
         target: &Target,
     ) -> Option<DrawGeometry> {

@@ -125,7 +125,13 @@ impl VertexSnapshot {
     }
 
     /// Takes what is needed; `units` are the sampled units, `fog` whether fog is on, `lights` a cache.
-    pub(crate) fn new(state: &State, given: &CurrentState, units: &[usize], fog: bool, lights: &mut LightCache) -> Self {
+    pub(crate) fn new(
+        state: &State,
+        given: &CurrentState,
+        units: &[usize],
+        fog: bool,
+        lights: &mut LightCache,
+    ) -> Self {
         let matrices = &state.matrices;
         let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
         let clip_planes: Vec<_> = planes.map(|(plane, _)| plane.map(|v| v as f32)).collect();

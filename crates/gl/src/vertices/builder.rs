@@ -44,7 +44,7 @@ pub(crate) struct Builder {
     /// Whether what is gathered is cut as what comes at once.
     sent: Submission,
     /// As it was at the first Begin.
-    given: Given,
+    given: CurrentState,
     /// The modelview matrix may have changed since the last Begin.
     moved: bool,
     /// All that is gathered: a batch that somebody else holds, too. Nothing is in `batch` then.

@@ -7,7 +7,7 @@ use super::assemble::{Facet, Primitives, screen};
 use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, PendingKind, pendable};
-use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
+use super::plane::{ColorPlane, DepthBuffer, Plane, PlaneTile, StencilPlane};
 use super::sample::PackedTexture;
 use super::shade::{Layout, TexelCache};
 use super::spare::{Assembly, SparePrimitives};
@@ -33,10 +33,10 @@ pub struct Target {
     /// Colour; without one colours are dropped.
     pub color: Option<Arc<Mutex<ColorPlane>>>,
     /// Depth; without one the depth test passes.
-    pub depth: Option<Arc<Mutex<DepthPlane>>>,
+    pub depth: Option<Arc<Mutex<DepthBuffer>>>,
     /// Stencil; without one the stencil test passes.
     pub stencil: Option<Arc<Mutex<StencilPlane>>>,
-    /// [`DepthPlane::scale`]; without depth any.
+    /// [`DepthBuffer::scale`]; without depth any.
     pub depth_scale: f32,
 }
 
@@ -188,7 +188,7 @@ pub struct Pass {
 
 impl Pass {
     /// Whether a command looks a plane up as a texture.
-    pub fn samples(&self, plane: &Arc<Mutex<DepthPlane>>) -> bool {
+    pub fn samples(&self, plane: &Arc<Mutex<DepthBuffer>>) -> bool {
         self.commands.iter().any(|command| match command {
             Command::Draw(_, state) | Command::Image(_, state) => {
                 state.units.iter().any(|unit| unit.texture.planes().any(|other| Arc::ptr_eq(other, plane)))
@@ -248,11 +248,11 @@ pub(crate) struct DrawContext<'a> {
     /// The unit whose texture a later draw shows with the same vertices, or an earlier one did.
     pub again: Option<usize>,
     /// Depth planes that units sample.
-    pub planes: [Option<&'a DepthPlane>; UNITS],
+    pub planes: [Option<&'a DepthBuffer>; UNITS],
 }
 
 /// Depth planes that are held for a pass, with their addresses.
-type Held<'a> = Vec<(*const Mutex<DepthPlane>, MutexGuard<'a, DepthPlane>)>;
+type Held<'a> = Vec<(*const Mutex<DepthBuffer>, MutexGuard<'a, DepthBuffer>)>;
 
 /// A job before it runs.
 struct Plan {
@@ -447,7 +447,7 @@ impl Runner {
     fn tiles(
         &self,
         target: &Target,
-        depth: &mut Option<MutexGuard<'_, DepthPlane>>,
+        depth: &mut Option<MutexGuard<'_, DepthBuffer>>,
         items: &[Item<'_>],
         seen: &mut [TexelCache],
     ) {
@@ -529,11 +529,11 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// Locks the depth planes that a pass samples, and the one that it draws to, in the order of their addresses: passes of other
 /// threads, which may draw to what this one samples, do the same.
 fn hold<'a>(
-    sampled: &'a [Arc<Mutex<DepthPlane>>],
-    drawn: Option<&'a Arc<Mutex<DepthPlane>>>,
-) -> (Held<'a>, Option<MutexGuard<'a, DepthPlane>>) {
-    let held = |plane: &'a Arc<Mutex<DepthPlane>>| (Arc::as_ptr(plane), lock(plane));
-    let before = |plane: &Arc<Mutex<DepthPlane>>| drawn.is_some_and(|drawn| Arc::as_ptr(plane) < Arc::as_ptr(drawn));
+    sampled: &'a [Arc<Mutex<DepthBuffer>>],
+    drawn: Option<&'a Arc<Mutex<DepthBuffer>>>,
+) -> (Held<'a>, Option<MutexGuard<'a, DepthBuffer>>) {
+    let held = |plane: &'a Arc<Mutex<DepthBuffer>>| (Arc::as_ptr(plane), lock(plane));
+    let before = |plane: &Arc<Mutex<DepthBuffer>>| drawn.is_some_and(|drawn| Arc::as_ptr(plane) < Arc::as_ptr(drawn));
     let (before, behind) = sampled.split_at(sampled.partition_point(before));
     let mut all: Held<'a> = before.iter().map(held).collect();
     let depth = drawn.map(|plane| lock(plane));
@@ -649,7 +649,7 @@ fn shown_again(commands: &[Command]) -> Vec<Shown> {
 
 /// The depth planes that are held for the whole pass, each once, in the order of their addresses: those that draws sample
 /// as textures of one level. Others are locked at each lookup, and must not be held besides.
-fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthPlane>>> {
+fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthBuffer>>> {
     let (mut sole, mut others): (Vec<_>, Vec<_>) = (Vec::new(), Vec::new());
     for command in commands {
         let (Command::Draw(_, state) | Command::Image(_, state)) = command else { continue };

@@ -101,7 +101,7 @@ pub(crate) struct PendingKind {
     sign: f32,
     /// What it clears to.
     clear: f32,
-    /// See [`DepthPlane::scale`](super::plane::DepthPlane).
+    /// See [`DepthBuffer::scale`](super::plane::DepthBuffer).
     scale: f32,
 }
 

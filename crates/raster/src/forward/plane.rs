@@ -495,7 +495,7 @@ pub enum ColorPlane {
 
 /// Depth samples: `scale` times the depth in 0..=1, whole numbers unless `scale` is 1 (floating-point depth).
 #[derive(Debug)]
-pub struct DepthPlane {
+pub struct DepthBuffer {
     /// The samples, before what is pending.
     pub(crate) plane: Plane<f32>,
     /// 1 for floating point, else `2^bits - 1`.
@@ -505,7 +505,7 @@ pub struct DepthPlane {
     pub(crate) pending: Option<Box<PendingDepth>>,
 }
 
-impl Clone for DepthPlane {
+impl Clone for DepthBuffer {
     /// A copy of a plane without pending triangles, see [`Self::resolved`].
     fn clone(&self) -> Self {
         debug_assert!(self.pending.is_none(), "resolve the plane first");
@@ -513,7 +513,7 @@ impl Clone for DepthPlane {
     }
 }
 
-impl DepthPlane {
+impl DepthBuffer {
     /// A plane of samples and their scale.
     pub fn new(plane: Plane<f32>, scale: f32) -> Self {
         Self { plane, scale, sampled: false, pending: None }

@@ -51,20 +51,20 @@ pub struct Layout {
 }
 
 /// Most numbers in a record: `1 / w`, primary and secondary colours of both sides, fog, eight units' coordinates, the grid's.
-const MOST: usize = 64;
+const MAX_NUMBERS: usize = 64;
 
 /// A facet's records as they are interpolated: number `k` is `base[k] + b1 * d1[k] + b2 * d2[k]`.
 struct Differences {
-    base: [f32; MOST],
-    d1: [f32; MOST],
-    d2: [f32; MOST],
+    base: [f32; MAX_NUMBERS],
+    d1: [f32; MAX_NUMBERS],
+    d2: [f32; MAX_NUMBERS],
     /// Bit `k`: number `k` is not the same at all corners.
     varies: u64,
 }
 
 impl Default for Differences {
     fn default() -> Self {
-        Self { base: [0.0; MOST], d1: [0.0; MOST], d2: [0.0; MOST], varies: 0 }
+        Self { base: [0.0; MAX_NUMBERS], d1: [0.0; MAX_NUMBERS], d2: [0.0; MAX_NUMBERS], varies: 0 }
     }
 }
 
@@ -74,7 +74,7 @@ impl Differences {
     fn prepare<S: Simd>(&mut self, simd: S, records: &[f32], corners: [usize; 3], stride: usize) {
         self.varies = 0;
         let mut from = 0;
-        while from < stride.min(MOST) {
+        while from < stride.min(MAX_NUMBERS) {
             let a = eight(simd, records, corners[0] + from);
             let (b, c) = (eight(simd, records, corners[1] + from), eight(simd, records, corners[2] + from));
             let (d1, d2) = (b - a, c - a);
@@ -321,7 +321,7 @@ impl<'a> Shader<'a> {
     /// Number `k` of the records, interpolated.
     #[inline(always)]
     fn value<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, k: usize) -> V {
-        let (d, k) = (&self.scratch.differences, k % MOST);
+        let (d, k) = (&self.scratch.differences, k % MAX_NUMBERS);
         if d.varies >> k & 1 == 0 {
             return every(simd, d.base[k]);
         }

@@ -1,6 +1,6 @@
 //! Textures as the rasteriser sees them: immutable images and a sampler.
 
-use super::plane::DepthPlane;
+use super::plane::DepthBuffer;
 use super::sample::packed_cube::CubeFaces;
 use super::state::Compare;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -45,7 +45,7 @@ pub enum Texels {
     /// Depth, 0..=1.
     Depth(Vec<f32>),
     /// A depth plane that passes render to. Texels may still be pending triangles.
-    DepthPlane(Arc<Mutex<DepthPlane>>),
+    DepthBuffer(Arc<Mutex<DepthBuffer>>),
 }
 
 /// One level: sizes include the border.
@@ -262,15 +262,15 @@ impl Texture {
     }
 
     /// The depth planes among its levels.
-    pub(crate) fn planes(&self) -> impl Iterator<Item = &Arc<Mutex<DepthPlane>>> {
+    pub(crate) fn planes(&self) -> impl Iterator<Item = &Arc<Mutex<DepthBuffer>>> {
         self.faces.iter().flatten().filter_map(|level| match level.texels() {
-            Texels::DepthPlane(plane) => Some(plane),
+            Texels::DepthBuffer(plane) => Some(plane),
             _ => None,
         })
     }
 
     /// The depth plane that is its only level.
-    pub(crate) fn sole_plane(&self) -> Option<&Arc<Mutex<DepthPlane>>> {
+    pub(crate) fn sole_plane(&self) -> Option<&Arc<Mutex<DepthBuffer>>> {
         (self.faces.iter().flatten().count() == 1).then(|| self.planes().next()).flatten()
     }
 }

@@ -133,7 +133,7 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
 
 /// [`walk_rows`] as a function of its own: all in one would be a function over which WebAssembly's compiler takes minutes.
 #[inline(never)]
-fn rows_outlined<S: Simd, K: RowSink<S>, const MOST: usize>(
+fn rows_outlined<S: Simd, K: RowSink<S>, const MAX: usize>(
     simd: S,
     setup: &Setup,
     place: &Placed,
@@ -142,13 +142,13 @@ fn rows_outlined<S: Simd, K: RowSink<S>, const MOST: usize>(
 ) {
     simd.vectorize(
         #[inline(always)]
-        || walk_rows::<S, K, MOST>(simd, setup, place, pattern, sink),
+        || walk_rows::<S, K, MAX>(simd, setup, place, pattern, sink),
     );
 }
 
 /// [`walk_blocks`] as a function of its own.
 #[inline(never)]
-fn blocks_outlined<S: Simd, K: RowSink<S>, const MOST: usize>(
+fn blocks_outlined<S: Simd, K: RowSink<S>, const MAX: usize>(
     simd: S,
     setup: &Setup,
     place: &Placed,
@@ -157,13 +157,13 @@ fn blocks_outlined<S: Simd, K: RowSink<S>, const MOST: usize>(
 ) {
     simd.vectorize(
         #[inline(always)]
-        || walk_blocks::<S, K, MOST>(simd, setup, place, pattern, sink),
+        || walk_blocks::<S, K, MAX>(simd, setup, place, pattern, sink),
     );
 }
 
 /// Walks the rows of a triangle of any size, block by block.
 #[inline(always)]
-fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
+fn walk_blocks<S: Simd, K: RowSink<S>, const MAX: usize>(
     simd: S,
     setup: &Setup,
     place: &Placed,
@@ -171,7 +171,7 @@ fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
     sink: &mut K,
 ) {
     // Set up the edge functions of all samples.
-    let edges = SampleEdges::<S, MOST>::new(simd, place, pattern);
+    let edges = SampleEdges::<S, MAX>::new(simd, place, pattern);
     let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     let zero = I32x8::splat(simd, 0);
     edges.each_block(
@@ -232,7 +232,7 @@ fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
 
 /// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit into 32 bits.
 #[inline(always)]
-fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
+fn walk_rows<S: Simd, K: RowSink<S>, const MAX: usize>(
     simd: S,
     setup: &Setup,
     place: &Placed,
@@ -247,14 +247,14 @@ fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
 
     // Let the sink note each sample's first position.
     let left = place.left();
-    let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
-    let mut firsts = [[0; 2]; MOST];
+    let samples = if MAX == 16 { pattern.len().min(MAX) } else { MAX };
+    let mut firsts = [[0; 2]; MAX];
     for (s, first) in firsts[..samples].iter_mut().enumerate() {
         *first = sink.first(s, left);
     }
 
     // Walk the rows of all samples.
-    place.each_row::<S, (usize, RowPlane<S>), MOST>(
+    place.each_row::<S, (usize, RowPlane<S>), MAX>(
         simd,
         pattern,
         #[inline(always)]
@@ -342,7 +342,7 @@ impl Placed {
     /// sample. `begin` is called for each sample; `row` with what that gave, the row of the tile and which of the eight
     /// pixels from [`Self::left`] on are covered, if any are.
     #[inline(always)]
-    fn each_row<S: Simd, T, const MOST: usize>(
+    fn each_row<S: Simd, T, const MAX: usize>(
         &self,
         simd: S,
         pattern: &SamplePattern,
@@ -350,7 +350,7 @@ impl Placed {
         mut row: impl FnMut(&mut T, usize, Mask8<S>),
     ) {
         // Set up edge functions for eight pixels of a row.
-        let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
+        let samples = if MAX == 16 { pattern.len().min(MAX) } else { MAX };
         let (left, [y0, y1]) = (self.left(), self.rows);
         let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
         let (edges, corners) = self.edges();
@@ -447,9 +447,9 @@ pub fn traverse_window<S: Simd, K: BlockSink<S>>(
     }
 }
 
-/// `MOST` is the number of samples, or 16 where there are fewer.
+/// `MAX` is the number of samples, or 16 where there are fewer.
 #[inline(always)]
-fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
+fn traverse_samples<S: Simd, K: BlockSink<S>, const MAX: usize>(
     simd: S,
     setup: &Setup,
     tile: (u32, u32),
@@ -460,8 +460,8 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
     let Some(place) = Placed::new(setup, tile, window, pattern) else { return };
 
     // Set up the edge functions of all samples, then visit the blocks that the facet touches.
-    let edges = SampleEdges::<S, MOST>::new(simd, &place, pattern);
-    let mut masks = [0u64; MOST];
+    let edges = SampleEdges::<S, MAX>::new(simd, &place, pattern);
+    let mut masks = [0u64; MAX];
     edges.each_block(
         simd,
         &place,
@@ -474,7 +474,7 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
             // Compute the coverage mask of each sample.
             let mut any = u64::MAX;
             if full {
-                masks = [u64::MAX; MOST];
+                masks = [u64::MAX; MAX];
             } else {
                 any = 0;
                 for (s, mask) in masks[..edges.samples].iter_mut().enumerate() {
@@ -492,21 +492,21 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
 }
 
 /// The edge functions of a triangle in a tile at all samples.
-struct SampleEdges<S: Simd, const MOST: usize> {
+struct SampleEdges<S: Simd, const MAX: usize> {
     samples: usize,
     edges: [Edge; 3],
     /// At the tile's origin.
-    constants: [[i32; MOST]; 3],
+    constants: [[i32; MAX]; 3],
     /// What they change over the eight pixels of a row.
     across: [I32x8<S>; 3],
 }
 
-impl<S: Simd, const MOST: usize> SampleEdges<S, MOST> {
+impl<S: Simd, const MAX: usize> SampleEdges<S, MAX> {
     #[inline(always)]
     fn new(simd: S, place: &Placed, pattern: &SamplePattern) -> Self {
-        let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
+        let samples = if MAX == 16 { pattern.len().min(MAX) } else { MAX };
         let mut edges = [Edge { a: 0, b: 0 }; 3];
-        let mut constants = [[0i32; MOST]; 3];
+        let mut constants = [[0i32; MAX]; 3];
 
         // Compute each edge's constant at each sample, in 32 bits where the triangle is small
         // enough.
@@ -515,7 +515,7 @@ impl<S: Simd, const MOST: usize> SampleEdges<S, MOST> {
             let corners;
             (edges, corners) = place.edges();
             for i in 0..3 {
-                for s in 0..MOST {
+                for s in 0..MAX {
                     constants[i][s] = edges[i].constant(corners[i], [xs[s], ys[s]]);
                 }
             }
@@ -571,10 +571,10 @@ pub(crate) struct Extremes<S: Simd> {
 
 impl<S: Simd> Extremes<S> {
     #[inline(always)]
-    pub(crate) fn new<const MOST: usize>(
+    pub(crate) fn new<const MAX: usize>(
         simd: S,
         edges: &[Edge; 3],
-        constants: &[[i32; MOST]; 3],
+        constants: &[[i32; MAX]; 3],
         samples: usize,
     ) -> Self {
         let side = BLOCK as i32 - 1;

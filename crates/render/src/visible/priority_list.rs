@@ -254,7 +254,7 @@ fn draw_samples<S: Simd, K: BlockSink<S>>(
     // Shift the listed samples to each block.
     for by in ((y0.max(0) & -side)..=y1.min(last)).step_by(BLOCK) {
         for bx in ((x0.max(0) & -side)..=x1.min(last)).step_by(BLOCK) {
-            let mut masks = [0; SamplePattern::MOST];
+            let mut masks = [0; SamplePattern::MAX];
             let masks = &mut masks[..samples.len()];
             let mut any = 0;
             for (mask, &list) in masks.iter_mut().zip(samples) {
@@ -288,7 +288,7 @@ impl<S: Simd, K: BlockSink<S>> BlockSink<S> for PieceSink<'_, K> {
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
         let origin = [self.place.0 as usize + block.x, self.place.1 as usize + block.y];
-        let mut kept = [0; SamplePattern::MOST];
+        let mut kept = [0; SamplePattern::MAX];
         let kept = &mut kept[..masks.len()];
         kept.copy_from_slice(masks);
         if cut_masks(self.cuts, self.pattern, origin, kept) {

@@ -8,7 +8,7 @@
 use super::fetch::{interior, level_of};
 use super::mip::{dimensions, lod};
 use super::sample;
-use crate::forward::plane::DepthPlane;
+use crate::forward::plane::DepthBuffer;
 use crate::forward::texture::{Texture, TextureKind};
 use crate::forward::wide::{Rgba, bits_of, clamp, mask_of, max, min, select, splat, splat_rgba};
 use vitral_math::lanes::prelude::*;
@@ -22,7 +22,7 @@ const MOST_PROBES: f32 = 16.0;
 #[inline(never)]
 pub(crate) fn sample_anisotropic<S: Simd>(
     simd: S,
-    (texture, plane): (&Texture, Option<&DepthPlane>),
+    (texture, plane): (&Texture, Option<&DepthBuffer>),
     coords: [F32x8<S>; 4],
     derivatives: [[F32x8<S>; 3]; 2],
     bias: F32x8<S>,

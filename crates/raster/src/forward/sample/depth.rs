@@ -9,7 +9,7 @@ use super::mip::mipped;
 use super::wrap::position_in;
 use crate::forward::fragment_ops::compare::compare;
 use crate::forward::pending::PendingDepth;
-use crate::forward::plane::DepthPlane;
+use crate::forward::plane::DepthBuffer;
 use crate::forward::state::Compare;
 use crate::forward::texture::{BaseFormat, Filter, Texture, TextureKind, Wrap};
 use crate::forward::wide::{Rgba, every, floor, min, mix, saturate, select, splat, splat_rgba};
@@ -27,7 +27,7 @@ pub(crate) struct PackedShadow<'a> {
 
 impl<'a> PackedShadow<'a> {
     /// `None` for textures of another kind; `plane` is that of the only level.
-    pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthPlane>) -> Option<Self> {
+    pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthBuffer>) -> Option<Self> {
         let (sampler, pending) = (&texture.sampler, plane?.pending.as_ref()?);
         let level = level_of(texture, 0)?;
         let nearest = [sampler.min, sampler.mag] == [Filter::Nearest; 2];
@@ -101,7 +101,7 @@ pub(super) fn reference<V: Lanes>(texture: &Texture, r: V) -> V {
 pub(super) fn sample<S: Simd>(
     simd: S,
     texture: &Texture,
-    plane: Option<&DepthPlane>,
+    plane: Option<&DepthBuffer>,
     coords: [F32x8<S>; 4],
     lod: F32x8<S>,
     active: u32,
@@ -177,7 +177,7 @@ fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -
 fn lookup<S: Simd, const DIMENSIONS: usize>(
     simd: S,
     texture: &Texture,
-    plane: Option<&DepthPlane>,
+    plane: Option<&DepthBuffer>,
     level: usize,
     linear: bool,
     point: [F32x8<S>; 3],

@@ -4,7 +4,7 @@
 //! once a texel. [`Image::raw`] brings other colours to that scale.
 
 use crate::forward::fragment_ops::packed::unpack_bytes;
-use crate::forward::plane::DepthPlane;
+use crate::forward::plane::DepthBuffer;
 use crate::forward::texture::{Level, Texels, Texture};
 use crate::forward::wide::{Rgba, splat};
 use crate::{TILE, TILE_PIXELS};
@@ -261,19 +261,19 @@ pub(super) fn columns<S: Simd>(simd: S, colors: &[[f32; 4]; LANES]) -> Rgba<S> {
 pub(super) enum Depths<'a> {
     Stored(&'a [f32]),
     /// Held until the lookup is done.
-    Locked(MutexGuard<'a, DepthPlane>),
+    Locked(MutexGuard<'a, DepthBuffer>),
     /// Held by the caller.
-    Plane(&'a DepthPlane),
+    Plane(&'a DepthBuffer),
 }
 
 impl<'a> Depths<'a> {
     /// Those of a level; what is no depth image has none.
     #[inline(always)]
-    pub(super) fn new(level: &'a Level, plane: Option<&'a DepthPlane>) -> Self {
+    pub(super) fn new(level: &'a Level, plane: Option<&'a DepthBuffer>) -> Self {
         match (level.texels(), plane) {
-            (Texels::DepthPlane(_), Some(plane)) => Self::Plane(plane),
+            (Texels::DepthBuffer(_), Some(plane)) => Self::Plane(plane),
             (Texels::Depth(texels), _) => Self::Stored(texels),
-            (Texels::DepthPlane(plane), None) => Self::Locked(plane.lock().unwrap_or_else(PoisonError::into_inner)),
+            (Texels::DepthBuffer(plane), None) => Self::Locked(plane.lock().unwrap_or_else(PoisonError::into_inner)),
             _ => Self::Stored(&[]),
         }
     }
@@ -312,7 +312,7 @@ impl<'a> Depths<'a> {
 #[inline(always)]
 fn plane_depths<S: Simd>(
     simd: S,
-    depth: &DepthPlane,
+    depth: &DepthBuffer,
     x: I32x8<S>,
     y: I32x8<S>,
     active: u32,

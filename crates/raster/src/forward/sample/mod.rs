@@ -25,7 +25,7 @@ mod wrap;
 #[cfg(test)]
 mod tests;
 
-use super::plane::DepthPlane;
+use super::plane::DepthBuffer;
 use super::texture::{Texels, Texture, TextureKind};
 use super::wide::{Rgba, splat_rgba};
 use depth::PackedShadow;
@@ -43,7 +43,7 @@ pub(crate) enum PackedTexture<'a> {
 
 impl<'a> PackedTexture<'a> {
     /// `None` for textures of another kind; `plane` is that of a depth texture's only level.
-    pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthPlane>) -> Option<Self> {
+    pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthBuffer>) -> Option<Self> {
         match (texture.kind, plane) {
             (_, Some(_)) => PackedShadow::new(texture, plane).map(Self::Shadow),
             (TextureKind::Cube, _) => PackedCube::new(texture).map(Self::Cube),
@@ -64,7 +64,7 @@ impl<'a> PackedTexture<'a> {
 pub(crate) fn sample<S: Simd>(
     simd: S,
     texture: &Texture,
-    plane: Option<&DepthPlane>,
+    plane: Option<&DepthBuffer>,
     coords: [F32x8<S>; 4],
     lod: F32x8<S>,
     active: u32,
@@ -72,7 +72,7 @@ pub(crate) fn sample<S: Simd>(
     let Some(first) = texture.faces.first().and_then(|face| face.first()) else {
         return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
     };
-    let is_depth = matches!(first.texels(), Texels::Depth(_) | Texels::DepthPlane(_));
+    let is_depth = matches!(first.texels(), Texels::Depth(_) | Texels::DepthBuffer(_));
     if let Some(packed) = Packed::new(texture) {
         return packed::sample(simd, &packed, coords, lod, active);
     }

@@ -6,7 +6,7 @@
 //! In:   what the colours of a facet's texture depend on, and a block of 8x8 pixels of a tile. Out: its 64 words, if it has them.
 //! Cost: the comparison of two numbers, and for each facet in a tile of thirty.
 
-use super::{Differences, Interpolation, MOST};
+use super::{Differences, Interpolation, MAX_NUMBERS};
 use crate::forward::block::BlockWords;
 use crate::forward::state::Unit;
 use crate::{BLOCK, TILE};
@@ -29,7 +29,7 @@ struct TexelCacheKey {
 impl TexelCacheKey {
     /// With the unit's coordinates at `at` of the records.
     fn new(unit: &Unit, at: usize, i: &Interpolation, d: &Differences) -> Self {
-        let coordinates = [at % MOST, (at + 1) % MOST, (at + 3) % MOST];
+        let coordinates = [at % MAX_NUMBERS, (at + 1) % MAX_NUMBERS, (at + 3) % MAX_NUMBERS];
         let varies = coordinates.iter().fold(0, |bits, k| bits << 1 | (d.varies >> k & 1) as u32);
         let [x, y] = i.origin.map(f32::to_bits);
         let w = i.flat_w.map_or([0; 2], |w| [1, w.to_bits()]);

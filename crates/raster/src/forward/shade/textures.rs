@@ -1,7 +1,7 @@
 //! What a facet's textures make of its colour: coordinates, level of detail, lookups and environments, eight pixels at a
 //! time.
 
-use super::{Groups, MOST, Scratch, Shader, Weights};
+use super::{Groups, MAX_NUMBERS, Scratch, Shader, Weights};
 use crate::forward::environment::{UNITS, environment, format_of, modulate};
 use crate::forward::sample::anisotropic::sample_anisotropic;
 use crate::forward::sample::cube::{Chart, derivatives as derivatives_on_faces};
@@ -136,7 +136,7 @@ impl<'d> Shader<'d> {
     /// Whether the coordinates at `at` must be divided by q: it is not 1 all over the facet.
     #[inline(always)]
     fn is_divided(&self, at: usize) -> bool {
-        let (d, q_at) = (&self.scratch.differences, (at + 3) % MOST);
+        let (d, q_at) = (&self.scratch.differences, (at + 3) % MAX_NUMBERS);
         d.varies >> q_at & 1 == 1 || d.base[q_at] != 1.0
     }
 
@@ -249,7 +249,7 @@ impl<'d> Shader<'d> {
         for axis in 0..2 {
             let [db1, db2] = i.weight_steps(simd, weights, axis);
             for k in 0..4 {
-                steps[axis][k] = db1 * d.d1[(at + k) % MOST] + db2 * d.d2[(at + k) % MOST];
+                steps[axis][k] = db1 * d.d1[(at + k) % MAX_NUMBERS] + db2 * d.d2[(at + k) % MAX_NUMBERS];
             }
         }
         steps
@@ -435,7 +435,7 @@ impl<'d> Shader<'d> {
         let d = &self.scratch.differences;
         lanes::three(
             #[inline(always)]
-            |k| db1 * d.d1[(at + k) % MOST] + db2 * d.d2[(at + k) % MOST],
+            |k| db1 * d.d1[(at + k) % MAX_NUMBERS] + db2 * d.d2[(at + k) % MAX_NUMBERS],
         )
     }
 
@@ -473,7 +473,7 @@ impl<'d> Shader<'d> {
             || {
                 // Divide the coordinates by q.
                 let d = &self.scratch.differences;
-                let q_at = (at + 3) % MOST;
+                let q_at = (at + 3) % MAX_NUMBERS;
                 let inverse_q = every::<S, V>(simd, 1.0) / self.value(simd, weights, q_at);
                 let place = [place[0] * inverse_q, place[1] * inverse_q];
 
@@ -483,7 +483,7 @@ impl<'d> Shader<'d> {
                     let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);
                     let dq = db1 * d.d1[q_at] + db2 * d.d2[q_at];
                     for k in 0..2 {
-                        let n = (at + k) % MOST;
+                        let n = (at + k) % MAX_NUMBERS;
                         let step = (db1 * d.d1[n] + db2 * d.d2[n] - place[k] * dq) * inverse_q * size[k];
                         squares[axis] += step * step;
                     }
@@ -516,7 +516,7 @@ impl Slopes {
         let (mut numerator, mut sum) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
         for axis in 0..2 {
             for k in 0..2 {
-                let n = (at + k) % MOST;
+                let n = (at + k) % MAX_NUMBERS;
                 numerator[axis][k] = (i.first[axis + 1] * d.d1[n] + i.second[axis + 1] * d.d2[n]) * size[k];
                 sum[axis][k] = i.sum[axis + 1] * size[k];
             }
@@ -524,7 +524,7 @@ impl Slopes {
         Self {
             numerator,
             sum,
-            base: [d.base[at % MOST], d.base[(at + 1) % MOST]],
+            base: [d.base[at % MAX_NUMBERS], d.base[(at + 1) % MAX_NUMBERS]],
             flat: i.flat_w.is_some(),
             divided: shader.is_divided(at),
         }

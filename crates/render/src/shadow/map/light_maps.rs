@@ -42,7 +42,7 @@ pub(super) enum LightMaps {
         map: Box<Map>,
     },
     /// Each place of a light with its maps.
-    SurfacePoints(Vec<(Emitter, Vec<Map>)>),
+    Positions(Vec<(Emitter, Vec<Map>)>),
 }
 
 impl Key {

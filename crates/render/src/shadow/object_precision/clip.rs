@@ -116,7 +116,7 @@ enum Left {
     All,
     /// It covers it.
     Nothing,
-    LightVisibility(Vec<Vec<DVec3>>),
+    Several(Vec<Vec<DVec3>>),
 }
 
 impl Cutter<'_> {

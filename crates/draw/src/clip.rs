@@ -48,7 +48,10 @@ pub(crate) fn outcode(p: DVec4) -> u8 {
 /// What a side of a polygon is part of: a side of the triangle, by the numbers of its ends in order, or a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Origin {
+    /// A side of the facet: its ends, lower number first, and whether it is a side of the face and
+    /// of a cut.
     Side { ends: [u32; 2], outline: bool, cut: bool },
+    /// A clip plane.
     Plane,
 }
 

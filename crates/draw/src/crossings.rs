@@ -32,7 +32,9 @@ const LEAST_SINE: f32 = 1e-4;
 /// A line in which two triangles cross.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Crossing {
+    /// The two triangles.
     triangles: [u32; 2],
+    /// The ends of the common line, on the grid.
     ends: [GridPoint; 2],
 }
 

@@ -53,7 +53,9 @@ impl Default for PageSize {
 /// From units of the grid to millimetres on the sheet.
 #[derive(Clone, Copy, Debug)]
 struct Placement {
+    /// Millimetres for each unit.
     scale: f64,
+    /// Millimetres that the origin is moved by.
     offset: [f64; 2],
     /// Width and height of the sheet.
     sheet: [f64; 2],

@@ -46,16 +46,19 @@ pub struct Fragment {
 /// A list of layers with a limit.
 #[derive(Clone, Debug)]
 pub struct LayerList {
+    /// The layers, in the order in which they came.
     list: Vec<Layer>,
     limit: usize,
     /// Layers of each sample that stay when the limit is reached.
     kept: usize,
+    /// Layers that the limit has dropped.
     lost: u64,
     /// Entries come from back to front, and stay in their order.
     from_back: bool,
     /// Fragments are kept as they come.
     gathers: bool,
     fragments: Vec<Fragment>,
+    /// Depths of the fragments' samples, fragment by fragment.
     depths: Vec<f32>,
 }
 

@@ -10,7 +10,9 @@ use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
 pub(crate) struct Row<S: Simd> {
     /// Index of the first in the tile's planes.
     at: usize,
+    /// The samples that the facet covers.
     covered: Mask8<S>,
+    /// Depths of the facet's plane: 1 on the near plane, 0 on the far plane.
     pub(crate) z: F32x8<S>,
 }
 
@@ -35,6 +37,7 @@ pub(crate) struct DepthTest8<S: Simd> {
     nearer: Mask8<S>,
     /// It is nearer and covers.
     pub(crate) wins: Mask8<S>,
+    /// The stored depths, and the facets that they are of.
     old_z: F32x8<S>,
     old_facet: U32x8<S>,
 }

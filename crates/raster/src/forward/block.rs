@@ -25,7 +25,9 @@ pub(crate) type BlockWords = [u32; BLOCK * BLOCK];
 
 /// Colours of a block, packed: one for all pixels, or one each.
 pub(crate) enum Words<'a> {
+    /// The same colour for all pixels.
     One(u32),
+    /// One colour for each pixel, row by row.
     Each(&'a BlockWords),
 }
 
@@ -68,13 +70,15 @@ pub(crate) fn stippled(pattern: &[u32; 32], (left, bottom): (usize, usize)) -> u
     (0..BLOCK).fold(0, |mask, k| mask | row(k) << (BLOCK * k))
 }
 
-/// Rows of a block that are computed together.
+/// Rows of a block that are computed at once, as sixteen lanes hold two.
 const ROWS_AT_ONCE: usize = 2;
 
 /// A triangle's depths in a block, for one of its samples: those of row `k` are `across + rows[k]`.
 #[derive(Clone, Copy)]
 pub(super) struct Slope<S: Simd> {
+    /// Depths in row 0, as far as columns change them.
     across: F32x8<S>,
+    /// What each row adds.
     rows: [f32; BLOCK],
 }
 
@@ -107,8 +111,11 @@ impl<S: Simd> Slope<S> {
 
 /// What a block's depth test works with.
 struct Test<'a, S: Simd> {
+    /// Depths of each sample.
     slopes: &'a [Slope<S>; SAMPLES],
+    /// Farthest and nearest depth of the facet.
     limits: [f32; 2],
+    /// Largest stored depth: 1 for floats, 2^n - 1 for integers of n bits.
     scale: f32,
     write: bool,
 }
@@ -323,7 +330,9 @@ fn fill<S: Simd>(simd: S, block: &Block, values: &mut [f32], count: usize, test:
 /// functions are one piece of code without branches.
 #[derive(Clone, Copy)]
 pub(super) struct Passing {
+    /// Bits that exchange passing and failing of each of the two comparisons.
     flip: [u32; 2],
+    /// Bits that make each of the two comparisons pass in any case.
     any: [u32; 2],
     other: u32,
 }

@@ -106,11 +106,17 @@ pub(crate) fn stored(depth: f32, scale: f32) -> f32 {
 /// How colours meet stored ones, decided once a draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BlendPath {
+    /// The new colour replaces the stored one.
     Replace,
+    /// Both are added and saturate.
     Add,
+    /// The new colour times its alpha is added.
     AddScaled,
+    /// Both are mixed by the new colour's alpha.
     Mix,
+    /// Any other factors and equations.
     General,
+    /// A logical operation on the bits.
     Logic(LogicOp),
 }
 

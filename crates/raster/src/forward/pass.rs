@@ -262,7 +262,9 @@ struct Plan {
 }
 
 enum PlanItem {
+    /// A command that is no draw, by its number.
     Command(usize),
+    /// A job of several draws' pieces, by its number.
     Job(usize),
 }
 

@@ -31,7 +31,9 @@ pub struct PlaneTile<T> {
 /// What surfaces store for a sample: in a row of their block, and in all rows.
 #[derive(Clone, Copy, Debug)]
 struct Reading<T> {
+    /// The values of a sample in a row of the block.
     row: fn(&Surface, usize, usize) -> [T; BLOCK],
+    /// The values of a sample in all rows of the block.
     rows: fn(&Surface, usize) -> [[T; BLOCK]; BLOCK],
 }
 

@@ -1,12 +1,12 @@
 //! From a facet to the colours of a row of eight pixels: interpolation, textures (`textures.rs`), fog.
 
-mod again;
 mod eight_facets;
+mod texel_cache;
 mod textures;
 
 pub(crate) use eight_facets::{EightFacets, FacetPixels, can_batch_facets};
 
-pub(crate) use self::again::TexelCache;
+pub(crate) use self::texel_cache::TexelCache;
 use super::assemble::{Facet, FacetKind, Primitives, Shape};
 use super::block::BlockWords;
 use super::color_grid::ColorGrid;
@@ -55,8 +55,11 @@ const MAX_NUMBERS: usize = 64;
 
 /// A facet's records as they are interpolated: number `k` is `base[k] + b1 * d1[k] + b2 * d2[k]`.
 struct Differences {
+    /// Numbers of corner 0.
     base: [f32; MAX_NUMBERS],
+    /// What corner 1 has more.
     d1: [f32; MAX_NUMBERS],
+    /// What corner 2 has more.
     d2: [f32; MAX_NUMBERS],
     /// Bit `k`: number `k` is not the same at all corners.
     varies: u64,
@@ -120,9 +123,13 @@ const MOST_W: f32 = 8.0;
 /// it is the tile's, and the planes' values there are found in double precision.
 #[derive(Default)]
 struct Interpolation {
+    /// Pixel position of the planes' values, in the target.
     origin: [f32; 2],
+    /// The plane of `l1 / w1`: value at the origin, change with x, change with y.
     first: [f32; 3],
+    /// The plane of `l2 / w2`, likewise.
     second: [f32; 3],
+    /// The plane of `Σ l / w`, likewise.
     sum: [f32; 3],
     /// `w` of all corners, if it is the same.
     flat_w: Option<f32>,

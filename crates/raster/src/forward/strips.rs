@@ -46,7 +46,9 @@ pub(crate) struct TileCopy {
 }
 
 enum ColorCopy {
+    /// Packed bytes.
     Rgba8(PlaneTile<u32>),
+    /// Floats.
     RgbaF32(PlaneTile<[f32; 4]>),
 }
 

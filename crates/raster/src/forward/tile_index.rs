@@ -36,11 +36,14 @@ pub(crate) struct Candidate<'a> {
 /// What is looked at: copied, as triangles lie all over the memory.
 #[derive(Debug)]
 struct Indexed {
+    /// Best depth of the triangle, times the sign.
     bound: f32,
     /// Edge functions of texels within the tile, not negative inside.
     edges: [Edge; 3],
+    /// Values of the edge functions at the tile's first texel.
     constants: [i32; 3],
     setup: Setup,
+    /// Allowed texels: x0, y0, x1, y1, the last two exclusive.
     clip: [i32; 4],
 }
 
@@ -49,7 +52,9 @@ struct Indexed {
 pub(crate) struct TileIndex {
     /// The tile's first texel.
     origin: [i32; 2],
+    /// The triangles, best bound first.
     triangles: Vec<Indexed>,
+    /// Bits of the triangles that touch each block.
     blocks: [u128; BLOCKS * BLOCKS],
 }
 

@@ -30,6 +30,7 @@ pub struct NearestDepths {
     pattern: SamplePattern,
     /// 1 where larger depths are nearer, -1 where smaller ones are. All depths within are times this.
     sign: f32,
+    /// The nearest depth of each pixel, row by row.
     depths: Vec<f32>,
     /// For each block a depth that none of its pixels is farther than.
     far: [f32; BLOCKS * BLOCKS],

@@ -37,10 +37,15 @@ pub(crate) struct CullResult8 {
     pub area: [i32; LANES],
     /// The pixels they may cover: x0, y0, x1, y1.
     pub pixels: [[i32; LANES]; 4],
+    /// Depth planes, as in [`DepthPlane`]: depths at the first corners.
     z: [f32; LANES],
+    /// Changes of depth with a pixel to the right.
     dz_dx: [f32; LANES],
+    /// Changes of depth with a pixel down.
     dz_dy: [f32; LANES],
+    /// Farthest depths.
     z_min: [f32; LANES],
+    /// Nearest depths.
     z_max: [f32; LANES],
     /// These have a corner that is not finite, and are not in the other sets.
     pub not_finite: u32,
@@ -194,8 +199,10 @@ fn bounds<S: Simd>([a, b, c]: &[Corner8<S>; 3]) -> ([I32x8<S>; 2], [I32x8<S>; 2]
 
 /// The edges of eight triangles that start at the first corner, and what they span.
 struct Edges8<S: Simd> {
+    /// From the first corner to the second, in 1/256 pixel.
     dx1: I32x8<S>,
     dy1: I32x8<S>,
+    /// From the first corner to the third, in 1/256 pixel.
     dx2: I32x8<S>,
     dy2: I32x8<S>,
     /// Twice the areas.

@@ -26,6 +26,7 @@ pub(crate) struct TinyEight {
     /// Corners in 1/256 pixel of the tile.
     x: [[i32; LANES]; 3],
     y: [[i32; LANES]; 3],
+    /// First column and row of each triangle's box, pixels of the tile.
     left: [i32; LANES],
     top: [i32; LANES],
     /// What follows the corners in setups: depth planes.
@@ -319,6 +320,7 @@ struct Walk<S: Simd, V: Floats<S>> {
     /// What edge functions change by with a column, with a row.
     a: [V::Ints; 3],
     b: [V::Ints; 3],
+    /// Values of the edge functions at the sample of the box's first pixel.
     row: [V::Ints; 3],
     /// `z`, `dz_dx`, `dz_dy`, `z_min`, `z_max`.
     plane: [V; 5],

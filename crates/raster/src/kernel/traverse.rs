@@ -24,7 +24,9 @@ fn hides_box(tile: &Tile, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> b
 /// An edge function within one tile: `a * x + b * y + c[s] >= 0` on covered samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
+    /// Change with a pixel to the right.
     pub(crate) a: i32,
+    /// Change with a pixel down.
     pub(crate) b: i32,
 }
 
@@ -494,6 +496,7 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MAX: usize>(
 /// The edge functions of a triangle in a tile at all samples.
 struct SampleEdges<S: Simd, const MAX: usize> {
     samples: usize,
+    /// Changes with a pixel to the right and down.
     edges: [Edge; 3],
     /// At the tile's origin.
     constants: [[i32; MAX]; 3],
@@ -565,7 +568,9 @@ impl<S: Simd, const MAX: usize> SampleEdges<S, MAX> {
 
 /// The least and the largest values that the edge functions take on the samples of the eight blocks of a tile's top row.
 pub(crate) struct Extremes<S: Simd> {
+    /// Least values, by edge; one lane for each block.
     least: [I32x8<S>; 3],
+    /// Largest values, by edge; one lane for each block.
     largest: [I32x8<S>; 3],
 }
 

@@ -40,6 +40,7 @@ const PIECE: usize = 1 << 16;
 pub struct Grid {
     min: Vec3,
     cell: Vec3,
+    /// Cells along each axis.
     count: [i32; 3],
     /// `entries[starts[c]..starts[c + 1]]` are the places of triangles in cell `c`; x runs fastest, then y.
     starts: Vec<u32>,

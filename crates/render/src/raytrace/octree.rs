@@ -40,7 +40,9 @@ const STACK: usize = DEPTH * 7 + 8;
 /// A cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cell {
+    /// Lower corner of its box, scene less its middle.
     min: [f32; 3],
+    /// Upper corner of its box.
     max: [f32; 3],
     /// First of eight children, or 0 for a leaf: the root is nobody's child.
     children: u32,
@@ -69,6 +71,7 @@ struct Part {
 #[derive(Clone, Copy, Debug)]
 struct Cube {
     middle: Vec3,
+    /// Half its side.
     half: f32,
 }
 

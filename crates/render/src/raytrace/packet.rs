@@ -157,7 +157,9 @@ pub(super) struct ClosestHits<'a> {
     own: &'a [u32],
     /// Rounding of the hits' parameters.
     slack: [f32; LANES],
+    /// Parameters beyond which a ray searches nothing.
     limits: [f32; LANES],
+    /// Position of the triangle in the structure's list, and the parameter of the hit.
     best: [Option<(usize, f32)>; LANES],
     /// Whether something else was hit at about the same parameter.
     crowded: [bool; LANES],

@@ -35,7 +35,9 @@ pub struct Plane {
 /// See the module.
 #[derive(Clone, Copy, Debug)]
 pub struct Pyramid<S: Simd> {
+    /// Components of the planes' normals, one lane for each plane.
     normal: [F32x8<S>; 3],
+    /// The planes' offsets: `normal · p + offset >= 0` inside.
     offset: F32x8<S>,
     /// Each plane by itself.
     planes: [Side; PLANES],
@@ -44,7 +46,9 @@ pub struct Pyramid<S: Simd> {
 /// One plane.
 #[derive(Clone, Copy, Debug, Default)]
 struct Side {
+    /// Normal, inwards.
     normal: [f32; 3],
+    /// `normal · p + offset >= 0` inside, with slack for rounding.
     offset: f32,
     /// Where a box lies farthest along the normal, on each axis: 0 at its least coordinate, 1 at its largest.
     corner: [usize; 3],

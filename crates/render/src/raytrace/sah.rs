@@ -196,7 +196,9 @@ impl<'a> Span<'a> {
 
 /// From a doubled centre to a bin on each axis.
 struct Bins {
+    /// Least doubled centre on each axis.
     min: [f32; 4],
+    /// Bins for each unit of it; 0 where all centres are equal.
     scale: [f32; 4],
     count: usize,
 }

@@ -62,7 +62,9 @@ struct Waiting {
 struct Slab<S: Simd> {
     /// The side by which it enters, 0 for the least coordinates.
     side: usize,
+    /// Starts of the lines that enter and that leave first.
     start: [F32x8<S>; 2],
+    /// One over the slopes of these lines, rounded outwards.
     inverse: [F32x8<S>; 2],
 }
 

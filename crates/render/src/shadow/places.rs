@@ -25,11 +25,15 @@ pub struct SurfacePoint {
 /// Eight places, by their numbers; see [`SurfacePoint`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfacePoints8 {
+    /// World space less the scene's middle, by axis.
     pub(super) position: [[f64; LANES]; 3],
+    /// Unit normals of the facets, by axis.
     pub(super) normal: [[f64; LANES]; 3],
+    /// The facets.
     pub(super) facet: [u32; LANES],
     /// Not numbers where a place is in no pixel.
     pub(super) pixel: [[f32; LANES]; 2],
+    /// As in [`SurfacePoint`].
     pub(super) seed: [u32; LANES],
 }
 

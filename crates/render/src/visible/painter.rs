@@ -124,9 +124,11 @@ fn sorted<T>(
 /// What has become of a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
+    /// In the list, not painted.
     Waiting,
     /// It waits, and others wait for it to be painted first.
     Marked,
+    /// Painted.
     Painted,
     /// Its parts have taken its place.
     Split,

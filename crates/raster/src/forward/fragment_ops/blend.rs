@@ -89,9 +89,13 @@ fn combine<V: Lanes>(equation: BlendEquation, (source, s): (V, V), (stored, d): 
 /// What factors are made of.
 #[derive(Clone, Copy)]
 struct Inputs<V> {
+    /// The value of 1: 255 where components are bytes.
     one: f32,
+    /// The incoming colour: red, green, blue, alpha.
     source: [V; 4],
+    /// The stored colour.
     stored: [V; 4],
+    /// The blend colour.
     constant: [V; 4],
 }
 

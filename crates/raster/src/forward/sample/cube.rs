@@ -233,12 +233,15 @@ pub(super) fn crosses<S: Simd, V: Floats<S>>(simd: S, axis: &Axis<S, V>, size: u
 struct Spot<'a, S: Simd> {
     level: usize,
     shape: &'a Level,
+    /// The face of each lane, 0 to 5.
     face: &'a [u32; LANES],
     x: Axis<S>,
     y: Axis<S>,
+    /// Bits of the lanes that are looked up.
     lanes: u32,
     seamless: bool,
     filtered: bool,
+    /// The depth to compare with, of depth textures.
     reference: Option<F32x8<S>>,
 }
 
@@ -309,7 +312,9 @@ fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Texel
 
 /// Texels of one corner.
 struct TexelCoords8<S: Simd> {
+    /// The face of each lane, 0 to 5.
     face: [u32; LANES],
+    /// The texel's number in its face.
     index: I32x8<S>,
     /// Lanes of the border colour.
     outside: Mask8<S>,

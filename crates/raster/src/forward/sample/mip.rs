@@ -103,8 +103,11 @@ pub(super) struct Choice<V> {
 /// How a minification filter treats levels.
 #[derive(Clone, Copy, PartialEq)]
 enum Mip {
+    /// Level 0 alone.
     None,
+    /// The nearest level.
     Nearest,
+    /// A mixture of two levels.
     Linear,
 }
 

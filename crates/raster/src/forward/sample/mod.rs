@@ -36,8 +36,11 @@ use vitral_math::lanes::{F32x8, Simd};
 /// A texture of a common kind, made ready for lookups.
 #[derive(Clone, Copy)]
 pub(crate) enum PackedTexture<'a> {
+    /// Packed colours of one or two dimensions.
     Flat(Packed<'a>),
+    /// A cube map of packed colours.
     Cube(PackedCube<'a>),
+    /// A depth texture that is compared with.
     Shadow(PackedShadow<'a>),
 }
 

@@ -20,6 +20,7 @@ use vitral_math::lanes::{self, F32x8, Floats, MOST_LANES, Simd};
 /// A texture's levels, made ready for lookups.
 #[derive(Clone, Copy)]
 pub(crate) struct Packed<'a> {
+    /// From the finest to the coarsest.
     levels: &'a [Arc<Level>],
     /// Level 0, for what bytes mean.
     first: Words<'a>,

@@ -37,9 +37,13 @@ const ROOM: usize = LANES * PLACES + LANES;
 
 /// The pixels of eight facets that show, side by side.
 pub(crate) struct FacetPixels {
+    /// How many pixels there are.
     count: usize,
+    /// Position of each pixel in its facet's box: `8 * row + column`.
     places: [u8; ROOM],
+    /// Lane of each pixel's facet, as a float so that lanes compress it with the numbers.
     facets: [f32; ROOM],
+    /// The interpolated numbers, one list each.
     numbers: [[f32; ROOM]; NUMBERS],
 }
 
@@ -59,17 +63,24 @@ struct Numbers<S: Simd> {
 
 /// Perspective-correct barycentric coordinates of all facets at a place.
 struct Weights<S: Simd> {
+    /// Weight of corner 1.
     b1: F32x8<S>,
+    /// Weight of corner 2.
     b2: F32x8<S>,
+    /// Interpolated clip-space w.
     w: F32x8<S>,
 }
 
 /// Up to eight facets ready to be interpolated: see `Interpolation`.
 pub(crate) struct EightFacets<'d, S: Simd> {
     draw: &'d DrawContext<'d>,
+    /// Pixel position of corner 0, x and y.
     origin: [F32x8<S>; 2],
+    /// Change of `l1 / w1` with x and y.
     first: [F32x8<S>; 2],
+    /// Change of `l2 / w2` with x and y.
     second: [F32x8<S>; 2],
+    /// `Σ l / w` at the origin, and its change with x and y.
     sum: [F32x8<S>; 3],
     values: Values<S>,
 }

@@ -36,12 +36,11 @@ impl Cached for Maps {
 /// The maps of one light.
 #[derive(Debug)]
 pub(super) enum LightMaps {
+    /// Ambient light, or a scene without anything in it.
     Unoccluded,
-    Infinity {
-        towards: DVec3,
-        map: Box<Map>,
-    },
-    /// Each place of a light with its maps.
+    /// A light infinitely far away: the unit vector to it, and its map.
+    Infinity { towards: DVec3, map: Box<Map> },
+    /// Each position of a light at a finite distance, with its maps.
     Positions(Vec<(Emitter, Vec<Map>)>),
 }
 

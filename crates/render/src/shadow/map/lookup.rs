@@ -429,6 +429,7 @@ impl<S: Simd> LookupBatch8<S> {
 
 /// What [`Map::eight_apart`] needs of [`LookupBatch8`].
 struct Stored {
+    /// As in [`LookupBatch8`], lane by lane.
     first: [[f64; LANES]; 2],
     depths: [[f64; LANES]; 4],
     ends: [[f64; LANES]; 4],

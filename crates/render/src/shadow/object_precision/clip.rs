@@ -199,8 +199,11 @@ impl Cutter<'_> {
 /// How much of a polygon a solid reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Reach {
+    /// The solid does not touch the polygon.
     None,
+    /// It touches a part of it.
     Some,
+    /// It holds all of it.
     Covers,
 }
 

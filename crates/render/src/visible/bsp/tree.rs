@@ -40,7 +40,7 @@ const CANDIDATES: usize = 8;
 const TRIED_ON: usize = 64;
 /// What a split costs, in polygons of imbalance.
 const SPLIT_COST: usize = 6;
-/// An axis plane has to halve the set at least this well, in eighths.
+/// Eighths of the set that an axis plane may leave on one side at most; a plane that halves worse is not used.
 const WORST_HALF: usize = 6;
 /// Pieces of work that the set is divided into before threads share them.
 const JOBS: usize = 64;

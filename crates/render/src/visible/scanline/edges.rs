@@ -69,8 +69,11 @@ pub(super) struct ActiveEdge {
     pub(super) corner: u32,
     /// The first line that it does not cross.
     pub(super) end: u16,
+    /// Where the edge crosses the line, rounded down to 1/256 pixel.
     pub(super) x: i32,
+    /// The rest of the division, in 1/`dy`.
     pub(super) remainder: i32,
+    /// Height of the edge in 1/256 pixel.
     pub(super) dy: i32,
     /// What is added to `x` and `remainder` from line to line.
     pub(super) step: [i32; 2],

@@ -20,7 +20,9 @@ pub(super) struct Window {
 /// The box round a window's samples in the picture, ends included, 1/256 pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SampleBox {
+    /// Least and greatest x of a sample, in 1/256 pixel.
     pub(super) x: [i32; 2],
+    /// Least and greatest y of a sample, in 1/256 pixel.
     pub(super) y: [i32; 2],
 }
 

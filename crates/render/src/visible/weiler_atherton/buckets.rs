@@ -40,7 +40,9 @@ impl Source<u32> for InCells<'_> {
 /// Cells of the same size over all boxes.
 #[derive(Clone, Copy, Debug)]
 struct Grid {
+    /// Lower corner, in the units of the boxes.
     origin: [f64; 2],
+    /// Cells for each unit along x and y.
     cells_a_unit: [f64; 2],
     /// Cells a side.
     side: usize,

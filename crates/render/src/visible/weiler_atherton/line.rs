@@ -23,7 +23,9 @@ pub(super) const MAX_OFFSET: i64 = 1 << 49;
 /// `a x + b y + c`, positive on the inner side. The line runs in the direction `(b, -a)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Line {
+    /// Factor of x.
     pub(super) a: i32,
+    /// Factor of y.
     pub(super) b: i32,
     pub(super) c: i64,
 }

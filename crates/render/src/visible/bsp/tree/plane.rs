@@ -66,9 +66,13 @@ impl Plane {
 /// Where a polygon lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
+    /// All corners lie in front, or in the plane.
     Front,
+    /// All corners lie behind, or in the plane.
     Back,
+    /// All corners lie in the plane.
     In,
+    /// Corners lie on both sides.
     Across,
 }
 

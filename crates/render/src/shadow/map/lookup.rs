@@ -540,7 +540,7 @@ mod tests {
             let places: SurfacePoints = (0..20_003).map(place).collect();
             for (name, level) in available_levels() {
                 let mut parts = LightVisibility::new(places.len(), [f32::NAN; 3]);
-                arriving(level, &map, towards.extend(0.0), &places, &mut parts);
+                light_visibility(level, &map, towards.extend(0.0), &places, &mut parts);
                 let mut partly = 0;
                 for (number, eight) in places.eights().iter().enumerate() {
                     let expected = dispatch!(level, simd => one_by_one(simd, &map, eight));

@@ -104,6 +104,7 @@ impl Recorder {
     /// Has what is recorded run while more comes, unless what was recorded before is still running. Depths alone are left to be
     /// drawn where they are looked at.
     fn start(&mut self) {
+        // Wait for nothing: skip if the last part still runs, or if there are no colours to draw.
         if self.ahead.as_ref().is_some_and(|ahead| !ahead.is_done()) {
             return;
         }
@@ -111,6 +112,8 @@ impl Recorder {
         if self.pass.as_ref().is_none_or(|pass| pass.target.color.is_none()) {
             return;
         }
+
+        // Hand the recorded commands to a worker.
         self.finish_ahead();
         let Some(pass) = self.pass.as_mut() else { return };
         let commands = std::mem::take(&mut pass.commands);

@@ -132,12 +132,15 @@ impl VertexSnapshot {
         fog: bool,
         lights: &mut LightCache,
     ) -> Self {
+        // Collect the enabled clip planes and the source of fog.
         let matrices = &state.matrices;
         let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
         let clip_planes: Vec<_> = planes.map(|(plane, _)| plane.map(|v| v as f32)).collect();
         let source = if state.fog.source == gl::FRAGMENT_DEPTH { FogSource::Depth } else { FogSource::Given };
         let projection = matrices.projection.top();
         let rescale_normal = matrices.rescale_normal && !matrices.normalize;
+
+        // Copy what the vertex stages read.
         Self {
             current: state.current,
             transform: Transform::new(&given.modelview, &projection, rescale_normal, &clip_planes),

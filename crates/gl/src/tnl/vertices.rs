@@ -410,9 +410,12 @@ fn texture<S: Simd>(
 
 #[inline(always)]
 fn generate<S: Simd>(simd: S, unit: &UnitSnapshot, position: &F4<S>, eye: &F4<S>, n: V3<F<S>>, coords: &mut F4<S>) {
+    // Reflect the vector to the vertex at the normal.
     let inverse = splat(simd, 1.0) / eye[3];
     let u = V3::new(eye[0] * inverse, eye[1] * inverse, eye[2] * inverse).normalize();
     let r = u - n.scale(n.dot(u) * 2.0);
+
+    // Generate each coordinate by its mode.
     for k in 0..4 {
         coords[k] = match &unit.generation[k] {
             Generation::None => coords[k],

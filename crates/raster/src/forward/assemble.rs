@@ -450,6 +450,7 @@ impl<'a> Assembler<'a> {
     /// A piece of a smooth polygon. It knows its own edges alone: where a diagonal meets a corner, the pixel shows the
     /// coverage of one edge. Edges that clipping makes are hard.
     fn smooth_triangle(&mut self, corners: [u32; 3], boundary: [bool; 3], provoking: u32, back: bool) {
+        // Reject triangles outside the user's planes, and clip those that cross a plane.
         let v = corners.map(|v| self.vertices.screen[v as usize]);
         if v[0].flags & v[1].flags & v[2].flags & flag::USERS != 0 {
             return;
@@ -457,6 +458,8 @@ impl<'a> Assembler<'a> {
         if (v[0].flags | v[1].flags | v[2].flags) & CUT != 0 {
             return self.clipped(&corners, provoking, Some(boundary));
         }
+
+        // Emit the triangle with the edges that are the polygon's own.
         let own = v.map(ScreenVertex::corner);
         let area = Setup::doubled_area(own[0], own[1], own[2]);
         if area == 0 {

@@ -178,9 +178,13 @@ pub(crate) fn keeps(face: &StencilFace) -> bool {
 
 fn blend_path(state: &FragmentState) -> BlendPath {
     use BlendFactor::{One, OneMinusSrcAlpha, SrcAlpha, Zero};
+
+    // Logical operations take precedence over blending.
     if let Some(op) = state.logic_op {
         return BlendPath::Logic(op);
     }
+
+    // Recognise the common factors; everything else is general.
     let Some(Blend { source, destination, equation, .. }) = state.blend else { return BlendPath::Replace };
     if equation != [BlendEquation::Add; 2] {
         return BlendPath::General;
@@ -448,6 +452,7 @@ fn write_packed<S: Simd>(
     packed: U32x8<S>,
     values: &mut [u32],
 ) {
+    // Combine the new and the stored words.
     let stored = U32x8::from_slice(simd, values);
     let mut new = match (ops.blend_path, &state.blend) {
         (BlendPath::General, Some(b)) => general_packed(simd, b, packed, stored),
@@ -457,6 +462,8 @@ fn write_packed<S: Simd>(
     if state.srgb && state.logic_op.is_none() {
         new = srgb_packed(simd, state, color, stored);
     }
+
+    // Keep the protected bits, and write the pixels of the mask.
     if ops.protected != 0 {
         new = write_unprotected(new, stored, ops.protected);
     }
@@ -482,10 +489,13 @@ fn srgb_packed<S: Simd>(simd: S, state: &FragmentState, color: &Rgba<S>, stored:
     simd.vectorize(
         #[inline(always)]
         || {
+            // Decode the stored colours to linear light.
             let mut old = unpack(stored);
             for component in &mut old[..3] {
                 *component = F32x8::from_slice(simd, &component.to_array().map(linear_from_srgb));
             }
+
+            // Blend and encode.
             let mut new = match &state.blend {
                 Some(b) => blend(simd, b, *color, old, Components::Unit),
                 None => *color,

@@ -428,6 +428,8 @@ impl Runner {
         (sampled, again): (&'a Held<'a>, &[Shown]),
     ) -> Item<'a> {
         let samples = pass.target.samples;
+
+        // Walk commands as they are, and jobs with what each of their draws needs.
         match item {
             PlanItem::Command(c) => match &pass.commands[*c] {
                 Command::Clear(clear) => Item::Clear(clear),
@@ -652,6 +654,7 @@ fn shown_again(commands: &[Command]) -> Vec<Shown> {
 /// The depth planes that are held for the whole pass, each once, in the order of their addresses: those that draws sample
 /// as textures of one level. Others are locked at each lookup, and must not be held besides.
 fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthBuffer>>> {
+    // Collect the planes that draws sample, those of one level apart.
     let (mut sole, mut others): (Vec<_>, Vec<_>) = (Vec::new(), Vec::new());
     for command in commands {
         let (Command::Draw(_, state) | Command::Image(_, state)) = command else { continue };
@@ -663,6 +666,8 @@ fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthBuffer>>> {
             }
         }
     }
+
+    // Keep each sole plane once, in the order of addresses, so that locks cannot deadlock.
     sole.retain(|plane| !others.iter().any(|other| Arc::ptr_eq(plane, other)));
     sole.sort_by_key(|plane| Arc::as_ptr(plane));
     sole.dedup_by(|a, b| Arc::ptr_eq(a, b));

@@ -387,6 +387,7 @@ impl PendingDepth {
     /// The same among those triangles of a tile whose box holds the texel.
     #[inline(always)]
     fn scan<S: Simd>(&self, simd: S, at: [i32; 2], tile: usize, settled: bool, floor: f32, mut best: f32) -> f32 {
+        // Search the boxes of every job that touches the tile.
         let place = at.map(|v| v % TILE as i32);
         for &job in &self.touching[self.tiles[tile].jobs.clone()] {
             let job = &self.jobs[job as usize];
@@ -444,6 +445,8 @@ impl PendingDepth {
         if pending.count as usize > tile_index::MAX_TRIANGLES {
             return Known::Drawn(self.draw(tile));
         }
+
+        // Gather the candidates of all jobs.
         let mut candidates = Vec::with_capacity(pending.count as usize);
         for &job in &self.touching[pending.jobs.clone()] {
             let PendingJob { primitives: Primitives { batch, boxes, .. }, draws, .. } = &self.jobs[job as usize];
@@ -452,6 +455,8 @@ impl PendingDepth {
                 Some(Candidate { within, bound, setup, clip: draws[setup.facet as usize].1 })
             }));
         }
+
+        // Index them by blocks of texels.
         let origin = origin(self.viewport, tile as u32).map(|v| v as i32);
         Known::Few(Box::new(TileIndex::new(origin, candidates)))
     }

@@ -240,6 +240,7 @@ impl<T: Copy> PlaneTile<T> {
     /// these blocks hold one value a pixel.
     #[inline(always)]
     pub(crate) fn open(&mut self, bits: u64, together: bool, samples: usize) -> (usize, &mut [T]) {
+        // Bring all blocks to the form of stored values.
         if self.values.is_empty() {
             self.values = vec![self.clear; samples * TILE_PIXELS];
         }
@@ -249,6 +250,8 @@ impl<T: Copy> PlaneTile<T> {
         if bits & self.cleared != 0 {
             self.fill(bits & self.cleared);
         }
+
+        // Return one value a pixel where the blocks have no more.
         if together && bits & !self.single == 0 {
             return (1, &mut self.values);
         }
@@ -300,6 +303,7 @@ impl<T: Copy> PlaneTile<T> {
     #[inline(never)]
     fn write_surfaces(&mut self, bits: u64, samples: usize) {
         let mut rest = bits;
+        // Evaluate the block's plane for each sample.
         while rest != 0 {
             let block = rest.trailing_zeros() as usize;
             rest &= rest - 1;
@@ -312,6 +316,8 @@ impl<T: Copy> PlaneTile<T> {
                     }
                 });
             }
+
+            // Note how many samples are stored.
             self.single =
                 if stored < samples || samples == 1 { self.single | 1 << block } else { self.single & !(1 << block) };
         }

@@ -191,6 +191,7 @@ impl<'a> TileRun<'a> {
         clip: [i32; 4],
         tiny: bool,
     ) {
+        // Gather the boxes of a tiny line with other tiny facets.
         let setup = job.primitives.batch.item(entry);
         let facet = facet_of(job.primitives, setup.facet);
         let tile = [self.x, self.y];
@@ -202,6 +203,8 @@ impl<'a> TileRun<'a> {
                 memory.waiting.next(entry, facet.draw).push_pixels(setup, tile, corner, mask);
             });
         }
+
+        // Draw any other line box by box.
         self.tiny_facets(simd, job, memory);
         let draw = &job.draws[facet.draw as usize];
         let shader = Shader::new(facet, draw, job.primitives, tile.map(|v| v as f32), &mut memory.scratch);
@@ -656,12 +659,15 @@ fn fill<T: Copy + PartialEq>(
     samples: usize,
     combine: impl Fn(T, T) -> T,
 ) {
+    // Handle the whole tile, or values that stay as they are, without touching samples.
     if whole {
         return tile.clear(value);
     }
     if tile.uniform().is_some_and(|old| combine(old, value) == old) {
         return;
     }
+
+    // Combine the rectangle, sample by sample.
     let values = tile.stored(samples);
     for s in 0..samples {
         for y in y0..y1 {

@@ -71,8 +71,11 @@ pub(crate) struct Texels<S: Simd, V: Floats<S>> {
 impl TileIndex {
     /// Of at most [`MAX_TRIANGLES`] candidates in the tile whose first texel is `origin`.
     pub(crate) fn new(origin: [i32; 2], mut candidates: Vec<Candidate<'_>>) -> Self {
+        // Sort the candidates, best bound first.
         candidates.truncate(MAX_TRIANGLES);
         candidates.sort_by(|a, b| b.bound.total_cmp(&a.bound));
+
+        // Enter each in the blocks that its box touches.
         let mut blocks = [0; BLOCKS * BLOCKS];
         for (number, candidate) in candidates.iter().enumerate() {
             let [[left, right], [top, bottom]] = candidate.within.map(|side| side.map(|p| usize::from(p) / BLOCK));
@@ -80,6 +83,8 @@ impl TileIndex {
                 row[left..=right].iter_mut().for_each(|block| *block |= 1 << number);
             }
         }
+
+        // Move the edge functions to the tile's origin.
         let indexed = |candidate: Candidate<'_>| {
             let Candidate { bound, setup, clip, .. } = candidate;
             let from = |v: [i32; 3], axis: usize| v.map(|v| v - origin[axis] * SUBPIXEL);

@@ -372,6 +372,7 @@ impl TileRun<'_> {
         each: &[[u32; LANES]; PLACES],
         words: &mut BlockWords,
     ) {
+        // Write all facets at once where colours replace or add.
         let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color else { return };
         let adds = draw.ops.blend_path == BlendPath::Add;
         if draw.ops.protected == 0 && (adds || draw.ops.blend_path == BlendPath::Replace) {
@@ -384,6 +385,8 @@ impl TileRun<'_> {
             }
             return;
         }
+
+        // Blend other colours facet by facet.
         for facet in (0..eight.len()).filter(|&facet| seen.any[facet] != 0) {
             set_bits(seen.any[facet]).for_each(|place| words[place % PLACES] = each[place % PLACES][facet]);
             let (block, masks) = (eight.block(facet, seen.any[facet]), seen.masks.map(|masks| masks[facet]));

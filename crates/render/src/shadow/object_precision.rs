@@ -258,6 +258,8 @@ impl PreparedShadows for Prepared<'_> {
         let triangles = self.polygons.casters.triangles();
         let center = triangles.center;
         let mut corners = Vec::new();
+
+        // Hand out the lit polygons of each position of each light.
         for (light, places) in self.polygons.lights.iter().enumerate() {
             for (piece, details) in places.iter().flat_map(|place| place.details.iter().enumerate()) {
                 for (i, found) in details.found.iter().enumerate() {

@@ -290,6 +290,7 @@ fn seeds<S: Simd>(simd: S, screen: [&[f32; LANES]; 2]) -> [u32; LANES] {
 /// The first three columns of eight rows of four doubles, each number in the lane of its row.
 #[inline(always)]
 fn wide_columns<S: Simd>(simd: S, row: impl Fn(usize) -> [f64; 4]) -> [F64x8<S>; 3] {
+    // Transpose four rows at a time.
     let half = lanes::inlined(
         #[inline(always)]
         |first: usize| {
@@ -302,6 +303,8 @@ fn wide_columns<S: Simd>(simd: S, row: impl Fn(usize) -> [f64; 4]) -> [F64x8<S>;
             [low.0, low.1, high.0]
         },
     );
+
+    // Join the halves; the fourth column is not used.
     let (low, high) = (half(0), half(4));
     lanes::three(
         #[inline(always)]

@@ -269,6 +269,7 @@ fn meets(view: &PreparedView<'_>, instance: &Instance, facet: u32, place: [i32; 
 /// The facets of a view that cover a place of the screen, 1/256 pixel, with their depths there and whether they are layers; the
 /// nearest first.
 pub fn facets_at(view: &PreparedView<'_>, [x, y]: [i32; 2]) -> Vec<(u32, f32, bool)> {
+    // Find the triangles near the pixel.
     let world = &view.session.world;
     let pixel = [x, y].map(|v| v.div_euclid(SUBPIXEL) as u32);
     let window = Window::new(&view.view, view.viewport, pixel, 1, SNAPPED);
@@ -278,6 +279,7 @@ pub fn facets_at(view: &PreparedView<'_>, [x, y]: [i32; 2]) -> Vec<(u32, f32, bo
         let (pyramid, bounds) = (window.pyramid_of(instance), &world.run_bounds[instance.mesh_index as usize]);
         let opaque = prepared.opaque.iter().map(|draw| (false, draw));
         for (is_layer, draw) in opaque.chain(prepared.layered.iter().map(|draw| (true, draw))) {
+            // Keep those that cover the position.
             for triangle in pyramid.triangles(&instance.mesh, bounds, &draw.ranges).into_iter().flatten() {
                 let facet = draw.first_facet + triangle;
                 let setups = view.setups(facet, draw.back_faces);
@@ -287,6 +289,8 @@ pub fn facets_at(view: &PreparedView<'_>, [x, y]: [i32; 2]) -> Vec<(u32, f32, bo
             }
         }
     }
+
+    // Sort by depth, then by facet.
     found.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     found
 }

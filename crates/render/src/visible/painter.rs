@@ -85,12 +85,14 @@ impl VisibleSurface for Painter {
 
 impl PolygonAlgorithm for Painter {
     fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit> {
+        // Set up the facets and join them to polygons.
         let facets = Facets::without_tiles(view, execution)?;
         let wholes = Polygons::new(facets.all(), view);
         list.wholes = wholes.len() as u64;
         execution.budget.charged(wholes.bytes(), "the painter's list", || {
             let mut counters = VisibilityCounters::default();
             let raster = Raster::new(view.viewport, &view.pattern);
+            // Sort them and copy the list.
             sorted(&wholes, raster, execution, &mut counters, |sorting| {
                 for &number in &sorting.painted {
                     let polygon = &sorting.polygons[number as usize];
@@ -296,8 +298,11 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// Adds a polygon, if it can have samples, and gives its number.
     fn add(&mut self, whole: u32, corners: &[[f64; 2]], cuts: Range<u32>) -> Option<u32> {
+        // Skip polygons without pixels.
         let pixels = self.raster.pixels(bounds(corners))?;
         let plane = self.wholes.get(whole as usize).plane();
+
+        // Store the corners and the polygon, and enter it in its cells.
         let first = self.corners.len() as u32;
         self.corners.extend_from_slice(corners);
         let own = first..self.corners.len() as u32;
@@ -306,6 +311,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
         self.enter(number, polygon.far, polygon.cells);
         self.pending += 1;
         let [x0, y0, ..] = polygon.cells;
+
+        // Queue it by its farthest depth.
         self.waiting.push(Farness { far: polygon.far, facet: plane.facet, polygon: number });
         self.states.push(State::Waiting);
         self.polygons.push(polygon);

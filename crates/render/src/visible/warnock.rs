@@ -50,10 +50,13 @@ impl VisibleSurface for Warnock {
         execution: &Execution,
         sink: &dyn TileSink,
     ) -> Result<Resolved, Limit> {
+        // Set up the facets and join them to polygons.
         let mut resolved = Resolved::default();
         let facets = Facets::new(view, execution, &mut resolved)?;
         let polygons = Polygons::new(facets.opaque(), view);
         let bytes = polygons.bytes() + (polygons.len() * BYTES_A_POLYGON) as u64;
+
+        // Divide the picture down to tiles, then finish each tile on a thread.
         resolved.counters = execution.budget.charged(bytes, STAGE, || {
             let lists = Charge::new(&execution.budget, STAGE);
             let Divided { tiles, mut counters } = Divided::new(&facets, &polygons, &lists)?;

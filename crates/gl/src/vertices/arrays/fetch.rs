@@ -196,6 +196,7 @@ impl Reader {
 
     /// `count` indices of a type, in the element buffer `buffer` or the client's memory.
     pub(super) fn indices(&self, buffer: u64, kind: u32, count: usize, pointer: usize) -> Result<Vec<u32>, Refusal> {
+        // Find the bytes in the buffer or in the client's memory.
         let size = type_size(kind);
         let owned;
         let bytes = if buffer == 0 {
@@ -206,6 +207,8 @@ impl Reader {
             let end = count.checked_mul(size).and_then(|len| len.checked_add(pointer)).ok_or(OUTSIDE)?;
             self.bytes(buffer)?.get(pointer..end).ok_or(OUTSIDE)?
         };
+
+        // Widen the indices.
         Ok(match kind {
             enums::UNSIGNED_BYTE => bytes.iter().map(|&i| i.into()).collect(),
             enums::UNSIGNED_SHORT => {

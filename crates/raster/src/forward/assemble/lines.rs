@@ -25,11 +25,14 @@ impl Stroke {
 impl Assembler<'_> {
     /// A line; `stipple` counts the fragments before it, which comes back with its own added.
     pub fn line(&mut self, [from, to]: [u32; 2], provoking: u32, stipple: u32) -> u32 {
+        // Reject lines outside the view volume.
         let s = self.vertices.screen;
         let (a, b) = (s[from as usize], s[to as usize]);
         if (a.flags | b.flags) & flag::NOT_FINITE != 0 || a.flags & b.flags & self.outside() != 0 {
             return stipple;
         }
+
+        // Clip lines that cross it.
         let mut ends = [
             Corner { clip: self.vertices.clip[from as usize], weights: [1.0, 0.0, 0.0], boundary: false },
             Corner { clip: self.vertices.clip[to as usize], weights: [0.0, 1.0, 0.0], boundary: false },
@@ -38,6 +41,8 @@ impl Assembler<'_> {
             let Some(clipped) = self.cut_line([from, to], ends) else { return stipple };
             ends = clipped;
         }
+
+        // Widen and emit what is left.
         let slots = [self.derived_slot([from, to, to], &ends[0]), self.derived_slot([from, to, to], &ends[1])];
         let stroke = Stroke { provoking: self.slot(provoking), back: false, offset: 0.0 };
         self.segment(ends.map(|end| end.clip), slots, stroke, stipple)
@@ -242,6 +247,7 @@ impl Assembler<'_> {
         kind: FacetKind,
         shape: u32,
     ) {
+        // Build a triangle that has the line's edge and width.
         let mut over = [0; 2];
         over[1 - line.axis] = line.width * SUBPIXEL;
         let corner = |[x, y]: [i32; 2]| CornerPosition { x, y, z: plane.z };
@@ -249,6 +255,8 @@ impl Assembler<'_> {
         let far = [b[0] + over[0], b[1] + over[1]];
         let triangle = [corner(a), corner(b), corner(far)];
         let area = Setup::doubled_area(triangle[0], triangle[1], triangle[2]);
+
+        // Bound the line, and emit one facet for the plane.
         let low = [a[0].min(b[0]), a[1].min(b[1])];
         let high = [a[0].max(b[0]) + over[0], a[1].max(b[1]) + over[1]];
         let extent = [corner(low), corner(high), corner([low[0], high[1]])];

@@ -63,6 +63,7 @@ pub(super) fn quads<'a, S: Simd, V: Floats<S>>(
     columns: impl Fn(usize) -> &'a [[u32; 2]],
     at: V::Ints,
 ) -> [V::Words; 4] {
+    // Fetch two columns of two texels in each lane.
     let at = at.as_slice();
     let mut quads = [[0u32; 4]; MOST_LANES];
     for lane in 0..V::LEN {
@@ -71,6 +72,8 @@ pub(super) fn quads<'a, S: Simd, V: Floats<S>>(
             quads[lane] = [*a, *c, *b, *d];
         }
     }
+
+    // Transpose them to four registers.
     let words: &[u32] = bytemuck::cast_slice(&quads);
     let part = lanes::inlined(
         #[inline(always)]
@@ -152,6 +155,7 @@ impl<'a> Words<'a> {
 /// Colours in linear light, alpha as 0..=255.
 #[inline(always)]
 fn decode<S: Simd, V: Floats<S>>(simd: S, words: V::Words, table: &[f32; 256]) -> [V; 4] {
+    // Look the colour bytes up in the table, lane by lane.
     let bytes = words.as_slice();
     let mut colors = [[0.0f32; MOST_LANES]; 3];
     for lane in 0..V::LEN {
@@ -160,6 +164,8 @@ fn decode<S: Simd, V: Floats<S>>(simd: S, words: V::Words, table: &[f32; 256]) -
             colors[k][lane] = table[usize::from(bytes[k])];
         }
     }
+
+    // Alpha is linear and needs no table.
     let alpha: V::Ints = (words >> 24).bitcast();
     let [r, g, b] = &colors;
     [
@@ -318,9 +324,12 @@ fn plane_depths<S: Simd>(
     active: u32,
     known: Option<F32x8<S>>,
 ) -> F32x8<S> {
+    // Compute the texels of a pending shadow map.
     if let Some(pending) = &depth.pending {
         return pending.texels(simd, [x, y], active, known);
     }
+
+    // Find the tile and the position of each texel.
     const SHIFT: u32 = TILE.trailing_zeros();
     const INSIDE: i32 = TILE as i32 - 1;
     let tiles_x = depth.plane.viewport().tiles_x() as i32;

@@ -95,6 +95,7 @@ impl<'a> Packed<'a> {
     /// The colours at (s, t), as [`super::sample`] tells.
     #[inline(always)]
     pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], lod: V, active: u32) -> [V; 4] {
+        // Choose the levels and the filter.
         let zero = every(simd, 0.0);
         let choice = if self.needs_lod() {
             choose(simd, self.sampler, self.last(), lod)
@@ -102,6 +103,8 @@ impl<'a> Packed<'a> {
             let linear = if self.sampler.mag == Filter::Linear { u32::MAX } else { 0 };
             Choice { level: zero, fraction: zero, linear }
         };
+
+        // Filter lanes, those with another filter a second time.
         let active = active & ((1 << V::LEN) - 1);
         let linear = choice.linear & active;
         let mut color = self.filtered(simd, place, &choice, linear == active);

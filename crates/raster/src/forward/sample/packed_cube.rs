@@ -39,6 +39,8 @@ pub(crate) struct PackedCube<'a> {
 impl<'a> PackedCube<'a> {
     /// `None` for textures of another kind.
     pub(crate) fn new(texture: &'a Texture) -> Option<Self> {
+        // Every level must be square, of bytes, half as large as the one before, and have no
+        // border.
         let levels = texture.faces.first()?;
         let (first, last) = (levels.first()?, levels.len().min(LEVELS) - 1);
         let size = first.size[0];
@@ -49,6 +51,8 @@ impl<'a> PackedCube<'a> {
             };
             levels.len() == last + 1 && levels.iter().map(|l| &**l).enumerate().all(side)
         });
+
+        // Only linear filters are packed.
         let sampler = &texture.sampler;
         let usual = texture.kind == TextureKind::Cube && texture.swizzle.is_none() && first.has_columns();
         if !usual || !regular || sampler.mag != Filter::Linear || !sampler.min.is_linear() {

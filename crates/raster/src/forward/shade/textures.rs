@@ -410,11 +410,14 @@ impl<'d> Shader<'d> {
         weights: &Weights<V>,
         (unit, packed, at): (&Unit, &PackedCube<'_>, usize),
     ) -> ((V::Ints, [V; 2]), V) {
+        // Find the face and the point on it.
         let direction = lanes::three(
             #[inline(always)]
             |k| self.value(simd, weights, at + k),
         );
         let chart = Chart::new(simd, direction);
+
+        // Add the level of detail from the derivatives on the face.
         let mut level = every(simd, unit.lod_bias);
         if packed.needs_lod() {
             let steps = [self.step(simd, weights, at, 0), self.step(simd, weights, at, 1)];
@@ -511,6 +514,7 @@ struct Slopes {
 impl Slopes {
     #[inline(always)]
     fn new(shader: &Shader<'_>, packed: &Packed<'_>, at: usize) -> Self {
+        // Compute the changes along both screen axes, in texels.
         let (i, d) = (&shader.scratch.interpolation, &shader.scratch.differences);
         let size = packed.size();
         let (mut numerator, mut sum) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);

@@ -451,6 +451,8 @@ impl Stored {
             #[inline(always)]
             |values: &[F64x8<S>; 4]| [store(values[0]), store(values[1]), store(values[2]), store(values[3])],
         );
+
+        // Store every register, lane by lane.
         Self {
             first: [store(eight.first[0]), store(eight.first[1])],
             depths: four(&eight.depths),

@@ -51,6 +51,8 @@ impl Receivers<'_> {
         let workers = &self.execution.workers;
         let back_faces: Vec<_> =
             world.instances.iter().map(|i| self.session.back_faces(i.mesh_index, self.transparency, workers)).collect();
+
+        // Search some receivers at a time in parallel, and hand out what they found in order.
         let jobs = self.casters.triangles().count().div_ceil(RECEIVERS_A_JOB);
         for first in (0..jobs).step_by(JOBS_AT_ONCE) {
             let count = JOBS_AT_ONCE.min(jobs - first);
@@ -142,6 +144,7 @@ impl Receivers<'_> {
 
 /// The part of a triangle that lies in a solid.
 fn clipped(corners: &[DVec3; 3], solid: &Solid) -> Vec<DVec3> {
+    // Clip at each plane of the solid.
     let (mut polygon, mut kept) = (corners.to_vec(), Vec::new());
     for (normal, at) in solid.planes {
         kept.clear();

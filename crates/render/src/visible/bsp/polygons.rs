@@ -141,6 +141,8 @@ impl WorldPolygons {
     /// Adds a triangle of a mesh to one of the polygons of its face, or begins one.
     fn join(&self, instance: &Instance, triangle: usize, plane: u32, growing: &mut Vec<Growing>) {
         let (facet, corners) = (instance.first_facet + triangle as u32, instance.mesh.triangles[triangle]);
+
+        // Try to join the triangle to a recent polygon of its plane, as long as that stays convex.
         let (recent, in_plane) =
             (growing.len().saturating_sub(RECENT), |polygon: &&mut Growing| polygon.plane == plane);
         let joined = plane != NO_PLANE
@@ -152,6 +154,8 @@ impl WorldPolygons {
                 }
                 joined
             });
+
+        // Otherwise begin a polygon.
         if !joined {
             growing.push(Growing { plane, facets: vec![facet], outline: Outline::new(corners) });
         }

@@ -69,11 +69,14 @@ impl<T: Structure> RaySearch<'_, T> {
     #[inline]
     fn test(&mut self, setups: [u32; 2]) {
         let [x, y] = self.sample;
+        // Skip setups that are farther or do not cover the sample.
         for setup in self.cast.setups(setups) {
             self.tests.add(setup.facet);
             if setup.z_max < self.nearest.0 || !setup.covers(x, y) {
                 continue;
             }
+
+            // Keep a nearer one: as a layer if it is transparent.
             let candidate = (setup.depth(x, y), setup.facet);
             if nearer(candidate, self.nearest) {
                 if self.cast.is_layered(setups) {

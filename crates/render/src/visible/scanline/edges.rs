@@ -111,6 +111,7 @@ pub(super) fn spacing(lines: &[Line]) -> i32 {
 pub(super) fn edge_table(polygons: &[Polygon<'_>], lines: &[Line]) -> Vec<Edge> {
     let first_at = |y: i32| lines.partition_point(|line| line.y < y) as u16;
     let mut edges = Vec::new();
+    // Find the line of each corner; an edge runs from one to the next.
     for (p, polygon) in polygons.iter().enumerate() {
         let outline = polygon.shape.outline();
         let first = first_at(outline[0][1]);

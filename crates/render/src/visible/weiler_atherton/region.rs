@@ -256,6 +256,7 @@ impl Region {
     fn find_sides(&self, polygon: &Convex, is_all: bool, work: &mut Workspace) -> Option<Clipped> {
         let mut within = true;
         work.sides.clear();
+        // Classify both ends of each near edge.
         for line in &polygon.lines {
             let mut front = false;
             for &i in &work.near {
@@ -265,6 +266,8 @@ impl Region {
                 within &= !sides.contains(&Ordering::Less);
                 work.sides.push(sides);
             }
+
+            // Stop if all edges lie on the outer side of a line.
             if is_all && !front {
                 return Some(Clipped::Outside);
             }
@@ -315,6 +318,7 @@ impl Region {
 
     /// Takes the edges that were cut out, and the new ones in.
     fn become_outside(&mut self, work: &Workspace) {
+        // Replace the edges in the index.
         if let Some(index) = &mut self.index {
             work.removed.iter().for_each(|&number| index.remove(number));
             for edge in &work.outside {
@@ -323,6 +327,8 @@ impl Region {
             }
             return;
         }
+
+        // Without an index, replace them in the list and bound the region anew if it is small.
         for &number in work.removed.iter().rev() {
             self.edges.swap_remove(number as usize);
         }

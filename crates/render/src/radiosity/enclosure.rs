@@ -212,6 +212,8 @@ impl Enclosure {
         execution: &Execution,
     ) -> Result<(), Limit> {
         let Some(direct) = Direct::new(session, lights, settings, execution)? else { return Ok(()) };
+
+        // Compute what arrives from light sources at both sides of each element.
         let arriving = execution.workers.map(self.emission.len(), |i| {
             let element = &self.elements[i / 2];
             let side = SurfacePoint {
@@ -223,6 +225,8 @@ impl Enclosure {
             };
             direct.mean(&side, self.trees.places(element.node), element.there)
         });
+
+        // Emit the reflected part.
         for (i, arriving) in arriving.iter().enumerate() {
             let reflectance = self.elements[i / 2].reflectance;
             (0..3).for_each(|k| self.emission[i][k] += reflectance[k] * arriving[k]);

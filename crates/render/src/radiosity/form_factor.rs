@@ -54,8 +54,12 @@ pub fn between(from: &[DVec3], to: &[DVec3]) -> f64 {
     if area == 0.0 {
         return 0.0;
     }
+
+    // Scale the tolerance to the edges.
     let scale = edges(from).chain(edges(to)).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
     let mut sum = 0.0;
+
+    // Sum the contour integrals of all pairs of edges.
     for (a, b) in edges(from) {
         for (p, q) in edges(to) {
             let along = (b - a).dot(q - p);

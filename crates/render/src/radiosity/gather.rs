@@ -35,6 +35,7 @@ pub fn solve(enclosure: &Enclosure, rows: &[FormFactors], tolerance: f64) -> Vec
     let mut radiosity = enclosure.emission.clone();
     for _ in 0..MOST_PASSES {
         let mut change = 0.0f64;
+        // Gather at each side what all others send, with the newest values (Gauss and Seidel).
         for (side, row) in rows.iter().enumerate() {
             let reflectance = enclosure.elements[side / 2].reflectance;
             for k in 0..3 {

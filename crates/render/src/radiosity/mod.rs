@@ -99,6 +99,7 @@ pub(crate) fn solution(
     execution: &Execution,
     counters: &mut RadiosityCounters,
 ) -> Result<Arc<Solution>, crate::Error> {
+    // Take a loaded solution if it belongs to these lights.
     if let Some(LoadedSolution(loaded)) = session.cache.get::<LoadedSolution>().as_deref() {
         if loaded.key() != fingerprint_of(lights, settings) {
             let found = "the stored radiosity was found for other lights, another color space or transparency; these must be \
@@ -107,6 +108,8 @@ pub(crate) fn solution(
         }
         return Ok(Arc::clone(loaded));
     }
+
+    // Otherwise find it in the cache, or solve.
     let key = Key {
         lights: lights.to_vec(),
         patch_size: settings.global.patch_size,

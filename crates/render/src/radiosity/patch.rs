@@ -311,8 +311,11 @@ impl Trees {
     pub fn leaf_along(&self, node: u32, mut weights: [f64; 3], mut slopes: [f64; 3]) -> (u32, [f64; 3], [f64; 3]) {
         let mut at = node;
         while self.nodes[at as usize].children != NONE {
+            // Find the child: at a corner if its weight is at least half, else the middle one.
             let half = 0.5 * (weights[0] + weights[1] + weights[2]);
             let child = (0..3).find(|&k| weights[k] >= half).unwrap_or(3);
+
+            // Convert the weights to the child's corners.
             for values in [&mut weights, &mut slopes] {
                 let [a, b, c] = *values;
                 let sum = a + b + c;

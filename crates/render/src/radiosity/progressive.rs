@@ -221,6 +221,8 @@ impl<'a> Shooting<'a> {
 /// Elements take their parts of what is sent to those that are seen.
 fn receive(receivers: &[Receiver], seen: &FormFactorRow, sent: &Color, unsent: &mut [Color], progress: &mut Progress) {
     let (scaled, mut kept) = (sent.map(|s| s * seen.scale), [0.0; 3]);
+
+    // Add to the irradiance of each side and to the unsent light of its patch.
     for &(side, factor) in &seen.row {
         let (side, factor) = (side as usize, f64::from(factor));
         let receiver = &receivers[side / 2];
@@ -234,6 +236,8 @@ fn receive(receivers: &[Receiver], seen: &FormFactorRow, sent: &Color, unsent: &
             kept[k] += arriving - reflected;
         }
     }
+
+    // Account for what is absorbed and what leaves the scene.
     progress.absorbed += power(&kept);
     progress.escaped += power(sent) * (1.0 - seen.whole);
     progress.shots += 1;

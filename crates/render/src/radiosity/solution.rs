@@ -76,6 +76,8 @@ impl Solution {
     pub fn new(enclosure: &Enclosure, progress: &Progress) -> Self {
         let around = Around::new(enclosure);
         let trees = &enclosure.trees;
+
+        // Compute the light at corners and edge middles, which neighbours share.
         let light = (0..enclosure.elements.len())
             .map(|e| {
                 let node = enclosure.elements[e].node;
@@ -90,6 +92,8 @@ impl Solution {
                 })
             })
             .collect();
+
+        // Keep the ambient guess and the pieces of cut facets.
         let ambient = progress.ambient.map(|c| c as f32);
         let pieces = trees.pieces.facets.iter().zip(&trees.pieces.corners).zip(&trees.pieces.wholes);
         let pieces = pieces.map(|((&facet, own), whole)| Piece::new(facet, *own, *whole)).collect();
@@ -162,6 +166,7 @@ impl Solution {
 
     /// The solution as bytes, to be loaded with the scene that has this fingerprint.
     pub fn to_bytes(&self, fingerprint: u64) -> Vec<u8> {
+        // Write the head: whose solution it is and the counts.
         let mut bytes = MAGIC.to_vec();
         bytes.extend(fingerprint.to_le_bytes());
         bytes.extend(self.key.to_le_bytes());
@@ -170,6 +175,8 @@ impl Solution {
         }
         bytes.extend(self.cuts.to_le_bytes());
         bytes.extend((self.pieces.len() as u32).to_le_bytes());
+
+        // Write nodes, roots, light and pieces.
         let numbers = self.nodes.iter().flat_map(|n| [n.children, n.facet, n.patch]).chain(self.roots.iter().copied());
         numbers.for_each(|n| bytes.extend(n.to_le_bytes()));
         let floats = self.light.as_flattened().as_flattened().as_flattened().iter().chain(&self.ambient);
@@ -312,6 +319,8 @@ impl Around {
         if enclosure.is_small(own) {
             return mean_near(enclosure, progress, enclosure.trees.vertices[vertex as usize], own, side);
         }
+
+        // Average the elements around the vertex by their area.
         let (mut sum, mut weight): (Color, f64) = ([0.0; 3], 0.0);
         for &e in &self.elements[range] {
             let element = &enclosure.elements[e as usize];

@@ -120,6 +120,8 @@ fn walls_on(facet: u32, facets: &[Option<[DVec3; 3]>], boxes: &[[DVec3; 2]], nea
     let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize() else {
         return Vec::new();
     };
+
+    // Intersect every facet whose box touches this one's.
     let mut walls: Vec<Wall> = Vec::new();
     for (other, [other_low, other_high]) in boxes.iter().enumerate() {
         if low.cmpgt(*other_high).any() || other_low.cmpgt(high).any() || other == facet as usize {
@@ -128,6 +130,8 @@ fn walls_on(facet: u32, facets: &[Option<[DVec3; 3]>], boxes: &[[DVec3; 2]], nea
         let Some(wall) = facets[other].and_then(|other| meeting(&corners, normal, &other, near)) else { continue };
         join(&mut walls, wall, near);
     }
+
+    // Keep the longest.
     let length = |wall: &Wall| wall.from.distance(wall.to);
     walls.sort_by(|a, b| length(b).total_cmp(&length(a)));
     walls.truncate(MOST_WALLS);
@@ -177,6 +181,7 @@ fn meeting(corners: &[DVec3; 3], normal: DVec3, other: &[DVec3; 3], near: f64) -
 /// Adds a wall; one that goes on another along the same line is one with it.
 fn join(walls: &mut Vec<Wall>, mut wall: Wall, near: f64) {
     let mut at = 0;
+    // Measure the known wall along the line of this one.
     while at < walls.len() {
         let known = walls[at];
         let along = (wall.to - wall.from).normalize_or_zero();
@@ -188,6 +193,8 @@ fn join(walls: &mut Vec<Wall>, mut wall: Wall, near: f64) {
             at += 1;
             continue;
         }
+
+        // Extend this one by a wall on the same line, and search from the start.
         let start = wall.from;
         wall = Wall { from: start + along * a.min(b).min(0.0), to: start + along * a.max(b).max(length) };
         walls.swap_remove(at);

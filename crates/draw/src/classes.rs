@@ -27,7 +27,7 @@ pub use vitral_frame::LineClasses as Classes;
 /// A face at an edge.
 #[derive(Clone, Copy)]
 pub(crate) struct Side<'a> {
-    /// The triangle.
+    /// The triangle beside the edge.
     pub(crate) triangle: &'a Triangle,
     /// What it was cut from.
     pub(crate) source: &'a Source,

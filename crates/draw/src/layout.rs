@@ -24,9 +24,9 @@ pub enum PageSize {
     },
     /// A sheet of this width and height in millimetres, which the drawing fills.
     Sheet {
-        /// Width.
+        /// Width in millimetres.
         width: f64,
-        /// Height.
+        /// Height in millimetres.
         height: f64,
     },
     /// A drawing to scale.

@@ -28,14 +28,14 @@ pub(crate) enum Maker {
     End,
     /// A side of a triangle: on the page the two cross.
     Side {
-        /// The triangle.
+        /// The triangle whose side it is.
         triangle: u32,
         /// The side from this corner to the next.
         side: u8,
     },
     /// A triangle that the edge pierces.
     Plane {
-        /// The triangle.
+        /// The pierced triangle.
         triangle: u32,
     },
 }

@@ -34,7 +34,7 @@ const TESTS_A_CHECK: u32 = 1 << 16;
 /// A part of an edge between two places where its visibility changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fragment {
-    /// The edge.
+    /// The edge's number in the mesh.
     pub(crate) edge: u32,
     /// Triangles in front of it.
     pub(crate) layers: u32,

@@ -33,7 +33,7 @@ const LARGEST: f32 = 1e18;
 /// A flat shape, made ready.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Shape {
-    /// Its centroid.
+    /// Mean of the shape's points, view space.
     pub(crate) centroid: [f32; 3],
     /// Unit normal of the shining side.
     pub(crate) normal: [f32; 3],

@@ -119,7 +119,7 @@ pub fn cook_torrance<T: Lanes>(
 pub(crate) struct MicrofacetLobe {
     /// The halfway vector.
     pub h: [f32; 3],
-    /// `N·H`.
+    /// Cosine between normal and halfway vector.
     pub n_h: f32,
     /// What a mirror of this material reflects at this angle, `F`.
     pub fresnel: Rgb,

@@ -20,14 +20,14 @@ pub struct Layer {
     pub at: u32,
     /// Depth, 1 near.
     pub depth: f32,
-    /// The facet.
+    /// Id of the facet.
     pub facet: u32,
 }
 
 /// A facet in a pixel, in front of the nearest opaque one at each sample that it covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fragment {
-    /// The facet.
+    /// Id of the facet.
     pub facet: u32,
     /// Where its depths begin in [`LayerList::depths`]: one for each sample that it covers, in the order of samples.
     pub start: u32,

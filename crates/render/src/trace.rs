@@ -199,7 +199,7 @@ pub enum Step {
     },
     /// Clipping: a plane cut a facet.
     Clipped {
-        /// The facet.
+        /// Id of the facet.
         facet: u32,
         /// Near, far, or a side of the guard band, which is wider than the view.
         plane: &'static str,
@@ -210,7 +210,7 @@ pub enum Step {
     },
     /// Z-buffer: a facet came, in the order of the scene, and its depth was compared at the first samples that it covers.
     Drawn {
-        /// The facet.
+        /// Id of the facet.
         facet: u32,
         /// Where it is nearer than what was there, and stays: runs of pixels, each by its row, its first and the one behind its
         /// last.
@@ -220,7 +220,7 @@ pub enum Step {
     },
     /// Z-buffer: what happened at a watched pixel when a facet came.
     DepthTest {
-        /// The pixel.
+        /// Column and row of the pixel.
         pixel: [u32; 2],
         /// The facet that came.
         facet: u32,
@@ -228,7 +228,7 @@ pub enum Step {
         depth: f32,
         /// The facet that was there; none for the background.
         there: Option<u32>,
-        /// Its depth.
+        /// Depth of that facet at the first sample.
         there_depth: Option<f32>,
         /// The facet that is kept, one of the two.
         stays: u32,
@@ -289,7 +289,7 @@ pub enum Step {
     Rays {
         /// Left, top, width, height.
         pixels: [u32; 4],
-        /// Rays.
+        /// Rays that were cast.
         rays: u64,
         /// Boxes or cells looked at.
         boxes: u64,
@@ -465,7 +465,7 @@ pub enum Step {
     },
     /// Weiler–Atherton: the polygons in their first order, the one with the nearest point first.
     NearestFirst {
-        /// The polygons.
+        /// The polygons in the order, with what they were sorted by.
         polygons: Vec<SortedPolygon>,
     },
     /// Weiler–Atherton: a list was clipped with a polygon. The inside list is treated before the outside list: clips of the

@@ -20,7 +20,7 @@ use vitral_scene::{Camera, Scene};
 /// An algorithm of the registry, and for rays the structure.
 #[derive(Clone, Copy)]
 pub struct Entrant {
-    /// The algorithm.
+    /// The algorithm of visible surfaces that is measured.
     pub algorithm: &'static VisibilityAlgorithm,
     /// The structure, where it casts rays.
     pub acceleration: Option<Acceleration>,
@@ -65,7 +65,7 @@ impl Entrant {
 /// What is to be measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
-    /// The scene.
+    /// The scene that is rendered.
     pub scene: &'a Arc<Scene>,
     /// The viewer.
     pub camera: &'a Camera,

@@ -81,7 +81,7 @@ pub struct MeshInfo {
     pub instances: usize,
     /// Faces as in the file.
     pub faces: usize,
-    /// Triangles.
+    /// Triangles of the mesh.
     pub triangles: usize,
     /// Vertices as in the file.
     pub vertices: usize,

@@ -37,7 +37,7 @@ impl Attached {
     }
 }
 
-/// A framebuffer object.
+/// A framebuffer object: images at attachment points.
 #[derive(Clone, Debug)]
 pub(crate) struct FramebufferObject {
     /// Colours, depth, stencil.

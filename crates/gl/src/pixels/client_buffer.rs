@@ -17,7 +17,7 @@ use vitral_raster::{TILE, Viewport};
 
 use super::default::{OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA};
 
-/// The client's buffer.
+/// The client's colour buffer: its memory, format and layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ClientBuffer {
     pub(super) address: usize,

@@ -25,7 +25,7 @@ pub(crate) struct RenderbufferStorage {
     pub samples: usize,
     /// Colours.
     pub color: Option<Shared<ColorPlane>>,
-    /// Depths.
+    /// Depths, if the format has them.
     pub depth: Option<Shared<DepthBuffer>>,
     /// Stencil values.
     pub stencil: Option<Shared<StencilPlane>>,
@@ -48,7 +48,7 @@ impl RenderbufferStorage {
     }
 }
 
-/// A renderbuffer.
+/// A renderbuffer object.
 #[derive(Debug, Default)]
 pub(crate) struct Renderbuffer {
     /// Its name.

@@ -119,7 +119,7 @@ impl TextureParameters {
     }
 }
 
-/// A texture.
+/// A texture object: the images of its faces and levels, and its parameters.
 #[derive(Debug)]
 pub(crate) struct TextureObject {
     /// Name, 0 for a default texture.

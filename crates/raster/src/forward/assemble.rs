@@ -113,7 +113,7 @@ pub enum Shape {
         from: [f32; 2],
         /// End.
         to: [f32; 2],
-        /// Width.
+        /// Width in pixels.
         width: f32,
         /// Along the longer axis, the centre of the pixel where an aliased line starts; others are rectangles.
         first: Option<f32>,

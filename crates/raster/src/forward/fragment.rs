@@ -36,7 +36,7 @@ pub(crate) struct TilePlanes<'a> {
     pub color: Option<ColorTile<'a>>,
     /// Depth and its scale.
     pub depth: Option<(&'a mut PlaneTile<f32>, f32)>,
-    /// Stencil.
+    /// Stencil values, if the target has them.
     pub stencil: Option<&'a mut PlaneTile<u8>>,
     /// Samples a pixel.
     pub samples: usize,

@@ -73,7 +73,7 @@ pub(super) fn places(samples: usize) -> &'static [[i32; 2]] {
     if samples == 4 { &[[96, 32], [224, 96], [32, 160], [160, 224]] } else { &[[SUBPIXEL / 2; 2]] }
 }
 
-/// A clear.
+/// Sets a rectangle of the planes to constant values.
 #[derive(Clone, Copy, Debug)]
 pub struct Clear {
     /// Colour, and which components are masked.
@@ -123,7 +123,7 @@ pub struct ImageFragments {
     pub tex: [[f32; 4]; 8],
     /// Fog coordinate.
     pub fog: f32,
-    /// Stencil mask for `stencils`.
+    /// Bits of `stencils` that are written.
     pub stencil_mask: u8,
 }
 
@@ -169,7 +169,7 @@ impl ForwardScreen {
 /// A recorded command.
 #[derive(Clone, Debug)]
 pub enum Command {
-    /// Clears.
+    /// Sets a rectangle to constant values.
     Clear(Clear),
     /// A pixel rectangle or bitmap.
     Image(Arc<ImageFragments>, Arc<FragmentState>),

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
 use vitral_math::color::byte_from_unit;
 
-/// Kind of texture.
+/// Dimensions and shape of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum TextureKind {
@@ -79,7 +79,7 @@ impl Level {
         Self { size, border, texels, columns: Columns::default() }
     }
 
-    /// Its texels.
+    /// The texels, row by row, layer by layer.
     pub fn texels(&self) -> &Texels {
         &self.texels
     }
@@ -168,7 +168,7 @@ impl Wrap {
     }
 }
 
-/// Filters.
+/// How texels are filtered within and between levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum Filter {
@@ -230,7 +230,7 @@ impl Sampler {
 /// A complete texture: what a lookup needs, nothing that can change.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// Kind.
+    /// Dimensions and shape.
     pub kind: TextureKind,
     /// What sampling yields.
     pub format: BaseFormat,

@@ -6,7 +6,7 @@ use vitral_math::DVec3;
 pub(super) struct Surface {
     /// Of the shape that the facets stand for.
     pub(super) n: DVec3,
-    /// Of the facet.
+    /// Normal of the facet, on the side that the ray meets.
     pub(super) facet: DVec3,
 }
 

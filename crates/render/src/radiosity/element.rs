@@ -16,7 +16,7 @@ pub type FormFactors = Vec<(u32, f64)>;
 pub struct Element {
     /// Its node in the trees.
     pub node: u32,
-    /// Its patch.
+    /// The patch that sends what the element reflects.
     pub patch: u32,
     /// Middle, world space less the scene's.
     pub center: DVec3,

@@ -45,7 +45,7 @@ const MOST_LAMPS: usize = 16;
 
 /// A surface that shines, as a light.
 pub(super) struct Lamp {
-    /// Its facets.
+    /// The facets that it stands for: one, or the two of a quadrilateral.
     pub(super) facets: Vec<u32>,
     pub(super) light: Light,
 }

@@ -190,7 +190,7 @@ impl Trees {
         facet.checked_sub(self.facets).map_or(facet, |piece| self.pieces.facets[piece as usize])
     }
 
-    /// The leaves.
+    /// The nodes without children, in the order of the tree.
     pub fn leaves(&self) -> Vec<u32> {
         (0..self.nodes.len() as u32).filter(|&n| self.nodes[n as usize].children == NONE).collect()
     }

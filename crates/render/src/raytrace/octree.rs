@@ -37,7 +37,7 @@ const LARGE: usize = 4096;
 /// Seven brothers wait at each level, at most.
 const STACK: usize = DEPTH * 7 + 8;
 
-/// A cell.
+/// A node of the tree: a cube with eight children, or a leaf with triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cell {
     /// Lower corner of its box, scene less its middle.

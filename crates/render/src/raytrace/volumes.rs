@@ -25,7 +25,7 @@ pub enum Shape {
     Aligned,
     /// A box that is turned to fit.
     Oriented,
-    /// A sphere.
+    /// Spheres around objects.
     Sphere,
 }
 

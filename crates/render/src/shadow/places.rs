@@ -13,7 +13,7 @@ pub struct SurfacePoint {
     pub position: DVec3,
     /// Unit normal of the facet on the side that is seen, world space; zero for a facet without area.
     pub normal: DVec3,
-    /// The facet.
+    /// Id of the facet that it lies on.
     pub facet: u32,
     /// Chooses the places on area lights that are asked; neighbours should differ.
     pub seed: u32,

@@ -30,7 +30,7 @@ pub(super) enum Source {
     Unoccluded,
     /// Unit vector towards the light.
     Infinity(DVec3),
-    /// A point.
+    /// A light at one position.
     Point(DVec3),
     /// A flat shape.
     Area(Area),

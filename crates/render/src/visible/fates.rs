@@ -97,12 +97,12 @@ pub enum Fate {
     },
     /// It is seen through: nothing opaque is nearer at these samples.
     Layer {
-        /// The samples.
+        /// The samples at which it is a layer.
         samples: Vec<u32>,
     },
     /// It is the nearest opaque facet at these samples.
     Visible {
-        /// The samples.
+        /// The samples at which it is visible.
         samples: Vec<u32>,
     },
 }
@@ -111,7 +111,7 @@ pub enum Fate {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Candidate {
-    /// The facet.
+    /// Id of the facet.
     pub facet: u32,
     /// Its nearest depth at the samples that it covers, 1 near; `None` if there are none.
     pub depth: Option<f32>,

@@ -37,7 +37,7 @@ struct Polygon {
     corners: Range<u32>,
 }
 
-/// A convex polygon.
+/// A convex polygon of a list, by its number.
 #[derive(Clone, Copy)]
 pub(super) struct ConvexPolygon<'p, 'f> {
     plane: &'p Setup,
@@ -207,7 +207,7 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
         self.outline
     }
 
-    /// Its triangles.
+    /// The set-up triangles that it was joined from.
     pub(super) fn triangles(self) -> &'p [&'f Setup] {
         self.triangles
     }

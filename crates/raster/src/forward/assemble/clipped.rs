@@ -8,7 +8,7 @@ use crate::{SUBPIXEL, Setup};
 /// A vertex that clipping made, or the corner of a point sprite.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Derived {
-    /// Its slot.
+    /// Number of its record in the job's list.
     pub slot: u32,
     /// Slots of its parents, which may be derived themselves, earlier.
     pub parents: [u32; 3],

@@ -17,7 +17,7 @@ use vitral_math::{DVec3, DVec4};
 use vitral_scene::planes::{NO_PLANE, TOLERANCE};
 use vitral_scene::{Instance, SharedPlanes, World};
 
-/// The polygons of a world.
+/// The polygons of a world: facets of one plane, joined as long as outlines stay convex.
 #[derive(Debug, Default)]
 pub(super) struct WorldPolygons {
     pub(super) facets: PolygonFacets,

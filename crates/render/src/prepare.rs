@@ -237,7 +237,7 @@ impl<'a> PreparedView<'a> {
             let triangle = Polygon::triangle(corners.map(|p| transform_point(&clip_from_model, p)));
             clip_watched(triangle, self.screen.transform().guard(), |plane, before, after| {
                 let (plane, before, after) = (PLANES[plane], points(before), points(after));
-                execution.tell(|| Step::Clipped { facet, plane, before, after });
+                execution.report(|| Step::Clipped { facet, plane, before, after });
             });
         }
     }

@@ -113,7 +113,7 @@ pub enum Passed {
 
 impl Passed {
     /// In words: how many, and the first few.
-    fn tell(&self) -> String {
+    fn describe(&self) -> String {
         const MOST: usize = 16;
         let (what, mut names): (_, Vec<String>) = match self {
             Self::Nowhere => return String::new(),
@@ -540,7 +540,7 @@ pub(crate) mod tests {
         let sample = OverruledSample { pixel: [1, 2], sample: 0, by_list: 3, by_depth: 4 };
         let overruled = Step::Overruled { pixels: [0, 0, 8, 8], samples: vec![sample] };
         assert!(overruled.concerns([1, 2]) && !overruled.concerns([2, 1]));
-        let told = overruled.tell([1, 2]);
+        let told = overruled.describe([1, 2]);
         assert!(told.contains("facet 4 is nearer than facet 3"), "{told}");
     }
 }

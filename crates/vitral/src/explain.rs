@@ -239,7 +239,7 @@ impl Observer for Onlooker {
         if step.concerns(self.pixel) && !matches!(step, Step::Drawn { .. }) {
             let mut steps = self.steps.lock().expect("no thread panics while it keeps a step");
             if steps.len() < MOST_STEPS {
-                steps.push(step.tell(self.pixel));
+                steps.push(step.describe(self.pixel));
             }
         }
     }

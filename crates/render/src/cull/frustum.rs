@@ -49,7 +49,7 @@ pub fn cull(
         let tests = &mut counters.box_tests;
         BoundsTree::new(&boxes).visible(&Frustum::from_matrix(clip_from_world), &mut |test| {
             *tests += 1;
-            execution.tell(|| step(test, None));
+            execution.report(|| step(test, None));
         })
     };
 
@@ -65,7 +65,7 @@ pub fn cull(
         } else {
             let mut tested = |test: &BoxTest| {
                 counters.box_tests += 1;
-                execution.tell(|| step(test, Some(i as u32)));
+                execution.report(|| step(test, Some(i as u32)));
             };
             // Test the object's own box first.
             let (bounds, items) = (instance.model_bounds, all(i));

@@ -94,7 +94,7 @@ pub fn solve(
         let staying = progress.note_residual(&unsent);
         let finished = progress.residual <= residual || progress.shots >= most;
         let share = share_done(progress.residual, residual).max(progress.shots as f64 / most as f64);
-        tell(if finished { 1.0 } else { share }, execution);
+        report_progress(if finished { 1.0 } else { share }, execution);
         if finished {
             break;
         }
@@ -346,7 +346,7 @@ fn share_done(left: f64, residual: f64) -> f64 {
 }
 
 /// Progress in thousandths.
-fn tell(share: f64, execution: &Execution) {
+fn report_progress(share: f64, execution: &Execution) {
     execution.budget.progress("radiosity", (share * 1000.0) as u64, 1000);
 }
 

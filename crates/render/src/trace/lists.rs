@@ -45,7 +45,7 @@ pub enum ListTest {
 
 impl ListTest {
     /// In words, for polygons of these names.
-    pub fn tell(self, p: u32, q: u32) -> String {
+    pub fn describe(self, p: u32, q: u32) -> String {
         match self {
             Self::DepthExtent => format!("all of {p} is farther than {q}"),
             Self::XExtent => "test 1: the extents in x do not overlap".to_owned(),

@@ -31,7 +31,7 @@ impl Step {
     }
 
     /// The step in words, for one of the pixels it concerns.
-    pub fn tell(&self, [x, y]: [u32; 2]) -> String {
+    pub fn describe(&self, [x, y]: [u32; 2]) -> String {
         match self {
             // Steps of the z-buffer.
             Self::Drawn { facet, stays, .. } => {
@@ -82,7 +82,7 @@ impl Step {
             Self::Rays { pixels: [_, _, width, height], rays, boxes, facets, tested, through } => {
                 let which = if tested.is_empty() { String::new() } else { format!(": {}", few(tested)) };
                 let tests = format!("{boxes} box(es) and {facets} facet(s) tested{which}");
-                format!("{rays} ray(s) of {width} x {height} pixel(s): {tests}{}", through.tell())
+                format!("{rays} ray(s) of {width} x {height} pixel(s): {tests}{}", through.describe())
             }
             // Steps of list priority.
             Self::Piece { order, facet, cuts, node, .. } => {
@@ -255,7 +255,7 @@ fn tell_of_list(step: &Step) -> String {
                 ListVerdict::After => format!("{with} has to be painted before {polygon}"),
                 ListVerdict::Across => "each covers a part of the other".to_owned(),
             };
-            format!("polygons {polygon} and {with}: {}: {found}", test.tell(*polygon, *with))
+            format!("polygons {polygon} and {with}: {}: {found}", test.describe(*polygon, *with))
         }
         Step::Moved { polygon, before_polygon, .. } => {
             format!("polygon {polygon} moves before polygon {before_polygon} in the list, and is marked")

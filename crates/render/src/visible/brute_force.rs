@@ -95,6 +95,6 @@ fn look(
     let triangle_tests = rays * facets.setups.len() as u64;
     let pixels = [tile.x, tile.y, columns as u32, rows as u32];
     let (facets, tested, through) = (facets.setups.len() as u64, Vec::new(), Passed::Nowhere);
-    execution.tell(|| Step::Rays { pixels, rays, boxes: 0, facets, tested, through });
+    execution.report(|| Step::Rays { pixels, rays, boxes: 0, facets, tested, through });
     Ok(VisibilityCounters { rays, triangle_tests, ..VisibilityCounters::default() })
 }

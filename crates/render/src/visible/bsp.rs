@@ -152,7 +152,7 @@ fn picture(
         let fragments = Fragments { on_screen, footprints, raster, order, execution };
         let count = fragments.order.len().div_ceil(FRAGMENTS_A_RUN);
         let runs = execution.workers.map(count, |run| fragments.pieces(run));
-        fragments.tell(&runs);
+        fragments.report(&runs);
 
         // Draw them, tile by tile.
         let list = PriorityList { setups: &setups, opaque, runs: &runs };
@@ -242,7 +242,7 @@ impl Fragments<'_> {
     }
 
     /// Tells the list from back to front.
-    fn tell(&self, runs: &[Pieces]) {
+    fn report(&self, runs: &[Pieces]) {
         if self.execution.observer.is_none() {
             return;
         }
@@ -253,7 +253,7 @@ impl Fragments<'_> {
         let listed = runs.iter().rev().flat_map(|run| run.listed.iter().rev());
         for (order, &fragment) in (0..).zip(listed) {
             self.on_screen.each_outline(fragment, |outline, cuts| {
-                self.execution.tell(|| Step::Piece {
+                self.execution.report(|| Step::Piece {
                     order,
                     polygon: fragment,
                     node: nodes[fragment as usize],

@@ -82,12 +82,12 @@ impl Pixels<'_> {
                 if execution.observer.as_ref().is_some_and(|observer| observer.watches(pixel)) {
                     let ((depth, facet), stays) = (came, held.map_or(came.1, |(_, facet)| facet));
                     let (there, there_depth) = (was.map(|(_, facet)| facet), was.map(|(depth, _)| depth));
-                    execution.tell(|| Step::DepthTest { pixel, facet, depth, there, there_depth, stays });
+                    execution.report(|| Step::DepthTest { pixel, facet, depth, there, there_depth, stays });
                 }
             }
         }
         if !stays.is_empty() || !hidden.is_empty() {
-            execution.tell(|| Step::Drawn { facet: setup.facet, stays, hidden });
+            execution.report(|| Step::Drawn { facet: setup.facet, stays, hidden });
         }
     }
 

@@ -384,10 +384,10 @@ impl<'f, 'c> Sorting<'f, 'c> {
     /// Finds the order.
     fn sort(&mut self) -> Result<(), Limit> {
         self.execution.budget.begin("polygons", self.polygons.len() as u64);
-        self.execution.tell(|| self.first_order());
+        self.execution.report(|| self.first_order());
         while let Some(place) = self.waiting.pop() {
             if self.states[place.polygon as usize] == State::Waiting {
-                self.execution.tell(|| Step::Turn { polygon: place.polygon, facet: place.facet });
+                self.execution.report(|| Step::Turn { polygon: place.polygon, facet: place.facet });
                 self.mark(place.polygon);
                 self.paint_marked()?;
                 self.refine();
@@ -442,7 +442,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
             self.tidy();
             let Some((other, verdict)) = self.obstacle()? else {
                 self.finish(top.polygon, State::Painted);
-                self.execution.tell(|| Step::Painted { polygon: top.polygon, facet: self.facet(top.polygon) });
+                self.execution.report(|| Step::Painted { polygon: top.polygon, facet: self.facet(top.polygon) });
                 self.painted.push(top.polygon);
                 self.execution.budget.advance();
                 self.marked.pop();
@@ -454,7 +454,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
                 (Verdict::After, State::Marked) => self.cut_cycle(other),
                 (Verdict::After, _) => {
                     self.counters.reordered += 1;
-                    self.execution.tell(|| {
+                    self.execution.report(|| {
                         let [facet, before] = [other, top.polygon].map(|p| self.facet(p));
                         Step::Moved { polygon: other, facet, before_polygon: top.polygon, before }
                     });
@@ -496,7 +496,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
                             compare(p, q, self.wholes, &self.corners, self.counters)
                         }
                     };
-                    self.execution.tell(|| {
+                    self.execution.report(|| {
                         let facet = |i: u32| self.wholes.get(self.polygons[i as usize].whole as usize).facet();
                         let (facet, with_facet) = (facet(polygon), facet(other));
                         Step::Compared { polygon, facet, with: other, with_facet, test, verdict }
@@ -549,7 +549,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
         // Report the list in order.
         for (order, &number) in (0..).zip(&list.listed) {
-            self.execution.tell(|| {
+            self.execution.report(|| {
                 let polygon = &self.polygons[number as usize];
                 let outline = on_screen(polygon.points(&self.corners));
                 let cuts = polygon.cuts.len() as u32;

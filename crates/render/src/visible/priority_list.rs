@@ -81,7 +81,7 @@ pub(super) fn draw_list<const FRONT_FIRST: bool>(
     let drawn = fill_with(facets, marks, grid, sink, 1, &fill, Some(&collect));
     let mut steps = overruled.into_inner().expect("no thread panics while it keeps a step");
     steps.sort_unstable_by_key(|(index, _)| *index);
-    steps.into_iter().for_each(|(_, step)| facets.execution().tell(|| step));
+    steps.into_iter().for_each(|(_, step)| facets.execution().report(|| step));
     drawn
 }
 

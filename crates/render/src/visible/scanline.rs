@@ -104,7 +104,7 @@ fn sweep(
         if let Some(spans_of_line) = spans.reported.take() {
             let (row, sample) = ((row * TILE + line.row) as u32, line.sample as u32);
             let active_edges = report::crossings(active.sorted(), spans.polygons);
-            execution.tell(|| Step::Line { row, sample, active_edges, spans: spans_of_line });
+            execution.report(|| Step::Line { row, sample, active_edges, spans: spans_of_line });
         }
     }
     spans.finish();

@@ -305,7 +305,7 @@ impl AreaSorting<'_> {
         // Report the clip and count recursions.
         let again = inside.iter().any(|item| !item.clipped_with);
         worker.found.counters.recursions += u64::from(again);
-        let clip = report.tell(self, front, &frame.list, &inside);
+        let clip = report.emit(self, front, &frame.list, &inside);
         if frame.list.clip.is_none() {
             self.execution.budget.advance();
         }
@@ -357,7 +357,7 @@ impl AreaSorting<'_> {
     /// Adds a visible polygon.
     fn show(&self, item: &Item, clip: Option<u32>, found: &mut Found) {
         let polygon = &self.polygons[item.polygon as usize];
-        self.execution.tell(|| report::visible(polygon, item, clip));
+        self.execution.report(|| report::visible(polygon, item, clip));
         if self.keeps_outlines {
             found.outlines.push((polygon.number, item.region.outlines()));
         } else {

@@ -18,7 +18,7 @@ impl Observer for Tables {
     fn step(&self, step: &Step) {
         let (Step::EdgeTable { rows: [row, _], .. } | Step::Line { row, .. }) = step else { return };
         let place = [*row, u32::from(matches!(step, Step::Line { .. }))];
-        self.0.lock().expect("no thread panics while it keeps a step").push((place, tell(step)));
+        self.0.lock().expect("no thread panics while it keeps a step").push((place, describe(step)));
     }
 }
 
@@ -36,7 +36,7 @@ pub(super) fn edge_tables(renderer: &Renderer, camera: &Camera, viewport: Viewpo
 }
 
 /// A step in lines of text. Writing to a String cannot fail.
-fn tell(step: &Step) -> String {
+fn describe(step: &Step) -> String {
     let mut text = String::new();
     match step {
         Step::EdgeTable { rows: [first, end], polygons, buckets } => {

@@ -61,7 +61,7 @@ impl Context {
             && self.check_token(call, "severity", severity, &SEVERITIES, false)
             && let Some(text) = self.debug_text(call, buf, length, MAX_MESSAGE_LENGTH)
         {
-            self.tell(DebugMessage { source, kind: type_, id, severity, text });
+            self.emit(DebugMessage { source, kind: type_, id, severity, text });
         }
     }
 

@@ -32,7 +32,7 @@ impl Sorting<'_, '_> {
         self.counters.cycles += 1;
         let first = self.marked.iter().position(|m| m.polygon == start).unwrap_or(0);
         let last = self.marked.len() - 1;
-        self.execution.tell(|| {
+        self.execution.report(|| {
             let polygons: Vec<u32> = self.marked[first..].iter().map(|m| m.polygon).collect();
             let facets = polygons.iter().map(|&p| self.facet(p)).collect();
             Step::Circle { polygons, facets }
@@ -119,7 +119,7 @@ impl Sorting<'_, '_> {
         }
 
         // Report the split.
-        self.execution.tell(|| Step::Split {
+        self.execution.report(|| Step::Split {
             polygon: number,
             facet: self.facet(number),
             by,

@@ -169,7 +169,7 @@ pub(super) fn look<T: Tree>(
                 let pixels = [tile.x + x as u32, tile.y + y as u32, size[0], size[1]];
                 let through = names(cast.structure, passed);
                 let tested = tests.take();
-                cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
+                cast.execution.report(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
             }
             counters.triangle_tests += facets * rays;
         }

@@ -149,7 +149,7 @@ pub(super) fn look<T: Structure>(
                 let (facets, through) = (search.tests.count - before_pixel.1, names(cast.structure, passed));
                 let pixels = [tile.x + column as u32, tile.y + row as u32, 1, 1];
                 let tested = search.tests.take();
-                cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
+                cast.execution.report(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
             }
         }
     }

@@ -28,7 +28,7 @@ pub(super) fn tables(
     let world = view.session.world();
     let polygon_table = polygons.iter().map(|p| polygon(p, world.surface_of_facet(p.shape.facet()))).collect();
     let buckets = buckets(polygons, edges, lines, rows[0]);
-    execution.tell(|| Step::EdgeTable { rows, polygons: polygon_table, buckets });
+    execution.report(|| Step::EdgeTable { rows, polygons: polygon_table, buckets });
     execution.budget.release(bytes as u64);
     Ok(())
 }

@@ -61,7 +61,7 @@ impl<'f> Lists<'f> {
             self.drop_hidden(samples, start);
         }
         self.counters.pixel_windows += u64::from(window.is_pixel() && self.stack.len() - start > 1);
-        self.execution.tell(|| self.step(window, start, disjoint as u32));
+        self.execution.report(|| self.step(window, start, disjoint as u32));
         start
     }
 

@@ -54,7 +54,7 @@ impl AreaSorting<'_> {
                 nearest: self.polygons[item.polygon as usize].plane.z_max,
                 contours: contours(&item.region),
             };
-            self.execution.tell(|| Step::NearestFirst { polygons: list.items.iter().map(sorted).collect() });
+            self.execution.report(|| Step::NearestFirst { polygons: list.items.iter().map(sorted).collect() });
         }
     }
 
@@ -105,7 +105,7 @@ impl Report {
     }
 
     /// Tells the clip of a list, which has become the outside list, and gives its number.
-    pub(super) fn tell(
+    pub(super) fn emit(
         self,
         sorting: &AreaSorting<'_>,
         front: &Polygon<'_>,
@@ -114,7 +114,7 @@ impl Report {
     ) -> Option<u32> {
         let Clip { number, cut, hidden, .. } = self.0?;
         let outside = || list.items.iter().filter(|item| !item.region.is_empty()).map(|item| sorting.facet(item));
-        sorting.execution.tell(|| Step::Clip {
+        sorting.execution.report(|| Step::Clip {
             clip: number,
             within: list.clip,
             facet: front.plane.facet,

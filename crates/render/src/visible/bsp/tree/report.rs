@@ -15,7 +15,7 @@ impl Tree {
         }
         let parents = self.parents();
         for node in 0..self.nodes.len() as u32 {
-            execution.tell(|| self.node_step(node, &parents));
+            execution.report(|| self.node_step(node, &parents));
         }
     }
 
@@ -31,7 +31,7 @@ impl Tree {
             self.nodes[node as usize].each_fragment(in_front, |f| polygons.push(self.name(f)));
             let viewer = if in_front { PlaneSide::Front } else { PlaneSide::Back };
             let above = parents[node as usize].map(|(parent, _)| parent);
-            execution.tell(|| Step::TreeVisit { order, node, above, viewer, polygons });
+            execution.report(|| Step::TreeVisit { order, node, above, viewer, polygons });
             order += 1;
         });
     }

@@ -114,19 +114,19 @@ pub enum Passed {
 impl Passed {
     /// In words: how many, and the first few.
     fn describe(&self) -> String {
-        const MOST: usize = 16;
+        const MAX_NAMED: usize = 16;
         let (what, mut names): (_, Vec<String>) = match self {
             Self::Nowhere => return String::new(),
-            Self::Nodes(nodes) => ("node(s)", nodes.iter().take(MOST).map(u32::to_string).collect()),
-            Self::Objects(objects) => ("object(s)", objects.iter().take(MOST).map(u32::to_string).collect()),
-            Self::Octants(cells) => ("octant(s)", cells.iter().take(MOST).map(|c| format!("\"{c}\"")).collect()),
+            Self::Nodes(nodes) => ("node(s)", nodes.iter().take(MAX_NAMED).map(u32::to_string).collect()),
+            Self::Objects(objects) => ("object(s)", objects.iter().take(MAX_NAMED).map(u32::to_string).collect()),
+            Self::Octants(cells) => ("octant(s)", cells.iter().take(MAX_NAMED).map(|c| format!("\"{c}\"")).collect()),
             Self::Cells(cells) => {
                 let name = |[x, y, z]: &[u32; 3]| format!("{x},{y},{z}");
-                ("cell(s)", cells.iter().take(MOST).map(name).collect())
+                ("cell(s)", cells.iter().take(MAX_NAMED).map(name).collect())
             }
         };
         let count = self.len();
-        if count > MOST {
+        if count > MAX_NAMED {
             names.push("...".to_owned());
         }
         format!("; through {count} {what}: {}", names.join(" "))

@@ -51,7 +51,7 @@ impl Context {
             return;
         }
 
-        // Find the components that are neither stored nor masked.
+        // Find the components that stay: masked ones, and those that the format lacks.
         let missing = self.missing_components();
         let srgb = self.encodes_srgb();
         let written = self.state.color_buffer.mask;

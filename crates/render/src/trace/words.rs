@@ -184,9 +184,9 @@ fn contours_bytes(contours: &[Contour]) -> usize {
 
 /// The first few of some facets.
 fn few(facets: &[u32]) -> String {
-    const MOST: usize = 8;
-    let names: Vec<_> = facets.iter().take(MOST).map(u32::to_string).collect();
-    names.join(" ") + if facets.len() > MOST { " ..." } else { "" }
+    const MAX_NAMED: usize = 8;
+    let names: Vec<_> = facets.iter().take(MAX_NAMED).map(u32::to_string).collect();
+    names.join(" ") + if facets.len() > MAX_NAMED { " ..." } else { "" }
 }
 
 /// A step of culling and clipping, of a list or a tree, or of a ray, in words.

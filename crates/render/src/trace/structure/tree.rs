@@ -211,11 +211,11 @@ fn draw_node(picture: &mut Picture, number: u32, node: &Node<'_>, [x, y]: [f64; 
 
 /// What fits into a box.
 fn short(text: &str) -> String {
-    const MOST: usize = 25;
-    if text.chars().count() <= MOST {
+    const MAX_CHARACTERS: usize = 25;
+    if text.chars().count() <= MAX_CHARACTERS {
         text.to_owned()
     } else {
-        text.chars().take(MOST - 3).chain("...".chars()).collect()
+        text.chars().take(MAX_CHARACTERS - 3).chain("...".chars()).collect()
     }
 }
 

@@ -38,7 +38,7 @@ use crate::{Execution, PreparedView};
 use buckets::Buckets;
 use fill::{Filling, VisiblePolygons};
 use polygon::{Polygon, Relation, line_of_gap, relation};
-use region::{Clipped, Convex, Outline, Region, Workspace};
+use region::{Clipped, ConvexOutline, Outline, Region, Workspace};
 use vitral_exec::{Charge, Limit};
 use vitral_raster::{SUBPIXEL, TileGrid, Viewport};
 
@@ -229,7 +229,7 @@ impl AreaSorting<'_> {
 
     /// The list of all polygons in a picture of this size, 1/256 pixel.
     fn whole(&self, [width, height]: [i32; 2]) -> Result<List, Limit> {
-        let picture = Convex::polygon(&[[0, 0], [width, 0], [width, height], [0, height]]);
+        let picture = ConvexOutline::polygon(&[[0, 0], [width, 0], [width, height], [0, height]]);
         let mut work = Workspace::default();
         let mut list = List::default();
         for (place, polygon) in (0..).zip(self.polygons) {
@@ -344,7 +344,7 @@ impl AreaSorting<'_> {
         // Cut where the planes meet.
         if let Some(line) = line_of_gap(front, back, margin, part.bounds()) {
             let mut rest = part.clone();
-            if let Clipped::Both(behind) = rest.clip(&Convex::half_plane(line), &back.shape, &mut worker.work)
+            if let Clipped::Both(behind) = rest.clip(&ConvexOutline::half_plane(line), &back.shape, &mut worker.work)
                 && relation(front, back, &behind) == Relation::Hidden
             {
                 counters.splits += 1;

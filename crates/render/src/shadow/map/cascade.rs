@@ -74,7 +74,7 @@ impl Cascades {
         let row = -view.view_from_world.row(2);
         let center = Triangles::center_of(world);
         let solids = slice::seen(world, view);
-        let depths = solids.iter().flat_map(slice::Convex::corners).map(|p| row.dot(p.extend(1.0)));
+        let depths = solids.iter().flat_map(slice::ConvexSolid::corners).map(|p| row.dot(p.extend(1.0)));
         let [near, far] = depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[n, f], d| [n.min(d), f.max(d)]);
         let cuts = if near < far { cuts(near, far, view.perspective, count) } else { Vec::new() };
         // A slice's map is asked about places before it, too: those that fade into it.
@@ -163,11 +163,11 @@ fn cuts(near: f64, far: f64, perspective: bool, count: u32) -> Vec<f64> {
 }
 
 /// The lens for what is seen in a slice, if it pays.
-fn lens(light: &LightMaps, solids: &[slice::Convex], world: &World, size: u32) -> Option<Lens> {
+fn lens(light: &LightMaps, solids: &[slice::ConvexSolid], world: &World, size: u32) -> Option<Lens> {
     let (whole, lens, middle) = match light {
         LightMaps::Infinity { towards, map } => {
             // Fit a parallel lens to the slice.
-            let corners: Vec<DVec3> = solids.iter().flat_map(slice::Convex::corners).collect();
+            let corners: Vec<DVec3> = solids.iter().flat_map(slice::ConvexSolid::corners).collect();
             let middle = *corners.first()?;
             (&map.lens, Lens::parallel_round(*towards, &corners, &map.lens, world, size)?, middle)
         }
@@ -176,7 +176,7 @@ fn lens(light: &LightMaps, solids: &[slice::Convex], world: &World, size: u32) -
             let [(from, maps)] = &places[..] else { return None };
             let [map] = &maps[..] else { return None };
             let solids = slice::within(solids, &map.lens.view.clip_from_world());
-            let corners: Vec<DVec3> = solids.iter().flat_map(slice::Convex::corners).collect();
+            let corners: Vec<DVec3> = solids.iter().flat_map(slice::ConvexSolid::corners).collect();
             let middle = corners.iter().sum::<DVec3>() / corners.len().max(1) as f64;
             (&map.lens, Lens::before(from.at.truncate(), &corners, world, size)?, middle)
         }

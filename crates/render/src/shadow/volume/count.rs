@@ -2,7 +2,7 @@
 
 use super::edges::{Side, before};
 use super::light_volumes::LightVolumes;
-use super::paths::{Boxes, Paths};
+use super::paths::{Boxes8, Paths};
 use crate::VolumeCounting;
 use crate::raytrace::beam::Beam;
 use crate::raytrace::intersect::Ray;
@@ -298,7 +298,7 @@ impl Batch {
         (middle, half): (&[DVec3; LANES], &[DVec3; LANES]),
     ) -> [Lists; LANES] {
         // Deal sides, caps and filters to the boxes they touch.
-        let boxes = Boxes::new(simd, middle, half);
+        let boxes = Boxes8::new(simd, middle, half);
         let least = near(lit.light(), lit.casters.extent());
         let sides = self.deal(
             (0, lists[0].clone()),

@@ -149,13 +149,13 @@ impl<S: Simd> Paths<S> {
 }
 
 /// Eight boxes, parallel to the axes.
-pub(super) struct Boxes<S: Simd> {
+pub(super) struct Boxes8<S: Simd> {
     simd: S,
     middle: Points<S>,
     half: Points<S>,
 }
 
-impl<S: Simd> Boxes<S> {
+impl<S: Simd> Boxes8<S> {
     /// By their middles and half their sides.
     #[inline(always)]
     pub(super) fn new(simd: S, middle: &[DVec3; LANES], half: &[DVec3; LANES]) -> Self {
@@ -313,7 +313,7 @@ mod tests {
             let side = Side::new(a.min(b), a.max(b), LIGHT, 1);
             for (name, level) in available_levels() {
                 let [by_triangle, by_side] = dispatch!(level, simd => {
-                    let boxes = Boxes::new(simd, &middle, &half);
+                    let boxes = Boxes8::new(simd, &middle, &half);
                     [boxes.touched_by_triangle(plane, &corners), boxes.touched_by_side(&side)]
                 });
                 for lane in 0..LANES {

@@ -4,7 +4,7 @@
 //! Cost: linear in the region's edges.
 
 use super::line::{Line, MAX_OFFSET, MAX_SLOPE};
-use super::region::{Convex, Region};
+use super::region::{ConvexOutline, Region};
 use crate::visible::polygons::{ConvexPolygon, same_plane};
 use vitral_raster::{SUBPIXEL, Setup};
 
@@ -16,7 +16,7 @@ pub(super) struct Polygon<'p> {
     pub(super) number: u32,
     /// Lowest and highest facet that it is of.
     facets: [u32; 2],
-    pub(super) shape: Convex,
+    pub(super) shape: ConvexOutline,
     /// Change of depth for 1/256 pixel.
     slope: [f64; 2],
 }
@@ -25,7 +25,7 @@ impl<'p> Polygon<'p> {
     pub(super) fn new(number: u32, polygon: ConvexPolygon<'p, '_>) -> Self {
         let plane = polygon.plane();
         let slope = [plane.dz_dx, plane.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
-        Self { plane, number, facets: polygon.facets(), shape: Convex::polygon(polygon.outline()), slope }
+        Self { plane, number, facets: polygon.facets(), shape: ConvexOutline::polygon(polygon.outline()), slope }
     }
 
     /// What moving from the plane's origin adds to its depth, for x and for y.

@@ -35,14 +35,14 @@ const INDEX_THRESHOLD: usize = 256;
 
 /// A convex polygon to clip with: its corners, and the line from each to the next, positive inside. A half-plane has no corners.
 #[derive(Clone, Debug)]
-pub(super) struct Convex {
+pub(super) struct ConvexOutline {
     lines: Vec<Line>,
     corners: Vec<[i32; 2]>,
     /// Smallest x and y, largest x and y.
     pub(super) bounds: [f64; 4],
 }
 
-impl Convex {
+impl ConvexOutline {
     /// A polygon of grid points that run so that the inner side is positive. Corners on a straight line are left out.
     pub(super) fn polygon(outline: &[[i32; 2]]) -> Self {
         let count = outline.len();
@@ -185,7 +185,7 @@ pub(super) struct Workspace {
 
 impl Region {
     /// A convex polygon.
-    pub(super) fn polygon(polygon: &Convex) -> Self {
+    pub(super) fn polygon(polygon: &ConvexOutline) -> Self {
         let side = |i: usize| polygon.ends(i).map(|ends| Edge::new(polygon.lines[i], ends));
         Self { edges: (0..polygon.lines.len()).filter_map(side).collect(), index: None, bounds: polygon.bounds }
     }
@@ -221,7 +221,7 @@ impl Region {
     }
 
     /// Clips by a convex polygon. The region is a part of `whole`.
-    pub(super) fn clip(&mut self, polygon: &Convex, whole: &Convex, work: &mut Workspace) -> Clipped {
+    pub(super) fn clip(&mut self, polygon: &ConvexOutline, whole: &ConvexOutline, work: &mut Workspace) -> Clipped {
         // Reject by boxes.
         if !polygon.touches(self.bounds) {
             return Clipped::Outside;
@@ -253,7 +253,7 @@ impl Region {
     }
 
     /// Finds on which side of the polygon's lines the near edges' ends lie, and what follows if these are all edges.
-    fn find_sides(&self, polygon: &Convex, is_all: bool, work: &mut Workspace) -> Option<Clipped> {
+    fn find_sides(&self, polygon: &ConvexOutline, is_all: bool, work: &mut Workspace) -> Option<Clipped> {
         let mut within = true;
         work.sides.clear();
         // Classify both ends of each near edge.
@@ -276,7 +276,7 @@ impl Region {
     }
 
     /// Cuts the near edges and finds the new ones.
-    fn cut(&mut self, polygon: &Convex, work: &mut Workspace) -> Clipped {
+    fn cut(&mut self, polygon: &ConvexOutline, work: &mut Workspace) -> Clipped {
         // Cut each near edge into parts inside, before and behind.
         work.removed.clear();
         work.inside.clear();
@@ -347,7 +347,7 @@ impl Region {
     /// Where the region is met infinitely little beside a side of a polygon, on its inner or outer side: from where to where.
     fn intervals(
         &self,
-        polygon: &Convex,
+        polygon: &ConvexOutline,
         side: usize,
         inner: bool,
         work: &mut Workspace,
@@ -541,7 +541,7 @@ struct EdgeCut {
 
 impl EdgeCut {
     /// `sides`: on which side of the polygon's lines the edge's ends lie.
-    fn new<'s>(edge: &Edge, polygon: &Convex, sides: impl Iterator<Item = &'s [Ordering; 2]>) -> Self {
+    fn new<'s>(edge: &Edge, polygon: &ConvexOutline, sides: impl Iterator<Item = &'s [Ordering; 2]>) -> Self {
         use Ordering::{Equal, Greater, Less};
 
         // Start with the whole edge.

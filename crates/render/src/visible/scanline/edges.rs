@@ -56,7 +56,7 @@ impl<'f> Polygon<'f> {
 }
 
 /// An entry of the edge table: the edge from corner `corner` of a polygon to the next, crossed by `lines`.
-pub(super) struct Edge {
+pub(super) struct EdgeEntry {
     pub(super) polygon: u32,
     pub(super) corner: u32,
     pub(super) lines: Range<u16>,
@@ -108,7 +108,7 @@ pub(super) fn spacing(lines: &[Line]) -> i32 {
 
 /// All edges that cross a line, sorted by the line where they begin. Horizontal ones need no entry: a line that runs
 /// along the top of a polygon crosses its other two edges, one along its bottom does not.
-pub(super) fn edge_table(polygons: &[Polygon<'_>], lines: &[Line]) -> Vec<Edge> {
+pub(super) fn edge_table(polygons: &[Polygon<'_>], lines: &[Line]) -> Vec<EdgeEntry> {
     let first_at = |y: i32| lines.partition_point(|line| line.y < y) as u16;
     let mut edges = Vec::new();
     // Find the line of each corner; an edge runs from one to the next.
@@ -119,7 +119,7 @@ pub(super) fn edge_table(polygons: &[Polygon<'_>], lines: &[Line]) -> Vec<Edge> 
         for corner in 0..outline.len() {
             let b = outline.get(corner + 1).map_or(first, |next| first_at(next[1]));
             if a != b {
-                edges.push(Edge { polygon: p as u32, corner: corner as u32, lines: a.min(b)..a.max(b) });
+                edges.push(EdgeEntry { polygon: p as u32, corner: corner as u32, lines: a.min(b)..a.max(b) });
             }
             a = b;
         }
@@ -146,7 +146,7 @@ fn sort(active: &mut [ActiveEdge], joined: bool) {
 }
 
 impl ActiveEdge {
-    pub(super) fn new(edge: &Edge, outline: &[[i32; 2]], y: i32, spacing: i32) -> Self {
+    pub(super) fn new(edge: &EdgeEntry, outline: &[[i32; 2]], y: i32, spacing: i32) -> Self {
         let (dx, dy, _) = downwards(outline, edge.corner);
         let step = i64::from(dx) * i64::from(spacing);
         let step = [step.div_euclid(i64::from(dy)), step.rem_euclid(i64::from(dy))].map(|v| v as i32);
@@ -209,9 +209,9 @@ pub(super) fn covered(triangle: &Setup, line: &Line, pixels: &Range<usize>) -> R
 
 /// The active edge table, from line to line.
 pub(super) struct ActiveEdges<'e> {
-    edges: &'e [Edge],
+    edges: &'e [EdgeEntry],
     /// Those that begin on lines to come.
-    starting: &'e [Edge],
+    starting: &'e [EdgeEntry],
     active: Vec<ActiveEdge>,
     /// Where edges crossed the last line, for a table that is not kept from line to line.
     crossings: Vec<Option<ActiveEdge>>,
@@ -223,7 +223,7 @@ pub(super) struct ActiveEdges<'e> {
 impl<'e> ActiveEdges<'e> {
     /// Of lines with this spacing, 0 if each crossing is to be found anew. If the table is not kept, each line begins with an
     /// empty one and looks for its edges among all that began above it.
-    pub(super) fn new(edges: &'e [Edge], spacing: i32, is_kept: bool, width: u32) -> Self {
+    pub(super) fn new(edges: &'e [EdgeEntry], spacing: i32, is_kept: bool, width: u32) -> Self {
         let crossings = if spacing != 0 && !is_kept { vec![None; edges.len()] } else { Vec::new() };
         Self { edges, starting: edges, active: Vec::new(), crossings, spacing, is_kept, width }
     }

@@ -3,7 +3,7 @@
 //! In:   polygon table, edge table, active edges (screen space). Out: the same in pixels.
 //! Cost: linear in what is reported; nothing if nobody listens.
 
-use super::edges::{ActiveEdge, Edge, Line, Polygon, downwards};
+use super::edges::{ActiveEdge, EdgeEntry, Line, Polygon, downwards};
 use crate::trace::Step;
 use crate::trace::tables::{Bucket, Crossing, TableEdge, TablePolygon};
 use crate::{Execution, PreparedView};
@@ -15,13 +15,13 @@ pub(super) fn tables(
     execution: &Execution,
     view: &PreparedView<'_>,
     rows: [usize; 2],
-    (polygons, edges): (&[Polygon<'_>], &[Edge]),
+    (polygons, edges): (&[Polygon<'_>], &[EdgeEntry]),
     lines: &[Line],
 ) -> Result<(), Limit> {
     if execution.observer.is_none() {
         return Ok(());
     }
-    let bytes = size_of_val(edges) / size_of::<Edge>() * (size_of::<TableEdge>() + size_of::<Bucket>())
+    let bytes = size_of_val(edges) / size_of::<EdgeEntry>() * (size_of::<TableEdge>() + size_of::<Bucket>())
         + polygons.len() * size_of::<TablePolygon>();
     execution.budget.charge(bytes as u64, "the edge table that is told")?;
     let rows = rows.map(|row| row as u32);
@@ -41,11 +41,11 @@ fn polygon(polygon: &Polygon<'_>, surface: u32) -> TablePolygon {
 }
 
 /// The edge table, of a band whose first row of pixels is `top`.
-fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -> Vec<Bucket> {
+fn buckets(polygons: &[Polygon<'_>], edges: &[EdgeEntry], lines: &[Line], top: u32) -> Vec<Bucket> {
     let place = |line: &Line| [top + line.row as u32, line.sample as u32];
 
     // Describe an edge by its first crossing and its slope.
-    let entry = |edge: &Edge| {
+    let entry = |edge: &EdgeEntry| {
         let (shape, line) = (polygons[edge.polygon as usize].shape, &lines[usize::from(edge.lines.start)]);
         let active = ActiveEdge::new(edge, shape.outline(), line.y, 0);
         let (dx, dy, _) = downwards(shape.outline(), edge.corner);
@@ -60,7 +60,7 @@ fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -
     };
 
     // Put edges that begin on one line into one bucket.
-    let bucket = |edges: &[Edge]| {
+    let bucket = |edges: &[EdgeEntry]| {
         let [row, sample] = place(&lines[usize::from(edges[0].lines.start)]);
         Bucket { row, sample, edges: edges.iter().map(entry).collect() }
     };

@@ -22,7 +22,7 @@
 //! Source: [Weiler & Atherton 1977], [Weiler 1980].
 
 use super::edge_index::EdgeIndex;
-use super::line::{Edge, Line, Point, ROUNDING};
+use super::line::{Line, Point, ROUNDING, RegionEdge};
 use std::cmp::Ordering;
 use vitral_raster::SUBPIXEL;
 
@@ -132,7 +132,7 @@ pub(super) fn overlap(a: [f64; 4], b: [f64; 4]) -> bool {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Region {
     /// Those that the index has removed among them.
-    edges: Vec<Edge>,
+    edges: Vec<RegionEdge>,
     index: Option<Box<EdgeIndex>>,
     /// Smallest x and y, largest x and y, or a little more.
     bounds: [f64; 4],
@@ -179,18 +179,18 @@ pub(super) struct Workspace {
     crossings: Vec<(Point, i32)>,
     /// Edges that the polygon cuts or holds.
     removed: Vec<u32>,
-    inside: Vec<Edge>,
-    outside: Vec<Edge>,
+    inside: Vec<RegionEdge>,
+    outside: Vec<RegionEdge>,
 }
 
 impl Region {
     /// A convex polygon.
     pub(super) fn polygon(polygon: &ConvexOutline) -> Self {
-        let side = |i: usize| polygon.ends(i).map(|ends| Edge::new(polygon.lines[i], ends));
+        let side = |i: usize| polygon.ends(i).map(|ends| RegionEdge::new(polygon.lines[i], ends));
         Self { edges: (0..polygon.lines.len()).filter_map(side).collect(), index: None, bounds: polygon.bounds }
     }
 
-    fn of(edges: &[Edge]) -> Self {
+    fn of(edges: &[RegionEdge]) -> Self {
         let bounds = bounds(edges.iter().flat_map(|e| e.about));
         Self { edges: edges.to_vec(), index: None, bounds }
     }
@@ -209,7 +209,7 @@ impl Region {
     }
 
     /// Its boundary, in no order.
-    pub(super) fn edges(&self) -> impl Iterator<Item = &Edge> {
+    pub(super) fn edges(&self) -> impl Iterator<Item = &RegionEdge> {
         let index = self.index.as_deref();
         let is_there = move |i: usize| index.is_none_or(|index| index.has(i));
         self.edges.iter().enumerate().filter(move |(i, _)| is_there(*i)).map(|(_, edge)| edge)
@@ -217,7 +217,7 @@ impl Region {
 
     /// Bytes in memory, about.
     pub(super) fn bytes(&self) -> usize {
-        self.edges.capacity() * size_of::<Edge>() + self.index.as_ref().map_or(0, |index| index.bytes())
+        self.edges.capacity() * size_of::<RegionEdge>() + self.index.as_ref().map_or(0, |index| index.bytes())
     }
 
     /// Clips by a convex polygon. The region is a part of `whole`.
@@ -297,7 +297,7 @@ impl Region {
             let line = polygon.lines[side];
             for inner in [true, false] {
                 self.intervals(polygon, side, inner, work, |ends, work| {
-                    let edge = Edge::new(line, ends);
+                    let edge = RegionEdge::new(line, ends);
                     if inner { work.inside.push(edge) } else { work.outside.push(edge.reversed()) }
                 });
             }
@@ -426,7 +426,7 @@ impl Region {
         let is_forwards = if along[axis] != 0 { along[axis] > 0 } else { beside[axis] > 0 };
 
         // Count the edges that a ray along the other axis, to the lower side, crosses.
-        let comes_before = |edge: &Edge, end: usize| {
+        let comes_before = |edge: &RegionEdge, end: usize| {
             let gap = edge.about[end][axis] - place[axis];
             if gap.abs() > ROUNDING {
                 return gap < 0.0;
@@ -437,7 +437,7 @@ impl Region {
                 Ordering::Greater => false,
             }
         };
-        let is_crossed = |edge: &Edge| {
+        let is_crossed = |edge: &RegionEdge| {
             if comes_before(edge, 0) == comes_before(edge, 1) {
                 return false;
             }
@@ -458,7 +458,7 @@ impl Region {
 
     /// The area, in square pixels of 256 x 256.
     pub(super) fn area(&self) -> f64 {
-        let doubled = |e: &Edge| {
+        let doubled = |e: &RegionEdge| {
             let [[x0, y0], [x1, y1]] = e.about;
             x0 * y1 - y0 * x1
         };
@@ -477,7 +477,7 @@ impl Region {
     /// that turns most towards the region, so that outlines touch but do not cross.
     pub(super) fn outlines(&self) -> Vec<Outline> {
         // Sort the edges by where they begin.
-        let mut edges: Vec<(Point, Edge)> = self.edges().map(|edge| (edge.end(0), *edge)).collect();
+        let mut edges: Vec<(Point, RegionEdge)> = self.edges().map(|edge| (edge.end(0), *edge)).collect();
         edges.sort_by(|one, two| one.0.compare_both(&two.0));
 
         // Walk one boundary from each edge that is not walked.
@@ -513,13 +513,13 @@ impl Region {
 }
 
 /// How far an edge turns towards the region from another that ends where it begins, radians.
-fn turn(edge: &Edge, next: &Edge) -> f64 {
+fn turn(edge: &RegionEdge, next: &RegionEdge) -> f64 {
     let [[dx, dy], [ex, ey]] = [edge, next].map(|e| [f64::from(e.line.b), -f64::from(e.line.a)]);
     vitral_math::func::atan2(dx * ey - dy * ex, dx * ex + dy * ey)
 }
 
 /// The outline of edges that were walked. Edges along one line are one.
-fn outline(walk: &[Edge]) -> Outline {
+fn outline(walk: &[RegionEdge]) -> Outline {
     let before = walk.iter().cycle().skip(walk.len() - 1);
     let bends = walk.iter().zip(before).filter(|(edge, before)| turn(before, edge) != 0.0);
     let corners: Vec<_> = bends.map(|(edge, _)| edge.about[0]).collect();
@@ -530,7 +530,7 @@ fn outline(walk: &[Edge]) -> Outline {
 
 /// An edge cut where it enters and leaves a polygon.
 struct EdgeCut {
-    edge: Edge,
+    edge: RegionEdge,
     /// From where to where it is within, or along a side.
     ends: [Point; 2],
     /// Whether these are not its own ends.
@@ -541,7 +541,7 @@ struct EdgeCut {
 
 impl EdgeCut {
     /// `sides`: on which side of the polygon's lines the edge's ends lie.
-    fn new<'s>(edge: &Edge, polygon: &ConvexOutline, sides: impl Iterator<Item = &'s [Ordering; 2]>) -> Self {
+    fn new<'s>(edge: &RegionEdge, polygon: &ConvexOutline, sides: impl Iterator<Item = &'s [Ordering; 2]>) -> Self {
         use Ordering::{Equal, Greater, Less};
 
         // Start with the whole edge.
@@ -579,9 +579,9 @@ impl EdgeCut {
 
     /// The part within the polygon, if it is not along one of its sides, and those before and behind it; `None` if all is
     /// outside.
-    fn into_parts(self) -> Option<[Option<Edge>; 3]> {
+    fn into_parts(self) -> Option<[Option<RegionEdge>; 3]> {
         let Self { edge, ends, is_cut, is_along, is_outside } = self;
-        let part = |ends: [Point; 2]| Edge::new(edge.line, ends);
+        let part = |ends: [Point; 2]| RegionEdge::new(edge.line, ends);
         (!is_outside).then(|| {
             [
                 (!is_along).then(|| part(ends)),

@@ -12,7 +12,7 @@ use vitral_raster::{SUBPIXEL, SamplePattern, Setup};
 
 /// A row of samples.
 #[derive(Clone, Copy)]
-pub(super) struct Line {
+pub(super) struct SampleLine {
     /// Within the picture, 1/256 pixel.
     pub(super) y: i32,
     /// Row of pixels within the band.
@@ -87,12 +87,12 @@ pub(super) fn polygon_table<'p>(polygons: &'p Polygons<'_>) -> Vec<Polygon<'p>> 
 }
 
 /// The lines of `height` rows of pixels, from top to bottom.
-pub(super) fn lines(pattern: &SamplePattern, top: usize, height: usize) -> Vec<Line> {
+pub(super) fn lines(pattern: &SamplePattern, top: usize, height: usize) -> Vec<SampleLine> {
     let mut lines: Vec<_> = (0..height * pattern.len())
         .map(|i| {
             let (row, sample) = (i / pattern.len(), i % pattern.len());
             let [sample_x, sample_y] = pattern.position(sample);
-            Line { y: (top + row) as i32 * SUBPIXEL + sample_y, row, sample, sample_x }
+            SampleLine { y: (top + row) as i32 * SUBPIXEL + sample_y, row, sample, sample_x }
         })
         .collect();
     lines.sort_by_key(|line| line.y);
@@ -100,15 +100,15 @@ pub(super) fn lines(pattern: &SamplePattern, top: usize, height: usize) -> Vec<L
 }
 
 /// The distance from each line to the next if it is always the same, else 0.
-pub(super) fn spacing(lines: &[Line]) -> i32 {
-    let distance = |w: &[Line]| w[1].y - w[0].y;
+pub(super) fn spacing(lines: &[SampleLine]) -> i32 {
+    let distance = |w: &[SampleLine]| w[1].y - w[0].y;
     let first = lines.windows(2).map(distance).next().unwrap_or(0);
     if lines.windows(2).all(|w| distance(w) == first) { first } else { 0 }
 }
 
 /// All edges that cross a line, sorted by the line where they begin. Horizontal ones need no entry: a line that runs
 /// along the top of a polygon crosses its other two edges, one along its bottom does not.
-pub(super) fn edge_table(polygons: &[Polygon<'_>], lines: &[Line]) -> Vec<EdgeEntry> {
+pub(super) fn edge_table(polygons: &[Polygon<'_>], lines: &[SampleLine]) -> Vec<EdgeEntry> {
     let first_at = |y: i32| lines.partition_point(|line| line.y < y) as u16;
     let mut edges = Vec::new();
     // Find the line of each corner; an edge runs from one to the next.
@@ -175,7 +175,7 @@ impl ActiveEdge {
     }
 
     /// [`column`], at most `width`.
-    fn column_on(&self, line: &Line, width: u32) -> u32 {
+    fn column_on(&self, line: &SampleLine, width: u32) -> u32 {
         column([self.x, self.remainder], line).clamp(0, width as i32) as u32
     }
 }
@@ -188,12 +188,12 @@ fn crossing((dx, dy, [x0, y0]): (i32, i32, [i32; 2]), y: i32) -> [i32; 2] {
 
 /// The first pixel whose sample on a line is not left of a crossing. A sample on a left edge is in and one on a right edge
 /// is out, so the same pixel begins what is right of either.
-fn column([x, remainder]: [i32; 2], line: &Line) -> i32 {
+fn column([x, remainder]: [i32; 2], line: &SampleLine) -> i32 {
     (x + i32::from(remainder > 0) - line.sample_x + SUBPIXEL - 1) >> 8
 }
 
 /// Which of these pixels of a line a triangle covers.
-pub(super) fn covered(triangle: &Setup, line: &Line, pixels: &Range<usize>) -> Range<usize> {
+pub(super) fn covered(triangle: &Setup, line: &SampleLine, pixels: &Range<usize>) -> Range<usize> {
     let outline = triangle.corners();
     let [first, last] = [pixels.start, pixels.end].map(|pixel| pixel as i32);
     let (mut from, mut to) = (last, first);
@@ -237,7 +237,7 @@ impl<'e> ActiveEdges<'e> {
     pub(super) fn move_to(
         &mut self,
         number: usize,
-        line: &Line,
+        line: &SampleLine,
         polygons: &[Polygon<'_>],
         counters: &mut VisibilityCounters,
     ) {
@@ -269,7 +269,7 @@ impl<'e> ActiveEdges<'e> {
     fn join(
         &mut self,
         number: usize,
-        line: &Line,
+        line: &SampleLine,
         polygons: &[Polygon<'_>],
         counters: &mut VisibilityCounters,
     ) -> bool {

@@ -3,7 +3,7 @@
 //! In:   polygon table, edge table, active edges (screen space). Out: the same in pixels.
 //! Cost: linear in what is reported; nothing if nobody listens.
 
-use super::edges::{ActiveEdge, EdgeEntry, Line, Polygon, downwards};
+use super::edges::{ActiveEdge, EdgeEntry, Polygon, SampleLine, downwards};
 use crate::trace::Step;
 use crate::trace::tables::{Bucket, Crossing, TableEdge, TablePolygon};
 use crate::{Execution, PreparedView};
@@ -16,7 +16,7 @@ pub(super) fn tables(
     view: &PreparedView<'_>,
     rows: [usize; 2],
     (polygons, edges): (&[Polygon<'_>], &[EdgeEntry]),
-    lines: &[Line],
+    lines: &[SampleLine],
 ) -> Result<(), Limit> {
     if execution.observer.is_none() {
         return Ok(());
@@ -41,8 +41,8 @@ fn polygon(polygon: &Polygon<'_>, surface: u32) -> TablePolygon {
 }
 
 /// The edge table, of a band whose first row of pixels is `top`.
-fn buckets(polygons: &[Polygon<'_>], edges: &[EdgeEntry], lines: &[Line], top: u32) -> Vec<Bucket> {
-    let place = |line: &Line| [top + line.row as u32, line.sample as u32];
+fn buckets(polygons: &[Polygon<'_>], edges: &[EdgeEntry], lines: &[SampleLine], top: u32) -> Vec<Bucket> {
+    let place = |line: &SampleLine| [top + line.row as u32, line.sample as u32];
 
     // Describe an edge by its first crossing and its slope.
     let entry = |edge: &EdgeEntry| {

@@ -66,7 +66,7 @@ const CONTRAST: f64 = 0.5;
 
 /// What a solution depends on, besides the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Key {
+pub struct SolutionKey {
     lights: Vec<Light>,
     patch_size: Option<f64>,
     iterations: Option<u64>,
@@ -78,7 +78,7 @@ pub struct Key {
 }
 
 impl Cached for Solution {
-    type Key = Key;
+    type SolutionKey = SolutionKey;
     const REUSE: Reuse = Reuse::Session;
 }
 
@@ -86,7 +86,7 @@ impl Cached for Solution {
 struct LoadedSolution(Arc<Solution>);
 
 impl Cached for LoadedSolution {
-    type Key = ();
+    type SolutionKey = ();
     const REUSE: Reuse = Reuse::Session;
 }
 
@@ -110,7 +110,7 @@ pub(crate) fn solution(
     }
 
     // Otherwise find it in the cache, or solve.
-    let key = Key {
+    let key = SolutionKey {
         lights: lights.to_vec(),
         patch_size: settings.global.patch_size,
         iterations: settings.global.iterations,

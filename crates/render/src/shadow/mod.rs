@@ -101,13 +101,13 @@ pub trait ShadowAlgorithm: Sync {
 
 /// What shadows depend on, besides the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Key {
+pub(crate) struct ShadowKey {
     lights: Vec<Light>,
     samples: u32,
     transparency: Transparency,
 }
 
-impl Key {
+impl ShadowKey {
     fn new(lights: &[Light], settings: &Settings) -> Self {
         Self {
             lights: lights.to_vec(),

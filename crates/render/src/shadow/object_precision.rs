@@ -23,7 +23,7 @@ use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoints};
 use super::rounding::clearance;
 use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, Key, PreparedShadows, ShadowAlgorithm};
+use super::{Drawn, PreparedShadows, ShadowAlgorithm, ShadowKey};
 use crate::raytrace::shaft::Shaft;
 use crate::{Cached, Execution, Session, Settings};
 use clip::{Cutter, Detail};
@@ -85,7 +85,7 @@ const SLACK: f64 = 1e-9;
 const TRIANGLES_A_JOB: usize = 256;
 
 impl Cached for LitPolygons {
-    type Key = Key;
+    type ShadowKey = ShadowKey;
 }
 
 impl ShadowAlgorithm for ObjectPrecisionShadows {
@@ -98,7 +98,7 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
         execution: &Execution,
     ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
-        let polygons = session.cache.get_or_build(Key::new(lights, settings), || {
+        let polygons = session.cache.get_or_build(ShadowKey::new(lights, settings), || {
             let casters = Casters::of(session, &occluders, execution)?;
             let facets = session.world.facet_count as usize;
             let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {

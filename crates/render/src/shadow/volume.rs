@@ -32,7 +32,7 @@ use super::casters::{Casters, faces, lifted};
 use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoints};
 use super::sources::{Shares, Source};
-use super::{Drawn, Key, PreparedShadows, ShadowAlgorithm};
+use super::{Drawn, PreparedShadows, ShadowAlgorithm, ShadowKey};
 use crate::{Cached, Execution, Session, Settings, VolumeCounting};
 use count::{Batch, Lit, ODD};
 pub(crate) use edges::Surface;
@@ -79,7 +79,7 @@ impl ShadowAlgorithm for VolumeShadows {
         let occluders = Occluders::new(session, settings);
 
         // Build the volumes, or take them from the cache.
-        let volumes = session.cache.get_or_build(Key::new(lights, settings), || {
+        let volumes = session.cache.get_or_build(ShadowKey::new(lights, settings), || {
             Volumes::new(session, lights, &occluders, settings, execution)
         })?;
         let triangles = volumes.casters.triangles();
@@ -107,7 +107,7 @@ impl ShadowAlgorithm for VolumeShadows {
 }
 
 impl Cached for Volumes {
-    type Key = Key;
+    type ShadowKey = ShadowKey;
 }
 
 impl Volumes {

@@ -17,7 +17,7 @@ const LEAST_SIDE: u32 = 256;
 
 /// What maps depend on, besides the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Key {
+pub(crate) struct LightMapsKey {
     lights: Vec<Light>,
     size: u32,
     samples: u32,
@@ -30,7 +30,7 @@ pub(crate) struct Key {
 pub(crate) struct Maps(pub(super) Vec<LightMaps>);
 
 impl Cached for Maps {
-    type Key = Key;
+    type LightMapsKey = LightMapsKey;
 }
 
 /// The maps of one light.
@@ -44,7 +44,7 @@ pub(super) enum LightMaps {
     Positions(Vec<(Emitter, Vec<Map>)>),
 }
 
-impl Key {
+impl LightMapsKey {
     pub(super) fn new(lights: &[Light], settings: &Settings) -> Self {
         Self {
             lights: lights.to_vec(),
@@ -64,7 +64,7 @@ impl Maps {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Arc<Self>, Limit> {
-        let key = Key::new(lights, settings);
+        let key = LightMapsKey::new(lights, settings);
         if let Some(old) = session.cache.take_outdated::<Self>(&key) {
             Arc::into_inner(old).into_iter().for_each(|old| old.recycle(session));
         }

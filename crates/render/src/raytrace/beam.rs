@@ -69,7 +69,7 @@ impl Beam {
 }
 
 /// What [`Beam::around`] has on one axis for each ray of a packet, or on each axis for one ray.
-pub(super) struct Lines<S: Simd> {
+pub(super) struct BeamLines<S: Simd> {
     /// Where the upper lines start.
     pub(super) upper_start: F32x8<S>,
     /// Where the lower lines start.
@@ -80,7 +80,7 @@ pub(super) struct Lines<S: Simd> {
     pub(super) inverse_lower_slope: F32x8<S>,
 }
 
-impl<S: Simd> Lines<S> {
+impl<S: Simd> BeamLines<S> {
     /// From where rays start and where they go.
     #[inline(always)]
     pub(super) fn around(simd: S, origin: F32x8<S>, direction: F32x8<S>, extent: f32) -> Self {

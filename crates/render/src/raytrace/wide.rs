@@ -11,7 +11,7 @@
 //! Cost: linear to build; 60 to 100 bytes a triangle. A ray opens about a third as many nodes as with two children each.
 //! Source: \[Wald, Benthin & Boulos 2008\].
 
-use super::beam::{self, Lines};
+use super::beam::{self, BeamLines};
 use super::intersect::{Ray, surely_beside};
 use super::sah::{self, area};
 use super::triangles::Triangles;
@@ -311,7 +311,7 @@ fn slabs<S: Simd>(simd: S, ray: &Ray, extent: f32) -> [Slab<S>; 3] {
         #[inline(always)]
         |v: Vec3| F32x8::from_slice(simd, &[v.x, v.y, v.z, 0.0, 0.0, 0.0, 0.0, 0.0]),
     );
-    let lines = Lines::around(simd, axes(ray.origin), axes(ray.direction), extent);
+    let lines = BeamLines::around(simd, axes(ray.origin), axes(ray.direction), extent);
     let (upper, lower) = (lines.inverse_upper_slope, lines.inverse_lower_slope);
     // The upper line meets a side sooner than the lower one if it rises. If only it rises, the beam is flat and gets infinitely
     // far before it leaves.

@@ -32,7 +32,7 @@ const COARSER: f64 = 1.25;
 
 /// A triangle of some size.
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub struct QuadtreeNode {
     /// Vertices.
     pub corners: [u32; 3],
     /// The first of four children, or `u32::MAX` for a leaf. The k-th of the first three keeps corner k, the fourth is
@@ -50,7 +50,7 @@ pub struct Trees {
     /// Places of the vertices.
     pub vertices: Vec<DVec3>,
     /// All nodes, parents before children.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<QuadtreeNode>,
     /// The first root of each facet, `u32::MAX` for those that take no part. Its other roots follow: rows from corner 0
     /// on, each from corner 2 to corner 1, every second one upside down.
     pub roots: Vec<u32>,
@@ -257,18 +257,18 @@ impl Trees {
         // Make the cells.
         for number in 0..n * n {
             let corners = Cell::numbered(number, n).corners().map(|steps| vertex(self, steps));
-            self.nodes.push(Node { corners, children: NONE, facet, patch: NONE });
+            self.nodes.push(QuadtreeNode { corners, children: NONE, facet, patch: NONE });
         }
     }
 
     /// Cuts a leaf in four.
     pub fn split(&mut self, node: usize) {
-        let Node { corners, facet, patch, .. } = self.nodes[node];
+        let QuadtreeNode { corners, facet, patch, .. } = self.nodes[node];
         let [m0, m1, m2] = [0, 1, 2].map(|k| self.make_middle(corners[k], corners[(k + 1) % 3]));
         let [a, b, c] = corners;
         self.nodes[node].children = self.nodes.len() as u32;
         for corners in [[a, m0, m2], [m0, b, m1], [m2, m1, c], [m1, m2, m0]] {
-            self.nodes.push(Node { corners, children: NONE, facet, patch });
+            self.nodes.push(QuadtreeNode { corners, children: NONE, facet, patch });
         }
     }
 
@@ -299,7 +299,7 @@ impl Trees {
         }
     }
 
-    fn is_too_coarse(&self, node: &Node) -> bool {
+    fn is_too_coarse(&self, node: &QuadtreeNode) -> bool {
         (0..3).any(|k| {
             let (a, b) = (node.corners[k], node.corners[(k + 1) % 3]);
             self.middle(a, b).is_some_and(|m| self.middle(a, m).is_some() || self.middle(m, b).is_some())

@@ -12,7 +12,7 @@
 
 use super::element::Color;
 use super::enclosure::Enclosure;
-use super::patch::{MOST_CUTS, NONE, Node, Trees, descend, within};
+use super::patch::{MOST_CUTS, NONE, QuadtreeNode, Trees, descend, within};
 use super::progressive::Progress;
 use crate::Error;
 use vitral_light::Rgb;
@@ -56,7 +56,7 @@ impl Piece {
 /// See the module.
 #[derive(Clone, Debug)]
 pub struct Solution {
-    nodes: Vec<Node>,
+    nodes: Vec<QuadtreeNode>,
     roots: Vec<u32>,
     /// Parts of each facet's edges before quadtrees begin.
     cuts: u32,
@@ -110,7 +110,7 @@ impl Solution {
         self.key
     }
 
-    fn assemble(nodes: Vec<Node>, (roots, cuts): (Vec<u32>, u32), light: Vec<[Six; 2]>, ambient: Rgb) -> Self {
+    fn assemble(nodes: Vec<QuadtreeNode>, (roots, cuts): (Vec<u32>, u32), light: Vec<[Six; 2]>, ambient: Rgb) -> Self {
         let mut leaves = 0;
         let leaf = nodes.iter().map(|n| {
             leaves += u32::from(n.children == NONE);
@@ -240,16 +240,17 @@ fn bad(what: &str) -> Error {
 }
 
 /// The nodes that were stored as these words, so many of them leaves.
-fn stored_nodes(words: &[[u8; 4]], leaves: usize) -> Result<Vec<Node>, Error> {
+fn stored_nodes(words: &[[u8; 4]], leaves: usize) -> Result<Vec<QuadtreeNode>, Error> {
     let node = |words: &[[u8; 4]; 3]| {
         let [children, facet, patch] = words.map(u32::from_le_bytes);
-        Node { corners: [NONE; 3], children, facet, patch }
+        QuadtreeNode { corners: [NONE; 3], children, facet, patch }
     };
-    let nodes: Vec<Node> = words.as_chunks::<3>().0.iter().map(node).collect();
+    let nodes: Vec<QuadtreeNode> = words.as_chunks::<3>().0.iter().map(node).collect();
     let count = nodes.len() as u64;
     // Children come after their parents, so that going down ends.
-    let sound =
-        |i: usize, n: &Node| n.children == NONE || (n.children as usize > i && u64::from(n.children) + 3 < count);
+    let sound = |i: usize, n: &QuadtreeNode| {
+        n.children == NONE || (n.children as usize > i && u64::from(n.children) + 3 < count)
+    };
     if !nodes.iter().enumerate().all(|(i, n)| sound(i, n)) {
         return Err(bad("a node has no children where it says"));
     }
@@ -369,7 +370,7 @@ mod tests {
     use super::*;
 
     fn two_leaves() -> Solution {
-        let node = |children| Node { corners: [NONE; 3], children, facet: 0, patch: 0 };
+        let node = |children| QuadtreeNode { corners: [NONE; 3], children, facet: 0, patch: 0 };
         let nodes = vec![node(1), node(NONE), node(NONE), node(NONE), node(NONE)];
         let light = (0..4).map(|e| [0, 1].map(|s| std::array::from_fn(|k| [e as f32, s as f32, k as f32]))).collect();
         Solution::assemble(nodes, (vec![NONE, 0], 1), light, [0.0, 0.0, 0.5])

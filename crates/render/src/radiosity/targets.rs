@@ -79,7 +79,7 @@ enum Content {
     /// A leaf, by its number.
     Leaf(u32),
     /// A node with children.
-    Node(u32),
+    QuadtreeNode(u32),
 }
 
 impl Targets {

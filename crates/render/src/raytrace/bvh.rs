@@ -12,7 +12,7 @@ use super::beam::Beam;
 use super::follow::{Follow, StructureUser};
 use super::intersect::Ray;
 use super::packet::{Packet, PacketVisitor};
-use super::sah::{BYTES_A_TRIANGLE, Node, SAH_DEPTH, build};
+use super::sah::{BYTES_A_TRIANGLE, BoxNode, SAH_DEPTH, build};
 use super::triangles::Triangles;
 use super::wide::Wide;
 use super::{Counters, Probe, Structure, Tree, Visitor, space_step};
@@ -30,7 +30,7 @@ const STACK: usize = SAH_DEPTH + 34;
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh {
-    nodes: Vec<Node>,
+    nodes: Vec<BoxNode>,
     /// The same with eight boxes a node, once somebody went down it.
     wide: OnceLock<Wide>,
     triangles: Triangles,
@@ -248,7 +248,7 @@ mod tests {
         facets.sort_unstable();
         assert!(facets.iter().copied().eq(0..facets.len() as u32));
         // Each box holds those below it, each leaf its triangles.
-        let inside = |inner: [[f32; 3]; 2], outer: &Node| {
+        let inside = |inner: [[f32; 3]; 2], outer: &BoxNode| {
             (0..3).all(|k| outer.min[k] <= inner[0][k] && inner[1][k] <= outer.max[k])
         };
         for (i, node) in one.nodes.iter().enumerate() {

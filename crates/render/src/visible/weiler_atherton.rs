@@ -38,7 +38,7 @@ use crate::{Execution, PreparedView};
 use buckets::Buckets;
 use fill::{Filling, VisiblePolygons};
 use polygon::{Polygon, Relation, line_of_gap, relation};
-use region::{Clipped, ConvexOutline, Outline, Region, Workspace};
+use region::{Clipped, ConvexOutline, Region, RegionOutline, Workspace};
 use vitral_exec::{Charge, Limit};
 use vitral_raster::{SUBPIXEL, TileGrid, Viewport};
 
@@ -166,7 +166,7 @@ struct Inside {
 struct Found {
     visible: VisiblePolygons,
     /// The same as outlines, if these are wanted, each with the number of its polygon among the view's.
-    outlines: Vec<(u32, Vec<Outline>)>,
+    outlines: Vec<(u32, Vec<RegionOutline>)>,
     counters: VisibilityCounters,
 }
 

@@ -9,7 +9,7 @@
 //! Cost: linear in triangles; for a face, its triangles times the polygons it comes out as.
 //! Source: the joining of triangles after [Hertel & Mehlhorn 1983].
 
-use super::super::polygons::{Outline, RECENT};
+use super::super::polygons::{JoinedOutline, RECENT};
 use crate::Execution;
 use crate::prepare::mirrors;
 use vitral_exec::Limit;
@@ -46,7 +46,7 @@ struct Growing {
     plane: u32,
     facets: Vec<u32>,
     /// Vertices of the mesh.
-    outline: Outline<u32>,
+    outline: JoinedOutline<u32>,
 }
 
 impl PolygonFacets {
@@ -157,7 +157,7 @@ impl WorldPolygons {
 
         // Otherwise begin a polygon.
         if !joined {
-            growing.push(Growing { plane, facets: vec![facet], outline: Outline::new(corners) });
+            growing.push(Growing { plane, facets: vec![facet], outline: JoinedOutline::new(corners) });
         }
     }
 

@@ -151,7 +151,7 @@ pub(super) enum Clipped {
 
 /// An outline of a region.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Outline {
+pub(super) struct RegionOutline {
     /// Whether the region lies around it.
     pub(super) is_hole: bool,
     /// 1/256 pixel. Clockwise on the screen, a hole the other way round.
@@ -475,7 +475,7 @@ impl Region {
 
     /// The outlines, walked, those around the region before its holes. Where several edges leave a point, the walk takes the one
     /// that turns most towards the region, so that outlines touch but do not cross.
-    pub(super) fn outlines(&self) -> Vec<Outline> {
+    pub(super) fn outlines(&self) -> Vec<RegionOutline> {
         // Sort the edges by where they begin.
         let mut edges: Vec<(Point, RegionEdge)> = self.edges().map(|edge| (edge.end(0), *edge)).collect();
         edges.sort_by(|one, two| one.0.compare_both(&two.0));
@@ -519,13 +519,13 @@ fn turn(edge: &RegionEdge, next: &RegionEdge) -> f64 {
 }
 
 /// The outline of edges that were walked. Edges along one line are one.
-fn outline(walk: &[RegionEdge]) -> Outline {
+fn outline(walk: &[RegionEdge]) -> RegionOutline {
     let before = walk.iter().cycle().skip(walk.len() - 1);
     let bends = walk.iter().zip(before).filter(|(edge, before)| turn(before, edge) != 0.0);
     let corners: Vec<_> = bends.map(|(edge, _)| edge.about[0]).collect();
     let doubled = |([x0, y0], [x1, y1]): (&[f64; 2], &[f64; 2])| x0 * y1 - y0 * x1;
     let area: f64 = corners.iter().zip(corners.iter().cycle().skip(1)).map(doubled).sum();
-    Outline { is_hole: area < 0.0, corners }
+    RegionOutline { is_hole: area < 0.0, corners }
 }
 
 /// An edge cut where it enters and leaves a polygon.

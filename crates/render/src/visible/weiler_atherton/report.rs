@@ -25,7 +25,7 @@ fn pixels(place: [f64; 2]) -> [f32; 2] {
 }
 
 fn contours(region: &Region) -> Vec<Contour> {
-    let contour = |outline: super::region::Outline| Contour {
+    let contour = |outline: super::region::RegionOutline| Contour {
         is_hole: outline.is_hole,
         corners: outline.corners.into_iter().map(pixels).collect(),
     };

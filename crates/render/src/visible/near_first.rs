@@ -5,7 +5,7 @@
 //! In:   jobs in the scene's order. Out: the same triangles in jobs of about the same size.
 //! Cost: linear in runs of [`TRIANGLES_A_RUN`] triangles.
 
-use super::jobs::{Job, Jobs, Piece};
+use super::jobs::{Job, Jobs, TriangleRun};
 use crate::PreparedView;
 use vitral_math::{Aabb, DVec4};
 use vitral_scene::TRIANGLES_A_RUN;
@@ -29,7 +29,7 @@ pub(super) fn near_first<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>
 }
 
 /// The runs of opaque triangles: how far away each begins, and its part of a piece.
-fn runs<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>]) -> (Vec<f64>, Vec<Piece<'v, 'a>>) {
+fn runs<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>]) -> (Vec<f64>, Vec<TriangleRun<'v, 'a>>) {
     let (mut distances, mut pieces) = (Vec::new(), Vec::new());
     let mut item = None;
     let mut forward = DVec4::ZERO;
@@ -47,7 +47,7 @@ fn runs<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>]) -> (Vec<f64>, 
             let run = start as usize / TRIANGLES_A_RUN;
             let end = piece.range.end.min(((run + 1) * TRIANGLES_A_RUN) as u32);
             distances.push(nearest(forward, &bounds[run]));
-            pieces.push(Piece { range: start..end, ..piece.clone() });
+            pieces.push(TriangleRun { range: start..end, ..piece.clone() });
             start = end;
         }
     }

@@ -12,7 +12,7 @@
 //! Cost: linear in leaves.
 //! Source: \[Cohen & Wallace 1993\], chapter 8; \[Cohen et al. 1988\] for patches and elements.
 
-use super::walls::Pieces;
+use super::walls::WallPieces;
 use std::collections::{BTreeMap, HashMap};
 use vitral_math::DVec3;
 
@@ -63,7 +63,7 @@ pub struct Trees {
     /// How far around small facets tell about each other's light.
     pub(super) reach: f64,
     /// Facets that walls cut, in pieces: these have trees in place of the facets.
-    pub(super) pieces: Pieces,
+    pub(super) pieces: WallPieces,
     /// How many facets there are, without pieces.
     pub(super) facets: u32,
     middles: HashMap<[u32; 2], u32>,
@@ -73,14 +73,14 @@ impl Trees {
     /// Trees for each of the facets that `corners` gives corners for, with no edge longer than `longest`. `None`: there
     /// would be more than `most` leaves.
     pub fn new(facets: u32, corners: impl Fn(u32) -> Option<[DVec3; 3]>, longest: f64, most: usize) -> Option<Self> {
-        Self::with_pieces(facets, corners, Pieces::default(), longest, most)
+        Self::with_pieces(facets, corners, WallPieces::default(), longest, most)
     }
 
     /// The same, where some facets are cut in pieces.
     pub(super) fn with_pieces(
         count: u32,
         corners: impl Fn(u32) -> Option<[DVec3; 3]>,
-        pieces: Pieces,
+        pieces: WallPieces,
         longest: f64,
         most: usize,
     ) -> Option<Self> {

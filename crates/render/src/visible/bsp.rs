@@ -36,7 +36,7 @@ use vitral_exec::Limit;
 use vitral_math::{DMat4, DVec3, DVec4};
 use vitral_raster::{SUBPIXEL, Setup, TileGrid, Viewport};
 
-pub(crate) use tree::Tree;
+pub(crate) use tree::BspTree;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -111,23 +111,23 @@ impl PolygonAlgorithm for Bsp {
     }
 }
 
-impl Cached for Tree {
+impl Cached for BspTree {
     type Key = ();
 }
 
 /// The session's tree, and whether it was there already.
-fn tree_of(view: &PreparedView<'_>, execution: &Execution) -> Result<(Arc<Tree>, bool), Limit> {
+fn tree_of(view: &PreparedView<'_>, execution: &Execution) -> Result<(Arc<BspTree>, bool), Limit> {
     let mut reused = true;
     let tree = view.session.cache.get_or_build((), || {
         reused = false;
-        Tree::of_world(&view.session.world, view.session.planes(&execution.workers), execution)
+        BspTree::of_world(&view.session.world, view.session.planes(&execution.workers), execution)
     })?;
     Ok((tree, reused))
 }
 
 /// Walks the tree and draws what comes.
 fn picture(
-    tree: &Tree,
+    tree: &BspTree,
     facets: &Facets<'_, '_>,
     marks: Option<&Marks>,
     grid: &mut TileGrid,
@@ -174,7 +174,7 @@ fn footprints(setups: &[&Setup], raster: &Raster<'_>, execution: &Execution) -> 
 }
 
 /// The fragments of the tree from front to back, those of facets that have no place in the tree last.
-fn front_to_back(tree: &Tree, to_viewer: DVec4) -> Vec<u32> {
+fn front_to_back(tree: &BspTree, to_viewer: DVec4) -> Vec<u32> {
     let mut order = Vec::with_capacity(tree.fragment_count() as usize);
     tree.back_to_front(to_viewer, |fragment| order.push(fragment));
     order.reverse();
@@ -183,7 +183,7 @@ fn front_to_back(tree: &Tree, to_viewer: DVec4) -> Vec<u32> {
 
 /// What brings the fragments of a tree to the screen.
 struct OnScreen<'a> {
-    tree: &'a Tree,
+    tree: &'a BspTree,
     setups: &'a [&'a Setup],
     places: SetupIndex,
     lines: Lines,
@@ -300,7 +300,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn new(view: &PreparedView<'_>, tree: &Tree, execution: &Execution) -> Self {
+    fn new(view: &PreparedView<'_>, tree: &BspTree, execution: &Execution) -> Self {
         let mut planes = vec![DVec4::ZERO; tree.cutters().len()];
         let screen_from_world = screen_from_world(&view.view.clip_from_world(), view.viewport);
         execution.workers.for_each_chunk(&mut planes, PLANES_A_JOB, |job, planes| {

@@ -1,13 +1,13 @@
 //! What a tree tells an observer: its nodes, and the walk for a viewer. It is told from the finished tree, so that it is the same
 //! whoever built it and whether it was there already.
 
-use super::{NONE, Tree};
+use super::{BspTree, NONE};
 use crate::Execution;
 use crate::trace::Step;
 use crate::trace::lists::{PlaneSide, PolygonSet};
 use vitral_math::DVec4;
 
-impl Tree {
+impl BspTree {
     /// Tells the nodes, each after the one that it hangs below.
     pub(crate) fn tell_nodes(&self, execution: &Execution) {
         if execution.observer.is_none() {
@@ -19,7 +19,7 @@ impl Tree {
         }
     }
 
-    /// Tells the walk for a viewer, see [`Tree::back_to_front`], node by node.
+    /// Tells the walk for a viewer, see [`BspTree::back_to_front`], node by node.
     pub(crate) fn tell_walk(&self, viewer: DVec4, execution: &Execution) {
         if execution.observer.is_none() {
             return;

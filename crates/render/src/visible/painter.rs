@@ -38,7 +38,7 @@ use crate::stats::VisibilityCounters;
 use crate::trace::Step;
 use crate::trace::lists::{ListTest, ListVerdict as Verdict, ListedPolygon};
 use crate::{Execution, PreparedView};
-use compare::{Polygon, compare};
+use compare::{PainterPolygon, compare};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -199,7 +199,8 @@ const SMALLEST_CELL: u32 = 8;
 const POLYGONS_A_CELL: usize = 12;
 /// Bytes of a polygon: itself, its corners, its place, its comparisons, its entries in the grid.
 const BYTES_A_POLYGON: u64 =
-    (size_of::<Polygon>() + 4 * 16 + size_of::<Farness>() + size_of::<Progress>() + 2 * size_of::<Entry>()) as u64;
+    (size_of::<PainterPolygon>() + 4 * 16 + size_of::<Farness>() + size_of::<Progress>() + 2 * size_of::<Entry>())
+        as u64;
 
 /// The sorting of one picture.
 struct Sorting<'f, 'c> {
@@ -208,7 +209,7 @@ struct Sorting<'f, 'c> {
     raster: Raster<'f>,
     execution: &'f Execution,
     counters: &'c mut VisibilityCounters,
-    polygons: Vec<Polygon>,
+    polygons: Vec<PainterPolygon>,
     states: Vec<State>,
     corners: Vec<[f64; 2]>,
     cuts: Vec<Cut>,
@@ -306,7 +307,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
         let first = self.corners.len() as u32;
         self.corners.extend_from_slice(corners);
         let own = first..self.corners.len() as u32;
-        let polygon = Polygon::new(plane, whole, corners, own, cuts, pixels.map(|p| p / self.cell as u16));
+        let polygon = PainterPolygon::new(plane, whole, corners, own, cuts, pixels.map(|p| p / self.cell as u16));
         let number = self.polygons.len() as u32;
         self.enter(number, polygon.far, polygon.cells);
         self.pending += 1;

@@ -37,7 +37,7 @@ use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
 use crate::{Coherence, Execution, PreparedView};
-use edges::{ActiveEdge, ActiveEdges, EdgeEntry, Polygon, edge_table, lines, polygon_table, spacing};
+use edges::{ActiveEdge, ActiveEdges, EdgeEntry, PolygonEntry, edge_table, lines, polygon_table, spacing};
 use spans::Spans;
 use vitral_exec::Limit;
 use vitral_raster::{TILE, Tile, TileGrid};
@@ -70,7 +70,7 @@ impl VisibleSurface for ScanLine {
 
 /// Entries of the tables for a polygon that is one triangle; the more triangles a polygon has, the fewer there are for each.
 const BYTES_A_TRIANGLE: u64 = Polygons::BYTES_A_TRIANGLE
-    + (size_of::<Polygon<'_>>()
+    + (size_of::<PolygonEntry<'_>>()
         + 2 * (size_of::<EdgeEntry>() + size_of::<Option<ActiveEdge>>())
         + size_of::<ActiveEdge>()) as u64;
 

@@ -37,7 +37,7 @@ use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use buckets::Buckets;
 use fill::{Filling, VisiblePolygons};
-use polygon::{Polygon, Relation, line_of_gap, relation};
+use polygon::{AreaPolygon, Relation, line_of_gap, relation};
 use region::{Clipped, ConvexOutline, Region, RegionOutline, Workspace};
 use vitral_exec::{Charge, Limit};
 use vitral_raster::{SUBPIXEL, TileGrid, Viewport};
@@ -65,7 +65,7 @@ impl VisibleSurface for WeilerAtherton {
         let (setups, opaque) = facets.listed();
         let polygons = Polygons::new(setups.into_iter().take(opaque), view);
         let held = Charge::new(&execution.budget, STAGE);
-        held.add(polygons.bytes() + (polygons.len() * size_of::<Polygon<'_>>()) as u64)?;
+        held.add(polygons.bytes() + (polygons.len() * size_of::<AreaPolygon<'_>>()) as u64)?;
 
         // Find the visible polygons.
         let sorted = in_first_order(&polygons);
@@ -100,7 +100,7 @@ impl PolygonAlgorithm for WeilerAtherton {
         let facets = Facets::without_tiles(view, execution)?;
         let polygons = Polygons::new(facets.all(), view);
         let held = Charge::new(&execution.budget, STAGE);
-        held.add(polygons.bytes() + (polygons.len() * size_of::<Polygon<'_>>()) as u64)?;
+        held.add(polygons.bytes() + (polygons.len() * size_of::<AreaPolygon<'_>>()) as u64)?;
         let sorted = in_first_order(&polygons);
         let sorting = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: true };
         let found = sorting.run(view.viewport)?;
@@ -115,14 +115,14 @@ impl PolygonAlgorithm for WeilerAtherton {
 }
 
 /// The polygons, the one with the nearest point first.
-fn in_first_order<'p>(polygons: &'p Polygons<'_>) -> Vec<Polygon<'p>> {
+fn in_first_order<'p>(polygons: &'p Polygons<'_>) -> Vec<AreaPolygon<'p>> {
     let mut order: Vec<_> = (0..polygons.len()).collect();
     let plane = |number: usize| polygons.get(number).plane();
     order.sort_by(|&a, &b| {
         let (a, b) = (plane(a), plane(b));
         b.z_max.total_cmp(&a.z_max).then(a.facet.cmp(&b.facet))
     });
-    order.into_iter().map(|number| Polygon::new(number as u32, polygons.get(number))).collect()
+    order.into_iter().map(|number| AreaPolygon::new(number as u32, polygons.get(number))).collect()
 }
 
 /// What of a polygon may be visible.
@@ -187,7 +187,7 @@ struct Worker {
 struct AreaSorting<'s> {
     execution: &'s Execution,
     /// In the first order.
-    polygons: &'s [Polygon<'s>],
+    polygons: &'s [AreaPolygon<'s>],
     held: &'s Charge<'s>,
     /// Whether outlines are wanted and not what samples are filled by.
     keeps_outlines: bool,
@@ -313,7 +313,7 @@ impl AreaSorting<'_> {
     }
 
     /// Clips an item by another polygon: leaves the outside, and gives what is inside.
-    fn clip(&self, item: &mut Item, front: &Polygon<'_>, worker: &mut Worker) -> Result<Option<Inside>, Limit> {
+    fn clip(&self, item: &mut Item, front: &AreaPolygon<'_>, worker: &mut Worker) -> Result<Option<Inside>, Limit> {
         // Check the budget from time to time.
         worker.pairs = worker.pairs.wrapping_add(1);
         if worker.pairs.is_multiple_of(PAIRS_A_CHECK) {

@@ -23,7 +23,7 @@ const CLEARLY: f64 = 1e-3;
 
 /// A polygon, or a part of one.
 #[derive(Clone, Debug)]
-pub(super) struct Polygon {
+pub(super) struct PainterPolygon {
     /// The whole one's number.
     pub(super) whole: u32,
     /// Farthest depth.
@@ -39,7 +39,7 @@ pub(super) struct Polygon {
     pub(super) cells: [u16; 4],
 }
 
-impl Polygon {
+impl PainterPolygon {
     /// `plane` is that of the whole polygon.
     pub(super) fn new(
         plane: &Setup,
@@ -180,8 +180,8 @@ pub(super) fn crossing(p: &Setup, q: &Setup) -> Option<Cut> {
 
 /// Compares two polygons by the five tests, and says which decided.
 pub(super) fn compare(
-    p: &Polygon,
-    q: &Polygon,
+    p: &PainterPolygon,
+    q: &PainterPolygon,
     wholes: &Polygons<'_>,
     corners: &[[f64; 2]],
     counters: &mut VisibilityCounters,
@@ -315,7 +315,8 @@ mod tests {
     fn verdict(p: Setup, q: Setup) -> ((Verdict, ListTest), VisibilityCounters) {
         let [a, b] = [p, q].map(|s| corners(&s));
         let points = [a, b].concat();
-        let polygons = [Polygon::new(&p, 0, &a, 0..3, 0..0, [0; 4]), Polygon::new(&q, 1, &b, 3..6, 0..0, [0; 4])];
+        let polygons =
+            [PainterPolygon::new(&p, 0, &a, 0..3, 0..0, [0; 4]), PainterPolygon::new(&q, 1, &b, 3..6, 0..0, [0; 4])];
         let mut counters = VisibilityCounters::default();
         let setups = [p, q];
         let wholes = Polygons::joined(&setups, |facet| facet);
@@ -375,7 +376,7 @@ mod tests {
     fn p21_the_halves_of_a_polygon_add_up() {
         let p = setup(HERE, [0.2, 0.8, 0.2], 0);
         let points = corners(&p);
-        let polygon = Polygon::new(&p, 0, &points, 0..3, 0..0, [0; 4]);
+        let polygon = PainterPolygon::new(&p, 0, &points, 0..3, 0..0, [0; 4]);
         let area = |points: &[[f64; 2]]| -> f64 {
             let n = points.len();
             (0..n).map(|i| points[i][0] * points[(i + 1) % n][1] - points[i][1] * points[(i + 1) % n][0]).sum::<f64>()

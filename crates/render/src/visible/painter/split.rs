@@ -5,7 +5,7 @@
 //! Source: [Newell, Newell & Sancha 1972]; see `painter.rs` for the departures.
 
 use super::super::cut::Cut;
-use super::compare::{Polygon, crossing};
+use super::compare::{PainterPolygon, crossing};
 use super::{Farness, Marked, Progress, Sorting, State};
 use crate::trace::Step;
 use vitral_raster::SUBPIXEL;
@@ -97,7 +97,7 @@ impl Sorting<'_, '_> {
         // Retire the whole polygon.
         self.counters.splits += 1;
         self.finish(number, State::Split);
-        let Polygon { whole, ref cuts, .. } = self.polygons[number as usize];
+        let PainterPolygon { whole, ref cuts, .. } = self.polygons[number as usize];
         let cuts = cuts.clone();
         let mut parts = [None; 2];
 

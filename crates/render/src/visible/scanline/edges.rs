@@ -24,7 +24,7 @@ pub(super) struct SampleLine {
 }
 
 /// An entry of the polygon table.
-pub(super) struct Polygon<'f> {
+pub(super) struct PolygonEntry<'f> {
     pub(super) shape: ConvexPolygon<'f, 'f>,
     /// The in-out flag: where the polygon stands in the list of those that are in, or [`OUT`].
     pub(super) slot: u32,
@@ -36,7 +36,7 @@ pub(super) struct Polygon<'f> {
 /// The in-out flag of polygons that are out.
 pub(super) const OUT: u32 = u32::MAX;
 
-impl<'f> Polygon<'f> {
+impl<'f> PolygonEntry<'f> {
     /// One that is out, on no line yet.
     fn new(shape: ConvexPolygon<'f, 'f>) -> Self {
         Self { shape, slot: OUT, line: i32::MIN, start: 0.0 }
@@ -82,8 +82,8 @@ pub(super) struct ActiveEdge {
 }
 
 /// The polygon table.
-pub(super) fn polygon_table<'p>(polygons: &'p Polygons<'_>) -> Vec<Polygon<'p>> {
-    (0..polygons.len()).map(|number| Polygon::new(polygons.get(number))).collect()
+pub(super) fn polygon_table<'p>(polygons: &'p Polygons<'_>) -> Vec<PolygonEntry<'p>> {
+    (0..polygons.len()).map(|number| PolygonEntry::new(polygons.get(number))).collect()
 }
 
 /// The lines of `height` rows of pixels, from top to bottom.
@@ -108,7 +108,7 @@ pub(super) fn spacing(lines: &[SampleLine]) -> i32 {
 
 /// All edges that cross a line, sorted by the line where they begin. Horizontal ones need no entry: a line that runs
 /// along the top of a polygon crosses its other two edges, one along its bottom does not.
-pub(super) fn edge_table(polygons: &[Polygon<'_>], lines: &[SampleLine]) -> Vec<EdgeEntry> {
+pub(super) fn edge_table(polygons: &[PolygonEntry<'_>], lines: &[SampleLine]) -> Vec<EdgeEntry> {
     let first_at = |y: i32| lines.partition_point(|line| line.y < y) as u16;
     let mut edges = Vec::new();
     // Find the line of each corner; an edge runs from one to the next.
@@ -238,7 +238,7 @@ impl<'e> ActiveEdges<'e> {
         &mut self,
         number: usize,
         line: &SampleLine,
-        polygons: &[Polygon<'_>],
+        polygons: &[PolygonEntry<'_>],
         counters: &mut VisibilityCounters,
     ) {
         // Let edges leave that end above the line, and move the others to it.
@@ -270,7 +270,7 @@ impl<'e> ActiveEdges<'e> {
         &mut self,
         number: usize,
         line: &SampleLine,
-        polygons: &[Polygon<'_>],
+        polygons: &[PolygonEntry<'_>],
         counters: &mut VisibilityCounters,
     ) -> bool {
         // Take the edges that begin on or above the line and do not end there.

@@ -3,7 +3,7 @@
 //! In:   polygon table, edge table, active edges (screen space). Out: the same in pixels.
 //! Cost: linear in what is reported; nothing if nobody listens.
 
-use super::edges::{ActiveEdge, EdgeEntry, Polygon, SampleLine, downwards};
+use super::edges::{ActiveEdge, EdgeEntry, PolygonEntry, SampleLine, downwards};
 use crate::trace::Step;
 use crate::trace::tables::{Bucket, Crossing, TableEdge, TablePolygon};
 use crate::{Execution, PreparedView};
@@ -15,7 +15,7 @@ pub(super) fn tables(
     execution: &Execution,
     view: &PreparedView<'_>,
     rows: [usize; 2],
-    (polygons, edges): (&[Polygon<'_>], &[EdgeEntry]),
+    (polygons, edges): (&[PolygonEntry<'_>], &[EdgeEntry]),
     lines: &[SampleLine],
 ) -> Result<(), Limit> {
     if execution.observer.is_none() {
@@ -33,7 +33,7 @@ pub(super) fn tables(
     Ok(())
 }
 
-fn polygon(polygon: &Polygon<'_>, surface: u32) -> TablePolygon {
+fn polygon(polygon: &PolygonEntry<'_>, surface: u32) -> TablePolygon {
     let setup = polygon.plane();
     let [dx, dy] = [setup.dz_dx, setup.dz_dy].map(f64::from);
     let [x, y] = setup.origin.map(pixels);
@@ -41,7 +41,7 @@ fn polygon(polygon: &Polygon<'_>, surface: u32) -> TablePolygon {
 }
 
 /// The edge table, of a band whose first row of pixels is `top`.
-fn buckets(polygons: &[Polygon<'_>], edges: &[EdgeEntry], lines: &[SampleLine], top: u32) -> Vec<Bucket> {
+fn buckets(polygons: &[PolygonEntry<'_>], edges: &[EdgeEntry], lines: &[SampleLine], top: u32) -> Vec<Bucket> {
     let place = |line: &SampleLine| [top + line.row as u32, line.sample as u32];
 
     // Describe an edge by its first crossing and its slope.
@@ -68,7 +68,7 @@ fn buckets(polygons: &[Polygon<'_>], edges: &[EdgeEntry], lines: &[SampleLine], 
 }
 
 /// The active edge table, from left to right; edges that cross the line at one place in the order of the polygon table.
-pub(super) fn crossings(active: &[ActiveEdge], polygons: &[Polygon<'_>]) -> Vec<Crossing> {
+pub(super) fn crossings(active: &[ActiveEdge], polygons: &[PolygonEntry<'_>]) -> Vec<Crossing> {
     let crossing = |edge: &ActiveEdge| Crossing {
         x: edge.place(),
         polygon: edge.polygon,

@@ -4,7 +4,7 @@
 //! Cost: spans times the polygons that are in, plus covered samples.
 //! Source: [Watkins 1970] for the decisions, [Bouknight 1970] for the in-out flags.
 
-use super::edges::{ActiveEdge, OUT, Polygon, SampleLine, covered};
+use super::edges::{ActiveEdge, OUT, PolygonEntry, SampleLine, covered};
 use super::face::OnLine;
 use super::implied_edge::ImpliedEdges;
 use crate::stats::VisibilityCounters;
@@ -20,7 +20,7 @@ const LONG: usize = 4;
 
 /// What is needed to fill the spans of a line.
 pub(super) struct Spans<'s, 'f> {
-    pub(super) polygons: &'s mut [Polygon<'f>],
+    pub(super) polygons: &'s mut [PolygonEntry<'f>],
     /// The polygons whose in-out flag is in.
     inside: Vec<u32>,
     /// The polygon that won the last span alone.
@@ -38,7 +38,7 @@ pub(super) struct Spans<'s, 'f> {
 impl<'s, 'f> Spans<'s, 'f> {
     /// Of a band whose polygons are all out.
     pub(super) fn new(
-        polygons: &'s mut [Polygon<'f>],
+        polygons: &'s mut [PolygonEntry<'f>],
         tiles: &'s mut [Tile],
         coherence: CoherenceSet,
         counters: &'s mut VisibilityCounters,

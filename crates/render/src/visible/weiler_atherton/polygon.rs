@@ -10,7 +10,7 @@ use vitral_raster::{SUBPIXEL, Setup};
 
 /// A polygon as it came in.
 #[derive(Debug)]
-pub(super) struct Polygon<'p> {
+pub(super) struct AreaPolygon<'p> {
     pub(super) plane: &'p Setup,
     /// Its number among the view's polygons.
     pub(super) number: u32,
@@ -21,7 +21,7 @@ pub(super) struct Polygon<'p> {
     slope: [f64; 2],
 }
 
-impl<'p> Polygon<'p> {
+impl<'p> AreaPolygon<'p> {
     pub(super) fn new(number: u32, polygon: ConvexPolygon<'p, '_>) -> Self {
         let plane = polygon.plane();
         let slope = [plane.dz_dx, plane.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
@@ -59,7 +59,7 @@ pub(super) enum Relation {
 
 /// Looks at the corners of a region: between them depths are linear, apart from rounding and from the clamping to the
 /// facet's own range, for which there has to be room.
-pub(super) fn relation(front: &Polygon<'_>, back: &Polygon<'_>, region: &Region) -> Relation {
+pub(super) fn relation(front: &AreaPolygon<'_>, back: &AreaPolygon<'_>, region: &Region) -> Relation {
     // Decide by the ranges of depth if they do not overlap.
     let (near, far) = (front.plane, back.plane);
     if near.z_min > far.z_max {
@@ -98,8 +98,8 @@ pub(super) fn relation(front: &Polygon<'_>, back: &Polygon<'_>, region: &Region)
 /// The line, with whole coefficients, beyond which, in a box, `front` is nearer than `back` by `margin`, and a little more for
 /// the rounding of the coefficients.
 pub(super) fn line_of_gap(
-    front: &Polygon<'_>,
-    back: &Polygon<'_>,
+    front: &AreaPolygon<'_>,
+    back: &AreaPolygon<'_>,
     margin: f64,
     [x0, y0, x1, y1]: [f64; 4],
 ) -> Option<Line> {

@@ -5,7 +5,7 @@
 //! Cost: a box test for each run of triangles; a few operations for each facet found.
 
 use crate::PreparedView;
-use crate::cull::window::Window;
+use crate::cull::window::PixelWindow;
 use serde::Serialize;
 use vitral_math::{DVec3, DVec4};
 use vitral_raster::geometry::flag;
@@ -153,7 +153,7 @@ pub(crate) fn candidates(view: &PreparedView<'_>, seen: &SeenPixel<'_>, wirefram
     let world = &view.session.world;
 
     // Search all instances, whether they are drawn or not.
-    let window = Window::new(&view.view, view.viewport, seen.place(), 1, SNAPPED);
+    let window = PixelWindow::new(&view.view, view.viewport, seen.place(), 1, SNAPPED);
     let mut found = Vec::new();
     for (index, instance) in world.instances.iter().enumerate() {
         let all = 0..instance.mesh.triangles.len() as u32;
@@ -272,7 +272,7 @@ pub fn facets_at(view: &PreparedView<'_>, [x, y]: [i32; 2]) -> Vec<(u32, f32, bo
     // Find the triangles near the pixel.
     let world = &view.session.world;
     let pixel = [x, y].map(|v| v.div_euclid(SUBPIXEL) as u32);
-    let window = Window::new(&view.view, view.viewport, pixel, 1, SNAPPED);
+    let window = PixelWindow::new(&view.view, view.viewport, pixel, 1, SNAPPED);
     let mut found = Vec::new();
     for prepared in &view.instances {
         let instance = &world.instances[prepared.instance];

@@ -35,7 +35,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use vitral_exec::{Charge, Limit};
 use vitral_raster::{SUBPIXEL, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid};
-use window::{Relation, Window};
+use window::{Window, WindowRelation};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -109,7 +109,7 @@ impl Divided {
         let execution = &Execution { observer, ..facets.execution().clone() };
         let tiles = (0..view.viewport.tiles_x() * view.viewport.tiles_y()).map(|_| None).collect();
         let mut divided = Self { tiles, counters: VisibilityCounters::default() };
-        let all = (0..polygons.len() as u32).map(|polygon| Entry { polygon, relation: Relation::Intersecting });
+        let all = (0..polygons.len() as u32).map(|polygon| Entry { polygon, relation: WindowRelation::Intersecting });
         let whole = Window::whole(view.viewport.width, view.viewport.height);
         let mut level: Vec<(Window, Arc<[Entry]>)> = vec![(whole, all.collect())];
         while !level.is_empty() {
@@ -282,7 +282,7 @@ fn place(tile: &Tile, [column, row]: [u32; 2], s: usize) -> usize {
 /// The facet of a polygon at a sample, if it covers it, as a surrounder does.
 fn facet_at(polygon: ConvexPolygon<'_, '_>, entry: Entry, [x, y]: [i32; 2]) -> Option<u32> {
     match entry.relation {
-        Relation::Surrounding => Some(polygon.facet_within(x, y)),
+        WindowRelation::Surrounding => Some(polygon.facet_within(x, y)),
         _ => polygon.facet_at(x, y),
     }
 }

@@ -37,7 +37,7 @@ use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use buckets::Buckets;
 use fill::{Filling, VisiblePolygons};
-use polygon::{AreaPolygon, Relation, line_of_gap, relation};
+use polygon::{AreaPolygon, DepthRelation, line_of_gap, relation};
 use region::{Clipped, ConvexOutline, Region, RegionOutline, Workspace};
 use vitral_exec::{Charge, Limit};
 use vitral_raster::{SUBPIXEL, TileGrid, Viewport};
@@ -336,16 +336,18 @@ impl AreaSorting<'_> {
         counters.depth_comparisons += 1;
         let keep = |region, is_reduced| Item { region, is_reduced, ..*item };
         let margin = match relation(front, back, &part) {
-            Relation::Hidden => return Ok(Some(Inside { kept: None, hidden: Some(part) })),
-            Relation::Visible => return Ok(Some(Inside { kept: Some(keep(part, item.is_reduced)), hidden: None })),
-            Relation::Partly { margin } => margin,
+            DepthRelation::Hidden => return Ok(Some(Inside { kept: None, hidden: Some(part) })),
+            DepthRelation::Visible => {
+                return Ok(Some(Inside { kept: Some(keep(part, item.is_reduced)), hidden: None }));
+            }
+            DepthRelation::Partly { margin } => margin,
         };
 
         // Cut where the planes meet.
         if let Some(line) = line_of_gap(front, back, margin, part.bounds()) {
             let mut rest = part.clone();
             if let Clipped::Both(behind) = rest.clip(&ConvexOutline::half_plane(line), &back.shape, &mut worker.work)
-                && relation(front, back, &behind) == Relation::Hidden
+                && relation(front, back, &behind) == DepthRelation::Hidden
             {
                 counters.splits += 1;
                 return Ok(Some(Inside { kept: Some(keep(rest, true)), hidden: Some(behind) }));

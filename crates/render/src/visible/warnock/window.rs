@@ -28,7 +28,7 @@ pub(super) struct SampleBox {
 
 /// What a polygon is to a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Relation {
+pub(super) enum WindowRelation {
     /// It has no sample in it.
     Disjoint,
     /// It lies within the window's pixels.
@@ -111,12 +111,12 @@ impl SampleBox {
 
 /// Tests a polygon, given by its outline, against the box round a window's samples: one of the box's sides or of the
 /// outline's edges has the other on its outer side, if they are disjoint.
-pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> Relation {
+pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> WindowRelation {
     let outside =
         // Reject outlines beside the box.
         |k: usize, [low, high]: [i32; 2]| outline.iter().all(|v| v[k] < low) || outline.iter().all(|v| v[k] > high);
     if outside(0, samples.x) || outside(1, samples.y) {
-        return Relation::Disjoint;
+        return WindowRelation::Disjoint;
     }
     // An edge function is largest and smallest at two corners of the box.
     let mut surrounds = true;
@@ -127,7 +127,7 @@ pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> Relation {
         let down = samples.y.map(|y| dx * i64::from(y - a[1]));
         let across = samples.x.map(|x| -dy * i64::from(x - a[0]));
         if down[0].max(down[1]) + across[0].max(across[1]) < inside {
-            return Relation::Disjoint;
+            return WindowRelation::Disjoint;
         }
         surrounds &= down[0].min(down[1]) + across[0].min(across[1]) >= inside;
     }
@@ -138,11 +138,11 @@ pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> Relation {
         outline.iter().all(|v| sides.contains(&v[k]))
     };
     if surrounds {
-        Relation::Surrounding
+        WindowRelation::Surrounding
     } else if within(0, samples.x) && within(1, samples.y) {
-        Relation::Contained
+        WindowRelation::Contained
     } else {
-        Relation::Intersecting
+        WindowRelation::Intersecting
     }
 }
 
@@ -190,14 +190,14 @@ pub(super) mod tests {
             let setup = triangle(corners, [0.5; 3], 0);
             relation(&[0, 1, 2].map(|i| [setup.x[i], setup.y[i]]), WINDOW)
         };
-        assert_eq!(relation([[3000, 0], [4000, 0], [3000, 900]]), Relation::Disjoint);
+        assert_eq!(relation([[3000, 0], [4000, 0], [3000, 900]]), WindowRelation::Disjoint);
         // Its box overlaps the window, but an edge has the window on its outer side.
-        assert_eq!(relation([[4000, 0], [4000, 4000], [0, 4000]]), Relation::Disjoint);
-        assert_eq!(relation([[300, 300], [900, 300], [300, 900]]), Relation::Contained);
-        assert_eq!(relation([[-300, 300], [900, 300], [300, 900]]), Relation::Intersecting);
-        assert_eq!(relation([[-300, -300], [9000, -300], [-300, 9000]]), Relation::Surrounding);
+        assert_eq!(relation([[4000, 0], [4000, 4000], [0, 4000]]), WindowRelation::Disjoint);
+        assert_eq!(relation([[300, 300], [900, 300], [300, 900]]), WindowRelation::Contained);
+        assert_eq!(relation([[-300, 300], [900, 300], [300, 900]]), WindowRelation::Intersecting);
+        assert_eq!(relation([[-300, -300], [9000, -300], [-300, 9000]]), WindowRelation::Surrounding);
         // The samples on the left and top edges are in, those on the right one are out.
-        assert_eq!(relation([[128, 128], [9000, 128], [128, 9000]]), Relation::Surrounding);
-        assert_eq!(relation([[1920, 9000], [1920, -7000], [-7000, -7000]]), Relation::Intersecting);
+        assert_eq!(relation([[128, 128], [9000, 128], [128, 9000]]), WindowRelation::Surrounding);
+        assert_eq!(relation([[1920, 9000], [1920, -7000], [-7000, -7000]]), WindowRelation::Intersecting);
     }
 }

@@ -48,7 +48,7 @@ impl<'p> AreaPolygon<'p> {
 
 /// What a region of one polygon is to another that covers it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Relation {
+pub(super) enum DepthRelation {
     /// Behind it at every sample.
     Hidden,
     /// Nowhere certainly behind.
@@ -59,15 +59,15 @@ pub(super) enum Relation {
 
 /// Looks at the corners of a region: between them depths are linear, apart from rounding and from the clamping to the
 /// facet's own range, for which there has to be room.
-pub(super) fn relation(front: &AreaPolygon<'_>, back: &AreaPolygon<'_>, region: &Region) -> Relation {
+pub(super) fn relation(front: &AreaPolygon<'_>, back: &AreaPolygon<'_>, region: &Region) -> DepthRelation {
     // Decide by the ranges of depth if they do not overlap.
     let (near, far) = (front.plane, back.plane);
     if near.z_min > far.z_max {
-        return Relation::Hidden;
+        return DepthRelation::Hidden;
     }
     if same_plane(near, far) {
         // Where ids of facets mix, each sample decides.
-        return if front.facets[1] < back.facets[0] { Relation::Hidden } else { Relation::Visible };
+        return if front.facets[1] < back.facets[0] { DepthRelation::Hidden } else { DepthRelation::Visible };
     }
 
     // Compare depths at all corners.
@@ -87,11 +87,11 @@ pub(super) fn relation(front: &AreaPolygon<'_>, back: &AreaPolygon<'_>, region: 
     // Compare the differences with the rounding.
     room &= farthest_front - margin > f64::from(far.z_min) && nearest_back + margin < f64::from(near.z_max);
     if smallest > margin && room {
-        Relation::Hidden
+        DepthRelation::Hidden
     } else if largest > margin {
-        Relation::Partly { margin }
+        DepthRelation::Partly { margin }
     } else {
-        Relation::Visible
+        DepthRelation::Visible
     }
 }
 

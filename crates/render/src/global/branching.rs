@@ -4,7 +4,7 @@ use super::coincident::CoincidentGroups;
 use super::media::{Border, Media};
 use super::ray_scene::RayScene;
 use super::rays::{Branch, Haze, Rays, counts};
-use super::surface::Surface;
+use super::surface::HitSurface;
 use crate::shading::{Bounce, ShadedPoints, Strata};
 use crate::shadow::{SurfacePoint, hash};
 use crate::stats::TracingCounters;
@@ -143,7 +143,7 @@ impl Branching<'_> {
         &self,
         ray: &Branch,
         branch: &Branch,
-        (surface, haze): (&Surface, &Haze),
+        (surface, haze): (&HitSurface, &Haze),
         way: Way,
         rays: &mut Rays,
         counters: &mut TracingCounters,
@@ -182,7 +182,7 @@ impl Branching<'_> {
     fn pass_to_next(
         &self,
         branch: &Branch,
-        (surface, haze): (&Surface, &Haze),
+        (surface, haze): (&HitSurface, &Haze),
         place: &SurfacePoint,
         rays: &mut Rays,
         counters: &mut TracingCounters,
@@ -212,7 +212,7 @@ impl Branching<'_> {
         &self,
         branch: &Branch,
         axis: DVec3,
-        surface: &Surface,
+        surface: &HitSurface,
         exponent: f32,
         rays: &mut Vec<Branch>,
         counters: &mut TracingCounters,
@@ -229,7 +229,7 @@ impl Branching<'_> {
     }
 
     /// How the ray goes on behind the surface, or behind all those of a pile.
-    fn through(&self, ray: &Branch, surface: &Surface, (number, from_behind): (u32, bool), pile: &[u32]) -> Way {
+    fn through(&self, ray: &Branch, surface: &HitSurface, (number, from_behind): (u32, bool), pile: &[u32]) -> Way {
         let border = if pile.is_empty() {
             self.scene.crossing(number, from_behind).map(|(material, entering)| ray.media.cross(material, entering))
         } else {

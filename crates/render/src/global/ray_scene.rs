@@ -6,7 +6,7 @@ use super::coincident::{CoincidentGroups, unit_normal};
 use super::media::Media;
 use super::rays::Branch;
 use super::sky::Sky;
-use super::surface::Surface;
+use super::surface::HitSurface;
 use crate::prepare::mirrors;
 use crate::raytrace::Visitor;
 use crate::raytrace::beam::Beam;
@@ -142,14 +142,14 @@ impl<'a> RayScene<'a> {
     }
 
     /// The surface on the ray's side.
-    pub(super) fn surface(&self, ray: &Branch, normal: [f32; 3], place: &SurfacePoint) -> Surface {
+    pub(super) fn surface(&self, ray: &Branch, normal: [f32; 3], place: &SurfacePoint) -> HitSurface {
         let [x, y, z] = normal.map(f64::from);
         let shading = (self.view_from_world.transpose() * dvec3(x, y, z)).normalize_or_zero();
         let facet = if place.normal.dot(ray.direction) > 0.0 { -place.normal } else { place.normal };
         // A shading normal that the ray cannot see is of no use.
         let usable = |n: DVec3| n.dot(ray.direction) < -1e-4;
         let n = [shading, -shading].into_iter().find(|n| usable(*n)).unwrap_or(facet);
-        Surface { n, facet }
+        HitSurface { n, facet }
     }
 
     /// The exponent with which a facet scatters what passes it, if it does.

@@ -1,7 +1,7 @@
 //! Tells the rays of a picture to whoever looks on: what each meets, and how it goes on from there.
 
 use super::rays::{Branch, Rays};
-use super::surface::Surface;
+use super::surface::HitSurface;
 use crate::shading::FrameConstants;
 use crate::stats::TracingCounters;
 use crate::trace::{Observer, Step, Way};
@@ -41,7 +41,7 @@ impl TraceWriter<'_> {
     pub(super) fn goes_on(
         &self,
         ray: &Branch,
-        surface: &Surface,
+        surface: &HitSurface,
         facet: u32,
         rays: &Rays,
         (before, reflections): ([usize; 2], u64),

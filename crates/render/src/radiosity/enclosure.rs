@@ -15,7 +15,7 @@ use super::lamps::lamps;
 use super::neighbours::Neighbours;
 use super::parts::{PARTS, middle};
 use super::patch::{NONE, Trees, area};
-use super::surface::{Surface, Surfaces};
+use super::surface::{ElementSurface, Surfaces};
 use super::targets::Targets;
 use super::walls;
 use crate::raytrace::bvh::Bvh;
@@ -97,7 +97,7 @@ fn elements(
     let leaves = trees.leaves();
     let surfaces = Surfaces::new(session, settings);
     let found = execution.workers.map(leaves.len(), |i| {
-        let Surface { normal, there, reflectance, emission } = surfaces.of(trees, leaves[i]);
+        let ElementSurface { normal, there, reflectance, emission } = surfaces.of(trees, leaves[i]);
         let corners = trees.places(leaves[i]);
         let area = area(corners) * f64::from(there.count_ones()) / PARTS as f64;
         let patch = trees.nodes[leaves[i] as usize].patch;

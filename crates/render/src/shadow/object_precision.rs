@@ -22,7 +22,7 @@ use super::casters::{Casters, Solid, away, lifted, near, wide, winding_normal};
 use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoints};
 use super::rounding::clearance;
-use super::sources::{Emitter, Shares, Source};
+use super::sources::{Emitter, LightSource, Shares};
 use super::{Drawn, PreparedShadows, ShadowAlgorithm, ShadowKey};
 use crate::raytrace::shaft::Shaft;
 use crate::{Cached, Execution, Session, Settings};
@@ -102,7 +102,8 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
             let casters = Casters::of(session, &occluders, execution)?;
             let facets = session.world.facet_count as usize;
             let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {
-                let places = Source::new(light, settings.shadows.light_samples, casters.triangles().center).places();
+                let places =
+                    LightSource::new(light, settings.shadows.light_samples, casters.triangles().center).places();
                 places.into_iter().map(|place| OfLight::new(place, &casters, facets, execution)).collect()
             };
             let lights: Result<_, Limit> = lights.iter().map(of_light).collect();

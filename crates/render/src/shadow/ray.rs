@@ -19,7 +19,7 @@ use super::hash::hash;
 use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::rounding::{clearance, horizon};
-use super::sources::{Area, Shares, Source};
+use super::sources::{Area, LightSource, Shares};
 use super::{PreparedShadows, ShadowAlgorithm};
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::structures::AnyStructure;
@@ -37,9 +37,9 @@ pub struct RayShadows;
 struct Prepared<'a> {
     structure: AnyStructure,
     occluders: Occluders<'a>,
-    sources: Vec<Source>,
+    sources: Vec<LightSource>,
     /// The same in more cells, for points where those of `sources` disagree; without it, points choose their places by chance.
-    finer: Option<Vec<Source>>,
+    finer: Option<Vec<LightSource>>,
     level: Level,
 }
 
@@ -60,7 +60,7 @@ impl ShadowAlgorithm for RayShadows {
         }
         let structure = AnyStructure::new(acceleration, session, execution)?;
         let center = structure.triangles().center;
-        let of = |samples: u32| lights.iter().map(|l| Source::new(l, samples, center)).collect::<Vec<_>>();
+        let of = |samples: u32| lights.iter().map(|l| LightSource::new(l, samples, center)).collect::<Vec<_>>();
         let sources = of(settings.shadows.light_samples);
         let finer = (settings.global.model == Global::Radiosity).then(|| of(FINER * settings.shadows.light_samples));
         let (occluders, level) = (Occluders::new(session, settings), execution.level);
@@ -84,20 +84,22 @@ impl PreparedShadows for Prepared<'_> {
             let found = &mut found[..TOGETHER.min(places.len() - first)];
             let asking = (first..first + found.len()).map(|number| places.get(number));
             match &self.sources[light] {
-                Source::Unoccluded => {}
-                Source::Infinity(towards) => {
+                LightSource::Unoccluded => {}
+                LightSource::Infinity(towards) => {
                     self.transmittance(&mut feelers, asking.map(|place| (place, *towards)), false, found);
                 }
-                Source::Point(at) => {
+                LightSource::Point(at) => {
                     self.transmittance(&mut feelers, asking.map(|place| (place, *at - place.position)), true, found);
                 }
-                Source::Area(area) => {
+                LightSource::Area(area) => {
                     for (place, part) in asking.zip(&mut *found) {
                         let seed = hash(place.seed ^ hash(light as u32));
                         let seed = if self.finer.is_some() { 0 } else { seed };
                         *part = self.area_part(area, &place, seed, &mut feelers, rays);
                         let finer = self.finer.as_ref().map(|finer| &finer[light]);
-                        if let (Some(Source::Area(finer)), true) = (finer, part.iter().any(|&p| p > 0.0 && p < 1.0)) {
+                        if let (Some(LightSource::Area(finer)), true) =
+                            (finer, part.iter().any(|&p| p > 0.0 && p < 1.0))
+                        {
                             *part = self.area_part(finer, &place, seed, &mut feelers, rays);
                         }
                     }

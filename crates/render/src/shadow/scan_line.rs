@@ -21,7 +21,7 @@ mod on_receivers;
 use super::casters::{Casters, Solid, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
-use super::sources::{Emitter, Shares, Source};
+use super::sources::{Emitter, LightSource, Shares};
 use super::{Drawn, PreparedShadows, ShadowAlgorithm};
 use crate::raytrace::shaft::Shaft;
 use crate::{Execution, Session, Settings, Transparency};
@@ -57,7 +57,8 @@ impl ShadowAlgorithm for ScanLineShadows {
         let occluders = Occluders::new(session, settings);
         let casters = Casters::of(session, &occluders, execution)?;
         let center = casters.triangles().center;
-        let lights = lights.iter().map(|l| Source::new(l, settings.shadows.light_samples, center).places()).collect();
+        let lights =
+            lights.iter().map(|l| LightSource::new(l, settings.shadows.light_samples, center).places()).collect();
         let (transparency, execution) = (settings.transparency.model, execution.clone());
         Ok(Box::new(Prepared { session, transparency, execution, casters, occluders, lights }))
     }

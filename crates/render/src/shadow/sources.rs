@@ -25,7 +25,7 @@ use vitral_math::{DVec2, DVec3, DVec4, dvec2, func};
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Source {
+pub(super) enum LightSource {
     /// It casts no shadows.
     Unoccluded,
     /// Unit vector towards the light.
@@ -76,7 +76,7 @@ enum Shape {
     Polygon(Vec<DVec2>),
 }
 
-impl Source {
+impl LightSource {
     /// The light's, with about `samples` cells, less `center`.
     pub(super) fn new(light: &Light, samples: u32, center: DVec3) -> Self {
         if !light.shadow || !light.enabled {
@@ -93,7 +93,7 @@ impl Source {
     }
 }
 
-impl Source {
+impl LightSource {
     /// The places that light comes from, the same for all points. None if it casts no shadows.
     pub(super) fn places(&self) -> Vec<Emitter> {
         let only = |at: DVec4| vec![Emitter { at, normal: DVec3::ZERO }];

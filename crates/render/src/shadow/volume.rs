@@ -31,11 +31,11 @@ mod paths;
 use super::casters::{Casters, faces, lifted};
 use super::occluders::Occluders;
 use super::places::{LightVisibility, SurfacePoints};
-use super::sources::{Shares, Source};
+use super::sources::{LightSource, Shares};
 use super::{Drawn, PreparedShadows, ShadowAlgorithm, ShadowKey};
 use crate::{Cached, Execution, Session, Settings, VolumeCounting};
 use count::{Batch, Lit, ODD};
-pub(crate) use edges::Surface;
+pub(crate) use edges::CasterSurface;
 use light_volumes::LightVolumes;
 use std::sync::Arc;
 use vitral_exec::Limit;
@@ -51,7 +51,7 @@ pub struct VolumeShadows;
 #[derive(Debug)]
 pub(crate) struct Volumes {
     casters: Arc<Casters>,
-    surface: Arc<Surface>,
+    surface: Arc<CasterSurface>,
     lights: Vec<Vec<LightVolumes>>,
 }
 
@@ -120,10 +120,10 @@ impl Volumes {
     ) -> Result<Self, Limit> {
         let casters = Casters::of(session, occluders, execution)?;
         let surface =
-            session.cache.get_or_build(occluders.key(), || Surface::new(&session.world, &casters, execution))?;
+            session.cache.get_or_build(occluders.key(), || CasterSurface::new(&session.world, &casters, execution))?;
         let triangles = casters.triangles();
         let of_light = |light: &Light| -> Result<Vec<LightVolumes>, Limit> {
-            let places = Source::new(light, settings.shadows.light_samples, triangles.center).places();
+            let places = LightSource::new(light, settings.shadows.light_samples, triangles.center).places();
             places.into_iter().map(|place| LightVolumes::new(place, triangles, &surface, execution)).collect()
         };
         let lights: Result<_, Limit> = lights.iter().map(of_light).collect();

@@ -5,7 +5,7 @@ use super::lens::Lens;
 use super::tiles::Map;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::occluders::Occluders;
-use crate::shadow::sources::{Emitter, Source};
+use crate::shadow::sources::{Emitter, LightSource};
 use crate::{Cached, ColorSpace, Execution, Session, Settings, Transparency};
 use std::sync::Arc;
 use vitral_exec::Limit;
@@ -96,20 +96,20 @@ impl LightMaps {
         if world.bounds.is_empty() {
             return Ok(Self::Unoccluded);
         }
-        let source = Source::new(light, pass.settings.shadows.light_samples, Triangles::center_of(world));
+        let source = LightSource::new(light, pass.settings.shadows.light_samples, Triangles::center_of(world));
         let emitters = source.places();
         // Draw one map for a parallel light or a spot, and a cube of maps for any other position.
         match source {
-            Source::Unoccluded => Ok(Self::Unoccluded),
-            Source::Infinity(towards) => {
+            LightSource::Unoccluded => Ok(Self::Unoccluded),
+            LightSource::Infinity(towards) => {
                 let map = Box::new(pass.draw(Lens::parallel(towards, world, size))?);
                 Ok(Self::Infinity { towards, map })
             }
-            Source::Point(at) => Ok(Self::Positions(vec![match spot_lens(light, at, pass) {
+            LightSource::Point(at) => Ok(Self::Positions(vec![match spot_lens(light, at, pass) {
                 Some(lens) => (emitters[0], vec![pass.draw(lens)?]),
                 None => maps_around(emitters[0], size, pass)?,
             }])),
-            Source::Area(_) => {
+            LightSource::Area(_) => {
                 let side = (f64::from(size) / (emitters.len() as f64).sqrt()) as u32;
                 let side = side.max(LEAST_SIDE.min(size));
                 let pass = FirstPass { when: When::Before, ..pass };

@@ -1,6 +1,6 @@
 //! Counting along paths: which sides and caps a path meets, and the numbers of a whole batch of places.
 
-use super::edges::{Side, before};
+use super::edges::{VolumeSide, before};
 use super::light_volumes::LightVolumes;
 use super::paths::{Boxes8, Paths};
 use crate::VolumeCounting;
@@ -62,7 +62,7 @@ impl Path {
 
     /// What a side adds to the count, if the path crosses its plane `along` the normal.
     #[inline(always)]
-    fn side(&self, side: &Side, along: i32) -> i32 {
+    fn side(&self, side: &VolumeSide, along: i32) -> i32 {
         if along == 0 {
             return 0;
         }
@@ -140,7 +140,7 @@ impl Lit<'_> {
     }
 
     #[inline(always)]
-    fn side(&self, number: u32) -> &Side {
+    fn side(&self, number: u32) -> &VolumeSide {
         &self.volumes.sides[number as usize]
     }
 

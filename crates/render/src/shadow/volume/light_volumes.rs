@@ -1,6 +1,6 @@
 //! The volumes that hide one place of a light: their sides, found again by a tree, and their caps.
 
-use super::edges::{Side, Surface, turned_all};
+use super::edges::{CasterSurface, VolumeSide, turned_all};
 use crate::Execution;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
@@ -20,7 +20,7 @@ pub(super) struct LightVolumes {
     pub(super) from: Emitter,
     /// For each triangle whether its winding turns it towards the light, 1, or away, -1.
     pub(super) turned: Vec<i8>,
-    pub(super) sides: Vec<Side>,
+    pub(super) sides: Vec<VolumeSide>,
     /// Over runs of sides.
     tree: Bvh,
 }
@@ -29,7 +29,7 @@ impl LightVolumes {
     pub(super) fn new(
         from: Emitter,
         triangles: &Triangles,
-        surface: &Surface,
+        surface: &CasterSurface,
         execution: &Execution,
     ) -> Result<Self, Limit> {
         let light = from.at;
@@ -40,7 +40,7 @@ impl LightVolumes {
         let sides = surface.sides(light, &turned, triangles, &execution.workers);
         // A tree over runs of sides: neighbours in the list mostly are neighbours in space. A box is a triangle, too.
         let runs = || sides.chunks(RUN);
-        let around = |run: &[Side]| {
+        let around = |run: &[VolumeSide]| {
             let (middle, half) = box_around(run.iter().flat_map(|s| [s.a, s.b]), 0.0);
             let [min, max] = [middle - half, middle + half].map(|p: DVec3| -> Vec3 { p.as_vec3() });
             [min, max, max]
@@ -52,7 +52,7 @@ impl LightVolumes {
         };
 
         // Build the tree and charge what it takes.
-        let bytes = sides.len() as u64 * size_of::<Side>() as u64 + Bvh::bytes(sides.len() as u64);
+        let bytes = sides.len() as u64 * size_of::<VolumeSide>() as u64 + Bvh::bytes(sides.len() as u64);
         execution.budget.charge(bytes, "shadow volumes")?;
         execution.budget.release(bytes);
         let tree = Bvh::build(&boxes, &execution.workers, &execution.budget)?;

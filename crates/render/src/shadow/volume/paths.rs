@@ -3,7 +3,7 @@
 //! In double precision, the operations in the order of the formulas for one path, so that a path has the same crossings
 //! whichever way it is looked at.
 
-use super::edges::{Side, before};
+use super::edges::{VolumeSide, before};
 use crate::shadow::casters::{away, ordered, wide};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F64x8, LANES, Simd};
@@ -102,7 +102,7 @@ impl<S: Simd> Paths<S> {
 
     /// Counts a side of volumes.
     #[inline(always)]
-    pub(super) fn meet_side(&mut self, side: &Side) {
+    pub(super) fn meet_side(&mut self, side: &VolumeSide) {
         // Find the paths that cross the side's plane.
         let (enters, mut met) = self.crossing(side.plane);
         if met == 0 {
@@ -177,7 +177,7 @@ impl<S: Simd> Boxes8<S> {
 
     /// Those into which a side may reach.
     #[inline(always)]
-    pub(super) fn touched_by_side(&self, side: &Side) -> u32 {
+    pub(super) fn touched_by_side(&self, side: &VolumeSide) -> u32 {
         let mut touched = self.cut_by(side.plane);
         if touched == 0 {
             return 0;
@@ -269,7 +269,7 @@ mod tests {
             let to = [0; LANES].map(|_| place(&mut seed));
             let [a, b] = [place(&mut seed), place(&mut seed)];
             let (a, b) = if ordered(a, b) { (a, b) } else { (b, a) };
-            let side = Side::new(a, b, LIGHT, 3);
+            let side = VolumeSide::new(a, b, LIGHT, 3);
             let light = LIGHT.truncate();
             let expected = to.map(|to| {
                 let (start, end) = (height(side.plane, from), height(side.plane, to));
@@ -310,7 +310,7 @@ mod tests {
             let half = [0; LANES].map(|_| place(&mut seed).abs() * 0.2);
             let (corners, plane) = triangle(&mut seed);
             let [a, b, c] = wide(&corners);
-            let side = Side::new(a.min(b), a.max(b), LIGHT, 1);
+            let side = VolumeSide::new(a.min(b), a.max(b), LIGHT, 1);
             for (name, level) in available_levels() {
                 let [by_triangle, by_side] = dispatch!(level, simd => {
                     let boxes = Boxes8::new(simd, &middle, &half);

@@ -200,14 +200,14 @@ fn blend_path(state: &FragmentState) -> BlendPath {
 
 /// A row of eight pixels of a tile: where it begins in each sample's part of a plane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Row {
+pub(crate) struct PlaneRow {
     /// `y * TILE + x`, x a multiple of 8.
     pub at: usize,
 }
 
 /// What a facet has in the eight pixels of a row.
 pub(crate) struct RowFragments<'a, S: Simd> {
-    pub row: Row,
+    pub row: PlaneRow,
     /// Of a back-facing polygon.
     pub back: bool,
     /// The pixels whose sample is covered, for each sample.
@@ -257,7 +257,7 @@ impl TilePlanes<'_> {
         &mut self,
         simd: S,
         state: &FragmentState,
-        row: Row,
+        row: PlaneRow,
         bits: &[u32; SAMPLES],
         depths: &Depths<S>,
     ) -> [u32; SAMPLES] {
@@ -334,7 +334,15 @@ impl TilePlanes<'_> {
 
     /// Writes the depths of pixels that have passed.
     #[inline(always)]
-    fn write_depth<S: Simd>(&mut self, simd: S, state: &FragmentState, s: usize, row: Row, bits: u32, depth: F32x8<S>) {
+    fn write_depth<S: Simd>(
+        &mut self,
+        simd: S,
+        state: &FragmentState,
+        s: usize,
+        row: PlaneRow,
+        bits: u32,
+        depth: F32x8<S>,
+    ) {
         if bits == 0 || !state.depth.is_some_and(|test| test.write) {
             return;
         }
@@ -358,7 +366,7 @@ impl TilePlanes<'_> {
         simd: S,
         state: &FragmentState,
         s: usize,
-        row: Row,
+        row: PlaneRow,
         back: bool,
         bits: u32,
         depth: F32x8<S>,
@@ -407,7 +415,7 @@ impl TilePlanes<'_> {
         simd: S,
         state: &FragmentState,
         ops: &FragmentOps,
-        row: Row,
+        row: PlaneRow,
         bits: &[u32; SAMPLES],
         color: &Rgba<S>,
     ) {

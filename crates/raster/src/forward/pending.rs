@@ -17,7 +17,7 @@ use super::fragment::{stored, stored_depth};
 use super::pass::{ForwardScreen, Pass};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
-use super::tile_index::{self, Candidate, Texels, TileIndex};
+use super::tile_index::{self, Candidate, TileIndex, TileTexels};
 use super::wide::{bits_of, every, max, min, select};
 use crate::kernel::nearest::NearestDepths;
 use crate::kernel::traverse::Window;
@@ -291,7 +291,7 @@ impl PendingDepth {
             let together = bits_of(tile.simd_eq(<V::Ints as SimdBase<S>>::splat(simd, number))) & open;
             open &= !together;
             let active = MaskOf::<S, V>::from_bitmask(simd, u64::from(together));
-            let texels = Texels { x, y, active };
+            let texels = TileTexels { x, y, active };
             let found = match self.known(number as usize, together.count_ones()) {
                 Some(Known::Few(index)) => self.search(simd, index, &texels, settled, floors, best),
                 Some(Known::Drawn(drawn)) => {
@@ -316,7 +316,7 @@ impl PendingDepth {
         &self,
         simd: S,
         index: &TileIndex,
-        texels: &Texels<S, V>,
+        texels: &TileTexels<S, V>,
         settled: bool,
         floors: V,
         best: f32,
@@ -364,7 +364,7 @@ impl PendingDepth {
         &self,
         simd: S,
         tile: usize,
-        texels: &Texels<S, V>,
+        texels: &TileTexels<S, V>,
         settled: bool,
         floors: V,
         best: f32,
@@ -559,7 +559,7 @@ impl PendingJob {
 
 /// A triangle's depths at texels, by the operations of [`Setup::depth`].
 #[inline(always)]
-fn depths_at<S: Simd, V: Floats<S>>(simd: S, setup: &Setup, texels: &Texels<S, V>) -> V {
+fn depths_at<S: Simd, V: Floats<S>>(simd: S, setup: &Setup, texels: &TileTexels<S, V>) -> V {
     let away = lanes::inlined(
         #[inline(always)]
         |texel: V::Ints, axis: usize| -> V {

@@ -5,7 +5,7 @@ use super::block::{self, BlockWords, DepthRule, Words};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
 use super::fragment::{
-    ColorTile, Depths, FragmentOps, Row, RowFragments, SAMPLES, TilePlanes, columns, keeps, stored_depth,
+    ColorTile, Depths, FragmentOps, PlaneRow, RowFragments, SAMPLES, TilePlanes, columns, keeps, stored_depth,
 };
 use super::fragment_ops::packed::unpack;
 use super::hard_line::HardLine;
@@ -257,7 +257,7 @@ impl<'a> TileRun<'a> {
                     }
                 }
                 if bits != 0 {
-                    self.image_row(simd, image, state, ops, Row { at: y as usize * TILE + x }, bits, &at);
+                    self.image_row(simd, image, state, ops, PlaneRow { at: y as usize * TILE + x }, bits, &at);
                 }
             }
         }
@@ -270,7 +270,7 @@ impl<'a> TileRun<'a> {
         image: &ImageFragments,
         state: &FragmentState,
         ops: &FragmentOps,
-        row: Row,
+        row: PlaneRow,
         bits: u32,
         at: &[usize; LANES],
     ) {
@@ -595,7 +595,7 @@ impl ForwardSink<'_, '_, '_> {
         }
 
         // Skip a row that the depth test hides.
-        let at = Row { at: y * TILE + block.x };
+        let at = PlaneRow { at: y * TILE + block.x };
         let visible = self.run.planes.visible(simd, state, at, &bits, &depths);
         let mut active = visible[0] | visible[1] | visible[2] | visible[3];
         if active == 0 {

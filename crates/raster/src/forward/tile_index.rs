@@ -60,7 +60,7 @@ pub(crate) struct TileIndex {
 
 /// Texels of a tile, eight or sixteen.
 #[derive(Clone, Copy)]
-pub(crate) struct Texels<S: Simd, V: Floats<S>> {
+pub(crate) struct TileTexels<S: Simd, V: Floats<S>> {
     /// Places in the plane.
     pub(crate) x: V::Ints,
     pub(crate) y: V::Ints,
@@ -100,12 +100,12 @@ impl TileIndex {
     pub(crate) fn find<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
-        texels: &Texels<S, V>,
+        texels: &TileTexels<S, V>,
         mut floors: V,
         mut found: impl FnMut(&Setup, MaskOf<S, V>) -> V,
     ) {
         // Gather the triangles that touch the blocks of the texels.
-        let Texels { x, y, active } = *texels;
+        let TileTexels { x, y, active } = *texels;
         let (column, row) = (x - self.origin[0], y - self.origin[1]);
         let block = (row >> BLOCK.trailing_zeros()) * BLOCKS as i32 + (column >> BLOCK.trailing_zeros());
         let block = block.as_slice();
@@ -183,7 +183,7 @@ mod tests {
                         let (lanes_x, lanes_y) = (I32x8::from_slice(simd, &x), I32x8::from_slice(simd, &y));
                         let active = Mask8::from_bitmask(simd, 0x7f);
                         let floors = <F32x8<_> as SimdBase<_>>::splat(simd, floor);
-                        index.find(simd, &Texels { x: lanes_x, y: lanes_y, active }, floors, |setup, covered| {
+                        index.find(simd, &TileTexels { x: lanes_x, y: lanes_y, active }, floors, |setup, covered| {
                             found.push((*setup, covered.to_bitmask()));
                             floors
                         });

@@ -6,7 +6,7 @@
 //! Source: OpenGL 1.5 specification, table 3.20; ARB_seamless_cube_map.
 
 use super::depth::{by_mode, compared, reference};
-use super::fetch::{Image, Words, columns, interior, level_of, level_of_face, quads};
+use super::fetch::{Image, TexelWords, columns, interior, level_of, level_of_face, quads};
 use super::halves::Halves;
 use super::mip::{mipped, mix_rgba};
 use super::packed_cube::PackedCube;
@@ -182,7 +182,7 @@ fn lookup<S: Simd>(
     if one_face
         && inside
         && shape.border == 0
-        && let Some(words) = Words::new(shape)
+        && let Some(words) = TexelWords::new(shape)
         && let Some(columns) =
             if filtered { shape.columns(shape.size[0] as usize * shape.size[1] as usize) } else { Some(&[][..]) }
     {
@@ -204,7 +204,7 @@ fn lookup<S: Simd>(
 fn bilinear<S: Simd>(
     simd: S,
     (columns, width): (&[[u32; 2]], u32),
-    words: Words<'_>,
+    words: TexelWords<'_>,
     x: &Axis<S>,
     y: &Axis<S>,
 ) -> Rgba<S> {
@@ -287,11 +287,11 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
 fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &TexelCoords8<S>) -> Rgba<S> {
     let index = place.index.to_array();
     // Fetch packed words lane by lane.
-    if let Some(first) = Words::new(spot.shape) {
+    if let Some(first) = TexelWords::new(spot.shape) {
         let mut words = [0u32; LANES];
         for lane in 0..LANES {
             let shape = level_of_face(texture, (place.face[lane] % 6) as usize, spot.level);
-            if let Some(texels) = shape.and_then(Words::new) {
+            if let Some(texels) = shape.and_then(TexelWords::new) {
                 words[lane] = texels.texels.get(index[lane] as u32 as usize).copied().unwrap_or_default();
             }
         }

@@ -3,7 +3,7 @@
 //! With a comparison each texel becomes 0 or 1 before filtering, so that a linear filter gives the share of the four
 //! texels that pass, by their weights.
 
-use super::fetch::{Depths, level_of};
+use super::fetch::{LevelDepths, level_of};
 use super::flat::{axes, corner_texels};
 use super::mip::mipped;
 use super::wrap::position_in;
@@ -168,7 +168,7 @@ fn settles(func: Option<Compare>, sign: f32) -> bool {
 
 /// The stored depth that decides a comparison, for each lane: triangles that are no nearer need not be looked at.
 #[inline(always)]
-fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -> Option<F32x8<S>> {
+fn known<S: Simd>(texture: &Texture, depths: &LevelDepths<'_>, reference: F32x8<S>) -> Option<F32x8<S>> {
     settles(texture.sampler.compare, depths.pending()?).then_some(reference)
 }
 
@@ -185,7 +185,7 @@ fn lookup<S: Simd, const DIMENSIONS: usize>(
 ) -> F32x8<S> {
     // Find the texels and weights along the axes.
     let Some(shape) = level_of(texture, level) else { return splat(simd, 0.0) };
-    let depths = Depths::new(shape, plane);
+    let depths = LevelDepths::new(shape, plane);
     let known = known(texture, &depths, point[2]);
     let axes = axes(simd, texture, shape, DIMENSIONS, linear, point);
 

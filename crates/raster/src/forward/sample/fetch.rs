@@ -86,13 +86,13 @@ pub(super) fn quads<'a, S: Simd, V: Floats<S>>(
 
 /// Texels of 8 bits a component.
 #[derive(Clone, Copy)]
-pub(super) struct Words<'a> {
+pub(super) struct TexelWords<'a> {
     pub(super) texels: &'a [u32],
     /// What colour bytes mean, if they are sRGB-encoded.
     decode: Option<&'a [f32; 256]>,
 }
 
-impl<'a> Words<'a> {
+impl<'a> TexelWords<'a> {
     /// Those of a level, if it has such.
     #[inline(always)]
     pub(super) fn new(level: &'a Level) -> Option<Self> {
@@ -179,10 +179,10 @@ fn decode<S: Simd, V: Floats<S>>(simd: S, words: V::Words, table: &[f32; 256]) -
 /// Texels of any kind, as colours.
 #[derive(Clone, Copy)]
 pub(super) enum Image<'a> {
-    Words(Words<'a>),
+    TexelWords(TexelWords<'a>),
     Floats(&'a [[f32; 4]]),
     /// A depth in all components.
-    Depths(&'a [f32]),
+    LevelDepths(&'a [f32]),
 }
 
 impl<'a> Image<'a> {
@@ -192,7 +192,7 @@ impl<'a> Image<'a> {
         match level.texels() {
             Texels::RgbaF32(texels) => Self::Floats(texels),
             Texels::Depth(texels) => Self::Depths(texels),
-            _ => Words::new(level).map_or(Self::Floats(&[]), Self::Words),
+            _ => TexelWords::new(level).map_or(Self::Floats(&[]), Self::Words),
         }
     }
 
@@ -264,7 +264,7 @@ pub(super) fn columns<S: Simd>(simd: S, colors: &[[f32; 4]; LANES]) -> Rgba<S> {
 }
 
 /// Depths of a level.
-pub(super) enum Depths<'a> {
+pub(super) enum LevelDepths<'a> {
     Stored(&'a [f32]),
     /// Held until the lookup is done.
     Locked(MutexGuard<'a, DepthBuffer>),
@@ -272,7 +272,7 @@ pub(super) enum Depths<'a> {
     Plane(&'a DepthBuffer),
 }
 
-impl<'a> Depths<'a> {
+impl<'a> LevelDepths<'a> {
     /// Those of a level; what is no depth image has none.
     #[inline(always)]
     pub(super) fn new(level: &'a Level, plane: Option<&'a DepthBuffer>) -> Self {

@@ -6,7 +6,7 @@
 //!
 //! All lanes are looked up together, each on the level that it needs: a level is only a slice of texels and a size.
 
-use super::fetch::{Words, interior, quads};
+use super::fetch::{TexelWords, interior, quads};
 use super::halves::{Halves, weight};
 use super::mip::{Choice, choose, dimensions, mix_rgba};
 use super::wrap::{Axis, linear_in, nearest_in, position_in};
@@ -23,7 +23,7 @@ pub(crate) struct Packed<'a> {
     /// From the finest to the coarsest.
     levels: &'a [Arc<Level>],
     /// Level 0, for what bytes mean.
-    first: Words<'a>,
+    first: TexelWords<'a>,
     /// Of level 0, in texels; 0 along what the texture does not have.
     size: [f32; 2],
     sampler: &'a Sampler,
@@ -39,7 +39,7 @@ impl<'a> Packed<'a> {
         let [levels] = &texture.faces[..] else { return None };
         let first = levels.first()?;
         // What most textures of other kinds lack.
-        let words = Words::new(first)?;
+        let words = TexelWords::new(first)?;
 
         // Accept flat textures with wrap modes that the packed path knows.
         let sampler = &texture.sampler;
@@ -55,7 +55,7 @@ impl<'a> Packed<'a> {
         let [width, height, _] = interior(first, dimensions(texture.kind));
         for (k, level) in levels.iter().enumerate() {
             let size = [(width >> k).max(1), (height >> k).max(1)];
-            if level.border != 0 || level.size[..2] != size || Words::new(level).is_none() {
+            if level.border != 0 || level.size[..2] != size || TexelWords::new(level).is_none() {
                 return None;
             }
         }
@@ -410,7 +410,7 @@ impl<'a> Packed<'a> {
 
     #[inline(never)]
     fn add_words(&self, level: &[i32], at: &[i32], words: &mut [u32; MOST_LANES]) {
-        let texels = |level: i32| Words::new(self.get(level)).map_or(&[][..], |words| words.texels);
+        let texels = |level: i32| TexelWords::new(self.get(level)).map_or(&[][..], |words| words.texels);
         let [first, ..] = level else { return };
         // Nearly always all lanes need the same level.
         let (same, shared) = (level.iter().all(|other| other == first), texels(*first));

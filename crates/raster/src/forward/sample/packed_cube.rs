@@ -7,7 +7,7 @@
 //! Source: ARB_seamless_cube_map.
 
 use super::cube::{fill_missing, neighbour};
-use super::fetch::{Words, level_of_face, quads};
+use super::fetch::{TexelWords, level_of_face, quads};
 use super::halves::Halves;
 use super::mip::{choose, mix_rgba};
 use super::wrap::{linear_in, position_in};
@@ -33,7 +33,7 @@ pub(crate) struct PackedCube<'a> {
     /// Width and height of a face of level 0.
     size: u32,
     /// A face, for what bytes mean.
-    first: Words<'a>,
+    first: TexelWords<'a>,
 }
 
 impl<'a> PackedCube<'a> {
@@ -58,7 +58,7 @@ impl<'a> PackedCube<'a> {
         if !usual || !regular || sampler.mag != Filter::Linear || !sampler.min.is_linear() {
             return None;
         }
-        Some(Self { texture, last, size, first: Words::new(first)? })
+        Some(Self { texture, last, size, first: TexelWords::new(first)? })
     }
 
     /// Whether the level of detail can matter.

@@ -244,7 +244,7 @@ try {
   row("a frame while dragging, 100,000 triangles", "33", sphere.frame, "ms");
   row("longest block of the page's thread while dragging", "50", Math.max(teapot.block, sphere.block), "ms");
   row("full quality, 100,000 triangles, 4 samples", "300", await fullQuality(context), "ms");
-  for (const algorithm of ["z-buffer", "scan-line", "warnock", "painter", "bsp", "weiler-atherton", "ray-casting"]) {
+  for (const algorithm of ["z-buffer", "scan-line", "warnock", "painter", "bsp", "weiler-atherton", "ray-cast"]) {
     const { recording, step } = await steps(context, algorithm);
     row(`recording the steps, teapot, ${algorithm}`, "1000", recording, "ms");
     row(`a jump to a step, ${algorithm}`, "50", step, "ms");

@@ -84,6 +84,7 @@ impl<'s> Graph<'s> {
     fn trails(mut self) -> Vec<Vec<Step>> {
         let mut trails = Vec::new();
         let mut node = 0;
+        // Start a trail at each node with an odd number of free strokes.
         while node < self.ends.len() {
             let ends = self.ends_at(node as u32);
             let (count, free) = (ends.len(), ends.iter().filter(|&&end| !self.used[end as usize / 2]).count());
@@ -94,6 +95,8 @@ impl<'s> Graph<'s> {
             }
             node += count;
         }
+
+        // Cover the closed trails that are left.
         for stroke in 0..self.strokes.len() {
             if !self.used[stroke] {
                 trails.push(self.trail(stroke as u32 * 2));

@@ -27,7 +27,7 @@ pub use vitral_frame::LineClasses as Classes;
 /// A face at an edge.
 #[derive(Clone, Copy)]
 pub(crate) struct Side<'a> {
-    /// The triangle.
+    /// The triangle beside the edge.
     pub(crate) triangle: &'a Triangle,
     /// What it was cut from.
     pub(crate) source: &'a Source,
@@ -57,6 +57,8 @@ pub(crate) fn classes_of(sides: &[Side<'_>], thresholds: Thresholds) -> Classes 
     if left != right {
         classes = classes | Classes::one(LineClass::Contour);
     }
+
+    // Compare the angle with the crease's, and the materials.
     let flat = cosine(&sides[0], &sides[1]);
     if sides.len() > 2 || flat < thresholds.crease {
         classes = classes | Classes::one(LineClass::Crease);
@@ -64,6 +66,8 @@ pub(crate) fn classes_of(sides: &[Side<'_>], thresholds: Thresholds) -> Classes 
     if sides.iter().any(|s| s.source.material != sides[0].source.material) {
         classes = classes | Classes::one(LineClass::Material);
     }
+
+    // Leave tangent edges out unless they are contours.
     let is_left_out = sides.len() == 2 && thresholds.tangent.is_some_and(|tangent| flat > tangent);
     if is_left_out { classes.common(Classes::one(LineClass::Contour)) } else { classes }
 }

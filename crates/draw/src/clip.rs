@@ -48,7 +48,10 @@ pub(crate) fn outcode(p: DVec4) -> u8 {
 /// What a side of a polygon is part of: a side of the triangle, by the numbers of its ends in order, or a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Origin {
+    /// A side of the facet: its ends, lower number first, and whether it is a side of the face and
+    /// of a cut.
     Side { ends: [u32; 2], outline: bool, cut: bool },
+    /// A clip plane.
     Plane,
 }
 
@@ -78,11 +81,14 @@ impl<'v> Clipper<'v> {
 
     /// Cuts a triangle, and adds what is inside as a fan.
     pub(crate) fn clip(&mut self, facet: &Facet, to: &mut Vec<Facet>) {
+        // Drop facets without finite coordinates.
         let codes = facet.vertices.map(|v| self.vertices[v as usize].outcode);
         let crossed = codes[0] | codes[1] | codes[2];
         if crossed & NOT_FINITE != 0 {
             return;
         }
+
+        // Start with the facet's corners and their sides.
         let mut polygon: Vec<Corner> = (0..3)
             .map(|k| {
                 let (a, b) = (facet.vertices[k], facet.vertices[(k + 1) % 3]);
@@ -91,6 +97,8 @@ impl<'v> Clipper<'v> {
                 Corner { vertex: a, origin: Origin::Side { ends: [a.min(b), a.max(b)], outline, cut } }
             })
             .collect();
+
+        // Clip at each plane that some corner lies outside.
         for plane in (0..PLANES).filter(|plane| crossed >> plane & 1 == 1) {
             polygon = self.cut(&polygon, plane);
         }
@@ -106,6 +114,8 @@ impl<'v> Clipper<'v> {
             Origin::Side { outline, cut, .. } => u8::from(outline) | u8::from(cut) << CUT_SIDES,
             Origin::Plane => 0,
         };
+
+        // Emit the fan with the bits of its outer sides.
         for k in 1..kept.len().saturating_sub(1) {
             let vertices = [kept[0].vertex, kept[k].vertex, kept[k + 1].vertex];
             let first = if k == 1 { bits(&kept[0]) } else { 0 };

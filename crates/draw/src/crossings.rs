@@ -32,7 +32,9 @@ const LEAST_SINE: f32 = 1e-4;
 /// A line in which two triangles cross.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Crossing {
+    /// The two triangles.
     triangles: [u32; 2],
+    /// The ends of the common line, on the grid.
     ends: [GridPoint; 2],
 }
 
@@ -46,6 +48,8 @@ pub(crate) fn add_crossings(
     let spare = Spare::<Pairs>::default();
     let count = mesh.triangles.len();
     run.budget.begin("triangles", count as u64);
+
+    // Search each batch of triangles on a thread of its own.
     let found = run.workers.map(count.div_ceil(BATCH), |batch| {
         spare.lend(|pairs| {
             pairs.met.resize(count, NONE);
@@ -60,6 +64,8 @@ pub(crate) fn add_crossings(
             Ok(found)
         })
     });
+
+    // Add an edge for each line of intersection.
     let before = mesh.edges.len();
     for piece in found {
         for crossing in piece? {
@@ -91,6 +97,7 @@ impl Pairs {
         run: &Run<'_>,
         found: &mut Vec<Crossing>,
     ) -> Result<(), Limit> {
+        // Visit the cells around the triangle, the nearest triangles first.
         let triangle = &mesh.triangles[number as usize];
         let farthest = triangle.farthest();
         let start = found.len();
@@ -100,12 +107,16 @@ impl Pairs {
                 if other.nearest < farthest {
                     break;
                 }
+
+                // Check the budget from time to time.
                 self.tests += 1;
                 if self.tests.is_multiple_of(PAIRS_A_CHECK)
                     && let Err(limit) = run.budget.check("intersections")
                 {
                     return ControlFlow::Break(limit);
                 }
+
+                // Reject pairs whose boxes are disjoint, seen pairs and nearly parallel ones.
                 let apart = |k: usize| other.low[k] > triangle.high[k] || other.high[k] < triangle.low[k];
                 let twice = own_level && other_number <= number;
                 if twice || apart(0) || apart(1) || other.farthest() > triangle.nearest {
@@ -118,6 +129,8 @@ impl Pairs {
                 if angle < LEAST_SINE {
                     continue;
                 }
+
+                // Intersect the two triangles exactly.
                 if let Some(ends) = crossing(triangle, other) {
                     found.push(Crossing { triangles: [number, other_number], ends });
                 }

@@ -24,7 +24,7 @@ use crate::run::Run;
 use groups::Groups;
 pub(crate) use parts::PageRegion;
 pub use parts::Seams;
-use parts::{Look, Part, Parts};
+use parts::{Look, Part, VisibleParts};
 use std::ops::Range;
 use visible::{Clipping, Stage, VisibleShapes};
 use vitral_exec::{Limit, Spare};
@@ -119,6 +119,8 @@ pub(crate) fn regions(
     if surfaces.seams == Seams::Under && !surfaces.by_face {
         joined.splice(0..0, seams::ground(&parts.all, &joined));
     }
+
+    // Flatten clear layers if the page cannot be transparent.
     match surfaces.flatten && clear.is_some() {
         true => flatten::flattened(joined, &groups, &parts.all, surfaces.seams, run),
         false => Ok(joined.iter().flat_map(groups::Joined::regions).collect()),
@@ -126,7 +128,12 @@ pub(crate) fn regions(
 }
 
 /// The visible parts of all triangles, in order.
-fn parts(stage: &Stage<'_>, surfaces: &Surfaces<'_>, facets: &Facets<'_>, run: &Run<'_>) -> Result<Parts, Limit> {
+fn parts(
+    stage: &Stage<'_>,
+    surfaces: &Surfaces<'_>,
+    facets: &Facets<'_>,
+    run: &Run<'_>,
+) -> Result<VisibleParts, Limit> {
     let (spare, count) = (Spare::<Clipping>::default(), stage.mesh.triangles.len());
     run.budget.begin("triangles", count as u64);
     let pieces = run.workers.map(count.div_ceil(BATCH), |batch| {
@@ -138,9 +145,9 @@ fn parts(stage: &Stage<'_>, surfaces: &Surfaces<'_>, facets: &Facets<'_>, run: &
     });
 
     // Put the pieces together.
-    let mut parts = Parts::default();
+    let mut parts = VisibleParts::default();
     for piece in pieces {
-        let (piece, before): (Parts, _) = (piece?, parts.all.len() as u32);
+        let (piece, before): (VisibleParts, _) = (piece?, parts.all.len() as u32);
         parts.all.extend(piece.all);
         parts.contacts.extend(piece.contacts.into_iter().map(|[part, triangle]| [before + part, triangle]));
     }
@@ -155,8 +162,8 @@ fn parts_of(
     surfaces: &Surfaces<'_>,
     facets: &Facets<'_>,
     run: &Run<'_>,
-) -> Result<Parts, Limit> {
-    let mut parts = Parts::default();
+) -> Result<VisibleParts, Limit> {
+    let mut parts = VisibleParts::default();
     for t in triangles {
         run.budget.advance();
         let triangle = &stage.mesh.triangles[t];

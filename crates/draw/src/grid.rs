@@ -64,6 +64,7 @@ fn level_of(low: [i32; 2], high: [i32; 2], finest: u32) -> u32 {
 impl Grid {
     /// Sorts the triangles that `wanted` accepts into cells.
     pub(crate) fn new(mesh: &PageMesh, wanted: impl Fn(&Triangle) -> bool, run: &Run<'_>) -> Result<Self, Limit> {
+        // Sort the triangles by depth, the nearest first.
         let (triangles, size) = (&mesh.triangles, mesh.size);
         let mut order: Vec<(i32, u32)> = (0..triangles.len() as u32)
             .filter(|&t| wanted(&triangles[t as usize]))
@@ -77,12 +78,16 @@ impl Grid {
         let longer = size[0].max(size[1]).max(1) as u32;
         let cells_along = (order.len() as f64).sqrt().max(1.0) as u32;
         let finest = (longer / cells_along).max(1).ilog2();
+
+        // Group them by the level whose cells are about as large as they are.
         let mut by_level: Vec<Vec<u32>> = vec![Vec::new(); 32];
         for &(_, t) in &order {
             let triangle = &triangles[t as usize];
             by_level[level_of(triangle.low, triangle.high, finest) as usize].push(t);
         }
 
+        // Fill the levels from coarse to fine, and cut lists where a triangle covers the whole
+        // cell.
         let mut levels: Vec<Level> = Vec::new();
         for shift in (finest..32).rev().filter(|&shift| !by_level[shift as usize].is_empty()) {
             levels.push(Level::new(shift, size, &by_level[shift as usize], triangles));
@@ -99,9 +104,12 @@ impl Grid {
         visible_only: bool,
         mut visit: impl FnMut(&[u32]) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
+        // Order the ends from bottom to top.
         let [p, q] = if ends[0][1] <= ends[1][1] { ends } else { [ends[1], ends[0]] };
         let (low, high) = ([p[0].min(q[0]), p[1]], [p[0].max(q[0]), q[1]]);
         let slope = f64::from(q[0] - p[0]) / f64::from((q[1] - p[1]).max(1));
+
+        // Visit the cells of each level, row by row.
         for level in &self.levels {
             let ([left, bottom], [right, top]) = (level.cell_of(low), level.cell_of(high));
             for row in bottom..=top {
@@ -114,6 +122,8 @@ impl Grid {
                     from = from.max((a.min(b) - 1.0).max(0.0) as usize >> level.shift);
                     to = to.min((a.max(b) + 1.0).max(0.0) as usize >> level.shift);
                 }
+
+                // Visit the cells of the row.
                 for column in from..=to {
                     let list = level.list(row * level.width + column, visible_only);
                     if !list.is_empty() {
@@ -174,12 +184,18 @@ impl Level {
                 [triangle.low, triangle.high].map(|p| p.map(|c| (c >> shift) as usize));
             (bottom..=top).flat_map(move |row| (left..=right).map(move |column| row * width + column))
         };
+
+        // Count the triangles of each cell.
         for &t in members {
             cells(t).for_each(|cell| level.starts[cell + 1] += 1);
         }
+
+        // Sum the counts to offsets.
         for cell in 0..width * height {
             level.starts[cell + 1] += level.starts[cell];
         }
+
+        // Deal the triangles to their cells.
         level.items = vec![0; level.starts[width * height] as usize];
         level.ends = level.starts[..width * height].to_vec();
         for &t in members {
@@ -218,6 +234,7 @@ impl Covers {
 
     /// Lays a triangle over the cells that lie wholly inside it.
     fn lay(&mut self, shift: u32, triangle: &Triangle) {
+        // Find the cells of the triangle's box and the plane's margin for snapping.
         let (width, height) = (self.width(shift), (self.size[1] >> shift) as usize + 1);
         let [[left, bottom], [right, top]] = [triangle.low, triangle.high].map(|p| p.map(|c| c >> shift));
         let plane = triangle.plane();
@@ -236,6 +253,8 @@ impl Covers {
                 if !corners.into_iter().all(inside) {
                     continue;
                 }
+
+                // Keep the depth of the nearest triangle that covers the cell.
                 let depth = |p: GridPoint| {
                     let [dx, dy] = [0, 1].map(|k| f64::from(p[k]) - f64::from(plane.origin[k]));
                     f64::from(plane.origin[2]) - (nx * dx + ny * dy) / nz

@@ -14,7 +14,7 @@
 //! Cost: constant.
 
 use crate::page_mesh::Triangle;
-use crate::place::{Maker, Place, Segment};
+use crate::place::{EdgePosition, Maker, Segment};
 use vitral_math::exact::orient2d;
 
 /// The sides of an edge that a triangle covers.
@@ -31,8 +31,8 @@ pub(crate) enum Sides {
 /// A part of an edge that a triangle hides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Interval {
-    pub(crate) from: Place,
-    pub(crate) to: Place,
+    pub(crate) from: EdgePosition,
+    pub(crate) to: EdgePosition,
     pub(crate) sides: Sides,
 }
 
@@ -48,7 +48,9 @@ impl Segment<'_> {
     #[inline]
     fn covered_by(&self, number: u32, triangle: &Triangle) -> Option<Interval> {
         let [p, q] = self.ends;
-        let mut covered = Interval { from: Place::START, to: Place::END, sides: Sides::Both };
+        let mut covered = Interval { from: EdgePosition::START, to: EdgePosition::END, sides: Sides::Both };
+
+        // Narrow the interval by each side of the triangle.
         for side in 0..3 {
             let (u, v) = (triangle.corners[side], triangle.corners[(side + 1) % 3]);
             let (start, end) = (orient2d(u, v, p), orient2d(u, v, q));
@@ -60,8 +62,9 @@ impl Segment<'_> {
                 let along = |k: usize| (i64::from(q[k]) - i64::from(p[k])) * (i64::from(v[k]) - i64::from(u[k]));
                 covered.sides = if along(0) + along(1) > 0 { Sides::Left } else { Sides::Right };
             } else if start < 0 || end < 0 {
+                // Move an end to where the edge crosses the side.
                 let about = start as f64 / (start - end) as f64;
-                let place = Place { about, maker: Maker::Side { triangle: number, side: side as u8 } };
+                let place = EdgePosition { about, maker: Maker::Side { triangle: number, side: side as u8 } };
                 if start < 0 && self.is_before(&covered.from, &place) {
                     covered.from = place;
                 } else if end < 0 && self.is_before(&place, &covered.to) {
@@ -75,6 +78,7 @@ impl Segment<'_> {
     /// What of a covered part lies behind the triangle.
     #[inline]
     fn behind(&self, number: u32, triangle: &Triangle, covered: Interval) -> Option<Interval> {
+        // Reject edges whose ends both lie in front of the plane.
         let [p, q] = self.ends;
         let plane = triangle.plane();
         let (start, end) = (plane.side(p), plane.side(q));
@@ -82,9 +86,11 @@ impl Segment<'_> {
             return None;
         }
         let mut hidden = covered;
+
+        // Cut the interval at the crossing of the plane.
         if start * end < 0 {
             let (a, b) = (plane.height(p), plane.height(q));
-            let place = Place { about: a as f64 / (a - b) as f64, maker: Maker::Plane { triangle: number } };
+            let place = EdgePosition { about: a as f64 / (a - b) as f64, maker: Maker::Plane { triangle: number } };
             if start > 0 && self.is_before(&hidden.from, &place) {
                 hidden.from = place;
             } else if end > 0 && self.is_before(&place, &hidden.to) {
@@ -97,7 +103,7 @@ impl Segment<'_> {
 
         // Contacts: the deepest point lies no deeper than snapping can bring it.
         let ((a, _), (b, _)) = (plane.rounded_height(p), plane.rounded_height(q));
-        let height = |place: &Place| a + place.about * (b - a);
+        let height = |place: &EdgePosition| a + place.about * (b - a);
         let deepest = height(&hidden.from).min(height(&hidden.to));
         (deepest < -plane.snapping()).then_some(hidden)
     }
@@ -115,7 +121,7 @@ mod tests {
     fn hidden(corners: [[i32; 3]; 3], ends: [[i32; 3]; 2]) -> Option<(i32, i32, Sides)> {
         let mesh = PageMesh { triangles: vec![Triangle::new(corners, [0, 1, 2])], ..PageMesh::default() };
         let part = Segment { mesh: &mesh, ends }.hidden_by(0, &mesh.triangles[0])?;
-        let thousandths = |place: Place| (place.about * 1000.0).round() as i32;
+        let thousandths = |place: EdgePosition| (place.about * 1000.0).round() as i32;
         Some((thousandths(part.from), thousandths(part.to), part.sides))
     }
 

@@ -24,9 +24,9 @@ pub enum PageSize {
     },
     /// A sheet of this width and height in millimetres, which the drawing fills.
     Sheet {
-        /// Width.
+        /// Width in millimetres.
         width: f64,
-        /// Height.
+        /// Height in millimetres.
         height: f64,
     },
     /// A drawing to scale.
@@ -53,7 +53,9 @@ impl Default for PageSize {
 /// From units of the grid to millimetres on the sheet.
 #[derive(Clone, Copy, Debug)]
 struct Placement {
+    /// Millimetres for each unit.
     scale: f64,
+    /// Millimetres that the origin is moved by.
     offset: [f64; 2],
     /// Width and height of the sheet.
     sheet: [f64; 2],
@@ -69,6 +71,7 @@ impl Placement {
     /// Places a box of these corners.
     fn new(low: [f64; 2], high: [f64; 2], page: PageSize, margin: f64) -> Self {
         let size = [0, 1].map(|k| high[k] - low[k]);
+        // Choose the scale.
         // A drawing without width or height is placed by its other side; one without both is a point.
         let ratio = |room: f64, side: f64| if side > 0.0 { (room / side).max(0.0) } else { f64::INFINITY };
         let scale = match page {
@@ -79,6 +82,8 @@ impl Placement {
             PageSize::Scaled { window, .. } | PageSize::Window { window } => window / f64::from(PAGE_UNITS),
         };
         let scale = if scale.is_finite() { scale } else { 0.0 };
+
+        // Choose the sheet and centre the drawing on it.
         let sheet = match page {
             PageSize::Fit { .. } | PageSize::Scaled { sheet: None, .. } | PageSize::Window { .. } => {
                 size.map(|side| side * scale + 2.0 * margin)
@@ -132,12 +137,16 @@ pub(crate) struct Content<'a> {
 /// Places strokes, regions and points on the sheet, joins the strokes, and hatches the visible parts of cuts.
 pub(crate) fn lay_out(content: &Content<'_>, page: PageSize, margin: f64) -> Drawing {
     let Content { size, strokes, regions, cuts, points } = *content;
+
+    // Find the placement of everything on the sheet.
     let outlines = regions.iter().chain(&cuts.regions).flat_map(|region| region.rings.iter().flatten());
     let all = strokes.iter().flat_map(|stroke| &stroke.ends).chain(outlines).chain(points);
     let placement = match (page, bounds(all.copied()).unwrap_or_default()) {
         (PageSize::Window { window }, _) => Placement::of_window(size, window),
         (_, [low, high]) => Placement::new(low, high, page, margin),
     };
+
+    // Join the strokes to chains.
     let placed: Vec<_> = strokes.iter().map(|s| (s.class, s.layers, s.ends.map(|p| placement.step(p)))).collect();
     let mut lines: Vec<Line> = chains(&placed)
         .into_iter()
@@ -146,10 +155,14 @@ pub(crate) fn lay_out(content: &Content<'_>, page: PageSize, margin: f64) -> Dra
             Line { class: chain.class, layers: chain.layers, points }
         })
         .collect();
+
+    // Hatch the cuts.
     for region in &cuts.regions {
         let Some(on_sheet) = placement.region(region) else { continue };
         lines.extend(hatch(&on_sheet.rings, cuts.pattern(region)));
     }
+
+    // Place regions and points.
     let regions = regions.iter().filter_map(|region| placement.region(region)).collect();
     let mut points: Vec<Step> = points.iter().map(|&point| placement.step(point)).collect();
     points.sort_unstable();

@@ -175,6 +175,7 @@ pub fn draw_one_sided(
     workers: &Workers,
     budget: &Budget,
 ) -> Result<Drawn, Limit> {
+    // Project the world and decide which faces hide.
     let run = Run::new(workers, budget);
     let view = camera.transform(aspect, depth_range(camera, &world.bounds));
     let mut projected = projection::project(world, &view, aspect, &run)?;
@@ -182,10 +183,14 @@ pub fn draw_one_sided(
         projected.let_through(|material| surfaces.opacity(material));
     }
     projected.leave_out_backs(|material| front_only.get(material as usize).copied().unwrap_or(false));
+
+    // Join the facets to a mesh of edges, and add the lines of intersection.
     let mut mesh = edges::with_edges(projected, settings.crease_angle, settings.hide_tangent, &run)?;
     let caps = cuts::Caps::new(world);
     mesh.ranks = caps.ranks(&mesh);
     let grid = Grid::new(&mesh, |triangle| triangle.hides, &run)?;
+
+    // Count what the mesh holds.
     let mut stats = DrawingStats {
         triangles: mesh.triangles.len() as u64,
         hiding_triangles: mesh.triangles.iter().filter(|triangle| triangle.hides).count() as u64,
@@ -196,12 +201,15 @@ pub fn draw_one_sided(
         stats.intersections = intersect(&mut mesh, &grid, settings.hidden_layers > 0, &run)?;
     }
 
+    // Find the visible fragments of all edges, and join them to strokes.
     let wanted =
         Wanted { classes: settings.lines, most_layers: settings.hidden_layers, most_segments: settings.max_segments };
     let search = if settings.brute_force { Search::All } else { Search::Grid(&grid) };
     let (fragments, visibility) = fragments(&mesh, search, wanted, &run)?;
     (stats.fragments, stats.visibility) = (fragments.len() as u64, visibility);
     let strokes = strokes::strokes(&mesh, &fragments, settings.lines, &run)?;
+
+    // Find the points, the filled regions and the hatched cuts.
     let points = match settings.lines.has(LineClass::Boundary) {
         true => points::visible_points(&mesh, search, &run)?,
         false => Vec::new(),
@@ -218,6 +226,8 @@ pub fn draw_one_sided(
         Some(hatch) => caps.visible(&mesh, &grid, &facets, hatch, &run)?,
         None => hatch::Cuts::default(),
     };
+
+    // Lay everything out on the sheet.
     let content = Content { size: mesh.size, strokes: &strokes, regions: &regions, cuts: &cuts, points: &points };
     let drawing = layout::lay_out(&content, settings.page, settings.margin);
     Ok(Drawn { drawing: settings.limited(drawing)?, stats })

@@ -62,6 +62,7 @@ pub fn draw_polygons(
     workers: &Workers,
     budget: &Budget,
 ) -> Result<Drawing, Limit> {
+    // Find the page and the view.
     let run = Run::new(workers, budget);
     let size = page_size(aspect);
     let view = camera.transform(aspect, depth_range(camera, &world.bounds));
@@ -93,6 +94,8 @@ pub fn draw_polygons(
         run.memory.add((strokes.len() * size_of::<Stroke>()) as u64)?;
         strokes = without_coincident(strokes, size, &run)?;
     }
+
+    // Place what is drawn on the sheet.
     if polygons.fill.is_none() {
         regions.clear();
     }
@@ -124,6 +127,7 @@ impl<'w> Sides<'w> {
         to_page: &Projector,
         regions: &mut Vec<PageRegion>,
     ) {
+        // Look up the face's colour.
         let look = self.look(facets[0]);
         let region = |lights: u32, rings: Vec<Vec<[f64; 2]>>| PageRegion {
             surface: look.surface,
@@ -133,6 +137,8 @@ impl<'w> Sides<'w> {
             unlit: lit::unlit(lights, polygons.lit),
             rings,
         };
+
+        // Add the polygon as it is, or divided between the lights.
         if polygons.lit.is_empty() {
             regions.push(region(u32::MAX, rings));
             return;

@@ -112,7 +112,7 @@ impl Triangle {
         Self { low, high, nearest, corners, vertices, hides: area != 0, clear: false, facing: area.signum() as i8 }
     }
 
-    /// Its plane.
+    /// Its plane, exact on the grid of the page.
     #[inline(always)]
     pub(crate) fn plane(&self) -> GridPlane {
         GridPlane::new(self.corners)

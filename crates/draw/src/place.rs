@@ -12,7 +12,7 @@ const CERTAIN: f64 = 1e-14;
 
 /// A place along an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct EdgePosition {
     /// About which fraction of the way from the first end it is.
     pub(crate) about: f64,
     /// What makes it.
@@ -28,19 +28,19 @@ pub(crate) enum Maker {
     End,
     /// A side of a triangle: on the page the two cross.
     Side {
-        /// The triangle.
+        /// The triangle whose side it is.
         triangle: u32,
         /// The side from this corner to the next.
         side: u8,
     },
     /// A triangle that the edge pierces.
     Plane {
-        /// The triangle.
+        /// The pierced triangle.
         triangle: u32,
     },
 }
 
-impl Place {
+impl EdgePosition {
     /// The first end.
     pub(crate) const START: Self = Self { about: 0.0, maker: Maker::Start };
     /// The second end.
@@ -57,7 +57,7 @@ pub(crate) struct Segment<'m> {
 impl Segment<'_> {
     /// The order of two places along the edge.
     #[inline]
-    pub(crate) fn compare(&self, a: &Place, b: &Place) -> Ordering {
+    pub(crate) fn compare(&self, a: &EdgePosition, b: &EdgePosition) -> Ordering {
         let difference = a.about - b.about;
         if difference < -CERTAIN {
             Ordering::Less
@@ -72,7 +72,7 @@ impl Segment<'_> {
 
     /// Whether `a` comes before `b`.
     #[inline]
-    pub(crate) fn is_before(&self, a: &Place, b: &Place) -> bool {
+    pub(crate) fn is_before(&self, a: &EdgePosition, b: &EdgePosition) -> bool {
         self.compare(a, b).is_lt()
     }
 
@@ -96,7 +96,7 @@ impl Segment<'_> {
     }
 
     /// The point of the page at a place, in units.
-    pub(crate) fn point(&self, place: &Place) -> [f64; 2] {
+    pub(crate) fn point(&self, place: &EdgePosition) -> [f64; 2] {
         let [p, q] = self.ends.map(|p| [p[0], p[1]].map(f64::from));
         match place.maker {
             Maker::Start => p,
@@ -120,16 +120,16 @@ mod tests {
             ..PageMesh::default()
         };
         let segment = Segment { mesh: &mesh, ends: [[0, 1, 0], [1 << 14, 1, 0]] };
-        let at = |triangle| Place { about: 0.5, maker: Maker::Side { triangle, side: 0 } };
+        let at = |triangle| EdgePosition { about: 0.5, maker: Maker::Side { triangle, side: 0 } };
         assert_eq!(segment.compare(&at(0), &at(1)), Ordering::Equal);
         assert_eq!(segment.compare(&at(0), &at(2)), Ordering::Less);
-        assert!(segment.is_before(&Place::START, &at(0)) && segment.is_before(&at(2), &Place::END));
+        assert!(segment.is_before(&EdgePosition::START, &at(0)) && segment.is_before(&at(2), &EdgePosition::END));
         assert_eq!(segment.point(&at(0)), [8192.0, 1.0]);
         // A plane that rises along the edge.
         let slope = Triangle::new([[0, 0, -8], [1 << 14, 0, 8], [0, 1 << 14, -8]], [0, 1, 2]);
         let mesh = PageMesh { triangles: vec![slope], ..PageMesh::default() };
         let segment = Segment { mesh: &mesh, ends: [[0, 1, 0], [1 << 14, 1, 0]] };
-        let half = Place { about: 0.5, maker: Maker::Plane { triangle: 0 } };
+        let half = EdgePosition { about: 0.5, maker: Maker::Plane { triangle: 0 } };
         assert_eq!(segment.fraction(half.maker), Fraction::zero_between(-1, 1));
     }
 }

@@ -175,6 +175,8 @@ fn place<'w>(
     run: &Run<'_>,
 ) -> Placed<'w> {
     let mesh = &instance.mesh;
+
+    // Bring the vertices in use to clip space.
     let clip_from_model: DMat4 = view.clip_from_world() * instance.world_from_model;
     let first = clip.len();
     clip.resize(first + used.len(), ClipVertex::default());
@@ -185,6 +187,8 @@ fn place<'w>(
             *vertex = ClipVertex { at, outcode: outcode(at) };
         }
     });
+
+    // Number the vertices; welded ones share a number.
     let mut vertex_of = vec![NONE; mesh.positions.len()];
     used.iter().enumerate().for_each(|(i, &v)| vertex_of[v as usize] = (first + i) as u32);
     if weld.distinct < weld.representative.len() {
@@ -278,6 +282,8 @@ fn add_triangles(
     let (instance, sources) = (placed.instance, &to.sources);
     let count = instance.mesh.triangles.len();
     let vertices = clipper.vertices();
+
+    // Sort the triangles of each batch: whole, clipped, or outside.
     let sorted = run.workers.map(count.div_ceil(BATCH), |piece| {
         let (mut whole, mut partly, mut outline) = (Vec::new(), Vec::new(), Outline::new());
         for t in piece * BATCH..count.min((piece + 1) * BATCH) {
@@ -299,6 +305,8 @@ fn add_triangles(
         }
         (whole, partly)
     });
+
+    // Append the whole ones and clip the others.
     for (whole, partly) in sorted {
         run.budget.check("clipping")?;
         to.facets.extend(whole);
@@ -320,6 +328,7 @@ impl Outline {
 
     /// A bit for each side of a triangle: whether it is a side of its face as well, and no diagonal; and three more for cuts.
     fn sides_of(&mut self, instance: &Instance, t: usize) -> u8 {
+        // Mark the sides that lie along a cut.
         let mesh = &instance.mesh;
         let face = mesh.face_of_triangle(t);
         let corners = mesh.face_corners(face);
@@ -327,6 +336,8 @@ impl Outline {
         let is_cut = |a: u32, b: u32| mesh.section.as_ref().is_some_and(|section| section.has_edge(a, b));
         let cuts = [(a, b), (b, c), (c, a)].into_iter().enumerate();
         let cuts = cuts.fold(0, |bits, (k, (a, b))| bits | u8::from(is_cut(a, b)) << (k as u32 + CUT_SIDES));
+
+        // Mark the sides of the face; all sides of a triangular one.
         if corners.len() == 3 {
             return cuts | 0b111;
         }
@@ -378,6 +389,7 @@ fn snap(to: &mut Projected, clip: &[ClipVertex], view: &ViewTransform, run: &Run
     };
     let scale = if range > 0.0 { units / range } else { 0.0 };
 
+    // Round the vertices to the grid of the page.
     to.vertices.resize(clip.len(), [0; 3]);
     run.workers.for_each_chunk(&mut to.vertices, BATCH, |chunk, vertices| {
         for (vertex, at) in vertices.iter_mut().zip(&clip[chunk * BATCH..]).filter(|(_, at)| at.outcode == 0) {
@@ -392,9 +404,13 @@ fn snap(to: &mut Projected, clip: &[ClipVertex], view: &ViewTransform, run: &Run
 /// Makes the page's triangles of the facets.
 fn finish_triangles(to: &mut Projected, world: &World, placed: &[Placed<'_>], view: &ViewTransform, run: &Run<'_>) {
     let (facets, vertices, sources) = (&to.facets, &to.vertices, &to.sources);
+
+    // Find the direction to the viewer.
     let world_from_view = view.view_from_world.inverse();
     let eye = world_from_view.transform_point3(DVec3::ZERO);
     let backwards = world_from_view.transform_vector3(DVec3::Z);
+
+    // Make the triangles, a batch on each thread.
     let pieces = run.workers.map(facets.len().div_ceil(BATCH), |piece| {
         let mut triangles = Vec::with_capacity(BATCH);
         for facet in &facets[piece * BATCH..facets.len().min((piece + 1) * BATCH)] {
@@ -402,6 +418,8 @@ fn finish_triangles(to: &mut Projected, world: &World, placed: &[Placed<'_>], vi
             let mut triangle = Triangle::new(corners, facet.vertices);
             let index = world.instance_of_facet(facet.source);
             let (one, t) = (&placed[index], facet.source - placed[index].instance.first_facet);
+
+            // Decide which side faces the viewer.
             if orient2d(corners[0], corners[1], corners[2]) == 0 {
                 // Ask the plane in the world where snapping has left no area.
                 let corner = one.instance.corners(t)[0];
@@ -412,6 +430,8 @@ fn finish_triangles(to: &mut Projected, world: &World, placed: &[Placed<'_>], vi
             } else if one.mirrored {
                 triangle.facing = -triangle.facing;
             }
+
+            // Let back faces of closed bodies hide nothing.
             triangle.hides &= triangle.facing >= 0 || !one.solid.has(t as usize);
             triangles.push(triangle);
         }

@@ -73,6 +73,8 @@ pub(crate) fn strokes(
 /// Takes away the parts of strokes that lie on more important ones.
 pub(crate) fn without_coincident(all: Vec<Stroke>, size: [i32; 2], run: &Run<'_>) -> Result<Vec<Stroke>, Limit> {
     let cells = Cells::new(&all, size);
+
+    // Cut the strokes of each batch at the more important strokes nearby.
     let pieces = run.workers.map(all.len().div_ceil(BATCH), |batch| {
         run.budget.check("coincident lines")?;
         let (mut left, mut parts) = (Vec::new(), Vec::new());
@@ -100,6 +102,7 @@ pub(crate) fn without_coincident(all: Vec<Stroke>, size: [i32; 2], run: &Run<'_>
 
 /// What is left of a stroke beside a more important one: all of it, or a piece before and a piece behind.
 fn give_way(stroke: &Stroke, front: &Stroke) -> [Option<Stroke>; 2] {
+    // Measure along and across the stroke.
     let length = stroke.length();
     let [p, q] = stroke.ends;
     let direction = [0, 1].map(|k| (q[k] - p[k]) / length);
@@ -108,18 +111,24 @@ fn give_way(stroke: &Stroke, front: &Stroke) -> [Option<Stroke>; 2] {
         let d = [at[0] - p[0], at[1] - p[1]];
         (d[0] * direction[0] + d[1] * direction[1], d[1] * direction[0] - d[0] * direction[1])
     };
+
+    // Order the ends of the other stroke along this one.
     let (mut from, mut to) = (front.ends[0], front.ends[1]);
     let ((mut a, mut off_a), (mut b, mut off_b)) = (along(from), along(to));
     if a > b {
         (from, to) = (to, from);
         ((a, off_a), (b, off_b)) = ((b, off_b), (a, off_a));
     }
+
+    // Keep the whole stroke unless the other one runs beside it.
     let (low, high) = (a.max(0.0), b.min(length));
     let beside = |at: f64| (off_a + (off_b - off_a) * ((at - a) / (b - a))).abs();
     let common = high - low;
     if common.is_nan() || common < DUST || beside(low) > REACH || beside(high) > REACH {
         return [Some(*stroke), None];
     }
+
+    // Keep the pieces before and behind.
     let piece = |ends: [[f64; 2]; 2]| Some(Stroke { ends, ..*stroke }).filter(|piece| piece.length() >= DUST);
     let before = if low > 0.0 { piece([p, from]) } else { None };
     let behind = if high < length { piece([to, q]) } else { None };
@@ -176,6 +185,7 @@ impl CellGrid {
 
     /// Calls `f` for the cells within reach of a stroke.
     fn visit(&self, stroke: &Stroke, mut f: impl FnMut(usize)) {
+        // Order the ends from bottom to top.
         let [p, q] =
             if stroke.ends[0][1] <= stroke.ends[1][1] { stroke.ends } else { [stroke.ends[1], stroke.ends[0]] };
         let slope = (q[0] - p[0]) / (q[1] - p[1]);
@@ -196,6 +206,8 @@ impl CellGrid {
                 // All of a level stroke lies in its rows.
                 (a, b) = (p[0], q[0]);
             }
+
+            // Visit the columns of the row.
             let columns = self.range(a.min(b), a.max(b), self.width);
             columns.for_each(|column| f(row * self.width + column));
         }

@@ -16,7 +16,7 @@ use crate::grid::Grid;
 use crate::hiding::{Interval, Sides};
 use crate::layout::{Content, PageSize, lay_out};
 use crate::page_mesh::{Edge, NONE, PageMesh};
-use crate::place::{Place, Segment};
+use crate::place::{EdgePosition, Segment};
 use crate::run::Run;
 use crate::strokes::strokes;
 use std::ops::ControlFlow;
@@ -34,12 +34,12 @@ const TESTS_A_CHECK: u32 = 1 << 16;
 /// A part of an edge between two places where its visibility changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fragment {
-    /// The edge.
+    /// The edge's number in the mesh.
     pub(crate) edge: u32,
     /// Triangles in front of it.
     pub(crate) layers: u32,
-    pub(crate) from: Place,
-    pub(crate) to: Place,
+    pub(crate) from: EdgePosition,
+    pub(crate) to: EdgePosition,
 }
 
 /// Which parts of edges are wanted.
@@ -82,6 +82,7 @@ pub(crate) fn fragments(
     wanted: Wanted,
     run: &Run<'_>,
 ) -> Result<(Vec<Fragment>, VisibilityStats), Limit> {
+    // Walk the edges of each batch on a thread of its own.
     let (spare, batches) = (Spare::<Walk>::default(), mesh.edges.len().div_ceil(BATCH));
     run.budget.begin("edges", mesh.edges.len() as u64);
     let of_batch = |batch: usize| {
@@ -169,7 +170,7 @@ struct Walk {
     /// For each triangle the edge that asked it last.
     asked: Vec<u32>,
     /// Visible pieces of the edge, in no order.
-    pieces: Vec<(Place, Place)>,
+    pieces: Vec<(EdgePosition, EdgePosition)>,
     /// Hidden intervals of the edge.
     hidden: Vec<Interval>,
     changes: Vec<Change>,
@@ -180,7 +181,7 @@ struct Walk {
 /// Where a hidden interval begins or ends.
 #[derive(Clone, Copy)]
 struct Change {
-    place: Place,
+    place: EdgePosition,
     sides: Sides,
     by: i32,
 }
@@ -203,10 +204,14 @@ impl Walk {
             // Seen end-on, it is a point.
             return Ok(());
         }
+
+        // Start with the whole edge visible.
         self.stats.edges += 1;
         self.pieces.clear();
         self.hidden.clear();
-        self.pieces.push((Place::START, Place::END));
+        self.pieces.push((EdgePosition::START, EdgePosition::END));
+
+        // Subtract what the triangles hide, by the grid or one by one.
         let visible_only = most_layers == 0;
         let flow =
             match search {
@@ -223,10 +228,12 @@ impl Walk {
         if let ControlFlow::Break(Some(limit)) = flow {
             return Err(limit);
         }
+
+        // Emit the visible pieces, or count layers along the edge.
         self.stats.intervals += self.hidden.len() as u64;
         if visible_only && self.pieces.len() <= MOST_PIECES {
             self.pieces.sort_by(|a, b| segment.compare(&a.0, &b.0));
-            let visible = |&(from, to): &(Place, Place)| Fragment { edge: number, layers: 0, from, to };
+            let visible = |&(from, to): &(EdgePosition, EdgePosition)| Fragment { edge: number, layers: 0, from, to };
             found.extend(self.pieces.iter().map(visible));
         } else {
             self.sweep(&segment, number, most_layers, found);
@@ -234,7 +241,7 @@ impl Walk {
         Ok(())
     }
 
-    /// Asks the triangles of a list, the nearest first; breaks where nothing is visible any more, or at a limit.
+    /// Tests the triangles of a list, the nearest first; breaks when all of the edge is hidden, or at a limit.
     fn ask(
         &mut self,
         list: &[u32],
@@ -244,6 +251,7 @@ impl Walk {
         visible_only: bool,
         run: &Run<'_>,
     ) -> ControlFlow<Option<Limit>> {
+        // Bound the edge.
         let [p, q] = segment.ends;
         let (low, high) = ([p[0].min(q[0]), p[1].min(q[1])], [p[0].max(q[0]), p[1].max(q[1])]);
         let farthest = p[2].min(q[2]);
@@ -254,11 +262,15 @@ impl Walk {
             }
             self.stats.candidates += 1;
             self.tests += 1;
+
+            // Check the budget from time to time.
             if self.tests.is_multiple_of(TESTS_A_CHECK)
                 && let Err(limit) = run.budget.check("visibility")
             {
                 return ControlFlow::Break(Some(limit));
             }
+
+            // Skip triangles beside the edge, tested ones, and those at the edge itself.
             let apart = |k: usize| triangle.low[k] > high[k] || triangle.high[k] < low[k];
             if apart(0) || apart(1) || std::mem::replace(&mut self.asked[t as usize], number) == number {
                 continue;
@@ -266,6 +278,8 @@ impl Walk {
             if segment.mesh.triangles_at(edge).contains(&t) {
                 continue;
             }
+
+            // Find the hidden interval, and subtract it from the visible pieces.
             self.stats.tests += 1;
             let Some(interval) = segment.hidden_by(t, triangle) else { continue };
             self.hidden.push(interval);
@@ -283,11 +297,14 @@ impl Walk {
     fn take_away(&mut self, segment: &Segment<'_>, hidden: &Interval) {
         let mut i = 0;
         while i < self.pieces.len() {
+            // Keep pieces that do not overlap the interval.
             let (from, to) = self.pieces[i];
             if !segment.is_before(&from, &hidden.to) || !segment.is_before(&hidden.from, &to) {
                 i += 1;
                 continue;
             }
+
+            // Shorten, split or drop those that do.
             match (segment.is_before(&from, &hidden.from), segment.is_before(&hidden.to, &to)) {
                 (true, true) => {
                     self.pieces[i].1 = hidden.from;
@@ -311,16 +328,17 @@ impl Walk {
 
     /// Counts the layers along the edge, and adds the parts with few enough.
     fn sweep(&mut self, segment: &Segment<'_>, number: u32, most_layers: u32, found: &mut Vec<Fragment>) {
+        // Sort the changes of the number of layers along the edge.
         self.changes.clear();
         for interval in &self.hidden {
             self.changes.push(Change { place: interval.from, sides: interval.sides, by: 1 });
             self.changes.push(Change { place: interval.to, sides: interval.sides, by: -1 });
         }
-        self.changes.push(Change { place: Place::END, sides: Sides::Both, by: 0 });
+        self.changes.push(Change { place: EdgePosition::END, sides: Sides::Both, by: 0 });
         self.changes.sort_by(|a, b| segment.compare(&a.place, &b.place));
 
         // Count the layers over both sides of the edge; the side with more of them tells.
-        let (mut counts, mut at) = ([0; 3], Place::START);
+        let (mut counts, mut at) = ([0; 3], EdgePosition::START);
         let first = found.len();
         for change in &self.changes {
             if segment.is_before(&at, &change.place) {

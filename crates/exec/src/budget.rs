@@ -127,7 +127,7 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// No limits; time starts now.
+    /// No limits; time starts with the call.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
         let start = clock.seconds();
         Self {
@@ -163,7 +163,7 @@ impl Budget {
         self
     }
 
-    /// A budget with the same clock, cancellation and listener that starts now, with nothing charged: for one of
+    /// A budget with the same clock, cancellation and listener that starts with the call, with nothing charged: for one of
     /// several computations with limits of their own.
     #[must_use]
     pub fn renewed(&self) -> Self {

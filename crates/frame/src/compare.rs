@@ -33,25 +33,25 @@ pub struct Bounds {
 /// A channel of a pixel: 8 or 16 bits.
 pub trait Component: Copy + Default + Ord + Into<u64> + std::fmt::Display {
     /// The largest value.
-    const MOST: Self;
+    const LARGEST: Self;
 
     /// How far two are apart.
     #[must_use]
-    fn apart(self, other: Self) -> Self;
+    fn difference(self, other: Self) -> Self;
 }
 
 impl Component for u8 {
-    const MOST: Self = Self::MAX;
+    const LARGEST: Self = Self::MAX;
 
-    fn apart(self, other: Self) -> Self {
+    fn difference(self, other: Self) -> Self {
         self.abs_diff(other)
     }
 }
 
 impl Component for u16 {
-    const MOST: Self = Self::MAX;
+    const LARGEST: Self = Self::MAX;
 
-    fn apart(self, other: Self) -> Self {
+    fn difference(self, other: Self) -> Self {
         self.abs_diff(other)
     }
 }
@@ -126,7 +126,7 @@ pub fn compare<T: Component>(
             if p == q {
                 continue;
             }
-            let apart: [T; 4] = std::array::from_fn(|c| p[c].apart(q[c]));
+            let apart: [T; 4] = std::array::from_fn(|c| p[c].difference(q[c]));
             squares += apart[..3].iter().map(|&d| d.into().pow(2)).sum::<u64>();
             for (max, d) in found.max.iter_mut().zip(apart) {
                 *max = (*max).max(d);
@@ -142,7 +142,7 @@ pub fn compare<T: Component>(
     // Turn the mean square into decibels below the peak value.
     if squares > 0 {
         let mean = squares as f64 / (3.0 * found.pixels as f64);
-        let peak = T::MOST.into() as f64;
+        let peak = T::LARGEST.into() as f64;
         found.psnr = 10.0 * func::ln(peak * peak / mean) / std::f64::consts::LN_10;
     }
     Ok(found)
@@ -155,9 +155,9 @@ pub fn compare<T: Component>(
 /// If the sizes differ.
 pub fn picture<T: Component>(a: &Plane<[T; 4]>, b: &Plane<[T; 4]>) -> Result<Plane<[u8; 4]>, SizeMismatch> {
     check_sizes(a, b)?;
-    let byte = |value: T| value.into() * 255 / T::MOST.into();
+    let byte = |value: T| value.into() * 255 / T::LARGEST.into();
     let shown = a.data().iter().zip(b.data()).map(|(p, q)| {
-        let apart = (0..4).map(|c| p[c].apart(q[c])).max().unwrap_or_default();
+        let apart = (0..4).map(|c| p[c].difference(q[c])).max().unwrap_or_default();
         let grey = (byte(p[0]) + 2 * byte(p[1]) + byte(p[2])) / 4;
         let faded = (160 + grey / 4) as u8;
         if apart == T::default() { [faded, faded, faded, 255] } else { [(128 + byte(apart) / 2) as u8, 0, 0, 255] }

@@ -18,13 +18,13 @@ pub struct Shared {
     pub lists: Mutex<ListNames>,
     /// Labels of shared objects.
     pub(crate) labels: Mutex<crate::api::Labels>,
-    /// Textures.
+    /// Texture objects by name.
     pub(crate) textures: Mutex<Names<TextureHandle>>,
-    /// Renderbuffers.
+    /// Renderbuffer objects by name.
     pub(crate) renderbuffers: Mutex<Names<RenderbufferHandle>>,
     /// Sampler objects.
     pub(crate) samplers: Mutex<Names<SamplerHandle>>,
-    /// Fences.
+    /// Fences of `ARB_sync`.
     pub(crate) fences: Mutex<crate::api::Fences>,
     /// Grows when an image that a framebuffer may have attached gets new storage.
     pub(crate) storage_epoch: AtomicU64,

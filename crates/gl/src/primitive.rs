@@ -88,6 +88,8 @@ pub(crate) fn cut_into_parts(primitives: &[Primitive], stippled: bool) -> Vec<Ve
             TRIANGLE_STRIP | QUAD_STRIP => (2, 2),
             _ => (primitive.count, 0),
         };
+
+        // Append pieces of whole elements, and begin a part when one is full.
         let most = (PART_VERTICES / element).max(1) * element;
         for start in (0..primitive.count - shared).step_by(most as usize) {
             let count = (most + shared).min(primitive.count - start);

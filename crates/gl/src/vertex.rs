@@ -15,7 +15,7 @@ use vitral_math::Mat4;
 
 /// Whether a batch is drawn at once or comes out of a display list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sent {
+pub enum Submission {
     /// By Begin and End, or from arrays.
     #[default]
     Now,
@@ -25,15 +25,15 @@ pub enum Sent {
 
 /// What vertices are drawn with besides their attributes, where a batch does not say otherwise.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Given {
+pub(crate) struct CurrentState {
     /// Model to eye.
     pub modelview: Mat4,
     /// Front, back.
     pub material: [MaterialFace; 2],
 }
 
-impl Given {
-    /// As it is now.
+impl CurrentState {
+    /// The current matrix and material.
     pub(crate) fn current(state: &State) -> Self {
         Self { modelview: state.matrices.modelview.top(), material: state.lighting.material }
     }

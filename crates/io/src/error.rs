@@ -31,7 +31,7 @@ pub enum Error {
     /// The content breaks the rules of its format. `what` says what was seen and what is required.
     #[error("{file}: {place}{what}")]
     Malformed {
-        /// The file.
+        /// The file as the caller named it.
         file: String,
         /// Where in it.
         place: Place,
@@ -51,7 +51,7 @@ pub enum Error {
     /// The format is known but not read, or the file demands a feature that is not there.
     #[error("{file}: {what}")]
     Unsupported {
-        /// The file.
+        /// The file as the caller named it.
         file: String,
         /// The format or feature.
         what: String,

@@ -139,6 +139,7 @@ pub struct FormatRow {
 
 /// Every format, models first. What this build leaves out can be neither read nor written.
 pub fn formats() -> Vec<FormatRow> {
+    // Describe a model format, a picture that can be written, and one that is read as a texture.
     let model = |f: Format| FormatRow {
         name: f.name(),
         extensions: f.extensions(),
@@ -158,6 +159,8 @@ pub fn formats() -> Vec<FormatRow> {
     let coded = cfg!(feature = "images");
     let texture =
         |name, extensions, description| FormatRow { write: false, ..picture(name, extensions, description, coded) };
+
+    // List the formats.
     let mut rows: Vec<FormatRow> = Format::ALL.into_iter().map(model).collect();
     rows.push(picture("PNG", &["png"], "Portable network graphics, lossless, with transparency", true));
     let jpeg = picture("JPEG", &["jpg", "jpeg"], "JPEG, lossy, without transparency", coded);

@@ -121,6 +121,7 @@ impl MtlMaterial {
     fn statement(&mut self, keyword: &[u8], cursor: &mut Cursor, warnings: &mut Warnings) {
         let line = cursor.line();
         match keyword.to_ascii_lowercase().as_slice() {
+            // Colours and numbers keep their value if the statement is bad.
             b"ka" => self.ka = color(cursor, warnings).or(self.ka),
             b"kd" => self.kd = color(cursor, warnings).or(self.kd),
             b"ks" => self.ks = color(cursor, warnings).or(self.ks),
@@ -188,6 +189,8 @@ impl MtlMaterial {
                 ..TextureRef::new(requests.add(library, m.line, &m.path, usage))
             })
         };
+
+        // Find the normal map; a bump map takes its place.
         let normal_texture = match (&self.norm, &self.bump) {
             (None, Some(_)) => texture(&self.bump, Usage::Bump),
             _ => texture(&self.norm, Usage::Data),

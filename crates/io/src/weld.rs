@@ -348,7 +348,7 @@ mod tests {
         for workers in [Workers::single(), Workers::new(2)] {
             assert_eq!(weld(soup.len(), |t| soup[t], &workers), expected);
         }
-        // In no order, and with neighbours again where the blocks no longer look for them.
+        // In no order, and with neighbours where the blocks do not look for them.
         let scattered = |i: u32| at((i * 7919) % side);
         let soup: Vec<_> = (0..side)
             .map(|i| {

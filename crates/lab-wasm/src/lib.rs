@@ -32,15 +32,15 @@ impl vitral_lab::Clock for PageClock {
 }
 
 /// What stays from request to request.
-struct Kept {
+struct PageState {
     lab: Lab,
     request: Vec<u8>,
     answer: Vec<u8>,
 }
 
 thread_local! {
-    static KEPT: RefCell<Kept> =
-        RefCell::new(Kept { lab: Lab::with_clock(Arc::new(PageClock)), request: Vec::new(), answer: Vec::new() });
+    static KEPT: RefCell<PageState> =
+        RefCell::new(PageState { lab: Lab::with_clock(Arc::new(PageClock)), request: Vec::new(), answer: Vec::new() });
 }
 
 /// Makes room for a message of `length` bytes, and gives its place.

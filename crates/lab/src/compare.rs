@@ -15,7 +15,7 @@ const MOST_PIXELS: usize = 20;
 const MOST_FRAMES: u32 = 1000;
 
 /// Colours and surface ids of a state.
-struct Seen {
+struct RenderedPlanes {
     color: Plane<[u8; 4]>,
     surface: Plane<u32>,
 }
@@ -44,13 +44,13 @@ pub(crate) fn compare(stage: &mut Stage, files: &Files, a: &State, b: &State) ->
     Ok((answer, vec![pixels(&a.color), pixels(&b.color), pixels(&shown)]))
 }
 
-fn seen(renderer: &mut Renderer) -> Result<Seen, Error> {
+fn seen(renderer: &mut Renderer) -> Result<RenderedPlanes, Error> {
     Channel::Surface.request(&mut renderer.settings.picture.channels);
     let mut picture = renderer.render()?;
     let missing = || Error::usage("a picture without colours cannot be compared", "");
     let color = picture.frame.color.take().ok_or_else(missing)?;
     let surface = picture.frame.surface.take().ok_or_else(missing)?;
-    Ok(Seen { color, surface })
+    Ok(RenderedPlanes { color, surface })
 }
 
 /// Time, memory, counters and agreement of every visibility algorithm.

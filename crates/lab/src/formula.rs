@@ -96,6 +96,8 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
     let mut row = |symbol: String, value: String, meaning: &str, setting: Option<String>| {
         rows.push(json!({"symbol": symbol, "value": value, "meaning": meaning, "setting": setting}));
     };
+
+    // List the vectors and the material's coefficients.
     let three = |rgb: [f32; 3]| rgb.map(digits).join(" ");
     row("N".to_owned(), three(evaluation.normal), "unit normal, view space", None);
     row("V".to_owned(), three(evaluation.viewer), "unit vector to the viewer, view space", None);
@@ -113,6 +115,8 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
             row("occlusion".to_owned(), digits(occlusion), "how much ambient light arrives", None);
         }
     }
+
+    // List the ambient light of the scene.
     row(
         "IA ka".to_owned(),
         three(evaluation.ambient),
@@ -120,7 +124,8 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
         Some("ambient".to_owned()),
     );
 
-    // Each light.
+    // List the terms of each light.
+    // List the light's colours, angles and terms.
     for of_light in &evaluation.lights {
         let (t, name) = (&of_light.terms, &lights[of_light.light]);
         let mut of = |symbol: &str, value: String, meaning: &str| {
@@ -146,6 +151,8 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
         of("diffuse", three(t.diffuse), "diffuse term");
         of("specular", three(t.specular), "specular term");
     }
+
+    // List the sum and the pixel's bytes.
     row("I".to_owned(), three(told.light.straight), "the sum of all samples, before it is encoded", None);
     row(
         "bytes".to_owned(),

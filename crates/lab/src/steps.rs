@@ -197,7 +197,7 @@ pub(crate) fn steps(asked: &Asked<'_>, kept: &mut Recordings, [from, to]: [u32; 
 
 /// A step in words, for the pixel if it is about that.
 fn words(step: &Step, pixel: Option<[u32; 2]>) -> String {
-    step.tell(pixel.filter(|&pixel| step.concerns(pixel)).unwrap_or_else(|| overlay::place(step)))
+    step.describe(pixel.filter(|&pixel| step.concerns(pixel)).unwrap_or_else(|| overlay::place(step)))
 }
 
 /// Leaves of a list its first members.

@@ -33,7 +33,7 @@ const LARGEST: f32 = 1e18;
 /// A flat shape, made ready.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Shape {
-    /// Its centroid.
+    /// Mean of the shape's points, view space.
     pub(crate) centroid: [f32; 3],
     /// Unit normal of the shining side.
     pub(crate) normal: [f32; 3],
@@ -132,11 +132,11 @@ impl Shape {
         let mut mean = point;
         if T::any(large) {
             let whole = match self.radius {
-                Some(radius) => zero.apart(
+                Some(radius) => zero.outlined(
                     #[inline(always)]
                     || self.disc(position, n, to, height, radius),
                 ),
-                None => zero.apart(
+                None => zero.outlined(
                     #[inline(always)]
                     || self.polygon(position, n, height),
                 ),

@@ -57,6 +57,7 @@ pub fn cook_torrance<T: Lanes>(
     m: &Microfacet<T>,
     visibility: impl Fn(usize) -> V3<T>,
 ) -> Reflected<T> {
+    // Blend the reflectance at normal incidence between dielectric and metal.
     let zero = s.n.x.splat(0.0);
     let metallic = m.metallic.saturate();
     let f0 = m.base_color.map(
@@ -70,6 +71,7 @@ pub fn cook_torrance<T: Lanes>(
     let albedo = m.base_color.scale(inside);
     let facets = Facets::new(m.roughness);
 
+    // Start with the ambient light.
     let ambient = m.base_color.scale(m.occlusion);
     let mut sum = Reflected { diffuse: tint(ambient, global_ambient), specular: V3::new(zero, zero, zero) };
     for (j, light) in lights.iter().enumerate() {
@@ -84,6 +86,7 @@ pub fn cook_torrance<T: Lanes>(
             #[inline(always)]
             |cos: T| -schlick(zero.splat(DIELECTRIC_F0), cos) + 1.0,
         );
+        // Add the light that enters, is scattered and gets out.
         let entering = match light.irradiance(s.position, s.n) {
             Some(irradiance) => {
                 // At the angle whose cosine is the mean over the shape.
@@ -94,6 +97,7 @@ pub fn cook_torrance<T: Lanes>(
         };
         sum.diffuse = sum.diffuse + tint(albedo, light.diffuse).times(entering);
 
+        // Add the light that the microfacets mirror.
         let in_front = zero.lt(n_l);
         if !T::any(in_front) {
             continue;
@@ -115,7 +119,7 @@ pub fn cook_torrance<T: Lanes>(
 pub(crate) struct MicrofacetLobe {
     /// The halfway vector.
     pub h: [f32; 3],
-    /// `N·H`.
+    /// Cosine between normal and halfway vector.
     pub n_h: f32,
     /// What a mirror of this material reflects at this angle, `F`.
     pub fresnel: Rgb,

@@ -79,7 +79,7 @@ pub enum LightKind {
     /// From a flat shape, on the side its normal points to. Diffuse surfaces get what the whole shape sends, highlights
     /// are those of one sample at its centre, shadows those of many.
     Area {
-        /// The shape.
+        /// The shape whose points shine.
         shape: AreaShape,
     },
 }
@@ -88,13 +88,13 @@ pub enum LightKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum AreaShape {
-    /// A disc.
+    /// A disc that shines to one side.
     Disc {
         /// Its centre.
         center: DVec3,
         /// The side that shines; any length but 0.
         normal: DVec3,
-        /// Its radius.
+        /// Radius in units of the world.
         radius: f64,
     },
     /// A planar polygon; it shines towards the side from which its corners run counter-clockwise.

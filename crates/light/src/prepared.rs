@@ -181,7 +181,7 @@ impl PreparedLight {
             Source::Point(at) | Source::Spot { position: at, .. } => *at,
             Source::Area(shape) => shape.centroid,
         };
-        constant.apart(
+        constant.outlined(
             #[inline(always)]
             || {
                 let at = V3::splat(position.x, at);

@@ -98,7 +98,7 @@ impl Aabb {
     }
 }
 
-/// A sphere.
+/// A sphere by its centre and radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// Centre.

@@ -67,7 +67,7 @@ pub trait Lanes:
     fn split_exponent(self) -> (Self, Self);
     /// What `f` gives, in a function of its own: for what is large and seldom needed. Functions in which everything is
     /// inlined grow until compilers take minutes over one.
-    fn apart<R>(self, f: impl FnOnce() -> R) -> R;
+    fn outlined<R>(self, f: impl FnOnce() -> R) -> R;
 
     /// The larger; `other` if either is NaN.
     #[inline(always)]
@@ -203,7 +203,7 @@ impl Lanes for f32 {
         (((bits >> 23) as i32 - 127) as f32, f32::from_bits((bits & 0x007f_ffff) | 0x3f80_0000))
     }
     #[inline(always)]
-    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+    fn outlined<R>(self, f: impl FnOnce() -> R) -> R {
         f()
     }
 }
@@ -274,7 +274,7 @@ macro_rules! lanes {
                 (exponent, ((bits & 0x007f_ffff) | 0x3f80_0000).bitcast())
             }
             #[inline(always)]
-            fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+            fn outlined<R>(self, f: impl FnOnce() -> R) -> R {
                 outlined(self.token(), f)
             }
         }

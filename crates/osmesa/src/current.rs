@@ -28,7 +28,7 @@ extern "C" fn at_thread_end(rounds: *mut c_void) {
     if rounds < ROUNDS {
         count_rounds(rounds);
     } else {
-        // The client's buffer may be gone by now: nothing is stored.
+        // The client's buffer may be gone: nothing is stored.
         // SAFETY: null.
         unsafe { replace(ptr::null()) };
     }

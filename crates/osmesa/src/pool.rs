@@ -61,7 +61,7 @@ pub(crate) fn runner() -> Arc<Runner> {
     let runner = Arc::new(Runner::new(Workers::new(environment::threads()), level));
     let made = Box::into_raw(Box::new(Pool { process, runner }));
     match POOL.compare_exchange(found, made, Ordering::AcqRel, Ordering::Acquire) {
-        // SAFETY: never freed, as it is in `POOL` now.
+        // SAFETY: never freed, as it is in `POOL`.
         Ok(_) => Arc::clone(&unsafe { &*made }.runner),
         Err(other) => {
             // SAFETY: another thread was faster, so that `made` is ours alone; theirs is never freed.

@@ -5,7 +5,7 @@
 
 use crate::layers::Fragment;
 use crate::samples::MOST_SAMPLES;
-use crate::sink::{Met, Row, first_sample};
+use crate::sink::{DepthTest8, Row, first_sample};
 use crate::{LayerList, RowPlane, RowSink, SamplePattern, Setup, TILE, Tile};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd, U32x8};
@@ -39,10 +39,11 @@ impl<'a> FragmentSink<'a> {
 
     /// Hands the triangle at hand on.
     #[inline(always)]
-    fn flush<S: Simd, const MOST: usize>(&mut self, simd: S) {
-        let samples = if MOST == 16 { self.pattern.len().min(MOST) } else { MOST };
+    fn flush<S: Simd, const MAX: usize>(&mut self, simd: S) {
+        let samples = if MAX == 16 { self.pattern.len().min(MAX) } else { MAX };
         let infinity = F32x8::splat(simd, f32::INFINITY);
         let [top, end] = std::mem::replace(&mut self.rows, NO_ROWS);
+        // Bound each pixel's depths over its covered samples.
         for y in top..end {
             let seen = std::mem::take(&mut self.seen[y]);
             let (mut far, mut near, mut pixels, mut full) = (infinity, -infinity, 0u8, u8::MAX);
@@ -64,13 +65,12 @@ impl<'a> FragmentSink<'a> {
             while full != 0 {
                 let lane = full.trailing_zeros() as usize % LANES;
                 full &= full - 1;
-                self.layers.push_fragment::<MOST>(place(lane), samples, |s| (true, depths[s][lane]));
+                self.layers.push_fragment::<MAX>(place(lane), samples, |s| (true, depths[s][lane]));
             }
             while rest != 0 {
                 let lane = rest.trailing_zeros() as usize % LANES;
                 rest &= rest - 1;
-                self.layers
-                    .push_fragment::<MOST>(place(lane), samples, |s| (seen[s] >> lane & 1 == 1, depths[s][lane]));
+                self.layers.push_fragment::<MAX>(place(lane), samples, |s| (seen[s] >> lane & 1 == 1, depths[s][lane]));
             }
         }
         self.layers.spread_at_limit();
@@ -100,7 +100,7 @@ impl<S: Simd> RowSink<S> for FragmentSink<'_> {
         let row = Row::new(plane, sample, at, covered);
         // Where nothing opaque is, there is nothing to compare with.
         let seen = if self.tile.touched {
-            Met::new(simd, self.tile, U32x8::splat(simd, setup.facet), &row).wins
+            DepthTest8::new(simd, self.tile, U32x8::splat(simd, setup.facet), &row).wins
         } else {
             covered
         };

@@ -202,6 +202,7 @@ impl Batch {
         range: Range<u32>,
         screen: &Screen,
     ) {
+        // Cull eight triangles at a time.
         let Viewport { width, height, .. } = screen.viewport;
         let clip = [0, 0, width as i32, height as i32];
         let mut sieve = Sieve { outside: flag::FRUSTUM, cut: flag::CLIP, culls: [0; 2], clip };
@@ -213,6 +214,8 @@ impl Batch {
             sieve.culls[usize::from(!draw.mirrored)] = draw.back_faces.eight(first);
             let sifted = sift::<S, false>(simd, screen, &sieve, vertices, &corners);
             let whole = 0xff >> (LANES - eight.len());
+
+            // Count what was dropped, without the repetitions.
             let count = |set: u32| u64::from((set & whole).count_ones());
             let c = &mut self.counters;
             c.not_finite += count(sifted.not_finite);
@@ -221,6 +224,9 @@ impl Batch {
             c.back_facing += count(sifted.culled);
             let gone = sifted.not_finite | sifted.outside | sifted.degenerate | sifted.culled;
             c.no_sample += count(!(gone | sifted.others | sifted.seen));
+
+            // Set up the visible triangles one by one; those that cross a clip plane or are large
+            // take the general path.
             let mut left = (sifted.seen | sifted.others) & whole;
             while left != 0 {
                 let lane = left.trailing_zeros() as usize % LANES;
@@ -304,6 +310,8 @@ impl Batch {
             self.counters.outside += 1;
             return;
         }
+
+        // Project the corners and find the largest triangle of the fan.
         let mut snapped = [CornerPosition { x: 0, y: 0, z: 0.0 }; crate::clip::MAX_CORNERS + 1];
         for (s, &p) in snapped.iter_mut().zip(polygon.corners()) {
             *s = screen.transform().project(p);
@@ -339,6 +347,8 @@ impl Batch {
         };
         let shared = draw.plane(facet, screen).map(|plane| plane.of_facet(snapped, faces_away));
         let plane = shared.unwrap_or_else(own_plane);
+
+        // Set up the pieces.
         for i in 1..count - 1 {
             let area = areas(i);
             // Snapping can turn a sliver of the fan over; its neighbours cover it.
@@ -365,6 +375,7 @@ impl Batch {
         screen: &Screen,
         touches: impl Fn(i32, i32) -> bool,
     ) {
+        // Keep the setup once.
         let index = self.setups.len() as u32;
         let tiles_x = screen.viewport.tiles_x();
         let tile = TILE as u32;
@@ -373,6 +384,8 @@ impl Batch {
         if self.tile_lists == TileLists::Unwanted {
             return;
         }
+
+        // Enter it in its tile, or in all tiles of its box that it touches.
         if tx0 == tx1 && ty0 == ty1 {
             self.enter([tx0, ty0], index, [x0, y0, x1, y1], tiles_x);
             return;
@@ -408,6 +421,7 @@ impl Batch {
     /// [`Self::finish`]; `placed` gets each entry's place among those of all tiles, its number before, and its triangle.
     #[inline(always)]
     fn finish_with(&mut self, screen: &Screen, mut placed: impl FnMut(usize, usize, &Setup)) {
+        // Count the entries of each tile.
         let tiles = (screen.viewport.tiles_x() * screen.viewport.tiles_y()) as usize;
         self.starts.clear();
         self.starts.resize(tiles + 2, 0);
@@ -425,6 +439,8 @@ impl Batch {
         }
         self.sorted.resize(if copies { entries } else { 0 }, Setup::zeroed());
         self.items.resize(if copies { 0 } else { entries }, 0);
+
+        // Copy each triangle, or its number, to its tile's range.
         for (number, &[tile, item]) in self.entries.iter().enumerate() {
             let place = &mut self.starts[tile as usize + 1];
             let setup = &self.setups[item as usize];

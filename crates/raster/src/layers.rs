@@ -20,14 +20,14 @@ pub struct Layer {
     pub at: u32,
     /// Depth, 1 near.
     pub depth: f32,
-    /// The facet.
+    /// Id of the facet.
     pub facet: u32,
 }
 
 /// A facet in a pixel, in front of the nearest opaque one at each sample that it covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fragment {
-    /// The facet.
+    /// Id of the facet.
     pub facet: u32,
     /// Where its depths begin in [`LayerList::depths`]: one for each sample that it covers, in the order of samples.
     pub start: u32,
@@ -46,16 +46,19 @@ pub struct Fragment {
 /// A list of layers with a limit.
 #[derive(Clone, Debug)]
 pub struct LayerList {
+    /// The layers, in the order in which they came.
     list: Vec<Layer>,
     limit: usize,
     /// Layers of each sample that stay when the limit is reached.
     kept: usize,
+    /// Layers that the limit has dropped.
     lost: u64,
     /// Entries come from back to front, and stay in their order.
     from_back: bool,
     /// Fragments are kept as they come.
     gathers: bool,
     fragments: Vec<Fragment>,
+    /// Depths of the fragments' samples, fragment by fragment.
     depths: Vec<f32>,
 }
 
@@ -121,10 +124,10 @@ impl LayerList {
         }
     }
 
-    /// Adds a fragment, given its place and facet, of a pixel with `samples` samples, at most `MOST`: `at` says whether it
+    /// Adds a fragment, given its place and facet, of a pixel with `samples` samples, at most `MAX`: `at` says whether it
     /// covers a sample, and its depth there.
     #[inline(always)]
-    pub(crate) fn push_fragment<const MOST: usize>(
+    pub(crate) fn push_fragment<const MAX: usize>(
         &mut self,
         place: Fragment,
         samples: usize,
@@ -132,15 +135,17 @@ impl LayerList {
     ) {
         // Depths are written in any case, and those kept where it is seen: no branch to guess.
         let start = self.depths.len();
-        self.depths.resize(start + MOST, 0.0);
-        let depths = &mut self.depths[start..start + MOST];
+        self.depths.resize(start + MAX, 0.0);
+        let depths = &mut self.depths[start..start + MAX];
         let (mut mask, mut count) = (0u32, 0usize);
-        for s in 0..samples.min(MOST) {
+        for s in 0..samples.min(MAX) {
             let (seen, depth) = at(s);
-            depths[count % MOST] = depth;
+            depths[count % MAX] = depth;
             count += usize::from(seen);
             mask |= u32::from(seen) << s;
         }
+
+        // Gather the fragment, or spread it to the lists of its samples.
         let fragment = Fragment { start: start as u32, mask, count: count as u16, ..place };
         if self.gathers {
             self.depths.truncate(start + count);

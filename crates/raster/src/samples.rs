@@ -29,7 +29,7 @@ pub struct SamplePattern {
 
 impl SamplePattern {
     /// Most samples of a pixel.
-    pub const MOST: usize = MOST_SAMPLES;
+    pub const MAX: usize = MOST_SAMPLES;
 
     /// `count` samples: 1 to 16, or 32 for whatever is more. One sample lies at the centre.
     pub fn new(count: usize) -> Self {

@@ -54,11 +54,17 @@ pub struct Setup {
 /// A depth plane through three corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DepthPlane {
+    /// Depth at the origin: 1 on the near plane, 0 on the far plane.
     pub z: f32,
+    /// Change of depth with a pixel to the right.
     pub dz_dx: f32,
+    /// Change of depth with a pixel down.
     pub dz_dy: f32,
+    /// Position of `z` on the screen, in 1/256 pixel.
     pub origin: [i32; 2],
+    /// Farthest depth of the facet, to which depths are clamped.
     pub z_min: f32,
+    /// Nearest depth of the facet.
     pub z_max: f32,
 }
 
@@ -128,9 +134,13 @@ impl DepthPlane {
 /// whatever their corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SharedPlane {
+    /// As in [`DepthPlane`].
     z: f32,
+    /// As in [`DepthPlane`].
     dz_dx: f32,
+    /// As in [`DepthPlane`].
     dz_dy: f32,
+    /// As in [`DepthPlane`].
     origin: [i32; 2],
     /// Added to the depth of facets that face the viewer, taken from that of facets that face away. A front and a back facet
     /// may have an edge of the outline in common, and snapping moves its corners by up to half of 1/256 pixel: beside the

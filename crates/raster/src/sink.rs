@@ -10,7 +10,9 @@ use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
 pub(crate) struct Row<S: Simd> {
     /// Index of the first in the tile's planes.
     at: usize,
+    /// The samples that the facet covers.
     covered: Mask8<S>,
+    /// Depths of the facet's plane: 1 on the near plane, 0 on the far plane.
     pub(crate) z: F32x8<S>,
 }
 
@@ -29,17 +31,18 @@ pub(crate) fn first_sample(tile: &Tile, pattern: &SamplePattern, sample: usize, 
     [(tile.x as usize + x) as i32 * SUBPIXEL + sx, tile.y as i32 * SUBPIXEL + sy]
 }
 
-/// What a facet met at eight samples.
-pub(crate) struct Met<S: Simd> {
+/// The depth test of a facet at eight samples.
+pub(crate) struct DepthTest8<S: Simd> {
     /// The facet is nearer than what was there; of equally near ones it is the lower.
     nearer: Mask8<S>,
     /// It is nearer and covers.
     pub(crate) wins: Mask8<S>,
+    /// The stored depths, and the facets that they are of.
     old_z: F32x8<S>,
     old_facet: U32x8<S>,
 }
 
-impl<S: Simd> Met<S> {
+impl<S: Simd> DepthTest8<S> {
     /// At the samples of `row`.
     #[inline(always)]
     pub(crate) fn new(simd: S, tile: &Tile, facet: U32x8<S>, row: &Row<S>) -> Self {
@@ -52,8 +55,8 @@ impl<S: Simd> Met<S> {
 
 /// Keeps the nearer facet at the samples of `row`.
 #[inline(always)]
-fn keep_nearer<S: Simd>(simd: S, tile: &mut Tile, facet: U32x8<S>, row: &Row<S>) -> Met<S> {
-    let met = Met::new(simd, tile, facet, row);
+fn keep_nearer<S: Simd>(simd: S, tile: &mut Tile, facet: U32x8<S>, row: &Row<S>) -> DepthTest8<S> {
+    let met = DepthTest8::new(simd, tile, facet, row);
     met.wins.select(row.z, met.old_z).store_slice(&mut tile.depth[row.at..row.at + BLOCK]);
     met.wins.select(facet, met.old_facet).store_slice(&mut tile.facet[row.at..row.at + BLOCK]);
     met
@@ -179,7 +182,7 @@ impl<const FRONT_FIRST: bool> PrioritySink<'_, FRONT_FIRST> {
     /// Draws a row and counts; returns how many samples were written.
     #[inline(always)]
     fn draw<S: Simd>(&mut self, simd: S, facet: U32x8<S>, row: &Row<S>) -> u32 {
-        let Met { nearer, wins, old_z, old_facet } = keep_nearer(simd, self.tile, facet, row);
+        let DepthTest8 { nearer, wins, old_z, old_facet } = keep_nearer(simd, self.tile, facet, row);
         let filled = row.covered & !old_facet.simd_eq(U32x8::splat(simd, NO_FACET));
         let (overruled, gap) = if FRONT_FIRST {
             (filled & wins, row.z - old_z)

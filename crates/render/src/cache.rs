@@ -37,7 +37,7 @@ pub enum Reuse {
     Scene,
     /// For frames from one viewpoint. Dropped without frame coherence, but not counted: a moving camera never meets it twice.
     View,
-    /// Whether or not frames are coherent: solutions that are asked for by name, and memory to use again.
+    /// Whether or not frames are coherent: solutions that are asked for by name, and memory to reuse.
     Session,
 }
 
@@ -114,7 +114,7 @@ impl Cache {
         *lock::<T>(&self.slot::<T>()) = Some((key, value));
     }
 
-    /// Takes the value out if its key is not `key`, so that its memory can be used again.
+    /// Takes the value out if its key is not `key`, so that its memory can be reused.
     pub fn take_outdated<T: Cached>(&self, key: &T::Key) -> Option<Arc<T>> {
         lock::<T>(&self.slot::<T>()).take_if(|(known, _)| known != key).map(|(_, value)| value)
     }
@@ -128,7 +128,7 @@ impl Cache {
         });
     }
 
-    /// A cache of another session of the same scene. Both share what depends on the scene alone and is cached by now: it is the
+    /// A cache of another session of the same scene. Both share what depends on the scene alone and is already cached: it is the
     /// same for both, however lights and cameras differ.
     pub(crate) fn fork(&self) -> Self {
         let slots = self.slots.lock().expect(UNPOISONED);
@@ -142,7 +142,7 @@ impl Cache {
         self.slots.get_mut().expect(UNPOISONED).retain(|_, slot| !slot.is_placed());
     }
 
-    /// How many results of earlier frames are there to be used again.
+    /// How many results of earlier frames can be reused.
     pub fn results(&self) -> usize {
         let mut results = 0;
         self.each(|slot| results += if slot.reuse() == Reuse::Scene { slot.results() } else { 0 });

@@ -48,7 +48,7 @@ impl<T: Row> Choice<T> {
         T::rows().map(Self)
     }
 
-    /// The row.
+    /// The row of the table that is chosen.
     pub fn row(self) -> &'static T {
         self.0
     }

@@ -13,9 +13,9 @@ use serde::{Deserialize, Serialize};
 pub enum Coherence {
     /// Of a whole object.
     Object,
-    /// Of a face.
+    /// Of a face: neighbouring samples mostly show the same one.
     Face,
-    /// Of an edge.
+    /// Of an edge: its crossing moves by a constant from line to line.
     Edge,
     /// Of the line where two faces penetrate each other.
     ImpliedEdge,
@@ -23,7 +23,7 @@ pub enum Coherence {
     ScanLine,
     /// Of neighbouring pixels.
     Area,
-    /// Of depths.
+    /// Of depths: they are linear over a face.
     Depth,
     /// Of a picture and the next.
     Frame,

@@ -21,7 +21,7 @@ pub struct Execution {
 impl Execution {
     /// Sends the step that `step` makes to the observer, if there is one.
     #[inline]
-    pub fn tell(&self, step: impl FnOnce() -> Step) {
+    pub fn report(&self, step: impl FnOnce() -> Step) {
         if let Some(observer) = &self.observer {
             observer.step(&step());
         }

@@ -352,6 +352,7 @@ struct Paint<'p, 'a> {
 impl Paint<'_, '_> {
     /// Premultiplied colour at a vertex: the material's times the vertex's, or the one that is there.
     fn color(&self, material: Option<u32>, vertex: u32) -> [f32; 4] {
+        // Take the vertex's own colour, encoded if the picture is.
         let mesh = &self.instance.mesh;
         let colors = mesh.colors.as_ref().filter(|c| c.corners.is_none());
         let own = colors.and_then(|c| c.values.get(vertex as usize)).map(|&[r, g, b, a]| {
@@ -364,11 +365,15 @@ impl Paint<'_, '_> {
             // Without a material nothing says that colours have an opacity.
             return own.map_or([PLAIN[0], PLAIN[1], PLAIN[2], 1.0], |[r, g, b, _]| [r, g, b, 1.0]);
         };
+
+        // Multiply it by the material's base colour.
         let base = match material.reflectance {
             Reflectance::Phong { kd, .. } => kd,
             Reflectance::MetallicRoughness { base_color, .. } => base_color,
         };
         let own = own.unwrap_or([1.0; 4]);
+
+        // Apply the alpha mode.
         let alpha = (material.opacity * own[3]).clamp(0.0, 1.0);
         let glow = material.emission;
         let alpha = match material.alpha_mode {

@@ -14,7 +14,7 @@ use crate::radiosity::{Solution, lamps, solution};
 use crate::shading::{
     BYTES_A_PIXEL, ChannelSink, ColorSink, DeepImage, FrameConstants, LitCorner, Shown, TileRows, Tracer, lit_corners,
 };
-use crate::shadow::{self, Shadows};
+use crate::shadow::{self, PreparedShadows};
 use crate::stats::{CullCounters, RadiosityCounters, Stats, TracingCounters};
 use crate::visible::{Resolved, VisibleSurface};
 use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, registry};
@@ -63,12 +63,15 @@ pub fn render(
     settings: &Settings,
     execution: &Execution,
 ) -> Result<Rendered, Error> {
+    // Check the settings.
     let viewport = settings.check()?;
     check_size(session, settings)?;
     let direct = (settings.global.model == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
     if settings.global.model == Global::RayTrace {
         check_indices(session.scene())?;
     }
+
+    // Begin the picture; forget earlier frames if they must not be reused.
     let start = execution.budget.elapsed();
     let mut stats = Stats::default();
     let mut frame = Frame { width: viewport.width, height: viewport.height, ..Frame::default() };
@@ -320,7 +323,7 @@ impl<'a> FrameContext<'a> {
 
     /// The chosen shadow algorithm, ready for the lights; `None` without shadows. Radiosity always has some: surfaces that shine
     /// are lights there, and what stands in their way keeps their light from others.
-    fn shadows<'v>(&self, view: &PreparedView<'v>) -> Result<Option<Box<dyn Shadows + 'v>>, Limit> {
+    fn shadows<'v>(&self, view: &PreparedView<'v>) -> Result<Option<Box<dyn PreparedShadows + 'v>>, Limit> {
         let chosen = self.settings.shadows.algorithm;
         let needs_some = self.settings.global.model == Global::Radiosity && chosen.is_none;
         let algorithm = if needs_some { crate::Shadows::RAY } else { chosen };
@@ -331,7 +334,7 @@ impl<'a> FrameContext<'a> {
     fn constants<'v>(
         &self,
         view: &'v PreparedView<'v>,
-        shadows: Option<&'v dyn Shadows>,
+        shadows: Option<&'v dyn PreparedShadows>,
         radiosity: Option<&'v Solution>,
         tables: &'v DecodeTables,
     ) -> FrameConstants<'v> {

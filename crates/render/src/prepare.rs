@@ -84,17 +84,22 @@ impl<'a> PreparedView<'a> {
         execution: &Execution,
         counters: &mut CullCounters,
     ) -> Self {
+        // Cull objects outside the view volume.
         let aspect = f64::from(viewport.width) / f64::from(viewport.height);
         let view = camera.transform(aspect, depth_range(camera, &session.world.bounds));
         let clip_from_world = view.clip_from_world();
         let coherence = settings.coherence();
         let cull_objects = settings.cull.frustum && coherence.has(Coherence::Object);
         let visible = frustum::cull(session, &clip_from_world, cull_objects, execution, counters);
+
+        // Sort the visible triangles into draws.
         let preparation = Preparation { session, camera, settings, view: &view, clip_from_world, execution };
         let instances: Vec<_> = visible.into_iter().map(|visible| preparation.instance(&visible)).collect();
         let drops = |draw: &Draw<'_>| draw.back_faces != BackFaces::Kept;
         counters.back_face_culled_instances +=
             instances.iter().filter(|instance| instance.opaque.iter().any(drops)).count() as u64;
+
+        // Bring the planes shared by facets to the screen.
         let planes = equal_planes(session.planes(&execution.workers), &clip_from_world, viewport, &execution.workers);
         let screen = Screen::new(viewport, &pattern).with_planes(planes);
         let acceleration = settings.acceleration.unwrap_or_default();
@@ -232,7 +237,7 @@ impl<'a> PreparedView<'a> {
             let triangle = Polygon::triangle(corners.map(|p| transform_point(&clip_from_model, p)));
             clip_watched(triangle, self.screen.transform().guard(), |plane, before, after| {
                 let (plane, before, after) = (PLANES[plane], points(before), points(after));
-                execution.tell(|| Step::Clipped { facet, plane, before, after });
+                execution.report(|| Step::Clipped { facet, plane, before, after });
             });
         }
     }
@@ -353,6 +358,7 @@ impl<'a> Preparation<'_, 'a> {
         ranges: &[Range<u32>],
         back_faces: impl Fn(Class) -> BackFaces<'a>,
     ) -> Vec<(Class, Draw<'a>)> {
+        // Find the mesh's positions on their way to clip space, and its planes.
         let mesh = &*instance.mesh;
         let (positions, clip_from_model) = self.session.placed_positions(instance, &self.clip_from_world);
         let facets = instance.first_facet..instance.first_facet + mesh.triangles.len() as u32;
@@ -367,6 +373,8 @@ impl<'a> Preparation<'_, 'a> {
             planes,
             mirrored: mirrors(&instance.world_from_model),
         };
+
+        // Append each range of a part to the draw of its class.
         let mut draws: Vec<(Class, Draw<'a>)> = Vec::new();
         for part in &mesh.parts {
             let material = part.material.and_then(|m| self.session.scene.materials.get(m as usize));

@@ -1,4 +1,4 @@
-//! What outlives a frame: the flattened scene, what is known of its meshes, and memory to use again.
+//! What outlives a frame: the flattened scene, what is known of its meshes, and memory to reuse.
 //!
 //! Pictures with a fresh session and with a used one are equal.
 
@@ -123,7 +123,7 @@ impl Session {
     }
 
     /// Another session of the same scene, for another thread. Both share what is known of the meshes, whichever finds it out, and
-    /// the structures over the scene that there are by now.
+    /// the acceleration structures that are built already.
     #[must_use]
     pub fn fork(&self) -> Self {
         let (scene, meshes) = (Arc::clone(&self.scene), Arc::clone(&self.meshes));
@@ -157,7 +157,7 @@ impl Session {
         Ok(())
     }
 
-    /// Takes back a picture that is not needed any more; the next one of its size is made in the same memory.
+    /// Takes back a picture that the caller has done with; the next one of its size is made in the same memory.
     pub fn recycle(&mut self, frame: Frame) {
         if let Some(color) = frame.color {
             self.spare_picture = Mutex::new(color.into_data());

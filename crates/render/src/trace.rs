@@ -113,20 +113,20 @@ pub enum Passed {
 
 impl Passed {
     /// In words: how many, and the first few.
-    fn tell(&self) -> String {
-        const MOST: usize = 16;
+    fn describe(&self) -> String {
+        const MAX_NAMED: usize = 16;
         let (what, mut names): (_, Vec<String>) = match self {
             Self::Nowhere => return String::new(),
-            Self::Nodes(nodes) => ("node(s)", nodes.iter().take(MOST).map(u32::to_string).collect()),
-            Self::Objects(objects) => ("object(s)", objects.iter().take(MOST).map(u32::to_string).collect()),
-            Self::Octants(cells) => ("octant(s)", cells.iter().take(MOST).map(|c| format!("\"{c}\"")).collect()),
+            Self::Nodes(nodes) => ("node(s)", nodes.iter().take(MAX_NAMED).map(u32::to_string).collect()),
+            Self::Objects(objects) => ("object(s)", objects.iter().take(MAX_NAMED).map(u32::to_string).collect()),
+            Self::Octants(cells) => ("octant(s)", cells.iter().take(MAX_NAMED).map(|c| format!("\"{c}\"")).collect()),
             Self::Cells(cells) => {
                 let name = |[x, y, z]: &[u32; 3]| format!("{x},{y},{z}");
-                ("cell(s)", cells.iter().take(MOST).map(name).collect())
+                ("cell(s)", cells.iter().take(MAX_NAMED).map(name).collect())
             }
         };
         let count = self.len();
-        if count > MOST {
+        if count > MAX_NAMED {
             names.push("...".to_owned());
         }
         format!("; through {count} {what}: {}", names.join(" "))
@@ -199,7 +199,7 @@ pub enum Step {
     },
     /// Clipping: a plane cut a facet.
     Clipped {
-        /// The facet.
+        /// Id of the facet.
         facet: u32,
         /// Near, far, or a side of the guard band, which is wider than the view.
         plane: &'static str,
@@ -210,7 +210,7 @@ pub enum Step {
     },
     /// Z-buffer: a facet came, in the order of the scene, and its depth was compared at the first samples that it covers.
     Drawn {
-        /// The facet.
+        /// Id of the facet.
         facet: u32,
         /// Where it is nearer than what was there, and stays: runs of pixels, each by its row, its first and the one behind its
         /// last.
@@ -220,7 +220,7 @@ pub enum Step {
     },
     /// Z-buffer: what happened at a watched pixel when a facet came.
     DepthTest {
-        /// The pixel.
+        /// Column and row of the pixel.
         pixel: [u32; 2],
         /// The facet that came.
         facet: u32,
@@ -228,9 +228,9 @@ pub enum Step {
         depth: f32,
         /// The facet that was there; none for the background.
         there: Option<u32>,
-        /// Its depth.
+        /// Depth of that facet at the first sample.
         there_depth: Option<f32>,
-        /// Which of the two is there now.
+        /// The facet that is kept, one of the two.
         stays: u32,
     },
     /// Warnock: a window was looked at.
@@ -289,7 +289,7 @@ pub enum Step {
     Rays {
         /// Left, top, width, height.
         pixels: [u32; 4],
-        /// Rays.
+        /// Rays that were cast.
         rays: u64,
         /// Boxes or cells looked at.
         boxes: u64,
@@ -465,7 +465,7 @@ pub enum Step {
     },
     /// Weiler–Atherton: the polygons in their first order, the one with the nearest point first.
     NearestFirst {
-        /// The polygons.
+        /// The polygons in the order, with what they were sorted by.
         polygons: Vec<SortedPolygon>,
     },
     /// Weiler–Atherton: a list was clipped with a polygon. The inside list is treated before the outside list: clips of the
@@ -540,7 +540,7 @@ pub(crate) mod tests {
         let sample = OverruledSample { pixel: [1, 2], sample: 0, by_list: 3, by_depth: 4 };
         let overruled = Step::Overruled { pixels: [0, 0, 8, 8], samples: vec![sample] };
         assert!(overruled.concerns([1, 2]) && !overruled.concerns([2, 1]));
-        let told = overruled.tell([1, 2]);
+        let told = overruled.describe([1, 2]);
         assert!(told.contains("facet 4 is nearer than facet 3"), "{told}");
     }
 }

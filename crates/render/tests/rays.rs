@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::{DMat4, DVec3};
 use vitral_raster::{LayerList, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid};
-use vitral_render::raytrace::bsp::Bsp;
+use vitral_render::raytrace::bsp::KdTree;
 use vitral_render::raytrace::bvh::Bvh;
 use vitral_render::raytrace::grid::Grid;
 use vitral_render::raytrace::octree::Octree;
@@ -253,7 +253,7 @@ fn structures_are_built_once_and_save_work() {
     let camera = camera_of(&session);
     assert!(Arc::ptr_eq(&Bvh::of(&session, &execution).unwrap(), &Bvh::of(&session, &execution).unwrap()));
     assert!(Arc::ptr_eq(&Octree::of(&session, &execution).unwrap(), &Octree::of(&session, &execution).unwrap()));
-    assert!(Arc::ptr_eq(&Bsp::of(&session, &execution).unwrap(), &Bsp::of(&session, &execution).unwrap()));
+    assert!(Arc::ptr_eq(&KdTree::of(&session, &execution).unwrap(), &KdTree::of(&session, &execution).unwrap()));
     assert!(Arc::ptr_eq(&Grid::of(&session, &execution).unwrap(), &Grid::of(&session, &execution).unwrap()));
     let count = |choice| resolve(&session, &camera, &settings(SIZE, 1, choice), &execution).unwrap().1;
     let all = count(("ray-cast", Some(Acceleration::NONE)));

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
 use vitral_math::{Vec3, vec3};
-use vitral_render::raytrace::bsp::Bsp;
+use vitral_render::raytrace::bsp::KdTree;
 use vitral_render::raytrace::bvh::Bvh;
 use vitral_render::raytrace::grid::Grid;
 use vitral_render::raytrace::intersect::Ray;
@@ -18,7 +18,7 @@ struct All {
     triangles: Arc<Triangles>,
     bvh: Bvh,
     octree: Octree,
-    bsp: Bsp,
+    bsp: KdTree,
     grid: Grid,
     /// Boxes, oriented boxes, spheres.
     volumes: [Volumes; 3],
@@ -40,7 +40,7 @@ impl All {
         Self {
             bvh: Bvh::build(&triangles, &workers, &budget).unwrap(),
             octree: Octree::build(&triangles, &workers, &budget).unwrap(),
-            bsp: Bsp::build(&triangles, &workers, &budget).unwrap(),
+            bsp: KdTree::build(&triangles, &workers, &budget).unwrap(),
             grid: Grid::build(&triangles, &budget).unwrap(),
             volumes: SHAPES.map(|shape| {
                 Volumes::build(&triangles, first_facets.iter().copied(), shape, &workers, &budget).unwrap()

@@ -181,7 +181,7 @@ impl ViewTransform {
         if self.perspective { b / (f64::from(depth) + a) } else { (b - f64::from(depth)) / a }
     }
 
-    /// World to clip.
+    /// The matrix from world space to clip space.
     pub fn clip_from_world(&self) -> DMat4 {
         self.clip_from_view * self.view_from_world
     }

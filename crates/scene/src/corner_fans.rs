@@ -19,7 +19,7 @@ pub(crate) use rule::Rule;
 
 use crate::buckets::shift_and_count;
 use crate::directions::{DEFAULT_NORMAL, unit};
-use crate::skins::{Seen, Skins};
+use crate::skins::{EdgeFindings, Skins};
 use crate::weld::Weld;
 use crate::{Faces, Mesh, Solids};
 use bucket::{AllFaces, Bucket};
@@ -48,7 +48,7 @@ struct Scratch {
     bucket: Bucket,
     fan: Fan,
     apart: Vec<bool>,
-    seen: Seen,
+    seen: EdgeFindings,
 }
 
 /// Gives each vertex the average of the normals of all its faces, and marks in `apart` the vertices that need a closer look.

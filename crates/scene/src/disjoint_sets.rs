@@ -45,7 +45,7 @@ impl DisjointSets {
                 return;
             }
             let (low, high) = (a.min(b), a.max(b));
-            // Only a root gets another parent; if it is none any more, look again.
+            // Only a root gets another parent; retry if another thread has given it one.
             if self.parent[high as usize].compare_exchange(high, low, Relaxed, Relaxed).is_ok() {
                 return;
             }

@@ -45,7 +45,7 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// No face.
+    /// The number of no face: at a boundary edge.
     pub const NO_FACE: u32 = u32::MAX;
 }
 

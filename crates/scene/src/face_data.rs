@@ -132,12 +132,15 @@ impl Triangles {
                 )
             },
         );
+
+        // Compute the cross product of two sides.
         let [a, b, c] = [corner(0), corner(1), corner(2)];
         let (ab, ac) = ([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]);
         let cross = [ab[1] * ac[2] - ac[1] * ab[2], ab[2] * ac[0] - ac[2] * ab[0], ab[0] * ac[1] - ac[0] * ab[1]];
         let length = dot(cross, cross).sqrt();
         let longest = dot(ab, ab).max(dot(ac, ac));
 
+        // Compute the angles at the corners; the last one is what is left of half a turn.
         let bc = [ab[0] - ac[0], ab[1] - ac[1], ab[2] - ac[2]];
         let at_a = angle_from(simd, length, dot(ab, ac));
         let at_b = angle_from(simd, length, dot(ab, bc));
@@ -149,6 +152,8 @@ impl Triangles {
             #[inline(always)]
             |value: F64x8<S>| lanes::narrowed(simd, sound.select(value, zero)).bitcast(),
         );
+
+        // Store unit normals, and the angles as weights.
         let normal = [out(cross[0] / length), out(cross[1] / length), out(cross[2] / length), out(zero)];
         let three = lanes::inlined(
             #[inline(always)]

@@ -65,7 +65,7 @@ impl View {
 pub enum Lens {
     /// Perspective with this vertical angle of view in radians, `0..π`.
     Perspective {
-        /// The angle.
+        /// Vertical angle of view in radians.
         view_angle: f64,
     },
     /// Parallel, as high as the box needs.

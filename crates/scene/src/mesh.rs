@@ -70,7 +70,7 @@ pub struct Mesh {
 /// Values at corners.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Attribute<T> {
-    /// The values.
+    /// The values that corners or vertices refer to.
     pub values: Vec<T>,
     /// For each triangle, which values its corners take; `None`: the same indices as the positions.
     pub corners: Option<Vec<Corners>>,

@@ -190,7 +190,7 @@ fn fill_gaps(
             *mine = first + other;
         }
     }
-    // The bad values are no longer referred to, but must not trip a reader who looks at all of them.
+    // Nothing refers to the bad values, but they must not trip a reader who looks at all of them.
     given.values.iter_mut().filter(|n| missing(n)).for_each(|n| *n = DEFAULT_NORMAL);
     given.values.extend(made.values);
     Attribute { values: given.values, corners: Some(corners) }

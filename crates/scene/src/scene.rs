@@ -139,6 +139,7 @@ impl Scene {
 
     /// Takes everything of `other` into this scene, behind what is there: several models in one picture.
     pub fn append(&mut self, other: Self) {
+        // Count what is there, by which the other's indices move.
         let (meshes, materials, textures, nodes, cameras) = (
             self.meshes.len() as u32,
             self.materials.len() as u32,
@@ -146,6 +147,8 @@ impl Scene {
             self.nodes.len() as u32,
             self.cameras.len() as u32,
         );
+
+        // Append meshes, materials, textures and nodes with their indices moved.
         self.meshes.extend(other.meshes.into_iter().map(|mut mesh| {
             if materials > 0 {
                 let mesh = Arc::make_mut(&mut mesh);
@@ -173,6 +176,8 @@ impl Scene {
         self.cameras.extend(other.cameras);
         // What one of them is seen from may not show the other.
         self.own_camera = None;
+
+        // Keep the brighter ambient light, and every axis that is up.
         for k in 0..3 {
             self.ambient[k] = self.ambient[k].max(other.ambient[k]);
         }

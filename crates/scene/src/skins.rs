@@ -43,7 +43,7 @@ impl Solids {
         let weld = Weld::new(&mesh.positions, workers);
         let Some(skins) = Skins::new(mesh, &weld) else { return Self::default() };
         let triangles = TriangleBuckets::new(mesh, &weld, workers);
-        let spare = Spare::<(Around, Seen)>::default();
+        let spare = Spare::<(Around, EdgeFindings)>::default();
         workers.map(triangles.count(), |b| {
             spare.lend(|(around, seen)| {
                 around.fill(&triangles, b);
@@ -75,14 +75,14 @@ impl Solids {
 }
 
 impl KnownSolidity {
-    /// `solids`, found out for the mesh as it is now.
+    /// `solids`, found out for the present mesh.
     pub(crate) fn new(mesh: &Mesh, solids: Solids, workers: &Workers) -> Self {
         Self { solids, surface: fingerprint(mesh, workers) }
     }
 }
 
-/// With more corners at a vertex its sides are sorted.
-const MANY: u32 = 64;
+/// Corners at a vertex above which its sides are sorted instead of searched.
+const SORT_THRESHOLD: u32 = 64;
 /// Not an edge.
 const NONE: u32 = u32::MAX;
 
@@ -130,7 +130,7 @@ impl Bits {
 
 /// What was seen of some of the edges.
 #[derive(Default)]
-pub(crate) struct Seen {
+pub(crate) struct EdgeFindings {
     some: bool,
     open: bool,
     twisted: bool,
@@ -155,7 +155,7 @@ struct Edge {
     older: u32,
 }
 
-impl Seen {
+impl EdgeFindings {
     fn use_edge(&mut self, vertex: usize, side: Use) {
         let mut at = self.newest[vertex];
         while let Some(edge) = self.edges.get_mut(at as usize) {
@@ -188,7 +188,7 @@ impl<'a> Skins<'a> {
     }
 
     /// Looks at an edge that these triangles use.
-    fn edge(&self, seen: &mut Seen, uses: &[Use]) {
+    fn edge(&self, seen: &mut EdgeFindings, uses: &[Use]) {
         seen.some = true;
         match uses {
             [a, b] => {
@@ -211,7 +211,8 @@ impl<'a> Skins<'a> {
     }
 
     /// Looks at the edges whose lower vertex is in a bucket.
-    pub(crate) fn look_at(&self, seen: &mut Seen, around: &Around) {
+    pub(crate) fn look_at(&self, seen: &mut EdgeFindings, around: &Around) {
+        // Sort the sides of each triangle by their lower vertex.
         let Around { first_vertex, degrees, faces, welded } = around;
         seen.edges.clear();
         seen.further.clear();
@@ -227,12 +228,15 @@ impl<'a> Skins<'a> {
                 let vertex = lower.wrapping_sub(*first_vertex) as usize;
                 match degrees.get(vertex) {
                     None => {}
-                    Some(&degree) if degree > MANY => seen.long.push((lower, Use::new(higher, face, from > to))),
+                    Some(&degree) if degree > SORT_THRESHOLD => {
+                        seen.long.push((lower, Use::new(higher, face, from > to)))
+                    }
                     Some(_) => seen.use_edge(vertex, Use::new(higher, face, from > to)),
                 }
             }
         }
 
+        // Look at each edge: those with one or two uses, then those with more.
         let (edges, mut further) = (std::mem::take(&mut seen.edges), std::mem::take(&mut seen.further));
         for edge in edges.iter().filter(|edge| edge.count <= 2) {
             self.edge(seen, &edge.uses[..edge.count as usize]);
@@ -244,6 +248,8 @@ impl<'a> Skins<'a> {
             self.edge(seen, &all);
         }
         (seen.edges, seen.further) = (edges, further);
+
+        // Look at the edges of vertices with many neighbours, sorted by their ends.
         let mut long = std::mem::take(&mut seen.long);
         long.sort_unstable();
         let mut uses = Vec::new();
@@ -256,8 +262,12 @@ impl<'a> Skins<'a> {
     }
 
     /// The answer, when all edges were looked at.
-    pub(crate) fn solids<'b>(self, seen: impl IntoIterator<Item = &'b Seen> + Clone, workers: &Workers) -> Solids {
-        let any = |of: fn(&Seen) -> bool| seen.clone().into_iter().any(of);
+    pub(crate) fn solids<'b>(
+        self,
+        seen: impl IntoIterator<Item = &'b EdgeFindings> + Clone,
+        workers: &Workers,
+    ) -> Solids {
+        let any = |of: fn(&EdgeFindings) -> bool| seen.clone().into_iter().any(of);
         let closed = any(|s| s.some) && !any(|s| s.open);
         let consistent = !any(|s| s.twisted);
         seen.into_iter().for_each(|seen| self.weigh_crossings(&seen.crossings));
@@ -402,7 +412,7 @@ mod tests {
         assert_eq!(ball.solidity.as_ref().map(|known| known.solids.solidity), Some(alone));
         assert_eq!(fingerprint(&ball, &Workers::single()), fingerprint(&ball, &Workers::new(3)));
 
-        // The mesh still carries the old answer, which is none any more.
+        // The mesh still carries the old answer, which is stale.
         let mut turned = ball.clone();
         turned.triangles[5].swap(0, 1);
         assert!(!Solidity::of(&turned, &Workers::single()).consistent);

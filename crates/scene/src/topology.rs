@@ -23,7 +23,7 @@ pub struct Topology {
     pub vertices: usize,
     /// Different edges of triangles. A degenerate triangle's edge from a vertex to itself counts.
     pub edges: usize,
-    /// Triangles.
+    /// All triangles, those without area included.
     pub triangles: usize,
     /// Edges with one triangle.
     pub boundary_edges: usize,

@@ -55,17 +55,17 @@ pub enum WorldError {
     /// A node is its own ancestor, or has two parents.
     #[error("node {node} is reached twice: the scene graph must be a tree")]
     NotATree {
-        /// The node.
+        /// The node that is the cause.
         node: u32,
     },
     /// An index points nowhere.
     #[error("node {node} refers to {what} {index}, there are {count}")]
     BadIndex {
-        /// The node.
+        /// The node that is the cause.
         node: u32,
         /// What it refers to.
         what: &'static str,
-        /// The index.
+        /// The index that is out of range.
         index: u32,
         /// How many there are.
         count: usize,
@@ -75,7 +75,7 @@ pub enum WorldError {
     BadRoot {
         /// Its place in the list of roots.
         place: usize,
-        /// The index.
+        /// The index that is out of range.
         index: u32,
         /// How many nodes there are.
         count: usize,

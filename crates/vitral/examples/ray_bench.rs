@@ -14,7 +14,7 @@ use vitral::internals::math::{Vec3, lanes::level_from_environment};
 use vitral::internals::raster::{LayerList, SamplePattern, Tile, TileGrid, Viewport};
 use vitral::internals::render::raytrace::intersect::Ray;
 use vitral::internals::render::raytrace::{
-    Counters, Structure, Tree, bsp::Bsp, bvh::Bvh, grid::Grid, octree::Octree, triangles::Triangles,
+    Counters, Structure, Tree, bsp::KdTree, bvh::Bvh, grid::Grid, octree::Octree, triangles::Triangles,
 };
 use vitral::internals::render::stats::{CullCounters, VisibilityCounters};
 use vitral::internals::render::visible::TileSink;
@@ -145,6 +145,7 @@ fn follow(structure: &impl Structure, rays: &[[Vec3; 2]], workers: &Workers) -> 
 }
 
 fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<(), Failure> {
+    // Time the structures, pictures through them, and single rays.
     let renderer = renderer(model, threads)?;
     let (workers, budget) = (&renderer.execution().workers, Budget::default());
     let triangles = Triangles::of(renderer.session(), renderer.execution())?;
@@ -154,7 +155,7 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
         Ok(bvh)
     })?;
     let (octree_ms, _) = timed(1, || Ok(Octree::build(&triangles, workers, &budget)?))?;
-    let (bsp_ms, _) = timed(1, || Ok(Bsp::build(&triangles, workers, &budget)?))?;
+    let (bsp_ms, _) = timed(1, || Ok(KdTree::build(&triangles, workers, &budget)?))?;
     let (grid_ms, _) = timed(1, || Ok(Grid::build(&triangles, &budget)?))?;
     let (picture_ms, counters, seen) = picture(&renderer, Acceleration::BVH, rounds)?;
     let (octree_picture_ms, _, through_octree) = picture(&renderer, Acceleration::OCTREE, 1)?;
@@ -170,6 +171,8 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
         .map(|place| triangles.facets.get(place as usize).copied().unwrap_or(u32::MAX))
         .collect();
     let differ = |a: &[u32], b: &[u32]| a.iter().zip(b).filter(|(a, b)| a != b).count();
+
+    // Report times, work and differences.
     let report = serde_json::json!({
         "triangles": triangles.count(),
         "rays": rays.len(),
@@ -210,7 +213,7 @@ fn check(model: &str, count: usize) -> Result<(), Failure> {
     let hits = expected.iter().filter(|&&f| f != u32::MAX).count();
     let bvh = follow(&Bvh::build(&triangles, workers, &budget)?, &rays, workers).0;
     let octree = follow(&Octree::build(&triangles, workers, &budget)?, &rays, workers).0;
-    let bsp = follow(&Bsp::build(&triangles, workers, &budget)?, &rays, workers).0;
+    let bsp = follow(&KdTree::build(&triangles, workers, &budget)?, &rays, workers).0;
     let grid = follow(&Grid::build(&triangles, &budget)?, &rays, workers).0;
     let differ = |other: &[u32]| expected.iter().zip(other).filter(|(a, b)| a != b).count();
     println!(

@@ -20,7 +20,7 @@ use vitral_scene::{Camera, Scene};
 /// An algorithm of the registry, and for rays the structure.
 #[derive(Clone, Copy)]
 pub struct Entrant {
-    /// The algorithm.
+    /// The algorithm of visible surfaces that is measured.
     pub algorithm: &'static VisibilityAlgorithm,
     /// The structure, where it casts rays.
     pub acceleration: Option<Acceleration>,
@@ -65,7 +65,7 @@ impl Entrant {
 /// What is to be measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
-    /// The scene.
+    /// The scene that is rendered.
     pub scene: &'a Arc<Scene>,
     /// The viewer.
     pub camera: &'a Camera,
@@ -97,17 +97,17 @@ pub struct Measured {
     /// Counters of the first picture.
     pub counters: VisibilityCounters,
     /// What is seen.
-    pub seen: Seen,
+    pub seen: VisibilityDigest,
 }
 
 /// What is seen at each sample of the picture: facets and depths, row by row.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct VisibilityDigest {
     facets: Vec<u32>,
     depths: Vec<f32>,
 }
 
-impl Seen {
+impl VisibilityDigest {
     fn of(grid: &TileGrid, viewport: Viewport, samples: usize) -> Self {
         // Some algorithms fill tiles beyond the border of the picture, others do not.
         let pixels = || (0..viewport.height).flat_map(|y| (0..viewport.width).map(move |x| grid.locate(x, y)));
@@ -148,10 +148,10 @@ pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Res
         Ok(first) => first,
         Err(limit) => return Ok(Err(limit)),
     };
-    let seen = Seen::of(&grid, viewport, samples);
+    let seen = VisibilityDigest::of(&grid, viewport, samples);
     let mut seconds = Vec::new();
     while seconds.len() + 1 < task.frames {
-        // A limit now only means fewer pictures.
+        // A limit here means fewer pictures, no failure.
         let Ok((more, _)) = picture(&mut grid) else { break };
         seconds.push(more);
     }
@@ -201,8 +201,8 @@ mod tests {
             assert_eq!((m.seen.differing(&measured[0].seen), m.frames), (0, 2), "{}", entrant.name());
             assert!(m.bytes > 0 || entrant.algorithm.name == "z-buffer", "{}", entrant.name());
         }
-        let other = Seen { facets: vec![0; 9], depths: vec![0.5; 9] };
-        let shifted = Seen { facets: vec![0; 9], depths: vec![0.25; 9] };
+        let other = VisibilityDigest { facets: vec![0; 9], depths: vec![0.5; 9] };
+        let shifted = VisibilityDigest { facets: vec![0; 9], depths: vec![0.25; 9] };
         assert_eq!(other.differing(&shifted), 9);
     }
 

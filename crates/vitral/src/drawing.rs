@@ -242,10 +242,10 @@ impl Renderer {
     }
 }
 
-/// Formats of drawings.
+/// File formats that a drawing is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawingFormat {
-    /// SVG.
+    /// SVG, with a group for each class of lines.
     Svg,
     /// PDF.
     Pdf,

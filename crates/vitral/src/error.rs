@@ -51,7 +51,7 @@ pub enum Error {
     /// A state or configuration file that cannot be understood.
     #[error("{file}: {place}{what}")]
     State {
-        /// The file.
+        /// The file as it was named.
         file: String,
         /// `line L, column C: path: `, as far as it is known.
         place: String,

@@ -108,7 +108,7 @@ pub struct TracedRay {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct MetSurface {
-    /// The facet.
+    /// Id of the facet, counted over all instances.
     pub facet: u32,
     /// The face of the file that it is of, as in the channel `id`.
     pub surface: u32,
@@ -142,7 +142,7 @@ pub struct Turn {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Gouraud {
-    /// The facet.
+    /// Id of the facet, counted over all instances.
     pub facet: u32,
     /// Its corners in pixels.
     pub corners: [[f64; 2]; 3],
@@ -200,7 +200,7 @@ pub struct Decision {
     pub algorithm: String,
     /// The opaque facet that is seen, none for the background.
     pub facet: Option<u32>,
-    /// Its depth.
+    /// Its depth: 1 on the near plane, 0 on the far plane.
     pub depth: Option<f32>,
     /// The steps that concerned the pixel, in the order they came.
     pub steps: Vec<String>,
@@ -239,7 +239,7 @@ impl Observer for Onlooker {
         if step.concerns(self.pixel) && !matches!(step, Step::Drawn { .. }) {
             let mut steps = self.steps.lock().expect("no thread panics while it keeps a step");
             if steps.len() < MOST_STEPS {
-                steps.push(step.tell(self.pixel));
+                steps.push(step.describe(self.pixel));
             }
         }
     }
@@ -357,7 +357,7 @@ fn named(session: &Session, facet: u32) -> (u32, String, Option<String>) {
 /// A facet over the centre of a pixel, and its depth there: 1 on the near plane, 0 on the far plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetDepth {
-    /// The facet.
+    /// Id of the facet, counted over all instances.
     pub facet: u32,
     /// Its depth.
     pub depth: f32,

@@ -81,7 +81,7 @@ pub struct MeshInfo {
     pub instances: usize,
     /// Faces as in the file.
     pub faces: usize,
-    /// Triangles.
+    /// Triangles of the mesh.
     pub triangles: usize,
     /// Vertices as in the file.
     pub vertices: usize,
@@ -343,6 +343,7 @@ fn counted(count: impl TryInto<u64>, one: &str, many: &str) -> String {
 
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Write the counts.
         writeln!(f, "{}", surfaces(self.triangles, self.faces, self.vertices))?;
         if self.lines + self.points > 0 {
             let (lines, points) = (counted(self.lines, "line", "lines"), counted(self.points, "point", "points"));
@@ -351,11 +352,15 @@ impl fmt::Display for Info {
         let instances = counted(self.instances, "instance", "instances");
         let (meshes, nodes) = (counted(self.meshes.len(), "mesh", "meshes"), counted(self.nodes, "node", "nodes"));
         writeln!(f, "{meshes}, {instances}, {nodes}")?;
+
+        // Write the extent.
         if let Some(bounds) = &self.bounds {
             let size = [0, 1, 2].map(|k| bounds.max[k] - bounds.min[k]);
             writeln!(f, "bounds {} to {}, size {}", triple(bounds.min), triple(bounds.max), triple(size))?;
         }
         writeln!(f, "{}", if self.closed { "closed" } else { "not closed" })?;
+
+        // Write meshes, materials and textures.
         for mesh in &self.meshes {
             write_mesh(f, mesh)?;
         }
@@ -371,6 +376,8 @@ impl fmt::Display for Info {
         for t in &self.textures {
             writeln!(f, "texture {}: {} x {}", quoted(&t.name), t.width, t.height)?;
         }
+
+        // Write the lights.
         self.lights.iter().try_for_each(|light| writeln!(f, "{light}"))?;
         if self.exposure != 1.0 {
             writeln!(f, "exposure: photometric lights are multiplied by {:.4e}", self.exposure)?;
@@ -381,6 +388,8 @@ impl fmt::Display for Info {
         if self.ambient != [0.0; 3] {
             writeln!(f, "ambient light {}", triple(self.ambient.map(f64::from)))?;
         }
+
+        // Write cameras, animations and warnings.
         self.cameras.iter().try_for_each(|camera| writeln!(f, "camera: {camera}"))?;
         for (number, a) in self.animations.iter().enumerate() {
             writeln!(f, "animation {number}: {}, {} s", quoted(&a.name), short(a.duration))?;

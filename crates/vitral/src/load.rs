@@ -147,7 +147,7 @@ pub fn load_telling(
     let folder = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
     let resolver = ToldFiles { folder, tell };
     let mut scene = vitral_io::load_at(&bytes, &name, &resolver, workers, options.moment().as_ref())?;
-    // The file is not needed any more, and normals take room.
+    // Drop the file before normals take room.
     drop(bytes);
     finish(&mut scene, options, workers);
     Ok(scene)

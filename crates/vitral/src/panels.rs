@@ -55,11 +55,14 @@ fn six(
     (lights, number): (&[Light], usize),
     overview: Colors,
 ) -> Result<Picture, Error> {
+    // Take the settings over, with one light and without the user's edits.
     let with = renderer.settings.clone();
     let own_lights = renderer.lights.replace(lights.to_vec());
     let edits = std::mem::take(&mut renderer.light_edits);
     let intensity = renderer.light_intensity.replace(1.0);
     let without = with.clone().with_shadows(Shadows::NONE);
+
+    // Render the panels; the sequence chooses the middle four.
     let made = || {
         let mut shot = |settings: &Settings, camera: &Camera| {
             renderer.settings = settings.clone();
@@ -92,6 +95,8 @@ fn six(
         shadowed.frame = sheet([&overview, b, c, d, e, &last]);
         Ok(shadowed)
     };
+
+    // Restore the renderer, even after an error.
     let made = made();
     renderer.lights = own_lights;
     renderer.light_edits = edits;

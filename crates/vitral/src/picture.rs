@@ -318,6 +318,8 @@ pub fn encode_with(
     options: &EncodeOptions,
 ) -> Result<Vec<u8>, Error> {
     check(channel, format)?;
+
+    // Encode ids as numbers or colours.
     let missing = || not_rendered(channel);
     let numbers = PngOptions { srgb: false };
     let ids = |plane: &Option<Plane<u32>>| {
@@ -327,6 +329,8 @@ pub fn encode_with(
             _ => picture(&plane.map(|&id| id_color(id)), format, numbers, options),
         }
     };
+
+    // Encode shares as numbers or grey levels.
     let shares = |plane: &Option<Plane<f32>>| {
         let plane = plane.as_ref().ok_or_else(missing)?;
         let grey = |share: f32| {
@@ -338,6 +342,8 @@ pub fn encode_with(
             _ => picture(&plane.map(|&share| grey(share)), format, numbers, options),
         }
     };
+
+    // Encode the channel.
     match channel {
         Channel::Color => {
             let plane = frame.color.as_ref().ok_or_else(missing)?;

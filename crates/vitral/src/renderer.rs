@@ -415,7 +415,7 @@ impl Renderer {
         Ok(PreparedView::new(&self.session, camera, &self.settings, viewport, pattern, &self.execution, counters))
     }
 
-    /// Takes back a picture that is not needed any more: the next one of its size is made in the same memory. Without it every
+    /// Takes back a picture that the caller has done with: the next one of its size is made in the same memory. Without it every
     /// picture has to get new pages from the system.
     pub fn recycle(&mut self, picture: Picture) {
         self.session.recycle(picture.frame);

@@ -68,7 +68,7 @@ impl Groups {
 }
 
 impl Joined {
-    /// Its regions.
+    /// Its shapes as regions, each with the outline and the holes.
     pub(super) fn regions(&self) -> impl Iterator<Item = PageRegion> + '_ {
         self.shapes.iter().map(|shape| PageRegion {
             surface: self.surface,

@@ -38,7 +38,7 @@ pub(super) struct Part {
 
 /// The visible parts of all triangles, and the triangles that cut them.
 #[derive(Default)]
-pub(super) struct Parts {
+pub(super) struct VisibleParts {
     pub(super) all: Vec<Part>,
     /// A part and a triangle whose outline cuts it.
     pub(super) contacts: Vec<[u32; 2]>,

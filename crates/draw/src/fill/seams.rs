@@ -13,7 +13,7 @@
 //! Cost: linear in the pairs of neighbours.
 
 use super::groups::{Groups, Joined, LEAST_SHAPE};
-use super::parts::{Look, Part, Parts};
+use super::parts::{Look, Part, VisibleParts};
 use crate::page_mesh::PageMesh;
 use crate::run::Run;
 use crate::shapes::{area_of, union};
@@ -25,7 +25,12 @@ use vitral_scene::buckets::{Dealt, Source};
 const BYTES_A_PAIR: u64 = 8;
 
 /// For each group the parts of later groups that are beside its own.
-pub(super) fn beneath(mesh: &PageMesh, parts: &Parts, groups: &Groups, run: &Run<'_>) -> Result<Vec<Vec<u32>>, Limit> {
+pub(super) fn beneath(
+    mesh: &PageMesh,
+    parts: &VisibleParts,
+    groups: &Groups,
+    run: &Run<'_>,
+) -> Result<Vec<Vec<u32>>, Limit> {
     let mut neighbours = Neighbours { parts: &parts.all, groups, beneath: vec![Vec::new(); groups.len()] };
 
     // Those round a vertex.

@@ -247,6 +247,7 @@ fn over(plane: &GridPlane, triangle: &Triangle) -> Option<Ordering> {
 
 /// The part of a triangle above a plane.
 fn above(triangle: &Triangle, plane: &GridPlane) -> Vec<Corner> {
+    // Clip the outline at the plane.
     let heights = triangle.corners.map(|p| plane.height(p));
     let mut polygon = Vec::with_capacity(4);
     for k in 0..3 {

@@ -139,6 +139,7 @@ impl Sheet {
 
     /// Places views of these extents.
     fn place(&self, extents: &[Extent], page: PageSize, margin: f64) -> Result<SheetLayout, SheetError> {
+        // Find the room on the sheet.
         let (sheet, longest) = match page {
             PageSize::Sheet { width, height } | PageSize::Scaled { sheet: Some([width, height]), .. } => {
                 (Some([width, height]), f64::INFINITY)

@@ -25,6 +25,7 @@ pub const SYMBOL_SIZE: [f64; 2] = [2.0 * (WIDE + 2.0 * BEYOND) + BETWEEN, WIDE +
 
 /// The strokes of the symbol in millimetres, from its lower left corner.
 pub fn symbol(angle: Angle) -> Vec<Vec<[f64; 2]>> {
+    // Choose the side of the cone.
     let view = WIDE + 2.0 * BEYOND;
     let (cone, circles) = match angle {
         Angle::First => (0.0, view + BETWEEN),

@@ -88,6 +88,8 @@ pub(super) fn read_string(memory: &dyn ClientMemory, address: usize, length: i32
     if address == 0 {
         return Text::Unreadable;
     }
+
+    // Read a string of known length at once.
     if let Ok(length) = usize::try_from(length) {
         if length >= limit {
             return Text::TooLong;
@@ -95,6 +97,8 @@ pub(super) fn read_string(memory: &dyn ClientMemory, address: usize, length: i32
         let mut bytes = vec![0; length];
         return if memory.read(address, &mut bytes) { Text::Bytes(bytes) } else { Text::Unreadable };
     }
+
+    // Otherwise read byte by byte up to the NUL.
     let mut bytes = Vec::new();
     while bytes.len() < limit {
         let mut byte = [0];

@@ -40,6 +40,8 @@ impl Context {
         let Some(index) = index_in(light, gl::LIGHT0, MAX_LIGHTS) else {
             return self.refuse_enum(call, "light", light);
         };
+
+        // Check the range of the value.
         let [value, ..] = values;
         let good = match pname {
             gl::SPOT_EXPONENT => (0.0..=128.0).contains(&value),
@@ -50,8 +52,12 @@ impl Context {
         if !good {
             return self.refuse_value(call, "the value is out of range");
         }
+
+        // Transform positions and directions to eye space.
         let position = self.modelview64() * dvec4(value.into(), values[1].into(), values[2].into(), values[3].into());
         let direction = DMat3::from_mat4(self.modelview64()) * dvec3(value.into(), values[1].into(), values[2].into());
+
+        // Store the value.
         let light = &mut self.state.lighting.lights[index];
         match pname {
             gl::AMBIENT => light.ambient = values,

@@ -80,8 +80,12 @@ impl Context {
         if pname == gl::SHININESS && !(0.0..=128.0).contains(&values[0]) {
             return self.refuse_value(call, "the exponent is not in 0..=128");
         }
+
+        // Find the parameters that follow the current colour.
         let tracked = self.state.lighting.color_material;
         let tracked_faces = faces(tracked.face).filter(|_| tracked.enabled).unwrap_or([false; 2]);
+
+        // Store the value on each chosen face.
         for side in (0..2).filter(|side| chosen[*side]) {
             let material = &mut self.state.lighting.material[side];
             match pname {

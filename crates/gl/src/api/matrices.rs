@@ -218,7 +218,7 @@ impl Context {
         self.state.matrices.modelview.top().as_dmat4()
     }
 
-    /// A plane of model space in eye space: times the inverse of the modelview matrix as it is now. Where that has none,
+    /// A plane of model space in eye space: times the inverse of the current modelview matrix. Where that has none,
     /// the plane stays as it is.
     pub(super) fn eye_plane(&self, plane: [f64; 4]) -> [f64; 4] {
         let modelview = self.modelview64();

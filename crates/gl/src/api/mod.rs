@@ -34,7 +34,7 @@ pub(crate) use sync::Fences;
 
 use crate::{Context, enums as gl};
 
-/// The name of an error.
+/// The token of an error, as the specification spells it.
 fn error_name(error: u32) -> &'static str {
     match error {
         gl::INVALID_ENUM => "GL_INVALID_ENUM",

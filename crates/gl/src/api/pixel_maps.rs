@@ -58,6 +58,7 @@ fn holds_indices(map: usize) -> bool {
 /// Pixel maps.
 impl Context {
     fn set_map<T: MapEntry>(&mut self, call: &'static str, map: u32, size: i32, values: usize) {
+        // Check the map's name and size; these errors belong to the command in a display list.
         let index = index_in(map, gl::PIXEL_MAP_I_TO_I, 10);
         let length = usize::try_from(size).ok().filter(|n| (1..=MAX_PIXEL_MAP_TABLE).contains(n));
         // Maps that an index looks up have a power of two of entries: I to I, S to S, I to R, G, B, A.
@@ -76,6 +77,8 @@ impl Context {
                 }
             });
         };
+
+        // Read the values when the call is made.
         let mut given = vec![T::zeroed(); length];
         let there = match self.unpack_memory(values, size_of::<T>()) {
             Err((error, why)) => return self.record_error(error, call, why),
@@ -86,6 +89,8 @@ impl Context {
         } else if !there {
             return self.refuse_value(call, "the map is not in readable memory");
         }
+
+        // Convert the entries and keep or run the command.
         let entry = |v: T| if holds_indices(index) { v.index() } else { unit(v.color()) };
         let entries = Arc::new(given.into_iter().map(entry).collect::<Vec<f32>>());
         self.listable(move |c| {

@@ -62,6 +62,8 @@ impl Context {
         if !self.outside_begin(CALL) {
             return;
         }
+
+        // Check the operation and the buffer.
         if !matches!(op, ACCUM | LOAD | ADD | MULT | RETURN) {
             return self.record_error(INVALID_ENUM, CALL, "op is not an accumulation operation");
         }
@@ -71,11 +73,15 @@ impl Context {
         if !self.draw_framebuffer_complete(CALL) || !self.renders() {
             return;
         }
+
+        // Limit the operation to the scissor rectangle.
         let Some(viewport) = self.draw_surfaces().size else { return };
         let clip = self.scissored(viewport);
         if clip[0] >= clip[2] || clip[1] >= clip[3] {
             return;
         }
+
+        // Run the operation.
         match op {
             ACCUM | LOAD => self.accumulate(value, op == LOAD, clip),
             RETURN => self.return_accum(value, clip),

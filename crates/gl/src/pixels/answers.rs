@@ -15,7 +15,7 @@ pub(crate) struct FramebufferBits {
     pub color: [u32; 4],
     /// Depth; 32 for floating point.
     pub depth: u32,
-    /// Stencil.
+    /// Bits of stencil values.
     pub stencil: u32,
     /// Red, green, blue, alpha of the accumulation buffer.
     pub accum: [u32; 4],

@@ -9,7 +9,7 @@ use crate::state::MAX_COLOR_ATTACHMENTS;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use vitral_raster::Viewport;
-use vitral_raster::forward::{ColorPlane, DepthPlane, StencilPlane};
+use vitral_raster::forward::{ColorPlane, DepthBuffer, StencilPlane};
 
 /// Index of the depth attachment; colours come first.
 pub(crate) const DEPTH_POINT: usize = MAX_COLOR_ATTACHMENTS;
@@ -37,7 +37,7 @@ impl Attached {
     }
 }
 
-/// A framebuffer object.
+/// A framebuffer object: images at attachment points.
 #[derive(Clone, Debug)]
 pub(crate) struct FramebufferObject {
     /// Colours, depth, stencil.
@@ -66,7 +66,7 @@ pub(crate) struct Surface {
     /// 0 if not multisampled.
     pub samples: usize,
     pub color: Option<Shared<ColorPlane>>,
-    pub depth: Option<Shared<DepthPlane>>,
+    pub depth: Option<Shared<DepthBuffer>>,
     pub stencil: Option<Shared<StencilPlane>>,
     /// Counts draws to a texture's colours.
     pub writes: Option<Arc<AtomicU64>>,
@@ -104,12 +104,14 @@ impl Attached {
                     writes: color.then(|| image.writes()),
                 };
                 if !had_planes {
-                    // A snapshot made before has texels that are no longer the truth.
+                    // The plane holds the image from here on: earlier snapshots have stale texels.
                     texture.touch();
                 }
                 surface
             }
         };
+
+        // The image fits the point if it has the plane for it.
         let fits = match point {
             DEPTH_POINT => surface.depth.is_some(),
             STENCIL_POINT => surface.stencil.is_some(),

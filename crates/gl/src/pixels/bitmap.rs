@@ -40,6 +40,8 @@ impl Context {
         if !self.outside_begin(CALL) {
             return;
         }
+
+        // Check the size and the raster position.
         if glyph.size.iter().any(|&s| s < 0) {
             return self.record_error(INVALID_VALUE, CALL, "a size is negative");
         }
@@ -49,6 +51,8 @@ impl Context {
         if !self.draw_framebuffer_complete(CALL) || !self.state.raster_position.valid {
             return;
         }
+
+        // Record the bits as fragments of the raster colour.
         if self.raster_draws(BITMAP_TOKEN)
             && let Some(bits) = &glyph.bits
             && bits.contains(&true)
@@ -60,6 +64,8 @@ impl Context {
             let state = self.fragment_state(true);
             self.record(Command::Image(Arc::new(image), state));
         }
+
+        // Move the raster position.
         for i in 0..2 {
             self.state.raster_position.window[i] += glyph.step[i];
         }

@@ -64,12 +64,14 @@ impl Blit {
 
     /// The plan for a source and a destination; `clip` is the part of the destination that may change.
     fn plan(&self, from: Viewport, clip: [i32; 4], workers: Workers) -> Plan {
+        // Find the extents of both rectangles.
         let axis = |i: usize, size| {
             Axis::new([self.from[i], self.from[i + 2]], [self.to[i], self.to[i + 2]], [clip[i], clip[i + 2]], size)
         };
         let extent = |r: [i32; 4], i: usize| i64::from(r[i + 2]) - i64::from(r[i]);
         let same = (0..2).all(|i| extent(self.from, i) == extent(self.to, i));
-        // Both backwards is forwards.
+
+        // Copy without scaling if the extents agree, both mirrored included: clip the destination to both surfaces.
         let corner = |r: [i32; 4], i: usize| i64::from(r[i].min(r[i + 2]));
         let job = same.then(|| {
             let limit = [from.width, from.height].map(i64::from);
@@ -176,6 +178,8 @@ impl Context {
 
     fn exec_blit(&mut self, blit: &Blit) -> Result<(), Failure> {
         const CALL: &str = "glBlitFramebuffer";
+
+        // Check the arguments.
         if blit.mask & !(COLOR_BUFFER_BIT | DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT) != 0 {
             return Err((INVALID_VALUE, "mask has bits that name no buffer"));
         }
@@ -185,6 +189,8 @@ impl Context {
         if blit.filter == LINEAR && blit.mask & (DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT) != 0 {
             return Err((INVALID_OPERATION, "depth and stencil cannot be interpolated"));
         }
+
+        // Check both framebuffers.
         if !self.draw_framebuffer_complete(CALL) {
             return Ok(());
         }
@@ -195,12 +201,16 @@ impl Context {
         }
         let Some(read) = self.read_surfaces(CALL, false, None) else { return Ok(()) };
         let (Some(from), Some(to)) = (read.size, draw.size) else { return Ok(()) };
+
+        // Plan the copy, and finish what is recorded.
         let plan = blit.plan(from, self.scissored(to), self.workers());
         // The copy counts as a draw, and happens at once.
         if blit.mask == 0 || blit.is_empty() || self.draw_target(None).is_none() {
             return Ok(());
         }
         self.flush_recorded();
+
+        // Copy colours, converting them if the formats differ.
         let wants = |bit| blit.mask & bit != 0;
         if let (true, Some(from), Some(to)) = (wants(COLOR_BUFFER_BIT), &read.color, &draw.color)
             && let (Some(a), Some(b)) = (&from.color, &to.color)
@@ -209,6 +219,8 @@ impl Context {
             let other = to.format.missing() != from.format.missing();
             with_both(a, b, |a, b| if other { plan.colors(&kept(a, &to.format), b) } else { plan.colors(a, b) });
         }
+
+        // Copy depths and stencil values.
         if let (true, Some(from), Some(to)) = (wants(DEPTH_BUFFER_BIT), &read.depth, &draw.depth)
             && let (Some(a), Some(b)) = (&from.depth, &to.depth)
         {

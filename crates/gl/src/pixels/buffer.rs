@@ -1,7 +1,7 @@
 //! ARB_pixel_buffer_object: images that lie in buffer objects instead of the client's memory.
 //!
 //! What reads or writes images asks for a memory and an address. With a buffer bound the memory is that buffer's data store,
-//! as it is now, and the address is an offset.
+//! as it is at the call, and the address is an offset.
 
 use super::Failure;
 use crate::Context;

@@ -31,12 +31,16 @@ impl Context {
         if !self.outside_begin(CALL) {
             return;
         }
+
+        // Check the mask and the framebuffer.
         if mask & !(COLOR_BUFFER_BIT | DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT | ACCUM_BUFFER_BIT) != 0 {
             return self.record_error(INVALID_VALUE, CALL, "mask has bits that name no buffer");
         }
         if !self.draw_framebuffer_complete(CALL) || !self.renders() {
             return;
         }
+
+        // Limit the clear to the scissor rectangle.
         let surfaces = self.draw_surfaces();
         let Some(viewport) = surfaces.size else { return };
         let clip = self.scissored(viewport);
@@ -46,6 +50,8 @@ impl Context {
         if clip[0] >= clip[2] || clip[1] >= clip[3] {
             return;
         }
+
+        // Find the components that stay: masked ones, and those that the format lacks.
         let missing = self.missing_components();
         let srgb = self.encodes_srgb();
         let written = self.state.color_buffer.mask;
@@ -63,17 +69,23 @@ impl Context {
             }
             (clear, unmasked)
         });
+
+        // Choose the values of depth and stencil.
         let depth = (mask & DEPTH_BUFFER_BIT != 0 && self.state.depth.write && surfaces.depth.is_some())
             .then_some(self.state.depth.clear as f32);
         let stencil = (mask & STENCIL_BUFFER_BIT != 0 && surfaces.stencil.is_some()).then(|| {
             let face = self.state.stencil.faces[0];
             ((self.state.stencil.clear & 255) as u8, (face.write_mask & 255) as u8)
         });
+
+        // Skip loading the client's pixels if all of them are overwritten.
         let whole = clip == [0, 0, viewport.width as i32, viewport.height as i32];
         if self.framebuffers.draw == 0 && whole && color.is_some_and(|c| c.1 == [false; 4]) {
             // Nothing of the client's pixels remains.
             self.default_framebuffer.set_loaded();
         }
+
+        // Record the clear.
         if color.is_some() || depth.is_some() || stencil.is_some() {
             self.record(Command::Clear(Clear { color, depth, stencil, clip }));
         }

@@ -17,7 +17,7 @@ use vitral_raster::{TILE, Viewport};
 
 use super::default::{OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA};
 
-/// The client's buffer.
+/// The client's colour buffer: its memory, format and layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ClientBuffer {
     pub(super) address: usize,
@@ -194,12 +194,14 @@ fn parts(
 
 /// Takes the client's pixels of a part into the plane where they are not what the plane would store.
 fn load(buffer: &ClientBuffer, memory: &dyn ClientMemory, plane: &mut ColorPlane, part: &Part) -> Option<()> {
+    // Reserve rows.
     let width = part.x.len();
     let bytes = buffer.pixel_bytes();
     let (mut words, mut colors) = (vec![0; width], vec![[0.0; 4]; width]);
     let mut ours = Vec::with_capacity(width * bytes);
     let mut theirs = vec![0; width * bytes];
     for y in part.y.clone() {
+        // Compare the client's bytes with those that the plane would store.
         if !memory.read(buffer.pixel(part.x.start, y)?, &mut theirs) {
             return None;
         }
@@ -217,11 +219,15 @@ fn load(buffer: &ClientBuffer, memory: &dyn ClientMemory, plane: &mut ColorPlane
         if ours == theirs {
             continue;
         }
+
+        // Convert the pixels that differ.
         let pixels = theirs.chunks_exact(bytes).zip(ours.chunks_exact(bytes)).enumerate();
         for (x, (theirs, _)) in pixels.filter(|(_, (theirs, ours))| theirs != ours) {
             colors[x] = buffer.unpack(theirs);
             words[x] = word_from_color(colors[x]);
         }
+
+        // Write the row back to the plane.
         match &mut *plane {
             ColorPlane::Rgba8(plane) => plane.write_row(part.x.start, y, &words),
             ColorPlane::RgbaF32(plane) => plane.write_row(part.x.start, y, &colors),
@@ -236,6 +242,7 @@ fn store(buffer: &ClientBuffer, memory: &dyn ClientMemory, plane: &ColorPlane, p
     let (mut words, mut colors) = (Vec::new(), Vec::new());
     let mut bytes = Vec::with_capacity(width * buffer.pixel_bytes());
     for y in part.y.clone() {
+        // Convert the row to the client's format.
         bytes.clear();
         match plane {
             ColorPlane::Rgba8(plane) => {
@@ -251,6 +258,8 @@ fn store(buffer: &ClientBuffer, memory: &dyn ClientMemory, plane: &ColorPlane, p
                 buffer.pack(&colors, &mut bytes);
             }
         }
+
+        // Write it to the client's memory.
         let bytes = if buffer.holds_words() { bytemuck::cast_slice(&words) } else { &bytes[..] };
         if !memory.write(buffer.pixel(part.x.start, y)?, bytes) {
             return None;

@@ -41,7 +41,7 @@ impl Context {
         }
     }
 
-    /// Reads the blocks of a call now, and runs it or keeps it in the display list.
+    /// Reads the blocks of a call at once, and runs it or keeps it in the display list.
     fn compressed(
         &mut self,
         call: &'static str,

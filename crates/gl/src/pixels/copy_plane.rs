@@ -73,6 +73,8 @@ fn copy_tiles<T: Copy + Send + Sync>(
         let clip = [x0.max(left), y0.max(low), x1.min(left + side), y1.min(low + side)];
         (clip, clip == [left, low, viewport.width.min(left + side), viewport.height.min(low + side)])
     };
+
+    // Copy whole tiles in parallel.
     let source = |index: usize| from.tiles.get(index);
     workers.for_each_chunk(&mut into.tiles, TILES_A_JOB, |job, tiles| {
         for (index, tile) in (job * TILES_A_JOB..).zip(tiles) {
@@ -81,6 +83,8 @@ fn copy_tiles<T: Copy + Send + Sync>(
             }
         }
     });
+
+    // Copy rows of the tiles that the rectangle cuts.
     for ty in y0 / side..y1.div_ceil(side) {
         for tx in x0 / side..x1.div_ceil(side) {
             let index = (ty * row + tx) as usize;
@@ -92,6 +96,7 @@ fn copy_tiles<T: Copy + Send + Sync>(
 }
 
 fn copy_rows<T: Copy>(from: &Plane<T>, into: &mut Plane<T>, job: Job, resolve: Resolve<T>) {
+    // Reserve a row for each sample.
     let [x0, y0, x1, y1] = job.clip;
     let source_x = (x0 as i32 + job.shift[0]) as u32;
     let width = (x1 - x0) as usize;
@@ -99,10 +104,13 @@ fn copy_rows<T: Copy>(from: &Plane<T>, into: &mut Plane<T>, job: Job, resolve: R
     let mut rows = vec![vec![value; width]; from.samples()];
     let mut out = vec![value; width];
     for y in y0..y1 {
+        // Read the row of each sample.
         let source_y = (y as i32 + job.shift[1]) as u32;
         for (s, row) in rows.iter_mut().enumerate() {
             from.read_row(source_x, source_y, s, row);
         }
+
+        // Write it: as it is, resolved to one sample, or sample by sample.
         if from.samples() == 1 {
             into.write_row(x0, y, &rows[0]);
         } else if into.samples() == 1 {
@@ -192,6 +200,8 @@ pub(crate) fn scale_linear<T: Copy, U: Copy>(
     value: impl Fn([f32; 4]) -> U,
 ) {
     let viewport = from.viewport();
+
+    // Find the two pixels around a place and the weight of the second.
     let pair = |place: f64, size: u32| {
         let place = (place - 0.5).clamp(0.0, f64::from(size - 1));
         let low = place as u32;
@@ -204,6 +214,8 @@ pub(crate) fn scale_linear<T: Copy, U: Copy>(
             let Some(u) = u else { continue };
             let (x0, x1, tx) = pair(*u, viewport.width);
             let corners = [(x0, y0), (x1, y0), (x0, y1), (x1, y1)].map(|(x, y)| color(from.get(x, y, 0)));
+
+            // Mix the four pixels around the place.
             let mixed = std::array::from_fn(|c| {
                 let low = corners[0][c] + (corners[1][c] - corners[0][c]) * tx;
                 let high = corners[2][c] + (corners[3][c] - corners[2][c]) * tx;

@@ -25,6 +25,8 @@ impl Context {
     /// Texels of a rectangle of the framebuffer that lies inside it.
     fn copy_texels(&self, surfaces: &Surfaces, format: &InternalFormat, r: &Rectangle) -> Option<TexelData> {
         let transfer = Transfer::new(&self.state.pixel);
+
+        // Read depths, and stencil values if the format has them.
         if format.has_depth() {
             let mut depths = read_depths(&self.workers(), &mut lock(surfaces.depth.as_ref()?.depth.as_ref()?), r);
             transfer.depths(&mut depths);
@@ -38,6 +40,8 @@ impl Context {
             };
             return Some(TexelData::Depths(depths, stencils));
         }
+
+        // Copy colours as words if neither transfer nor format changes them.
         let surface = surfaces.color.as_ref()?;
         let plane = lock(surface.color.as_ref()?);
         if transfer.keeps_colors()
@@ -45,6 +49,8 @@ impl Context {
         {
             return Some(texels::from_words(words, format));
         }
+
+        // Otherwise convert colours through floats.
         let mut colors = read_colors(&self.workers(), &plane, &surface.format, r);
         transfer.colors(&mut colors);
         if surface.format.component_type() != FLOAT || format.component_type() != FLOAT {
@@ -64,6 +70,7 @@ impl Context {
     }
 
     fn exec_copy_tex_image(&mut self, arguments: &ImageArguments, x: i32, y: i32) -> Result<(), Failure> {
+        // Check the arguments.
         if InternalFormat::of_texture(arguments.internal).is_none() || (1..=4).contains(&arguments.internal) {
             return Err((INVALID_ENUM, "internalformat is not an internal format of this call"));
         }
@@ -72,12 +79,16 @@ impl Context {
             return Err((INVALID_ENUM, "a proxy has no texels"));
         }
         self.may_get_image(checked.target)?;
+
+        // Check the read framebuffer.
         let [width, height, _] = checked.size.map(u32::cast_signed);
         let area = Some([x, y, width, height]);
         let Some(surfaces) = self.read_surfaces(arguments.call, true, area) else { return Ok(()) };
         if !has_source(&surfaces, &checked.format) {
             return Err((INVALID_OPERATION, "the read framebuffer has no such buffer"));
         }
+
+        // Store the texels at once if all lie inside the framebuffer.
         let size = checked.size.map(|s| s as usize);
         let r = inside(&surfaces, x, y, size[0] as i32, size[1] as i32);
         if r.size == size[..2] {

@@ -49,10 +49,14 @@ fn element(bytes: &[u8]) -> u32 {
 /// Colours of pixels of a colour format, before transfer.
 fn chunk_colors(bytes: &[u8], format: PixelFormat, scratch: &mut Vec<f32>, out: &mut Vec<[f32; 4]>) {
     scratch.clear();
+
+    // Copy four floats a pixel as they are.
     if (format.format, format.kind) == (RGBA, FLOAT) {
         numbers(bytes, FLOAT, scratch);
         return out.extend(scratch.as_chunks().0);
     }
+
+    // Unpack the components to numbers.
     match format.packed() {
         Some(packed) => {
             for pixel in bytes.chunks_exact(packed.bytes) {
@@ -191,6 +195,8 @@ pub(crate) fn stencils(image: &ClientImage, transfer: &Transfer<'_>) -> Vec<u8> 
 pub(crate) fn words(image: Cow<'_, ClientImage>) -> Result<Vec<u32>, Cow<'_, ClientImage>> {
     let PixelFormat { format, kind } = image.format;
     let whole = matches!(kind, UNSIGNED_INT_8_8_8_8 | UNSIGNED_INT_8_8_8_8_REV);
+
+    // Take words of four bytes over, in the order red, green, blue, alpha.
     if matches!(format, RGBA | BGRA) && (whole || kind == UNSIGNED_BYTE) {
         let mut words = image.into_owned().bytes.into_words();
         if kind == UNSIGNED_INT_8_8_8_8 || kind == UNSIGNED_BYTE && cfg!(target_endian = "big") {
@@ -203,6 +209,8 @@ pub(crate) fn words(image: Cow<'_, ClientImage>) -> Result<Vec<u32>, Cow<'_, Cli
     }
     let bytes = &image.bytes;
     let word = |r, g, b, a| u32::from_le_bytes([r, g, b, a]);
+
+    // Expand five and six bits by tables.
     if (format, kind) == (RGB, UNSIGNED_SHORT_5_6_5) {
         let byte = |bits: u16, largest: u16| ((f32::from(bits) / f32::from(largest)) * 255.0 + 0.5) as u8;
         let fives: [u8; 32] = std::array::from_fn(|bits| byte(bits as u16, 31));
@@ -213,6 +221,8 @@ pub(crate) fn words(image: Cow<'_, ClientImage>) -> Result<Vec<u32>, Cow<'_, Cli
         };
         return Ok(bytes.as_chunks().0.iter().map(pixel).collect());
     }
+
+    // Expand the formats of bytes.
     if kind != UNSIGNED_BYTE {
         return Err(image);
     }

@@ -14,7 +14,7 @@ use crate::Context;
 use crate::enums::*;
 use std::sync::{Arc, Mutex};
 use vitral_raster::Viewport;
-use vitral_raster::forward::{ColorPlane, DepthPlane, Plane, StencilPlane};
+use vitral_raster::forward::{ColorPlane, DepthBuffer, Plane, StencilPlane};
 
 /// `OSMESA_BGRA`.
 pub const OSMESA_BGRA: u32 = 0x1;
@@ -108,6 +108,7 @@ impl DefaultFramebuffer {
     }
 
     fn make_planes(&mut self, viewport: Viewport, kind: u32) {
+        // Make the colour plane.
         let base = if matches!(self.format, RGB | OSMESA_BGR | OSMESA_RGB_565) { RGB } else { RGBA };
         let (token, storage) = match kind {
             UNSIGNED_SHORT => (if base == RGB { RGB16 } else { RGBA16 }, Storage::Unorm16),
@@ -118,6 +119,8 @@ impl DefaultFramebuffer {
         let mut color = surface(InternalFormat { token, base, storage }, viewport);
         color.color = Some(Arc::new(Mutex::new(new_color_plane(&color.format, viewport, 1))));
         self.color = Some(color);
+
+        // Make depth and stencil planes of the context's sizes.
         self.depth = (self.depth_bits > 0).then(|| {
             let (token, bits) = match self.depth_bits {
                 ..=16 => (DEPTH_COMPONENT16, 16),
@@ -126,7 +129,7 @@ impl DefaultFramebuffer {
             };
             let format = InternalFormat { token, base: DEPTH_COMPONENT, storage: Storage::Depth(bits) };
             let scale = format.depth_scale();
-            let plane = DepthPlane::new(Plane::new(viewport, 1, scale), scale);
+            let plane = DepthBuffer::new(Plane::new(viewport, 1, scale), scale);
             Surface { depth: Some(Arc::new(Mutex::new(plane))), ..surface(format, viewport) }
         });
         self.stencil = (self.stencil_bits > 0).then(|| {
@@ -134,6 +137,8 @@ impl DefaultFramebuffer {
             let plane: Shared<StencilPlane> = Arc::new(Mutex::new(Plane::new(viewport, 1, 0)));
             Surface { stencil: Some(plane), ..surface(format, viewport) }
         });
+
+        // Drop the accumulation buffer and note what the planes are made for.
         self.accum = None;
         self.made_for = Some((viewport, kind));
         self.version += 1;
@@ -201,6 +206,8 @@ impl Context {
     /// buffer it has already nothing happens.
     pub fn make_current(&mut self, buffer: usize, kind: u32, width: i32, height: i32) -> bool {
         let Some(viewport) = Viewport::new(width.max(0) as u32, height.max(0) as u32) else { return false };
+
+        // Check that the type fits the context's format.
         let fits = match kind {
             UNSIGNED_SHORT_5_6_5 => self.default_framebuffer.format == OSMESA_RGB_565,
             UNSIGNED_BYTE | UNSIGNED_SHORT | FLOAT => self.default_framebuffer.format != OSMESA_RGB_565,
@@ -209,6 +216,8 @@ impl Context {
         if !fits || buffer == 0 || viewport.width as usize * viewport.height as usize * 4 > MAX_IMAGE_BYTES {
             return false;
         }
+
+        // Keep everything if the buffer stays the same.
         let fb = &self.default_framebuffer;
         let (format, row_length, y_up) = (fb.format, fb.row_length, !fb.y_down);
         let new = ClientBuffer { address: buffer, kind, format, viewport, row_length, y_up };
@@ -218,6 +227,8 @@ impl Context {
         // The buffer before may be gone: what was drawn to it since the last store is not stored, and nothing is loaded.
         self.default_framebuffer.loaded.set_all();
         self.flush_recorded();
+
+        // Take the buffer over, with planes of its size.
         let fb = &mut self.default_framebuffer;
         fb.drawn = false;
         fb.buffer = Some(new);
@@ -226,6 +237,8 @@ impl Context {
             fb.make_planes(viewport, kind);
         }
         fb.forget_loaded();
+
+        // Set viewport and scissor when the context is first made current.
         if !fb.was_current {
             fb.was_current = true;
             self.state.viewport.rect = [0, 0, width, height];
@@ -266,7 +279,7 @@ impl Context {
         }
     }
 
-    /// What framebuffer 0 is now.
+    /// The current properties of framebuffer 0.
     pub fn buffer_info(&self) -> BufferInfo {
         let fb = &self.default_framebuffer;
         let info = BufferInfo {
@@ -288,6 +301,8 @@ impl Context {
     /// The depths of framebuffer 0, if it has some.
     pub fn default_depths(&mut self) -> Option<DepthCopy> {
         self.default_framebuffer.buffer?;
+
+        // Find the depth plane.
         self.flush_recorded();
         let surface = self.default_framebuffer.depth.as_ref()?;
         let bits = surface.format.bits().depth;
@@ -296,6 +311,8 @@ impl Context {
         let bytes_per_value = if bits == 16 { 2 } else { 4 };
         let mut row = vec![0.0; width as usize];
         let mut bytes = Vec::with_capacity(row.len() * height as usize * bytes_per_value);
+
+        // Convert row by row to the integers that the client expects.
         for y in 0..height {
             plane.resolved().read_row(0, y, 0, &mut row);
             match bits {

@@ -44,8 +44,11 @@ impl Context {
 
     /// Records a rectangle at the raster position, `skip` source pixels away from its corner.
     fn record_pixels(&mut self, mut pixels: Pixels, skip: [usize; 2], size: [usize; 2]) {
+        // Account for the memory of the image.
         let bytes = if matches!(pixels.colors, Some(ImageColors::Words(_))) { 4 } else { 16 };
         self.image_came(bytes * size[0] * size[1]);
+
+        // Place the rectangle by raster position and zoom.
         let zoom = self.state.pixel_mode.zoom;
         let raster = self.state.raster_position.window;
         let origin = std::array::from_fn(|i| raster[i] + skip[i] as f32 * zoom[i]);
@@ -54,6 +57,8 @@ impl Context {
             clamp_colors(colors);
         }
         let fragments = self.raster_fragments(origin, zoom, size);
+
+        // Write stencil values without other operations.
         if let Some(stencils) = pixels.stencils {
             let state = self.fragment_state(true);
             let image = ImageFragments { stencils: Some(stencils), ..fragments.clone() };
@@ -72,6 +77,8 @@ impl Context {
             }
             return;
         }
+
+        // Draw colours and depths as fragments.
         let state = self.fragment_state(true);
         let image = ImageFragments { colors: pixels.colors, depths: pixels.depths, ..fragments };
         self.record(Command::Image(Arc::new(image), state));
@@ -108,6 +115,8 @@ impl Context {
         if !self.outside_begin(CALL) {
             return;
         }
+
+        // Check the size and the format.
         if size.iter().any(|&s| s < 0) {
             return self.record_error(INVALID_VALUE, CALL, "a size is negative");
         }
@@ -118,6 +127,8 @@ impl Context {
             Ok(format) => format,
             Err((error, why)) => return self.record_error(error, CALL, why),
         };
+
+        // Check the framebuffer.
         if !self.draw_framebuffer_complete(CALL) {
             return;
         }
@@ -128,6 +139,8 @@ impl Context {
         if !self.raster_draws(DRAW_PIXEL_TOKEN) {
             return;
         }
+
+        // Decode the pixels with transfer.
         let Some(image) = image.filter(|i| !i.size.contains(&0)) else { return };
         let transfer = Transfer::new(&self.state.pixel);
         let mut pixels = Pixels::default();
@@ -146,6 +159,8 @@ impl Context {
                 pixels.stencils = Some(decode::stencils(image, &transfer));
             }
         }
+
+        // Record them.
         self.record_pixels(pixels, [0, 0], [image.size[0], image.size[1]]);
     }
 
@@ -159,6 +174,8 @@ impl Context {
         if !self.outside_begin(CALL) {
             return;
         }
+
+        // Check the size and the kind of values.
         if width < 0 || height < 0 {
             return self.record_error(INVALID_VALUE, CALL, "a size is negative");
         }
@@ -169,6 +186,8 @@ impl Context {
             DEPTH_STENCIL => Content::DepthStencil,
             _ => return self.record_error(INVALID_ENUM, CALL, "type is not COLOR, DEPTH, STENCIL or DEPTH_STENCIL"),
         };
+
+        // Check both framebuffers.
         if !self.draw_framebuffer_complete(CALL) {
             return;
         }
@@ -178,15 +197,21 @@ impl Context {
         if missing(read.status) || (content != Content::Color && !has_content(&to, content)) {
             return self.record_error(INVALID_OPERATION, CALL, "a framebuffer has no such buffer");
         }
+
+        // Feed back or select instead of drawing.
         if !self.renders() {
             self.raster_draws(COPY_PIXEL_TOKEN);
             return;
         }
+
+        // Read the rectangle's part inside the framebuffer.
         let Some(from) = self.read_surfaces(CALL, true, Some([x, y, width, height])) else { return };
         let r = inside(&from, x, y, width, height);
         if !self.raster_draws(COPY_PIXEL_TOKEN) || r.size.contains(&0) {
             return;
         }
+
+        // Read the values and apply pixel transfer.
         let transfer = Transfer::new(&self.state.pixel);
         let mut pixels = Pixels::default();
         if let (Content::Color, Some(s)) = (content, &from.color)
@@ -210,6 +235,8 @@ impl Context {
             let values = read_stencils(&lock(plane), &r);
             pixels.stencils = Some(values.into_iter().map(|v| (transfer.stencil(i64::from(v)) & 255) as u8).collect());
         }
+
+        // Record them.
         self.record_pixels(pixels, r.skip, r.size);
     }
 }

@@ -79,6 +79,7 @@ const SUMS: usize = 64;
 
 /// Colours in a colour format. Luminance is the sum of red, green and blue; where these are clamped, so is the sum.
 pub(crate) fn colors(colors: &[[f32; 4]], format: PixelFormat, out: &mut [u8]) {
+    // Sum up luminance, some pixels at a time.
     let places = format.places();
     if matches!(format.format, LUMINANCE | LUMINANCE_ALPHA) {
         let sum = |c: &[f32; 4]| {
@@ -92,6 +93,8 @@ pub(crate) fn colors(colors: &[[f32; 4]], format: PixelFormat, out: &mut [u8]) {
         }
         return;
     }
+
+    // Write unpacked components as they are, and pack the others to one element a pixel.
     let Some(packed) = format.packed() else { return components(colors, places, format.kind, out) };
     for (bytes, color) in out.chunks_exact_mut(packed.bytes).zip(colors) {
         let mut element = 0;

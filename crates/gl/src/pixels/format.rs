@@ -54,6 +54,7 @@ fn packed(kind: u32) -> Option<Packed> {
 impl PixelFormat {
     /// The pair, or the error that the specification gives it.
     pub(crate) fn new(format: u32, kind: u32) -> Result<Self, Failure> {
+        // Check the format.
         let pair = Self { format, kind };
         let known = matches!(
             format,
@@ -74,6 +75,8 @@ impl PixelFormat {
                 | LUMINANCE_ALPHA
                 | DEPTH_STENCIL
         );
+
+        // Check that a packed type has as many fields as the format has components.
         let fits = |p: Packed| match p.fields.len() {
             3 => format == RGB,
             _ => matches!(format, RGBA | BGRA | ABGR_EXT),
@@ -84,6 +87,8 @@ impl PixelFormat {
         if !known {
             return Err((INVALID_ENUM, "format is not a pixel format"));
         }
+
+        // Check the type.
         match kind {
             BITMAP if matches!(format, COLOR_INDEX | STENCIL_INDEX) => Ok(pair),
             BITMAP => Err((INVALID_ENUM, "type BITMAP needs an index format")),

@@ -107,6 +107,8 @@ impl Context {
         if !self.outside_begin(call) {
             return;
         }
+
+        // Find the bindings that the target names.
         let (draw, read) = match target {
             FRAMEBUFFER => (true, true),
             DRAW_FRAMEBUFFER => (true, false),
@@ -116,6 +118,8 @@ impl Context {
                 return;
             }
         };
+
+        // Create the object at its first binding.
         if name != 0 {
             if generated && !self.framebuffers.objects.contains_key(&name) {
                 self.record_error(INVALID_OPERATION, call, "the name was not generated");
@@ -123,6 +127,8 @@ impl Context {
             }
             self.framebuffers.objects.entry(name).or_default().get_or_insert_default();
         }
+
+        // Bind it.
         if draw && self.framebuffers.draw != name {
             self.framebuffers.draw = name;
             self.framebuffers.changed();
@@ -223,12 +229,16 @@ impl Context {
         if !self.outside_begin(call) {
             return;
         }
+
+        // Detach with name 0.
         if name == 0 {
             return self.attach(call, target, attachment, None);
         }
         let Some(texture) = lock(&self.shared.textures).get(&name).cloned().flatten() else {
             return self.record_error(INVALID_OPERATION, call, "there is no such texture");
         };
+
+        // Check that the texture has the face or layer.
         let kind = lock(&texture).slot;
         let face = match textarget {
             None if kind == slot::THREE => 0,
@@ -241,6 +251,8 @@ impl Context {
                 Some(t) => t.face,
             },
         };
+
+        // Check the level and the layer.
         let levels = ImageTarget { slot: kind, face, proxy: false }.max_levels();
         let Some(level) = usize::try_from(level).ok().filter(|&l| l < levels) else {
             return self.record_error(INVALID_VALUE, call, "level is negative or larger than the target allows");

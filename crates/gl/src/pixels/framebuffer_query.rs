@@ -56,6 +56,8 @@ impl Context {
 
     fn object_attachment(&self, name: u32, attachment: u32, pname: u32) -> Result<i32, Failure> {
         let object = self.framebuffers.object(name).ok_or((INVALID_OPERATION, "there is no such framebuffer"))?;
+
+        // Find the attachment point.
         let colors = COLOR_ATTACHMENT0..COLOR_ATTACHMENT0 + MAX_COLOR_ATTACHMENTS as u32;
         let point = match attachment {
             DEPTH_ATTACHMENT => DEPTH_POINT,
@@ -77,9 +79,13 @@ impl Context {
         if attachment == DEPTH_STENCIL_ATTACHMENT && pname == FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE {
             return Err((INVALID_OPERATION, "depth and stencil have types of their own"));
         }
+
+        // Report the parameters of nothing attached.
         let Some(attached) = &object.attachments[point] else {
             return if pname == FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE { Ok(NONE as i32) } else { no_object(pname) };
         };
+
+        // Report the object's parameters, or those of its format.
         object_parameter(attached, pname)
             .or_else(|| match attached.surface(point).map(|surface| surface.format) {
                 Some(format) => format_parameter(pname, format.bits(), format.component_type(), format.storage),
@@ -183,7 +189,7 @@ mod tests {
         let target = c.draw_target(None).unwrap();
         assert!(target.color.is_none() && target.stencil.is_none());
         let sampled = c.sampled_texture(0).unwrap();
-        let Texels::DepthPlane(plane) = sampled.faces[0][0].texels() else { panic!() };
+        let Texels::DepthBuffer(plane) = sampled.faces[0][0].texels() else { panic!() };
         assert!(std::sync::Arc::ptr_eq(plane, target.depth.as_ref().unwrap()));
         assert_eq!(c.error, NO_ERROR);
         c.bind_framebuffer_ext(FRAMEBUFFER, 0);

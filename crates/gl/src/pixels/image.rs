@@ -12,7 +12,7 @@ use crate::memory::{LARGE, can_have};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral_raster::Viewport;
-use vitral_raster::forward::{ColorPlane, DepthPlane, Level, Plane, StencilPlane, Texels};
+use vitral_raster::forward::{ColorPlane, DepthBuffer, Level, Plane, StencilPlane, Texels};
 
 /// A plane that passes and images share.
 pub(crate) type Shared<T> = Arc<Mutex<T>>;
@@ -125,7 +125,7 @@ impl TextureImage {
 
     /// Whether a framebuffer draws, or drew, to planes of this image.
     pub(crate) fn has_planes(&self) -> bool {
-        let depth = self.level.as_ref().is_some_and(|level| matches!(level.texels(), Texels::DepthPlane(_)));
+        let depth = self.level.as_ref().is_some_and(|level| matches!(level.texels(), Texels::DepthBuffer(_)));
         depth || self.stencil.is_some() || !self.colors.is_empty()
     }
 
@@ -149,7 +149,7 @@ impl TextureImage {
     /// As [`Self::level`], with depths of its own instead of a depth plane's.
     pub(crate) fn copied_level(&mut self) -> Arc<Level> {
         let level = self.level();
-        if !matches!(level.texels(), Texels::DepthPlane(_)) {
+        if !matches!(level.texels(), Texels::DepthBuffer(_)) {
             return level;
         }
         let depths = self.depths();
@@ -159,9 +159,9 @@ impl TextureImage {
     fn blank_level(&self) -> Arc<Level> {
         let texels = match (self.viewport(), self.format.has_depth() && self.border == 0 && self.size[2] == 1) {
             (Some(viewport), true) => {
-                let mut plane = DepthPlane::new(Plane::new(viewport, 1, 0.0), self.format.depth_scale());
+                let mut plane = DepthBuffer::new(Plane::new(viewport, 1, 0.0), self.format.depth_scale());
                 plane.sampled = true;
-                Texels::DepthPlane(Arc::new(Mutex::new(plane)))
+                Texels::DepthBuffer(Arc::new(Mutex::new(plane)))
             }
             _ => texels::blank(&self.format, self.texel_count()),
         };
@@ -175,6 +175,8 @@ impl TextureImage {
         if self.colors.iter().all(Option::is_none) {
             return;
         }
+
+        // Copy the texels if a snapshot shares them.
         let [width, height] = [self.size[0] as usize, self.size[1] as usize];
         let texels = Arc::make_mut(level).texels_mut();
         for (layer, plane) in self.colors.iter().enumerate() {
@@ -182,6 +184,7 @@ impl TextureImage {
             let plane = lock(plane);
             let mut words = vec![0; width];
             let mut floats = vec![[0.0; 4]; width];
+            // Convert row by row.
             for y in 0..height {
                 let first = (layer * height + y) * width;
                 match (&*plane, &mut *texels) {
@@ -232,17 +235,17 @@ impl TextureImage {
     }
 
     /// The plane that a framebuffer draws depths to.
-    pub(crate) fn depth_plane(&mut self) -> Option<Shared<DepthPlane>> {
+    pub(crate) fn depth_plane(&mut self) -> Option<Shared<DepthBuffer>> {
         let viewport = self.viewport()?;
         if !self.format.has_depth() || self.size[2] != 1 {
             return None;
         }
         let level = self.level();
-        if let Texels::DepthPlane(plane) = level.texels() {
+        if let Texels::DepthBuffer(plane) = level.texels() {
             return Some(plane.clone());
         }
         let scale = self.format.depth_scale();
-        let mut plane = DepthPlane::new(Plane::new(viewport, 1, 0.0), scale);
+        let mut plane = DepthBuffer::new(Plane::new(viewport, 1, 0.0), scale);
         plane.sampled = true;
         if let Texels::Depth(depths) = level.texels() {
             let rows = depths.chunks_exact(viewport.width as usize);
@@ -252,7 +255,7 @@ impl TextureImage {
             }
         }
         let plane = Arc::new(Mutex::new(plane));
-        self.level = Some(self.new_level(Texels::DepthPlane(plane.clone())));
+        self.level = Some(self.new_level(Texels::DepthBuffer(plane.clone())));
         Some(plane)
     }
 
@@ -276,7 +279,7 @@ impl TextureImage {
         }
         let mut level = self.level();
         self.level = None;
-        if let (Texels::DepthPlane(plane), TexelData::Depths(depths, _)) = (level.texels(), data) {
+        if let (Texels::DepthBuffer(plane), TexelData::Depths(depths, _)) = (level.texels(), data) {
             write_depths(&mut lock(plane), origin, size, depths);
         } else {
             texels::put(Arc::make_mut(&mut level).texels_mut(), full, origin, size, data);
@@ -290,7 +293,7 @@ impl TextureImage {
     pub(crate) fn replace(&mut self, data: TexelData) {
         self.write_stencils([0; 3], self.full(), &data);
         if let (Some(level), TexelData::Depths(depths, _)) = (&self.level, &data)
-            && let Texels::DepthPlane(plane) = level.texels()
+            && let Texels::DepthBuffer(plane) = level.texels()
         {
             write_depths(&mut lock(plane), [0; 3], self.full(), depths);
             return;
@@ -328,7 +331,7 @@ impl TextureImage {
         let mut colors: Vec<[f32; 4]> = match level.texels() {
             Texels::Rgba8(words) | Texels::Srgb8(words) => words.iter().map(|&w| color_from_word(w)).collect(),
             Texels::RgbaF32(colors) => colors.clone(),
-            Texels::Depth(_) | Texels::DepthPlane(_) => Vec::new(),
+            Texels::Depth(_) | Texels::DepthBuffer(_) => Vec::new(),
         };
         if self.format.base_format() != vitral_raster::forward::BaseFormat::Rgb {
             use crate::enums::{INTENSITY, LUMINANCE, LUMINANCE_ALPHA};
@@ -347,7 +350,7 @@ impl TextureImage {
     pub(crate) fn depths(&mut self) -> Vec<f32> {
         match self.level().texels() {
             Texels::Depth(depths) => depths.clone(),
-            Texels::DepthPlane(plane) => {
+            Texels::DepthBuffer(plane) => {
                 let mut plane = lock(plane);
                 let viewport = plane.viewport();
                 let mut depths = vec![0.0; (viewport.width * viewport.height) as usize];
@@ -394,7 +397,7 @@ fn fill_color_plane(plane: &mut ColorPlane, format: &InternalFormat, level: &Lev
 }
 
 /// Writes depths of 0..=1 into a plane.
-pub(crate) fn write_depths(plane: &mut DepthPlane, origin: [usize; 3], size: [usize; 3], depths: &[f32]) {
+pub(crate) fn write_depths(plane: &mut DepthBuffer, origin: [usize; 3], size: [usize; 3], depths: &[f32]) {
     let mut stored = vec![0.0; size[0]];
     for (y, row) in depths.chunks_exact(size[0].max(1)).enumerate() {
         stored.iter_mut().zip(row).for_each(|(s, &d)| *s = stored_depth(d, plane.scale));

@@ -14,7 +14,7 @@ pub(crate) enum Storage {
     Unorm16,
     /// Floats, of textures rounded to half precision.
     Half,
-    /// Floats.
+    /// Single precision.
     Float,
     /// Depth of 16 or 24 bits, or 32 floating-point ones.
     Depth(u32),
@@ -22,7 +22,7 @@ pub(crate) enum Storage {
     Stencil,
 }
 
-/// An internal format.
+/// An internal format: the token that was asked for, and how texels are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct InternalFormat {
     /// The token to report.
@@ -39,13 +39,13 @@ pub(crate) struct InternalFormat {
 pub(crate) struct Bits {
     /// Red, green, blue, alpha.
     pub rgba: [i32; 4],
-    /// Luminance.
+    /// Bits of luminance.
     pub luminance: i32,
-    /// Intensity.
+    /// Bits of intensity.
     pub intensity: i32,
-    /// Depth.
+    /// Bits of depth.
     pub depth: i32,
-    /// Stencil.
+    /// Bits of stencil values.
     pub stencil: i32,
 }
 

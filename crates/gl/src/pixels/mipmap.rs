@@ -40,12 +40,15 @@ fn taps(from: usize, to: usize, border: usize) -> Taps {
 
 /// Filters one axis. The source is `[outer][from][inner]`.
 fn filter_axis(source: &[[f32; 4]], from: usize, inner: usize, taps: &Taps) -> Vec<[f32; 4]> {
+    // Skip empty images and axes that keep their length.
     if from == 0 || inner == 0 {
         return Vec::new();
     }
     if taps.len() == from && taps.iter().all(|t| t.len() == 1) {
         return source.to_vec();
     }
+
+    // Sum the weighted texels of each tap.
     let mut out = Vec::with_capacity(source.len() / from * taps.len());
     for block in source.chunks_exact(from * inner) {
         for taps in taps {
@@ -140,6 +143,8 @@ fn word_from_light([r, g, b, a]: [f32; 4]) -> u32 {
 fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u32; 3]) -> TexelData {
     let border = level.border as usize;
     let halved = inner[2] == next[2] && inner[0] == 2 * next[0] && inner[1] == 2 * next[1];
+
+    // Halve words with a box filter where all sizes are even.
     match level.texels() {
         Texels::Rgba8(words) if halved && border == 0 => {
             return TexelData::Words(halve_words(words, inner[0] as usize));
@@ -149,12 +154,14 @@ fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u3
         }
         _ => {}
     }
+
+    // Expand the texels to colours.
     let colors: Vec<[f32; 4]> = match level.texels() {
         Texels::Rgba8(words) => words.iter().map(|&w| color_from_word(w)).collect(),
         Texels::Srgb8(words) => words.iter().map(|&w| light_from_word(w)).collect(),
         Texels::RgbaF32(colors) => colors.clone(),
         Texels::Depth(depths) => depths.iter().map(|&d| [d, 0.0, 0.0, 0.0]).collect(),
-        Texels::DepthPlane(plane) => {
+        Texels::DepthBuffer(plane) => {
             let mut plane = lock(plane);
             plane.resolved();
             let [width, height] = [level.size[0], level.size[1]];
@@ -168,11 +175,15 @@ fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u3
         let used = level.size[i] as usize - inner[i] as usize;
         taps(inner[i] as usize, next[i] as usize, used / 2)
     };
+
+    // Filter the axes one after the other.
     let across = axis(0);
     let up = axis(1);
     let colors = filter_axis(&colors, width, 1, &across);
     let colors = filter_axis(&colors, height, across.len(), &up);
     let colors = filter_axis(&colors, depth, across.len() * up.len(), &axis(2));
+
+    // Convert the colours to the format's texels.
     match format.storage {
         Storage::Unorm8 => TexelData::Words(colors.into_iter().map(word_from_color).collect()),
         Storage::Srgb8 => TexelData::Words(colors.into_iter().map(word_from_light).collect()),
@@ -190,6 +201,7 @@ pub(crate) fn generate(texture: &mut TextureObject, faces: Range<usize>) {
     let Some(base) = texture.base_level() else { return };
     let used = texture.dimensions();
     for face in faces {
+        // Find the size of the base level without borders.
         let Some(image) = texture.image(face, base) else { continue };
         let (format, border, mut inner) = (image.format, image.border, image.size);
         inner[..used].iter_mut().for_each(|s| *s -= 2 * border);
@@ -197,10 +209,14 @@ pub(crate) fn generate(texture: &mut TextureObject, faces: Range<usize>) {
         if inner.contains(&0) {
             continue;
         }
+
+        // Choose the last level.
         let mut level = image.level();
         let largest = inner[..used].iter().max().map_or(1, |&s| s.max(1));
         let limit = usize::try_from(texture.parameters.levels[1]).unwrap_or(0);
         let last = (base + largest.ilog2() as usize).min(limit);
+
+        // Filter level by level.
         for number in base + 1..=last {
             let next = texture.next_size(inner);
             let data = next_level(&level, &format, inner, next);
@@ -223,15 +239,21 @@ impl Context {
         if !self.outside_begin(CALL) {
             return;
         }
+
+        // Check the target.
         let Some(slot) = slot_of(target).filter(|&s| s != slot::RECTANGLE) else {
             self.record_error(INVALID_ENUM, CALL, "target is not a texture target with mipmaps");
             return;
         };
+
+        // Finish the draws into the texture.
         let texture = self.target_texture(ImageTarget { slot, face: 0, proxy: false });
         let stale = lock(&texture).needs_flush();
         if stale {
             self.flush_recorded();
         }
+
+        // Check that there is something to filter.
         let mut texture = lock(&texture);
         let faces = if slot == slot::CUBE { 6 } else { 1 };
         if slot == slot::CUBE && !texture.is_cube_base_complete() {
@@ -244,6 +266,8 @@ impl Context {
             self.record_error(INVALID_OPERATION, CALL, "depths and stencil values have no mipmaps");
             return;
         }
+
+        // Generate the levels.
         generate(&mut texture, 0..faces);
         drop(texture);
         self.shared.storage_changed();

@@ -14,7 +14,7 @@ use crate::enums::*;
 use crate::memory::ClientMemory;
 use vitral_exec::Workers;
 use vitral_raster::TILE;
-use vitral_raster::forward::{ColorPlane, DepthPlane, Plane, StencilPlane};
+use vitral_raster::forward::{ColorPlane, DepthBuffer, Plane, StencilPlane};
 
 /// A rectangle of a framebuffer, and where it lies in the rectangle that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,7 +100,7 @@ fn each_row<T: Send>(workers: &Workers, r: &Rectangle, out: &mut [T], read: impl
 }
 
 /// Depths of a rectangle, 0..=1.
-pub(crate) fn read_depths(workers: &Workers, plane: &mut DepthPlane, r: &Rectangle) -> Vec<f32> {
+pub(crate) fn read_depths(workers: &Workers, plane: &mut DepthBuffer, r: &Rectangle) -> Vec<f32> {
     let (mut depths, scale) = (vec![0.0; r.size[0] * r.size[1]], plane.scale);
     let plane = &*plane.resolved();
     each_row(workers, r, &mut depths, |y, row| read_depth_row(plane, scale, [r.x, y], row));
@@ -151,6 +151,8 @@ fn encode_colors(
     clamps: bool,
 ) -> Vec<u8> {
     let pixel = format.pixel_bytes();
+
+    // Encode words directly if neither transfer nor format changes them.
     if let ColorPlane::Rgba8(plane) = plane
         && transfer.keeps_colors()
         && matches!(stored.base, RGB | RGBA)
@@ -165,6 +167,8 @@ fn encode_colors(
             encode::words(words, format, bytes);
         });
     }
+
+    // Otherwise convert through floats.
     let clamps = clamps || stored.component_type() != FLOAT || !matches!(format.kind, FLOAT | HALF_FLOAT_ARB);
     encoded(workers, format, r, |[x, y], bytes| {
         let colors = &mut [[0.0; 4]; TILE][..bytes.len() / pixel];
@@ -187,11 +191,15 @@ fn encode_rectangle(
     clamps: bool,
 ) -> Vec<u8> {
     let content = format.content();
+
+    // Encode colours.
     if matches!(content, Content::Color | Content::Index) {
         let Some(surface) = &surfaces.color else { return Vec::new() };
         let Some(plane) = &surface.color else { return Vec::new() };
         return encode_colors(workers, &lock(plane), &surface.format, format, r, transfer, clamps);
     }
+
+    // Lock the planes of depth and stencil.
     let of_depth = surfaces.depth.as_ref().filter(|_| content != Content::Stencil);
     let of_stencil = surfaces.stencil.as_ref().filter(|_| content != Content::Depth);
     let mut depth = of_depth.and_then(|s| s.depth.as_ref()).map(|plane| lock(plane));
@@ -199,6 +207,8 @@ fn encode_rectangle(
     let depth = depth.as_mut().map(|plane| &*plane.resolved());
     let stencil = of_stencil.and_then(|s| s.stencil.as_ref()).map(|plane| lock(plane));
     let clamps = !transfer.keeps_depths();
+
+    // Read depths with transfer.
     let depths = |[x, y]: [u32; 2], depths: &mut [f32]| {
         if let Some(plane) = depth {
             read_depth_row(plane, scale, [x, y], depths);
@@ -208,11 +218,15 @@ fn encode_rectangle(
             depths.iter_mut().for_each(|d| *d = clamp_unit(*d));
         }
     };
+
+    // Read stencil values.
     let stencils = |[x, y]: [u32; 2], values: &mut [u8]| {
         if let Some(plane) = &stencil {
             plane.read_row(x, y, 0, values);
         }
     };
+
+    // Encode what the format asks for.
     encoded(workers, format, r, |place, bytes| {
         let count = bytes.len() / format.pixel_bytes();
         let (numbers, values) = (&mut [0.0; TILE][..count], &mut [0; TILE][..count]);
@@ -255,6 +269,8 @@ impl Context {
         if !self.outside_begin(CALL) {
             return;
         }
+
+        // Check the arguments.
         if width < 0 || height < 0 {
             return self.record_error(INVALID_VALUE, CALL, "a size is negative");
         }
@@ -262,10 +278,15 @@ impl Context {
             Ok(format) => format,
             Err((error, why)) => return self.record_error(error, CALL, why),
         };
+
+        // Check the framebuffer.
         let Some(surfaces) = self.read_surfaces(CALL, true, Some([x, y, width, height])) else { return };
         if !has_content(&surfaces, format.content()) {
             return self.record_error(INVALID_OPERATION, CALL, "the read framebuffer has no such buffer");
         }
+
+        // Read the part inside the framebuffer; what lies outside leaves the client's memory
+        // unchanged.
         let r = inside(&surfaces, x, y, width, height);
         if (pixels == 0 && self.client.pack.buffer.is_none())
             || r.size.contains(&0)
@@ -273,6 +294,8 @@ impl Context {
         {
             return;
         }
+
+        // Encode the pixels.
         let clamps = self.state.color_buffer.clamps[2] == TRUE;
         let mut bytes =
             encode_rectangle(&self.workers(), &surfaces, format, &r, &Transfer::new(&self.state.pixel), clamps);
@@ -282,6 +305,8 @@ impl Context {
             skip[1] = height as usize - r.size[1] - r.skip[1];
             bytes = bytes.chunks_exact(r.size[0] * format.pixel_bytes()).rev().flatten().copied().collect();
         }
+
+        // Write them to the client's memory or the bound buffer.
         let region = Region {
             full: [width as usize, height as usize, 1],
             origin: [skip[0], skip[1], 0],

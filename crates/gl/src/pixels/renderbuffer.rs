@@ -9,7 +9,7 @@ use crate::memory::can_have;
 use crate::state::{MAX_SAMPLES, MAX_TEXTURE_SIZE};
 use std::sync::{Arc, Mutex};
 use vitral_raster::Viewport;
-use vitral_raster::forward::{ColorPlane, DepthPlane, Plane, StencilPlane};
+use vitral_raster::forward::{ColorPlane, DepthBuffer, Plane, StencilPlane};
 
 /// A renderbuffer that attachments share.
 pub(crate) type RenderbufferHandle = Arc<Mutex<Renderbuffer>>;
@@ -25,8 +25,8 @@ pub(crate) struct RenderbufferStorage {
     pub samples: usize,
     /// Colours.
     pub color: Option<Shared<ColorPlane>>,
-    /// Depths.
-    pub depth: Option<Shared<DepthPlane>>,
+    /// Depths, if the format has them.
+    pub depth: Option<Shared<DepthBuffer>>,
     /// Stencil values.
     pub stencil: Option<Shared<StencilPlane>>,
 }
@@ -41,14 +41,14 @@ impl RenderbufferStorage {
             color: format.is_color().then(|| Arc::new(Mutex::new(new_color_plane(&format, viewport, planes)))),
             depth: format.has_depth().then(|| {
                 let plane = Plane::new(viewport, planes, 0.0);
-                Arc::new(Mutex::new(DepthPlane::new(plane, format.depth_scale())))
+                Arc::new(Mutex::new(DepthBuffer::new(plane, format.depth_scale())))
             }),
             stencil: format.has_stencil().then(|| Arc::new(Mutex::new(Plane::new(viewport, planes, 0)))),
         }
     }
 }
 
-/// A renderbuffer.
+/// A renderbuffer object.
 #[derive(Debug, Default)]
 pub(crate) struct Renderbuffer {
     /// Its name.
@@ -169,6 +169,8 @@ impl Context {
         if !self.renderbuffer_target(call, target) {
             return;
         }
+
+        // Check the format, the size and the samples.
         let Some(format) = InternalFormat::of_renderbuffer(internal) else {
             self.record_error(INVALID_ENUM, call, "internalformat cannot be rendered to");
             return;
@@ -182,6 +184,8 @@ impl Context {
             self.record_error(INVALID_VALUE, call, "samples is negative or larger than MAX_SAMPLES");
             return;
         }
+
+        // Check the memory.
         let Some(renderbuffer) = self.bound_renderbuffer(call) else { return };
         let samples = if samples == 0 { 0 } else { MAX_SAMPLES };
         let viewport = Viewport::new(width as u32, height as u32);
@@ -189,6 +193,8 @@ impl Context {
         if !can_have(pixels * format.texel_bytes()) {
             return self.record_error(OUT_OF_MEMORY, call, "there is no memory for so many samples");
         }
+
+        // Replace the storage.
         let mut renderbuffer = lock(&renderbuffer);
         renderbuffer.asked = Some((format, [width, height], samples));
         renderbuffer.storage = viewport.map(|v| RenderbufferStorage::new(format, v, samples));
@@ -202,9 +208,13 @@ impl Context {
             return;
         }
         let Some(renderbuffer) = self.bound_renderbuffer(CALL) else { return };
+
+        // Find the storage that was asked for.
         let asked = lock(&renderbuffer).asked;
         let (token, bits) = asked.map_or((RGBA, Bits::default()), |(format, ..)| (format.token, format.bits()));
         let ([width, height], samples) = asked.map_or(([0; 2], 0), |(_, size, samples)| (size, samples));
+
+        // Report the parameter.
         let value = match pname {
             RENDERBUFFER_WIDTH => width,
             RENDERBUFFER_HEIGHT => height,

@@ -57,7 +57,7 @@ pub(crate) fn base(token: u32) -> u32 {
     }
 }
 
-/// Bytes of a block.
+/// Bytes of a block of 4x4 texels.
 pub(crate) fn block_bytes(token: u32) -> usize {
     if matches!(alpha(token), Some(Alpha::Plain | Alpha::Between)) { 16 } else { 8 }
 }

@@ -160,6 +160,7 @@ pub(crate) fn read_region(
     region: &Region,
     address: usize,
 ) -> Option<Bytes> {
+    // Check the size.
     let layout = layout(store, format, region)?;
     let [width, height, depth] = region.size;
     let total = layout.row_bytes.checked_mul(height)?.checked_mul(depth)?;
@@ -170,10 +171,14 @@ pub(crate) fn read_region(
     if pixels == 0 {
         return Some(Bytes::zeroed(0));
     }
+
+    // Read tight rows.
     let mut bytes = Bytes::zeroed(total);
     if !rows(&layout, region, address, |at, range| memory.read(at, &mut bytes[range])) {
         return None;
     }
+
+    // Spread bits to bytes.
     if format.kind == BITMAP {
         let mut spread = Vec::with_capacity(pixels);
         for row in bytes.chunks_exact(layout.row_bytes) {
@@ -182,6 +187,8 @@ pub(crate) fn read_region(
         }
         return Some(Bytes::from(&*spread));
     }
+
+    // Swap bytes.
     if store.swap_bytes {
         swap(&mut bytes, format.element_bytes());
     }
@@ -203,6 +210,7 @@ pub(crate) fn write_region(
     if width * height * depth == 0 {
         return true;
     }
+    // Pack bytes to bits.
     if format.kind == BITMAP {
         // Bits beside the region stay as they are.
         let mut packed = vec![0; layout.row_bytes * height * depth];
@@ -220,6 +228,8 @@ pub(crate) fn write_region(
     } else if store.swap_bytes {
         swap(&mut bytes, format.element_bytes());
     }
+
+    // Write the rows.
     rows(&layout, region, address, |at, range| memory.write(at, &bytes[range]))
 }
 

@@ -133,7 +133,7 @@ impl Context {
         enabled && self.resolve().surfaces.color.as_ref().is_some_and(|c| c.format.storage == Storage::Srgb8)
     }
 
-    /// The planes that draws go to now.
+    /// The planes that draws go to at present.
     pub(crate) fn draw_surfaces(&mut self) -> Surfaces {
         self.resolve().surfaces.clone()
     }

@@ -45,6 +45,7 @@ pub(crate) fn plausible(size: [i32; 3]) -> Option<[usize; 3]> {
 impl ImageArguments {
     /// Checks everything but the client's format.
     pub(crate) fn check(&self) -> Result<CheckedImage, Failure> {
+        // Check the target, the level and the format.
         let target = ImageTarget::new(self.target, Some(self.dimensions))
             .ok_or((INVALID_ENUM, "target is not an image target of this call"))?;
         let level = usize::try_from(self.level)
@@ -53,6 +54,8 @@ impl ImageArguments {
             .ok_or((INVALID_VALUE, "level is negative or larger than the target allows"))?;
         let format = InternalFormat::of_texture(self.internal)
             .ok_or((INVALID_VALUE, "internalformat is not an internal format"))?;
+
+        // Check the border and the size.
         if !(0..=1).contains(&self.border) || (target.slot == slot::RECTANGLE && self.border != 0) {
             return Err((INVALID_VALUE, "border is neither 0 nor 1, or not 0 of a rectangle"));
         }
@@ -65,6 +68,8 @@ impl ImageArguments {
                 .ok_or((INVALID_VALUE, "a size is negative or smaller than the borders"))?;
         }
         check_shape(target, &format, size)?;
+
+        // Check the limits; a proxy reports them instead of an error.
         let limit = (target.max_size() >> level) as u32 + 2 * border;
         let too_large = !TextureImage::fits(&format, size);
         let beyond = size[..self.dimensions].iter().any(|&s| s > limit);
@@ -141,12 +146,16 @@ impl Context {
         let pair = PixelFormat::new(format, kind);
         let size = arguments.size;
         let checked = arguments.check();
+
+        // Answer proxies without texels.
         if ImageTarget::new(arguments.target, Some(arguments.dimensions)).is_some_and(|t| t.proxy) {
             if self.outside_begin(arguments.call) {
                 self.proxy_image(&arguments, pair);
             }
             return;
         }
+
+        // Read the client's pixels if the call is good so far.
         let image = match (&pair, &checked) {
             (Ok(pair), Ok(checked))
                 if formats_agree(*pair, &checked.format).is_ok()
@@ -160,6 +169,8 @@ impl Context {
             Ok(image) => image,
             Err((error, why)) => return self.record_error(error, arguments.call, why),
         };
+
+        // Run the call, or keep it in the display list.
         if !self.lists.recording {
             return self.exec_tex_image(&arguments, pair, image.map(Cow::Owned));
         }

@@ -82,6 +82,7 @@ const SWIZZLES: [u32; 6] = [RED, GREEN, BLUE, ALPHA, ZERO, ONE];
 pub(super) fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Value) -> Result<(), Failure> {
     let rectangle = slot == slot::RECTANGLE;
     match pname {
+        // Wrap modes and filters; rectangles allow some of them.
         TEXTURE_WRAP_S | TEXTURE_WRAP_T | TEXTURE_WRAP_R => {
             let axis = [TEXTURE_WRAP_S, TEXTURE_WRAP_T, TEXTURE_WRAP_R].iter().position(|&t| t == pname).unwrap_or(0);
             let all = [
@@ -111,6 +112,8 @@ pub(super) fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Val
         TEXTURE_BORDER_COLOR => {
             p.border = value.color().ok_or((INVALID_ENUM, "TEXTURE_BORDER_COLOR needs a vector"))?;
         }
+
+        // Levels of detail.
         TEXTURE_PRIORITY => p.priority = value.float().clamp(0.0, 1.0),
         TEXTURE_MIN_LOD => p.lod[0] = value.float(),
         TEXTURE_MAX_LOD => p.lod[1] = value.float(),
@@ -123,11 +126,15 @@ pub(super) fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Val
         }
         TEXTURE_MAX_LEVEL => p.levels[1] = level_of(value)?,
         TEXTURE_LOD_BIAS => p.lod_bias = value.float(),
+
+        // Depth textures.
         DEPTH_TEXTURE_MODE => p.depth_mode = token_of(value, &[LUMINANCE, INTENSITY, ALPHA, RED])?,
         TEXTURE_COMPARE_MODE => p.compare_mode = token_of(value, &[NONE, COMPARE_R_TO_TEXTURE])?,
         TEXTURE_COMPARE_FUNC => {
             p.compare_func = token_of(value, &[LEQUAL, GEQUAL, LESS, GREATER, EQUAL, NOTEQUAL, ALWAYS, NEVER])?;
         }
+
+        // Mipmaps and anisotropy.
         GENERATE_MIPMAP if rectangle && value.int() != 0 => {
             return Err((INVALID_VALUE, "a rectangle texture has no mipmaps"));
         }
@@ -139,6 +146,8 @@ pub(super) fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Val
             }
             p.anisotropy = amount.min(MAX_ANISOTROPY);
         }
+
+        // Swizzles.
         TEXTURE_SWIZZLE_R..=TEXTURE_SWIZZLE_A => {
             p.swizzle[(pname - TEXTURE_SWIZZLE_R) as usize] = token_of(value, &SWIZZLES)?;
         }
@@ -203,6 +212,8 @@ impl Context {
                 c.record_error(INVALID_ENUM, call, "target is not a texture target");
                 return;
             };
+
+            // Set the parameter on a copy.
             let texture = c.target_texture(ImageTarget { slot, face: 0, proxy: false });
             let mut texture = lock(&texture);
             let mut parameters = texture.parameters.clone();
@@ -210,6 +221,8 @@ impl Context {
             if let Some(levels) = texture.immutable_levels() {
                 parameters.bound_levels(levels);
             }
+
+            // Store it if it has changed.
             match result {
                 Err((error, why)) => {
                     drop(texture);

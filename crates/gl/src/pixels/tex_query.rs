@@ -13,6 +13,7 @@ use crate::enums::*;
 
 /// A level's parameter. Levels without an image have the initial values.
 fn level_parameter(texture: &mut TextureObject, face: usize, level: usize, pname: u32) -> Result<i32, Failure> {
+    // Take the values of the image, or the initial ones.
     let image = texture.image(face, level);
     let blocks = image.as_ref().and_then(|i| i.blocks.clone());
     let (size, border, token, bits, kind) = match &image {
@@ -20,6 +21,8 @@ fn level_parameter(texture: &mut TextureObject, face: usize, level: usize, pname
         None => ([0; 3], 0, 1, Bits::default(), NONE),
     };
     let token = blocks.as_ref().map_or(token, |blocks| blocks.token);
+
+    // Report the parameter.
     let of = |bits: i32| if bits > 0 { kind as i32 } else { NONE as i32 };
     Ok(match pname {
         TEXTURE_WIDTH => size[0] as i32,
@@ -106,16 +109,21 @@ impl Context {
     }
 
     fn read_texture(&mut self, target: u32, level: i32, format: u32, kind: u32, pixels: usize) -> Result<(), Failure> {
+        // Check the arguments.
         let (target, level) = self.query_target(target, level, false)?;
         let format = PixelFormat::new(format, kind)?;
         if matches!(format.content(), Content::Index | Content::Stencil) {
             return Err((INVALID_ENUM, "a texture has no indices"));
         }
+
+        // Finish the draws into the texture.
         let texture = self.target_texture(target);
         let pending = lock(&texture).needs_flush();
         if pending {
             self.flush_recorded();
         }
+
+        // Check that the texture holds what is asked for.
         let mut texture = lock(&texture);
         let dimensions = texture.dimensions();
         let Some(image) = texture.image(target.face, level) else { return Ok(()) };
@@ -138,6 +146,8 @@ impl Context {
             encode::words(words, format, &mut bytes);
             bytes
         };
+
+        // Encode words directly if the format allows it.
         if encode::takes_words(format)
             && let Some(encoded) = image.with_words(encode_words)
         {
@@ -160,6 +170,8 @@ impl Context {
                 encode::depth_stencils(&depths, &image.stencils(), kind, &mut bytes);
             }
         }
+
+        // Write the bytes to the client's memory or the bound buffer.
         let region = Region::whole(full, dimensions == 3);
         self.pack_into(pixels, format.element_bytes(), |memory, address| {
             write_region(memory, &self.client.pack, format, &region, address, bytes)

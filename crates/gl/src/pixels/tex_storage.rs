@@ -54,6 +54,7 @@ impl Context {
         token: u32,
         size: [i32; 3],
     ) -> Result<(), Failure> {
+        // Check the format, the sizes and the levels.
         let format = InternalFormat::of_texture(token).filter(|f| f.token == token && is_sized(token));
         let format = format.ok_or((INVALID_ENUM, "internalformat is not a sized internal format"))?;
         if levels < 1 || size.iter().any(|&s| s < 1) {
@@ -65,6 +66,8 @@ impl Context {
         if levels as usize > most {
             return Err((INVALID_OPERATION, "images of this size have fewer levels"));
         }
+
+        // Check the memory; a proxy reports it instead of an error.
         let beyond = size.iter().any(|&s| s as usize > target.max_size());
         let fits = TextureImage::fits(&format, size) && !beyond && !is_skewed(target, size);
         if target.proxy {
@@ -72,6 +75,8 @@ impl Context {
             proxy.set_images(format, if fits { levels as usize } else { 0 }, size);
             return Ok(());
         }
+
+        // Check that the texture has no fixed levels yet.
         let texture = self.target_texture(target);
         let mut texture = lock(&texture);
         if texture.name == 0 {
@@ -83,6 +88,8 @@ impl Context {
         if !fits {
             return Err((if beyond { INVALID_VALUE } else { OUT_OF_MEMORY }, "the images are too large"));
         }
+
+        // Allocate all levels and fix them.
         if !texture.allocate(format, levels as usize, size) {
             return Err((OUT_OF_MEMORY, "there is no memory for the images"));
         }

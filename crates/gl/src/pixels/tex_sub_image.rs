@@ -41,6 +41,7 @@ pub(crate) struct CheckedBox {
 impl Context {
     /// Checks a box against the image that it names.
     pub(crate) fn check_box(&mut self, arguments: &BoxArguments) -> Result<CheckedBox, Failure> {
+        // Check the target, the level and the size.
         let target = ImageTarget::new(arguments.target, Some(arguments.dimensions))
             .filter(|t| !t.proxy)
             .ok_or((INVALID_ENUM, "target is not an image target of this call"))?;
@@ -51,6 +52,8 @@ impl Context {
         if arguments.size[..arguments.dimensions].iter().any(|&s| s < 0) {
             return Err((INVALID_VALUE, "a size is negative"));
         }
+
+        // Check that the box lies inside the image.
         let texture = self.target_texture(target);
         let mut texture = lock(&texture);
         let image = texture.image(target.face, level).ok_or((INVALID_OPERATION, "the level has no image"))?;
@@ -83,6 +86,8 @@ impl Context {
         if checked.size.contains(&0) {
             return;
         }
+
+        // Find how much would be copied for draws that wait.
         let texture = self.target_texture(checked.target);
         let changed: usize = checked.size.iter().product::<usize>() * checked.format.texel_bytes();
         let copied = {
@@ -105,6 +110,8 @@ impl Context {
         if in_plane {
             self.flush_recorded();
         }
+
+        // Write the texels.
         {
             let mut texture = lock(&texture);
             texture.touch();

@@ -75,6 +75,7 @@ impl TextureParameters {
 
     /// How texels are looked up, as the rasteriser has it.
     fn sampler(&self, seamless: bool) -> Sampler {
+        // Translate the tokens.
         let filter = |token| match token {
             NEAREST => Filter::Nearest,
             LINEAR => Filter::Linear,
@@ -103,6 +104,8 @@ impl TextureParameters {
             GEQUAL => Compare::GreaterOrEqual,
             _ => Compare::Always,
         };
+
+        // Collect the sampler.
         Sampler {
             min: filter(self.min),
             mag: filter(self.mag),
@@ -116,7 +119,7 @@ impl TextureParameters {
     }
 }
 
-/// A texture.
+/// A texture object: the images of its faces and levels, and its parameters.
 #[derive(Debug)]
 pub(crate) struct TextureObject {
     /// Name, 0 for a default texture.
@@ -296,6 +299,7 @@ impl TextureObject {
     }
 
     fn build(&mut self, mipmapped: bool, mut sampler: Sampler) -> Option<Arc<Texture>> {
+        // Collect the levels of each face.
         let (base, last) = self.complete_levels(mipmapped)?;
         let format = self.peek(0, base)?.format;
         let cube = self.slot == slot::CUBE;
@@ -315,6 +319,8 @@ impl TextureObject {
             slot::THREE => TextureKind::Three,
             _ => TextureKind::Cube,
         };
+
+        // Adapt comparison and border to the format.
         let depth_mode = match self.parameters.depth_mode {
             INTENSITY => BaseFormat::Intensity,
             ALPHA => BaseFormat::Alpha,
@@ -327,6 +333,8 @@ impl TextureObject {
             sampler.border = sampler.border.map(super::transfer::clamp_unit);
         }
         sampler.border = if depth { [sampler.border[0]; 4] } else { format.expand(sampler.border) };
+
+        // Build the texture.
         let swizzle = Some(self.parameters.swizzle).filter(|s| *s != IDENTITY).map(|s| s.map(swizzle));
         let mut texture = Texture::new(kind, format.base_format(), faces, sampler);
         (texture.depth_mode, texture.swizzle) = (depth_mode, swizzle);

@@ -2,7 +2,7 @@
 
 use crate::enums;
 
-/// Fog.
+/// What `glFog` and `FOG` set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fog {
     /// `FOG`.
@@ -53,7 +53,7 @@ pub struct StencilFace {
     pub write_mask: u32,
 }
 
-/// Stencil.
+/// What `glStencil...` calls set, for all faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StencilState {
     /// `STENCIL_TEST`.
@@ -121,7 +121,7 @@ pub struct Blend {
     pub source: [u32; 2],
     /// Destination factors.
     pub destination: [u32; 2],
-    /// Equations.
+    /// Equations of colour and of alpha.
     pub equation: [u32; 2],
     /// `BLEND_COLOR` as it was given; clamped where it meets colours that are not floating-point, and in queries.
     pub color: [f32; 4],

@@ -99,6 +99,7 @@ pub struct Lighting {
 
 impl Default for Lighting {
     fn default() -> Self {
+        // Light 0 is white; the others are dark.
         let light = |i: usize| {
             let color = if i == 0 { [1.0; 4] } else { [0.0, 0.0, 0.0, 1.0] };
             Light {

@@ -3,7 +3,7 @@
 use crate::enums;
 use std::sync::Arc;
 
-/// A pixel map.
+/// A table that pixel transfer looks components up in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelMap {
     /// At least one entry.

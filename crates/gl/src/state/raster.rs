@@ -27,7 +27,7 @@ impl Default for DepthRange {
     }
 }
 
-/// Scissor.
+/// What `glScissor` and `SCISSOR_TEST` set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scissor {
     /// `SCISSOR_TEST`.
@@ -36,7 +36,7 @@ pub struct Scissor {
     pub rect: [i32; 4],
 }
 
-/// Points.
+/// What `glPoint...` calls set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Points {
     /// `POINT_SIZE`.
@@ -69,7 +69,7 @@ impl Default for Points {
     }
 }
 
-/// Lines.
+/// What `glLine...` calls set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lines {
     /// `LINE_WIDTH`.
@@ -88,7 +88,7 @@ impl Default for Lines {
     }
 }
 
-/// Polygons.
+/// What `glPolygon...`, `glCullFace` and `glFrontFace` set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygons {
     /// `CULL_FACE`.

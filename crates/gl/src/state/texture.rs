@@ -88,7 +88,7 @@ pub struct TextureUnit {
     pub enabled: [bool; 5],
     /// Generation of s, t, r, q.
     pub generation: [TexGen; 4],
-    /// Environment.
+    /// How the unit's texture is combined with the colour.
     pub environment: TextureEnvironment,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Context;
 use crate::state::MAX_POINT_SIZE;
-use crate::vertex::{Given, VertexBatch};
+use crate::vertex::{CurrentState, VertexBatch};
 use vitral_math::Vec4;
 
 /// Vertices up to which it is looked for: a draw of more is likely to cover much.
@@ -13,7 +13,7 @@ const MARGIN: f32 = 2.0;
 
 impl Context {
     /// Pixels x0, y0, x1, y1, the last two exclusive, outside of which `batch` changes nothing; `None` if that is not known.
-    pub(super) fn drawn_area(&self, batch: &VertexBatch, given: &Given) -> Option<[i32; 4]> {
+    pub(super) fn drawn_area(&self, batch: &VertexBatch, given: &CurrentState) -> Option<[i32; 4]> {
         let s = &self.state;
         let (origin, _) = s.clip_control;
         let few = batch.positions.len() <= MOST_VERTICES && batch.modelviews.is_empty();
@@ -70,7 +70,7 @@ mod tests {
             positions: vec![[-0.5, 0.0, 0.0, 1.0], [0.5, 0.5, 0.0, w]],
             ..VertexBatch::default()
         };
-        let given = Given::current(&c.state);
+        let given = CurrentState::current(&c.state);
         assert_eq!(c.drawn_area(&batch(1.0), &given), Some([147, 47, 253, 78]));
         assert_eq!(c.drawn_area(&batch(0.0), &given), None);
         c.state.points.size = 10.0;

@@ -195,14 +195,17 @@ fn clip(state: &State, target: &Target) -> [i32; 4] {
 }
 
 impl Context {
-    /// The per-fragment state as it is now. `images` leaves out what pixel rectangles do not meet (polygon stipple).
+    /// The current per-fragment state. `images` leaves out what does not apply to pixel rectangles (polygon stipple).
     pub(crate) fn fragment_state_for(&mut self, target: Option<&Target>, images: bool) -> Arc<FragmentState> {
+        // Derive what needs more than the state.
         let units = self.sampled_units(target);
         let missing = self.missing_components();
         let (clamping, srgb, one) = (self.clamping(), self.encodes_srgb(), self.stored_one());
         let unclamped_vertices = !self.clamps_vertices();
         let s = &self.state;
         let lit_apart = s.lighting.enabled && s.lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR;
+
+        // Translate the state.
         let logic = s.logic_op.0 || s.blend.is_logic_op();
         Arc::new(FragmentState {
             units,
@@ -263,5 +266,5 @@ impl Context {
 fn draws_to(target: &Target, texture: &raster::Texture) -> bool {
     let Some(depth) = &target.depth else { return false };
     let levels = texture.faces.iter().flatten();
-    levels.into_iter().any(|level| matches!(level.texels(), raster::Texels::DepthPlane(p) if Arc::ptr_eq(p, depth)))
+    levels.into_iter().any(|level| matches!(level.texels(), raster::Texels::DepthBuffer(p) if Arc::ptr_eq(p, depth)))
 }

@@ -4,7 +4,7 @@ use super::geometry::DrawGeometry;
 use super::grid::Grid;
 use super::piece::Piece;
 use super::triangulation::Triangulation;
-use super::vertices::{Eight, LaneFaces, front_colors};
+use super::vertices::{LaneFaces, VertexBatch8, front_colors};
 use crate::enums as gl;
 use crate::primitive::Primitive;
 use std::sync::Arc;
@@ -102,7 +102,7 @@ impl Geometry for DrawGeometry {
         // Light them.
         let faces = &LaneFaces::new(&self.snapshot, &self.batch, &vertices);
         let transform = &self.snapshot.transform;
-        let lanes = Eight { vertices, count: LANES, batch: &self.batch, transform, faces };
+        let lanes = VertexBatch8 { vertices, count: LANES, batch: &self.batch, transform, faces };
         let [r, g, b, a] = dispatch!(level, simd => front_colors(simd, &self.snapshot, &lanes));
         std::array::from_fn(|lane| [r[lane], g[lane], b[lane], a[lane]])
     }

@@ -1,11 +1,11 @@
 //! A recorded draw: its vertices and state, and how the vertices of a piece are transformed and shaded.
 
 use super::grid::Grid;
-use super::parts::Parts;
+use super::parts::TransformRanges;
 use super::piece::PieceVertices;
 use super::snapshot::VertexSnapshot;
 use super::triangulation::Triangulation;
-use super::vertices::{Eight, shade};
+use super::vertices::{VertexBatch8, shade};
 use crate::enums as gl;
 use crate::primitive::Primitive;
 use crate::state;
@@ -91,7 +91,7 @@ impl DrawGeometry {
         let (mut clip_memory, mut window_memory) = out.scratch.take(count);
         let (clip, window) = (&mut clip_memory[..count], &mut window_memory[..count]);
         let (mut user, mut sizes) = (Vec::new(), Vec::new());
-        let (parts, sized) = (Parts::new(&self.snapshot, &self.batch, vertices), self.needs_sizes());
+        let (parts, sized) = (TransformRanges::new(&self.snapshot, &self.batch, vertices), self.needs_sizes());
         for (part, transform) in parts.each(count) {
             let positions = &positions[part.clone()];
             let (clip, window) = (&mut clip[part.clone()], &mut window[part.clone()]);
@@ -127,7 +127,7 @@ impl DrawGeometry {
         &self,
         level: Level,
         vertices: &PieceVertices,
-        parts: &Parts<'_>,
+        parts: &TransformRanges<'_>,
         clip: &[[f32; 4]],
         eight: &[u32],
         records: &mut [f32],
@@ -159,7 +159,7 @@ impl DrawGeometry {
             let inverse_w = std::array::from_fn(|i| 1.0 / clip[own[used(i)] as usize][3]);
             let some = std::array::from_fn(|i| numbers[used(i)]);
             let faces = &*parts.faces(&some);
-            let some = Eight { vertices: some, count: end - lane, batch: &self.batch, transform, faces };
+            let some = VertexBatch8 { vertices: some, count: end - lane, batch: &self.batch, transform, faces };
             let records = &mut records[lane * stride..];
             dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &some, &inverse_w, records));
             lane = end;

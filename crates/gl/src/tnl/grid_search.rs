@@ -200,6 +200,8 @@ fn is_plain(batch: &VertexBatch) -> bool {
 fn axes(batch: &VertexBatch, triangles: &[[u32; 3]]) -> Option<[usize; 2]> {
     let first = batch.positions[triangles[0][0] as usize];
     let mut varies = [false; 3];
+
+    // Find which coordinates vary.
     for &v in triangles.iter().flatten() {
         let p = batch.positions[v as usize];
         if p[3] != 1.0 || !(p[0] + p[1] + p[2]).is_finite() {
@@ -212,6 +214,8 @@ fn axes(batch: &VertexBatch, triangles: &[[u32; 3]]) -> Option<[usize; 2]> {
             return None;
         }
     }
+
+    // Accept exactly two.
     match varies {
         [true, true, false] => Some([0, 1]),
         [true, false, true] => Some([0, 2]),

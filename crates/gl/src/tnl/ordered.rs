@@ -34,6 +34,7 @@ impl DrawGeometry {
         assembler: &mut Assembler<'_>,
     ) {
         let mut filled = Vec::new();
+        // Gather filled primitives, and emit them together before anything else.
         for primitive in primitives {
             if self.filled() && primitive.mode >= gl::TRIANGLES {
                 let turned = self.first_diagonal.then(|| !self.snapshot.is_linear());
@@ -41,6 +42,8 @@ impl DrawGeometry {
                 continue;
             }
             self.emit_filled(level, &mut filled, own, assembler);
+
+            // Emit points and lines.
             let vertex = |i: u32| own.number(self.batch.vertex(primitive.first + i) as u32);
             let n = primitive.count;
             match primitive.mode {
@@ -78,6 +81,7 @@ impl DrawGeometry {
 
     /// Polygons with their edges.
     fn emit_outlined(&self, assembler: &mut Assembler<'_>, primitive: &Primitive, own: &PieceVertices) {
+        // Find the corners and their edge flags.
         let vertex = |i: u32| own.number(self.batch.vertex(primitive.first + i) as u32);
         let flag = |v: u32| match &self.batch.edges {
             Some(edges) => edges[own.get(v) as usize],
@@ -88,6 +92,8 @@ impl DrawGeometry {
             let edges: Vec<bool> = corners.iter().map(|&v| !flagged || flag(v)).collect();
             assembler.polygon(corners, &edges, provoking);
         };
+
+        // Cut the primitive into polygons.
         match primitive.mode {
             gl::TRIANGLES => (0..n / 3).for_each(|i| {
                 let c = [0, 1, 2].map(|k| vertex(3 * i + k));

@@ -9,7 +9,7 @@ use std::ops::Range;
 use vitral_math::lanes::LANES;
 
 /// See the module.
-pub(crate) struct Parts<'a> {
+pub(crate) struct TransformRanges<'a> {
     snapshot: &'a VertexSnapshot,
     batch: &'a VertexBatch,
     /// The materials, if all vertices of the batch have the same.
@@ -19,7 +19,7 @@ pub(crate) struct Parts<'a> {
     parts: Vec<(usize, Transform)>,
 }
 
-impl<'a> Parts<'a> {
+impl<'a> TransformRanges<'a> {
     pub(crate) fn new(snapshot: &'a VertexSnapshot, batch: &'a VertexBatch, vertices: &PieceVertices) -> Self {
         let (mut parts, mut start) = (Vec::new(), 0);
         while start < vertices.len() {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Level, Simd, dispatch};
 
-/// Triangles of a piece.
+/// Triangles of a piece at most.
 pub(super) const PIECE_TRIANGLES: usize = 1024;
 
 /// A run of triangles and the vertices they use.

@@ -1,11 +1,11 @@
 //! Vertices processed at once, for feedback, selection and the raster position.
 
 use super::snapshot::{LightCache, VertexSnapshot};
-use super::vertices::{Eight, LaneFaces, process};
+use super::vertices::{LaneFaces, VertexBatch8, process};
 use crate::Context;
 use crate::enums as gl;
 use crate::state::{MAX_TEXTURE_UNITS, RasterPosition};
-use crate::vertex::{Given, VertexBatch};
+use crate::vertex::{CurrentState, VertexBatch};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Level, dispatch};
 use vitral_raster::forward::WindowTransform;
@@ -58,17 +58,25 @@ pub(crate) enum Wanted {
 }
 
 impl Context {
-    /// Transforms and lights all vertices of a batch now.
+    /// Transforms and lights all vertices of a batch at once.
     pub(crate) fn process_batch<const UNITS: usize>(
         &mut self,
         batch: &VertexBatch,
         wanted: Wanted,
     ) -> Vec<ProcessedVertex<UNITS>> {
+        // Take a snapshot of the state.
         let units: Vec<usize> = (0..if wanted == Wanted::All { UNITS } else { 0 }).collect();
-        let snapshot =
-            VertexSnapshot::new(&self.state, &Given::current(&self.state), &units, true, &mut LightCache::default());
+        let snapshot = VertexSnapshot::new(
+            &self.state,
+            &CurrentState::current(&self.state),
+            &units,
+            true,
+            &mut LightCache::default(),
+        );
         let mut planes = snapshot.transform.clip_planes.iter();
         let planes = self.state.clip_plane_enabled.map(|enabled| if enabled { planes.next() } else { None });
+
+        // Shade eight vertices at a time.
         let level = Level::new();
         let mut out = vec![ProcessedVertex::default(); batch.positions.len()];
         let shaded = if wanted == Wanted::Places { 0 } else { batch.positions.len() };
@@ -76,8 +84,9 @@ impl Context {
             let count = LANES.min(batch.positions.len() - first);
             let vertices = std::array::from_fn(|lane| (first + lane.min(count - 1)) as u32);
             let faces = &LaneFaces::new(&snapshot, batch, &vertices);
-            let eight = Eight { vertices, count, batch, transform: &snapshot.transform, faces };
+            let eight = VertexBatch8 { vertices, count, batch, transform: &snapshot.transform, faces };
             dispatch!(level, simd => {
+                // Transpose the results to vertices.
                 let (_, shaded, tex) = process(simd, &snapshot, &eight);
                 let color = shaded.color.map(|c| c.to_array());
                 let back = shaded.back.map_or(shaded.color, |(c, _)| c).map(|c| c.to_array());
@@ -94,6 +103,8 @@ impl Context {
                 }
             });
         }
+
+        // Transform all positions and measure their distances from the user's planes.
         let m = &snapshot.transform.clip_from_model;
         for (i, (vertex, p)) in out.iter_mut().zip(&batch.positions).enumerate() {
             vertex.clip = [0, 1, 2, 3].map(|r| p[0] * m[r] + p[1] * m[4 + r] + p[2] * m[8 + r] + p[3] * m[12 + r]);
@@ -107,9 +118,12 @@ impl Context {
     /// What `RasterPos` of a model-space position gives: with the current attributes, lit, clipped against the view
     /// volume and user planes.
     pub(crate) fn raster_position(&mut self, position: [f32; 4]) -> RasterPosition {
+        // Process the position as a vertex.
         let batch = VertexBatch { positions: vec![position], ..VertexBatch::default() };
         let vertices = self.process_batch::<MAX_TEXTURE_UNITS>(&batch, Wanted::All);
         let Some(vertex) = vertices.first().copied() else { return RasterPosition::default() };
+
+        // Project and clip it.
         let v = &self.state.viewport;
         let (origin, depth_mode) = self.state.clip_control;
         let zero_to_one = depth_mode == gl::ZERO_TO_ONE;
@@ -123,6 +137,8 @@ impl Context {
         if !inside {
             return RasterPosition { valid: false, ..self.state.raster_position };
         }
+
+        // Keep the vertex's values as the raster's.
         let [wx, wy, wz] = window.project_exact(vertex.clip);
         RasterPosition {
             window: [wx, wy, wz, w],

@@ -9,7 +9,7 @@ use super::snapshot::{FogSource, Generation, LightCache, VertexSnapshot};
 use crate::Context;
 use crate::enums as gl;
 use crate::state;
-use crate::vertex::{Given, Sent, VertexBatch};
+use crate::vertex::{CurrentState, Submission, VertexBatch};
 use std::sync::{Arc, PoisonError};
 use vitral_exec::{Started, Workers};
 use vitral_math::Vec4;
@@ -104,6 +104,7 @@ impl Recorder {
     /// Has what is recorded run while more comes, unless what was recorded before is still running. Depths alone are left to be
     /// drawn where they are looked at.
     fn start(&mut self) {
+        // Wait for nothing: skip if the last part still runs, or if there are no colours to draw.
         if self.ahead.as_ref().is_some_and(|ahead| !ahead.is_done()) {
             return;
         }
@@ -111,6 +112,8 @@ impl Recorder {
         if self.pass.as_ref().is_none_or(|pass| pass.target.color.is_none()) {
             return;
         }
+
+        // Hand the recorded commands to a worker.
         self.finish_ahead();
         let Some(pass) = self.pass.as_mut() else { return };
         let commands = std::mem::take(&mut pass.commands);
@@ -136,7 +139,7 @@ impl Context {
     }
 
     /// Records the drawing of `batch` with a snapshot of the state.
-    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>, sent: Sent, given: &Given) {
+    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>, sent: Submission, given: &CurrentState) {
         if !self.draw_framebuffer_complete("draw") {
             return;
         }
@@ -193,7 +196,7 @@ impl Context {
         self.recorder.run();
     }
 
-    /// The per-fragment state as it is now. `images` leaves out what pixel rectangles do not meet (polygon stipple).
+    /// The current per-fragment state. `images` leaves out what does not apply to pixel rectangles (polygon stipple).
     pub(crate) fn fragment_state(&mut self, images: bool) -> Arc<FragmentState> {
         let target = self.target();
         self.fragment_state_for(target.as_ref(), images)
@@ -203,21 +206,26 @@ impl Context {
     fn draw_geometry(
         &mut self,
         batch: Arc<VertexBatch>,
-        sent: Sent,
-        given: &Given,
+        sent: Submission,
+        given: &CurrentState,
         fragment: &FragmentState,
         target: &Target,
     ) -> Option<DrawGeometry> {
+        // Decide what the fragments need.
         let colored = target.color.is_some() && fragment.masked != [true; 4];
         let samples = target.samples > 1;
         let shaded = colored || fragment.alpha_test.is_some() || (fragment.alpha_to_coverage && samples);
         let units: Vec<usize> = if shaded { fragment.units.iter().map(|u| u.index).collect() } else { Vec::new() };
         let fog = shaded && fragment.fog.is_some();
+
+        // Take the snapshot of the vertex stages and lay vertex records out.
         let mut snapshot = VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
         snapshot.clamps = !fragment.unclamped_vertices;
         let mut layout = if shaded { self.layout(fragment, &units, samples) } else { Layout::default() };
+
+        // Triangulate batches that are drawn repeatedly.
         let primitive = self.primitive_state(fragment, target)?;
-        let small = sent == Sent::Now && batch.is_small();
+        let small = sent == Submission::Now && batch.is_small();
         let triangulation = (!small).then(|| batch.triangulation.get(&batch));
         // What draws depths alone into a texture is seldom looked at: it stays as it was given.
         let flat = triangulation.as_ref().is_some_and(|triangulation| triangulation.grid.is_some());
@@ -225,12 +233,16 @@ impl Context {
         if grid && snapshot.fog == Some(FogSource::Depth) {
             snapshot.fog = Some(FogSource::Ahead);
         }
+
+        // Use one colour for all fragments if nothing varies it.
         let colors_alone = shaded && layout.stride == layout.color + 4;
         layout.uniform = colors_alone && snapshot.lighting.is_none() && batch.colors.is_none();
         if grid && shaded && snapshot.lighting.is_some() {
             layout.grid = Some(layout.stride);
             layout.stride += 2;
         }
+
+        // Collect the sizes of points.
         let s = &self.state;
         let multisample = s.multisample && samples;
         let points = PointSizes {
@@ -239,7 +251,7 @@ impl Context {
             attenuation: s.points.attenuation,
             fade: multisample.then_some(s.points.fade_threshold),
         };
-        let first_diagonal = sent == Sent::Now && batch.indices.is_none() && !fragment.flat;
+        let first_diagonal = sent == Submission::Now && batch.indices.is_none() && !fragment.flat;
         Some(DrawGeometry { triangulation, batch, grid, first_diagonal, snapshot, primitive, layout, points })
     }
 
@@ -258,6 +270,7 @@ impl Context {
 
     /// Where vertex records hold what. `samples`: the target has several a pixel.
     fn layout(&self, fragment: &FragmentState, units: &[usize], samples: bool) -> Layout {
+        // Lay colours out, then fog and texture coordinates.
         let s = &self.state;
         let two_side = s.lighting.enabled && s.lighting.model.two_side;
         let mut next = 1;
@@ -276,6 +289,8 @@ impl Context {
                 layout.sprites |= 1 << unit;
             }
         }
+
+        // Decide which primitives are smooth.
         layout.stride = next;
         let sharp = s.multisample && samples;
         layout.smooth =
@@ -286,6 +301,8 @@ impl Context {
 
     fn primitive_state(&self, fragment: &FragmentState, target: &Target) -> Option<PrimitiveState> {
         let s = &self.state;
+
+        // Find the transform to the window.
         let [x, y, w, h] = s.viewport.rect;
         if w <= 0 || h <= 0 {
             return None;
@@ -294,6 +311,8 @@ impl Context {
         let flipped = origin == gl::UPPER_LEFT;
         let range = [s.viewport.depth_range.near, s.viewport.depth_range.far];
         let window = WindowTransform::new([x, y, w, h], range, depth_mode == gl::ZERO_TO_ONE, flipped);
+
+        // Translate culling and polygon modes.
         let culled =
             |face: u32| s.polygons.cull && (s.polygons.cull_mode == face || s.polygons.cull_mode == gl::FRONT_AND_BACK);
         let mode = |token: u32| match token {
@@ -301,6 +320,8 @@ impl Context {
             gl::LINE => 1,
             _ => 2,
         };
+
+        // Limit the pixels to scissor and viewport.
         let multisample = s.multisample && target.samples > 1;
         let offset = |k: usize| if s.polygons.offset_enabled[k] { s.polygons.offset } else { [0.0; 2] };
         let c = fragment.clip;
@@ -329,7 +350,7 @@ impl Context {
     }
 }
 
-/// Whether a pass can wait while `target`, a shadow map, is drawn: it is a picture that does not need what is there now.
+/// Whether a pass can wait while `target`, a shadow map, is drawn: it is a picture that does not need the target's present contents.
 fn may_wait_for(pass: &Pass, target: &Target) -> bool {
     let Some(map) = target.depth.as_ref().filter(|_| target.color.is_none()) else { return false };
     let same = pass.target.depth.as_ref().is_some_and(|depth| Arc::ptr_eq(depth, map));

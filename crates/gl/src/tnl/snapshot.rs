@@ -2,7 +2,7 @@
 
 use crate::enums as gl;
 use crate::state::{Current, MaterialFace, State};
-use crate::vertex::Given;
+use crate::vertex::CurrentState;
 use std::sync::Arc;
 use vitral_light::{Attenuation, Light, LightKind, PreparedLight};
 use vitral_math::{DMat4, DVec3, Mat3, Mat4, Vec4, func};
@@ -125,13 +125,22 @@ impl VertexSnapshot {
     }
 
     /// Takes what is needed; `units` are the sampled units, `fog` whether fog is on, `lights` a cache.
-    pub(crate) fn new(state: &State, given: &Given, units: &[usize], fog: bool, lights: &mut LightCache) -> Self {
+    pub(crate) fn new(
+        state: &State,
+        given: &CurrentState,
+        units: &[usize],
+        fog: bool,
+        lights: &mut LightCache,
+    ) -> Self {
+        // Collect the enabled clip planes and the source of fog.
         let matrices = &state.matrices;
         let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
         let clip_planes: Vec<_> = planes.map(|(plane, _)| plane.map(|v| v as f32)).collect();
         let source = if state.fog.source == gl::FRAGMENT_DEPTH { FogSource::Depth } else { FogSource::Given };
         let projection = matrices.projection.top();
         let rescale_normal = matrices.rescale_normal && !matrices.normalize;
+
+        // Copy what the vertex stages read.
         Self {
             current: state.current,
             transform: Transform::new(&given.modelview, &projection, rescale_normal, &clip_planes),
@@ -179,9 +188,11 @@ fn unit(state: &State, index: usize) -> UnitSnapshot {
 }
 
 impl LightingSnapshot {
-    fn new(state: &State, given: &Given, cache: &mut LightCache) -> Self {
+    fn new(state: &State, given: &CurrentState, cache: &mut LightCache) -> Self {
         let lighting = &state.lighting;
         let material = lighting.color_material;
+
+        // Find the parameters that follow the colour.
         let tracked = |face: u32| {
             if !material.enabled || (material.face != gl::FRONT_AND_BACK && material.face != face) {
                 return Tracked::default();
@@ -193,6 +204,8 @@ impl LightingSnapshot {
                 emission: material.mode == gl::EMISSION,
             }
         };
+
+        // Collect the light model and the materials.
         let [r, g, b, _] = lighting.model.ambient;
         Self {
             lights: cache.prepare(&lighting.lights),
@@ -232,11 +245,14 @@ impl LightCache {
 }
 
 fn prepare(light: &crate::state::Light) -> Option<PreparedLight> {
+    // Scale the colours of a light at infinity by its cone.
     let [x, y, z, w] = light.position.map(f64::from);
     let [constant, linear, quadratic] = light.attenuation.map(f64::from);
     let position = DVec3::new(x, y, z) / w;
     let share = if w == 0.0 { cone_at_infinity(light) } else { 1.0 };
     let rgb = |c: [f32; 4]| [c[0] * share, c[1] * share, c[2] * share];
+
+    // Translate the kind of light.
     let (kind, attenuation) = if w == 0.0 {
         (LightKind::Directional { direction: -DVec3::new(x, y, z) }, Attenuation::None)
     } else if light.spot_cutoff == 180.0 {
@@ -248,6 +264,8 @@ fn prepare(light: &crate::state::Light) -> Option<PreparedLight> {
         let kind = LightKind::Spot { position, direction, cutoff, inner: cutoff, exponent };
         (kind, Attenuation::Gl { constant, linear, quadratic })
     };
+
+    // Prepare it in eye space.
     let light = Light {
         kind,
         attenuation,

@@ -15,7 +15,7 @@ type F<S> = F32x8<S>;
 type F4<S> = [F32x8<S>; 4];
 
 /// Up to eight vertices to be shaded.
-pub(crate) struct Eight<'a> {
+pub(crate) struct VertexBatch8<'a> {
     /// Numbers in the batch; unused lanes repeat one.
     pub vertices: [u32; LANES],
     /// How many there are.
@@ -171,7 +171,7 @@ pub(crate) fn shade<S: Simd>(
     simd: S,
     snapshot: &VertexSnapshot,
     layout: &Layout,
-    eight: &Eight<'_>,
+    eight: &VertexBatch8<'_>,
     inverse_w: &[f32; LANES],
     records: &mut [f32],
 ) {
@@ -191,6 +191,8 @@ pub(crate) fn shade<S: Simd>(
             for lane in 0..eight.count {
                 records[lane * stride] = inverse_w[lane];
             }
+
+            // Transform positions and normals to eye space, and light them.
             let position: F4<S> = gather(simd, &eight.batch.positions, &eight.vertices);
             let eye = transform(&eight.transform.modelview, &position);
             let normal = eye_normal(simd, snapshot, eight);
@@ -198,6 +200,8 @@ pub(crate) fn shade<S: Simd>(
             for k in 0..4 {
                 put(records, layout.color + k, shaded.color[k]);
             }
+
+            // Store the other colours that the draw needs.
             if let (Some(at), Some(c)) = (layout.secondary, shaded.secondary) {
                 put(records, at, c.x);
                 put(records, at + 1, c.y);
@@ -213,9 +217,13 @@ pub(crate) fn shade<S: Simd>(
                 put(records, at + 1, c.y);
                 put(records, at + 2, c.z);
             }
+
+            // Store the fog coordinate.
             if let Some(at) = layout.fog {
                 put(records, at, shaded.fog);
             }
+
+            // Generate or fetch texture coordinates, and transform them.
             for unit in &snapshot.units {
                 if let Some(at) = layout.tex[unit.index] {
                     let coords = texture(simd, snapshot, unit, eight, &position, &eye, normal);
@@ -229,7 +237,7 @@ pub(crate) fn shade<S: Simd>(
 }
 
 /// The front colours of up to eight vertices alone.
-pub(crate) fn front_colors<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &Eight<'_>) -> [[f32; LANES]; 4] {
+pub(crate) fn front_colors<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &VertexBatch8<'_>) -> [[f32; LANES]; 4] {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -244,7 +252,7 @@ pub(crate) fn front_colors<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &
 
 /// The normal in eye space, if anything needs it.
 #[inline(always)]
-fn eye_normal<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &Eight<'_>) -> V3<F<S>> {
+fn eye_normal<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &VertexBatch8<'_>) -> V3<F<S>> {
     let generates = snapshot
         .units
         .iter()
@@ -268,10 +276,11 @@ fn eye_normal<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &Eight<'_>) ->
 pub(crate) fn colors<S: Simd>(
     simd: S,
     snapshot: &VertexSnapshot,
-    eight: &Eight<'_>,
+    eight: &VertexBatch8<'_>,
     eye: &F4<S>,
     normal: V3<F<S>>,
 ) -> Shaded<S> {
+    // Fetch the colour and the fog coordinate.
     let color = attribute(simd, &eight.batch.colors, snapshot.current.color, &eight.vertices);
     let fog = match snapshot.fog {
         Some(FogSource::Given) => match &eight.batch.fog {
@@ -287,6 +296,8 @@ pub(crate) fn colors<S: Simd>(
         Some(FogSource::Ahead) => -eye[2],
         _ => lanes::Lanes::abs(eye[2]),
     };
+
+    // Without lighting, clamp the given colours.
     let Some(lighting) = &snapshot.lighting else {
         let secondary = if snapshot.color_sum {
             let [r, g, b] = attribute(simd, &eight.batch.secondary, snapshot.current.secondary, &eight.vertices);
@@ -297,6 +308,8 @@ pub(crate) fn colors<S: Simd>(
         };
         return Shaded { color: limited(snapshot.clamps, color), secondary, back: None, fog };
     };
+
+    // Light the front, and the back with the opposite normal.
     let one = splat(simd, 1.0);
     let inverse = one / eye[3];
     let position = V3::new(eye[0] * inverse, eye[1] * inverse, eye[2] * inverse);
@@ -325,6 +338,8 @@ fn lit<S: Simd>(
         #[inline(always)]
         || {
             let (zero, one) = (splat(simd, 0.0), splat(simd, 1.0));
+
+            // Choose the material's colours: given, or following the vertex colour.
             let given = V3::new(color[0], color[1], color[2]);
             let row = lanes::inlined(
                 #[inline(always)]
@@ -342,6 +357,8 @@ fn lit<S: Simd>(
                 ks: of(tracked.specular, &m.specular),
                 shininess: row(&m.shininess),
             };
+
+            // Find the direction to the viewer.
             let v = if lighting.local_viewer { (-position).normalize() } else { V3::splat(one, [0.0, 0.0, 1.0]) };
             let surface = Surface { position, n, v };
             let visible = lanes::inlined(
@@ -350,9 +367,13 @@ fn lit<S: Simd>(
             );
             // Without a specular colour the halfway vectors need not be computed.
             let dull = !tracked.specular && m.dull;
+
+            // Evaluate all lights.
             let model = if dull { Illumination::Lambert } else { Illumination::BlinnPhong };
             let Reflected { diffuse, specular } =
                 phong(model, &lighting.lights, lighting.ambient, &surface, &k, visible, |_| zero);
+
+            // Sum up: specular light stays apart or is added.
             let primary = diffuse + of(tracked.emission, &m.emission);
             let alpha = if tracked.diffuse { color[3] } else { row(&m.diffuse[3]) };
             if lighting.separate_specular {
@@ -371,7 +392,7 @@ fn texture<S: Simd>(
     simd: S,
     snapshot: &VertexSnapshot,
     unit: &UnitSnapshot,
-    eight: &Eight<'_>,
+    eight: &VertexBatch8<'_>,
     position: &F4<S>,
     eye: &F4<S>,
     n: V3<F<S>>,
@@ -389,9 +410,12 @@ fn texture<S: Simd>(
 
 #[inline(always)]
 fn generate<S: Simd>(simd: S, unit: &UnitSnapshot, position: &F4<S>, eye: &F4<S>, n: V3<F<S>>, coords: &mut F4<S>) {
+    // Reflect the vector to the vertex at the normal.
     let inverse = splat(simd, 1.0) / eye[3];
     let u = V3::new(eye[0] * inverse, eye[1] * inverse, eye[2] * inverse).normalize();
     let r = u - n.scale(n.dot(u) * 2.0);
+
+    // Generate each coordinate by its mode.
     for k in 0..4 {
         coords[k] = match &unit.generation[k] {
             Generation::None => coords[k],
@@ -413,7 +437,7 @@ fn generate<S: Simd>(simd: S, unit: &UnitSnapshot, position: &F4<S>, eye: &F4<S>
 pub(crate) fn process<S: Simd>(
     simd: S,
     snapshot: &VertexSnapshot,
-    eight: &Eight<'_>,
+    eight: &VertexBatch8<'_>,
 ) -> (F4<S>, Shaded<S>, [F4<S>; 8]) {
     let position: F4<S> = gather(simd, &eight.batch.positions, &eight.vertices);
     let eye = transform(&eight.transform.modelview, &position);

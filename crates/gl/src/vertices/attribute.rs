@@ -128,6 +128,8 @@ impl VertexBatch {
                 (Some(values), None) => values.resize(values.len() + numbers.len(), current),
             }
         }
+
+        // Append each attribute.
         self.positions.extend(numbers.clone().map(|v| other.positions[v]));
         add(&mut self.normals, &other.normals, current.normal, numbers.clone());
         add(&mut self.colors, &other.colors, current.color, numbers.clone());

@@ -50,7 +50,7 @@ pub struct BufferHandle {
     buffer: Option<Arc<Mutex<Buffer>>>,
 }
 
-/// Names are used again, buffers are not.
+/// Names are reused, buffers are not.
 impl PartialEq for BufferHandle {
     fn eq(&self, other: &Self) -> bool {
         self.id == other.id
@@ -198,6 +198,8 @@ impl Buffer {
             MAP_UNSYNCHRONIZED_BIT, MAP_WRITE_BIT,
         };
         let careless = MAP_INVALIDATE_RANGE_BIT | MAP_INVALIDATE_BUFFER_BIT | MAP_UNSYNCHRONIZED_BIT;
+
+        // Check the range and the access bits.
         let range = self.range(offset, length)?;
         if flags & !(MAP_READ_BIT | MAP_WRITE_BIT | MAP_FLUSH_EXPLICIT_BIT | careless) != 0 {
             return Err((enums::INVALID_VALUE, "access has unknown bits"));
@@ -215,6 +217,8 @@ impl Buffer {
         if flags & MAP_FLUSH_EXPLICIT_BIT != 0 && flags & MAP_WRITE_BIT == 0 {
             return refused("only what is written can be flushed");
         }
+
+        // Map the range.
         self.map(memory, range.start, range.len(), flags)
     }
 
@@ -384,6 +388,8 @@ impl Context {
         if self.refused_inside_begin(CALL) {
             return;
         }
+
+        // Read from the bytes as they are when the call is made.
         let Some(source) = self.buffer_binding(CALL, read).map(|b| b.id) else { return };
         let Some(target) = self.buffer_binding(CALL, write).map(|b| b.id) else { return };
         let part = self.with_buffer(CALL, read, |buffer, _| {
@@ -394,6 +400,8 @@ impl Context {
             }
         });
         let Some((bytes, from)) = part else { return };
+
+        // Check the target range, then copy.
         self.with_buffer(CALL, write, |buffer, _| {
             let to = buffer.range(write_offset, size)?;
             if buffer.is_mapped() {

@@ -12,7 +12,7 @@
 use super::attribute::{CARRIED, COLOR};
 use crate::primitive::is_independent;
 use crate::state::Current;
-use crate::vertex::{Given, Sent, VertexBatch};
+use crate::vertex::{CurrentState, Submission, VertexBatch};
 use crate::{Context, enums};
 use std::sync::Arc;
 use vitral_math::Mat4;
@@ -23,7 +23,7 @@ const LONG_ENOUGH: usize = 12 * 2730;
 /// How many batches are kept for their memory.
 const MOST_KEPT: usize = 16;
 
-/// Vertices of a batch whose memory is used again: fewer cost nothing to allocate, more are too much to keep.
+/// Vertices of a batch whose memory is reused: fewer cost nothing to allocate, more are too much to keep.
 const REUSED: std::ops::Range<usize> = 1 << 10..1 << 21;
 
 /// The primitive that is being given, and complete ones before it.
@@ -42,9 +42,9 @@ pub(crate) struct Builder {
     /// With so many vertices the open primitive is long.
     pub(super) most: usize,
     /// Whether what is gathered is cut as what comes at once.
-    sent: Sent,
+    sent: Submission,
     /// As it was at the first Begin.
-    given: Given,
+    given: CurrentState,
     /// The modelview matrix may have changed since the last Begin.
     moved: bool,
     /// All that is gathered: a batch that somebody else holds, too. Nothing is in `batch` then.
@@ -108,7 +108,7 @@ impl Builder {
         self.open = false;
     }
 
-    /// Begins a batch, in the memory of one that was drawn, if nobody needs that any more.
+    /// Begins a batch, in the memory of a drawn one if nobody else holds that.
     fn start(&mut self) {
         let free = self.drawn.iter().position(|drawn| Arc::strong_count(drawn) == 1);
         let Some(drawn) = free.and_then(|free| Arc::into_inner(self.drawn.swap_remove(free))) else { return };
@@ -216,13 +216,13 @@ impl Context {
         } else if mode > enums::POLYGON {
             self.record_error(enums::INVALID_ENUM, "glBegin", &format!("mode {mode:#x} is not a primitive"));
         } else if !self.refused_by_framebuffer("glBegin") {
-            self.gather(Sent::Now);
+            self.gather(Submission::Now);
             self.builder.open(mode);
         }
     }
 
-    /// Notes the state as it is now, for a primitive that begins.
-    pub(super) fn gather(&mut self, sent: Sent) {
+    /// Notes the current state for a primitive that begins.
+    pub(super) fn gather(&mut self, sent: Submission) {
         if self.builder.sent != sent {
             self.flush_vertices();
         }
@@ -232,7 +232,7 @@ impl Context {
             builder.start();
             builder.gathering = true;
             builder.sent = sent;
-            builder.given = Given::current(&self.state);
+            builder.given = CurrentState::current(&self.state);
         } else if builder.moved {
             builder.set_modelview(self.state.matrices.modelview.top());
         }
@@ -253,7 +253,7 @@ impl Context {
     }
 
     /// Whether a batch is gathered rather than drawn; if so, it has been.
-    pub(super) fn gathers(&mut self, batch: &Arc<VertexBatch>, sent: Sent) -> bool {
+    pub(super) fn gathers(&mut self, batch: &Arc<VertexBatch>, sent: Submission) -> bool {
         if !batch.is_small() || !self.builder.merging || self.feedback.mode != enums::RENDER {
             return false;
         }
@@ -261,9 +261,9 @@ impl Context {
             return true;
         }
         // What is indexed is cut as what lists hold.
-        let sent = if batch.indices.is_some() { Sent::Listed } else { sent };
+        let sent = if batch.indices.is_some() { Submission::Listed } else { sent };
         if !self.builder.gathering {
-            let given = Given::current(&self.state);
+            let given = CurrentState::current(&self.state);
             let builder = &mut self.builder;
             (builder.sent, builder.given, builder.moved) = (sent, given, false);
             (builder.lone, builder.gathering) = (Some(Arc::clone(batch)), true);

@@ -155,11 +155,15 @@ impl Compiler {
         if !self.has_room() {
             return;
         }
+
+        // Separate the open batch if it lacks the attribute.
         let bit = 1 << which;
         let new = CARRIED & !self.builder.seen & bit != 0;
         if new && !self.builder.batch.positions.is_empty() {
             self.separate();
         }
+
+        // Store the call, or the value for the next vertices.
         if self.single {
             self.items.push(Item::Attribute(which, value));
         } else {
@@ -256,6 +260,8 @@ impl Compiler {
             return;
         }
         self.single = true;
+
+        // Turn the vertices gathered so far into calls.
         let (mode, first, seen) = (self.builder.mode(), self.builder.first(), self.builder.seen);
         let mut calls = vec![Item::Begin(mode)];
         let mut last = None;
@@ -268,6 +274,8 @@ impl Compiler {
             last = Some(now);
         }
         push_changes(&mut calls, seen, last.as_ref(), &self.values);
+
+        // Drop them from the batch, and continue with single calls.
         self.builder.batch.truncate_vertices(first);
         self.builder.abandon();
         self.flush();

@@ -4,7 +4,7 @@ use super::client;
 use super::compile::{Call, Compiler, Item};
 use crate::names::NameRange;
 use crate::state::MAX_LIST_NESTING;
-use crate::vertex::{Given, Sent};
+use crate::vertex::{CurrentState, Submission};
 use crate::{Context, enums};
 use std::collections::BTreeMap;
 use std::sync::{Arc, MutexGuard, PoisonError};
@@ -41,7 +41,7 @@ const CALLS: u32 = 1 << 22;
 const MAX_RANGE: u32 = 1 << 22;
 
 impl Context {
-    /// Runs `call` now, or keeps it in the list that is being compiled, or both (`COMPILE_AND_EXECUTE`).
+    /// Runs `call` at once, or keeps it in the list that is being compiled, or both (`COMPILE_AND_EXECUTE`).
     pub(crate) fn listable(&mut self, call: impl Fn(&mut Self) + Send + Sync + 'static) {
         self.listed(call, Item::Call);
     }
@@ -158,6 +158,7 @@ impl Context {
     }
 
     fn execute_lists(&mut self, names: &[u32]) {
+        // Limit nesting, and the number of lists that one call may run.
         if self.lists.nesting == 0 {
             self.lists.budget = CALLS;
         }
@@ -165,6 +166,8 @@ impl Context {
             return;
         }
         self.lists.nesting += 1;
+
+        // Run each list.
         for name in names {
             let list = self.list_names().get(name).cloned();
             let Some(list) = list.filter(|list| !list.items.is_empty()) else { continue };
@@ -186,9 +189,9 @@ impl Context {
             }
             Item::Keeping(call) => call(self),
             Item::Batch(batch) => {
-                if !self.refused_inside_begin("glBegin") && !self.gathers(batch, Sent::Listed) {
+                if !self.refused_inside_begin("glBegin") && !self.gathers(batch, Submission::Listed) {
                     self.flush_vertices();
-                    self.draw_batch(batch.clone(), Sent::Listed, &Given::current(&self.state));
+                    self.draw_batch(batch.clone(), Submission::Listed, &CurrentState::current(&self.state));
                 }
             }
             Item::Attribute(which, value) => self.exec_attribute(*which, *value),
@@ -203,6 +206,8 @@ impl Context {
         if self.refused_inside_begin("glGenLists") {
             return 0;
         }
+
+        // Check the range.
         let Ok(range) = u32::try_from(range) else {
             self.record_error(enums::INVALID_VALUE, "glGenLists", &format!("range {range} is negative"));
             return 0;
@@ -210,6 +215,8 @@ impl Context {
         if range == 0 {
             return 0;
         }
+
+        // Reserve names in a row.
         let first = if range <= MAX_RANGE { free_run(&self.list_names(), self.shared.names, range) } else { None };
         let Some(first) = first else {
             self.record_error(enums::OUT_OF_MEMORY, "glGenLists", &format!("no {range} names in a row are free"));
@@ -277,6 +284,8 @@ fn offsets(c: &Context, n: i32, kind: u32, lists: usize) -> Result<Vec<u32>, (u3
         let join = |name: &[u8]| name.iter().fold(0, |high, byte| high << 8 | u32::from(*byte));
         Some(bytes.chunks_exact(width).map(join).collect())
     };
+
+    // Read the names by their type.
     let offsets = match kind {
         enums::BYTE => client::values::<i8>(memory, lists, n).map(|v| v.iter().map(|&x| x as u32).collect()),
         enums::SHORT => client::values::<i16>(memory, lists, n).map(|v| v.iter().map(|&x| x as u32).collect()),

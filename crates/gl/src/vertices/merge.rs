@@ -14,11 +14,14 @@ pub(crate) fn merge_equal(batch: &mut VertexBatch) {
     if n < 2 || n >= FREE as usize / 2 || batch.indices.is_some() || !batch.materials.is_empty() {
         return;
     }
+
+    // Hash the vertices into an open table.
     let hashes = hashes(batch);
     let mask = (2 * n).next_power_of_two() - 1;
     let mut table = vec![FREE; mask + 1];
     let mut kept: Vec<u32> = Vec::with_capacity(n);
     let mut indices = Vec::with_capacity(n);
+    // Find an equal vertex, or keep this one.
     for i in 0..n {
         // The high bits are the well mixed ones.
         let mut at = (hashes[i] >> 32) as usize & mask;
@@ -40,6 +43,8 @@ pub(crate) fn merge_equal(batch: &mut VertexBatch) {
         };
         indices.push(index);
     }
+
+    // Replace the vertices if some were equal.
     if kept.len() < n {
         batch.select_vertices(&kept);
         batch.indices = Some(indices);

@@ -27,12 +27,12 @@ pub use lists::{List, ListNames};
 
 use crate::Context;
 use crate::enums;
-use crate::vertex::{Given, Sent, VertexBatch};
+use crate::vertex::{CurrentState, Submission, VertexBatch};
 use std::sync::Arc;
 
 impl Context {
     /// Draws a batch: to the screen, or to the feedback or selection buffer.
-    pub(crate) fn draw_batch(&mut self, batch: Arc<VertexBatch>, sent: Sent, given: &Given) {
+    pub(crate) fn draw_batch(&mut self, batch: Arc<VertexBatch>, sent: Submission, given: &CurrentState) {
         if batch.primitives.is_empty() {
             return;
         }

@@ -23,6 +23,8 @@ impl Context {
             if c.refused_inside_begin(call) {
                 return;
             }
+
+            // Map depth to the depth range.
             let (near, far) = (c.state.viewport.depth_range.near as f32, c.state.viewport.depth_range.far as f32);
             let depth = if z <= 0.0 {
                 near
@@ -31,6 +33,8 @@ impl Context {
             } else {
                 near + z * (far - near)
             };
+
+            // Take the current attributes.
             let current = &c.state.current;
             let position = RasterPosition {
                 window: [x, y, depth, w],

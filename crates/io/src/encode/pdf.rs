@@ -50,6 +50,7 @@ pub fn pdf(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
     catalog.finish();
     pdf.pages(Ref::new(PAGES)).kids([Ref::new(PAGE)]).count(1);
 
+    // Describe the page and the opacities that it uses.
     let mut page = pdf.page(Ref::new(PAGE));
     let [width, height] = [drawing.width, drawing.height].map(|side| (side * POINTS / unit) as f32);
     page.parent(Ref::new(PAGES)).media_box(Rect::new(0.0, 0.0, width, height)).contents(Ref::new(CONTENT));
@@ -77,6 +78,7 @@ pub fn pdf(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
     resources.finish();
     page.finish();
 
+    // Append the content and the names of the layers.
     let compressed = miniz_oxide::deflate::compress_to_vec_zlib(content.as_bytes(), COMPRESSION);
     pdf.stream(Ref::new(CONTENT), &compressed).filter(Filter::FlateDecode);
     for (i, (number, name)) in groups.iter().enumerate() {
@@ -105,6 +107,8 @@ fn content(drawing: &Drawing, options: &DrawingOptions, scale: f64) -> (String, 
     let precision = options.precision();
     let (mut out, mut groups) = (String::new(), Vec::new());
     let _ = writeln!(out, "{scale:.9} 0 0 {scale:.9} 0 0 cm\n1 J 1 j");
+
+    // Paint the regions, from the first to the last.
     if !drawing.regions.is_empty() {
         groups.push((0, FILL));
         let _ = writeln!(out, "/OC /{FILL} BDC");
@@ -130,6 +134,8 @@ fn content(drawing: &Drawing, options: &DrawingOptions, scale: f64) -> (String, 
         }
         out.push_str("EMC\n");
     }
+
+    // Stroke the lines of each layer.
     for layer in layers(drawing, options) {
         groups.push((layer.number, layer.name));
         let _ = writeln!(out, "/OC /{} BDC\n{} w", layer.name, layer.width);

@@ -160,6 +160,7 @@ impl<'a> Source<'a> {
 
     /// Checks that all that the accessor claims lies inside its views.
     fn layout(&self, index: usize, components: usize, user: &str) -> Result<Layout<'a>, Error> {
+        // Check the type of the elements.
         let accessor = &self.root.accessors[index];
         let path = format!("accessors[{index}]");
         let (Checked::Valid(shape), Checked::Valid(component)) = (accessor.type_, accessor.component_type.as_ref())
@@ -172,6 +173,8 @@ impl<'a> Source<'a> {
                 format!("accessor {index} has {} components an element, {components} are needed", shape.multiplicity());
             return Err(self.error(user, what));
         }
+
+        // Find the elements in their view.
         let count = self.count(index)?;
         let size = components * component.size();
         let offset = accessor.byte_offset.map_or(0, |o| o.0);
@@ -179,6 +182,8 @@ impl<'a> Source<'a> {
             Some(view) => Some(self.elements(&path, view.value(), offset, count, size, true)?),
             None => None,
         };
+
+        // Find the sparse elements that replace some of them.
         let sparse = match &accessor.sparse {
             None => None,
             Some(s) => {

@@ -47,6 +47,7 @@ impl Attributes {
         path: &str,
         warnings: &mut Vec<String>,
     ) -> Result<Option<Self>, Error> {
+        // Find the positions and texture coordinates.
         let get = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|a| a.value());
         let Some(positions) = get(Semantic::Positions) else { return Ok(None) };
         check_compression(source, primitive, positions, path)?;
@@ -54,6 +55,8 @@ impl Attributes {
         if uvs[0].is_none() && uvs[1].is_some() {
             warnings.push(format!("{}: {path}: TEXCOORD_1 without TEXCOORD_0, which is taken as 0", source.file));
         }
+
+        // Warn of attributes that are not read.
         let mut unread: Vec<String> = primitive
             .attributes
             .keys()
@@ -69,6 +72,8 @@ impl Attributes {
             unread.sort();
             warnings.push(format!("{}: {path}: {} not used", source.file, unread.join(", ")));
         }
+
+        // Find the influences of joints and the morph targets.
         let influences =
             (0..JOINT_SETS).filter_map(|set| get(Semantic::Joints(set)).zip(get(Semantic::Weights(set)))).collect();
         let targets = primitive.targets.iter().flatten();

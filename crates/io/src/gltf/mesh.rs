@@ -163,6 +163,8 @@ impl Plan {
     ) -> Result<(), Error> {
         let any = |f: &dyn Fn(&Attributes) -> bool| self.blocks.iter().any(|b| f(&b.attributes));
         let mut bad = 0;
+
+        // Join the colours of all blocks.
         if any(&|a| a.colors.is_some()) {
             let mut values = Vec::with_capacity(mesh.positions.len());
             for block in &self.blocks {
@@ -172,6 +174,8 @@ impl Plan {
                 }
             }
             bad += made_finite(values.as_flattened_mut());
+
+            // Join each set of texture coordinates.
             mesh.colors = Some(Attribute::per_vertex(values));
         }
         let sets = (0..2).rev().find(|&set| any(&|a| a.uvs[set].is_some())).map_or(0, |last| last + 1);
@@ -190,6 +194,7 @@ impl Plan {
             mesh.uvs.push(Attribute::per_vertex(values));
         }
         if bad > 0 {
+            // Warn of numbers that were made finite.
             let path = self.blocks.first().map_or("", |b| &b.path);
             warnings.push(format!(
                 "{}: {path}: {bad} colours or texture coordinates are not finite, taken as 0",

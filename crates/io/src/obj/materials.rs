@@ -174,6 +174,8 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
     let mut library = Library::default();
     let mut warnings = Warnings::default();
     let mut known = Known::default();
+
+    // Parse all libraries.
     for (line, names) in &events.libraries {
         for (name, bytes) in read_libraries(*line, names, resolver, &mut warnings) {
             let mut own = Warnings::default();
@@ -182,6 +184,7 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
         }
     }
 
+    // Build the materials that faces use, in the order of first use.
     let mut requests = Requests::default();
     let mut built = HashMap::new();
     for (line, name) in &events.used {
@@ -198,6 +201,7 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
         }
     }
 
+    // Give a file without `usemap` the only material of its library.
     if events.used.is_empty()
         && let [(source, material)] = known.materials.as_slice()
     {

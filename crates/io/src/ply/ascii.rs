@@ -124,6 +124,8 @@ fn read_row(
 ) -> Result<(), String> {
     row.clear();
     let is_wrapped = lines == Lines::Wrapped;
+
+    // Store each property of the element.
     for (property, &target) in element.properties.iter().zip(&layout.targets) {
         match property.kind {
             Kind::Scalar(kind) => {
@@ -144,6 +146,7 @@ fn read_row(
                     });
                     continue;
                 }
+                // Read the list's length and its items.
                 let Some(count @ 0..) = cursor.integer() else {
                     return Err(missing(cursor, &property.name));
                 };
@@ -157,6 +160,8 @@ fn read_row(
             }
         }
     }
+
+    // Warn of values beyond the last property.
     cursor.skip_blanks();
     if !is_wrapped && cursor.peek() != b'\n' && layout.role != Role::Unknown {
         let line = cursor.line();

@@ -144,6 +144,7 @@ impl Header {
             if at >= bytes.len() {
                 return Err(error("the file ends here, `end_header` is required".to_owned()));
             }
+            // Cut the next line into words.
             let length = bytes[at..].iter().position(|&b| b == end).unwrap_or(bytes.len() - at);
             let text = crate::text::name(&bytes[at..at + length]);
             at = (at + length + 1).min(bytes.len());
@@ -173,6 +174,8 @@ impl Header {
                 }),
             }
         }
+
+        // Check that the encoding is known.
         let Some(encoding) = encoding else {
             return Err(Error::malformed(file, Place::Line(line), "the header has no `format` line"));
         };

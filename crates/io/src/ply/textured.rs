@@ -31,6 +31,7 @@ pub(super) fn add(
         loaded.warnings.iter().map(|w| w.strip_prefix(label).map_or_else(|| w.clone(), |w| format!("{file}{w}")));
     scene.warnings.extend(told);
 
+    // Make a material of each image that was loaded.
     let materials: Vec<Option<u32>> = images
         .iter()
         .zip(asked)
@@ -46,6 +47,8 @@ pub(super) fn add(
             }))
         })
         .collect();
+
+    // Cut the mesh into parts by image.
     let whole = [(mesh.triangles.len() as u32, 0)];
     let runs = if runs.is_empty() { &whole } else { runs };
     let starts = std::iter::once(0).chain(runs.iter().map(|r| r.0));

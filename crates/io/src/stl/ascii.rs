@@ -85,6 +85,7 @@ impl<'a> Reader<'a> {
     }
 
     fn read(&mut self) -> Result<(), Error> {
+        // Read keyword by keyword; files may leave some out.
         loop {
             let mut word = self.word().to_ascii_lowercase();
             if word == b"end" {
@@ -118,6 +119,7 @@ impl<'a> Reader<'a> {
                     self.finish_loop();
                     self.stage = Stage::Solid;
                 }
+                // Skip colours.
                 b"color" | b"colour" => {
                     let place = Place::Line(self.cursor.line());
                     self.cursor.rest_of_line();

@@ -239,7 +239,7 @@ fn growth(gl: &Gl) -> Result<(), String> {
         gl.OSMesaDestroyContext(second.context);
         Ok::<(), String>(())
     };
-    // The first rounds fill what is kept to be used again.
+    // The first rounds fill what is kept for reuse.
     (0..20).try_for_each(|_| round())?;
     let before = resident()?;
     (0..100).try_for_each(|_| round())?;
@@ -323,8 +323,8 @@ fn close(library: &str) -> Result<(), String> {
         let mut window = Window::new(&gl);
         window.frame(&gl)?;
         gl.OSMesaDestroyContext(window.context);
-        // SAFETY: the path is terminated; both handles, ours and that of `load`, are given back, and `gl` is not used
-        // any more.
+        // SAFETY: the path is terminated; both handles, ours and that of `load`, are given back, and this is the last
+        // use of `gl`.
         unsafe {
             let handle = libc::dlopen(path.as_ptr(), libc::RTLD_NOW);
             libc::dlclose(handle);

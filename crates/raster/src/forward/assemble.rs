@@ -113,7 +113,7 @@ pub enum Shape {
         from: [f32; 2],
         /// End.
         to: [f32; 2],
-        /// Width.
+        /// Width in pixels.
         width: f32,
         /// Along the longer axis, the centre of the pixel where an aliased line starts; others are rectangles.
         first: Option<f32>,
@@ -335,6 +335,8 @@ impl<'a> Assembler<'a> {
     pub fn triangle(&mut self, corners: [u32; 3], provoking: u32) {
         let s = self.vertices.screen;
         let [a, b, c] = [s[corners[0] as usize], s[corners[1] as usize], s[corners[2] as usize]];
+
+        // Reject triangles outside the view volume, and clip those that cross it.
         let (any, all) = (a.flags | b.flags | c.flags, a.flags & b.flags & c.flags);
         if all & self.outside() != 0 || any & flag::NOT_FINITE != 0 {
             return;
@@ -342,6 +344,8 @@ impl<'a> Assembler<'a> {
         if any & CUT != 0 {
             return self.clipped(&corners, provoking, None);
         }
+
+        // Drop triangles without area, culled faces and those that cover no sample.
         let positions = [a.corner(), b.corner(), c.corner()];
         let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
         if area == 0 {
@@ -352,6 +356,8 @@ impl<'a> Assembler<'a> {
             return;
         }
         let Some(pixels) = self.pixels(&positions) else { return };
+
+        // Compute the depth plane and emit the facet.
         let plane = self.plane([a, b, c], area);
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
@@ -444,6 +450,7 @@ impl<'a> Assembler<'a> {
     /// A piece of a smooth polygon. It knows its own edges alone: where a diagonal meets a corner, the pixel shows the
     /// coverage of one edge. Edges that clipping makes are hard.
     fn smooth_triangle(&mut self, corners: [u32; 3], boundary: [bool; 3], provoking: u32, back: bool) {
+        // Reject triangles outside the user's planes, and clip those that cross a plane.
         let v = corners.map(|v| self.vertices.screen[v as usize]);
         if v[0].flags & v[1].flags & v[2].flags & flag::USERS != 0 {
             return;
@@ -451,6 +458,8 @@ impl<'a> Assembler<'a> {
         if (v[0].flags | v[1].flags | v[2].flags) & CUT != 0 {
             return self.clipped(&corners, provoking, Some(boundary));
         }
+
+        // Emit the triangle with the edges that are the polygon's own.
         let own = v.map(ScreenVertex::corner);
         let area = Setup::doubled_area(own[0], own[1], own[2]);
         if area == 0 {
@@ -530,6 +539,8 @@ fn widened(corners: [CornerPosition; 3], boundary: [bool; 3], area: i64) -> Opti
         let border = if boundary[i] { SOFT_BORDER * scale } else { 0.0 };
         [nx, ny, nx * a.x as f32 + ny * a.y as f32 - border]
     });
+
+    // Intersect neighbouring edges, snapped to the grid and limited to the guard band.
     let whole = |v: f32| ((v / scale).clamp(-GUARD_BAND, GUARD_BAND) * scale + 0.5).floor() as i32;
     let wide: [CornerPosition; 3] = std::array::from_fn(|i| {
         let ([a, b, c], [d, e, f]) = (edges[(i + 2) % 3], edges[i]);
@@ -537,6 +548,8 @@ fn widened(corners: [CornerPosition; 3], boundary: [bool; 3], area: i64) -> Opti
         let (x, y) = ((c * e - b * f) / determinant, (a * f - c * d) / determinant);
         CornerPosition { x: whole(x), y: whole(y), z: corners[i].z }
     });
+
+    // Keep the triangle if it still has its orientation.
     let wide_area = Setup::doubled_area(wide[0], wide[1], wide[2]);
     (wide_area != 0 && (wide_area > 0) == (area > 0)).then_some(wide)
 }

@@ -4,7 +4,7 @@
 //! done here in short loops, each over all samples of a block, with the same operations and the same results.
 
 use super::depth_ranges::{Verdict, verdict};
-use super::fragment::{ColorTile, FragmentOps, Mixing, SAMPLES, TilePlanes, stored, stored_depth};
+use super::fragment::{BlendPath, ColorTile, FragmentOps, SAMPLES, TilePlanes, stored, stored_depth};
 use super::fragment_ops::blend::blend_packed;
 use super::fragment_ops::compare::holds;
 use super::fragment_ops::logic::{logic_op, write_unprotected};
@@ -25,7 +25,9 @@ pub(crate) type BlockWords = [u32; BLOCK * BLOCK];
 
 /// Colours of a block, packed: one for all pixels, or one each.
 pub(crate) enum Words<'a> {
+    /// The same colour for all pixels.
     One(u32),
+    /// One colour for each pixel, row by row.
     Each(&'a BlockWords),
 }
 
@@ -68,13 +70,15 @@ pub(crate) fn stippled(pattern: &[u32; 32], (left, bottom): (usize, usize)) -> u
     (0..BLOCK).fold(0, |mask, k| mask | row(k) << (BLOCK * k))
 }
 
-/// Rows of a block that are computed together.
-const TWO: usize = 2;
+/// Rows of a block that are computed at once, as sixteen lanes hold two.
+const ROWS_AT_ONCE: usize = 2;
 
 /// A triangle's depths in a block, for one of its samples: those of row `k` are `across + rows[k]`.
 #[derive(Clone, Copy)]
 pub(super) struct Slope<S: Simd> {
+    /// Depths in row 0, as far as columns change them.
     across: F32x8<S>,
+    /// What each row adds.
     rows: [f32; BLOCK],
 }
 
@@ -107,8 +111,11 @@ impl<S: Simd> Slope<S> {
 
 /// What a block's depth test works with.
 struct Test<'a, S: Simd> {
+    /// Depths of each sample.
     slopes: &'a [Slope<S>; SAMPLES],
+    /// Farthest and nearest depth of the facet.
     limits: [f32; 2],
+    /// Largest stored depth: 1 for floats, 2^n - 1 for integers of n bits.
     scale: f32,
     write: bool,
 }
@@ -124,7 +131,7 @@ impl<'a, S: Simd> Test<'a, S> {
 #[inline(always)]
 fn pairs(mut mask: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
-        let row = mask.trailing_zeros() as usize / (TWO * BLOCK) * TWO;
+        let row = mask.trailing_zeros() as usize / (ROWS_AT_ONCE * BLOCK) * ROWS_AT_ONCE;
         let found = (mask != 0).then_some(row);
         mask &= !(0xffff_u64.wrapping_shl((BLOCK * row) as u32));
         found
@@ -133,7 +140,7 @@ fn pairs(mut mask: u64) -> impl Iterator<Item = usize> {
 
 /// Two rows of a tile's plane of samples, eight pixels each: those from `at` on.
 #[inline(always)]
-fn rows_from<T>(plane: &mut [T], at: usize) -> [&mut [T]; TWO] {
+fn rows_from<T>(plane: &mut [T], at: usize) -> [&mut [T]; ROWS_AT_ONCE] {
     let (first, second) = plane[at..at + TILE + LANES].split_at_mut(TILE);
     [&mut first[..LANES], second]
 }
@@ -310,7 +317,7 @@ fn fill<S: Simd>(simd: S, block: &Block, values: &mut [f32], count: usize, test:
     for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
         let slope = &test.slopes[s % SAMPLES];
         let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
-        for row in (0..BLOCK).step_by(TWO) {
+        for row in (0..BLOCK).step_by(ROWS_AT_ONCE) {
             let [first, second] = rows_from(plane, row * TILE);
             let (low, high) = slope.two_rows(simd, row, test.limits, test.scale).split();
             low.store_slice(first);
@@ -323,7 +330,9 @@ fn fill<S: Simd>(simd: S, block: &Block, values: &mut [f32], count: usize, test:
 /// functions are one piece of code without branches.
 #[derive(Clone, Copy)]
 pub(super) struct Passing {
+    /// Bits that exchange passing and failing of each of the two comparisons.
     flip: [u32; 2],
+    /// Bits that make each of the two comparisons pass in any case.
     any: [u32; 2],
     other: u32,
 }
@@ -362,6 +371,7 @@ fn pass_rows<S: Simd>(
     passing: Passing,
     mask: &mut u64,
 ) -> u32 {
+    // Compare two rows of eight samples in each step.
     let plane = &mut plane[block.y * TILE + block.x..][..7 * TILE + LANES];
     let (mut passed, mut changed) = (0, 0);
     for row in pairs(*mask) {
@@ -372,6 +382,7 @@ fn pass_rows<S: Simd>(
         let pass = passing.of(at_least, at_most) & (*mask >> (8 * row)) as u32 & 0xffff;
         passed |= u64::from(pass) << (8 * row);
         changed |= pass & !(at_least & at_most);
+        // Write the new depths where they pass.
         if test.write {
             let (low, high) = select(Mask16::from_bitmask(simd, u64::from(pass)), new, old).split();
             low.store_slice(first);
@@ -392,6 +403,8 @@ pub(crate) fn stencil<S: Simd>(
 ) {
     let samples = planes.samples;
     let Some(tile) = &mut planes.stencil else { return };
+
+    // Decide a tile that was only cleared with one test.
     if let Some(value) = tile.uniform() {
         // One value decides for all.
         let passes = simd.vectorize(
@@ -403,6 +416,8 @@ pub(crate) fn stencil<S: Simd>(
         }
         return;
     }
+
+    // Test the rows of the block, once for all samples if they agree.
     let together = all_alike(masks, samples);
     let (count, values) = tile.open(block.touched(), together, samples);
     simd.vectorize(
@@ -449,10 +464,14 @@ pub(crate) fn update_stencil<S: Simd>(
 ) {
     let samples = planes.samples;
     let Some(tile) = &mut planes.stencil else { return };
+
+    // Skip a replacement that changes nothing.
     let replaces = face.write_mask == 0xff && face.pass == StencilOp::Replace && covered == passed;
     if replaces && tile.uniform() == Some(face.reference) {
         return;
     }
+
+    // Update the rows of the block, once for all samples if they agree.
     let together = [covered, reached, passed].iter().all(|masks| all_alike(masks, samples));
     let (count, values) = tile.open(block.touched(), together, samples);
     simd.vectorize(
@@ -467,10 +486,13 @@ pub(crate) fn update_stencil<S: Simd>(
                     }
                     let at = (block.y + row) * TILE + block.x;
                     let stored = &mut plane[at..at + LANES];
+                    // Replace without reading what is stored.
                     if replaces {
                         replace_bytes(stored, covered, face.reference);
                         continue;
                     }
+
+                    // Apply the operations of the outcomes.
                     let masks = [covered, reached, passed].map(|bits| mask_of(simd, bits));
                     let old = load_stencil(simd, stored);
                     store_stencil(stencil_update(simd, face, old, masks[0], masks[1], masks[2]), stored);
@@ -483,12 +505,12 @@ pub(crate) fn update_stencil<S: Simd>(
 /// Sets the bytes of a row whose bits are set.
 #[inline(always)]
 fn replace_bytes(row: &mut [u8], bits: u32, value: u8) {
-    const EACH: u64 = 0x0101_0101_0101_0101;
+    const LOW_BITS: u64 = 0x0101_0101_0101_0101;
     if let Some(row) = row.first_chunk_mut::<8>() {
         // Bit i of byte i, then all bits of the bytes that are not 0.
-        let single = (u64::from(bits) * EACH) & 0x8040_2010_0804_0201;
-        let mask = (((single | ((single & !(EACH << 7)) + (!(EACH << 7)))) >> 7) & EACH) * 0xff;
-        *row = ((u64::from_le_bytes(*row) & !mask) | ((u64::from(value) * EACH) & mask)).to_le_bytes();
+        let single = (u64::from(bits) * LOW_BITS) & 0x8040_2010_0804_0201;
+        let mask = (((single | ((single & !(LOW_BITS << 7)) + (!(LOW_BITS << 7)))) >> 7) & LOW_BITS) * 0xff;
+        *row = ((u64::from_le_bytes(*row) & !mask) | ((u64::from(value) * LOW_BITS) & mask)).to_le_bytes();
     }
 }
 
@@ -507,7 +529,8 @@ pub(crate) fn colors<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let replaces = ops.mixing == Mixing::Replace && ops.protected == 0;
+            // Fill an aligned block that is covered whole.
+            let replaces = ops.blend_path == BlendPath::Replace && ops.protected == 0;
             if replaces && together && masks[0] == u64::MAX && block.is_aligned() {
                 replace_block(simd, block, tile.replace(block.touched(), true, samples), words);
                 return;
@@ -534,14 +557,14 @@ pub(crate) fn colors<S: Simd>(
             for (s, plane) in values.chunks_exact_mut(TILE_PIXELS).enumerate().take(count) {
                 let mask = masks[s] << (BLOCK * below);
                 let plane = &mut plane[(block.y - below) * TILE + block.x..][..7 * TILE + LANES];
-                if ops.protected == 0 && ops.mixing.is_simple() {
+                if ops.protected == 0 && ops.blend_path.is_simple() {
                     each_two_rows(
                         simd,
                         words,
                         mask,
                         plane,
                         #[inline(always)]
-                        |new, old| ops.mixing.simply(new, old),
+                        |new, old| ops.blend_path.blend_fast(new, old),
                     );
                 } else {
                     write_seldom_rows(simd, words, (ops, state), mask, plane);
@@ -583,10 +606,10 @@ fn write_seldom_rows<S: Simd>(
                 stored,
                 #[inline(always)]
                 |new, old| {
-                    let mixed = match (ops.mixing, &state.blend) {
-                        (Mixing::Logic(op), _) => logic_op(op, new, old),
-                        (Mixing::General, Some(blend)) => blend_packed::<S, F32x16<S>>(simd, blend, new, old),
-                        (mixing, _) => mixing.simply(new, old),
+                    let mixed = match (ops.blend_path, &state.blend) {
+                        (BlendPath::Logic(op), _) => logic_op(op, new, old),
+                        (BlendPath::General, Some(blend)) => blend_packed::<S, F32x16<S>>(simd, blend, new, old),
+                        (blend_path, _) => blend_path.blend_fast(new, old),
                     };
                     write_unprotected(mixed, old, ops.protected)
                 },
@@ -605,7 +628,7 @@ fn each_two_rows<S: Simd>(
     mix: impl Fn(U32x16<S>, U32x16<S>) -> U32x16<S>,
 ) {
     for row in pairs(mask) {
-        let new = U32x16::from_slice(simd, &words[BLOCK * row..BLOCK * (row + TWO)]);
+        let new = U32x16::from_slice(simd, &words[BLOCK * row..BLOCK * (row + ROWS_AT_ONCE)]);
         let [first, second] = rows_from(stored, row * TILE);
         let old = U32x8::from_slice(simd, first).combine(U32x8::from_slice(simd, second));
         let new = mix(new, old);

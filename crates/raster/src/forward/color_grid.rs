@@ -22,8 +22,8 @@ pub struct ColorGrid {
     rising: bool,
 }
 
-/// Places in more cells are looked up one by one.
-const FEW: usize = 3;
+/// Cells that a group of places is interpolated in cell by cell; places in further cells are interpolated one by one.
+const MAX_CELLS: usize = 3;
 
 /// Colours of eight vertices of a row: two words each, red and green, blue and alpha.
 type EightColors = [AtomicU64; 2 * LANES];
@@ -58,7 +58,7 @@ impl GridColors {
         grid
     }
 
-    /// The two words of a vertex of an eight, which is shaded now if it was not; black where there is none.
+    /// The two words of a vertex of an eight, which is shaded at the first call; black where there is none.
     #[inline(always)]
     fn words(&self, eight: usize, lane: usize, shade: impl FnOnce() -> [[f32; 4]; LANES]) -> [u64; 2] {
         let (Some(known), Some(colors)) = (self.known.get(eight), self.colors.get(eight)) else { return [0; 2] };
@@ -92,10 +92,13 @@ impl ColorGrid {
         places: &[[V; 2]; N],
         shade: &ShadeEight<'_>,
     ) -> [[V; 4]; N] {
+        // Find the grid cell of each place.
         let mut cells = [self.cell(simd, places[0]); N];
         for i in 1..N {
             cells[i] = self.cell(simd, places[i]);
         }
+
+        // Fetch the colours of vertices, shading those that are not cached.
         let words = lanes::inlined(
             #[inline(always)]
             |[i, j]: [i32; 2]| {
@@ -131,10 +134,12 @@ impl ColorGrid {
             }
             return out;
         }
+
+        // Otherwise interpolate cell by cell, each for all places in it.
         for i in 0..N {
             let cell = &cells[i];
             let mut rest = u32::MAX >> (u32::BITS as usize - V::LEN);
-            for _ in 0..FEW {
+            for _ in 0..MAX_CELLS {
                 let lane = rest.trailing_zeros() as usize;
                 let one = [cell.i.as_slice()[lane], cell.j.as_slice()[lane]];
                 let there = cell.there(one);
@@ -144,8 +149,10 @@ impl ColorGrid {
                     break;
                 }
             }
+
+            // Fetch the corners of the remaining places one by one.
             if rest != 0 {
-                out[i] = self.apart(simd, cell, &words);
+                out[i] = self.interpolate_each(simd, cell, &words);
             }
         }
         out
@@ -173,12 +180,13 @@ impl ColorGrid {
 
     /// The colours of places in different cells.
     #[inline(always)]
-    fn apart<S: Simd, V: Floats<S>>(
+    fn interpolate_each<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
         cell: &Cell<S, V>,
         words: &impl Fn([i32; 2]) -> [f32; 4],
     ) -> [V; 4] {
+        // Fetch vertices lane by lane, as columns of a register.
         let (start, end) = self.ends();
         let (i, j, across) = (cell.i.as_slice(), cell.j.as_slice(), bits_of(cell.across));
         let fetch = lanes::inlined(
@@ -199,6 +207,8 @@ impl ColorGrid {
                 )
             },
         );
+
+        // Interpolate between the corners of each place's half of the cell.
         let middle = |lane: usize| {
             if across >> lane & 1 == 1 { [i[lane] + end, j[lane]] } else { [i[lane] + start, j[lane] + 1] }
         };
@@ -277,9 +287,10 @@ mod tests {
 
     #[test]
     fn colours_are_those_of_the_small_triangles_and_shaded_once() {
-        let apart = [[0.0, 0.0], [0.3, 0.2], [7.3, 0.9], [8.5, 0.5], [2.9, 1.8], [19.0, 2.0], [7.9, 1.1], [1.0, 1.0]];
+        let interpolate_each =
+            [[0.0, 0.0], [0.3, 0.2], [7.3, 0.9], [8.5, 0.5], [2.9, 1.8], [19.0, 2.0], [7.9, 1.1], [1.0, 1.0]];
         let within = [0.0, 0.2, 0.4, 0.5, 0.7, 0.9, 0.1, 0.3].map(|x| [7.0 + x, 1.0 + x * x]);
-        for (rising, places) in [(false, apart), (true, apart), (false, within), (true, within)] {
+        for (rising, places) in [(false, interpolate_each), (true, interpolate_each), (false, within), (true, within)] {
             for (name, level) in available_levels() {
                 let mut colors = GridColors::default();
                 colors.add([9, 9], true);

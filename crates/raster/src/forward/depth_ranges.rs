@@ -16,15 +16,20 @@ const COUNT: usize = TILE / BLOCK * TILE / BLOCK;
 pub(crate) struct DepthRanges {
     /// Bits of the blocks whose bounds are known.
     known: u64,
+    /// Lower bound of each block's depths, as stored.
     least: [f32; COUNT],
+    /// Upper bound of each block's depths, as stored.
     largest: [f32; COUNT],
 }
 
 /// What bounds tell of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
+    /// Every sample of the block passes.
     AllPass,
+    /// No sample of the block passes.
     AllFail,
+    /// The bounds do not decide.
     Differs,
 }
 

@@ -36,7 +36,7 @@ pub(crate) struct TilePlanes<'a> {
     pub color: Option<ColorTile<'a>>,
     /// Depth and its scale.
     pub depth: Option<(&'a mut PlaneTile<f32>, f32)>,
-    /// Stencil.
+    /// Stencil values, if the target has them.
     pub stencil: Option<&'a mut PlaneTile<u8>>,
     /// Samples a pixel.
     pub samples: usize,
@@ -65,7 +65,7 @@ impl<'a> TilePlanes<'a> {
     }
 
     /// The same planes, for a while.
-    pub(crate) fn lend(&mut self) -> TilePlanes<'_> {
+    pub(crate) fn reborrow(&mut self) -> TilePlanes<'_> {
         let color = self.color.as_mut().map(|color| match color {
             ColorTile::Rgba8(tile) => ColorTile::Rgba8(tile),
             ColorTile::RgbaF32(tile) => ColorTile::RgbaF32(tile),
@@ -105,16 +105,22 @@ pub(crate) fn stored(depth: f32, scale: f32) -> f32 {
 
 /// How colours meet stored ones, decided once a draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Mixing {
+pub(crate) enum BlendPath {
+    /// The new colour replaces the stored one.
     Replace,
+    /// Both are added and saturate.
     Add,
+    /// The new colour times its alpha is added.
     AddScaled,
+    /// Both are mixed by the new colour's alpha.
     Mix,
+    /// Any other factors and equations.
     General,
+    /// A logical operation on the bits.
     Logic(LogicOp),
 }
 
-impl Mixing {
+impl BlendPath {
     /// Whether it is one of the ways that programs use most.
     #[inline(always)]
     pub(crate) fn is_simple(self) -> bool {
@@ -123,7 +129,7 @@ impl Mixing {
 
     /// What such a way stores where new words meet old ones.
     #[inline(always)]
-    pub(crate) fn simply<S: Simd, W: SimdInt<S, Element = u32>>(self, new: W, old: W) -> W {
+    pub(crate) fn blend_fast<S: Simd, W: SimdInt<S, Element = u32>>(self, new: W, old: W) -> W {
         match self {
             Self::Add => add_packed(new, old),
             Self::AddScaled => add_scaled_packed(new, old),
@@ -136,7 +142,7 @@ impl Mixing {
 /// The part of a draw's fragment state that needs some work first.
 #[derive(Debug)]
 pub(crate) struct FragmentOps {
-    pub(crate) mixing: Mixing,
+    pub(crate) blend_path: BlendPath,
     /// Bits of a packed colour that the mask keeps from being written.
     pub(crate) protected: u32,
     /// Nothing needs the row-by-row operations, see [`super::block`].
@@ -155,13 +161,13 @@ impl FragmentOps {
             _ => all,
         };
         let protected = protected_bits(state.masked);
-        let mixing = mixing(state);
+        let blend_path = blend_path(state);
         let writes_stencil = !state.stencil.is_none_or(|s| keeps(&s.front) && keeps(&s.back));
         // The alpha test comes before a stencil that changes.
         let by_rows = (writes_stencil && state.alpha_test.is_some()) || state.srgb || state.sample_coverage.is_some();
         let common = !(by_rows || state.alpha_to_coverage || state.alpha_to_one);
         let direct = common && !writes_stencil && state.query.is_none() && state.polygon_stipple.is_none();
-        Self { mixing, protected, common, direct, all_protected: state.masked == [true; 4], coverage }
+        Self { blend_path, protected, common, direct, all_protected: state.masked == [true; 4], coverage }
     }
 }
 
@@ -170,34 +176,38 @@ pub(crate) fn keeps(face: &StencilFace) -> bool {
     face.write_mask == 0 || [face.fail, face.depth_fail, face.pass] == [StencilOp::Keep; 3]
 }
 
-fn mixing(state: &FragmentState) -> Mixing {
+fn blend_path(state: &FragmentState) -> BlendPath {
     use BlendFactor::{One, OneMinusSrcAlpha, SrcAlpha, Zero};
+
+    // Logical operations take precedence over blending.
     if let Some(op) = state.logic_op {
-        return Mixing::Logic(op);
+        return BlendPath::Logic(op);
     }
-    let Some(Blend { source, destination, equation, .. }) = state.blend else { return Mixing::Replace };
+
+    // Recognise the common factors; everything else is general.
+    let Some(Blend { source, destination, equation, .. }) = state.blend else { return BlendPath::Replace };
     if equation != [BlendEquation::Add; 2] {
-        return Mixing::General;
+        return BlendPath::General;
     }
     match (source, destination) {
-        ([One, One], [Zero, Zero]) => Mixing::Replace,
-        ([One, One], [One, One]) => Mixing::Add,
-        ([SrcAlpha, SrcAlpha], [One, One]) => Mixing::AddScaled,
-        ([SrcAlpha, SrcAlpha], [OneMinusSrcAlpha, OneMinusSrcAlpha]) => Mixing::Mix,
-        _ => Mixing::General,
+        ([One, One], [Zero, Zero]) => BlendPath::Replace,
+        ([One, One], [One, One]) => BlendPath::Add,
+        ([SrcAlpha, SrcAlpha], [One, One]) => BlendPath::AddScaled,
+        ([SrcAlpha, SrcAlpha], [OneMinusSrcAlpha, OneMinusSrcAlpha]) => BlendPath::Mix,
+        _ => BlendPath::General,
     }
 }
 
 /// A row of eight pixels of a tile: where it begins in each sample's part of a plane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Row {
+pub(crate) struct PlaneRow {
     /// `y * TILE + x`, x a multiple of 8.
     pub at: usize,
 }
 
 /// What a facet has in the eight pixels of a row.
 pub(crate) struct RowFragments<'a, S: Simd> {
-    pub row: Row,
+    pub row: PlaneRow,
     /// Of a back-facing polygon.
     pub back: bool,
     /// The pixels whose sample is covered, for each sample.
@@ -216,12 +226,15 @@ fn mask_coverage<S: Simd>(
     bits: &mut [u32; SAMPLES],
     color: &mut Rgba<S>,
 ) {
+    // Apply the alpha test.
     if let Some(test) = state.alpha_test {
         let passed = bits_of(alpha_test(simd, test, color[3]));
         for s in 0..samples {
             bits[s] &= passed;
         }
     }
+
+    // Apply alpha to coverage and the sample mask.
     if samples > 1 && state.multisample {
         for s in 0..samples {
             if state.alpha_to_coverage {
@@ -244,17 +257,21 @@ impl TilePlanes<'_> {
         &mut self,
         simd: S,
         state: &FragmentState,
-        row: Row,
+        row: PlaneRow,
         bits: &[u32; SAMPLES],
         depths: &Depths<S>,
     ) -> [u32; SAMPLES] {
         let mut visible = *bits;
+
+        // Leave what the stencil test may change, and what always passes.
         let (Some(test), None, Some((tile, _))) = (state.depth, &state.stencil, &mut self.depth) else {
             return visible;
         };
         if test.func == Compare::Always {
             return visible;
         }
+
+        // Test each sample plane against the stored depths.
         for s in 0..self.samples {
             if bits[s] == 0 {
                 continue;
@@ -317,7 +334,15 @@ impl TilePlanes<'_> {
 
     /// Writes the depths of pixels that have passed.
     #[inline(always)]
-    fn write_depth<S: Simd>(&mut self, simd: S, state: &FragmentState, s: usize, row: Row, bits: u32, depth: F32x8<S>) {
+    fn write_depth<S: Simd>(
+        &mut self,
+        simd: S,
+        state: &FragmentState,
+        s: usize,
+        row: PlaneRow,
+        bits: u32,
+        depth: F32x8<S>,
+    ) {
         if bits == 0 || !state.depth.is_some_and(|test| test.write) {
             return;
         }
@@ -341,11 +366,12 @@ impl TilePlanes<'_> {
         simd: S,
         state: &FragmentState,
         s: usize,
-        row: Row,
+        row: PlaneRow,
         back: bool,
         bits: u32,
         depth: F32x8<S>,
     ) -> u32 {
+        // Run the stencil test.
         let samples = self.samples;
         let at = s * TILE_PIXELS + row.at;
         let covered = mask_of(simd, bits);
@@ -359,6 +385,8 @@ impl TilePlanes<'_> {
             reached = covered & passed;
             stencil = Some((face, stored, passed));
         }
+
+        // Run the depth test and write the depths that pass.
         let mut passed = reached;
         if let (Some(test), Some((tile, _))) = (state.depth, &mut self.depth) {
             let plain = test.func == Compare::Always;
@@ -372,6 +400,8 @@ impl TilePlanes<'_> {
                 }
             }
         }
+
+        // Update the stencil values by the outcomes.
         if let (Some((face, stored, stencil_passed)), Some(tile)) = (stencil, &mut self.stencil) {
             let updated = stencil_update(simd, &face, stored, covered, stencil_passed, passed);
             store_stencil(updated, &mut tile.stored(samples)[at..at + LANES]);
@@ -385,11 +415,13 @@ impl TilePlanes<'_> {
         simd: S,
         state: &FragmentState,
         ops: &FragmentOps,
-        row: Row,
+        row: PlaneRow,
         bits: &[u32; SAMPLES],
         color: &Rgba<S>,
     ) {
         let samples = self.samples;
+
+        // Pack and write sample by sample, by the format of the colour plane.
         match &mut self.color {
             None => {}
             Some(ColorTile::Rgba8(tile)) => {
@@ -428,15 +460,18 @@ fn write_packed<S: Simd>(
     packed: U32x8<S>,
     values: &mut [u32],
 ) {
+    // Combine the new and the stored words.
     let stored = U32x8::from_slice(simd, values);
-    let mut new = match (ops.mixing, &state.blend) {
-        (Mixing::General, Some(b)) => general_packed(simd, b, packed, stored),
-        (Mixing::Logic(op), _) => logic_op(op, packed, stored),
-        (mixing, _) => mixing.simply(packed, stored),
+    let mut new = match (ops.blend_path, &state.blend) {
+        (BlendPath::General, Some(b)) => general_packed(simd, b, packed, stored),
+        (BlendPath::Logic(op), _) => logic_op(op, packed, stored),
+        (blend_path, _) => blend_path.blend_fast(packed, stored),
     };
     if state.srgb && state.logic_op.is_none() {
         new = srgb_packed(simd, state, color, stored);
     }
+
+    // Keep the protected bits, and write the pixels of the mask.
     if ops.protected != 0 {
         new = write_unprotected(new, stored, ops.protected);
     }
@@ -462,10 +497,13 @@ fn srgb_packed<S: Simd>(simd: S, state: &FragmentState, color: &Rgba<S>, stored:
     simd.vectorize(
         #[inline(always)]
         || {
+            // Decode the stored colours to linear light.
             let mut old = unpack(stored);
             for component in &mut old[..3] {
                 *component = F32x8::from_slice(simd, &component.to_array().map(linear_from_srgb));
             }
+
+            // Blend and encode.
             let mut new = match &state.blend {
                 Some(b) => blend(simd, b, *color, old, Components::Unit),
                 None => *color,
@@ -483,12 +521,15 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
     simd.vectorize(
         #[inline(always)]
         || {
+            // Transpose eight stored pixels to components.
             let mut soa = [[0.0f32; LANES]; 4];
             for lane in 0..LANES {
                 for k in 0..4 {
                     soa[k][lane] = values[lane][k];
                 }
             }
+
+            // Clamp and blend.
             let clamped = state.clamping != Clamping::None;
             let color = if clamped { saturate_rgba(*color) } else { *color };
             let mut new = color;
@@ -508,6 +549,8 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
                 let both = new.as_flattened_mut().iter_mut().zip(soa.as_flattened());
                 both.for_each(|(new, &stored)| *new = logic_op_of_16_bits(op, *new, stored));
             }
+
+            // Write the components that no mask protects.
             for lane in 0..LANES {
                 for k in 0..4 {
                     if bits >> lane & 1 == 1 && !state.masked[k] {

@@ -35,7 +35,7 @@ pub use assemble::{
 };
 pub use color_grid::{ColorGrid, GridColors};
 pub use pass::{Clear, Command, ForwardScreen, Geometry, ImageColors, ImageFragments, Pass, Runner, Target};
-pub use plane::{ColorPlane, DepthPlane, Plane, PlaneTile, Resolve, StencilPlane};
+pub use plane::{ColorPlane, DepthBuffer, Plane, PlaneTile, Resolve, StencilPlane};
 pub use project::{WindowTransform, project};
 pub use shade::Layout;
 pub use state::{

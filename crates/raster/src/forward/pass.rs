@@ -7,10 +7,10 @@ use super::assemble::{Facet, Primitives, screen};
 use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, PendingKind, pendable};
-use super::plane::{ColorPlane, DepthPlane, Plane, PlaneTile, StencilPlane};
-use super::sample::Common;
-use super::shade::{Layout, Seen};
-use super::spare::{Assembly, Places};
+use super::plane::{ColorPlane, DepthBuffer, Plane, PlaneTile, StencilPlane};
+use super::sample::PackedTexture;
+use super::shade::{Layout, TexelCache};
+use super::spare::{Assembly, SparePrimitives};
 use super::state::{Clamping, EnvironmentMode, FragmentState};
 use super::strips::{TileCopy, cut, rows};
 use super::texture::Texture;
@@ -33,10 +33,10 @@ pub struct Target {
     /// Colour; without one colours are dropped.
     pub color: Option<Arc<Mutex<ColorPlane>>>,
     /// Depth; without one the depth test passes.
-    pub depth: Option<Arc<Mutex<DepthPlane>>>,
+    pub depth: Option<Arc<Mutex<DepthBuffer>>>,
     /// Stencil; without one the stencil test passes.
     pub stencil: Option<Arc<Mutex<StencilPlane>>>,
-    /// [`DepthPlane::scale`]; without depth any.
+    /// [`DepthBuffer::scale`]; without depth any.
     pub depth_scale: f32,
 }
 
@@ -73,7 +73,7 @@ pub(super) fn places(samples: usize) -> &'static [[i32; 2]] {
     if samples == 4 { &[[96, 32], [224, 96], [32, 160], [160, 224]] } else { &[[SUBPIXEL / 2; 2]] }
 }
 
-/// A clear.
+/// Sets a rectangle of the planes to constant values.
 #[derive(Clone, Copy, Debug)]
 pub struct Clear {
     /// Colour, and which components are masked.
@@ -123,7 +123,7 @@ pub struct ImageFragments {
     pub tex: [[f32; 4]; 8],
     /// Fog coordinate.
     pub fog: f32,
-    /// Stencil mask for `stencils`.
+    /// Bits of `stencils` that are written.
     pub stencil_mask: u8,
 }
 
@@ -169,7 +169,7 @@ impl ForwardScreen {
 /// A recorded command.
 #[derive(Clone, Debug)]
 pub enum Command {
-    /// Clears.
+    /// Sets a rectangle to constant values.
     Clear(Clear),
     /// A pixel rectangle or bitmap.
     Image(Arc<ImageFragments>, Arc<FragmentState>),
@@ -188,7 +188,7 @@ pub struct Pass {
 
 impl Pass {
     /// Whether a command looks a plane up as a texture.
-    pub fn samples(&self, plane: &Arc<Mutex<DepthPlane>>) -> bool {
+    pub fn samples(&self, plane: &Arc<Mutex<DepthBuffer>>) -> bool {
         self.commands.iter().any(|command| match command {
             Command::Draw(_, state) | Command::Image(_, state) => {
                 state.units.iter().any(|unit| unit.texture.planes().any(|other| Arc::ptr_eq(other, plane)))
@@ -198,17 +198,17 @@ impl Pass {
     }
 }
 
-/// Threads, instruction set and memory that passes use again.
+/// Threads, instruction set and memory that passes reuse.
 #[derive(Debug)]
 pub struct Runner {
     /// Threads.
     pub workers: Workers,
     /// Instruction set.
     pub level: Level,
-    spare: Places,
-    spare_pending: Places,
+    spare: SparePrimitives,
+    spare_pending: SparePrimitives,
     assemblies: Mutex<Vec<Assembly>>,
-    seen: Mutex<Vec<Seen>>,
+    seen: Mutex<Vec<TexelCache>>,
 }
 
 /// Triangles of a job.
@@ -244,15 +244,15 @@ pub(crate) struct DrawContext<'a> {
     /// Colours may leave `0..=1` before they are stored.
     pub unlimited: bool,
     /// Units with a common kind of texture.
-    pub plain: Vec<(usize, Common<'a>)>,
+    pub plain: Vec<(usize, PackedTexture<'a>)>,
     /// The unit whose texture a later draw shows with the same vertices, or an earlier one did.
     pub again: Option<usize>,
     /// Depth planes that units sample.
-    pub planes: [Option<&'a DepthPlane>; UNITS],
+    pub planes: [Option<&'a DepthBuffer>; UNITS],
 }
 
 /// Depth planes that are held for a pass, with their addresses.
-type Held<'a> = Vec<(*const Mutex<DepthPlane>, MutexGuard<'a, DepthPlane>)>;
+type Held<'a> = Vec<(*const Mutex<DepthBuffer>, MutexGuard<'a, DepthBuffer>)>;
 
 /// A job before it runs.
 struct Plan {
@@ -262,7 +262,9 @@ struct Plan {
 }
 
 enum PlanItem {
+    /// A command that is no draw, by its number.
     Command(usize),
+    /// A job of several draws' pieces, by its number.
     Job(usize),
 }
 
@@ -272,8 +274,8 @@ impl Runner {
         Self {
             workers,
             level,
-            spare: Places::default(),
-            spare_pending: Places::default(),
+            spare: SparePrimitives::default(),
+            spare_pending: SparePrimitives::default(),
             assemblies: Mutex::default(),
             seen: Mutex::default(),
         }
@@ -281,16 +283,21 @@ impl Runner {
 
     /// Runs a pass.
     pub fn run(&self, pass: &Pass) {
+        // Cut the commands into jobs of about equal work.
         let (plans, order) = plan(&pass.commands);
         let forward = ForwardScreen {
             screens: [pattern(1), pass.target.pattern()].map(|p| screen(pass.target.viewport, &p)),
             viewport: pass.target.viewport,
             samples: pass.target.samples,
         };
+
+        // Leave a depth-only pass pending: its texels are computed when they are looked up.
         if let Some(kind) = self.pendable(pass) {
             let jobs = self.emit_all(&plans, 0..plans.len(), pass, &forward, Some(kind));
             return self.leave_pending(kind, pass, &plans, jobs);
         }
+
+        // Lock the planes that the pass samples, and find the textures that are shown repeatedly.
         let again = shown_again(&pass.commands);
         let sampled = sampled_planes(&pass.commands);
         let (sampled, mut depth) = hold(&sampled, pass.target.depth.as_ref());
@@ -299,10 +306,12 @@ impl Runner {
         let mut seen = Vec::new();
         if rounds.len() > 1 && !again.is_empty() {
             seen = std::mem::take(&mut *lock(&self.seen));
-            seen.iter_mut().for_each(Seen::clear);
+            seen.iter_mut().for_each(TexelCache::clear);
             let viewport = pass.target.viewport;
-            seen.resize_with((viewport.tiles_x() * viewport.tiles_y()) as usize, Seen::default);
+            seen.resize_with((viewport.tiles_x() * viewport.tiles_y()) as usize, TexelCache::default);
         }
+
+        // Assemble the primitives of each round, then walk the tiles.
         for round in rounds {
             let numbers = round.iter().filter_map(|item| match item {
                 PlanItem::Job(number) => Some(*number),
@@ -317,6 +326,8 @@ impl Runner {
             drop(items);
             self.spare.give(jobs);
         }
+
+        // Keep what was looked up for the next pass.
         if !seen.is_empty() {
             seen.truncate(MOST_SEEN);
             *lock(&self.seen) = seen;
@@ -349,6 +360,7 @@ impl Runner {
         out: &mut Primitives,
         pending: Option<PendingKind>,
     ) {
+        // Take an assembly's memory and empty it.
         let mut assembly = lock(&self.assemblies).pop().unwrap_or_default();
         assembly.exchange(out);
         out.pending = pending.is_some();
@@ -358,6 +370,8 @@ impl Runner {
         out.records.clear();
         out.grids.clear();
         out.grid_colors.clear();
+
+        // Emit the pieces of each draw.
         for (draw, (command, pieces)) in plan.pieces.iter().enumerate() {
             if let Command::Draw(geometry, _) = &commands[*command] {
                 for piece in pieces.clone() {
@@ -365,6 +379,8 @@ impl Runner {
                 }
             }
         }
+
+        // Bin the primitives, or keep them pending, and give the memory back.
         match pending {
             None => out.batch.finish(forward.screen(false)),
             Some(kind) => kind.finish(out, forward),
@@ -412,6 +428,8 @@ impl Runner {
         (sampled, again): (&'a Held<'a>, &[Shown]),
     ) -> Item<'a> {
         let samples = pass.target.samples;
+
+        // Walk commands as they are, and jobs with what each of their draws needs.
         match item {
             PlanItem::Command(c) => match &pass.commands[*c] {
                 Command::Clear(clear) => Item::Clear(clear),
@@ -433,10 +451,11 @@ impl Runner {
     fn tiles(
         &self,
         target: &Target,
-        depth: &mut Option<MutexGuard<'_, DepthPlane>>,
+        depth: &mut Option<MutexGuard<'_, DepthBuffer>>,
         items: &[Item<'_>],
-        seen: &mut [Seen],
+        seen: &mut [TexelCache],
     ) {
+        // Open the planes tile by tile.
         let mut color = target.color.as_ref().map(|p| lock(p));
         let mut stencil = target.stencil.as_ref().map(|p| lock(p));
         let count = (target.viewport.tiles_x() * target.viewport.tiles_y()) as usize;
@@ -463,19 +482,23 @@ impl Runner {
             cut.iter().flat_map(|&at| (1..strips).map(move |strip| (at, rows(strip, strips)))).collect();
         let mut copies: Vec<TileCopy> = others.iter().map(|(at, _)| TileCopy::of(&tiles[*at].1)).collect();
         let numbers: Vec<usize> = others.iter().map(|(at, _)| tiles[*at].0).collect();
+
+        // Run all strips in parallel.
         let run = |index, rows, planes, seen| TileRun::new(index, rows, target.viewport, planes, seen);
         let mut runs = Vec::with_capacity(tiles.len() + copies.len());
         let mut seen = seen.iter_mut().enumerate();
         for (at, (index, tile)) in tiles.iter_mut().enumerate() {
             let strips = if cut.contains(&at) { strips } else { 1 };
             let seen = seen.find(|(number, _)| number == index).map(|(_, seen)| seen);
-            runs.push(run(*index, rows(0, strips), tile.lend(), seen));
+            runs.push(run(*index, rows(0, strips), tile.reborrow(), seen));
         }
         for ((index, (_, rows)), copy) in numbers.into_iter().zip(&others).zip(&mut copies) {
             runs.push(run(index, rows.clone(), copy.planes(scale, target.samples), None));
         }
         let (many, one) = (pattern(target.samples), pattern(1));
         self.workers.for_each(runs, |mut run| run.run(self.level, items, &many, &one));
+
+        // Copy the strips back into their tiles.
         for ((at, rows), copy) in others.iter().zip(copies) {
             copy.give_back(rows, &mut tiles[*at].1);
         }
@@ -510,11 +533,11 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// Locks the depth planes that a pass samples, and the one that it draws to, in the order of their addresses: passes of other
 /// threads, which may draw to what this one samples, do the same.
 fn hold<'a>(
-    sampled: &'a [Arc<Mutex<DepthPlane>>],
-    drawn: Option<&'a Arc<Mutex<DepthPlane>>>,
-) -> (Held<'a>, Option<MutexGuard<'a, DepthPlane>>) {
-    let held = |plane: &'a Arc<Mutex<DepthPlane>>| (Arc::as_ptr(plane), lock(plane));
-    let before = |plane: &Arc<Mutex<DepthPlane>>| drawn.is_some_and(|drawn| Arc::as_ptr(plane) < Arc::as_ptr(drawn));
+    sampled: &'a [Arc<Mutex<DepthBuffer>>],
+    drawn: Option<&'a Arc<Mutex<DepthBuffer>>>,
+) -> (Held<'a>, Option<MutexGuard<'a, DepthBuffer>>) {
+    let held = |plane: &'a Arc<Mutex<DepthBuffer>>| (Arc::as_ptr(plane), lock(plane));
+    let before = |plane: &Arc<Mutex<DepthBuffer>>| drawn.is_some_and(|drawn| Arc::as_ptr(plane) < Arc::as_ptr(drawn));
     let (before, behind) = sampled.split_at(sampled.partition_point(before));
     let mut all: Held<'a> = before.iter().map(held).collect();
     let depth = drawn.map(|plane| lock(plane));
@@ -548,6 +571,7 @@ fn draw_context<'a>(
     pass: &Pass,
     (sampled, again): (&'a Held<'a>, &[Shown]),
 ) -> DrawContext<'a> {
+    // Borrow the depth planes that the draw samples.
     let mut planes = [None; UNITS];
     for unit in &state.units {
         if let Some(plane) = unit.texture.sole_plane() {
@@ -555,12 +579,20 @@ fn draw_context<'a>(
             planes[unit.index % UNITS] = guard.map(|(_, guard)| &**guard);
         }
     }
+
+    // Pack the textures that eight or sixteen lanes can sample at once.
     let plain = state.units.iter().filter(|unit| unit.texture.sampler.anisotropy <= 1.0);
-    let plain: Vec<(usize, Common<'_>)> =
-        plain.filter_map(|unit| Some((unit.index, Common::new(&unit.texture, planes[unit.index % UNITS])?))).collect();
-    let is_flat =
-        |shown: &Shown| plain.iter().any(|(unit, common)| *unit == shown.unit && matches!(common, Common::Flat(_)));
+    let plain: Vec<(usize, PackedTexture<'_>)> = plain
+        .filter_map(|unit| Some((unit.index, PackedTexture::new(&unit.texture, planes[unit.index % UNITS])?)))
+        .collect();
+    let is_flat = |shown: &Shown| {
+        plain.iter().any(|(unit, common)| *unit == shown.unit && matches!(common, PackedTexture::Flat(_)))
+    };
+
+    // Find the texture whose colours are kept for repeated draws.
     let again = textures_of(geometry, state).find(|shown| is_flat(shown) && again.contains(shown));
+
+    // Decide which fragment operations need colours.
     let samples = pass.target.samples;
     let clip = intersection(geometry.clip(), state.clip);
     let decides = state.alpha_test.is_some() || (state.alpha_to_coverage && samples > 1);
@@ -621,7 +653,8 @@ fn shown_again(commands: &[Command]) -> Vec<Shown> {
 
 /// The depth planes that are held for the whole pass, each once, in the order of their addresses: those that draws sample
 /// as textures of one level. Others are locked at each lookup, and must not be held besides.
-fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthPlane>>> {
+fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthBuffer>>> {
+    // Collect the planes that draws sample, those of one level apart.
     let (mut sole, mut others): (Vec<_>, Vec<_>) = (Vec::new(), Vec::new());
     for command in commands {
         let (Command::Draw(_, state) | Command::Image(_, state)) = command else { continue };
@@ -633,6 +666,8 @@ fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthPlane>>> {
             }
         }
     }
+
+    // Keep each sole plane once, in the order of addresses, so that locks cannot deadlock.
     sole.retain(|plane| !others.iter().any(|other| Arc::ptr_eq(plane, other)));
     sole.sort_by_key(|plane| Arc::as_ptr(plane));
     sole.dedup_by(|a, b| Arc::ptr_eq(a, b));
@@ -649,6 +684,7 @@ fn plan(commands: &[Command]) -> (Vec<Plan>, Vec<PlanItem>) {
             open = false;
             continue;
         };
+        // Append pieces to the open job until it is full.
         for piece in 0..geometry.pieces() {
             let weight = geometry.weight(piece);
             if !open || plans.last().is_none_or(|p| p.weight + weight > JOB && p.weight > 0) {

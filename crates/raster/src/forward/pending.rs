@@ -17,7 +17,7 @@ use super::fragment::{stored, stored_depth};
 use super::pass::{ForwardScreen, Pass};
 use super::plane::{Plane, PlaneTile};
 use super::state::{Compare, FragmentState};
-use super::tile_index::{self, Candidate, Texels, TileIndex};
+use super::tile_index::{self, Candidate, TileIndex, TileTexels};
 use super::wide::{bits_of, every, max, min, select};
 use crate::kernel::nearest::NearestDepths;
 use crate::kernel::traverse::Window;
@@ -61,14 +61,15 @@ enum Known {
     Drawn(Box<[f32; TILE_PIXELS]>),
 }
 
-/// So many lookups in a tile of many triangles go through boxes before it is drawn: small pictures have no more.
-const PATIENCE: u32 = 48;
+/// Lookups in a tile of many triangles after which it is drawn; before, each searches the boxes. Small pictures need no more.
+const DRAW_THRESHOLD: u32 = 48;
 
-/// So many lookups in a tile of few go through boxes before it has an index.
-const SHORT_PATIENCE: u32 = 24;
+/// Lookups in a tile of few triangles after which it gets an index; before, each searches the boxes.
+/// Measured: benches/results/2026-11-23-eights.md.
+const INDEX_THRESHOLD: u32 = 24;
 
-/// As many tiles are known only where a large picture asks: then it pays to know any tile at the first lookup.
-const MANY: u32 = 32;
+/// Number of drawn or indexed tiles that only a large picture reaches. From there on, every tile is prepared at its first lookup.
+const LARGE_PICTURE_TILES: u32 = 32;
 
 /// Tiles that a thread looks at in one go when a pass is left.
 const PIECE: usize = 256;
@@ -100,7 +101,7 @@ pub(crate) struct PendingKind {
     sign: f32,
     /// What it clears to.
     clear: f32,
-    /// See [`DepthPlane::scale`](super::plane::DepthPlane).
+    /// See [`DepthBuffer::scale`](super::plane::DepthBuffer).
     scale: f32,
 }
 
@@ -133,12 +134,16 @@ fn origin(viewport: Viewport, tile: u32) -> [u32; 2] {
 /// What a pass keeps whose target has this scale, if it can be left pending.
 pub(crate) fn pendable(pass: &Pass, scale: f32) -> Option<PendingKind> {
     use super::pass::{Command, intersection};
+
+    // The pass must begin by clearing all depths, and nothing else.
     let (first, rest) = pass.commands.split_first()?;
     let Command::Clear(clear) = first else { return None };
     let whole = [0, 0, pass.target.viewport.width as i32, pass.target.viewport.height as i32];
     if pass.target.samples != 1 || clear.clip != whole || clear.color.is_some() || clear.stencil.is_some() {
         return None;
     }
+
+    // Every draw must write depths alone, and all must keep the depth of the same side.
     let mut sign = 0.0;
     for command in rest {
         let Command::Draw(geometry, state) = command else { return None };
@@ -174,6 +179,7 @@ impl PendingDepth {
         workers: &Workers,
         level: Level,
     ) -> Self {
+        // Gather what may decide the texels of each tile, several tiles to a task.
         let PendingKind { sign, clear, scale } = kind;
         let jobs: Vec<PendingJob> =
             jobs.into_iter().map(|(primitives, draws)| PendingJob { primitives, draws }).collect();
@@ -182,6 +188,8 @@ impl PendingDepth {
             let range = piece * PIECE..((piece + 1) * PIECE).min(count);
             dispatch!(level, simd => tiles(simd, &jobs, range))
         });
+
+        // Join the lists of all tasks.
         let (mut tiles, mut bounds, mut touching) = (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
         for (piece_tiles, piece_bounds, piece_touching) in pieces {
             let first = touching.len();
@@ -192,6 +200,8 @@ impl PendingDepth {
             }));
             touching.extend(piece_touching);
         }
+
+        // Round the clear value as it is stored.
         let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
         Self {
             sign,
@@ -253,6 +263,8 @@ impl PendingDepth {
         known: Option<V>,
     ) -> V {
         const SHIFT: u32 = TILE.trailing_zeros();
+
+        // Look up the bound of each texel's tile: none of the tile's depths is better.
         let tile = (y >> SHIFT) * self.viewport.tiles_x() as i32 + (x >> SHIFT);
         let (tiles, mut bounds) = (tile.as_slice(), [f32::NEG_INFINITY; MOST_LANES]);
         for lane in 0..V::LEN {
@@ -260,6 +272,8 @@ impl PendingDepth {
                 bounds[lane] = *bound;
             }
         }
+
+        // Close the lanes that the bound or the clear value already decides.
         let best = self.best();
         let floors = match known {
             Some(known) => known * self.sign,
@@ -268,6 +282,8 @@ impl PendingDepth {
         let settled = known.is_some();
         let bounds = V::from_slice(simd, &bounds[..V::LEN]);
         let mut open = bits_of(bounds.simd_gt(floors) & bounds.simd_gt(every::<S, V>(simd, best))) & active;
+
+        // Visit the tiles of the open lanes.
         let mut depths = every(simd, best);
         while open != 0 {
             // All texels of a tile go together.
@@ -275,7 +291,7 @@ impl PendingDepth {
             let together = bits_of(tile.simd_eq(<V::Ints as SimdBase<S>>::splat(simd, number))) & open;
             open &= !together;
             let active = MaskOf::<S, V>::from_bitmask(simd, u64::from(together));
-            let texels = Texels { x, y, active };
+            let texels = TileTexels { x, y, active };
             let found = match self.known(number as usize, together.count_ones()) {
                 Some(Known::Few(index)) => self.search(simd, index, &texels, settled, floors, best),
                 Some(Known::Drawn(drawn)) => {
@@ -300,7 +316,7 @@ impl PendingDepth {
         &self,
         simd: S,
         index: &TileIndex,
-        texels: &Texels<S, V>,
+        texels: &TileTexels<S, V>,
         settled: bool,
         floors: V,
         best: f32,
@@ -308,6 +324,7 @@ impl PendingDepth {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Start from what must be beaten; a settled lane is beaten by nothing.
                 let mut best = every(simd, best);
                 let next = lanes::inlined(
                     #[inline(always)]
@@ -316,6 +333,8 @@ impl PendingDepth {
                         if settled { select(best.simd_gt(floors), every(simd, f32::INFINITY), higher) } else { higher }
                     },
                 );
+
+                // Test the index's triangles, best first.
                 let mut above = next(best);
                 index.find(
                     simd,
@@ -345,7 +364,7 @@ impl PendingDepth {
         &self,
         simd: S,
         tile: usize,
-        texels: &Texels<S, V>,
+        texels: &TileTexels<S, V>,
         settled: bool,
         floors: V,
         best: f32,
@@ -368,6 +387,7 @@ impl PendingDepth {
     /// The same among those triangles of a tile whose box holds the texel.
     #[inline(always)]
     fn scan<S: Simd>(&self, simd: S, at: [i32; 2], tile: usize, settled: bool, floor: f32, mut best: f32) -> f32 {
+        // Search the boxes of every job that touches the tile.
         let place = at.map(|v| v % TILE as i32);
         for &job in &self.touching[self.tiles[tile].jobs.clone()] {
             let job = &self.jobs[job as usize];
@@ -398,19 +418,19 @@ impl PendingDepth {
         if depth > above && job.allows(setup, x, y) { depth } else { best }
     }
 
-    /// How the texels of a tile are found, of which now so many are asked for; none if it was asked for too seldom.
+    /// How the texels of a tile are found, of which this call looks up `count`; none if it is looked up too seldom.
     #[inline(always)]
     fn known(&self, tile: usize, count: u32) -> Option<&Known> {
         let pending = &self.tiles[tile];
         pending.known.get().or_else(
             #[inline(always)]
             || {
-                let patience = if self.known.load(Ordering::Relaxed) >= MANY {
+                let patience = if self.known.load(Ordering::Relaxed) >= LARGE_PICTURE_TILES {
                     0
-                } else if pending.count as usize > tile_index::MOST {
-                    PATIENCE
+                } else if pending.count as usize > tile_index::MAX_TRIANGLES {
+                    DRAW_THRESHOLD
                 } else {
-                    SHORT_PATIENCE
+                    INDEX_THRESHOLD
                 };
                 let patient = pending.asked.fetch_add(count, Ordering::Relaxed) < patience;
                 (!patient).then(|| pending.known.get_or_init(|| self.know(tile)))
@@ -422,9 +442,11 @@ impl PendingDepth {
     fn know(&self, tile: usize) -> Known {
         let pending = &self.tiles[tile];
         self.known.fetch_add(1, Ordering::Relaxed);
-        if pending.count as usize > tile_index::MOST {
+        if pending.count as usize > tile_index::MAX_TRIANGLES {
             return Known::Drawn(self.draw(tile));
         }
+
+        // Gather the candidates of all jobs.
         let mut candidates = Vec::with_capacity(pending.count as usize);
         for &job in &self.touching[pending.jobs.clone()] {
             let PendingJob { primitives: Primitives { batch, boxes, .. }, draws, .. } = &self.jobs[job as usize];
@@ -433,6 +455,8 @@ impl PendingDepth {
                 Some(Candidate { within, bound, setup, clip: draws[setup.facet as usize].1 })
             }));
         }
+
+        // Index them by blocks of texels.
         let origin = origin(self.viewport, tile as u32).map(|v| v as i32);
         Known::Few(Box::new(TileIndex::new(origin, candidates)))
     }
@@ -498,6 +522,8 @@ fn tiles<S: Simd>(simd: S, jobs: &[PendingJob], range: Range<usize>) -> (Vec<Pen
     let (mut tiles, mut touching) = (Vec::with_capacity(range.len()), Vec::with_capacity(touched.len()));
     let mut bounds = Vec::with_capacity(range.len());
     let mut rest = touched.as_slice();
+
+    // Gather each tile's jobs, entries and best depth.
     for tile in range {
         let here = rest.iter().take_while(|t| t[0] as usize == tile).count();
         let (mine, after) = rest.split_at(here);
@@ -533,7 +559,7 @@ impl PendingJob {
 
 /// A triangle's depths at texels, by the operations of [`Setup::depth`].
 #[inline(always)]
-fn depths_at<S: Simd, V: Floats<S>>(simd: S, setup: &Setup, texels: &Texels<S, V>) -> V {
+fn depths_at<S: Simd, V: Floats<S>>(simd: S, setup: &Setup, texels: &TileTexels<S, V>) -> V {
     let away = lanes::inlined(
         #[inline(always)]
         |texel: V::Ints, axis: usize| -> V {

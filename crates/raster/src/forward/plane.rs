@@ -31,7 +31,9 @@ pub struct PlaneTile<T> {
 /// What surfaces store for a sample: in a row of their block, and in all rows.
 #[derive(Clone, Copy, Debug)]
 struct Reading<T> {
+    /// The values of a sample in a row of the block.
     row: fn(&Surface, usize, usize) -> [T; BLOCK],
+    /// The values of a sample in all rows of the block.
     rows: fn(&Surface, usize) -> [[T; BLOCK]; BLOCK],
 }
 
@@ -203,9 +205,13 @@ impl<T: Copy> PlaneTile<T> {
             let first = sample * TILE_PIXELS + at;
             return out.copy_from_slice(&self.values[first..=first + last]);
         }
+
+        // Fill a row that is cleared as a whole.
         if self.cleared & blocks == blocks {
             return out.fill(self.clear);
         }
+
+        // Copy block by block, each by the form it is stored in.
         let mut done = 0;
         while done < out.len() {
             let here = at + done;
@@ -234,6 +240,7 @@ impl<T: Copy> PlaneTile<T> {
     /// these blocks hold one value a pixel.
     #[inline(always)]
     pub(crate) fn open(&mut self, bits: u64, together: bool, samples: usize) -> (usize, &mut [T]) {
+        // Bring all blocks to the form of stored values.
         if self.values.is_empty() {
             self.values = vec![self.clear; samples * TILE_PIXELS];
         }
@@ -243,6 +250,8 @@ impl<T: Copy> PlaneTile<T> {
         if bits & self.cleared != 0 {
             self.fill(bits & self.cleared);
         }
+
+        // Return one value a pixel where the blocks have no more.
         if together && bits & !self.single == 0 {
             return (1, &mut self.values);
         }
@@ -294,6 +303,7 @@ impl<T: Copy> PlaneTile<T> {
     #[inline(never)]
     fn write_surfaces(&mut self, bits: u64, samples: usize) {
         let mut rest = bits;
+        // Evaluate the block's plane for each sample.
         while rest != 0 {
             let block = rest.trailing_zeros() as usize;
             rest &= rest - 1;
@@ -306,6 +316,8 @@ impl<T: Copy> PlaneTile<T> {
                     }
                 });
             }
+
+            // Note how many samples are stored.
             self.single =
                 if stored < samples || samples == 1 { self.single | 1 << block } else { self.single & !(1 << block) };
         }
@@ -340,6 +352,8 @@ impl<T: Copy> PlaneTile<T> {
         if from.clear != self.clear && blocks & from.cleared != 0 {
             from.open(blocks & from.cleared, true, samples);
         }
+
+        // Copy the planes of blocks that are stored as such.
         let surfaces = blocks & from.surfaced;
         if surfaces != 0 {
             self.reading = from.reading;
@@ -350,6 +364,8 @@ impl<T: Copy> PlaneTile<T> {
                 }
             }
         }
+
+        // Copy the values of the other blocks.
         let written = blocks & !from.cleared & !surfaces;
         if written != 0 {
             if self.values.is_empty() {
@@ -362,6 +378,8 @@ impl<T: Copy> PlaneTile<T> {
                 });
             }
         }
+
+        // Take over the form of each block.
         self.surfaced = self.surfaced & !blocks | surfaces;
         self.cleared = self.cleared & !blocks | from.cleared & blocks;
         self.single = self.single & !blocks | from.single & blocks;
@@ -370,6 +388,8 @@ impl<T: Copy> PlaneTile<T> {
     /// Copies everything to a tile of as many samples, or of one, for which `resolve` makes one value of a pixel's samples.
     pub fn copy_to(&self, samples: usize, target: &mut Self, target_samples: usize, resolve: Resolve<T>) {
         target.changed = true;
+
+        // Copy everything as it is for the same number of samples.
         if samples == target_samples {
             target.values.clone_from(&self.values);
             (target.clear, target.cleared, target.single) = (self.clear, self.cleared, self.single);
@@ -377,11 +397,15 @@ impl<T: Copy> PlaneTile<T> {
             target.surfaces.clone_from(&self.surfaces);
             return;
         }
+
+        // Mark everything cleared, then write what is not.
         target.clear(self.clear);
         let written = !self.cleared;
         if written == 0 {
             return;
         }
+
+        // Copy blocks with one value a pixel; copy a tile of such blocks at once.
         let stored = written & !self.surfaced;
         let plain = if samples == 1 { stored } else { stored & self.single };
         let values = target.replace(written, true, target_samples);
@@ -390,10 +414,14 @@ impl<T: Copy> PlaneTile<T> {
             return;
         }
         each_row(plain, |row| values[row..row + BLOCK].copy_from_slice(&self.values[row..row + BLOCK]));
+
+        // Evaluate blocks that are stored as planes.
         for block in (0..BLOCKS * BLOCKS).filter(|block| self.surfaced >> block & 1 == 1) {
             let alike = samples == 1 || self.is_alike(block);
             self.copy_surface(block, if alike { 1 } else { samples }, values, resolve);
         }
+
+        // Resolve the samples of the other blocks.
         each_row(stored & !plain, |row| {
             let sources = std::array::from_fn(|s| &self.values[s % samples * TILE_PIXELS + row..][..BLOCK]);
             resolve(sources, &mut values[row..row + BLOCK]);
@@ -475,7 +503,7 @@ pub enum ColorPlane {
 
 /// Depth samples: `scale` times the depth in 0..=1, whole numbers unless `scale` is 1 (floating-point depth).
 #[derive(Debug)]
-pub struct DepthPlane {
+pub struct DepthBuffer {
     /// The samples, before what is pending.
     pub(crate) plane: Plane<f32>,
     /// 1 for floating point, else `2^bits - 1`.
@@ -485,7 +513,7 @@ pub struct DepthPlane {
     pub(crate) pending: Option<Box<PendingDepth>>,
 }
 
-impl Clone for DepthPlane {
+impl Clone for DepthBuffer {
     /// A copy of a plane without pending triangles, see [`Self::resolved`].
     fn clone(&self) -> Self {
         debug_assert!(self.pending.is_none(), "resolve the plane first");
@@ -493,7 +521,7 @@ impl Clone for DepthPlane {
     }
 }
 
-impl DepthPlane {
+impl DepthBuffer {
     /// A plane of samples and their scale.
     pub fn new(plane: Plane<f32>, scale: f32) -> Self {
         Self { plane, scale, sampled: false, pending: None }

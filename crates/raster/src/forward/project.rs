@@ -76,6 +76,7 @@ impl WindowTransform {
     /// The depth plane of the triangle with these corners in clip space, wherever they are: depth is `a x + b y + c w` for
     /// all three, before any of them is divided. `origin` is in 1/256 pixel. `None` if the triangle is seen edge on.
     pub(crate) fn homogeneous_plane(&self, corners: [[f32; 4]; 3], origin: [i32; 2]) -> Option<DepthPlane> {
+        // Solve for the plane's coefficients by Cramer's rule.
         let [p, q, r] = corners.map(|c| c.map(f64::from));
         let column = |k: usize| [p[k], q[k], r[k]];
         let determinant = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
@@ -87,6 +88,8 @@ impl WindowTransform {
         if !factors.iter().all(|f| f.is_finite()) {
             return None;
         }
+
+        // Transform the plane to the window.
         let slope = |k: usize| factors[k] * f64::from(self.z_scale) / f64::from(self.scale[k]);
         let from_center = |k: usize| f64::from(origin[k]) / f64::from(SUBPIXEL) - f64::from(self.center[k]);
         let depth = slope(0) * from_center(0)
@@ -149,6 +152,7 @@ fn project_eight<S: Simd>(
     clip: &mut [[f32; 4]; LANES],
     screen: &mut [ScreenVertex; LANES],
 ) {
+    // Transform eight points to clip space.
     let columns = lanes::columns_of_rows(
         simd,
         #[inline(always)]
@@ -162,7 +166,11 @@ fn project_eight<S: Simd>(
         x * m[2] + y * m[6] + z * m[10] + w * m[14],
         x * m[3] + y * m[7] + z * m[11] + w * m[15],
     ];
+
+    // Project them to the window.
     let (sx, sy, depth, flags) = to_window(simd, c, window);
+
+    // Store both, one row for each vertex.
     lanes::rows_of_columns(
         simd,
         [c[0].bitcast(), c[1].bitcast(), c[2].bitcast(), c[3].bitcast()],

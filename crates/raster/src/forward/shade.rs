@@ -1,12 +1,12 @@
 //! From a facet to the colours of a row of eight pixels: interpolation, textures (`textures.rs`), fog.
 
-mod again;
 mod eight_facets;
+mod texel_cache;
 mod textures;
 
-pub(crate) use eight_facets::{EightFacets, FacetPixels, go_together};
+pub(crate) use eight_facets::{EightFacets, FacetPixels, can_batch_facets};
 
-pub(crate) use self::again::Seen;
+pub(crate) use self::texel_cache::TexelCache;
 use super::assemble::{Facet, FacetKind, Primitives, Shape};
 use super::block::BlockWords;
 use super::color_grid::ColorGrid;
@@ -51,20 +51,23 @@ pub struct Layout {
 }
 
 /// Most numbers in a record: `1 / w`, primary and secondary colours of both sides, fog, eight units' coordinates, the grid's.
-const MOST: usize = 64;
+const MAX_NUMBERS: usize = 64;
 
 /// A facet's records as they are interpolated: number `k` is `base[k] + b1 * d1[k] + b2 * d2[k]`.
 struct Differences {
-    base: [f32; MOST],
-    d1: [f32; MOST],
-    d2: [f32; MOST],
+    /// Numbers of corner 0.
+    base: [f32; MAX_NUMBERS],
+    /// What corner 1 has more.
+    d1: [f32; MAX_NUMBERS],
+    /// What corner 2 has more.
+    d2: [f32; MAX_NUMBERS],
     /// Bit `k`: number `k` is not the same at all corners.
     varies: u64,
 }
 
 impl Default for Differences {
     fn default() -> Self {
-        Self { base: [0.0; MOST], d1: [0.0; MOST], d2: [0.0; MOST], varies: 0 }
+        Self { base: [0.0; MAX_NUMBERS], d1: [0.0; MAX_NUMBERS], d2: [0.0; MAX_NUMBERS], varies: 0 }
     }
 }
 
@@ -74,7 +77,7 @@ impl Differences {
     fn prepare<S: Simd>(&mut self, simd: S, records: &[f32], corners: [usize; 3], stride: usize) {
         self.varies = 0;
         let mut from = 0;
-        while from < stride.min(MOST) {
+        while from < stride.min(MAX_NUMBERS) {
             let a = eight(simd, records, corners[0] + from);
             let (b, c) = (eight(simd, records, corners[1] + from), eight(simd, records, corners[2] + from));
             let (d1, d2) = (b - a, c - a);
@@ -108,7 +111,7 @@ fn last_of(records: &[f32], at: usize) -> [f32; LANES] {
 pub(crate) struct Scratch {
     interpolation: Interpolation,
     differences: Differences,
-    pub(super) seen: Seen,
+    pub(super) seen: TexelCache,
 }
 
 /// `1 / w` of a facet's corners differs much if it differs by more than this factor.
@@ -120,9 +123,13 @@ const MOST_W: f32 = 8.0;
 /// it is the tile's, and the planes' values there are found in double precision.
 #[derive(Default)]
 struct Interpolation {
+    /// Pixel position of the planes' values, in the target.
     origin: [f32; 2],
+    /// The plane of `l1 / w1`: value at the origin, change with x, change with y.
     first: [f32; 3],
+    /// The plane of `l2 / w2`, likewise.
     second: [f32; 3],
+    /// The plane of `Σ l / w`, likewise.
     sum: [f32; 3],
     /// `w` of all corners, if it is the same.
     flat_w: Option<f32>,
@@ -212,8 +219,8 @@ impl Interpolation {
     }
 }
 
-/// From so many pixels of a block on all are coloured, which costs less for each.
-const MANY: u32 = 24;
+/// Blocks with more covered pixels are shaded whole, without compaction, which is cheaper per pixel.
+const WHOLE_BLOCK_THRESHOLD: u32 = 24;
 
 pub(super) const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
 
@@ -321,7 +328,7 @@ impl<'a> Shader<'a> {
     /// Number `k` of the records, interpolated.
     #[inline(always)]
     fn value<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, k: usize) -> V {
-        let (d, k) = (&self.scratch.differences, k % MOST);
+        let (d, k) = (&self.scratch.differences, k % MAX_NUMBERS);
         if d.varies >> k & 1 == 0 {
             return every(simd, d.base[k]);
         }
@@ -474,8 +481,9 @@ impl<'a> Shader<'a> {
         any: u64,
         words: &mut BlockWords,
     ) -> u64 {
+        // Shade blocks with many covered pixels whole.
         self.prepare(simd, setup);
-        if any.count_ones() > MANY && !lanes::is_oldest(simd.level()) {
+        if any.count_ones() > WHOLE_BLOCK_THRESHOLD && !lanes::is_oldest(simd.level()) {
             return self.whole(simd, (left, bottom), words) & any;
         }
         let mut passed = 0u64;
@@ -488,6 +496,8 @@ impl<'a> Shader<'a> {
                 rest &= rest - 1;
                 count += 1;
             }
+
+            // Shade the gathered pixels and scatter their colours.
             let mut out = [0; LANES];
             let pass = self.eight(simd, &places, (left, bottom), (1 << count) - 1, &mut out);
             for lane in 0..count {
@@ -514,10 +524,14 @@ impl<'a> Shader<'a> {
                     rows[pair] = y + (2 * pair) as f32;
                 }
                 let block = bottom % TILE / BLOCK * (TILE / BLOCK) + left % TILE / BLOCK;
+
+                // Interpolate the weights of all pairs of rows.
                 let mut weights = [self.weights(simd, x, rows[0]); BLOCK / 2];
                 for pair in 1..BLOCK / 2 {
                     weights[pair] = self.weights(simd, x, rows[pair]);
                 }
+
+                // Look up cached texture colours if the draw shows them repeatedly.
                 let mut seen = None;
                 if self.draw.again.is_some() {
                     self.see(simd, block, &weights);
@@ -617,6 +631,7 @@ impl<'a> Shader<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Multiply alpha by the coverage of the primitive's kind.
                 let mut pass = 0xff;
                 match self.shape() {
                     None => {}
@@ -631,6 +646,7 @@ impl<'a> Shader<'a> {
                         let (ux, uy) = (dx / length, dy / length);
                         let along = (x - from[0]) * ux + (y - from[1]) * uy;
                         let smooth = self.draw.layout.smooth[1];
+                        // Cover the part between the line's sides and ends.
                         if smooth {
                             let across = (x - from[0]) * -uy + (y - from[1]) * ux;
                             let coverage = overlap(across, -width * 0.5, width * 0.5);
@@ -638,6 +654,9 @@ impl<'a> Shader<'a> {
                             let ends = overlap(along, 0.0, length);
                             pass = bits_of((coverage * ends).simd_gt(splat(simd, 0.0)));
                         }
+
+                        // Apply the stipple pattern, as coverage if smooth and as on and off
+                        // otherwise.
                         match self.draw.layout.line_stipple {
                             Some(stippling) if smooth => {
                                 let pieces = along.to_array().map(|at| pieces(at, length, stipple, stippling));

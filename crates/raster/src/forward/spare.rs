@@ -1,4 +1,4 @@
-//! Memory that passes use again.
+//! Memory that passes reuse.
 //!
 //! What programs draw is much alike from frame to frame, so a job gets the memory of the job that had its place before: each
 //! grows to what its own place needs, not to what the largest does. Passes that stay pending have places of their own, since
@@ -8,11 +8,11 @@ use super::assemble::{PieceScratch, Primitives};
 use crate::Unsorted;
 use std::sync::{Mutex, PoisonError};
 
-/// Memory of jobs, place by place.
+/// Memory of jobs, by the number of the job.
 #[derive(Debug, Default)]
-pub(crate) struct Places(Mutex<Vec<Primitives>>);
+pub(crate) struct SparePrimitives(Mutex<Vec<Primitives>>);
 
-impl Places {
+impl SparePrimitives {
     /// Memory for this many jobs, each to be taken once.
     pub(crate) fn take(&self, count: usize) -> Vec<Mutex<Primitives>> {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -49,7 +49,7 @@ mod tests {
 
     #[test]
     fn a_job_gets_the_memory_of_its_place() {
-        let places = Places::default();
+        let places = SparePrimitives::default();
         let job = |capacity| Primitives { records: Vec::with_capacity(capacity), ..Primitives::default() };
         let capacities = |jobs: &[Mutex<Primitives>]| -> Vec<usize> {
             jobs.iter().map(|job| job.lock().unwrap().records.capacity()).collect()

@@ -60,7 +60,7 @@ pub struct Stencil {
     pub back: StencilFace,
 }
 
-/// Depth test.
+/// Comparison and write mask of depths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DepthTest {
     /// `incoming func stored`.
@@ -124,7 +124,7 @@ fn stored_alike(value: f32, one: f32) -> [f32; 2] {
     ]
 }
 
-/// Blend factors.
+/// What a colour is multiplied with before blending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum BlendFactor {
@@ -145,7 +145,7 @@ pub enum BlendFactor {
     SrcAlphaSaturate,
 }
 
-/// Blend equations.
+/// How the weighted colours are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum BlendEquation {
@@ -163,7 +163,7 @@ pub struct Blend {
     pub source: [BlendFactor; 2],
     /// Destination factors.
     pub destination: [BlendFactor; 2],
-    /// Equations.
+    /// Equations of colour and of alpha.
     pub equation: [BlendEquation; 2],
     /// Constant colour.
     pub color: [f32; 4],
@@ -280,7 +280,7 @@ pub struct Combine {
 pub struct Unit {
     /// Which unit it is, for crossbar sources and texture coordinates.
     pub index: usize,
-    /// The texture.
+    /// The texture that the unit samples.
     pub texture: Arc<Texture>,
     /// Environment mode.
     pub mode: EnvironmentMode,
@@ -318,9 +318,9 @@ pub struct FragmentState {
     pub units: Vec<Unit>,
     /// Adds the secondary colour after texturing.
     pub color_sum: bool,
-    /// Fog.
+    /// Fog, if it is on.
     pub fog: Option<Fog>,
-    /// Alpha test.
+    /// The alpha test, if it is on and may fail.
     pub alpha_test: Option<AlphaTest>,
     /// Stencil test.
     pub stencil: Option<Stencil>,

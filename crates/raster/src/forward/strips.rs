@@ -10,8 +10,9 @@ use super::plane::PlaneTile;
 use crate::{BLOCK, TILE};
 use std::ops::Range;
 
-/// Tiles with fewer entries in their lists than this are not worth copies.
-const LEAST: usize = 512;
+/// Entries in its list that make a tile worth cutting: with fewer, copying costs more than it saves.
+/// Measured: benches/results/2026-11-22-opengl-tiny.md.
+const MIN_ENTRIES: usize = 512;
 
 /// Into how many strips which of the tiles are cut for `threads` threads: a power of two, at most a strip for each row of blocks. Two
 /// for each thread, since one may have more in it than another. Tiles are told by their place among `tiles`.
@@ -26,7 +27,8 @@ pub(crate) fn cut(threads: usize, tiles: impl Iterator<Item = usize>, items: &[I
     if threads < 2 {
         return (1, Vec::new());
     }
-    let full: Vec<usize> = tiles.enumerate().filter(|&(_, tile)| entries(tile) >= LEAST).map(|(at, _)| at).collect();
+    let full: Vec<usize> =
+        tiles.enumerate().filter(|&(_, tile)| entries(tile) >= MIN_ENTRIES).map(|(at, _)| at).collect();
     let share = 2 * threads / full.len().max(1);
     if share < 2 { (1, Vec::new()) } else { (1 << share.min(TILE / BLOCK).ilog2(), full) }
 }
@@ -44,7 +46,9 @@ pub(crate) struct TileCopy {
 }
 
 enum ColorCopy {
+    /// Packed bytes.
     Rgba8(PlaneTile<u32>),
+    /// Floats.
     RgbaF32(PlaneTile<[f32; 4]>),
 }
 

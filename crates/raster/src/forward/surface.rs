@@ -20,7 +20,7 @@ pub(crate) struct Surface {
     pub(super) place: [u32; 2],
     /// At how many places of a pixel depths are taken: one for all samples, or one each.
     pub(super) places: usize,
-    /// See [`DepthPlane::scale`](super::plane::DepthPlane::scale).
+    /// See [`DepthBuffer::scale`](super::plane::DepthBuffer::scale).
     pub(super) scale: f32,
 }
 

@@ -1,13 +1,13 @@
 //! Textures as the rasteriser sees them: immutable images and a sampler.
 
-use super::plane::DepthPlane;
+use super::plane::DepthBuffer;
 use super::sample::packed_cube::CubeFaces;
 use super::state::Compare;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
 use vitral_math::color::byte_from_unit;
 
-/// Kind of texture.
+/// Dimensions and shape of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum TextureKind {
@@ -45,7 +45,7 @@ pub enum Texels {
     /// Depth, 0..=1.
     Depth(Vec<f32>),
     /// A depth plane that passes render to. Texels may still be pending triangles.
-    DepthPlane(Arc<Mutex<DepthPlane>>),
+    DepthBuffer(Arc<Mutex<DepthBuffer>>),
 }
 
 /// One level: sizes include the border.
@@ -79,7 +79,7 @@ impl Level {
         Self { size, border, texels, columns: Columns::default() }
     }
 
-    /// Its texels.
+    /// The texels, row by row, layer by layer.
     pub fn texels(&self) -> &Texels {
         &self.texels
     }
@@ -168,7 +168,7 @@ impl Wrap {
     }
 }
 
-/// Filters.
+/// How texels are filtered within and between levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum Filter {
@@ -230,7 +230,7 @@ impl Sampler {
 /// A complete texture: what a lookup needs, nothing that can change.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// Kind.
+    /// Dimensions and shape.
     pub kind: TextureKind,
     /// What sampling yields.
     pub format: BaseFormat,
@@ -262,15 +262,15 @@ impl Texture {
     }
 
     /// The depth planes among its levels.
-    pub(crate) fn planes(&self) -> impl Iterator<Item = &Arc<Mutex<DepthPlane>>> {
+    pub(crate) fn planes(&self) -> impl Iterator<Item = &Arc<Mutex<DepthBuffer>>> {
         self.faces.iter().flatten().filter_map(|level| match level.texels() {
-            Texels::DepthPlane(plane) => Some(plane),
+            Texels::DepthBuffer(plane) => Some(plane),
             _ => None,
         })
     }
 
     /// The depth plane that is its only level.
-    pub(crate) fn sole_plane(&self) -> Option<&Arc<Mutex<DepthPlane>>> {
+    pub(crate) fn sole_plane(&self) -> Option<&Arc<Mutex<DepthBuffer>>> {
         (self.faces.iter().flatten().count() == 1).then(|| self.planes().next()).flatten()
     }
 }

@@ -5,14 +5,14 @@ use super::block::{self, BlockWords, DepthRule, Words};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
 use super::fragment::{
-    ColorTile, Depths, FragmentOps, Row, RowFragments, SAMPLES, TilePlanes, columns, keeps, stored_depth,
+    ColorTile, Depths, FragmentOps, PlaneRow, RowFragments, SAMPLES, TilePlanes, columns, keeps, stored_depth,
 };
 use super::fragment_ops::packed::unpack;
 use super::hard_line::HardLine;
 use super::pass::{Clear, DrawContext, ImageColors, ImageFragments, Item, facet_of, intersection};
 use super::plane::PlaneTile;
 use super::sample::sample;
-use super::shade::{CENTERS, Seen, Shader};
+use super::shade::{CENTERS, Shader, TexelCache};
 use super::state::{Clamping, Compare, FragmentState};
 use super::tiny_eight::{FacetMemory, JobContext, by_eights};
 use super::wide::{Rgba, splat, splat_rgba};
@@ -35,7 +35,7 @@ pub(crate) struct TileRun<'a> {
     rows: Range<usize>,
     pub(super) planes: TilePlanes<'a>,
     /// What was seen in the tile before, if that is kept.
-    seen: Option<&'a mut Seen>,
+    seen: Option<&'a mut TexelCache>,
 }
 
 impl<'a> TileRun<'a> {
@@ -45,7 +45,7 @@ impl<'a> TileRun<'a> {
         rows: Range<usize>,
         viewport: Viewport,
         planes: TilePlanes<'a>,
-        seen: Option<&'a mut Seen>,
+        seen: Option<&'a mut TexelCache>,
     ) -> Self {
         let (side, across) = (TILE as u32, viewport.tiles_x());
         let (x, y) = (index as u32 % across * side, index as u32 / across * side);
@@ -62,6 +62,7 @@ impl<'a> TileRun<'a> {
 
     #[inline(always)]
     fn walk<S: Simd>(&mut self, simd: S, items: &[Item<'_>], many: &SamplePattern, one: &SamplePattern) {
+        // Run clears, images and jobs in the order of commands.
         let mut memory: Option<Box<FacetMemory>> = None;
         for item in items {
             match item {
@@ -78,6 +79,8 @@ impl<'a> TileRun<'a> {
                 Item::Job { .. } => {}
             }
         }
+
+        // Hand back what was seen in the tile.
         if let (Some(seen), Some(memory)) = (&mut self.seen, memory) {
             **seen = memory.scratch.seen;
         }
@@ -91,6 +94,7 @@ impl<'a> TileRun<'a> {
     }
 
     fn clear(&mut self, clear: &Clear) {
+        // Limit the rectangle to this run's rows.
         let [x0, y0, x1, y1] = self.part(clear.clip);
         if x0 >= x1 || y0 >= y1 {
             return;
@@ -98,6 +102,8 @@ impl<'a> TileRun<'a> {
         let area = [x0 as usize, y0 as usize, x1 as usize, y1 as usize];
         let whole = area == [0, self.rows.start, self.width as usize, self.rows.end];
         let samples = self.planes.samples;
+
+        // Clear each plane that the command names.
         if let (Some((color, masked)), Some(tile)) = (clear.color, &mut self.planes.color) {
             clear_color(tile, color, masked, whole, area, samples);
         }
@@ -117,6 +123,7 @@ impl<'a> TileRun<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Walk the job's triangles that touch this tile.
                 let (x, y) = (self.x, self.y);
                 let (mut clips, mut windows, mut tiny) = ([[0; 4]; 2], [[0..0, 0..0], [0..0, 0..0]], false);
                 let mut known = u32::MAX;
@@ -133,6 +140,8 @@ impl<'a> TileRun<'a> {
                         windows = clips.map(window);
                         tiny = by_eights(draw, self);
                     }
+
+                    // Find the pixels to which the facet is limited.
                     let stroke = usize::from(facet.kind != FacetKind::Polygon);
                     let (mut clip, mut window) = (clips[stroke], &windows[stroke]);
                     let own;
@@ -149,6 +158,8 @@ impl<'a> TileRun<'a> {
                             continue;
                         }
                     }
+
+                    // Gather tiny facets by eights.
                     let Some(place) = Placed::new(setup, (x, y), window, pattern) else { continue };
                     if tiny && place.is_tiny() && matches!(facet.kind, FacetKind::Polygon | FacetKind::Plain) {
                         if !memory.waiting.takes(facet.draw) {
@@ -157,6 +168,8 @@ impl<'a> TileRun<'a> {
                         memory.waiting.next(entry, facet.draw).push(setup, &place);
                         continue;
                     }
+
+                    // Draw any other facet after those that wait.
                     self.tiny_facets(simd, job, memory);
                     let shader = Shader::new(facet, draw, job.primitives, [x as f32, y as f32], &mut memory.scratch);
                     let mut sink = ForwardSink { run: self, draw, shader, clip, pattern, words: &mut memory.words };
@@ -178,6 +191,7 @@ impl<'a> TileRun<'a> {
         clip: [i32; 4],
         tiny: bool,
     ) {
+        // Gather the boxes of a tiny line with other tiny facets.
         let setup = job.primitives.batch.item(entry);
         let facet = facet_of(job.primitives, setup.facet);
         let tile = [self.x, self.y];
@@ -189,6 +203,8 @@ impl<'a> TileRun<'a> {
                 memory.waiting.next(entry, facet.draw).push_pixels(setup, tile, corner, mask);
             });
         }
+
+        // Draw any other line box by box.
         self.tiny_facets(simd, job, memory);
         let draw = &job.draws[facet.draw as usize];
         let shader = Shader::new(facet, draw, job.primitives, tile.map(|v| v as f32), &mut memory.scratch);
@@ -207,6 +223,7 @@ impl<'a> TileRun<'a> {
 
     #[inline(always)]
     fn image_inlined<S: Simd>(&mut self, simd: S, image: &ImageFragments, state: &FragmentState, ops: &FragmentOps) {
+        // Limit the image to this run's rows.
         let [x0, y0, x1, y1] = self.part(image.bounds(state.clip));
         if x0 >= x1 || y0 >= y1 {
             return;
@@ -219,6 +236,8 @@ impl<'a> TileRun<'a> {
                 sources[x as usize] = i;
             }
         }
+
+        // Walk the rows, eight pixels at a time.
         for y in y0..y1 {
             let Some(j) = image.source(1, self.y as i32 + y) else { continue };
             let row = j * image.size[0] as usize;
@@ -227,6 +246,7 @@ impl<'a> TileRun<'a> {
                 if bits == 0 {
                     continue;
                 }
+                // Drop the pixels that a bitmap leaves out.
                 let mut at = [row; LANES];
                 for lane in 0..LANES {
                     at[lane] += sources[x + lane];
@@ -237,7 +257,7 @@ impl<'a> TileRun<'a> {
                     }
                 }
                 if bits != 0 {
-                    self.image_row(simd, image, state, ops, Row { at: y as usize * TILE + x }, bits, &at);
+                    self.image_row(simd, image, state, ops, PlaneRow { at: y as usize * TILE + x }, bits, &at);
                 }
             }
         }
@@ -250,10 +270,11 @@ impl<'a> TileRun<'a> {
         image: &ImageFragments,
         state: &FragmentState,
         ops: &FragmentOps,
-        row: Row,
+        row: PlaneRow,
         bits: u32,
         at: &[usize; LANES],
     ) {
+        // Write stencil values; an image without depths ends there.
         if let Some(stencils) = &image.stencils {
             if let Some(tile) = &mut self.planes.stencil {
                 let (mask, samples) = (image.stencil_mask, self.planes.samples);
@@ -269,6 +290,8 @@ impl<'a> TileRun<'a> {
                 return;
             }
         }
+
+        // Take the image's depths, or that of the raster position.
         let mut depth = [image.z; LANES];
         if let Some(depths) = &image.depths {
             for lane in 0..LANES {
@@ -277,6 +300,8 @@ impl<'a> TileRun<'a> {
         }
         let scale = self.planes.depth.as_ref().map_or(1.0, |d| d.1);
         let depth = stored_depth(simd, F32x8::from_slice(simd, &depth), scale);
+
+        // Run the fragment operations.
         let color = image_color(simd, image, state, bits, at);
         let bits = [bits; SAMPLES];
         let fragments = RowFragments { row, back: false, bits, depths: &[depth; SAMPLES], color };
@@ -315,6 +340,7 @@ fn image_color<S: Simd>(
     bits: u32,
     at: &[usize; LANES],
 ) -> Rgba<S> {
+    // Unpack the colours of the image.
     let mut primary = splat_rgba(simd, image.color);
     match &image.colors {
         Some(ImageColors::Floats(colors)) => {
@@ -334,6 +360,8 @@ fn image_color<S: Simd>(
         }
         None => {}
     }
+
+    // Apply the textures, each sampled at one place.
     let mut color = primary;
     if !state.units.is_empty() {
         let mut textures = [splat_rgba(simd, [0.0; 4]); UNITS];
@@ -346,6 +374,8 @@ fn image_color<S: Simd>(
             color = environment(simd, unit, &textures, &primary, color, state.clamping != Clamping::None);
         }
     }
+
+    // Apply the colour sum and fog.
     if state.color_sum {
         let s = image.secondary;
         color = color_sum(color, &[splat(simd, s[0]), splat(simd, s[1]), splat(simd, s[2])]);
@@ -387,6 +417,8 @@ impl<S: Simd> BlockSink<S> for ForwardSink<'_, '_, '_> {
         if self.by_blocks() {
             return self.block(simd, setup, block, masks);
         }
+
+        // Clip each row to the allowed rectangle.
         let [x0, y0, x1, y1] = self.clip;
         let allowed = columns(block.x as i32, x0, x1);
         for row in block.rows.clone() {
@@ -394,6 +426,8 @@ impl<S: Simd> BlockSink<S> for ForwardSink<'_, '_, '_> {
             if y < y0 || y >= y1 {
                 continue;
             }
+
+            // Cut the row's bits out of the masks.
             let mut bits = [0; SAMPLES];
             for (s, mask) in masks.iter().enumerate() {
                 bits[s] = (mask >> (8 * row)) as u32 & 0xff & allowed;
@@ -424,12 +458,15 @@ impl ForwardSink<'_, '_, '_> {
 
     #[inline(always)]
     fn block_inlined<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
+        // Drop the pixels outside the rectangle or the stipple pattern.
         let (state, samples) = (self.draw.state, self.run.planes.samples);
         let place = (self.run.x as usize + block.x, self.run.y as usize + block.y);
         let mut allowed = block::rectangle(block.x as i32, block.y as i32, self.clip);
         if let (Some(pattern), FacetKind::Polygon) = (&state.polygon_stipple, self.shader.facet.kind) {
             allowed &= block::stippled(pattern, place);
         }
+
+        // Spread one mask over all samples where the draw has no multisampling.
         let mut bits = [0; SAMPLES];
         for s in 0..samples {
             bits[s] = masks[if masks.len() == samples { s } else { 0 }] & allowed;
@@ -447,6 +484,8 @@ impl ForwardSink<'_, '_, '_> {
                 return;
             }
         }
+
+        // Run the depth test.
         let rule = state.depth.map(|test| DepthRule { func: test.func, write: test.write });
         // Before the alpha test depth may be looked at, but not written.
         let late = state.alpha_test.is_some();
@@ -455,13 +494,19 @@ impl ForwardSink<'_, '_, '_> {
             let early = DepthRule { write: rule.write && !late, ..rule };
             changes = self.depths(simd, setup, place, block, early, &mut bits);
         }
+
+        // Update the stencil values by the outcomes.
         if let Some((face, covered, reached)) = &writes_stencil {
             block::update_stencil(simd, block, &mut self.run.planes, face, [covered, reached, &bits]);
         }
+
+        // Shade the visible pixels and write colours.
         let any = bits[0] | bits[1] | bits[2] | bits[3];
         if any != 0 && self.draw.shaded {
             self.block_colors(simd, setup, place, block, rule.filter(|rule| rule.write && changes), any, &mut bits);
         }
+
+        // Count the samples that passed.
         if let Some(query) = &state.query {
             let count: u32 = bits[..samples].iter().map(|bits| bits.count_ones()).sum();
             query.fetch_add(u64::from(count), Ordering::Relaxed);
@@ -521,6 +566,7 @@ impl ForwardSink<'_, '_, '_> {
 
     #[inline(always)]
     fn row_inlined<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, row: usize, mut bits: [u32; SAMPLES]) {
+        // Drop pixels that the stipple pattern leaves out.
         let (state, samples) = (self.draw.state, self.run.planes.samples);
         let y = block.y + row;
         let (left, top) = (self.run.x as usize + block.x, self.run.y as usize + y);
@@ -532,6 +578,8 @@ impl ForwardSink<'_, '_, '_> {
                 *b &= allowed;
             }
         }
+
+        // Evaluate the depths of each sample.
         let mut depths: Depths<S> = [splat(simd, 0.0); SAMPLES];
         if let Some((_, scale)) = self.run.planes.depth {
             for s in 0..self.pattern.len() {
@@ -540,10 +588,14 @@ impl ForwardSink<'_, '_, '_> {
                 depths[s] = stored_depth(simd, RowPlane::new(simd, setup, [x, y]).row(0), scale);
             }
         }
+
+        // Copy the first sample to all without multisampling.
         if !self.draw.multisample && samples > 1 {
             (bits, depths) = ([bits[0]; SAMPLES], [depths[0]; SAMPLES]);
         }
-        let at = Row { at: y * TILE + block.x };
+
+        // Skip a row that the depth test hides.
+        let at = PlaneRow { at: y * TILE + block.x };
         let visible = self.run.planes.visible(simd, state, at, &bits, &depths);
         let mut active = visible[0] | visible[1] | visible[2] | visible[3];
         if active == 0 {
@@ -552,6 +604,8 @@ impl ForwardSink<'_, '_, '_> {
         if state.stencil.is_none() {
             bits = visible;
         }
+
+        // Shade the visible pixels.
         let mut color = splat_rgba(simd, [0.0; 4]);
         if self.draw.shaded {
             let x = F32x8::from_slice(simd, &CENTERS) + left as f32;
@@ -563,6 +617,8 @@ impl ForwardSink<'_, '_, '_> {
                 *b &= passed;
             }
         }
+
+        // Run the remaining operations.
         if active != 0 {
             let fragments = RowFragments { row: at, back: self.shader.facet.back, bits, depths: &depths, color };
             self.run.planes.fragments(simd, state, &self.draw.ops, fragments, state.stencil.is_none());
@@ -603,12 +659,15 @@ fn fill<T: Copy + PartialEq>(
     samples: usize,
     combine: impl Fn(T, T) -> T,
 ) {
+    // Handle the whole tile, or values that stay as they are, without touching samples.
     if whole {
         return tile.clear(value);
     }
     if tile.uniform().is_some_and(|old| combine(old, value) == old) {
         return;
     }
+
+    // Combine the rectangle, sample by sample.
     let values = tile.stored(samples);
     for s in 0..samples {
         for y in y0..y1 {

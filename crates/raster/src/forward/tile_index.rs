@@ -13,8 +13,8 @@ use crate::{SUBPIXEL, Setup, TILE};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, Floats, MaskOf, Simd};
 
-/// As many triangles fit.
-pub(crate) const MOST: usize = u128::BITS as usize;
+/// Triangles that an index holds at most, one bit each.
+pub(crate) const MAX_TRIANGLES: usize = u128::BITS as usize;
 
 /// Texels along a side of a block.
 const BLOCK: usize = 8;
@@ -36,11 +36,14 @@ pub(crate) struct Candidate<'a> {
 /// What is looked at: copied, as triangles lie all over the memory.
 #[derive(Debug)]
 struct Indexed {
+    /// Best depth of the triangle, times the sign.
     bound: f32,
     /// Edge functions of texels within the tile, not negative inside.
     edges: [Edge; 3],
+    /// Values of the edge functions at the tile's first texel.
     constants: [i32; 3],
     setup: Setup,
+    /// Allowed texels: x0, y0, x1, y1, the last two exclusive.
     clip: [i32; 4],
 }
 
@@ -49,13 +52,15 @@ struct Indexed {
 pub(crate) struct TileIndex {
     /// The tile's first texel.
     origin: [i32; 2],
+    /// The triangles, best bound first.
     triangles: Vec<Indexed>,
+    /// Bits of the triangles that touch each block.
     blocks: [u128; BLOCKS * BLOCKS],
 }
 
 /// Texels of a tile, eight or sixteen.
 #[derive(Clone, Copy)]
-pub(crate) struct Texels<S: Simd, V: Floats<S>> {
+pub(crate) struct TileTexels<S: Simd, V: Floats<S>> {
     /// Places in the plane.
     pub(crate) x: V::Ints,
     pub(crate) y: V::Ints,
@@ -64,10 +69,13 @@ pub(crate) struct Texels<S: Simd, V: Floats<S>> {
 }
 
 impl TileIndex {
-    /// Of at most [`MOST`] candidates in the tile whose first texel is `origin`.
+    /// Of at most [`MAX_TRIANGLES`] candidates in the tile whose first texel is `origin`.
     pub(crate) fn new(origin: [i32; 2], mut candidates: Vec<Candidate<'_>>) -> Self {
-        candidates.truncate(MOST);
+        // Sort the candidates, best bound first.
+        candidates.truncate(MAX_TRIANGLES);
         candidates.sort_by(|a, b| b.bound.total_cmp(&a.bound));
+
+        // Enter each in the blocks that its box touches.
         let mut blocks = [0; BLOCKS * BLOCKS];
         for (number, candidate) in candidates.iter().enumerate() {
             let [[left, right], [top, bottom]] = candidate.within.map(|side| side.map(|p| usize::from(p) / BLOCK));
@@ -75,6 +83,8 @@ impl TileIndex {
                 row[left..=right].iter_mut().for_each(|block| *block |= 1 << number);
             }
         }
+
+        // Move the edge functions to the tile's origin.
         let indexed = |candidate: Candidate<'_>| {
             let Candidate { bound, setup, clip, .. } = candidate;
             let from = |v: [i32; 3], axis: usize| v.map(|v| v - origin[axis] * SUBPIXEL);
@@ -90,11 +100,12 @@ impl TileIndex {
     pub(crate) fn find<S: Simd, V: Floats<S>>(
         &self,
         simd: S,
-        texels: &Texels<S, V>,
+        texels: &TileTexels<S, V>,
         mut floors: V,
         mut found: impl FnMut(&Setup, MaskOf<S, V>) -> V,
     ) {
-        let Texels { x, y, active } = *texels;
+        // Gather the triangles that touch the blocks of the texels.
+        let TileTexels { x, y, active } = *texels;
         let (column, row) = (x - self.origin[0], y - self.origin[1]);
         let block = (row >> BLOCK.trailing_zeros()) * BLOCKS as i32 + (column >> BLOCK.trailing_zeros());
         let block = block.as_slice();
@@ -103,6 +114,8 @@ impl TileIndex {
             bits |= self.blocks[block[rest.trailing_zeros() as usize % V::LEN] as usize % self.blocks.len()];
             rest &= rest - 1;
         }
+
+        // Test them, best bound first.
         let whole = lanes::inlined(
             #[inline(always)]
             |value| <V::Ints as SimdBase<S>>::splat(simd, value),
@@ -116,6 +129,8 @@ impl TileIndex {
             if !above.any_true() {
                 return;
             }
+
+            // Test coverage by the edge functions and the clip rectangle.
             let mut e = [zero; 3];
             for i in 0..3 {
                 let Edge { a, b } = triangle.edges[i];
@@ -144,7 +159,7 @@ mod tests {
 
     #[test]
     fn texels_find_the_triangles_that_cover_them_from_the_highest_bound_on() {
-        let setups = triangles(MOST as u32, 64);
+        let setups = triangles(MAX_TRIANGLES as u32, 64);
         let mut boxes = Boxes::default();
         boxes.resize(setups.len());
         setups.iter().enumerate().for_each(|(at, setup)| boxes.set(at, box_of(setup, [64, 64]), setup.z_max));
@@ -168,7 +183,7 @@ mod tests {
                         let (lanes_x, lanes_y) = (I32x8::from_slice(simd, &x), I32x8::from_slice(simd, &y));
                         let active = Mask8::from_bitmask(simd, 0x7f);
                         let floors = <F32x8<_> as SimdBase<_>>::splat(simd, floor);
-                        index.find(simd, &Texels { x: lanes_x, y: lanes_y, active }, floors, |setup, covered| {
+                        index.find(simd, &TileTexels { x: lanes_x, y: lanes_y, active }, floors, |setup, covered| {
                             found.push((*setup, covered.to_bitmask()));
                             floors
                         });

@@ -7,14 +7,14 @@
 
 use super::assemble::{Facet, Primitives};
 use super::block::{self, BlockWords, Passing, Words};
-use super::fragment::{ColorTile, Mixing, SAMPLES, stored_depth};
+use super::fragment::{BlendPath, ColorTile, SAMPLES, stored_depth};
 use super::fragment_ops::packed::add_words;
 use super::fragment_ops::stencil::stencil_holds;
 use super::pass::{DrawContext, facet_of};
-use super::shade::{EightFacets, FacetPixels, Scratch, Shader, go_together};
+use super::shade::{EightFacets, FacetPixels, Scratch, Shader, can_batch_facets};
 use super::state::{Compare, DepthTest};
 use super::tile::TileRun;
-use crate::kernel::tiny::{PLACES, TinyEight, pixel, places};
+use crate::kernel::tiny::{PLACES, TinyEight, pixel, set_bits};
 use crate::{BLOCK, SamplePattern, TILE_PIXELS};
 use vitral_math::lanes::{LANES, Simd};
 
@@ -159,7 +159,8 @@ impl TileRun<'_> {
         simd: S,
         job: &JobContext<'_>,
         waiting: &mut TinyFacets,
-    ) -> Option<Seen> {
+    ) -> Option<LiveSamples> {
+        // Cover the samples and evaluate their depths.
         let draw = &job.draws[waiting.draw as usize];
         let (eight, pattern) = (&mut waiting.eight, job.pattern(draw));
         let scale = self.planes.depth.as_ref().map_or(1.0, |d| d.1);
@@ -175,7 +176,7 @@ impl TileRun<'_> {
             |depth| stored_depth(simd, depth, scale),
         );
         // A draw without multisampling covers all samples of a pixel alike; where all have one value, one stands for all.
-        let mut seen = Seen { masks, any: [0; LANES], touched: 0, alike: N == 1 };
+        let mut seen = LiveSamples { masks, any: [0; LANES], touched: 0, alike: N == 1 };
         seen.settle(eight)?;
         if draw.state.stencil.is_some() {
             self.tiny_stencilled(job, waiting, &mut seen);
@@ -185,7 +186,8 @@ impl TileRun<'_> {
     }
 
     /// Stencil test, which changes nothing.
-    fn tiny_stencilled(&mut self, job: &JobContext<'_>, waiting: &TinyFacets, seen: &mut Seen) {
+    fn tiny_stencilled(&mut self, job: &JobContext<'_>, waiting: &TinyFacets, seen: &mut LiveSamples) {
+        // Decide a tile that was only cleared with one test per facet.
         let draw = &job.draws[waiting.draw as usize];
         let (Some(test), Some(tile)) = (&draw.state.stencil, &mut self.planes.stencil) else { return };
         let face = |facet: usize| if waiting.facet(job.primitives, facet).back { &test.back } else { &test.front };
@@ -195,12 +197,14 @@ impl TileRun<'_> {
             }
             return;
         }
+
+        // Test the stored value of each covered sample.
         let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
         seen.alike &= count == 1;
         for (stored, masks) in stored.as_chunks::<TILE_PIXELS>().0.iter().zip(&mut seen.masks).take(count) {
             for facet in 0..waiting.eight.len() {
                 let (face, first) = (face(facet), waiting.eight.first(facet));
-                for place in places(masks[facet]) {
+                for place in set_bits(masks[facet]) {
                     let holds = stencil_holds(face, stored[pixel(first, place) % TILE_PIXELS]);
                     masks[facet] &= !(u64::from(!holds) << place);
                 }
@@ -215,15 +219,18 @@ impl TileRun<'_> {
         simd: S,
         draw: &DrawContext<'_>,
         eight: &TinyEight,
-        seen: &mut Seen,
+        seen: &mut LiveSamples,
         write: bool,
     ) -> bool {
+        // Decide whether depths are written.
         let (Some(mut rule), Some((tile, _))) = (draw.state.depth, &mut self.planes.depth) else { return false };
         let wanted = rule.write;
         rule.write &= write;
         if rule.write {
             self.planes.ranges.forget(seen.touched);
         }
+
+        // Test four sample planes, or one that stands for all.
         let mut changes = false;
         let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
         seen.alike &= count == 1;
@@ -234,28 +241,36 @@ impl TileRun<'_> {
         } else if let [plane, ..] = planes {
             changes = test(simd, eight, seen, rule, [plane], [0]);
         }
+
+        // Join the masks of the samples.
         seen.join();
         wanted && !write && changes
     }
 
     /// Writes depths of what is seen, if there are any.
-    fn tiny_written<const N: usize>(&mut self, eight: &TinyEight, seen: &Seen) {
+    fn tiny_written<const N: usize>(&mut self, eight: &TinyEight, seen: &LiveSamples) {
         let Some((tile, _)) = &mut self.planes.depth else { return };
         self.planes.ranges.forget(seen.touched);
         let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
         for (sample, stored) in stored.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().enumerate().take(count) {
             for (facet, &mask) in seen.masks[sample].iter().enumerate().take(eight.len()) {
                 let first = eight.first(facet);
-                for place in places(mask) {
+                for place in set_bits(mask) {
                     stored[pixel(first, place) % TILE_PIXELS] = eight.depth(facet, place, sample % N);
                 }
             }
         }
     }
 
-    /// Colours what is seen; what fails the alpha test no longer is.
+    /// Colours the visible pixels, and removes those that fail the alpha test from `seen`.
     #[inline(never)]
-    fn tiny_colored<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory, seen: &mut Seen) {
+    fn tiny_colored<S: Simd>(
+        &mut self,
+        simd: S,
+        job: &JobContext<'_>,
+        memory: &mut FacetMemory,
+        seen: &mut LiveSamples,
+    ) {
         simd.vectorize(
             #[inline(always)]
             || self.tiny_colored_inlined(simd, job, memory, seen),
@@ -268,16 +283,21 @@ impl TileRun<'_> {
         simd: S,
         job: &JobContext<'_>,
         memory: &mut FacetMemory,
-        seen: &mut Seen,
+        seen: &mut LiveSamples,
     ) {
+        // Skip draws that write no colours.
         let FacetMemory { scratch, words, each, pixels, waiting } = memory;
         let (eight, draw) = (&waiting.eight, &job.draws[waiting.draw as usize]);
         if !draw.shaded || seen.any == [0; LANES] {
             return;
         }
+
+        // Shade all facets at once if the draw allows it.
         if self.tiny_shaded(simd, job, waiting, seen, pixels, each) {
             return self.tiny_mixed(simd, draw, eight, seen, each, words);
         }
+
+        // Otherwise shade facet by facet.
         for facet in 0..eight.len() {
             if seen.any[facet] == 0 {
                 continue;
@@ -301,7 +321,7 @@ impl TileRun<'_> {
         simd: S,
         job: &JobContext<'_>,
         waiting: &TinyFacets,
-        seen: &mut Seen,
+        seen: &mut LiveSamples,
         pixels: &mut FacetPixels,
         each: &mut [[u32; LANES]; PLACES],
     ) -> bool {
@@ -311,6 +331,8 @@ impl TileRun<'_> {
         for lane in 1..eight.len() {
             facets[lane] = waiting.facet(job.primitives, lane);
         }
+
+        // Take constant colours, or interpolate and sample for all facets.
         let mut shown = seen.any;
         if draw.constant {
             let mut words = [0; LANES];
@@ -319,8 +341,8 @@ impl TileRun<'_> {
                 words[lane] = word;
                 shown[lane] = if passes { shown[lane] } else { 0 };
             }
-            places(shown.iter().fold(0, |all, mask| all | mask)).for_each(|place| each[place] = words);
-        } else if go_together(draw) {
+            set_bits(shown.iter().fold(0, |all, mask| all | mask)).for_each(|place| each[place] = words);
+        } else if can_batch_facets(draw) {
             let tile = [self.x, self.y];
             let Some(colors) = EightFacets::new(simd, eight, &facets, (draw, job.primitives), tile) else {
                 return false;
@@ -329,6 +351,8 @@ impl TileRun<'_> {
         } else {
             return false;
         }
+
+        // Limit the masks to what passed the alpha test.
         for facet in 0..LANES {
             if shown[facet] != seen.any[facet] {
                 seen.limit(facet, shown[facet]);
@@ -344,13 +368,14 @@ impl TileRun<'_> {
         simd: S,
         draw: &DrawContext<'_>,
         eight: &TinyEight,
-        seen: &Seen,
+        seen: &LiveSamples,
         each: &[[u32; LANES]; PLACES],
         words: &mut BlockWords,
     ) {
+        // Write all facets at once where colours replace or add.
         let Some(ColorTile::Rgba8(plane)) = &mut self.planes.color else { return };
-        let adds = draw.ops.mixing == Mixing::Add;
-        if draw.ops.protected == 0 && (adds || draw.ops.mixing == Mixing::Replace) {
+        let adds = draw.ops.blend_path == BlendPath::Add;
+        if draw.ops.protected == 0 && (adds || draw.ops.blend_path == BlendPath::Replace) {
             let (count, values) = plane.open(seen.touched, seen.alike, self.planes.samples);
             let planes = values.as_chunks_mut::<TILE_PIXELS>().0;
             if let ([a, b, c, d, ..], SAMPLES) = (&mut *planes, count) {
@@ -360,17 +385,19 @@ impl TileRun<'_> {
             }
             return;
         }
+
+        // Blend other colours facet by facet.
         for facet in (0..eight.len()).filter(|&facet| seen.any[facet] != 0) {
-            places(seen.any[facet]).for_each(|place| words[place % PLACES] = each[place % PLACES][facet]);
+            set_bits(seen.any[facet]).for_each(|place| words[place % PLACES] = each[place % PLACES][facet]);
             let (block, masks) = (eight.block(facet, seen.any[facet]), seen.masks.map(|masks| masks[facet]));
             block::colors(simd, &block, &mut self.planes, (&draw.ops, draw.state), &Words::Each(words), &masks);
         }
     }
 }
 
-/// Pixels of eight tiny facets that still count.
+/// The samples of eight tiny facets that have passed all tests so far.
 #[derive(Clone, Copy)]
-struct Seen {
+struct LiveSamples {
     /// Those of each facet, sample by sample.
     masks: [[u64; LANES]; SAMPLES],
     /// Those of which some samples are.
@@ -381,7 +408,7 @@ struct Seen {
     alike: bool,
 }
 
-impl Seen {
+impl LiveSamples {
     /// After masks have changed, brings the rest up to date.
     #[inline(always)]
     fn join(&mut self) {
@@ -438,7 +465,7 @@ impl Seen {
 fn bring<S: Simd, const M: usize>(
     simd: S,
     eight: &TinyEight,
-    seen: &Seen,
+    seen: &LiveSamples,
     adds: bool,
     each: &[[u32; LANES]; PLACES],
     values: [&mut [u32; TILE_PIXELS]; M],
@@ -449,7 +476,7 @@ fn bring<S: Simd, const M: usize>(
             for facet in 0..eight.len() {
                 let (first, masks) = (eight.first(facet), seen.masks_of::<M>(facet));
                 for s in 0..M {
-                    for place in places(masks[s]) {
+                    for place in set_bits(masks[s]) {
                         let value = &mut values[s][pixel(first, place) % TILE_PIXELS];
                         let new = each[place % PLACES][facet];
                         *value = if adds { add_words(new, *value) } else { new };
@@ -466,7 +493,7 @@ fn bring<S: Simd, const M: usize>(
 fn test<S: Simd, const M: usize>(
     simd: S,
     eight: &TinyEight,
-    seen: &mut Seen,
+    seen: &mut LiveSamples,
     rule: DepthTest,
     stored: [&mut [f32; TILE_PIXELS]; M],
     depths: [usize; M],
@@ -491,17 +518,18 @@ fn test<S: Simd, const M: usize>(
 #[inline(always)]
 fn test_by<const M: usize>(
     eight: &TinyEight,
-    seen: &mut Seen,
+    seen: &mut LiveSamples,
     write: bool,
     stored: [&mut [f32; TILE_PIXELS]; M],
     depths: [usize; M],
     passes: impl Fn(f32, f32) -> bool,
 ) -> bool {
+    // Test facets in their order, since two may lie in one pixel.
     let mut changes = false;
     for facet in 0..eight.len() {
         let (first, mut masks) = (eight.first(facet), seen.masks_of::<M>(facet));
         for s in 0..M {
-            for place in places(masks[s]) {
+            for place in set_bits(masks[s]) {
                 let old = &mut stored[s][pixel(first, place) % TILE_PIXELS];
                 let new = eight.depth(facet, place, depths[s]);
                 let pass = passes(new, *old);

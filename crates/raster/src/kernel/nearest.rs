@@ -16,8 +16,8 @@ use std::ops::Range;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, I32x8, LANES, Level, Mask8, Simd, dispatch};
 
-/// Rows walked in a block before its far depth is computed anew.
-const PATIENCE: u32 = 16;
+/// Rows walked in a block between two computations of its far depth.
+const ROWS_PER_UPDATE: u32 = 16;
 /// Blocks along a tile's side.
 const BLOCKS: usize = TILE / BLOCK;
 /// All of a tile.
@@ -30,6 +30,7 @@ pub struct NearestDepths {
     pattern: SamplePattern,
     /// 1 where larger depths are nearer, -1 where smaller ones are. All depths within are times this.
     sign: f32,
+    /// The nearest depth of each pixel, row by row.
     depths: Vec<f32>,
     /// For each block a depth that none of its pixels is farther than.
     far: [f32; BLOCKS * BLOCKS],
@@ -122,6 +123,7 @@ impl NearestDepths {
     /// A facet that is at most eight pixels wide and whose edge functions fit into 32 bits.
     #[inline(always)]
     fn narrow<S: Simd, const CLIPPED: bool>(&mut self, simd: S, setup: &Setup, place: &Placed, columns: &Range<usize>) {
+        // Skip the facet if every block under its box holds nearer depths everywhere.
         let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
         let block = |x: usize, y: usize| y / BLOCK * BLOCKS + x / BLOCK;
         let own = block(x0, y0);
@@ -131,6 +133,8 @@ impl NearestDepths {
                 return;
             }
         }
+
+        // Set up the edge functions of a row of eight pixels at the facet's first row.
         let left = place.left();
         let (edges, corners) = place.edges();
         let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
@@ -140,6 +144,8 @@ impl NearestDepths {
             let constant = edges[i].constant(corners[i], [SUBPIXEL / 2; 2]);
             e[i] = lane * a + (constant + a * left as i32 + b * y0 as i32);
         }
+
+        // Walk the rows and merge the depths of covered pixels.
         let plane = self.plane(simd, setup, left);
         let beside = beside(simd, left, columns);
         for y in y0..=y1 {
@@ -154,6 +160,8 @@ impl NearestDepths {
                 e[i] += edges[i].b;
             }
         }
+
+        // Update the block's farthest depth from time to time.
         self.note(simd, own, (y1 - y0 + 1) as u32);
     }
 
@@ -175,6 +183,8 @@ impl NearestDepths {
         if any == 0 {
             return;
         }
+
+        // Walk thin facets along their longer axis instead of by blocks.
         let (edges, constants) = place.center_edges();
         if place.is_slender() {
             self.slender(simd, setup, place, (&edges, &constants));
@@ -195,14 +205,18 @@ impl NearestDepths {
             while rest != 0 {
                 let number = rest.trailing_zeros() as usize;
                 rest &= rest - 1;
+
+                // Evaluate the depth plane at the block's left column.
                 let (block, left) = (top / BLOCK * BLOCKS + number, number * BLOCK);
                 let plane = self.plane(simd, setup, left);
                 let beside = beside(simd, left, window);
+                // Merge full blocks without edge tests.
                 if full >> number & 1 == 1 {
                     for y in rows.clone() {
                         self.keep(simd, y * TILE + left, plane.row(y), CLIPPED.then_some(beside));
                     }
                 } else {
+                    // Step the edge functions down the rows that the facet reaches.
                     let at = constants_at(&edges, &constants, left);
                     let Some(rows) = reached_rows(simd, &edges, &at, top, &rows) else { continue };
                     let mut e = [across[0] + at[0], across[1] + at[1], across[2] + at[2]];
@@ -228,6 +242,7 @@ impl NearestDepths {
     /// A facet that is thin.
     #[inline(always)]
     fn slender<S: Simd>(&mut self, simd: S, setup: &Setup, place: &Placed, edges: (&[Edge; 3], &[i32; 3])) {
+        // Evaluate depths at the covered pixels and keep the nearer ones.
         let plane = self.plane(simd, setup, 0);
         let upright = place.is_upright();
         let nothing = F32x8::splat(simd, f32::NEG_INFINITY);
@@ -254,7 +269,7 @@ impl NearestDepths {
     #[inline(always)]
     fn note<S: Simd>(&mut self, simd: S, block: usize, rows: u32) {
         self.walked[block] += rows;
-        if self.walked[block] < PATIENCE {
+        if self.walked[block] < ROWS_PER_UPDATE {
             return;
         }
         self.walked[block] = 0;

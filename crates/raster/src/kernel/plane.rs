@@ -7,11 +7,17 @@ use vitral_math::lanes::{self, F32x8, I32x8, Simd};
 /// A facet's depth plane as rows of eight pixels from one column on see it.
 #[derive(Clone, Copy, Debug)]
 pub struct RowPlane<S: Simd> {
+    /// Depth relative to `z` at eight pixels of row 0, as far as columns change it.
     across: F32x8<S>,
+    /// Farthest depth of the facet, in all lanes.
     low: F32x8<S>,
+    /// Nearest depth of the facet, in all lanes.
     high: F32x8<S>,
+    /// Depth at the plane's origin.
     z: f32,
+    /// Change of depth with a pixel to the right.
     dz_dx: f32,
+    /// Change of depth with a pixel down.
     dz_dy: f32,
     /// From the plane's origin to the sample of the column's pixel in row 0, in 1/256 pixel.
     first: [i32; 2],

@@ -37,10 +37,15 @@ pub(crate) struct CullResult8 {
     pub area: [i32; LANES],
     /// The pixels they may cover: x0, y0, x1, y1.
     pub pixels: [[i32; LANES]; 4],
+    /// Depth planes, as in [`DepthPlane`]: depths at the first corners.
     z: [f32; LANES],
+    /// Changes of depth with a pixel to the right.
     dz_dx: [f32; LANES],
+    /// Changes of depth with a pixel down.
     dz_dy: [f32; LANES],
+    /// Farthest depths.
     z_min: [f32; LANES],
+    /// Nearest depths.
     z_max: [f32; LANES],
     /// These have a corner that is not finite, and are not in the other sets.
     pub not_finite: u32,
@@ -106,6 +111,7 @@ fn sift_inlined<S: Simd, const UNSNAPPED: bool>(
     vertices: &[ScreenVertex],
     triangles: &[[u32; 3]; LANES],
 ) -> CullResult8 {
+    // Gather the corners of eight triangles, one register for each component.
     let corner = lanes::inlined(
         #[inline(always)]
         |k: usize| {
@@ -142,6 +148,7 @@ fn sift_inlined<S: Simd, const UNSNAPPED: bool>(
         }
     }
 
+    // Compute depth planes and return everything, one bit or lane for each triangle.
     let [z, dz_dx, dz_dy, z_min, z_max] = depth_planes::<S, UNSNAPPED>(simd, &corners, &edges);
     let bits = lanes::inlined(
         #[inline(always)]
@@ -192,8 +199,10 @@ fn bounds<S: Simd>([a, b, c]: &[Corner8<S>; 3]) -> ([I32x8<S>; 2], [I32x8<S>; 2]
 
 /// The edges of eight triangles that start at the first corner, and what they span.
 struct Edges8<S: Simd> {
+    /// From the first corner to the second, in 1/256 pixel.
     dx1: I32x8<S>,
     dy1: I32x8<S>,
+    /// From the first corner to the third, in 1/256 pixel.
     dx2: I32x8<S>,
     dy2: I32x8<S>,
     /// Twice the areas.
@@ -236,6 +245,7 @@ fn depth_planes<S: Simd, const UNSNAPPED: bool>(
     [a, b, c]: &[Corner8<S>; 3],
     edges: &Edges8<S>,
 ) -> [F32x8<S>; 5] {
+    // Span depths and edges from the first corner.
     let (z0, z1, z2): (F32x8<S>, F32x8<S>, F32x8<S>) = (a[2].bitcast(), b[2].bitcast(), c[2].bitcast());
     let (dz1, dz2) = (z1 - z0, z2 - z0);
     let real = lanes::inlined(
@@ -243,16 +253,22 @@ fn depth_planes<S: Simd, const UNSNAPPED: bool>(
         |v: I32x8<S>| -> F32x8<S> { v.to_float() },
     );
     let mut spanned = [real(edges.dx1), real(edges.dy1), real(edges.dx2), real(edges.dy2), real(edges.area)];
+
+    // Replace snapped edges by those before snapping.
     let mut moved = None;
     if UNSNAPPED {
         let corners;
         (spanned, corners) = unsnapped(simd, [a[3], b[3], c[3]], spanned);
         moved = Some(corners);
     }
+
+    // Solve for the slopes of depth along x and y.
     let [x1, y1, x2, y2, area] = spanned;
     let scale = <F32x8<S> as SimdBase<S>>::splat(simd, SUBPIXEL as f32) / area;
     let dz_dx = (dz1 * y2 - dz2 * y1) * scale;
     let dz_dy = (dz2 * x1 - dz1 * x2) * scale;
+
+    // Move the depths of the unsnapped corners back to the snapped ones.
     let [z0, z1, z2] = match moved {
         None => [z0, z1, z2],
         Some([a, b, c]) => {
@@ -263,6 +279,8 @@ fn depth_planes<S: Simd, const UNSNAPPED: bool>(
             [back(z0, a), back(z1, b), back(z2, c)]
         }
     };
+
+    // Bound the depths by those of the corners.
     let mut z_min = lanes::Lanes::min(lanes::Lanes::min(z0, z1), z2);
     let mut z_max = lanes::Lanes::max(lanes::Lanes::max(z0, z1), z2);
     if UNSNAPPED {
@@ -280,6 +298,7 @@ fn unsnapped<S: Simd>(
     [a, b, c]: [I32x8<S>; 3],
     [dx1, dy1, dx2, dy2, area]: [F32x8<S>; 5],
 ) -> ([F32x8<S>; 5], [[F32x8<S>; 2]; 3]) {
+    // Unpack the remainders of snapping, which are stored in the flags.
     let residue = lanes::inlined(
         #[inline(always)]
         |flags: I32x8<S>| [flags << flag::RESIDUE_BITS >> flag::RESIDUE_Y, flags >> flag::RESIDUE_Y],
@@ -289,11 +308,14 @@ fn unsnapped<S: Simd>(
         |v: I32x8<S>| -> F32x8<S> { v.to_float() },
     );
     let ([ax, ay], [bx, by], [cx, cy]) = (residue(a), residue(b), residue(c));
+
+    // Correct the edges and the area by the differences of remainders.
     let (ex1, ey1) = (real(bx - ax) * RESIDUE, real(by - ay) * RESIDUE);
     let (ex2, ey2) = (real(cx - ax) * RESIDUE, real(cy - ay) * RESIDUE);
     let (x1, y1, x2, y2) = (dx1 + ex1, dy1 + ey1, dx2 + ex2, dy2 + ey2);
     let rest = (dx1 * ey2 + ex1 * y2) - (dx2 * ey1 + ex2 * y1);
 
+    // Keep the snapped values where the correction exceeds half the area.
     let kept = rest.abs().simd_le(area.abs() * 0.5);
     let select = lanes::inlined(
         #[inline(always)]

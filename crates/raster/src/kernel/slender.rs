@@ -25,6 +25,7 @@ pub(crate) fn each_eight<S: Simd>(
     (edges, constants): (&[Edge; 3], &[i32; 3]),
     mut eight: impl FnMut(I32x8<S>, I32x8<S>, Mask8<S>),
 ) {
+    // Call the axis with more pixels "along", the other one "across".
     let upright = place.is_upright();
     let [along, across] = if upright { [place.rows, place.columns] } else { [place.columns, place.rows] };
     let [along, across] = [along, across].map(|range| range.map(|v| v as i32));
@@ -45,7 +46,11 @@ pub(crate) fn each_eight<S: Simd>(
     }
     let rises = [slopes[0].simd_gt(zero), slopes[1].simd_gt(zero), slopes[2].simd_gt(zero)];
     let falls = [slopes[0].simd_lt(zero), slopes[1].simd_lt(zero), slopes[2].simd_lt(zero)];
+
+    // Visit eight columns along at a time.
     for start in (along[0] & !(LANES as i32 - 1)..=along[1]).step_by(LANES) {
+        // Intersect the edges' crossings: the pixels between the least and the greatest are
+        // candidates.
         let position = lane + start;
         let (mut low, mut high) = (before, behind);
         let mut values = [zero; 3];
@@ -59,8 +64,12 @@ pub(crate) fn each_eight<S: Simd>(
         // Such numbers fit, wherever the edges go.
         let first: I32x8<S> = lanes::Lanes::min((low - DOUBT).ceil(), behind).to_int();
         let last: I32x8<S> = lanes::Lanes::max((high + DOUBT).floor(), before).to_int();
+
+        // Clip the candidates to the triangle's box.
         let within = position.simd_ge(splat(along[0])) & position.simd_le(splat(along[1]));
         let last = within.select(last.min(most), splat(-1));
+
+        // Test the candidates exactly, one across in each step.
         let mut pixel = first.max(least);
         loop {
             let left = pixel.simd_le(last);

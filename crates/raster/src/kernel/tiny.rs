@@ -26,6 +26,7 @@ pub(crate) struct TinyEight {
     /// Corners in 1/256 pixel of the tile.
     x: [[i32; LANES]; 3],
     y: [[i32; LANES]; 3],
+    /// First column and row of each triangle's box, pixels of the tile.
     left: [i32; LANES],
     top: [i32; LANES],
     /// What follows the corners in setups: depth planes.
@@ -59,9 +60,9 @@ impl Default for TinyEight {
     }
 }
 
-/// The places whose bits are set, from the lowest on.
+/// The positions of the set bits, from the lowest on.
 #[inline(always)]
-pub(crate) fn places(mut bits: u64) -> impl Iterator<Item = usize> {
+pub(crate) fn set_bits(mut bits: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let place = (bits != 0).then_some(bits.trailing_zeros() as usize);
         bits &= bits.wrapping_sub(1);
@@ -183,6 +184,7 @@ impl TinyEight {
         positions: [[i32; 2]; N],
         stored: impl Fn(F32x8<S>) -> F32x8<S>,
     ) -> [[u64; LANES]; SAMPLES] {
+        // Load the corners and the first pixel of each box.
         let zero = I32x8::splat(simd, 0);
         let [x, y] = self.corners(simd);
         let [left, top] = self.pixels(simd, 0);
@@ -217,6 +219,8 @@ impl TinyEight {
                 distance * (1.0 / SUBPIXEL as f32)
             },
         );
+
+        // Prepare the walk of one sample: edge functions and distances at the first pixel.
         let walk = lanes::inlined(
             #[inline(always)]
             |sample: usize| -> Walk<S, F32x8<S>> {
@@ -256,6 +260,7 @@ impl TinyEight {
         stored: &impl Fn(F32x8<S>) -> F32x8<S>,
         covered: &mut [[u64; LANES]; SAMPLES],
     ) {
+        // Start at the first pixel with an empty mask, whose two halves hold four rows each.
         let Walk { a, b, mut row, plane: [z, dz_dx, dz_dy, z_min, z_max], distance: [left, mut dy] } = walk;
         let [columns, rows] = self.size;
         let every = lanes::inlined(
@@ -263,6 +268,8 @@ impl TinyEight {
             |value: i32| <V::Ints as SimdBase<S>>::splat(simd, value),
         );
         let mut halves = [every(0); 2];
+
+        // Step through the rows and columns of the largest of the boxes.
         for r in 0..rows.min(BLOCK) {
             let (mut e, mut bit) = (row, every(1 << (8 * (r % 4))));
             let (line, mut dx) = (z + dy * dz_dy, left);
@@ -270,6 +277,7 @@ impl TinyEight {
                 // The sign is none only where no edge's is.
                 let outside = (e[0] | e[1] | e[2]) >> 31;
                 halves[r / 4] |= bit & !outside;
+                // Evaluate, clamp and store the depth.
                 let depth = line + dx * dz_dx;
                 let depth = lanes::Lanes::min(lanes::Lanes::max(depth, z_min), z_max);
                 let [] = V::by_eights(
@@ -282,17 +290,21 @@ impl TinyEight {
                         []
                     },
                 );
+                // Step one pixel to the right.
                 bit <<= 1;
                 dx += 1.0;
                 for i in 0..3 {
                     e[i] += a[i];
                 }
             }
+            // Step one row down.
             dy += 1.0;
             for i in 0..3 {
                 row[i] += b[i];
             }
         }
+
+        // Intersect the masks with the boxes.
         let (low, high) = (halves[0].as_slice(), halves[1].as_slice());
         for lane in 0..V::LEN {
             let inside = u64::from(low[lane].cast_unsigned()) | u64::from(high[lane].cast_unsigned()) << 32;
@@ -308,6 +320,7 @@ struct Walk<S: Simd, V: Floats<S>> {
     /// What edge functions change by with a column, with a row.
     a: [V::Ints; 3],
     b: [V::Ints; 3],
+    /// Values of the edge functions at the sample of the box's first pixel.
     row: [V::Ints; 3],
     /// `z`, `dz_dx`, `dz_dy`, `z_min`, `z_max`.
     plane: [V; 5],
@@ -320,12 +333,16 @@ impl<S: Simd> Walk<S, F32x8<S>> {
     #[inline(always)]
     fn with(&self, other: &Self) -> Walk<S, F32x16<S>> {
         let (low, high) = (self, other);
+
+        // Join the edge functions, which differ between the samples.
         let ints = lanes::inlined(
             #[inline(always)]
             |low: [I32x8<S>; 3], high: [I32x8<S>; 3]| {
                 [low[0].combine(high[0]), low[1].combine(high[1]), low[2].combine(high[2])]
             },
         );
+
+        // Repeat the depth plane, which is the same.
         let [z, dz_dx, dz_dy, z_min, z_max] = low.plane;
         let twice = lanes::inlined(
             #[inline(always)]
@@ -381,7 +398,7 @@ mod tests {
                                     2.0 * eight.depth(triangle, place, sample),
                                 )
                             };
-                            found.extend(places(mask).map(pixel_of));
+                            found.extend(set_bits(mask).map(pixel_of));
                         }
                         let mut expected = Vec::new();
                         for (triangle, setup) in setups.iter().enumerate() {

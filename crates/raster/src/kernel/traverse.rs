@@ -24,7 +24,9 @@ fn hides_box(tile: &Tile, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> b
 /// An edge function within one tile: `a * x + b * y + c[s] >= 0` on covered samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
+    /// Change with a pixel to the right.
     pub(crate) a: i32,
+    /// Change with a pixel down.
     pub(crate) b: i32,
 }
 
@@ -116,24 +118,24 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
     let Some(place) = Placed::new(setup, tile, &window, pattern) else { return };
     if place.columns[1] - place.columns[0] < LANES && place.is_small() {
         match pattern.len() {
-            1 => rows_apart::<S, K, 1>(simd, setup, &place, pattern, sink),
-            4 => rows_apart::<S, K, 4>(simd, setup, &place, pattern, sink),
-            32 => rows_apart::<S, K, 32>(simd, setup, &place, pattern, sink),
-            _ => rows_apart::<S, K, 16>(simd, setup, &place, pattern, sink),
+            1 => rows_outlined::<S, K, 1>(simd, setup, &place, pattern, sink),
+            4 => rows_outlined::<S, K, 4>(simd, setup, &place, pattern, sink),
+            32 => rows_outlined::<S, K, 32>(simd, setup, &place, pattern, sink),
+            _ => rows_outlined::<S, K, 16>(simd, setup, &place, pattern, sink),
         }
     } else {
         match pattern.len() {
-            1 => blocks_apart::<S, K, 1>(simd, setup, &place, pattern, sink),
-            4 => blocks_apart::<S, K, 4>(simd, setup, &place, pattern, sink),
-            32 => blocks_apart::<S, K, 32>(simd, setup, &place, pattern, sink),
-            _ => blocks_apart::<S, K, 16>(simd, setup, &place, pattern, sink),
+            1 => blocks_outlined::<S, K, 1>(simd, setup, &place, pattern, sink),
+            4 => blocks_outlined::<S, K, 4>(simd, setup, &place, pattern, sink),
+            32 => blocks_outlined::<S, K, 32>(simd, setup, &place, pattern, sink),
+            _ => blocks_outlined::<S, K, 16>(simd, setup, &place, pattern, sink),
         }
     }
 }
 
 /// [`walk_rows`] as a function of its own: all in one would be a function over which WebAssembly's compiler takes minutes.
 #[inline(never)]
-fn rows_apart<S: Simd, K: RowSink<S>, const MOST: usize>(
+fn rows_outlined<S: Simd, K: RowSink<S>, const MAX: usize>(
     simd: S,
     setup: &Setup,
     place: &Placed,
@@ -142,13 +144,13 @@ fn rows_apart<S: Simd, K: RowSink<S>, const MOST: usize>(
 ) {
     simd.vectorize(
         #[inline(always)]
-        || walk_rows::<S, K, MOST>(simd, setup, place, pattern, sink),
+        || walk_rows::<S, K, MAX>(simd, setup, place, pattern, sink),
     );
 }
 
 /// [`walk_blocks`] as a function of its own.
 #[inline(never)]
-fn blocks_apart<S: Simd, K: RowSink<S>, const MOST: usize>(
+fn blocks_outlined<S: Simd, K: RowSink<S>, const MAX: usize>(
     simd: S,
     setup: &Setup,
     place: &Placed,
@@ -157,20 +159,21 @@ fn blocks_apart<S: Simd, K: RowSink<S>, const MOST: usize>(
 ) {
     simd.vectorize(
         #[inline(always)]
-        || walk_blocks::<S, K, MOST>(simd, setup, place, pattern, sink),
+        || walk_blocks::<S, K, MAX>(simd, setup, place, pattern, sink),
     );
 }
 
 /// Walks the rows of a triangle of any size, block by block.
 #[inline(always)]
-fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
+fn walk_blocks<S: Simd, K: RowSink<S>, const MAX: usize>(
     simd: S,
     setup: &Setup,
     place: &Placed,
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
-    let edges = SampleEdges::<S, MOST>::new(simd, place, pattern);
+    // Set up the edge functions of all samples.
+    let edges = SampleEdges::<S, MAX>::new(simd, place, pattern);
     let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     let zero = I32x8::splat(simd, 0);
     edges.each_block(
@@ -178,12 +181,14 @@ fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
         place,
         #[inline(always)]
         |block, full| {
+            // Skip a block whose samples all hide the facet.
             let hidden = sink.hiding().is_some_and(|tile| setup.z_max < tile.block_far[block.index()]);
             if hidden {
                 return;
             }
             for s in 0..edges.samples {
                 let plane = RowPlane::new(simd, setup, sink.first(s, block.x));
+                // Cover full blocks without edge tests.
                 if full {
                     let covered = zero.simd_eq(zero);
                     for row in block.rows.clone() {
@@ -203,11 +208,15 @@ fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
                 if reached == 0 {
                     continue;
                 }
+
+                // Cut the rows of the block to those that are reached.
                 let first = block.rows.start.max(reached.trailing_zeros() as usize);
                 let end = block.rows.end.min(32 - reached.leading_zeros() as usize);
                 for i in 0..3 {
                     e[i] += edges.edges[i].b * first as i32;
                 }
+
+                // Walk these rows, eight pixels at a time.
                 for row in first..end {
                     let covered = (e[0] | e[1] | e[2]).simd_ge(zero);
                     if covered.any_true() {
@@ -225,24 +234,29 @@ fn walk_blocks<S: Simd, K: RowSink<S>, const MOST: usize>(
 
 /// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit into 32 bits.
 #[inline(always)]
-fn walk_rows<S: Simd, K: RowSink<S>, const MOST: usize>(
+fn walk_rows<S: Simd, K: RowSink<S>, const MAX: usize>(
     simd: S,
     setup: &Setup,
     place: &Placed,
     pattern: &SamplePattern,
     sink: &mut K,
 ) {
+    // Skip the facet if the blocks under its box hide it.
     let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
     if y1 - y0 < BLOCK && sink.hiding().is_some_and(|tile| hides_box(tile, setup, [x0, y0], [x1, y1])) {
         return;
     }
+
+    // Let the sink note each sample's first position.
     let left = place.left();
-    let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
-    let mut firsts = [[0; 2]; MOST];
+    let samples = if MAX == 16 { pattern.len().min(MAX) } else { MAX };
+    let mut firsts = [[0; 2]; MAX];
     for (s, first) in firsts[..samples].iter_mut().enumerate() {
         *first = sink.first(s, left);
     }
-    place.each_row::<S, (usize, RowPlane<S>), MOST>(
+
+    // Walk the rows of all samples.
+    place.each_row::<S, (usize, RowPlane<S>), MAX>(
         simd,
         pattern,
         #[inline(always)]
@@ -330,27 +344,33 @@ impl Placed {
     /// sample. `begin` is called for each sample; `row` with what that gave, the row of the tile and which of the eight
     /// pixels from [`Self::left`] on are covered, if any are.
     #[inline(always)]
-    fn each_row<S: Simd, T, const MOST: usize>(
+    fn each_row<S: Simd, T, const MAX: usize>(
         &self,
         simd: S,
         pattern: &SamplePattern,
         mut begin: impl FnMut(usize) -> T,
         mut row: impl FnMut(&mut T, usize, Mask8<S>),
     ) {
-        let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
+        // Set up edge functions for eight pixels of a row.
+        let samples = if MAX == 16 { pattern.len().min(MAX) } else { MAX };
         let (left, [y0, y1]) = (self.left(), self.rows);
         let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
         let (edges, corners) = self.edges();
         let across = [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a];
         let zero = I32x8::splat(simd, 0);
         let [xs, ys] = pattern.axes();
+
+        // Walk each sample's rows from the top.
         for s in 0..samples {
+            // Move the edge functions to the sample's position in the first row.
             let mut e = across;
             for i in 0..3 {
                 let at_sample = edges[i].constant(corners[i], [xs[s], ys[s]]);
                 e[i] += at_sample + edges[i].a * left as i32 + edges[i].b * y0 as i32;
             }
             let mut begun = begin(s);
+
+            // Hand on the rows of which a pixel is covered.
             for y in y0..=y1 {
                 let covered = (e[0] | e[1] | e[2]).simd_ge(zero);
                 if covered.any_true() {
@@ -429,9 +449,9 @@ pub fn traverse_window<S: Simd, K: BlockSink<S>>(
     }
 }
 
-/// `MOST` is the number of samples, or 16 where there are fewer.
+/// `MAX` is the number of samples, or 16 where there are fewer.
 #[inline(always)]
-fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
+fn traverse_samples<S: Simd, K: BlockSink<S>, const MAX: usize>(
     simd: S,
     setup: &Setup,
     tile: (u32, u32),
@@ -440,8 +460,10 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
     sink: &mut K,
 ) {
     let Some(place) = Placed::new(setup, tile, window, pattern) else { return };
-    let edges = SampleEdges::<S, MOST>::new(simd, &place, pattern);
-    let mut masks = [0u64; MOST];
+
+    // Set up the edge functions of all samples, then visit the blocks that the facet touches.
+    let edges = SampleEdges::<S, MAX>::new(simd, &place, pattern);
+    let mut masks = [0u64; MAX];
     edges.each_block(
         simd,
         &place,
@@ -450,9 +472,11 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
             if sink.rejects(setup, block) {
                 return;
             }
+
+            // Compute the coverage mask of each sample.
             let mut any = u64::MAX;
             if full {
-                masks = [u64::MAX; MOST];
+                masks = [u64::MAX; MAX];
             } else {
                 any = 0;
                 for (s, mask) in masks[..edges.samples].iter_mut().enumerate() {
@@ -460,6 +484,8 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
                     any |= *mask;
                 }
             }
+
+            // Hand the block on if a sample is covered.
             if any != 0 {
                 sink.cover(simd, setup, block, &masks[..edges.samples]);
             }
@@ -468,27 +494,31 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MOST: usize>(
 }
 
 /// The edge functions of a triangle in a tile at all samples.
-struct SampleEdges<S: Simd, const MOST: usize> {
+struct SampleEdges<S: Simd, const MAX: usize> {
     samples: usize,
+    /// Changes with a pixel to the right and down.
     edges: [Edge; 3],
     /// At the tile's origin.
-    constants: [[i32; MOST]; 3],
+    constants: [[i32; MAX]; 3],
     /// What they change over the eight pixels of a row.
     across: [I32x8<S>; 3],
 }
 
-impl<S: Simd, const MOST: usize> SampleEdges<S, MOST> {
+impl<S: Simd, const MAX: usize> SampleEdges<S, MAX> {
     #[inline(always)]
     fn new(simd: S, place: &Placed, pattern: &SamplePattern) -> Self {
-        let samples = if MOST == 16 { pattern.len().min(MOST) } else { MOST };
+        let samples = if MAX == 16 { pattern.len().min(MAX) } else { MAX };
         let mut edges = [Edge { a: 0, b: 0 }; 3];
-        let mut constants = [[0i32; MOST]; 3];
+        let mut constants = [[0i32; MAX]; 3];
+
+        // Compute each edge's constant at each sample, in 32 bits where the triangle is small
+        // enough.
         let [xs, ys] = pattern.axes();
         if place.is_small() {
             let corners;
             (edges, corners) = place.edges();
             for i in 0..3 {
-                for s in 0..MOST {
+                for s in 0..MAX {
                     constants[i][s] = edges[i].constant(corners[i], [xs[s], ys[s]]);
                 }
             }
@@ -538,16 +568,18 @@ impl<S: Simd, const MOST: usize> SampleEdges<S, MOST> {
 
 /// The least and the largest values that the edge functions take on the samples of the eight blocks of a tile's top row.
 pub(crate) struct Extremes<S: Simd> {
+    /// Least values, by edge; one lane for each block.
     least: [I32x8<S>; 3],
+    /// Largest values, by edge; one lane for each block.
     largest: [I32x8<S>; 3],
 }
 
 impl<S: Simd> Extremes<S> {
     #[inline(always)]
-    pub(crate) fn new<const MOST: usize>(
+    pub(crate) fn new<const MAX: usize>(
         simd: S,
         edges: &[Edge; 3],
-        constants: &[[i32; MOST]; 3],
+        constants: &[[i32; MAX]; 3],
         samples: usize,
     ) -> Self {
         let side = BLOCK as i32 - 1;

@@ -35,6 +35,8 @@ pub fn cull(
     counters.instances = instances.len() as u64;
     counters.triangles = u64::from(session.world.facet_count);
     let all = |i: usize| 0..instances[i].mesh.triangles.len() as u32;
+
+    // Keep everything if culling is off.
     if !enabled {
         return (0..instances.len()).map(|i| VisibleInstance { instance: i, ranges: vec![all(i)] }).collect();
     }
@@ -47,7 +49,7 @@ pub fn cull(
         let tests = &mut counters.box_tests;
         BoundsTree::new(&boxes).visible(&Frustum::from_matrix(clip_from_world), &mut |test| {
             *tests += 1;
-            execution.tell(|| step(test, None));
+            execution.report(|| step(test, None));
         })
     };
 
@@ -63,8 +65,9 @@ pub fn cull(
         } else {
             let mut tested = |test: &BoxTest| {
                 counters.box_tests += 1;
-                execution.tell(|| step(test, Some(i as u32)));
+                execution.report(|| step(test, Some(i as u32)));
             };
+            // Test the object's own box first.
             let (bounds, items) = (instance.model_bounds, all(i));
             let (containment, beyond) = frustum.find_box(&bounds);
             tested(&BoxTest { bounds, items, containment, beyond });
@@ -84,6 +87,8 @@ pub fn cull(
             visible.push(VisibleInstance { instance: i, ranges });
         }
     }
+
+    // Count what was culled.
     counters.instances_culled = (instances.len() - visible.len()) as u64;
     let kept: u64 = visible.iter().flat_map(|v| &v.ranges).map(|r| u64::from(r.end - r.start)).sum();
     counters.triangles_culled = counters.triangles - kept;

@@ -19,13 +19,13 @@ const SIDES: usize = 5;
 
 /// A square window of the picture.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Window {
+pub(crate) struct PixelWindow {
     clip_from_world: DMat4,
     /// Inner products with points in clip space are not negative inside.
     planes: [DVec4; SIDES],
 }
 
-impl Window {
+impl PixelWindow {
     /// The window of `side` pixels from `corner`, the upper left one, and `margin` pixels around it.
     pub(crate) fn new(view: &ViewTransform, viewport: Viewport, corner: [u32; 2], side: u32, margin: f64) -> Self {
         let half = [viewport.width, viewport.height].map(|size| f64::from(size) * 0.5);
@@ -42,19 +42,19 @@ impl Window {
     }
 
     /// Its pyramid in the model space of an instance.
-    pub(crate) fn pyramid_of(&self, instance: &Instance) -> Pyramid {
+    pub(crate) fn pyramid_of(&self, instance: &Instance) -> WindowPyramid {
         let model_from_clip = (self.clip_from_world * instance.world_from_model).transpose();
-        Pyramid { sides: self.planes.map(|plane| model_from_clip * plane) }
+        WindowPyramid { sides: self.planes.map(|plane| model_from_clip * plane) }
     }
 }
 
 /// The projectors through a window, in a model's space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pyramid {
+pub(crate) struct WindowPyramid {
     sides: [DVec4; SIDES],
 }
 
-impl Pyramid {
+impl WindowPyramid {
     /// The triangles of `ranges` that reach into it, as runs; `run_bounds` are the boxes of the mesh's runs.
     pub(crate) fn triangles(&self, mesh: &Mesh, run_bounds: &[Aabb], ranges: &[Range<u32>]) -> Vec<Range<u32>> {
         let mut found: Vec<Range<u32>> = Vec::new();
@@ -90,6 +90,7 @@ impl Pyramid {
 
     /// Whether a triangle reaches into it.
     pub(crate) fn meets(&self, corners: &[DVec3; 3]) -> bool {
+        // Test the corners against the sides: all beyond one side, or all inside.
         let distance = |side: &DVec4, p: DVec3| side.truncate().dot(p) + side.w;
         let mut is_inside = true;
         for side in &self.sides {
@@ -141,8 +142,8 @@ mod tests {
         let camera = Camera::look_at(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO);
         let view = camera.transform(1.0, (4.0, 6.0));
         let viewport = Viewport::new(100, 100).unwrap();
-        let window = Window::new(&view, viewport, [50, 50], 1, 0.0);
-        let pyramid = Pyramid { sides: window.planes.map(|plane| view.clip_from_world().transpose() * plane) };
+        let window = PixelWindow::new(&view, viewport, [50, 50], 1, 0.0);
+        let pyramid = WindowPyramid { sides: window.planes.map(|plane| view.clip_from_world().transpose() * plane) };
         let triangle = |x: f64, z: f64, size: f64| {
             [DVec3::new(x, -size, z), DVec3::new(x + size, -size, z), DVec3::new(x, size, z)]
         };

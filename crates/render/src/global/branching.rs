@@ -4,9 +4,9 @@ use super::coincident::CoincidentGroups;
 use super::media::{Border, Media};
 use super::ray_scene::RayScene;
 use super::rays::{Branch, Haze, Rays, counts};
-use super::surface::Surface;
+use super::surface::HitSurface;
 use crate::shading::{Bounce, ShadedPoints, Strata};
-use crate::shadow::{Place, hash};
+use crate::shadow::{SurfacePoint, hash};
 use crate::stats::TracingCounters;
 use vitral_light::{reflected_share, transmitted};
 use vitral_math::{DVec3, func};
@@ -68,6 +68,7 @@ impl Branching<'_> {
         rays: &mut Rays,
         counters: &mut TracingCounters,
     ) {
+        // Look up the surface that was hit.
         let RayHit { lit, at, from_behind, so_far } = *met;
         let Bounce { normal, mirror, place } = lit.bounces[at];
         let alpha = lit.colors[at][3];
@@ -85,6 +86,8 @@ impl Branching<'_> {
             Some(Way::None) => Some(1.0),
             Some(Way::Straight(_)) | None => None,
         };
+
+        // Weigh the parts that pass and that are mirrored.
         let (mirror, passes) = shares(mirror, passes, fresnel);
         let weight = |part: [f32; 4]| [0, 1, 2, 3].map(|k| ray.weight[k] * part[k]);
         let passing = weight([passes[0], passes[1], passes[2], 1.0 - alpha]);
@@ -94,6 +97,7 @@ impl Branching<'_> {
         let go_on = Branch { own: place.facet, travelled, seed: place.seed, pile: None, ..*ray };
         let next = |towards: DVec3| place.position + towards * self.scene.clearance(place.position);
 
+        // Follow the light that passes.
         if counts(passing, least) {
             let branch = Branch { weight: passing, origin: next(-surface.facet), ..go_on };
             if !is_last {
@@ -115,6 +119,8 @@ impl Branching<'_> {
             counters.stopped_by_weight += 1;
             rays.end(ray.target, passing);
         }
+
+        // Follow the light that is mirrored.
         if counts(mirrored, least) {
             if ray.depth < self.max_depth {
                 counters.mirrored += 1;
@@ -137,23 +143,28 @@ impl Branching<'_> {
         &self,
         ray: &Branch,
         branch: &Branch,
-        (surface, haze): (&Surface, &Haze),
+        (surface, haze): (&HitSurface, &Haze),
         way: Way,
         rays: &mut Rays,
         counters: &mut TracingCounters,
     ) -> bool {
+        // Find direction and media behind the surface.
         let (direction, media, bent) = match way {
             Way::Straight(media) => (ray.direction, media, false),
             Way::Bent(direction, media, _) => (direction, media, true),
             Way::None => return false,
         };
         let branch = Branch { media, ..*branch };
+
+        // Pass straight on without a change of depth.
         let scatters = self.scene.scatters(branch.own);
         if !bent && scatters.is_none() {
             counters.passed += 1;
             rays.free.push(branch);
             return true;
         }
+
+        // Scatter or refract the ray; both go one generation deeper.
         let branch = Branch { weight: rays.fade(branch.target, branch.weight, haze), ..branch };
         if ray.depth >= self.max_depth {
             counters.stopped_by_depth += 1;
@@ -171,8 +182,8 @@ impl Branching<'_> {
     fn pass_to_next(
         &self,
         branch: &Branch,
-        (surface, haze): (&Surface, &Haze),
-        place: &Place,
+        (surface, haze): (&HitSurface, &Haze),
+        place: &SurfacePoint,
         rays: &mut Rays,
         counters: &mut TracingCounters,
     ) {
@@ -201,7 +212,7 @@ impl Branching<'_> {
         &self,
         branch: &Branch,
         axis: DVec3,
-        surface: &Surface,
+        surface: &HitSurface,
         exponent: f32,
         rays: &mut Vec<Branch>,
         counters: &mut TracingCounters,
@@ -218,7 +229,7 @@ impl Branching<'_> {
     }
 
     /// How the ray goes on behind the surface, or behind all those of a pile.
-    fn through(&self, ray: &Branch, surface: &Surface, (number, from_behind): (u32, bool), pile: &[u32]) -> Way {
+    fn through(&self, ray: &Branch, surface: &HitSurface, (number, from_behind): (u32, bool), pile: &[u32]) -> Way {
         let border = if pile.is_empty() {
             self.scene.crossing(number, from_behind).map(|(material, entering)| ray.media.cross(material, entering))
         } else {

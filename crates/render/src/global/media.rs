@@ -6,15 +6,15 @@
 //!
 //! In:   material, entering or leaving. Out: the materials before and behind the surface.
 //! Cost: constant.
-//! Source: \[Glassner 1989\]. Departs from it: beyond [`MOST`] media the outermost is forgotten.
+//! Source: \[Glassner 1989\]. Departs from it: beyond [`MAX_MEDIA`] media the outermost is forgotten.
 
 /// Most media that are remembered.
-pub const MOST: usize = 8;
+pub const MAX_MEDIA: usize = 8;
 
 /// See the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Media {
-    stack: [u32; MOST],
+    stack: [u32; MAX_MEDIA],
     count: u8,
 }
 
@@ -38,7 +38,7 @@ impl Media {
     /// The ray enters a body of `material`.
     pub fn enter(self, material: u32) -> Border {
         let mut then = self;
-        if usize::from(then.count) == MOST {
+        if usize::from(then.count) == MAX_MEDIA {
             then.stack.copy_within(1.., 0);
             then.count -= 1;
         }

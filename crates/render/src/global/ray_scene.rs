@@ -6,7 +6,7 @@ use super::coincident::{CoincidentGroups, unit_normal};
 use super::media::Media;
 use super::rays::Branch;
 use super::sky::Sky;
-use super::surface::Surface;
+use super::surface::HitSurface;
 use crate::prepare::mirrors;
 use crate::raytrace::Visitor;
 use crate::raytrace::beam::Beam;
@@ -14,7 +14,7 @@ use crate::raytrace::intersect::Ray;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::{FrameConstants, Hit};
-use crate::shadow::{Place, clearance, facet, weighted, weights};
+use crate::shadow::{SurfacePoint, clearance, facet, weighted, weights};
 use vitral_exec::Workers;
 use vitral_math::{DMat3, DVec3, Vec3, dvec3};
 use vitral_scene::bodies::Side;
@@ -137,19 +137,19 @@ impl<'a> RayScene<'a> {
         let weights = [along_edges(0), along_edges(1), along_edges(2)];
         let origin = self.constants.view.view.view_from_world.transform_point3(branch.origin + triangles.center);
         let seed = branch.seed.wrapping_mul(0x2c92_77b5).wrapping_add(0xac56_4b05);
-        let place = Place { position, normal, facet, seed, pixel: None };
+        let place = SurfacePoint { position, normal, facet, seed, pixel: None };
         (Hit { weights, origin: origin.as_vec3().to_array(), place, row: branch.row }, from_behind)
     }
 
     /// The surface on the ray's side.
-    pub(super) fn surface(&self, ray: &Branch, normal: [f32; 3], place: &Place) -> Surface {
+    pub(super) fn surface(&self, ray: &Branch, normal: [f32; 3], place: &SurfacePoint) -> HitSurface {
         let [x, y, z] = normal.map(f64::from);
         let shading = (self.view_from_world.transpose() * dvec3(x, y, z)).normalize_or_zero();
         let facet = if place.normal.dot(ray.direction) > 0.0 { -place.normal } else { place.normal };
         // A shading normal that the ray cannot see is of no use.
         let usable = |n: DVec3| n.dot(ray.direction) < -1e-4;
         let n = [shading, -shading].into_iter().find(|n| usable(*n)).unwrap_or(facet);
-        Surface { n, facet }
+        HitSurface { n, facet }
     }
 
     /// The exponent with which a facet scatters what passes it, if it does.

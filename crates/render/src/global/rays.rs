@@ -37,7 +37,9 @@ pub(super) struct Branch {
 /// Depth cueing at a surface that the eye sees on a straight way: what is kept of its light, and what that fades into. Light that turns
 /// there is its light.
 pub(super) struct Haze {
+    /// The part of the light that is left.
     pub(super) kept: f32,
+    /// The colour that the rest becomes.
     pub(super) color: [f32; 3],
 }
 

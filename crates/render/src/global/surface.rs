@@ -3,14 +3,14 @@
 use vitral_math::DVec3;
 
 /// Normals on the side from which a ray comes, world space, unit.
-pub(super) struct Surface {
+pub(super) struct HitSurface {
     /// Of the shape that the facets stand for.
     pub(super) n: DVec3,
-    /// Of the facet.
+    /// Normal of the facet, on the side that the ray meets.
     pub(super) facet: DVec3,
 }
 
-impl Surface {
+impl HitSurface {
     /// The direction, on the side to which light goes that passes: the other half of the lobe is folded over.
     pub(super) fn behind(&self, direction: DVec3) -> DVec3 {
         let towards = self.facet.dot(direction);
@@ -32,11 +32,11 @@ mod tests {
 
     #[test]
     fn p36_e14_mirrors_obey_the_law_of_reflection() {
-        let surface = Surface { n: DVec3::Y, facet: DVec3::Y };
+        let surface = HitSurface { n: DVec3::Y, facet: DVec3::Y };
         let down = dvec3(0.6, -0.8, 0.0);
         assert!(surface.mirrored(down).abs_diff_eq(dvec3(0.6, 0.8, 0.0), 1e-15));
         // A bent normal must not send the ray into the facet.
-        let tilted = Surface { n: dvec3(0.8, 0.6, 0.0), facet: DVec3::Y };
+        let tilted = HitSurface { n: dvec3(0.8, 0.6, 0.0), facet: DVec3::Y };
         let grazing = dvec3(-0.6, -0.05, 0.0).normalize();
         assert!(tilted.mirrored(grazing).y > 0.0);
     }

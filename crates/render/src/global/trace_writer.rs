@@ -1,7 +1,7 @@
 //! Tells the rays of a picture to whoever looks on: what each meets, and how it goes on from there.
 
 use super::rays::{Branch, Rays};
-use super::surface::Surface;
+use super::surface::HitSurface;
 use crate::shading::FrameConstants;
 use crate::stats::TracingCounters;
 use crate::trace::{Observer, Step, Way};
@@ -41,7 +41,7 @@ impl TraceWriter<'_> {
     pub(super) fn goes_on(
         &self,
         ray: &Branch,
-        surface: &Surface,
+        surface: &HitSurface,
         facet: u32,
         rays: &Rays,
         (before, reflections): ([usize; 2], u64),
@@ -50,6 +50,7 @@ impl TraceWriter<'_> {
         let index =
             |branch: &Branch| branch.media.innermost().map_or(1.0, |m| self.constants.material(Some(m)).material.ior);
         let degrees = |cos: f64| func::acos(cos.abs().min(1.0)).to_degrees();
+        // Name the way by which the ray leaves the surface.
         for branch in rays.free[before[0]..].iter().chain(&rays.piled[before[1]..]) {
             let passes = branch.direction.dot(surface.facet) < 0.0;
             let way = match passes {

@@ -41,7 +41,7 @@ use crate::raytrace::intersect::Ray;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::{FrameConstants, Front, Hit, Points, ShadedPoints, Strata, Tracer, shade_hits};
-use crate::shadow::Place;
+use crate::shadow::SurfacePoint;
 use crate::stats::TracingCounters;
 use crate::visible::nearer;
 use crate::{Execution, Settings};
@@ -99,16 +99,21 @@ impl<'a> Whitted<'a> {
     ) -> Result<Self, Limit> {
         let view = constants.view;
         let facets = u64::from(view.session.world.facet_count);
+        // Refuse work that takes too long without an acceleration structure.
         if view.acceleration.asks_all {
             // About as many rays as samples.
             let samples = u64::from(view.viewport.width) * u64::from(view.viewport.height) * view.pattern.len() as u64;
             execution.budget.check_work(samples.saturating_mul(facets), "ray tracing without a structure")?;
         }
+
+        // Charge for the structure and the trees of rays.
         let forests = (execution.workers.threads() * TOGETHER * 8) as u64 * size_of::<(Branch, Hit)>() as u64;
         let charged = Triangles::bytes(facets) + AnyStructure::bytes(view.acceleration, facets) + forests;
         execution.budget.charge(charged, "ray tracing")?;
         let structure = AnyStructure::new(view.acceleration, view.session, execution)
             .inspect_err(|_| execution.budget.release(charged))?;
+
+        // Prepare the scene for rays.
         let scene = RayScene::new(constants, structure, &execution.workers);
         Ok(Self {
             surroundings: scene.surroundings(),
@@ -157,8 +162,9 @@ impl<'a> Whitted<'a> {
         forest.rays.clear();
         forest.piles.clear();
         for &target in targets {
+            // Trace the eye's ray to the first surface.
             let bounce = lit.bounces[target as usize];
-            let Place { position, facet: number, .. } = bounce.place;
+            let SurfacePoint { position, facet: number, .. } = bounce.place;
             let (direction, travelled) = scene.eye_ray(position);
             let (corners, from_behind) = scene.seen(direction, number);
             let touches = front.touching.binary_search(&number).is_ok();
@@ -181,9 +187,13 @@ impl<'a> Whitted<'a> {
             };
             let so_far = lit.colors[target as usize];
             let met = RayHit { lit, at: target as usize, from_behind, so_far };
+
+            // Report the hit to the observer.
             if let Some(writer) = writer {
                 writer.meets(&eye_ray, Some((number, travelled)), lit.colors[target as usize]);
             }
+
+            // Branch into mirrored and passing rays.
             let before = (forest.rays.len(), counters.total_reflections);
             self.branching.branch(&eye_ray, travelled, &met, &forest.piles, &mut forest.rays, counters);
             if let Some(writer) = writer {
@@ -191,6 +201,8 @@ impl<'a> Whitted<'a> {
                 writer.goes_on(&eye_ray, &surface, number, &forest.rays, before, counters);
             }
         }
+
+        // Add the rays that ended.
         forest.rays.settle(&mut lit.colors);
     }
 
@@ -254,6 +266,7 @@ impl<'a> Whitted<'a> {
             }
             let (met, crowded) = scene.structure.closest_hits(simd, &straight[..eight.len()], &own, &mut searched);
             for ((ray, met), crowded) in eight.iter().zip(met).zip(crowded) {
+                // Add the background of rays that hit nothing.
                 let Some((place, t)) = met else {
                     let seen = scene.background(ray);
                     add(&mut colors[ray.target as usize], ray.weight, seen);
@@ -262,6 +275,8 @@ impl<'a> Whitted<'a> {
                     }
                     continue;
                 };
+
+                // Find the facets that coincide with the one that was hit.
                 let position = ray.origin + ray.direction * f64::from(t);
                 let (triangles, mut place) = (scene.structure.triangles(), place);
                 let facet = triangles.facets[place];
@@ -276,6 +291,8 @@ impl<'a> Whitted<'a> {
                 hits.push(hit);
             }
         }
+
+        // Count the work.
         counters.rays += rays.free.len() as u64;
         counters.box_tests += searched.boxes;
         counters.triangle_tests += searched.triangles;
@@ -294,11 +311,14 @@ impl<'a> Whitted<'a> {
         let Forest { next, piles, hitting, hits, lit: met, .. } = forest;
         next.clear();
         for (i, ((ray, from_behind), hit)) in hitting.iter().zip(hits.iter()).enumerate() {
+            // Add the light of the hit.
             add(&mut colors[ray.target as usize], ray.weight, met.colors[i]);
             if let Some(writer) = writer {
                 let distance = ray.origin.distance(hit.place.position);
                 writer.meets(ray, Some((hit.place.facet, distance)), met.colors[i]);
             }
+
+            // Branch where the surface mirrors or lets light through.
             if scene.constants.follows(hit.place.facet) {
                 let travelled = ray.travelled + ray.origin.distance(hit.place.position);
                 let so_far = colors[ray.target as usize];
@@ -339,6 +359,7 @@ impl Tracer for Whitted<'_> {
     }
 
     fn follow(&self, front: &Front, points: &Points, lit: &mut ShadedPoints) {
+        // Prepare the counters, and a writer if somebody observes.
         let mut counters = TracingCounters { shadow_rays: lit.shadow_rays, ..TracingCounters::default() };
         let scene = &self.branching.scene;
         let writer = self.execution.observer.as_deref().map(|observer| TraceWriter {
@@ -349,6 +370,8 @@ impl Tracer for Whitted<'_> {
         });
         let writer = writer.as_ref();
         let mut forest = self.spare_forests.lock().expect("spare forests").pop().unwrap_or_default();
+
+        // Grow the trees of some samples at a time, generation by generation.
         for targets in points.followed.chunks(TOGETHER) {
             self.plant(targets, front, points, lit, &mut forest, writer, &mut counters);
             while !forest.rays.is_empty() {
@@ -359,6 +382,8 @@ impl Tracer for Whitted<'_> {
                 dispatch!(level, simd => self.generation(simd, &mut forest, colors, writer, &mut counters));
             }
         }
+
+        // Return the memory and add the counters.
         self.spare_forests.lock().expect("spare forests").push(forest);
         if let Ok(sum) = &mut *self.outcome.lock().expect("no thread panics while it counts") {
             sum.add(&counters);

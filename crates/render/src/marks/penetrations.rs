@@ -58,12 +58,15 @@ impl Penetrations {
     }
 
     fn find(world: &World, execution: &Execution) -> Result<Self, Limit> {
+        // Collect the triangles relative to the scene's middle.
         let bounds = &world.bounds;
         let center = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
         let triangles = triangles(world, center);
         if triangles.len() < 2 {
             return Ok(Self { center, lines: Vec::new() });
         }
+
+        // Build the tree and search pairs of subtrees in parallel.
         let noise = bounds.min.abs().max(bounds.max.abs()).max_element() * ROUNDING;
         let tree = Tree::new(&triangles, noise, execution)?;
         let tasks = tree.tasks();
@@ -74,6 +77,8 @@ impl Penetrations {
             tree.meet(a, b, &triangles, &mut lines, &|| execution.budget.check("lines of penetration"))?;
             Ok(lines)
         });
+
+        // Join the lines up to the limit.
         let mut lines = Vec::new();
         for found in found {
             lines.extend(found?);
@@ -217,6 +222,7 @@ impl Tree {
         check: &dyn Fn() -> Result<(), Limit>,
     ) -> Result<(), Limit> {
         let (mut stack, mut leaves) = (vec![[a, b]], 0usize);
+        // Skip pairs of nodes whose boxes are apart, and split larger ones.
         while let Some([a, b]) = stack.pop() {
             if !self.may_meet(a, b) || lines.len() >= MOST_LINES {
                 continue;
@@ -225,6 +231,8 @@ impl Tree {
                 stack.extend(parts);
                 continue;
             }
+
+            // Intersect the triangles of two leaves.
             leaves += 1;
             if leaves.is_multiple_of(4096) {
                 check()?;
@@ -248,11 +256,15 @@ impl Tree {
 fn build(items: &mut [(Bounds, u32)], first: u32, execution: &Execution) -> Result<Vec<Node>, Limit> {
     /// Subtrees of fewer triangles are built by one thread.
     const ALONE: usize = 8192;
+
+    // Make a leaf of few triangles.
     let bounds = items.iter().fold(Bounds::EMPTY, |all, (b, _)| all.with(b));
     let node = |second| Node { bounds, items: first..first + items.len() as u32, second };
     if items.len() <= LEAF {
         return Ok(vec![node(0)]);
     }
+
+    // Split at the median along the longest side.
     let mut nodes = vec![node(0)];
     let (axis, half) = (bounds.longest_axis(), items.len() / 2);
     items.select_nth_unstable_by(half, |a, b| a.0.middle(axis).total_cmp(&b.0.middle(axis)).then(a.1.cmp(&b.1)));
@@ -264,6 +276,8 @@ fn build(items: &mut [(Bounds, u32)], first: u32, execution: &Execution) -> Resu
     } else {
         (build(low, first, execution), build(high, middle, execution))
     };
+
+    // Append both subtrees with their indices moved.
     for part in [low?, high?] {
         let offset = nodes.len() as u32;
         if offset > 1 {

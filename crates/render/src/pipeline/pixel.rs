@@ -38,6 +38,7 @@ pub fn examine_pixel(
     execution: &Execution,
     pixel: [u32; 2],
 ) -> Result<ExaminedPixel, Error> {
+    // Check the settings and find the pixel's tile.
     let viewport = settings.check()?;
     let direct = (settings.global.model == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
     let shot = &direct_shot(shot, direct.as_deref());

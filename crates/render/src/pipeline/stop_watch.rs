@@ -9,7 +9,7 @@ pub(super) struct StopWatch<'a> {
 }
 
 impl<'a> StopWatch<'a> {
-    /// Begins now.
+    /// Starts at the call.
     pub(super) fn start(budget: &'a Budget) -> Self {
         Self { budget, last: budget.elapsed() }
     }

@@ -9,7 +9,7 @@
 use super::element::Color;
 use super::parts::{PARTS, WHOLE, middle, parts, quarters};
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{Parts, Place, Places, ShadowAlgorithm, Shadows, ray::RayShadows};
+use crate::shadow::{LightVisibility, PreparedShadows, ShadowAlgorithm, SurfacePoint, SurfacePoints, ray::RayShadows};
 use crate::{Execution, GlobalSettings, Session, Settings};
 use vitral_exec::Limit;
 use vitral_light::{Light, PreparedLight};
@@ -25,7 +25,7 @@ const MOST_DEPTH: u32 = 2;
 pub(super) struct Direct<'a> {
     /// With their numbers.
     lights: Vec<(usize, PreparedLight)>,
-    shadows: Box<dyn Shadows + 'a>,
+    shadows: Box<dyn PreparedShadows + 'a>,
 }
 
 impl<'a> Direct<'a> {
@@ -49,15 +49,15 @@ impl<'a> Direct<'a> {
     }
 
     /// What arrives on average at those parts of a triangle that are `there`; `side` says where it faces.
-    pub(super) fn mean(&self, side: &Place, corners: [DVec3; 3], there: u16) -> Color {
+    pub(super) fn mean(&self, side: &SurfacePoint, corners: [DVec3; 3], there: u16) -> Color {
         self.mean_at(side, corners, there, 0)
     }
 
-    fn mean_at(&self, side: &Place, corners: [DVec3; 3], there: u16, depth: u32) -> Color {
+    fn mean_at(&self, side: &SurfacePoint, corners: [DVec3; 3], there: u16, depth: u32) -> Color {
         let numbers: Vec<usize> = (0..PARTS).filter(|part| there >> part & 1 == 1).collect();
         let parts = parts(corners);
         let seed = |part: usize| side.seed.wrapping_mul(PARTS as u32).wrapping_add(part as u32);
-        let place = |&part: &usize| Place { position: middle(parts[part]), seed: seed(part), ..*side };
+        let place = |&part: &usize| SurfacePoint { position: middle(parts[part]), seed: seed(part), ..*side };
         let mut light = self.arriving(&numbers.iter().map(place).collect::<Vec<_>>());
         let sums: Vec<f64> = light.iter().map(|color| color.iter().sum()).collect();
         let most = sums.iter().copied().fold(0.0, f64::max);
@@ -78,11 +78,12 @@ impl<'a> Direct<'a> {
         [0, 1, 2].map(|k| light.iter().map(|c| c[k]).sum::<f64>() / count)
     }
 
-    fn arriving(&self, places: &[Place]) -> Vec<Color> {
+    fn arriving(&self, places: &[SurfacePoint]) -> Vec<Color> {
         let three = |v: DVec3| V3::splat(0.0f32, v.as_vec3().to_array());
         let mut sums = vec![[0.0; 3]; places.len()];
-        let all: Places = places.iter().copied().collect();
+        let all: SurfacePoints = places.iter().copied().collect();
         for (number, light) in &self.lights {
+            // Compute what would arrive if nothing were in between.
             let unhidden = places.iter().map(|place| {
                 let (position, normal) = (three(place.position), three(place.normal));
                 light.irradiance(position, normal).unwrap_or_else(|| {
@@ -94,8 +95,10 @@ impl<'a> Direct<'a> {
             if unhidden.iter().all(|&light| light <= 0.0) {
                 continue;
             }
-            let mut visible = Parts::new(places.len(), [0.0; 3]);
-            self.shadows.arriving(*number, &all, &mut visible, &mut 0);
+
+            // Multiply by the visible part of the light.
+            let mut visible = LightVisibility::new(places.len(), [0.0; 3]);
+            self.shadows.light_visibility(*number, &all, &mut visible, &mut 0);
             for (i, sum) in sums.iter_mut().enumerate() {
                 let visible = visible.get(i);
                 (0..3).for_each(|k| sum[k] += f64::from(light.diffuse[k] * visible[k] * unhidden[i]));

@@ -9,14 +9,14 @@ use vitral_math::DVec3;
 pub type Color = [f64; 3];
 
 /// The form factors from one side of an element to sides of others.
-pub type Row = Vec<(u32, f64)>;
+pub type FormFactors = Vec<(u32, f64)>;
 
 /// A small triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Element {
     /// Its node in the trees.
     pub node: u32,
-    /// Its patch.
+    /// The patch that sends what the element reflects.
     pub patch: u32,
     /// Middle, world space less the scene's.
     pub center: DVec3,

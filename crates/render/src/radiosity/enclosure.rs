@@ -10,17 +10,17 @@
 //! Source: \[Goral et al. 1984\].
 
 use super::direct::Direct;
-use super::element::{Color, Element, Patch, Row, turned};
+use super::element::{Color, Element, FormFactors, Patch, turned};
 use super::lamps::lamps;
 use super::neighbours::Neighbours;
 use super::parts::{PARTS, middle};
 use super::patch::{NONE, Trees, area};
-use super::surface::{Surface, Surfaces};
+use super::surface::{ElementSurface, Surfaces};
 use super::targets::Targets;
 use super::walls;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{Place, facet as facet_of};
+use crate::shadow::{SurfacePoint, facet as facet_of};
 use crate::{Execution, Session, Settings};
 use std::sync::Arc;
 use vitral_exec::Limit;
@@ -97,7 +97,7 @@ fn elements(
     let leaves = trees.leaves();
     let surfaces = Surfaces::new(session, settings);
     let found = execution.workers.map(leaves.len(), |i| {
-        let Surface { normal, there, reflectance, emission } = surfaces.of(trees, leaves[i]);
+        let ElementSurface { normal, there, reflectance, emission } = surfaces.of(trees, leaves[i]);
         let corners = trees.places(leaves[i]);
         let area = area(corners) * f64::from(there.count_ones()) / PARTS as f64;
         let patch = trees.nodes[leaves[i] as usize].patch;
@@ -195,7 +195,7 @@ impl Enclosure {
     }
 
     /// The sides of elements that a place sees, for the elements that it sees.
-    pub(super) fn sides(&self, mut seen: Row, place: DVec3) -> Row {
+    pub(super) fn sides(&self, mut seen: FormFactors, place: DVec3) -> FormFactors {
         for (number, _) in &mut seen {
             let element = &self.elements[*number as usize];
             *number = 2 * *number + u32::from(element.normal.dot(place - element.center) < 0.0);
@@ -212,9 +212,11 @@ impl Enclosure {
         execution: &Execution,
     ) -> Result<(), Limit> {
         let Some(direct) = Direct::new(session, lights, settings, execution)? else { return Ok(()) };
+
+        // Compute what arrives from light sources at both sides of each element.
         let arriving = execution.workers.map(self.emission.len(), |i| {
             let element = &self.elements[i / 2];
-            let side = Place {
+            let side = SurfacePoint {
                 position: element.center,
                 normal: element.normal * turned(i),
                 facet: self.trees.facet_of_piece(self.trees.nodes[element.node as usize].facet),
@@ -223,6 +225,8 @@ impl Enclosure {
             };
             direct.mean(&side, self.trees.places(element.node), element.there)
         });
+
+        // Emit the reflected part.
         for (i, arriving) in arriving.iter().enumerate() {
             let reflectance = self.elements[i / 2].reflectance;
             (0..3).for_each(|k| self.emission[i][k] += reflectance[k] * arriving[k]);

@@ -3,8 +3,8 @@
 //! From a point (a differential area), Lambert's formula sums over the polygon's edges the angle under which each is seen,
 //! times the cosine between the normal and the edge's plane. From an area, Stokes' theorem turns the double integral over
 //! both areas into one over both outlines, `F = 1 / (2π A) ∮∮ ln r dx·dy`. The inner integral, of the logarithm of the
-//! distance to a point along an edge, has a closed form; the outer one is computed by Gauss' rule, cut in half until it
-//! does not change any more, which resolves the corner where edges meet.
+//! distance to a point along an edge, has a closed form; the outer one is computed by Gauss' rule, cut in half until the
+//! result settles, which resolves the corner where edges meet.
 //!
 //! In:   planar polygons, counter-clockwise seen from the side that shines or is shone on; each wholly in front of the
 //!       other. Out: form factors.
@@ -54,8 +54,12 @@ pub fn between(from: &[DVec3], to: &[DVec3]) -> f64 {
     if area == 0.0 {
         return 0.0;
     }
+
+    // Scale the tolerance to the edges.
     let scale = edges(from).chain(edges(to)).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
     let mut sum = 0.0;
+
+    // Sum the contour integrals of all pairs of edges.
     for (a, b) in edges(from) {
         for (p, q) in edges(to) {
             let along = (b - a).dot(q - p);

@@ -7,7 +7,7 @@
 //! Cost: a hemicube for each side, memory for all form factors, and some ten passes over them.
 //! Source: \[Goral et al. 1984\], \[Cohen & Greenberg 1985\].
 
-use super::element::{Color, Row, turned};
+use super::element::{Color, FormFactors, turned};
 use super::enclosure::Enclosure;
 use super::hemicube::Hemicube;
 use crate::Execution;
@@ -20,7 +20,7 @@ const MOST_PASSES: usize = 1000;
 ///
 /// # Errors
 /// A limit of the budget.
-pub fn rows(enclosure: &Enclosure, hemicube: &Hemicube, execution: &Execution) -> Result<Vec<Row>, Limit> {
+pub fn rows(enclosure: &Enclosure, hemicube: &Hemicube, execution: &Execution) -> Result<Vec<FormFactors>, Limit> {
     let row = |side: usize| {
         let element = &enclosure.elements[side / 2];
         let from = (element.center, element.normal * turned(side));
@@ -31,10 +31,11 @@ pub fn rows(enclosure: &Enclosure, hemicube: &Hemicube, execution: &Execution) -
 }
 
 /// Solves the equations until no radiosity changes by more than `tolerance`.
-pub fn solve(enclosure: &Enclosure, rows: &[Row], tolerance: f64) -> Vec<Color> {
+pub fn solve(enclosure: &Enclosure, rows: &[FormFactors], tolerance: f64) -> Vec<Color> {
     let mut radiosity = enclosure.emission.clone();
     for _ in 0..MOST_PASSES {
         let mut change = 0.0f64;
+        // Gather at each side what all others send, with the newest values (Gauss and Seidel).
         for (side, row) in rows.iter().enumerate() {
             let reflectance = enclosure.elements[side / 2].reflectance;
             for k in 0..3 {

@@ -49,6 +49,7 @@ pub struct Hemicube {
 impl Hemicube {
     /// With `side` pixels along an edge of the top, an even number, for a scene of this size.
     pub fn new(side: u32, diagonal: f64) -> Self {
+        // Compute the form factor of each pixel of the top and of a wall.
         let step = 2.0 / f64::from(side);
         let at = |i: u32| (f64::from(i) + 0.5) * step - 1.0;
         let row = |wall: bool, row: u32| {
@@ -62,6 +63,8 @@ impl Hemicube {
         };
         let top: Vec<_> = (0..side).map(|i| row(false, i)).collect();
         let wall: Vec<_> = (0..side / 2).map(|i| row(true, i)).collect();
+
+        // Normalize them to a sum of one, and sum along the rows for spans.
         let sum = |rows: &[Vec<f64>]| rows.iter().flatten().sum::<f64>();
         let whole = sum(&top) + 4.0 * sum(&wall);
         let sums = [top, wall].map(|rows| {

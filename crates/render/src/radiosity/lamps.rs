@@ -45,7 +45,7 @@ const MOST_LAMPS: usize = 16;
 
 /// A surface that shines, as a light.
 pub(super) struct Lamp {
-    /// Its facets.
+    /// The facets that it stands for: one, or the two of a quadrilateral.
     pub(super) facets: Vec<u32>,
     pub(super) light: Light,
 }
@@ -74,6 +74,7 @@ pub(super) fn lamps(session: &Session) -> Vec<Lamp> {
             let material = part.material.and_then(|m| session.scene.materials.get(m as usize));
             let Some(material) = material.filter(|m| shines_evenly(m)) else { continue };
             let mut before: Option<(u32, [DVec3; 3], DVec3)> = None;
+            // Skip facets without area.
             for triangle in part.triangles.clone() {
                 let (corners, normal) = facet_of(instance, triangle, DVec3::ZERO);
                 let facet = instance.first_facet + triangle;
@@ -83,6 +84,8 @@ pub(super) fn lamps(session: &Session) -> Vec<Lamp> {
                 // Two halves of a quadrilateral are one lamp.
                 let whole = before.filter(|(_, _, n)| n.dot(normal) > 1.0 - 1e-9);
                 let whole = whole.and_then(|(other, first, _)| Some((other, quadrilateral(&first, &corners, normal)?)));
+
+                // Replace the last lamp by the quadrilateral of both, or add a lamp.
                 if let Some((other, outline)) = whole {
                     let sides = if material.double_sided { 2 } else { 1 };
                     lamps.truncate(lamps.len() - sides);
@@ -92,6 +95,8 @@ pub(super) fn lamps(session: &Session) -> Vec<Lamp> {
                     push(&mut lamps, vec![facet], &turned_to(corners, normal), material);
                     before = Some((facet, turned_to(corners, normal), normal));
                 }
+
+                // Give up when there are too many.
                 if lamps.len() > 2 * MOST_LAMPS {
                     return Vec::new();
                 }
@@ -148,10 +153,13 @@ fn shines_evenly(material: &Material) -> bool {
 }
 
 fn lies_on_a_lamp(session: &Session, shape: &AreaShape) -> bool {
+    // Spread points over the shape.
     let center = Triangles::center_of(&session.world);
     let Some(Spread { normal, size, mut points }) = Spread::new(shape) else { return false };
     let count = points.len();
     points.iter_mut().for_each(|p| *p -= center);
+
+    // Drop the points that lie on a shining facet parallel to it.
     for instance in &session.world.instances {
         for part in &instance.mesh.parts {
             let material = part.material.and_then(|m| session.scene.materials.get(m as usize));
@@ -172,6 +180,8 @@ fn lies_on_a_lamp(session: &Session, shape: &AreaShape) -> bool {
             }
         }
     }
+
+    // Decide by the majority of points.
     2 * points.len() <= count
 }
 

@@ -66,7 +66,7 @@ const CONTRAST: f64 = 0.5;
 
 /// What a solution depends on, besides the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Key {
+pub struct SolutionKey {
     lights: Vec<Light>,
     patch_size: Option<f64>,
     iterations: Option<u64>,
@@ -78,7 +78,7 @@ pub struct Key {
 }
 
 impl Cached for Solution {
-    type Key = Key;
+    type SolutionKey = SolutionKey;
     const REUSE: Reuse = Reuse::Session;
 }
 
@@ -86,7 +86,7 @@ impl Cached for Solution {
 struct LoadedSolution(Arc<Solution>);
 
 impl Cached for LoadedSolution {
-    type Key = ();
+    type SolutionKey = ();
     const REUSE: Reuse = Reuse::Session;
 }
 
@@ -99,6 +99,7 @@ pub(crate) fn solution(
     execution: &Execution,
     counters: &mut RadiosityCounters,
 ) -> Result<Arc<Solution>, crate::Error> {
+    // Take a loaded solution if it belongs to these lights.
     if let Some(LoadedSolution(loaded)) = session.cache.get::<LoadedSolution>().as_deref() {
         if loaded.key() != fingerprint_of(lights, settings) {
             let found = "the stored radiosity was found for other lights, another color space or transparency; these must be \
@@ -107,7 +108,9 @@ pub(crate) fn solution(
         }
         return Ok(Arc::clone(loaded));
     }
-    let key = Key {
+
+    // Otherwise find it in the cache, or solve.
+    let key = SolutionKey {
         lights: lights.to_vec(),
         patch_size: settings.global.patch_size,
         iterations: settings.global.iterations,
@@ -127,9 +130,12 @@ fn solve(
     execution: &Execution,
     counters: &mut RadiosityCounters,
 ) -> Result<Solution, Limit> {
+    // Reserve a part of the time for the solution.
     let start = execution.budget.elapsed();
     let limit = execution.budget.time_limit().map(|limit| SOLVING * limit);
     let execution = &Execution { budget: execution.budget.clone().with_time_limit(limit), ..execution.clone() };
+
+    // Choose hemicubes and the size of patches.
     let diagonal = session.world.bounds.diagonal();
     let hemicubes = HEMICUBES.map(|side| Hemicube::new(side, diagonal));
     let longest = settings.global.patch_size.unwrap_or(diagonal / 16.0);
@@ -252,6 +258,7 @@ fn mix_attributes<const N: usize>(mut hash: u64, attributes: &[Attribute<[f32; N
 impl Session {
     /// A number that tells this scene's shapes and what of its materials light depends on from others, for stored solutions.
     fn fingerprint(&self) -> u64 {
+        // Hash the geometry of each instance.
         let mut hash = FINGERPRINT;
         for instance in &self.world.instances {
             let matrix = instance.world_from_model.to_cols_array();
@@ -266,6 +273,8 @@ impl Session {
                 hash = solution::mix(hash, format!("{:?} {:?}", part.triangles, part.material).as_bytes());
             }
         }
+
+        // Hash the materials, and the textures that they use.
         let mut textures = BTreeSet::new();
         for m in &self.scene.materials {
             let surface = (&m.reflectance, m.emission, m.double_sided, m.opacity, &m.alpha_mode, m.filter);

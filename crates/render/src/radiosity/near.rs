@@ -9,7 +9,7 @@
 //! Cost: a search for neighbours; for each of those that face the patch up to 16 rays.
 //! Source: \[Wallace, Elmquist & Haines 1989\]. Departs from it: only near elements ask, and for all of the polygon.
 
-use super::element::{Row, turned};
+use super::element::{FormFactors, turned};
 use super::enclosure::Enclosure;
 use super::form_factor::from_point;
 use super::parts::quarters;
@@ -42,7 +42,8 @@ struct Sender {
 }
 
 /// Puts the factors of near elements right in what the hemicube on a side of a patch sees.
-pub(super) fn refined(enclosure: &Enclosure, seen: Row, shooter: usize, execution: &Execution) -> Row {
+pub(super) fn refined(enclosure: &Enclosure, seen: FormFactors, shooter: usize, execution: &Execution) -> FormFactors {
+    // Describe the side that shoots.
     let patch = &enclosure.patches[shooter / 2];
     if patch.is_group {
         return seen;
@@ -55,7 +56,9 @@ pub(super) fn refined(enclosure: &Enclosure, seen: Row, shooter: usize, executio
         longest: a.distance(b).max(b.distance(c)).max(c.distance(a)),
         area: 0.5 * (b - a).cross(c - a).length(),
     };
-    let mut near = Row::new();
+
+    // Compute the factors of near elements with rays.
+    let mut near = FormFactors::new();
     enclosure.neighbours.visit(&enclosure.elements, patch.center, NEAR * sender.longest, |number| {
         let element = &enclosure.elements[number as usize];
         let cuts = if element.center.distance(patch.center) < NEXT * sender.longest { 2 } else { 1 };
@@ -68,9 +71,11 @@ pub(super) fn refined(enclosure: &Enclosure, seen: Row, shooter: usize, executio
     if near.is_empty() {
         return seen;
     }
+
+    // Remove these elements from the hemicube's row.
     near.sort_unstable_by_key(|(side, _)| *side);
     let own = |side: u32| near.binary_search_by_key(&side, |(near, _)| *near).is_ok();
-    let (mut row, mut replaced) = (Row::with_capacity(seen.len() + near.len()), 0.0);
+    let (mut row, mut replaced) = (FormFactors::with_capacity(seen.len() + near.len()), 0.0);
     for (side, factor) in seen {
         if own(side) { replaced += factor } else { row.push((side, factor)) }
     }
@@ -89,6 +94,7 @@ impl Sender {
     /// The part of the sky above `point` that the side fills, as far as it is seen, cut into 4 to the power `cuts` parts;
     /// `None` if it would not be seen if nothing were in between.
     fn seen(&self, point: DVec3, normal: DVec3, cuts: u32, tree: &Bvh, execution: &Execution) -> Option<f64> {
+        // Skip the point if it lies behind the side or the side below its horizon.
         let (center, extent) = (tree.triangles().center, f64::from(tree.triangles().extent));
         let clear = clearance(point, extent);
         if (point - self.corners[0]).dot(self.normal) <= clear {
@@ -97,15 +103,21 @@ impl Sender {
         if self.corners.iter().all(|corner| (*corner - point).dot(normal) <= clear) {
             return None;
         }
+
+        // Compute the form factor without occlusion.
         let polygon = above(&self.corners, point, normal);
         let whole = from_point(point, normal, &polygon);
         if whole <= NOTHING {
             return None;
         }
+
+        // Cut the side into parts.
         let mut parts = vec![self.corners];
         for _ in 0..cuts {
             parts = parts.into_iter().flat_map(quarters).collect();
         }
+
+        // Trace a ray to the middle of each part that lies above the horizon.
         let mut visible = Vec::with_capacity(parts.len());
         let polygons = parts.iter().map(|part| above(part, point, normal)).filter(|polygon| polygon.len() > 2);
         let polygons: Vec<Vec<DVec3>> = polygons.collect();
@@ -122,6 +134,8 @@ impl Sender {
             });
             visible.extend(hits[..eight.len()].iter().map(|hit| hit.is_none_or(|(_, t)| t >= 1.0)));
         }
+
+        // Sum the form factors of the visible parts.
         if visible.iter().all(|v| *v) {
             return Some(whole);
         }

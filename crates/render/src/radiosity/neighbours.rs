@@ -26,11 +26,15 @@ impl Neighbours {
             if range.is_empty() {
                 continue;
             }
+
+            // Test the middle element of the range.
             let (before, rest) = range.split_at(range.len() / 2);
             let center = elements[rest[0] as usize].center;
             if center.distance_squared(point) < radius * radius {
                 visit(rest[0]);
             }
+
+            // Descend into the halves that the sphere reaches.
             let (offset, next) = (point[axis] - center[axis], (axis + 1) % 3);
             if offset <= radius {
                 waiting.push((before, next));

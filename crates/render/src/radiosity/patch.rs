@@ -12,7 +12,7 @@
 //! Cost: linear in leaves.
 //! Source: \[Cohen & Wallace 1993\], chapter 8; \[Cohen et al. 1988\] for patches and elements.
 
-use super::walls::Pieces;
+use super::walls::WallPieces;
 use std::collections::{BTreeMap, HashMap};
 use vitral_math::DVec3;
 
@@ -32,7 +32,7 @@ const COARSER: f64 = 1.25;
 
 /// A triangle of some size.
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub struct QuadtreeNode {
     /// Vertices.
     pub corners: [u32; 3],
     /// The first of four children, or `u32::MAX` for a leaf. The k-th of the first three keeps corner k, the fourth is
@@ -50,7 +50,7 @@ pub struct Trees {
     /// Places of the vertices.
     pub vertices: Vec<DVec3>,
     /// All nodes, parents before children.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<QuadtreeNode>,
     /// The first root of each facet, `u32::MAX` for those that take no part. Its other roots follow: rows from corner 0
     /// on, each from corner 2 to corner 1, every second one upside down.
     pub roots: Vec<u32>,
@@ -63,7 +63,7 @@ pub struct Trees {
     /// How far around small facets tell about each other's light.
     pub(super) reach: f64,
     /// Facets that walls cut, in pieces: these have trees in place of the facets.
-    pub(super) pieces: Pieces,
+    pub(super) pieces: WallPieces,
     /// How many facets there are, without pieces.
     pub(super) facets: u32,
     middles: HashMap<[u32; 2], u32>,
@@ -73,14 +73,14 @@ impl Trees {
     /// Trees for each of the facets that `corners` gives corners for, with no edge longer than `longest`. `None`: there
     /// would be more than `most` leaves.
     pub fn new(facets: u32, corners: impl Fn(u32) -> Option<[DVec3; 3]>, longest: f64, most: usize) -> Option<Self> {
-        Self::with_pieces(facets, corners, Pieces::default(), longest, most)
+        Self::with_pieces(facets, corners, WallPieces::default(), longest, most)
     }
 
     /// The same, where some facets are cut in pieces.
     pub(super) fn with_pieces(
         count: u32,
         corners: impl Fn(u32) -> Option<[DVec3; 3]>,
-        pieces: Pieces,
+        pieces: WallPieces,
         longest: f64,
         most: usize,
     ) -> Option<Self> {
@@ -190,7 +190,7 @@ impl Trees {
         facet.checked_sub(self.facets).map_or(facet, |piece| self.pieces.facets[piece as usize])
     }
 
-    /// The leaves.
+    /// The nodes without children, in the order of the tree.
     pub fn leaves(&self) -> Vec<u32> {
         (0..self.nodes.len() as u32).filter(|&n| self.nodes[n as usize].children == NONE).collect()
     }
@@ -228,6 +228,7 @@ impl Trees {
 
     /// Makes a facet's roots; `edges` has the first of the vertices that cut an edge, from its lower end on.
     fn plant(&mut self, facet: u32, corners: [u32; 3], edges: &mut HashMap<[u32; 2], u32>) {
+        // Make each vertex once: a corner, one on an edge shared with neighbours, or one inside.
         let n = self.cuts;
         let mut vertices: HashMap<[u32; 3], u32> = HashMap::new();
         let mut vertex = |trees: &mut Self, steps: [u32; 3]| {
@@ -252,20 +253,22 @@ impl Trees {
                 }),
             }
         };
+
+        // Make the cells.
         for number in 0..n * n {
             let corners = Cell::numbered(number, n).corners().map(|steps| vertex(self, steps));
-            self.nodes.push(Node { corners, children: NONE, facet, patch: NONE });
+            self.nodes.push(QuadtreeNode { corners, children: NONE, facet, patch: NONE });
         }
     }
 
     /// Cuts a leaf in four.
     pub fn split(&mut self, node: usize) {
-        let Node { corners, facet, patch, .. } = self.nodes[node];
+        let QuadtreeNode { corners, facet, patch, .. } = self.nodes[node];
         let [m0, m1, m2] = [0, 1, 2].map(|k| self.make_middle(corners[k], corners[(k + 1) % 3]));
         let [a, b, c] = corners;
         self.nodes[node].children = self.nodes.len() as u32;
         for corners in [[a, m0, m2], [m0, b, m1], [m2, m1, c], [m1, m2, m0]] {
-            self.nodes.push(Node { corners, children: NONE, facet, patch });
+            self.nodes.push(QuadtreeNode { corners, children: NONE, facet, patch });
         }
     }
 
@@ -296,7 +299,7 @@ impl Trees {
         }
     }
 
-    fn is_too_coarse(&self, node: &Node) -> bool {
+    fn is_too_coarse(&self, node: &QuadtreeNode) -> bool {
         (0..3).any(|k| {
             let (a, b) = (node.corners[k], node.corners[(k + 1) % 3]);
             self.middle(a, b).is_some_and(|m| self.middle(a, m).is_some() || self.middle(m, b).is_some())
@@ -308,8 +311,11 @@ impl Trees {
     pub fn leaf_along(&self, node: u32, mut weights: [f64; 3], mut slopes: [f64; 3]) -> (u32, [f64; 3], [f64; 3]) {
         let mut at = node;
         while self.nodes[at as usize].children != NONE {
+            // Find the child: at a corner if its weight is at least half, else the middle one.
             let half = 0.5 * (weights[0] + weights[1] + weights[2]);
             let child = (0..3).find(|&k| weights[k] >= half).unwrap_or(3);
+
+            // Convert the weights to the child's corners.
             for values in [&mut weights, &mut slopes] {
                 let [a, b, c] = *values;
                 let sum = a + b + c;

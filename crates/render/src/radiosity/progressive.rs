@@ -20,7 +20,7 @@
 //! multiplications a shot for each element that it shows.
 //! Source: \[Cohen et al. 1988\]. Departs from it: there all hemicubes have the same pixels.
 
-use super::element::{Color, Element, Row, turned};
+use super::element::{Color, Element, FormFactors, turned};
 use super::enclosure::Enclosure;
 use super::hemicube::Hemicube;
 use super::near::refined;
@@ -65,7 +65,7 @@ const STRONG: (f64, f64) = (512.0, 1.0 / 64.0);
 /// stays needs pixels, too.
 const MOST_LEAVING: f64 = 16.0;
 /// Elements that are few. More are smaller, and fewer pixels show each: hemicubes have so many times as many.
-const FEW: usize = 8192;
+const FEW_ELEMENTS: usize = 8192;
 
 /// Shoots until at most `residual` of the light that stays in the scene is left, or `most` shots were made. Of the `hemicubes`, at least one, from
 /// coarse to fine, the finest are for the patches with the most light, whose errors show the most.
@@ -81,6 +81,7 @@ pub fn solve(
     most: u64,
     execution: &Execution,
 ) -> Result<Progress, Limit> {
+    // Start with the emitted light.
     let mut unsent = emitted_power(enclosure);
     let emitted = unsent.iter().map(power).sum();
     let irradiance = vec![[0.0; 3]; enclosure.emission.len()];
@@ -93,7 +94,7 @@ pub fn solve(
         let staying = progress.note_residual(&unsent);
         let finished = progress.residual <= residual || progress.shots >= most;
         let share = share_done(progress.residual, residual).max(progress.shots as f64 / most as f64);
-        tell(if finished { 1.0 } else { share }, execution);
+        report_progress(if finished { 1.0 } else { share }, execution);
         if finished {
             break;
         }
@@ -205,12 +206,12 @@ impl<'a> Shooting<'a> {
     }
 
     /// What these sides see, by hemicubes that are at least as fine as theirs.
-    fn look(&self, shooters: &[(usize, usize)], known: &Known) -> Result<Vec<Arc<Seen>>, Limit> {
+    fn look(&self, shooters: &[(usize, usize)], known: &Known) -> Result<Vec<Arc<FormFactorRow>>, Limit> {
         let seen = self.execution.workers.map(shooters.len(), |i| match (&known.rows[shooters[i].0], shooters[i]) {
             (Some(seen), (_, fineness)) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
             (_, (side, fineness)) => {
                 let row = look(self.enclosure, &self.hemicubes[fineness], side, self.execution)?;
-                Ok(Arc::new(Seen::new(fineness, &row)))
+                Ok(Arc::new(FormFactorRow::new(fineness, &row)))
             }
         });
         seen.into_iter().collect()
@@ -218,8 +219,10 @@ impl<'a> Shooting<'a> {
 }
 
 /// Elements take their parts of what is sent to those that are seen.
-fn receive(receivers: &[Receiver], seen: &Seen, sent: &Color, unsent: &mut [Color], progress: &mut Progress) {
+fn receive(receivers: &[Receiver], seen: &FormFactorRow, sent: &Color, unsent: &mut [Color], progress: &mut Progress) {
     let (scaled, mut kept) = (sent.map(|s| s * seen.scale), [0.0; 3]);
+
+    // Add to the irradiance of each side and to the unsent light of its patch.
     for &(side, factor) in &seen.row {
         let (side, factor) = (side as usize, f64::from(factor));
         let receiver = &receivers[side / 2];
@@ -233,6 +236,8 @@ fn receive(receivers: &[Receiver], seen: &Seen, sent: &Color, unsent: &mut [Colo
             kept[k] += arriving - reflected;
         }
     }
+
+    // Account for what is absorbed and what leaves the scene.
     progress.absorbed += power(&kept);
     progress.escaped += power(sent) * (1.0 - seen.whole);
     progress.shots += 1;
@@ -242,13 +247,18 @@ fn receive(receivers: &[Receiver], seen: &Seen, sent: &Color, unsent: &mut [Colo
 fn fineness(hemicubes: &[Hemicube], part: f64, elements: usize) -> usize {
     let (last, (side, strong)) = (hemicubes.len() - 1, STRONG);
     let side = side.min(f64::from(hemicubes[last].side()));
-    let needed = side * side * (part / strong).min(1.0) * (elements as f64 / FEW as f64).max(1.0);
+    let needed = side * side * (part / strong).min(1.0) * (elements as f64 / FEW_ELEMENTS as f64).max(1.0);
     let enough = |hemicube: &Hemicube| f64::from(hemicube.side() * hemicube.side()) >= needed;
     hemicubes.iter().position(enough).unwrap_or(last)
 }
 
 /// What a side of a patch sees: sides of elements.
-fn look(enclosure: &Enclosure, hemicube: &Hemicube, shooter: usize, execution: &Execution) -> Result<Row, Limit> {
+fn look(
+    enclosure: &Enclosure,
+    hemicube: &Hemicube,
+    shooter: usize,
+    execution: &Execution,
+) -> Result<FormFactors, Limit> {
     let patch = &enclosure.patches[shooter / 2];
     let from = (patch.center, patch.normal * turned(shooter));
     let seen = hemicube.look((&enclosure.targets, &enclosure.trees), from, shooter / 2, execution)?;
@@ -256,7 +266,7 @@ fn look(enclosure: &Enclosure, hemicube: &Hemicube, shooter: usize, execution: &
 }
 
 /// What a side of a patch was found to see.
-struct Seen {
+struct FormFactorRow {
     /// The number of the hemicube.
     fineness: usize,
     /// Sides of elements, and form factors divided by `scale`.
@@ -267,8 +277,8 @@ struct Seen {
     whole: f64,
 }
 
-impl Seen {
-    fn new(fineness: usize, row: &Row) -> Self {
+impl FormFactorRow {
+    fn new(fineness: usize, row: &FormFactors) -> Self {
         let whole: f64 = row.iter().map(|(_, factor)| factor).sum();
         let row: Vec<(u32, f32)> = row.iter().map(|&(side, factor)| (side, factor as f32)).collect();
         let rounded: f64 = row.iter().map(|(_, factor)| f64::from(*factor)).sum();
@@ -286,13 +296,13 @@ struct Receiver {
 
 /// What patches were found to see, for as long as there is room.
 struct Known {
-    rows: Vec<Option<Arc<Seen>>>,
+    rows: Vec<Option<Arc<FormFactorRow>>>,
     /// Factors that may still be kept.
     room: usize,
 }
 
 impl Known {
-    fn keep(&mut self, shooter: usize, seen: Arc<Seen>) {
+    fn keep(&mut self, shooter: usize, seen: Arc<FormFactorRow>) {
         let known = self.rows[shooter].as_ref();
         let (finer, room) =
             (known.is_none_or(|k| k.fineness < seen.fineness), known.map_or(0, |k| k.row.len()) + self.room);
@@ -336,7 +346,7 @@ fn share_done(left: f64, residual: f64) -> f64 {
 }
 
 /// Progress in thousandths.
-fn tell(share: f64, execution: &Execution) {
+fn report_progress(share: f64, execution: &Execution) {
     execution.budget.progress("radiosity", (share * 1000.0) as u64, 1000);
 }
 
@@ -351,8 +361,8 @@ mod tests {
         for (part, expected) in
             [(1.0, 2), (strong, 2), (strong / 3.9, 2), (strong / 4.0, 1), (strong / 16.0, 0), (0.0, 0)]
         {
-            assert_eq!(fineness(&hemicubes, part, FEW), expected, "{part}");
-            assert_eq!(fineness(&hemicubes, part / 4.0, 4 * FEW), expected, "{part} of smaller elements");
+            assert_eq!(fineness(&hemicubes, part, FEW_ELEMENTS), expected, "{part}");
+            assert_eq!(fineness(&hemicubes, part / 4.0, 4 * FEW_ELEMENTS), expected, "{part} of smaller elements");
             assert_eq!(fineness(&hemicubes, part, 1), expected, "{part} of large elements");
         }
         assert_eq!(fineness(&hemicubes[..1], 1.0, 9), 0, "there is no finer one");
@@ -361,17 +371,18 @@ mod tests {
 
     #[test]
     fn rounded_form_factors_have_the_sum_of_exact_ones() {
-        let row: Row = (0..1000).map(|i| (i, 1.0 / (f64::from(i) + 3.0))).collect();
-        let seen = Seen::new(0, &row);
+        let row: FormFactors = (0..1000).map(|i| (i, 1.0 / (f64::from(i) + 3.0))).collect();
+        let seen = FormFactorRow::new(0, &row);
         let rounded: f64 = seen.row.iter().map(|(_, factor)| f64::from(*factor) * seen.scale).sum();
         let exact: f64 = row.iter().map(|(_, factor)| factor).sum();
         assert!((rounded - exact).abs() < 1e-13 * exact && seen.whole == exact);
-        assert_eq!(Seen::new(0, &Row::new()).whole, 0.0);
+        assert_eq!(FormFactorRow::new(0, &FormFactors::new()).whole, 0.0);
     }
 
     #[test]
     fn what_is_seen_is_kept_while_there_is_room_and_replaced_by_finer() {
-        let seen = |fineness, count: u32| Arc::new(Seen::new(fineness, &(0..count).map(|i| (i, 0.1)).collect()));
+        let seen =
+            |fineness, count: u32| Arc::new(FormFactorRow::new(fineness, &(0..count).map(|i| (i, 0.1)).collect()));
         let mut known = Known { rows: vec![None, None], room: 10 };
         known.keep(0, seen(1, 6));
         known.keep(1, seen(1, 5));

@@ -12,7 +12,7 @@
 
 use super::element::Color;
 use super::enclosure::Enclosure;
-use super::patch::{MOST_CUTS, NONE, Node, Trees, descend, within};
+use super::patch::{MOST_CUTS, NONE, QuadtreeNode, Trees, descend, within};
 use super::progressive::Progress;
 use crate::Error;
 use vitral_light::Rgb;
@@ -56,7 +56,7 @@ impl Piece {
 /// See the module.
 #[derive(Clone, Debug)]
 pub struct Solution {
-    nodes: Vec<Node>,
+    nodes: Vec<QuadtreeNode>,
     roots: Vec<u32>,
     /// Parts of each facet's edges before quadtrees begin.
     cuts: u32,
@@ -76,6 +76,8 @@ impl Solution {
     pub fn new(enclosure: &Enclosure, progress: &Progress) -> Self {
         let around = Around::new(enclosure);
         let trees = &enclosure.trees;
+
+        // Compute the light at corners and edge middles, which neighbours share.
         let light = (0..enclosure.elements.len())
             .map(|e| {
                 let node = enclosure.elements[e].node;
@@ -90,6 +92,8 @@ impl Solution {
                 })
             })
             .collect();
+
+        // Keep the ambient guess and the pieces of cut facets.
         let ambient = progress.ambient.map(|c| c as f32);
         let pieces = trees.pieces.facets.iter().zip(&trees.pieces.corners).zip(&trees.pieces.wholes);
         let pieces = pieces.map(|((&facet, own), whole)| Piece::new(facet, *own, *whole)).collect();
@@ -106,7 +110,7 @@ impl Solution {
         self.key
     }
 
-    fn assemble(nodes: Vec<Node>, (roots, cuts): (Vec<u32>, u32), light: Vec<[Six; 2]>, ambient: Rgb) -> Self {
+    fn assemble(nodes: Vec<QuadtreeNode>, (roots, cuts): (Vec<u32>, u32), light: Vec<[Six; 2]>, ambient: Rgb) -> Self {
         let mut leaves = 0;
         let leaf = nodes.iter().map(|n| {
             leaves += u32::from(n.children == NONE);
@@ -160,8 +164,9 @@ impl Solution {
         self.light.iter().map(|sides| sides.iter().map(contrast).fold(0.0, f64::max) / mean.max(1e-300)).collect()
     }
 
-    /// The solution as bytes, to be used again with the scene that has this fingerprint.
+    /// The solution as bytes, to be loaded with the scene that has this fingerprint.
     pub fn to_bytes(&self, fingerprint: u64) -> Vec<u8> {
+        // Write the head: whose solution it is and the counts.
         let mut bytes = MAGIC.to_vec();
         bytes.extend(fingerprint.to_le_bytes());
         bytes.extend(self.key.to_le_bytes());
@@ -170,6 +175,8 @@ impl Solution {
         }
         bytes.extend(self.cuts.to_le_bytes());
         bytes.extend((self.pieces.len() as u32).to_le_bytes());
+
+        // Write nodes, roots, light and pieces.
         let numbers = self.nodes.iter().flat_map(|n| [n.children, n.facet, n.patch]).chain(self.roots.iter().copied());
         numbers.for_each(|n| bytes.extend(n.to_le_bytes()));
         let floats = self.light.as_flattened().as_flattened().as_flattened().iter().chain(&self.ambient);
@@ -233,16 +240,17 @@ fn bad(what: &str) -> Error {
 }
 
 /// The nodes that were stored as these words, so many of them leaves.
-fn stored_nodes(words: &[[u8; 4]], leaves: usize) -> Result<Vec<Node>, Error> {
+fn stored_nodes(words: &[[u8; 4]], leaves: usize) -> Result<Vec<QuadtreeNode>, Error> {
     let node = |words: &[[u8; 4]; 3]| {
         let [children, facet, patch] = words.map(u32::from_le_bytes);
-        Node { corners: [NONE; 3], children, facet, patch }
+        QuadtreeNode { corners: [NONE; 3], children, facet, patch }
     };
-    let nodes: Vec<Node> = words.as_chunks::<3>().0.iter().map(node).collect();
+    let nodes: Vec<QuadtreeNode> = words.as_chunks::<3>().0.iter().map(node).collect();
     let count = nodes.len() as u64;
     // Children come after their parents, so that going down ends.
-    let sound =
-        |i: usize, n: &Node| n.children == NONE || (n.children as usize > i && u64::from(n.children) + 3 < count);
+    let sound = |i: usize, n: &QuadtreeNode| {
+        n.children == NONE || (n.children as usize > i && u64::from(n.children) + 3 < count)
+    };
     if !nodes.iter().enumerate().all(|(i, n)| sound(i, n)) {
         return Err(bad("a node has no children where it says"));
     }
@@ -312,6 +320,8 @@ impl Around {
         if enclosure.is_small(own) {
             return mean_near(enclosure, progress, enclosure.trees.vertices[vertex as usize], own, side);
         }
+
+        // Average the elements around the vertex by their area.
         let (mut sum, mut weight): (Color, f64) = ([0.0; 3], 0.0);
         for &e in &self.elements[range] {
             let element = &enclosure.elements[e as usize];
@@ -360,7 +370,7 @@ mod tests {
     use super::*;
 
     fn two_leaves() -> Solution {
-        let node = |children| Node { corners: [NONE; 3], children, facet: 0, patch: 0 };
+        let node = |children| QuadtreeNode { corners: [NONE; 3], children, facet: 0, patch: 0 };
         let nodes = vec![node(1), node(NONE), node(NONE), node(NONE), node(NONE)];
         let light = (0..4).map(|e| [0, 1].map(|s| std::array::from_fn(|k| [e as f32, s as f32, k as f32]))).collect();
         Solution::assemble(nodes, (vec![NONE, 0], 1), light, [0.0, 0.0, 0.5])

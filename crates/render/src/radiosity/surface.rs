@@ -5,7 +5,7 @@
 //! half of the light pass, are not there: light goes through, and the rest of the element has the light to itself. That is
 //! asked of the finest level, whose holes have not been blurred away.
 //!
-//! In:   an element's corners. Out: [`Surface`].
+//! In:   an element's corners. Out: [`ElementSurface`].
 //! Cost: 16 lookups in each texture.
 
 use super::element::Color;
@@ -26,7 +26,7 @@ const MOST_REFLECTED: f64 = 0.99;
 const MOST_PASSING: f32 = 0.5;
 
 /// See the module.
-pub(super) struct Surface {
+pub(super) struct ElementSurface {
     /// Unit normal of the front.
     pub normal: DVec3,
     /// A bit for each part that is there.
@@ -64,7 +64,8 @@ impl<'a> Surfaces<'a> {
     }
 
     /// Looks at a leaf.
-    pub(super) fn of(&self, trees: &Trees, node: u32) -> Surface {
+    pub(super) fn of(&self, trees: &Trees, node: u32) -> ElementSurface {
+        // Find the facet and its material.
         let facet = trees.facet_of_piece(trees.nodes[node as usize].facet);
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
@@ -82,7 +83,9 @@ impl<'a> Surfaces<'a> {
         // What is the same all over is looked at once.
         let varies = look.varies() || !opaque;
         let places = if varies { parts(own).map(middle).to_vec() } else { vec![middle(own)] };
-        let mut surface = Surface { normal, there: 0, reflectance: [0.0; 3], emission: [[0.0; 3]; 2] };
+
+        // Sum over the parts that are not cut out.
+        let mut surface = ElementSurface { normal, there: 0, reflectance: [0.0; 3], emission: [[0.0; 3]; 2] };
         let mut count = 0.0;
         for (part, &place) in places.iter().enumerate() {
             if opaque || self.is_there(facet, &corners, place) {
@@ -96,6 +99,8 @@ impl<'a> Surfaces<'a> {
         if !varies {
             surface.there = WHOLE;
         }
+
+        // Take the mean, and emit from both sides if the material has two.
         surface.reflectance = surface.reflectance.map(|c| (c / f64::max(count, 1.0)).clamp(0.0, MOST_REFLECTED));
         surface.emission[0] = surface.emission[0].map(|c| c / f64::max(count, 1.0));
         if material.double_sided {
@@ -105,7 +110,7 @@ impl<'a> Surfaces<'a> {
     }
 
     fn is_there(&self, facet: u32, corners: &[Vec3; 3], place: DVec3) -> bool {
-        self.occluders.passing(facet, corners, || place)[0] <= MOST_PASSING
+        self.occluders.transmittance(facet, corners, || place)[0] <= MOST_PASSING
     }
 }
 
@@ -189,7 +194,7 @@ mod tests {
         [left, right]: [[u8; 4]; 2],
         settings: &Settings,
         change: impl Fn(&mut Material, &mut Mesh, TextureRef),
-    ) -> Vec<(DVec3, Surface)> {
+    ) -> Vec<(DVec3, ElementSurface)> {
         let mut square = solids::plane(1.0, 1.0, 1, 1);
         let texels = (0..64 * 4).map(|i| if i % 64 < 32 { left } else { right }).collect();
         let texture = Texture::new("halves".to_owned(), Plane::from_rows(64, 4, texels).unwrap(), Encoding::Linear);
@@ -220,7 +225,7 @@ mod tests {
             (material.base_texture, material.emission_texture) = (Some(texture), Some(texture));
             material.emission = [2.0; 3];
         });
-        let away = |found: Vec<(DVec3, Surface)>| found.into_iter().filter(|(middle, _)| middle.x.abs() > 0.2);
+        let away = |found: Vec<(DVec3, ElementSurface)>| found.into_iter().filter(|(middle, _)| middle.x.abs() > 0.2);
         assert!(found.len() >= 16);
         for (middle, surface) in away(found) {
             let color = if middle.x < 0.0 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };

@@ -79,7 +79,7 @@ enum Content {
     /// A leaf, by its number.
     Leaf(u32),
     /// A node with children.
-    Node(u32),
+    QuadtreeNode(u32),
 }
 
 impl Targets {
@@ -90,6 +90,7 @@ impl Targets {
 
     /// The leaves of `trees`, and for each, in their order, which parts of it are there. Facets with holes are drawn in pieces.
     pub(super) fn with_holes(trees: &Trees, there: &[u16]) -> Self {
+        // Number the leaves, and find the facets without holes.
         let mut numbers = vec![NONE; trees.nodes.len()];
         let leaves = trees.leaves();
         (0..).zip(&leaves).for_each(|(number, &leaf)| numbers[leaf as usize] = number);
@@ -127,6 +128,8 @@ impl Targets {
             grids.extend((before..triangles.len()).map(|_| Grid { first: cells.len() as u32, side: 1 }));
             cells.push(Content::Leaf(number));
         }
+
+        // Make a scene of the triangles, which the z-buffer can draw.
         let session = scene_of(&triangles);
         Self { session, grids, cells, numbers, leaves: leaves.len(), spare: Mutex::default() }
     }

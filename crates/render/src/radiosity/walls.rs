@@ -4,7 +4,7 @@
 //! another one meets it, and its pieces share no vertices across the wall: nothing is interpolated through it. Only facets
 //! that are large as against a patch are cut; others are as good as elements that end somewhere near the wall.
 //!
-//! In:   facets, world space less the scene's middle. Out: [`Pieces`].
+//! In:   facets, world space less the scene's middle. Out: [`WallPieces`].
 //! Cost: large facets times all facets, for boxes; a few operations for those that meet.
 //! Source: \[Baum, Mann, Smith & Winget 1991\]. Departs from it: only facets are cut, along whole lines within a convex piece.
 
@@ -28,7 +28,7 @@ const COVERED: f64 = 0.5;
 
 /// The pieces of facets that are cut. They have numbers of their own, behind those of all facets.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Pieces {
+pub(super) struct WallPieces {
     /// The facet of each piece, in ascending order.
     pub(super) facets: Vec<u32>,
     /// Corners of each piece, turned as the facet is.
@@ -39,7 +39,7 @@ pub(super) struct Pieces {
     sides: HashMap<(u32, u8), u32>,
 }
 
-impl Pieces {
+impl WallPieces {
     /// Which side of the walls a corner is on, the same for corners at one place that are to share a vertex.
     pub(super) fn side(&self, piece: u32, corner: u8) -> u32 {
         self.sides.get(&(piece, corner)).copied().unwrap_or(0)
@@ -65,14 +65,14 @@ pub(super) fn cut(
     longest: f64,
     extent: f64,
     execution: &Execution,
-) -> Result<Pieces, Limit> {
+) -> Result<WallPieces, Limit> {
     // Find the walls on large facets.
     let near = IN_PLANE * extent;
     let large: Vec<u32> = (0..facets.len() as u32)
         .filter(|&f| facets[f as usize].is_some_and(|c| longest_edge(&c) > LARGE * longest))
         .collect();
     if large.len() as u64 * facets.len() as u64 > MOST_BOXES {
-        return Ok(Pieces::default());
+        return Ok(WallPieces::default());
     }
     let boxes: Vec<[DVec3; 2]> = facets.iter().map(|corners| bounds(corners.as_ref(), near)).collect();
     let found = execution.workers.map(large.len(), |i| {
@@ -82,7 +82,7 @@ pub(super) fn cut(
     let found: Vec<Vec<Wall>> = found.into_iter().collect::<Result<_, Limit>>()?;
 
     // Cut each facet along its walls, and its parts in triangles.
-    let (mut pieces, mut walls) = (Pieces::default(), Vec::new());
+    let (mut pieces, mut walls) = (WallPieces::default(), Vec::new());
     for (&facet, on_it) in large.iter().zip(&found).filter(|(_, walls)| !walls.is_empty()) {
         let corners = facets[facet as usize].expect("large facets have corners");
         let parts = parts_between(&corners, on_it, near);
@@ -120,6 +120,8 @@ fn walls_on(facet: u32, facets: &[Option<[DVec3; 3]>], boxes: &[[DVec3; 2]], nea
     let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize() else {
         return Vec::new();
     };
+
+    // Intersect every facet whose box touches this one's.
     let mut walls: Vec<Wall> = Vec::new();
     for (other, [other_low, other_high]) in boxes.iter().enumerate() {
         if low.cmpgt(*other_high).any() || other_low.cmpgt(high).any() || other == facet as usize {
@@ -128,6 +130,8 @@ fn walls_on(facet: u32, facets: &[Option<[DVec3; 3]>], boxes: &[[DVec3; 2]], nea
         let Some(wall) = facets[other].and_then(|other| meeting(&corners, normal, &other, near)) else { continue };
         join(&mut walls, wall, near);
     }
+
+    // Keep the longest.
     let length = |wall: &Wall| wall.from.distance(wall.to);
     walls.sort_by(|a, b| length(b).total_cmp(&length(a)));
     walls.truncate(MOST_WALLS);
@@ -177,6 +181,7 @@ fn meeting(corners: &[DVec3; 3], normal: DVec3, other: &[DVec3; 3], near: f64) -
 /// Adds a wall; one that goes on another along the same line is one with it.
 fn join(walls: &mut Vec<Wall>, mut wall: Wall, near: f64) {
     let mut at = 0;
+    // Measure the known wall along the line of this one.
     while at < walls.len() {
         let known = walls[at];
         let along = (wall.to - wall.from).normalize_or_zero();
@@ -188,6 +193,8 @@ fn join(walls: &mut Vec<Wall>, mut wall: Wall, near: f64) {
             at += 1;
             continue;
         }
+
+        // Extend this one by a wall on the same line, and search from the start.
         let start = wall.from;
         wall = Wall { from: start + along * a.min(b).min(0.0), to: start + along * a.max(b).max(length) };
         walls.swap_remove(at);
@@ -306,7 +313,7 @@ fn key(p: DVec3) -> [u64; 3] {
 
 /// For corners at the ends of walls, which side of them they are on: those whose triangles hang together round the place, by
 /// edges without walls, are on one.
-fn sides(facets: &[Option<[DVec3; 3]>], pieces: &Pieces, walls: &[[bool; 3]]) -> HashMap<(u32, u8), u32> {
+fn sides(facets: &[Option<[DVec3; 3]>], pieces: &WallPieces, walls: &[[bool; 3]]) -> HashMap<(u32, u8), u32> {
     // Collect the places at the ends of walls.
     let mut at_walls: BTreeMap<[u64; 3], Vec<(u32, u8)>> = BTreeMap::new();
     for (corners, walls) in pieces.corners.iter().zip(walls) {
@@ -421,8 +428,8 @@ mod tests {
     fn edges_that_facets_share_and_small_facets_cut_nothing() {
         // A corner of a room: walls along two edges of the floor.
         let corner = floor_with(&[[[0.0, 0.0], [4.0, 0.0]], [[0.0, 0.0], [0.0, 4.0]]]);
-        assert_eq!(cut(&corner, 1.0, 4.0, &Execution::default()).unwrap(), Pieces::default());
+        assert_eq!(cut(&corner, 1.0, 4.0, &Execution::default()).unwrap(), WallPieces::default());
         let across = floor_with(&[[[1.0, 0.0], [1.0, 4.0]]]);
-        assert_eq!(cut(&across, 40.0, 4.0, &Execution::default()).unwrap(), Pieces::default());
+        assert_eq!(cut(&across, 40.0, 4.0, &Execution::default()).unwrap(), WallPieces::default());
     }
 }

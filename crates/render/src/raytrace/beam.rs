@@ -35,9 +35,13 @@ pub struct Beam {
 /// Two lines on one axis: the beam's upper side must reach the box's lower face, its lower side the upper one.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
+    /// Where the upper line starts.
     upper_start: f32,
+    /// Where the lower line starts.
     lower_start: f32,
+    /// One over the upper line's slope.
     inverse_upper_slope: f32,
+    /// One over the lower line's slope.
     inverse_lower_slope: f32,
 }
 
@@ -65,14 +69,18 @@ impl Beam {
 }
 
 /// What [`Beam::around`] has on one axis for each ray of a packet, or on each axis for one ray.
-pub(super) struct Lines<S: Simd> {
+pub(super) struct BeamLines<S: Simd> {
+    /// Where the upper lines start.
     pub(super) upper_start: F32x8<S>,
+    /// Where the lower lines start.
     pub(super) lower_start: F32x8<S>,
+    /// One over the upper lines' slopes.
     pub(super) inverse_upper_slope: F32x8<S>,
+    /// One over the lower lines' slopes.
     pub(super) inverse_lower_slope: F32x8<S>,
 }
 
-impl<S: Simd> Lines<S> {
+impl<S: Simd> BeamLines<S> {
     /// From where rays start and where they go.
     #[inline(always)]
     pub(super) fn around(simd: S, origin: F32x8<S>, direction: F32x8<S>, extent: f32) -> Self {

@@ -11,7 +11,7 @@
 //!
 //! The tree of `--visibility bsp` is another: it cuts polygons by the planes of polygons, and gives an order.
 //!
-//! In:   triangles. Out: [`Bsp`].
+//! In:   triangles. Out: [`KdTree`].
 //! Cost: `O(n log n)` to build; 16 bytes a node, and at most [`REFERENCES`] entries a triangle, whatever the scene.
 //! Source: [Kaplan 1985], the heuristic after [MacDonald & Booth 1990]. Departs from them: planes are tried at equal distances, not at every
 //!         triangle.
@@ -63,7 +63,7 @@ type Cell = [Vec3; 2];
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Bsp {
+pub struct KdTree {
     /// Least and largest coordinates of the root.
     root: Cell,
     /// How much cells overlap, to each side of a plane, so that rounding lets nothing slip through.
@@ -89,11 +89,11 @@ struct Build<'a> {
     budget: &'a Budget,
 }
 
-impl Cached for Bsp {
+impl Cached for KdTree {
     type Key = ();
 }
 
-impl Bsp {
+impl KdTree {
     /// The session's, built when first asked for: the views of a turntable share it.
     ///
     /// # Errors
@@ -153,6 +153,7 @@ impl Build<'_> {
         (depth, allowance): (usize, usize),
         part: &mut Part,
     ) -> Result<(), Limit> {
+        // Choose a plane, unless the cell is small or deep enough.
         let large = inside.len() > LARGE;
         if large {
             self.budget.check("building the partition of space")?;
@@ -160,6 +161,8 @@ impl Build<'_> {
         let plane = (inside.len() > LEAF && depth < DEPTH).then(|| self.plane(&inside, cell)).flatten();
         let cut = plane.map(|(axis, at)| (axis, at, sides(cell, axis, at, 0.0)));
         let cut = cut.map(|(axis, at, cells)| (axis, at, cells, cells.map(|cell| self.within(&inside, cell))));
+
+        // Emit a leaf where no plane pays within the allowance.
         let Some((axis, at, cells, [lower, upper])) =
             cut.filter(|(.., [lower, upper])| lower.len() + upper.len() <= allowance)
         else {
@@ -174,6 +177,8 @@ impl Build<'_> {
         let both = (lower.len() + upper.len()).max(1) as u128;
         let share = (allowance as u128 * lower.len() as u128 / both) as usize;
         let (below, above) = ((depth + 1, share), (depth + 1, allowance - share));
+
+        // Emit the node, then both children: large ones on two threads.
         let root = part.nodes.len();
         part.nodes.push(Node { axis: axis as u32, at, link: 0, count: 0 });
         if large {
@@ -209,6 +214,8 @@ impl Build<'_> {
             .map(|&place| bounds_of(&self.triangles.corners[place as usize]))
             .map(|[least, most]| [least.clamp(min, max), most.clamp(min, max)])
             .collect();
+
+        // Bound the contents.
         let [least, most] = boxes.iter().fold([max, min], |[l, m], b| [l.min(b[0]), m.max(b[1])]);
         let count = boxes.len() as u32;
         let mut planes = Planes::new([min, max], count);
@@ -292,20 +299,20 @@ impl Part {
     }
 }
 
-impl Bsp {
+impl KdTree {
     /// A leaf's entries.
     fn entries_of(&self, node: &Node) -> &[u32] {
         &self.entries[node.link as usize..(node.link + node.count) as usize]
     }
 }
 
-impl Follow for Bsp {
+impl Follow for KdTree {
     fn lend<U: StructureUser>(&self, user: U) -> U::Outcome {
         user.with_tree(self)
     }
 }
 
-impl Structure for Bsp {
+impl Structure for KdTree {
     const REPEATS: bool = true;
 
     fn triangles(&self) -> &Triangles {
@@ -339,7 +346,7 @@ impl Structure for Bsp {
     }
 }
 
-impl Tree for Bsp {
+impl Tree for KdTree {
     fn root(&self) -> Option<[[f32; 3]; 2]> {
         (self.triangles.count() > 0).then(|| self.root.map(|p| p.to_array()))
     }
@@ -347,10 +354,13 @@ impl Tree for Bsp {
     /// The nearer side comes first.
     #[inline(always)]
     fn descend_from(&self, near: f32, probe: &impl Probe, visitor: &mut impl Visitor) -> u64 {
+        // Begin with the root.
         let mut visited = 0;
         let mut stack = [(0, 0.0f32, [Vec3::ZERO; 2]); STACK];
         let mut top = 1;
         stack[0] = (0, near, self.root);
+
+        // Descend, nearest first, until nothing waits.
         while top > 0 {
             top -= 1;
             let (index, near, cell) = stack[top];
@@ -359,10 +369,14 @@ impl Tree for Bsp {
             }
             visitor.passes(index);
             let node = &self.nodes[index];
+
+            // Visit the triangles of a leaf.
             if node.axis == NO_AXIS {
                 self.entries_of(node).iter().for_each(|&place| visitor.triangle(place as usize));
                 continue;
             }
+
+            // Find where the ray enters the two children.
             let cells = sides(cell, node.axis as usize, node.at, self.slack);
             let below = [index + 1, index + node.link as usize];
             let mut enters = [None; 2];
@@ -392,8 +406,8 @@ mod tests {
     use vitral_math::vec3;
     use vitral_scene::{World, builtin};
 
-    fn build(triangles: Triangles, threads: usize) -> Bsp {
-        Bsp::build(&Arc::new(triangles), &Workers::new(threads), &Budget::default()).unwrap()
+    fn build(triangles: Triangles, threads: usize) -> KdTree {
+        KdTree::build(&Arc::new(triangles), &Workers::new(threads), &Budget::default()).unwrap()
     }
 
     #[test]

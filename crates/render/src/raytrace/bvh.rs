@@ -12,7 +12,7 @@ use super::beam::Beam;
 use super::follow::{Follow, StructureUser};
 use super::intersect::Ray;
 use super::packet::{Packet, PacketVisitor};
-use super::sah::{BYTES_A_TRIANGLE, Node, SAH_DEPTH, build};
+use super::sah::{BYTES_A_TRIANGLE, BoxNode, SAH_DEPTH, build};
 use super::triangles::Triangles;
 use super::wide::Wide;
 use super::{Counters, Probe, Structure, Tree, Visitor, space_step};
@@ -30,7 +30,7 @@ const STACK: usize = SAH_DEPTH + 34;
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh {
-    nodes: Vec<Node>,
+    nodes: Vec<BoxNode>,
     /// The same with eight boxes a node, once somebody went down it.
     wide: OnceLock<Wide>,
     triangles: Triangles,
@@ -81,6 +81,7 @@ impl Bvh {
         visitor: &mut V,
         counters: &mut Counters,
     ) {
+        // Enter the root.
         let Some(root) = self.nodes.first() else { return };
         let packet = Packet::new(simd, rays, self.triangles.extent);
         // Where each ray enters the node at hand; infinite for those that pass it by.
@@ -88,10 +89,14 @@ impl Bvh {
         let mut near = packet.live().select(packet.enters(simd, root.min, root.max), apart);
         counters.boxes += rays.len() as u64;
         let mut stack = PacketStack { nodes: [(0, [0.0; LANES]); STACK], count: 0 };
+
+        // Walk the tree until nothing waits.
         let mut index = 0;
         loop {
             let wanted = near.simd_le(F32x8::from_slice(simd, visitor.limits()));
             let node = &self.nodes[index];
+
+            // Test the triangles of a leaf, or open an inner node.
             let mut below = None;
             if !wanted.any_true() {
             } else if node.count > 0 {
@@ -103,6 +108,8 @@ impl Bvh {
                 counters.boxes += 2 * u64::from(wanted.to_bitmask().count_ones());
                 below = self.open(simd, &packet, index, wanted, V::NEAREST_FIRST, &mut stack);
             }
+
+            // Continue below, or with the node that waits on top of the stack.
             (index, near) = match below {
                 Some(next) => next,
                 None if stack.count == 0 => return,
@@ -127,6 +134,7 @@ impl Bvh {
         nearest_first: bool,
         stack: &mut PacketStack,
     ) -> Option<(usize, F32x8<S>)> {
+        // Find where the rays enter both children.
         let apart = F32x8::splat(simd, f32::INFINITY);
         let (left, right) = (index + 1, index + self.nodes[index].link as usize);
         let (l, r) = (&self.nodes[left], &self.nodes[right]);
@@ -137,6 +145,7 @@ impl Bvh {
             (true, false) => Some((left, at_left)),
             (false, true) => Some((right, at_right)),
             (true, true) => {
+                // Descend first where more rays enter sooner.
                 let sooner = |mask: Mask8<S>| mask.to_bitmask().count_ones();
                 let left_first =
                     !nearest_first || sooner(at_right.simd_lt(at_left)) <= sooner(at_left.simd_lt(at_right));
@@ -239,7 +248,7 @@ mod tests {
         facets.sort_unstable();
         assert!(facets.iter().copied().eq(0..facets.len() as u32));
         // Each box holds those below it, each leaf its triangles.
-        let inside = |inner: [[f32; 3]; 2], outer: &Node| {
+        let inside = |inner: [[f32; 3]; 2], outer: &BoxNode| {
             (0..3).all(|k| outer.min[k] <= inner[0][k] && inner[1][k] <= outer.max[k])
         };
         for (i, node) in one.nodes.iter().enumerate() {

@@ -40,6 +40,7 @@ const PIECE: usize = 1 << 16;
 pub struct Grid {
     min: Vec3,
     cell: Vec3,
+    /// Cells along each axis.
     count: [i32; 3],
     /// `entries[starts[c]..starts[c + 1]]` are the places of triangles in cell `c`; x runs fastest, then y.
     starts: Vec<u32>,
@@ -86,6 +87,8 @@ impl Grid {
         for c in 2..starts.len() {
             starts[c] += starts[c - 1];
         }
+
+        // Deal the triangles to their cells.
         let mut entries = vec![0u32; starts[cells + 1] as usize];
         for (place, corners) in (0u32..).zip(&triangles.corners) {
             grid.for_cells(corners, |cell| {
@@ -101,11 +104,14 @@ impl Grid {
     /// How large cells are: cubes, nearly, `DENSITY` a triangle, unless triangles are so large that each would be in
     /// very many.
     fn layout(triangles: &Arc<Triangles>) -> Self {
+        // Measure the scene.
         let n = triangles.count() as f32;
         let [min, max] = if n > 0.0 { triangles.bounds() } else { [Vec3::ZERO, Vec3::ONE] };
         let size = max - min;
         // A flat scene has a little height, too.
         let size = size.max(Vec3::splat(size.max_element() * 1e-3)).max(Vec3::splat(1e-30));
+
+        // Halve the number of cells until triangles lie in few enough of them.
         let mut cells = (DENSITY * n).max(1.0);
         loop {
             // Divided first, so that nothing overflows.
@@ -238,6 +244,8 @@ impl Walk {
         if enter > leave {
             return None;
         }
+
+        // Begin in the cell where the line enters.
         let p = beam.origin + beam.direction * enter;
         let mut walk = Self { at: [0; 3], step: [0; 3], next: [f32::INFINITY; 3], reach };
         for k in 0..3 {

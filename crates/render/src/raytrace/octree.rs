@@ -37,10 +37,12 @@ const LARGE: usize = 4096;
 /// Seven brothers wait at each level, at most.
 const STACK: usize = DEPTH * 7 + 8;
 
-/// A cell.
+/// A node of the tree: a cube with eight children, or a leaf with triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cell {
+    /// Lower corner of its box, scene less its middle.
     min: [f32; 3],
+    /// Upper corner of its box.
     max: [f32; 3],
     /// First of eight children, or 0 for a leaf: the root is nobody's child.
     children: u32,
@@ -69,6 +71,7 @@ struct Part {
 #[derive(Clone, Copy, Debug)]
 struct Cube {
     middle: Vec3,
+    /// Half its side.
     half: f32,
 }
 
@@ -139,6 +142,8 @@ impl Octree {
 impl Build<'_> {
     /// The tree in `cube`, into which `inside` reach; its leaves may have `allowance` entries.
     fn part(&self, inside: Vec<u32>, cube: Cube, depth: usize, allowance: usize) -> Result<Part, Limit> {
+        // Emit a leaf for few triangles, at the greatest depth, or where overlap would outgrow the
+        // cell.
         let leaf = |inside: Vec<u32>| Part {
             cells: vec![Cell { count: inside.len() as u32, ..cube.cell(self.slack) }],
             entries: inside,
@@ -158,6 +163,8 @@ impl Build<'_> {
         };
         let children = if large { self.workers.map(8, child) } else { (0..8).map(child).collect() };
         let total: usize = children.iter().map(Vec::len).sum();
+
+        // Emit a leaf, too, where children would hold too many entries.
         if total > allowance.min(inside.len() * GROWTH) {
             return Ok(leaf(inside));
         }
@@ -175,23 +182,30 @@ impl Build<'_> {
         } else {
             children.into_iter().map(grow).collect()
         };
+
+        // Put the children's trees under this cell.
         join(cube.cell(self.slack), parts)
     }
 }
 
 /// Puts eight children under a cell: their roots in a row behind it, then what is below them.
 fn join(root: Cell, parts: Vec<Result<Part, Limit>>) -> Result<Part, Limit> {
+    // Reserve room and emit the root.
     let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
     let count = 1 + parts.iter().map(|p| p.cells.len()).sum::<usize>();
     let mut all = Part { cells: Vec::with_capacity(count), entries: Vec::new() };
     all.cells.push(Cell { children: 1, ..root });
     let mut below = 1 + parts.len();
+
+    // Move a cell's indices to where its part comes to stand.
     let moved = |cell: &Cell, below: usize, first: usize| Cell {
         // A part's own cells from 1 on come to stand at `below`.
         children: if cell.children == 0 { 0 } else { cell.children - 1 + below as u32 },
         first: cell.first + first as u32,
         ..*cell
     };
+
+    // Emit the roots of the parts in a row, then everything below them.
     let mut first = 0;
     for part in &parts {
         all.cells.push(moved(&part.cells[0], below, first));
@@ -270,10 +284,13 @@ impl Tree for Octree {
     /// The nearest child comes first.
     #[inline(always)]
     fn descend_from(&self, near: f32, probe: &impl Probe, visitor: &mut impl Visitor) -> u64 {
+        // Begin with the root.
         let mut visited = 0;
         let mut stack = [(0u32, 0.0f32); STACK];
         let mut top = 1;
         stack[0] = (0, near);
+
+        // Descend, nearest first, until nothing waits.
         while top > 0 {
             top -= 1;
             let (index, near) = (stack[top].0 as usize, stack[top].1);
@@ -282,6 +299,7 @@ impl Tree for Octree {
             }
             visitor.passes(index);
             let cell = &self.cells[index];
+            // Visit the triangles of a leaf.
             if cell.children == 0 {
                 let entries = &self.entries[cell.first as usize..(cell.first + cell.count) as usize];
                 for &place in entries {

@@ -9,7 +9,7 @@
 //! Cost: that of one ray in eight lanes as long as they stay together; rays that part share nothing, and cost as if alone.
 //! Source: \[Wald et al. 2001\].
 
-use super::beam::{self, Lines};
+use super::beam::{self, BeamLines};
 use super::intersect::{Ray, surely_beside};
 use super::triangles::Triangles;
 use vitral_math::Vec3;
@@ -35,7 +35,7 @@ pub(crate) struct Packet<'r, S: Simd> {
     /// The lanes that hold a ray.
     live: Mask8<S>,
     /// The beams' lines on each axis.
-    lines: [Lines<S>; 3],
+    lines: [BeamLines<S>; 3],
     /// Whether the upper and the lower one rise.
     rise: [[Mask8<S>; 2]; 3],
     origin: [F32x8<S>; 3],
@@ -57,21 +57,26 @@ impl<'r, S: Simd> Packet<'r, S> {
     /// Puts one to eight rays, in a space of half-width `extent`, into lanes.
     #[inline(always)]
     pub(crate) fn new(simd: S, rays: &'r [Ray], extent: f32) -> Self {
+        // Gather origins and directions by component.
         let component = lanes::inlined(
             #[inline(always)]
             |k: usize| [gathered(simd, rays, |r| r.origin[k]), gathered(simd, rays, |r| r.direction[k])],
         );
         let [x, y, z] = [component(0), component(1), component(2)];
+
+        // Enclose each ray in two lines on each axis, so that rounding cannot lose a box.
         let lines = [
-            Lines::around(simd, x[0], x[1], extent),
-            Lines::around(simd, y[0], y[1], extent),
-            Lines::around(simd, z[0], z[1], extent),
+            BeamLines::around(simd, x[0], x[1], extent),
+            BeamLines::around(simd, y[0], y[1], extent),
+            BeamLines::around(simd, z[0], z[1], extent),
         ];
         let zero = F32x8::splat(simd, 0.0);
         let rises = lanes::inlined(
             #[inline(always)]
-            |lines: &Lines<S>| [lines.inverse_upper_slope.simd_gt(zero), lines.inverse_lower_slope.simd_gt(zero)],
+            |lines: &BeamLines<S>| [lines.inverse_upper_slope.simd_gt(zero), lines.inverse_lower_slope.simd_gt(zero)],
         );
+
+        // Share the shear of triangle tests if all rays have one main axis.
         let axes = rays[0].axes;
         let sheared = rays
             .iter()
@@ -152,7 +157,9 @@ pub(super) struct ClosestHits<'a> {
     own: &'a [u32],
     /// Rounding of the hits' parameters.
     slack: [f32; LANES],
+    /// Parameters beyond which a ray searches nothing.
     limits: [f32; LANES],
+    /// Position of the triangle in the structure's list, and the parameter of the hit.
     best: [Option<(usize, f32)>; LANES],
     /// Whether something else was hit at about the same parameter.
     crowded: [bool; LANES],

@@ -35,7 +35,9 @@ pub struct Plane {
 /// See the module.
 #[derive(Clone, Copy, Debug)]
 pub struct Pyramid<S: Simd> {
+    /// Components of the planes' normals, one lane for each plane.
     normal: [F32x8<S>; 3],
+    /// The planes' offsets: `normal · p + offset >= 0` inside.
     offset: F32x8<S>,
     /// Each plane by itself.
     planes: [Side; PLANES],
@@ -44,7 +46,9 @@ pub struct Pyramid<S: Simd> {
 /// One plane.
 #[derive(Clone, Copy, Debug, Default)]
 struct Side {
+    /// Normal, inwards.
     normal: [f32; 3],
+    /// `normal · p + offset >= 0` inside, with slack for rounding.
     offset: f32,
     /// Where a box lies farthest along the normal, on each axis: 0 at its least coordinate, 1 at its largest.
     corner: [usize; 3],
@@ -55,6 +59,7 @@ impl<S: Simd> Pyramid<S> {
     /// than `extent`.
     #[inline(always)]
     pub fn new(simd: S, sides: &[Plane; 4], forward: DVec3, eye: DVec3, perspective: bool, extent: f64) -> Self {
+        // Round the planes outwards to single precision.
         let mut normal = [[0.0f32; LANES]; 3];
         let mut offset = [0.0f32; LANES];
         let mut lane = |i: usize, plane: Plane, slack: f64| {
@@ -66,6 +71,8 @@ impl<S: Simd> Pyramid<S> {
             let a = p.normal.abs();
             ((a.x + a.y + a.z) * extent + p.offset.abs()) * ROUNDING
         };
+
+        // Store the four sides, then the planes behind and ahead of the eye.
         for (i, side) in sides.iter().enumerate() {
             lane(i, *side, slack(*side));
         }
@@ -79,6 +86,8 @@ impl<S: Simd> Pyramid<S> {
             let normal = [normal[0][i], normal[1][i], normal[2][i]];
             Side { normal, offset: offset[i], corner: normal.map(|n| usize::from(n > 0.0)) }
         };
+
+        // Keep each plane with the corner of a box that lies farthest inside.
         let planes = [side(0), side(1), side(2), side(3), side(NEAR), side(AHEAD)];
         Self {
             planes,
@@ -107,6 +116,7 @@ impl<S: Simd> Probe for Pyramid<S> {
 
     #[inline(always)]
     fn enters_each(&self, boxes: &Boxes) -> ([f32; LANES], u64) {
+        // Evaluate the inner corner of eight boxes on each plane.
         let simd = self.offset.token();
         let value = lanes::inlined(
             #[inline(always)]
@@ -126,6 +136,8 @@ impl<S: Simd> Probe for Pyramid<S> {
         );
         // A box that is not there has no corner within.
         let there = F32x8::from_slice(simd, &boxes[0][0]).simd_le(F32x8::from_slice(simd, &boxes[0][1]));
+
+        // Return where each box begins and which are met.
         let met = lowest.simd_ge(zero).to_bitmask() & there.to_bitmask();
         ((zero - value(NEAR)).to_array(), met)
     }

@@ -27,11 +27,11 @@ pub(super) const SAH_DEPTH: usize = 48;
 const VISIT: f32 = 1.0;
 
 /// Bytes of a triangle while the tree is built, its node included.
-pub(super) const BYTES_A_TRIANGLE: usize = size_of::<Item>() + size_of::<Node>();
+pub(super) const BYTES_A_TRIANGLE: usize = size_of::<Item>() + size_of::<BoxNode>();
 
 /// A box, and below it a left child (the next node) and a right one, or triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Node {
+pub(super) struct BoxNode {
     pub(super) min: [f32; 3],
     /// Triangles of a leaf, 0 for an inner node.
     pub(super) count: u32,
@@ -99,7 +99,11 @@ struct Span<'a> {
 
 /// Builds the nodes of a tree, none for no triangles, and gives the order of the triangles in its leaves. The result does not
 /// depend on the number of workers.
-pub(super) fn build(triangles: &Triangles, workers: &Workers, budget: &Budget) -> Result<(Vec<Node>, Vec<u32>), Limit> {
+pub(super) fn build(
+    triangles: &Triangles,
+    workers: &Workers,
+    budget: &Budget,
+) -> Result<(Vec<BoxNode>, Vec<u32>), Limit> {
     budget.check("building the tree of boxes")?;
     if triangles.count() == 0 {
         return Ok((Vec::new(), Vec::new()));
@@ -167,6 +171,8 @@ impl<'a> Span<'a> {
                 middle += 1;
             }
         }
+
+        // Split the span, each side with its bounds.
         let (left, right) = items.split_at_mut(middle);
         let child = |items, first, side: usize| Span {
             items,
@@ -194,7 +200,9 @@ impl<'a> Span<'a> {
 
 /// From a doubled centre to a bin on each axis.
 struct Bins {
+    /// Least doubled centre on each axis.
     min: [f32; 4],
+    /// Bins for each unit of it; 0 where all centres are equal.
     scale: [f32; 4],
     count: usize,
 }
@@ -231,6 +239,7 @@ struct BinCut {
 impl BinCut {
     /// The cheapest of all borders between bins on all axes.
     fn cheapest(span: &Span<'_>) -> Option<Self> {
+        // Sort the items into bins along all axes.
         let bins = Bins::new(span);
         let mut filled = [[(Bounds::EMPTY, 0u32); BINS]; 3];
         for item in span.items.iter() {
@@ -241,6 +250,8 @@ impl BinCut {
                 *count += 1;
             }
         }
+
+        // Take the cheapest border of any axis.
         let mut best: Option<(f32, usize, usize, [Bounds; 2])> = None;
         for axis in (0..3).filter(|&k| bins.scale[k] > 0.0) {
             if let Some((cost, border, bounds)) = cheapest_border(&filled[axis][..bins.count])
@@ -277,7 +288,7 @@ fn cheapest_border(bins: &[(Bounds, u32)]) -> Option<(f32, usize, [Bounds; 2])> 
 }
 
 /// The nodes over a span, whose items become sorted in the order of leaves.
-fn split(span: Span<'_>, workers: &Workers, budget: &Budget) -> Result<Vec<Node>, Limit> {
+fn split(span: Span<'_>, workers: &Workers, budget: &Budget) -> Result<Vec<BoxNode>, Limit> {
     if span.items.len() <= LARGE {
         let mut nodes = Vec::with_capacity(span.items.len());
         split_small(span, &mut nodes);
@@ -297,7 +308,7 @@ fn split(span: Span<'_>, workers: &Workers, budget: &Budget) -> Result<Vec<Node>
 }
 
 /// [`split`] on one thread, adding to `nodes`.
-fn split_small(span: Span<'_>, nodes: &mut Vec<Node>) {
+fn split_small(span: Span<'_>, nodes: &mut Vec<BoxNode>) {
     let (bounds, at) = (span.bounds, nodes.len());
     match span.cut() {
         Err(leaf) => nodes.push(node(&bounds, leaf.items.len(), leaf.first)),
@@ -310,7 +321,7 @@ fn split_small(span: Span<'_>, nodes: &mut Vec<Node>) {
     }
 }
 
-fn node(bounds: &Bounds, count: usize, link: usize) -> Node {
+fn node(bounds: &Bounds, count: usize, link: usize) -> BoxNode {
     let three = |v: [f32; 4]| [v[0], v[1], v[2]];
-    Node { min: three(bounds.min), max: three(bounds.max), count: count as u32, link: link as u32 }
+    BoxNode { min: three(bounds.min), max: three(bounds.max), count: count as u32, link: link as u32 }
 }

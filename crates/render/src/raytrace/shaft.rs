@@ -55,6 +55,7 @@ impl Shaft {
     /// The places between a box and `light`. No coordinate that is asked about is larger than `extent`.
     pub fn between(min: DVec3, max: DVec3, light: DVec4, extent: f32) -> Self {
         let mut shaft = Self { planes: Vec::with_capacity(12) };
+        // Add the sides of the box that face the light, or planes through the light.
         // The box, stretched towards the light.
         for k in 0..3 {
             let axis = DVec3::AXES[k];
@@ -69,6 +70,9 @@ impl Shaft {
                 shaft.push(-axis, light.truncate(), extent);
             }
         }
+
+        // Add the planes through edges of the box and the light that have the whole box on one
+        // side.
         for k in 0..3 {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             let corners = [[min[i], min[j]], [max[i], min[j]], [min[i], max[j]], [max[i], max[j]]];

@@ -131,6 +131,7 @@ struct ClosestHit<'a> {
     own: u32,
     /// Rounding of a hit's parameter.
     slack: f32,
+    /// Position of the triangle in the structure's list, and the parameter of the hit.
     best: Option<(usize, f32)>,
     tests: u64,
 }

@@ -11,7 +11,7 @@
 //! Source: that of the structure.
 
 use super::beam::Beam;
-use super::bsp::Bsp;
+use super::bsp::KdTree;
 use super::bvh::Bvh;
 use super::follow::{Follow, StructureUser};
 use super::grid::Grid;
@@ -98,9 +98,9 @@ structures! {
         },
     }
     /// A box cut in two across an axis, again and again.
-    BSP = Bsp(Bsp) {
-        bytes: Bsp::bytes,
-        build: Bsp::of,
+    BSP = KdTree(KdTree) {
+        bytes: KdTree::bytes,
+        build: KdTree::of,
         info: AccelerationInfo {
             name: "bsp",
             description: "a box cut in two across an axis where rays have least to do, and its parts again",

@@ -25,16 +25,18 @@ pub enum Shape {
     Aligned,
     /// A box that is turned to fit.
     Oriented,
-    /// A sphere.
+    /// Spheres around objects.
     Sphere,
 }
 
 /// The volume of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Volume {
+    /// Lower and upper corner.
     Aligned([[f32; 3]; 2]),
     /// Middle, unit directions of the edges, half their lengths.
     Oriented(Vec3, [Vec3; 3], Vec3),
+    /// Centre and radius.
     Sphere(DVec3, f64),
 }
 

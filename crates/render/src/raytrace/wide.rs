@@ -11,7 +11,7 @@
 //! Cost: linear to build; 60 to 100 bytes a triangle. A ray opens about a third as many nodes as with two children each.
 //! Source: \[Wald, Benthin & Boulos 2008\].
 
-use super::beam::{self, Lines};
+use super::beam::{self, BeamLines};
 use super::intersect::{Ray, surely_beside};
 use super::sah::{self, area};
 use super::triangles::Triangles;
@@ -62,7 +62,9 @@ struct Waiting {
 struct Slab<S: Simd> {
     /// The side by which it enters, 0 for the least coordinates.
     side: usize,
+    /// Starts of the lines that enter and that leave first.
     start: [F32x8<S>; 2],
+    /// One over the slopes of these lines, rounded outwards.
     inverse: [F32x8<S>; 2],
 }
 
@@ -80,10 +82,14 @@ impl Wide {
                 count => [node.link, node.link + count],
             };
         }
+
+        // Collapse the tree from the root down.
         let mut wide = Self::default();
         if !tree.is_empty() {
             wide.grow(tree, &runs, 0);
         }
+
+        // Gather the corners of each leaf's triangles into lanes.
         wide.leaves = vec![[[[0.0; LANES]; 3]; 3]; wide.places.len()];
         workers.for_each_chunk(&mut wide.leaves, CHUNK, |chunk, leaves| {
             for (leaf, places) in leaves.iter_mut().zip(&wide.places[chunk * CHUNK..]) {
@@ -99,6 +105,7 @@ impl Wide {
 
     /// Makes a node of what is below `top`: its number.
     fn grow(&mut self, tree: &[sah::Node], runs: &[[u32; 2]], top: usize) -> u32 {
+        // Open the largest inner child until there are eight.
         let is_leaf = |i: usize| (runs[i][1] - runs[i][0]) as usize <= LANES;
         let member = |i: usize| (i, if is_leaf(i) { f32::NEG_INFINITY } else { area(&tree[i].min, &tree[i].max) });
         let mut members = [member(top); LANES];
@@ -114,6 +121,7 @@ impl Wide {
             count += 1;
         }
 
+        // Emit the node, then what lies below each child.
         let number = self.nodes.len();
         let nowhere = [[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]];
         self.nodes.push(Node { bounds: [nowhere; 3], below: [0; LANES] });
@@ -156,6 +164,7 @@ impl Wide {
         (ray, own): (&Ray, u32),
         counters: &mut Counters,
     ) -> Option<(usize, f32)> {
+        // Prepare the beam round the ray and the search.
         let slabs = slabs(simd, ray, triangles.extent);
         let slack = ray.rounding(triangles.extent);
         let (mut best, mut limit) = (None, f32::INFINITY);
@@ -165,6 +174,7 @@ impl Wide {
             return None;
         }
         loop {
+            // Open a node: descend into a single child, or queue all that are met.
             if next & LEAF == 0 {
                 let node = &self.nodes[next as usize];
                 counters.boxes += LANES as u64;
@@ -175,6 +185,7 @@ impl Wide {
                 }
                 waiting.add(&node.below, &near.to_array(), met);
             } else {
+                // Test a leaf's eight triangles, then intersect those that may be met exactly.
                 let leaf = (next & !LEAF) as usize;
                 let places = range(&self.places[leaf]);
                 counters.triangles += places.len() as u64;
@@ -227,10 +238,12 @@ impl Wide {
     /// [`super::Tree::descend_from`]: the nearest of a node's boxes come first.
     #[inline(always)]
     pub(super) fn descend_from(&self, near: f32, probe: &impl Probe, visitor: &mut impl Visitor) -> u64 {
+        // Begin with the root.
         let mut visited = 0;
         let mut waiting = Waiting::new();
         let mut next = Some((0, near));
         while let Some((below, near)) = next {
+            // Open a node, or visit a leaf's triangles.
             let part = self.part(below);
             if !visitor.skips(part, near) {
                 visitor.passes(part);
@@ -293,21 +306,26 @@ impl Waiting {
 /// The beam round a ray on each axis.
 #[inline(always)]
 fn slabs<S: Simd>(simd: S, ray: &Ray, extent: f32) -> [Slab<S>; 3] {
+    // Enclose the ray in two lines on each axis.
     let axes = lanes::inlined(
         #[inline(always)]
         |v: Vec3| F32x8::from_slice(simd, &[v.x, v.y, v.z, 0.0, 0.0, 0.0, 0.0, 0.0]),
     );
-    let lines = Lines::around(simd, axes(ray.origin), axes(ray.direction), extent);
+    let lines = BeamLines::around(simd, axes(ray.origin), axes(ray.direction), extent);
     let (upper, lower) = (lines.inverse_upper_slope, lines.inverse_lower_slope);
     // The upper line meets a side sooner than the lower one if it rises. If only it rises, the beam is flat and gets infinitely
     // far before it leaves.
     let rises = upper.simd_gt(F32x8::splat(simd, 0.0));
     let sides = !rises.to_bitmask();
+
+    // Choose the lines that enter and leave first, with rounding outwards.
     let (start, inverse) = (
         [rises.select(lines.upper_start, lines.lower_start), rises.select(lines.lower_start, lines.upper_start)],
         [rises.select(upper, lower), rises.select(lanes::Lanes::abs(lower), upper)],
     );
     let inverse = [inverse[0] * (1.0 - beam::ROUNDING), inverse[1] * (1.0 + beam::ROUNDING)];
+
+    // Spread each axis over all lanes.
     let [enter, leave] = [start[0].to_array(), start[1].to_array()];
     let [enter_inverse, leave_inverse] = [inverse[0].to_array(), inverse[1].to_array()];
     let wide = lanes::inlined(

@@ -9,7 +9,7 @@ use super::points::Points;
 use super::shadowed;
 use super::slots::Slots;
 use super::subject::{Subject, subject};
-use crate::shadow::Parts;
+use crate::shadow::LightVisibility;
 use vitral_math::lanes::{LANES, Simd};
 
 /// Up to eight points of one object and material.
@@ -23,9 +23,9 @@ pub(crate) struct ShadingBatch8<'a> {
     /// The rays that see them, if it is not the eye.
     pub along: Option<&'a Along>,
     /// Which part of each light reaches the points of the group; empty without shadows, or if the material does not need it.
-    pub light_visibility: &'a [Parts],
+    pub light_visibility: &'a [LightVisibility],
     /// The same for the other side of a translucent sheet.
-    pub light_visibility_behind: &'a [Parts],
+    pub light_visibility_behind: &'a [LightVisibility],
     /// The place of the first point in the group.
     pub first: usize,
 }
@@ -66,6 +66,7 @@ pub(super) fn each_pair<S: Simd>(
     mut visit: impl FnMut(&ShadingBatch8<'_>, Option<&ShadingBatch8<'_>>),
 ) {
     for group in &points.groups {
+        // Make the records of the group's facets and find which lights reach its points.
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
@@ -74,6 +75,8 @@ pub(super) fn each_pair<S: Simd>(
         } else {
             [Vec::new(), Vec::new()]
         };
+
+        // Visit the points in pairs of eight.
         for (i, (order, records)) in order.chunks(2 * LANES).zip(facets.of_point.chunks(2 * LANES)).enumerate() {
             let count = order.len().min(LANES);
             let ((mine, next), (my_records, next_records)) = (order.split_at(count), records.split_at(count));

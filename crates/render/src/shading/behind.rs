@@ -219,11 +219,14 @@ impl DeepPicture<'_> {
     /// What is behind a fragment of a translucent surface, premultiplied; `None` for other fragments, for those behind
     /// others of the kind at all their samples, and where the picture does not show it. `fragments` are all of the pixel.
     pub(crate) fn behind(&self, index: usize, of: &FragmentPoint, fragments: &[FragmentPoint]) -> Option<[f32; 4]> {
+        // Find how far the surface scatters.
         let tile = &self.tiles[index];
         let exponent = self.exponent(tile, of);
         if exponent == 0.0 || self.is_behind_another(tile, of, fragments) {
             return None;
         }
+
+        // Place the fragment in view space.
         let depths = &tile.points.depths[of.start as usize..][..of.mask.count_ones() as usize];
         let depth = depths.iter().sum::<f32>() / depths.len() as f32;
         let [x, y] = tile.points.place[of.source as usize].map(f64::from);
@@ -231,6 +234,8 @@ impl DeepPicture<'_> {
         let pixel = [x as u32, y as u32];
         let seed = hash(pixel[0] ^ pixel[1] << 16);
         let axis = if self.constants.view.view.perspective { from.normalize() } else { DVec3::NEG_Z };
+
+        // Follow several scattered rays and take the mean.
         let (mut sum, mut count) = ([0.0; 4], 0.0);
         for i in 0..self.strata.count() {
             let direction = self.strata.direction(i, seed, exponent, axis);
@@ -264,11 +269,15 @@ impl DeepPicture<'_> {
 
     /// What a ray sees; `None` if the picture does not show it.
     fn follow(&self, start: Start, ray: u32, seed: u32) -> Option<[f32; 4]> {
+        // Start with the full weight.
         let Start { mut pixel, mut from, direction } = start;
         let mut direction = forward(direction);
         let sample = ray as usize % self.constants.view.pattern.len();
         let (mut light, mut weight, mut opacity) = ([0.0; 4], [1.0; 3], 1.0);
+
+        // March through the layers.
         for passed in 0..MOST_PASSED {
+            // Move to the pixel in which the ray meets the surface found in this one.
             let mut met = None;
             for _ in 0..ASKED {
                 let to = match self.next(pixel, sample, from) {
@@ -289,6 +298,8 @@ impl DeepPicture<'_> {
                 pixel = to.unwrap_or(pixel);
             }
             let (place, surface) = met?;
+
+            // Add the surface's light, and weaken what lies behind it.
             let color = match surface {
                 Some(surface) => surface.color,
                 None => self.constants.background.colors[place[1] as usize],
@@ -301,6 +312,8 @@ impl DeepPicture<'_> {
             if weight.iter().all(|&w| w < LEAST_WEIGHT) && opacity < LEAST_WEIGHT {
                 break;
             }
+
+            // Continue behind it, scattered if it scatters.
             pixel = place;
             from = self.lens.place(dvec2(f64::from(place[0]) + 0.5, f64::from(place[1]) + 0.5), surface.away);
             if surface.exponent > 0.0 {

@@ -38,6 +38,7 @@ pub(super) fn planes(
     constants: &FrameConstants<'_>,
     marks: &MarkColors,
 ) -> BufferPlanes {
+    // Start with the opaque samples.
     let opaque = opaque_samples(tile, points, lit, constants);
     let samples = constants.view.pattern.len();
     let share = 1.0 / samples as f32;
@@ -50,6 +51,8 @@ pub(super) fn planes(
     };
     let mut layers = points.fragments.as_slice();
     let mut fragments = Vec::new();
+
+    // Compose each pixel's layers, sample by sample.
     for pixel in 0..TILE_PIXELS {
         let (mine, rest) = layers.split_at(layers.iter().take_while(|l| l.pixel as usize == pixel).count());
         layers = rest;
@@ -62,6 +65,8 @@ pub(super) fn planes(
                 planes.layers[pixel] = filled.layers;
                 planes.depth[pixel] = filled.behind.depth.unwrap_or(planes.depth[pixel]);
             }
+
+            // Add the sample to the means.
             for k in 0..4 {
                 planes.opaque[pixel][k] += filled.behind.color[k] * share;
             }

@@ -68,15 +68,21 @@ impl TileSink for ChannelSink<'_> {
         if self.deadline.is_over() {
             return;
         }
+
+        // Move the visible parts of cut-out surfaces into the tile.
         let mut planes = DataPlanes::default();
         let with_cut_outs = self.with_cut_outs(tile, layers);
         let tile = with_cut_outs.as_ref().unwrap_or(tile);
+
+        // Copy what the tile holds.
         if self.wanted.depth {
             planes.depth = tile.depth.clone();
         }
         if self.wanted.surface || self.wanted.object || self.wanted.material {
             self.ids(tile, &mut planes);
         }
+
+        // Shade the points for normals and shadows.
         if self.wanted.normal || self.wanted.any_shadow() {
             let mut points = Points::default();
             points.collect(tile, InFront::Samples(&[]), self.constants, &MarkColors::default());

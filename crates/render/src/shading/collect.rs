@@ -29,6 +29,7 @@ impl Points {
         constants: &FrameConstants<'_>,
         marks: &MarkColors,
     ) {
+        // Empty the lists.
         self.facet.clear();
         self.place.clear();
         self.layers.clear();
@@ -38,6 +39,8 @@ impl Points {
         self.mixed.clear();
         self.followed.clear();
         self.overruled = 0;
+
+        // Collect the opaque points.
         if tile.touched {
             match constants.view.pattern.len() {
                 _ if constants.follows_rays() => self.collect_opaque(tile, constants),
@@ -47,6 +50,8 @@ impl Points {
                 _ => self.collect_opaque(tile, constants),
             }
         }
+
+        // Collect the layers, and group all points.
         self.covered_pixels = self.pixels.len() as u64;
         match layers {
             InFront::Samples([]) | InFront::Fragments([], _) => {}
@@ -95,6 +100,7 @@ impl Points {
         let middles = &constants.middles[..1 << SAMPLES];
         let (width, height) = visible_part(tile, constants.view.viewport);
         let [mut points, mut pixels, mut mixed] = [0; 3];
+        // Find which samples of the run differ and whether it is empty.
         for y in 0..height {
             let down = (tile.y as usize + y) as f32;
             for first in (0..width).step_by(RUN) {
@@ -112,6 +118,8 @@ impl Points {
                 if is_empty(&all) {
                     continue;
                 }
+
+                // Reserve room for the whole run.
                 if self.facet.len() < points + RUN * SAMPLES {
                     self.facet.resize(points + 16 * RUN * SAMPLES, 0);
                     self.place.resize(points + 16 * RUN * SAMPLES, [0.0; 2]);
@@ -122,6 +130,8 @@ impl Points {
                 if self.mixed.len() < mixed + RUN * SAMPLES {
                     self.mixed.resize(mixed + 16 * RUN * SAMPLES, NO_POINT);
                 }
+
+                // Write each sample's point.
                 for x in 0..RUN.min(width - first) {
                     let facets: [u32; SAMPLES] = std::array::from_fn(|s| planes[s][x]);
                     let across = (tile.x as usize + first + x) as f32;
@@ -143,6 +153,8 @@ impl Points {
                         points += usize::from(is_new);
                         point_of[s] = if facets[s] == NO_FACET { NO_POINT } else { point };
                     }
+
+                    // Write the pixel, with its points if they differ.
                     let is_mixed = different[x] != 0;
                     let source = if is_mixed { Source::Mixed(mixed as u32) } else { Source::Point(point_of[0]) };
                     self.mixed[mixed..mixed + SAMPLES].copy_from_slice(&point_of);
@@ -161,6 +173,8 @@ impl Points {
     fn collect_opaque(&mut self, tile: &Tile, constants: &FrameConstants<'_>) {
         let samples = constants.view.pattern.len();
         let (width, height) = visible_part(tile, constants.view.viewport);
+
+        // Visit the rows in runs and skip empty ones.
         for y in 0..height {
             let row = y * TILE;
             for x in (0..width).step_by(RUN) {
@@ -235,7 +249,8 @@ impl Points {
                 self.collect_listed(pixel as u32, here, place, constants, marks);
                 continue;
             }
-            // Mostly they come in the order of the scene.
+
+            // Emit one fragment for each facet. Layers mostly come in the order of the scene.
             let count = if here.is_sorted_by(|a, b| a.key() < b.key()) { here.len() } else { settle(here) };
             let mut i = 0;
             while i < count {
@@ -326,11 +341,14 @@ impl Points {
         constants: &FrameConstants<'_>,
         marks: &MarkColors,
     ) {
+        // Empty the lists.
         self.facet.clear();
         self.place.clear();
         self.fragments.clear();
         self.depths.clear();
         let (samples, (width, height)) = (constants.view.pattern.len(), visible_part(tile, constants.view.viewport));
+
+        // Emit one fragment for each facet of the layer.
         for pixel in (0..height).flat_map(|y| (0..width).map(move |x| y * TILE + x)) {
             let place = [(tile.x as usize + pixel % TILE) as f32, (tile.y as usize + pixel / TILE) as f32];
             let layer = |sample: usize| peel.layer(sample * TILE_PIXELS + pixel);
@@ -398,6 +416,8 @@ impl Points {
             }
             self.key_of_point.push(key);
         }
+
+        // Skip sorting where there is one group.
         let count = self.facet.len() as u32;
         if let [[instance, part]] = self.keys[..] {
             // Of one group nothing need be sorted.
@@ -407,6 +427,8 @@ impl Points {
             self.order.extend(0..count);
             return;
         }
+
+        // Sort the points by group.
         let points = self.key_of_point.iter().zip(0..).map(|(&key, point)| (key as usize, point));
         sort_by_slot(&mut self.ends, self.keys.len(), &mut self.order, points);
         self.groups.clear();

@@ -41,6 +41,7 @@ pub(super) fn shade_color_only<S: Simd, V: Floats<S>>(
     simd.vectorize(
         #[inline(always)]
         || {
+            // Find the numbers of the points: the same for all, or by lane.
             let first = eights[0];
             let points: PointNumbers<V> = if uniform {
                 PointNumbers::uniform(simd, eights)
@@ -56,6 +57,8 @@ pub(super) fn shade_color_only<S: Simd, V: Floats<S>>(
                 )
             };
             let PointNumbers { placed: Placed { position, normal }, emission, alpha, coverage, coefficients } = points;
+
+            // Reflect the lights and store the colours.
             let reflected = lighting(first, constants).reflect(simd, &position, &normal, &coefficients);
             let color = premultiplied(first.material, false, &reflected, emission, alpha, coverage);
             V::by_eights(

@@ -108,6 +108,8 @@ impl Composer {
             if index == u32::MAX {
                 return;
             }
+
+            // Take the pixel's surface and its layers.
             let background = constants.background.colors[tile.y as usize + index as usize / TILE];
             let behind = |point: u32| if point == NO_POINT { background } else { lit.colors[point as usize] };
             let mut source = Source::Point(NO_POINT);
@@ -118,6 +120,8 @@ impl Composer {
             let in_front = layers.iter().take_while(|l| l.pixel == index).count();
             let (mine, rest) = layers.split_at(in_front);
             layers = rest;
+
+            // Compose the samples and take their mean.
             let color = match source {
                 Source::Point(point) if mine.is_empty() => behind(point),
                 _ => {

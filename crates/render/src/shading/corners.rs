@@ -13,7 +13,7 @@ use super::shade::shade_hits;
 use super::shaded_points::ShadedPoints;
 use crate::PreparedView;
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{self, Place};
+use crate::shadow::{self, SurfacePoint};
 use vitral_exec::{Budget, Limit};
 use vitral_math::lanes::dispatch;
 use vitral_math::{DVec3, DVec4};
@@ -71,6 +71,7 @@ fn row_of(view: &PreparedView<'_>, point: DVec3) -> u32 {
 
 /// Adds the corners of a facet, seen from where the eye is.
 fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, corners: &mut Vec<LitCorner>) {
+    // Place the facet and turn its normal to the viewer.
     let view = constants.view;
     let world = &view.session.world;
     let center = Triangles::center_of(world);
@@ -85,6 +86,8 @@ fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, cor
     let constants = &constants.instances[world.instance_of_facet(facet)];
     let turns = constants.two_sided || material.material.double_sided || material.is_layered();
     let normal = if away && turns { -normal } else { normal };
+
+    // Add a hit at each corner, a little inside the facet.
     for corner in 0..3 {
         let at = places[corner] + center;
         let share = |k: usize| if k == corner { 1.0 - 2.0 * INSIDE } else { INSIDE };
@@ -98,7 +101,7 @@ fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, cor
             (false, false) => in_view + DVec3::Z,
         };
         let seed = facet.wrapping_mul(0x9e37_79b9) ^ corner as u32;
-        let place = Place { position, normal, facet, seed, pixel: None };
+        let place = SurfacePoint { position, normal, facet, seed, pixel: None };
         hits.push(Hit { weights, origin: origin.as_vec3().to_array(), place, row: Some(row_of(view, at)) });
         corners.push(LitCorner { facet, corner: corner as u8, world: at, view: in_view, color: [0.0; 4] });
     }

@@ -28,7 +28,7 @@ use crate::Shading;
 use crate::display::encode;
 use crate::marks::MarkColors;
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{Occluders, Place, blocker};
+use crate::shadow::{Occluders, SurfacePoint, blocker};
 use crate::transparency::MOST_SAMPLES;
 use vitral_light::{
     Illumination, Light, Microfacet, Phong, Reflected, Rgb, ambient_term, microfacet_terms, phong_terms, sum_of_terms,
@@ -103,6 +103,8 @@ impl Examination<'_> {
         surface.screen_linear = subject.viewing.screen_linear();
         let mut parameters = SurfaceParameters::new(simd, subject.mesh, slots, &surface, material, constants.raw);
         parameters.let_through(simd, &surface, material, constants, None);
+
+        // Find what the model is evaluated with.
         let places = shadowed::world_places(simd, constants, subject, slots, &surface.place_weights());
         let wanted = self.evaluations(simd, eight, &surface, &parameters);
         let received = constants.radiosity.filter(|_| material.model.needs_light_visibility()).map(|solution| {
@@ -128,6 +130,8 @@ impl Examination<'_> {
                 Model::Constant(_) => [0.0; 3],
                 _ => triple(parameters.emission),
             };
+
+            // Sum up the depth cue and the reflected light.
             let row = points.place[p as usize][1] as u32;
             let depth_cue = constants.fade.as_ref().map(|fade| DepthCueTerms {
                 kept: fade.kept(-number(surface.position().z)),
@@ -139,6 +143,8 @@ impl Examination<'_> {
                 Some(own) => Reflected { diffuse: V3::from_array(own), specular: V3::from_array([0.0; 3]) },
                 None => together(&evaluations, weights, triple(parameters.texture)),
             };
+
+            // Collect everything.
             let filtered = constants.transparency.tints();
             found[p as usize] = Some(PointLight {
                 facet: points.facet[p as usize],
@@ -174,9 +180,13 @@ impl Examination<'_> {
         parameters: &SurfaceParameters<S>,
     ) -> Vec<Wanted<S>> {
         let &ShadingBatch8 { subject, material, slots, .. } = eight;
+
+        // Models without lights are not evaluated.
         if !material.model.needs_light_visibility() {
             return Vec::new();
         }
+
+        // Evaluate where the shading model does: at the point, on the face, or at the corners.
         let viewer = |position: &V3<F<S>>| towards_viewer(simd, position, None, subject.viewing.perspective);
         let of_point = |placed: Placed<F<S>>| {
             let v = viewer(&placed.position);
@@ -219,12 +229,16 @@ impl Examination<'_> {
         visibility: &[Rgb],
     ) -> Evaluation {
         let constants = self.constants;
+
+        // Take the lane's surface and coefficients.
         let number = |v: F<S>| v.to_array()[lane];
         let triple = |v: V3<F<S>>| V3::new(number(v.x), number(v.y), number(v.z));
         let Placed { position, normal } = wanted.placed;
         let s = vitral_light::Surface { position: triple(position), n: triple(normal), v: triple(wanted.v) };
         let coefficients = Coefficients::from_numbers(material.model, wanted.coefficients.numbers().map(number));
         let seen = |j: usize| visibility.get(j).copied().unwrap_or([1.0; 3]);
+
+        // Evaluate each light's terms.
         let lights = constants.lights.iter().enumerate();
         let microfacet = match &coefficients {
             Coefficients::Microfacet(m) => Some(*m),
@@ -250,6 +264,8 @@ impl Examination<'_> {
                 (terms, ambient, CoefficientValues::Microfacet { base_color, metallic, roughness, occlusion })
             }
         };
+
+        // Add what the environment mirrors.
         let sky = constants.sky.filter(|_| material.mirrors_sky);
         let environment = match (sky, microfacet) {
             (Some(sky), Some(m)) => Some(sky.mirrored(&s, &m)),
@@ -257,6 +273,8 @@ impl Examination<'_> {
         };
         let mut sum = sum_of_terms(ambient, &terms);
         environment.into_iter().for_each(|mirrored| sum.specular = sum.specular + mirrored);
+
+        // Collect the terms.
         let lights = constants.light_numbers.iter().zip(terms);
         Evaluation {
             corner: wanted.corner,
@@ -274,7 +292,7 @@ impl Examination<'_> {
     }
 
     /// The shadow of each light at a place.
-    fn shadows(&self, visibility: &[Rgb], place: &Place) -> Vec<ShadowOfLight> {
+    fn shadows(&self, visibility: &[Rgb], place: &SurfacePoint) -> Vec<ShadowOfLight> {
         let session = self.constants.view.session;
         let of_light = |(&light, &visibility): (&usize, &Rgb)| {
             let mut shadow = ShadowOfLight { light, visibility, attached: false, blocker: None, distance: None };
@@ -299,11 +317,14 @@ impl Examination<'_> {
         numbers: &Numbers,
         explained: Vec<PointLight>,
     ) -> PixelLight {
+        // Find the pixel's surface and background.
         let (constants, count) = (self.constants, self.constants.view.pattern.len());
         let (x, y) = (tile.x + (pixel % TILE) as u32, tile.y + (pixel / TILE) as u32);
         let source = points.pixels.first().map_or(Source::Point(NO_POINT), |p| p.source);
         let background = constants.background.colors[y as usize];
         let behind = |point: u32| if point == NO_POINT { background } else { lit.colors[point as usize] };
+
+        // Lay the layers over the opaque samples.
         let mut below = [[0.0; 4]; MOST_SAMPLES];
         let below = &mut below[..count];
         opaque_of_pixel(source, points, behind, below);
@@ -314,6 +335,7 @@ impl Examination<'_> {
             (constants.lay)(&fragments, below);
         }
 
+        // Describe each sample with its layers.
         let sample = |s: usize| {
             let point = match source {
                 Source::Point(point) => point,
@@ -393,6 +415,7 @@ fn finished(
     average: [f32; 4],
     constants: &FrameConstants<'_>,
 ) -> PixelLight {
+    // Divide by alpha.
     let [r, g, b, alpha] = average;
     let inverse = match alpha {
         1.0.. => 1.0,
@@ -400,6 +423,8 @@ fn finished(
         _ => 0.0,
     };
     let straight = [r * inverse, g * inverse, b * inverse];
+
+    // Encode the channels.
     let encode_one = |channel: f32| {
         let channel = channel.clamp(0.0, 1.0);
         if constants.raw { channel * 255.0 } else { Lanes::srgb_from_linear(channel) * 255.0 }
@@ -419,7 +444,7 @@ fn finished(
 }
 
 /// Whether the facet of a place faces away from a light.
-fn faces_away(light: &Light, place: &Place, center: vitral_math::DVec3) -> bool {
+fn faces_away(light: &Light, place: &SurfacePoint, center: vitral_math::DVec3) -> bool {
     use vitral_light::{AreaShape, LightKind};
     let at = |p: vitral_math::DVec3| place.normal.dot(p - center - place.position) <= 0.0;
     match &light.kind {

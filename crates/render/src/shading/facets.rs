@@ -42,6 +42,7 @@ impl FacetTable {
 
     /// Makes the records for the points `order`.
     pub(crate) fn fill<S: Simd>(&mut self, simd: S, points: &Points, order: &[u32], subject: &Subject<'_>) {
+        // Number the facets; a small table finds those seen lately.
         self.triangles.clear();
         self.anchors.clear();
         self.of_point.clear();
@@ -59,6 +60,8 @@ impl FacetTable {
         }
         // Every record is written, so old contents may stay.
         self.records.resize(self.triangles.len(), Record([0.0; 32]));
+
+        // Compute the records, eight at a time.
         let eights = self.triangles.chunks(LANES).zip(self.anchors.chunks(LANES)).zip(self.records.chunks_mut(LANES));
         for ((triangles, anchors), records) in eights {
             simd.vectorize(
@@ -82,6 +85,7 @@ pub(super) fn model_corners<S: Simd>(simd: S, triangles: &[u32], mesh: &Mesh) ->
 
 #[inline(always)]
 fn eight_records<S: Simd>(simd: S, triangles: &[u32], anchors: &[[f32; 2]], subject: &Subject<'_>, out: &mut [Record]) {
+    // Gather the corners and the points at which weights are anchored.
     let (instance, viewing) = (subject.instance, subject.viewing);
     let last = triangles.len() - 1;
     let model = model_corners(simd, triangles, subject.mesh);
@@ -127,6 +131,7 @@ pub(super) fn write_records<S: Simd>(
     [x0, y0]: [F<S>; 2],
     out: &mut [Record],
 ) {
+    // Bring corners and normals to view space, on the viewer's side.
     let instance = subject.instance;
     let to_view = &instance.view_from_model;
     let positions = [affine(to_view, &model[0]), affine(to_view, &model[1]), affine(to_view, &model[2])];
@@ -135,6 +140,7 @@ pub(super) fn write_records<S: Simd>(
     let normals = corner_normals(simd, triangles, subject, geometric);
     let (facet_normal, normals) = facing(simd, subject, &positions, origin, geometric, normals);
 
+    // Write the numbers in the order of [`Record`].
     let (e, n, p, m) = (weights, facet_normal, positions, normals);
     let numbers: [[F<S>; 4]; 8] = [
         [e[0][0], e[0][1], e[0][2], e[1][0]],

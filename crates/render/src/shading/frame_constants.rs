@@ -8,7 +8,7 @@ use crate::display::{BackgroundRows, DecodeTables, Fade};
 use crate::marks::PointLighting;
 use crate::radiosity::Solution;
 use crate::settings::Terminator;
-use crate::shadow::Shadows;
+use crate::shadow::PreparedShadows;
 use crate::transparency::Lay;
 use crate::{
     ColorSpace, DepthCue, Environment, Execution, Global, Interpolation, PerMesh, PreparedView, Settings, Shading,
@@ -33,9 +33,9 @@ pub(crate) struct FrameConstants<'a> {
     /// For each of these lights its number among all, as shadows count them.
     pub light_numbers: Vec<usize>,
     /// What says which part of a light arrives; `None` without shadows.
-    pub shadows: Option<&'a dyn Shadows>,
+    pub shadows: Option<&'a dyn PreparedShadows>,
     /// What softens the border of attached shadows; `None` without shadows, and where it is to be exact.
-    pub(super) terminator: Option<Box<dyn Shadows + 'a>>,
+    pub(super) terminator: Option<Box<dyn PreparedShadows + 'a>>,
     /// Light from other surfaces; `None` without radiosity.
     pub radiosity: Option<&'a Solution>,
     /// For each facet whether rays that meet it are followed on; empty without ray tracing.
@@ -72,11 +72,12 @@ impl<'a> FrameConstants<'a> {
         settings: &Settings,
         lights: &[Light],
         ambient: Rgb,
-        shadows: Option<&'a dyn Shadows>,
+        shadows: Option<&'a dyn PreparedShadows>,
         radiosity: Option<&'a Solution>,
         tables: &'a DecodeTables,
         execution: &Execution,
     ) -> Self {
+        // Prepare instances and materials.
         let session = view.session;
         let raw = settings.picture.color_space == ColorSpace::Raw;
         let instances =
@@ -84,18 +85,25 @@ impl<'a> FrameConstants<'a> {
         let default = Material { name: "default".to_owned(), ..Material::default() };
         let materials = session.scene.materials.iter().chain([&default]);
         let materials: Vec<_> = materials.map(|m| MaterialConstants::new(m, view, settings, tables)).collect();
+
+        // Find the facets from which rays go on.
         let follows = match settings.global.model {
             Global::RayTrace => facets_that_follow(view, &materials),
             _ => Vec::new(),
         };
+
+        // Prepare the background and the lights.
         let key = (settings.picture.background, settings.picture.height, raw);
         let make = || Ok::<_, Infallible>(BackgroundRows::new(&key));
         let Ok(background) = session.cache.get_or_build(key, make);
         let prepared = lights.iter().map(|l| PreparedLight::new(l, &view.view.view_from_world)).enumerate();
         let soft = shadows.is_some() && settings.shadows.terminator == Terminator::Soft;
-        let terminator = || Box::new(SoftTerminator::new(view, lights, settings, execution)) as Box<dyn Shadows + 'a>;
+        let terminator =
+            || Box::new(SoftTerminator::new(view, lights, settings, execution)) as Box<dyn PreparedShadows + 'a>;
         let terminator = soft.then(terminator);
         let (light_numbers, lights) = prepared.filter_map(|(i, l)| Some((i, l?))).unzip();
+
+        // Collect everything.
         Self {
             view,
             instances,

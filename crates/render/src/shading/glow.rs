@@ -51,6 +51,8 @@ pub(super) fn glow<S: Simd>(
                     None => V3::new(one, one, one),
                 },
             );
+
+            // Sum the light that shines through; the walls of a body get it on their inner side.
             let mut light = transmitted_light(&constants.lights, position, normal, light_visibility);
             if !subject.is_sheet() {
                 let [a, b, c] = surface.positions;
@@ -58,6 +60,8 @@ pub(super) fn glow<S: Simd>(
                 let outward = if subject.instance.mirrored { -winding } else { winding };
                 light = V3::select(lanes::Lanes::lt(outward, zero), light, V3::new(zero, zero, zero));
             }
+
+            // Filter it by the material.
             let passes = if constants.transparency.tints() {
                 V3::splat(one, material.material.filter.map(|f| f.clamp(0.0, 1.0)))
             } else {

@@ -100,16 +100,22 @@ pub struct Additions {
 /// span, its column and its intensity. Nothing is added up where nothing is: a triangle without height has no lines.
 pub fn scan_convert(vertices: &[ScreenIntensity; 3], mut put: impl FnMut(&SpanSteps, i64, [f64; 3])) -> Additions {
     let mut additions = Additions::default();
+
+    // Sort the corners from top to bottom.
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| vertices[a].at[1].total_cmp(&vertices[b].at[1]));
     let [top, middle, bottom] = order;
     let mut long = Walk::new(vertices, [top, bottom]);
+
+    // Walk the long edge together with the two short ones.
     for ends in [[top, middle], [middle, bottom]] {
         let mut short = Walk::new(vertices, ends);
         for row in short.rows.clone() {
             let on_long = long.at(row, &mut additions);
             let on_short = short.at(row, &mut additions);
             let (left, right) = if on_long.x <= on_short.x { (on_long, on_short) } else { (on_short, on_long) };
+
+            // Step the intensity along the span.
             let px = [0, 1, 2].map(|k| span_increment((left.x, left.intensity[k]), (right.x, right.intensity[k])));
             let pixels = [left.x, right.x].map(|x| (x - 0.5).ceil() as i64);
             if pixels[0] >= pixels[1] {

@@ -11,7 +11,7 @@ use super::facets::{model_corners, write_records};
 use super::geometry::{F, Record, constant};
 use super::slots::Slots;
 use super::subject::Subject;
-use crate::shadow::Place;
+use crate::shadow::SurfacePoint;
 use vitral_math::lanes::prelude::SimdBase;
 use vitral_math::lanes::{F32x8, LANES, Simd, V3};
 
@@ -23,7 +23,7 @@ pub(crate) struct Hit {
     /// Where the ray comes from, view space.
     pub origin: [f32; 3],
     /// The place in the world.
-    pub place: Place,
+    pub place: SurfacePoint,
     /// Row of the picture whose background the ray sees; `None` if it took a turn since it left the eye.
     pub row: Option<u32>,
 }
@@ -33,7 +33,7 @@ pub(crate) struct Along {
     /// Where the rays come from, view space.
     pub origins: [[f32; LANES]; 3],
     /// Where they hit.
-    pub places: [Place; LANES],
+    pub places: [SurfacePoint; LANES],
     /// Rows of the picture, for rays that took no turn.
     pub rows: [Option<u32>; LANES],
 }
@@ -69,6 +69,7 @@ pub(crate) fn prepare<S: Simd>(
     hits: &[Hit],
     records: &mut [Record; LANES],
 ) -> (Slots, Along) {
+    // Spread the hits over the lanes; missing ones repeat the last.
     let along = Along::new(hits);
     let mut slots = Slots { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
     let mut weights = [[[0.0; LANES]; 3]; 3];
@@ -89,6 +90,8 @@ pub(crate) fn prepare<S: Simd>(
             lanes[corner][k] = F32x8::from_slice(simd, &weights[corner][k]);
         }
     }
+
+    // Write the facets' records.
     let model = model_corners(simd, &slots.triangle, subject.mesh);
     write_records(simd, &slots.triangle, subject, &model, Some(along.origin(simd)), lanes, [zero; 2], records);
     (slots, along)

@@ -8,7 +8,7 @@ use super::batch::ShadingBatch8;
 use super::geometry::every;
 use super::hits::Along;
 use super::model::Model;
-use crate::shadow::Parts;
+use crate::shadow::LightVisibility;
 use vitral_light::{Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, Sky, cook_torrance};
 use vitral_math::lanes::{self, Floats, Lanes, Simd, V3};
 
@@ -75,7 +75,7 @@ pub(crate) struct Lighting<'a> {
     /// The rays that see the points, if it is not the eye.
     along: Option<&'a Along>,
     /// Which part of each light reaches the group's points; empty without shadows.
-    light_visibility: &'a [Parts],
+    light_visibility: &'a [LightVisibility],
     /// The first of the eight points in the group.
     first: usize,
 }

@@ -73,6 +73,7 @@ impl Points {
     fn overrule(&mut self, drawn: &mut Vec<FragmentPoint>) {
         let mut i = 1;
         while i < drawn.len() && !drawn[i].is_mark {
+            // Find the samples at which depth contradicts the list.
             let f = drawn[i];
             let (mut left, mut contradicted) = (f.mask, 0);
             for before in drawn[..i].iter().rev() {
@@ -104,6 +105,8 @@ impl Points {
                 next += 1;
                 self.overruled += 1;
             }
+
+            // Store what agrees.
             let agreed = f.mask & !contradicted;
             if agreed != 0 {
                 let start = self.depths.len() as u32;

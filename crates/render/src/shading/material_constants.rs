@@ -47,16 +47,22 @@ impl<'a> MaterialConstants<'a> {
         tables: &'a DecodeTables,
     ) -> Self {
         let scene = &view.session.scene;
+
+        // Find the textures.
         let texture = |reference: Option<TextureRef>| {
             let reference = reference?;
             let texture = scene.textures.get(reference.texture as usize)?;
             Some(TextureConstants { texture, reference, decode: tables.table(texture.encoding) })
         };
+
+        // Decide how alpha counts.
         let (cutoff, blend) = match material.alpha_mode {
             AlphaMode::Opaque => (None, false),
             AlphaMode::Mask { cutoff } => (Some(AlphaMode::least_opacity(cutoff)), false),
             AlphaMode::Blend => (None, settings.transparency.model.sees_through()),
         };
+
+        // Collect everything.
         let traced = settings.global.model == Global::RayTrace;
         let mut material = material.clone();
         material.mirror |= traced && is_polished_metal(&material);

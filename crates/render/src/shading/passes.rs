@@ -38,10 +38,14 @@ pub(super) fn compose(
     shown: bool,
 ) -> (Vec<Vec<[u8; 4]>>, u64, u64) {
     let samples = constants.view.pattern.len();
+
+    // Start with the opaque tile.
     let mut canvas = canvas(tile, &scratch.points, &scratch.lit, constants);
     let (mut pictures, mut layers, mut shaded) = (Vec::new(), 0, 0);
     let mut peel = Peel::default();
     peel.reset(samples);
+
+    // Shade each layer and lay it over the samples.
     while pass(&mut peel) {
         if shown {
             pictures.push(encode(tile, &mut scratch.composer, &canvas, constants));
@@ -59,6 +63,8 @@ pub(super) fn compose(
             }
         }
     }
+
+    // Encode the finished tile.
     pictures.push(encode(tile, &mut scratch.composer, &canvas, constants));
     (pictures, layers, shaded)
 }

@@ -17,7 +17,7 @@ pub struct PixelLight {
     pub samples: Vec<SampleLight>,
     /// Their mean, premultiplied RGBA: linear, or the course's numbers in the raw colour space.
     pub average: [f32; 4],
-    /// The mean's colour, no longer multiplied with its opacity.
+    /// The mean's colour, divided by its opacity (straight alpha).
     pub straight: Rgb,
     /// Some channel is above 1 or below 0 and is clamped.
     pub clamped: bool,

@@ -18,7 +18,7 @@ use super::surface_parameters::SurfaceParameters;
 use super::{depth_cue, flat, glow, gouraud, hits, phong, shadowed};
 use crate::Shading;
 use crate::radiosity::Solution;
-use crate::shadow::Places;
+use crate::shadow::SurfacePoints;
 use crate::transparency::{filtered, linear};
 use vitral_light::Reflected;
 use vitral_math::lanes::prelude::*;
@@ -39,12 +39,15 @@ fn shade_all<S: Simd>(
     constants: &FrameConstants<'_>,
     lit: &mut ShadedPoints,
 ) {
+    // Show the background where surfaces only hide lines.
     if constants.surfaces_are_background {
         for (color, place) in lit.colors.iter_mut().zip(&points.place) {
             *color = constants.background.color(place[1] as u32);
         }
         return;
     }
+
+    // Shade sixteen or eight points at a time.
     let mut rays = 0;
     each_pair(
         simd,
@@ -94,15 +97,18 @@ pub(crate) fn shade_hits<S: Simd>(
 ) {
     let mut records = [Record([0.0; 32]); LANES];
     let mut together = Vec::with_capacity(LANES);
+    // Find which lights reach the group's hits.
     for group in &points.groups {
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         let [light_visibility, behind] = if material.model.needs_light_visibility() {
-            let places: Places = order.iter().map(|&p| hits[p as usize].place).collect();
+            let places: SurfacePoints = order.iter().map(|&p| hits[p as usize].place).collect();
             shadowed::light_visibility_on_sides(constants, material.scatters.is_some(), places, &mut lit.shadow_rays)
         } else {
             [Vec::new(), Vec::new()]
         };
+
+        // Shade eight hits at a time.
         for (i, eight) in order.chunks(LANES).enumerate() {
             together.clear();
             together.extend(eight.iter().map(|&p| hits[p as usize]));
@@ -189,6 +195,7 @@ fn reflect_lights<S: Simd>(
     surface: &Surface<F<S>>,
     constants: &FrameConstants<'_>,
 ) -> Reflected<F<S>> {
+    // Take a colour without lights as it is, or evaluate the shading model.
     let &ShadingBatch8 { subject, material, slots, .. } = eight;
     let lighting = lighting(eight, constants);
     match material.model {
@@ -199,6 +206,7 @@ fn reflect_lights<S: Simd>(
             let color = V3::splat(parameters.alpha, color);
             Reflected { diffuse: color.times(parameters.base), specular: V3::splat(parameters.alpha, [0.0; 3]) }
         }
+        // Evaluate the model at the point, once for the face, or at the corners.
         Model::Empirical(_) | Model::Microfacet => match constants.shading {
             Shading::Phong => {
                 let k = parameters.coefficients(simd, material, parameters.base);

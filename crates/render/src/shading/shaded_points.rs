@@ -3,7 +3,7 @@
 use super::FrameConstants;
 use super::geometry::F;
 use super::material_constants::MaterialConstants;
-use crate::shadow::Place;
+use crate::shadow::SurfacePoint;
 use vitral_light::{Reflected, Rgb};
 use vitral_math::DVec3;
 use vitral_math::lanes::prelude::*;
@@ -30,12 +30,12 @@ pub(crate) struct Bounce {
     /// What the mirror image is weighed with.
     pub mirror: Rgb,
     /// The point in the world.
-    pub place: Place,
+    pub place: SurfacePoint,
 }
 
 impl Default for Bounce {
     fn default() -> Self {
-        let place = Place { position: DVec3::ZERO, normal: DVec3::ZERO, facet: u32::MAX, seed: 0, pixel: None };
+        let place = SurfacePoint { position: DVec3::ZERO, normal: DVec3::ZERO, facet: u32::MAX, seed: 0, pixel: None };
         Self { normal: [0.0; 3], mirror: [0.0; 3], place }
     }
 }

@@ -10,7 +10,7 @@
 
 use super::FrameConstants;
 use super::points::{NO_POINT, Points, Source, samples_in};
-use crate::shadow::{Parts, Places, grey};
+use crate::shadow::{LightVisibility, SurfacePoints, grey};
 use vitral_raster::TILE;
 
 /// What must differ between neighbours. Answers about area lights differ by chance, so it takes more.
@@ -40,9 +40,9 @@ pub(super) fn soften(
     constants: &FrameConstants<'_>,
     points: &Points,
     order: &[u32],
-    parts: &mut [Parts],
-    place: impl Fn(&Questions) -> Places,
-    ask: impl Fn(&Places) -> Vec<Parts>,
+    parts: &mut [LightVisibility],
+    place: impl Fn(&Questions) -> SurfacePoints,
+    ask: impl Fn(&SurfacePoints) -> Vec<LightVisibility>,
 ) {
     // Ask beyond the border of the tile.
     let mut beyond = Questions::new();
@@ -97,8 +97,8 @@ pub(super) fn soften(
 fn mark_edges(
     points: &Points,
     order: &[u32],
-    parts: &Parts,
-    (beyond, beyond_parts): (&Questions, Option<&Parts>),
+    parts: &LightVisibility,
+    (beyond, beyond_parts): (&Questions, Option<&LightVisibility>),
     differs: f32,
     is_edge: &mut [bool],
 ) {
@@ -119,6 +119,8 @@ fn mark_edges(
         let [low, high] = &mut ranges[slot];
         (*low, *high) = (low.min(grey(part)), high.max(grey(part)));
     };
+
+    // Enter the points and those beyond the border.
     for (number, &point) in order.iter().enumerate() {
         add(slot(points.place[point as usize]), parts.get(number));
     }
@@ -128,6 +130,8 @@ fn mark_edges(
         let slot = (slot(own) as isize + step(0, 1) + step(1, WIDE as isize)) as usize;
         beyond_parts.into_iter().for_each(|parts| add(slot, parts.get(i)));
     }
+
+    // Compare each pixel with its neighbours.
     for (number, &point) in order.iter().enumerate() {
         let middle = slot(points.place[point as usize]);
         let around = [middle - WIDE, middle, middle + WIDE].into_iter().flat_map(|row| row - 1..=row + 1);

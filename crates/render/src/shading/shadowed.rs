@@ -12,7 +12,7 @@ use super::shadow_edges::{self, Questions};
 use super::slots::Slots;
 use super::subject::Subject;
 use super::terminator;
-use crate::shadow::{Parts, Place, Places, Placing, Shadows, grey};
+use crate::shadow::{LightVisibility, Placing, PreparedShadows, SurfacePoint, SurfacePoints, grey};
 use std::cell::Cell;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Simd, V3};
@@ -27,13 +27,15 @@ pub(crate) fn light_visibility<S: Simd>(
     order: &[u32],
     facets: &FacetTable,
     rays: &mut u64,
-) -> [Vec<Parts>; 2] {
+) -> [Vec<LightVisibility>; 2] {
     if constants.shadows.is_none() {
         return [Vec::new(), Vec::new()];
     }
+
+    // Place the points, eight at a time.
     let placing = placing(constants, subject);
     let corners = placing.facets(simd, facets.triangles());
-    let mut all = Places::with_capacity(order.len());
+    let mut all = SurfacePoints::with_capacity(order.len());
     for (eight, records) in order.chunks(LANES).zip(facets.of_point.chunks(LANES)) {
         simd.vectorize(
             #[inline(always)]
@@ -46,14 +48,16 @@ pub(crate) fn light_visibility<S: Simd>(
             },
         );
     }
+
+    // Ask the shadow algorithm about all of them.
     let [mut seen, behind] =
         light_visibility_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays);
 
     // Near edges of shadows each sample counts.
-    if constants.view.pattern.len() > 1 && !constants.shadows.is_some_and(Shadows::is_smooth) {
+    if constants.view.pattern.len() > 1 && !constants.shadows.is_some_and(PreparedShadows::is_smooth) {
         let asked = Cell::new(0);
         let place = |questions: &Questions| {
-            let mut places = Places::with_capacity(questions.numbers.len());
+            let mut places = SurfacePoints::with_capacity(questions.numbers.len());
             let all: Vec<(u32, [f32; 2])> =
                 questions.numbers.iter().copied().zip(questions.screen.iter().copied()).collect();
             for eight in all.chunks(LANES) {
@@ -78,7 +82,9 @@ pub(crate) fn light_visibility<S: Simd>(
             }
             places
         };
-        let ask = |places: &Places| {
+
+        // Count the rays of these samples.
+        let ask = |places: &SurfacePoints| {
             let mut rays = 0;
             let parts = light_visibility_at(constants, places, &mut rays);
             asked.set(asked.get() + rays);
@@ -106,9 +112,9 @@ fn place_weights<S: Simd>(simd: S, subject: &Subject<'_>, facets: &FacetTable, s
 pub(crate) fn light_visibility_on_sides(
     constants: &FrameConstants<'_>,
     both: bool,
-    places: Places,
+    places: SurfacePoints,
     rays: &mut u64,
-) -> [Vec<Parts>; 2] {
+) -> [Vec<LightVisibility>; 2] {
     let seen = light_visibility_at(constants, &places, rays);
     if !both {
         return [seen, Vec::new()];
@@ -117,11 +123,11 @@ pub(crate) fn light_visibility_on_sides(
 }
 
 /// Which part of each light reaches these places; empty without shadows. Adds the rays that it took.
-fn light_visibility_at(constants: &FrameConstants<'_>, places: &Places, rays: &mut u64) -> Vec<Parts> {
+fn light_visibility_at(constants: &FrameConstants<'_>, places: &SurfacePoints, rays: &mut u64) -> Vec<LightVisibility> {
     let Some(shadows) = constants.shadows else { return Vec::new() };
     let of_light = |(number, &light): (usize, &usize)| {
-        let mut parts = Parts::new(places.len(), [0.0; 3]);
-        shadows.arriving(light, places, &mut parts, rays);
+        let mut parts = LightVisibility::new(places.len(), [0.0; 3]);
+        shadows.light_visibility(light, places, &mut parts, rays);
         terminator::soften(constants, number, places, &mut parts, rays);
         parts
     };
@@ -136,7 +142,7 @@ pub(super) fn world_places<S: Simd>(
     subject: &Subject<'_>,
     slots: &Slots,
     weights: &[F<S>; 3],
-) -> [Place; LANES] {
+) -> [SurfacePoint; LANES] {
     let placing = placing(constants, subject);
     let facets = placing.eight_facets(simd, &slots.triangle);
     let places = placing.places(simd, (&slots.triangle, facets.each_ref()), weights, [&slots.x, &slots.y]);
@@ -155,7 +161,7 @@ fn placing<'a>(constants: &FrameConstants<'a>, subject: &Subject<'_>) -> Placing
 pub(crate) fn shadow_shares<S: Simd>(
     constants: &FrameConstants<'_>,
     surface: &Surface<F<S>>,
-    light_visibility: &[Parts],
+    light_visibility: &[LightVisibility],
     first: usize,
 ) -> [[f32; LANES]; 2] {
     let (position, normal) = (surface.position(), surface.interpolated_normal());

@@ -36,6 +36,8 @@ impl Slots {
             }
             return slots;
         }
+
+        // Gather other points one by one.
         for lane in 0..LANES {
             let here = lane.min(eight.len() - 1);
             let p = eight[here] as usize;

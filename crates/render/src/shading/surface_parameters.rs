@@ -64,6 +64,7 @@ impl<S: Simd> SurfaceParameters<S> {
             },
         );
 
+        // Multiply vertex colours by the base texture.
         let colors = vertex_colors(simd, mesh, slots, surface, raw);
         let mut alpha = colors.alpha;
         let base_texture = lookup(&material.base);
@@ -72,6 +73,8 @@ impl<S: Simd> SurfaceParameters<S> {
             texture = V3::new(t[0], t[1], t[2]);
             alpha *= t[3];
         }
+
+        // Look up metalness and roughness.
         let (mut metallic_factor, mut roughness_factor) = (one, one);
         if let Some([_, g, b, _]) = lookup(&material.metallic_roughness) {
             (metallic_factor, roughness_factor) = (b, g);
@@ -90,11 +93,15 @@ impl<S: Simd> SurfaceParameters<S> {
             let passing = linear::opacity(kept * material.material.opacity);
             kt = passing * linear::dielectric_part(&material.material, metallic_factor);
         }
+
+        // Apply the cut-out.
         let alpha = if material.soft_cut {
             soft_cut(simd, mesh, slots, surface, material, alpha)
         } else {
             opaque_part(material, alpha)
         };
+
+        // Look up the other textures.
         let mut emission = V3::splat(one, material.material.emission);
         if let Some([r, g, b, _]) = lookup(&material.emission) {
             emission = emission.times(V3::new(r, g, b));
@@ -465,6 +472,7 @@ fn sample<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
+            // Interpolate the coordinates after the texture's transform.
             let attribute = mesh.uvs.get(t.reference.uv_set as usize)?;
             let m = &t.reference.transform;
             let corners = gather_attribute(simd, attribute, mesh, slots);
@@ -489,6 +497,8 @@ fn sample<S: Simd>(
                 },
             );
             let lod = Lanes::log2(Lanes::max(length2(&right), length2(&down))) * 0.5;
+
+            // Sample lane by lane.
             let (us, vs, lods) = (here.0.to_array(), here.1.to_array(), lod.to_array());
             let mut soa = [[0.0f32; LANES]; 4];
             for lane in 0..LANES {

@@ -12,7 +12,9 @@
 use super::FrameConstants;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::ray::RayShadows;
-use crate::shadow::{Parts, Place, Places, ShadowAlgorithm, Shadows, facet as facet_of, weights};
+use crate::shadow::{
+    LightVisibility, PreparedShadows, ShadowAlgorithm, SurfacePoint, SurfacePoints, facet as facet_of, weights,
+};
 use crate::{Execution, PreparedView, Settings};
 use std::sync::OnceLock;
 use vitral_light::Light;
@@ -26,7 +28,7 @@ pub(crate) struct SoftTerminator<'a> {
     lights: Vec<Light>,
     settings: Settings,
     execution: Execution,
-    rays: OnceLock<Option<Box<dyn Shadows + 'a>>>,
+    rays: OnceLock<Option<Box<dyn PreparedShadows + 'a>>>,
 }
 
 impl<'a> SoftTerminator<'a> {
@@ -41,19 +43,25 @@ impl<'a> SoftTerminator<'a> {
     }
 }
 
-impl Shadows for SoftTerminator<'_> {
+impl PreparedShadows for SoftTerminator<'_> {
     /// Leaves places dark whose rays the budget does not allow.
-    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64) {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
         let prepare =
             || RayShadows.prepare(self.view.session, &self.lights, DVec4::Z, &self.settings, &self.execution).ok();
         if let Some(shadows) = self.rays.get_or_init(prepare) {
-            shadows.arriving(light, places, parts, rays);
+            shadows.light_visibility(light, places, parts, rays);
         }
     }
 }
 
 /// Finds what arrives of a light at those dark places whose interpolated normal faces it. `light` is its number in the frame.
-pub(super) fn soften(constants: &FrameConstants<'_>, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64) {
+pub(super) fn soften(
+    constants: &FrameConstants<'_>,
+    light: usize,
+    places: &SurfacePoints,
+    parts: &mut LightVisibility,
+    rays: &mut u64,
+) {
     let Some(soft) = &constants.terminator else { return };
     let to_view = DMat3::from_mat4(constants.view.view.view_from_world);
     let center = Triangles::center_of(&constants.view.session.world);
@@ -80,14 +88,14 @@ pub(super) fn soften(constants: &FrameConstants<'_>, light: usize, places: &Plac
     if numbers.is_empty() {
         return;
     }
-    let curved: Places = curved.into_iter().collect();
-    let mut found = Parts::new(curved.len(), [0.0; 3]);
-    soft.arriving(constants.light_numbers[light], &curved, &mut found, rays);
+    let curved: SurfacePoints = curved.into_iter().collect();
+    let mut found = LightVisibility::new(curved.len(), [0.0; 3]);
+    soft.light_visibility(constants.light_numbers[light], &curved, &mut found, rays);
     numbers.into_iter().enumerate().for_each(|(i, number)| parts.set(number, found.get(i)));
 }
 
 /// A place on the curved surface for which its facet stands, with the normal there; `None` where the facet stands for itself.
-fn on_curve(constants: &FrameConstants<'_>, place: &Place, center: DVec3) -> Option<Place> {
+fn on_curve(constants: &FrameConstants<'_>, place: &SurfacePoint, center: DVec3) -> Option<SurfacePoint> {
     let world = &constants.view.session.world;
     let instance = &world.instances[world.instance_of_facet(place.facet)];
     let triangle = place.facet - instance.first_facet;
@@ -104,7 +112,7 @@ fn on_curve(constants: &FrameConstants<'_>, place: &Place, center: DVec3) -> Opt
         normals[k] * (-below * weights[k])
     });
     let position = place.position + lift.sum::<DVec3>();
-    (position.is_finite() && normal.is_finite()).then_some(Place { position, normal, ..*place })
+    (position.is_finite() && normal.is_finite()).then_some(SurfacePoint { position, normal, ..*place })
 }
 
 /// The normals of a triangle's corners in the world, unit; `None` if they are the facet's.

@@ -7,7 +7,7 @@
 //! Cost: a box test for each run of triangles of the scene.
 //! Source: \[Möller & Trumbore 1997\].
 
-use super::{Occluders, Place, clearance, facet};
+use super::{Occluders, SurfacePoint, clearance, facet};
 use crate::Session;
 use crate::raytrace::triangles::Triangles;
 use std::ops::Range;
@@ -33,7 +33,13 @@ struct Feeler {
 
 /// The first facet that keeps light of `light` from `place`; on the way to its middle, if it has a shape. `None` for ambient light
 /// and where nothing stands.
-pub(crate) fn blocker(session: &Session, occluders: &Occluders<'_>, light: &Light, place: &Place) -> Option<Blocker> {
+pub(crate) fn blocker(
+    session: &Session,
+    occluders: &Occluders<'_>,
+    light: &Light,
+    place: &SurfacePoint,
+) -> Option<Blocker> {
+    // Aim at the light, or along the way its light comes.
     let world = &session.world;
     let center = Triangles::center_of(world);
     let to = |at: DVec3| (at - center - place.position, 1.0);
@@ -43,9 +49,13 @@ pub(crate) fn blocker(session: &Session, occluders: &Occluders<'_>, light: &Ligh
         LightKind::Point { position } | LightKind::Spot { position, .. } => to(*position),
         LightKind::Area { shape } => to(shape.middle()),
     };
+
+    // Lift the origin off the surface, as shadow rays do.
     let size = world.bounds.size().max_element() * 0.5;
     let origin = place.position + place.normal * clearance(place.position, size);
     let mut feeler = Feeler { origin, way, reach: 0.0..end, own: place.facet };
+
+    // Search all facets for the nearest that keeps light.
     let mut found = None;
     for instance in &world.instances {
         for run in feeler.runs(instance, &world.run_bounds[instance.mesh_index as usize], center) {
@@ -54,7 +64,7 @@ pub(crate) fn blocker(session: &Session, occluders: &Occluders<'_>, light: &Ligh
                 let number = instance.first_facet + triangle;
                 let Some(t) = feeler.meets(number, &corners) else { continue };
                 let passing = || origin + feeler.way * t;
-                if occluders.passing(number, &corners.map(DVec3::as_vec3), passing) != [1.0; 3] {
+                if occluders.transmittance(number, &corners.map(DVec3::as_vec3), passing) != [1.0; 3] {
                     feeler.reach.end = t;
                     found = Some(Blocker { facet: number, distance: t * way.length() });
                 }
@@ -67,6 +77,7 @@ pub(crate) fn blocker(session: &Session, occluders: &Occluders<'_>, light: &Ligh
 impl Feeler {
     /// The runs of an instance's triangles whose boxes it passes.
     fn runs(&self, instance: &Instance, bounds: &[Aabb], center: DVec3) -> Vec<Range<u32>> {
+        // Bring the ray to the instance's space.
         let count = instance.mesh.triangles.len();
         let inverse = (DMat4::from_translation(-center) * instance.world_from_model).inverse();
         let (origin, way) = (inverse.transform_point3(self.origin), inverse.transform_vector3(self.way));
@@ -76,6 +87,7 @@ impl Feeler {
             let slack = DVec3::splat(1e-5 * (bounds.size().max_element() + origin.abs().max_element() * 1e-3));
             let [a, b] = [bounds.min - slack, bounds.max + slack].map(|corner| (corner - origin) / way);
             let (mut enter, mut leave) = (self.reach.start, self.reach.end);
+            // Intersect the ray with the two planes of each axis.
             for axis in 0..3 {
                 if way[axis] == 0.0 {
                     let is_beside =
@@ -88,6 +100,8 @@ impl Feeler {
             }
             !bounds.is_empty() && enter <= leave
         };
+
+        // Keep the runs whose box the ray meets.
         let runs = (0..count.div_ceil(TRIANGLES_A_RUN)).filter(|&run| !known || bounds.get(run).is_none_or(passes));
         runs.map(|run| (run * TRIANGLES_A_RUN) as u32..((run + 1) * TRIANGLES_A_RUN).min(count) as u32).collect()
     }

@@ -5,7 +5,7 @@
 //! numbers, so that their solids leave no gap.
 
 use super::occluders::Occluders;
-use super::places::Place;
+use super::places::SurfacePoint;
 use super::rounding::{clearance, horizon};
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::shaft::Shaft;
@@ -35,8 +35,8 @@ pub(super) struct Solid {
     pub(super) planes: [(DVec3, DVec3); 4],
 }
 
-/// Where more transparent triangles may filter the light on a facet, each place asks for its own.
-const MANY: usize = 512;
+/// Transparent triangles up to which all points of a facet share one list of filters; with more, each point searches its own.
+const MAX_SHARED_FILTERS: usize = 512;
 
 /// Whether `a` comes first: any order will do that is the same for all.
 #[inline(always)]
@@ -92,12 +92,12 @@ pub(super) fn near(light: DVec4, extent: f32) -> f64 {
 }
 
 /// Where a place is looked at: a little above its facet.
-pub(super) fn lifted(place: &Place, extent: f32) -> DVec3 {
+pub(super) fn lifted(place: &SurfacePoint, extent: f32) -> DVec3 {
     place.position + place.normal * clearance(place.position, f64::from(extent))
 }
 
 /// Whether a place looks at the light. If not it is in its own shadow.
-pub(super) fn faces(place: &Place, light: DVec4) -> bool {
+pub(super) fn faces(place: &SurfacePoint, light: DVec4) -> bool {
     -place.normal.dot(away(light, place.position)) > horizon(place.position, light)
 }
 
@@ -235,15 +235,18 @@ impl Casters {
         place: DVec3,
         list: &[u32],
     ) -> Rgb {
+        // Narrow long lists to the filters near the way to the light.
         let triangles = self.filters.triangles();
         let near = near(light, triangles.extent);
         let mut nearer = Vec::new();
-        let list = if list.len() > MANY {
+        let list = if list.len() > MAX_SHARED_FILTERS {
             self.filters_near(&Shaft::between(place, place, light, triangles.extent), &mut nearer);
             &nearer
         } else {
             list
         };
+
+        // Find the filters whose shadow volume holds the place.
         let hides = |t: &&u32| {
             let facet = triangles.facets[**t as usize];
             facet != own && Solid::new(&self.filter(**t), light, near).is_some_and(|s| s.contains(place))
@@ -251,11 +254,13 @@ impl Casters {
         let mut hits: Vec<_> = list.iter().filter(hides).map(|&t| (triangles.facets[t as usize], t)).collect();
         // In one order, as products are rounded.
         hits.sort_unstable();
+
+        // Multiply what each of them lets through where the way to the light crosses it.
         let passing = |&(facet, t): &(u32, u32)| {
             let corners = wide(&triangles.corners[t as usize]);
             let (normal, way) = (winding_normal(&corners), away(light, place));
             let along = normal.dot(corners[0] - place) / normal.dot(way);
-            occluders.passing(facet, &triangles.corners[t as usize], || place + way * along)
+            occluders.transmittance(facet, &triangles.corners[t as usize], || place + way * along)
         };
         hits.iter().map(passing).fold([1.0; 3], |left, part| [0, 1, 2].map(|k| left[k] * part[k]))
     }

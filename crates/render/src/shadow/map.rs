@@ -33,9 +33,9 @@ mod tiles;
 
 use super::casters::faces;
 use super::occluders::Occluders;
-use super::places::{Parts, Place, Places};
+use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::sources::Shares;
-use super::{ShadowAlgorithm, Shadows};
+use super::{PreparedShadows, ShadowAlgorithm};
 use crate::{Execution, PreparedView, Session, Settings};
 use cascade::{Cascades, CascadesKey};
 use draw::{FirstPass, When};
@@ -60,7 +60,7 @@ impl ShadowAlgorithm for MapShadows {
         _: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let maps = Maps::of(session, lights, settings, execution)?;
         Ok(Box::new(Prepared { maps, cascades: None, level: execution.level }))
     }
@@ -71,7 +71,7 @@ impl ShadowAlgorithm for MapShadows {
         lights: &[Light],
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let session = view.session;
         let maps = Maps::of(session, lights, settings, execution)?;
         let (count, size) = (settings.shadows.cascades, settings.shadows.map_size);
@@ -95,18 +95,20 @@ struct Prepared {
     level: Level,
 }
 
-impl Shadows for Prepared {
+impl PreparedShadows for Prepared {
     fn is_smooth(&self) -> bool {
         // Texels are filtered.
         true
     }
 
-    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         match &self.maps.0[light] {
-            LightMaps::Unhindered => parts.fill([1.0; 3]),
+            LightMaps::Unoccluded => parts.fill([1.0; 3]),
             LightMaps::Infinity { towards, map } if self.cascades.is_none() => {
-                lookup::arriving(self.level, map, towards.extend(0.0), places, parts);
+                lookup::light_visibility(self.level, map, towards.extend(0.0), places, parts);
             }
+
+            // Ask the cascades about the places that face the light.
             LightMaps::Infinity { towards, map } => {
                 parts.fill([0.0; 3]);
                 let facing = places.iter().enumerate().filter(|(_, place)| faces(place, towards.extend(0.0)));
@@ -114,20 +116,22 @@ impl Shadows for Prepared {
                 let answers = self.answers(light, &[map], &questions, places);
                 questions.iter().zip(answers).for_each(|((_, number), answer)| parts.set(*number, answer));
             }
-            LightMaps::Places(emitters)
+            LightMaps::Positions(emitters)
                 if self.cascades.is_none()
                     && let [(from, maps)] = &emitters[..]
                     && let [map] = &maps[..] =>
             {
-                lookup::arriving(self.level, map, from.at, places, parts);
+                lookup::light_visibility(self.level, map, from.at, places, parts);
             }
-            LightMaps::Places(emitters) => {
+            LightMaps::Positions(emitters) => {
+                // Sum the shares of all positions of the light, each with its maps around it.
                 let mut shares = vec![Shares::default(); places.len()];
                 for (from, maps) in emitters {
                     let maps: Vec<_> = maps.iter().collect();
                     let weights: Vec<_> = places.iter().map(|place| from.weight(&place)).collect();
                     // What no map sees is lit: nothing has this number.
-                    let seeing = |p: Place| maps.iter().position(|m| m.lens.sees(p.position)).unwrap_or(usize::MAX);
+                    let seeing =
+                        |p: SurfacePoint| maps.iter().position(|m| m.lens.sees(p.position)).unwrap_or(usize::MAX);
                     let asking = places.iter().zip(&weights).enumerate().filter(|(_, (_, weight))| **weight > 0.0);
                     let questions: Vec<_> = asking.map(|(number, (place, _))| (seeing(place), number)).collect();
                     let mut answers = self.answers(light, &maps, &questions, places).into_iter();
@@ -143,7 +147,7 @@ impl Shadows for Prepared {
 
 impl Prepared {
     /// What maps of the whole scene, or sharper ones in their place, answer to questions: which map, about which place.
-    fn answers(&self, light: usize, maps: &[&Map], questions: &[(usize, usize)], places: &Places) -> Vec<Rgb> {
+    fn answers(&self, light: usize, maps: &[&Map], questions: &[(usize, usize)], places: &SurfacePoints) -> Vec<Rgb> {
         match &self.cascades {
             Some(cascades) => cascades.answers(self.level, light, maps, questions, places),
             None => lookup::answers(self.level, maps, questions, places),

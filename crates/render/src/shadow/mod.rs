@@ -31,7 +31,7 @@ pub(crate) use facet::{facet, weighted, weights};
 pub(crate) use hash::hash;
 pub(crate) use occluders::{Occluders, texel};
 pub(crate) use place::Placing;
-pub use places::{Parts, Place, Places};
+pub use places::{LightVisibility, SurfacePoint, SurfacePoints};
 pub(crate) use rounding::clearance;
 
 use crate::{Execution, PreparedView, Session, Settings, Transparency};
@@ -40,10 +40,10 @@ use vitral_light::{Light, Rgb};
 use vitral_math::{DVec3, DVec4};
 
 /// Shadows of one set of lights in one scene.
-pub trait Shadows: Send + Sync {
+pub trait PreparedShadows: Send + Sync {
     /// Which part of each colour of the light of this number reaches each of the places, `0..=1`, into as many `parts`.
     /// Other places in the same call do not change the answer. Adds the rays that it took.
-    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64);
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64);
 
     /// Whether answers change little from pixel to pixel, so that samples of one pixel have the same.
     fn is_smooth(&self) -> bool {
@@ -82,7 +82,7 @@ pub trait ShadowAlgorithm: Sync {
         viewer: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit>;
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit>;
 
     /// Makes ready for a picture of this view: [`Self::prepare`], but for algorithms whose precision follows the viewer.
     ///
@@ -94,20 +94,20 @@ pub trait ShadowAlgorithm: Sync {
         lights: &[Light],
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         self.prepare(view.session, lights, view.viewer(), settings, execution)
     }
 }
 
 /// What shadows depend on, besides the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Key {
+pub(crate) struct ShadowKey {
     lights: Vec<Light>,
     samples: u32,
     transparency: Transparency,
 }
 
-impl Key {
+impl ShadowKey {
     fn new(lights: &[Light], settings: &Settings) -> Self {
         Self {
             lights: lights.to_vec(),
@@ -164,7 +164,7 @@ pub(crate) fn prepare<'a>(
     lights: &[Light],
     settings: &Settings,
     execution: &Execution,
-) -> Result<Option<Box<dyn Shadows + 'a>>, Limit> {
+) -> Result<Option<Box<dyn PreparedShadows + 'a>>, Limit> {
     if !settings.shading.lighting && !settings.picture.channels.cast_shadow {
         return Ok(None);
     }

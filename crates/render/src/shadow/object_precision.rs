@@ -20,10 +20,10 @@ mod clip;
 
 use super::casters::{Casters, Solid, away, lifted, near, wide, winding_normal};
 use super::occluders::Occluders;
-use super::places::{Parts, Places};
+use super::places::{LightVisibility, SurfacePoints};
 use super::rounding::clearance;
-use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, Key, ShadowAlgorithm, Shadows};
+use super::sources::{Emitter, LightSource, Shares};
+use super::{Drawn, PreparedShadows, ShadowAlgorithm, ShadowKey};
 use crate::raytrace::shaft::Shaft;
 use crate::{Cached, Execution, Session, Settings};
 use clip::{Cutter, Detail};
@@ -85,7 +85,7 @@ const SLACK: f64 = 1e-9;
 const TRIANGLES_A_JOB: usize = 256;
 
 impl Cached for LitPolygons {
-    type Key = Key;
+    type ShadowKey = ShadowKey;
 }
 
 impl ShadowAlgorithm for ObjectPrecisionShadows {
@@ -96,13 +96,14 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
         _: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
-        let polygons = session.cache.get_or_build(Key::new(lights, settings), || {
+        let polygons = session.cache.get_or_build(ShadowKey::new(lights, settings), || {
             let casters = Casters::of(session, &occluders, execution)?;
             let facets = session.world.facet_count as usize;
             let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {
-                let places = Source::new(light, settings.shadows.light_samples, casters.triangles().center).places();
+                let places =
+                    LightSource::new(light, settings.shadows.light_samples, casters.triangles().center).places();
                 places.into_iter().map(|place| OfLight::new(place, &casters, facets, execution)).collect()
             };
             let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
@@ -121,6 +122,8 @@ fn lift(corners: &[DVec3; 3], extent: f32) -> f64 {
 impl OfLight {
     fn new(from: Emitter, casters: &Casters, facets: usize, execution: &Execution) -> Result<Self, Limit> {
         let triangles = casters.triangles();
+
+        // Compute the lit polygons of several triangles a job.
         let jobs = triangles.count().div_ceil(TRIANGLES_A_JOB);
         let charged = Mutex::new(0u64);
         let budget = &execution.budget;
@@ -136,8 +139,12 @@ impl OfLight {
             *charged.lock().expect("no thread panics while it adds") += bytes;
             Ok(details)
         });
+
+        // Replace the charges of the jobs by that of the whole.
         budget.release(charged.into_inner().expect("no thread panics while it adds"));
         let details: Vec<Details> = details.into_iter().collect::<Result<_, Limit>>()?;
+
+        // Index the polygons by facet.
         let mut places = vec![Found { piece: u32::MAX, ..Found::default() }; facets];
         for (piece, found) in details.iter().enumerate() {
             for (i, found) in found.found.iter().enumerate() {
@@ -224,8 +231,8 @@ impl Details {
     }
 }
 
-impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
+impl PreparedShadows for Prepared<'_> {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let LitPolygons { casters, lights } = &*self.polygons;
         let lights = &lights[light];
         if lights.is_empty() {
@@ -233,6 +240,7 @@ impl Shadows for Prepared<'_> {
         }
         let extent = casters.extent();
         let slack = f64::from(extent) * SLACK;
+        // Sum the shares of the light's positions that the place lies in a lit polygon of.
         for (number, place) in places.iter().enumerate() {
             let mut shares = Shares::default();
             for l in lights {
@@ -251,6 +259,8 @@ impl Shadows for Prepared<'_> {
         let triangles = self.polygons.casters.triangles();
         let center = triangles.center;
         let mut corners = Vec::new();
+
+        // Hand out the lit polygons of each position of each light.
         for (light, places) in self.polygons.lights.iter().enumerate() {
             for (piece, details) in places.iter().flat_map(|place| place.details.iter().enumerate()) {
                 for (i, found) in details.found.iter().enumerate() {

@@ -55,12 +55,12 @@ impl<'a> Occluders<'a> {
 
     /// The part of light that passes the facet with these corners at `point` of it.
     #[inline(always)]
-    pub(crate) fn passing(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> Rgb {
-        if self.all_opaque { [0.0; 3] } else { self.passing_at(facet, corners, point()) }
+    pub(crate) fn transmittance(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> Rgb {
+        if self.all_opaque { [0.0; 3] } else { self.transmittance_at(facet, corners, point()) }
     }
 
     /// What passes the facet, if it is the same all over.
-    pub(super) fn passing_anywhere(&self, facet: u32) -> Option<Rgb> {
+    pub(super) fn transmittance_anywhere(&self, facet: u32) -> Option<Rgb> {
         let (mesh, _, material) = self.look(facet);
         let Some(material) = material else { return Some([0.0; 3]) };
         let textures = [material.base_texture, material.opacity_texture, metal_texture(material)];
@@ -78,9 +78,11 @@ impl<'a> Occluders<'a> {
         (&instance.mesh, triangle, material.map(|m| &self.session.scene.materials[m as usize]))
     }
 
-    fn passing_at(&self, facet: u32, corners: &[Vec3; 3], point: DVec3) -> Rgb {
+    fn transmittance_at(&self, facet: u32, corners: &[Vec3; 3], point: DVec3) -> Rgb {
         let (mesh, triangle, material) = self.look(facet);
         let Some(material) = material else { return [0.0; 3] };
+
+        // Multiply the coverage of vertex colours and of the texture's alpha.
         let weights = weights(corners, point);
         let mut coverage = 1.0;
         if let Some(colors) = &mesh.colors {
@@ -89,12 +91,16 @@ impl<'a> Occluders<'a> {
         if let Some(texel) = self.sample(material.base_texture, mesh, triangle, weights) {
             coverage *= texel[3];
         }
+
+        // Apply the opacity texture: to the opacity of glass, to the coverage of anything else.
         let mut opacity = material.opacity;
         match self.sample(material.opacity_texture, mesh, triangle, weights) {
             Some(texel) if material.glass => opacity *= texel[0],
             Some(texel) => coverage *= texel[0],
             None => {}
         }
+
+        // Let light through by what is left.
         let metallic = self.sample(metal_texture(material), mesh, triangle, weights).map_or(1.0, |texel| texel[2]);
         self.let_through(material, coverage, opaque_part(material, opacity, metallic))
     }

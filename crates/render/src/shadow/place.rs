@@ -6,7 +6,7 @@
 //! Places keep a hair's breadth from the facet's edges. On an edge itself a place, lifted off its facet, would stand in the
 //! plane of a wall that begins there, and rounding would say on which side.
 
-use super::places::EightPlaces;
+use super::places::SurfacePoints8;
 use super::rounding::clearance;
 use crate::PreparedView;
 use crate::prepare::mirrors;
@@ -29,7 +29,7 @@ pub(crate) struct Facet {
 /// How far places keep from edges, in heights to which they are lifted: enough between walls that meet at 15 degrees.
 const MARGIN: f64 = 4.0;
 /// No least weight is larger: facets may be smaller than the margin.
-const MOST: f64 = 0.1;
+const MAX_LEAST_WEIGHT: f64 = 0.1;
 
 /// The margin in a world of this half-width.
 fn margin(extent: f64) -> f64 {
@@ -47,7 +47,7 @@ fn least_weights([a, b, c]: &[DVec3; 3], margin: f64) -> [f64; 3] {
 /// NaN, where there is no area, becomes a number.
 #[inline(always)]
 fn least_weight(weight: f64) -> f64 {
-    if weight < MOST { weight } else { MOST }
+    if weight < MAX_LEAST_WEIGHT { weight } else { MAX_LEAST_WEIGHT }
 }
 
 /// What all points of an object have in common.
@@ -112,6 +112,7 @@ impl<'a> Placing<'a> {
             (length * scale).store_slice(stored);
         }
 
+        // Pack corners, least weights and normals by facet.
         std::array::from_fn(|lane| {
             let [x, y, z] = [normals[0][lane], normals[1][lane], normals[2][lane]];
             let corner = |c: usize| {
@@ -179,7 +180,8 @@ impl<'a> Placing<'a> {
         (triangles, facets): (&[u32; LANES], [&Facet; LANES]),
         weights: &[F32x8<S>; 3],
         screen: [&[f32; LANES]; 2],
-    ) -> EightPlaces {
+    ) -> SurfacePoints8 {
+        // Interpolate the positions and turn normals to the viewer.
         let position = position(simd, &facets, weights);
         let mut normal = wide_columns(
             simd,
@@ -189,7 +191,9 @@ impl<'a> Placing<'a> {
         if self.turns {
             self.turn_to_viewer(simd, &position, &mut normal);
         }
-        let mut places = EightPlaces {
+
+        // Store the points lane by lane.
+        let mut places = SurfacePoints8 {
             position: [[0.0; LANES]; 3],
             normal: [[0.0; LANES]; 3],
             facet: triangles.map(|triangle| self.instance.first_facet + triangle),
@@ -206,6 +210,7 @@ impl<'a> Placing<'a> {
     /// Turns normals at these positions to the side that the viewer sees.
     #[inline(always)]
     fn turn_to_viewer<S: Simd>(&self, simd: S, position: &[F64x8<S>; 3], normal: &mut [F64x8<S>; 3]) {
+        // Find the direction to the eye.
         let (eye, perspective) = self.view.eye();
         let towards = if perspective {
             let eye = (eye - self.center).to_array();
@@ -220,6 +225,8 @@ impl<'a> Placing<'a> {
                 |k| F64x8::splat(simd, parallel[k]),
             )
         };
+
+        // Flip normals that face away from it.
         let cos = normal[0] * towards[0] + normal[1] * towards[1] + normal[2] * towards[2];
         let behind = cos.simd_lt(F64x8::splat(simd, 0.0));
         for axis in normal {
@@ -231,6 +238,7 @@ impl<'a> Placing<'a> {
 /// The positions with these weights of the facets' corners, kept from the edges.
 #[inline(always)]
 fn position<S: Simd>(simd: S, facets: &[&Facet; LANES], weights: &[F32x8<S>; 3]) -> [F64x8<S>; 3] {
+    // Widen the weights and the corners.
     let mut w = lanes::three(
         #[inline(always)]
         |c| lanes::widened(simd, weights[c]),
@@ -256,6 +264,8 @@ fn position<S: Simd>(simd: S, facets: &[&Facet; LANES], weights: &[F32x8<S>; 3])
         let least = corners[c][3] * sum;
         w[c] = (w[c] * sum).simd_lt(least * sum).select(least, w[c]);
     }
+
+    // Interpolate with the weights' sum made one.
     let inverse = F64x8::splat(simd, 1.0) / (w[0] + w[1] + w[2]);
     lanes::three(
         #[inline(always)]
@@ -280,6 +290,7 @@ fn seeds<S: Simd>(simd: S, screen: [&[f32; LANES]; 2]) -> [u32; LANES] {
 /// The first three columns of eight rows of four doubles, each number in the lane of its row.
 #[inline(always)]
 fn wide_columns<S: Simd>(simd: S, row: impl Fn(usize) -> [f64; 4]) -> [F64x8<S>; 3] {
+    // Transpose four rows at a time.
     let half = lanes::inlined(
         #[inline(always)]
         |first: usize| {
@@ -292,6 +303,8 @@ fn wide_columns<S: Simd>(simd: S, row: impl Fn(usize) -> [f64; 4]) -> [F64x8<S>;
             [low.0, low.1, high.0]
         },
     );
+
+    // Join the halves; the fourth column is not used.
     let (low, high) = (half(0), half(4));
     lanes::three(
         #[inline(always)]

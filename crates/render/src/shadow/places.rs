@@ -8,12 +8,12 @@ use vitral_math::{DVec3, dvec3};
 
 /// A point of a surface that asks for light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct SurfacePoint {
     /// World space less [`crate::raytrace::triangles::Triangles::center`].
     pub position: DVec3,
     /// Unit normal of the facet on the side that is seen, world space; zero for a facet without area.
     pub normal: DVec3,
-    /// The facet.
+    /// Id of the facet that it lies on.
     pub facet: u32,
     /// Chooses the places on area lights that are asked; neighbours should differ.
     pub seed: u32,
@@ -22,21 +22,25 @@ pub struct Place {
     pub pixel: Option<[f32; 2]>,
 }
 
-/// Eight places, by their numbers; see [`Place`].
+/// Eight places, by their numbers; see [`SurfacePoint`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct EightPlaces {
+pub(crate) struct SurfacePoints8 {
+    /// World space less the scene's middle, by axis.
     pub(super) position: [[f64; LANES]; 3],
+    /// Unit normals of the facets, by axis.
     pub(super) normal: [[f64; LANES]; 3],
+    /// The facets.
     pub(super) facet: [u32; LANES],
     /// Not numbers where a place is in no pixel.
     pub(super) pixel: [[f32; LANES]; 2],
+    /// As in [`SurfacePoint`].
     pub(super) seed: [u32; LANES],
 }
 
-impl EightPlaces {
-    fn of(place: impl Fn(usize) -> Place) -> Self {
-        let places: [Place; LANES] = std::array::from_fn(place);
-        let pixel = |place: &Place| place.pixel.unwrap_or([f32::NAN; 2]);
+impl SurfacePoints8 {
+    fn of(place: impl Fn(usize) -> SurfacePoint) -> Self {
+        let places: [SurfacePoint; LANES] = std::array::from_fn(place);
+        let pixel = |place: &SurfacePoint| place.pixel.unwrap_or([f32::NAN; 2]);
         Self {
             position: [0, 1, 2].map(|k| places.map(|place| place.position[k])),
             normal: [0, 1, 2].map(|k| places.map(|place| place.normal[k])),
@@ -47,10 +51,10 @@ impl EightPlaces {
     }
 
     /// One of them.
-    pub(crate) fn get(&self, lane: usize) -> Place {
+    pub(crate) fn get(&self, lane: usize) -> SurfacePoint {
         let at = |v: &[[f64; LANES]; 3]| dvec3(v[0][lane], v[1][lane], v[2][lane]);
         let pixel = [self.pixel[0][lane], self.pixel[1][lane]];
-        Place {
+        SurfacePoint {
             position: at(&self.position),
             normal: at(&self.normal),
             facet: self.facet[lane],
@@ -62,12 +66,12 @@ impl EightPlaces {
 
 /// Any number of places.
 #[derive(Clone, Debug, Default)]
-pub struct Places {
-    eights: Vec<EightPlaces>,
+pub struct SurfacePoints {
+    eights: Vec<SurfacePoints8>,
     count: usize,
 }
 
-impl Places {
+impl SurfacePoints {
     /// None yet, but memory for `count`.
     pub(crate) fn with_capacity(count: usize) -> Self {
         Self { eights: Vec::with_capacity(count.div_ceil(LANES)), count: 0 }
@@ -75,7 +79,7 @@ impl Places {
 
     /// Adds the first `count` of eight. All before them were whole eights.
     #[inline(always)]
-    pub(crate) fn push(&mut self, eight: EightPlaces, count: usize) {
+    pub(crate) fn push(&mut self, eight: SurfacePoints8, count: usize) {
         self.eights.push(eight);
         self.count += count;
     }
@@ -91,7 +95,7 @@ impl Places {
     }
 
     /// One of them.
-    pub fn get(&self, number: usize) -> Place {
+    pub fn get(&self, number: usize) -> SurfacePoint {
         self.eights[number / LANES].get(number % LANES)
     }
 
@@ -104,7 +108,7 @@ impl Places {
 
     /// Eight of them, by their numbers.
     #[inline(always)]
-    pub(super) fn pick(&self, numbers: [usize; LANES]) -> EightPlaces {
+    pub(super) fn pick(&self, numbers: [usize; LANES]) -> SurfacePoints8 {
         let from = numbers.map(|number| &self.eights[number / LANES]);
         let mut picked = *from[0];
         for (lane, (eight, number)) in from.into_iter().zip(numbers).enumerate() {
@@ -120,12 +124,12 @@ impl Places {
     }
 
     /// One after the other.
-    pub fn iter(&self) -> impl Iterator<Item = Place> + Clone + '_ {
+    pub fn iter(&self) -> impl Iterator<Item = SurfacePoint> + Clone + '_ {
         (0..self.count).map(|number| self.get(number))
     }
 
     /// In eights; the last one's repeat a place where there are not eight.
-    pub(super) fn eights(&self) -> &[EightPlaces] {
+    pub(super) fn eights(&self) -> &[SurfacePoints8] {
         &self.eights
     }
 
@@ -138,19 +142,19 @@ impl Places {
     }
 }
 
-impl FromIterator<Place> for Places {
-    fn from_iter<I: IntoIterator<Item = Place>>(places: I) -> Self {
-        let places: Vec<Place> = places.into_iter().collect();
-        let eight = |eight: &[Place]| EightPlaces::of(|lane| eight[lane.min(eight.len() - 1)]);
+impl FromIterator<SurfacePoint> for SurfacePoints {
+    fn from_iter<I: IntoIterator<Item = SurfacePoint>>(places: I) -> Self {
+        let places: Vec<SurfacePoint> = places.into_iter().collect();
+        let eight = |eight: &[SurfacePoint]| SurfacePoints8::of(|lane| eight[lane.min(eight.len() - 1)]);
         Self { eights: places.chunks(LANES).map(eight).collect(), count: places.len() }
     }
 }
 
 /// The part of each colour of a light that arrives at each of some places.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Parts(Vec<[[f32; LANES]; 3]>);
+pub struct LightVisibility(Vec<[[f32; LANES]; 3]>);
 
-impl Parts {
+impl LightVisibility {
     /// The same for `count` places, filled up to whole eights.
     pub fn new(count: usize, part: Rgb) -> Self {
         Self(vec![part.map(|channel| [channel; LANES]); count.div_ceil(LANES)])
@@ -199,7 +203,7 @@ mod tests {
 
     #[test]
     fn places_and_parts_come_back_one_by_one() {
-        let place = |i: usize| Place {
+        let place = |i: usize| SurfacePoint {
             position: dvec3(i as f64, 1.0, 2.0),
             normal: DVec3::Y * (i as f64 + 1.0),
             facet: 7 + i as u32,
@@ -207,8 +211,8 @@ mod tests {
             pixel: i.is_multiple_of(2).then_some([i as f32, 0.5]),
         };
         for count in [0, 1, 8, 11] {
-            let all: Vec<Place> = (0..count).map(place).collect();
-            let places: Places = all.iter().copied().collect();
+            let all: Vec<SurfacePoint> = (0..count).map(place).collect();
+            let places: SurfacePoints = all.iter().copied().collect();
             assert_eq!((places.len(), places.is_empty()), (count, count == 0));
             assert!(places.iter().eq(all.iter().copied()), "{count}");
             if let Some(last) = count.checked_sub(1) {
@@ -220,14 +224,14 @@ mod tests {
             let back = places.turned();
             assert!(back.iter().zip(&all).all(|(b, a)| b.normal == -a.normal && b.position == a.position));
 
-            let mut parts = Parts::new(count, [0.5; 3]);
+            let mut parts = LightVisibility::new(count, [0.5; 3]);
             for i in 0..count {
                 parts.set(i, [i as f32, 0.0, 1.0]);
                 parts.add(i, 2.0, [1.0, 0.25, 0.0]);
             }
             assert!((0..count).all(|i| parts.get(i) == [i as f32 + 2.0, 0.5, 1.0]));
             parts.fill([1.0; 3]);
-            assert_eq!(parts, Parts::new(count, [1.0; 3]));
+            assert_eq!(parts, LightVisibility::new(count, [1.0; 3]));
         }
     }
 }

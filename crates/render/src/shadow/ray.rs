@@ -17,10 +17,10 @@
 use super::casters::{near, turned, wide};
 use super::hash::hash;
 use super::occluders::Occluders;
-use super::places::{Parts, Place, Places};
+use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::rounding::{clearance, horizon};
-use super::sources::{Area, Shares, Source};
-use super::{ShadowAlgorithm, Shadows};
+use super::sources::{Area, LightSource, Shares};
+use super::{PreparedShadows, ShadowAlgorithm};
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::{Counters, packet};
@@ -37,9 +37,9 @@ pub struct RayShadows;
 struct Prepared<'a> {
     structure: AnyStructure,
     occluders: Occluders<'a>,
-    sources: Vec<Source>,
+    sources: Vec<LightSource>,
     /// The same in more cells, for points where those of `sources` disagree; without it, points choose their places by chance.
-    finer: Option<Vec<Source>>,
+    finer: Option<Vec<LightSource>>,
     level: Level,
 }
 
@@ -51,7 +51,7 @@ impl ShadowAlgorithm for RayShadows {
         _: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let acceleration = settings.acceleration.unwrap_or_default();
         if acceleration.asks_all {
             let pixels = u64::from(settings.picture.width) * u64::from(settings.picture.height);
@@ -60,7 +60,7 @@ impl ShadowAlgorithm for RayShadows {
         }
         let structure = AnyStructure::new(acceleration, session, execution)?;
         let center = structure.triangles().center;
-        let of = |samples: u32| lights.iter().map(|l| Source::new(l, samples, center)).collect::<Vec<_>>();
+        let of = |samples: u32| lights.iter().map(|l| LightSource::new(l, samples, center)).collect::<Vec<_>>();
         let sources = of(settings.shadows.light_samples);
         let finer = (settings.global.model == Global::Radiosity).then(|| of(FINER * settings.shadows.light_samples));
         let (occluders, level) = (Occluders::new(session, settings), execution.level);
@@ -75,34 +75,39 @@ const FINER: u32 = 8;
 /// Places whose rays are made ready before the first is followed.
 const TOGETHER: usize = 64;
 
-impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, rays: &mut u64) {
+impl PreparedShadows for Prepared<'_> {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
         let mut feelers = Vec::with_capacity(TOGETHER);
+        // Trace several points at a time.
         for first in (0..places.len()).step_by(TOGETHER) {
             let mut found = [[1.0; 3]; TOGETHER];
             let found = &mut found[..TOGETHER.min(places.len() - first)];
             let asking = (first..first + found.len()).map(|number| places.get(number));
             match &self.sources[light] {
-                Source::Unhindered => {}
-                Source::Infinity(towards) => {
-                    self.passing(&mut feelers, asking.map(|place| (place, *towards)), false, found);
+                LightSource::Unoccluded => {}
+                LightSource::Infinity(towards) => {
+                    self.transmittance(&mut feelers, asking.map(|place| (place, *towards)), false, found);
                 }
-                Source::Point(at) => {
-                    self.passing(&mut feelers, asking.map(|place| (place, *at - place.position)), true, found);
+                LightSource::Point(at) => {
+                    self.transmittance(&mut feelers, asking.map(|place| (place, *at - place.position)), true, found);
                 }
-                Source::Area(area) => {
+                LightSource::Area(area) => {
                     for (place, part) in asking.zip(&mut *found) {
                         let seed = hash(place.seed ^ hash(light as u32));
                         let seed = if self.finer.is_some() { 0 } else { seed };
                         *part = self.area_part(area, &place, seed, &mut feelers, rays);
                         let finer = self.finer.as_ref().map(|finer| &finer[light]);
-                        if let (Some(Source::Area(finer)), true) = (finer, part.iter().any(|&p| p > 0.0 && p < 1.0)) {
+                        if let (Some(LightSource::Area(finer)), true) =
+                            (finer, part.iter().any(|&p| p > 0.0 && p < 1.0))
+                        {
                             *part = self.area_part(finer, &place, seed, &mut feelers, rays);
                         }
                     }
                     feelers.clear();
                 }
             }
+
+            // Count the rays and store the results.
             *rays += feelers.len() as u64;
             found.iter().enumerate().for_each(|(k, part)| parts.set(first + k, *part));
         }
@@ -124,12 +129,19 @@ struct Feeler {
 
 impl Prepared<'_> {
     /// The part of an area light that arrives at a place: a ray to each cell. Adds the rays.
-    fn area_part(&self, area: &Area, place: &Place, seed: u32, feelers: &mut Vec<Feeler>, rays: &mut u64) -> Rgb {
+    fn area_part(
+        &self,
+        area: &Area,
+        place: &SurfacePoint,
+        seed: u32,
+        feelers: &mut Vec<Feeler>,
+        rays: &mut u64,
+    ) -> Rgb {
         let emitters = (0..area.count()).map(|i| area.emitter(i, seed));
         let counting: Vec<_> = emitters.filter(|e| e.weight(place) > 0.0).collect();
         let ways = counting.iter().map(|e| (*place, e.at.truncate() - place.position));
         let mut passing = vec![[0.0; 3]; counting.len()];
-        self.passing(feelers, ways, true, &mut passing);
+        self.transmittance(feelers, ways, true, &mut passing);
         *rays += feelers.len() as u64;
         let mut shares = Shares::default();
         for (emitter, passing) in counting.iter().zip(passing) {
@@ -140,10 +152,10 @@ impl Prepared<'_> {
 
     /// What passes from each of these places along its way, to the way's end or to infinity, into as many `parts`. Leaves in
     /// `feelers` the rays that were followed for it.
-    fn passing(
+    fn transmittance(
         &self,
         feelers: &mut Vec<Feeler>,
-        ways: impl Iterator<Item = (Place, DVec3)>,
+        ways: impl Iterator<Item = (SurfacePoint, DVec3)>,
         ends: bool,
         parts: &mut [Rgb],
     ) {
@@ -164,7 +176,7 @@ impl Prepared<'_> {
 
     /// The ray from a place along `way`, the parameter of its end, and the light, homogeneous; or what arrives, where that is known
     /// without one.
-    fn feeler(&self, place: &Place, way: DVec3, ends: bool) -> Result<(Ray, f32, DVec4), Rgb> {
+    fn feeler(&self, place: &SurfacePoint, way: DVec3, ends: bool) -> Result<(Ray, f32, DVec4), Rgb> {
         // Attached shadow; also a light in the facet's plane, or at the very place.
         let light = if ends { (place.position + way).extend(1.0) } else { way.extend(0.0) };
         if place.normal.dot(way) <= horizon(place.position, light) {
@@ -229,7 +241,7 @@ impl packet::PacketVisitor for Passing<'_> {
             return;
         }
         let point = || (ray.origin + ray.direction * t).as_dvec3();
-        let passing = self.prepared.occluders.passing(facet, corners, point);
+        let passing = self.prepared.occluders.transmittance(facet, corners, point);
         let [r, g, b] = passing.map(f64::from);
         let left = self.left[lane];
         self.left[lane] = [left[0] * r, left[1] * g, left[2] * b];

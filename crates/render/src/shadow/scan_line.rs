@@ -20,9 +20,9 @@ mod on_receivers;
 
 use super::casters::{Casters, Solid, box_around, faces, lifted, near, wide};
 use super::occluders::Occluders;
-use super::places::{Parts, Place, Places};
-use super::sources::{Emitter, Shares, Source};
-use super::{Drawn, ShadowAlgorithm, Shadows};
+use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
+use super::sources::{Emitter, LightSource, Shares};
+use super::{Drawn, PreparedShadows, ShadowAlgorithm};
 use crate::raytrace::shaft::Shaft;
 use crate::{Execution, Session, Settings, Transparency};
 use on_receivers::Receivers;
@@ -53,11 +53,12 @@ impl ShadowAlgorithm for ScanLineShadows {
         _: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
         let casters = Casters::of(session, &occluders, execution)?;
         let center = casters.triangles().center;
-        let lights = lights.iter().map(|l| Source::new(l, settings.shadows.light_samples, center).places()).collect();
+        let lights =
+            lights.iter().map(|l| LightSource::new(l, settings.shadows.light_samples, center).places()).collect();
         let (transparency, execution) = (settings.transparency.model, execution.clone());
         Ok(Box::new(Prepared { session, transparency, execution, casters, occluders, lights }))
     }
@@ -84,19 +85,21 @@ struct Work {
     dark: Vec<bool>,
 }
 
-impl Shadows for Prepared<'_> {
-    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
+impl PreparedShadows for Prepared<'_> {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let lights = &self.lights[light];
         if lights.is_empty() {
             return parts.fill([1.0; 3]);
         }
         parts.fill([0.0; 3]);
+
+        // Sort the points that face each position of the light.
         let extent = self.casters.extent();
         let mut work = Work::default();
         for emitter in lights {
             let from = emitter.at;
             let asked = places.iter().enumerate().filter(|(_, p)| faces(p, from));
-            let point = |(index, p): (usize, Place)| Point {
+            let point = |(index, p): (usize, SurfacePoint)| Point {
                 index,
                 facet: p.facet,
                 pixel: p.pixel,
@@ -111,6 +114,8 @@ impl Shadows for Prepared<'_> {
                 };
                 a.facet.cmp(&b.facet).then_with(by_pixel).then(a.index.cmp(&b.index))
             });
+
+            // Scan each facet's points and add what arrives.
             for part in points.chunk_by(|a, b| a.facet == b.facet) {
                 self.scan(part, from, &mut work, |point, filters| {
                     let place = places.get(point.index);
@@ -119,6 +124,8 @@ impl Shadows for Prepared<'_> {
                 });
             }
         }
+
+        // Divide by the weights of all positions.
         Shares::normalize(lights.iter().copied(), places, parts);
     }
 

@@ -17,7 +17,7 @@
 //! Source: [Cook, Porter & Carpenter 1984]; the disc after [Shirley & Chiu 1997], shares after [Heitz, Hill & McGuire 2018].
 
 use super::hash::hash;
-use super::places::{Parts, Place, Places};
+use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
 use super::rounding::horizon;
 use std::f64::consts::FRAC_PI_4;
 use vitral_light::{AreaShape, Light, LightKind, Rgb};
@@ -25,12 +25,12 @@ use vitral_math::{DVec2, DVec3, DVec4, dvec2, func};
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Source {
+pub(super) enum LightSource {
     /// It casts no shadows.
-    Unhindered,
+    Unoccluded,
     /// Unit vector towards the light.
     Infinity(DVec3),
-    /// A point.
+    /// A light at one position.
     Point(DVec3),
     /// A flat shape.
     Area(Area),
@@ -76,29 +76,29 @@ enum Shape {
     Polygon(Vec<DVec2>),
 }
 
-impl Source {
+impl LightSource {
     /// The light's, with about `samples` cells, less `center`.
     pub(super) fn new(light: &Light, samples: u32, center: DVec3) -> Self {
         if !light.shadow || !light.enabled {
-            return Self::Unhindered;
+            return Self::Unoccluded;
         }
         match &light.kind {
-            LightKind::Ambient => Self::Unhindered,
+            LightKind::Ambient => Self::Unoccluded,
             LightKind::Directional { direction } => {
-                (-*direction).try_normalize().map_or(Self::Unhindered, Self::Infinity)
+                (-*direction).try_normalize().map_or(Self::Unoccluded, Self::Infinity)
             }
             LightKind::Point { position } | LightKind::Spot { position, .. } => Self::Point(*position - center),
-            LightKind::Area { shape } => Area::new(shape, samples, center).map_or(Self::Unhindered, Self::Area),
+            LightKind::Area { shape } => Area::new(shape, samples, center).map_or(Self::Unoccluded, Self::Area),
         }
     }
 }
 
-impl Source {
+impl LightSource {
     /// The places that light comes from, the same for all points. None if it casts no shadows.
     pub(super) fn places(&self) -> Vec<Emitter> {
         let only = |at: DVec4| vec![Emitter { at, normal: DVec3::ZERO }];
         match self {
-            Self::Unhindered => Vec::new(),
+            Self::Unoccluded => Vec::new(),
             Self::Infinity(towards) => only(towards.extend(0.0)),
             Self::Point(at) => only(at.extend(1.0)),
             Self::Area(area) => (0..area.count()).map(|i| area.emitter(i, 0)).collect(),
@@ -108,7 +108,7 @@ impl Source {
 
 impl Emitter {
     /// The place's share in what the facet of `place` gets of the light; 0 if it looks away, 1 for a light of one place.
-    pub(super) fn weight(&self, place: &Place) -> f32 {
+    pub(super) fn weight(&self, place: &SurfacePoint) -> f32 {
         let way = self.at.truncate() - place.position * self.at.w;
         let cos = place.normal.dot(way);
         if self.normal == DVec3::ZERO {
@@ -137,7 +137,11 @@ impl Shares {
     }
 
     /// Parts from what arrives at each of the places, weighted, and added in the order of the emitters.
-    pub(super) fn normalize(emitters: impl Iterator<Item = Emitter> + Clone, places: &Places, parts: &mut Parts) {
+    pub(super) fn normalize(
+        emitters: impl Iterator<Item = Emitter> + Clone,
+        places: &SurfacePoints,
+        parts: &mut LightVisibility,
+    ) {
         for (number, place) in places.iter().enumerate() {
             let whole: f32 = emitters.clone().map(|e| e.weight(&place)).sum();
             parts.set(number, Self { lit: parts.get(number), whole }.part());
@@ -162,15 +166,20 @@ impl Area {
     }
 
     fn polygon(corners: &[DVec3], samples: u32, center: DVec3) -> Option<Self> {
+        // Compute the area, the normal and axes along the longest side.
         let edges = || (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
         let normal: DVec3 = edges().map(|(a, b)| (a - corners[0]).cross(b - corners[0])).sum();
         let (area, normal) = (0.5 * normal.length(), normal.try_normalize()?);
         let longest = edges().map(|(a, b)| b - a).max_by(|a, b| a.length().total_cmp(&b.length()))?;
         let x = longest.try_normalize()?;
         let y = normal.cross(x);
+
+        // Flatten the polygon to its plane.
         let flat: Vec<DVec2> =
             corners.iter().map(|&c| dvec2((c - corners[0]).dot(x), (c - corners[0]).dot(y))).collect();
         let bounds = flat.iter().fold([flat[0]; 2], |[low, high], &p| [low.min(p), high.max(p)]);
+
+        // Choose cells so that about as many as asked for lie inside.
         let extent = bounds[1] - bounds[0];
         let share = area / (extent.x * extent.y);
         let (cells, size) = cells(bounds, share, samples, |p| contains(&flat, p));

@@ -30,12 +30,12 @@ mod paths;
 
 use super::casters::{Casters, faces, lifted};
 use super::occluders::Occluders;
-use super::places::{Parts, Places};
-use super::sources::{Shares, Source};
-use super::{Drawn, Key, ShadowAlgorithm, Shadows};
+use super::places::{LightVisibility, SurfacePoints};
+use super::sources::{LightSource, Shares};
+use super::{Drawn, PreparedShadows, ShadowAlgorithm, ShadowKey};
 use crate::{Cached, Execution, Session, Settings, VolumeCounting};
 use count::{Batch, Lit, ODD};
-pub(crate) use edges::Surface;
+pub(crate) use edges::CasterSurface;
 use light_volumes::LightVolumes;
 use std::sync::Arc;
 use vitral_exec::Limit;
@@ -51,7 +51,7 @@ pub struct VolumeShadows;
 #[derive(Debug)]
 pub(crate) struct Volumes {
     casters: Arc<Casters>,
-    surface: Arc<Surface>,
+    surface: Arc<CasterSurface>,
     lights: Vec<Vec<LightVolumes>>,
 }
 
@@ -75,18 +75,24 @@ impl ShadowAlgorithm for VolumeShadows {
         viewer: DVec4,
         settings: &Settings,
         execution: &Execution,
-    ) -> Result<Box<dyn Shadows + 'a>, Limit> {
+    ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let occluders = Occluders::new(session, settings);
-        let volumes = session.cache.get_or_build(Key::new(lights, settings), || {
+
+        // Build the volumes, or take them from the cache.
+        let volumes = session.cache.get_or_build(ShadowKey::new(lights, settings), || {
             Volumes::new(session, lights, &occluders, settings, execution)
         })?;
         let triangles = volumes.casters.triangles();
+
+        // Move the viewer by an odd amount, so that it lies on no side of a volume.
         let odd = ODD * (f64::from(triangles.extent) * 1e-4);
         let viewer = if viewer.w > 0.0 {
             (viewer.truncate() - triangles.center + odd).extend(1.0)
         } else {
             (viewer.truncate() + ODD * 1e-4).extend(0.0)
         };
+
+        // Count the volumes around the viewer, once for each position of the light.
         let counting = settings.shadows.volume_counting.unwrap_or_default();
         let around_viewer = volumes.lights.iter().map(|places| {
             let around = |l: &LightVolumes| match counting {
@@ -101,7 +107,7 @@ impl ShadowAlgorithm for VolumeShadows {
 }
 
 impl Cached for Volumes {
-    type Key = Key;
+    type ShadowKey = ShadowKey;
 }
 
 impl Volumes {
@@ -114,10 +120,10 @@ impl Volumes {
     ) -> Result<Self, Limit> {
         let casters = Casters::of(session, occluders, execution)?;
         let surface =
-            session.cache.get_or_build(occluders.key(), || Surface::new(&session.world, &casters, execution))?;
+            session.cache.get_or_build(occluders.key(), || CasterSurface::new(&session.world, &casters, execution))?;
         let triangles = casters.triangles();
         let of_light = |light: &Light| -> Result<Vec<LightVolumes>, Limit> {
-            let places = Source::new(light, settings.shadows.light_samples, triangles.center).places();
+            let places = LightSource::new(light, settings.shadows.light_samples, triangles.center).places();
             places.into_iter().map(|place| LightVolumes::new(place, triangles, &surface, execution)).collect()
         };
         let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
@@ -129,20 +135,23 @@ impl Volumes {
     }
 }
 
-impl Shadows for Counting<'_> {
-    fn arriving(&self, light: usize, places: &Places, parts: &mut Parts, _: &mut u64) {
+impl PreparedShadows for Counting<'_> {
+    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
         let volumes = &self.volumes.lights[light];
         if volumes.is_empty() {
             return parts.fill([1.0; 3]);
         }
         parts.fill([0.0; 3]);
         let mut batch = Batch::default();
+        // Count the volumes around all places that face the position of the light.
         for (place_of_light, &around_viewer) in volumes.iter().zip(&self.around_viewer[light]) {
             // Attached shadows, and a light in the facet's plane, need no count.
             let (from, extent) = (place_of_light.from, self.volumes.casters.extent());
             let light = from.at;
             let asked = places.iter().enumerate().filter(|(_, p)| faces(p, light));
             batch.reset(asked.map(|(i, p)| (i as u32, lifted(&p, extent))));
+
+            // Add what arrives where the count says that no volume holds the place.
             let lit = self.volumes.lit(place_of_light);
             let start = (self.counting, self.viewer, around_viewer);
             batch.count(self.level, &lit, start, |index, at, count, filters| {
@@ -153,6 +162,8 @@ impl Shadows for Counting<'_> {
                 }
             });
         }
+
+        // Divide by the weights of all positions.
         Shares::normalize(volumes.iter().map(|v| v.from), places, parts);
     }
 

@@ -45,7 +45,7 @@ pub enum ListTest {
 
 impl ListTest {
     /// In words, for polygons of these names.
-    pub fn tell(self, p: u32, q: u32) -> String {
+    pub fn describe(self, p: u32, q: u32) -> String {
         match self {
             Self::DepthExtent => format!("all of {p} is farther than {q}"),
             Self::XExtent => "test 1: the extents in x do not overlap".to_owned(),
@@ -98,20 +98,20 @@ impl PlaneSide {
 pub struct PolygonSet {
     /// How many there are.
     pub count: u32,
-    /// The first facets of the first [`PolygonSet::MOST`] of them, in the order of the set.
+    /// The first facets of the first [`PolygonSet::MAX_NAMED`] of them, in the order of the set.
     pub facets: Vec<u32>,
 }
 
 impl PolygonSet {
     /// Polygons that are named.
-    pub const MOST: usize = 64;
+    pub const MAX_NAMED: usize = 64;
 
     /// Those with these first facets.
     pub fn new(facets: impl IntoIterator<Item = u32>) -> Self {
         let mut set = Self::default();
         for facet in facets {
             set.count += 1;
-            if set.facets.len() < Self::MOST {
+            if set.facets.len() < Self::MAX_NAMED {
                 set.facets.push(facet);
             }
         }

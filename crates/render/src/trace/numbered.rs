@@ -32,11 +32,11 @@ pub struct Collector {
     budget: Budget,
     /// A pixel at which each comparison of the z-buffer is kept.
     watched: Option<[u32; 2]>,
-    kept: Mutex<Kept>,
+    kept: Mutex<RecordedSteps>,
 }
 
 #[derive(Debug, Default)]
-struct Kept {
+struct RecordedSteps {
     steps: Vec<Step>,
     charged: u64,
     /// Where it gave up.
@@ -184,6 +184,7 @@ struct Parents {
 impl Parents {
     /// The parent of a step, which gets this number.
     fn of(&mut self, step: &Step, number: u32) -> Option<u32> {
+        // Boxes, clipped facets and windows hang below what contains them.
         match step {
             Step::Box { instance, items, .. } => self.above(*instance, *items, number),
             Step::Clipped { facet, .. } => {
@@ -195,6 +196,8 @@ impl Parents {
                 let above = path.char_indices().next_back().map(|(at, _)| &path[..at]);
                 above.and_then(|above| self.windows.get(above).copied())
             }
+
+            // Steps of list priority hang below the first order or the turn.
             Step::FirstOrder { .. } | Step::NearestFirst { .. } => {
                 self.first_order = Some(number);
                 None
@@ -205,6 +208,8 @@ impl Parents {
             }
             Step::Compared { .. } | Step::Moved { .. } | Step::Circle { .. } => self.turn,
             Step::Split { .. } | Step::Painted { .. } => self.turn,
+
+            // Nodes hang below their parent; visits and pieces below the node they are of.
             Step::TreeNode { node, above, .. } => {
                 self.nodes.insert(*node, number);
                 above.and_then(|above| self.nodes.get(&above).copied())
@@ -216,11 +221,15 @@ impl Parents {
             }
             Step::Piece { node: Some(node), .. } => self.visits.get(node).copied(),
             Step::Piece { node: None, .. } => self.first_order,
+
+            // Clips hang below the clip whose list they are of.
             Step::Clip { clip, within, .. } => {
                 self.clips.insert(*clip, number);
                 within.map_or(self.first_order, |outer| self.clips.get(&outer).copied())
             }
             Step::Visible { clip, .. } => clip.map_or(self.first_order, |clip| self.clips.get(&clip).copied()),
+
+            // Lines hang below the edge table, and rays below the structure.
             Step::EdgeTable { .. } => {
                 self.edge_table = Some(number);
                 None
@@ -231,6 +240,8 @@ impl Parents {
                 None
             }
             Step::Rays { .. } => self.space,
+
+            // Hits of a traced ray hang below the hit that it came from.
             Step::RayMeets { pixel, turns, direction, .. } => {
                 self.begin(*pixel);
                 self.met.truncate(*turns as usize);

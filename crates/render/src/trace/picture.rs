@@ -60,11 +60,14 @@ impl Recorder {
 
     /// The steps over `image`.
     pub fn over(&self, image: &Plane<[u8; 4]>) -> Plane<[u8; 4]> {
+        // Find the largest values, to which colours are relative.
         let planes = self.planes.lock().expect("no thread panics while it draws steps");
         let most = |values: &mut dyn Iterator<Item = u64>| values.max().unwrap_or(0).max(1) as f32;
         let dearest = most(&mut planes.cost.iter().copied());
         let last = most(&mut planes.order.iter().map(|&o| u64::from(o)));
         let lists = planes.order.iter().any(|&o| o > 0);
+
+        // Colour each pixel: marks first, then the place in the list, then the cost.
         let pixel = |i: usize, &[r, g, b, _]: &[u8; 4]| {
             // Light grey, so that colours can be told from the image.
             let grey = (u32::from(r) * 77 + u32::from(g) * 150 + u32::from(b) * 29) / 256;

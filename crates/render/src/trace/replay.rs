@@ -128,6 +128,8 @@ impl<'w> Replay<'w> {
     fn outline(&self, step: &Step, data: &mut [[u8; 4]]) {
         let canvas = self.canvas;
         let mut mark = |at: usize| data[at] = opaque(ABOUT);
+
+        // Mark rectangles, rows, pixels or outlines, whichever the step names.
         match step {
             Step::Window { pixels, .. } | Step::Rays { pixels, .. } => sides(canvas, *pixels, mark),
             Step::Line { row, .. } => rectangle(canvas, [0, *row, canvas.width, 1], mark),

@@ -31,8 +31,9 @@ impl Step {
     }
 
     /// The step in words, for one of the pixels it concerns.
-    pub fn tell(&self, [x, y]: [u32; 2]) -> String {
+    pub fn describe(&self, [x, y]: [u32; 2]) -> String {
         match self {
+            // Steps of the z-buffer.
             Self::Drawn { facet, stays, .. } => {
                 let stays = stays.iter().any(|&[row, from, to]| row == y && (from..to).contains(&x));
                 format!("facet {facet} comes: {}", if stays { "nearer than what is there" } else { "hidden" })
@@ -44,6 +45,7 @@ impl Step {
                 };
                 format!("facet {facet} comes with depth {depth}, {was}: facet {stays} stays")
             }
+            // Steps of Warnock's subdivision.
             Self::Window { pixels: [left, top, width, height], verdict, .. } => {
                 let what = match verdict {
                     WindowVerdict::Empty => "empty",
@@ -54,6 +56,7 @@ impl Step {
                 };
                 format!("window {left},{top} of {width} x {height}, {}: {what}", self.relations())
             }
+            // Steps of the scan-line algorithm.
             Self::Line { active_edges, spans, .. } => {
                 let line = format!("{} active edge(s)", active_edges.len());
                 match spans.iter().find(|s| (s.pixels[0]..s.pixels[1]).contains(&x)) {
@@ -75,11 +78,13 @@ impl Step {
                     None => format!("{line}; no polygon is in here"),
                 }
             }
+            // Steps of ray casting.
             Self::Rays { pixels: [_, _, width, height], rays, boxes, facets, tested, through } => {
                 let which = if tested.is_empty() { String::new() } else { format!(": {}", few(tested)) };
                 let tests = format!("{boxes} box(es) and {facets} facet(s) tested{which}");
-                format!("{rays} ray(s) of {width} x {height} pixel(s): {tests}{}", through.tell())
+                format!("{rays} ray(s) of {width} x {height} pixel(s): {tests}{}", through.describe())
             }
+            // Steps of list priority.
             Self::Piece { order, facet, cuts, node, .. } => {
                 let node = node.map_or(String::new(), |node| format!(", of node {node} of the tree"));
                 format!("place {order} in the list, from the back: polygon of facet {facet}, cut {cuts} time(s){node}")
@@ -91,6 +96,7 @@ impl Step {
                 });
                 format!("depth overrules the list at {} sample(s){facets}", own.len())
             }
+            // Steps of Weiler and Atherton.
             Self::Clip { clip, within, facet, inside, outside_count, hidden, again, .. } => {
                 let within = within.map_or(String::new(), |outer| format!(" of the inside of clip {outer}"));
                 let order = if *again { ", which is clipped again" } else { "" };
@@ -114,6 +120,7 @@ impl Step {
             size_of_val(list)
         }
         let listed = match self {
+            // Count the lists that the step owns.
             Self::Drawn { stays, hidden, .. } => of(stays) + of(hidden),
             Self::Window { path, contained, intersecting, surrounding, hidden, .. } => {
                 path.len() + of(contained) + of(intersecting) + of(surrounding) + of(hidden)
@@ -148,6 +155,8 @@ impl Step {
             Self::Turn { .. } | Self::Compared { .. } | Self::Moved { .. } | Self::Painted { .. } => 0,
             Self::Box { .. } => 0,
         };
+
+        // Add the step itself.
         (size_of::<Self>() + listed) as u64
     }
 
@@ -175,9 +184,9 @@ fn contours_bytes(contours: &[Contour]) -> usize {
 
 /// The first few of some facets.
 fn few(facets: &[u32]) -> String {
-    const MOST: usize = 8;
-    let names: Vec<_> = facets.iter().take(MOST).map(u32::to_string).collect();
-    names.join(" ") + if facets.len() > MOST { " ..." } else { "" }
+    const MAX_NAMED: usize = 8;
+    let names: Vec<_> = facets.iter().take(MAX_NAMED).map(u32::to_string).collect();
+    names.join(" ") + if facets.len() > MAX_NAMED { " ..." } else { "" }
 }
 
 /// A step of culling and clipping, of a list or a tree, or of a ray, in words.
@@ -246,7 +255,7 @@ fn tell_of_list(step: &Step) -> String {
                 ListVerdict::After => format!("{with} has to be painted before {polygon}"),
                 ListVerdict::Across => "each covers a part of the other".to_owned(),
             };
-            format!("polygons {polygon} and {with}: {}: {found}", test.tell(*polygon, *with))
+            format!("polygons {polygon} and {with}: {}: {found}", test.describe(*polygon, *with))
         }
         Step::Moved { polygon, before_polygon, .. } => {
             format!("polygon {polygon} moves before polygon {before_polygon} in the list, and is marked")

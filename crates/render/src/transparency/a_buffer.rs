@@ -13,8 +13,8 @@
 use super::fragment::{Fragment, MOST_SAMPLES};
 use super::sorted;
 
-/// Fragments up to which one order for all samples is looked for.
-const FEW: usize = 32;
+/// Fragments of a pixel up to which one order for all samples is looked for.
+const MAX_COMMON_ORDER: usize = 32;
 
 /// See the module.
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
@@ -22,16 +22,16 @@ pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
         0 => {}
         1 => fragments[0].over_all(samples),
         2..=8 => pack::<8>(fragments, samples),
-        9..=FEW => pack::<FEW>(fragments, samples),
+        9..=MAX_COMMON_ORDER => pack::<MAX_COMMON_ORDER>(fragments, samples),
         _ => sorted::lay(fragments, samples),
     }
 }
 
-/// [`lay`] for at most `MOST` fragments.
-fn pack<const MOST: usize>(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
+/// [`lay`] for at most `MAX` fragments.
+fn pack<const MAX: usize>(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
     // They are few: each finds its place among those before it, from far to near.
-    let mut order = [(0.0f32, 0u32); MOST];
-    let order = &mut order[..fragments.len().min(MOST)];
+    let mut order = [(0.0f32, 0u32); MAX];
+    let order = &mut order[..fragments.len().min(MAX)];
     let of = |&(_, index): &(f32, u32)| &fragments[index as usize];
     for (i, fragment) in fragments.iter().enumerate() {
         let far = fragment.far;

@@ -97,7 +97,7 @@ table! {
         blurs: true,
         lay: back_to_front::lay,
     };
-    /// Two buffers.
+    /// An opaque buffer and one for the sum of layers.
     TWO_BUFFER = Order {
         name: "two-buffer",
         description: "opaque and transparent surfaces in a buffer each; exact for one layer",

@@ -78,6 +78,8 @@ fn look(
                     }
                 }
                 (tile.depth[at], tile.facet[at]) = nearest;
+
+                // Keep all layers in front of it.
                 for setup in layered.iter().filter(|s| s.covers(x, y)) {
                     let (depth, facet) = (setup.depth(x, y), setup.facet);
                     if nearer((depth, facet), nearest) {
@@ -87,10 +89,12 @@ fn look(
             }
         }
     }
+
+    // Count the work and report it.
     let rays = (rows * columns * view.pattern.len()) as u64;
     let triangle_tests = rays * facets.setups.len() as u64;
     let pixels = [tile.x, tile.y, columns as u32, rows as u32];
     let (facets, tested, through) = (facets.setups.len() as u64, Vec::new(), Passed::Nowhere);
-    execution.tell(|| Step::Rays { pixels, rays, boxes: 0, facets, tested, through });
+    execution.report(|| Step::Rays { pixels, rays, boxes: 0, facets, tested, through });
     Ok(VisibilityCounters { rays, triangle_tests, ..VisibilityCounters::default() })
 }

@@ -36,7 +36,7 @@ use vitral_exec::Limit;
 use vitral_math::{DMat4, DVec3, DVec4};
 use vitral_raster::{SUBPIXEL, Setup, TileGrid, Viewport};
 
-pub(crate) use tree::Tree;
+pub(crate) use tree::BspTree;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -79,6 +79,7 @@ impl VisibleSurface for Bsp {
 
 impl PolygonAlgorithm for Bsp {
     fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit> {
+        // Set the facets up and take the tree from the cache.
         let facets = Facets::without_tiles(view, execution)?;
         let setups: Vec<&Setup> = facets.all().collect();
         let (tree, _) = tree_of(view, execution)?;
@@ -98,6 +99,8 @@ impl PolygonAlgorithm for Bsp {
                 let facets = tree.facets(fragment);
                 fragments.each_outline(fragment, |outline, _| list.push_convex(facets.to_vec(), outline));
             }
+
+            // Report the tree's size.
             list.wholes = tree.polygon_count();
             list.counters.tree_nodes = tree.node_count();
             list.counters.fragments = tree.fragment_count();
@@ -108,23 +111,23 @@ impl PolygonAlgorithm for Bsp {
     }
 }
 
-impl Cached for Tree {
+impl Cached for BspTree {
     type Key = ();
 }
 
 /// The session's tree, and whether it was there already.
-fn tree_of(view: &PreparedView<'_>, execution: &Execution) -> Result<(Arc<Tree>, bool), Limit> {
+fn tree_of(view: &PreparedView<'_>, execution: &Execution) -> Result<(Arc<BspTree>, bool), Limit> {
     let mut reused = true;
     let tree = view.session.cache.get_or_build((), || {
         reused = false;
-        Tree::of_world(&view.session.world, view.session.planes(&execution.workers), execution)
+        BspTree::of_world(&view.session.world, view.session.planes(&execution.workers), execution)
     })?;
     Ok((tree, reused))
 }
 
 /// Walks the tree and draws what comes.
 fn picture(
-    tree: &Tree,
+    tree: &BspTree,
     facets: &Facets<'_, '_>,
     marks: Option<&Marks>,
     grid: &mut TileGrid,
@@ -149,7 +152,7 @@ fn picture(
         let fragments = Fragments { on_screen, footprints, raster, order, execution };
         let count = fragments.order.len().div_ceil(FRAGMENTS_A_RUN);
         let runs = execution.workers.map(count, |run| fragments.pieces(run));
-        fragments.tell(&runs);
+        fragments.report(&runs);
 
         // Draw them, tile by tile.
         let list = PriorityList { setups: &setups, opaque, runs: &runs };
@@ -171,7 +174,7 @@ fn footprints(setups: &[&Setup], raster: &Raster<'_>, execution: &Execution) -> 
 }
 
 /// The fragments of the tree from front to back, those of facets that have no place in the tree last.
-fn front_to_back(tree: &Tree, to_viewer: DVec4) -> Vec<u32> {
+fn front_to_back(tree: &BspTree, to_viewer: DVec4) -> Vec<u32> {
     let mut order = Vec::with_capacity(tree.fragment_count() as usize);
     tree.back_to_front(to_viewer, |fragment| order.push(fragment));
     order.reverse();
@@ -180,7 +183,7 @@ fn front_to_back(tree: &Tree, to_viewer: DVec4) -> Vec<u32> {
 
 /// What brings the fragments of a tree to the screen.
 struct OnScreen<'a> {
-    tree: &'a Tree,
+    tree: &'a BspTree,
     setups: &'a [&'a Setup],
     places: SetupIndex,
     lines: Lines,
@@ -239,16 +242,18 @@ impl Fragments<'_> {
     }
 
     /// Tells the list from back to front.
-    fn tell(&self, runs: &[Pieces]) {
+    fn report(&self, runs: &[Pieces]) {
         if self.execution.observer.is_none() {
             return;
         }
+
+        // Report the fragments in the order in which they are painted.
         let tree = self.on_screen.tree;
         let nodes = tree.nodes_of_fragments();
         let listed = runs.iter().rev().flat_map(|run| run.listed.iter().rev());
         for (order, &fragment) in (0..).zip(listed) {
             self.on_screen.each_outline(fragment, |outline, cuts| {
-                self.execution.tell(|| Step::Piece {
+                self.execution.report(|| Step::Piece {
                     order,
                     polygon: fragment,
                     node: nodes[fragment as usize],
@@ -295,7 +300,7 @@ struct Lines {
 }
 
 impl Lines {
-    fn new(view: &PreparedView<'_>, tree: &Tree, execution: &Execution) -> Self {
+    fn new(view: &PreparedView<'_>, tree: &BspTree, execution: &Execution) -> Self {
         let mut planes = vec![DVec4::ZERO; tree.cutters().len()];
         let screen_from_world = screen_from_world(&view.view.clip_from_world(), view.viewport);
         execution.workers.for_each_chunk(&mut planes, PLANES_A_JOB, |job, planes| {

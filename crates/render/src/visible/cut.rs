@@ -8,7 +8,9 @@ use vitral_raster::{SUBPIXEL, Setup};
 /// A facet's depth as a linear function of the place, not clamped: `at_zero + slope . (x, y)` in 1/256 pixel.
 #[derive(Clone, Copy)]
 pub(super) struct Depth {
+    /// Change of depth with 1/256 pixel along x and y.
     pub(super) slope: [f64; 2],
+    /// Depth at the screen's origin.
     pub(super) at_zero: f64,
 }
 
@@ -32,8 +34,11 @@ impl Depth {
 /// A line `a x + b y + c = 0` on the screen (1/256 pixel), and the side of it that is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {
+    /// Factor of x.
     pub(super) a: f64,
+    /// Factor of y.
     pub(super) b: f64,
+    /// Constant.
     pub(super) c: f64,
     /// Keeps where the value is not negative, else where it is (or is not a number).
     pub(super) positive: bool,
@@ -99,6 +104,8 @@ pub(super) fn clip_outline(polygon: &mut Vec<[f64; 2]>, scratch: &mut Vec<[f64; 
     if !(cut.a + cut.b + cut.c).is_finite() {
         return;
     }
+
+    // Walk the outline: keep inner corners and add crossings.
     let Some(&(mut from)) = polygon.last() else { return };
     let mut d_from = cut.inside(from);
     let outside = |d: f64| d < 0.0;

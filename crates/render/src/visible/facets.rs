@@ -52,11 +52,14 @@ impl<'v, 'a> Facets<'v, 'a> {
         resolved: &mut Resolved,
         lists: TileLists,
     ) -> Result<Self, Limit> {
+        // Charge for the triangles.
         let start = execution.budget.elapsed();
         let charged = triangle_count(view) * BYTES_A_TRIANGLE;
         execution.budget.charge(charged, "the view's facets")?;
         let rows = OnceLock::new();
         let mut facets = Self { view, execution, opaque: Vec::new(), layered: Vec::new(), rows, charged };
+
+        // Set up all rounds and keep their batches.
         let mut front_end = FrontEnd::new(view, execution);
         for round in front_end.rounds() {
             execution.budget.check("the view's facets")?;
@@ -136,15 +139,20 @@ impl<'v, 'a> Facets<'v, 'a> {
         sink: &dyn TileSink,
         collect: Option<&Collect<'_>>,
     ) {
+        // Let marks hide what lies behind them.
         let (level, pattern) = (self.execution.level, &self.view.pattern);
         if let Some(marks) = marks {
             hide_behind((level, None), &marks.hiding, index, tile, pattern);
         }
+
+        // Hand the layers on in passes if the sink takes them so.
         let all = marks.map(|m| &m.all);
         if sink.takes_passes() {
             let layered = self.layered.iter().chain(all);
             return hand_on_in_passes(self.view, self.execution, layered, index, tile, sink);
         }
+
+        // Otherwise collect them in a list, and hand the tile on.
         let mut layers = layer_list(self.view, sink);
         let mut layered = self.layered.as_slice();
         if let Some(collect) = collect.filter(|_| self.view.lists_layers) {
@@ -201,6 +209,7 @@ pub(super) fn fill_with(
     fill: &Fill<'_>,
     collect: Option<&Collect<'_>>,
 ) -> Result<VisibilityCounters, Limit> {
+    // Fill and finish several tiles a job.
     let outcome = Outcome::new();
     let budget = &facets.execution.budget;
     budget.begin("tiles", grid.tiles.len() as u64);

@@ -5,7 +5,7 @@
 //! Cost: a box test for each run of triangles; a few operations for each facet found.
 
 use crate::PreparedView;
-use crate::cull::window::Window;
+use crate::cull::window::PixelWindow;
 use serde::Serialize;
 use vitral_math::{DVec3, DVec4};
 use vitral_raster::geometry::flag;
@@ -15,7 +15,7 @@ use vitral_scene::Instance;
 /// A plane of the view volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Plane {
+pub enum ClipPlane {
     /// Left of the picture.
     Left,
     /// Right of it.
@@ -30,7 +30,7 @@ pub enum Plane {
     Near,
 }
 
-impl Plane {
+impl ClipPlane {
     /// Each with its bit, see [`flag`].
     const BITS: [(Self, u32); 6] = [
         (Self::Left, flag::LEFT),
@@ -68,12 +68,12 @@ pub enum Fate {
     /// Frustum culling rejected the box round its object, or round its run of triangles.
     BoxCulled {
         /// The planes beyond which all its corners lie.
-        planes: Vec<Plane>,
+        planes: Vec<ClipPlane>,
     },
     /// All its corners lie beyond one plane of the view volume.
     OutsideFrustum {
         /// The planes for which that is so.
-        planes: Vec<Plane>,
+        planes: Vec<ClipPlane>,
     },
     /// A corner is not a finite number.
     NotFinite,
@@ -84,7 +84,7 @@ pub enum Fate {
     /// What clipping leaves of it does not reach the pixel.
     ClippedAway {
         /// The planes that cut it.
-        planes: Vec<Plane>,
+        planes: Vec<ClipPlane>,
     },
     /// It covers no sample of the pixel.
     BetweenSamples,
@@ -97,12 +97,12 @@ pub enum Fate {
     },
     /// It is seen through: nothing opaque is nearer at these samples.
     Layer {
-        /// The samples.
+        /// The samples at which it is a layer.
         samples: Vec<u32>,
     },
     /// It is the nearest opaque facet at these samples.
     Visible {
-        /// The samples.
+        /// The samples at which it is visible.
         samples: Vec<u32>,
     },
 }
@@ -111,7 +111,7 @@ pub enum Fate {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Candidate {
-    /// The facet.
+    /// Id of the facet.
     pub facet: u32,
     /// Its nearest depth at the samples that it covers, 1 near; `None` if there are none.
     pub depth: Option<f32>,
@@ -151,20 +151,23 @@ const SNAPPED: f64 = 2.0 / SUBPIXEL as f64;
 /// the order of the scene.
 pub(crate) fn candidates(view: &PreparedView<'_>, seen: &SeenPixel<'_>, wireframe: bool) -> Vec<Candidate> {
     let world = &view.session.world;
-    let window = Window::new(&view.view, view.viewport, seen.place(), 1, SNAPPED);
+
+    // Search all instances, whether they are drawn or not.
+    let window = PixelWindow::new(&view.view, view.viewport, seen.place(), 1, SNAPPED);
     let mut found = Vec::new();
     for (index, instance) in world.instances.iter().enumerate() {
         let all = 0..instance.mesh.triangles.len() as u32;
         let bounds = &world.run_bounds[instance.mesh_index as usize];
         let prepared = view.instances.iter().find(|p| p.instance == index);
         let draws = || prepared.iter().flat_map(|p| p.opaque.iter().chain(&p.layered));
+        // Judge each triangle whose outline holds the pixel.
         for triangle in window.pyramid_of(instance).triangles(&instance.mesh, bounds, &[all]).into_iter().flatten() {
             let facet = instance.first_facet + triangle;
             let draw = draws().find(|d| d.ranges.iter().any(|range| range.contains(&triangle)));
             let (fate, depth) = match draw {
                 Some(draw) => fate(view, draw, facet, seen),
                 None if wireframe => (Fate::NotDrawn, None),
-                None => (Fate::BoxCulled { planes: Plane::of_flags(common(view.corner_flags(facet))) }, None),
+                None => (Fate::BoxCulled { planes: ClipPlane::of_flags(common(view.corner_flags(facet))) }, None),
             };
             found.push(Candidate { facet, depth, fate });
         }
@@ -180,16 +183,17 @@ fn common([a, b, c]: [u32; 3]) -> u32 {
 
 /// What becomes of a facet that a draw holds, and its nearest depth at the samples that it covers.
 fn fate(view: &PreparedView<'_>, draw: &Draw<'_>, facet: u32, seen: &SeenPixel<'_>) -> (Fate, Option<f32>) {
+    // Test what culling and clipping test, in their order.
     let flags = view.corner_flags(facet);
     let any = flags[0] | flags[1] | flags[2];
     if any & flag::NOT_FINITE != 0 {
         return (Fate::NotFinite, None);
     }
     if common(flags) != 0 {
-        return (Fate::OutsideFrustum { planes: Plane::of_flags(common(flags)) }, None);
+        return (Fate::OutsideFrustum { planes: ClipPlane::of_flags(common(flags)) }, None);
     }
     let batch = view.set_up(facet, draw.back_faces);
-    let cutting = Plane::of_flags(any & (flag::NEAR | flag::FAR));
+    let cutting = ClipPlane::of_flags(any & (flag::NEAR | flag::FAR));
     let counted = &batch.counters;
     if counted.back_facing > 0 {
         return (Fate::BackFace, None);
@@ -216,6 +220,8 @@ fn fate(view: &PreparedView<'_>, draw: &Draw<'_>, facet: u32, seen: &SeenPixel<'
         let fate = if was_there { Fate::ClippedAway { planes: cutting } } else { Fate::BetweenSamples };
         return (fate, None);
     }
+
+    // Tell who is seen at the covered samples: the facet itself, or layers and others in front.
     let numbers = |samples: &[usize]| samples.iter().map(|&s| s as u32).collect::<Vec<_>>();
     let visible: Vec<usize> = covered.iter().copied().filter(|&s| seen.facet(s) == facet).collect();
     if !visible.is_empty() {
@@ -263,15 +269,17 @@ fn meets(view: &PreparedView<'_>, instance: &Instance, facet: u32, place: [i32; 
 /// The facets of a view that cover a place of the screen, 1/256 pixel, with their depths there and whether they are layers; the
 /// nearest first.
 pub fn facets_at(view: &PreparedView<'_>, [x, y]: [i32; 2]) -> Vec<(u32, f32, bool)> {
+    // Find the triangles near the pixel.
     let world = &view.session.world;
     let pixel = [x, y].map(|v| v.div_euclid(SUBPIXEL) as u32);
-    let window = Window::new(&view.view, view.viewport, pixel, 1, SNAPPED);
+    let window = PixelWindow::new(&view.view, view.viewport, pixel, 1, SNAPPED);
     let mut found = Vec::new();
     for prepared in &view.instances {
         let instance = &world.instances[prepared.instance];
         let (pyramid, bounds) = (window.pyramid_of(instance), &world.run_bounds[instance.mesh_index as usize]);
         let opaque = prepared.opaque.iter().map(|draw| (false, draw));
         for (is_layer, draw) in opaque.chain(prepared.layered.iter().map(|draw| (true, draw))) {
+            // Keep those that cover the position.
             for triangle in pyramid.triangles(&instance.mesh, bounds, &draw.ranges).into_iter().flatten() {
                 let facet = draw.first_facet + triangle;
                 let setups = view.setups(facet, draw.back_faces);
@@ -281,6 +289,8 @@ pub fn facets_at(view: &PreparedView<'_>, [x, y]: [i32; 2]) -> Vec<(u32, f32, bo
             }
         }
     }
+
+    // Sort by depth, then by facet.
     found.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     found
 }

@@ -14,7 +14,7 @@ const TRIANGLES_A_ROUND: u64 = 1 << 18;
 
 /// A run of triangles of one draw.
 #[derive(Clone)]
-pub(super) struct Piece<'v, 'a> {
+pub(super) struct TriangleRun<'v, 'a> {
     pub(super) draw: &'v Draw<'a>,
     /// Index into the view's instances.
     pub(super) item: usize,
@@ -23,7 +23,7 @@ pub(super) struct Piece<'v, 'a> {
 
 /// Pieces that are set up together; a job's batch holds opaque triangles or layers, not both.
 pub(super) struct Job<'v, 'a> {
-    pub(super) pieces: Vec<Piece<'v, 'a>>,
+    pub(super) pieces: Vec<TriangleRun<'v, 'a>>,
     pub(super) layered: bool,
 }
 
@@ -34,7 +34,7 @@ pub(super) fn jobs<'v, 'a>(view: &'v PreparedView<'a>) -> Vec<Job<'v, 'a>> {
         for (item, instance) in view.instances.iter().enumerate() {
             for draw in if layered { &instance.layered } else { &instance.opaque } {
                 for range in &draw.ranges {
-                    jobs.push(&Piece { draw, item, range: range.clone() }, layered);
+                    jobs.push(&TriangleRun { draw, item, range: range.clone() }, layered);
                 }
             }
         }
@@ -52,8 +52,9 @@ pub(super) struct Jobs<'v, 'a> {
 
 impl<'v, 'a> Jobs<'v, 'a> {
     /// Appends triangles.
-    pub(super) fn push(&mut self, piece: &Piece<'v, 'a>, layered: bool) {
+    pub(super) fn push(&mut self, piece: &TriangleRun<'v, 'a>, layered: bool) {
         let mut start = piece.range.start;
+        // Append to the open job, or begin one.
         while start < piece.range.end {
             let job = match self.jobs.last_mut() {
                 Some(job) if job.layered == layered && self.size < TRIANGLES_A_JOB => job,
@@ -65,9 +66,11 @@ impl<'v, 'a> Jobs<'v, 'a> {
             };
             let end = piece.range.end.min(start + (TRIANGLES_A_JOB - self.size));
             self.size += end - start;
+
+            // Extend the last piece if the triangles follow it.
             match job.pieces.last_mut() {
                 Some(last) if std::ptr::eq(last.draw, piece.draw) && last.range.end == start => last.range.end = end,
-                _ => job.pieces.push(Piece { range: start..end, ..piece.clone() }),
+                _ => job.pieces.push(TriangleRun { range: start..end, ..piece.clone() }),
             }
             start = end;
         }

@@ -5,7 +5,7 @@
 //! In:   jobs in the scene's order. Out: the same triangles in jobs of about the same size.
 //! Cost: linear in runs of [`TRIANGLES_A_RUN`] triangles.
 
-use super::jobs::{Job, Jobs, Piece};
+use super::jobs::{Job, Jobs, TriangleRun};
 use crate::PreparedView;
 use vitral_math::{Aabb, DVec4};
 use vitral_scene::TRIANGLES_A_RUN;
@@ -29,22 +29,25 @@ pub(super) fn near_first<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>
 }
 
 /// The runs of opaque triangles: how far away each begins, and its part of a piece.
-fn runs<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>]) -> (Vec<f64>, Vec<Piece<'v, 'a>>) {
+fn runs<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>]) -> (Vec<f64>, Vec<TriangleRun<'v, 'a>>) {
     let (mut distances, mut pieces) = (Vec::new(), Vec::new());
     let mut item = None;
     let mut forward = DVec4::ZERO;
+    // Take the depth axis of each instance.
     for piece in jobs.iter().filter(|job| !job.layered).flat_map(|job| &job.pieces) {
         let instance = &view.session.world.instances[view.instances[piece.item].instance];
         if item.replace(piece.item) != Some(piece.item) {
             forward = -(view.view.view_from_world * instance.world_from_model).row(2);
         }
+
+        // Cut the piece into runs, each with its nearest distance.
         let bounds = &view.session.world.run_bounds[instance.mesh_index as usize];
         let mut start = piece.range.start;
         while start < piece.range.end {
             let run = start as usize / TRIANGLES_A_RUN;
             let end = piece.range.end.min(((run + 1) * TRIANGLES_A_RUN) as u32);
             distances.push(nearest(forward, &bounds[run]));
-            pieces.push(Piece { range: start..end, ..piece.clone() });
+            pieces.push(TriangleRun { range: start..end, ..piece.clone() });
             start = end;
         }
     }
@@ -69,6 +72,8 @@ fn by_distance(distances: &[f64]) -> Vec<usize> {
     for i in 1..starts.len() {
         starts[i] += starts[i - 1];
     }
+
+    // Deal the runs, slice by slice.
     let mut order = vec![0; distances.len()];
     for (number, &distance) in distances.iter().enumerate() {
         let next = &mut starts[slice(distance)];

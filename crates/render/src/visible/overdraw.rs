@@ -63,6 +63,7 @@ impl Pixels<'_> {
         let [left, top] = self.origin;
         let [columns, rows] = self.within_box(setup);
         let (mut stays, mut hidden) = (Vec::new(), Vec::new());
+        // Compare at each pixel that the facet covers.
         for row in rows {
             for column in columns.clone() {
                 let pixel = [left + column as u32, top + row as u32];
@@ -76,16 +77,17 @@ impl Pixels<'_> {
                 if is_nearer {
                     *held = Some(came);
                 }
+                // Report the outcome, in detail where somebody watches the pixel.
                 extend(if is_nearer { &mut stays } else { &mut hidden }, pixel);
                 if execution.observer.as_ref().is_some_and(|observer| observer.watches(pixel)) {
                     let ((depth, facet), stays) = (came, held.map_or(came.1, |(_, facet)| facet));
                     let (there, there_depth) = (was.map(|(_, facet)| facet), was.map(|(depth, _)| depth));
-                    execution.tell(|| Step::DepthTest { pixel, facet, depth, there, there_depth, stays });
+                    execution.report(|| Step::DepthTest { pixel, facet, depth, there, there_depth, stays });
                 }
             }
         }
         if !stays.is_empty() || !hidden.is_empty() {
-            execution.tell(|| Step::Drawn { facet: setup.facet, stays, hidden });
+            execution.report(|| Step::Drawn { facet: setup.facet, stays, hidden });
         }
     }
 

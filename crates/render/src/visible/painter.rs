@@ -38,7 +38,7 @@ use crate::stats::VisibilityCounters;
 use crate::trace::Step;
 use crate::trace::lists::{ListTest, ListVerdict as Verdict, ListedPolygon};
 use crate::{Execution, PreparedView};
-use compare::{Polygon, compare};
+use compare::{PainterPolygon, compare};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -85,12 +85,14 @@ impl VisibleSurface for Painter {
 
 impl PolygonAlgorithm for Painter {
     fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit> {
+        // Set up the facets and join them to polygons.
         let facets = Facets::without_tiles(view, execution)?;
         let wholes = Polygons::new(facets.all(), view);
         list.wholes = wholes.len() as u64;
         execution.budget.charged(wholes.bytes(), "the painter's list", || {
             let mut counters = VisibilityCounters::default();
             let raster = Raster::new(view.viewport, &view.pattern);
+            // Sort them and copy the list.
             sorted(&wholes, raster, execution, &mut counters, |sorting| {
                 for &number in &sorting.painted {
                     let polygon = &sorting.polygons[number as usize];
@@ -124,9 +126,11 @@ fn sorted<T>(
 /// What has become of a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
+    /// In the list, not painted.
     Waiting,
     /// It waits, and others wait for it to be painted first.
     Marked,
+    /// Painted.
     Painted,
     /// Its parts have taken its place.
     Split,
@@ -195,7 +199,8 @@ const SMALLEST_CELL: u32 = 8;
 const POLYGONS_A_CELL: usize = 12;
 /// Bytes of a polygon: itself, its corners, its place, its comparisons, its entries in the grid.
 const BYTES_A_POLYGON: u64 =
-    (size_of::<Polygon>() + 4 * 16 + size_of::<Farness>() + size_of::<Progress>() + 2 * size_of::<Entry>()) as u64;
+    (size_of::<PainterPolygon>() + 4 * 16 + size_of::<Farness>() + size_of::<Progress>() + 2 * size_of::<Entry>())
+        as u64;
 
 /// The sorting of one picture.
 struct Sorting<'f, 'c> {
@@ -204,7 +209,7 @@ struct Sorting<'f, 'c> {
     raster: Raster<'f>,
     execution: &'f Execution,
     counters: &'c mut VisibilityCounters,
-    polygons: Vec<Polygon>,
+    polygons: Vec<PainterPolygon>,
     states: Vec<State>,
     corners: Vec<[f64; 2]>,
     cuts: Vec<Cut>,
@@ -243,6 +248,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
         execution: &'f Execution,
         counters: &'c mut VisibilityCounters,
     ) -> Result<Self, Limit> {
+        // Choose the cells and charge for the lists.
         let cell = cell_size(&raster, wholes.len());
         let viewport = raster.viewport();
         let (columns, rows) = (viewport.width.div_ceil(cell), viewport.height.div_ceil(cell));
@@ -270,6 +276,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
             painted: Vec::new(),
             charged,
         };
+
+        // Enter all polygons.
         let mut outline = Vec::new();
         for whole in 0..wholes.len() {
             outline.clear();
@@ -291,16 +299,21 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// Adds a polygon, if it can have samples, and gives its number.
     fn add(&mut self, whole: u32, corners: &[[f64; 2]], cuts: Range<u32>) -> Option<u32> {
+        // Skip polygons without pixels.
         let pixels = self.raster.pixels(bounds(corners))?;
         let plane = self.wholes.get(whole as usize).plane();
+
+        // Store the corners and the polygon, and enter it in its cells.
         let first = self.corners.len() as u32;
         self.corners.extend_from_slice(corners);
         let own = first..self.corners.len() as u32;
-        let polygon = Polygon::new(plane, whole, corners, own, cuts, pixels.map(|p| p / self.cell as u16));
+        let polygon = PainterPolygon::new(plane, whole, corners, own, cuts, pixels.map(|p| p / self.cell as u16));
         let number = self.polygons.len() as u32;
         self.enter(number, polygon.far, polygon.cells);
         self.pending += 1;
         let [x0, y0, ..] = polygon.cells;
+
+        // Queue it by its farthest depth.
         self.waiting.push(Farness { far: polygon.far, facet: plane.facet, polygon: number });
         self.states.push(State::Waiting);
         self.polygons.push(polygon);
@@ -330,6 +343,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
         if cell * 2 > self.cell {
             return;
         }
+
+        // Empty all cells.
         let viewport = self.raster.viewport();
         self.cell = cell;
         self.columns = viewport.width.div_ceil(cell);
@@ -341,6 +356,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
         self.done.resize(cells, 0);
         self.versions.clear();
         self.versions.resize(cells, 0);
+
+        // Enter the waiting polygons anew.
         for number in 0..self.polygons.len() as u32 {
             if self.states[number as usize] == State::Waiting {
                 let around = bounds(self.polygons[number as usize].points(&self.corners));
@@ -368,10 +385,10 @@ impl<'f, 'c> Sorting<'f, 'c> {
     /// Finds the order.
     fn sort(&mut self) -> Result<(), Limit> {
         self.execution.budget.begin("polygons", self.polygons.len() as u64);
-        self.execution.tell(|| self.first_order());
+        self.execution.report(|| self.first_order());
         while let Some(place) = self.waiting.pop() {
             if self.states[place.polygon as usize] == State::Waiting {
-                self.execution.tell(|| Step::Turn { polygon: place.polygon, facet: place.facet });
+                self.execution.report(|| Step::Turn { polygon: place.polygon, facet: place.facet });
                 self.mark(place.polygon);
                 self.paint_marked()?;
                 self.refine();
@@ -396,7 +413,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
         }
     }
 
-    /// Takes what is done out of the cells' lists. Places in these lists are no longer valid then.
+    /// Removes finished polygons from the cells' lists, which invalidates positions in these lists.
     fn tidy(&mut self) {
         for cell in self.stale.drain(..) {
             let done = &mut self.done[cell as usize];
@@ -416,6 +433,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// Paints the marked polygons, and whatever has to come before them.
     fn paint_marked(&mut self) -> Result<(), Limit> {
+        // Work on the last marked polygon until nothing has to come before it.
         let mut steps = 0u32;
         while let Some(&top) = self.marked.last() {
             steps += 1;
@@ -425,17 +443,19 @@ impl<'f, 'c> Sorting<'f, 'c> {
             self.tidy();
             let Some((other, verdict)) = self.obstacle()? else {
                 self.finish(top.polygon, State::Painted);
-                self.execution.tell(|| Step::Painted { polygon: top.polygon, facet: self.facet(top.polygon) });
+                self.execution.report(|| Step::Painted { polygon: top.polygon, facet: self.facet(top.polygon) });
                 self.painted.push(top.polygon);
                 self.execution.budget.advance();
                 self.marked.pop();
                 continue;
             };
+
+            // Move the obstacle to the front, cut a cycle, or split.
             let solved = match (verdict, self.states[other as usize]) {
                 (Verdict::After, State::Marked) => self.cut_cycle(other),
                 (Verdict::After, _) => {
                     self.counters.reordered += 1;
-                    self.execution.tell(|| {
+                    self.execution.report(|| {
                         let [facet, before] = [other, top.polygon].map(|p| self.facet(p));
                         Step::Moved { polygon: other, facet, before_polygon: top.polygon, before }
                     });
@@ -454,6 +474,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// Goes on with the comparisons of the last marked polygon, until one says that it cannot be painted yet.
     fn obstacle(&mut self) -> Result<Option<(u32, Verdict)>, Limit> {
+        // Continue where the last comparison stopped.
         let Some(top) = self.marked.last_mut() else { return Ok(None) };
         let (polygon, at) = (top.polygon, &mut top.progress);
         let p = &self.polygons[polygon as usize];
@@ -476,7 +497,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
                             compare(p, q, self.wholes, &self.corners, self.counters)
                         }
                     };
-                    self.execution.tell(|| {
+                    self.execution.report(|| {
                         let facet = |i: u32| self.wholes.get(self.polygons[i as usize].whole as usize).facet();
                         let (facet, with_facet) = (facet(polygon), facet(other));
                         Step::Compared { polygon, facet, with: other, with_facet, test, verdict }
@@ -515,6 +536,7 @@ impl<'f, 'c> Sorting<'f, 'c> {
 
     /// The painted polygons in order, as pieces of facets.
     fn list(&self) -> Pieces {
+        // Cut each polygon's triangles by its cuts.
         let mut list = Pieces::default();
         for &number in &self.painted {
             let polygon = &self.polygons[number as usize];
@@ -525,8 +547,10 @@ impl<'f, 'c> Sorting<'f, 'c> {
             });
             list.add_polygon(number, triangles, |_| cuts.iter().copied(), &self.raster);
         }
+
+        // Report the list in order.
         for (order, &number) in (0..).zip(&list.listed) {
-            self.execution.tell(|| {
+            self.execution.report(|| {
                 let polygon = &self.polygons[number as usize];
                 let outline = on_screen(polygon.points(&self.corners));
                 let cuts = polygon.cuts.len() as u32;

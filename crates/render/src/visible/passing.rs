@@ -25,6 +25,7 @@ pub(crate) fn resolve_in_passing(
     execution: &Execution,
     sink: &dyn TileSink,
 ) -> Result<(), Limit> {
+    // Draw one tile in spare memory and hand it on if something is in it.
     let spare: Mutex<Vec<Tile>> = Mutex::default();
     let tile = |index: usize, batches: &[(bool, &Batch)]| {
         with_spare(&spare, view.pattern.len(), |tile| {

@@ -38,7 +38,7 @@ pub struct Peel {
 pub struct PassLayer {
     /// Depth, 1 near.
     pub depth: f32,
-    /// The facet.
+    /// Id of the facet.
     pub facet: u32,
     /// All samples of the pixel that the facet covers in front of what is opaque, one bit each.
     pub covers: u32,

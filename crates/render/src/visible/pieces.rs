@@ -158,6 +158,7 @@ impl Pieces {
         cuts: impl ExactSizeIterator<Item = Cut>,
         raster: &Raster<'_>,
     ) -> bool {
+        // List the samples of small pieces, and cut the outline of others.
         let pixels = footprint.pixels;
         let (first, listed) = (self.cuts.len(), self.samples.len());
         let (found, samples) = match footprint.few {
@@ -165,6 +166,8 @@ impl Pieces {
             Some(covered) => (self.list_samples(setup, (pixels, covered), cuts, raster), listed as u32),
             None => (self.cut_outline(setup, cuts, raster), UNLISTED),
         };
+
+        // Drop a piece that keeps nothing.
         let Some(found) = found else {
             self.cuts.truncate(first);
             self.samples.truncate(listed);
@@ -174,6 +177,8 @@ impl Pieces {
         let pixels = if samples == UNLISTED { found } else { [pixels[0], pixels[1], found[2], found[3]] };
         let piece = self.pieces.len() as u32;
         self.pieces.push(Piece { setup: index, pixels, cuts: first as u32..self.cuts.len() as u32, samples });
+
+        // Enter the piece in the tiles it touches.
         let [tx0, ty0, tx1, ty1] = found.map(|p| u32::from(p) / TILE as u32);
         let tiles_x = raster.viewport.tiles_x();
         for ty in ty0..=ty1 {
@@ -191,12 +196,15 @@ impl Pieces {
         cuts: impl Iterator<Item = Cut>,
         raster: &Raster<'_>,
     ) -> Option<[u16; 4]> {
+        // List the covered samples.
         let listed = self.samples.len();
         self.samples.push(covered);
         self.samples.extend((1..raster.pattern.len()).map(|s| raster.covered(setup, pixels, s)));
         let lists = &mut self.samples[listed..];
         let mut any = lists.iter().fold(0, |any, list| any | list);
         let origin = [pixels[0], pixels[1]].map(usize::from);
+
+        // Drop the samples beyond each cut.
         for cut in cuts {
             if any == 0 {
                 return None;
@@ -207,6 +215,8 @@ impl Pieces {
                 any |= *list;
             }
         }
+
+        // Bound the pixels that keep a sample.
         let columns = (1..BLOCK).fold(any, |columns, row| columns | any >> (BLOCK * row)) as u8;
         (any != 0).then(|| {
             let x = [columns.trailing_zeros(), 7 - columns.leading_zeros()].map(|x| pixels[0] + x as u16);
@@ -218,6 +228,7 @@ impl Pieces {
     /// Clips a triangle's outline: first and last column and row of pixels that may have samples in what is left. Adds
     /// the cuts that matter.
     fn cut_outline(&mut self, setup: &Setup, cuts: impl Iterator<Item = Cut>, raster: &Raster<'_>) -> Option<[u16; 4]> {
+        // Clip the outline, skipping cuts that leave it whole.
         let mut around = around(setup);
         let [outline, scratch] = &mut self.outline;
         outline.clear();
@@ -322,6 +333,8 @@ fn keep(cut: &Cut, offset: [i32; 2], origin: [usize; 2], mut mask: u64) -> u64 {
             return if keeps[0] { mask } else { 0 };
         }
     }
+
+    // Test the remaining samples one by one.
     let mut left = mask;
     while left != 0 {
         let bit = left.trailing_zeros() as usize;

@@ -37,7 +37,7 @@ struct Polygon {
     corners: Range<u32>,
 }
 
-/// A convex polygon.
+/// A convex polygon of a list, by its number.
 #[derive(Clone, Copy)]
 pub(super) struct ConvexPolygon<'p, 'f> {
     plane: &'p Setup,
@@ -48,7 +48,7 @@ pub(super) struct ConvexPolygon<'p, 'f> {
 /// A polygon that is being joined.
 struct Growing<'f> {
     triangles: Vec<&'f Setup>,
-    outline: Outline<[i32; 2]>,
+    outline: JoinedOutline<[i32; 2]>,
 }
 
 impl<'f> Polygons<'f> {
@@ -115,7 +115,7 @@ impl<'f> Polygons<'f> {
             for setup in face.iter() {
                 let recent = growing.len().saturating_sub(RECENT);
                 if !growing[recent..].iter_mut().any(|polygon| polygon.join(setup)) {
-                    growing.push(Growing { triangles: vec![setup], outline: Outline::new(setup.corners()) });
+                    growing.push(Growing { triangles: vec![setup], outline: JoinedOutline::new(setup.corners()) });
                 }
             }
             growing.iter().for_each(|done| self.push(&done.triangles, &done.outline.corners));
@@ -207,7 +207,7 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
         self.outline
     }
 
-    /// Its triangles.
+    /// The set-up triangles that it was joined from.
     pub(super) fn triangles(self) -> &'p [&'f Setup] {
         self.triangles
     }
@@ -243,14 +243,14 @@ impl<'f> Growing<'f> {
 }
 
 /// The outline of a convex polygon that triangles are joined to.
-pub(super) struct Outline<C> {
+pub(super) struct JoinedOutline<C> {
     /// Its corners in order.
     pub(super) corners: Vec<C>,
     /// The corner that was added last: in a fan or a strip, the next triangle has an edge beside it.
     tip: usize,
 }
 
-impl<C: Copy + PartialEq> Outline<C> {
+impl<C: Copy + PartialEq> JoinedOutline<C> {
     /// That of a triangle.
     pub(super) fn new(triangle: [C; 3]) -> Self {
         Self { corners: triangle.to_vec(), tip: 0 }

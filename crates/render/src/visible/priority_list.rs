@@ -71,13 +71,17 @@ pub(super) fn draw_list<const FRONT_FIRST: bool>(
         }
         Ok(())
     };
+
+    // Let the list order the layers as well.
     let collect = |facets: &Facets<'_, '_>, index: usize, tile: &Tile, layers: &mut LayerList| {
         draw_layers::<FRONT_FIRST>(facets, list, index, tile, layers);
     };
+
+    // Draw all tiles, then report what the depth test overruled.
     let drawn = fill_with(facets, marks, grid, sink, 1, &fill, Some(&collect));
     let mut steps = overruled.into_inner().expect("no thread panics while it keeps a step");
     steps.sort_unstable_by_key(|(index, _)| *index);
-    steps.into_iter().for_each(|(_, step)| facets.execution().tell(|| step));
+    steps.into_iter().for_each(|(_, step)| facets.execution().report(|| step));
     drawn
 }
 
@@ -127,11 +131,14 @@ fn each_sample(
 ) {
     let setup = list.setups[piece.setup as usize];
     let cuts = &run.cuts[piece.cuts.start as usize..piece.cuts.end as usize];
+
+    // Visit the pixels of the piece in the tile.
     let [x0, y0, x1, y1] = piece.pixels.map(u32::from);
     let tile = TILE as u32;
     for y in y0.max(place.1)..(y1 + 1).min(place.1 + tile) {
         for x in x0.max(place.0)..(x1 + 1).min(place.0 + tile) {
             for s in 0..pattern.len() {
+                // Test the outline and the cuts, or look the sample up.
                 let has = if piece.samples == UNLISTED {
                     let offset = pattern.position(s);
                     let [px, py] = [x as i32 * SUBPIXEL + offset[0], y as i32 * SUBPIXEL + offset[1]];
@@ -206,6 +213,8 @@ fn draw_piece<'a, S: Simd, K: RowSink<S>>(
     sink: &mut PieceSink<'a, InBlocks<'_, K>>,
 ) {
     let setup = list.setups[piece.setup as usize];
+
+    // Draw a piece whose samples are listed from its list, and one without cuts as its triangle.
     let (place, pattern) = (sink.place, sink.pattern);
     if piece.samples != UNLISTED {
         let samples = &run.samples[piece.samples as usize..][..pattern.len()];
@@ -216,6 +225,8 @@ fn draw_piece<'a, S: Simd, K: RowSink<S>>(
         traverse_by_rows(simd, setup, place, pattern, sink.inner.0);
         return;
     }
+
+    // Restrict the triangle to the piece's pixels and test its cuts.
     let [x0, y0, x1, y1] = piece.pixels.map(i32::from);
     let inside = |first: i32, last: i32, start: u32| {
         let pixel = |v: i32| (v - start as i32).clamp(0, TILE as i32) as usize;
@@ -234,13 +245,16 @@ fn draw_samples<S: Simd, K: BlockSink<S>>(
     samples: &[u64],
     sink: &mut PieceSink<'_, K>,
 ) {
+    // Move the piece's box into the tile.
     let [left, top] = [sink.place.0, sink.place.1].map(|v| v as i32);
     let [x0, y0, x1, y1] = pixels.map(i32::from);
     let ([x0, x1], [y0, y1]) = ([x0 - left, x1 - left], [y0 - top, y1 - top]);
     let (side, last) = (BLOCK as i32, TILE as i32 - 1);
+
+    // Shift the listed samples to each block.
     for by in ((y0.max(0) & -side)..=y1.min(last)).step_by(BLOCK) {
         for bx in ((x0.max(0) & -side)..=x1.min(last)).step_by(BLOCK) {
-            let mut masks = [0; SamplePattern::MOST];
+            let mut masks = [0; SamplePattern::MAX];
             let masks = &mut masks[..samples.len()];
             let mut any = 0;
             for (mask, &list) in masks.iter_mut().zip(samples) {
@@ -274,7 +288,7 @@ impl<S: Simd, K: BlockSink<S>> BlockSink<S> for PieceSink<'_, K> {
     #[inline(always)]
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
         let origin = [self.place.0 as usize + block.x, self.place.1 as usize + block.y];
-        let mut kept = [0; SamplePattern::MOST];
+        let mut kept = [0; SamplePattern::MAX];
         let kept = &mut kept[..masks.len()];
         kept.copy_from_slice(masks);
         if cut_masks(self.cuts, self.pattern, origin, kept) {

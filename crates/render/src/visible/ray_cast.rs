@@ -97,15 +97,21 @@ impl RayCasting<'_> {
         look: impl Fn(&Cast<'_, T>, &mut Tile, &mut LayerList) -> Result<VisibilityCounters, Limit> + Sync + Send,
     ) -> Result<Resolved, Limit> {
         let (view, execution) = (self.view, self.execution);
+
+        // Set up the facets on the screen.
         let mut resolved = Resolved::default();
         let on_screen = ScreenSetups::new(view, execution, &mut resolved.geometry)?;
         let cast = Cast::new(view, execution, structure, on_screen);
+
+        // Check the work that testing all facets would take.
         let setups = cast.on_screen.setups.len() as u64;
         let pixels = u64::from(view.viewport.width) * u64::from(view.viewport.height);
         let all = (pixels * view.pattern.len() as u64).saturating_mul(setups);
         if view.acceleration.asks_all {
             execution.budget.check_work(all, "ray casting without a structure")?;
         }
+
+        // Report the structure, then cast the rays of each tile.
         resolved.geometry_seconds = execution.budget.elapsed() - self.start;
         if let (Some(observer), Some(step)) = (&execution.observer, structure.step()) {
             observer.step(&step);

@@ -50,6 +50,7 @@ impl<'a> RoundTiles<'a> {
 
     /// Draws a round's triangles into a tile; after the last round draws the marks and hands the tile on.
     pub(super) fn draw(&self, round: &Round, index: usize, tile: &mut Tile) {
+        // Empty the tile before the first round.
         if round.is_first {
             tile.clear();
         }

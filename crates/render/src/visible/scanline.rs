@@ -37,7 +37,7 @@ use crate::marks::Marks;
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
 use crate::{Coherence, Execution, PreparedView};
-use edges::{ActiveEdge, ActiveEdges, Edge, Polygon, edge_table, lines, polygon_table, spacing};
+use edges::{ActiveEdge, ActiveEdges, EdgeEntry, PolygonEntry, edge_table, lines, polygon_table, spacing};
 use spans::Spans;
 use vitral_exec::Limit;
 use vitral_raster::{TILE, Tile, TileGrid};
@@ -70,8 +70,9 @@ impl VisibleSurface for ScanLine {
 
 /// Entries of the tables for a polygon that is one triangle; the more triangles a polygon has, the fewer there are for each.
 const BYTES_A_TRIANGLE: u64 = Polygons::BYTES_A_TRIANGLE
-    + (size_of::<Polygon<'_>>() + 2 * (size_of::<Edge>() + size_of::<Option<ActiveEdge>>()) + size_of::<ActiveEdge>())
-        as u64;
+    + (size_of::<PolygonEntry<'_>>()
+        + 2 * (size_of::<EdgeEntry>() + size_of::<Option<ActiveEdge>>())
+        + size_of::<ActiveEdge>()) as u64;
 
 /// Sweeps one row of tiles.
 fn sweep(
@@ -104,7 +105,7 @@ fn sweep(
         if let Some(spans_of_line) = spans.reported.take() {
             let (row, sample) = ((row * TILE + line.row) as u32, line.sample as u32);
             let active_edges = report::crossings(active.sorted(), spans.polygons);
-            execution.tell(|| Step::Line { row, sample, active_edges, spans: spans_of_line });
+            execution.report(|| Step::Line { row, sample, active_edges, spans: spans_of_line });
         }
     }
     spans.finish();

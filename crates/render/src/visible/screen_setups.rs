@@ -31,6 +31,7 @@ impl ScreenSetups {
         execution: &Execution,
         stats: &mut GeometryStats,
     ) -> Result<Self, Limit> {
+        // Transform and set up the whole view in one round.
         execution.budget.check("geometry")?;
         let mut front_end = FrontEnd::new(view, execution);
         let round = front_end.whole();
@@ -38,6 +39,8 @@ impl ScreenSetups {
         execution.budget.check("geometry")?;
         let batches = front_end.set_up(round, DrawOrder::Scene, TileLists::Unwanted);
         *stats = front_end.stats;
+
+        // Join the batches, opaque ones first.
         let mut all = Self::default();
         for (layered, batch) in &batches {
             all.setups.extend_from_slice(batch.setups());

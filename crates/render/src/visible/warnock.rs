@@ -35,7 +35,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use vitral_exec::{Charge, Limit};
 use vitral_raster::{SUBPIXEL, SamplePattern, TILE, TILE_PIXELS, Tile, TileGrid};
-use window::{Relation, Window};
+use window::{Window, WindowRelation};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -50,10 +50,13 @@ impl VisibleSurface for Warnock {
         execution: &Execution,
         sink: &dyn TileSink,
     ) -> Result<Resolved, Limit> {
+        // Set up the facets and join them to polygons.
         let mut resolved = Resolved::default();
         let facets = Facets::new(view, execution, &mut resolved)?;
         let polygons = Polygons::new(facets.opaque(), view);
         let bytes = polygons.bytes() + (polygons.len() * BYTES_A_POLYGON) as u64;
+
+        // Divide the picture down to tiles, then finish each tile on a thread.
         resolved.counters = execution.budget.charged(bytes, STAGE, || {
             let lists = Charge::new(&execution.budget, STAGE);
             let Divided { tiles, mut counters } = Divided::new(&facets, &polygons, &lists)?;
@@ -99,13 +102,14 @@ struct Divided {
 impl Divided {
     /// Looks at the windows of several tiles, from the whole picture down. What the lists take is charged to `memory`.
     fn new(facets: &Facets<'_, '_>, polygons: &Polygons<'_>, memory: &Charge<'_>) -> Result<Self, Limit> {
+        // Begin with the whole picture and all polygons.
         let view = facets.view();
         // Of the facets of a single tile no list of a larger window can be told.
         let observer = facets.execution().observer.clone().filter(|_| view.makes_all_tiles());
         let execution = &Execution { observer, ..facets.execution().clone() };
         let tiles = (0..view.viewport.tiles_x() * view.viewport.tiles_y()).map(|_| None).collect();
         let mut divided = Self { tiles, counters: VisibilityCounters::default() };
-        let all = (0..polygons.len() as u32).map(|polygon| Entry { polygon, relation: Relation::Intersecting });
+        let all = (0..polygons.len() as u32).map(|polygon| Entry { polygon, relation: WindowRelation::Intersecting });
         let whole = Window::whole(view.viewport.width, view.viewport.height);
         let mut level: Vec<(Window, Arc<[Entry]>)> = vec![(whole, all.collect())];
         while !level.is_empty() {
@@ -125,6 +129,8 @@ impl Divided {
                 (lists.own(start), lists.counters)
             });
             level = Vec::new();
+
+            // Draw windows with one polygon, and queue the parts of the others.
             for ((window, _), (own, counted)) in several.into_iter().zip(looked_at) {
                 divided.counters.add(&counted);
                 match own[..] {
@@ -276,7 +282,7 @@ fn place(tile: &Tile, [column, row]: [u32; 2], s: usize) -> usize {
 /// The facet of a polygon at a sample, if it covers it, as a surrounder does.
 fn facet_at(polygon: ConvexPolygon<'_, '_>, entry: Entry, [x, y]: [i32; 2]) -> Option<u32> {
     match entry.relation {
-        Relation::Surrounding => Some(polygon.facet_within(x, y)),
+        WindowRelation::Surrounding => Some(polygon.facet_within(x, y)),
         _ => polygon.facet_at(x, y),
     }
 }

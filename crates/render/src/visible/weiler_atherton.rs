@@ -37,8 +37,8 @@ use crate::stats::VisibilityCounters;
 use crate::{Execution, PreparedView};
 use buckets::Buckets;
 use fill::{Filling, VisiblePolygons};
-use polygon::{Polygon, Relation, line_of_gap, relation};
-use region::{Clipped, Convex, Outline, Region, Workspace};
+use polygon::{AreaPolygon, DepthRelation, line_of_gap, relation};
+use region::{Clipped, ConvexOutline, Region, RegionOutline, Workspace};
 use vitral_exec::{Charge, Limit};
 use vitral_raster::{SUBPIXEL, TileGrid, Viewport};
 
@@ -59,11 +59,13 @@ impl VisibleSurface for WeilerAtherton {
         sink: &dyn TileSink,
     ) -> Result<Resolved, Limit> {
         let mut resolved = Resolved::default();
+
+        // Set the facets up and join them to polygons.
         let facets = Facets::new(view, execution, &mut resolved)?;
         let (setups, opaque) = facets.listed();
         let polygons = Polygons::new(setups.into_iter().take(opaque), view);
         let held = Charge::new(&execution.budget, STAGE);
-        held.add(polygons.bytes() + (polygons.len() * size_of::<Polygon<'_>>()) as u64)?;
+        held.add(polygons.bytes() + (polygons.len() * size_of::<AreaPolygon<'_>>()) as u64)?;
 
         // Find the visible polygons.
         let sorted = in_first_order(&polygons);
@@ -98,7 +100,7 @@ impl PolygonAlgorithm for WeilerAtherton {
         let facets = Facets::without_tiles(view, execution)?;
         let polygons = Polygons::new(facets.all(), view);
         let held = Charge::new(&execution.budget, STAGE);
-        held.add(polygons.bytes() + (polygons.len() * size_of::<Polygon<'_>>()) as u64)?;
+        held.add(polygons.bytes() + (polygons.len() * size_of::<AreaPolygon<'_>>()) as u64)?;
         let sorted = in_first_order(&polygons);
         let sorting = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: true };
         let found = sorting.run(view.viewport)?;
@@ -113,14 +115,14 @@ impl PolygonAlgorithm for WeilerAtherton {
 }
 
 /// The polygons, the one with the nearest point first.
-fn in_first_order<'p>(polygons: &'p Polygons<'_>) -> Vec<Polygon<'p>> {
+fn in_first_order<'p>(polygons: &'p Polygons<'_>) -> Vec<AreaPolygon<'p>> {
     let mut order: Vec<_> = (0..polygons.len()).collect();
     let plane = |number: usize| polygons.get(number).plane();
     order.sort_by(|&a, &b| {
         let (a, b) = (plane(a), plane(b));
         b.z_max.total_cmp(&a.z_max).then(a.facet.cmp(&b.facet))
     });
-    order.into_iter().map(|number| Polygon::new(number as u32, polygons.get(number))).collect()
+    order.into_iter().map(|number| AreaPolygon::new(number as u32, polygons.get(number))).collect()
 }
 
 /// What of a polygon may be visible.
@@ -164,7 +166,7 @@ struct Inside {
 struct Found {
     visible: VisiblePolygons,
     /// The same as outlines, if these are wanted, each with the number of its polygon among the view's.
-    outlines: Vec<(u32, Vec<Outline>)>,
+    outlines: Vec<(u32, Vec<RegionOutline>)>,
     counters: VisibilityCounters,
 }
 
@@ -185,7 +187,7 @@ struct Worker {
 struct AreaSorting<'s> {
     execution: &'s Execution,
     /// In the first order.
-    polygons: &'s [Polygon<'s>],
+    polygons: &'s [AreaPolygon<'s>],
     held: &'s Charge<'s>,
     /// Whether outlines are wanted and not what samples are filled by.
     keeps_outlines: bool,
@@ -227,7 +229,7 @@ impl AreaSorting<'_> {
 
     /// The list of all polygons in a picture of this size, 1/256 pixel.
     fn whole(&self, [width, height]: [i32; 2]) -> Result<List, Limit> {
-        let picture = Convex::polygon(&[[0, 0], [width, 0], [width, height], [0, height]]);
+        let picture = ConvexOutline::polygon(&[[0, 0], [width, 0], [width, height], [0, height]]);
         let mut work = Workspace::default();
         let mut list = List::default();
         for (place, polygon) in (0..).zip(self.polygons) {
@@ -245,6 +247,7 @@ impl AreaSorting<'_> {
 
     /// Treats a list, and the inside lists that come of it, in the plain order.
     fn treat(&self, list: List, worker: &mut Worker) -> Result<(), Limit> {
+        // Work through inside lists depth first.
         let (mut charged, shown) = (list.bytes(), worker.found.bytes());
         let mut counted = worker.pairs;
         let mut frames = vec![Frame::new(list)];
@@ -259,6 +262,7 @@ impl AreaSorting<'_> {
                     frames.pop();
                 }
             }
+            // Account for memory from time to time.
             if worker.pairs.wrapping_sub(counted) > PAIRS_A_COUNT {
                 counted = worker.pairs;
                 let bytes = frames.iter().map(|frame| frame.list.bytes()).sum();
@@ -298,9 +302,10 @@ impl AreaSorting<'_> {
         }
         worker.near = near;
 
+        // Report the clip and count recursions.
         let again = inside.iter().any(|item| !item.clipped_with);
         worker.found.counters.recursions += u64::from(again);
-        let clip = report.tell(self, front, &frame.list, &inside);
+        let clip = report.emit(self, front, &frame.list, &inside);
         if frame.list.clip.is_none() {
             self.execution.budget.advance();
         }
@@ -308,11 +313,14 @@ impl AreaSorting<'_> {
     }
 
     /// Clips an item by another polygon: leaves the outside, and gives what is inside.
-    fn clip(&self, item: &mut Item, front: &Polygon<'_>, worker: &mut Worker) -> Result<Option<Inside>, Limit> {
+    fn clip(&self, item: &mut Item, front: &AreaPolygon<'_>, worker: &mut Worker) -> Result<Option<Inside>, Limit> {
+        // Check the budget from time to time.
         worker.pairs = worker.pairs.wrapping_add(1);
         if worker.pairs.is_multiple_of(PAIRS_A_CHECK) {
             self.execution.budget.check(STAGE)?;
         }
+
+        // Clip the region.
         let back = &self.polygons[item.polygon as usize];
         let counters = &mut worker.found.counters;
         let part = match item.region.clip(&front.shape, &back.shape, &mut worker.work) {
@@ -323,19 +331,23 @@ impl AreaSorting<'_> {
                 inside
             }
         };
+
+        // Compare depths in the inside.
         counters.depth_comparisons += 1;
         let keep = |region, is_reduced| Item { region, is_reduced, ..*item };
         let margin = match relation(front, back, &part) {
-            Relation::Hidden => return Ok(Some(Inside { kept: None, hidden: Some(part) })),
-            Relation::Visible => return Ok(Some(Inside { kept: Some(keep(part, item.is_reduced)), hidden: None })),
-            Relation::Partly { margin } => margin,
+            DepthRelation::Hidden => return Ok(Some(Inside { kept: None, hidden: Some(part) })),
+            DepthRelation::Visible => {
+                return Ok(Some(Inside { kept: Some(keep(part, item.is_reduced)), hidden: None }));
+            }
+            DepthRelation::Partly { margin } => margin,
         };
 
         // Cut where the planes meet.
         if let Some(line) = line_of_gap(front, back, margin, part.bounds()) {
             let mut rest = part.clone();
-            if let Clipped::Both(behind) = rest.clip(&Convex::half_plane(line), &back.shape, &mut worker.work)
-                && relation(front, back, &behind) == Relation::Hidden
+            if let Clipped::Both(behind) = rest.clip(&ConvexOutline::half_plane(line), &back.shape, &mut worker.work)
+                && relation(front, back, &behind) == DepthRelation::Hidden
             {
                 counters.splits += 1;
                 return Ok(Some(Inside { kept: Some(keep(rest, true)), hidden: Some(behind) }));
@@ -347,7 +359,7 @@ impl AreaSorting<'_> {
     /// Adds a visible polygon.
     fn show(&self, item: &Item, clip: Option<u32>, found: &mut Found) {
         let polygon = &self.polygons[item.polygon as usize];
-        self.execution.tell(|| report::visible(polygon, item, clip));
+        self.execution.report(|| report::visible(polygon, item, clip));
         if self.keeps_outlines {
             found.outlines.push((polygon.number, item.region.outlines()));
         } else {

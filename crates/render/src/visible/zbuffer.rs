@@ -38,6 +38,7 @@ impl VisibleSurface for ZBuffer {
         execution: &Execution,
         sink: &dyn TileSink,
     ) -> Result<Resolved, Limit> {
+        // Cut the view into rounds.
         let mut resolved = Resolved::default();
         let mut front_end = FrontEnd::new(view, execution);
         let mut tiles = RoundTiles::new(view, marks, execution, sink, grid.tiles.len());

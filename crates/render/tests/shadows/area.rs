@@ -86,8 +86,13 @@ fn the_part_of_a_light_below_the_horizon_casts_no_shadow() {
     let mut scene = Scene::default();
     let wall = solids::cuboid(dvec3(0.25, 2.0, 4.0));
     add(&mut scene, wall, matt(), dvec3(-0.125, 1.0, 0.0));
-    let place =
-        Place { position: dvec3(0.0, 1.0, 0.0), normal: DVec3::X, facet: u32::MAX, seed: 3, pixel: Some([0.5; 2]) };
+    let place = SurfacePoint {
+        position: dvec3(0.0, 1.0, 0.0),
+        normal: DVec3::X,
+        facet: u32::MAX,
+        seed: 3,
+        pixel: Some([0.5; 2]),
+    };
     for algorithm in names() {
         with_shadows(
             &scene,
@@ -195,7 +200,7 @@ fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> [f64; 2] {
     };
     with_shadows(&scene, &[light(LightKind::Area { shape })], &settings, |arriving| {
         let at = |x: f64| {
-            let parts = (0..32).map(|seed| arriving(Place { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
+            let parts = (0..32).map(|seed| arriving(SurfacePoint { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
             f64::from(parts.sum::<f32>()) / 32.0
         };
         assert_eq!((at(-1.0), at(1.0)), (0.0, 1.0), "umbra and full light");

@@ -109,7 +109,7 @@ fn f23_cascades_make_near_shadows_of_a_vast_scene_sharp() {
 }
 
 /// Asks the first of the lights, at places as the view sees them.
-fn ask_view(scene: &Scene, camera: &Camera, light: &Light, settings: &Settings, places: &[Place]) -> Vec<f32> {
+fn ask_view(scene: &Scene, camera: &Camera, light: &Light, settings: &Settings, places: &[SurfacePoint]) -> Vec<f32> {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let execution = Execution::default();
     let viewport = Viewport::new(settings.picture.width, settings.picture.height).unwrap();
@@ -119,18 +119,18 @@ fn ask_view(scene: &Scene, camera: &Camera, light: &Light, settings: &Settings, 
     let algorithm = registry::shadows(settings.shadows.algorithm).unwrap();
     let ready = algorithm.prepare_for(&view, std::slice::from_ref(light), settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
-    let places: Places = places.iter().map(|p| Place { position: p.position - center, ..*p }).collect();
-    let mut parts = Parts::new(places.len(), [f32::NAN; 3]);
-    ready.arriving(0, &places, &mut parts, &mut 0);
+    let places: SurfacePoints = places.iter().map(|p| SurfacePoint { position: p.position - center, ..*p }).collect();
+    let mut parts = LightVisibility::new(places.len(), [f32::NAN; 3]);
+    ready.light_visibility(0, &places, &mut parts, &mut 0);
     (0..places.len()).map(|place| parts.get(place)[0]).collect()
 }
 
 /// Places along the ground in front of the viewer, and far behind.
-fn ground(count: u32, side: f64) -> Vec<Place> {
+fn ground(count: u32, side: f64) -> Vec<SurfacePoint> {
     let at = |i: u32| {
         let away = 0.05 * vitral_math::func::pow(1e5, f64::from(i) / f64::from(count));
         let position = dvec3(1.4, 0.0, 2.6) + dvec3(-0.41 + side, 0.0, -0.9) * away;
-        Place { position, normal: DVec3::Y, facet: 0, seed: 0, pixel: Some([0.0; 2]) }
+        SurfacePoint { position, normal: DVec3::Y, facet: 0, seed: 0, pixel: Some([0.0; 2]) }
     };
     (0..count).map(at).filter(|p| p.position.abs().max_element() < 1000.0).collect()
 }
@@ -167,10 +167,10 @@ fn between_cascades_is_no_gap_and_no_acne() {
 fn shadows_of_cascades_stand_still_while_the_viewer_moves() {
     let (scene, light) = (plain(), sun(SUN));
     // Round the table and its shadow.
-    let places: Vec<Place> = (0..10_000)
+    let places: Vec<SurfacePoint> = (0..10_000)
         .map(|i| {
             let position = dvec3(f64::from(i % 100) * 0.0171 - 1.2, 0.0, f64::from(i / 100) * 0.0173 - 0.8);
-            Place { position, normal: DVec3::Y, facet: 0, seed: 0, pixel: Some([0.0; 2]) }
+            SurfacePoint { position, normal: DVec3::Y, facet: 0, seed: 0, pixel: Some([0.0; 2]) }
         })
         .collect();
     let lit = |camera: &Camera, count: u32| ask_view(&scene, camera, &light, &with_cascades(count), &places);

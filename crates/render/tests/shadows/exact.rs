@@ -41,16 +41,16 @@ fn f22_lit_polygons_agree_with_rays() {
 const EXACT: [&str; 3] = ["volume", "scan-line", "object-precision"];
 
 /// What an algorithm says about places, all asked at once, as seen by a viewer.
-fn ask_all(scene: &Scene, light: &Light, settings: &Settings, viewer: DVec3, places: &[Place]) -> Vec<f32> {
+fn ask_all(scene: &Scene, light: &Light, settings: &Settings, viewer: DVec3, places: &[SurfacePoint]) -> Vec<f32> {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let algorithm = registry::shadows(settings.shadows.algorithm).unwrap();
     let lights = std::slice::from_ref(light);
     let execution = Execution::default();
     let ready = algorithm.prepare(&session, lights, viewer.extend(1.0), settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
-    let moved: Places = places.iter().map(|p| Place { position: p.position - center, ..*p }).collect();
-    let mut parts = Parts::new(places.len(), [f32::NAN; 3]);
-    ready.arriving(0, &moved, &mut parts, &mut 0);
+    let moved: SurfacePoints = places.iter().map(|p| SurfacePoint { position: p.position - center, ..*p }).collect();
+    let mut parts = LightVisibility::new(places.len(), [f32::NAN; 3]);
+    ready.light_visibility(0, &moved, &mut parts, &mut 0);
     (0..places.len()).map(|place| parts.get(place)[0]).collect()
 }
 

@@ -61,7 +61,7 @@ fn maps_show_no_acne() {
                 if normal.dot(dvec3(1.0, 2.0, -0.5).normalize()) > 0.0 {
                     let position = (a + b + c) / 3.0;
                     assert_eq!(
-                        arriving(Place { position, normal, facet, seed: 0, pixel: Some([0.5; 2]) }),
+                        arriving(SurfacePoint { position, normal, facet, seed: 0, pixel: Some([0.5; 2]) }),
                         1.0,
                         "facet {facet}"
                     );
@@ -136,7 +136,7 @@ fn maps_differ_from_rays_only_near_edges_of_shadows() {
         let diagonal = Session::new(Arc::new(scene.clone())).unwrap().world().bounds.diagonal();
         let texel = diagonal / f64::from(size - 8);
         let places = places_on(&scene);
-        let ask = |algorithm: &str, places: &[Place]| -> Vec<bool> {
+        let ask = |algorithm: &str, places: &[SurfacePoint]| -> Vec<bool> {
             let settings = Settings {
                 shadows: ShadowSettings { map_size: size, ..settings(algorithm).shadows },
                 ..settings(algorithm)
@@ -153,7 +153,7 @@ fn maps_differ_from_rays_only_near_edges_of_shadows() {
             (0..48).map(move |k| {
                 let (sin, cos) = vitral_math::func::sin_cos(f64::from(k / 3) * std::f64::consts::FRAC_PI_8);
                 let step = texel * 0.5 * f64::from(k % 3 + 1);
-                Place { position: place.position + slant((x * cos + y * sin) * step), ..place }
+                SurfacePoint { position: place.position + slant((x * cos + y * sin) * step), ..place }
             })
         });
         let near = ask("ray", &around.collect::<Vec<_>>());

@@ -12,7 +12,7 @@ use vitral_light::{AlphaMode, AreaShape, Light, LightKind, Material, Rgb};
 use vitral_math::lanes::available_levels;
 use vitral_math::{DMat4, DVec3, DVec4, dvec3};
 use vitral_render::raytrace::triangles::Triangles;
-use vitral_render::shadow::{self, Drawn, Parts, Place, Places};
+use vitral_render::shadow::{self, Drawn, LightVisibility, SurfacePoint, SurfacePoints};
 use vitral_render::{
     Channels, Execution, PictureSettings, Session, Settings, Shading, ShadowSettings, Shadows, Shot,
     TransparencySettings, VolumeCounting, registry, render,
@@ -49,7 +49,7 @@ fn with_shadows<R>(
     scene: &Scene,
     lights: &[Light],
     settings: &Settings,
-    ask: impl FnOnce(&dyn Fn(Place) -> f32) -> R,
+    ask: impl FnOnce(&dyn Fn(SurfacePoint) -> f32) -> R,
 ) -> R {
     with_colored_shadows(scene, lights, settings, |arriving| ask(&|place| arriving(place)[0]))
 }
@@ -59,18 +59,20 @@ fn with_colored_shadows<R>(
     scene: &Scene,
     lights: &[Light],
     settings: &Settings,
-    ask: impl FnOnce(&dyn Fn(Place) -> Rgb) -> R,
+    ask: impl FnOnce(&dyn Fn(SurfacePoint) -> Rgb) -> R,
 ) -> R {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let algorithm = registry::shadows(settings.shadows.algorithm).unwrap();
     let execution = Execution::default();
-    let ready: Box<dyn shadow::Shadows> = algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
+    let ready: Box<dyn shadow::PreparedShadows> =
+        algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
     ask(&|place| {
         let facet = if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };
-        let places: Places = [Place { position: place.position - center, facet, ..place }].into_iter().collect();
-        let mut parts = Parts::new(1, [f32::NAN; 3]);
-        ready.arriving(0, &places, &mut parts, &mut 0);
+        let places: SurfacePoints =
+            [SurfacePoint { position: place.position - center, facet, ..place }].into_iter().collect();
+        let mut parts = LightVisibility::new(1, [f32::NAN; 3]);
+        ready.light_visibility(0, &places, &mut parts, &mut 0);
         parts.get(0)
     })
 }
@@ -94,8 +96,8 @@ fn facet_at(session: &Session, position: DVec3) -> u32 {
 }
 
 /// A place in the world, on whatever facet is there.
-fn place(position: DVec3, normal: DVec3) -> Place {
-    Place { position, normal, facet: u32::MAX, seed: 1, pixel: Some([0.5; 2]) }
+fn place(position: DVec3, normal: DVec3) -> SurfacePoint {
+    SurfacePoint { position, normal, facet: u32::MAX, seed: 1, pixel: Some([0.5; 2]) }
 }
 
 fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, at: DVec3) {
@@ -167,7 +169,8 @@ fn nothing_shades_itself() {
                     if normal.dot((far - p).normalize()) < 0.02 {
                         continue;
                     }
-                    let part = arriving(Place { position: p + center, normal, facet, seed: 0, pixel: Some([0.5; 2]) });
+                    let part =
+                        arriving(SurfacePoint { position: p + center, normal, facet, seed: 0, pixel: Some([0.5; 2]) });
                     assert_eq!(part, 1.0, "facet {facet} at {p}");
                     lit += 1;
                 }
@@ -367,7 +370,7 @@ fn maps_of_a_scene_far_from_the_origin_are_those_of_one_near_it() {
             with_shadows(scene, std::slice::from_ref(light), &maps, |arriving| {
                 let places =
                     (0..2500).map(|i| dvec3(f64::from(i % 50) * 0.151 - 3.7, 0.0, f64::from(i / 50) * 0.149 - 3.7));
-                let part = |p: DVec3| arriving(Place { facet: 0, ..place(p + at, DVec3::Y) });
+                let part = |p: DVec3| arriving(SurfacePoint { facet: 0, ..place(p + at, DVec3::Y) });
                 places.map(part).collect::<Vec<_>>()
             })
         };
@@ -564,7 +567,7 @@ fn kept_changes_nothing(algorithm: &str) {
 }
 
 /// Places all over the facets of a scene, world space.
-fn places_on(scene: &Scene) -> Vec<Place> {
+fn places_on(scene: &Scene) -> Vec<SurfacePoint> {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let mut places = Vec::new();
     for instance in &session.world().instances {
@@ -579,7 +582,7 @@ fn places_on(scene: &Scene) -> Vec<Place> {
             for (i, k) in (0..side).flat_map(|i| (0..side - i).map(move |k| (i, k))) {
                 let [u, v] = [i, k].map(|n| (f64::from(n) + 1.0 / 3.0) / f64::from(side));
                 let position = a + (b - a) * u + (c - a) * v;
-                places.push(Place { position, normal, facet, seed: 0, pixel: Some([k, i].map(|n| n as f32)) });
+                places.push(SurfacePoint { position, normal, facet, seed: 0, pixel: Some([k, i].map(|n| n as f32)) });
             }
         }
     }

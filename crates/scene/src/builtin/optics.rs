@@ -162,6 +162,7 @@ pub(super) fn mirrors() -> Scene {
 /// The Cornell box: white walls, a red one on the left, a green one on the right, two blocks, a lamp in the ceiling.
 /// Lengths in metres; a wall's colours are those of the box's measured spectra, as red, green and blue.
 pub(super) fn cornell() -> Scene {
+    // Build the walls.
     let mut scene = Scene::default();
     let white = [0.725, 0.71, 0.68];
     let (low, high) = (DVec3::ZERO, dvec3(0.5528, 0.5488, 0.5592));
@@ -178,6 +179,8 @@ pub(super) fn cornell() -> Scene {
     wall("back", white, [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]);
     wall("left", [0.63, 0.065, 0.05], [[0, 0, 0], [0, 0, 1], [0, 1, 1], [0, 1, 0]]);
     wall("right", [0.14, 0.45, 0.091], [[1, 0, 1], [1, 0, 0], [1, 1, 0], [1, 1, 1]]);
+
+    // Add the lamp, a little below the ceiling, and the two blocks.
     let at = |x: f64, z: f64| dvec3(x, 0.5478, -z);
     let corners = [at(0.213, 0.332), at(0.343, 0.332), at(0.343, 0.227), at(0.213, 0.227)];
     let mut lamp = chalk("lamp", [0.0; 3]);
@@ -200,6 +203,8 @@ pub(super) fn cornell() -> Scene {
         ..Light::default()
     };
     scene.lights = vec![light];
+
+    // Place the camera in front of the open side.
     let (middle, projection) = (dvec3(0.278, 0.273, 0.8), Projection::Perspective { view_angle: 0.6863 });
     let camera =
         Camera { position: middle, focal_point: dvec3(0.278, 0.273, 0.0), view_up: DVec3::Y, projection, clip: None };

@@ -48,6 +48,7 @@ struct Grid {
 impl Grid {
     /// A grid for loops of a mesh; `None` where it would be of no size.
     fn new(mesh: &Mesh, instance: &Instance, plane: &SectionPlane, loops: &[BodyLoops]) -> Option<Self> {
+        // Measure the loops along two axes of the plane.
         let across = plane.normal.any_orthonormal_vector();
         let up = plane.normal.cross(across);
         let place = |v: u32| instance.world_from_model.transform_point3(mesh.position(v));

@@ -53,6 +53,7 @@ struct Clipper<'m> {
 
 /// The part of a mesh below a plane, and the sides of triangles in the plane.
 pub(super) fn clip(mesh: &Mesh, weld: &Weld, heights: &Heights) -> (Mesh, Vec<PlaneSide>) {
+    // Start with all positions; crossings are appended.
     let mut clipper = Clipper { mesh, weld, heights, positions: mesh.positions.clone(), made: HashMap::new() };
     let (mut pieces, mut parts, mut groups) = (Vec::new(), Vec::<Part>::new(), Vec::new());
     let (mut starts, mut outlines) = (vec![0], Vec::new());
@@ -107,6 +108,7 @@ pub(super) fn clip(mesh: &Mesh, weld: &Weld, heights: &Heights) -> (Mesh, Vec<Pl
         FreePart::extend(&mut point_parts, points.len() - 1..points.len(), material);
     }
 
+    // Collect the mesh, with attributes interpolated at the crossings.
     let clipped = Mesh {
         name: mesh.name.clone(),
         positions: clipper.positions,

@@ -99,7 +99,7 @@ mod tests {
         let mut triangles = vec![[0, 4, 3], [4, 1, 2], [4, 2, 3]];
         close_gaps(&[&[0, 1, 2, 3]], &mut triangles, thickness);
         assert_eq!(triangles[3..], [[4, 0, 1]]);
-        // Nothing is missing now.
+        // Nothing is missing.
         let closed = triangles.clone();
         close_gaps(&[&[0, 1, 2, 3]], &mut triangles, thickness);
         assert_eq!(triangles, closed);

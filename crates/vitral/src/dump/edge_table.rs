@@ -18,7 +18,7 @@ impl Observer for Tables {
     fn step(&self, step: &Step) {
         let (Step::EdgeTable { rows: [row, _], .. } | Step::Line { row, .. }) = step else { return };
         let place = [*row, u32::from(matches!(step, Step::Line { .. }))];
-        self.0.lock().expect("no thread panics while it keeps a step").push((place, tell(step)));
+        self.0.lock().expect("no thread panics while it keeps a step").push((place, describe(step)));
     }
 }
 
@@ -36,10 +36,11 @@ pub(super) fn edge_tables(renderer: &Renderer, camera: &Camera, viewport: Viewpo
 }
 
 /// A step in lines of text. Writing to a String cannot fail.
-fn tell(step: &Step) -> String {
+fn describe(step: &Step) -> String {
     let mut text = String::new();
     match step {
         Step::EdgeTable { rows: [first, end], polygons, buckets } => {
+            // Write the polygons, then the edges by the row in which they begin.
             let _ = writeln!(text, "rows {first} to {}", end - 1);
             let _ = writeln!(text, "  polygon table");
             for (number, p) in polygons.iter().enumerate() {
@@ -57,6 +58,7 @@ fn tell(step: &Step) -> String {
             }
         }
         Step::Line { row, active_edges, spans, .. } if !active_edges.is_empty() => {
+            // Write the active edges of the line and its spans.
             let _ = writeln!(text, "  row {row}");
             for e in active_edges {
                 let _ = writeln!(text, "    x {}: polygon {} edge {} (facet {})", e.x, e.polygon, e.edge, e.facet);

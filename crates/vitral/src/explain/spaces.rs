@@ -10,7 +10,7 @@ use vitral_scene::Camera;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct FacetSpaces {
-    /// The facet.
+    /// Id of the facet, counted over all instances.
     pub facet: u32,
     /// As the mesh has them.
     pub model: [[f64; 3]; 3],

@@ -4,7 +4,7 @@ use super::{Explanation, Gouraud, TracedRay};
 use std::fmt;
 use vitral_light::{Highlight, LightTerms};
 use vitral_render::shading::pixel_light::{CoefficientValues, Evaluation, PixelLight, PointLight, ShadowOfLight};
-use vitral_render::visible::fates::{Fate, Plane};
+use vitral_render::visible::fates::{ClipPlane, Fate};
 
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -50,7 +50,7 @@ impl fmt::Display for Explanation {
 
 /// What became of a facet, in words.
 fn fate(fate: &Fate) -> String {
-    let names = |planes: &[Plane]| planes.iter().map(|p| p.name()).collect::<Vec<_>>().join(" and ");
+    let names = |planes: &[ClipPlane]| planes.iter().map(|p| p.name()).collect::<Vec<_>>().join(" and ");
     let list = |numbers: &[u32]| numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
     match fate {
         Fate::NotDrawn => "not drawn, in a wireframe".to_owned(),

@@ -269,7 +269,7 @@ fn the_pixel_is_that_of_the_whole_picture_whatever_is_in_front_and_whoever_finds
 
 #[test]
 fn candidates_are_named_with_the_stage_that_took_them_away() {
-    use vitral::internals::render::visible::fates::{Fate, Plane};
+    use vitral::internals::render::visible::fates::{ClipPlane, Fate};
     let mut renderer = exact_builtin("cubs", 64, 48);
     let camera = renderer.frame_camera();
     let fates = |renderer: &Renderer, camera: &vitral::Camera| -> Vec<Fate> {
@@ -288,14 +288,14 @@ fn candidates_are_named_with_the_stage_that_took_them_away() {
     // A near plane behind everything, one through the middle, and a far plane before everything.
     let planes = |near: f64, far: f64| vitral::Camera { clip: Some((near, far)), ..camera };
     let distance = camera.position.distance(renderer.world().bounds.center());
-    let culled = |f: &Fate, plane: Plane| match f {
+    let culled = |f: &Fate, plane: ClipPlane| match f {
         Fate::OutsideFrustum { planes } | Fate::BoxCulled { planes } | Fate::ClippedAway { planes } => {
             planes.contains(&plane)
         }
         _ => false,
     };
     let beyond = fates(&renderer, &planes(distance * 2.0, distance * 3.0));
-    assert!(!beyond.is_empty() && beyond.iter().all(|f| culled(f, Plane::Near)), "{beyond:?}");
+    assert!(!beyond.is_empty() && beyond.iter().all(|f| culled(f, ClipPlane::Near)), "{beyond:?}");
     let before = fates(&renderer, &planes(distance * 0.01, distance * 0.02));
-    assert!(!before.is_empty() && before.iter().all(|f| culled(f, Plane::Far)), "{before:?}");
+    assert!(!before.is_empty() && before.iter().all(|f| culled(f, ClipPlane::Far)), "{before:?}");
 }

@@ -4,6 +4,7 @@
 
 mod bibliography;
 mod circles;
+mod comments;
 mod floors;
 mod functions;
 mod source;
@@ -38,6 +39,7 @@ pub(crate) fn run() -> Outcome {
         violations.extend(source::check(path, text));
         if path.ends_with(".rs") {
             violations.extend(functions::check(path, text, &entry_points));
+            violations.extend(comments::check(path, text));
         }
     }
 

@@ -1,9 +1,9 @@
-//! Rust source as a list of words: comments, strings and characters are left out.
+//! Rust source as a list of words, in which comments, strings and characters are left out, and as a list of comments.
 //!
 //! Enough of the language to find paths and macros, not to understand them: identifiers (numbers too) are one token,
 //! every other visible character is one token.
 
-/// A word of code and the line it stands on, counted from 1.
+/// A word of code, or a comment, and the line it starts on, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Token<'a> {
     pub(super) text: &'a str,
@@ -12,21 +12,36 @@ pub(super) struct Token<'a> {
 
 /// Splits `source` into words.
 pub(super) fn tokens(source: &str) -> Vec<Token<'_>> {
-    let mut found = Vec::new();
+    split(source).0
+}
+
+/// The comments of `source`, with their marks: one for each `//` line and one for each block.
+pub(super) fn comments(source: &str) -> Vec<Token<'_>> {
+    split(source).1
+}
+
+/// Splits `source` into words and comments.
+fn split(source: &str) -> (Vec<Token<'_>>, Vec<Token<'_>>) {
+    let (mut words, mut comments) = (Vec::new(), Vec::new());
     let (mut rest, mut line) = (source, 1);
     while let Some(first) = rest.chars().next() {
         let length = match blank(rest).or_else(|| quoted(rest)) {
-            Some(length) => length,
+            Some(length) => {
+                if rest.starts_with("//") || rest.starts_with("/*") {
+                    comments.push(Token { text: &rest[..length], line });
+                }
+                length
+            }
             None => {
                 let length = rest.find(|c: char| !is_word(c)).unwrap_or(rest.len()).max(first.len_utf8());
-                found.push(Token { text: &rest[..length], line });
+                words.push(Token { text: &rest[..length], line });
                 length
             }
         };
         line += rest[..length].matches('\n').count();
         rest = &rest[length..];
     }
-    found
+    (words, comments)
 }
 
 fn is_word(c: char) -> bool {

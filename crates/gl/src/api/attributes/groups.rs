@@ -102,11 +102,15 @@ impl Context {
         fn take<T>(wanted: bool, make: impl FnOnce() -> T) -> Option<T> {
             wanted.then(make)
         }
+
+        // Bring the material up to date before it is saved.
         self.track_color_material();
         let has = |bit| mask & bit != 0;
         let enable = take(has(gl::ENABLE_BIT), || self.save_enables());
         let texture = take(has(gl::TEXTURE_BIT), || self.save_texture_group());
         let color_buffer = take(has(gl::COLOR_BUFFER_BIT), || self.save_color_group());
+
+        // Copy the groups that the mask names.
         let s = &self.state;
         Groups {
             accum: take(has(gl::ACCUM_BUFFER_BIT), || s.color_buffer.accum_clear),

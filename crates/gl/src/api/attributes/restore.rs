@@ -21,6 +21,8 @@ impl Context {
         self.track_color_material();
         let materials = saved.lighting.is_some();
         let s = &mut self.state;
+
+        // Restore the groups that are stored as they are.
         if let Some(current) = saved.current {
             (s.current, s.raster_position) = *current;
         }
@@ -32,6 +34,8 @@ impl Context {
         put(saved.scissor, &mut s.scissor);
         put(saved.stencil, &mut s.stencil);
         put(saved.viewport, &mut s.viewport);
+
+        // Restore the groups that keep a part of the current state.
         if let Some((fog, color_sum)) = saved.fog {
             (s.fog, s.color_sum) = (fog, color_sum);
         }
@@ -43,6 +47,8 @@ impl Context {
             s.polygons = Polygons { stipple_pattern, ..polygons };
         }
         put(saved.stipple, &mut s.polygons.stipple_pattern);
+
+        // Restore the groups whose changes have consequences.
         saved.color_buffer.into_iter().for_each(|group| self.restore_color_group(group));
         saved.eval.into_iter().for_each(|group| self.restore_eval_group(&group));
         saved.pixel_mode.into_iter().for_each(|(transfer, mode)| self.restore_pixel_group(transfer, mode));
@@ -51,6 +57,8 @@ impl Context {
         saved.texture.into_iter().for_each(|group| self.restore_texture_group(*group));
         saved.point.into_iter().for_each(|group| self.restore_point_group(&group));
         saved.enable.into_iter().for_each(|group| self.restore_enables(&group));
+
+        // Recompute the material if lighting or the tracked colour may have changed.
         self.track_color_material();
         if materials || self.state.lighting.color_material.enabled {
             self.material_changed();

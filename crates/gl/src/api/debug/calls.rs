@@ -61,7 +61,7 @@ impl Context {
             && self.check_token(call, "severity", severity, &SEVERITIES, false)
             && let Some(text) = self.debug_text(call, buf, length, MAX_MESSAGE_LENGTH)
         {
-            self.tell(DebugMessage { source, kind: type_, id, severity, text });
+            self.emit(DebugMessage { source, kind: type_, id, severity, text });
         }
     }
 
@@ -85,6 +85,8 @@ impl Context {
         message_log: usize,
     ) -> u32 {
         let call = "glGetDebugMessageLog";
+
+        // Refuse calls inside Begin/End and negative sizes.
         if !self.may_set(call) {
             return 0;
         }
@@ -92,6 +94,8 @@ impl Context {
             self.refuse_value(call, "the buffer's size is negative");
             return 0;
         }
+
+        // Hand out messages until `count` are out or the text exceeds the buffer.
         let mut used = 0;
         let mut done = 0;
         while done < count {
@@ -101,12 +105,16 @@ impl Context {
                 break;
             }
             let Some(message) = self.debug.log.pop_front() else { break };
+
+            // Write the message's fields, each to its array.
             let fields = [message.source, message.kind, message.id, message.severity, length as u32];
             for (array, value) in [sources, types, ids, severities, lengths].into_iter().zip(fields) {
                 if array != 0 && !self.give_results(call, array.saturating_add(done as usize * 4), &[value]) {
                     return done;
                 }
             }
+
+            // Write its text with the final NUL.
             let text = [&message.text[..], &[0]].concat();
             if message_log != 0 && !self.give_results(call, message_log.saturating_add(used), &text) {
                 return done;

@@ -17,7 +17,7 @@ impl Context {
         }
         let severity = gl::DEBUG_SEVERITY_NOTIFICATION;
         let message = DebugMessage { source, kind: gl::DEBUG_TYPE_PUSH_GROUP, id, severity, text };
-        self.tell(message.clone());
+        self.emit(message.clone());
         let outside = self.debug.wanted.clone();
         self.debug.groups.push(Group { message, outside });
     }
@@ -32,7 +32,7 @@ impl Context {
             return self.record_error(gl::STACK_UNDERFLOW, call, "no debug group is open");
         };
         self.debug.wanted = outside;
-        self.tell(DebugMessage { kind: gl::DEBUG_TYPE_POP_GROUP, ..message });
+        self.emit(DebugMessage { kind: gl::DEBUG_TYPE_POP_GROUP, ..message });
     }
 }
 

@@ -115,7 +115,7 @@ impl Context {
             return;
         }
         let length = text.floor_char_boundary(MAX_MESSAGE_LENGTH - 1);
-        self.tell(DebugMessage {
+        self.emit(DebugMessage {
             source: gl::DEBUG_SOURCE_API,
             kind: gl::DEBUG_TYPE_ERROR,
             id: error,
@@ -125,7 +125,7 @@ impl Context {
     }
 
     /// Delivers a message.
-    fn tell(&mut self, message: DebugMessage) {
+    fn emit(&mut self, message: DebugMessage) {
         if !self.state.debug_output.0 || !self.debug.wanted.wants(&message) {
             return;
         }

@@ -5,7 +5,7 @@ use super::cache::{Key, Vertices};
 use super::fetch::{Reader, Refusal, Run, Store, store};
 use crate::memory::can_have;
 use crate::state::ArrayPointer;
-use crate::vertex::{Given, Sent, VertexBatch};
+use crate::vertex::{CurrentState, Submission, VertexBatch};
 use crate::vertices::attribute::{COLOR, EDGE, FOG, INDEX, NORMAL, SECONDARY, TEX};
 use crate::vertices::client;
 use crate::vertices::compile::{Item, drawing_nothing};
@@ -178,11 +178,13 @@ impl Context {
         None
     }
 
-    /// Draws, or compiles what the arrays hold now.
+    /// Draws what the arrays hold at the call, or compiles it.
     fn draw_vertices(&mut self, call: &'static str, mode: u32, vertices: Vertices) {
         if self.refused_draw(call) {
             return;
         }
+
+        // Check the mode and the number of vertices.
         if mode > enums::POLYGON {
             self.draw_error(enums::INVALID_ENUM, call, format!("mode {mode:#x} is not a primitive"));
             return;
@@ -200,6 +202,8 @@ impl Context {
             self.record_error(enums::OUT_OF_MEMORY, call, &format!("there is no memory for {count} vertices"));
             return;
         }
+
+        // Read the arrays, or find the batch of an earlier draw.
         let batch = match self.array_batch(mode, vertices) {
             Ok(batch) => batch,
             Err(why) => {
@@ -207,16 +211,18 @@ impl Context {
                 return;
             }
         };
+
+        // Compile the batch, draw it, or both.
         if self.lists.recording {
             self.compile(|compiler| compiler.batch(Arc::unwrap_or_clone(batch.clone())));
         }
-        if self.executes() && !self.gathers(&batch, Sent::Now) {
+        if self.executes() && !self.gathers(&batch, Submission::Now) {
             self.flush_vertices();
-            self.draw_batch(batch, Sent::Now, &Given::current(&self.state));
+            self.draw_batch(batch, Submission::Now, &CurrentState::current(&self.state));
         }
     }
 
-    /// Whether draws happen now, be they compiled or not.
+    /// Whether draws happen at the call, be they compiled or not.
     fn executes(&self) -> bool {
         !self.lists.recording || self.lists.mode == enums::COMPILE_AND_EXECUTE
     }
@@ -231,7 +237,7 @@ impl Context {
         });
     }
 
-    /// Whether an open Begin stands against a draw that happens now.
+    /// Whether an open Begin stands against a draw that happens at the call.
     fn refused_draw(&mut self, call: &'static str) -> bool {
         let refused = self.executes() && self.refused_inside_begin(call);
         if refused {
@@ -284,6 +290,7 @@ impl Context {
         let mut arrays = self.enabled_arrays();
         arrays.retain(|(which, _)| *which != INDEX && self.may_use(*which));
         let element_buffer = match vertices {
+            // Open the buffers.
             Vertices::Elements { buffer, .. } => Some(buffer),
             Vertices::Range { .. } => None,
         };
@@ -291,12 +298,16 @@ impl Context {
         if !Self::has_positions(&reader, &arrays) {
             return Err("the buffer of positions holds none");
         }
+
+        // Keep batches that lie in buffers as a whole; compare the client's bytes of the others.
         let constant = element_buffer != Some(0) && arrays.iter().all(|(_, array)| !array.buffer.is_none());
         let versions = reader.stores.iter().map(|store| store.version).collect();
         let key = Key { mode, vertices, arrays, versions };
         if !constant {
             return self.arrays.repeats.batch(&reader, key);
         }
+
+        // Find the batch in the cache, or build it.
         if let Some(batch) = self.arrays.cache.find(&key) {
             return Ok(batch);
         }
@@ -350,6 +361,7 @@ pub(super) fn build(
     mode: u32,
     vertices: Vertices,
 ) -> Result<(VertexBatch, Vec<Run>), Refusal> {
+    // Find the runs of elements: a range, or what the indices name.
     let mut batch = VertexBatch::default();
     let mut pieces = Vec::new();
     let runs = match vertices {
@@ -375,6 +387,8 @@ pub(super) fn build(
             runs
         }
     };
+
+    // Read each array.
     for (which, array) in arrays {
         match *which {
             POSITION => batch.positions = reader.elements(array, &runs, false, [0.0, 0.0, 0.0, 1.0])?,
@@ -390,6 +404,8 @@ pub(super) fn build(
             _ => batch.tex[which - TEX] = Some(reader.elements(array, &runs, false, [0.0, 0.0, 0.0, 1.0])?),
         }
     }
+
+    // Add the primitives between restarts.
     let mut first = 0;
     for count in pieces {
         batch.add_primitive(mode, first, count as u32);

@@ -43,7 +43,7 @@ const MOST_FILLED: usize = 1 << 24;
 /// Room made for elements before they are read; more comes as they arrive.
 const ROOM: usize = 1 << 20;
 
-/// A buffer's data, as they are now.
+/// A buffer's present data.
 #[derive(Clone, Debug)]
 pub(super) struct Store {
     pub(super) buffer: u64,
@@ -90,6 +90,7 @@ impl Reader {
         unit: bool,
         default: [f32; N],
     ) -> Result<Vec<[f32; N]>, Refusal> {
+        // Reserve memory only up to a limit, since counts come from the client.
         let layout = Layout::of(array);
         let count = runs.iter().map(|run| run.1).sum::<usize>();
         let mut elements = Vec::with_capacity(count.min(ROOM));
@@ -97,6 +98,8 @@ impl Reader {
         for &(first, count) in runs {
             let start = first.checked_mul(layout.stride).and_then(|start| start.checked_add(array.pointer));
             let mut start = start.ok_or(OUTSIDE)?;
+
+            // Convert elements of a buffer in place.
             if !array.buffer.is_none() {
                 let span = layout.span(count).ok_or(OUTSIDE)?;
                 let end = start.checked_add(span).ok_or(OUTSIDE)?;
@@ -113,6 +116,8 @@ impl Reader {
                 }
                 continue;
             }
+
+            // Read client memory piece by piece.
             let at_once = if layout.is_sparse() { 1 } else { (PIECE / layout.stride).max(1) };
             let mut left = count;
             while left > 0 {
@@ -126,6 +131,8 @@ impl Reader {
                 left -= n;
             }
         }
+
+        // Swap colours that come as blue, green, red.
         if array.size == BGRA && N > 2 {
             elements.iter_mut().for_each(|element| element.swap(0, 2));
         }
@@ -135,6 +142,7 @@ impl Reader {
     /// The fingerprint of all bytes of the client's memory that [`Self::elements`] would read for these arrays; `None` where it would read
     /// them one by one, or not at all.
     pub(super) fn fingerprint(&self, arrays: &[(usize, ArrayPointer)], runs: &[Run]) -> Option<Fingerprint> {
+        // Collect the ranges of memory.
         let mut ranges: Vec<Range<usize>> = Vec::new();
         for (_, array) in arrays.iter().filter(|(_, array)| array.buffer.is_none()) {
             let layout = Layout::of(array);
@@ -155,6 +163,8 @@ impl Reader {
             }
             overlap
         });
+
+        // Hash them.
         let mut fingerprint = Fingerprint::default();
         ranges.into_iter().try_for_each(|range| self.add_bytes(&mut fingerprint, range))?;
         Some(fingerprint)
@@ -186,6 +196,7 @@ impl Reader {
 
     /// `count` indices of a type, in the element buffer `buffer` or the client's memory.
     pub(super) fn indices(&self, buffer: u64, kind: u32, count: usize, pointer: usize) -> Result<Vec<u32>, Refusal> {
+        // Find the bytes in the buffer or in the client's memory.
         let size = type_size(kind);
         let owned;
         let bytes = if buffer == 0 {
@@ -196,6 +207,8 @@ impl Reader {
             let end = count.checked_mul(size).and_then(|len| len.checked_add(pointer)).ok_or(OUTSIDE)?;
             self.bytes(buffer)?.get(pointer..end).ok_or(OUTSIDE)?
         };
+
+        // Widen the indices.
         Ok(match kind {
             enums::UNSIGNED_BYTE => bytes.iter().map(|&i| i.into()).collect(),
             enums::UNSIGNED_SHORT => {

@@ -53,6 +53,8 @@ impl Context {
         if self.refused_inside_begin(CALL) {
             return;
         }
+
+        // Check the format, the stride and the pointer.
         let Some(layout) = layout(format) else {
             self.record_error(enums::INVALID_ENUM, CALL, &format!("{format:#x} is not a format"));
             return;
@@ -66,12 +68,16 @@ impl Context {
             self.record_error(enums::INVALID_OPERATION, CALL, why);
             return;
         }
+
+        // Find where each attribute lies.
         let stride = if stride == 0 { layout.size } else { stride };
         let coordinates = self.active_coordinates();
         let tex = (layout.tex > 0).then_some((layout.tex, enums::FLOAT, 0));
         let normal = layout.normal.map(|offset| (3, enums::FLOAT, offset));
         let vertex = Some((layout.vertex.0, enums::FLOAT, layout.vertex.1));
         let parts = [(coordinates, tex), (COLOR, layout.color), (NORMAL, normal), (POSITION, vertex)];
+
+        // Enable the attributes of the format and disable the others.
         for (which, part) in parts.into_iter().chain([EDGE, INDEX, SECONDARY, FOG].map(|which| (which, None))) {
             self.client.array_mut(which).enabled = part.is_some();
             if let Some((size, kind, offset)) = part {

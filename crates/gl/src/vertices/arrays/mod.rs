@@ -62,7 +62,7 @@ impl ClientState {
 }
 
 impl Context {
-    /// A buffer is deleted: it is no longer bound here. Array objects that are not bound keep it, and so do other contexts.
+    /// Unbinds a deleted buffer. Array objects that are not bound keep it, and so do other contexts.
     pub(super) fn forget_buffer(&mut self, buffer: &BufferHandle) {
         self.forget_label(BUFFER, buffer.name);
         let client = &mut self.client;

@@ -47,6 +47,8 @@ impl Context {
         let (sizes, kinds) = allowed(which);
         // EXT_vertex_array_bgra: the order is a size.
         let bgra = matches!(which, COLOR | SECONDARY) && size == BGRA;
+
+        // Check the size, the type and the strides.
         let trouble = if bgra && kind != enums::UNSIGNED_BYTE {
             Some((enums::INVALID_OPERATION, "components in the order BGRA are bytes".to_owned()))
         } else if !bgra && !sizes.contains(&size) {
@@ -67,6 +69,8 @@ impl Context {
             self.record_error(error, call, &why);
             return;
         }
+
+        // Store the pointer.
         self.place_array(which, size, kind, stride, pointer);
         self.client.array_mut(which).count = count;
     }
@@ -163,6 +167,8 @@ impl Context {
             self.client.restart.0 = enabled;
             return;
         }
+
+        // Find the array.
         let which = match array {
             enums::VERTEX_ARRAY => POSITION,
             enums::NORMAL_ARRAY => NORMAL,

@@ -11,8 +11,8 @@ use crate::vertex::VertexBatch;
 use std::sync::Arc;
 use vitral_math::Fingerprint;
 
-/// Vertices or indices of a draw that is worth a look.
-const LEAST: usize = 1 << 10;
+/// Vertices or indices from which on a draw is compared with earlier ones: smaller ones are read faster than compared.
+const MIN_COUNT: usize = 1 << 10;
 
 /// How many draws are known.
 const ENTRIES: usize = 64;
@@ -20,11 +20,11 @@ const ENTRIES: usize = 64;
 /// How many vertices the batches that are kept may have in all.
 const VERTICES: usize = 1 << 20;
 
-/// After so many changes without a repeat, a draw is asked every [`SELDOM`] times.
-const RESTLESS: u32 = 4;
+/// Changes without a repeat after which a draw is compared only every [`RETRY_INTERVAL`] times.
+const MAX_CHANGES: u32 = 4;
 
-/// See [`RESTLESS`].
-const SELDOM: u32 = 16;
+/// Draws between two comparisons of a draw that keeps changing.
+const RETRY_INTERVAL: u32 = 16;
 
 /// The draws, that seen last at the end.
 #[derive(Debug, Default)]
@@ -70,23 +70,31 @@ impl Repeats {
     /// The batch of a draw of which something lies in the client's memory.
     pub(super) fn batch(&mut self, reader: &Reader, key: Key) -> Result<Arc<VertexBatch>, Refusal> {
         let built = || build(reader, &key.arrays, key.mode, key.vertices);
+
+        // Build small batches without comparison.
         let (Vertices::Range { count, .. } | Vertices::Elements { count, .. }) = key.vertices;
-        if count < LEAST {
+        if count < MIN_COUNT {
             return Ok(Arc::new(built()?.0));
         }
+
+        // Find the draw's entry; stop comparing draws that change every time.
         let known = self.entries.iter().rposition(|entry| entry.key.is_same_draw(&key));
         let mut entry = known.map_or_else(|| Entry::new(key.clone()), |at| self.entries.remove(at));
         entry.draws = entry.draws.wrapping_add(1);
-        if entry.changes >= RESTLESS && !entry.draws.is_multiple_of(SELDOM) {
+        if entry.changes >= MAX_CHANGES && !entry.draws.is_multiple_of(RETRY_INTERVAL) {
             self.entries.push(entry);
             return Ok(Arc::new(built()?.0));
         }
+
+        // Reuse the batch if neither indices nor elements have changed.
         let indices = reader.index_fingerprint(key.vertices);
         let unchanged = entry.is_unchanged(&key, indices, reader);
         if unchanged && let Some(batch) = entry.batch.clone() {
             self.entries.push(entry);
             return Ok(batch);
         }
+
+        // Otherwise build it and note the fingerprints.
         let (batch, runs) = built()?;
         let batch = Arc::new(batch);
         if unchanged {
@@ -126,7 +134,7 @@ mod tests {
     use super::*;
     use crate::{Context, enums};
 
-    const COUNT: usize = LEAST + 8;
+    const COUNT: usize = MIN_COUNT + 8;
 
     /// Draws triangles from `COUNT` positions, by indices if `indexed`; gives the batch.
     fn draw(c: &mut Context, indexed: bool) -> Arc<VertexBatch> {
@@ -193,8 +201,8 @@ mod tests {
             c.memory.write(BASE, &x.to_ne_bytes());
             assert_eq!(draw(&mut c, false).positions[0][0], x);
         }
-        assert!(c.arrays.repeats.entries[0].changes >= RESTLESS);
-        let batches: Vec<_> = (0..3 * SELDOM).map(|_| draw(&mut c, false)).collect();
+        assert!(c.arrays.repeats.entries[0].changes >= MAX_CHANGES);
+        let batches: Vec<_> = (0..3 * RETRY_INTERVAL).map(|_| draw(&mut c, false)).collect();
         assert!(Arc::ptr_eq(&batches[batches.len() - 1], &batches[batches.len() - 2]));
         assert_eq!(batches[0], batches[batches.len() - 1]);
     }
@@ -222,7 +230,7 @@ mod tests {
         let mut c = with_arrays();
         for first in 0..2 * ENTRIES {
             for _ in 0..2 {
-                c.draw_arrays(enums::POINTS, (first % 4) as i32, (LEAST + first / 4 % 4) as i32);
+                c.draw_arrays(enums::POINTS, (first % 4) as i32, (MIN_COUNT + first / 4 % 4) as i32);
                 c.vertex_pointer(3, enums::FLOAT, 0, BASE + 4 * (first / 16));
             }
         }

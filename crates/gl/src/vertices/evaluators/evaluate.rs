@@ -34,6 +34,8 @@ fn weights(order: usize, t: f32) -> (Weights, Weights) {
     let mut value = [0.0; MAX_EVAL_ORDER];
     let mut slope = [0.0; MAX_EVAL_ORDER];
     value[0] = 1.0;
+
+    // Raise the degree step by step; the derivative comes from the degree below.
     for degree in 1..order {
         if degree == order - 1 {
             for i in 0..order {
@@ -70,6 +72,7 @@ fn curve(map: &Map1, index: usize, u: f32) -> [f32; 4] {
 
 /// The point of a surface, and its derivatives in u and v.
 fn surface(map: &Map2, index: usize, u: f32, v: f32) -> [[f32; 4]; 3] {
+    // Weigh the control points.
     let (value_u, slope_u) = weights(map.order[0], parameter(u, map.u));
     let (value_v, slope_v) = weights(map.order[1], parameter(v, map.v));
     let components = COMPONENTS[index];
@@ -84,6 +87,8 @@ fn surface(map: &Map2, index: usize, u: f32, v: f32) -> [[f32; 4]; 3] {
             }
         }
     }
+
+    // Scale the derivatives to the domain.
     let [point, mut du, mut dv] = sums;
     du = du.map(|x| x / (map.u[1] - map.u[0]));
     dv = dv.map(|x| x / (map.v[1] - map.v[0]));

@@ -1,7 +1,7 @@
 //! Vertices from maps: single ones, points of a grid, meshes.
 
 use super::evaluate::{Evaluated, evaluate_1, evaluate_2};
-use crate::vertex::Sent;
+use crate::vertex::Submission;
 use crate::vertices::client::Component;
 use crate::{Context, enums};
 use std::ops::RangeInclusive;
@@ -89,11 +89,14 @@ impl Context {
     pub fn eval_mesh_2(&mut self, mode: u32, i1: i32, i2: i32, j1: i32, j2: i32) {
         const CALL: &str = "glEvalMesh2";
         self.listable(move |c| {
+            // Check the mode and the number of points.
             let (rows, columns) = (j1..=j2, i1..=i2);
             let known = matches!(mode, enums::POINT | enums::LINE | enums::FILL);
             if !c.mesh_allowed(CALL, known, len(&rows).saturating_mul(len(&columns))) {
                 return;
             }
+
+            // Draw strips of quads, lines along both directions, or points.
             match mode {
                 enums::FILL => {
                     for j in j1..j2 {
@@ -136,7 +139,7 @@ impl Context {
 
     /// One primitive of a mesh.
     fn mesh_row(&mut self, primitive: u32, range: RangeInclusive<i32>, give: impl Fn(&mut Self, i32)) {
-        self.gather(Sent::Now);
+        self.gather(Submission::Now);
         self.builder.open(primitive);
         range.for_each(|i| give(self, i));
         self.builder.close();

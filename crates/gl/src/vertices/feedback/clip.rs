@@ -72,6 +72,7 @@ impl<'a> View<'a> {
 
     /// The part of a polygon that is inside; empty if there is none.
     pub(super) fn clip_polygon(&self, mut polygon: Vec<Vertex>) -> Vec<Vertex> {
+        // Measure the distances; skip planes that cut nothing.
         for plane in self.planes() {
             let Some(distances) = polygon.iter().map(|v| self.distance(plane, v)).collect::<Option<Vec<f32>>>() else {
                 continue;
@@ -79,6 +80,8 @@ impl<'a> View<'a> {
             if distances.iter().all(|d| *d >= 0.0) {
                 continue;
             }
+
+            // Walk the edges: keep inner corners and add the crossings.
             let mut kept = Vec::with_capacity(polygon.len() + 1);
             for (i, a) in polygon.iter().enumerate() {
                 let next = (i + 1) % polygon.len();

@@ -99,10 +99,13 @@ impl Feedback {
 
     /// A primitive: its token, the number of vertices if that is told, and the vertices.
     fn primitive(&mut self, token: u32, count: Option<usize>, vertices: &[FeedbackVertex]) {
+        // Count a hit in selection.
         if self.mode == enums::SELECT {
             vertices.iter().for_each(|vertex| self.hit(vertex.window[2]));
             return;
         }
+
+        // Write the token and the vertices in feedback.
         self.push(&[token as f32]);
         if let Some(count) = count {
             self.push(&[count as f32]);
@@ -172,6 +175,8 @@ impl Context {
         if self.refused_inside_begin(CALL) {
             return 0;
         }
+
+        // Check that the new mode has a buffer.
         let buffer = match mode {
             enums::RENDER => true,
             enums::FEEDBACK => self.feedback.buffer.is_some(),
@@ -185,6 +190,8 @@ impl Context {
             self.record_error(enums::INVALID_OPERATION, CALL, "that mode has no buffer");
             return 0;
         }
+
+        // Leave the old mode and reset the counters.
         let result = self.leave_mode();
         let feedback = &mut self.feedback;
         feedback.mode = mode;
@@ -199,6 +206,8 @@ impl Context {
         if feedback.mode == enums::SELECT {
             feedback.record_hit();
         }
+
+        // Choose what the mode has gathered.
         let (values, records) = (std::mem::take(&mut feedback.values), std::mem::take(&mut feedback.records));
         let (address, bytes, count): (_, &[u8], _) = match feedback.mode {
             enums::FEEDBACK => {
@@ -209,6 +218,8 @@ impl Context {
             }
             _ => return 0,
         };
+
+        // Write it to the client's buffer.
         let result = if feedback.overflow { -1 } else { count };
         if !bytes.is_empty() && (address == 0 || !self.memory.write(address, bytes)) {
             self.record_error(enums::INVALID_VALUE, "glRenderMode", "the buffer cannot be written");

@@ -101,6 +101,7 @@ impl Feeder<'_> {
 
     /// A polygon; `own_edges` if the vertices' edge flags count (else all edges are boundaries).
     fn polygon(&mut self, corners: &[u32], provoking: u32, own_edges: bool) {
+        // Reject polygons outside, and take a shortcut for those inside whose depth alone counts.
         let bits = |i: &u32| self.outside[self.batch.vertex(*i)];
         let (any, all) = corners.iter().map(bits).fold((0, u16::MAX), |(any, all), bits| (any | bits, all & bits));
         if all != 0 {
@@ -113,6 +114,8 @@ impl Feeder<'_> {
             }
             return;
         }
+
+        // Clip the polygon.
         let mut polygon = std::mem::take(&mut self.corners);
         polygon.clear();
         polygon.extend(corners.iter().map(|&i| {
@@ -122,6 +125,8 @@ impl Feeder<'_> {
         if any != 0 {
             polygon = self.view.clip_polygon(polygon);
         }
+
+        // Report what is left.
         if !polygon.is_empty() {
             self.visible(&polygon);
         }
@@ -131,11 +136,15 @@ impl Feeder<'_> {
     /// What of a polygon is inside.
     fn visible(&mut self, polygon: &[Vertex]) {
         let state = self.view.state;
+
+        // Cull by the sign of the area.
         let area = View::area(polygon);
         let front = if state.polygons.front_face == enums::CW { area < 0.0 } else { area > 0.0 };
         if is_culled(state, front) {
             return;
         }
+
+        // Report the polygon by its mode.
         let back = !front && state.lighting.enabled && state.lighting.model.two_side;
         match state.polygons.mode[usize::from(!front)] {
             enums::POINT => {

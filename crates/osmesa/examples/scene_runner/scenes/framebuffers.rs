@@ -354,6 +354,8 @@ fn shadow_map(gl: &mut Stage<'_>, [min, mag]: [u32; 2]) {
     gl.note(gl.glCheckFramebufferStatus(FRAMEBUFFER));
     gl.glEnable(DEPTH_TEST);
     gl.glClear(DEPTH_BUFFER_BIT);
+
+    // Draw the depths as the light sees them.
     let light = |gl: &Gl| {
         gl.glOrtho(-2.5, 2.5, -2.5, 2.5, 0.0, 8.0);
         gl.glTranslatef(0.0, 0.0, -4.0);

@@ -232,7 +232,7 @@ fn bitmap(gl: &mut Stage<'_>) {
     for i in 0..5 {
         gl.glColor3f(1.0, i as f32 / 5.0, 0.0);
         gl.glRasterPos2f(3.0 + 12.0 * i as f32, 5.0 + 7.3 * i as f32);
-        // The colour of now is not the raster position's.
+        // The current colour is not the raster position's.
         gl.glColor3f(0.0, 0.0, 1.0);
         gl.glBitmap(8, 8, i as f32, 2.0, 9.0, 1.0, &LETTER);
         gl.glBitmap(6, 8, 0.0, 0.0, 0.0, 0.0, &LETTER);

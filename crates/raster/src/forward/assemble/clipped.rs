@@ -8,7 +8,7 @@ use crate::{SUBPIXEL, Setup};
 /// A vertex that clipping made, or the corner of a point sprite.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Derived {
-    /// Its slot.
+    /// Number of its record in the job's list.
     pub slot: u32,
     /// Slots of its parents, which may be derived themselves, earlier.
     pub parents: [u32; 3],
@@ -34,6 +34,7 @@ pub(super) struct Corner {
 impl Assembler<'_> {
     /// Cuts a polygon at the view volume and the user's planes; what is left of it keeps its weights.
     fn cut(&self, corners: &[u32; 3], boundary: [bool; 3]) -> Vec<Corner> {
+        // Start with the triangle's corners, each with weight one of its own.
         let mut polygon: Vec<Corner> = (0..3)
             .map(|k| {
                 let mut weights = [0.0; 3];
@@ -41,6 +42,8 @@ impl Assembler<'_> {
                 Corner { clip: self.vertices.clip[corners[k] as usize], weights, boundary: boundary[k] }
             })
             .collect();
+
+        // Clip against the user's planes, then near and far.
         let planes = self.state.user_planes;
         for plane in 0..planes {
             let d = [0, 1, 2].map(|k| self.vertices.user[corners[k] as usize * planes + plane]);
@@ -53,6 +56,8 @@ impl Assembler<'_> {
         }
         // Nothing at or behind the eye survives, whatever the depth range.
         polygon = cut(&polygon, |c| c.clip[3] - 1e-30);
+
+        // Clip against the guard band.
         let guard = self.state.window.guard;
         for axis in 0..2 {
             polygon = cut(&polygon, |c| guard[axis][1] * c.clip[3] - c.clip[axis]);
@@ -64,11 +69,14 @@ impl Assembler<'_> {
     /// Draws what is left of a triangle; `smooth` says which edges of a smooth polygon's piece are the polygon's.
     #[cold]
     pub(super) fn clipped(&mut self, corners: &[u32; 3], provoking: u32, smooth: Option<[bool; 3]>) {
+        // Clip and project.
         let polygon = self.cut(corners, smooth.unwrap_or_default());
         if polygon.len() < 3 {
             return;
         }
         let positions: Vec<CornerPosition> = polygon.iter().map(|c| self.state.window.project(c.clip)).collect();
+
+        // Decide the orientation by the area of the whole polygon.
         let area_of = |i: usize| Setup::doubled_area(positions[0], positions[i], positions[i + 1]);
         let total: i64 = (1..polygon.len() - 1).map(area_of).sum();
         if total == 0 {
@@ -78,10 +86,14 @@ impl Assembler<'_> {
         if self.state.cull[usize::from(back)] {
             return;
         }
+
+        // Derive one depth plane and the attributes of all corners.
         let fan = |i: usize| [positions[0], positions[i], positions[i + 1]];
         let Some(plane) = self.whole_plane(corners, &positions) else { return };
         let slots: Vec<u32> = polygon.iter().map(|c| self.derived_slot(*corners, c)).collect();
         let provoking = self.slot(provoking);
+
+        // Emit the fan, without slivers that snapping turned over.
         for i in 1..polygon.len() - 1 {
             let area = area_of(i);
             if area == 0 || (area > 0) != (total > 0) {
@@ -190,11 +202,14 @@ pub(super) fn between(inner: &Corner, outer: &Corner, d_inner: f32, d_outer: f32
 
 /// Keeps the part of a convex polygon where `distance` is not negative.
 fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f32) -> Vec<Corner> {
+    // Evaluate the distances; most polygons are inside.
     let d: Vec<f32> = polygon.iter().map(&distance).collect();
     if d.iter().all(|&d| d >= 0.0) {
         return polygon.to_vec();
     }
     let inside = |i: usize| d[i] >= 0.0;
+
+    // Walk the edges: keep inner corners and add the crossings.
     let mut result = Vec::with_capacity(polygon.len() + 1);
     for i in 0..polygon.len() {
         let j = (i + 1) % polygon.len();

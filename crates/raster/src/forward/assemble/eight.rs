@@ -15,11 +15,13 @@ impl Assembler<'_> {
 
     #[inline(always)]
     fn by_eights_inlined<S: Simd>(&mut self, simd: S, triangles: &[[u32; 3]]) {
+        // Cull eight triangles at a time.
         let culls = [-1, 1].map(|area| if self.state.cull[usize::from(self.is_back(area))] { 0xff } else { 0 });
         let sieve = Sieve { outside: self.outside(), cut: CUT, culls, clip: self.state.clip };
         let (eights, rest) = triangles.as_chunks::<LANES>();
         for corners in eights {
             let eight = sift::<S, true>(simd, self.screen, &sieve, self.vertices.screen, corners);
+            // Add the visible ones; those that are cut or large take the general path.
             let mut left = eight.seen | eight.others;
             while left != 0 {
                 let lane = left.trailing_zeros() as usize % LANES;
@@ -31,6 +33,8 @@ impl Assembler<'_> {
                 }
             }
         }
+
+        // Add the remaining triangles one by one.
         for corners in rest {
             self.triangle(*corners, corners[2]);
         }

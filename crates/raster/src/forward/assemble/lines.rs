@@ -25,11 +25,14 @@ impl Stroke {
 impl Assembler<'_> {
     /// A line; `stipple` counts the fragments before it, which comes back with its own added.
     pub fn line(&mut self, [from, to]: [u32; 2], provoking: u32, stipple: u32) -> u32 {
+        // Reject lines outside the view volume.
         let s = self.vertices.screen;
         let (a, b) = (s[from as usize], s[to as usize]);
         if (a.flags | b.flags) & flag::NOT_FINITE != 0 || a.flags & b.flags & self.outside() != 0 {
             return stipple;
         }
+
+        // Clip lines that cross it.
         let mut ends = [
             Corner { clip: self.vertices.clip[from as usize], weights: [1.0, 0.0, 0.0], boundary: false },
             Corner { clip: self.vertices.clip[to as usize], weights: [0.0, 1.0, 0.0], boundary: false },
@@ -38,6 +41,8 @@ impl Assembler<'_> {
             let Some(clipped) = self.cut_line([from, to], ends) else { return stipple };
             ends = clipped;
         }
+
+        // Widen and emit what is left.
         let slots = [self.derived_slot([from, to, to], &ends[0]), self.derived_slot([from, to, to], &ends[1])];
         let stroke = Stroke { provoking: self.slot(provoking), back: false, offset: 0.0 };
         self.segment(ends.map(|end| end.clip), slots, stroke, stipple)
@@ -45,6 +50,7 @@ impl Assembler<'_> {
 
     /// What clipping left of a line, or of a polygon's edge.
     pub(super) fn segment(&mut self, ends: [[f32; 4]; 2], slots: [u32; 2], stroke: Stroke, stipple: u32) -> u32 {
+        // Project the ends.
         let at = ends.map(|end| self.project(end));
         let width = self.state.line_width;
         let (dx, dy) = (at[1][0] - at[0][0], at[1][1] - at[0][1]);
@@ -52,6 +58,8 @@ impl Assembler<'_> {
         if length == 0.0 {
             return stipple;
         }
+
+        // Widen the line to a quad.
         let true_rectangle = self.state.line_smooth || self.state.multisample;
         let (quad, first, count) = if true_rectangle {
             // Smooth lines get half a pixel more on all sides for the soft border.
@@ -77,10 +85,14 @@ impl Assembler<'_> {
             let ([x0, y0], [x1, y1]) = (from, to);
             ([[x0 - nx, y0 - ny], [x1 - nx, y1 - ny], [x1 + nx, y1 + ny], [x0 + nx, y0 + ny]], Some(first), count)
         };
+
+        // Compute the depth plane along the line.
         let ([x0, y0, z0], [x1, y1, z1]) = (at[0], at[1]);
         let kind = if self.plain[1] { FacetKind::Plain } else { FacetKind::Line };
         let plane = line_plane([[x0, y0, z0], [x1, y1, z1]], true_rectangle);
         let pixels = (width + 0.5).floor().max(1.0) as i32;
+
+        // Emit an aliased line of few pixels' width column by column or row by row.
         let hard = (!true_rectangle && !self.out.pending && pixels <= WIDEST).then(|| HardLine {
             edge: [quad[0], quad[1]].map(|[x, y]| [snapped(x), snapped(y)]),
             axis: usize::from(dx.abs() < dy.abs()),
@@ -92,6 +104,8 @@ impl Assembler<'_> {
             self.hard_line(&line, &plane, slots, stroke, kind, shape);
             return stipple.wrapping_add(count);
         }
+
+        // Emit every other line as a quad.
         self.quad(quad, plane, [slots[0], slots[1], slots[1], slots[0]], stroke, kind, shape);
         stipple.wrapping_add(count)
     }
@@ -128,6 +142,7 @@ impl Assembler<'_> {
     }
 
     fn cut_line(&self, corners: [u32; 2], ends: [Corner; 2]) -> Option<[Corner; 2]> {
+        // Clip the line at each plane in turn, always from its inner end.
         let planes = self.state.user_planes;
         let mut line = ends;
         for plane in 0..self.cutting_planes() {
@@ -168,6 +183,7 @@ impl Assembler<'_> {
 
     /// A point, or a polygon's corner, that is inside.
     pub(super) fn dot(&mut self, clip: [f32; 4], [size, fade]: [f32; 2], slot: u32, stroke: Stroke) {
+        // Find the square's middle and half its side.
         let [x, y, z] = self.project(clip);
         let z = z.clamp(0.0, 1.0);
         let (center, half) = if self.state.point_smooth || self.state.multisample || self.state.point_sprite {
@@ -181,8 +197,12 @@ impl Assembler<'_> {
         let quad = [[-half, -half], [half, -half], [half, half], [-half, half]]
             .map(|[dx, dy]| [center[0] + dx, center[1] + dy]);
         let origin = center.map(snapped);
+
+        // Build a constant depth plane.
         let plane = DepthPlane { z, dz_dx: 0.0, dz_dy: 0.0, origin, z_min: z, z_max: z };
         let kind = if self.plain[0] && fade == 1.0 { FacetKind::Plain } else { FacetKind::Point };
+
+        // Emit points that need a shape of their own as quads, sprites with texture coordinates.
         if self.state.multisample || self.state.point_sprite || self.out.pending {
             let shape = self.out.shapes.len() as u32;
             self.out.shapes.push(Shape::Point { center, size, fade, pixels: None });
@@ -208,6 +228,8 @@ impl Assembler<'_> {
             shape = self.out.shapes.len() as u32;
             self.out.shapes.push(Shape::Point { center, size, fade, pixels: Some(pixels) });
         }
+
+        // Emit the triangle.
         let at = |x: i32, y: i32| corner(low[0] + x, low[1] + y);
         let over = [at(near, near), at(far, near), at(near, far)];
         let area = Setup::doubled_area(over[0], over[1], over[2]);
@@ -225,6 +247,7 @@ impl Assembler<'_> {
         kind: FacetKind,
         shape: u32,
     ) {
+        // Build a triangle that has the line's edge and width.
         let mut over = [0; 2];
         over[1 - line.axis] = line.width * SUBPIXEL;
         let corner = |[x, y]: [i32; 2]| CornerPosition { x, y, z: plane.z };
@@ -232,6 +255,8 @@ impl Assembler<'_> {
         let far = [b[0] + over[0], b[1] + over[1]];
         let triangle = [corner(a), corner(b), corner(far)];
         let area = Setup::doubled_area(triangle[0], triangle[1], triangle[2]);
+
+        // Bound the line, and emit one facet for the plane.
         let low = [a[0].min(b[0]), a[1].min(b[1])];
         let high = [a[0].max(b[0]) + over[0], a[1].max(b[1]) + over[1]];
         let extent = [corner(low), corner(high), corner([low[0], high[1]])];

@@ -27,6 +27,7 @@ struct Corner {
 impl Assembler<'_> {
     /// A polygon in its polygon mode. `edges[i]` says whether the edge from corner `i` is a boundary.
     pub fn polygon(&mut self, corners: &[u32], edges: &[bool], provoking: u32) {
+        // Reject polygons outside the view volume.
         let s = self.vertices.screen;
         let flags = corners.iter().map(|&v| s[v as usize].flags);
         let (any, all) = flags.fold((0, u32::MAX), |(any, all), flags| (any | flags, all & flags));
@@ -55,14 +56,20 @@ impl Assembler<'_> {
         if self.state.cull[usize::from(back)] {
             return;
         }
+
+        // Draw filled polygons as such.
         let mode = usize::from(self.state.polygon_mode[usize::from(back)]);
         if mode > 1 {
             return self.interior(corners, provoking, back);
         }
+
+        // Cut the outline at the clip planes.
         let outline: Vec<Corner> = corners.iter().zip(edges).map(|(&v, &edge)| self.corner(v, edge)).collect();
         let outline = if any & (CUT | flag::FRUSTUM) == 0 { outline } else { self.cut_outline(outline, mode) };
         let offset = self.outline_offset(largest.1, &outline, mode);
         let stroke = Stroke { provoking: self.slot(provoking), back, offset };
+
+        // Draw a dot for each boundary corner, or a segment for each boundary edge.
         let mut stipple = 0;
         for (i, corner) in outline.iter().enumerate().filter(|(_, corner)| corner.boundary) {
             if mode == 0 {
@@ -104,12 +111,16 @@ impl Assembler<'_> {
             if d.iter().all(|&d| d >= 0.0) {
                 continue;
             }
+
+            // Drop outer corners where only corners are drawn.
             let by_user = plane < self.state.user_planes;
             if mode == 0 && !by_user {
                 let mut d = d.into_iter();
                 outline.retain(|_| d.next().is_some_and(|d| d >= 0.0));
                 continue;
             }
+
+            // Walk the outline, keep inner corners and add the crossings.
             let mut kept = Vec::with_capacity(outline.len() + 1);
             for (i, corner) in outline.iter().enumerate() {
                 let j = (i + 1) % outline.len();

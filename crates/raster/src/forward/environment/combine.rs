@@ -25,6 +25,7 @@ pub(super) fn combine<S: Simd, V: Floats<S>>(
     simd.vectorize(
         #[inline(always)]
         || {
+            // Fetch the operands and apply the colour function.
             let sources = Sources { unit, textures, primary, previous };
             let [color_scale, alpha_scale] = state.scale;
             let a = [sources.color(state.rgb[0]), sources.color(state.rgb[1]), sources.color(state.rgb[2])];
@@ -36,6 +37,8 @@ pub(super) fn combine<S: Simd, V: Floats<S>>(
                     component(function, a[0][2], a[1][2], a[2][2]),
                 ],
             };
+
+            // Apply the function of alpha.
             let alpha = if state.functions[0] == CombineFunction::Dot3Rgba {
                 // The dot product is alpha too; alpha's own function does not count.
                 color[0] * alpha_scale
@@ -43,6 +46,8 @@ pub(super) fn combine<S: Simd, V: Floats<S>>(
                 let b = [sources.alpha(state.alpha[0]), sources.alpha(state.alpha[1]), sources.alpha(state.alpha[2])];
                 component(state.functions[1], b[0], b[1], b[2]) * alpha_scale
             };
+
+            // Scale the result.
             [color[0] * color_scale, color[1] * color_scale, color[2] * color_scale, alpha]
         },
     )

@@ -79,6 +79,7 @@ fn simple<S: Simd, V: Floats<S>>(
     simd.vectorize(
         #[inline(always)]
         || {
+            // Apply the mode, then keep the components that the texture's format lacks.
             let intensity = format == BaseFormat::Intensity;
             let color = match mode {
                 EnvironmentMode::Replace => *t,

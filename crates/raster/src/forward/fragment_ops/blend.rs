@@ -26,6 +26,7 @@ pub(crate) fn blend<S: Simd, V: Floats<S>>(
     stored: [V; 4],
     components: Components,
 ) -> [V; 4] {
+    // Clamp source and constant colour as the format asks.
     let one = if components == Components::Bytes { 255.0 } else { 1.0 };
     let limited = lanes::inlined(
         #[inline(always)]
@@ -35,9 +36,13 @@ pub(crate) fn blend<S: Simd, V: Floats<S>>(
         },
     );
     let (source, constant) = (limited(source), limited(every_rgba(simd, state.color.map(|c| c * one))));
+
+    // Compute the factors of colour.
     let inputs = Inputs { one, source, stored, constant };
     let s = inputs.color_factor(state.source[0]);
     let d = inputs.color_factor(state.destination[0]);
+
+    // Combine each component with its factor; alpha has its own.
     let component = lanes::inlined(
         #[inline(always)]
         |k: usize, s: V, d: V| combine(state.equation[usize::from(k == 3)], (source[k], s), (stored[k], d), one),
@@ -84,9 +89,13 @@ fn combine<V: Lanes>(equation: BlendEquation, (source, s): (V, V), (stored, d): 
 /// What factors are made of.
 #[derive(Clone, Copy)]
 struct Inputs<V> {
+    /// The value of 1: 255 where components are bytes.
     one: f32,
+    /// The incoming colour: red, green, blue, alpha.
     source: [V; 4],
+    /// The stored colour.
     stored: [V; 4],
+    /// The blend colour.
     constant: [V; 4],
 }
 

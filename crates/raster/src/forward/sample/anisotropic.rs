@@ -8,7 +8,7 @@
 use super::fetch::{interior, level_of};
 use super::mip::{dimensions, lod};
 use super::sample;
-use crate::forward::plane::DepthPlane;
+use crate::forward::plane::DepthBuffer;
 use crate::forward::texture::{Texture, TextureKind};
 use crate::forward::wide::{Rgba, bits_of, clamp, mask_of, max, min, select, splat, splat_rgba};
 use vitral_math::lanes::prelude::*;
@@ -22,7 +22,7 @@ const MOST_PROBES: f32 = 16.0;
 #[inline(never)]
 pub(crate) fn sample_anisotropic<S: Simd>(
     simd: S,
-    (texture, plane): (&Texture, Option<&DepthPlane>),
+    (texture, plane): (&Texture, Option<&DepthBuffer>),
     coords: [F32x8<S>; 4],
     derivatives: [[F32x8<S>; 3]; 2],
     bias: F32x8<S>,
@@ -31,6 +31,7 @@ pub(crate) fn sample_anisotropic<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
+            // Find the size by which derivatives are scaled; other kinds take one isotropic sample.
             let [dx, dy] = derivatives;
             let size = match (texture.kind, level_of(texture, 0)) {
                 (TextureKind::Two, Some(level)) => interior(level, dimensions(texture.kind)),
@@ -40,6 +41,8 @@ pub(crate) fn sample_anisotropic<S: Simd>(
                     return sample(simd, texture, plane, coords, lod + bias, active);
                 }
             };
+
+            // Choose the number of probes and their level from the footprint.
             let footprint = Footprint::new(simd, dx, dy, texture.sampler.anisotropy);
             let detail = lanes::Lanes::log2(footprint.length / footprint.probes) + bias;
             let [s, t, r, q] = coords;
@@ -63,6 +66,8 @@ pub(crate) fn sample_anisotropic<S: Simd>(
                 }
                 i += 1.0;
             }
+
+            // Average the probes.
             let n = footprint.probes;
             [sum[0] / n, sum[1] / n, sum[2] / n, sum[3] / n]
         },

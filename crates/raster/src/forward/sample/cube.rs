@@ -6,7 +6,7 @@
 //! Source: OpenGL 1.5 specification, table 3.20; ARB_seamless_cube_map.
 
 use super::depth::{by_mode, compared, reference};
-use super::fetch::{Image, Words, columns, interior, level_of, level_of_face, quads};
+use super::fetch::{Image, TexelWords, columns, interior, level_of, level_of_face, quads};
 use super::halves::Halves;
 use super::mip::{mipped, mix_rgba};
 use super::packed_cube::PackedCube;
@@ -28,13 +28,18 @@ pub(super) fn sample<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
+            // Choose the face and the point on it.
             let is_depth = matches!(level_of(texture, 0).map(|l| l.texels()), Some(Texels::Depth(_)));
             let direction = [coords[0], coords[1], coords[2]];
             let chart = Chart::new(simd, if is_depth { direction } else { turned(simd, direction, coords[3]) });
             let (face, point) = (chart.face(simd), chart.point());
+
+            // Sample a packed map if there is one.
             if let Some(packed) = PackedCube::new(texture) {
                 return packed.at(simd, (face, point), lod);
             }
+
+            // Otherwise filter texel by texel.
             let face = face.bitcast::<U32x8<S>>().to_array();
             let reference = is_depth.then(
                 #[inline(always)]
@@ -159,6 +164,8 @@ fn lookup<S: Simd>(
     let Some(shape) = level_of_face(texture, (face[first] % 6) as usize, level) else {
         return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
     };
+
+    // Find the texels and weights along both axes.
     let size = interior(shape, 2);
     let seamless = texture.sampler.seamless && shape.border == 0 && size[0] == size[1];
     let wrap = match (seamless, filtered) {
@@ -168,12 +175,14 @@ fn lookup<S: Simd>(
     };
     let x = Axis::new(simd, position(simd, point[0], size[0], wrap[0]), size[0], wrap[0], filtered);
     let y = Axis::new(simd, position(simd, point[1], size[1], wrap[1]), size[1], wrap[1], filtered);
+
+    // Filter eight lanes at once where all see the inside of one face.
     let one_face = bits_of(U32x8::from_slice(simd, face).simd_eq(face[first])) & lanes == lanes;
     let inside = bits_of(crosses(simd, &x, size[0]) | crosses(simd, &y, size[1])) & lanes == 0;
     if one_face
         && inside
         && shape.border == 0
-        && let Some(words) = Words::new(shape)
+        && let Some(words) = TexelWords::new(shape)
         && let Some(columns) =
             if filtered { shape.columns(shape.size[0] as usize * shape.size[1] as usize) } else { Some(&[][..]) }
     {
@@ -184,6 +193,8 @@ fn lookup<S: Simd>(
         };
         return words.finish(color);
     }
+
+    // Otherwise go lane by lane.
     let spot = Spot { level, shape, face, x, y, lanes, seamless, filtered, reference };
     general(simd, texture, &spot)
 }
@@ -193,7 +204,7 @@ fn lookup<S: Simd>(
 fn bilinear<S: Simd>(
     simd: S,
     (columns, width): (&[[u32; 2]], u32),
-    words: Words<'_>,
+    words: TexelWords<'_>,
     x: &Axis<S>,
     y: &Axis<S>,
 ) -> Rgba<S> {
@@ -222,12 +233,15 @@ pub(super) fn crosses<S: Simd, V: Floats<S>>(simd: S, axis: &Axis<S, V>, size: u
 struct Spot<'a, S: Simd> {
     level: usize,
     shape: &'a Level,
+    /// The face of each lane, 0 to 5.
     face: &'a [u32; LANES],
     x: Axis<S>,
     y: Axis<S>,
+    /// Bits of the lanes that are looked up.
     lanes: u32,
     seamless: bool,
     filtered: bool,
+    /// The depth to compare with, of depth textures.
     reference: Option<F32x8<S>>,
 }
 
@@ -237,6 +251,7 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
     simd.vectorize(
         #[inline(always)]
         || {
+            // Fetch the corners of each cell, each from the face it lies on.
             let image = Image::new(spot.shape);
             let border = splat_rgba(simd, image.raw(texture.sampler.border));
             let corners = if spot.filtered { 4 } else { 1 };
@@ -245,7 +260,7 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
             for corner in 0..corners {
                 let x = if corner & 1 == 0 { spot.x.near } else { spot.x.far };
                 let y = if corner & 2 == 0 { spot.y.near } else { spot.y.far };
-                let place = place(simd, spot, x, y);
+                let place = texel_coords(simd, spot, x, y);
                 let mut color = texels(simd, texture, spot, &place);
                 color = select_rgba(place.outside, border, color);
                 if let Some(reference) = spot.reference {
@@ -254,6 +269,8 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
                 colors[corner] = color;
                 missing[corner] = place.missing;
             }
+
+            // Fill the missing corners at the cube's corners and filter.
             if spot.filtered {
                 fill_missing(&mut colors, missing.map(|bits| mask_of(simd, bits)));
                 let lower = mix_rgba(colors[0], colors[1], spot.x.weight);
@@ -267,18 +284,21 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
 
 /// One raw texel a lane, each from its face.
 #[inline(always)]
-fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Place<S>) -> Rgba<S> {
+fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &TexelCoords8<S>) -> Rgba<S> {
     let index = place.index.to_array();
-    if let Some(first) = Words::new(spot.shape) {
+    // Fetch packed words lane by lane.
+    if let Some(first) = TexelWords::new(spot.shape) {
         let mut words = [0u32; LANES];
         for lane in 0..LANES {
             let shape = level_of_face(texture, (place.face[lane] % 6) as usize, spot.level);
-            if let Some(texels) = shape.and_then(Words::new) {
+            if let Some(texels) = shape.and_then(TexelWords::new) {
                 words[lane] = texels.texels.get(index[lane] as u32 as usize).copied().unwrap_or_default();
             }
         }
         return first.meaning(simd, U32x8::from_slice(simd, &words));
     }
+
+    // Fetch other texels as colours.
     let mut colors = [[0.0f32; 4]; LANES];
     for lane in 0..LANES {
         if spot.lanes >> lane & 1 == 1
@@ -291,8 +311,10 @@ fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Place
 }
 
 /// Texels of one corner.
-struct Place<S: Simd> {
+struct TexelCoords8<S: Simd> {
+    /// The face of each lane, 0 to 5.
     face: [u32; LANES],
+    /// The texel's number in its face.
     index: I32x8<S>,
     /// Lanes of the border colour.
     outside: Mask8<S>,
@@ -302,7 +324,8 @@ struct Place<S: Simd> {
 
 /// Finds the texels `(x, y)` of the faces, which may lie one beyond their edges.
 #[inline(always)]
-fn place<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> Place<S> {
+fn texel_coords<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> TexelCoords8<S> {
+    // Clamp the texel to the face.
     let Spot { shape, face, lanes, seamless, .. } = *spot;
     let (zero, last) = (I32x8::splat(simd, 0), I32x8::splat(simd, shape.size[0] as i32 - 1));
     let last_y = I32x8::splat(simd, shape.size[1] as i32 - 1);
@@ -311,7 +334,7 @@ fn place<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> Plac
     let beyond = outside.to_bitmask() as u32 & lanes;
     let index = y.min(last_y).max(zero) * shape.size[0] as i32 + x.min(last).max(zero);
     if !seamless || beyond == 0 {
-        return Place { face: *face, index, outside, missing: 0 };
+        return TexelCoords8 { face: *face, index, outside, missing: 0 };
     }
 
     // Few lanes cross an edge: one by one.
@@ -329,7 +352,7 @@ fn place<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) -> Plac
         }
     }
     let index = I32x8::from_slice(simd, &numbers);
-    Place { face: faces, index, outside: mask_of(simd, 0), missing }
+    TexelCoords8 { face: faces, index, outside: mask_of(simd, 0), missing }
 }
 
 /// The face and texel next to `face` at `(x, y)`, one of which lies one texel beyond `0..size`; `None` if both do.
@@ -352,6 +375,8 @@ pub(super) fn neighbour(face: u32, x: i32, y: i32, size: i32) -> Option<(u32, i3
         4 => [fold(sc), -fold(tc), major],
         _ => [-fold(sc), -fold(tc), -major],
     };
+
+    // Find the face whose plane the point lies on and its place there.
     let axis = p.iter().position(|c| c.abs() == size)?;
     let (face, sc, tc) = match (axis, p[axis] > 0) {
         (0, true) => (0, -p[2], -p[1]),

@@ -3,13 +3,13 @@
 //! With a comparison each texel becomes 0 or 1 before filtering, so that a linear filter gives the share of the four
 //! texels that pass, by their weights.
 
-use super::fetch::{Depths, level_of};
+use super::fetch::{LevelDepths, level_of};
 use super::flat::{axes, corner_texels};
 use super::mip::mipped;
 use super::wrap::position_in;
 use crate::forward::fragment_ops::compare::compare;
 use crate::forward::pending::PendingDepth;
-use crate::forward::plane::DepthPlane;
+use crate::forward::plane::DepthBuffer;
 use crate::forward::state::Compare;
 use crate::forward::texture::{BaseFormat, Filter, Texture, TextureKind, Wrap};
 use crate::forward::wide::{Rgba, every, floor, min, mix, saturate, select, splat, splat_rgba};
@@ -27,7 +27,7 @@ pub(crate) struct PackedShadow<'a> {
 
 impl<'a> PackedShadow<'a> {
     /// `None` for textures of another kind; `plane` is that of the only level.
-    pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthPlane>) -> Option<Self> {
+    pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthBuffer>) -> Option<Self> {
         let (sampler, pending) = (&texture.sampler, plane?.pending.as_ref()?);
         let level = level_of(texture, 0)?;
         let nearest = [sampler.min, sampler.mag] == [Filter::Nearest; 2];
@@ -101,7 +101,7 @@ pub(super) fn reference<V: Lanes>(texture: &Texture, r: V) -> V {
 pub(super) fn sample<S: Simd>(
     simd: S,
     texture: &Texture,
-    plane: Option<&DepthPlane>,
+    plane: Option<&DepthBuffer>,
     coords: [F32x8<S>; 4],
     lod: F32x8<S>,
     active: u32,
@@ -109,6 +109,7 @@ pub(super) fn sample<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
+            // Divide by q and compare the texels with r.
             let [s, t, r, q] = coords;
             let point = [s / q, t / q, reference(texture, r / q)];
             let [value] = mipped(
@@ -167,7 +168,7 @@ fn settles(func: Option<Compare>, sign: f32) -> bool {
 
 /// The stored depth that decides a comparison, for each lane: triangles that are no nearer need not be looked at.
 #[inline(always)]
-fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -> Option<F32x8<S>> {
+fn known<S: Simd>(texture: &Texture, depths: &LevelDepths<'_>, reference: F32x8<S>) -> Option<F32x8<S>> {
     settles(texture.sampler.compare, depths.pending()?).then_some(reference)
 }
 
@@ -176,16 +177,19 @@ fn known<S: Simd>(texture: &Texture, depths: &Depths<'_>, reference: F32x8<S>) -
 fn lookup<S: Simd, const DIMENSIONS: usize>(
     simd: S,
     texture: &Texture,
-    plane: Option<&DepthPlane>,
+    plane: Option<&DepthBuffer>,
     level: usize,
     linear: bool,
     point: [F32x8<S>; 3],
     lanes: u32,
 ) -> F32x8<S> {
+    // Find the texels and weights along the axes.
     let Some(shape) = level_of(texture, level) else { return splat(simd, 0.0) };
-    let depths = Depths::new(shape, plane);
+    let depths = LevelDepths::new(shape, plane);
     let known = known(texture, &depths, point[2]);
     let axes = axes(simd, texture, shape, DIMENSIONS, linear, point);
+
+    // Compare each corner with the reference.
     let border = splat_rgba(simd, texture.sampler.border)[0];
     let corners = if linear { 1 << DIMENSIONS } else { 1 };
     let mut values = [border; 4];
@@ -194,6 +198,8 @@ fn lookup<S: Simd, const DIMENSIONS: usize>(
         let depth = select(outside, border, depths.at(simd, x, y, shape.size[0], lanes, known));
         values[corner] = compared(simd, texture, point[2], depth);
     }
+
+    // Filter the results of comparison.
     let mut count = corners;
     for k in 0..DIMENSIONS {
         count /= 2;

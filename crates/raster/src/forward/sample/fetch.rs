@@ -4,7 +4,7 @@
 //! once a texel. [`Image::raw`] brings other colours to that scale.
 
 use crate::forward::fragment_ops::packed::unpack_bytes;
-use crate::forward::plane::DepthPlane;
+use crate::forward::plane::DepthBuffer;
 use crate::forward::texture::{Level, Texels, Texture};
 use crate::forward::wide::{Rgba, splat};
 use crate::{TILE, TILE_PIXELS};
@@ -63,6 +63,7 @@ pub(super) fn quads<'a, S: Simd, V: Floats<S>>(
     columns: impl Fn(usize) -> &'a [[u32; 2]],
     at: V::Ints,
 ) -> [V::Words; 4] {
+    // Fetch two columns of two texels in each lane.
     let at = at.as_slice();
     let mut quads = [[0u32; 4]; MOST_LANES];
     for lane in 0..V::LEN {
@@ -71,6 +72,8 @@ pub(super) fn quads<'a, S: Simd, V: Floats<S>>(
             quads[lane] = [*a, *c, *b, *d];
         }
     }
+
+    // Transpose them to four registers.
     let words: &[u32] = bytemuck::cast_slice(&quads);
     let part = lanes::inlined(
         #[inline(always)]
@@ -83,13 +86,13 @@ pub(super) fn quads<'a, S: Simd, V: Floats<S>>(
 
 /// Texels of 8 bits a component.
 #[derive(Clone, Copy)]
-pub(super) struct Words<'a> {
+pub(super) struct TexelWords<'a> {
     pub(super) texels: &'a [u32],
     /// What colour bytes mean, if they are sRGB-encoded.
     decode: Option<&'a [f32; 256]>,
 }
 
-impl<'a> Words<'a> {
+impl<'a> TexelWords<'a> {
     /// Those of a level, if it has such.
     #[inline(always)]
     pub(super) fn new(level: &'a Level) -> Option<Self> {
@@ -140,11 +143,11 @@ impl<'a> Words<'a> {
     #[inline(always)]
     pub(super) fn finish<V: Lanes>(&self, color: [V; 4]) -> [V; 4] {
         // Times the reciprocal, which makes 1.0 of 255, and of a byte what rounds to that byte again.
-        const EACH: f32 = 1.0 / 255.0;
+        const UNIT: f32 = 1.0 / 255.0;
         let [r, g, b, a] = color;
         match self.decode {
-            None => [r * EACH, g * EACH, b * EACH, a * EACH],
-            Some(_) => [r, g, b, a * EACH],
+            None => [r * UNIT, g * UNIT, b * UNIT, a * UNIT],
+            Some(_) => [r, g, b, a * UNIT],
         }
     }
 }
@@ -152,6 +155,7 @@ impl<'a> Words<'a> {
 /// Colours in linear light, alpha as 0..=255.
 #[inline(always)]
 fn decode<S: Simd, V: Floats<S>>(simd: S, words: V::Words, table: &[f32; 256]) -> [V; 4] {
+    // Look the colour bytes up in the table, lane by lane.
     let bytes = words.as_slice();
     let mut colors = [[0.0f32; MOST_LANES]; 3];
     for lane in 0..V::LEN {
@@ -160,6 +164,8 @@ fn decode<S: Simd, V: Floats<S>>(simd: S, words: V::Words, table: &[f32; 256]) -
             colors[k][lane] = table[usize::from(bytes[k])];
         }
     }
+
+    // Alpha is linear and needs no table.
     let alpha: V::Ints = (words >> 24).bitcast();
     let [r, g, b] = &colors;
     [
@@ -173,10 +179,10 @@ fn decode<S: Simd, V: Floats<S>>(simd: S, words: V::Words, table: &[f32; 256]) -
 /// Texels of any kind, as colours.
 #[derive(Clone, Copy)]
 pub(super) enum Image<'a> {
-    Words(Words<'a>),
+    TexelWords(TexelWords<'a>),
     Floats(&'a [[f32; 4]]),
     /// A depth in all components.
-    Depths(&'a [f32]),
+    LevelDepths(&'a [f32]),
 }
 
 impl<'a> Image<'a> {
@@ -186,7 +192,7 @@ impl<'a> Image<'a> {
         match level.texels() {
             Texels::RgbaF32(texels) => Self::Floats(texels),
             Texels::Depth(texels) => Self::Depths(texels),
-            _ => Words::new(level).map_or(Self::Floats(&[]), Self::Words),
+            _ => TexelWords::new(level).map_or(Self::Floats(&[]), Self::Words),
         }
     }
 
@@ -258,22 +264,22 @@ pub(super) fn columns<S: Simd>(simd: S, colors: &[[f32; 4]; LANES]) -> Rgba<S> {
 }
 
 /// Depths of a level.
-pub(super) enum Depths<'a> {
+pub(super) enum LevelDepths<'a> {
     Stored(&'a [f32]),
     /// Held until the lookup is done.
-    Locked(MutexGuard<'a, DepthPlane>),
+    Locked(MutexGuard<'a, DepthBuffer>),
     /// Held by the caller.
-    Plane(&'a DepthPlane),
+    Plane(&'a DepthBuffer),
 }
 
-impl<'a> Depths<'a> {
+impl<'a> LevelDepths<'a> {
     /// Those of a level; what is no depth image has none.
     #[inline(always)]
-    pub(super) fn new(level: &'a Level, plane: Option<&'a DepthPlane>) -> Self {
+    pub(super) fn new(level: &'a Level, plane: Option<&'a DepthBuffer>) -> Self {
         match (level.texels(), plane) {
-            (Texels::DepthPlane(_), Some(plane)) => Self::Plane(plane),
+            (Texels::DepthBuffer(_), Some(plane)) => Self::Plane(plane),
             (Texels::Depth(texels), _) => Self::Stored(texels),
-            (Texels::DepthPlane(plane), None) => Self::Locked(plane.lock().unwrap_or_else(PoisonError::into_inner)),
+            (Texels::DepthBuffer(plane), None) => Self::Locked(plane.lock().unwrap_or_else(PoisonError::into_inner)),
             _ => Self::Stored(&[]),
         }
     }
@@ -312,15 +318,18 @@ impl<'a> Depths<'a> {
 #[inline(always)]
 fn plane_depths<S: Simd>(
     simd: S,
-    depth: &DepthPlane,
+    depth: &DepthBuffer,
     x: I32x8<S>,
     y: I32x8<S>,
     active: u32,
     known: Option<F32x8<S>>,
 ) -> F32x8<S> {
+    // Compute the texels of a pending shadow map.
     if let Some(pending) = &depth.pending {
         return pending.texels(simd, [x, y], active, known);
     }
+
+    // Find the tile and the position of each texel.
     const SHIFT: u32 = TILE.trailing_zeros();
     const INSIDE: i32 = TILE as i32 - 1;
     let tiles_x = depth.plane.viewport().tiles_x() as i32;

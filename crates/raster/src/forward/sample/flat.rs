@@ -37,6 +37,7 @@ pub(super) fn sample<S: Simd>(
 /// One level, filtered.
 #[inline(always)]
 fn lookup<S: Simd>(simd: S, texture: &Texture, level: usize, linear: bool, point: [F32x8<S>; 3]) -> Rgba<S> {
+    // Find the texels and weights along the axes.
     let Some(shape) = level_of(texture, level) else { return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]) };
     let image = Image::new(shape);
     let dimensions = dimensions(texture.kind);

@@ -53,17 +53,22 @@ pub(crate) fn derivatives<S: Simd>(
     dx: [F32x8<S>; 4],
     dy: [F32x8<S>; 4],
 ) -> [[F32x8<S>; 3]; 2] {
+    // Take the size of level 0 without borders.
     let zero = splat(simd, 0.0);
     let dimensions = dimensions(texture.kind);
     let size = match super::fetch::level_of(texture, 0) {
         Some(level) => interior(level, dimensions),
         None => [1; 3],
     };
+
+    // Take a cube map's derivatives on the face.
     if texture.kind == TextureKind::Cube {
         let chart = cube::Chart::new(simd, [coords[0], coords[1], coords[2]]);
         let along = [[dx[0], dx[1], dx[2]], [dy[0], dy[1], dy[2]]];
         return cube::derivatives(simd, size[0] as f32, &chart, along).map(|[s, t]| [s, t, zero]);
     }
+
+    // Apply the quotient rule in each dimension.
     let size = if texture.kind == TextureKind::Rectangle { [1; 3] } else { size };
     let mut steps = [[zero; 3]; 2];
     for k in 0..dimensions {
@@ -98,8 +103,11 @@ pub(super) struct Choice<V> {
 /// How a minification filter treats levels.
 #[derive(Clone, Copy, PartialEq)]
 enum Mip {
+    /// Level 0 alone.
     None,
+    /// The nearest level.
     Nearest,
+    /// A mixture of two levels.
     Linear,
 }
 
@@ -118,6 +126,7 @@ fn split(filter: Filter) -> (bool, Mip) {
 /// Levels and filters for levels `0..=last`.
 #[inline(always)]
 pub(super) fn choose<S: Simd, V: Floats<S>>(simd: S, sampler: &Sampler, last: usize, lod: V) -> Choice<V> {
+    // Clamp the level of detail.
     let zero = every(simd, 0.0);
     let (magnify_linear, _) = split(sampler.mag);
     let (minify_linear, mip) = split(sampler.min);
@@ -134,6 +143,7 @@ pub(super) fn choose<S: Simd, V: Floats<S>>(simd: S, sampler: &Sampler, last: us
         (false, false) => 0,
     };
 
+    // Choose the level, and the fraction of the next one.
     let last = last as f32;
     let (level, fraction) = match mip {
         Mip::None => (zero, zero),
@@ -157,13 +167,18 @@ pub(super) fn mipped<S: Simd, const N: usize>(
     active: u32,
     lookup: impl Fn(usize, bool, u32) -> [F32x8<S>; N],
 ) -> [F32x8<S>; N] {
+    // Without mipmaps every lane reads level 0.
     if !needs_lod(texture) {
         return lookup(0, texture.sampler.mag == Filter::Linear, active);
     }
+
+    // Choose levels and filters for all lanes.
     let last = texture.faces.first().map_or(0, Vec::len).saturating_sub(1);
     let choice = choose(simd, &texture.sampler, last, lod);
     let levels = choice.level.to_array();
     let between = bits_of(choice.fraction.simd_gt(splat(simd, 0.0)));
+
+    // Visit groups of lanes that read the same levels.
     let mut result = [splat(simd, 0.0); N];
     let mut rest = active & 0xff;
     while rest != 0 {
@@ -174,6 +189,7 @@ pub(super) fn mipped<S: Simd, const N: usize>(
         let same_filter = if linear { choice.linear } else { !choice.linear };
         let group = bits_of(choice.level.simd_eq(splat(simd, level))) & same_filter & rest | 1 << first;
 
+        // Look one level up, or two and mix them.
         let level = level as usize;
         let mut color = [splat(simd, 0.0); N];
         let steps = if group & between == 0 { 1 } else { 2 };
@@ -183,6 +199,8 @@ pub(super) fn mipped<S: Simd, const N: usize>(
                 color[k] = if step == 0 { texel[k] } else { mix(color[k], texel[k], choice.fraction) };
             }
         }
+
+        // Keep the lanes of the group.
         if group == active & 0xff {
             return color;
         }

@@ -3,7 +3,7 @@
 //! [`mip::derivatives`] tell how many texels of level 0 a step of one pixel crosses, [`mip::lod`] is the logarithm of the larger
 //! step, and [`sample`] reads the levels it calls for. Lanes that choose the same level are looked up together, so that
 //! a row of pixels on one surface takes one or two passes. Texels are fetched lane by lane, everything else is done in
-//! lanes. The [`Common`] kinds of textures have ways of their own, for eight lanes or sixteen. A lookup never fails: what is
+//! lanes. The [`PackedTexture`] kinds of textures have ways of their own, for eight lanes or sixteen. A lookup never fails: what is
 //! missing reads as opaque black, and a coordinate that is not finite reads the texel at the low edge.
 //!
 //! In:   interpolated coordinates (s, t, r, q), level of detail. Out: RGBA, straight alpha, linear light.
@@ -25,7 +25,7 @@ mod wrap;
 #[cfg(test)]
 mod tests;
 
-use super::plane::DepthPlane;
+use super::plane::DepthBuffer;
 use super::texture::{Texels, Texture, TextureKind};
 use super::wide::{Rgba, splat_rgba};
 use depth::PackedShadow;
@@ -35,15 +35,18 @@ use vitral_math::lanes::{F32x8, Simd};
 
 /// A texture of a common kind, made ready for lookups.
 #[derive(Clone, Copy)]
-pub(crate) enum Common<'a> {
+pub(crate) enum PackedTexture<'a> {
+    /// Packed colours of one or two dimensions.
     Flat(Packed<'a>),
+    /// A cube map of packed colours.
     Cube(PackedCube<'a>),
+    /// A depth texture that is compared with.
     Shadow(PackedShadow<'a>),
 }
 
-impl<'a> Common<'a> {
+impl<'a> PackedTexture<'a> {
     /// `None` for textures of another kind; `plane` is that of a depth texture's only level.
-    pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthPlane>) -> Option<Self> {
+    pub(crate) fn new(texture: &'a Texture, plane: Option<&'a DepthBuffer>) -> Option<Self> {
         match (texture.kind, plane) {
             (_, Some(_)) => PackedShadow::new(texture, plane).map(Self::Shadow),
             (TextureKind::Cube, _) => PackedCube::new(texture).map(Self::Cube),
@@ -64,7 +67,7 @@ impl<'a> Common<'a> {
 pub(crate) fn sample<S: Simd>(
     simd: S,
     texture: &Texture,
-    plane: Option<&DepthPlane>,
+    plane: Option<&DepthBuffer>,
     coords: [F32x8<S>; 4],
     lod: F32x8<S>,
     active: u32,
@@ -72,7 +75,7 @@ pub(crate) fn sample<S: Simd>(
     let Some(first) = texture.faces.first().and_then(|face| face.first()) else {
         return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
     };
-    let is_depth = matches!(first.texels(), Texels::Depth(_) | Texels::DepthPlane(_));
+    let is_depth = matches!(first.texels(), Texels::Depth(_) | Texels::DepthBuffer(_));
     if let Some(packed) = Packed::new(texture) {
         return packed::sample(simd, &packed, coords, lod, active);
     }

@@ -6,7 +6,7 @@
 //!
 //! All lanes are looked up together, each on the level that it needs: a level is only a slice of texels and a size.
 
-use super::fetch::{Words, interior, quads};
+use super::fetch::{TexelWords, interior, quads};
 use super::halves::{Halves, weight};
 use super::mip::{Choice, choose, dimensions, mix_rgba};
 use super::wrap::{Axis, linear_in, nearest_in, position_in};
@@ -20,9 +20,10 @@ use vitral_math::lanes::{self, F32x8, Floats, MOST_LANES, Simd};
 /// A texture's levels, made ready for lookups.
 #[derive(Clone, Copy)]
 pub(crate) struct Packed<'a> {
+    /// From the finest to the coarsest.
     levels: &'a [Arc<Level>],
     /// Level 0, for what bytes mean.
-    first: Words<'a>,
+    first: TexelWords<'a>,
     /// Of level 0, in texels; 0 along what the texture does not have.
     size: [f32; 2],
     sampler: &'a Sampler,
@@ -38,7 +39,9 @@ impl<'a> Packed<'a> {
         let [levels] = &texture.faces[..] else { return None };
         let first = levels.first()?;
         // What most textures of other kinds lack.
-        let words = Words::new(first)?;
+        let words = TexelWords::new(first)?;
+
+        // Accept flat textures with wrap modes that the packed path knows.
         let sampler = &texture.sampler;
         let flat = match texture.kind {
             TextureKind::One => sampler.mag.is_linear() && sampler.min.is_linear(),
@@ -47,10 +50,12 @@ impl<'a> Packed<'a> {
         if !flat || texture.swizzle.is_some() || sampler.wrap[..2].iter().any(|wrap| wrap.mirrors_once()) {
             return None;
         }
+
+        // Every level must have half the size of the one before, no border and packed texels.
         let [width, height, _] = interior(first, dimensions(texture.kind));
         for (k, level) in levels.iter().enumerate() {
             let size = [(width >> k).max(1), (height >> k).max(1)];
-            if level.border != 0 || level.size[..2] != size || Words::new(level).is_none() {
+            if level.border != 0 || level.size[..2] != size || TexelWords::new(level).is_none() {
                 return None;
             }
         }
@@ -90,6 +95,7 @@ impl<'a> Packed<'a> {
     /// The colours at (s, t), as [`super::sample`] tells.
     #[inline(always)]
     pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], lod: V, active: u32) -> [V; 4] {
+        // Choose the levels and the filter.
         let zero = every(simd, 0.0);
         let choice = if self.needs_lod() {
             choose(simd, self.sampler, self.last(), lod)
@@ -97,6 +103,8 @@ impl<'a> Packed<'a> {
             let linear = if self.sampler.mag == Filter::Linear { u32::MAX } else { 0 };
             Choice { level: zero, fraction: zero, linear }
         };
+
+        // Filter lanes, those with another filter a second time.
         let active = active & ((1 << V::LEN) - 1);
         let linear = choice.linear & active;
         let mut color = self.filtered(simd, place, &choice, linear == active);
@@ -111,12 +119,13 @@ impl<'a> Packed<'a> {
     /// linearly and those of a group need the same levels, as nearly always. Groups go through each step together: texels take long to
     /// come, and none needs wait for another's.
     #[inline(always)]
-    pub(crate) fn together<S: Simd, V: Floats<S>, const N: usize>(
+    pub(crate) fn sample_batch<S: Simd, V: Floats<S>, const N: usize>(
         &self,
         simd: S,
         places: &[([V; 2], V); N],
         active: u32,
     ) -> Option<[V::Words; N]> {
+        // Choose the levels of each group; give up if lanes differ.
         if self.first.is_encoded() || !self.levels[0].has_columns() {
             return None;
         }
@@ -137,6 +146,8 @@ impl<'a> Packed<'a> {
             (levels[i], fractions[i]) = ([first, first + 1], choice.fraction);
             several |= bits_of(choice.fraction.simd_gt(every::<S, V>(simd, 0.0))) != 0;
         }
+
+        // Compute addresses and weights for all groups and levels.
         let count = if several { 2 } else { 1 };
         let (mut at, mut weights) = ([[V::Ints::splat(simd, 0); 2]; N], [[[every(simd, 0.0); 2]; 2]; N]);
         let (mut beyond, mut reached) = ([[every(simd, 0.0); 2]; N], false);
@@ -152,6 +163,8 @@ impl<'a> Packed<'a> {
                 weights[i][k] = [x.weight, y.weight];
             }
         }
+
+        // Fetch the texels of all of them.
         let mut texels = [[[V::Words::splat(simd, 0); 4]; 2]; N];
         for i in 0..N {
             for k in 0..count {
@@ -164,6 +177,8 @@ impl<'a> Packed<'a> {
                 );
             }
         }
+
+        // Filter, then mix the levels.
         let mut words = [V::Words::splat(simd, 0); N];
         for i in 0..N {
             let filtered = lanes::inlined(
@@ -218,6 +233,8 @@ impl<'a> Packed<'a> {
         else {
             return self.mixed_halves(simd, place, level);
         };
+
+        // Fetch the four texels round each place and filter.
         let size = [every(simd, width as f32), every(simd, height as f32)];
         let [x, y] = self.linear(simd, place, size);
         let quads = quads::<S, V>(
@@ -227,6 +244,8 @@ impl<'a> Packed<'a> {
             y.near * (width as i32 + 1) + x.near,
         );
         let color = Halves::filter(simd, quads, [x.weight, y.weight]);
+
+        // Mix the border in where a wrap mode reaches it.
         match self.beyond(simd, place, size, true) {
             Some(share) => self.bordered(simd, color, share),
             None => color,
@@ -255,6 +274,7 @@ impl<'a> Packed<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Multiply the shares that lie inside along both axes.
                 let (zero, one) = (every::<S, V>(simd, 0.0), every(simd, 1.0));
                 let mut inside = one;
                 for k in 0..2 {
@@ -295,6 +315,7 @@ impl<'a> Packed<'a> {
     /// The texels round places, each on its lane's level, and the weights of those further on along both axes.
     #[inline(always)]
     fn mixed_quads<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], level: V) -> ([V::Words; 4], [V; 2]) {
+        // Find the texels and weights along both axes.
         let size = self.size_of(simd, level);
         let [x, y] = self.linear(simd, place, size);
         let (level, stride): (V::Ints, V::Ints) = (level.to_int(), size[0].to_int());
@@ -305,6 +326,8 @@ impl<'a> Packed<'a> {
         } else {
             self.levels[0].has_columns() && level.as_slice().iter().all(|l| self.get(*l).columns(1).is_some())
         };
+
+        // Fetch single texels where a level has no columns.
         if !have_columns {
             let words = lanes::inlined(
                 #[inline(always)]
@@ -313,6 +336,8 @@ impl<'a> Packed<'a> {
             let quads = [words(x.near, y.near), words(x.far, y.near), words(x.near, y.far), words(x.far, y.far)];
             return (quads, [x.weight, y.weight]);
         }
+
+        // Fetch pairs of columns, each lane from its level.
         let level = level.as_slice();
         let quads = quads::<S, V>(
             simd,
@@ -350,6 +375,7 @@ impl<'a> Packed<'a> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Filter four texels, or take the nearest one.
                 let words = &self.first;
                 let [width, height] = self.size_of(simd, level);
                 let color = if filtered {
@@ -364,6 +390,8 @@ impl<'a> Packed<'a> {
                     let stride: V::Ints = width.to_int();
                     words.meaning(simd, self.words::<S, V>(simd, level.to_int(), y * stride + x))
                 };
+
+                // Mix the border in where a wrap mode reaches it.
                 match self.beyond(simd, place, [width, height], filtered) {
                     Some(share) => mix_rgba(color, every_rgba(simd, words.raw(self.sampler.border)), share),
                     None => color,
@@ -382,7 +410,7 @@ impl<'a> Packed<'a> {
 
     #[inline(never)]
     fn add_words(&self, level: &[i32], at: &[i32], words: &mut [u32; MOST_LANES]) {
-        let texels = |level: i32| Words::new(self.get(level)).map_or(&[][..], |words| words.texels);
+        let texels = |level: i32| TexelWords::new(self.get(level)).map_or(&[][..], |words| words.texels);
         let [first, ..] = level else { return };
         // Nearly always all lanes need the same level.
         let (same, shared) = (level.iter().all(|other| other == first), texels(*first));

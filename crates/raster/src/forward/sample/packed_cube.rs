@@ -7,7 +7,7 @@
 //! Source: ARB_seamless_cube_map.
 
 use super::cube::{fill_missing, neighbour};
-use super::fetch::{Words, level_of_face, quads};
+use super::fetch::{TexelWords, level_of_face, quads};
 use super::halves::Halves;
 use super::mip::{choose, mix_rgba};
 use super::wrap::{linear_in, position_in};
@@ -33,12 +33,14 @@ pub(crate) struct PackedCube<'a> {
     /// Width and height of a face of level 0.
     size: u32,
     /// A face, for what bytes mean.
-    first: Words<'a>,
+    first: TexelWords<'a>,
 }
 
 impl<'a> PackedCube<'a> {
     /// `None` for textures of another kind.
     pub(crate) fn new(texture: &'a Texture) -> Option<Self> {
+        // Every level must be square, of bytes, half as large as the one before, and have no
+        // border.
         let levels = texture.faces.first()?;
         let (first, last) = (levels.first()?, levels.len().min(LEVELS) - 1);
         let size = first.size[0];
@@ -49,12 +51,14 @@ impl<'a> PackedCube<'a> {
             };
             levels.len() == last + 1 && levels.iter().map(|l| &**l).enumerate().all(side)
         });
+
+        // Only linear filters are packed.
         let sampler = &texture.sampler;
         let usual = texture.kind == TextureKind::Cube && texture.swizzle.is_none() && first.has_columns();
         if !usual || !regular || sampler.mag != Filter::Linear || !sampler.min.is_linear() {
             return None;
         }
-        Some(Self { texture, last, size, first: Words::new(first)? })
+        Some(Self { texture, last, size, first: TexelWords::new(first)? })
     }
 
     /// Whether the level of detail can matter.
@@ -87,6 +91,7 @@ impl<'a> PackedCube<'a> {
     /// The colours on one level a lane.
     #[inline(always)]
     fn level<S: Simd, V: Floats<S>>(&self, simd: S, (face, point): (V::Ints, [V; 2]), level: V) -> [V; 4] {
+        // Find the texels and weights along both axes.
         let size = max(floor(Lanes::exp2_whole(-level) * self.size as f32), every(simd, 1.0));
         let along = lanes::inlined(
             #[inline(always)]
@@ -99,6 +104,8 @@ impl<'a> PackedCube<'a> {
         let (x, y) = (along(0), along(1));
         let width: V::Ints = size.to_int();
         let at = (y.near + 1) * (width + 3) + (x.near + 1);
+
+        // Fetch the four texels, usually from one face and level.
         let level: V::Ints = level.to_int();
         let (first_face, first_level) = (face.as_slice()[0], level.as_slice()[0]);
         let quads = if (face.simd_eq(first_face) & level.simd_eq(first_level)).all_true() {
@@ -113,6 +120,8 @@ impl<'a> PackedCube<'a> {
         } else {
             self.mixed::<S, V>(simd, face, level, at)
         };
+
+        // Filter, and repair the lanes whose texels lie beyond an edge.
         let beyond = [x.near.simd_lt(0), x.far.simd_ge(width), y.near.simd_lt(0), y.far.simd_ge(width)];
         let weights = [x.weight, y.weight];
         let mut color = Halves::filter(simd, quads, weights).unpack();
@@ -175,12 +184,15 @@ impl<'a> PackedCube<'a> {
 /// A face of a level with a rim one texel wide, in columns.
 #[cold]
 fn with_rim(texture: &Texture, face: usize, level: usize) -> Box<[[u32; 2]]> {
+    // Read texels of any face of this level.
     let words = |face: usize| match level_of_face(texture, face, level).map(|level| (level.texels(), level.size[0])) {
         Some((Texels::Rgba8(words), size)) => (&words[..], size as i32),
         _ => (&[][..], 0),
     };
     let (own, size) = words(face);
     let texel = |words: &[u32], x: i32, y: i32| words.get((y * size + x) as usize).copied().unwrap_or(0);
+
+    // Find the texel beyond an edge: a neighbouring face's, or what the wrap mode says.
     let sampler = &texture.sampler;
     let border = sampler.border_word();
     let along = |axis: usize, at: i32| match sampler.wrap[axis].after_mirror() {
@@ -193,6 +205,8 @@ fn with_rim(texture: &Texture, face: usize, level: usize) -> Box<[[u32; 2]]> {
         _ if sampler.seamless => texel(own, x.clamp(0, size - 1), y.clamp(0, size - 1)),
         _ => along(0, x).zip(along(1, y)).map_or(border, |(x, y)| texel(own, x, y)),
     };
+
+    // Copy the face row by row with its rim.
     let mut rimmed = Vec::with_capacity(((size + 2) * (size + 2)) as usize);
     for y in -1..=size {
         rimmed.push(beyond(-1, y));

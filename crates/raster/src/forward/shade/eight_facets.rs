@@ -12,14 +12,14 @@ use crate::forward::environment::{format_of, modulate};
 use crate::forward::fragment_ops::compare::alpha_test;
 use crate::forward::fragment_ops::packed::pack;
 use crate::forward::pass::DrawContext;
-use crate::forward::sample::Common;
+use crate::forward::sample::PackedTexture;
 use crate::forward::sample::cube::{Chart, derivatives as derivatives_on_faces};
 use crate::forward::sample::mip::half_log2;
 use crate::forward::sample::packed::Packed;
 use crate::forward::sample::packed_cube::PackedCube;
 use crate::forward::state::{EnvironmentMode, Unit};
 use crate::forward::wide::{Rgba, bits_of, max, saturate_rgba, splat, splat_rgba};
-use crate::kernel::tiny::{PLACES, TinyEight, places};
+use crate::kernel::tiny::{PLACES, TinyEight, set_bits};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, F64x8, I32x8, LANES, Simd};
 
@@ -37,9 +37,13 @@ const ROOM: usize = LANES * PLACES + LANES;
 
 /// The pixels of eight facets that show, side by side.
 pub(crate) struct FacetPixels {
+    /// How many pixels there are.
     count: usize,
+    /// Position of each pixel in its facet's box: `8 * row + column`.
     places: [u8; ROOM],
+    /// Lane of each pixel's facet, as a float so that lanes compress it with the numbers.
     facets: [f32; ROOM],
+    /// The interpolated numbers, one list each.
     numbers: [[f32; ROOM]; NUMBERS],
 }
 
@@ -59,17 +63,24 @@ struct Numbers<S: Simd> {
 
 /// Perspective-correct barycentric coordinates of all facets at a place.
 struct Weights<S: Simd> {
+    /// Weight of corner 1.
     b1: F32x8<S>,
+    /// Weight of corner 2.
     b2: F32x8<S>,
+    /// Interpolated clip-space w.
     w: F32x8<S>,
 }
 
 /// Up to eight facets ready to be interpolated: see `Interpolation`.
 pub(crate) struct EightFacets<'d, S: Simd> {
     draw: &'d DrawContext<'d>,
+    /// Pixel position of corner 0, x and y.
     origin: [F32x8<S>; 2],
+    /// Change of `l1 / w1` with x and y.
     first: [F32x8<S>; 2],
+    /// Change of `l2 / w2` with x and y.
     second: [F32x8<S>; 2],
+    /// `Σ l / w` at the origin, and its change with x and y.
     sum: [F32x8<S>; 3],
     values: Values<S>,
 }
@@ -84,7 +95,7 @@ struct Values<S: Simd> {
 }
 
 /// Whether a draw's colours are those of corners, textures of the common kinds and fog, and nothing else.
-pub(crate) fn go_together(draw: &DrawContext<'_>) -> bool {
+pub(crate) fn can_batch_facets(draw: &DrawContext<'_>) -> bool {
     let (state, layout) = (draw.state, draw.layout);
     let common = |unit: &Unit| unit.mode == EnvironmentMode::Modulate && layout.tex[unit.index].is_some();
     (state.fog.is_none() || layout.fog.is_some())
@@ -96,7 +107,7 @@ pub(crate) fn go_together(draw: &DrawContext<'_>) -> bool {
 }
 
 impl<'d, S: Simd> EightFacets<'d, S> {
-    /// Makes the facets of `eight` ready, in a tile whose first pixel is `tile`, for a draw whose colours [`go_together`].
+    /// Makes the facets of `eight` ready, in a tile whose first pixel is `tile`, for a draw whose colours [`can_batch_facets`].
     /// `None` if `1 / w` differs much at the corners of one, or coordinates must be divided: this needs more care.
     #[inline(always)]
     pub(crate) fn new(
@@ -106,6 +117,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         (draw, primitives): (&'d DrawContext<'d>, &Primitives),
         tile: [u32; 2],
     ) -> Option<Self> {
+        // Gather 1 / w of the corners and refuse facets with strong perspective.
         let records = primitives.records.as_slice();
         let mut inverse_w = [[0.0; LANES]; 3];
         for (lane, facet) in facets.iter().enumerate() {
@@ -121,6 +133,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         if (inverse_w[0].simd_gt(least) | inverse_w[1].simd_gt(least) | inverse_w[2].simd_gt(least)).any_true() {
             return None;
         }
+
+        // Set up the colour of each facet.
         let color_at = |lane: usize| Shader::color_of(draw, facets[lane]);
         let zero = splat_rgba(simd, [0.0; 4]);
         let color = if draw.state.flat {
@@ -129,17 +143,21 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         } else {
             Numbers::of_corners(simd, records, facets, color_at)
         };
+
+        // Set up texture coordinates, which must need no division by q.
         let mut coordinates = [Numbers { base: zero, d1: zero, d2: zero }; MOST_UNITS];
         for (i, (unit, (_, common))) in draw.state.units.iter().zip(&draw.plain).enumerate() {
             let at = draw.layout.tex[unit.index]?;
             let own = Numbers::of_corners(simd, records, facets, |_| at);
             let undivided =
                 own.base[3].simd_eq(splat(simd, 1.0)) & own.d1[3].simd_eq(own.d2[3]) & own.d1[3].simd_eq(zero[3]);
-            if !matches!(common, Common::Shadow(_)) && !undivided.all_true() {
+            if !matches!(common, PackedTexture::Shadow(_)) && !undivided.all_true() {
                 return None;
             }
             coordinates[i % MOST_UNITS] = own;
         }
+
+        // Set up the fog coordinate.
         let mut fog = [zero[0]; 3];
         if let (Some(_), Some(at)) = (&draw.state.fog, draw.layout.fog) {
             // Four that lie within a record, and it among them.
@@ -160,6 +178,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         draw: &'d DrawContext<'d>,
         values: Values<S>,
     ) -> Self {
+        // Solve for the slopes of the barycentric weights in double precision.
         let [x, y] = eight.corners(simd);
         let double = lanes::inlined(
             #[inline(always)]
@@ -191,6 +210,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             |k: usize| double(lanes::Lanes::select(flat, splat(simd, 1.0), inverse_w[k])),
         );
         let [w0, w1, w2] = [weight(0), weight(1), weight(2)];
+
+        // Move the first corner to the window's coordinates.
         let (e1, e2) = (w1 - w0, w2 - w0);
         let origin = lanes::inlined(
             #[inline(always)]
@@ -199,6 +220,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                 absolute * (1.0 / SUBPIXEL as f32)
             },
         );
+
+        // Combine weights and 1 / w to three planes.
         Self {
             draw,
             origin: [origin(x[0], tile[0]), origin(y[0], tile[1])],
@@ -222,7 +245,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         words: &mut [[u32; LANES]; PLACES],
     ) {
         if self.draw.state.units.is_empty() && self.draw.state.alpha_test.is_none() {
-            for place in places(shown.iter().fold(0, |all, mask| all | mask)) {
+            for place in set_bits(shown.iter().fold(0, |all, mask| all | mask)) {
                 let weights = self.weights(simd, eight, place, tile);
                 let mut color = value(&weights, &self.values.color);
                 if let Some(state) = &self.draw.state.fog {
@@ -242,7 +265,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         // Find the slopes of coordinates whose level of detail depends on them.
         let mut slopes = [None; MOST_UNITS];
         for (i, (_, common)) in self.draw.plain.iter().enumerate() {
-            if let Common::Flat(packed) = common
+            if let PackedTexture::Flat(packed) = common
                 && packed.needs_lod()
             {
                 slopes[i % MOST_UNITS] = Some(self.slopes(packed, &self.values.coordinates[i % MOST_UNITS]));
@@ -260,7 +283,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         let lane = F32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
         // Interpolate at each place of the boxes where some facet shows.
-        for place in places(shown.iter().fold(0, |all, mask| all | mask)) {
+        for place in set_bits(shown.iter().fold(0, |all, mask| all | mask)) {
             let weights = self.weights(simd, eight, place, tile);
             let mut numbers = [splat(simd, 0.0); NUMBERS];
             let mut keep = lanes::inlined(
@@ -310,6 +333,7 @@ impl<'d, S: Simd> EightFacets<'d, S> {
     /// Looks textures up, for eight pixels at a time.
     #[inline(always)]
     fn look_up(&self, simd: S, pixels: &FacetPixels, shown: &mut [u64; LANES], words: &mut [[u32; LANES]; PLACES]) {
+        // Load the interpolated numbers of eight pixels.
         for start in (0..pixels.count).step_by(LANES) {
             let count = (pixels.count - start).min(LANES);
             let active = (1 << count) - 1;
@@ -318,21 +342,25 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                 |k: usize| F32x8::from_slice(simd, &pixels.numbers[k][start..start + LANES]),
             );
             let mut color = lanes::four(number);
+
+            // Modulate with the texture of each unit.
             for (i, (unit, (_, common))) in self.draw.state.units.iter().zip(&self.draw.plain).enumerate() {
                 let [a, b, c, d] = lanes::four(
                     #[inline(always)]
                     |k| number((4 + 4 * i + k) % FOG),
                 );
                 let texture = match common {
-                    Common::Flat(packed) => match packed.together(simd, &[([a, b], c)], active) {
+                    PackedTexture::Flat(packed) => match packed.sample_batch(simd, &[([a, b], c)], active) {
                         Some([words]) => packed.meaning(words),
                         None => packed.at(simd, [a, b], c, active),
                     },
-                    Common::Cube(packed) => packed.at(simd, (a.to_int(), [b, c]), d),
-                    Common::Shadow(packed) => packed.at(simd, [a, b, c], active),
+                    PackedTexture::Cube(packed) => packed.at(simd, (a.to_int(), [b, c]), d),
+                    PackedTexture::Shadow(packed) => packed.at(simd, [a, b, c], active),
                 };
                 color = modulate(format_of(&unit.texture), &texture, color);
             }
+
+            // Apply fog and the alpha test.
             if let Some(state) = &self.draw.state.fog {
                 color = fog(state, color, number(FOG));
             }
@@ -340,6 +368,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             if let Some(test) = self.draw.state.alpha_test {
                 passed = bits_of(alpha_test(simd, test, color[3]));
             }
+
+            // Scatter the packed colours to their facets and places.
             let packed = pack::<S, F32x8<S>>(&color).to_array();
             for lane in 0..count {
                 let (place, facet) = (usize::from(pixels.places[start + lane]), pixels.facets[start + lane] as usize);
@@ -400,16 +430,16 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         &self,
         simd: S,
         weights: &Weights<S>,
-        (unit, common): (&Unit, &Common<'_>),
+        (unit, common): (&Unit, &PackedTexture<'_>),
         i: usize,
         slopes: &Option<[[[F32x8<S>; 2]; 2]; 2]>,
     ) -> Rgba<S> {
         let coordinates = &self.values.coordinates[i];
         let at = value(weights, coordinates);
         match common {
-            Common::Flat(_) => self.place(simd, weights, unit, coordinates, at, slopes),
-            Common::Cube(packed) => self.place_on_cube(simd, weights, (unit, packed), coordinates, at),
-            Common::Shadow(packed) => {
+            PackedTexture::Flat(_) => self.place(simd, weights, unit, coordinates, at, slopes),
+            PackedTexture::Cube(packed) => self.place_on_cube(simd, weights, (unit, packed), coordinates, at),
+            PackedTexture::Shadow(packed) => {
                 let [x, y, reference] = packed.place(simd, at);
                 [x, y, reference, reference]
             }
@@ -453,8 +483,11 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         coordinates: &Numbers<S>,
         [s, t, r, _]: Rgba<S>,
     ) -> Rgba<S> {
+        // Start with the level's bias.
         let chart = Chart::new(simd, [s, t, r]);
         let mut level = splat(simd, unit.lod_bias);
+
+        // Add the level of detail from the derivatives on the face.
         if packed.needs_lod() {
             let step = lanes::inlined(
                 #[inline(always)]

@@ -1,7 +1,7 @@
 //! What a facet's textures make of its colour: coordinates, level of detail, lookups and environments, eight pixels at a
 //! time.
 
-use super::{Groups, MOST, Scratch, Shader, Weights};
+use super::{Groups, MAX_NUMBERS, Scratch, Shader, Weights};
 use crate::forward::environment::{UNITS, environment, format_of, modulate};
 use crate::forward::sample::anisotropic::sample_anisotropic;
 use crate::forward::sample::cube::{Chart, derivatives as derivatives_on_faces};
@@ -9,7 +9,7 @@ use crate::forward::sample::depth::PackedShadow;
 use crate::forward::sample::mip::{derivatives, half_log2, lod, needs_lod};
 use crate::forward::sample::packed::Packed;
 use crate::forward::sample::packed_cube::PackedCube;
-use crate::forward::sample::{Common, sample};
+use crate::forward::sample::{PackedTexture, sample};
 use crate::forward::state::{EnvironmentMode, Unit};
 use crate::forward::texture::{BaseFormat, Swizzle};
 use crate::forward::wide::{Rgba, every, max, splat, splat_rgba};
@@ -17,7 +17,7 @@ use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, Simd};
 
 /// Eight pixels: where, and which of them matter.
-struct Eight<S: Simd> {
+struct SampleBatch8<S: Simd> {
     weights: Weights<F32x8<S>>,
     active: u32,
 }
@@ -25,7 +25,7 @@ struct Eight<S: Simd> {
 impl<V, const N: usize> Groups<'_, V, N> {
     /// The colours of group `i`, made for eight pixels at a time.
     #[inline(always)]
-    fn by_eights<S: Simd>(&self, simd: S, i: usize, f: impl Fn(&Eight<S>) -> Rgba<S>) -> [V; 4]
+    fn by_eights<S: Simd>(&self, simd: S, i: usize, f: impl Fn(&SampleBatch8<S>) -> Rgba<S>) -> [V; 4]
     where
         V: Floats<S>,
     {
@@ -34,7 +34,9 @@ impl<V, const N: usize> Groups<'_, V, N> {
             simd,
             [b1, b2, w],
             #[inline(always)]
-            |first, [b1, b2, w]| f(&Eight { weights: Weights { b1, b2, w }, active: self.active >> first & 0xff }),
+            |first, [b1, b2, w]| {
+                f(&SampleBatch8 { weights: Weights { b1, b2, w }, active: self.active >> first & 0xff })
+            },
         )
     }
 }
@@ -73,9 +75,9 @@ impl<'d> Shader<'d> {
         colors: &mut [[V; 4]; N],
     ) -> bool {
         match self.common(unit) {
-            Some((Common::Flat(packed), at)) => self.plain(simd, groups, (unit, packed, at), colors),
-            Some((Common::Cube(packed), at)) => self.cube(simd, groups, (unit, packed, at), colors),
-            Some((Common::Shadow(packed), at)) => self.shadow(simd, groups, (unit, packed, at), colors),
+            Some((PackedTexture::Flat(packed), at)) => self.plain(simd, groups, (unit, packed, at), colors),
+            Some((PackedTexture::Cube(packed), at)) => self.cube(simd, groups, (unit, packed, at), colors),
+            Some((PackedTexture::Shadow(packed), at)) => self.shadow(simd, groups, (unit, packed, at), colors),
             None => return false,
         }
         true
@@ -94,6 +96,8 @@ impl<'d> Shader<'d> {
             || {
                 let (zero, one) = (every(simd, 0.0), every(simd, 1.0));
                 let mut textures = [[[zero; 4]; UNITS]; N];
+
+                // Sample all units first, as one may use another's texture.
                 for unit in &self.draw.state.units {
                     let (own, format) = (unit.index % UNITS, format_of(&unit.texture));
                     // White, modulated with a texture, is the texture's colour; but alpha alone comes with black.
@@ -107,6 +111,8 @@ impl<'d> Shader<'d> {
                         };
                     }
                 }
+
+                // Then apply the environments in the order of units.
                 for i in 0..N {
                     let primary = colors[i];
                     for unit in &self.draw.state.units {
@@ -120,17 +126,17 @@ impl<'d> Shader<'d> {
     /// The texture of a unit and where its coordinates are in records, if it is of a common kind: two dimensions or a cube, 8
     /// bits a component, no texels of a border, no anisotropy, no q of a cube's that could turn directions round.
     #[inline(always)]
-    fn common(&self, unit: &Unit) -> Option<(&'d Common<'d>, usize)> {
+    fn common(&self, unit: &Unit) -> Option<(&'d PackedTexture<'d>, usize)> {
         let (_, packed) = self.draw.plain.iter().find(|(index, _)| *index == unit.index)?;
         let at = self.draw.layout.tex[unit.index % UNITS]?;
-        let turns = matches!(packed, Common::Cube(_)) && self.is_divided(at);
+        let turns = matches!(packed, PackedTexture::Cube(_)) && self.is_divided(at);
         (!turns).then_some((packed, at))
     }
 
     /// Whether the coordinates at `at` must be divided by q: it is not 1 all over the facet.
     #[inline(always)]
     fn is_divided(&self, at: usize) -> bool {
-        let (d, q_at) = (&self.scratch.differences, (at + 3) % MOST);
+        let (d, q_at) = (&self.scratch.differences, (at + 3) % MAX_NUMBERS);
         d.varies >> q_at & 1 == 1 || d.base[q_at] != 1.0
     }
 
@@ -153,27 +159,30 @@ impl<'d> Shader<'d> {
 
     /// A unit's texture at eight pixels.
     #[inline(never)]
-    fn texture<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
-        let Eight { weights, active, .. } = eight;
+    fn texture<S: Simd>(&self, simd: S, eight: &SampleBatch8<S>, unit: &Unit) -> Rgba<S> {
+        // Sample textures of the common kinds by their packed form.
+        let SampleBatch8 { weights, active, .. } = eight;
         if let Some((common, at)) = self.common(unit) {
             return simd.vectorize(
                 #[inline(always)]
                 || match common {
-                    Common::Flat(packed) => {
+                    PackedTexture::Flat(packed) => {
                         let slopes = Slopes::new(self, packed, at);
                         let (place, level) = self.place(simd, weights, (unit, packed, at), &slopes);
                         packed.at(simd, place, level, *active)
                     }
-                    Common::Cube(packed) => {
+                    PackedTexture::Cube(packed) => {
                         let (place, level) = self.place_on_cube(simd, weights, (unit, packed, at));
                         packed.at(simd, place, level)
                     }
-                    Common::Shadow(packed) => {
+                    PackedTexture::Shadow(packed) => {
                         packed.at(simd, packed.place(simd, self.four(simd, weights, at)), *active)
                     }
                 },
             );
         }
+
+        // Sample any other texture and swizzle its components.
         let color = simd.vectorize(
             #[inline(always)]
             || self.any(simd, eight, unit),
@@ -200,20 +209,26 @@ impl<'d> Shader<'d> {
 
     /// Any texture: borders, volumes, cubes, depth, anisotropy.
     #[inline(always)]
-    fn any<S: Simd>(&self, simd: S, eight: &Eight<S>, unit: &Unit) -> Rgba<S> {
-        let Eight { weights, active } = *eight;
+    fn any<S: Simd>(&self, simd: S, eight: &SampleBatch8<S>, unit: &Unit) -> Rgba<S> {
+        let SampleBatch8 { weights, active } = *eight;
         let weights = &weights;
+
+        // Interpolate the coordinates.
         let texture = &*unit.texture;
         let coords = match self.draw.layout.tex[unit.index % UNITS] {
             Some(at) => self.four(simd, weights, at),
             None => splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]),
         };
+
+        // Sample with the bias alone where no level of detail is needed.
         let bias = splat(simd, unit.lod_bias);
         let anisotropic = texture.sampler.anisotropy > 1.0;
         let plane = self.draw.planes[unit.index % UNITS];
         if !needs_lod(texture) && !anisotropic {
             return sample(simd, texture, plane, coords, bias, active);
         }
+
+        // Find the derivatives in texels, and sample by them.
         let [dx, dy] = self.steps(simd, weights, self.draw.layout.tex[unit.index % UNITS]);
         let steps = derivatives(simd, texture, coords, dx, dy);
         if anisotropic {
@@ -234,14 +249,14 @@ impl<'d> Shader<'d> {
         for axis in 0..2 {
             let [db1, db2] = i.weight_steps(simd, weights, axis);
             for k in 0..4 {
-                steps[axis][k] = db1 * d.d1[(at + k) % MOST] + db2 * d.d2[(at + k) % MOST];
+                steps[axis][k] = db1 * d.d1[(at + k) % MAX_NUMBERS] + db2 * d.d2[(at + k) % MAX_NUMBERS];
             }
         }
         steps
     }
 
-    /// Has the colours ready of the texture that the draw shows again, in a block of pixels, if they can be kept: looked up now or
-    /// before.
+    /// Looks up the colours of the texture that the draw shows repeatedly, in a block of pixels, unless the cache has them.
+    /// Leaves the block out of the cache if they cannot be kept.
     #[inline(always)]
     pub(super) fn see<S: Simd, V: Floats<S>, const N: usize>(
         &mut self,
@@ -251,7 +266,7 @@ impl<'d> Shader<'d> {
     ) {
         let draw = self.draw;
         let Some(unit) = draw.state.units.iter().find(|unit| draw.again == Some(unit.index)) else { return };
-        let Some((Common::Flat(packed), at)) = self.common(unit) else { return };
+        let Some((PackedTexture::Flat(packed), at)) = self.common(unit) else { return };
         let Scratch { interpolation, differences, seen } = &mut *self.scratch;
         seen.look_at(unit, at, interpolation, differences);
         if seen.get(block).is_some() {
@@ -276,7 +291,7 @@ impl<'d> Shader<'d> {
             #[inline(always)]
             || {
                 let places = self.places(simd, (unit, packed, at), weights);
-                packed.together(simd, &places, u32::MAX)
+                packed.sample_batch(simd, &places, u32::MAX)
             },
         )
     }
@@ -309,6 +324,7 @@ impl<'d> Shader<'d> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Take the colours that are kept from the last draw.
                 let format = format_of(&unit.texture);
                 if let Some(words) = groups.seen.filter(|_| self.draw.again == Some(unit.index)) {
                     for (color, words) in colors.iter_mut().zip(words.chunks_exact(V::LEN)) {
@@ -318,12 +334,14 @@ impl<'d> Shader<'d> {
                 }
                 // Places and levels of all groups come first: each takes long, but they need not wait for each other.
                 let places = self.places(simd, (unit, packed, at), &groups.weights);
-                if let Some(words) = packed.together(simd, &places, groups.active) {
+                if let Some(words) = packed.sample_batch(simd, &places, groups.active) {
                     for i in 0..N {
                         colors[i] = modulate(format, &packed.meaning(words[i]), colors[i]);
                     }
                     return;
                 }
+
+                // Otherwise sample group by group.
                 for i in 0..N {
                     let (place, level) = places[i];
                     let texture = packed.at(simd, place, level, groups.active);
@@ -392,11 +410,14 @@ impl<'d> Shader<'d> {
         weights: &Weights<V>,
         (unit, packed, at): (&Unit, &PackedCube<'_>, usize),
     ) -> ((V::Ints, [V; 2]), V) {
+        // Find the face and the point on it.
         let direction = lanes::three(
             #[inline(always)]
             |k| self.value(simd, weights, at + k),
         );
         let chart = Chart::new(simd, direction);
+
+        // Add the level of detail from the derivatives on the face.
         let mut level = every(simd, unit.lod_bias);
         if packed.needs_lod() {
             let steps = [self.step(simd, weights, at, 0), self.step(simd, weights, at, 1)];
@@ -417,7 +438,7 @@ impl<'d> Shader<'d> {
         let d = &self.scratch.differences;
         lanes::three(
             #[inline(always)]
-            |k| db1 * d.d1[(at + k) % MOST] + db2 * d.d2[(at + k) % MOST],
+            |k| db1 * d.d1[(at + k) % MAX_NUMBERS] + db2 * d.d2[(at + k) % MAX_NUMBERS],
         )
     }
 
@@ -453,16 +474,19 @@ impl<'d> Shader<'d> {
         simd.vectorize(
             #[inline(always)]
             || {
+                // Divide the coordinates by q.
                 let d = &self.scratch.differences;
-                let q_at = (at + 3) % MOST;
+                let q_at = (at + 3) % MAX_NUMBERS;
                 let inverse_q = every::<S, V>(simd, 1.0) / self.value(simd, weights, q_at);
                 let place = [place[0] * inverse_q, place[1] * inverse_q];
+
+                // Sum the squares of the derivatives along both screen axes.
                 let mut squares: [V; 2] = [every(simd, 0.0); 2];
                 for axis in 0..2 {
                     let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);
                     let dq = db1 * d.d1[q_at] + db2 * d.d2[q_at];
                     for k in 0..2 {
-                        let n = (at + k) % MOST;
+                        let n = (at + k) % MAX_NUMBERS;
                         let step = (db1 * d.d1[n] + db2 * d.d2[n] - place[k] * dq) * inverse_q * size[k];
                         squares[axis] += step * step;
                     }
@@ -490,12 +514,13 @@ struct Slopes {
 impl Slopes {
     #[inline(always)]
     fn new(shader: &Shader<'_>, packed: &Packed<'_>, at: usize) -> Self {
+        // Compute the changes along both screen axes, in texels.
         let (i, d) = (&shader.scratch.interpolation, &shader.scratch.differences);
         let size = packed.size();
         let (mut numerator, mut sum) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
         for axis in 0..2 {
             for k in 0..2 {
-                let n = (at + k) % MOST;
+                let n = (at + k) % MAX_NUMBERS;
                 numerator[axis][k] = (i.first[axis + 1] * d.d1[n] + i.second[axis + 1] * d.d2[n]) * size[k];
                 sum[axis][k] = i.sum[axis + 1] * size[k];
             }
@@ -503,7 +528,7 @@ impl Slopes {
         Self {
             numerator,
             sum,
-            base: [d.base[at % MOST], d.base[(at + 1) % MOST]],
+            base: [d.base[at % MAX_NUMBERS], d.base[(at + 1) % MAX_NUMBERS]],
             flat: i.flat_w.is_some(),
             divided: shader.is_divided(at),
         }

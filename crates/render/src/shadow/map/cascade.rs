@@ -23,7 +23,7 @@ use super::light_maps::{Key, LightMaps, Maps};
 use super::tiles::Map;
 use super::{lookup, slice};
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::places::Places;
+use crate::shadow::places::SurfacePoints;
 use crate::{Cached, Reuse};
 use vitral_exec::Limit;
 use vitral_light::Rgb;
@@ -74,7 +74,7 @@ impl Cascades {
         let row = -view.view_from_world.row(2);
         let center = Triangles::center_of(world);
         let solids = slice::seen(world, view);
-        let depths = solids.iter().flat_map(slice::Convex::corners).map(|p| row.dot(p.extend(1.0)));
+        let depths = solids.iter().flat_map(slice::ConvexSolid::corners).map(|p| row.dot(p.extend(1.0)));
         let [near, far] = depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[n, f], d| [n.min(d), f.max(d)]);
         let cuts = if near < far { cuts(near, far, view.perspective, count) } else { Vec::new() };
         // A slice's map is asked about places before it, too: those that fade into it.
@@ -99,7 +99,7 @@ impl Cascades {
         light: usize,
         maps: &[&Map],
         questions: &[(usize, usize)],
-        places: &Places,
+        places: &SurfacePoints,
     ) -> Vec<Rgb> {
         // Ask one map or two about each place. The slices' maps are numbered from the end of the others on.
         let slices = &self.maps[light];
@@ -110,6 +110,7 @@ impl Cascades {
         // How much the next question's answer counts against this one's.
         let mut fades = Vec::with_capacity(questions.len());
         for &(whole, place) in questions {
+            // Choose the map of the slice where there is one, and of the next slice near its end.
             let position = places.position(place);
             let map = |slice: usize| {
                 let sharper = slices.get(slice).and_then(Option::as_ref).filter(|m| m.lens.holds(position));
@@ -162,24 +163,27 @@ fn cuts(near: f64, far: f64, perspective: bool, count: u32) -> Vec<f64> {
 }
 
 /// The lens for what is seen in a slice, if it pays.
-fn lens(light: &LightMaps, solids: &[slice::Convex], world: &World, size: u32) -> Option<Lens> {
+fn lens(light: &LightMaps, solids: &[slice::ConvexSolid], world: &World, size: u32) -> Option<Lens> {
     let (whole, lens, middle) = match light {
         LightMaps::Infinity { towards, map } => {
-            let corners: Vec<DVec3> = solids.iter().flat_map(slice::Convex::corners).collect();
+            // Fit a parallel lens to the slice.
+            let corners: Vec<DVec3> = solids.iter().flat_map(slice::ConvexSolid::corners).collect();
             let middle = *corners.first()?;
             (&map.lens, Lens::parallel_round(*towards, &corners, &map.lens, world, size)?, middle)
         }
-        LightMaps::Places(places) => {
+        LightMaps::Positions(places) => {
             // All around a light, or from many places, there is no one map to be better than.
             let [(from, maps)] = &places[..] else { return None };
             let [map] = &maps[..] else { return None };
             let solids = slice::within(solids, &map.lens.view.clip_from_world());
-            let corners: Vec<DVec3> = solids.iter().flat_map(slice::Convex::corners).collect();
+            let corners: Vec<DVec3> = solids.iter().flat_map(slice::ConvexSolid::corners).collect();
             let middle = corners.iter().sum::<DVec3>() / corners.len().max(1) as f64;
             (&map.lens, Lens::before(from.at.truncate(), &corners, world, size)?, middle)
         }
-        LightMaps::Unhindered => return None,
+        LightMaps::Unoccluded => return None,
     };
+
+    // Use it only where its texels are clearly smaller than those of the whole map.
     let middle = middle - Triangles::center_of(world);
     (lens.texel(middle) * PAYS <= whole.texel(middle)).then_some(lens)
 }

@@ -163,12 +163,16 @@ impl<'a> DepthSink<'a> {
         if self.is_given_up() {
             return;
         }
+
+        // Find the nearest opaque depths.
         let place = tile_origin(view, index);
         let opaque = batches.iter().filter(|(layered, _)| !layered).map(|(_, batch)| *batch);
         let level = self.execution.level;
         let nearest = nearest_depths(level, place, opaque, index);
         let far = nearest.far();
         let depths = nearest.into_depths();
+
+        // Collect the transparent layers in front of them.
         let mut layers = Vec::new();
         if batches.iter().any(|(layered, _)| *layered) {
             with_spare(spare, view.pattern.len(), |tile| {
@@ -183,6 +187,8 @@ impl<'a> DepthSink<'a> {
                 layers = self.layers(tile, &list);
             });
         }
+
+        // Store the tile.
         self.keep(index, depths, layers);
     }
 
@@ -208,19 +214,23 @@ impl<'a> DepthSink<'a> {
         let world_from_view = lens.view_from_world.inverse();
         // Facets come one after the other.
         let mut last = (NO_FACET, None);
+
+        // Convert each layer to a distance and what it lets through there.
         for layer in list.iter() {
             let [x, y] = [layer.at as usize % TILE, layer.at as usize / TILE].map(|k| k as u32);
             let [x, y] = [tile.x + x, tile.y + y];
             if x < lens.width && y < lens.height {
                 let depth = lens.distance(layer.depth);
                 if last.0 != layer.facet {
-                    last = (layer.facet, self.occluders.passing_anywhere(layer.facet));
+                    last = (layer.facet, self.occluders.transmittance_anywhere(layer.facet));
                 }
-                let there = || self.passing(layer.facet, &world_from_view, [x, y], depth);
+                let there = || self.transmittance(layer.facet, &world_from_view, [x, y], depth);
                 let passing = last.1.unwrap_or_else(there);
                 found.push((layer.facet, Layer { texel: layer.at, depth, passing }));
             }
         }
+
+        // Sort by texel and depth, and drop duplicates of a facet.
         found.sort_unstable_by(|(f, a): &(u32, Layer), (g, b)| {
             a.texel.cmp(&b.texel).then(a.depth.total_cmp(&b.depth)).then(f.cmp(g))
         });
@@ -238,7 +248,7 @@ impl<'a> DepthSink<'a> {
     }
 
     /// What passes a facet in the middle of a texel.
-    fn passing(&self, facet: u32, world_from_view: &DMat4, texel: [u32; 2], depth: f32) -> Rgb {
+    fn transmittance(&self, facet: u32, world_from_view: &DMat4, texel: [u32; 2], depth: f32) -> Rgb {
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
         let triangle = instance.mesh.triangles[(facet - instance.first_facet) as usize];
@@ -247,7 +257,7 @@ impl<'a> DepthSink<'a> {
             (instance.world_from_model.transform_point3(dvec3(x, y, z)) - self.center).as_vec3()
         });
         let point = self.lens.point(texel.map(|k| f64::from(k) + 0.5), f64::from(depth));
-        self.occluders.passing(facet, &corners, || world_from_view.transform_point3(point))
+        self.occluders.transmittance(facet, &corners, || world_from_view.transform_point3(point))
     }
 }
 

@@ -46,6 +46,7 @@ impl Lens {
         world: &World,
         size: u32,
     ) -> Option<Self> {
+        // Measure the points as the light sees them.
         let camera = far_away(towards, world);
         let view = camera.view_from_world();
         let [low, high] = extent(points.iter().map(|&p| view.transform_point3(p)));
@@ -60,6 +61,8 @@ impl Lens {
         while texel * FRAC_1_SQRT_2 >= finest {
             texel *= FRAC_1_SQRT_2;
         }
+
+        // Snap the box to the grid of texels.
         let [low, high] =
             [(low / texel).floor() - BORDER, (high / texel).ceil() + BORDER].map(|p| [p.x, p.y].map(|k| k as i64));
         let count = [0, 1].map(|k| (high[k] - low[k]).clamp(1, i64::from(size)) as u32);

@@ -5,7 +5,7 @@ use super::lens::Lens;
 use super::tiles::Map;
 use crate::raytrace::triangles::Triangles;
 use crate::shadow::occluders::Occluders;
-use crate::shadow::sources::{Emitter, Source};
+use crate::shadow::sources::{Emitter, LightSource};
 use crate::{Cached, ColorSpace, Execution, Session, Settings, Transparency};
 use std::sync::Arc;
 use vitral_exec::Limit;
@@ -17,7 +17,7 @@ const LEAST_SIDE: u32 = 256;
 
 /// What maps depend on, besides the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Key {
+pub(crate) struct LightMapsKey {
     lights: Vec<Light>,
     size: u32,
     samples: u32,
@@ -30,22 +30,21 @@ pub(crate) struct Key {
 pub(crate) struct Maps(pub(super) Vec<LightMaps>);
 
 impl Cached for Maps {
-    type Key = Key;
+    type LightMapsKey = LightMapsKey;
 }
 
 /// The maps of one light.
 #[derive(Debug)]
 pub(super) enum LightMaps {
-    Unhindered,
-    Infinity {
-        towards: DVec3,
-        map: Box<Map>,
-    },
-    /// Each place of a light with its maps.
-    Places(Vec<(Emitter, Vec<Map>)>),
+    /// Ambient light, or a scene without anything in it.
+    Unoccluded,
+    /// A light infinitely far away: the unit vector to it, and its map.
+    Infinity { towards: DVec3, map: Box<Map> },
+    /// Each position of a light at a finite distance, with its maps.
+    Positions(Vec<(Emitter, Vec<Map>)>),
 }
 
-impl Key {
+impl LightMapsKey {
     pub(super) fn new(lights: &[Light], settings: &Settings) -> Self {
         Self {
             lights: lights.to_vec(),
@@ -65,7 +64,7 @@ impl Maps {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<Arc<Self>, Limit> {
-        let key = Key::new(lights, settings);
+        let key = LightMapsKey::new(lights, settings);
         if let Some(old) = session.cache.take_outdated::<Self>(&key) {
             Arc::into_inner(old).into_iter().for_each(|old| old.recycle(session));
         }
@@ -82,9 +81,9 @@ impl Maps {
         let mut spare = session.spare_batches.lock().expect("spare batches");
         for maps in self.0 {
             let maps = match maps {
-                LightMaps::Unhindered => Vec::new(),
+                LightMaps::Unoccluded => Vec::new(),
                 LightMaps::Infinity { map, .. } => vec![*map],
-                LightMaps::Places(places) => places.into_iter().flat_map(|(_, maps)| maps).collect(),
+                LightMaps::Positions(places) => places.into_iter().flat_map(|(_, maps)| maps).collect(),
             };
             spare.extend(maps.into_iter().filter_map(|map| map.pending).flat_map(|pending| pending.batches));
         }
@@ -95,26 +94,27 @@ impl LightMaps {
     fn new(light: &Light, pass: FirstPass<'_>) -> Result<Self, Limit> {
         let (world, size) = (&pass.session.world, pass.settings.shadows.map_size);
         if world.bounds.is_empty() {
-            return Ok(Self::Unhindered);
+            return Ok(Self::Unoccluded);
         }
-        let source = Source::new(light, pass.settings.shadows.light_samples, Triangles::center_of(world));
+        let source = LightSource::new(light, pass.settings.shadows.light_samples, Triangles::center_of(world));
         let emitters = source.places();
+        // Draw one map for a parallel light or a spot, and a cube of maps for any other position.
         match source {
-            Source::Unhindered => Ok(Self::Unhindered),
-            Source::Infinity(towards) => {
+            LightSource::Unoccluded => Ok(Self::Unoccluded),
+            LightSource::Infinity(towards) => {
                 let map = Box::new(pass.draw(Lens::parallel(towards, world, size))?);
                 Ok(Self::Infinity { towards, map })
             }
-            Source::Point(at) => Ok(Self::Places(vec![match spot_lens(light, at, pass) {
+            LightSource::Point(at) => Ok(Self::Positions(vec![match spot_lens(light, at, pass) {
                 Some(lens) => (emitters[0], vec![pass.draw(lens)?]),
                 None => maps_around(emitters[0], size, pass)?,
             }])),
-            Source::Area(_) => {
+            LightSource::Area(_) => {
                 let side = (f64::from(size) / (emitters.len() as f64).sqrt()) as u32;
                 let side = side.max(LEAST_SIDE.min(size));
                 let pass = FirstPass { when: When::Before, ..pass };
                 let places = emitters.into_iter().map(|from| maps_around(from, side, pass));
-                Ok(Self::Places(places.collect::<Result<_, Limit>>()?))
+                Ok(Self::Positions(places.collect::<Result<_, Limit>>()?))
             }
         }
     }

@@ -7,7 +7,7 @@
 //! Cost: a constant number of operations a place.
 
 use super::tiles::{Map, MapTile};
-use crate::shadow::places::{EightPlaces, Parts, Places};
+use crate::shadow::places::{LightVisibility, SurfacePoints, SurfacePoints8};
 use std::ops::{Add, Mul, Sub};
 use vitral_light::{DIRECTION_ROUNDING, Rgb};
 use vitral_math::lanes::prelude::*;
@@ -29,7 +29,7 @@ const SLOPE_BIAS: f64 = 1.0 / 64.0;
 const DEPTH_BIAS: f64 = 1.0 / (1 << 19) as f64;
 
 /// Where eight places are on a map, and how deep.
-struct Eight<S: Simd> {
+struct LookupBatch8<S: Simd> {
     /// In texels; not a number where the map does not tell.
     at: [F64x8<S>; 2],
     /// The upper left of the four texels whose middles are nearest.
@@ -66,7 +66,7 @@ struct Answer {
 }
 
 /// What maps answer to questions: the number of a map, and which of the places is asked about, which faces its light.
-pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)], places: &Places) -> Vec<Rgb> {
+pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)], places: &SurfacePoints) -> Vec<Rgb> {
     let mut parts = vec![[1.0; 3]; questions.len()];
     let mut own: Vec<u32> = Vec::with_capacity(questions.len());
     for (number, map) in maps.iter().enumerate() {
@@ -79,14 +79,20 @@ pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)],
 
 /// What the only map of a light at one place (homogeneous) tells: the part of the light that arrives, none at places that face
 /// away.
-pub(super) fn arriving(level: Level, map: &Map, light: DVec4, places: &Places, parts: &mut Parts) {
-    dispatch!(level, simd => map.arriving(simd, light, places, parts));
+pub(super) fn light_visibility(
+    level: Level,
+    map: &Map,
+    light: DVec4,
+    places: &SurfacePoints,
+    parts: &mut LightVisibility,
+) {
+    dispatch!(level, simd => map.light_visibility(simd, light, places, parts));
 }
 
 impl Map {
     /// The part of light that arrives at each of the places.
     #[inline(always)]
-    fn arriving<S: Simd>(&self, simd: S, light: DVec4, places: &Places, parts: &mut Parts) {
+    fn light_visibility<S: Simd>(&self, simd: S, light: DVec4, places: &SurfacePoints, parts: &mut LightVisibility) {
         let at = [light.x, light.y, light.z];
         // See `horizon`, of which these are the operations.
         let rounding = f64::from(DIRECTION_ROUNDING);
@@ -102,7 +108,7 @@ impl Map {
             let horizon = ((place * 2.0 + sum) * light.w + sum) * rounding;
             let asked = (along(0) + along(1) + along(2)).simd_gt(horizon).to_bitmask() as u32;
             if asked != 0 {
-                self.passing(simd, places, asked, parts);
+                self.transmittance(simd, places, asked, parts);
             }
         }
     }
@@ -113,14 +119,14 @@ impl Map {
         &self,
         simd: S,
         own: &[u32],
-        (questions, places): (&[(usize, usize)], &Places),
+        (questions, places): (&[(usize, usize)], &SurfacePoints),
         parts: &mut [Rgb],
     ) {
         for asked in own.chunks(LANES) {
             let number = |lane: usize| questions[asked[lane.min(asked.len() - 1)] as usize].1;
             let eight = places.pick(std::array::from_fn(number));
             let mut passing = [[0.0; LANES]; 3];
-            self.passing(simd, &eight, (1 << asked.len()) - 1, &mut passing);
+            self.transmittance(simd, &eight, (1 << asked.len()) - 1, &mut passing);
             for (lane, &question) in asked.iter().enumerate() {
                 parts[question as usize] = passing.map(|channel| channel[lane]);
             }
@@ -129,7 +135,7 @@ impl Map {
 
     /// The part of light that arrives at those of eight places whose bits are set in `asked`, which face it; others keep theirs.
     #[inline(always)]
-    fn passing<S: Simd>(&self, simd: S, places: &EightPlaces, asked: u32, parts: &mut [[f32; LANES]; 3]) {
+    fn transmittance<S: Simd>(&self, simd: S, places: &SurfacePoints8, asked: u32, parts: &mut [[f32; LANES]; 3]) {
         let eight = self.locate(simd, places);
 
         // Look at the texels. Outside of the map, and where it does not tell, all is lit.
@@ -163,7 +169,8 @@ impl Map {
     /// The depths of the four texels of each of these places, ∞ where nothing is; and in which of them something transparent may
     /// be.
     #[inline(always)]
-    fn texels<S: Simd>(&self, simd: S, eight: &Eight<S>, mut asked: u32) -> ([[f32; LANES]; 4], u32) {
+    fn texels<S: Simd>(&self, simd: S, eight: &LookupBatch8<S>, mut asked: u32) -> ([[f32; LANES]; 4], u32) {
+        // Find the address of each place's four texels.
         let mut texels = [[f32::INFINITY; LANES]; 4];
         let Addresses { corner, tiles, first, together } = self.addresses(simd, eight);
         let mut apart = 0;
@@ -172,6 +179,7 @@ impl Map {
         while asked != 0 {
             let lane = asked.trailing_zeros() as usize % LANES;
             asked &= asked - 1;
+            // Fetch from several tiles where the four texels straddle a border.
             if together >> lane & 1 == 0 {
                 match self.texels_of_tiles([corner[0][lane], corner[1][lane]]) {
                     Some(found) => (0..4).for_each(|k| texels[k][lane] = found[k]),
@@ -179,6 +187,8 @@ impl Map {
                 }
                 continue;
             }
+
+            // Otherwise read all four from one tile, reusing the last place's.
             let tile = match current {
                 Some((number, tile)) if number == tiles[lane] => tile,
                 _ => self.tile(tiles[lane] as usize),
@@ -200,11 +210,13 @@ impl Map {
 
     /// Where the four texels of each place lie.
     #[inline(always)]
-    fn addresses<S: Simd>(&self, simd: S, eight: &Eight<S>) -> Addresses {
+    fn addresses<S: Simd>(&self, simd: S, eight: &LookupBatch8<S>) -> Addresses {
         let whole = lanes::inlined(
             #[inline(always)]
             |number: F64x8<S>| -> I32x8<S> { lanes::narrowed(simd, number).to_int() },
         );
+
+        // Find the upper left texel.
         let (left, top) = (whole(eight.first[0]), whole(eight.first[1]));
         let (size, shift) = (TILE as i32, TILE.trailing_zeros());
         let (x, y) = (left & (size - 1), top & (size - 1));
@@ -212,6 +224,8 @@ impl Map {
             #[inline(always)]
             |number: i32| I32x8::splat(simd, number),
         );
+
+        // Tell which places lie inside the map, and with all four texels in one tile.
         let (width, height) = (self.lens.width as i32 - 1, self.lens.height as i32 - 1);
         let inside = left.simd_ge(splat(0)) & top.simd_ge(splat(0));
         let inside = inside & left.simd_lt(splat(width)) & top.simd_lt(splat(height));
@@ -266,7 +280,7 @@ impl Map {
 
     /// Finds where places are on the map, and how deep their planes are in the texels there.
     #[inline(always)]
-    fn locate<S: Simd>(&self, simd: S, places: &EightPlaces) -> Eight<S> {
+    fn locate<S: Simd>(&self, simd: S, places: &SurfacePoints8) -> LookupBatch8<S> {
         let lens = &self.lens;
         let matrix = &lens.view_from_world;
         let normal = rotated(matrix, load(simd, &places.normal));
@@ -281,7 +295,7 @@ impl Map {
         let at = self.project(simd, point);
         let first = [(at[0] + 0.5).floor() - 1.0, (at[1] + 0.5).floor() - 1.0];
         let (depths, ends) = self.plane_depths(simd, point, normal, first, texel);
-        Eight { at, first, depths, ends, touching: texel * TOUCHING }
+        LookupBatch8 { at, first, depths, ends, touching: texel * TOUCHING }
     }
 
     /// Where points of view space are on the map, in texels; not a number behind the light.
@@ -303,7 +317,7 @@ impl Map {
     }
 
     /// Depths of the planes through points of view space in the four texels from `first` on, less what they may be wrong by;
-    /// and where what lies farther is not the surface any more. `texel` is the side of a texel at each point.
+    /// and where depths farther away belong to another surface. `texel` is the side of a texel at each point.
     #[inline(always)]
     fn plane_depths<S: Simd>(
         &self,
@@ -365,7 +379,7 @@ impl Map {
         touching: f64,
         [right, bottom]: [f32; 2],
     ) -> Rgb {
-        let at = |k: usize| self.passing_at([left + (k % 2) as i32, top + (k / 2) as i32], surface[k]);
+        let at = |k: usize| self.transmittance_at([left + (k % 2) as i32, top + (k / 2) as i32], surface[k]);
         let mut four = [at(0), at(1), at(2), at(3)];
         let own = usize::from(right >= 0.5) + 2 * usize::from(bottom >= 0.5);
         let touches = |(answer, [begin, _]): (&Answer, [f64; 2])| !answer.dark || answer.nearest >= begin - touching;
@@ -389,7 +403,7 @@ impl Map {
     }
 
     /// What one texel says about a surface that begins and ends at these depths.
-    fn passing_at(&self, place: [i32; 2], [begin, end]: [f64; 2]) -> Answer {
+    fn transmittance_at(&self, place: [i32; 2], [begin, end]: [f64; 2]) -> Answer {
         let lit = Answer { passing: [1.0; 3], beyond: true, dark: false, nearest: f64::INFINITY };
         let Some((tile, texel)) = self.texel(place) else { return lit };
         let nearest = f64::from(tile.depth.get(texel).copied().unwrap_or(f32::INFINITY));
@@ -404,7 +418,7 @@ impl Map {
     }
 }
 
-impl<S: Simd> Eight<S> {
+impl<S: Simd> LookupBatch8<S> {
     /// The part of light that passes texels of these depths, blended by the places' `shares` to the right and below; exact for
     /// places whose bits are set in `asked`.
     #[inline(always)]
@@ -457,8 +471,9 @@ impl<S: Simd> Eight<S> {
     }
 }
 
-/// What [`Map::eight_apart`] needs of [`Eight`].
+/// What [`Map::eight_apart`] needs of [`LookupBatch8`].
 struct Stored {
+    /// As in [`LookupBatch8`], lane by lane.
     first: [[f64; LANES]; 2],
     depths: [[f64; LANES]; 4],
     ends: [[f64; LANES]; 4],
@@ -468,7 +483,7 @@ struct Stored {
 
 impl Stored {
     #[inline(always)]
-    fn new<S: Simd>(eight: &Eight<S>, shares: [F32x8<S>; 2]) -> Self {
+    fn new<S: Simd>(eight: &LookupBatch8<S>, shares: [F32x8<S>; 2]) -> Self {
         let store = lanes::inlined(
             #[inline(always)]
             |value: F64x8<S>| {
@@ -481,6 +496,8 @@ impl Stored {
             #[inline(always)]
             |values: &[F64x8<S>; 4]| [store(values[0]), store(values[1]), store(values[2]), store(values[3])],
         );
+
+        // Store every register, lane by lane.
         Self {
             first: [store(eight.first[0]), store(eight.first[1])],
             depths: four(&eight.depths),
@@ -530,7 +547,7 @@ fn rotated<S: Simd>(matrix: &DMat4, [x, y, z]: [F64x8<S>; 3]) -> [F64x8<S>; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shadow::Place;
+    use crate::shadow::SurfacePoint;
     use crate::shadow::casters::faces;
     use crate::shadow::map::draw::When;
     use crate::shadow::map::testing::teapot;
@@ -538,7 +555,7 @@ mod tests {
     use vitral_math::lanes::available_levels;
 
     /// What a map tells about eight places that face the light, each by itself.
-    fn one_by_one<S: Simd>(simd: S, map: &Map, places: &EightPlaces) -> [Rgb; LANES] {
+    fn one_by_one<S: Simd>(simd: S, map: &Map, places: &SurfacePoints8) -> [Rgb; LANES] {
         let eight = map.locate(simd, places);
         let share = |k: usize| lanes::narrowed(simd, eight.at[k] - 0.5 - eight.first[k]);
         let stored = Stored::new(&eight, [share(0), share(1)]);
@@ -567,12 +584,12 @@ mod tests {
             let place = |_| {
                 let position = dvec3(random(), random(), random()) * extent * 2.0;
                 let normal = dvec3(random(), random(), random()).normalize();
-                Place { position, normal, facet: 0, seed: 0, pixel: None }
+                SurfacePoint { position, normal, facet: 0, seed: 0, pixel: None }
             };
-            let places: Places = (0..20_003).map(place).collect();
+            let places: SurfacePoints = (0..20_003).map(place).collect();
             for (name, level) in available_levels() {
-                let mut parts = Parts::new(places.len(), [f32::NAN; 3]);
-                arriving(level, &map, towards.extend(0.0), &places, &mut parts);
+                let mut parts = LightVisibility::new(places.len(), [f32::NAN; 3]);
+                light_visibility(level, &map, towards.extend(0.0), &places, &mut parts);
                 let mut partly = 0;
                 for (number, eight) in places.eights().iter().enumerate() {
                     let expected = dispatch!(level, simd => one_by_one(simd, &map, eight));

@@ -6,9 +6,9 @@ use vitral_scene::{ViewTransform, World};
 
 /// A convex solid by its faces; each is a polygon, its corners in order.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Convex(Vec<Vec<DVec3>>);
+pub(super) struct ConvexSolid(Vec<Vec<DVec3>>);
 
-impl Convex {
+impl ConvexSolid {
     fn of_box(bounds: &Aabb) -> Self {
         let corner = |bits: usize| {
             let pick = |k: usize| if bits >> k & 1 == 1 { bounds.max[k] } else { bounds.min[k] };
@@ -22,6 +22,7 @@ impl Convex {
     pub(super) fn cut(&mut self, plane: DVec4) {
         let height = |p: DVec3| plane.truncate().dot(p) + plane.w;
         let mut rim = Vec::new();
+        // Clip each face, and remember the crossings.
         for face in &mut self.0 {
             let mut kept = Vec::with_capacity(face.len() + 1);
             for (i, &a) in face.iter().enumerate() {
@@ -55,14 +56,14 @@ impl Convex {
 }
 
 /// What a view shows of the boxes round all objects.
-pub(super) fn seen(world: &World, view: &ViewTransform) -> Vec<Convex> {
+pub(super) fn seen(world: &World, view: &ViewTransform) -> Vec<ConvexSolid> {
     let clip_from_world = view.clip_from_world();
     let frustum = Frustum::from_matrix(&clip_from_world);
     let boxes = world.instances.iter().map(|i| &i.bounds);
     let boxes = boxes.filter(|b| !b.is_empty() && b.min.is_finite() && b.max.is_finite());
     let seen = boxes.filter_map(|bounds| {
         let containment = frustum.test_box(bounds);
-        let mut solid = (containment != Containment::Outside).then(|| Convex::of_box(bounds))?;
+        let mut solid = (containment != Containment::Outside).then(|| ConvexSolid::of_box(bounds))?;
         if containment == Containment::Crossing {
             frustum.planes.iter().for_each(|&plane| solid.cut(plane));
         }
@@ -72,7 +73,7 @@ pub(super) fn seen(world: &World, view: &ViewTransform) -> Vec<Convex> {
 }
 
 /// What of the solids lies between two depths. `depth` gives that of a point: `depth · (x, y, z, 1)`.
-pub(super) fn between(solids: &[Convex], depth: DVec4, [start, end]: [f64; 2]) -> Vec<Convex> {
+pub(super) fn between(solids: &[ConvexSolid], depth: DVec4, [start, end]: [f64; 2]) -> Vec<ConvexSolid> {
     let sliced = solids.iter().filter_map(|solid| {
         let mut solid = solid.clone();
         solid.cut(depth - DVec4::W * start);
@@ -83,7 +84,7 @@ pub(super) fn between(solids: &[Convex], depth: DVec4, [start, end]: [f64; 2]) -
 }
 
 /// What of the solids lies between the sides of a frustum.
-pub(super) fn within(solids: &[Convex], clip_from_world: &DMat4) -> Vec<Convex> {
+pub(super) fn within(solids: &[ConvexSolid], clip_from_world: &DMat4) -> Vec<ConvexSolid> {
     let sides = &Frustum::from_matrix(clip_from_world).planes[..4];
     let inside = solids.iter().filter_map(|solid| {
         let mut solid = solid.clone();
@@ -97,11 +98,11 @@ pub(super) fn within(solids: &[Convex], clip_from_world: &DMat4) -> Vec<Convex> 
 mod tests {
     use super::*;
 
-    fn unit() -> Convex {
-        Convex::of_box(&Aabb { min: DVec3::ZERO, max: DVec3::ONE })
+    fn unit() -> ConvexSolid {
+        ConvexSolid::of_box(&Aabb { min: DVec3::ZERO, max: DVec3::ONE })
     }
 
-    fn extent(solid: &Convex) -> [DVec3; 2] {
+    fn extent(solid: &ConvexSolid) -> [DVec3; 2] {
         let grow = |[low, high]: [DVec3; 2], p: DVec3| [low.min(p), high.max(p)];
         solid.corners().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], grow)
     }
@@ -124,7 +125,7 @@ mod tests {
 
     #[test]
     fn flat_boxes_are_cut_too() {
-        let mut flat = Convex::of_box(&Aabb { min: DVec3::new(-5.0, 0.0, -5.0), max: DVec3::new(5.0, 0.0, 5.0) });
+        let mut flat = ConvexSolid::of_box(&Aabb { min: DVec3::new(-5.0, 0.0, -5.0), max: DVec3::new(5.0, 0.0, 5.0) });
         flat.cut(DVec4::new(1.0, 0.0, 1.0, 0.0));
         flat.cut(DVec4::new(1.0, 0.0, -1.0, 0.0));
         assert_eq!(extent(&flat), [DVec3::new(0.0, 0.0, -5.0), DVec3::new(5.0, 0.0, 5.0)]);

@@ -3,13 +3,13 @@
 use crate::shadow::casters::{Solid, box_around};
 use vitral_math::DVec3;
 
-/// As many solids are clipped one by one.
-const FEW: usize = 6;
+/// Solids up to which a part is not divided: they are clipped one by one.
+const MAX_CLIPPED: usize = 6;
 /// Cuts above a part.
 const DEEPEST: u32 = 40;
 /// Cuts in a row that may leave more than three quarters of the solids to a part. Where solids meet in a line, cutting goes on and on
 /// along it and separates none: they are clipped one by one, too.
-const PATIENCE: u32 = 6;
+const MAX_VAIN_CUTS: u32 = 6;
 
 /// A part of a facet.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +53,7 @@ impl Detail {
 
     /// Whether a place in the plane of the facet with this root lies in a lit polygon, or beside one by no more than `slack`.
     pub(super) fn lights(&self, root: u32, place: DVec3, slack: f64) -> bool {
+        // Descend to the leaf that holds the place, and test its polygons.
         let mut node = root;
         loop {
             match &self.nodes[node as usize] {
@@ -115,7 +116,7 @@ enum Left {
     All,
     /// It covers it.
     Nothing,
-    Parts(Vec<Vec<DVec3>>),
+    Several(Vec<Vec<DVec3>>),
 }
 
 impl Cutter<'_> {
@@ -131,13 +132,15 @@ impl Cutter<'_> {
 
     /// Adds a part of it, which these solids may reach.
     fn part(&mut self, polygon: Vec<DVec3>, solids: &[u32], mut cuts: Cuts) -> u32 {
+        // Keep the solids that reach the part; stop dividing when there are few or when cuts do not
+        // help.
         let Some(solids) = self.reaching(&polygon, solids) else { return self.detail.dark() };
         if solids.len() <= cuts.last / 4 * 3 {
             (cuts.last, cuts.in_vain) = (solids.len(), 0);
         } else {
             cuts.in_vain += 1;
         }
-        if solids.len() <= FEW || cuts.depth == DEEPEST || cuts.in_vain > PATIENCE {
+        if solids.len() <= MAX_CLIPPED || cuts.depth == DEEPEST || cuts.in_vain > MAX_VAIN_CUTS {
             return self.clip(polygon, &solids);
         }
         cuts.depth += 1;
@@ -149,6 +152,8 @@ impl Cutter<'_> {
         if below.len() < 3 || above.len() < 3 {
             return self.clip(polygon, &solids);
         }
+
+        // Recurse into both halves.
         let lower = self.part(below, &solids, cuts);
         let upper = self.part(above, &solids, cuts);
         // Nothing to tell apart: two dark halves are a dark whole.
@@ -182,7 +187,7 @@ impl Cutter<'_> {
                 match less(&polygon, &self.solids[solid as usize], self.eps) {
                     Left::All => next.push(polygon),
                     Left::Nothing => {}
-                    Left::Parts(parts) => next.extend(parts),
+                    Left::Several(parts) => next.extend(parts),
                 }
             }
             left = next;
@@ -194,8 +199,11 @@ impl Cutter<'_> {
 /// How much of a polygon a solid reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Reach {
+    /// The solid does not touch the polygon.
     None,
+    /// It touches a part of it.
     Some,
+    /// It holds all of it.
     Covers,
 }
 
@@ -226,6 +234,8 @@ fn reach(polygon: &[DVec3], solid: &Solid, eps: f64) -> Reach {
 fn split(polygon: &[DVec3], value: impl Fn(DVec3) -> f64, eps: f64) -> [Vec<DVec3>; 2] {
     let mut parts = [Vec::with_capacity(polygon.len() + 1), Vec::with_capacity(polygon.len() + 1)];
     let mut reached = [false; 2];
+
+    // Distribute the corners, and add crossings to both parts.
     for (i, &p) in polygon.iter().enumerate() {
         let q = polygon[(i + 1) % polygon.len()];
         let (a, b) = (value(p), value(q));
@@ -242,6 +252,8 @@ fn split(polygon: &[DVec3], value: impl Fn(DVec3) -> f64, eps: f64) -> [Vec<DVec
             parts.iter_mut().for_each(|part| part.push(crossing));
         }
     }
+
+    // Drop parts that reach nowhere beyond the tolerance.
     for (part, reached) in parts.iter_mut().zip(reached) {
         if !reached {
             part.clear();
@@ -264,7 +276,7 @@ fn less(polygon: &[DVec3], solid: &Solid, eps: f64) -> Left {
         }
         inner = within;
     }
-    if outer.is_empty() { Left::Nothing } else { Left::Parts(outer) }
+    if outer.is_empty() { Left::Nothing } else { Left::Several(outer) }
 }
 
 #[cfg(test)]

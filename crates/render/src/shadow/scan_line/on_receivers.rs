@@ -51,6 +51,8 @@ impl Receivers<'_> {
         let workers = &self.execution.workers;
         let back_faces: Vec<_> =
             world.instances.iter().map(|i| self.session.back_faces(i.mesh_index, self.transparency, workers)).collect();
+
+        // Search some receivers at a time in parallel, and hand out what they found in order.
         let jobs = self.casters.triangles().count().div_ceil(RECEIVERS_A_JOB);
         for first in (0..jobs).step_by(JOBS_AT_ONCE) {
             let count = JOBS_AT_ONCE.min(jobs - first);
@@ -77,6 +79,7 @@ impl Receivers<'_> {
 
     /// Finds the shadow polygons on a triangle.
     fn on(&self, receiver: usize, back_faces: &[BackFaces<'_>], lists: &mut [Vec<u32>; 2], found: &mut Found) {
+        // Skip a receiver that faces away from the light.
         let triangles = self.casters.triangles();
         let corners = wide(&triangles.corners[receiver]);
         let winding = winding_normal(&corners);
@@ -88,12 +91,14 @@ impl Receivers<'_> {
         let position = corners.iter().fold(DVec3::ZERO, |m, c| m.max(c.abs()));
         let behind = clearance(position, f64::from(triangles.extent));
         let near = near(self.light, triangles.extent);
+        // Clip the receiver to each caster's volume, which begins behind the caster.
         for (kind, caster) in self.before(receiver, &corners, lists) {
             let Some(mut solid) = Solid::new(&caster, self.light, near) else { continue };
             let (normal, at) = &mut solid.planes[0];
             *at += normal.normalize_or_zero() * behind;
             let shadow = clipped(&corners, &solid);
             let area = (2..shadow.len()).map(|i| winding_normal(&[shadow[0], shadow[i - 1], shadow[i]])).sum::<DVec3>();
+            // Keep polygons that are more than slivers.
             if area.length() > SLIVER * winding.length() {
                 found.corners.extend(shadow.iter().map(|&c| c + triangles.center));
                 found.polygons.push((kind, found.corners.len()));
@@ -139,6 +144,7 @@ impl Receivers<'_> {
 
 /// The part of a triangle that lies in a solid.
 fn clipped(corners: &[DVec3; 3], solid: &Solid) -> Vec<DVec3> {
+    // Clip at each plane of the solid.
     let (mut polygon, mut kept) = (corners.to_vec(), Vec::new());
     for (normal, at) in solid.planes {
         kept.clear();

@@ -1,8 +1,8 @@
 //! Counting along paths: which sides and caps a path meets, and the numbers of a whole batch of places.
 
-use super::edges::{Side, before};
+use super::edges::{VolumeSide, before};
 use super::light_volumes::LightVolumes;
-use super::paths::{Boxes, Paths};
+use super::paths::{Boxes8, Paths};
 use crate::VolumeCounting;
 use crate::raytrace::beam::Beam;
 use crate::raytrace::intersect::Ray;
@@ -62,7 +62,7 @@ impl Path {
 
     /// What a side adds to the count, if the path crosses its plane `along` the normal.
     #[inline(always)]
-    fn side(&self, side: &Side, along: i32) -> i32 {
+    fn side(&self, side: &VolumeSide, along: i32) -> i32 {
         if along == 0 {
             return 0;
         }
@@ -140,7 +140,7 @@ impl Lit<'_> {
     }
 
     #[inline(always)]
-    fn side(&self, number: u32) -> &Side {
+    fn side(&self, number: u32) -> &VolumeSide {
         &self.volumes.sides[number as usize]
     }
 
@@ -220,6 +220,7 @@ impl Batch {
         slack: f64,
         found: &mut impl FnMut(usize, DVec3, i32, &[u32]),
     ) {
+        // Count small parts place by place.
         let polygons: usize = part.lists.iter().map(ExactSizeIterator::len).sum();
         if part.places.len() <= LANES || part.places.len() * polygons <= FEW_PAIRS {
             let filters = &self.lists[2][part.lists[2].clone()];
@@ -233,13 +234,19 @@ impl Batch {
             }
             return;
         }
+
+        // Cut the part into eight and bound each.
         let places = self.cut(part.places.clone());
         let boxes = places.clone().map(|range| box_around(self.places[range].iter().map(|p| p.1), slack));
         let (middle, half) = (boxes.map(|b| b.0), boxes.map(|b| b.1));
         let to = boxes.map(|(middle, half)| inner(middle, half));
         let lengths = [0, 1, 2].map(|k: usize| self.lists[k].len());
+
+        // Count from the known place to a place in each, and narrow the lists to what touches it.
         let changes = dispatch!(level, simd => self.changes(simd, lit, &part, &to));
         let lists = dispatch!(level, simd => self.narrow(simd, lit, &part.lists, (&middle, &half)));
+
+        // Recurse, then drop the narrowed lists.
         for (k, (places, lists)) in places.into_iter().zip(lists).enumerate() {
             let known = (to[k], part.known.1 + changes[k]);
             self.part(level, lit, Part { places, known, lists }, slack, found);
@@ -290,7 +297,8 @@ impl Batch {
         lists: &Lists,
         (middle, half): (&[DVec3; LANES], &[DVec3; LANES]),
     ) -> [Lists; LANES] {
-        let boxes = Boxes::new(simd, middle, half);
+        // Deal sides, caps and filters to the boxes they touch.
+        let boxes = Boxes8::new(simd, middle, half);
         let least = near(lit.light(), lit.casters.extent());
         let sides = self.deal(
             (0, lists[0].clone()),

@@ -21,7 +21,7 @@ struct Use {
 
 /// What volumes are made of, whatever the light.
 #[derive(Debug)]
-pub(crate) struct Surface {
+pub(crate) struct CasterSurface {
     /// For each triangle its plane: the normal by its winding, and what makes the height of its corners 0.
     pub(super) planes: Vec<DVec4>,
     /// The edges of the opaque triangles, sorted by their ends.
@@ -33,7 +33,7 @@ const USES_A_JOB: usize = 1 << 14;
 
 /// A side of volumes: from an edge away from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Side {
+pub(super) struct VolumeSide {
     /// The edge, in the order of places.
     pub(super) a: DVec3,
     pub(super) b: DVec3,
@@ -69,12 +69,12 @@ pub(super) fn turned_all(light: DVec4, near: f64, triangles: &Triangles, workers
     all
 }
 
-impl Cached for Surface {
+impl Cached for CasterSurface {
     /// Whether blended materials keep all light.
     type Key = bool;
 }
 
-impl Surface {
+impl CasterSurface {
     /// Of the world's triangles.
     pub(super) fn new(world: &World, casters: &Casters, execution: &Execution) -> Result<Self, Limit> {
         let (triangles, budget) = (casters.triangles(), &execution.budget);
@@ -94,7 +94,13 @@ impl Surface {
     }
 
     /// The sides for a light: edges whose multiplicity is not 0.
-    pub(super) fn sides(&self, light: DVec4, turned: &[i8], triangles: &Triangles, workers: &Workers) -> Vec<Side> {
+    pub(super) fn sides(
+        &self,
+        light: DVec4,
+        turned: &[i8],
+        triangles: &Triangles,
+        workers: &Workers,
+    ) -> Vec<VolumeSide> {
         let jobs = self.uses.len().div_ceil(USES_A_JOB);
         workers.map(jobs, |job| self.sides_of(job, light, turned, triangles)).concat()
     }
@@ -106,7 +112,7 @@ impl Surface {
         at + self.uses[at..].iter().take_while(|u| u.ends == before).count()
     }
 
-    fn sides_of(&self, job: usize, light: DVec4, turned: &[i8], triangles: &Triangles) -> Vec<Side> {
+    fn sides_of(&self, job: usize, light: DVec4, turned: &[i8], triangles: &Triangles) -> Vec<VolumeSide> {
         let mut sides = Vec::new();
         let uses = &self.uses[self.first_use(job)..self.first_use(job + 1)];
         for run in uses.chunk_by(|one, two| one.ends == two.ends) {
@@ -117,7 +123,7 @@ impl Surface {
                 let (corners, k) = (wide(&triangles.corners[run[0].triangle as usize]), (run[0].corner >> 1) as usize);
                 let (p, q) = (corners[k], corners[(k + 1) % 3]);
                 let (a, b) = if run[0].corner & 1 == 1 { (q, p) } else { (p, q) };
-                sides.push(Side::new(a, b, light, multiplicity));
+                sides.push(VolumeSide::new(a, b, light, multiplicity));
             }
         }
         sides
@@ -147,6 +153,7 @@ fn opaque_edges(world: &World, casters: &Casters, workers: &Workers) -> (Vec<Use
         let triangle = instance.mesh.triangles[(triangles.facets[i] - instance.first_facet) as usize];
         let number = triangle.map(|v| first + weld.representative[v as usize]);
         let corners = wide(corners);
+        // Order the ends of each edge, so that both neighbours find the same one.
         for k in 0..3 {
             let m = (k + 1) % 3;
             if number[k] == number[m] || corners[k] == corners[m] {
@@ -179,7 +186,7 @@ fn sorted_by_ends(found: Vec<Use>, counts: Vec<u32>) -> Vec<Use> {
     uses
 }
 
-impl Side {
+impl VolumeSide {
     pub(super) fn new(a: DVec3, b: DVec3, light: DVec4, multiplicity: i32) -> Self {
         let normal = side_normal(a, b, light);
         let inwards = |n: DVec3, inner: DVec3| if n.dot(inner) < 0.0 { -n } else { n };

@@ -1,6 +1,6 @@
 //! The volumes that hide one place of a light: their sides, found again by a tree, and their caps.
 
-use super::edges::{Side, Surface, turned_all};
+use super::edges::{CasterSurface, VolumeSide, turned_all};
 use crate::Execution;
 use crate::raytrace::bvh::Bvh;
 use crate::raytrace::triangles::Triangles;
@@ -20,7 +20,7 @@ pub(super) struct LightVolumes {
     pub(super) from: Emitter,
     /// For each triangle whether its winding turns it towards the light, 1, or away, -1.
     pub(super) turned: Vec<i8>,
-    pub(super) sides: Vec<Side>,
+    pub(super) sides: Vec<VolumeSide>,
     /// Over runs of sides.
     tree: Bvh,
 }
@@ -29,16 +29,18 @@ impl LightVolumes {
     pub(super) fn new(
         from: Emitter,
         triangles: &Triangles,
-        surface: &Surface,
+        surface: &CasterSurface,
         execution: &Execution,
     ) -> Result<Self, Limit> {
         let light = from.at;
+
+        // Turn each triangle towards the light and find the silhouette's sides.
         execution.budget.check("shadow volumes")?;
         let turned = turned_all(light, near(light, triangles.extent), triangles, &execution.workers);
         let sides = surface.sides(light, &turned, triangles, &execution.workers);
         // A tree over runs of sides: neighbours in the list mostly are neighbours in space. A box is a triangle, too.
         let runs = || sides.chunks(RUN);
-        let around = |run: &[Side]| {
+        let around = |run: &[VolumeSide]| {
             let (middle, half) = box_around(run.iter().flat_map(|s| [s.a, s.b]), 0.0);
             let [min, max] = [middle - half, middle + half].map(|p: DVec3| -> Vec3 { p.as_vec3() });
             [min, max, max]
@@ -48,7 +50,9 @@ impl LightVolumes {
             facets: (0..runs().len() as u32).collect(),
             ..*triangles
         };
-        let bytes = sides.len() as u64 * size_of::<Side>() as u64 + Bvh::bytes(sides.len() as u64);
+
+        // Build the tree and charge what it takes.
+        let bytes = sides.len() as u64 * size_of::<VolumeSide>() as u64 + Bvh::bytes(sides.len() as u64);
         execution.budget.charge(bytes, "shadow volumes")?;
         execution.budget.release(bytes);
         let tree = Bvh::build(&boxes, &execution.workers, &execution.budget)?;
@@ -70,6 +74,7 @@ impl LightVolumes {
 
     /// Hands on caps and sides, cut where the scene is well left behind.
     pub(super) fn draw(&self, light: usize, casters: &Casters, triangles: &Triangles, take: &mut dyn FnMut(Drawn<'_>)) {
+        // Extend volumes well beyond the scene.
         let reach = f64::from(triangles.extent) * 2.0;
         let beyond = |p: DVec3| p + away(self.from.at, p).normalize_or_zero() * reach;
         let mut hand = |kind: &'static str, corners: &[DVec3]| {
@@ -82,6 +87,8 @@ impl LightVolumes {
             let [a, b, c] = wide(&triangles.corners[i]);
             if self.turned[i] > 0 { [a, b, c] } else { [a, c, b] }
         };
+
+        // Emit the near caps, the far caps and the sides.
         casting().for_each(|i| hand("near-cap", &towards(i)));
         for i in casting() {
             let [a, b, c] = towards(i).map(beyond);

@@ -3,7 +3,7 @@
 //! In double precision, the operations in the order of the formulas for one path, so that a path has the same crossings
 //! whichever way it is looked at.
 
-use super::edges::{Side, before};
+use super::edges::{VolumeSide, before};
 use crate::shadow::casters::{away, ordered, wide};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F64x8, LANES, Simd};
@@ -102,11 +102,14 @@ impl<S: Simd> Paths<S> {
 
     /// Counts a side of volumes.
     #[inline(always)]
-    pub(super) fn meet_side(&mut self, side: &Side) {
+    pub(super) fn meet_side(&mut self, side: &VolumeSide) {
+        // Find the paths that cross the side's plane.
         let (enters, mut met) = self.crossing(side.plane);
         if met == 0 {
             return;
         }
+
+        // Keep those that pass between the rays along its two edges.
         let [a, b] = [side.a, side.b].map(
             #[inline(always)]
             |p| splat(self.simd, p - self.from),
@@ -116,6 +119,8 @@ impl<S: Simd> Paths<S> {
             |p| positive(self.simd, dot(self.normal, p)),
         );
         met &= if enters { !of_a & of_b } else { of_a & !of_b };
+
+        // Keep those on the inner side of the edge itself, and count them.
         if met != 0 {
             let left = self.left_of(a, b);
             met &= if enters { !left } else { left };
@@ -144,13 +149,13 @@ impl<S: Simd> Paths<S> {
 }
 
 /// Eight boxes, parallel to the axes.
-pub(super) struct Boxes<S: Simd> {
+pub(super) struct Boxes8<S: Simd> {
     simd: S,
     middle: Points<S>,
     half: Points<S>,
 }
 
-impl<S: Simd> Boxes<S> {
+impl<S: Simd> Boxes8<S> {
     /// By their middles and half their sides.
     #[inline(always)]
     pub(super) fn new(simd: S, middle: &[DVec3; LANES], half: &[DVec3; LANES]) -> Self {
@@ -172,7 +177,7 @@ impl<S: Simd> Boxes<S> {
 
     /// Those into which a side may reach.
     #[inline(always)]
-    pub(super) fn touched_by_side(&self, side: &Side) -> u32 {
+    pub(super) fn touched_by_side(&self, side: &VolumeSide) -> u32 {
         let mut touched = self.cut_by(side.plane);
         if touched == 0 {
             return 0;
@@ -264,7 +269,7 @@ mod tests {
             let to = [0; LANES].map(|_| place(&mut seed));
             let [a, b] = [place(&mut seed), place(&mut seed)];
             let (a, b) = if ordered(a, b) { (a, b) } else { (b, a) };
-            let side = Side::new(a, b, LIGHT, 3);
+            let side = VolumeSide::new(a, b, LIGHT, 3);
             let light = LIGHT.truncate();
             let expected = to.map(|to| {
                 let (start, end) = (height(side.plane, from), height(side.plane, to));
@@ -305,10 +310,10 @@ mod tests {
             let half = [0; LANES].map(|_| place(&mut seed).abs() * 0.2);
             let (corners, plane) = triangle(&mut seed);
             let [a, b, c] = wide(&corners);
-            let side = Side::new(a.min(b), a.max(b), LIGHT, 1);
+            let side = VolumeSide::new(a.min(b), a.max(b), LIGHT, 1);
             for (name, level) in available_levels() {
                 let [by_triangle, by_side] = dispatch!(level, simd => {
-                    let boxes = Boxes::new(simd, &middle, &half);
+                    let boxes = Boxes8::new(simd, &middle, &half);
                     [boxes.touched_by_triangle(plane, &corners), boxes.touched_by_side(&side)]
                 });
                 for lane in 0..LANES {

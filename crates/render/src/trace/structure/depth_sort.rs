@@ -31,6 +31,7 @@ struct Sorting<'s> {
 impl<'s> Sorting<'s> {
     fn new(steps: &'s [Step]) -> Self {
         let mut sorting = Self::default();
+        // Note the first order, the events, and the final list.
         for step in steps {
             match step {
                 Step::FirstOrder { polygons } => sorting.first = polygons,
@@ -75,6 +76,8 @@ fn name(polygon: u32, facet: u32) -> String {
 /// [`Step::Piece`]: polygons that were moved are blue, parts of polygons that were split red.
 pub fn depth_sort_svg(steps: &[Step]) -> String {
     let sorting = Sorting::new(steps);
+
+    // Write the title and the heads of the columns.
     let title = format!(
         "Depth sort: {} polygon(s), {} in the final list, {} move(s), {} split(s)",
         sorting.first.len(),

@@ -7,7 +7,7 @@ use super::svg_picture::{GREY, INK, LINE, MARGIN, Picture};
 use std::collections::HashMap;
 
 /// Windows of a level that are drawn one by one. Of a larger level the number is written.
-const MOST: usize = 48;
+const MAX_WINDOWS: usize = 48;
 /// From node to node, and from level to level.
 const ACROSS: f64 = 26.0;
 const DOWN: f64 = 60.0;
@@ -90,17 +90,18 @@ fn plan(windows: &[Window], scale: f64, picture: &mut Picture) {
 
 /// The tree, level by level.
 fn tree(windows: &[Window], picture: &mut Picture) {
+    // Sort the windows by level.
     let levels = windows.iter().map(|w| w.depth + 1).max().unwrap_or(0);
     let by_level: Vec<Vec<&Window>> =
         (0..levels).map(|level| windows.iter().filter(|w| w.depth == level).collect()).collect();
-    let widest = by_level.iter().map(Vec::len).filter(|count| *count <= MOST).max().unwrap_or(1);
+    let widest = by_level.iter().map(Vec::len).filter(|count| *count <= MAX_WINDOWS).max().unwrap_or(1);
     let width = (widest as f64 * ACROSS).max(SIDE);
 
     // Links begin at the boxes of the level above.
     let mut places: HashMap<u32, [f64; 2]> = HashMap::new();
     let mut y = picture.bottom() + LINE;
     for level in &by_level {
-        if level.len() > MOST {
+        if level.len() > MAX_WINDOWS {
             let told = format!("{} windows", level.len());
             picture.text([MARGIN + width / 2.0, y + 4.0], &told, GREY, "middle");
         } else {

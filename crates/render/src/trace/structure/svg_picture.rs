@@ -104,8 +104,8 @@ impl Picture {
 
 /// Some numbers in a row, and how many there are if these are not all.
 pub(super) fn row_of(numbers: &[u32], count: u32) -> String {
-    const MOST: usize = 8;
-    let names: Vec<_> = numbers.iter().take(MOST).map(u32::to_string).collect();
+    const MAX_NAMED: usize = 8;
+    let names: Vec<_> = numbers.iter().take(MAX_NAMED).map(u32::to_string).collect();
     let more = (count as usize).saturating_sub(names.len());
     if more > 0 { format!("{} and {more} more", names.join(" ")) } else { names.join(" ") }
 }

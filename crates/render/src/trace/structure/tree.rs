@@ -39,6 +39,7 @@ struct Placed {
 /// Draws the BSP tree of [`Step::TreeNode`]s, with the walk of [`Step::TreeVisit`]s: nodes are named by the splitter's facet, and
 /// numbered as the walk comes to them, from back to front.
 pub fn bsp_tree_svg(steps: &[Step]) -> String {
+    // Count nodes and cuts for the title.
     let nodes = nodes(steps);
     let cuts: u64 = nodes.values().map(|node| u64::from(node.cut.count)).sum();
     let polygons: u64 = nodes.values().map(|node| u64::from(node.coincident.count)).sum();
@@ -48,6 +49,8 @@ pub fn bsp_tree_svg(steps: &[Step]) -> String {
         "A node: the facet that gave its plane, its polygons in the plane, those cut by it (red). A link: polygons on that side.",
         "#n: its place in the walk for this viewer, from back to front; blue links lead to the viewer's side.",
     ];
+
+    // Choose places for the nodes.
     let mut picture = Picture::new(&title, &explained);
     let top = picture.bottom();
     let placed = place(&nodes);
@@ -67,6 +70,8 @@ pub fn bsp_tree_svg(steps: &[Step]) -> String {
         let at = [(from[0] + to[0]) / 2.0 + x, (from[1] + to[1]) / 2.0];
         picture.text(at, &format!("{} {count}", side.name()), color, anchor);
     }
+
+    // Draw the nodes; those without room are counted in a box.
     for p in &placed {
         let [x, y] = middle(p);
         let corner = [x - BOX[0] / 2.0, y];
@@ -86,6 +91,7 @@ pub fn bsp_tree_svg(steps: &[Step]) -> String {
 /// The nodes by their numbers.
 fn nodes(steps: &[Step]) -> BTreeMap<u32, Node<'_>> {
     let mut nodes = BTreeMap::new();
+    // Link each node to its parent, and note when the walk came to it.
     for step in steps {
         match step {
             Step::TreeNode { node, above, side, splitter, plane, coincident, cut, front, back } => {
@@ -112,6 +118,8 @@ fn nodes(steps: &[Step]) -> BTreeMap<u32, Node<'_>> {
 /// Chooses the nodes nearest to the root, and places them: leaves side by side, others above the middle of what hangs below.
 fn place(nodes: &BTreeMap<u32, Node<'_>>) -> Vec<Placed> {
     let Some(&root) = nodes.keys().next() else { return Vec::new() };
+
+    // Walk the tree level by level.
     let mut placed: Vec<Placed> = Vec::new();
     let mut children: Vec<Vec<usize>> = Vec::new();
     let mut waiting = VecDeque::from([(root, None, 0)]);
@@ -155,6 +163,8 @@ fn place(nodes: &BTreeMap<u32, Node<'_>>) -> Vec<Placed> {
             }
         }
     }
+
+    // Move all nodes to the right of the margin.
     let left = placed.iter().map(|p| p.across).fold(0.0, f64::min);
     placed.iter_mut().for_each(|p| p.across -= left);
     placed
@@ -201,11 +211,11 @@ fn draw_node(picture: &mut Picture, number: u32, node: &Node<'_>, [x, y]: [f64; 
 
 /// What fits into a box.
 fn short(text: &str) -> String {
-    const MOST: usize = 25;
-    if text.chars().count() <= MOST {
+    const MAX_CHARACTERS: usize = 25;
+    if text.chars().count() <= MAX_CHARACTERS {
         text.to_owned()
     } else {
-        text.chars().take(MOST - 3).chain("...".chars()).collect()
+        text.chars().take(MAX_CHARACTERS - 3).chain("...".chars()).collect()
     }
 }
 

@@ -9,7 +9,7 @@
 //! Cost: linear in triangles; for a face, its triangles times the polygons it comes out as.
 //! Source: the joining of triangles after [Hertel & Mehlhorn 1983].
 
-use super::super::polygons::{Outline, RECENT};
+use super::super::polygons::{JoinedOutline, RECENT};
 use crate::Execution;
 use crate::prepare::mirrors;
 use vitral_exec::Limit;
@@ -17,7 +17,7 @@ use vitral_math::{DVec3, DVec4};
 use vitral_scene::planes::{NO_PLANE, TOLERANCE};
 use vitral_scene::{Instance, SharedPlanes, World};
 
-/// The polygons of a world.
+/// The polygons of a world: facets of one plane, joined as long as outlines stay convex.
 #[derive(Debug, Default)]
 pub(super) struct WorldPolygons {
     pub(super) facets: PolygonFacets,
@@ -46,7 +46,7 @@ struct Growing {
     plane: u32,
     facets: Vec<u32>,
     /// Vertices of the mesh.
-    outline: Outline<u32>,
+    outline: JoinedOutline<u32>,
 }
 
 impl PolygonFacets {
@@ -75,6 +75,7 @@ impl PolygonFacets {
 impl WorldPolygons {
     /// Joins the facets of a world. Charges the budget for [`Self::bytes`].
     pub(super) fn new(world: &World, planes: &SharedPlanes, execution: &Execution) -> Result<Self, Limit> {
+        // Charge for the worst case: each facet a polygon of its own.
         let count = world.facet_count as usize;
         let most = count as u64 * (3 * size_of::<DVec3>() + 4 * size_of::<u32>()) as u64;
         execution.budget.charge(most, "the BSP tree")?;
@@ -86,11 +87,15 @@ impl WorldPolygons {
             equations: in_world(planes),
             tolerance: world.bounds.size().length() * TOLERANCE,
         };
+
+        // Join the facets of each instance.
         for instance in &world.instances {
             let first = instance.first_facet;
             polygons.add_instance(instance, planes.of(first..first + instance.mesh.triangles.len() as u32));
         }
         polygons.end();
+
+        // Replace the worst case by what was used.
         execution.budget.release(most);
         execution.budget.charge(polygons.bytes(), "the BSP tree")?;
         Ok(polygons)
@@ -112,6 +117,8 @@ impl WorldPolygons {
         let mesh = &instance.mesh;
         let mirrored = mirrors(&instance.world_from_model);
         let mut growing: Vec<Growing> = Vec::new();
+
+        // Add lone triangles as they are, and join the triangles of larger faces.
         for face in 0..mesh.face_count() {
             let triangles = mesh.face_triangles(face);
             if triangles.len() == 1 {
@@ -134,6 +141,8 @@ impl WorldPolygons {
     /// Adds a triangle of a mesh to one of the polygons of its face, or begins one.
     fn join(&self, instance: &Instance, triangle: usize, plane: u32, growing: &mut Vec<Growing>) {
         let (facet, corners) = (instance.first_facet + triangle as u32, instance.mesh.triangles[triangle]);
+
+        // Try to join the triangle to a recent polygon of its plane, as long as that stays convex.
         let (recent, in_plane) =
             (growing.len().saturating_sub(RECENT), |polygon: &&mut Growing| polygon.plane == plane);
         let joined = plane != NO_PLANE
@@ -145,8 +154,10 @@ impl WorldPolygons {
                 }
                 joined
             });
+
+        // Otherwise begin a polygon.
         if !joined {
-            growing.push(Growing { plane, facets: vec![facet], outline: Outline::new(corners) });
+            growing.push(Growing { plane, facets: vec![facet], outline: JoinedOutline::new(corners) });
         }
     }
 

@@ -26,7 +26,7 @@ mod report;
 
 use super::polygons::{PolygonFacets, WorldPolygons};
 use crate::Execution;
-use plane::{Plane, Side, side_of};
+use plane::{BspSide, ThickPlane, side_of};
 use std::ops::Range;
 use vitral_exec::Limit;
 use vitral_math::{DVec3, DVec4};
@@ -40,7 +40,7 @@ const CANDIDATES: usize = 8;
 const TRIED_ON: usize = 64;
 /// What a split costs, in polygons of imbalance.
 const SPLIT_COST: usize = 6;
-/// An axis plane has to halve the set at least this well, in eighths.
+/// Eighths of the set that an axis plane may leave on one side at most; a plane that halves worse is not used.
 const WORST_HALF: usize = 6;
 /// Pieces of work that the set is divided into before threads share them.
 const JOBS: usize = 64;
@@ -109,7 +109,7 @@ struct Task {
 
 /// The tree, or a part of it under construction.
 #[derive(Debug, Default)]
-pub(crate) struct Tree {
+pub(crate) struct BspTree {
     nodes: Vec<Node>,
     fragments: Vec<Fragment>,
     cuts: Vec<Cut>,
@@ -122,7 +122,7 @@ pub(crate) struct Tree {
     splits: u64,
 }
 
-impl Tree {
+impl BspTree {
     /// Builds the tree of all polygons of a world.
     pub(crate) fn of_world(world: &World, planes: &SharedPlanes, execution: &Execution) -> Result<Self, Limit> {
         let polygons = WorldPolygons::new(world, planes, execution)?;
@@ -226,7 +226,7 @@ impl Node {
 struct Builder<'t> {
     polygons: &'t WorldPolygons,
     execution: &'t Execution,
-    tree: Tree,
+    tree: BspTree,
     links: Vec<CutLink>,
     /// The builder of the tree that this is a branch of.
     outer: Option<&'t Builder<'t>>,
@@ -237,13 +237,13 @@ struct Builder<'t> {
     /// Workspace: corners of a polygon that is split.
     split: [Vec<DVec3>; 2],
     /// Workspace: where the parts of a set lie, and the planes that those in the node's plane share.
-    sides: Vec<Side>,
+    sides: Vec<BspSide>,
     coplanar: Vec<u32>,
 }
 
 impl<'t> Builder<'t> {
     fn new(polygons: &'t WorldPolygons, execution: &'t Execution) -> Self {
-        let (tree, split) = (Tree::default(), Default::default());
+        let (tree, split) = (BspTree::default(), Default::default());
         Self {
             polygons,
             execution,
@@ -260,8 +260,10 @@ impl<'t> Builder<'t> {
     }
 
     /// Begins the tree by axis planes, lets jobs finish its branches, and puts them together.
-    fn of_all(&mut self, execution: &Execution) -> Result<Tree, Limit> {
+    fn of_all(&mut self, execution: &Execution) -> Result<BspTree, Limit> {
         let polygons = self.polygons;
+
+        // Collect the polygons, and set those aside that no plane can order.
         let mut parts = Vec::with_capacity(polygons.len());
         for polygon in 0..polygons.len() as u32 {
             let corners = polygons.corners(polygon);
@@ -274,6 +276,8 @@ impl<'t> Builder<'t> {
             }
         }
         self.tree.loose = 0..self.tree.fragments.len() as u32;
+
+        // Cut along axis planes until the sets are small enough for a job.
         execution.budget.begin("polygons", parts.len() as u64);
         let job_size = (parts.len() / JOBS).max(256);
         let mut tasks = vec![Task { parts, parent: NONE, front: true }];
@@ -285,6 +289,8 @@ impl<'t> Builder<'t> {
                 None => jobs.push(task),
             }
         }
+
+        // Build all branches in parallel.
         let outer = &*self;
         let branches = execution.workers.map(jobs.len(), |i| {
             let mut builder = Builder { outer: Some(outer), ..Builder::new(polygons, execution) };
@@ -292,6 +298,8 @@ impl<'t> Builder<'t> {
             execution.budget.release(builder.charged);
             done.map(|()| builder.tree)
         });
+
+        // Attach the branches to the top of the tree.
         let mut tree = std::mem::take(&mut self.tree);
         for (job, branch) in jobs.iter().zip(branches) {
             tree.attach(job, branch?);
@@ -302,12 +310,15 @@ impl<'t> Builder<'t> {
 
     /// Builds what hangs below a job's set.
     fn branch(&mut self, parts: &[Part], points: &[DVec3]) -> Result<(), Limit> {
+        // Copy the parts' corners, which belong to the outer builder.
         let own = |part: &Part| {
             let first = self.points.len() as u32;
             self.points.extend(&points[part.first as usize..][..part.count as usize]);
             let cuts = if part.cuts == NONE { NONE } else { part.cuts | OUTER };
             Part { first, cuts, ..*part }
         };
+
+        // Cut large sets along axis planes and small ones along one of their own.
         let mut tasks = vec![Task { parts: parts.iter().map(own).collect(), parent: NONE, front: true }];
         while let Some(task) = tasks.pop() {
             if task.parts.is_empty() {
@@ -330,20 +341,20 @@ impl<'t> Builder<'t> {
         points_of(&self.points, part)
     }
 
-    fn plane_of(&self, part: &Part) -> Plane {
-        Plane::of_polygon(self.polygons, part.polygon)
+    fn plane_of(&self, part: &Part) -> ThickPlane {
+        ThickPlane::of_polygon(self.polygons, part.polygon)
     }
 
     /// The best plane across an axis, if one halves the set.
-    fn axis_plane(&self, parts: &[Part]) -> Option<Plane> {
+    fn axis_plane(&self, parts: &[Part]) -> Option<ThickPlane> {
         let step = parts.len().div_ceil(TRIED_ON * 4);
-        let mut best: Option<(usize, Plane)> = None;
+        let mut best: Option<(usize, ThickPlane)> = None;
         for axis in 0..3 {
             // Corners that are there, so that grids are not cut between their lines.
             let mut values: Vec<f64> =
                 parts.iter().step_by(step).map(|p| self.points[p.first as usize][axis]).collect();
             values.sort_unstable_by(f64::total_cmp);
-            let plane = Plane::across(axis, values[values.len() / 2]);
+            let plane = ThickPlane::across(axis, values[values.len() / 2]);
             let score = self.score(parts, &plane, step);
             let (front, back, across) = (score.front, score.back, score.across);
             let whole = front + back + across + score.within;
@@ -364,21 +375,28 @@ impl<'t> Builder<'t> {
     }
 
     /// What a plane would do to every `step`th part.
-    fn score(&self, parts: &[Part], plane: &Plane, step: usize) -> Score {
+    fn score(&self, parts: &[Part], plane: &ThickPlane, step: usize) -> Score {
         let mut score = Score::default();
         for part in parts.iter().step_by(step) {
             match side_of(plane, self.points_of(part)) {
-                Side::Front => score.front += 1,
-                Side::Back => score.back += 1,
-                Side::In => score.within += 1,
-                Side::Across => score.across += 1,
+                BspSide::Front => score.front += 1,
+                BspSide::Back => score.back += 1,
+                BspSide::In => score.within += 1,
+                BspSide::Across => score.across += 1,
             }
         }
         score
     }
 
     /// Makes a node of a plane and distributes the parts; the one at `splitter` gave the plane.
-    fn cut(&mut self, task: Task, plane: Plane, splitter: Option<usize>, tasks: &mut Vec<Task>) -> Result<(), Limit> {
+    fn cut(
+        &mut self,
+        task: Task,
+        plane: ThickPlane,
+        splitter: Option<usize>,
+        tasks: &mut Vec<Task>,
+    ) -> Result<(), Limit> {
+        // Link the node to its parent.
         let node = self.tree.nodes.len() as u32;
         self.execution.budget.check("building the BSP tree")?;
         if node.is_multiple_of(256) || self.points.len() > self.accounted + (1 << 16) {
@@ -387,27 +405,33 @@ impl<'t> Builder<'t> {
         if let Some(parent) = self.tree.nodes.get_mut(task.parent as usize) {
             *(if task.front { &mut parent.front } else { &mut parent.back }) = node;
         }
+
+        // Distribute the parts, splitting those that cross the plane.
         self.sort_out(&task.parts, &plane, splitter);
         let (mut front, mut back) = (Vec::new(), Vec::new());
         let start = self.tree.fragments.len();
         for (i, part) in task.parts.iter().enumerate() {
             match self.sides[i] {
-                Side::In => self.place(part),
-                Side::Front => front.push(*part),
-                Side::Back => back.push(*part),
-                Side::Across => {
+                BspSide::In => self.place(part),
+                BspSide::Front => front.push(*part),
+                BspSide::Back => back.push(*part),
+                BspSide::Across => {
                     let halves = self.split(part, &plane, node);
                     front.push(halves[0]);
                     back.push(halves[1]);
                 }
             }
         }
+
+        // Sort the node's own polygons by the side that they face.
         let (polygons, normal) = (self.polygons, plane.equation.truncate());
         let placed = &mut self.tree.fragments[start..];
         let faces_front = |f: &Fragment| polygons.doubled_area(f.polygon).dot(normal) >= 0.0;
         placed.sort_by_cached_key(|f| (faces_front(f), std::cmp::Reverse(f.polygon)));
         let facing_front = (start + placed.partition_point(|f| !faces_front(f))) as u32;
         let fragments = start as u32..self.tree.fragments.len() as u32;
+
+        // Store the node and queue both sides.
         let splitter = splitter.map_or(NONE, |i| task.parts[i].polygon);
         let plane = plane.equation;
         self.tree.nodes.push(Node { plane, front: NONE, back: NONE, fragments, facing_front, splitter });
@@ -417,13 +441,14 @@ impl<'t> Builder<'t> {
     }
 
     /// Finds where the parts of a set lie, into `sides`. The one at `splitter` gave the plane.
-    fn sort_out(&mut self, parts: &[Part], plane: &Plane, splitter: Option<usize>) {
+    fn sort_out(&mut self, parts: &[Part], plane: &ThickPlane, splitter: Option<usize>) {
+        // Classify each part, and note the shared planes of those in the node's.
         self.sides.clear();
         self.coplanar.clear();
         for (i, part) in parts.iter().enumerate() {
-            let side = if splitter == Some(i) { Side::In } else { side_of(plane, points_of(&self.points, part)) };
+            let side = if splitter == Some(i) { BspSide::In } else { side_of(plane, points_of(&self.points, part)) };
             self.sides.push(side);
-            if side == Side::In
+            if side == BspSide::In
                 && let Some(number) = self.polygons.plane(part.polygon)
                 && !self.coplanar.contains(&number)
             {
@@ -435,13 +460,13 @@ impl<'t> Builder<'t> {
         if self.coplanar.is_empty() {
             return;
         }
-        let thick = Plane { thickness: plane.thickness.max(2.0 * self.polygons.tolerance), ..*plane };
-        for (side, part) in self.sides.iter_mut().zip(parts).filter(|(side, _)| **side != Side::In) {
+        let thick = ThickPlane { thickness: plane.thickness.max(2.0 * self.polygons.tolerance), ..*plane };
+        for (side, part) in self.sides.iter_mut().zip(parts).filter(|(side, _)| **side != BspSide::In) {
             let number = self.polygons.plane(part.polygon);
             if number.is_some_and(|number| self.coplanar.contains(&number))
-                && side_of(&thick, points_of(&self.points, part)) == Side::In
+                && side_of(&thick, points_of(&self.points, part)) == BspSide::In
             {
-                *side = Side::In;
+                *side = BspSide::In;
             }
         }
     }
@@ -449,9 +474,12 @@ impl<'t> Builder<'t> {
     /// Makes a part a fragment of the node that is being made. Of the planes that cut it on its way down, the tree keeps
     /// those that it is near to.
     fn place(&mut self, part: &Part) {
+        // Measure the part.
         let points = points_of(&self.points, part);
         let (low, high) = points.iter().fold((points[0], points[0]), |(l, h), &p| (l.min(p), h.max(p)));
         let clear = (high - low).max_element() * CLEAR;
+
+        // Walk up the planes that cut it and keep the near ones.
         let (first_cut, mut link) = (self.tree.cuts.len() as u32, part.cuts);
         while link != NONE {
             let outer = link & OUTER;
@@ -471,11 +499,14 @@ impl<'t> Builder<'t> {
     }
 
     /// Cuts a part in the halves in front of and behind a plane.
-    fn split(&mut self, part: &Part, plane: &Plane, node: u32) -> [Part; 2] {
+    fn split(&mut self, part: &Part, plane: &ThickPlane, node: u32) -> [Part; 2] {
+        // Reuse the lists of the last split.
         self.tree.splits += 1;
         let [mut front, mut back] = std::mem::take(&mut self.split);
         front.clear();
         back.clear();
+
+        // Walk the outline, and put crossings into both halves.
         let points = self.points_of(part);
         for (i, &to) in points.iter().enumerate() {
             let from = points[(i + points.len() - 1) % points.len()];
@@ -492,6 +523,8 @@ impl<'t> Builder<'t> {
                 back.push(to);
             }
         }
+
+        // Store both halves with the new cut.
         let halves = [(&front, true), (&back, false)].map(|(corners, positive)| {
             let cuts = self.links.len() as u32;
             self.links.push(CutLink { cut: Cut { node, positive }, before: part.cuts });
@@ -541,12 +574,14 @@ impl Score {
     }
 }
 
-impl Tree {
+impl BspTree {
     /// Hangs a branch where its job was cut off.
     fn attach(&mut self, job: &Task, branch: Self) {
         if branch.nodes.is_empty() {
             return;
         }
+
+        // Find how far the branch's indices move.
         let [nodes, fragments, cuts] =
             [self.nodes.len(), self.fragments.len(), self.cuts.len()].map(|length| length as u32);
         if let Some(parent) = self.nodes.get_mut(job.parent as usize) {
@@ -554,6 +589,8 @@ impl Tree {
         }
         let moved = |index: u32, by: u32| if index == NONE { NONE } else { index + by };
         let node = |index: u32| if index & OUTER == 0 { index + nodes } else { index & !OUTER };
+
+        // Append nodes, fragments and cuts with their indices moved.
         self.nodes.extend(branch.nodes.into_iter().map(|n| Node {
             front: moved(n.front, nodes),
             back: moved(n.back, nodes),
@@ -585,12 +622,12 @@ impl Tree {
 mod tests {
     use super::*;
 
-    fn tree(triangles: &[[[f64; 3]; 3]]) -> Tree {
+    fn tree(triangles: &[[[f64; 3]; 3]]) -> BspTree {
         let triangles: Vec<_> = triangles.iter().map(|t| t.map(DVec3::from_array)).collect();
-        Tree::new(WorldPolygons::of_triangles(&triangles), &Execution::default()).unwrap()
+        BspTree::new(WorldPolygons::of_triangles(&triangles), &Execution::default()).unwrap()
     }
 
-    fn order(tree: &Tree, viewer: DVec4) -> Vec<u32> {
+    fn order(tree: &BspTree, viewer: DVec4) -> Vec<u32> {
         let mut order = Vec::new();
         tree.back_to_front(viewer, |f| order.extend(tree.facets(f)));
         order
@@ -660,13 +697,15 @@ mod tests {
         builder.points.extend(triangles[0]);
         let part = Part { polygon: 0, cuts: NONE, first: 0, count: 3 };
         let mut parts = vec![part];
-        for plane in
-            [Plane::across(0, 0.1), Plane::across(1, -0.3), Plane::of([DVec3::X * 0.3, DVec3::Y * 0.3, DVec3::Z])]
-        {
+        for plane in [
+            ThickPlane::across(0, 0.1),
+            ThickPlane::across(1, -0.3),
+            ThickPlane::of([DVec3::X * 0.3, DVec3::Y * 0.3, DVec3::Z]),
+        ] {
             let mut next = Vec::new();
             for part in parts {
                 match side_of(&plane, builder.points_of(&part)) {
-                    Side::Across => next.extend(builder.split(&part, &plane, 0)),
+                    BspSide::Across => next.extend(builder.split(&part, &plane, 0)),
                     _ => next.push(part),
                 }
             }

@@ -23,7 +23,7 @@ const CLEARLY: f64 = 1e-3;
 
 /// A polygon, or a part of one.
 #[derive(Clone, Debug)]
-pub(super) struct Polygon {
+pub(super) struct PainterPolygon {
     /// The whole one's number.
     pub(super) whole: u32,
     /// Farthest depth.
@@ -39,7 +39,7 @@ pub(super) struct Polygon {
     pub(super) cells: [u16; 4],
 }
 
-impl Polygon {
+impl PainterPolygon {
     /// `plane` is that of the whole polygon.
     pub(super) fn new(
         plane: &Setup,
@@ -97,7 +97,11 @@ impl Polygon {
         corners: &[[f64; 2]],
     ) -> Option<(Cut, bool)> {
         let plane = |polygon: &Self| wholes.get(polygon.whole as usize).plane();
+
+        // Find what the polygon shares with both others on the screen.
         let shared = others.map(|other| overlap(self.points(corners), other.points(corners)));
+
+        // Tell on which side of a line points lie.
         let side = |line: &Cut, points: &[[f64; 2]]| {
             let (low, high) = range(points.iter().map(|&p| line.value(p)));
             if low >= -CLEARLY {
@@ -108,6 +112,8 @@ impl Polygon {
                 0
             }
         };
+
+        // Try the lines in which planes meet, then the edges of the others.
         let lines = others.into_iter().zip([true, false]).flat_map(|(other, is_first)| {
             let lines = crossing(plane(self), plane(other)).into_iter().chain(other.edges(corners));
             lines.map(move |line| (line, is_first))
@@ -118,6 +124,7 @@ impl Polygon {
 
     /// The parts on the kept side of a line and beyond it, if both reach clearly off the line.
     pub(super) fn split(&self, corners: &[[f64; 2]], line: &Cut) -> Option<[Vec<[f64; 2]>; 2]> {
+        // Refuse lines that do not clearly cross the polygon.
         let points = self.points(corners);
         let value = |p: [f64; 2]| if line.positive { line.value(p) } else { -line.value(p) };
         let (low, high) = range(points.iter().map(|&p| value(p)));
@@ -125,6 +132,8 @@ impl Polygon {
         if !clearly {
             return None;
         }
+
+        // Walk the outline, and put crossings into both halves.
         let mut halves = [Vec::new(), Vec::new()];
         for (i, &to) in points.iter().enumerate() {
             let from = points[(i + points.len() - 1) % points.len()];
@@ -171,12 +180,13 @@ pub(super) fn crossing(p: &Setup, q: &Setup) -> Option<Cut> {
 
 /// Compares two polygons by the five tests, and says which decided.
 pub(super) fn compare(
-    p: &Polygon,
-    q: &Polygon,
+    p: &PainterPolygon,
+    q: &PainterPolygon,
     wholes: &Polygons<'_>,
     corners: &[[f64; 2]],
     counters: &mut VisibilityCounters,
 ) -> (Verdict, ListTest) {
+    // Compare depths, then extents.
     if p.is_behind(q.far, counters) {
         return (Verdict::Before, ListTest::DepthExtent);
     }
@@ -189,6 +199,8 @@ pub(super) fn compare(
         counters.by_y_extent += 1;
         return (Verdict::Before, ListTest::YExtent);
     }
+
+    // Test each polygon against the plane of the other.
     let [ps, qs] = [p, q].map(|i| wholes.get(i.whole as usize).plane());
     let (p_points, q_points) = (p.points(corners), q.points(corners));
     // How much nearer Q is than P. With all corners of P, that tells where P lies from the plane of Q.
@@ -204,10 +216,14 @@ pub(super) fn compare(
         counters.by_plane_of_farther += 1;
         return (Verdict::Before, ListTest::InFrontOfPlane);
     }
+
+    // Test whether the outlines overlap.
     if disjoint(p_points, q_points) || disjoint(q_points, p_points) {
         counters.by_projection += 1;
         return (Verdict::Before, ListTest::Projection);
     }
+
+    // Test whether exchanging the two orders them.
     if by_p == Verdict::After || by_q == Verdict::After {
         let test = match (are_equal(at_p) || are_equal(at_q), by_p) {
             (true, _) => ListTest::Coplanar,
@@ -265,6 +281,7 @@ fn disjoint(p: &[[f64; 2]], q: &[[f64; 2]]) -> bool {
 /// The part of a convex polygon that another covers.
 fn overlap(p: &[[f64; 2]], q: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let (mut polygon, mut next) = (p.to_vec(), Vec::new());
+    // Clip by one edge after the other.
     for i in 0..q.len() {
         let Some(line) = edge(q[i], q[(i + 1) % q.len()]) else { continue };
         for (k, &to) in polygon.iter().enumerate() {
@@ -298,7 +315,8 @@ mod tests {
     fn verdict(p: Setup, q: Setup) -> ((Verdict, ListTest), VisibilityCounters) {
         let [a, b] = [p, q].map(|s| corners(&s));
         let points = [a, b].concat();
-        let polygons = [Polygon::new(&p, 0, &a, 0..3, 0..0, [0; 4]), Polygon::new(&q, 1, &b, 3..6, 0..0, [0; 4])];
+        let polygons =
+            [PainterPolygon::new(&p, 0, &a, 0..3, 0..0, [0; 4]), PainterPolygon::new(&q, 1, &b, 3..6, 0..0, [0; 4])];
         let mut counters = VisibilityCounters::default();
         let setups = [p, q];
         let wholes = Polygons::joined(&setups, |facet| facet);
@@ -358,7 +376,7 @@ mod tests {
     fn p21_the_halves_of_a_polygon_add_up() {
         let p = setup(HERE, [0.2, 0.8, 0.2], 0);
         let points = corners(&p);
-        let polygon = Polygon::new(&p, 0, &points, 0..3, 0..0, [0; 4]);
+        let polygon = PainterPolygon::new(&p, 0, &points, 0..3, 0..0, [0; 4]);
         let area = |points: &[[f64; 2]]| -> f64 {
             let n = points.len();
             (0..n).map(|i| points[i][0] * points[(i + 1) % n][1] - points[i][1] * points[(i + 1) % n][0]).sum::<f64>()

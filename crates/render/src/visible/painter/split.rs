@@ -5,7 +5,7 @@
 //! Source: [Newell, Newell & Sancha 1972]; see `painter.rs` for the departures.
 
 use super::super::cut::Cut;
-use super::compare::{Polygon, crossing};
+use super::compare::{PainterPolygon, crossing};
 use super::{Farness, Marked, Progress, Sorting, State};
 use crate::trace::Step;
 use vitral_raster::SUBPIXEL;
@@ -28,10 +28,11 @@ impl Sorting<'_, '_> {
 
     /// Cuts the circle of marked polygons that begins at `start`: somewhere along it, one is split by its neighbour.
     pub(super) fn cut_cycle(&mut self, start: u32) -> bool {
+        // Report the circle.
         self.counters.cycles += 1;
         let first = self.marked.iter().position(|m| m.polygon == start).unwrap_or(0);
         let last = self.marked.len() - 1;
-        self.execution.tell(|| {
+        self.execution.report(|| {
             let polygons: Vec<u32> = self.marked[first..].iter().map(|m| m.polygon).collect();
             let facets = polygons.iter().map(|&p| self.facet(p)).collect();
             Step::Circle { polygons, facets }
@@ -93,11 +94,14 @@ impl Sorting<'_, '_> {
         by: u32,
         unmarked: Vec<u32>,
     ) {
+        // Retire the whole polygon.
         self.counters.splits += 1;
         self.finish(number, State::Split);
-        let Polygon { whole, ref cuts, .. } = self.polygons[number as usize];
+        let PainterPolygon { whole, ref cuts, .. } = self.polygons[number as usize];
         let cuts = cuts.clone();
         let mut parts = [None; 2];
+
+        // Add both parts with the cuts that matter to them.
         for (part, (corners, cut)) in parts.iter_mut().zip(halves.iter().zip([line, line.opposite()])) {
             let first = self.cuts.len() as u32;
             for inherited in cuts.clone() {
@@ -113,7 +117,9 @@ impl Sorting<'_, '_> {
                 self.go_on(part, progress);
             }
         }
-        self.execution.tell(|| Step::Split {
+
+        // Report the split.
+        self.execution.report(|| Step::Split {
             polygon: number,
             facet: self.facet(number),
             by,

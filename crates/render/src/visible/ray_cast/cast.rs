@@ -30,7 +30,7 @@ pub(super) struct Cast<'a, T> {
     pub(super) slack: [Vec<f32>; 2],
     pub(super) largest_slack: f32,
     pub(super) eye: Eye,
-    /// Lists to use again.
+    /// Lists to reuse.
     stamps: Mutex<Vec<Stamps>>,
 }
 
@@ -50,6 +50,8 @@ impl<'a, T: Structure> Cast<'a, T> {
             }
             start = end;
         }
+
+        // Bring these to the order of the structure's triangles.
         let facets = &structure.triangles().facets;
         let mut triangles = vec![ScreenTriangle::ABSENT; facets.len()];
         execution.workers.for_each_chunk(&mut triangles, CHUNK, |chunk, triangles| {
@@ -64,6 +66,8 @@ impl<'a, T: Structure> Cast<'a, T> {
             let triangle = &triangles[place];
             if (triangle.setups[0] >= opaque) == layered { triangle.slack } else { f32::NEG_INFINITY }
         };
+
+        // Keep bounds for opaque and transparent triangles apart.
         let any_layered = on_screen.opaque < on_screen.setups.len();
         let slack = [
             structure.largest(&|place| slack_of(place, false)),

@@ -55,10 +55,13 @@ pub(super) struct Eye {
 impl Eye {
     /// The eye of a view, which looks at `triangles`.
     pub(super) fn new(view: &PreparedView<'_>, triangles: &Triangles) -> Self {
+        // Take the eye's axes and position in the world.
         let world_from_view = view.view.view_from_world.inverse();
         let axis = |v: DVec3| world_from_view.transform_vector3(v);
         let (right, up, forward) = (axis(DVec3::X), axis(DVec3::Y), axis(DVec3::NEG_Z));
         let position = world_from_view.transform_point3(DVec3::ZERO) - triangles.center;
+
+        // Find the step of a ray from pixel to pixel.
         let p = &view.view.clip_from_view;
         let half_size = [f64::from(view.viewport.width) * 0.5, f64::from(view.viewport.height) * 0.5];
         let scale = [1.0 / (p.x_axis.x * half_size[0]), 1.0 / (p.y_axis.y * half_size[1])];
@@ -78,6 +81,8 @@ impl Eye {
         let extent = f64::from(triangles.extent);
         let nearest = -position.dot(forward) - extent * 2.0;
         let start = if perspective { nearest.max(0.0) } else { nearest };
+
+        // Relate depths to distances, with the rounding of both.
         let (z, w) = (p.z_axis.z, p.w_axis.z);
         let depth = if perspective { [-z as f32, w as f32] } else { [w as f32, z as f32] };
         let relative_rounding = CLIP_ROUNDING + if perspective { 2.0 * ez / w } else { 0.0 };

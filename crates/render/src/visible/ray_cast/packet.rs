@@ -143,10 +143,13 @@ pub(super) fn look<T: Tree>(
     tile: &mut Tile,
     layers: &mut LayerList,
 ) -> Result<VisibilityCounters, Limit> {
+    // Prepare counters, and lists only where an observer wants them.
     let mut counters = VisibilityCounters::default();
     let (mut stamps, mut tests) = (cast.take_stamps(), Tests::new(cast.execution));
     let mut passed = cast.execution.observer.is_some().then(Vec::new);
     let (rows, columns) = size_in_picture(cast.view, tile);
+
+    // Cast the rays of each block together.
     for y in (0..rows).step_by(BLOCK) {
         cast.execution.budget.check("ray casting")?;
         for x in (0..columns).step_by(BLOCK) {
@@ -156,6 +159,7 @@ pub(super) fn look<T: Tree>(
             let noted = Noted { stamps: &mut stamps, tests: &mut tests, passed: passed.as_mut() };
             let boxes = dispatch!(cast.execution.level, simd =>
                 look_at_block(simd, cast, tile, (x, y), layers, noted));
+            // Count, and report the block.
             let facets = tests.count - before;
             counters.rays += rays;
             counters.saved_by_area += rays - 1;
@@ -165,7 +169,7 @@ pub(super) fn look<T: Tree>(
                 let pixels = [tile.x + x as u32, tile.y + y as u32, size[0], size[1]];
                 let through = names(cast.structure, passed);
                 let tested = tests.take();
-                cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
+                cast.execution.report(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
             }
             counters.triangle_tests += facets * rays;
         }

@@ -69,11 +69,14 @@ impl<T: Structure> RaySearch<'_, T> {
     #[inline]
     fn test(&mut self, setups: [u32; 2]) {
         let [x, y] = self.sample;
+        // Skip setups that are farther or do not cover the sample.
         for setup in self.cast.setups(setups) {
             self.tests.add(setup.facet);
             if setup.z_max < self.nearest.0 || !setup.covers(x, y) {
                 continue;
             }
+
+            // Keep a nearer one: as a layer if it is transparent.
             let candidate = (setup.depth(x, y), setup.facet);
             if nearer(candidate, self.nearest) {
                 if self.cast.is_layered(setups) {
@@ -114,6 +117,7 @@ pub(super) fn look<T: Structure>(
     tile: &mut Tile,
     layers: &mut LayerList,
 ) -> Result<VisibilityCounters, Limit> {
+    // Prepare the search, whose memory serves all rays of the tile.
     let mut counters = VisibilityCounters::default();
     let (stamps, none) = (cast.take_stamps(), [NONE; 2]);
     let tests = Tests::new(cast.execution);
@@ -121,6 +125,8 @@ pub(super) fn look<T: Structure>(
         RaySearch { cast, sample: [0; 2], nearest: BACKGROUND, setups: none, layers: Vec::new(), stamps, tests };
     let mut passed = cast.execution.observer.is_some().then(Vec::new);
     let (rows, columns) = size_in_picture(cast.view, tile);
+
+    // Follow one ray for each sample.
     for row in 0..rows {
         cast.execution.budget.check("ray casting")?;
         for column in 0..columns {
@@ -137,12 +143,13 @@ pub(super) fn look<T: Structure>(
                 let seen = search.layers.drain(..).filter(|c| nearer(*c, nearest));
                 seen.for_each(|(depth, facet)| layers.push(Layer { at: at as u32, depth, facet }));
             }
+            // Report the pixel.
             if let Some(passed) = &mut passed {
                 let (rays, boxes) = (samples as u64, counters.box_tests - before_pixel.0);
                 let (facets, through) = (search.tests.count - before_pixel.1, names(cast.structure, passed));
                 let pixels = [tile.x + column as u32, tile.y + row as u32, 1, 1];
                 let tested = search.tests.take();
-                cast.execution.tell(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
+                cast.execution.report(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
             }
         }
     }

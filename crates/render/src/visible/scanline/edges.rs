@@ -12,7 +12,7 @@ use vitral_raster::{SUBPIXEL, SamplePattern, Setup};
 
 /// A row of samples.
 #[derive(Clone, Copy)]
-pub(super) struct Line {
+pub(super) struct SampleLine {
     /// Within the picture, 1/256 pixel.
     pub(super) y: i32,
     /// Row of pixels within the band.
@@ -24,7 +24,7 @@ pub(super) struct Line {
 }
 
 /// An entry of the polygon table.
-pub(super) struct Polygon<'f> {
+pub(super) struct PolygonEntry<'f> {
     pub(super) shape: ConvexPolygon<'f, 'f>,
     /// The in-out flag: where the polygon stands in the list of those that are in, or [`OUT`].
     pub(super) slot: u32,
@@ -36,7 +36,7 @@ pub(super) struct Polygon<'f> {
 /// The in-out flag of polygons that are out.
 pub(super) const OUT: u32 = u32::MAX;
 
-impl<'f> Polygon<'f> {
+impl<'f> PolygonEntry<'f> {
     /// One that is out, on no line yet.
     fn new(shape: ConvexPolygon<'f, 'f>) -> Self {
         Self { shape, slot: OUT, line: i32::MIN, start: 0.0 }
@@ -56,7 +56,7 @@ impl<'f> Polygon<'f> {
 }
 
 /// An entry of the edge table: the edge from corner `corner` of a polygon to the next, crossed by `lines`.
-pub(super) struct Edge {
+pub(super) struct EdgeEntry {
     pub(super) polygon: u32,
     pub(super) corner: u32,
     pub(super) lines: Range<u16>,
@@ -69,8 +69,11 @@ pub(super) struct ActiveEdge {
     pub(super) corner: u32,
     /// The first line that it does not cross.
     pub(super) end: u16,
+    /// Where the edge crosses the line, rounded down to 1/256 pixel.
     pub(super) x: i32,
+    /// The rest of the division, in 1/`dy`.
     pub(super) remainder: i32,
+    /// Height of the edge in 1/256 pixel.
     pub(super) dy: i32,
     /// What is added to `x` and `remainder` from line to line.
     pub(super) step: [i32; 2],
@@ -79,17 +82,17 @@ pub(super) struct ActiveEdge {
 }
 
 /// The polygon table.
-pub(super) fn polygon_table<'p>(polygons: &'p Polygons<'_>) -> Vec<Polygon<'p>> {
-    (0..polygons.len()).map(|number| Polygon::new(polygons.get(number))).collect()
+pub(super) fn polygon_table<'p>(polygons: &'p Polygons<'_>) -> Vec<PolygonEntry<'p>> {
+    (0..polygons.len()).map(|number| PolygonEntry::new(polygons.get(number))).collect()
 }
 
 /// The lines of `height` rows of pixels, from top to bottom.
-pub(super) fn lines(pattern: &SamplePattern, top: usize, height: usize) -> Vec<Line> {
+pub(super) fn lines(pattern: &SamplePattern, top: usize, height: usize) -> Vec<SampleLine> {
     let mut lines: Vec<_> = (0..height * pattern.len())
         .map(|i| {
             let (row, sample) = (i / pattern.len(), i % pattern.len());
             let [sample_x, sample_y] = pattern.position(sample);
-            Line { y: (top + row) as i32 * SUBPIXEL + sample_y, row, sample, sample_x }
+            SampleLine { y: (top + row) as i32 * SUBPIXEL + sample_y, row, sample, sample_x }
         })
         .collect();
     lines.sort_by_key(|line| line.y);
@@ -97,17 +100,18 @@ pub(super) fn lines(pattern: &SamplePattern, top: usize, height: usize) -> Vec<L
 }
 
 /// The distance from each line to the next if it is always the same, else 0.
-pub(super) fn spacing(lines: &[Line]) -> i32 {
-    let distance = |w: &[Line]| w[1].y - w[0].y;
+pub(super) fn spacing(lines: &[SampleLine]) -> i32 {
+    let distance = |w: &[SampleLine]| w[1].y - w[0].y;
     let first = lines.windows(2).map(distance).next().unwrap_or(0);
     if lines.windows(2).all(|w| distance(w) == first) { first } else { 0 }
 }
 
 /// All edges that cross a line, sorted by the line where they begin. Horizontal ones need no entry: a line that runs
 /// along the top of a polygon crosses its other two edges, one along its bottom does not.
-pub(super) fn edge_table(polygons: &[Polygon<'_>], lines: &[Line]) -> Vec<Edge> {
+pub(super) fn edge_table(polygons: &[PolygonEntry<'_>], lines: &[SampleLine]) -> Vec<EdgeEntry> {
     let first_at = |y: i32| lines.partition_point(|line| line.y < y) as u16;
     let mut edges = Vec::new();
+    // Find the line of each corner; an edge runs from one to the next.
     for (p, polygon) in polygons.iter().enumerate() {
         let outline = polygon.shape.outline();
         let first = first_at(outline[0][1]);
@@ -115,7 +119,7 @@ pub(super) fn edge_table(polygons: &[Polygon<'_>], lines: &[Line]) -> Vec<Edge> 
         for corner in 0..outline.len() {
             let b = outline.get(corner + 1).map_or(first, |next| first_at(next[1]));
             if a != b {
-                edges.push(Edge { polygon: p as u32, corner: corner as u32, lines: a.min(b)..a.max(b) });
+                edges.push(EdgeEntry { polygon: p as u32, corner: corner as u32, lines: a.min(b)..a.max(b) });
             }
             a = b;
         }
@@ -142,7 +146,7 @@ fn sort(active: &mut [ActiveEdge], joined: bool) {
 }
 
 impl ActiveEdge {
-    pub(super) fn new(edge: &Edge, outline: &[[i32; 2]], y: i32, spacing: i32) -> Self {
+    pub(super) fn new(edge: &EdgeEntry, outline: &[[i32; 2]], y: i32, spacing: i32) -> Self {
         let (dx, dy, _) = downwards(outline, edge.corner);
         let step = i64::from(dx) * i64::from(spacing);
         let step = [step.div_euclid(i64::from(dy)), step.rem_euclid(i64::from(dy))].map(|v| v as i32);
@@ -171,7 +175,7 @@ impl ActiveEdge {
     }
 
     /// [`column`], at most `width`.
-    fn column_on(&self, line: &Line, width: u32) -> u32 {
+    fn column_on(&self, line: &SampleLine, width: u32) -> u32 {
         column([self.x, self.remainder], line).clamp(0, width as i32) as u32
     }
 }
@@ -184,12 +188,12 @@ fn crossing((dx, dy, [x0, y0]): (i32, i32, [i32; 2]), y: i32) -> [i32; 2] {
 
 /// The first pixel whose sample on a line is not left of a crossing. A sample on a left edge is in and one on a right edge
 /// is out, so the same pixel begins what is right of either.
-fn column([x, remainder]: [i32; 2], line: &Line) -> i32 {
+fn column([x, remainder]: [i32; 2], line: &SampleLine) -> i32 {
     (x + i32::from(remainder > 0) - line.sample_x + SUBPIXEL - 1) >> 8
 }
 
 /// Which of these pixels of a line a triangle covers.
-pub(super) fn covered(triangle: &Setup, line: &Line, pixels: &Range<usize>) -> Range<usize> {
+pub(super) fn covered(triangle: &Setup, line: &SampleLine, pixels: &Range<usize>) -> Range<usize> {
     let outline = triangle.corners();
     let [first, last] = [pixels.start, pixels.end].map(|pixel| pixel as i32);
     let (mut from, mut to) = (last, first);
@@ -205,9 +209,9 @@ pub(super) fn covered(triangle: &Setup, line: &Line, pixels: &Range<usize>) -> R
 
 /// The active edge table, from line to line.
 pub(super) struct ActiveEdges<'e> {
-    edges: &'e [Edge],
+    edges: &'e [EdgeEntry],
     /// Those that begin on lines to come.
-    starting: &'e [Edge],
+    starting: &'e [EdgeEntry],
     active: Vec<ActiveEdge>,
     /// Where edges crossed the last line, for a table that is not kept from line to line.
     crossings: Vec<Option<ActiveEdge>>,
@@ -219,7 +223,7 @@ pub(super) struct ActiveEdges<'e> {
 impl<'e> ActiveEdges<'e> {
     /// Of lines with this spacing, 0 if each crossing is to be found anew. If the table is not kept, each line begins with an
     /// empty one and looks for its edges among all that began above it.
-    pub(super) fn new(edges: &'e [Edge], spacing: i32, is_kept: bool, width: u32) -> Self {
+    pub(super) fn new(edges: &'e [EdgeEntry], spacing: i32, is_kept: bool, width: u32) -> Self {
         let crossings = if spacing != 0 && !is_kept { vec![None; edges.len()] } else { Vec::new() };
         Self { edges, starting: edges, active: Vec::new(), crossings, spacing, is_kept, width }
     }
@@ -233,8 +237,8 @@ impl<'e> ActiveEdges<'e> {
     pub(super) fn move_to(
         &mut self,
         number: usize,
-        line: &Line,
-        polygons: &[Polygon<'_>],
+        line: &SampleLine,
+        polygons: &[PolygonEntry<'_>],
         counters: &mut VisibilityCounters,
     ) {
         // Let edges leave that end above the line, and move the others to it.
@@ -265,14 +269,16 @@ impl<'e> ActiveEdges<'e> {
     fn join(
         &mut self,
         number: usize,
-        line: &Line,
-        polygons: &[Polygon<'_>],
+        line: &SampleLine,
+        polygons: &[PolygonEntry<'_>],
         counters: &mut VisibilityCounters,
     ) -> bool {
+        // Take the edges that begin on or above the line and do not end there.
         let joining = self.starting.partition_point(|e| usize::from(e.lines.start) <= number);
         let (begun, later) = self.starting.split_at(joining);
         for (i, edge) in begun.iter().enumerate().filter(|(_, e)| usize::from(e.lines.end) > number) {
             let outline = polygons[edge.polygon as usize].shape.outline();
+            // Advance a crossing that is known from the line above, or compute it.
             self.active.push(match self.crossings.get_mut(i) {
                 Some(Some(known)) => {
                     known.advance(self.spacing, outline, line.y);

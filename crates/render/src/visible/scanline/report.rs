@@ -3,7 +3,7 @@
 //! In:   polygon table, edge table, active edges (screen space). Out: the same in pixels.
 //! Cost: linear in what is reported; nothing if nobody listens.
 
-use super::edges::{ActiveEdge, Edge, Line, Polygon, downwards};
+use super::edges::{ActiveEdge, EdgeEntry, PolygonEntry, SampleLine, downwards};
 use crate::trace::Step;
 use crate::trace::tables::{Bucket, Crossing, TableEdge, TablePolygon};
 use crate::{Execution, PreparedView};
@@ -15,25 +15,25 @@ pub(super) fn tables(
     execution: &Execution,
     view: &PreparedView<'_>,
     rows: [usize; 2],
-    (polygons, edges): (&[Polygon<'_>], &[Edge]),
-    lines: &[Line],
+    (polygons, edges): (&[PolygonEntry<'_>], &[EdgeEntry]),
+    lines: &[SampleLine],
 ) -> Result<(), Limit> {
     if execution.observer.is_none() {
         return Ok(());
     }
-    let bytes = size_of_val(edges) / size_of::<Edge>() * (size_of::<TableEdge>() + size_of::<Bucket>())
+    let bytes = size_of_val(edges) / size_of::<EdgeEntry>() * (size_of::<TableEdge>() + size_of::<Bucket>())
         + polygons.len() * size_of::<TablePolygon>();
     execution.budget.charge(bytes as u64, "the edge table that is told")?;
     let rows = rows.map(|row| row as u32);
     let world = view.session.world();
     let polygon_table = polygons.iter().map(|p| polygon(p, world.surface_of_facet(p.shape.facet()))).collect();
     let buckets = buckets(polygons, edges, lines, rows[0]);
-    execution.tell(|| Step::EdgeTable { rows, polygons: polygon_table, buckets });
+    execution.report(|| Step::EdgeTable { rows, polygons: polygon_table, buckets });
     execution.budget.release(bytes as u64);
     Ok(())
 }
 
-fn polygon(polygon: &Polygon<'_>, surface: u32) -> TablePolygon {
+fn polygon(polygon: &PolygonEntry<'_>, surface: u32) -> TablePolygon {
     let setup = polygon.plane();
     let [dx, dy] = [setup.dz_dx, setup.dz_dy].map(f64::from);
     let [x, y] = setup.origin.map(pixels);
@@ -41,9 +41,11 @@ fn polygon(polygon: &Polygon<'_>, surface: u32) -> TablePolygon {
 }
 
 /// The edge table, of a band whose first row of pixels is `top`.
-fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -> Vec<Bucket> {
-    let place = |line: &Line| [top + line.row as u32, line.sample as u32];
-    let entry = |edge: &Edge| {
+fn buckets(polygons: &[PolygonEntry<'_>], edges: &[EdgeEntry], lines: &[SampleLine], top: u32) -> Vec<Bucket> {
+    let place = |line: &SampleLine| [top + line.row as u32, line.sample as u32];
+
+    // Describe an edge by its first crossing and its slope.
+    let entry = |edge: &EdgeEntry| {
         let (shape, line) = (polygons[edge.polygon as usize].shape, &lines[usize::from(edge.lines.start)]);
         let active = ActiveEdge::new(edge, shape.outline(), line.y, 0);
         let (dx, dy, _) = downwards(shape.outline(), edge.corner);
@@ -56,7 +58,9 @@ fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -
             last: place(&lines[usize::from(edge.lines.end) - 1]),
         }
     };
-    let bucket = |edges: &[Edge]| {
+
+    // Put edges that begin on one line into one bucket.
+    let bucket = |edges: &[EdgeEntry]| {
         let [row, sample] = place(&lines[usize::from(edges[0].lines.start)]);
         Bucket { row, sample, edges: edges.iter().map(entry).collect() }
     };
@@ -64,7 +68,7 @@ fn buckets(polygons: &[Polygon<'_>], edges: &[Edge], lines: &[Line], top: u32) -
 }
 
 /// The active edge table, from left to right; edges that cross the line at one place in the order of the polygon table.
-pub(super) fn crossings(active: &[ActiveEdge], polygons: &[Polygon<'_>]) -> Vec<Crossing> {
+pub(super) fn crossings(active: &[ActiveEdge], polygons: &[PolygonEntry<'_>]) -> Vec<Crossing> {
     let crossing = |edge: &ActiveEdge| Crossing {
         x: edge.place(),
         polygon: edge.polygon,

@@ -4,7 +4,7 @@
 //! Cost: spans times the polygons that are in, plus covered samples.
 //! Source: [Watkins 1970] for the decisions, [Bouknight 1970] for the in-out flags.
 
-use super::edges::{ActiveEdge, Line, OUT, Polygon, covered};
+use super::edges::{ActiveEdge, OUT, PolygonEntry, SampleLine, covered};
 use super::face::OnLine;
 use super::implied_edge::ImpliedEdges;
 use crate::stats::VisibilityCounters;
@@ -20,7 +20,7 @@ const LONG: usize = 4;
 
 /// What is needed to fill the spans of a line.
 pub(super) struct Spans<'s, 'f> {
-    pub(super) polygons: &'s mut [Polygon<'f>],
+    pub(super) polygons: &'s mut [PolygonEntry<'f>],
     /// The polygons whose in-out flag is in.
     inside: Vec<u32>,
     /// The polygon that won the last span alone.
@@ -38,7 +38,7 @@ pub(super) struct Spans<'s, 'f> {
 impl<'s, 'f> Spans<'s, 'f> {
     /// Of a band whose polygons are all out.
     pub(super) fn new(
-        polygons: &'s mut [Polygon<'f>],
+        polygons: &'s mut [PolygonEntry<'f>],
         tiles: &'s mut [Tile],
         coherence: CoherenceSet,
         counters: &'s mut VisibilityCounters,
@@ -53,7 +53,7 @@ impl<'s, 'f> Spans<'s, 'f> {
     }
 
     /// Walks along the active edges and fills the spans between them.
-    pub(super) fn walk(&mut self, active: &[ActiveEdge], line: &Line) {
+    pub(super) fn walk(&mut self, active: &[ActiveEdge], line: &SampleLine) {
         let mut from = 0;
         for edge in active {
             if edge.column > from {
@@ -67,7 +67,7 @@ impl<'s, 'f> Spans<'s, 'f> {
     }
 
     /// Fills what lies between two edges: as one span, or pixel by pixel without area coherence.
-    fn fill_all(&mut self, pixels: Range<usize>, line: &Line) {
+    fn fill_all(&mut self, pixels: Range<usize>, line: &SampleLine) {
         if self.coherence.has(Coherence::Area) {
             self.counters.saved_by_area += pixels.len() as u64 - 1;
             return self.fill(pixels, line);
@@ -102,7 +102,7 @@ impl<'s, 'f> Spans<'s, 'f> {
     }
 
     /// Fills a span: with the one polygon that is in, or that hides the others, else sample by sample.
-    fn fill(&mut self, pixels: Range<usize>, line: &Line) {
+    fn fill(&mut self, pixels: Range<usize>, line: &SampleLine) {
         self.counters.spans += 1;
         if let [only] = self.inside[..] {
             self.report(&pixels, SpanVerdict::Only, Some(only));
@@ -121,15 +121,19 @@ impl<'s, 'f> Spans<'s, 'f> {
 
     /// Fills a span in which any of `rivals` may be seen: cuts it at the implied edge of the first two, and decides what
     /// no edge tells sample by sample.
-    fn divide(&mut self, pixels: Range<usize>, rivals: &mut [(f32, u32)], line: &Line) {
+    fn divide(&mut self, pixels: Range<usize>, rivals: &mut [(f32, u32)], line: &SampleLine) {
         if pixels.is_empty() {
             return;
         }
+
+        // Fill the span if one rival is left.
         if let [(_, winner)] = *rivals {
             self.last = winner;
             self.report(&pixels, SpanVerdict::ImpliedEdge, Some(winner));
             return self.fill_with(winner, pixels, line);
         }
+
+        // Test short spans sample by sample.
         if pixels.len() < LONG || !self.coherence.has(Coherence::ImpliedEdge) {
             return self.fill_by_samples(pixels, rivals, line);
         }
@@ -137,6 +141,8 @@ impl<'s, 'f> Spans<'s, 'f> {
         if rivals[1].1 < rivals[0].1 {
             rivals.swap(0, 1);
         }
+
+        // Cut the span at the line in which the two planes meet.
         let pair = [rivals[0].1, rivals[1].1];
         let shapes = pair.map(|p| self.polygons[p as usize].shape);
         let parts = self.implied.divide(pair, shapes, pixels.clone(), line.sample_x, line.y);
@@ -150,7 +156,7 @@ impl<'s, 'f> Spans<'s, 'f> {
     }
 
     /// Takes the nearest of `rivals`, whose depths were brought to the line when they were found, at each sample.
-    fn fill_by_samples(&mut self, pixels: Range<usize>, rivals: &[(f32, u32)], line: &Line) {
+    fn fill_by_samples(&mut self, pixels: Range<usize>, rivals: &[(f32, u32)], line: &SampleLine) {
         if pixels.is_empty() {
             return;
         }
@@ -173,7 +179,7 @@ impl<'s, 'f> Spans<'s, 'f> {
 
     /// Brings a polygon's depth to the line, unless it is there already.
     #[inline]
-    fn bring(&mut self, polygon: u32, line: &Line) -> OnLine<'f> {
+    fn bring(&mut self, polygon: u32, line: &SampleLine) -> OnLine<'f> {
         let polygon = &mut self.polygons[polygon as usize];
         if polygon.line == line.y && self.coherence.has(Coherence::Face) {
             self.counters.saved_by_face += 1;
@@ -184,7 +190,8 @@ impl<'s, 'f> Spans<'s, 'f> {
     }
 
     /// Finds the polygons that no other hides over the whole span, by their depths at its ends.
-    fn find_rivals(&mut self, pixels: &Range<usize>, line: &Line) {
+    fn find_rivals(&mut self, pixels: &Range<usize>, line: &SampleLine) {
+        // Begin with a polygon that is likely to be near.
         let ends = [pixels.start, pixels.end - 1].map(|x| x as i32 * SUBPIXEL + line.sample_x);
         let by_depth = self.coherence.has(Coherence::Depth);
         let lucky = if !by_depth || self.polygons[self.last as usize].slot == OUT { self.inside[0] } else { self.last };
@@ -192,6 +199,8 @@ impl<'s, 'f> Spans<'s, 'f> {
         let (mut floor, near) = self.bring(lucky, line).range(ends);
         self.rivals.clear();
         self.rivals.push((near, lucky));
+
+        // Compare the others' ranges of depth with the floor.
         for i in 0..self.inside.len() {
             let p = self.inside[i];
             if p == lucky {
@@ -208,11 +217,14 @@ impl<'s, 'f> Spans<'s, 'f> {
                 floor = floor.max(far);
             }
         }
+
+        // Drop those that the last floor hides.
         self.rivals.retain(|&(near, _)| near >= floor);
     }
 
     /// Fills a span with one polygon; its triangles have their facets.
-    fn fill_with(&mut self, polygon: u32, pixels: Range<usize>, line: &Line) {
+    fn fill_with(&mut self, polygon: u32, pixels: Range<usize>, line: &SampleLine) {
+        // Fill one tile's part of the span after the other.
         let face = self.bring(polygon, line);
         let triangles = self.polygons[polygon as usize].shape.triangles();
         let mut x = pixels.start;
@@ -220,6 +232,7 @@ impl<'s, 'f> Spans<'s, 'f> {
             let end = pixels.end.min((x / TILE + 1) * TILE);
             let (tile, at) = (&mut self.tiles[x / TILE], place(x, line));
             tile.touched = true;
+            // Write the facet of each triangle.
             match triangles {
                 [only] => tile.facet[at..at + (end - x)].fill(only.facet),
                 several => {
@@ -229,6 +242,8 @@ impl<'s, 'f> Spans<'s, 'f> {
                     }
                 }
             }
+
+            // Write the depths.
             for (depth, x) in tile.depth[at..].iter_mut().zip(x..end) {
                 *depth = face.depth(x as i32 * SUBPIXEL + line.sample_x);
             }
@@ -245,6 +260,6 @@ fn without(rivals: &mut [(f32, u32)], loser: u32) -> &mut [(f32, u32)] {
 }
 
 /// Where a sample lies in its tile's planes.
-fn place(x: usize, line: &Line) -> usize {
+fn place(x: usize, line: &SampleLine) -> usize {
     line.sample * TILE_PIXELS + line.row * TILE + x % TILE
 }

@@ -8,7 +8,7 @@ use super::super::polygons::Polygons;
 use super::super::tiles::extent;
 use super::depths::CornerDepths;
 use super::facet_at;
-use super::window::{Relation, SampleBox, Window, relation};
+use super::window::{SampleBox, Window, WindowRelation, relation};
 use crate::stats::VisibilityCounters;
 use crate::trace::{Step, WindowVerdict};
 use crate::{Coherence, CoherenceSet, Execution, PreparedView};
@@ -20,7 +20,7 @@ use std::ops::Range;
 pub(super) struct Entry {
     pub(super) polygon: u32,
     /// What it is to the window; before that is known, to the one that the window is a part of.
-    pub(super) relation: Relation,
+    pub(super) relation: WindowRelation,
 }
 
 /// Lists of the windows from the first down to the present one, one after the other.
@@ -61,7 +61,7 @@ impl<'f> Lists<'f> {
             self.drop_hidden(samples, start);
         }
         self.counters.pixel_windows += u64::from(window.is_pixel() && self.stack.len() - start > 1);
-        self.execution.tell(|| self.step(window, start, disjoint as u32));
+        self.execution.report(|| self.step(window, start, disjoint as u32));
         start
     }
 
@@ -82,23 +82,26 @@ impl<'f> Lists<'f> {
 
     /// The step of a window whose list begins at `start`.
     fn step(&self, window: &Window, start: usize, disjoint: u32) -> Step {
+        // Name the case of the window.
         let list = self.from(start);
         let (verdict, drawn) = match list {
             [] => (WindowVerdict::Empty, None),
-            [only] if only.relation == Relation::Surrounding => (WindowVerdict::Surrounded, Some(only)),
+            [only] if only.relation == WindowRelation::Surrounding => (WindowVerdict::Surrounded, Some(only)),
             [only] => (WindowVerdict::One, Some(only)),
             _ if window.is_pixel() => (WindowVerdict::Pixel, None),
             _ => (WindowVerdict::Cut, None),
         };
+
+        // Name the facets by how they lie to the window.
         let of = |entry: &Entry| self.polygons.get(entry.polygon as usize).facet();
         let facets = |relation| list.iter().filter(|e| e.relation == relation).map(of).collect();
         Step::Window {
             pixels: window.pixels(),
             path: window.path.iter().map(|quarter| char::from(b'0' + quarter)).collect(),
             disjoint,
-            contained: facets(Relation::Contained),
-            intersecting: facets(Relation::Intersecting),
-            surrounding: facets(Relation::Surrounding),
+            contained: facets(WindowRelation::Contained),
+            intersecting: facets(WindowRelation::Intersecting),
+            surrounding: facets(WindowRelation::Surrounding),
             hidden: self.hidden.clone(),
             verdict,
             facet: drawn.map(of),
@@ -109,12 +112,12 @@ impl<'f> Lists<'f> {
     fn classify(&mut self, samples: SampleBox, list: Range<usize>) {
         for i in list {
             let mut entry = self.stack[i];
-            if entry.relation == Relation::Surrounding && self.coherence.has(Coherence::Area) {
+            if entry.relation == WindowRelation::Surrounding && self.coherence.has(Coherence::Area) {
                 self.counters.saved_by_area += 1;
             } else {
                 self.counters.window_tests += 1;
                 entry.relation = relation(self.polygons.get(entry.polygon as usize).outline(), samples);
-                if entry.relation == Relation::Disjoint {
+                if entry.relation == WindowRelation::Disjoint {
                     continue;
                 }
             }
@@ -127,7 +130,10 @@ impl<'f> Lists<'f> {
         if self.stack.len() - start < 2 {
             return;
         }
-        let surrounders = self.from(start).iter().filter(|e| e.relation == Relation::Surrounding).map(|e| e.polygon);
+
+        // Find the surrounder that is nearest at all corners.
+        let surrounders =
+            self.from(start).iter().filter(|e| e.relation == WindowRelation::Surrounding).map(|e| e.polygon);
         let farthest = |p: u32| {
             let [near, far] = [f32::max, f32::min].map(|pick| {
                 let depths = samples.corners().map(|[x, y]| self.polygons.get(p as usize).depth(x, y));
@@ -145,6 +151,8 @@ impl<'f> Lists<'f> {
             _ => a,
         });
         let Some((_, _, front)) = front else { return };
+
+        // Drop what its plane hides at all corners.
         let (polygons, counters) = (self.polygons, &mut self.counters);
         let watched = self.execution.observer.is_some();
         let plane = CornerDepths::new(polygons.get(front as usize).plane(), samples);

@@ -20,13 +20,15 @@ pub(super) struct Window {
 /// The box round a window's samples in the picture, ends included, 1/256 pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SampleBox {
+    /// Least and greatest x of a sample, in 1/256 pixel.
     pub(super) x: [i32; 2],
+    /// Least and greatest y of a sample, in 1/256 pixel.
     pub(super) y: [i32; 2],
 }
 
 /// What a polygon is to a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Relation {
+pub(super) enum WindowRelation {
     /// It has no sample in it.
     Disjoint,
     /// It lies within the window's pixels.
@@ -61,6 +63,7 @@ impl Window {
     /// The four smaller windows, or two where it is too narrow for four. A window of several tiles is cut between tiles,
     /// nearest to its middle, one within a tile at powers of two.
     pub(super) fn parts(&self) -> Vec<Self> {
+        // Choose the cut of each side.
         let half = (self.x.len().max(self.y.len()).next_power_of_two() / 2) as u32;
         let tile = TILE as u32;
         let cut = |range: &Range<u32>| {
@@ -75,6 +78,8 @@ impl Window {
                 None => vec![range.clone()],
             }
         };
+
+        // Combine columns and rows to windows.
         let (columns, rows) = (cut(&self.x), cut(&self.y));
         let part = |(down, y): (usize, &Range<u32>), (across, x): (usize, &Range<u32>)| {
             let mut path = self.path.clone();
@@ -106,11 +111,12 @@ impl SampleBox {
 
 /// Tests a polygon, given by its outline, against the box round a window's samples: one of the box's sides or of the
 /// outline's edges has the other on its outer side, if they are disjoint.
-pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> Relation {
+pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> WindowRelation {
     let outside =
+        // Reject outlines beside the box.
         |k: usize, [low, high]: [i32; 2]| outline.iter().all(|v| v[k] < low) || outline.iter().all(|v| v[k] > high);
     if outside(0, samples.x) || outside(1, samples.y) {
-        return Relation::Disjoint;
+        return WindowRelation::Disjoint;
     }
     // An edge function is largest and smallest at two corners of the box.
     let mut surrounds = true;
@@ -121,20 +127,22 @@ pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> Relation {
         let down = samples.y.map(|y| dx * i64::from(y - a[1]));
         let across = samples.x.map(|x| -dy * i64::from(x - a[0]));
         if down[0].max(down[1]) + across[0].max(across[1]) < inside {
-            return Relation::Disjoint;
+            return WindowRelation::Disjoint;
         }
         surrounds &= down[0].min(down[1]) + across[0].min(across[1]) >= inside;
     }
+
+    // Tell surrounding, contained and intersecting apart.
     let within = |k: usize, [low, high]: [i32; 2]| {
         let sides = low.div_euclid(SUBPIXEL) * SUBPIXEL..=(high.div_euclid(SUBPIXEL) + 1) * SUBPIXEL;
         outline.iter().all(|v| sides.contains(&v[k]))
     };
     if surrounds {
-        Relation::Surrounding
+        WindowRelation::Surrounding
     } else if within(0, samples.x) && within(1, samples.y) {
-        Relation::Contained
+        WindowRelation::Contained
     } else {
-        Relation::Intersecting
+        WindowRelation::Intersecting
     }
 }
 
@@ -182,14 +190,14 @@ pub(super) mod tests {
             let setup = triangle(corners, [0.5; 3], 0);
             relation(&[0, 1, 2].map(|i| [setup.x[i], setup.y[i]]), WINDOW)
         };
-        assert_eq!(relation([[3000, 0], [4000, 0], [3000, 900]]), Relation::Disjoint);
+        assert_eq!(relation([[3000, 0], [4000, 0], [3000, 900]]), WindowRelation::Disjoint);
         // Its box overlaps the window, but an edge has the window on its outer side.
-        assert_eq!(relation([[4000, 0], [4000, 4000], [0, 4000]]), Relation::Disjoint);
-        assert_eq!(relation([[300, 300], [900, 300], [300, 900]]), Relation::Contained);
-        assert_eq!(relation([[-300, 300], [900, 300], [300, 900]]), Relation::Intersecting);
-        assert_eq!(relation([[-300, -300], [9000, -300], [-300, 9000]]), Relation::Surrounding);
+        assert_eq!(relation([[4000, 0], [4000, 4000], [0, 4000]]), WindowRelation::Disjoint);
+        assert_eq!(relation([[300, 300], [900, 300], [300, 900]]), WindowRelation::Contained);
+        assert_eq!(relation([[-300, 300], [900, 300], [300, 900]]), WindowRelation::Intersecting);
+        assert_eq!(relation([[-300, -300], [9000, -300], [-300, 9000]]), WindowRelation::Surrounding);
         // The samples on the left and top edges are in, those on the right one are out.
-        assert_eq!(relation([[128, 128], [9000, 128], [128, 9000]]), Relation::Surrounding);
-        assert_eq!(relation([[1920, 9000], [1920, -7000], [-7000, -7000]]), Relation::Intersecting);
+        assert_eq!(relation([[128, 128], [9000, 128], [128, 9000]]), WindowRelation::Surrounding);
+        assert_eq!(relation([[1920, 9000], [1920, -7000], [-7000, -7000]]), WindowRelation::Intersecting);
     }
 }

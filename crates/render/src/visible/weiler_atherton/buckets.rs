@@ -40,7 +40,9 @@ impl Source<u32> for InCells<'_> {
 /// Cells of the same size over all boxes.
 #[derive(Clone, Copy, Debug)]
 struct Grid {
+    /// Lower corner, in the units of the boxes.
     origin: [f64; 2],
+    /// Cells for each unit along x and y.
     cells_a_unit: [f64; 2],
     /// Cells a side.
     side: usize,
@@ -63,6 +65,7 @@ impl Grid {
 
 impl Buckets {
     pub(super) fn new(boxes: Vec<[f64; 4]>) -> Self {
+        // Bound all boxes.
         let mut all = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
         for b in &boxes {
             all = [all[0].min(b[0]), all[1].min(b[1]), all[2].max(b[2]), all[3].max(b[3])];
@@ -83,6 +86,7 @@ impl Buckets {
             side /= 2;
         };
 
+        // Enter the boxes in the cells they touch.
         let numbers = Dealt::new(&InCells { grid, boxes: &boxes }, side * side);
         Self { boxes, grid, numbers }
     }

@@ -5,7 +5,7 @@
 //! In:   edges. Out: numbers of edges near a box, or in a band.
 //! Cost: of an entry, the bands that an edge reaches; of a search, the edges in the box's bands.
 
-use super::line::{Edge, ROUNDING};
+use super::line::{ROUNDING, RegionEdge};
 
 /// About how many edges a band has, when they are short.
 const EDGES_A_BAND: usize = 4;
@@ -26,7 +26,7 @@ pub(super) struct EdgeIndex {
 
 impl EdgeIndex {
     /// Of edges in a box: smallest x and y, largest x and y.
-    pub(super) fn new(edges: &[Edge], [x0, y0, x1, y1]: [f64; 4]) -> Self {
+    pub(super) fn new(edges: &[RegionEdge], [x0, y0, x1, y1]: [f64; 4]) -> Self {
         let axis = usize::from(y1 - y0 > x1 - x0);
         let (origin, length) = if axis == 0 { (x0, x1 - x0) } else { (y0, y1 - y0) };
         let count = (edges.len() / EDGES_A_BAND).clamp(1, MAX_BANDS);
@@ -51,13 +51,13 @@ impl EdgeIndex {
         [self.band(low - ROUNDING), self.band(high + ROUNDING)]
     }
 
-    fn reach_of(&self, edge: &Edge) -> [usize; 2] {
+    fn reach_of(&self, edge: &RegionEdge) -> [usize; 2] {
         let [from, to] = edge.about.map(|p| p[self.axis]);
         self.reach(from.min(to), from.max(to))
     }
 
     /// Enters the next edge.
-    pub(super) fn push(&mut self, edge: &Edge) {
+    pub(super) fn push(&mut self, edge: &RegionEdge) {
         let [first, last] = self.reach_of(edge);
         let number = self.is_removed.len() as u32;
         self.bands[first..=last].iter_mut().for_each(|band| band.push(number));
@@ -86,7 +86,7 @@ impl EdgeIndex {
     }
 
     /// Adds to `found` the edges whose boxes touch a box.
-    pub(super) fn near(&self, edges: &[Edge], around: [f64; 4], found: &mut Vec<u32>) {
+    pub(super) fn near(&self, edges: &[RegionEdge], around: [f64; 4], found: &mut Vec<u32>) {
         let [low, high] = [around[self.axis], around[self.axis + 2]];
         let [first, last] = self.reach(low, high);
         for band in first..=last {

@@ -140,12 +140,15 @@ impl Filling<'_, '_> {
 
     /// Puts a polygon's facets into the samples of a span, where nothing nearer is.
     fn span(&self, polygon: u32, line: u32, [from, to]: [u32; 2], tiles: &mut [Tile]) {
+        // Find the sample of the line.
         let pattern = self.pattern;
         let (r, s) = (line as usize / pattern.len(), line as usize % pattern.len());
         let [sx, sy] = pattern.position(s);
         let polygon = self.polygons.get(polygon as usize);
         let plane = polygon.plane();
         let mut from = from as usize;
+
+        // Fill one tile's part of the span after the other.
         while from < to as usize {
             let tile = &mut tiles[from / TILE];
             let y = (tile.y as usize + r) as i32 * SUBPIXEL + sy;
@@ -158,6 +161,7 @@ impl Filling<'_, '_> {
                 if depth < tile.depth[sample] {
                     continue;
                 }
+                // Keep the nearer facet.
                 let candidate = (depth, polygon.facet_within(x, y));
                 if nearer(candidate, (tile.depth[sample], tile.facet[sample])) {
                     put(tile, sample, candidate);

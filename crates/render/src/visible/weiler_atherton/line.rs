@@ -23,7 +23,9 @@ pub(super) const MAX_OFFSET: i64 = 1 << 49;
 /// `a x + b y + c`, positive on the inner side. The line runs in the direction `(b, -a)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Line {
+    /// Factor of x.
     pub(super) a: i32,
+    /// Factor of y.
     pub(super) b: i32,
     pub(super) c: i64,
 }
@@ -156,7 +158,7 @@ impl Line {
 
 /// A piece of a boundary, directed, with the region on the positive side of its line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(super) struct RegionEdge {
     pub(super) line: Line,
     /// About where it begins and ends.
     pub(super) about: [[f64; 2]; 2],
@@ -165,7 +167,7 @@ pub(super) struct Edge {
     is_corner: [bool; 2],
 }
 
-impl Edge {
+impl RegionEdge {
     /// Between two points on a line.
     pub(super) fn new(line: Line, ends: [Point; 2]) -> Self {
         let across = ends.map(|p| if line.cross(&p.lines[0]) == 0 { p.lines[1] } else { p.lines[0] });
@@ -218,7 +220,7 @@ mod tests {
     fn edges_keep_their_ends() {
         let [a, b, c] = [[0, 0], [1024, 0], [300, 700]];
         let sides = [Line::through(a, b), Line::through(b, c), Line::through(c, a)];
-        let edge = Edge::new(sides[0], [Point::corner(a, [sides[2], sides[0]]), sides[0].crossing(&sides[1])]);
+        let edge = RegionEdge::new(sides[0], [Point::corner(a, [sides[2], sides[0]]), sides[0].crossing(&sides[1])]);
         let turned = edge.reversed();
         for (one, two) in [(0, 1), (1, 0)] {
             assert_eq!(edge.end(one).compare_both(&turned.end(two)), Ordering::Equal);

@@ -4,28 +4,28 @@
 //! Cost: linear in the region's edges.
 
 use super::line::{Line, MAX_OFFSET, MAX_SLOPE};
-use super::region::{Convex, Region};
+use super::region::{ConvexOutline, Region};
 use crate::visible::polygons::{ConvexPolygon, same_plane};
 use vitral_raster::{SUBPIXEL, Setup};
 
 /// A polygon as it came in.
 #[derive(Debug)]
-pub(super) struct Polygon<'p> {
+pub(super) struct AreaPolygon<'p> {
     pub(super) plane: &'p Setup,
     /// Its number among the view's polygons.
     pub(super) number: u32,
     /// Lowest and highest facet that it is of.
     facets: [u32; 2],
-    pub(super) shape: Convex,
+    pub(super) shape: ConvexOutline,
     /// Change of depth for 1/256 pixel.
     slope: [f64; 2],
 }
 
-impl<'p> Polygon<'p> {
+impl<'p> AreaPolygon<'p> {
     pub(super) fn new(number: u32, polygon: ConvexPolygon<'p, '_>) -> Self {
         let plane = polygon.plane();
         let slope = [plane.dz_dx, plane.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
-        Self { plane, number, facets: polygon.facets(), shape: Convex::polygon(polygon.outline()), slope }
+        Self { plane, number, facets: polygon.facets(), shape: ConvexOutline::polygon(polygon.outline()), slope }
     }
 
     /// What moving from the plane's origin adds to its depth, for x and for y.
@@ -48,7 +48,7 @@ impl<'p> Polygon<'p> {
 
 /// What a region of one polygon is to another that covers it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Relation {
+pub(super) enum DepthRelation {
     /// Behind it at every sample.
     Hidden,
     /// Nowhere certainly behind.
@@ -59,15 +59,18 @@ pub(super) enum Relation {
 
 /// Looks at the corners of a region: between them depths are linear, apart from rounding and from the clamping to the
 /// facet's own range, for which there has to be room.
-pub(super) fn relation(front: &Polygon<'_>, back: &Polygon<'_>, region: &Region) -> Relation {
+pub(super) fn relation(front: &AreaPolygon<'_>, back: &AreaPolygon<'_>, region: &Region) -> DepthRelation {
+    // Decide by the ranges of depth if they do not overlap.
     let (near, far) = (front.plane, back.plane);
     if near.z_min > far.z_max {
-        return Relation::Hidden;
+        return DepthRelation::Hidden;
     }
     if same_plane(near, far) {
         // Where ids of facets mix, each sample decides.
-        return if front.facets[1] < back.facets[0] { Relation::Hidden } else { Relation::Visible };
+        return if front.facets[1] < back.facets[0] { DepthRelation::Hidden } else { DepthRelation::Visible };
     }
+
+    // Compare depths at all corners.
     let (mut smallest, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut margin, mut room) = (0.0f64, near.z_max > far.z_min);
     let (mut nearest_back, mut farthest_front) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -80,21 +83,23 @@ pub(super) fn relation(front: &Polygon<'_>, back: &Polygon<'_>, region: &Region)
         let rounding = front.rounding(place) + back.rounding(place);
         margin = if rounding <= margin { margin } else { rounding };
     }
+
+    // Compare the differences with the rounding.
     room &= farthest_front - margin > f64::from(far.z_min) && nearest_back + margin < f64::from(near.z_max);
     if smallest > margin && room {
-        Relation::Hidden
+        DepthRelation::Hidden
     } else if largest > margin {
-        Relation::Partly { margin }
+        DepthRelation::Partly { margin }
     } else {
-        Relation::Visible
+        DepthRelation::Visible
     }
 }
 
 /// The line, with whole coefficients, beyond which, in a box, `front` is nearer than `back` by `margin`, and a little more for
 /// the rounding of the coefficients.
 pub(super) fn line_of_gap(
-    front: &Polygon<'_>,
-    back: &Polygon<'_>,
+    front: &AreaPolygon<'_>,
+    back: &AreaPolygon<'_>,
     margin: f64,
     [x0, y0, x1, y1]: [f64; 4],
 ) -> Option<Line> {

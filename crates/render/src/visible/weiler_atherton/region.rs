@@ -22,7 +22,7 @@
 //! Source: [Weiler & Atherton 1977], [Weiler 1980].
 
 use super::edge_index::EdgeIndex;
-use super::line::{Edge, Line, Point, ROUNDING};
+use super::line::{Line, Point, ROUNDING, RegionEdge};
 use std::cmp::Ordering;
 use vitral_raster::SUBPIXEL;
 
@@ -35,14 +35,14 @@ const INDEX_THRESHOLD: usize = 256;
 
 /// A convex polygon to clip with: its corners, and the line from each to the next, positive inside. A half-plane has no corners.
 #[derive(Clone, Debug)]
-pub(super) struct Convex {
+pub(super) struct ConvexOutline {
     lines: Vec<Line>,
     corners: Vec<[i32; 2]>,
     /// Smallest x and y, largest x and y.
     pub(super) bounds: [f64; 4],
 }
 
-impl Convex {
+impl ConvexOutline {
     /// A polygon of grid points that run so that the inner side is positive. Corners on a straight line are left out.
     pub(super) fn polygon(outline: &[[i32; 2]]) -> Self {
         let count = outline.len();
@@ -88,6 +88,7 @@ impl Convex {
 
     /// A box round what this and another polygon have in common, a little too large.
     fn common_box(&self, other: &Self, [outline, clipped]: &mut [Vec<[f64; 2]>; 2]) -> Option<[f64; 4]> {
+        // Clip the outline by the other's lines, with some slack.
         outline.clear();
         outline.extend(self.corners.iter().map(|c| c.map(f64::from)));
         for line in &other.lines {
@@ -109,6 +110,8 @@ impl Convex {
                 return None;
             }
         }
+
+        // Bound what is left.
         let [x0, y0, x1, y1] = bounds(outline.iter().copied());
         Some([x0 - 1.0, y0 - 1.0, x1 + 1.0, y1 + 1.0])
     }
@@ -129,7 +132,7 @@ pub(super) fn overlap(a: [f64; 4], b: [f64; 4]) -> bool {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Region {
     /// Those that the index has removed among them.
-    edges: Vec<Edge>,
+    edges: Vec<RegionEdge>,
     index: Option<Box<EdgeIndex>>,
     /// Smallest x and y, largest x and y, or a little more.
     bounds: [f64; 4],
@@ -148,7 +151,7 @@ pub(super) enum Clipped {
 
 /// An outline of a region.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Outline {
+pub(super) struct RegionOutline {
     /// Whether the region lies around it.
     pub(super) is_hole: bool,
     /// 1/256 pixel. Clockwise on the screen, a hole the other way round.
@@ -176,18 +179,18 @@ pub(super) struct Workspace {
     crossings: Vec<(Point, i32)>,
     /// Edges that the polygon cuts or holds.
     removed: Vec<u32>,
-    inside: Vec<Edge>,
-    outside: Vec<Edge>,
+    inside: Vec<RegionEdge>,
+    outside: Vec<RegionEdge>,
 }
 
 impl Region {
     /// A convex polygon.
-    pub(super) fn polygon(polygon: &Convex) -> Self {
-        let side = |i: usize| polygon.ends(i).map(|ends| Edge::new(polygon.lines[i], ends));
+    pub(super) fn polygon(polygon: &ConvexOutline) -> Self {
+        let side = |i: usize| polygon.ends(i).map(|ends| RegionEdge::new(polygon.lines[i], ends));
         Self { edges: (0..polygon.lines.len()).filter_map(side).collect(), index: None, bounds: polygon.bounds }
     }
 
-    fn of(edges: &[Edge]) -> Self {
+    fn of(edges: &[RegionEdge]) -> Self {
         let bounds = bounds(edges.iter().flat_map(|e| e.about));
         Self { edges: edges.to_vec(), index: None, bounds }
     }
@@ -206,7 +209,7 @@ impl Region {
     }
 
     /// Its boundary, in no order.
-    pub(super) fn edges(&self) -> impl Iterator<Item = &Edge> {
+    pub(super) fn edges(&self) -> impl Iterator<Item = &RegionEdge> {
         let index = self.index.as_deref();
         let is_there = move |i: usize| index.is_none_or(|index| index.has(i));
         self.edges.iter().enumerate().filter(move |(i, _)| is_there(*i)).map(|(_, edge)| edge)
@@ -214,11 +217,12 @@ impl Region {
 
     /// Bytes in memory, about.
     pub(super) fn bytes(&self) -> usize {
-        self.edges.capacity() * size_of::<Edge>() + self.index.as_ref().map_or(0, |index| index.bytes())
+        self.edges.capacity() * size_of::<RegionEdge>() + self.index.as_ref().map_or(0, |index| index.bytes())
     }
 
     /// Clips by a convex polygon. The region is a part of `whole`.
-    pub(super) fn clip(&mut self, polygon: &Convex, whole: &Convex, work: &mut Workspace) -> Clipped {
+    pub(super) fn clip(&mut self, polygon: &ConvexOutline, whole: &ConvexOutline, work: &mut Workspace) -> Clipped {
+        // Reject by boxes.
         if !polygon.touches(self.bounds) {
             return Clipped::Outside;
         }
@@ -240,6 +244,8 @@ impl Region {
                 None => work.near.extend((0..).zip(&self.edges).filter(|(_, e)| e.touches(common)).map(|(i, _)| i)),
             }
         }
+
+        // Classify the near edges, and cut only if some cross.
         if let Some(trivial) = self.find_sides(polygon, is_all, work) {
             return trivial;
         }
@@ -247,9 +253,10 @@ impl Region {
     }
 
     /// Finds on which side of the polygon's lines the near edges' ends lie, and what follows if these are all edges.
-    fn find_sides(&self, polygon: &Convex, is_all: bool, work: &mut Workspace) -> Option<Clipped> {
+    fn find_sides(&self, polygon: &ConvexOutline, is_all: bool, work: &mut Workspace) -> Option<Clipped> {
         let mut within = true;
         work.sides.clear();
+        // Classify both ends of each near edge.
         for line in &polygon.lines {
             let mut front = false;
             for &i in &work.near {
@@ -259,6 +266,8 @@ impl Region {
                 within &= !sides.contains(&Ordering::Less);
                 work.sides.push(sides);
             }
+
+            // Stop if all edges lie on the outer side of a line.
             if is_all && !front {
                 return Some(Clipped::Outside);
             }
@@ -267,7 +276,8 @@ impl Region {
     }
 
     /// Cuts the near edges and finds the new ones.
-    fn cut(&mut self, polygon: &Convex, work: &mut Workspace) -> Clipped {
+    fn cut(&mut self, polygon: &ConvexOutline, work: &mut Workspace) -> Clipped {
+        // Cut each near edge into parts inside, before and behind.
         work.removed.clear();
         work.inside.clear();
         work.outside.clear();
@@ -281,27 +291,34 @@ impl Region {
                 work.outside.extend(before.into_iter().chain(behind));
             }
         }
+
+        // Close both regions along the polygon's sides.
         for side in 0..polygon.lines.len() {
             let line = polygon.lines[side];
             for inner in [true, false] {
                 self.intervals(polygon, side, inner, work, |ends, work| {
-                    let edge = Edge::new(line, ends);
+                    let edge = RegionEdge::new(line, ends);
                     if inner { work.inside.push(edge) } else { work.outside.push(edge.reversed()) }
                 });
             }
         }
+
+        // Tell whether one of the two is empty.
         if work.inside.is_empty() {
             return Clipped::Outside;
         }
         if work.outside.is_empty() && work.removed.len() == self.edge_count() {
             return Clipped::Inside;
         }
+
+        // Keep the outside and return the inside.
         self.become_outside(work);
         Clipped::Both(Self::of(&work.inside))
     }
 
     /// Takes the edges that were cut out, and the new ones in.
     fn become_outside(&mut self, work: &Workspace) {
+        // Replace the edges in the index.
         if let Some(index) = &mut self.index {
             work.removed.iter().for_each(|&number| index.remove(number));
             for edge in &work.outside {
@@ -310,6 +327,8 @@ impl Region {
             }
             return;
         }
+
+        // Without an index, replace them in the list and bound the region anew if it is small.
         for &number in work.removed.iter().rev() {
             self.edges.swap_remove(number as usize);
         }
@@ -328,7 +347,7 @@ impl Region {
     /// Where the region is met infinitely little beside a side of a polygon, on its inner or outer side: from where to where.
     fn intervals(
         &self,
-        polygon: &Convex,
+        polygon: &ConvexOutline,
         side: usize,
         inner: bool,
         work: &mut Workspace,
@@ -368,11 +387,14 @@ impl Region {
         });
         crossings.retain(|crossing| crossing.1 != 0);
 
+        // Decide whether the side begins in the region.
         let starts_within = match (crossings.first(), ends) {
             (Some(first), _) => first.1 < 0,
             (None, Some(_)) => self.holds_beside(polygon.corners[side], &line, inner),
             (None, None) => false,
         };
+
+        // Emit the intervals between entering and leaving.
         let mut from = ends.filter(|_| starts_within).map(|ends| ends[0]);
         for &(place, change) in &crossings {
             if change > 0 {
@@ -389,11 +411,14 @@ impl Region {
 
     /// Whether the region holds a place infinitely little farther than `corner` along a line, and still less beside it.
     fn holds_beside(&self, corner: [i32; 2], line: &Line, inner: bool) -> bool {
+        // Reject corners outside the region's box.
         let place = corner.map(f64::from);
         let [x0, y0, x1, y1] = self.bounds;
         if place[0] < x0 - 1.0 || place[1] < y0 - 1.0 || place[0] > x1 + 1.0 || place[1] > y1 + 1.0 {
             return false;
         }
+
+        // Order places along the line, and beside it where that decides nothing.
         let axis = self.index.as_ref().map_or(1, |index| index.axis);
         let point = Point::corner(corner, [*line; 2]);
         let along = [line.b, -line.a].map(i64::from);
@@ -401,7 +426,7 @@ impl Region {
         let is_forwards = if along[axis] != 0 { along[axis] > 0 } else { beside[axis] > 0 };
 
         // Count the edges that a ray along the other axis, to the lower side, crosses.
-        let comes_before = |edge: &Edge, end: usize| {
+        let comes_before = |edge: &RegionEdge, end: usize| {
             let gap = edge.about[end][axis] - place[axis];
             if gap.abs() > ROUNDING {
                 return gap < 0.0;
@@ -412,7 +437,7 @@ impl Region {
                 Ordering::Greater => false,
             }
         };
-        let is_crossed = |edge: &Edge| {
+        let is_crossed = |edge: &RegionEdge| {
             if comes_before(edge, 0) == comes_before(edge, 1) {
                 return false;
             }
@@ -422,6 +447,8 @@ impl Region {
             let value = values.into_iter().find(|v| *v != 0).unwrap_or(0);
             (value > 0) == (slopes[1 - axis] > 0)
         };
+
+        // Count the crossings: an odd number means inside.
         let crossed = match &self.index {
             Some(index) => index.across(place[axis]).filter(|&i| is_crossed(&self.edges[i])).count(),
             None => self.edges.iter().filter(|edge| is_crossed(edge)).count(),
@@ -431,7 +458,7 @@ impl Region {
 
     /// The area, in square pixels of 256 x 256.
     pub(super) fn area(&self) -> f64 {
-        let doubled = |e: &Edge| {
+        let doubled = |e: &RegionEdge| {
             let [[x0, y0], [x1, y1]] = e.about;
             x0 * y1 - y0 * x1
         };
@@ -448,10 +475,12 @@ impl Region {
 
     /// The outlines, walked, those around the region before its holes. Where several edges leave a point, the walk takes the one
     /// that turns most towards the region, so that outlines touch but do not cross.
-    pub(super) fn outlines(&self) -> Vec<Outline> {
+    pub(super) fn outlines(&self) -> Vec<RegionOutline> {
         // Sort the edges by where they begin.
-        let mut edges: Vec<(Point, Edge)> = self.edges().map(|edge| (edge.end(0), *edge)).collect();
+        let mut edges: Vec<(Point, RegionEdge)> = self.edges().map(|edge| (edge.end(0), *edge)).collect();
         edges.sort_by(|one, two| one.0.compare_both(&two.0));
+
+        // Walk one boundary from each edge that is not walked.
         let mut is_walked = vec![false; edges.len()];
         let mut outlines = Vec::new();
         for start in 0..edges.len() {
@@ -476,30 +505,32 @@ impl Region {
             }
             outlines.push(outline(&walk));
         }
+
+        // Put holes last.
         outlines.sort_by_key(|outline| outline.is_hole);
         outlines
     }
 }
 
 /// How far an edge turns towards the region from another that ends where it begins, radians.
-fn turn(edge: &Edge, next: &Edge) -> f64 {
+fn turn(edge: &RegionEdge, next: &RegionEdge) -> f64 {
     let [[dx, dy], [ex, ey]] = [edge, next].map(|e| [f64::from(e.line.b), -f64::from(e.line.a)]);
     vitral_math::func::atan2(dx * ey - dy * ex, dx * ex + dy * ey)
 }
 
 /// The outline of edges that were walked. Edges along one line are one.
-fn outline(walk: &[Edge]) -> Outline {
+fn outline(walk: &[RegionEdge]) -> RegionOutline {
     let before = walk.iter().cycle().skip(walk.len() - 1);
     let bends = walk.iter().zip(before).filter(|(edge, before)| turn(before, edge) != 0.0);
     let corners: Vec<_> = bends.map(|(edge, _)| edge.about[0]).collect();
     let doubled = |([x0, y0], [x1, y1]): (&[f64; 2], &[f64; 2])| x0 * y1 - y0 * x1;
     let area: f64 = corners.iter().zip(corners.iter().cycle().skip(1)).map(doubled).sum();
-    Outline { is_hole: area < 0.0, corners }
+    RegionOutline { is_hole: area < 0.0, corners }
 }
 
 /// An edge cut where it enters and leaves a polygon.
 struct EdgeCut {
-    edge: Edge,
+    edge: RegionEdge,
     /// From where to where it is within, or along a side.
     ends: [Point; 2],
     /// Whether these are not its own ends.
@@ -510,10 +541,14 @@ struct EdgeCut {
 
 impl EdgeCut {
     /// `sides`: on which side of the polygon's lines the edge's ends lie.
-    fn new<'s>(edge: &Edge, polygon: &Convex, sides: impl Iterator<Item = &'s [Ordering; 2]>) -> Self {
+    fn new<'s>(edge: &RegionEdge, polygon: &ConvexOutline, sides: impl Iterator<Item = &'s [Ordering; 2]>) -> Self {
         use Ordering::{Equal, Greater, Less};
+
+        // Start with the whole edge.
         let own = [edge.end(0), edge.end(1)];
         let mut cut = Self { edge: *edge, ends: own, is_cut: [false; 2], is_along: false, is_outside: false };
+
+        // Cut it at each line of the polygon.
         for (line, sides) in polygon.lines.iter().zip(sides) {
             match sides {
                 [Equal, Equal] => cut.is_along = true,
@@ -536,15 +571,17 @@ impl EdgeCut {
                 _ => {}
             }
         }
+
+        // Drop an edge of which nothing is left.
         cut.is_outside = edge.line.compare(&cut.ends[0], &cut.ends[1]) != Less;
         cut
     }
 
     /// The part within the polygon, if it is not along one of its sides, and those before and behind it; `None` if all is
     /// outside.
-    fn into_parts(self) -> Option<[Option<Edge>; 3]> {
+    fn into_parts(self) -> Option<[Option<RegionEdge>; 3]> {
         let Self { edge, ends, is_cut, is_along, is_outside } = self;
-        let part = |ends: [Point; 2]| Edge::new(edge.line, ends);
+        let part = |ends: [Point; 2]| RegionEdge::new(edge.line, ends);
         (!is_outside).then(|| {
             [
                 (!is_along).then(|| part(ends)),

@@ -1,6 +1,6 @@
 //! The steps of the algorithm, told to an observer.
 
-use super::polygon::Polygon;
+use super::polygon::AreaPolygon;
 use super::region::{Region, overlap};
 use super::{AreaSorting, Inside, Item, List, Worker};
 use crate::trace::Step;
@@ -25,7 +25,7 @@ fn pixels(place: [f64; 2]) -> [f32; 2] {
 }
 
 fn contours(region: &Region) -> Vec<Contour> {
-    let contour = |outline: super::region::Outline| Contour {
+    let contour = |outline: super::region::RegionOutline| Contour {
         is_hole: outline.is_hole,
         corners: outline.corners.into_iter().map(pixels).collect(),
     };
@@ -33,7 +33,7 @@ fn contours(region: &Region) -> Vec<Contour> {
 }
 
 /// The step of a visible polygon.
-pub(super) fn visible(polygon: &Polygon<'_>, item: &Item, clip: Option<u32>) -> Step {
+pub(super) fn visible(polygon: &AreaPolygon<'_>, item: &Item, clip: Option<u32>) -> Step {
     Step::Visible { facet: polygon.plane.facet, clip, area: item.region.area(), contours: contours(&item.region) }
 }
 
@@ -54,7 +54,7 @@ impl AreaSorting<'_> {
                 nearest: self.polygons[item.polygon as usize].plane.z_max,
                 contours: contours(&item.region),
             };
-            self.execution.tell(|| Step::NearestFirst { polygons: list.items.iter().map(sorted).collect() });
+            self.execution.report(|| Step::NearestFirst { polygons: list.items.iter().map(sorted).collect() });
         }
     }
 
@@ -70,7 +70,7 @@ impl AreaSorting<'_> {
 
 impl Report {
     /// The clipping polygon itself is inside.
-    pub(super) fn own(&mut self, front: &Polygon<'_>, own: &Item) {
+    pub(super) fn own(&mut self, front: &AreaPolygon<'_>, own: &Item) {
         if let Some(clip) = &mut self.0 {
             let before = contours(&own.region);
             let (facet, inside) = (front.plane.facet, before.clone());
@@ -79,7 +79,7 @@ impl Report {
     }
 
     /// An item is about to be clipped.
-    pub(super) fn before(&mut self, item: &Item, front: &Polygon<'_>) {
+    pub(super) fn before(&mut self, item: &Item, front: &AreaPolygon<'_>) {
         if let Some(clip) = &mut self.0
             && overlap(item.region.bounds(), front.shape.bounds)
         {
@@ -88,7 +88,7 @@ impl Report {
     }
 
     /// It was cut, or is inside.
-    pub(super) fn cut(&mut self, polygons: &[Polygon<'_>], item: &Item, part: &Inside) {
+    pub(super) fn cut(&mut self, polygons: &[AreaPolygon<'_>], item: &Item, part: &Inside) {
         if let Some(clip) = &mut self.0 {
             let facet = polygons[item.polygon as usize].plane.facet;
             if part.hidden.is_some() {
@@ -105,16 +105,16 @@ impl Report {
     }
 
     /// Tells the clip of a list, which has become the outside list, and gives its number.
-    pub(super) fn tell(
+    pub(super) fn emit(
         self,
         sorting: &AreaSorting<'_>,
-        front: &Polygon<'_>,
+        front: &AreaPolygon<'_>,
         list: &List,
         inside: &[Item],
     ) -> Option<u32> {
         let Clip { number, cut, hidden, .. } = self.0?;
         let outside = || list.items.iter().filter(|item| !item.region.is_empty()).map(|item| sorting.facet(item));
-        sorting.execution.tell(|| Step::Clip {
+        sorting.execution.report(|| Step::Clip {
             clip: number,
             within: list.clip,
             facet: front.plane.facet,

@@ -57,6 +57,7 @@ impl AreaSorting<'_> {
 
     /// Treats short lists, each on one thread.
     fn treat_short(&self, lists: Vec<List>, found: &mut Found) -> Result<(), Limit> {
+        // Gather lists to jobs of enough items.
         let mut jobs: Vec<Job> = Vec::new();
         let mut items = LISTED_ITEMS_A_JOB;
         for list in lists {
@@ -69,6 +70,8 @@ impl AreaSorting<'_> {
                 job.lists.push(list);
             }
         }
+
+        // Treat the jobs on all threads until one meets a limit.
         let is_stopped = AtomicBool::new(false);
         self.execution.workers.for_each_chunk(&mut jobs, 1, |_, jobs| {
             for job in jobs.iter_mut().filter(|_| !is_stopped.load(Ordering::Relaxed)) {
@@ -78,6 +81,8 @@ impl AreaSorting<'_> {
                 job.found = treated.map(|()| worker.found);
             }
         });
+
+        // Append what they found, in their order.
         for job in jobs {
             found.append(job.found?);
         }
@@ -86,6 +91,7 @@ impl AreaSorting<'_> {
 
     /// Clips a long list, adds what is visible without more ado, and gives the inside lists.
     fn clip_long(&self, list: List, found: &mut Found) -> Result<Vec<List>, Limit> {
+        // Sort the outlines into buckets, and list what clips.
         let bytes = Buckets::bytes(list.items.len()) as u64;
         self.held.add(bytes)?;
         let outline = |item: &Item| match item.is_reduced {
@@ -136,10 +142,13 @@ impl AreaSorting<'_> {
         buckets: &Buckets,
         worker: &mut Worker,
     ) -> Result<(), Limit> {
+        // Find the clippers near the item.
         let before = one.item.bytes();
         let mut near = std::mem::take(&mut worker.near);
         buckets.overlapping(one.item.region.bounds(), &mut near);
         let ends = if one.item.clipped_with { clippers.len() } else { one.place };
+
+        // Clip by those that come before it.
         for &place in near.iter().take_while(|&&place| (place as usize) < ends) {
             let clipper = clippers[place as usize];
             if clipper.clips {
@@ -151,6 +160,8 @@ impl AreaSorting<'_> {
                 break;
             }
         }
+
+        // Account for the memory of the parts.
         worker.near = near;
         one.is_done = true;
         self.execution.budget.advance();
@@ -160,6 +171,7 @@ impl AreaSorting<'_> {
 
     /// Sorts what has passed into inside lists; what has clipped before is visible.
     fn gather(&self, passing: Vec<Passing>, found: &mut Found) -> Vec<List> {
+        // Collect the parts by the clipper's place.
         let mut lists: Vec<List> = passing.iter().map(|_| List::default()).collect();
         let mut is_again = vec![false; passing.len()];
         for one in passing {
@@ -167,6 +179,8 @@ impl AreaSorting<'_> {
                 is_again[place as usize] |= !part.clipped_with;
                 lists[place as usize].items.push(part);
             }
+
+            // Show what has clipped already, and list the rest under its own place.
             if one.item.region.is_empty() {
                 continue;
             }
@@ -176,6 +190,8 @@ impl AreaSorting<'_> {
                 lists[one.place].items.push(Item { clipped_with: true, ..one.item });
             }
         }
+
+        // Count the lists that recurse.
         found.counters.recursions += is_again.iter().filter(|again| **again).count() as u64;
         lists.retain(|list| !list.items.is_empty());
         lists

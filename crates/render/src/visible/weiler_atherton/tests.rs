@@ -45,10 +45,10 @@ fn told(size: [i32; 2], setups: &[Setup]) -> (Vec<(u32, f64)>, VisibilityCounter
 
 /// The area of a union: what the picture loses when everything is cut out of it.
 fn union_area(side: i32, setups: &[Setup]) -> f64 {
-    let picture = Convex::polygon(&[[0, 0], [side, 0], [side, side], [0, side]].map(|c| c.map(|v| v * 256)));
+    let picture = ConvexOutline::polygon(&[[0, 0], [side, 0], [side, side], [0, side]].map(|c| c.map(|v| v * 256)));
     let (mut left, mut work) = (Region::polygon(&picture), Workspace::default());
     for setup in setups {
-        let polygon = Convex::polygon(&[0, 1, 2].map(|i| [setup.x[i], setup.y[i]]));
+        let polygon = ConvexOutline::polygon(&[0, 1, 2].map(|i| [setup.x[i], setup.y[i]]));
         if let Clipped::Inside = left.clip(&polygon, &picture, &mut work) {
             return f64::from(side * side);
         }

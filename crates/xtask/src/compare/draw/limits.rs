@@ -6,7 +6,7 @@ use crate::shell::command;
 use std::path::Path;
 
 /// Seconds after which a command is killed.
-const PATIENCE: f64 = 60.0;
+const KILL_AFTER: f64 = 60.0;
 
 /// Seconds of `--time-limit`, and how much later the command may end.
 const TIME: (f64, f64) = (2.0, 0.5);
@@ -61,9 +61,9 @@ fn held(vitral: &Path, mesh: &'static str, path: &Path, options: &str) -> Result
     let mut words = command(vitral);
     words.arg("draw").arg(path).arg("-o").arg(&drawing).args(options.split(' ')).args(["--quiet", "--no-config"]);
     let options = options.to_owned();
-    let Some(done) = watch(&mut words, PATIENCE)? else {
-        let said = format!("killed after {PATIENCE} s");
-        return Ok(Held { mesh, options, code: None, seconds: PATIENCE, peak: None, said, kept: false });
+    let Some(done) = watch(&mut words, KILL_AFTER)? else {
+        let said = format!("killed after {KILL_AFTER} s");
+        return Ok(Held { mesh, options, code: None, seconds: KILL_AFTER, peak: None, said, kept: false });
     };
 
     // A command that a limit stops says so with code 7; one that ends in time and memory has kept to it, too.

@@ -135,6 +135,8 @@ fn in_turns<'a>(
             }
         }
     }
+
+    // Take the median of each program's rounds.
     results.into_iter().map(|(name, result)| (name, result.map(median))).collect()
 }
 

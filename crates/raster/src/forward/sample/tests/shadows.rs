@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::Viewport;
-use crate::forward::plane::{DepthPlane, Plane};
+use crate::forward::plane::{DepthBuffer, Plane};
 use crate::forward::state::Compare;
 use std::sync::Mutex;
 
@@ -80,8 +80,8 @@ fn planes_are_read_tile_by_tile() {
     let mut plane = Plane::new(Viewport { width: 100, height: 70 }, 1, scale);
     plane.set(64, 0, 0, 0.0);
     plane.set(99, 63, 0, 8_388_608.0);
-    let plane = Arc::new(Mutex::new(DepthPlane::new(plane, scale)));
-    let image = level([100, 70, 1], 0, Texels::DepthPlane(plane));
+    let plane = Arc::new(Mutex::new(DepthBuffer::new(plane, scale)));
+    let image = level([100, 70, 1], 0, Texels::DepthBuffer(plane));
     let t = texture(TextureKind::Two, vec![vec![image.clone()]], Sampler { wrap: [Wrap::ClampToEdge; 3], ..NEAREST });
     let depth = |x: f32, y: f32| at(&t, [(x + 0.5) / 100.0, (y + 0.5) / 70.0, 0.0, 1.0], 0.0)[0];
     assert_eq!([depth(63.0, 0.0), depth(64.0, 0.0), depth(65.0, 0.0)], [1.0, 0.0, 1.0]);

@@ -10,12 +10,12 @@ const THICKNESS: f64 = 1.0 / (1 << 21) as f64;
 
 /// Points at distance `normal . p + offset`, in the plane up to its thickness.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Plane {
+pub(super) struct ThickPlane {
     pub(super) equation: DVec4,
     pub(super) thickness: f64,
 }
 
-impl Plane {
+impl ThickPlane {
     /// The plane of a triangle; of one that is thinner than its corners are certain, some plane through it.
     pub(super) fn of([a, b, c]: [DVec3; 3]) -> Self {
         let edges = [b - a, c - b, a - c];
@@ -65,16 +65,20 @@ impl Plane {
 
 /// Where a polygon lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum BspSide {
+    /// All corners lie in front, or in the plane.
     Front,
+    /// All corners lie behind, or in the plane.
     Back,
+    /// All corners lie in the plane.
     In,
+    /// Corners lie on both sides.
     Across,
 }
 
 /// Where a polygon lies by the distances of its corners.
 #[inline]
-pub(super) fn side_of(plane: &Plane, points: &[DVec3]) -> Side {
+pub(super) fn side_of(plane: &ThickPlane, points: &[DVec3]) -> BspSide {
     let (mut front, mut back) = (false, false);
     for &p in points {
         let d = plane.side(p);
@@ -82,9 +86,9 @@ pub(super) fn side_of(plane: &Plane, points: &[DVec3]) -> Side {
         back |= d < 0.0;
     }
     match (front, back) {
-        (true, true) => Side::Across,
-        (true, false) => Side::Front,
-        (false, true) => Side::Back,
-        (false, false) => Side::In,
+        (true, true) => BspSide::Across,
+        (true, false) => BspSide::Front,
+        (false, true) => BspSide::Back,
+        (false, false) => BspSide::In,
     }
 }

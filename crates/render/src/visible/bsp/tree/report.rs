@@ -1,13 +1,13 @@
 //! What a tree tells an observer: its nodes, and the walk for a viewer. It is told from the finished tree, so that it is the same
 //! whoever built it and whether it was there already.
 
-use super::{NONE, Tree};
+use super::{BspTree, NONE};
 use crate::Execution;
 use crate::trace::Step;
 use crate::trace::lists::{PlaneSide, PolygonSet};
 use vitral_math::DVec4;
 
-impl Tree {
+impl BspTree {
     /// Tells the nodes, each after the one that it hangs below.
     pub(crate) fn tell_nodes(&self, execution: &Execution) {
         if execution.observer.is_none() {
@@ -15,11 +15,11 @@ impl Tree {
         }
         let parents = self.parents();
         for node in 0..self.nodes.len() as u32 {
-            execution.tell(|| self.node_step(node, &parents));
+            execution.report(|| self.node_step(node, &parents));
         }
     }
 
-    /// Tells the walk for a viewer, see [`Tree::back_to_front`], node by node.
+    /// Tells the walk for a viewer, see [`BspTree::back_to_front`], node by node.
     pub(crate) fn tell_walk(&self, viewer: DVec4, execution: &Execution) {
         if execution.observer.is_none() {
             return;
@@ -31,7 +31,7 @@ impl Tree {
             self.nodes[node as usize].each_fragment(in_front, |f| polygons.push(self.name(f)));
             let viewer = if in_front { PlaneSide::Front } else { PlaneSide::Back };
             let above = parents[node as usize].map(|(parent, _)| parent);
-            execution.tell(|| Step::TreeVisit { order, node, above, viewer, polygons });
+            execution.report(|| Step::TreeVisit { order, node, above, viewer, polygons });
             order += 1;
         });
     }
@@ -67,6 +67,8 @@ impl Tree {
     fn node_step(&self, node: u32, parents: &[Option<(u32, PlaneSide)>]) -> Step {
         let n = &self.nodes[node as usize];
         let parent = parents[node as usize];
+
+        // Find the polygons on both sides; those on both were cut.
         let [front, back] = [n.front, n.back].map(|child| self.polygons_below(child));
         let mut coincident: Vec<u32> =
             n.fragments.clone().map(|fragment| self.fragments[fragment as usize].polygon).collect();

@@ -5,8 +5,8 @@ use super::*;
 use vitral_raster::SamplePattern;
 
 /// In pixels; corners run clockwise as one looks at the screen.
-fn convex(corners: &[[i32; 2]]) -> Convex {
-    Convex::polygon(&corners.iter().map(|c| c.map(|v| v * 256)).collect::<Vec<_>>())
+fn convex(corners: &[[i32; 2]]) -> ConvexOutline {
+    ConvexOutline::polygon(&corners.iter().map(|c| c.map(|v| v * 256)).collect::<Vec<_>>())
 }
 
 fn region(corners: &[[i32; 2]]) -> Region {
@@ -80,7 +80,7 @@ fn p24_degenerate_cases() {
 }
 
 /// Random triangles within `side` units, on a grid of `step`.
-fn triangles(state: &mut u32, count: usize, side: i32, size: i32, step: i32) -> Vec<Convex> {
+fn triangles(state: &mut u32, count: usize, side: i32, size: i32, step: i32) -> Vec<ConvexOutline> {
     let mut next = |size: i32| {
         *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (*state >> 8) as i32 % size
@@ -95,7 +95,7 @@ fn triangles(state: &mut u32, count: usize, side: i32, size: i32, step: i32) -> 
             corners.swap(1, 2);
         }
         if area != 0 {
-            triangles.push(Convex::polygon(&corners));
+            triangles.push(ConvexOutline::polygon(&corners));
         }
     }
     triangles
@@ -172,7 +172,7 @@ fn p24_samples_of_a_triangle_are_those_that_its_edge_functions_cover() {
     {
         let [a, b, c] = corners.map(|[x, y]| CornerPosition { x, y, z: 0.5 });
         let setup = Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0);
-        let edges: Vec<_> = Region::polygon(&Convex::polygon(&corners)).fill_edges().collect();
+        let edges: Vec<_> = Region::polygon(&ConvexOutline::polygon(&corners)).fill_edges().collect();
         for (row, column) in (0..20).flat_map(|row| (0..20).map(move |column| (row, column))) {
             let expected = setup.covers(column * 256 + 128, row * 256 + 128);
             assert_eq!(covers(&edges, column, 128, row * 256 + 128), expected, "{corners:?}: {column}, {row}");

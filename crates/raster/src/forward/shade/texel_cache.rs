@@ -6,7 +6,7 @@
 //! In:   what the colours of a facet's texture depend on, and a block of 8x8 pixels of a tile. Out: its 64 words, if it has them.
 //! Cost: the comparison of two numbers, and for each facet in a tile of thirty.
 
-use super::{Differences, Interpolation, MOST};
+use super::{Differences, Interpolation, MAX_NUMBERS};
 use crate::forward::block::BlockWords;
 use crate::forward::state::Unit;
 use crate::{BLOCK, TILE};
@@ -17,7 +17,7 @@ const BLOCKS: usize = (TILE / BLOCK) * (TILE / BLOCK);
 
 /// What the colours of a texture within a facet depend on, but for the place. The texture lives as long as the pass.
 #[derive(Debug, PartialEq)]
-struct Sight {
+struct TexelCacheKey {
     texture: usize,
     /// Origin of the weights, bias of the level of detail, `w` of all corners and whether they have it in common, which numbers vary.
     facet: [u32; 6],
@@ -26,10 +26,10 @@ struct Sight {
     coordinates: [[u32; 3]; 3],
 }
 
-impl Sight {
+impl TexelCacheKey {
     /// With the unit's coordinates at `at` of the records.
     fn new(unit: &Unit, at: usize, i: &Interpolation, d: &Differences) -> Self {
-        let coordinates = [at % MOST, (at + 1) % MOST, (at + 3) % MOST];
+        let coordinates = [at % MAX_NUMBERS, (at + 1) % MAX_NUMBERS, (at + 3) % MAX_NUMBERS];
         let varies = coordinates.iter().fold(0, |bits, k| bits << 1 | (d.varies >> k & 1) as u32);
         let [x, y] = i.origin.map(f32::to_bits);
         let w = i.flat_w.map_or([0; 2], |w| [1, w.to_bits()]);
@@ -44,19 +44,19 @@ impl Sight {
 
 /// Texture colours of a tile's blocks, as bytes.
 #[derive(Debug, Default)]
-pub(crate) struct Seen {
+pub(crate) struct TexelCache {
     /// Those that there were in this tile.
-    sights: Vec<Sight>,
+    sights: Vec<TexelCacheKey>,
     /// That of the facet at hand is the last one.
     current: bool,
     /// Which sight is kept in a block, and its colours. Empty until something is kept.
     blocks: Vec<(usize, BlockWords)>,
 }
 
-/// No sight.
+/// A block without cached colours.
 const NONE: usize = usize::MAX;
 
-impl Seen {
+impl TexelCache {
     /// Forgets everything, but keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.sights.clear();
@@ -84,7 +84,7 @@ impl Seen {
     pub(super) fn look_at(&mut self, unit: &Unit, at: usize, i: &Interpolation, d: &Differences) {
         if !self.current {
             self.current = true;
-            self.sights.push(Sight::new(unit, at, i, d));
+            self.sights.push(TexelCacheKey::new(unit, at, i, d));
         }
     }
 

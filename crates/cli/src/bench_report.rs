@@ -1,7 +1,7 @@
 //! `vitral bench --report`: how the algorithms grow with the number of polygons and with the number of pixels.
 //!
 //! The notes compare image precision, which looks at all polygons for each pixel, with object precision, which compares
-//! all polygons with each other (COURSE.md P6, P25). Here both grow over four sizes, with the other held still, on a
+//! all polygons with each other (docs/course.md P6, P25). Here both grow over four sizes, with the other held still, on a
 //! scene whose shape does not change with its polygons: eight rings in a heap, each ring cut finer.
 
 use crate::args::BenchArgs;
@@ -132,7 +132,7 @@ fn text(args: &BenchArgs, execution: &Execution, over_polygons: &[Step], over_pi
          of {frames} pictures after a first one, which also builds trees (other processes can only add to it). An exponent `e` says that the time grows like `size^e`;\n\
          it is the slope of the line through the logarithms. The same machine in the same minutes serves all rows: compare\n\
          them with each other, not with other machines.\n\n\
-         The notes say what to expect (COURSE.md P6): an algorithm of image precision asks, for each of `p` pixels, which of\n\
+         The notes say what to expect (docs/course.md P6): an algorithm of image precision asks, for each of `p` pixels, which of\n\
          `n` polygons is nearest, `O(n p)`; one of object precision compares the polygons with each other, `O(n^2)`, and does\n\
          not care for pixels. Brute force is the first in its pure form. The others save work by coherence, by sorting\n\
          or by structures, and their exponents say how much.\n\n\

@@ -416,6 +416,44 @@ fn fog_reaches_images_by_the_raster_distance() {
 }
 
 #[test]
+fn fog_takes_the_distance_that_its_mode_says() {
+    let radius = (1.0f32 + 1.0 + 0.0625).sqrt();
+    let modes = [
+        (gl::EYE_PLANE_ABSOLUTE_NV, -0.25, 0.25),
+        (gl::EYE_PLANE_ABSOLUTE_NV, 0.25, 0.25),
+        (gl::EYE_PLANE, -0.25, 0.25),
+        (gl::EYE_PLANE, 0.25, 0.0),
+        (gl::EYE_RADIAL_NV, -0.25, radius),
+        (gl::EYE_RADIAL_NV, 0.25, radius),
+    ];
+    for (mode, z, distance) in modes {
+        let mut c = Stage::new(2, 2);
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.fogi(gl::FOG_MODE, gl::LINEAR as i32);
+        c.fogf(gl::FOG_END, 2.0);
+        c.fogi(gl::FOG_DISTANCE_MODE_NV, mode as i32);
+        c.enable(gl::FOG);
+        let f = 1.0 - distance / 2.0;
+
+        // By the raster position.
+        c.raster_pos_3f(-1.0, -1.0, z);
+        let pixels = c.put(&[[1.0f32, 0.5, 0.0, 1.0]; 4]);
+        c.draw_pixels(2, 2, gl::RGBA, gl::FLOAT, pixels);
+        assert_color(c.pixel(0, 0), [f, 0.5 * f, 0.0, 1.0]);
+
+        // By the corners of a square, which all are as far away.
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.color_3f(1.0, 0.5, 0.0);
+        c.begin(gl::QUADS);
+        for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+            c.vertex_3f(x, y, z);
+        }
+        c.end();
+        assert_color(c.pixel(1, 0), [f, 0.5 * f, 0.0, 1.0]);
+    }
+}
+
+#[test]
 fn zoomed_pixels_have_their_left_and_lower_boundaries() {
     for (zoom, origin) in [(-1.5f32, 20.0f32), (-0.5, 20.0), (-1.0, 20.5), (-1.0, 20.0), (1.0, 4.5), (1.5, 4.0)] {
         // What columns show is the same for rows, and for pixels that are copied.

@@ -1,4 +1,4 @@
-//! Coherence (COURSE.md, the kinds that the notes name): switched off, the picture is the same and nothing is saved.
+//! Coherence (docs/course.md, the kinds that the notes name): switched off, the picture is the same and nothing is saved.
 
 use std::sync::Arc;
 use vitral_math::{DMat4, DQuat, DVec3};

@@ -6,7 +6,7 @@
 //! In:   coordinates in any one space; NaN is passed over.
 //! Out:  whether extents overlap. Touching counts: nothing is lost by looking closer.
 //! Cost: constant.
-//! Source: the course, notes P (COURSE.md P11, P12); [Foley et al. 1990], section 15.2.3.
+//! Source: the course, notes P (docs/course.md P11, P12); [Foley et al. 1990], section 15.2.3.
 
 use vitral_math::DVec2;
 

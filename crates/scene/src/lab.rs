@@ -8,7 +8,7 @@
 //! In:   the program's variables, and lights as OpenGL takes them (homogeneous position).
 //! Out:  matrices, cameras and lights of this crate, in world space.
 //! Cost: constant.
-//! Source: the course, notes L (COURSE.md L11-L22). The notes have lost the values of the lights; those here are ours.
+//! Source: the course, notes L (docs/course.md L11-L22). The notes have lost the values of the lights; those here are ours.
 
 use crate::{Attribute, Camera, Node, NodeTransform, Projection, Scene};
 use std::sync::Arc;
@@ -184,7 +184,7 @@ mod tests {
         }
     }
 
-    /// COURSE.md L12: before the view transform a light is fixed to the camera, after it to the world.
+    /// docs/course.md L12: before the view transform a light is fixed to the camera, after it to the world.
     #[test]
     fn l12_the_matrix_at_the_time_of_the_call_decides_what_a_light_is_fixed_to() {
         let headlight = light_from_gl([0.0, 0.0, 1.0, 0.0], [0.0; 4], [1.0; 4], [1.0; 4]);

@@ -7,7 +7,7 @@
 //! In:   points in view space in front of the eye.
 //! Out:  points in ndc: x and y in `-1..=1` inside the picture, z from 0 (far plane) to 1 (near plane).
 //! Cost: three divisions a point, none a pair.
-//! Source: the course, notes P (COURSE.md P8, P9); [Foley et al. 1990], section 15.2.2.
+//! Source: the course, notes P (docs/course.md P8, P9); [Foley et al. 1990], section 15.2.2.
 
 use crate::ViewTransform;
 use vitral_math::DVec3;

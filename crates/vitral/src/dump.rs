@@ -1,4 +1,4 @@
-//! What each stage of the pipeline hands on to the next, as files (COURSE.md P1).
+//! What each stage of the pipeline hands on to the next, as files (docs/course.md P1).
 //!
 //! | file | stage |
 //! |---|---|

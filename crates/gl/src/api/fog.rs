@@ -5,9 +5,8 @@ use crate::{Context, enums as gl};
 
 fn form(pname: u32) -> Option<Form> {
     Some(match pname {
-        gl::FOG_MODE | gl::FOG_DENSITY | gl::FOG_START | gl::FOG_END | gl::FOG_INDEX | gl::FOG_COORD_SRC => {
-            Form::Scalar
-        }
+        gl::FOG_MODE | gl::FOG_DENSITY | gl::FOG_START | gl::FOG_END | gl::FOG_INDEX | gl::FOG_COORD_SRC
+        | gl::FOG_DISTANCE_MODE_NV => Form::Scalar,
         gl::FOG_COLOR => Form::Color,
         _ => return None,
     })
@@ -30,6 +29,12 @@ impl Context {
             gl::FOG_COORD_SRC => {
                 if self.check_enum(call, "source", token(value), &[gl::FOG_COORD, gl::FRAGMENT_DEPTH]) {
                     self.state.fog.source = token(value);
+                }
+            }
+            gl::FOG_DISTANCE_MODE_NV => {
+                let modes = [gl::EYE_RADIAL_NV, gl::EYE_PLANE, gl::EYE_PLANE_ABSOLUTE_NV];
+                if self.check_enum(call, "distance mode", token(value), &modes) {
+                    self.state.fog.distance_mode = token(value);
                 }
             }
             gl::FOG_DENSITY if value < 0.0 => self.refuse_value(call, "the density is negative"),
@@ -65,6 +70,10 @@ mod tests {
         c.fogi(gl::FOG_MODE, -1);
         assert_eq!(c.get_error(), gl::INVALID_ENUM);
         assert_eq!(c.state.fog, before);
+        c.fogi(gl::FOG_DISTANCE_MODE_NV, gl::EYE_LINEAR as i32);
+        assert_eq!((c.get_error(), c.state.fog), (gl::INVALID_ENUM, before));
+        c.fogi(gl::FOG_DISTANCE_MODE_NV, gl::EYE_RADIAL_NV as i32);
+        assert_eq!((c.get_error(), c.state.fog.distance_mode), (gl::NO_ERROR, gl::EYE_RADIAL_NV));
         c.fogf(gl::FOG_COLOR, 0.5);
         assert_eq!((c.get_error(), c.state.fog.color), (gl::NO_ERROR, [0.5, 0.0, 0.0, 0.0]));
     }

@@ -2,6 +2,9 @@
 
 pub const PRIMITIVE_RESTART_NV: u32 = 0x8558;
 pub const PRIMITIVE_RESTART_INDEX_NV: u32 = 0x8559;
+pub const FOG_DISTANCE_MODE_NV: u32 = 0x855A;
+pub const EYE_RADIAL_NV: u32 = 0x855B;
+pub const EYE_PLANE_ABSOLUTE_NV: u32 = 0x855C;
 pub const MIRROR_CLAMP_EXT: u32 = 0x8742;
 pub const MIRROR_CLAMP_TO_EDGE_EXT: u32 = 0x8743;
 pub const MODULATE_ADD_ATI: u32 = 0x8744;

@@ -21,6 +21,8 @@ pub struct Fog {
     pub mode: u32,
     /// `FOG_COORD_SRC`.
     pub source: u32,
+    /// `FOG_DISTANCE_MODE_NV`.
+    pub distance_mode: u32,
 }
 
 impl Default for Fog {
@@ -34,6 +36,7 @@ impl Default for Fog {
             end: 1.0,
             mode: enums::EXP,
             source: enums::FRAGMENT_DEPTH,
+            distance_mode: enums::EYE_PLANE_ABSOLUTE_NV,
         }
     }
 }

@@ -265,7 +265,7 @@ impl Context {
             && !(lit.is_some() && fragment.flat)
             && lit.is_none_or(|lighting| !lighting.two_side && !lighting.separate_specular)
             && snapshot.units.iter().flat_map(|unit| &unit.generation).all(Generation::is_linear)
-            && (ahead || snapshot.fog != Some(FogSource::Depth))
+            && snapshot.fog.is_none_or(|fog| fog.is_linear() || (ahead && fog == FogSource::Depth))
     }
 
     /// Where vertex records hold what. `samples`: the target has several a pixel.

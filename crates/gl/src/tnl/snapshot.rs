@@ -1,7 +1,7 @@
 //! What the vertex stage needs of the state, as it was when a draw was recorded.
 
 use crate::enums as gl;
-use crate::state::{Current, MaterialFace, State};
+use crate::state::{Current, Fog, MaterialFace, State};
 use crate::vertex::CurrentState;
 use std::sync::Arc;
 use vitral_light::{Attenuation, Light, LightKind, PreparedLight};
@@ -66,7 +66,25 @@ pub(crate) enum FogSource {
     Depth,
     /// How far it lies ahead of the eye: as `Depth` for what is seen, but linear.
     Ahead,
+    /// The distance from the eye.
+    Radial,
     Given,
+}
+
+impl FogSource {
+    fn of(fog: &Fog) -> Self {
+        match (fog.source, fog.distance_mode) {
+            (gl::FOG_COORD, _) => Self::Given,
+            (_, gl::EYE_RADIAL_NV) => Self::Radial,
+            (_, gl::EYE_PLANE) => Self::Ahead,
+            _ => Self::Depth,
+        }
+    }
+
+    /// Whether coordinates are linear functions of what vertices are given.
+    pub(crate) fn is_linear(self) -> bool {
+        matches!(self, Self::Ahead | Self::Given)
+    }
 }
 
 /// See the module.
@@ -136,7 +154,6 @@ impl VertexSnapshot {
         let matrices = &state.matrices;
         let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
         let clip_planes: Vec<_> = planes.map(|(plane, _)| plane.map(|v| v as f32)).collect();
-        let source = if state.fog.source == gl::FRAGMENT_DEPTH { FogSource::Depth } else { FogSource::Given };
         let projection = matrices.projection.top();
         let rescale_normal = matrices.rescale_normal && !matrices.normalize;
 
@@ -149,7 +166,7 @@ impl VertexSnapshot {
             rescale_normal,
             lighting: state.lighting.enabled.then(|| LightingSnapshot::new(state, given, lights)),
             units: units.iter().map(|&u| unit(state, u)).collect(),
-            fog: fog.then_some(source),
+            fog: fog.then(|| FogSource::of(&state.fog)),
             clip_planes,
             color_sum: state.color_sum,
             clamps: true,

@@ -294,6 +294,7 @@ pub(crate) fn colors<S: Simd>(
             None => splat(simd, snapshot.current.fog),
         },
         Some(FogSource::Ahead) => -eye[2],
+        Some(FogSource::Radial) => (eye[0] * eye[0] + eye[1] * eye[1] + eye[2] * eye[2]).sqrt(),
         _ => lanes::Lanes::abs(eye[2]),
     };
 

@@ -6,7 +6,7 @@
 //!
 //! In:   kmin, kmax, nz, m. Out: kt.
 //! Cost: one power.
-//! Source: \[Kay & Greenberg 1979\]. Departs from one set of notes, which prints `nz^m` (COURSE.md, E1): it agrees at
+//! Source: \[Kay & Greenberg 1979\]. Departs from one set of notes, which prints `nz^m` (docs/course.md, E1): it agrees at
 //! both ends and is wrong between them.
 
 use vitral_math::lanes::Lanes;

@@ -6,7 +6,7 @@
 //!
 //! In:   the material's `kt`. Out: opacity `1 - kt`.
 //! Source: \[Newell, Newell & Sancha 1972\]. Departs from the notes: they stop the recursion unless `kt = 1`; it goes on
-//! for any `kt > 0` (COURSE.md, E2).
+//! for any `kt > 0` (docs/course.md, E2).
 
 use vitral_light::{Material, Reflectance};
 use vitral_math::lanes::Lanes;

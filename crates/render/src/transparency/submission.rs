@@ -6,7 +6,7 @@
 //!
 //! In:   fragments of a pixel in the order of the scene. Out: its samples.
 //! Cost: linear, no memory.
-//! Source: \[Catmull 1974\] for the z-buffer; the defect is T11 of COURSE.md.
+//! Source: \[Catmull 1974\] for the z-buffer; the defect is T11 of docs/course.md.
 
 use super::fragment::{Fragment, in_front_of_opaque};
 

@@ -5,7 +5,7 @@
 //! `k' = 1 - (1 - k) (1 - kc)`, `I' = k I + kc Ic`, with `kc = 1 - kt` of the surface. At last the two are combined,
 //! `I + (1 - k) I_opaque`. There is no sorting, and depths of transparent surfaces are not kept. One layer is exact.
 //! Beyond that the order of the list shows, and what was there before is weighed once more with its own
-//! coefficient: two layers give `k1² I1 + k2 I2 + (1 - k1) (1 - k2) I_opaque` (COURSE.md, E3).
+//! coefficient: two layers give `k1² I1 + k2 I2 + (1 - k1) (1 - k2) I_opaque` (docs/course.md, E3).
 //!
 //! In:   fragments of a pixel in the order of the scene. Out: its samples.
 //! Cost: linear; memory: one colour and coefficient a sample.

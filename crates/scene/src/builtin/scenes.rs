@@ -6,7 +6,7 @@ use crate::{Camera, Mesh, Node, Projection, Scene};
 use vitral_light::{Material, Reflectance, Rgb};
 use vitral_math::{DMat4, DVec3};
 
-/// Coloured plastic: the colour in ambient and diffuse light, white highlights (COURSE.md P35).
+/// Coloured plastic: the colour in ambient and diffuse light, white highlights (docs/course.md P35).
 pub(super) fn plastic(name: &str, color: Rgb, shininess: f32) -> Material {
     let reflectance = Reflectance::Phong { ka: color, kd: color, ks: [0.35; 3], shininess };
     Material { name: name.to_owned(), reflectance, ..Material::default() }

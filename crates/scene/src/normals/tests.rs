@@ -27,7 +27,7 @@ fn close(a: [f32; 3], b: [f32; 3]) -> bool {
     (0..3).all(|k| (a[k] - b[k]).abs() < 1e-6)
 }
 
-/// COURSE.md L8: the vertex normals of a cube are `(±1, ±1, ±1)/√3`, cut into triangles or not.
+/// docs/course.md L8: the vertex normals of a cube are `(±1, ±1, ±1)/√3`, cut into triangles or not.
 #[test]
 fn l8_cube_vertex_normals_are_diagonals_for_quads_and_for_triangles() {
     let quads = solids::cuboid(DVec3::splat(2.0));

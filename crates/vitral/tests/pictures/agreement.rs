@@ -1,4 +1,4 @@
-//! The law of agreement. The z-buffer: each pixel holds what looking at every facet for every pixel finds (COURSE.md
+//! The law of agreement. The z-buffer: each pixel holds what looking at every facet for every pixel finds (docs/course.md
 //! P3, P4, P17). Every other algorithm of the registry: each sample holds what the first one finds, and has the same
 //! layers in front (P19, P20). No tolerance: ids and depths are equal.
 

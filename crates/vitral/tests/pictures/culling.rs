@@ -1,4 +1,4 @@
-//! Culling never changes a picture, and saves work (COURSE.md P10, P14).
+//! Culling never changes a picture, and saves work (docs/course.md P10, P14).
 
 use super::common::{exact, exact_builtin, on_z};
 use vitral::{AlphaMode, Camera, DMat4, DVec3, Material, Mesh, Part, Picture, Projection, Renderer, Scene, solids};

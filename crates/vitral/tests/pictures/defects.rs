@@ -1,4 +1,4 @@
-//! The defects of interpolated shading (COURSE.md P27), measured in the built-in figures: the defect on the left, its cure on
+//! The defects of interpolated shading (docs/course.md P27), measured in the built-in figures: the defect on the left, its cure on
 //! the right. That of perspective has more in `interpolation.rs`.
 
 use super::common::{all_channels, colors, exact_builtin, project};

@@ -1,4 +1,4 @@
-//! Hidden lines: what is drawn of edges is what rays see of them (COURSE.md P2).
+//! Hidden lines: what is drawn of edges is what rays see of them (docs/course.md P2).
 
 use super::common::{colors, exact_builtin};
 use vitral::internals::math::DVec2;

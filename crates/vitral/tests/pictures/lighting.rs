@@ -1,4 +1,4 @@
-//! The course's checks on illumination and shading that need whole pictures (COURSE.md L1-L22, P30-P35).
+//! The course's checks on illumination and shading that need whole pictures (docs/course.md L1-L22, P30-P35).
 
 use super::common::{
     all_channels, colors, colors_and_ids, exact, exact_builtin, largest_difference, on_z, one, project, sun,

@@ -1,4 +1,4 @@
-//! The scene that has everything at once (COURSE.md P42): it has each thing, and each is seen.
+//! The scene that has everything at once (docs/course.md P42): it has each thing, and each is seen.
 
 use super::common::exact;
 use std::collections::{BTreeMap, HashSet};

@@ -4,9 +4,9 @@ use crate::{Context, enums as gl};
 
 const VENDOR: &str = "vitral\0";
 const RENDERER: &str = "vitral software renderer\0";
-const VERSION: &str = "1.5 vitral 0.1.0\0";
+const VERSION: &str = concat!("1.5 vitral ", env!("CARGO_PKG_VERSION"), "\0");
 /// For programs that ask for 2.1, and use nothing of it.
-const VERSION_2_1: &str = "2.1 vitral 0.1.0, OpenGL 1.5 in fact\0";
+const VERSION_2_1: &str = concat!("2.1 vitral ", env!("CARGO_PKG_VERSION"), ", OpenGL 1.5 in fact\0");
 const EXTENSIONS: &str = "\
     GL_APPLE_packed_pixels GL_ARB_clip_control GL_ARB_color_buffer_float GL_ARB_copy_buffer \
     GL_ARB_depth_buffer_float GL_ARB_depth_clamp GL_ARB_depth_texture GL_ARB_draw_buffers \
@@ -32,7 +32,7 @@ const EXTENSIONS: &str = "\
     GL_EXT_texture_mirror_clamp GL_EXT_texture_object GL_EXT_texture_rectangle GL_EXT_texture_sRGB \
     GL_EXT_texture_swizzle GL_EXT_vertex_array GL_EXT_vertex_array_bgra GL_IBM_rasterpos_clip \
     GL_IBM_texture_mirrored_repeat GL_INGR_blend_func_separate GL_KHR_debug GL_MESA_pack_invert GL_MESA_window_pos \
-    GL_NV_blend_square GL_NV_light_max_exponent GL_NV_packed_depth_stencil GL_NV_primitive_restart \
+    GL_NV_blend_square GL_NV_fog_distance GL_NV_light_max_exponent GL_NV_packed_depth_stencil GL_NV_primitive_restart \
     GL_NV_texgen_reflection GL_NV_texture_rectangle GL_SGIS_generate_mipmap GL_SGIS_texture_border_clamp \
     GL_SGIS_texture_edge_clamp GL_SGIS_texture_lod GL_SUN_multi_draw_arrays\0";
 

@@ -74,6 +74,7 @@ impl Context {
             gl::FOG_END => Value::float(fog.end),
             gl::FOG_MODE => Value::token(fog.mode),
             gl::FOG_COORD_SRC => Value::token(fog.source),
+            gl::FOG_DISTANCE_MODE_NV => Value::token(fog.distance_mode),
             _ => return None,
         })
     }

@@ -5,7 +5,12 @@ use crate::{Context, enums as gl};
 
 fn form(pname: u32) -> Option<Form> {
     Some(match pname {
-        gl::FOG_MODE | gl::FOG_DENSITY | gl::FOG_START | gl::FOG_END | gl::FOG_INDEX | gl::FOG_COORD_SRC
+        gl::FOG_MODE
+        | gl::FOG_DENSITY
+        | gl::FOG_START
+        | gl::FOG_END
+        | gl::FOG_INDEX
+        | gl::FOG_COORD_SRC
         | gl::FOG_DISTANCE_MODE_NV => Form::Scalar,
         gl::FOG_COLOR => Form::Color,
         _ => return None,

@@ -28,6 +28,7 @@ mod exit;
 mod fields;
 mod hashes;
 mod help;
+mod help_groups;
 mod info_command;
 mod interrupt;
 mod kept_models;
@@ -73,13 +74,13 @@ pub fn command(arguments: Vec<OsString>) -> u8 {
 
 /// Runs the verb that is typed.
 fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
-    let typed = help::split(batch_args::arrange(args::with_verb(arguments)));
+    let typed = help_groups::split(batch_args::arrange(args::with_verb(arguments)));
     let parsed = args::command().try_get_matches_from(&typed).and_then(|matches| Cli::from_arg_matches(&matches));
     let cli = match parsed {
         Ok(cli) => cli,
         // Help and version are results, not errors.
         Err(e) if matches!(e.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
-            let asked = if e.kind() == ErrorKind::DisplayHelp { help::asked_for(&typed)? } else { None };
+            let asked = if e.kind() == ErrorKind::DisplayHelp { help_groups::asked_for(&typed)? } else { None };
             let text = asked.unwrap_or_else(|| e.render());
             let text = if use_color() { text.ansi().to_string() } else { text.to_string() };
             return report::print(text.as_bytes()).map(|()| 0);

@@ -81,7 +81,7 @@ fn options_without_effect_are_told_and_change_nothing() {
         (constant, &["--light", "ambient:"], own),
         (constant, &["--light-edit", "LIGHT0.diffuse=red"], own),
         (constant, &["--light-intensity", "2"], own),
-        (&["builtin:scene0", "--illumination", "ambient"], &["--shadows", "ray"], "in particular"),
+        (&["builtin:scene0", "--illumination", "ambient"], &["--shadows", "ray"], "has a direction"),
         (wires, &["--shading", "gouraud"], "edges alone"),
         (wires, &["--illumination", "lambert"], "edges alone"),
         (wires, &["--shadows", "ray"], "edges alone"),

@@ -245,7 +245,7 @@ fn is_normal_map(plane: &Plane<[u8; 4]>) -> bool {
     b > 170 && b > r + 40 && b > g + 40
 }
 
-/// The normals of the surface whose height is the luminance of an image, from black at 0 to white at [`HEIGHT`] texels.
+/// The normals of the surface whose height is the luminance of an image, from black at 0 to white at `HEIGHT` texels.
 fn normals_of_heights(plane: &Plane<[u8; 4]>) -> Plane<[u8; 4]> {
     /// Half black and half white side by side make a step of two texels, which stands steeply but keeps its shading.
     const HEIGHT: f32 = 2.0;

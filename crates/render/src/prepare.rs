@@ -6,7 +6,7 @@
 
 use crate::cull::frustum::{self, VisibleInstance};
 use crate::cull::opacity::is_layered;
-use crate::cull::window::Window;
+use crate::cull::window::PixelWindow;
 use crate::stats::CullCounters;
 use crate::trace::Step;
 use crate::{Acceleration, Coherence, CoherenceSet, Execution, Session, Settings, Transparency};
@@ -127,7 +127,7 @@ impl<'a> PreparedView<'a> {
         let (columns, side) = (self.viewport.tiles_x(), TILE as u32);
         let corner = [tile as u32 % columns * side, tile as u32 / columns * side];
         // A pixel more than the tile covers what projecting and snapping round.
-        let window = Window::new(&self.view, self.viewport, corner, side, 1.0);
+        let window = PixelWindow::new(&self.view, self.viewport, corner, side, 1.0);
         let (session, world) = (self.session, &self.session.world);
         for prepared in &mut self.instances {
             let instance = &world.instances[prepared.instance];

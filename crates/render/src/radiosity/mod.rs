@@ -78,7 +78,7 @@ pub struct SolutionKey {
 }
 
 impl Cached for Solution {
-    type SolutionKey = SolutionKey;
+    type Key = SolutionKey;
     const REUSE: Reuse = Reuse::Session;
 }
 
@@ -86,7 +86,7 @@ impl Cached for Solution {
 struct LoadedSolution(Arc<Solution>);
 
 impl Cached for LoadedSolution {
-    type SolutionKey = ();
+    type Key = ();
     const REUSE: Reuse = Reuse::Session;
 }
 

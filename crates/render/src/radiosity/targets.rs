@@ -79,7 +79,7 @@ enum Content {
     /// A leaf, by its number.
     Leaf(u32),
     /// A node with children.
-    QuadtreeNode(u32),
+    Node(u32),
 }
 
 impl Targets {

@@ -73,7 +73,7 @@ impl Wide {
     pub(super) const BYTES: usize = 100;
 
     /// From a tree with two children a node.
-    pub(super) fn new(tree: &[sah::Node], triangles: &Triangles, workers: &Workers) -> Self {
+    pub(super) fn new(tree: &[sah::BoxNode], triangles: &Triangles, workers: &Workers) -> Self {
         // The triangles below each node.
         let mut runs = vec![[0; 2]; tree.len()];
         for (i, node) in tree.iter().enumerate().rev() {
@@ -104,7 +104,7 @@ impl Wide {
     }
 
     /// Makes a node of what is below `top`: its number.
-    fn grow(&mut self, tree: &[sah::Node], runs: &[[u32; 2]], top: usize) -> u32 {
+    fn grow(&mut self, tree: &[sah::BoxNode], runs: &[[u32; 2]], top: usize) -> u32 {
         // Open the largest inner child until there are eight.
         let is_leaf = |i: usize| (runs[i][1] - runs[i][0]) as usize <= LANES;
         let member = |i: usize| (i, if is_leaf(i) { f32::NEG_INFINITY } else { area(&tree[i].min, &tree[i].max) });

@@ -40,7 +40,7 @@ use crate::{Execution, PreparedView, Session, Settings};
 use cascade::{Cascades, CascadesKey};
 use draw::{FirstPass, When};
 use light_maps::LightMaps;
-use light_maps::{Key, Maps};
+use light_maps::{LightMapsKey, Maps};
 use std::sync::Arc;
 use tiles::Map;
 use vitral_exec::Limit;
@@ -78,7 +78,7 @@ impl ShadowAlgorithm for MapShadows {
         if count < 2 {
             return Ok(Box::new(Prepared { maps, cascades: None, level: execution.level }));
         }
-        let key = CascadesKey { maps: Key::new(lights, settings), count, view: view.view };
+        let key = CascadesKey { maps: LightMapsKey::new(lights, settings), count, view: view.view };
         let cascades = session.cache.get_or_build(key, || {
             let occluders = Occluders::new(session, settings);
             let pass = FirstPass { session, occluders: &occluders, settings, execution, when: When::Asked };

@@ -85,7 +85,7 @@ const SLACK: f64 = 1e-9;
 const TRIANGLES_A_JOB: usize = 256;
 
 impl Cached for LitPolygons {
-    type ShadowKey = ShadowKey;
+    type Key = ShadowKey;
 }
 
 impl ShadowAlgorithm for ObjectPrecisionShadows {

@@ -107,7 +107,7 @@ impl ShadowAlgorithm for VolumeShadows {
 }
 
 impl Cached for Volumes {
-    type ShadowKey = ShadowKey;
+    type Key = ShadowKey;
 }
 
 impl Volumes {

@@ -179,10 +179,10 @@ fn decode<S: Simd, V: Floats<S>>(simd: S, words: V::Words, table: &[f32; 256]) -
 /// Texels of any kind, as colours.
 #[derive(Clone, Copy)]
 pub(super) enum Image<'a> {
-    TexelWords(TexelWords<'a>),
+    Words(TexelWords<'a>),
     Floats(&'a [[f32; 4]]),
     /// A depth in all components.
-    LevelDepths(&'a [f32]),
+    Depths(&'a [f32]),
 }
 
 impl<'a> Image<'a> {

@@ -197,7 +197,7 @@ impl<'a> Packed<'a> {
         Some(words)
     }
 
-    /// The colours that [`Self::together`] gave as bytes.
+    /// The colours that [`Self::sample_batch`] gave as bytes.
     #[inline(always)]
     pub(crate) fn meaning<S: Simd, V: Floats<S>>(&self, words: V::Words) -> [V; 4] {
         self.first.finish(unpack_bytes::<S, V>(words))

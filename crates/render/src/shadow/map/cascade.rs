@@ -19,7 +19,7 @@
 //! Source: [Zhang et al. 2006], [Dimitrov 2007]. Departs from them: slices are fitted to objects, not to the frustum.
 
 use super::lens::Lens;
-use super::light_maps::{Key, LightMaps, Maps};
+use super::light_maps::{LightMaps, LightMapsKey, Maps};
 use super::tiles::Map;
 use super::{lookup, slice};
 use crate::raytrace::triangles::Triangles;
@@ -41,7 +41,7 @@ const PAYS: f64 = 2.0;
 /// What cascades depend on, besides the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CascadesKey {
-    pub(super) maps: Key,
+    pub(super) maps: LightMapsKey,
     pub(super) count: u32,
     pub(super) view: ViewTransform,
 }

@@ -30,7 +30,7 @@ pub(crate) struct LightMapsKey {
 pub(crate) struct Maps(pub(super) Vec<LightMaps>);
 
 impl Cached for Maps {
-    type LightMapsKey = LightMapsKey;
+    type Key = LightMapsKey;
 }
 
 /// The maps of one light.

@@ -6,7 +6,7 @@ use super::geometry::Record;
 use super::hits::Along;
 use super::material_constants::MaterialConstants;
 use super::points::Points;
-use super::shadowed;
+use super::shadowed::{self, GroupLight};
 use super::slots::Slots;
 use super::subject::{Subject, subject};
 use crate::shadow::Parts;
@@ -26,6 +26,8 @@ pub(crate) struct ShadingBatch8<'a> {
     pub light_visibility: &'a [Parts],
     /// The same for the other side of a translucent sheet.
     pub light_visibility_behind: &'a [Parts],
+    /// Which part of ambient light reaches the points of the group; empty where all of it does.
+    pub open: &'a [f32],
     /// The place of the first point in the group.
     pub first: usize,
 }
@@ -69,10 +71,10 @@ pub(super) fn each_pair<S: Simd>(
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
-        let [light_visibility, behind] = if asks(material) {
-            shadowed::light_visibility(simd, constants, (&subject, material), points, order, facets, rays)
+        let light = if asks(material) {
+            shadowed::group_light(simd, constants, (&subject, material), points, order, facets, rays)
         } else {
-            [Vec::new(), Vec::new()]
+            GroupLight::default()
         };
         for (i, (order, records)) in order.chunks(2 * LANES).zip(facets.of_point.chunks(2 * LANES)).enumerate() {
             let count = order.len().min(LANES);
@@ -84,8 +86,9 @@ pub(super) fn each_pair<S: Simd>(
                 slots,
                 records: &facets.records,
                 along: None,
-                light_visibility: &light_visibility,
-                light_visibility_behind: &behind,
+                light_visibility: &light.seen,
+                light_visibility_behind: &light.behind,
+                open: &light.open,
                 first,
             };
             let place = 2 * LANES * i;

@@ -12,6 +12,7 @@ use super::material_constants::MaterialConstants;
 use super::model::Model;
 use super::points::Points;
 use super::shaded_points::{Bounce, ShadedPoints, premultiplied};
+use super::shadowed::GroupLight;
 use super::slots::Slots;
 use super::subject::{Subject, subject};
 use super::surface_parameters::SurfaceParameters;
@@ -97,19 +98,19 @@ pub(crate) fn shade_hits<S: Simd>(
     for group in &points.groups {
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
-        let [light_visibility, behind] = if material.model.needs_light_visibility() {
+        let light = if material.model.needs_light_visibility() {
             let places: Places = order.iter().map(|&p| hits[p as usize].place).collect();
-            shadowed::light_visibility_on_sides(constants, material.scatters.is_some(), places, &mut lit.shadow_rays)
+            GroupLight::of_places(constants, material.scatters.is_some(), places, &mut lit.shadow_rays)
         } else {
-            [Vec::new(), Vec::new()]
+            GroupLight::default()
         };
         for (i, eight) in order.chunks(LANES).enumerate() {
             together.clear();
             together.extend(eight.iter().map(|&p| hits[p as usize]));
             let (slots, along) = hits::prepare(simd, &subject, &together, &mut records);
             let (subject, along) = (&subject, Some(&along));
-            let (slots, records, light_visibility, first) = (&slots, &records, &light_visibility, i * LANES);
-            let light_visibility_behind = &behind;
+            let (slots, records, first) = (&slots, &records, i * LANES);
+            let (light_visibility, light_visibility_behind, open) = (&light.seen, &light.behind, &light.open);
             let eight = ShadingBatch8 {
                 subject,
                 material,
@@ -119,6 +120,7 @@ pub(crate) fn shade_hits<S: Simd>(
                 along,
                 light_visibility,
                 light_visibility_behind,
+                open,
                 first,
             };
             shade_eight(simd, &eight, constants, lit);
@@ -145,6 +147,7 @@ fn illuminate<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameCons
     surface.screen_linear = along.is_none() && subject.viewing.screen_linear();
     let mut parameters = SurfaceParameters::new(simd, subject.mesh, slots, &surface, material, constants.raw);
     parameters.let_through(simd, &surface, material, constants, along);
+    parameters.occlude(simd, eight);
 
     // Reflect the lights, and the light of other surfaces.
     let mut reflected = reflect_lights(simd, eight, &parameters, &surface, constants);

@@ -203,7 +203,7 @@ impl<'a> FrameContext<'a> {
         watch.add_to(&mut stats.seconds.prepare);
         let radiosity = self.radiosity(view.session, &mut stats.radiosity)?;
         watch.add_to(&mut stats.seconds.radiosity);
-        let shade = self.shade(&view)?;
+        let shade = Shade { ground: self.ground(&view)?, ..self.shade(&view)? };
         watch.add_to(&mut stats.seconds.shadows);
         let constants = self.constants(&view, &shade, radiosity.as_deref(), &tables);
         watch.add_to(&mut stats.seconds.prepare);
@@ -338,12 +338,16 @@ impl<'a> FrameContext<'a> {
         shadow::prepare(registry::shadows(algorithm), view, self.shot.lights, self.settings, self.execution)
     }
 
-    /// All that keeps light away.
+    /// What darkens the background.
+    fn ground<'v>(&self, view: &PreparedView<'v>) -> Result<Option<Ground<'v>>, Limit> {
+        let Shot { lights, ambient, ref surroundings, .. } = *self.shot;
+        Ground::new(view, (lights, ambient), surroundings.up, (self.settings, self.execution))
+    }
+
+    /// All that keeps light away from surfaces.
     fn shade<'v>(&self, view: &PreparedView<'v>) -> Result<Shade<'v>, Limit> {
         let occlusion = AmbientOcclusion::new(view.session, self.settings, self.execution)?;
-        let Shot { lights, ambient, ref surroundings, .. } = *self.shot;
-        let ground = Ground::new(view, (lights, ambient), surroundings.up, (self.settings, self.execution))?;
-        Ok(Shade { shadows: self.shadows(view)?, occlusion, ground })
+        Ok(Shade { shadows: self.shadows(view)?, occlusion, ground: None })
     }
 
     /// What stays the same for all points of the frame.

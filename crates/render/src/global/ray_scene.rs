@@ -14,7 +14,7 @@ use crate::raytrace::intersect::Ray;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::triangles::Triangles;
 use crate::shading::{FrameConstants, Hit};
-use crate::shadow::{Place, clearance, facet, shaded, weighted, weights};
+use crate::shadow::{Place, clearance, facet, weighted, weights};
 use vitral_exec::Workers;
 use vitral_math::{DMat3, DVec3, Vec3, dvec3};
 use vitral_scene::bodies::Side;
@@ -193,7 +193,8 @@ impl<'a> RayScene<'a> {
         let background = &self.constants.background;
         let beyond = || self.sky.row(self.view_from_world * ray.direction, background.colors.len()) as u32;
         match ray.row {
-            Some(row) => shaded(background.color(row), ray.ground),
+            Some(row) if ray.ground > 0.0 => background.shaded(row, ray.ground),
+            Some(row) => background.color(row),
             None => background.color(beyond()),
         }
     }

@@ -49,7 +49,8 @@ pub fn examine_pixel(
     let whole = context.view(session, pattern.clone(), &mut CullCounters::default());
     let tables = DecodeTables::new(settings.picture.color_space);
     let radiosity = context.radiosity(session, &mut RadiosityCounters::default())?;
-    let (shade, unshaded) = (context.shade(&whole)?, Shade::default());
+    let shade = Shade { ground: context.ground(&whole)?, ..context.shade(&whole)? };
+    let unshaded = Shade::default();
     let needs_all = context.constants(&whole, &unshaded, None, &tables).translucent().is_some()
         && settings.global.model != Global::RayTrace;
     let mut view = context.view(session, pattern, &mut CullCounters::default());

@@ -27,7 +27,7 @@ use super::points::{FragmentPoint, NO_POINT, Points, Source, samples_in};
 use super::shaded_points::ShadedPoints;
 use crate::PreparedView;
 use crate::marks::MarkColors;
-use crate::shadow::{Strata, facet, hash, shaded};
+use crate::shadow::{Strata, facet, hash};
 use std::sync::Mutex;
 use vitral_exec::{Budget, Limit};
 use vitral_math::{DMat4, DVec2, DVec3, DVec4, dvec2};
@@ -315,8 +315,8 @@ impl DeepPicture<'_> {
         let side = TILE as u32;
         let tile = &self.tiles[(pixel[1] / side * self.constants.view.viewport.tiles_x() + pixel[0] / side) as usize];
         let dark = tile.points.ground.get((pixel[1] % side * side + pixel[0] % side) as usize);
-        let plain = self.constants.background.colors[pixel[1] as usize];
-        dark.map_or(plain, |&dark| shaded(plain, dark))
+        let rows = &self.constants.background;
+        dark.map_or_else(|| rows.color(pixel[1]), |&dark| rows.shaded(pixel[1], dark))
     }
 
     /// What lies behind a place (view space), over a pixel.

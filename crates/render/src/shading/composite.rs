@@ -12,7 +12,6 @@ use super::points::{NO_POINT, Points, Source, visible_part};
 use super::shaded_points::ShadedPoints;
 use crate::display::encode;
 use crate::marks::MarkColors;
-use crate::shadow::shaded;
 use crate::transparency::MOST_SAMPLES;
 use vitral_raster::{TILE, TILE_PIXELS, Tile};
 
@@ -187,11 +186,7 @@ pub(super) fn opaque_samples(
     lit: &ShadedPoints,
     constants: &FrameConstants<'_>,
 ) -> Vec<[f32; 4]> {
-    let rows = &constants.background;
-    let background = |pixel: usize| {
-        let row = (tile.y as usize + pixel / TILE).min(rows.colors.len() - 1);
-        points.ground.get(pixel).map_or(rows.colors[row], |&dark| shaded(rows.colors[row], dark))
-    };
+    let background = |pixel: usize| points.background(tile, pixel, &constants.background);
     let samples = constants.view.pattern.len();
     let mut colors: Vec<_> = (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect();
     for pixel in &points.pixels {

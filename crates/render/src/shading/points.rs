@@ -1,7 +1,6 @@
 //! The points of a tile that are illuminated, and which samples and fragments show them.
 
 use crate::display::BackgroundRows;
-use crate::shadow::shaded;
 use crate::transparency::range;
 use vitral_raster::{TILE, Tile, Viewport};
 
@@ -119,8 +118,8 @@ impl Points {
     /// What is behind all surfaces of a pixel of the tile, in the space of composition.
     #[inline]
     pub(crate) fn background(&self, tile: &Tile, pixel: usize, rows: &BackgroundRows) -> [f32; 4] {
-        let plain = rows.colors[tile.y as usize + pixel / TILE];
-        self.ground.get(pixel).map_or(plain, |&dark| shaded(plain, dark))
+        let row = tile.y + (pixel / TILE) as u32;
+        self.ground.get(pixel).map_or_else(|| rows.color(row), |&dark| rows.shaded(row, dark))
     }
 
     /// The part of the background that a shadow on the ground takes in the pixel of a point.

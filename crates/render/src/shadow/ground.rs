@@ -209,9 +209,3 @@ impl Sight {
         (self.world_from_view.transform_point3(origin), self.world_from_view.transform_vector3(direction))
     }
 }
-
-/// A background of which a shadow takes a part: premultiplied, in the space of composition.
-pub(crate) fn shaded([r, g, b, a]: [f32; 4], dark: f32) -> [f32; 4] {
-    let kept = 1.0 - dark;
-    [r * kept, g * kept, b * kept, a + (1.0 - a) * dark]
-}

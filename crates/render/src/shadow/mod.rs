@@ -34,7 +34,7 @@ pub mod volume;
 pub(crate) use ambient_occlusion::AmbientOcclusion;
 pub(crate) use blocker::blocker;
 pub(crate) use facet::{facet, weighted, weights};
-pub(crate) use ground::{Ground, shaded};
+pub(crate) use ground::Ground;
 pub(crate) use hash::hash;
 pub(crate) use occluders::{Occluders, texel};
 pub(crate) use place::Placing;

@@ -33,7 +33,7 @@ impl Panorama {
             return None;
         }
         for channel in texels.iter_mut().flatten() {
-            *channel = channel.max(0.0).min(BRIGHTEST);
+            *channel = if *channel > 0.0 { channel.min(BRIGHTEST) } else { 0.0 };
         }
         let mut image = Self { width, height, texels };
         while image.width > MOST_COLUMNS {

@@ -3,10 +3,13 @@
 //! In:   the bytes of a file. Out: linear RGB, the top row first. Alpha is left out.
 //! Cost: that of the decoder. The header's size is checked before anything is allocated.
 
-use super::decode;
+use super::{decode_else, whole};
 use crate::Error;
 use vitral_frame::Plane;
 use vitral_math::color::linear_from_srgb_table;
+
+/// What is read, for messages about other formats.
+const READ: &str = "HDR, EXR, PNG, JPEG, TGA, BMP, GIF, WebP, TIFF and DDS are";
 
 /// Decodes an image of light. `file` is its name, for messages.
 ///
@@ -17,7 +20,8 @@ pub fn decode_radiance(bytes: &[u8], file: &str) -> Result<Plane<[f32; 3]>, Erro
         [b'#', b'?', ..] => decode_floats(Floats::Hdr, bytes, file),
         [0x76, 0x2f, 0x31, 0x01, ..] => decode_floats(Floats::Exr, bytes, file),
         _ => {
-            let picture = decode(bytes, file)?;
+            whole(bytes, file)?;
+            let picture = decode_else(bytes, file, READ)?;
             let table = linear_from_srgb_table();
             Ok(picture.map(|&[r, g, b, _]| [r, g, b].map(|byte| table[usize::from(byte)])))
         }

@@ -4,7 +4,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::internals::render::choice::Row;
 use vitral::{
-    Acceleration, Channel, Choice, ColorBy, ColorSpace, Environment, FileColors, Global, Illumination, Interpolation,
+    Acceleration, Channel, Choice, ColorBy, ColorSpace, FileColors, Global, GroundShadow, Illumination, Interpolation,
     LightTerm, Normals, PictureFormat, Seams, Shading, Shadows, Terminator, Transparency, TransparencyOrder, View,
     Visibility, VolumeCounting, names,
 };
@@ -133,10 +133,6 @@ pub(crate) fn color_space() -> impl TypedValueParser<Value = ColorSpace> {
     of(ColorSpace::ALL.iter().copied())
 }
 
-pub(crate) fn environment() -> impl TypedValueParser<Value = Environment> {
-    of(Environment::ALL.iter().copied())
-}
-
 pub(crate) fn interpolation() -> impl TypedValueParser<Value = Interpolation> {
     of(Interpolation::ALL.iter().copied())
 }
@@ -151,6 +147,10 @@ pub(crate) fn normals() -> impl TypedValueParser<Value = Normals> {
 
 pub(crate) fn terminator() -> impl TypedValueParser<Value = Terminator> {
     of(Terminator::ALL.iter().copied())
+}
+
+pub(crate) fn ground_shadow() -> impl TypedValueParser<Value = GroundShadow> {
+    of(GroundShadow::ALL.iter().copied())
 }
 
 pub(crate) fn volume_counting() -> impl TypedValueParser<Value = VolumeCounting> {

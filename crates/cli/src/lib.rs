@@ -23,6 +23,7 @@ mod draw_command;
 mod draw_file;
 mod draw_polygons;
 mod draw_sheet;
+mod environment;
 mod examples;
 mod exit;
 mod fields;

@@ -4,13 +4,14 @@
 //! typed with the value that it has anyway, is never told; nor are options that by their nature leave pictures as they are
 //! (`--cull`, `--coherence`, `--threads`, ...).
 
+use crate::environment::EnvironmentSource;
 use crate::no_effect_camera;
 use crate::render_args::RenderArgs;
 use std::sync::Arc;
 use vitral::{
-    AlphaMode, AreaShape, Camera, Channels, ColorSpace, Global, Illumination, Interpolation, Light, LightKind, Lines,
-    Normals, Projection, Renderer, Scene, Settings, Shading, State, Transmission, Transparency, TransparencyOrder,
-    View, Viewpoint,
+    AlphaMode, AreaShape, Camera, Channels, ColorSpace, Environment, Global, GroundShadow, Illumination, Interpolation,
+    Light, LightKind, LightTerm, Lines, Material, Normals, Projection, Renderer, Scene, Settings, Shading, State,
+    Transmission, Transparency, TransparencyOrder, View, Viewpoint,
 };
 
 /// A row of the table: an option, a condition under which it has no effect, and the reason.
@@ -40,6 +41,8 @@ const SOLID: &str = "the models have no transparent surfaces";
 const NO_CASTER: &str = "no light casts shadows";
 const FLAT: &str = "with --shading flat each face has its own normal";
 const ALL_EDGES: &str = "all edges are drawn, hidden ones included (--wireframe-hidden-line leaves them out)";
+const RADIOSITY: &str = "radiosity computes what surfaces light each other with";
+const NO_AMBIENT: &str = "no light comes from everywhere: name an ambient one, or an --environment";
 const PARALLEL: &str = "the projection is parallel";
 
 /// What does nothing beside what. Rows of one option stand together; the first that holds is told.
@@ -115,6 +118,20 @@ const ROWS: &[Row] = &[
     row("--environment", |a| a.light.environment.is_some(), Case::makes_no_color, DATA),
     row("--environment", |a| a.light.environment.is_some(), Case::draws_wires, WIRES),
     row("--environment", |a| a.light.environment.is_some(), Case::is_dark, DARK),
+    row("--environment", |a| a.light.environment.is_some(), Case::has_radiosity, RADIOSITY),
+    row("--environment", gives_image, |c| c.shows_diffuse_term, "this term of the lights is not its own"),
+    row("--environment", gives_surroundings, |c| !c.mirrors_surroundings(), "no surface has metal or roughness"),
+    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), Case::makes_no_color, DATA),
+    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), Case::draws_wires, WIRES),
+    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), Case::is_dark, DARK),
+    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), Case::is_constant, CONSTANT),
+    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), Case::has_radiosity, RADIOSITY),
+    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), |c| !c.has_ambient, NO_AMBIENT),
+    row("--ground-shadow", gives_ground, Case::makes_no_color, DATA),
+    row("--ground-shadow", gives_ground, Case::draws_wires, WIRES),
+    row("--ground-shadow", gives_ground, Case::is_dark, DARK),
+    row("--ground-shadow", gives_ground, |c| c.lights_shade_ground && !c.casts_shadows(), NO_CASTER),
+    row("--ground-shadow", gives_ground, |c| c.is_below_ground, "the viewer is below the ground"),
     row("--file-colors", |a| a.light.file_colors.is_some(), Case::makes_no_color, DATA),
     row("--file-colors", |a| a.light.file_colors.is_some(), Case::draws_wires, WIRES),
     row("--fill-light", gives_fill_light, Case::makes_no_color, DATA),
@@ -140,6 +157,19 @@ const ROWS: &[Row] = &[
 
 fn gives_fill_light(args: &RenderArgs) -> bool {
     args.light.fill_light == Some(false)
+}
+
+fn gives_ground(args: &RenderArgs) -> bool {
+    args.algorithms.ground_shadow.is_some_and(|kind| kind != GroundShadow::None)
+}
+
+/// An image of the surroundings, or the sky where it is not by itself.
+fn gives_surroundings(args: &RenderArgs) -> bool {
+    gives_image(args) || args.light.environment == Some(EnvironmentSource::Kind(Environment::Sky))
+}
+
+fn gives_image(args: &RenderArgs) -> bool {
+    matches!(args.light.environment, Some(EnvironmentSource::File(_)))
 }
 
 fn gives_lighting(args: &RenderArgs) -> bool {
@@ -227,6 +257,14 @@ struct Case {
     scene: Arc<Scene>,
     camera: Camera,
     lights: Vec<Light>,
+    /// One term of all lights is shown, to which the image of the surroundings adds nothing.
+    shows_diffuse_term: bool,
+    /// Some light comes from everywhere.
+    has_ambient: bool,
+    /// The shadow on the ground is that of the lights.
+    lights_shade_ground: bool,
+    /// The ground shows its back.
+    is_below_ground: bool,
 }
 
 impl Case {
@@ -243,6 +281,10 @@ impl Case {
             scene: Arc::clone(renderer.scene()),
             camera,
             lights: renderer.frame_lights(&camera),
+            shows_diffuse_term: renderer.light_term == Some(LightTerm::Diffuse),
+            has_ambient: renderer.has_ambient_light(&camera),
+            lights_shade_ground: renderer.ground_shadow() == GroundShadow::Lights,
+            is_below_ground: renderer.is_below_ground(&camera),
         }
     }
 
@@ -292,6 +334,23 @@ impl Case {
 
     fn is_constant(&self) -> bool {
         self.settings.shading.illumination == Illumination::Constant
+    }
+
+    /// Whether light between surfaces takes the place of all light from everywhere.
+    fn has_radiosity(&self) -> bool {
+        self.settings.global.model == Global::Radiosity
+    }
+
+    /// Whether some surface shows what is around the scene: by its roughness, or by rays that it turns.
+    fn mirrors_surroundings(&self) -> bool {
+        let illumination = self.settings.shading.illumination;
+        let is_rough =
+            |m: &Material| illumination.for_reflectance(&m.reflectance) == Illumination::CookTorrance && !m.unlit;
+        let turns_rays = |m: &Material| m.mirror || m.alpha_mode == AlphaMode::Blend;
+        let is_traced = self.settings.global.model == Global::RayTrace;
+        let materials = &self.scene.materials;
+        let default = Material::default();
+        materials.iter().chain([&default]).any(|m| is_rough(m) || (is_traced && turns_rays(m)))
     }
 
     fn is_ambient(&self) -> bool {

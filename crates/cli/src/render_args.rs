@@ -1,6 +1,7 @@
 //! The options of `vitral render` as typed. What was not typed is `None`, so that files can fill it in.
 
 use crate::draw_args::line_classes;
+use crate::environment::{self, EnvironmentSource};
 use crate::help::{self, EXIT_CODES, model_help, model_long_help};
 use crate::{choices, depth_cue, light_spec, values};
 use clap::{ArgAction, Args, ValueEnum};
@@ -8,7 +9,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
-    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, Environment, FileColors, Global, Illumination,
+    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, FileColors, Global, GroundShadow, Illumination,
     Interpolation, LightEdit, LightTerm, LineClass, LineClasses, MaterialOverride, Normals, PictureFormat, Shading,
     Shadows, Terminator, Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
 };
@@ -210,6 +211,18 @@ pub(crate) struct AlgorithmArgs {
     #[arg(help_heading = help::SHADOWS)]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=4096u32), allow_negative_numbers = true)]
     pub(crate) light_samples: Option<u32>,
+    #[arg(help_heading = help::SHADOWS)]
+    #[arg(long, value_name = "RAYS", value_parser = values::whole(1..=4096u32), num_args = 0..=1, require_equals = true, default_missing_value = DEFAULT_RAYS, help = occlusion_help())]
+    pub(crate) ambient_occlusion: Option<u32>,
+    /// How far away what is near may be for --ambient-occlusion, in the model's unit [default: half the radius of the scene]
+    #[arg(help_heading = help::SHADOWS)]
+    #[arg(long, value_name = "LENGTH", value_parser = values::positive, allow_negative_numbers = true)]
+    pub(crate) occlusion_radius: Option<f64>,
+    /// A ground at the lowest point of the model that only shows shadow: it darkens the background, a transparent one as well
+    /// [default: none; auto without a kind]
+    #[arg(help_heading = help::SHADOWS)]
+    #[arg(long, value_name = "KIND", value_parser = choices::ground_shadow(), num_args = 0..=1, require_equals = true, default_missing_value = "auto")]
+    pub(crate) ground_shadow: Option<GroundShadow>,
     /// Texels along the longer side of a shadow map, 16 to 8192; with --shadows map [default: 2048]
     #[arg(help_heading = help::SHADOWS)]
     #[arg(long, value_name = "N", value_parser = values::whole(16..=8192u32), allow_negative_numbers = true)]
@@ -297,10 +310,8 @@ pub(crate) struct AlgorithmArgs {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = help::LIGHTS)]
 pub(crate) struct LightArgs {
-    /// What metallic and rough surfaces mirror (glTF materials; Pr and Pm of MTL files) [default:
-    /// auto]
-    #[arg(long, value_name = "KIND", value_parser = choices::environment())]
-    pub(crate) environment: Option<Environment>,
+    #[arg(long, value_name = "KIND|FILE", value_parser = environment::parse, help = environment::help())]
+    pub(crate) environment: Option<EnvironmentSource>,
     /// How the colours in MTL files are encoded [default: srgb; linear with --color-space raw]
     #[arg(help_heading = help::MATERIALS)]
     #[arg(long, value_name = "KIND", value_parser = choices::file_colors())]
@@ -334,6 +345,17 @@ pub(crate) struct LightArgs {
     #[arg(help_heading = help::MATERIALS)]
     #[arg(long, value_name = "NAME.PROPERTY=VALUE", value_parser = values::material, help = material_help())]
     pub(crate) material: Vec<MaterialOverride>,
+}
+
+/// Rays of `--ambient-occlusion` where it says none: folds look even, at a few times the cost of a picture with shadows.
+const DEFAULT_RAYS: &str = "32";
+
+/// The help of `--ambient-occlusion`.
+fn occlusion_help() -> String {
+    format!(
+        "Ambient light, and that of the sky or the environment, is weakened where other surfaces are near: by so many rays from each \
+         point, 1 to 4096 [default: off; {DEFAULT_RAYS} without a number]"
+    )
 }
 
 /// The help of `--edge-classes`.

@@ -2,6 +2,7 @@
 
 use crate::animation_frames;
 use crate::compare_command;
+use crate::environment::EnvironmentSource;
 use crate::light_spec;
 use crate::machine;
 use crate::models;
@@ -18,8 +19,8 @@ use std::sync::Arc;
 use vitral::internals::render::registry;
 use vitral::internals::render::trace::structure::drawer;
 use vitral::{
-    Background, Channel, Channels, ColorSpace, Execution, FileColors, Global, Lines, Normals, Plane, Settings, State,
-    Transparency, Viewpoint, Visibility,
+    Background, Channel, Channels, ColorSpace, Environment, Execution, FileColors, Global, GroundShadow, Lines,
+    Normals, Plane, Settings, State, Transparency, Viewpoint, Visibility,
 };
 
 /// Largest configuration or state file, in bytes.
@@ -436,10 +437,25 @@ fn set_global(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failu
     Ok(())
 }
 
+/// What weakens ambient light.
+fn set_occlusion(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
+    let shading = &mut settings.shading;
+    shading.ambient_occlusion = args.ambient_occlusion.or(shading.ambient_occlusion);
+    if args.occlusion_radius.is_some() && shading.ambient_occlusion.is_none() {
+        let what = "--occlusion-radius: ambient light is not weakened";
+        return Err(Failure::usage(what).with_hint("add --ambient-occlusion"));
+    }
+    shading.occlusion_radius = args.occlusion_radius.or(shading.occlusion_radius);
+    Ok(())
+}
+
 /// The shadow algorithm and its parameters; global illumination may have chosen the algorithm.
 fn set_shadows(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
     settings.shadows.algorithm = args.shadows.unwrap_or(settings.shadows.algorithm);
-    if args.light_samples.is_some() && settings.shadows.algorithm.is_none {
+    settings.shadows.ground = args.ground_shadow.unwrap_or(settings.shadows.ground);
+    set_occlusion(settings, args)?;
+    let has_ground = settings.shadows.ground != GroundShadow::None;
+    if args.light_samples.is_some() && settings.shadows.algorithm.is_none && !has_ground {
         return Err(Failure::usage("--light-samples: no shadows are computed").with_hint("add --shadows ray"));
     }
     if args.terminator.is_some() && settings.shadows.algorithm.is_none {
@@ -485,7 +501,15 @@ pub(crate) fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Fail
         return Err(Failure::usage("--file-colors srgb: with --color-space raw, colours are the numbers in the file")
             .with_hint("leave out one of the two"));
     }
-    state.settings.shading.environment = args.environment.unwrap_or(state.settings.shading.environment);
+    match &args.environment {
+        Some(EnvironmentSource::Kind(kind)) => {
+            (state.settings.shading.environment, state.environment_image) = (*kind, None);
+        }
+        Some(EnvironmentSource::File(file)) => {
+            (state.settings.shading.environment, state.environment_image) = (Environment::Auto, Some(file.clone()));
+        }
+        None => {}
+    }
     state.load.file_colors = args.file_colors.unwrap_or(state.load.file_colors);
     state.settings.shading.lighting = args.lighting.unwrap_or(state.settings.shading.lighting);
     if !args.light.is_empty() {

@@ -105,7 +105,8 @@ impl Format {
     feature = "stl",
     feature = "ply",
     feature = "off",
-    feature = "images"
+    feature = "images",
+    feature = "exr"
 )))]
 pub(crate) fn left_out(name: &str, feature: &str) -> String {
     format!("{name} is left out of this build; the feature `{feature}` of the crate brings it")

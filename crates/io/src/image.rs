@@ -7,6 +7,9 @@
 
 #[cfg(feature = "images")]
 mod codecs;
+mod radiance;
+
+pub use radiance::decode_radiance;
 
 use crate::{Error, Place};
 use std::io::Cursor;

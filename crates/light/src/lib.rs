@@ -10,10 +10,12 @@
 mod area;
 mod builders;
 mod cook_torrance;
+mod environment;
 mod illumination;
 mod light;
 mod mapping;
 mod material;
+mod panorama;
 mod phong;
 mod prepared;
 mod refraction;
@@ -23,10 +25,12 @@ mod terms;
 mod translucency;
 
 pub use cook_torrance::{DIELECTRIC_F0, LEAST_SLOPE, Microfacet, cook_torrance};
+pub use environment::{EnvironmentLight, EnvironmentMap};
 pub use illumination::{Illumination, UnknownIllumination};
 pub use light::{AreaShape, Attenuation, Light, LightKind};
 pub use mapping::{microfacet_from_phong, phong_from_microfacet};
 pub use material::{AlphaMode, Material, Reflectance, TextureRef, Transmission, constant_color};
+pub use panorama::Panorama;
 pub use phong::{Phong, phong};
 pub use prepared::{Arrival, DIRECTION_ROUNDING, Incident, PreparedLight};
 pub use refraction::{reflected_share, transmitted};

@@ -43,21 +43,26 @@ impl Sky {
         let roughness = m.roughness.saturate();
         let light = radiance(y, roughness);
 
-        // The share that is mirrored at this angle.
-        let metallic = m.metallic.saturate();
-        let away = -s.n.dot(s.v).saturate() + 1.0;
-        let squared = away * away;
-        let rim = squared * squared * away;
-        let share = m.base_color.map(
-            #[inline(always)]
-            |channel| {
-                let dielectric = one * DIELECTRIC_F0;
-                let f0 = dielectric + (channel - dielectric) * metallic;
-                f0 + ((one - roughness).max(f0) - f0) * rim
-            },
-        );
-        share.times(light).scale(m.occlusion)
+        mirrored_share(s, m).times(light).scale(m.occlusion)
     }
+}
+
+/// The share of the surroundings' light that a point mirrors at the angle at which it is seen.
+#[inline(always)]
+pub(crate) fn mirrored_share<T: Lanes>(s: &Surface<T>, m: &Microfacet<T>) -> V3<T> {
+    let one = s.n.x.splat(1.0);
+    let (roughness, metallic) = (m.roughness.saturate(), m.metallic.saturate());
+    let away = -s.n.dot(s.v).saturate() + 1.0;
+    let squared = away * away;
+    let rim = squared * squared * away;
+    m.base_color.map(
+        #[inline(always)]
+        |channel| {
+            let dielectric = one * DIELECTRIC_F0;
+            let f0 = dielectric + (channel - dielectric) * metallic;
+            f0 + ((one - roughness).max(f0) - f0) * rim
+        },
+    )
 }
 
 /// The light from directions `y` above the horizon (their sine, `-1..=1`), mixed as roughness mixes them.

@@ -24,6 +24,7 @@ mod settings;
 pub mod shading;
 pub mod shadow;
 pub mod stats;
+mod surroundings;
 pub mod trace;
 pub mod transparency;
 pub mod visible;
@@ -39,11 +40,12 @@ pub use pipeline::{
 pub use prepare::PreparedView;
 pub use session::Session;
 pub use settings::{
-    Background, Channels, ColorSpace, Culling, DepthCue, Environment, Global, GlobalSettings, Interpolation, Lines,
-    PictureSettings, Settings, SettingsError, Shading, ShadingSettings, ShadowSettings, Terminator, Transparency,
-    TransparencyOrder, TransparencySettings, VolumeCounting,
+    Background, Channels, ColorSpace, Culling, DepthCue, Environment, Global, GlobalSettings, GroundShadow,
+    Interpolation, Lines, PictureSettings, Settings, SettingsError, Shading, ShadingSettings, ShadowSettings,
+    Terminator, Transparency, TransparencyOrder, TransparencySettings, VolumeCounting,
 };
 pub use stats::Stats;
+pub use surroundings::Surroundings;
 
 /// Why a picture could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -12,12 +12,13 @@ use crate::global::Whitted;
 use crate::marks::{self, MarkColors, Marks};
 use crate::radiosity::{Solution, lamps, solution};
 use crate::shading::{
-    BYTES_A_PIXEL, ChannelSink, ColorSink, DeepImage, FrameConstants, LitCorner, Shown, TileRows, Tracer, lit_corners,
+    BYTES_A_PIXEL, ChannelSink, ColorSink, DeepImage, FrameConstants, FrameLight, LitCorner, Shown, TileRows, Tracer,
+    lit_corners,
 };
-use crate::shadow::{self, PreparedShadows};
+use crate::shadow::{self, AmbientOcclusion, Ground, PreparedShadows};
 use crate::stats::{CullCounters, RadiosityCounters, Stats, TracingCounters};
 use crate::visible::{Resolved, VisibleSurface};
-use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, registry};
+use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, Surroundings, registry};
 use assemble::Assembler;
 use checks::{check_indices, check_order, check_size, warnings};
 pub use pixel::{ExaminedPixel, examine_pixel};
@@ -51,6 +52,8 @@ pub struct Shot<'a> {
     pub lights: &'a [Light],
     /// Global ambient light.
     pub ambient: Rgb,
+    /// What is around the scene.
+    pub surroundings: Surroundings,
 }
 
 /// Renders one picture.
@@ -134,8 +137,8 @@ pub fn illuminate_corners(
     // Illuminate their corners.
     let tables = DecodeTables::new(settings.picture.color_space);
     let radiosity = context.radiosity(session, &mut RadiosityCounters::default())?;
-    let shadows = context.shadows(&view)?;
-    let constants = context.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
+    let shade = context.shade(&view)?;
+    let constants = context.constants(&view, &shade, radiosity.as_deref(), &tables);
     let bytes = facets.len() as u64 * 3 * size_of::<LitCorner>() as u64;
     let corners = execution
         .budget
@@ -150,6 +153,14 @@ struct FrameContext<'a> {
     settings: &'a Settings,
     viewport: Viewport,
     execution: &'a Execution,
+}
+
+/// What keeps light away from the points of a picture.
+#[derive(Default)]
+struct Shade<'a> {
+    shadows: Option<Box<dyn PreparedShadows + 'a>>,
+    occlusion: Option<AmbientOcclusion<'a>>,
+    ground: Option<Ground<'a>>,
 }
 
 /// A picture whose tiles are all shaded, and what else they show.
@@ -195,9 +206,9 @@ impl<'a> FrameContext<'a> {
         watch.add_to(&mut stats.seconds.prepare);
         let radiosity = self.radiosity(view.session, &mut stats.radiosity)?;
         watch.add_to(&mut stats.seconds.radiosity);
-        let shadows = self.shadows(&view)?;
+        let shade = Shade { ground: self.ground(&view)?, ..self.shade(&view)? };
         watch.add_to(&mut stats.seconds.shadows);
-        let constants = self.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
+        let constants = self.constants(&view, &shade, radiosity.as_deref(), &tables);
         watch.add_to(&mut stats.seconds.prepare);
         let marks = marks::build(&view, settings, constants.fade, constants.point_lighting(), execution)?;
         watch.add_to(&mut stats.seconds.marks);
@@ -205,7 +216,7 @@ impl<'a> FrameContext<'a> {
         // Find what is visible, and shade each tile as it is finished.
         let shaded = self.shade_tiles(&constants, &marks, &mut grid, stats, &mut watch);
         drop(constants);
-        drop(shadows);
+        drop(shade);
         drop(view);
         session.grid = Some(grid);
         let ShadedTiles { picture, shown, resolved } = shaded?;
@@ -284,8 +295,8 @@ impl<'a> FrameContext<'a> {
         let mut cull = CullCounters::default();
         let view = self.view(session, SamplePattern::new(1), &mut cull);
         let tables = DecodeTables::new(settings.picture.color_space);
-        let shadows = self.shadows(&view)?;
-        let constants = self.constants(&view, shadows.as_deref(), None, &tables);
+        let shade = Shade { shadows: self.shadows(&view)?, ..Shade::default() };
+        let constants = self.constants(&view, &shade, None, &tables);
         let sink = ChannelSink::new(&constants, settings.picture.channels, grid.tiles.len(), &execution.budget);
         let resolved = self.visibility().resolve(&view, None, &mut grid, execution, &sink)?;
         if !settings.picture.channels.color {
@@ -294,7 +305,7 @@ impl<'a> FrameContext<'a> {
         }
         Assembler { viewport, workers: &execution.workers }.data(&sink.finish()?, settings.picture.channels, frame);
         drop(constants);
-        drop(shadows);
+        drop(shade);
         drop(view);
         session.grid = Some(grid);
         Ok(())
@@ -330,16 +341,31 @@ impl<'a> FrameContext<'a> {
         shadow::prepare(registry::shadows(algorithm), view, self.shot.lights, self.settings, self.execution)
     }
 
+    /// What darkens the background.
+    fn ground<'v>(&self, view: &PreparedView<'v>) -> Result<Option<Ground<'v>>, Limit> {
+        let Shot { lights, ambient, ref surroundings, .. } = *self.shot;
+        Ground::new(view, (lights, ambient), surroundings.up, (self.settings, self.execution))
+    }
+
+    /// All that keeps light away from surfaces.
+    fn shade<'v>(&self, view: &PreparedView<'v>) -> Result<Shade<'v>, Limit> {
+        let occlusion = AmbientOcclusion::new(view.session, self.settings, self.execution)?;
+        Ok(Shade { shadows: self.shadows(view)?, occlusion, ground: None })
+    }
+
     /// What stays the same for all points of the frame.
     fn constants<'v>(
-        &self,
+        &'v self,
         view: &'v PreparedView<'v>,
-        shadows: Option<&'v dyn PreparedShadows>,
+        shade: &'v Shade<'v>,
         radiosity: Option<&'v Solution>,
         tables: &'v DecodeTables,
     ) -> FrameConstants<'v> {
-        let Shot { lights, ambient, .. } = *self.shot;
-        FrameConstants::new(view, self.settings, lights, ambient, shadows, radiosity, tables, self.execution)
+        let Shot { lights, ambient, ref surroundings, .. } = *self.shot;
+        let Shade { shadows, occlusion, ground } = shade;
+        let (shadows, occlusion, ground) = (shadows.as_deref(), occlusion.as_ref(), ground.as_ref());
+        let light = FrameLight { lights, ambient, surroundings, shadows, occlusion, ground, radiosity };
+        FrameConstants::new(view, self.settings, &light, tables, self.execution)
     }
 
     /// Ray tracing for mirrors and glass, if it is wanted.

@@ -4,7 +4,8 @@ use std::sync::Arc;
 use vitral_math::{DMat4, DQuat, DVec3};
 use vitral_render::registry::VISIBILITY;
 use vitral_render::{
-    Acceleration, Channels, Coherence, Execution, PictureSettings, Rendered, Session, Settings, Shot, render,
+    Acceleration, Channels, Coherence, Execution, PictureSettings, Rendered, Session, Settings, Shot, Surroundings,
+    render,
 };
 use vitral_scene::builtin::solids;
 use vitral_scene::{Axis, Camera, Lens, Scene, View, World, framing};
@@ -38,7 +39,7 @@ fn camera(angle: f64) -> Camera {
 }
 
 fn shown(session: &mut Session, settings: &Settings, angle: f64) -> Rendered {
-    let shot = Shot { camera: camera(angle), lights: &[], ambient: [1.0; 3] };
+    let shot = Shot { camera: camera(angle), lights: &[], ambient: [1.0; 3], surroundings: Surroundings::default() };
     render(session, &shot, settings, &Execution::default()).unwrap()
 }
 

@@ -12,7 +12,7 @@ use vitral_render::radiosity::{RESIDUAL, Solution, form_factor, gather, progress
 use vitral_render::raytrace::triangles::Triangles;
 use vitral_render::{
     Background, ColorSpace, Execution, Global, GlobalSettings, PictureSettings, Session, Settings, ShadowSettings,
-    Shadows, Shot, render,
+    Shadows, Shot, Surroundings, render,
 };
 use vitral_scene::builtin::{self, solids};
 use vitral_scene::{Attribute, Camera, Mesh, Projection, Scene};
@@ -363,7 +363,7 @@ fn one_solution_serves_all_cameras_threads_and_files() {
     let scene = builtin::scene("cornell").unwrap();
     let (mut session, camera) = look_in(&scene);
     let lights = session.world().lights.clone();
-    let shot = |camera| Shot { camera, lights: &lights, ambient: [0.3; 3] };
+    let shot = |camera| Shot { camera, lights: &lights, ambient: [0.3; 3], surroundings: Surroundings::default() };
     let execution = Execution::default();
     let first = render(&mut session, &shot(camera), &settings(), &execution).unwrap();
     assert!(
@@ -422,7 +422,7 @@ fn stored_solutions_belong_to_textures_colours_and_settings_too() {
         global: GlobalSettings { patch_size: Some(0.8), ..settings().global },
         ..settings()
     };
-    let shot = Shot { camera, lights: &[], ambient: [0.0; 3] };
+    let shot = Shot { camera, lights: &[], ambient: [0.0; 3], surroundings: Surroundings::default() };
     let picture = |session: &mut Session, settings: &Settings| render(session, &shot, settings, &Execution::default());
     let red = [255, 0, 0, 255];
     let mut session = textured(red, &|_| ());
@@ -453,7 +453,7 @@ fn glass_in_radiosity_is_warned_about_once() {
             global: GlobalSettings { patch_size: Some(2.0), iterations: Some(1), ..settings().global },
             ..settings()
         };
-        let shot = Shot { camera, lights: &[], ambient: [0.0; 3] };
+        let shot = Shot { camera, lights: &[], ambient: [0.0; 3], surroundings: Surroundings::default() };
         render(&mut session, &shot, &settings, &execution).unwrap().warnings
     };
     assert!(warnings(&scene).is_empty());
@@ -500,7 +500,7 @@ fn what_lamps_light_lights_the_rest() {
         shadows: ShadowSettings { algorithm: Shadows::RAY, ..settings().shadows },
         ..settings()
     };
-    let shot = Shot { camera, lights: &lights, ambient: [0.0; 3] };
+    let shot = Shot { camera, lights: &lights, ambient: [0.0; 3], surroundings: Surroundings::default() };
     let lit = render(&mut session, &shot, &settings, &Execution::default()).unwrap();
     let [r, g, b, _] = lit.frame.color.unwrap().data()[32 * 64 + 32];
     assert!(r > 10 && g == b && r > 5 * g, "{r} {g} {b}");

@@ -30,7 +30,7 @@ use serde_json::Value;
 use stage::{Listed, Write};
 use std::path::Path;
 use vitral_render::stats::CullCounters;
-use vitral_render::{Settings, Shot, TransparencyOrder, illuminate_corners};
+use vitral_render::{Settings, TransparencyOrder, illuminate_corners};
 use vitral_scene::Camera;
 
 /// Renders what `camera` sees and hands each stage's result to `write`, by file name.
@@ -86,7 +86,7 @@ fn write_geometry(
     listed: &mut Vec<Listed>,
 ) -> Result<CullCounters, Error> {
     let lights = renderer.frame_lights(camera);
-    let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
+    let shot = renderer.shot(camera, &lights);
     let corners =
         illuminate_corners(renderer.session(), &shot, &renderer.picture_settings(), renderer.execution(), None)?;
     let mut counters = CullCounters::default();

@@ -27,7 +27,7 @@ use vitral_render::trace::{Observer, Step, Way};
 use vitral_render::visible::NullSink;
 use vitral_render::visible::fates::{Candidate, facets_at};
 use vitral_render::{
-    Channels, ExaminedPixel, Execution, Global, PreparedView, Session, Settings, Shading, Shot, examine_pixel,
+    Channels, ExaminedPixel, Execution, Global, PreparedView, Session, Settings, Shading, examine_pixel,
     illuminate_corners,
 };
 use vitral_scene::Camera;
@@ -311,7 +311,7 @@ fn examined(
 ) -> Result<ExaminedPixel, Error> {
     let execution = Execution { budget: budget.clone(), observer, ..renderer.execution().clone() };
     let lights = renderer.frame_lights(camera);
-    let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
+    let shot = renderer.shot(camera, &lights);
     Ok(examine_pixel(renderer.session(), &shot, settings, &execution, pixel)?)
 }
 
@@ -410,7 +410,7 @@ fn gouraud(
     let view = renderer.prepared(camera, &mut CullCounters::default())?;
     let Some((clip, false)) = view.clipped(facet) else { return Ok(None) };
     let lights = renderer.frame_lights(camera);
-    let shot = Shot { camera: *camera, lights: &lights, ambient: renderer.frame_ambient() };
+    let shot = renderer.shot(camera, &lights);
     let lit = illuminate_corners(session, &shot, settings, execution, Some(facet))?;
     let corner = |i: usize| {
         let snapped = view.screen.transform().project(clip[i]);

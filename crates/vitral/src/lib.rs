@@ -53,6 +53,7 @@ mod batch;
 pub mod bench;
 mod drawing;
 pub mod dump;
+mod environment;
 mod error;
 mod exercise;
 pub mod explain;
@@ -77,6 +78,7 @@ mod viewpoint;
 pub use algorithms::algorithms;
 pub use batch::Batch;
 pub use drawing::{ColorBy, DrawingFormat, FillSettings};
+pub use environment::{environment_from_bytes, load_environment};
 pub use error::Error;
 pub use exercise::{EXERCISES, Exercise};
 pub use files::{FolderResolver, ReadFile, read};
@@ -107,16 +109,16 @@ pub use vitral_frame::{Drawing, Encoding, Filter, Frame, MipFilter, Plane, Sampl
 pub use vitral_io::encode::{DrawingOptions, Figure, Pens, Polyline, TitleBlock, for_plotter, simplify};
 pub use vitral_io::{Error as InputError, Format, NoFiles, ResolveError, Resolver};
 pub use vitral_light::{
-    AlphaMode, AreaShape, Attenuation, Illumination, Light, LightKind, Material, Reflectance, Rgb, TextureRef,
-    Transmission,
+    AlphaMode, AreaShape, Attenuation, EnvironmentMap, Illumination, Light, LightKind, Material, Reflectance, Rgb,
+    TextureRef, Transmission,
 };
 pub use vitral_math::{Aabb, DMat4, DQuat, DVec3};
 pub use vitral_render::catalogue::PolygonOrder;
 pub use vitral_render::stats::VisibilityCounters;
 pub use vitral_render::{
     Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue, Environment,
-    Error as RenderError, Execution, Global, GlobalSettings, Interpolation, Lines, PictureSettings, Settings,
-    SettingsError, Shading, ShadingSettings, ShadowSettings, Shadows, Stats, Terminator, Transparency,
+    Error as RenderError, Execution, Global, GlobalSettings, GroundShadow, Interpolation, Lines, PictureSettings,
+    Settings, SettingsError, Shading, ShadingSettings, ShadowSettings, Shadows, Stats, Terminator, Transparency,
     TransparencyOrder, TransparencySettings, UnknownName, Visibility, VolumeCounting,
 };
 pub use vitral_scene::builtin::solids;

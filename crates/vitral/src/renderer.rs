@@ -1,20 +1,21 @@
 //! The short way from a model or scene to pictures.
 
-use crate::{Channel, Error, LightEdit, LightTerm, LoadOptions, Picture, SystemClock, Viewpoint, load_on};
+use crate::{Channel, Error, LightEdit, LightTerm, LoadOptions, Picture, SystemClock, Viewpoint, environment, load_on};
 use std::path::Path;
 use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
-use vitral_light::{Light, LightKind, Rgb};
+use vitral_light::{EnvironmentMap, Light, LightKind, Rgb};
 use vitral_math::{DMat4, DQuat, DVec3};
 use vitral_raster::SamplePattern;
 use vitral_render::stats::CullCounters;
 use vitral_render::trace::replay::WatchedSteps;
 use vitral_render::{
-    ColorSpace, Environment, Execution, Global, PreparedView, Session, Settings, Shot, radiosity, render, watch_steps,
+    ColorSpace, Environment, Execution, Global, GroundShadow, PreparedView, Session, Settings, Shot, Surroundings,
+    radiosity, render, watch_steps,
 };
 use vitral_scene::{
-    Axis, Camera, Lens, LightMeter, Scene, View, ViewTransform, World, default_lights, depth_range, fill_light,
-    framing, leaves_dark,
+    Axis, Camera, Lens, LightMeter, Projection, Scene, View, ViewTransform, World, default_lights, depth_range,
+    fill_light, framing, leaves_dark,
 };
 
 /// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
@@ -54,6 +55,12 @@ pub struct Renderer {
     pub fill_light: bool,
     /// Global ambient light, on top of the scene's own.
     pub ambient: Rgb,
+    /// An image of the surroundings, which takes the place of the soft sky ([`load_environment`](crate::load_environment)): it lights
+    /// metallic-roughness materials, and they mirror it. [`Self::light_intensity`] multiplies it. It stands upright where
+    /// [`Self::up`] says, and its middle lies behind the model, seen from the front.
+    pub environment_image: Option<Arc<EnvironmentMap>>,
+    /// The image that was read last, and its file.
+    environment_file: Option<(String, Arc<EnvironmentMap>)>,
     session: Session,
     /// Light on the scene's surfaces, for the exposure of its photometric lights.
     meter: LightMeter,
@@ -155,6 +162,8 @@ impl Renderer {
             light_term: None,
             fill_light: true,
             ambient: [0.0; 3],
+            environment_image: None,
+            environment_file: None,
             meter: LightMeter::read(session.world()),
             session,
             execution,
@@ -215,6 +224,8 @@ impl Renderer {
             settings: self.settings.clone(),
             lights: self.lights.clone(),
             light_edits: self.light_edits.clone(),
+            environment_image: self.environment_image.clone(),
+            environment_file: self.environment_file.clone(),
             session: self.session.fork(),
             execution: Execution { workers: Workers::single(), ..self.execution.clone() },
             ..*self
@@ -332,11 +343,17 @@ impl Renderer {
         lights
     }
 
-    /// The settings of a picture, with what is mirrored: by itself the sky belongs to the default lights, and it is part of the
-    /// specular [`light_term`](Self::light_term).
+    /// The settings of a picture, with the shadow on the ground that suits its lights, and with what is mirrored: an image if there is one; else by itself the sky belongs to the default
+    /// lights, and it is part of the specular [`light_term`](Self::light_term).
     pub(crate) fn picture_settings(&self) -> Settings {
         let mut settings = self.settings.clone();
+        if settings.shadows.ground == GroundShadow::Auto {
+            settings.shadows.ground = if self.has_default_lights() { GroundShadow::Soft } else { GroundShadow::Lights };
+        }
         let environment = &mut settings.shading.environment;
+        if *environment == Environment::Auto && self.environment_image.is_some() {
+            return settings;
+        }
         if *environment == Environment::Auto && self.has_default_lights() {
             *environment = Environment::Sky;
         }
@@ -344,6 +361,19 @@ impl Renderer {
             *environment = Environment::None;
         }
         settings
+    }
+
+    /// What a picture from `camera` in these lights is of.
+    pub(crate) fn shot<'l>(&self, camera: &Camera, lights: &'l [Light]) -> Shot<'l> {
+        let factor = self.light_intensity.unwrap_or(1.0);
+        let factors = match self.light_term {
+            None => [factor; 2],
+            Some(LightTerm::Ambient) => [factor, 0.0],
+            Some(LightTerm::Diffuse) => [0.0; 2],
+            Some(LightTerm::Specular) => [0.0, factor],
+        };
+        let surroundings = Surroundings { up: self.up, image: self.environment_image.clone(), factors };
+        Shot { camera: *camera, lights, ambient: self.frame_ambient(), surroundings }
     }
 
     /// Whether the lights of a picture are those for models that bring none, in the display's colours.
@@ -362,6 +392,30 @@ impl Renderer {
         [0, 1, 2].map(|k| own[k] + self.ambient[k])
     }
 
+    /// The shadow on the ground of the next picture: [`GroundShadow::Auto`] is decided.
+    pub fn ground_shadow(&self) -> GroundShadow {
+        self.picture_settings().shadows.ground
+    }
+
+    /// Whether `camera` sees a ground at the lowest point of the scene's bounds from below, or not at all.
+    pub fn is_below_ground(&self, camera: &Camera) -> bool {
+        let (up, bounds) = (self.up.vector(), &self.world().bounds);
+        let lowest = bounds.center().dot(up) - (bounds.size() * 0.5).dot(up.abs());
+        match camera.projection {
+            Projection::Parallel { .. } => (camera.focal_point - camera.position).dot(up) >= 0.0,
+            _ => camera.position.dot(up) <= lowest,
+        }
+    }
+
+    /// Whether light from everywhere lights the next picture from `camera`: ambient light, the sky or an image.
+    pub fn has_ambient_light(&self, camera: &Camera) -> bool {
+        let lights = self.frame_lights(camera);
+        let is_ambient = self.frame_ambient() != [0.0; 3] || lights.iter().any(|light| light.ambient != [0.0; 3]);
+        let environment = self.picture_settings().shading.environment;
+        let has_image = environment == Environment::Auto && self.environment_image.is_some();
+        is_ambient || has_image || environment == Environment::Sky
+    }
+
     /// Renders the picture that [`frame_camera`](Self::frame_camera) sees.
     ///
     /// # Errors
@@ -378,9 +432,13 @@ impl Renderer {
     pub fn render_from(&mut self, camera: &Camera) -> Result<Picture, Error> {
         self.check_light_edits(camera)?;
         let lights = self.frame_lights(camera);
-        let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
+        if let Some(image) = &self.environment_image {
+            environment::check_room(image, &self.execution.budget)?;
+        }
+        let shot = self.shot(camera, &lights);
         let settings = self.picture_settings();
         let mut rendered = render(&mut self.session, &shot, &settings, &self.execution)?;
+        rendered.warnings.extend(self.environment_warning());
         let exposure = self.exposure();
         if exposure != 1.0 {
             rendered.warnings.push(format!(
@@ -394,6 +452,35 @@ impl Renderer {
         Ok(Picture { exposure, ..Picture::new(rendered, self.settings.picture.color_space) })
     }
 
+    /// Takes the image of the surroundings from a file, which is read once; none for `None`.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub(crate) fn read_environment(&mut self, path: Option<&str>, limit: u64) -> Result<(), Error> {
+        self.environment_image = None;
+        let Some(path) = path else { return Ok(()) };
+        let known = self.environment_file.as_ref().filter(|(file, _)| file == path).map(|(_, map)| Arc::clone(map));
+        let map = match known {
+            Some(map) => map,
+            None => environment::load_environment(path, limit)?,
+        };
+        self.environment_file = Some((path.to_owned(), Arc::clone(&map)));
+        self.environment_image = Some(map);
+        Ok(())
+    }
+
+    /// What is odd about the image of the surroundings.
+    fn environment_warning(&self) -> Option<String> {
+        let [width, height] = self.environment_image.as_ref()?.size();
+        let is_odd = width.abs_diff(2 * height) > 2;
+        is_odd.then(|| {
+            format!(
+                "the environment is an image of {width} x {height}; all directions on one rectangle are twice as wide as high, and it is \
+                 stretched to them"
+            )
+        })
+    }
+
     /// Renders the picture that `camera` sees, and keeps the steps of its visibility algorithm, with one sample a pixel:
     /// [`Replay`](crate::internals::render::trace::replay::Replay) shows what it was like after each.
     ///
@@ -401,7 +488,7 @@ impl Renderer {
     /// As [`render`](Self::render); the memory limit if there are too many steps.
     pub fn watch_steps(&mut self, camera: &Camera) -> Result<WatchedSteps, Error> {
         let lights = self.frame_lights(camera);
-        let shot = Shot { camera: *camera, lights: &lights, ambient: self.frame_ambient() };
+        let shot = self.shot(camera, &lights);
         Ok(watch_steps(&mut self.session, &shot, &self.settings, &self.execution, None)?)
     }
 

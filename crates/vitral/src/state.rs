@@ -12,7 +12,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
 use vitral_math::DVec3;
-use vitral_render::{Background, ColorSpace};
+use vitral_render::{Background, ColorSpace, Environment};
 use vitral_scene::LightForm;
 use vitral_scene::lab::LabView;
 
@@ -55,6 +55,8 @@ pub struct State {
     pub fill_light: bool,
     /// Global ambient light on top of the scene's own.
     pub ambient: [f32; 3],
+    /// The file with an image of the surroundings, in the place of the soft sky; relative paths as those of [`Self::models`].
+    pub environment_image: Option<String>,
     /// How pictures are made.
     pub settings: Settings,
     /// Number of views around the model; `null`: one picture.
@@ -93,6 +95,7 @@ impl Default for State {
             light_term: None,
             fill_light: true,
             ambient: [0.0; 3],
+            environment_image: None,
             settings: Settings::default(),
             turntable: None,
         }
@@ -153,6 +156,9 @@ impl State {
                 ("light-intensity", "a finite number of at least 0 is required")
             }
             _ if !positive(&self.ambient) => ("ambient", INTENSITIES),
+            _ if self.environment_image.is_some() && self.settings.shading.environment != Environment::Auto => {
+                ("environment-image", "an image takes the place of the sky: settings.environment must be auto")
+            }
             Background::Color { color } if !displayed(&color) => ("settings.picture.background.color", COLOR),
             Background::Gradient { top, .. } if !displayed(&top) => ("settings.picture.background.top", COLOR),
             Background::Gradient { bottom, .. } if !displayed(&bottom) => ("settings.picture.background.bottom", COLOR),
@@ -176,14 +182,19 @@ impl State {
         Ok(())
     }
 
-    /// Makes the relative paths of models that begin in `folder`, where the state was read, begin in the current folder.
+    /// The paths of files that are relative.
+    fn relative_paths(&mut self) -> impl Iterator<Item = &mut String> {
+        self.models.iter_mut().chain(&mut self.environment_image).filter(|path| is_relative(path))
+    }
+
+    /// Makes the relative paths that begin in `folder`, where the state was read, begin in the current folder.
     pub fn enter(&mut self, folder: &Path) {
-        for model in self.models.iter_mut().filter(|m| is_relative(m)) {
+        for model in self.relative_paths() {
             *model = folder.join(&*model).to_string_lossy().into_owned();
         }
     }
 
-    /// Makes the relative paths of models that begin in the current folder begin in `folder`, where the state is to be
+    /// Makes the relative paths that begin in the current folder begin in `folder`, where the state is to be
     /// written. A path stays as it is where one of the folders is not there.
     pub fn leave_for(&mut self, folder: &Path) {
         let whole = |folder: &Path| {
@@ -191,7 +202,7 @@ impl State {
             std::fs::canonicalize(folder).ok()
         };
         let Some(target) = whole(folder) else { return };
-        for model in self.models.iter_mut().filter(|m| is_relative(m)) {
+        for model in self.relative_paths() {
             let path = Path::new(&*model);
             let (parent, name) = (path.parent().and_then(whole), path.file_name());
             if let (Some(parent), Some(name)) = (parent, name)
@@ -252,10 +263,10 @@ impl State {
         Ok(scene)
     }
 
-    /// Sets all that a renderer decides: settings, viewpoint, lights.
+    /// Sets all that a renderer decides: settings, viewpoint, lights; reads the image of the surroundings.
     ///
     /// # Errors
-    /// A viewpoint without sense; an edit that names a light, field or value that is not there.
+    /// A viewpoint without sense; an edit that names a light, field or value that is not there; an image that cannot be read.
     pub fn apply(&self, renderer: &mut Renderer) -> Result<(), Error> {
         renderer.settings = self.settings.clone();
         renderer.lights.clone_from(&self.lights);
@@ -263,6 +274,7 @@ impl State {
         renderer.light_term = self.light_term;
         renderer.fill_light = self.fill_light;
         renderer.ambient = self.ambient;
+        renderer.read_environment(self.environment_image.as_deref(), self.load.max_file_bytes)?;
         let usual_up = renderer.scene().usual_up();
         match self.turntable {
             None => self.viewpoint.or_own(renderer.world()).apply(renderer, usual_up)?,
@@ -281,7 +293,7 @@ fn displayed(color: &[f32; 3]) -> bool {
     color.iter().all(|channel| (0.0..=1.0).contains(channel))
 }
 
-/// Whether a model is a file with a relative path.
+/// Whether a path is that of a file, and relative.
 fn is_relative(model: &str) -> bool {
     model != "-" && !model.starts_with("builtin:") && Path::new(model).is_relative()
 }

@@ -17,7 +17,7 @@ use vitral_exec::{Budget, Workers};
 use vitral_frame::Frame;
 use vitral_light::Illumination;
 use vitral_math::lanes::Level;
-use vitral_render::{Channels, ColorSpace, Execution, Lines, Session, Settings, Shading, Shot};
+use vitral_render::{Channels, ColorSpace, Execution, Lines, Session, Settings, Shading, Shot, Surroundings};
 use vitral_scene::{Camera, Projection, World, builtin};
 
 /// Width and height of the pictures in pixels; the last tiles are not full.
@@ -91,7 +91,7 @@ fn draw(level: Level) -> Vec<u8> {
         Camera { position: camera.position * 0.35, projection: Projection::Perspective { view_angle: 1.3 }, ..camera };
     let mut frame = |settings: &Settings, camera: Camera| {
         let lights = session.world().lights.clone();
-        let shot = Shot { camera, lights: &lights, ambient: [0.05; 3] };
+        let shot = Shot { camera, lights: &lights, ambient: [0.05; 3], surroundings: Surroundings::default() };
         vitral_render::render(&mut session, &shot, settings, &execution).expect("there are no limits").frame
     };
     let frames = [frame(&smooth, camera), frame(&gouraud, near), frame(&faceted, camera)];

@@ -32,6 +32,10 @@ impl Begin {
             let text = read_state(file, "--load-state")?;
             let mut read = State::from_json(&text, &file.to_string_lossy())?;
             read.enter(file.parent().unwrap_or(Path::new("")));
+            if read.environment_image.is_some() {
+                let what = format!("{}: the Lab shows no image of the surroundings", file.display());
+                return Err(Failure::usage(what).with_hint("take environment-image out of the state"));
+            }
             if models.is_empty() {
                 models = read.models.iter().map(Into::into).collect();
             }

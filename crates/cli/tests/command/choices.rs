@@ -142,6 +142,22 @@ fn options_without_effect_are_told_and_change_nothing() {
         (data, &["--global", "radiosity"], black),
         (&["builtin:cubs", "--light", "ambient:", "--shadows", "map"], &["--shadow-map-size", "64"], "no light casts"),
         (&["builtin:cubs"], &["--together"], "there is one model"),
+        (&["builtin:cubs"], &["--environment", "sky"], "no surface has metal or roughness"),
+        (&["builtin:cubs", "--global", "radiosity"], &["--environment", "sky"], "radiosity computes"),
+        (&["builtin:cubs", "--global", "radiosity"], &["--ambient-occlusion=4"], "radiosity computes"),
+        (dark, &["--ambient-occlusion=4"], own),
+        (data, &["--ambient-occlusion=4"], black),
+        (wires, &["--ambient-occlusion=4"], "edges alone"),
+        (
+            &["builtin:cubs", "--light", "point:position=3,4,5,ambient=0"],
+            &["--ambient-occlusion=4"],
+            "no light comes from everywhere",
+        ),
+        (dark, &["--ground-shadow"], own),
+        (data, &["--ground-shadow"], black),
+        (wires, &["--ground-shadow"], "edges alone"),
+        (&["builtin:cubs", "--light", "ambient:"], &["--ground-shadow"], "no light casts shadows"),
+        (&["builtin:cubs", "--view", "bottom"], &["--ground-shadow"], "below the ground"),
     ] {
         let ((plain, before), (with, told)) = (picture(rest), picture(&[rest, option].concat()));
         let expected = format!("{}: warning: no effect, ", option[0].split('=').next().unwrap());
@@ -165,6 +181,15 @@ fn options_without_effect_are_told_and_change_nothing() {
         &["builtin:scene0", "--camera-direction=-1,-1,-1", "--camera-view-up=0,0,1"],
         &["builtin:scene0", "--view", "top", "--up", "+X"],
         &["builtin:cubs", "--wireframe-hidden-line", "--visibility", "bsp"],
+        &["builtin:cubs", "--ambient-occlusion=4", "--occlusion-radius", "1", "--ground-shadow"],
+        &["builtin:cubs", "--illumination", "cook-torrance", "--environment", "sky"],
+        &[
+            "builtin:cubs",
+            "--light",
+            "area:center=0,9,0,normal=0,-1,0,radius=1",
+            "--ground-shadow",
+            "--light-samples=4",
+        ],
     ] {
         let (_, told) = picture(arguments);
         assert!(!told.contains("no effect"), "{arguments:?}: {told}");

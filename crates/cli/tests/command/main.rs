@@ -12,6 +12,7 @@ mod polygons;
 mod process;
 mod reports;
 mod sections;
+mod surroundings;
 mod thumbnail;
 
 use std::io::Write;

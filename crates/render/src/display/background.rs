@@ -15,6 +15,8 @@ pub(crate) struct BackgroundRows {
     pub colors: Vec<[f32; 4]>,
     /// As display bytes.
     pub bytes: Vec<[u8; 4]>,
+    /// The colour space is raw.
+    raw: bool,
 }
 
 impl Cached for BackgroundRows {
@@ -39,12 +41,40 @@ impl BackgroundRows {
         let encode = |c: f32| byte_from_unit(if *raw { c } else { Lanes::srgb_from_linear(c) });
         let bytes = |c: &[f32; 4]| [encode(c[0]), encode(c[1]), encode(c[2]), byte_from_unit(c[3])];
         let colors: Vec<[f32; 4]> = (0..*height).map(row).collect();
-        Self { bytes: colors.iter().map(bytes).collect(), colors }
+        Self { bytes: colors.iter().map(bytes).collect(), colors, raw: *raw }
+    }
+
+    /// The colour of a row, or of the last one, of which a shadow takes the part `dark`. On nothing it is a black veil: viewers lay
+    /// pictures over what they show in the display's encoding, so its alpha is what darkens that as light is darkened here.
+    pub(crate) fn shaded(&self, row: u32, dark: f32) -> [f32; 4] {
+        let [r, g, b, a] = self.color(row);
+        let kept = 1.0 - dark;
+        let veil = 1.0 - if self.raw { kept } else { Lanes::srgb_from_linear(kept) };
+        [r * kept, g * kept, b * kept, a + (1.0 - a) * veil]
     }
 
     /// The colour of a row, or of the last one, in the space of composition.
     #[inline]
     pub(crate) fn color(&self, row: u32) -> [f32; 4] {
         self.colors[(row as usize).min(self.colors.len() - 1)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shadow_darkens_colours_and_veils_nothing() {
+        let rows = |background, raw| BackgroundRows::new(&(background, 2, raw));
+        let grey = rows(Background::Color { color: [0.5; 3] }, true);
+        assert_eq!(grey.shaded(0, 0.75), [0.125, 0.125, 0.125, 1.0]);
+        assert_eq!(rows(Background::Transparent, true).shaded(9, 0.75), [0.0, 0.0, 0.0, 0.75]);
+        // Laid over an encoded colour, the veil gives about the code of the darkened colour.
+        let [.., alpha] = rows(Background::Transparent, false).shaded(0, 0.75);
+        for code in [1.0f32, 0.8, 0.5] {
+            let darkened: f32 = Lanes::srgb_from_linear(0.25 * Lanes::linear_from_srgb(code));
+            assert!((code * (1.0 - alpha) - darkened).abs() < 0.02, "{code}: {alpha}");
+        }
     }
 }

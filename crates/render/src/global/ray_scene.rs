@@ -183,11 +183,20 @@ impl<'a> RayScene<'a> {
         Some((material, from_outside == (side == Side::Behind)))
     }
 
-    /// What a ray sees that meets nothing.
+    /// What a ray sees that meets nothing: the background of its pixel, or after a turn the image of the surroundings, if there is
+    /// one.
     pub(super) fn background(&self, ray: &Branch) -> [f32; 4] {
+        if let (Some(environment), None) = (&self.constants.environment, ray.row) {
+            let [r, g, b] = environment.seen((self.view_from_world * ray.direction).as_vec3().to_array());
+            return [r, g, b, 1.0];
+        }
         let background = &self.constants.background;
         let beyond = || self.sky.row(self.view_from_world * ray.direction, background.colors.len()) as u32;
-        background.color(ray.row.unwrap_or_else(beyond))
+        match ray.row {
+            Some(row) if ray.ground > 0.0 => background.shaded(row, ray.ground),
+            Some(row) => background.color(row),
+            None => background.color(beyond()),
+        }
     }
 }
 

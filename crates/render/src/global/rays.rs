@@ -31,6 +31,8 @@ pub(super) struct Branch {
     pub(super) travelled: f64,
     /// Row of the picture whose background it sees; `None` after a turn.
     pub(super) row: Option<u32>,
+    /// The part of it that a shadow on the ground takes.
+    pub(super) ground: f32,
     pub(super) seed: u32,
 }
 

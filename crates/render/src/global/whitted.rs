@@ -40,8 +40,8 @@ use crate::raytrace::Counters;
 use crate::raytrace::intersect::Ray;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::triangles::Triangles;
-use crate::shading::{FrameConstants, Front, Hit, Points, ShadedPoints, Strata, Tracer, shade_hits};
-use crate::shadow::SurfacePoint;
+use crate::shading::{FrameConstants, Front, Hit, Points, ShadedPoints, Tracer, shade_hits};
+use crate::shadow::{Strata, SurfacePoint};
 use crate::stats::TracingCounters;
 use crate::visible::nearer;
 use crate::{Execution, Settings};
@@ -183,6 +183,7 @@ impl<'a> Whitted<'a> {
                 least: self.least,
                 travelled: 0.0,
                 row: Some(points.place[target as usize][1] as u32),
+                ground: points.ground_at(&front.tile, target),
                 seed: bounce.place.seed,
             };
             let so_far = lit.colors[target as usize];

@@ -30,7 +30,8 @@ pub(super) fn check_size(session: &Session, settings: &Settings) -> Result<(), E
     let shading = &settings.shading;
     let bounds = &session.world.bounds;
     let is_lit = settings.picture.channels.color && shading.lighting && shading.illumination != Illumination::Constant;
-    let is_traced = settings.global.model != Global::None || !settings.shadows.algorithm.is_none;
+    let is_traced =
+        settings.global.model != Global::None || !settings.shadows.algorithm.is_none || settings.casts_rays();
     if !(is_lit || settings.picture.channels.any_shadow()) || bounds.is_empty() {
         return Ok(());
     }

@@ -1,6 +1,6 @@
 //! One pixel of a picture: the tile that holds it is made as in the whole picture, and what happens there is told.
 
-use super::{FrameContext, Shot, direct_shot};
+use super::{FrameContext, Shade, Shot, direct_shot};
 use crate::display::DecodeTables;
 use crate::marks::{self, MarkColors};
 use crate::radiosity::lamps;
@@ -50,14 +50,15 @@ pub fn examine_pixel(
     let whole = context.view(session, pattern.clone(), &mut CullCounters::default());
     let tables = DecodeTables::new(settings.picture.color_space);
     let radiosity = context.radiosity(session, &mut RadiosityCounters::default())?;
-    let shadows = context.shadows(&whole)?;
-    let needs_all = context.constants(&whole, None, None, &tables).translucent().is_some()
+    let shade = Shade { ground: context.ground(&whole)?, ..context.shade(&whole)? };
+    let unshaded = Shade::default();
+    let needs_all = context.constants(&whole, &unshaded, None, &tables).translucent().is_some()
         && settings.global.model != Global::RayTrace;
     let mut view = context.view(session, pattern, &mut CullCounters::default());
     if !needs_all {
         view.limit_to_tile(tile);
     }
-    let constants = context.constants(&view, shadows.as_deref(), radiosity.as_deref(), &tables);
+    let constants = context.constants(&view, &shade, radiosity.as_deref(), &tables);
     let (marks, mark_colors): (_, MarkColors) =
         marks::build(&whole, settings, constants.fade, constants.point_lighting(), execution)?;
 

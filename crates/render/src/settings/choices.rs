@@ -55,13 +55,30 @@ pub enum Global {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Environment {
-    /// The sky, for pictures in the default lights; who makes pictures says which these are, and here it is nothing.
+    /// The image of the [`Surroundings`](crate::Surroundings) if there is one, else the sky, for pictures in the default lights; who
+    /// makes pictures says which these are, and here it is nothing.
     #[default]
     Auto,
     /// A soft sky over a darker ground ([`Sky`](vitral_light::Sky)), which turns with the camera like the default lights.
     Sky,
     /// Nothing: they show highlights alone.
     None,
+}
+
+/// What darkens the background where there would be a ground at the model's lowest point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GroundShadow {
+    /// Nothing: there is no ground.
+    #[default]
+    None,
+    /// A soft shadow in the default lights, else that of the lights; who makes pictures says which these are, and here it is that of
+    /// the lights.
+    Auto,
+    /// What the model keeps of the light of all lights that cast shadows.
+    Lights,
+    /// A soft shadow where the model is near the ground, whatever the lights.
+    Soft,
 }
 
 /// How values between vertices are found.
@@ -118,6 +135,13 @@ pub enum Lines {
     WireframeHiddenLine,
 }
 
+impl Lines {
+    /// Whether edges alone are drawn.
+    pub const fn has_no_surfaces(self) -> bool {
+        matches!(self, Self::Wireframe | Self::WireframeHiddenLine)
+    }
+}
+
 impl Transparency {
     /// Whether blended surfaces are seen through at all.
     pub const fn sees_through(self) -> bool {
@@ -150,6 +174,13 @@ named!(Environment, "environment", [
     Auto: "auto", "the sky where neither the scene nor the command names lights";
     Sky: "sky", "a soft sky over a darker ground";
     None: "none", "nothing: metals show highlights alone";
+]);
+
+named!(GroundShadow, "shadow on the ground", [
+    None: "none", "there is no ground";
+    Auto: "auto", "soft in the default lights, else of the lights";
+    Lights: "lights", "what the model keeps of the light of all lights that cast shadows";
+    Soft: "soft", "dark where the model is near the ground, whatever the lights";
 ]);
 
 named!(Terminator, "terminator", [

@@ -72,6 +72,15 @@ pub enum SettingsError {
     /// Number of places on area lights.
     #[error("{0} samples per area light: 1 to 4096 are possible")]
     LightSamples(u32),
+    /// Number of rays of ambient occlusion.
+    #[error("{0} rays for ambient occlusion: 1 to 4096 are possible")]
+    AmbientOcclusion(u32),
+    /// Their length.
+    #[error("an ambient occlusion's radius of {0}: a length above 0 is required")]
+    OcclusionRadius(f64),
+    /// A radius, but no rays.
+    #[error("a radius of ambient occlusion was chosen, but no ambient occlusion")]
+    NoOcclusion,
     /// Size of shadow maps.
     #[error("shadow maps of {0} texels per side: 16 to 8192 are possible")]
     ShadowMapSize(u32),

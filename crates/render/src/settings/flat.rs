@@ -54,6 +54,7 @@ flat! {
     "shadow-cascades" => shadows.cascades;
     "volume-counting" => shadows.volume_counting;
     "terminator" => shadows.terminator;
+    "ground-shadow" => shadows.ground;
     "global" => global.model;
     "max-depth" => global.max_depth;
     "patch-size" => global.patch_size;
@@ -61,6 +62,8 @@ flat! {
     "lighting" => shading.lighting;
     "interpolation" => shading.interpolation;
     "environment" => shading.environment;
+    "ambient-occlusion" => shading.ambient_occlusion;
+    "occlusion-radius" => shading.occlusion_radius;
     "color-space" => picture.color_space;
     "transparency" => transparency.model;
     "kay-exponent" => transparency.kay_exponent;

@@ -10,7 +10,8 @@ mod flat;
 mod picture;
 
 pub use choices::{
-    ColorSpace, Environment, Global, Interpolation, Lines, Shading, Terminator, Transparency, VolumeCounting,
+    ColorSpace, Environment, Global, GroundShadow, Interpolation, Lines, Shading, Terminator, Transparency,
+    VolumeCounting,
 };
 pub use error::SettingsError;
 pub use picture::{Background, Channels, DepthCue, PictureSettings};
@@ -81,6 +82,11 @@ pub struct ShadingSettings {
     pub interpolation: Interpolation,
     /// What polished surfaces mirror of their surroundings.
     pub environment: Environment,
+    /// Rays by which a point finds out how much of the ambient light, and of the light of the surroundings, what is near keeps away,
+    /// `1..=4096`; `None`: all of it arrives.
+    pub ambient_occlusion: Option<u32>,
+    /// How far away such things may be, in the world's unit, above 0; `None`: half the radius of the scene's bounding sphere.
+    pub occlusion_radius: Option<f64>,
     /// Light sources on; off shows each surface's own colour.
     pub lighting: bool,
 }
@@ -93,8 +99,26 @@ impl Default for ShadingSettings {
             model: Shading::default(),
             interpolation: Interpolation::default(),
             environment: Environment::default(),
+            ambient_occlusion: None,
+            occlusion_radius: None,
             lighting: true,
         }
+    }
+}
+
+impl ShadingSettings {
+    fn check(&self) -> Result<(), SettingsError> {
+        if let Some(rays) = self.ambient_occlusion.filter(|rays| !(1..=4096).contains(rays)) {
+            return Err(SettingsError::AmbientOcclusion(rays));
+        }
+        let Some(radius) = self.occlusion_radius else { return Ok(()) };
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(SettingsError::OcclusionRadius(radius));
+        }
+        if self.ambient_occlusion.is_none() {
+            return Err(SettingsError::NoOcclusion);
+        }
+        Ok(())
     }
 }
 
@@ -113,6 +137,8 @@ pub struct ShadowSettings {
     pub volume_counting: Option<VolumeCounting>,
     /// Where light ends on surfaces that facets only stand for.
     pub terminator: Terminator,
+    /// What darkens the background where there would be a ground below the model.
+    pub ground: GroundShadow,
 }
 
 impl Default for ShadowSettings {
@@ -125,6 +151,7 @@ impl Default for ShadowSettings {
             cascades: 1,
             volume_counting: None,
             terminator: Terminator::default(),
+            ground: GroundShadow::default(),
         }
     }
 }
@@ -317,6 +344,7 @@ impl Settings {
             return Err(SettingsError::KayExponent(self.transparency.kay_exponent));
         }
         self.check_visibility()?;
+        self.shading.check()?;
         self.shadows.check()?;
         if self.picture.channels.cast_shadow && self.shadows.algorithm.is_none {
             return Err(SettingsError::CastShadow(Shadows::names(|row| !row.is_none)));
@@ -332,7 +360,11 @@ impl Settings {
 
     /// Whether anything casts rays that a structure serves.
     pub fn casts_rays(&self) -> bool {
-        self.visibility.casts_rays || self.shadows.algorithm.casts_rays || self.global.model == Global::RayTrace
+        let for_ambient = self.shading.ambient_occlusion.is_some() || self.shadows.ground != GroundShadow::None;
+        self.visibility.casts_rays
+            || self.shadows.algorithm.casts_rays
+            || for_ambient
+            || self.global.model == Global::RayTrace
     }
 
     /// The kinds of coherence that are used.

@@ -6,7 +6,7 @@ use super::geometry::Record;
 use super::hits::Along;
 use super::material_constants::MaterialConstants;
 use super::points::Points;
-use super::shadowed;
+use super::shadowed::{self, GroupLight};
 use super::slots::Slots;
 use super::subject::{Subject, subject};
 use crate::shadow::LightVisibility;
@@ -26,6 +26,8 @@ pub(crate) struct ShadingBatch8<'a> {
     pub light_visibility: &'a [LightVisibility],
     /// The same for the other side of a translucent sheet.
     pub light_visibility_behind: &'a [LightVisibility],
+    /// Which part of ambient light reaches the points of the group; empty where all of it does.
+    pub open: &'a [f32],
     /// The place of the first point in the group.
     pub first: usize,
 }
@@ -70,10 +72,10 @@ pub(super) fn each_pair<S: Simd>(
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
-        let [light_visibility, behind] = if asks(material) {
-            shadowed::light_visibility(simd, constants, (&subject, material), points, order, facets, rays)
+        let light = if asks(material) {
+            shadowed::group_light(simd, constants, (&subject, material), points, order, facets, rays)
         } else {
-            [Vec::new(), Vec::new()]
+            GroupLight::default()
         };
 
         // Visit the points in pairs of eight.
@@ -87,8 +89,9 @@ pub(super) fn each_pair<S: Simd>(
                 slots,
                 records: &facets.records,
                 along: None,
-                light_visibility: &light_visibility,
-                light_visibility_behind: &behind,
+                light_visibility: &light.seen,
+                light_visibility_behind: &light.behind,
+                open: &light.open,
                 first,
             };
             let place = 2 * LANES * i;

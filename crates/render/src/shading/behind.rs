@@ -24,11 +24,10 @@
 use super::FrameConstants;
 use super::fragments::fragment;
 use super::points::{FragmentPoint, NO_POINT, Points, Source, samples_in};
-use super::scattering::Strata;
 use super::shaded_points::ShadedPoints;
 use crate::PreparedView;
 use crate::marks::MarkColors;
-use crate::shadow::{facet, hash};
+use crate::shadow::{Strata, facet, hash};
 use std::sync::Mutex;
 use vitral_exec::{Budget, Limit};
 use vitral_math::{DMat4, DVec2, DVec3, DVec4, dvec2};
@@ -302,7 +301,7 @@ impl DeepPicture<'_> {
             // Add the surface's light, and weaken what lies behind it.
             let color = match surface {
                 Some(surface) => surface.color,
-                None => self.constants.background.colors[place[1] as usize],
+                None => self.background(place),
             };
             (0..3).for_each(|k| light[k] += weight[k] * color[k]);
             light[3] += opacity * color[3];
@@ -322,6 +321,15 @@ impl DeepPicture<'_> {
             }
         }
         Some(light)
+    }
+
+    /// What is behind all surfaces of a pixel.
+    fn background(&self, pixel: [u32; 2]) -> [f32; 4] {
+        let side = TILE as u32;
+        let tile = &self.tiles[(pixel[1] / side * self.constants.view.viewport.tiles_x() + pixel[0] / side) as usize];
+        let dark = tile.points.ground.get((pixel[1] % side * side + pixel[0] % side) as usize);
+        let rows = &self.constants.background;
+        dark.map_or_else(|| rows.color(pixel[1]), |&dark| rows.shaded(pixel[1], dark))
     }
 
     /// What lies behind a place (view space), over a pixel.

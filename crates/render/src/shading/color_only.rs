@@ -28,6 +28,7 @@ pub(super) fn has_color_only(material: &MaterialConstants<'_>, constants: &Frame
         && !constants.follows_rays()
         && constants.interpolation == Interpolation::Perspective
         && constants.fade.is_none()
+        && constants.occlusion.is_none()
 }
 
 /// Illuminates what [`has_color_only`]: eight points and the next eight of the group, or the first eight alone.

@@ -131,6 +131,7 @@ impl TileSink for ColorSink<'_> {
 
         // Shade what is opaque, then lay one layer after the other over it.
         points.collect(tile, InFront::Samples(&[]), constants, self.marks);
+        points.ground = constants.ground_shadow(tile);
         shade(points, facets, constants, lit);
         let (covered_pixels, opaque) = (points.covered_pixels, points.len() as u64);
         let shown = !self.passes.is_empty();
@@ -157,7 +158,8 @@ impl TileSink for ColorSink<'_> {
 
         // Fill a tile without a surface.
         let empty = !tile.touched && layers.sample_count() == 0 && layers.lost() == 0;
-        if empty && self.deep.is_none() && self.buffers.is_empty() {
+        let ground = self.constants.ground_shadow(tile);
+        if empty && ground.is_empty() && self.deep.is_none() && self.buffers.is_empty() {
             self.tracer.into_iter().for_each(Tracer::tile_done);
             return self.tiles.fill(index, &self.constants.background.bytes[tile.y as usize..]);
         }
@@ -177,6 +179,7 @@ impl TileSink for ColorSink<'_> {
             None => (tile, InFront::Samples(layers)),
         };
         points.collect(tile, seen, constants, self.marks);
+        points.ground = ground;
 
         // Shade them.
         shade(points, facets, constants, lit);

@@ -36,7 +36,7 @@ impl Composer {
         deep: Option<(&DeepPicture<'_>, usize)>,
         out: &mut [[u8; 4]],
     ) {
-        self.begin(tile, constants, out);
+        self.begin(tile, points, constants, out);
         if points.mixed.is_empty() && points.fragments.is_empty() {
             // One point fills each pixel, in the order of the pixels.
             self.places.extend(points.pixels.iter().map(|p| p.index));
@@ -51,14 +51,24 @@ impl Composer {
         encode(constants.level, &self.places, &self.colors, constants.raw, out);
     }
 
-    /// Begins a picture with the background.
-    pub(super) fn begin(&mut self, tile: &Tile, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
+    /// Begins a picture with the background, and the shadow on the ground.
+    pub(super) fn begin(&mut self, tile: &Tile, points: &Points, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
         let (width, height) = visible_part(tile, constants.view.viewport);
         for y in 0..height {
             out[y * TILE..y * TILE + width].fill(constants.background.bytes[tile.y as usize + y]);
         }
         self.places.clear();
         self.colors.clear();
+        if !points.ground.is_empty() {
+            let is_dark = |&pixel: &u32| points.ground[pixel as usize] > 0.0;
+            let seen = |&pixel: &u32| (pixel as usize % TILE) < width && (pixel as usize / TILE) < height;
+            self.places.extend((0..TILE_PIXELS as u32).filter(seen).filter(is_dark));
+            let color = |&pixel: &u32| points.background(tile, pixel as usize, &constants.background);
+            self.colors.extend(self.places.iter().map(color));
+            encode(constants.level, &self.places, &self.colors, constants.raw, out);
+            self.places.clear();
+            self.colors.clear();
+        }
     }
 
     /// Adds a pixel that is the mean of samples.
@@ -75,12 +85,11 @@ impl Composer {
     /// [`Self::mix`] where nothing lies in front.
     fn mix_opaque(&mut self, tile: &Tile, points: &Points, lit: &ShadedPoints, constants: &FrameConstants<'_>) {
         let samples = constants.view.pattern.len();
-        let background = &constants.background.colors[tile.y as usize..];
         self.places.extend(points.pixels.iter().map(|p| p.index));
         self.colors.extend(points.pixels.iter().map(|pixel| match pixel.source {
             Source::Point(point) => lit.colors[point as usize],
             Source::Mixed(start) => {
-                let behind = background[pixel.index as usize / TILE];
+                let behind = points.background(tile, pixel.index as usize, &constants.background);
                 let color = |&point: &u32| if point == NO_POINT { behind } else { lit.colors[point as usize] };
                 mean(points.mixed[start as usize..][..samples].iter().map(color))
             }
@@ -110,8 +119,9 @@ impl Composer {
             }
 
             // Take the pixel's surface and its layers.
-            let background = constants.background.colors[tile.y as usize + index as usize / TILE];
-            let behind = |point: u32| if point == NO_POINT { background } else { lit.colors[point as usize] };
+            // Found when a pixel first needs it: most are covered.
+            let background = || points.background(tile, index as usize, &constants.background);
+            let behind = |point: u32| if point == NO_POINT { background() } else { lit.colors[point as usize] };
             let mut source = Source::Point(NO_POINT);
             if of_surface == index {
                 source = pixels[0].source;
@@ -180,7 +190,7 @@ pub(super) fn opaque_samples(
     lit: &ShadedPoints,
     constants: &FrameConstants<'_>,
 ) -> Vec<[f32; 4]> {
-    let background = |pixel: usize| constants.background.color(tile.y + (pixel / TILE) as u32);
+    let background = |pixel: usize| points.background(tile, pixel, &constants.background);
     let samples = constants.view.pattern.len();
     let mut colors: Vec<_> = (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect();
     for pixel in &points.pixels {

@@ -31,7 +31,8 @@ use crate::raytrace::triangles::Triangles;
 use crate::shadow::{Occluders, SurfacePoint, blocker};
 use crate::transparency::MOST_SAMPLES;
 use vitral_light::{
-    Illumination, Light, Microfacet, Phong, Reflected, Rgb, ambient_term, microfacet_terms, phong_terms, sum_of_terms,
+    EnvironmentLight, Illumination, Light, Microfacet, Phong, Reflected, Rgb, ambient_term, microfacet_terms,
+    phong_terms, sum_of_terms,
 };
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{Lanes, Simd, V3, dispatch};
@@ -61,6 +62,7 @@ impl Examination<'_> {
         // Shade it, and take apart how.
         let (mut points, mut facets, mut lit) = (Points::default(), FacetTable::default(), ShadedPoints::default());
         points.collect(&alone, InFront::Samples(&layers), self.constants, self.marks);
+        points.ground = self.constants.ground_shadow(&alone);
         shade(&points, &mut facets, self.constants, &mut lit);
         let mut found = vec![None; points.len()];
         if !self.constants.surfaces_are_background {
@@ -103,8 +105,7 @@ impl Examination<'_> {
         surface.screen_linear = subject.viewing.screen_linear();
         let mut parameters = SurfaceParameters::new(simd, subject.mesh, slots, &surface, material, constants.raw);
         parameters.let_through(simd, &surface, material, constants, None);
-
-        // Find what the model is evaluated with.
+        parameters.occlude(simd, eight);
         let places = shadowed::world_places(simd, constants, subject, slots, &surface.place_weights());
         let wanted = self.evaluations(simd, eight, &surface, &parameters);
         let received = constants.radiosity.filter(|_| material.model.needs_light_visibility()).map(|solution| {
@@ -267,11 +268,18 @@ impl Examination<'_> {
 
         // Add what the environment mirrors.
         let sky = constants.sky.filter(|_| material.mirrors_sky);
-        let environment = match (sky, microfacet) {
-            (Some(sky), Some(m)) => Some(sky.mirrored(&s, &m)),
-            _ => None,
+        let (gathered, environment) = match (sky, &constants.environment, microfacet) {
+            (Some(sky), _, Some(m)) => (None, Some(sky.mirrored(&s, &m))),
+            (None, Some(image), Some(m)) => {
+                let [gathered, mirrored] = EnvironmentLight::reflected(&s, &m, |n, towards, roughness| {
+                    image.arriving(n.to_array(), towards.to_array(), roughness).map(V3::from_array)
+                });
+                (Some(gathered), Some(mirrored).filter(|_| material.mirrors_sky))
+            }
+            _ => (None, None),
         };
         let mut sum = sum_of_terms(ambient, &terms);
+        gathered.into_iter().for_each(|gathered| sum.diffuse = sum.diffuse + gathered);
         environment.into_iter().for_each(|mirrored| sum.specular = sum.specular + mirrored);
 
         // Collect the terms.
@@ -285,6 +293,7 @@ impl Examination<'_> {
             coefficients,
             ambient,
             lights: lights.map(|(&light, terms)| NumberedTerms { light, terms }).collect(),
+            gathered: gathered.map(V3::to_array),
             environment: environment.map(V3::to_array),
             diffuse: sum.diffuse.to_array(),
             specular: sum.specular.to_array(),
@@ -321,7 +330,7 @@ impl Examination<'_> {
         let (constants, count) = (self.constants, self.constants.view.pattern.len());
         let (x, y) = (tile.x + (pixel % TILE) as u32, tile.y + (pixel / TILE) as u32);
         let source = points.pixels.first().map_or(Source::Point(NO_POINT), |p| p.source);
-        let background = constants.background.colors[y as usize];
+        let background = points.background(tile, pixel, &constants.background);
         let behind = |point: u32| if point == NO_POINT { background } else { lit.colors[point as usize] };
 
         // Lay the layers over the opaque samples.

@@ -89,7 +89,7 @@ fn times(a: Rgb, b: Rgb) -> Rgb {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Execution, Session, Settings, Shading, Shot, render};
+    use crate::{Execution, Session, Settings, Shading, Shot, Surroundings, render};
     use std::sync::Arc;
     use vitral_light::Reflectance;
     use vitral_scene::builtin::solids;
@@ -105,7 +105,7 @@ mod tests {
         let mut session = Session::new(Arc::new(scene)).unwrap();
         let camera = frame(&session.world().bounds, View::Front, Axis::PlusY, lens, 1.0);
         let (lights, ambient) = (default_lights(&camera), [0.1, 0.0, 0.05]);
-        let shot = Shot { camera, lights: &lights, ambient };
+        let shot = Shot { camera, lights: &lights, ambient, surroundings: Surroundings::default() };
         let picture = render(&mut session, &shot, &settings, &Execution::default()).unwrap();
         let [r, g, b, _] = picture.frame.color.as_ref().unwrap().row(4)[4];
 

@@ -8,18 +8,36 @@ use crate::display::{BackgroundRows, DecodeTables, Fade};
 use crate::marks::PointLighting;
 use crate::radiosity::Solution;
 use crate::settings::Terminator;
-use crate::shadow::PreparedShadows;
+use crate::shadow::{AmbientOcclusion, Ground, PreparedShadows};
 use crate::transparency::Lay;
 use crate::{
     ColorSpace, DepthCue, Environment, Execution, Global, Interpolation, PerMesh, PreparedView, Settings, Shading,
-    Transparency,
+    Surroundings, Transparency,
 };
 use std::convert::Infallible;
 use std::sync::Arc;
-use vitral_light::{Light, Material, PreparedLight, Rgb, Sky};
-use vitral_math::DVec3;
+use vitral_light::{EnvironmentLight, Light, Material, PreparedLight, Rgb, Sky};
 use vitral_math::lanes::Level;
-use vitral_raster::SamplePattern;
+use vitral_math::{DMat3, DVec3};
+use vitral_raster::{SamplePattern, Tile};
+
+/// The light of a frame, and what keeps it away.
+#[derive(Clone, Copy)]
+pub(crate) struct FrameLight<'a> {
+    /// The lights, world space.
+    pub lights: &'a [Light],
+    /// Global ambient light.
+    pub ambient: Rgb,
+    pub surroundings: &'a Surroundings,
+    /// What says which part of a light arrives; `None` without shadows.
+    pub shadows: Option<&'a dyn PreparedShadows>,
+    /// What says which part of ambient light arrives; `None`: all of it.
+    pub occlusion: Option<&'a AmbientOcclusion<'a>>,
+    /// What darkens the background.
+    pub ground: Option<&'a Ground<'a>>,
+    /// Light from other surfaces; `None` without radiosity.
+    pub radiosity: Option<&'a Solution>,
+}
 
 /// See the module.
 pub(crate) struct FrameConstants<'a> {
@@ -36,14 +54,20 @@ pub(crate) struct FrameConstants<'a> {
     pub shadows: Option<&'a dyn PreparedShadows>,
     /// What softens the border of attached shadows; `None` without shadows, and where it is to be exact.
     pub(super) terminator: Option<Box<dyn PreparedShadows + 'a>>,
+    /// What says which part of ambient light arrives; `None`: all of it.
+    pub occlusion: Option<&'a AmbientOcclusion<'a>>,
+    /// What darkens the background.
+    pub ground: Option<&'a Ground<'a>>,
     /// Light from other surfaces; `None` without radiosity.
     pub radiosity: Option<&'a Solution>,
     /// For each facet whether rays that meet it are followed on; empty without ray tracing.
     follows: Vec<bool>,
     /// Global ambient light.
     pub ambient: Rgb,
-    /// What polished surfaces mirror.
+    /// What polished surfaces mirror: the soft sky, or nothing.
     pub sky: Option<Sky>,
+    /// An image in its place, which lights all metallic-roughness materials.
+    pub environment: Option<EnvironmentLight>,
     pub shading: Shading,
     pub interpolation: Interpolation,
     pub raw: bool,
@@ -70,14 +94,11 @@ impl<'a> FrameConstants<'a> {
     pub(crate) fn new(
         view: &'a PreparedView<'a>,
         settings: &Settings,
-        lights: &[Light],
-        ambient: Rgb,
-        shadows: Option<&'a dyn PreparedShadows>,
-        radiosity: Option<&'a Solution>,
+        light: &FrameLight<'a>,
         tables: &'a DecodeTables,
         execution: &Execution,
     ) -> Self {
-        // Prepare instances and materials.
+        let FrameLight { lights, ambient, surroundings, shadows, occlusion, ground, radiosity } = *light;
         let session = view.session;
         let raw = settings.picture.color_space == ColorSpace::Raw;
         let instances =
@@ -112,10 +133,13 @@ impl<'a> FrameConstants<'a> {
             light_numbers,
             shadows,
             terminator,
+            occlusion,
+            ground,
             radiosity,
             follows,
             ambient,
             sky: sky(view, settings),
+            environment: environment(view, settings, surroundings),
             shading: settings.shading.model,
             interpolation: settings.shading.interpolation,
             raw,
@@ -165,6 +189,11 @@ impl<'a> FrameConstants<'a> {
         [place[0] + x, place[1] + y]
     }
 
+    /// The part of the background that a shadow on the ground takes in each pixel of a tile; empty without one.
+    pub(crate) fn ground_shadow(&self, tile: &Tile) -> Vec<f32> {
+        self.ground.map(|ground| ground.tile(tile, self.fade.as_ref())).unwrap_or_default()
+    }
+
     /// The material of a part of a mesh.
     pub(crate) fn material(&self, index: Option<u32>) -> &MaterialConstants<'a> {
         let last = self.materials.len() - 1;
@@ -177,6 +206,16 @@ fn sky(view: &PreparedView<'_>, settings: &Settings) -> Option<Sky> {
     let wanted = settings.shading.environment == Environment::Sky && settings.global.model != Global::Radiosity;
     let up = view.view.view_from_world.transform_vector3(view.camera.view_up).normalize_or(DVec3::Y);
     wanted.then(|| Sky { up: up.as_vec3().to_array() })
+}
+
+/// The image that polished surfaces mirror. Radiosity does without.
+fn environment(view: &PreparedView<'_>, settings: &Settings, surroundings: &Surroundings) -> Option<EnvironmentLight> {
+    let wanted = settings.shading.environment == Environment::Auto && settings.global.model != Global::Radiosity;
+    let map = surroundings.image.as_ref().filter(|_| wanted)?;
+    let world_from_view = DMat3::from_mat4(view.view.view_from_world).transpose();
+    let image_from_view = surroundings.image_from_world() * world_from_view;
+    let rows = [0, 1, 2].map(|row| image_from_view.row(row).as_vec3().to_array());
+    Some(EnvironmentLight::new(Arc::clone(map), rows, surroundings.factors))
 }
 
 /// Depth cueing in a view of the whole scene.

@@ -9,8 +9,11 @@ use super::geometry::every;
 use super::hits::Along;
 use super::model::Model;
 use crate::shadow::LightVisibility;
-use vitral_light::{Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, Sky, cook_torrance};
-use vitral_math::lanes::{self, Floats, Lanes, Simd, V3};
+use vitral_light::{
+    EnvironmentLight, Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, Sky, Surface, cook_torrance,
+};
+use vitral_math::lanes::prelude::*;
+use vitral_math::lanes::{self, F32x8, Floats, LANES, Lanes, Simd, V3};
 
 /// Reflection coefficients at points, a lane each.
 pub(crate) enum Coefficients<T> {
@@ -70,6 +73,8 @@ pub(crate) struct Lighting<'a> {
     ambient: Rgb,
     /// What polished surfaces mirror, where rays do not show it.
     sky: Option<&'a Sky>,
+    /// The image of the surroundings, and whether it is mirrored here.
+    environment: Option<(&'a EnvironmentLight, bool)>,
     illumination: Illumination,
     perspective: bool,
     /// The rays that see the points, if it is not the eye.
@@ -153,7 +158,7 @@ impl Lighting<'_> {
         lit: impl Fn(usize) -> V3<V>,
     ) -> Reflected<V> {
         let v = towards_viewer(simd, position, self.along, self.perspective);
-        let surface = vitral_light::Surface { position: *position, n: *n, v };
+        let surface = Surface { position: *position, n: *n, v };
         match coefficients {
             Coefficients::Empirical(k) => {
                 let grazing = lanes::inlined(
@@ -167,10 +172,42 @@ impl Lighting<'_> {
                 if let Some(sky) = self.sky {
                     reflected.specular = reflected.specular + sky.mirrored(&surface, m);
                 }
+                if let Some((environment, is_mirrored)) = self.environment {
+                    let [diffuse, mirrored] = of_surroundings(simd, environment, &surface, m);
+                    reflected.diffuse = reflected.diffuse + diffuse;
+                    if is_mirrored {
+                        reflected.specular = reflected.specular + mirrored;
+                    }
+                }
                 reflected
             }
         }
     }
+}
+
+/// The diffuse and the mirrored light of the surroundings.
+#[inline(never)]
+fn of_surroundings<S: Simd, V: Floats<S>>(
+    simd: S,
+    environment: &EnvironmentLight,
+    surface: &Surface<V>,
+    m: &Microfacet<V>,
+) -> [V3<V>; 2] {
+    let lookup = |n: V3<V>, towards: V3<V>, roughness: V| {
+        let arriving = V::by_eights(simd, [n.x, n.y, n.z, towards.x, towards.y, towards.z, roughness], |_, eight| {
+            let eight = eight.map(|number| number.to_array());
+            let mut found = [[0.0; LANES]; 6];
+            for lane in 0..LANES {
+                let at = |k: usize| [eight[k][lane], eight[k + 1][lane], eight[k + 2][lane]];
+                let [gathered, mirrored] = environment.arriving(at(0), at(3), eight[6][lane]);
+                (0..3).for_each(|k| (found[k][lane], found[k + 3][lane]) = (gathered[k], mirrored[k]));
+            }
+            found.map(|number| F32x8::from_slice(simd, &number))
+        });
+        let [a, b, c, d, e, f] = arriving;
+        [V3::new(a, b, c), V3::new(d, e, f)]
+    };
+    EnvironmentLight::reflected(surface, m, lookup)
 }
 
 /// The lights of a frame for some points and those that follow in their group.
@@ -180,6 +217,7 @@ pub(super) fn lighting<'a>(eight: &ShadingBatch8<'a>, constants: &'a FrameConsta
         lights: &constants.lights,
         ambient: constants.ambient,
         sky: constants.sky.as_ref().filter(|_| eight.material.mirrors_sky),
+        environment: constants.environment.as_ref().map(|image| (image, eight.material.mirrors_sky)),
         illumination: match eight.material.model {
             Model::Empirical(illumination) => illumination,
             _ => Illumination::Phong,

@@ -30,7 +30,7 @@ pub(crate) struct MaterialConstants<'a> {
     pub soft_cut: bool,
     /// Alpha matters.
     pub blend: bool,
-    /// It mirrors the soft sky, where rays do not show what is there.
+    /// It mirrors the soft sky or the image of the surroundings, where rays do not show what is there.
     pub mirrors_sky: bool,
     /// Rays that meet it are followed on.
     pub follows: bool,

@@ -9,7 +9,7 @@
 //! Source: \[Mammen 1989\].
 
 use super::FrameConstants;
-use super::composite::{Composer, opaque_samples};
+use super::composite::opaque_samples;
 use super::fragments::fragment;
 use super::points::{Points, Source, samples_in};
 use super::scratch::Scratch;
@@ -48,7 +48,7 @@ pub(super) fn compose(
     // Shade each layer and lay it over the samples.
     while pass(&mut peel) {
         if shown {
-            pictures.push(encode(tile, &mut scratch.composer, &canvas, constants));
+            pictures.push(encode(tile, scratch, &canvas, constants));
         }
         let Scratch { points, facets, lit, .. } = &mut *scratch;
         points.collect_pass(tile, &peel, constants, marks);
@@ -65,7 +65,7 @@ pub(super) fn compose(
     }
 
     // Encode the finished tile.
-    pictures.push(encode(tile, &mut scratch.composer, &canvas, constants));
+    pictures.push(encode(tile, scratch, &canvas, constants));
     (pictures, layers, shaded)
 }
 
@@ -84,10 +84,11 @@ fn canvas(tile: &Tile, points: &Points, lit: &ShadedPoints, constants: &FrameCon
 }
 
 /// The canvas as display bytes.
-fn encode(tile: &Tile, composer: &mut Composer, canvas: &Canvas, constants: &FrameConstants<'_>) -> Vec<[u8; 4]> {
+fn encode(tile: &Tile, scratch: &mut Scratch, canvas: &Canvas, constants: &FrameConstants<'_>) -> Vec<[u8; 4]> {
+    let Scratch { points, composer, .. } = scratch;
     let mut picture = vec![[0; 4]; TILE_PIXELS];
     let samples = constants.view.pattern.len();
-    composer.begin(tile, constants, &mut picture);
+    composer.begin(tile, points, constants, &mut picture);
     let mut of_pixel = Vec::with_capacity(samples);
     for pixel in (0..TILE_PIXELS).filter(|&p| canvas.filled[p]) {
         of_pixel.clear();

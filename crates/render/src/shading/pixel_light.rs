@@ -135,9 +135,11 @@ pub struct Evaluation {
     pub lights: Vec<NumberedTerms>,
     /// Sum of the ambient and diffuse terms, in this order: the scene's ambient light, then each light's ambient and diffuse term.
     pub diffuse: Rgb,
-    /// What it mirrors of the soft sky round the scene, with metallic-roughness materials.
+    /// What it reflects diffusely of an image of the surroundings, with metallic-roughness materials; part of `diffuse`.
+    pub gathered: Option<Rgb>,
+    /// What it mirrors of the soft sky round the scene, or of the image, with metallic-roughness materials.
     pub environment: Option<Rgb>,
-    /// Sum of the specular terms, and of what it mirrors of the sky.
+    /// Sum of the specular terms, and of what it mirrors of the surroundings.
     pub specular: Rgb,
 }
 

@@ -1,5 +1,6 @@
 //! The points of a tile that are illuminated, and which samples and fragments show them.
 
+use crate::display::BackgroundRows;
 use crate::transparency::range;
 use vitral_raster::{TILE, Tile, Viewport};
 
@@ -25,6 +26,8 @@ pub(crate) struct Points {
     pub order: Vec<u32>,
     /// Runs of `order` with one object and material.
     pub groups: Vec<Group>,
+    /// For each pixel the part of its background that a shadow on the ground takes; empty without one.
+    pub ground: Vec<f32>,
     /// Pixels with a surface.
     pub covered_pixels: u64,
     /// Samples of layers where depth contradicted a list.
@@ -112,6 +115,20 @@ pub(crate) struct Group {
 }
 
 impl Points {
+    /// What is behind all surfaces of a pixel of the tile, in the space of composition.
+    #[inline]
+    pub(crate) fn background(&self, tile: &Tile, pixel: usize, rows: &BackgroundRows) -> [f32; 4] {
+        let row = tile.y + (pixel / TILE) as u32;
+        self.ground.get(pixel).map_or_else(|| rows.color(row), |&dark| rows.shaded(row, dark))
+    }
+
+    /// The part of the background that a shadow on the ground takes in the pixel of a point.
+    pub(crate) fn ground_at(&self, tile: &Tile, point: u32) -> f32 {
+        let [x, y] = self.place[point as usize].map(|v| v as usize);
+        let pixel = (y - tile.y as usize) * TILE + x - tile.x as usize;
+        self.ground.get(pixel).copied().unwrap_or(0.0)
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.facet.len()
     }
@@ -150,7 +167,7 @@ impl Points {
     pub(crate) fn bytes(&self) -> usize {
         let fragments = self.fragments.capacity() * size_of::<FragmentPoint>() + self.depths.capacity() * 4;
         let pixels = self.pixels.capacity() * size_of::<Pixel>() + self.mixed.capacity() * 4;
-        fragments + pixels + self.facet.capacity() * 4 + self.place.capacity() * 8
+        fragments + pixels + self.facet.capacity() * 4 + self.place.capacity() * 8 + self.ground.capacity() * 4
     }
 }
 

@@ -12,6 +12,7 @@ use super::material_constants::MaterialConstants;
 use super::model::Model;
 use super::points::Points;
 use super::shaded_points::{Bounce, ShadedPoints, premultiplied};
+use super::shadowed::GroupLight;
 use super::slots::Slots;
 use super::subject::{Subject, subject};
 use super::surface_parameters::SurfaceParameters;
@@ -101,11 +102,11 @@ pub(crate) fn shade_hits<S: Simd>(
     for group in &points.groups {
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
-        let [light_visibility, behind] = if material.model.needs_light_visibility() {
+        let light = if material.model.needs_light_visibility() {
             let places: SurfacePoints = order.iter().map(|&p| hits[p as usize].place).collect();
-            shadowed::light_visibility_on_sides(constants, material.scatters.is_some(), places, &mut lit.shadow_rays)
+            GroupLight::of_places(constants, material.scatters.is_some(), places, &mut lit.shadow_rays)
         } else {
-            [Vec::new(), Vec::new()]
+            GroupLight::default()
         };
 
         // Shade eight hits at a time.
@@ -114,8 +115,8 @@ pub(crate) fn shade_hits<S: Simd>(
             together.extend(eight.iter().map(|&p| hits[p as usize]));
             let (slots, along) = hits::prepare(simd, &subject, &together, &mut records);
             let (subject, along) = (&subject, Some(&along));
-            let (slots, records, light_visibility, first) = (&slots, &records, &light_visibility, i * LANES);
-            let light_visibility_behind = &behind;
+            let (slots, records, first) = (&slots, &records, i * LANES);
+            let (light_visibility, light_visibility_behind, open) = (&light.seen, &light.behind, &light.open);
             let eight = ShadingBatch8 {
                 subject,
                 material,
@@ -125,6 +126,7 @@ pub(crate) fn shade_hits<S: Simd>(
                 along,
                 light_visibility,
                 light_visibility_behind,
+                open,
                 first,
             };
             shade_eight(simd, &eight, constants, lit);
@@ -146,11 +148,12 @@ fn illuminate<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameCons
     let &ShadingBatch8 { subject, material, slots, records, along, .. } = eight;
     let is_lit = material.model.needs_light_visibility();
 
-    // Place the points on their facets, and let textures and vertex colours vary the material.
+    // SurfacePoint the points on their facets, and let textures and vertex colours vary the material.
     let mut surface = surface(simd, records, slots);
     surface.screen_linear = along.is_none() && subject.viewing.screen_linear();
     let mut parameters = SurfaceParameters::new(simd, subject.mesh, slots, &surface, material, constants.raw);
     parameters.let_through(simd, &surface, material, constants, along);
+    parameters.occlude(simd, eight);
 
     // Reflect the lights, and the light of other surfaces.
     let mut reflected = reflect_lights(simd, eight, &parameters, &surface, constants);

@@ -12,14 +12,34 @@ use super::shadow_edges::{self, Questions};
 use super::slots::Slots;
 use super::subject::Subject;
 use super::terminator;
-use crate::shadow::{LightVisibility, Placing, PreparedShadows, SurfacePoint, SurfacePoints, grey};
+use crate::shadow::{LightVisibility, Placing, SurfacePoint, SurfacePoints, grey};
 use std::cell::Cell;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{LANES, Simd, V3};
 
-/// Which part of each light reaches the points of a group that the eye sees, and the other side of a translucent sheet;
-/// empty without shadows. Adds the rays that it took.
-pub(crate) fn light_visibility<S: Simd>(
+/// What reaches the points of a group.
+#[derive(Default)]
+pub(crate) struct GroupLight {
+    /// Which part of each light reaches the side that is seen; empty without shadows.
+    pub(crate) seen: Vec<LightVisibility>,
+    /// The same for the other side of a translucent sheet.
+    pub(crate) behind: Vec<LightVisibility>,
+    /// Which part of ambient light arrives; empty without ambient occlusion.
+    pub(crate) open: Vec<f32>,
+}
+
+impl GroupLight {
+    /// What reaches these places, and if `both`, the other side of their facets. Adds the rays that it took.
+    pub(crate) fn of_places(constants: &FrameConstants<'_>, both: bool, places: SurfacePoints, rays: &mut u64) -> Self {
+        let open = constants.occlusion.map(|occlusion| occlusion.open(&places, rays)).unwrap_or_default();
+        let seen = light_visibility_at(constants, &places, rays);
+        let behind = if both { light_visibility_at(constants, &places.turned(), rays) } else { Vec::new() };
+        Self { seen, behind, open }
+    }
+}
+
+/// What reaches the points of a group that the eye sees. Adds the rays that it took.
+pub(crate) fn group_light<S: Simd>(
     simd: S,
     constants: &FrameConstants<'_>,
     (subject, material): (&Subject<'_>, &MaterialConstants<'_>),
@@ -27,12 +47,12 @@ pub(crate) fn light_visibility<S: Simd>(
     order: &[u32],
     facets: &FacetTable,
     rays: &mut u64,
-) -> [Vec<LightVisibility>; 2] {
-    if constants.shadows.is_none() {
-        return [Vec::new(), Vec::new()];
+) -> GroupLight {
+    if constants.shadows.is_none() && constants.occlusion.is_none() {
+        return GroupLight::default();
     }
 
-    // Place the points, eight at a time.
+    // SurfacePoint the points, eight at a time.
     let placing = placing(constants, subject);
     let corners = placing.facets(simd, facets.triangles());
     let mut all = SurfacePoints::with_capacity(order.len());
@@ -48,13 +68,10 @@ pub(crate) fn light_visibility<S: Simd>(
             },
         );
     }
-
-    // Ask the shadow algorithm about all of them.
-    let [mut seen, behind] =
-        light_visibility_on_sides(constants, material.scatters.is_some() && subject.turns(), all, rays);
+    let mut light = GroupLight::of_places(constants, material.scatters.is_some() && subject.turns(), all, rays);
 
     // Near edges of shadows each sample counts.
-    if constants.view.pattern.len() > 1 && !constants.shadows.is_some_and(PreparedShadows::is_smooth) {
+    if constants.view.pattern.len() > 1 && constants.shadows.is_some_and(|shadows| !shadows.is_smooth()) {
         let asked = Cell::new(0);
         let place = |questions: &Questions| {
             let mut places = SurfacePoints::with_capacity(questions.numbers.len());
@@ -90,10 +107,10 @@ pub(crate) fn light_visibility<S: Simd>(
             asked.set(asked.get() + rays);
             parts
         };
-        shadow_edges::soften(constants, points, order, &mut seen, place, ask);
+        shadow_edges::soften(constants, points, order, &mut light.seen, place, ask);
         *rays += asked.get();
     }
-    [seen, behind]
+    light
 }
 
 /// Weights of the facets' corners at eight points on the screen.
@@ -105,21 +122,6 @@ fn place_weights<S: Simd>(simd: S, subject: &Subject<'_>, facets: &FacetTable, s
     let mut surface = surface(simd, &facets.records, slots);
     surface.screen_linear = true;
     surface.place_weights()
-}
-
-/// Which part of each light reaches these places, and if `both`, the other side of their facets; empty without shadows.
-/// Adds the rays that it took.
-pub(crate) fn light_visibility_on_sides(
-    constants: &FrameConstants<'_>,
-    both: bool,
-    places: SurfacePoints,
-    rays: &mut u64,
-) -> [Vec<LightVisibility>; 2] {
-    let seen = light_visibility_at(constants, &places, rays);
-    if !both {
-        return [seen, Vec::new()];
-    }
-    [seen, light_visibility_at(constants, &places.turned(), rays)]
 }
 
 /// Which part of each light reaches these places; empty without shadows. Adds the rays that it took.

@@ -8,6 +8,7 @@
 //! Source: \[Foley et al. 1990\], 16.3, for textures; the transparency models name their own.
 
 use super::FrameConstants;
+use super::batch::ShadingBatch8;
 use super::geometry::{F, Surface, blend, blend3, constant, gather, linear as linear_map};
 use super::hits::Along;
 use super::lighting::Coefficients;
@@ -126,6 +127,16 @@ impl<S: Simd> SurfaceParameters<S> {
             coverage,
             kt,
             alpha,
+        }
+    }
+
+    /// What is near keeps ambient light away.
+    #[inline(always)]
+    pub(super) fn occlude(&mut self, simd: S, eight: &ShadingBatch8<'_>) {
+        let Some(open) = eight.open.get(eight.first..) else { return };
+        if !open.is_empty() {
+            let part: [f32; LANES] = std::array::from_fn(|lane| open[lane.min(open.len() - 1)]);
+            self.occlusion *= F32x8::from_slice(simd, &part);
         }
     }
 

@@ -11,10 +11,14 @@
 //! [`crate::registry::SHADOWS`] lists them. A transparent thing lets through what its opacity leaves,
 //! coloured by its filter where transparency is filtered; a cut-out one lets light through its holes.
 
+mod ambient_occlusion;
 mod blocker;
 mod casters;
+mod contact;
 mod facet;
+mod ground;
 mod hash;
+mod light_rays;
 pub mod map;
 pub mod object_precision;
 mod occluders;
@@ -23,16 +27,20 @@ mod places;
 pub mod ray;
 mod rounding;
 pub mod scan_line;
+mod scattering;
 mod sources;
 pub mod volume;
 
+pub(crate) use ambient_occlusion::AmbientOcclusion;
 pub(crate) use blocker::blocker;
 pub(crate) use facet::{facet, weighted, weights};
+pub(crate) use ground::Ground;
 pub(crate) use hash::hash;
 pub(crate) use occluders::{Occluders, texel};
 pub(crate) use place::Placing;
 pub use places::{LightVisibility, SurfacePoint, SurfacePoints};
 pub(crate) use rounding::clearance;
+pub(crate) use scattering::Strata;
 
 use crate::{Execution, PreparedView, Session, Settings, Transparency};
 use vitral_exec::Limit;

@@ -37,7 +37,7 @@ fn from_above(scene: &Scene, lights: &[Light], settings: Settings) -> Vec<u8> {
     let raw = vitral_render::ColorSpace::Raw;
     let settings = settings.clone().with_size(192, 192).with_samples(1).with_color_space(raw);
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
-    let shot = Shot { camera, lights, ambient: [0.0; 3] };
+    let shot = Shot { camera, lights, ambient: [0.0; 3], surroundings: Surroundings::default() };
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
     frame.color.unwrap().data().iter().map(|p| p[0]).collect()
 }
@@ -180,7 +180,7 @@ fn odd_area_lights_are_defined() {
                 clip: None,
             };
             let mut session = Session::new(Arc::new(scene.clone())).unwrap();
-            let shot = Shot { camera, lights: &lights, ambient: [0.0; 3] };
+            let shot = Shot { camera, lights: &lights, ambient: [0.0; 3], surroundings: Surroundings::default() };
             render(&mut session, &shot, settings, &Execution::default()).unwrap().frame.color.unwrap()
         };
         let [lit, dark] = [settings("none"), settings(algorithm)].map(|s| look(&s));

@@ -54,7 +54,8 @@ fn shadows(scene: &Scene, camera: Camera, light: &Light, settings: &Settings) ->
         Channels { color: false, object: true, cast_shadow: true, attached_shadow: true, ..Channels::default() };
     let settings = settings.clone().with_channels(channels);
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
-    let shot = Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3] };
+    let shot =
+        Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3], surroundings: Surroundings::default() };
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
     let (object, cast, attached) = (frame.object.unwrap(), frame.cast_shadow.unwrap(), frame.attached_shadow.unwrap());
     let seen = object.data().iter().zip(cast.data().iter().zip(attached.data()));
@@ -212,7 +213,7 @@ fn pictures_with_cascades_do_not_depend_on_threads_instructions_or_sessions() {
     let lights = [sun(SUN)];
     let settings = with_cascades(3).with_samples(2);
     let picture = |session: &mut Session, camera: Camera, execution: &Execution| {
-        let shot = Shot { camera, lights: &lights, ambient: [0.2; 3] };
+        let shot = Shot { camera, lights: &lights, ambient: [0.2; 3], surroundings: Surroundings::default() };
         render(session, &shot, &settings, execution).unwrap().frame
     };
     let one = Execution { workers: Workers::single(), ..Execution::default() };

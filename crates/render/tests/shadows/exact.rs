@@ -138,7 +138,7 @@ fn f26_pictures_from_within_a_shadow_are_those_of_rays() {
             let channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
             let mask = |settings: Settings| {
                 let mut session = Session::new(Arc::new(scene.clone())).unwrap();
-                let shot = Shot { camera, lights: &light, ambient: [0.0; 3] };
+                let shot = Shot { camera, lights: &light, ambient: [0.0; 3], surroundings: Surroundings::default() };
                 let settings = settings.clone().with_channels(channels);
                 render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame.cast_shadow.unwrap()
             };
@@ -267,7 +267,8 @@ fn two_viewers_share(shadows: &str) {
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
     let lights = std::slice::from_ref(&light);
     for from in SIDES {
-        let shot = Shot { camera: camera(&scene, from), lights, ambient: [0.0; 3] };
+        let shot =
+            Shot { camera: camera(&scene, from), lights, ambient: [0.0; 3], surroundings: Surroundings::default() };
         render(&mut session, &shot, &settings, &Execution::default()).unwrap();
     }
     let mut after = Vec::new();

@@ -14,7 +14,7 @@ use vitral_math::{DMat4, DVec3, DVec4, dvec3};
 use vitral_render::raytrace::triangles::Triangles;
 use vitral_render::shadow::{self, Drawn, LightVisibility, SurfacePoint, SurfacePoints};
 use vitral_render::{
-    Channels, Execution, PictureSettings, Session, Settings, Shading, ShadowSettings, Shadows, Shot,
+    Channels, Execution, PictureSettings, Session, Settings, Shading, ShadowSettings, Shadows, Shot, Surroundings,
     TransparencySettings, VolumeCounting, registry, render,
 };
 use vitral_scene::builtin::{self, solids};
@@ -128,7 +128,7 @@ fn camera(scene: &Scene, from: DVec3) -> Camera {
 fn picture(scene: &Scene, lights: &[Light], settings: &Settings, execution: &Execution) -> Frame {
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
     let camera = camera(scene, dvec3(0.6, 0.5, 0.9));
-    let shot = Shot { camera, lights, ambient: [0.2; 3] };
+    let shot = Shot { camera, lights, ambient: [0.2; 3], surroundings: Surroundings::default() };
     render(&mut session, &shot, settings, execution).unwrap().frame
 }
 
@@ -319,7 +319,12 @@ fn f18_a_surface_with_the_lamp_in_its_plane_is_in_its_own_shadow() {
         clip: None,
     };
     let mut session = Session::new(Arc::new(hollow())).unwrap();
-    let shot = Shot { camera, lights: &[lamp(dvec3(0.3, 5.0, 0.2))], ambient: [0.0; 3] };
+    let shot = Shot {
+        camera,
+        lights: &[lamp(dvec3(0.3, 5.0, 0.2))],
+        ambient: [0.0; 3],
+        surroundings: Surroundings::default(),
+    };
     let settings = settings("ray").with_channels(channels);
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
     let (normals, attached, cast) = (frame.normal.unwrap(), frame.attached_shadow.unwrap(), frame.cast_shadow.unwrap());
@@ -483,7 +488,12 @@ fn agreement(name: &str, light: &Light, from: DVec3, other_settings: &Settings) 
         let channels =
             Channels { color: false, object: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
         let settings = settings.clone().with_size(320, 240).with_channels(channels);
-        let shot = Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3] };
+        let shot = Shot {
+            camera,
+            lights: std::slice::from_ref(light),
+            ambient: [0.0; 3],
+            surroundings: Surroundings::default(),
+        };
         render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame
     };
     let (rays, other) = (mask(&settings("ray")), mask(other_settings));
@@ -556,7 +566,7 @@ fn kept_changes_nothing(algorithm: &str) {
     let mut used = Session::new(Arc::new(scene.clone())).unwrap();
     for (view, lights) in [(0, &lights[..]), (1, &lights[..]), (1, &[sun(dvec3(1.0, -1.0, 0.0))]), (2, &lights[..])] {
         let camera = camera(&scene, [dvec3(0.6, 0.5, 0.9), dvec3(-0.6, 0.5, 0.9), dvec3(0.6, 0.9, -0.9)][view]);
-        let shot = Shot { camera, lights, ambient: [0.1; 3] };
+        let shot = Shot { camera, lights, ambient: [0.1; 3], surroundings: Surroundings::default() };
         let again = render(&mut used, &shot, &settings, &Execution::default()).unwrap().frame;
         let mut fresh = Session::new(Arc::new(scene.clone())).unwrap();
         assert!(

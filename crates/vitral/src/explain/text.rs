@@ -159,8 +159,12 @@ fn evaluation(f: &mut fmt::Formatter<'_>, e: &Evaluation) -> fmt::Result {
         let (ambient, diffuse, specular) = (three(t.ambient), three(t.diffuse), three(t.specular));
         writeln!(f, "      ambient {ambient}, diffuse {diffuse}, specular {specular}")?;
     }
+    if let Some(gathered) = e.gathered {
+        writeln!(f, "    diffuse light of the surroundings {}", three(gathered))?;
+    }
     if let Some(environment) = e.environment {
-        writeln!(f, "    mirrored sky {}", three(environment))?;
+        let what = if e.gathered.is_some() { "surroundings" } else { "sky" };
+        writeln!(f, "    mirrored {what} {}", three(environment))?;
     }
     writeln!(f, "    sum: diffuse {}, specular {}", three(e.diffuse), three(e.specular))
 }

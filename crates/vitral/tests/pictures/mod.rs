@@ -25,6 +25,7 @@ mod realism;
 mod robust;
 mod scene_files;
 mod steps;
+mod surroundings;
 mod translucent;
 mod transparency;
 mod traps;

@@ -8,7 +8,7 @@
 //! In:   number and seed of a ray, the direction of clear glass. Out: its direction.
 //! Source: \[Cook, Porter & Carpenter 1984\]; the lobe is that of `vitral_light`.
 
-use crate::shadow::hash;
+use super::hash::hash;
 use vitral_light::scattered;
 use vitral_math::DVec3;
 

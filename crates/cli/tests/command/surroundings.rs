@@ -15,12 +15,12 @@ fn png_of(width: u32, height: u32, color: [u8; 4]) -> Vec<u8> {
     png(&Plane::filled(width, height, color), PngOptions::default()).unwrap()
 }
 
-const SMALL: [&str; 6] = ["--resolution", "48x36", "--samples", "1", "--illumination", "cook-torrance"];
+const SMALL: [&str; 4] = ["--samples", "1", "--illumination", "cook-torrance"];
 
 #[test]
 fn an_environment_comes_from_a_file_and_goes_through_a_state() {
     let folder = Folder::new("environment");
-    folder.file("light/green.hdr", hdr());
+    folder.file("green.hdr", hdr());
     folder.file("blue.png", png_of(16, 8, [0, 0, 255, 255]));
     let picture = |arguments: &[&str]| {
         let output = render(&folder, &[arguments, &SMALL, &["-o", "a.png"]].concat());
@@ -28,11 +28,11 @@ fn an_environment_comes_from_a_file_and_goes_through_a_state() {
         folder.read("a.png")
     };
     let plain = picture(&["builtin:teapot"]);
-    let green = picture(&["builtin:teapot", "--environment", "light/green.hdr", "--save-state", "states.json"]);
+    let green = picture(&["builtin:teapot", "--environment", "green.hdr", "--save-state", "states.json"]);
     let blue = picture(&["builtin:teapot", "--environment", "blue.png"]);
     assert!(plain != green && green != blue);
     let text = String::from_utf8(folder.read("states.json")).unwrap();
-    assert!(text.contains("\"environment-image\": \"light/green.hdr\""), "{text}");
+    assert!(text.contains("\"environment-image\": \"green.hdr\""), "{text}");
     assert!(picture(&["--load-state", "states.json"]) == green);
     // What is typed later counts.
     assert!(picture(&["--load-state", "states.json", "--environment", "blue.png"]) == blue);
@@ -74,7 +74,7 @@ fn images_that_cannot_be_used_are_told() {
 fn occlusion_and_the_ground_go_through_a_state() {
     let folder = Folder::new("occlusion");
     let picture = |arguments: &[&str]| {
-        let output = render(&folder, &[arguments, &["--resolution", "48x36", "-o", "a.png"]].concat());
+        let output = render(&folder, &[arguments, &["-o", "a.png"]].concat());
         assert!(code(&output) == 0 && errors(&output).is_empty(), "{arguments:?}: {}", errors(&output));
         folder.read("a.png")
     };

@@ -253,7 +253,7 @@ fn width(algorithm: &str, shape: AreaShape, samples: u32) -> f64 {
         // Chance differs from place to place, so that its mean is what is seen along the edge.
         let seeds = if algorithm == "ray" { 1024_u32.div_ceil(samples) } else { 1 };
         let part = |x: f64| {
-            let parts = (0..seeds).map(|seed| arriving(Place { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
+            let parts = (0..seeds).map(|seed| arriving(SurfacePoint { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
             f64::from(parts.sum::<f32>()) / f64::from(seeds)
         };
         let step = 1.0 / 400.0;

@@ -1,6 +1,7 @@
 //! The edges of the process: memory that runs out, and a standard output that is closed.
 //!
-//! Rust ends a process whose memory runs out by an abort, with a signal. Here it ends as at any other limit: one line, exit code 7.
+//! Rust ends a process whose memory runs out by an abort, with a signal. Here it ends as at any
+//! other limit: one line, exit code 7.
 
 #![allow(unsafe_code)]
 
@@ -20,11 +21,13 @@ static TAKEN: AtomicUsize = AtomicUsize::new(0);
 /// Bytes that it may have while models are read.
 static ALLOWED: AtomicUsize = AtomicUsize::new(usize::MAX);
 
-/// The system's memory. A refused request, or one beyond the allowed bytes, ends the process. For programs, not for libraries.
+/// The system's memory. A refused request, or one beyond the allowed bytes, ends the process. For
+/// programs, not for libraries.
 #[derive(Debug)]
 pub struct Exiting;
 
-// SAFETY: each method is the system's own, with the same arguments; what it refuses is never returned.
+// SAFETY: each method is the system's own, with the same arguments; what it refuses is never
+// returned.
 unsafe impl GlobalAlloc for Exiting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         take(layout.size());
@@ -87,7 +90,10 @@ fn end(what: std::fmt::Arguments<'_>) -> ! {
     let mut rest = &mut line[..];
     // The line is longer than the messages.
     let _ = writeln!(rest, "vitral: {what}");
-    let _ = writeln!(rest, "hint: fewer models, smaller textures, a smaller picture or fewer samples need less memory");
+    let _ = writeln!(
+        rest,
+        "hint: fewer models, smaller textures, a smaller picture or fewer samples need less memory"
+    );
     let left = rest.len();
     let _ = std::io::stderr().lock().write_all(&line[..line.len() - left]);
     std::process::exit(i32::from(LIMIT))
@@ -116,18 +122,21 @@ pub(crate) fn hold(bytes: u64) -> Held {
 /// Whether standard output was closed when the process started.
 static OUTPUT_IS_CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Whether standard output was closed when the process started. Rust opens `/dev/null` in its place, where all would seem well.
+/// Whether standard output was closed when the process started. Rust opens `/dev/null` in its
+/// place, where all would seem well.
 pub(crate) fn output_is_closed() -> bool {
     OUTPUT_IS_CLOSED.load(Ordering::Relaxed)
 }
 
-/// Notes whether standard output is closed, for the loader to call before Rust looks at the standard streams.
+/// Notes whether standard output is closed, for the loader to call before Rust looks at the
+/// standard streams.
 #[cfg(target_os = "linux")]
 pub extern "C" fn note_closed_output() {
     /// What the system says of a stream that is not open (EBADF).
     const NOT_OPEN: i32 = 9;
     // SAFETY: the number is only given to a call that fails where nothing is open.
     let output = unsafe { std::os::fd::BorrowedFd::borrow_raw(1) };
-    let is_closed = output.try_clone_to_owned().is_err_and(|error| error.raw_os_error() == Some(NOT_OPEN));
+    let is_closed =
+        output.try_clone_to_owned().is_err_and(|error| error.raw_os_error() == Some(NOT_OPEN));
     OUTPUT_IS_CLOSED.store(is_closed, Ordering::Relaxed);
 }

@@ -13,7 +13,8 @@ use vitral::Visibility;
 
 /// Renders 3D models to pictures, without GPU, display or GL driver.
 ///
-/// `vitral MODEL -o OUT.png` is short for `vitral render MODEL -o OUT.png`, `vitral help VERB` for `vitral VERB --help`.
+/// `vitral MODEL -o OUT.png` is short for `vitral render MODEL -o OUT.png`, `vitral help VERB` for
+/// `vitral VERB --help`.
 #[derive(Debug, Parser)]
 #[command(
     name = "vitral",
@@ -50,7 +51,8 @@ pub(crate) enum Verb {
     Thumbnail(ThumbnailArgs),
     /// Compare two pictures; exit code 6 when they differ
     Compare(CompareArgs),
-    /// Measure every visible-surface algorithm on one model: time, memory, counters, agreement with the z-buffer
+    /// Measure every visible-surface algorithm on one model: time, memory, counters, agreement with
+    /// the z-buffer
     Bench(Box<BenchArgs>),
     /// List the algorithms
     Algorithms(ListArgs),
@@ -96,8 +98,9 @@ pub(crate) struct InfoArgs {
 
 /// Options of `vitral thumbnail`.
 ///
-/// File managers call it as `vitral thumbnail %i %o %s`. The picture is a square PNG with a transparent background, whatever OUT is called.
-/// No configuration file is read. A thumbnail may take 20 s and 1 GB of memory; beyond that it fails with exit code 7.
+/// File managers call it as `vitral thumbnail %i %o %s`. The picture is a square PNG with a
+/// transparent background, whatever OUT is called. No configuration file is read. A thumbnail may
+/// take 20 s and 1 GB of memory; beyond that it fails with exit code 7.
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct ThumbnailArgs {
@@ -212,14 +215,15 @@ pub(crate) struct OsmesaEnvArgs {
 /// The definition of the command line, with choices in upper and lower case alike.
 pub(crate) fn command() -> clap::Command {
     // Options that take no value cannot have a case.
-    let any_case =
-        |option: clap::Arg| if option.get_action().takes_values() { option.ignore_case(true) } else { option };
+    let any_case = |option: clap::Arg| {
+        if option.get_action().takes_values() { option.ignore_case(true) } else { option }
+    };
     Cli::command().mut_subcommands(|verb| help::with_groups(verb.mut_args(any_case)))
 }
 
-/// The arguments with the verb `render` put in where none was typed: `vitral MODEL -o OUT`. What is neither a verb nor looks like
-/// a model stays, to be refused as a verb. `help VERB GROUP` and `--help VERB GROUP` become
-/// `VERB --help GROUP`.
+/// The arguments with the verb `render` put in where none was typed: `vitral MODEL -o OUT`. What is
+/// neither a verb nor looks like a model stays, to be refused as a verb. `help VERB GROUP` and
+/// `--help VERB GROUP` become `VERB --help GROUP`.
 pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi::OsString> {
     let is_verb = |word: &str| Cli::command().get_subcommands().any(|c| c.get_name() == word);
     let names_verb = arguments.get(2).and_then(|word| word.to_str()).is_some_and(is_verb);
@@ -229,7 +233,9 @@ pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi:
         arguments.insert(arguments.len().min(2), "--help".into());
         return arguments;
     }
-    let Some(first) = arguments.get(1).map(|a| a.to_string_lossy().into_owned()) else { return arguments };
+    let Some(first) = arguments.get(1).map(|a| a.to_string_lossy().into_owned()) else {
+        return arguments;
+    };
     let first = first.as_str();
     let general = ["-h", "--help", "-V", "--version"].contains(&first);
     if !general && !is_verb(first) && may_be_model(&arguments[1]) {
@@ -242,7 +248,8 @@ pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi:
 /// Whether a word may be the name of a model: it is no plain word, or there is a file of that name.
 pub(crate) fn may_be_model(word: &std::ffi::OsStr) -> bool {
     let text = word.to_string_lossy();
-    let is_plain = text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.contains(['.', '/', '\\', ':', '{']);
+    let is_plain = text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && !text.contains(['.', '/', '\\', ':', '{']);
     !is_plain || std::path::Path::new(word).exists()
 }
 
@@ -257,8 +264,11 @@ fn names_drawing(arguments: &[std::ffi::OsString]) -> bool {
             (_, None, Some(value)) => Some(value.trim_start_matches('=').to_owned()),
             _ => None,
         };
-        let extension = output.as_deref().and_then(|name| std::path::Path::new(name).extension()?.to_str());
-        if extension.is_some_and(|extension| vitral::DrawingFormat::from_extension(extension).is_some()) {
+        let extension =
+            output.as_deref().and_then(|name| std::path::Path::new(name).extension()?.to_str());
+        if extension
+            .is_some_and(|extension| vitral::DrawingFormat::from_extension(extension).is_some())
+        {
             return true;
         }
     }
@@ -277,7 +287,8 @@ mod tests {
     #[test]
     fn render_is_the_verb_where_none_is_typed() {
         let with = |words: &[&str]| {
-            let typed = std::iter::once("vitral").chain(words.iter().copied()).map(Into::into).collect();
+            let typed =
+                std::iter::once("vitral").chain(words.iter().copied()).map(Into::into).collect();
             with_verb(typed).get(1).and_then(|w| w.to_str().map(str::to_owned))
         };
         assert_eq!(with(&[]), None);

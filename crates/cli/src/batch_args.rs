@@ -11,10 +11,11 @@ use std::str::FromStr;
 
 /// Options of `vitral batch`.
 ///
-/// A job is a line of JSON: {"model": "a.glb", "output": "out/a.png", "options": {"resolution": "256x256"}, "id": "a"}. `model` may be
-/// a list. `options` are those of `vitral render`, or of `vitral draw` where the output is a drawing; `options` and `id` may be left
-/// out. Paths are relative to the current folder. Options of render and draw that are typed beside those below hold for every job
-/// that does not set them itself.
+/// A job is a line of JSON: {"model": "a.glb", "output": "out/a.png", "options": {"resolution":
+/// "256x256"}, "id": "a"}. `model` may be a list. `options` are those of `vitral render`, or of
+/// `vitral draw` where the output is a drawing; `options` and `id` may be left out. Paths are
+/// relative to the current folder. Options of render and draw that are typed beside those below
+/// hold for every job that does not set them itself.
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct BatchArgs {
@@ -27,7 +28,8 @@ pub(crate) struct BatchArgs {
     /// With --glob: where each picture goes; {model} is the file's name without its extension
     #[arg(long, short, value_name = "PATH", requires = "glob")]
     pub(crate) output: Option<String>,
-    /// Do only the I-th of N parts of the jobs, I from 1 to N. Each job is in the same part on every machine
+    /// Do only the I-th of N parts of the jobs, I from 1 to N. Each job is in the same part on
+    /// every machine
     #[arg(long, value_name = "I/N")]
     pub(crate) shard: Option<Shard>,
     /// Processes that work at the same time; 0 means as many as there are cores
@@ -45,7 +47,8 @@ pub(crate) struct BatchArgs {
     /// Print what would be done, and do nothing
     #[arg(long)]
     pub(crate) dry_run: bool,
-    /// File that records which jobs are done [default: JOBS with .done.jsonl for its extension; batch.done.jsonl with --glob or standard input]
+    /// File that records which jobs are done [default: JOBS with .done.jsonl for its extension;
+    /// batch.done.jsonl with --glob or standard input]
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
     /// When to show how far the batch is [default: auto]
@@ -83,7 +86,9 @@ impl FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('/').and_then(|(i, n)| Some((i.parse::<u64>().ok()?, n.parse::<u64>().ok()?)));
+        let parts = text
+            .split_once('/')
+            .and_then(|(i, n)| Some((i.parse::<u64>().ok()?, n.parse::<u64>().ok()?)));
         match parts {
             Some((i, n)) if (1..=n).contains(&i) => Ok(Self { index: i - 1, count: n }),
             Some((0, _)) => Err("parts are counted from 1".to_owned()),
@@ -106,10 +111,16 @@ pub(crate) fn arrange(arguments: Vec<OsString>) -> Vec<OsString> {
             moved.extend(rest);
             break;
         }
-        let name = argument.to_str().and_then(|text| text.strip_prefix("--")).unwrap_or_default().to_owned();
-        let (name, has_value) = name.split_once('=').map_or((name.as_str(), false), |(name, _)| (name, true));
+        let name = argument
+            .to_str()
+            .and_then(|text| text.strip_prefix("--"))
+            .unwrap_or_default()
+            .to_owned();
+        let (name, has_value) =
+            name.split_once('=').map_or((name.as_str(), false), |(name, _)| (name, true));
         let found = if name.is_empty() { None } else { option(own, name) };
-        let other = if found.is_none() && !name.is_empty() { other_option(&cli, name) } else { None };
+        let other =
+            if found.is_none() && !name.is_empty() { other_option(&cli, name) } else { None };
         let takes_value = found.or(other).is_some_and(takes_value) && !has_value;
         let place = if other.is_some() { &mut moved } else { &mut kept };
         place.push(argument);
@@ -125,7 +136,8 @@ pub(crate) fn arrange(arguments: Vec<OsString>) -> Vec<OsString> {
 /// An option of a verb, by its long name.
 pub(crate) fn option<'c>(verb: &'c Command, name: &str) -> Option<&'c Arg> {
     verb.get_arguments().find(|argument| {
-        argument.get_long() == Some(name) || argument.get_all_aliases().is_some_and(|all| all.contains(&name))
+        argument.get_long() == Some(name)
+            || argument.get_all_aliases().is_some_and(|all| all.contains(&name))
     })
 }
 
@@ -136,7 +148,8 @@ fn other_option<'c>(cli: &'c Command, name: &str) -> Option<&'c Arg> {
 
 /// Whether an option is followed by a value of its own.
 pub(crate) fn takes_value(argument: &Arg) -> bool {
-    argument.get_action().takes_values() && argument.get_num_args().is_none_or(|count| count.min_values() > 0)
+    argument.get_action().takes_values()
+        && argument.get_num_args().is_none_or(|count| count.min_values() > 0)
 }
 
 #[cfg(test)]
@@ -153,8 +166,14 @@ mod tests {
             of(&["--samples", "4", "jobs.jsonl", "--json", "--resolution=8x8", "--wireframe"]),
             ["jobs.jsonl", "--json", "--", "--samples", "4", "--resolution=8x8", "--wireframe"]
         );
-        assert_eq!(of(&["--glob", "*.stl", "-o", "{model}.png"]), ["--glob", "*.stl", "-o", "{model}.png"]);
-        assert_eq!(of(&["j", "--nonsense", "--", "--style", "filled"]), ["j", "--nonsense", "--", "--style", "filled"]);
+        assert_eq!(
+            of(&["--glob", "*.stl", "-o", "{model}.png"]),
+            ["--glob", "*.stl", "-o", "{model}.png"]
+        );
+        assert_eq!(
+            of(&["j", "--nonsense", "--", "--style", "filled"]),
+            ["j", "--nonsense", "--", "--style", "filled"]
+        );
         let other = vec!["vitral".into(), "render".into(), "--samples".into()];
         assert_eq!(arrange(other.clone()), other);
     }

@@ -20,8 +20,10 @@ pub(crate) fn run(args: &BenchArgs) -> Result<u8, Failure> {
     let execution = values::execution_from(args.threads)?;
     interrupt::heed(&execution.budget.clone(), || match &args.report {
         Some(folder) if args.drawings => bench_drawings::write(args, folder, &execution),
-        Some(_) if !args.models.is_empty() => Err(Failure::usage("--report: it measures a scene of its own")
-            .with_hint("leave the models out, or add --drawings")),
+        Some(_) if !args.models.is_empty() => {
+            Err(Failure::usage("--report: it measures a scene of its own")
+                .with_hint("leave the models out, or add --drawings"))
+        }
         Some(folder) => bench_report::write(args, folder, &execution),
         None => bench(args, execution),
     })
@@ -34,7 +36,8 @@ fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {
     state.load.allow_external = args.allow_external;
     set_viewpoint(&mut state.viewpoint, &args.camera, &args.eye);
     let settings = &mut state.settings;
-    ([settings.picture.width, settings.picture.height], settings.picture.samples) = (args.resolution, args.samples);
+    ([settings.picture.width, settings.picture.height], settings.picture.samples) =
+        (args.resolution, args.samples);
     settings.check().map_err(|e| vitral::Error::from(vitral::RenderError::from(e)))?;
     let scene = models::load_scene(&state, &args.models, &execution, ReadLimits::default())?;
     if !args.quiet {
@@ -44,9 +47,11 @@ fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {
     state.apply(&mut renderer)?;
 
     // The algorithms.
-    let wanted = |e: &Entrant| args.visibility.is_empty() || args.visibility.contains(&e.algorithm.choice());
+    let wanted =
+        |e: &Entrant| args.visibility.is_empty() || args.visibility.contains(&e.algorithm.choice());
     let all = Entrant::all();
-    let entrants: Vec<_> = all.iter().enumerate().filter(|(i, e)| *i == 0 || wanted(e)).map(|(_, e)| *e).collect();
+    let entrants: Vec<_> =
+        all.iter().enumerate().filter(|(i, e)| *i == 0 || wanted(e)).map(|(_, e)| *e).collect();
     let rows = rows(args, &renderer, &entrants)?;
     if args.json {
         report::print_json(&as_json(args, &renderer, &rows))?;
@@ -60,7 +65,10 @@ fn bench(args: &BenchArgs, execution: Execution) -> Result<u8, Failure> {
 fn counters(measured: &Measured) -> Vec<(String, u64)> {
     let value = serde_json::to_value(measured.counters).unwrap_or_default();
     let Value::Object(fields) = value else { return Vec::new() };
-    fields.into_iter().filter_map(|(name, v)| v.as_u64().filter(|&n| n > 0).map(|n| (name, n))).collect()
+    fields
+        .into_iter()
+        .filter_map(|(name, v)| v.as_u64().filter(|&n| n > 0).map(|n| (name, n)))
+        .collect()
 }
 
 fn table(args: &BenchArgs, renderer: &Renderer, rows: &[Row]) -> String {
@@ -85,7 +93,11 @@ fn table(args: &BenchArgs, renderer: &Renderer, rows: &[Row]) -> String {
             Ok(m) => {
                 let differs = differing(rows, m).map_or("-".to_owned(), |n| n.to_string());
                 let (first, median) = (m.first_seconds * 1e3, m.median_seconds * 1e3);
-                writeln!(text, "{first:>11.2} {median:>11.2} {:>12} {differs:>10}", m.bytes.div_ceil(1024))
+                writeln!(
+                    text,
+                    "{first:>11.2} {median:>11.2} {:>12} {differs:>10}",
+                    m.bytes.div_ceil(1024)
+                )
             }
             Err(limit) => writeln!(text, "{limit}"),
         };
@@ -94,7 +106,8 @@ fn table(args: &BenchArgs, renderer: &Renderer, rows: &[Row]) -> String {
     for (entrant, row) in rows {
         let Ok(m) = row else { continue };
         let list: Vec<_> = counters(m).into_iter().map(|(name, n)| format!("{name} {n}")).collect();
-        let list = if list.is_empty() { "counts nothing of its own".to_owned() } else { list.join(", ") };
+        let list =
+            if list.is_empty() { "counts nothing of its own".to_owned() } else { list.join(", ") };
         let _ = writeln!(text, "{}: {list}", entrant.name());
     }
     text
@@ -116,7 +129,8 @@ fn as_json(args: &BenchArgs, renderer: &Renderer, rows: &[Row]) -> Value {
                 value["bytes"] = json!(m.bytes);
                 value["differing"] = json!(differing(rows, m));
                 value["geometry"] = json!(m.geometry);
-                value["counters"] = json!(counters(m).into_iter().collect::<std::collections::BTreeMap<_, _>>());
+                value["counters"] =
+                    json!(counters(m).into_iter().collect::<std::collections::BTreeMap<_, _>>());
             }
             Err(limit) => value["limit"] = json!(limit.to_string()),
         }

@@ -1,7 +1,9 @@
-//! `vitral bench --drawings --report`: the polygons of the algorithms of the course beside exact drawings.
+//! `vitral bench --drawings --report`: the polygons of the algorithms of the course beside exact
+//! drawings.
 //!
-//! Each algorithm makes a filled drawing of the same view of the same scenes. A list from back to front holds hidden polygons as well,
-//! so part of its area is painted more than once. For two small scenes, the report shows the drawings, with the cuts of each algorithm.
+//! Each algorithm makes a filled drawing of the same view of the same scenes. A list from back to
+//! front holds hidden polygons as well, so part of its area is painted more than once. For two
+//! small scenes, the report shows the drawings, with the cuts of each algorithm.
 
 use crate::args::BenchArgs;
 use crate::command_line;
@@ -10,9 +12,9 @@ use crate::report::{self, Failure};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use vitral::{
-    Budget, DMat4, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, Error, Execution, Faces, FillSettings,
-    Lens, Limit, LineClass, Material, Mesh, PageSize, PolygonOrder, PolygonSettings, RenderError, Renderer, Scene,
-    Seams, State, View, Visibility, covered_area,
+    Budget, DMat4, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, Error, Execution,
+    Faces, FillSettings, Lens, Limit, LineClass, Material, Mesh, PageSize, PolygonOrder,
+    PolygonSettings, RenderError, Renderer, Scene, Seams, State, View, Visibility, covered_area,
 };
 
 /// Length of the longer side of the pictures, millimetres.
@@ -55,7 +57,8 @@ pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> R
         (renderer.lens, renderer.view) = (Lens::Parallel, subject.view);
 
         // Measure each algorithm.
-        let _ = writeln!(text, "## {}\n\n{} triangles.\n", subject.name, renderer.world().facet_count);
+        let _ =
+            writeln!(text, "## {}\n\n{} triangles.\n", subject.name, renderer.world().facet_count);
         text.push_str(TABLE_HEAD);
         for algorithm in algorithms() {
             if !args.quiet {
@@ -68,7 +71,11 @@ pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> R
 
         // Draw the small ones.
         for algorithm in subject.pictures.iter().flat_map(|_| algorithms()) {
-            let picture = format!("drawing-{}-{}.svg", subject.pictures.unwrap_or_default(), name_of(algorithm));
+            let picture = format!(
+                "drawing-{}-{}.svg",
+                subject.pictures.unwrap_or_default(),
+                name_of(algorithm)
+            );
             vitral::picture::write(folder.join(&picture), &small_picture(&renderer, algorithm)?)?;
             let _ = writeln!(
                 text,
@@ -97,8 +104,12 @@ fn name_of(algorithm: Option<Visibility>) -> &'static str {
 /// The two small scenes, built-in ones, and the models that were named.
 fn subjects(args: &BenchArgs, execution: &Execution) -> Result<Vec<Subject>, Failure> {
     // Build the small scenes.
-    let small =
-        |name: &str, scene, view, pictures| Subject { name: name.to_owned(), scene, view, pictures: Some(pictures) };
+    let small = |name: &str, scene, view, pictures| Subject {
+        name: name.to_owned(),
+        scene,
+        view,
+        pictures: Some(pictures),
+    };
     let mut all = vec![
         small("Three bars, each in front of the next", bars(), View::Front, "bars"),
         small("Three squares that cross", squares(), View::Iso, "squares"),
@@ -110,7 +121,12 @@ fn subjects(args: &BenchArgs, execution: &Execution) -> Result<Vec<Subject>, Fai
         let mut state = State { models: models::in_unicode(&models), ..State::default() };
         state.load.allow_external = args.allow_external;
         let scene = models::load_scene(&state, &models, execution, ReadLimits::default())?;
-        all.push(Subject { name: format!("`{}`", state.models[0]), scene, view: View::Iso, pictures: None });
+        all.push(Subject {
+            name: format!("`{}`", state.models[0]),
+            scene,
+            view: View::Iso,
+            pictures: None,
+        });
     }
     Ok(all)
 }
@@ -123,7 +139,8 @@ fn add_quad(scene: &mut Scene, color: [f32; 3], corners: [[f32; 3]; 4]) {
     scene.add_mesh(mesh.with_material(material), DMat4::IDENTITY);
 }
 
-/// Three bars round a triangle. Each is near at one end and far at the other, so that they cover each other in a circle.
+/// Three bars round a triangle. Each is near at one end and far at the other, so that they cover
+/// each other in a circle.
 fn bars() -> Scene {
     let mut scene = Scene::default();
     let ends = [[-6.0, -3.5], [6.0, -3.5], [0.0, 6.0]];
@@ -180,7 +197,9 @@ fn measured(
         let drawn = filled(renderer, algorithm, &page);
         let seconds = own.elapsed();
         match (drawn, &mut all) {
-            (Ok(_), Some(measured)) => measured.fastest_seconds = measured.fastest_seconds.min(seconds),
+            (Ok(_), Some(measured)) => {
+                measured.fastest_seconds = measured.fastest_seconds.min(seconds)
+            }
             (Ok((drawing, model_polygons, splits)), None) => {
                 all = Some(Measured {
                     first_seconds: seconds,
@@ -193,7 +212,9 @@ fn measured(
                     covered: covered_area(&drawing.regions),
                 });
             }
-            (Err(Error::Render(RenderError::Limit(limit))), None) if !matches!(limit, Limit::Cancelled { .. }) => {
+            (Err(Error::Render(RenderError::Limit(limit))), None)
+                if !matches!(limit, Limit::Cancelled { .. }) =>
+            {
                 return Ok(Err(limit));
             }
             // A limit after the first drawing only means fewer of them.
@@ -212,8 +233,14 @@ fn touching() -> FillSettings {
 /// A filled drawing; polygons of the model and splits, if the algorithm counts them.
 type Filled = (Drawing, Option<u64>, Option<u64>);
 
-fn filled(renderer: &Renderer, algorithm: Option<Visibility>, page: &DrawingSettings) -> Result<Filled, Error> {
-    let Some(algorithm) = algorithm else { return Ok((renderer.draw_filled(page, &touching())?.drawing, None, None)) };
+fn filled(
+    renderer: &Renderer,
+    algorithm: Option<Visibility>,
+    page: &DrawingSettings,
+) -> Result<Filled, Error> {
+    let Some(algorithm) = algorithm else {
+        return Ok((renderer.draw_filled(page, &touching())?.drawing, None, None));
+    };
     let settings = PolygonSettings { outlines: false, ..PolygonSettings::new(algorithm) };
     let drawn = renderer.draw_polygons(&settings, page)?;
     Ok((drawn.drawing, Some(drawn.model_polygons), Some(drawn.counters.splits)))
@@ -225,10 +252,13 @@ fn small_picture(renderer: &Renderer, algorithm: Option<Visibility>) -> Result<V
     let page = DrawingSettings { page, margin: 2.0, ..DrawingSettings::default() };
     let mut options = DrawingOptions { decimals: 2, ..DrawingOptions::default() };
     let Some(algorithm) = algorithm else {
-        return Ok(DrawingFormat::Svg.encode(&renderer.draw_filled(&page, &touching())?.drawing, &options));
+        return Ok(
+            DrawingFormat::Svg.encode(&renderer.draw_filled(&page, &touching())?.drawing, &options)
+        );
     };
     let drawn = renderer.draw_polygons(&PolygonSettings::new(algorithm), &page)?;
-    options.region_outlines = Some(LineClass::Smooth).filter(|_| drawn.order == PolygonOrder::BackToFront);
+    options.region_outlines =
+        Some(LineClass::Smooth).filter(|_| drawn.order == PolygonOrder::BackToFront);
     Ok(DrawingFormat::Svg.encode(&drawn.drawing, &options))
 }
 
@@ -285,7 +315,10 @@ mod tests {
         (renderer.lens, renderer.view) = (Lens::Parallel, view);
         let page = DrawingSettings::default();
         let drawn = |algorithm| filled(&renderer, algorithm, &page).unwrap();
-        algorithms().map(drawn).map(|(drawing, _, splits)| (splits, drawing.regions.len())).collect()
+        algorithms()
+            .map(drawn)
+            .map(|(drawing, _, splits)| (splits, drawing.regions.len()))
+            .collect()
     }
 
     #[test]
@@ -294,7 +327,8 @@ mod tests {
         // Painter's algorithm cuts the circle once: four pieces of three bars.
         assert_eq!(cut[1], (Some(1), 4), "{cut:?}");
         let cut = splits(squares(), View::Iso);
-        // The first plane of the tree cuts the two other squares, the second the halves of the third.
+        // The first plane of the tree cuts the two other squares, the second the halves of the
+        // third.
         assert_eq!(cut[2], (Some(4), 7), "{cut:?}");
     }
 }

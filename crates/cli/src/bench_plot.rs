@@ -1,4 +1,5 @@
-//! Growth drawn as SVG: both axes logarithmic, so that a power is a straight line and its exponent the slope.
+//! Growth drawn as SVG: both axes logarithmic, so that a power is a straight line and its exponent
+//! the slope.
 
 use std::fmt::Write;
 use vitral::internals::math::func;
@@ -19,10 +20,13 @@ const HEIGHT: f64 = 460.0;
 const FRAME: [f64; 4] = [70.0, 40.0, 560.0, 410.0];
 
 /// Colours that are told apart by most eyes, in the order of the curves.
-const COLORS: [&str; 10] =
-    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#000000", "#e69f00", "#7570b3", "#666666"];
+const COLORS: [&str; 10] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#000000", "#e69f00",
+    "#7570b3", "#666666",
+];
 
-/// The exponent of the power of the size that fits the points best: the slope of the regression line of the logarithms.
+/// The exponent of the power of the size that fits the points best: the slope of the regression
+/// line of the logarithms.
 pub(crate) fn exponent(points: &[[f64; 2]]) -> Option<f64> {
     let logs: Vec<_> = points.iter().map(|p| p.map(func::ln)).collect();
     let count = logs.len() as f64;
@@ -41,7 +45,8 @@ fn log10(x: f64) -> f64 {
 pub(crate) fn svg(title: &str, axis: &str, curves: &[Curve]) -> String {
     let ends = |k: usize| {
         let values = curves.iter().flat_map(|c| &c.points).map(|p| log10(p[k]));
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         if low <= high { (low.floor(), high.ceil().max(low.floor() + 1.0)) } else { (0.0, 1.0) }
     };
     let (x_ends, y_ends) = (ends(0), ends(1));
@@ -60,25 +65,40 @@ pub(crate) fn svg(title: &str, axis: &str, curves: &[Curve]) -> String {
     for power in x_ends.0 as i32..=x_ends.1 as i32 {
         let at = x(f64::from(power));
         line(&mut out, [at, top, at, bottom]);
-        let _ = writeln!(out, "<text x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">1e{power}</text>", bottom + 16.0);
+        let _ = writeln!(
+            out,
+            "<text x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">1e{power}</text>",
+            bottom + 16.0
+        );
     }
     for power in y_ends.0 as i32..=y_ends.1 as i32 {
         let at = y(f64::from(power));
         line(&mut out, [left, at, right, at]);
-        let _ = writeln!(out, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">1e{power}</text>", left - 6.0, at + 4.0);
+        let _ = writeln!(
+            out,
+            "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">1e{power}</text>",
+            left - 6.0,
+            at + 4.0
+        );
     }
     let middle = (left + right) / 2.0;
-    let _ = writeln!(out, "<text x=\"{middle}\" y=\"{}\" text-anchor=\"middle\">{axis}</text>", bottom + 36.0);
+    let _ = writeln!(
+        out,
+        "<text x=\"{middle}\" y=\"{}\" text-anchor=\"middle\">{axis}</text>",
+        bottom + 36.0
+    );
     let _ = writeln!(out, "<text x=\"8\" y=\"{}\">seconds</text>", top - 4.0);
     for (i, curve) in curves.iter().enumerate() {
-        let (color, dash) = (COLORS[i % COLORS.len()], if curve.dashed { " stroke-dasharray=\"6 4\"" } else { "" });
+        let (color, dash) =
+            (COLORS[i % COLORS.len()], if curve.dashed { " stroke-dasharray=\"6 4\"" } else { "" });
         let place = |p: &[f64; 2]| format!("{:.1},{:.1}", x(log10(p[0])), y(log10(p[1])));
         let points: Vec<_> = curve.points.iter().map(place).collect();
         let line = format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"2\"{dash}");
         let _ = writeln!(out, "<polyline points=\"{}\" {line}/>", points.join(" "));
         for p in &curve.points {
             let (cx, cy) = (x(log10(p[0])), y(log10(p[1])));
-            let _ = writeln!(out, "<circle cx=\"{cx:.1}\" cy=\"{cy:.1}\" r=\"3\" fill=\"{color}\"/>");
+            let _ =
+                writeln!(out, "<circle cx=\"{cx:.1}\" cy=\"{cy:.1}\" r=\"3\" fill=\"{color}\"/>");
         }
         let (key, at) = (right + 16.0, top + 10.0 + 20.0 * i as f64);
         let _ = writeln!(out, "<path d=\"M{key} {}h26\" {line}/>", at - 4.0);
@@ -101,9 +121,19 @@ mod tests {
 
     #[test]
     fn every_curve_is_drawn_within_the_frame() {
-        let curve = |dashed| Curve { name: "c".to_owned(), dashed, points: vec![[10.0, 0.1], [1000.0, 10.0]] };
+        let curve = |dashed| Curve {
+            name: "c".to_owned(),
+            dashed,
+            points: vec![[10.0, 0.1], [1000.0, 10.0]],
+        };
         let picture = svg("t", "n", &[curve(false), curve(true)]);
-        assert_eq!((picture.matches("<polyline").count(), picture.matches("<circle").count()), (2, 4));
-        assert!(picture.contains("points=\"70.0,410.0 560.0,40.0\"") && picture.matches("dasharray").count() == 2);
+        assert_eq!(
+            (picture.matches("<polyline").count(), picture.matches("<circle").count()),
+            (2, 4)
+        );
+        assert!(
+            picture.contains("points=\"70.0,410.0 560.0,40.0\"")
+                && picture.matches("dasharray").count() == 2
+        );
     }
 }

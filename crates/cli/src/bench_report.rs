@@ -1,8 +1,10 @@
-//! `vitral bench --report`: how the algorithms grow with the number of polygons and with the number of pixels.
+//! `vitral bench --report`: how the algorithms grow with the number of polygons and with the number
+//! of pixels.
 //!
-//! The notes compare image precision, which looks at all polygons for each pixel, with object precision, which compares
-//! all polygons with each other (docs/course.md P6, P25). Here both grow over four sizes, with the other held still, on a
-//! scene whose shape does not change with its polygons: eight rings in a heap, each ring cut finer.
+//! The notes compare image precision, which looks at all polygons for each pixel, with object
+//! precision, which compares all polygons with each other (docs/course.md P6, P25). Here both grow
+//! over four sizes, with the other held still, on a scene whose shape does not change with its
+//! polygons: eight rings in a heap, each ring cut finer.
 
 use crate::args::BenchArgs;
 use crate::bench_plot::{Curve, exponent, svg};
@@ -42,8 +44,10 @@ pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> R
     let over_pixels = PIXELS.iter().map(|&p| step(args, execution, POLYGONS[1], p));
     let over_pixels = over_pixels.collect::<Result<Vec<_>, _>>()?;
 
-    let first = svg("A built scene, more and more polygons", "polygons", &curves(&over_polygons, polygons));
-    let second = svg("The same polygons, more and more pixels", "pixels", &curves(&over_pixels, pixels));
+    let first =
+        svg("A built scene, more and more polygons", "polygons", &curves(&over_polygons, polygons));
+    let second =
+        svg("The same polygons, more and more pixels", "pixels", &curves(&over_pixels, pixels));
     let write = |name: &str, text: &str| vitral::picture::write(folder.join(name), text.as_bytes());
     write("visibility-polygons.svg", &first)?;
     write("visibility-pixels.svg", &second)?;
@@ -51,12 +55,22 @@ pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> R
     Ok(0)
 }
 
-fn step(args: &BenchArgs, execution: &Execution, polygons: usize, size: [u32; 2]) -> Result<Step, Failure> {
+fn step(
+    args: &BenchArgs,
+    execution: &Execution,
+    polygons: usize,
+    size: [u32; 2],
+) -> Result<Step, Failure> {
     let mut renderer = Renderer::with_execution(heap(polygons), execution.clone())?;
     let settings = &mut renderer.settings;
     ([settings.picture.width, settings.picture.height], settings.picture.samples) = (size, 1);
     if !args.quiet {
-        report::line(&format!("{} triangles, {} x {} pixels", renderer.world().facet_count, size[0], size[1]));
+        report::line(&format!(
+            "{} triangles, {} x {} pixels",
+            renderer.world().facet_count,
+            size[0],
+            size[1]
+        ));
     }
     let rows = rows(args, &renderer, &Entrant::all())?;
     Ok(Step { polygons: renderer.world().facet_count, pixels: size[0] * size[1], rows })
@@ -78,7 +92,9 @@ fn heap(polygons: usize) -> Scene {
 /// A curve for each algorithm; those of image precision are drawn through, the others dashed.
 fn curves(steps: &[Step], size: fn(&Step) -> u32) -> Vec<Curve> {
     let curve = |(i, entrant): (usize, Entrant)| {
-        let point = |s: &Step| s.rows[i].1.as_ref().ok().map(|m| [f64::from(size(s)), m.fastest_seconds.max(1e-9)]);
+        let point = |s: &Step| {
+            s.rows[i].1.as_ref().ok().map(|m| [f64::from(size(s)), m.fastest_seconds.max(1e-9)])
+        };
         let points = steps.iter().filter_map(point).collect();
         Curve { name: entrant.name(), dashed: entrant.algorithm.precision != "image", points }
     };
@@ -97,8 +113,13 @@ fn table(steps: &[Step], size: fn(&Step) -> u32, what: &str) -> String {
         };
         let cells: Vec<_> = steps.iter().map(cell).collect();
         let power = exponent(&curve.points).map_or("-".to_owned(), |e| format!("{e:.2}"));
-        let _ =
-            writeln!(out, "| {} | {} | {} | {power} |", entrant.name(), entrant.algorithm.precision, cells.join(" | "));
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {power} |",
+            entrant.name(),
+            entrant.algorithm.precision,
+            cells.join(" | ")
+        );
     }
     out
 }
@@ -121,7 +142,12 @@ fn memory(step: &Step) -> String {
     out
 }
 
-fn text(args: &BenchArgs, execution: &Execution, over_polygons: &[Step], over_pixels: &[Step]) -> String {
+fn text(
+    args: &BenchArgs,
+    execution: &Execution,
+    over_polygons: &[Step],
+    over_pixels: &[Step],
+) -> String {
     let threads = execution.workers.threads();
     let [width, height] = PIXELS[2];
     format!(

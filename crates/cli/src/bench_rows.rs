@@ -10,7 +10,11 @@ use vitral::bench::{Entrant, Measured, Task, measure};
 pub(crate) type Row = (Entrant, Result<Measured, Limit>);
 
 /// Measures one after the other, and says on standard error where it is.
-pub(crate) fn rows(args: &BenchArgs, renderer: &Renderer, entrants: &[Entrant]) -> Result<Vec<Row>, Failure> {
+pub(crate) fn rows(
+    args: &BenchArgs,
+    renderer: &Renderer,
+    entrants: &[Entrant],
+) -> Result<Vec<Row>, Failure> {
     let camera = renderer.frame_camera();
     let task = Task {
         scene: renderer.scene(),
@@ -25,7 +29,8 @@ pub(crate) fn rows(args: &BenchArgs, renderer: &Renderer, entrants: &[Entrant]) 
         if !args.quiet {
             report::line(&format!("{} of {}: {}", i + 1, entrants.len(), entrant.name()));
         }
-        let measured = measure(&task, entrant, renderer.execution()).map_err(vitral::Error::from)?;
+        let measured =
+            measure(&task, entrant, renderer.execution()).map_err(vitral::Error::from)?;
         if let Err(limit @ Limit::Cancelled { .. }) = measured {
             return Err(limit.into());
         }
@@ -36,5 +41,7 @@ pub(crate) fn rows(args: &BenchArgs, renderer: &Renderer, entrants: &[Entrant]) 
 
 /// Samples that differ from what the first row saw, if both saw something.
 pub(crate) fn differing(rows: &[Row], row: &Measured) -> Option<u64> {
-    rows.first().and_then(|(_, first)| first.as_ref().ok()).map(|first| row.seen.differing(&first.seen))
+    rows.first()
+        .and_then(|(_, first)| first.as_ref().ok())
+        .map(|first| row.seen.differing(&first.seen))
 }

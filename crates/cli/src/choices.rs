@@ -1,12 +1,12 @@
-//! Options with a fixed set of values. Names and descriptions come from the registry and the enums that the renderer
-//! itself uses, so that help, completions and man page say what there is.
+//! Options with a fixed set of values. Names and descriptions come from the registry and the enums
+//! that the renderer itself uses, so that help, completions and man page say what there is.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use vitral::internals::render::choice::Row;
 use vitral::{
-    Acceleration, Channel, Choice, ColorBy, ColorSpace, FileColors, Global, GroundShadow, Illumination, Interpolation,
-    LightTerm, Normals, PictureFormat, Seams, Shading, Shadows, Terminator, Transparency, TransparencyOrder, View,
-    Visibility, VolumeCounting, names,
+    Acceleration, Channel, Choice, ColorBy, ColorSpace, FileColors, Global, GroundShadow,
+    Illumination, Interpolation, LightTerm, Normals, PictureFormat, Seams, Shading, Shadows,
+    Terminator, Transparency, TransparencyOrder, View, Visibility, VolumeCounting, names,
 };
 
 /// The algorithm that finds the visible surfaces of a drawing.
@@ -30,11 +30,17 @@ const FILE_COLORS: [Named<FileColors>; 2] = [
 const NORMALS: [Named<Normals>; 3] = [
     (Normals::File, "file", "those of the file; computed where it has none"),
     (Normals::Made, "made", "computed from the faces and --crease-angle, whatever the file has"),
-    (Normals::None, "none", "(0, 0, 1) everywhere, the value in OpenGL where a program gives no normals"),
+    (
+        Normals::None,
+        "none",
+        "(0, 0, 1) everywhere, the value in OpenGL where a program gives no normals",
+    ),
 ];
 
 /// A parser that accepts the names of a table and gives the values that they name.
-fn of<T: Copy + Send + Sync + 'static>(table: impl IntoIterator<Item = Named<T>>) -> impl TypedValueParser<Value = T> {
+fn of<T: Copy + Send + Sync + 'static>(
+    table: impl IntoIterator<Item = Named<T>>,
+) -> impl TypedValueParser<Value = T> {
     let table: Vec<_> = table.into_iter().collect();
     let shown = |&(_, name, help): &Named<T>| match help {
         "" => PossibleValue::new(name),
@@ -70,10 +76,14 @@ pub(crate) fn visibility() -> impl TypedValueParser<Value = Visibility> {
 
 /// What decides about visibility in drawings: `exact`, and the algorithms that come to polygons.
 pub(crate) fn drawing_algorithm() -> impl TypedValueParser<Value = DrawingAlgorithm> {
-    let exact =
-        (DrawingAlgorithm::Exact, "exact", "visible and hidden lines, and regions, exact on a grid of their own");
+    let exact = (
+        DrawingAlgorithm::Exact,
+        "exact",
+        "visible and hidden lines, and regions, exact on a grid of their own",
+    );
     let listed = Visibility::all().filter(|choice| choice.polygons.is_some());
-    let rows = listed.map(|choice| (DrawingAlgorithm::Polygons(choice), choice.name(), choice.description()));
+    let rows = listed
+        .map(|choice| (DrawingAlgorithm::Polygons(choice), choice.name(), choice.description()));
     of([exact].into_iter().chain(rows))
 }
 
@@ -103,8 +113,16 @@ pub(crate) fn color_by() -> impl TypedValueParser<Value = ColorBy> {
 
 pub(crate) fn seams() -> impl TypedValueParser<Value = Seams> {
     of([
-        (Seams::Under, "under", "regions reach under those painted later: no viewer shows paper between them"),
-        (Seams::None, "none", "regions only touch, for cutting and checks: no place is painted twice"),
+        (
+            Seams::Under,
+            "under",
+            "regions reach under those painted later: no viewer shows paper between them",
+        ),
+        (
+            Seams::None,
+            "none",
+            "regions only touch, for cutting and checks: no place is painted twice",
+        ),
     ])
 }
 

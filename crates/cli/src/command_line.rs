@@ -5,7 +5,8 @@ use std::ffi::OsString;
 /// Characters that no shell takes for something else.
 const PLAIN: &str = "-_./:,=+@%";
 
-/// The command of this process as a line for a shell; the program is called `vitral` wherever it lies.
+/// The command of this process as a line for a shell; the program is called `vitral` wherever it
+/// lies.
 pub(crate) fn typed() -> String {
     line(std::env::args_os().skip(1))
 }
@@ -22,7 +23,8 @@ fn line(arguments: impl Iterator<Item = OsString>) -> String {
 
 /// An argument as a shell has to see it.
 fn quoted(argument: &str) -> String {
-    let is_plain = !argument.is_empty() && argument.chars().all(|c| c.is_ascii_alphanumeric() || PLAIN.contains(c));
+    let is_plain = !argument.is_empty()
+        && argument.chars().all(|c| c.is_ascii_alphanumeric() || PLAIN.contains(c));
     if is_plain { argument.to_owned() } else { format!("'{}'", argument.replace('\'', "'\\''")) }
 }
 
@@ -37,7 +39,10 @@ mod tests {
             of(&["bench", "builtin:cubs", "--camera-position=-1,2,3"]),
             "vitral bench builtin:cubs --camera-position=-1,2,3"
         );
-        assert_eq!(of(&["bench", "my model.obj", "it's", ""]), r"vitral bench 'my model.obj' 'it'\''s' ''");
+        assert_eq!(
+            of(&["bench", "my model.obj", "it's", ""]),
+            r"vitral bench 'my model.obj' 'it'\''s' ''"
+        );
         assert_eq!(of(&["$HOME/{a}"]), "vitral '$HOME/{a}'");
     }
 }

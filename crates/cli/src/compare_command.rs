@@ -15,7 +15,9 @@ const MAX_FILE_BYTES: u64 = 1 << 30;
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &CompareArgs) -> Result<u8, Failure> {
     if args.first == Path::new("-") && args.second == Path::new("-") {
-        return Err(Failure::usage("compare: only one of the two pictures can come from standard input"));
+        return Err(Failure::usage(
+            "compare: only one of the two pictures can come from standard input",
+        ));
     }
     if args.json && args.diff.as_deref().is_some_and(report::is_standard) {
         return Err(Failure::usage("--json and --diff - both write to standard output"));
@@ -24,14 +26,19 @@ pub(crate) fn run(args: &CompareArgs) -> Result<u8, Failure> {
     let (first, second) = (Picture::read(&args.first)?, Picture::read(&args.second)?);
 
     if first.deep.is_none() && second.deep.is_none() {
-        return between(args, format, [&first.bytes, &second.bytes], threshold_byte(args.threshold));
+        return between(
+            args,
+            format,
+            [&first.bytes, &second.bytes],
+            threshold_byte(args.threshold),
+        );
     }
     let threshold = threshold_of(args.threshold, u16::MAX.into()) as u16;
     between(args, format, [&first.deep(), &second.deep()], threshold)
 }
 
-/// Compares two pictures, draws the difference where it is wanted and there can be one, and says what was found; gives the exit
-/// code.
+/// Compares two pictures, draws the difference where it is wanted and there can be one, and says
+/// what was found; gives the exit code.
 fn between<T: Component + Serialize>(
     args: &CompareArgs,
     format: Option<PictureFormat>,
@@ -39,7 +46,9 @@ fn between<T: Component + Serialize>(
     threshold: T,
 ) -> Result<u8, Failure> {
     let found = compare::compare(first, second, threshold);
-    if let (Some(path), Some(format), Ok(shown)) = (&args.diff, format, compare::picture(first, second)) {
+    if let (Some(path), Some(format), Ok(shown)) =
+        (&args.diff, format, compare::picture(first, second))
+    {
         write_picture(path, &shown, format)?;
     }
     if args.json {
@@ -97,11 +106,14 @@ pub(crate) fn read(path: &Path) -> Result<Plane<[u8; 4]>, Failure> {
 }
 
 fn decode(bytes: &[u8], path: &Path) -> Result<Plane<[u8; 4]>, Failure> {
-    Ok(vitral::internals::io::encode::decode_picture(bytes, &path.to_string_lossy()).map_err(vitral::Error::from)?)
+    Ok(vitral::internals::io::encode::decode_picture(bytes, &path.to_string_lossy())
+        .map_err(vitral::Error::from)?)
 }
 
 /// What was found, for programs.
-fn as_json<T: Component + Serialize>(found: &Result<Difference<T>, SizeMismatch>) -> serde_json::Value {
+fn as_json<T: Component + Serialize>(
+    found: &Result<Difference<T>, SizeMismatch>,
+) -> serde_json::Value {
     match found {
         Ok(d) => json!({
             "equal": d.over == 0,
@@ -122,7 +134,11 @@ fn difference_format(path: &Path) -> Result<PictureFormat, Failure> {
     format_of(path, None)
 }
 
-fn write_picture(path: &Path, plane: &Plane<[u8; 4]>, format: PictureFormat) -> Result<(), Failure> {
+fn write_picture(
+    path: &Path,
+    plane: &Plane<[u8; 4]>,
+    format: PictureFormat,
+) -> Result<(), Failure> {
     let frame = vitral::Frame {
         width: plane.width(),
         height: plane.height(),

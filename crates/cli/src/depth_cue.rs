@@ -4,7 +4,8 @@ use crate::fields::Fields;
 use crate::values::{color, not_negative, share};
 use vitral::DepthCue;
 
-/// Reads the numbers; what is left out has its default. Whether they go together is checked with the other settings.
+/// Reads the numbers; what is left out has its default. Whether they go together is checked with
+/// the other settings.
 pub(crate) fn parse(text: &str) -> Result<DepthCue, String> {
     let mut fields = Fields::split(text)?;
     let default = DepthCue::default();
@@ -16,9 +17,9 @@ pub(crate) fn parse(text: &str) -> Result<DepthCue, String> {
         back_scale: fields.take("back-scale", share)?.map_or(default.back_scale, |s| s as f32),
     };
     match fields.unused() {
-        Some(key) => {
-            Err(format!("there is no key `{key}`; the keys are color, front, back, front-scale and back-scale"))
-        }
+        Some(key) => Err(format!(
+            "there is no key `{key}`; the keys are color, front, back, front-scale and back-scale"
+        )),
         None => Ok(cue),
     }
 }

@@ -9,8 +9,8 @@ use crate::values;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use vitral::{
-    ColorBy, FillSettings, Illumination, LineClass, LineClasses, Pens, PolygonOrder, Seams, TitleBlock, View,
-    Visibility,
+    ColorBy, FillSettings, Illumination, LineClass, LineClasses, Pens, PolygonOrder, Seams,
+    TitleBlock, View, Visibility,
 };
 
 /// Options of `vitral draw`.
@@ -158,7 +158,8 @@ impl DrawArgs {
 
     /// Whether the drawing is a list of polygons of which later ones cover earlier ones.
     pub(crate) fn overlaps(&self) -> bool {
-        self.polygons().is_some_and(|algorithm| algorithm.polygons == Some(PolygonOrder::BackToFront))
+        self.polygons()
+            .is_some_and(|algorithm| algorithm.polygons == Some(PolygonOrder::BackToFront))
     }
 }
 
@@ -302,7 +303,8 @@ const LINES_HELP: &str = "Which lines are drawn: a list of classes, or all [defa
 
 /// The help of `--lines`.
 fn lines_help() -> String {
-    let classes: Vec<String> = LineClass::ALL.iter().map(|(_, name, what)| format!("{name} ({what})")).collect();
+    let classes: Vec<String> =
+        LineClass::ALL.iter().map(|(_, name, what)| format!("{name} ({what})")).collect();
     format!(
         "Which lines are drawn: a list of {}; or all. An edge of several classes is drawn as section, or else as the first of the \
          list that it is [default: contour,boundary,crease,material,intersection; section with --section-plane]",
@@ -316,7 +318,10 @@ pub(crate) fn line_classes(text: &str) -> Result<LineClasses, String> {
         return Ok(LineClasses::ALL);
     }
     let class = |word: &str| {
-        let found = LineClass::ALL.iter().map(|row| row.0).find(|class| class.name().eq_ignore_ascii_case(word));
+        let found = LineClass::ALL
+            .iter()
+            .map(|row| row.0)
+            .find(|class| class.name().eq_ignore_ascii_case(word));
         let names: Vec<_> = LineClass::ALL.iter().map(|row| row.1).collect();
         found.ok_or_else(|| not_one_of(word, &names, "; or all alone"))
     };
@@ -330,7 +335,9 @@ fn page_size(text: &str) -> Result<Sheet, String> {
     }
     let series = [("A0", [841, 1189]), ("A1", [594, 841]), ("A2", [420, 594]), ("A3", [297, 420])];
     let small = [("A4", [210, 297]), ("A5", [148, 210]), ("A6", [105, 148])];
-    if let Some((_, size)) = series.iter().chain(&small).find(|(name, _)| name.eq_ignore_ascii_case(text)) {
+    if let Some((_, size)) =
+        series.iter().chain(&small).find(|(name, _)| name.eq_ignore_ascii_case(text))
+    {
         return Ok(Sheet::Size(size.map(f64::from)));
     }
     let sides = text.strip_suffix("mm").and_then(|sides| sides.split_once('x'));
@@ -353,19 +360,29 @@ fn stroke_help() -> String {
 
 /// `contour=0.5`.
 fn stroke(text: &str) -> Result<(String, f64), String> {
-    let (name, width) = text.split_once('=').ok_or("CLASS=WIDTH is required, such as contour=0.5")?;
+    let (name, width) =
+        text.split_once('=').ok_or("CLASS=WIDTH is required, such as contour=0.5")?;
     if !Pens::names().any(|known| known == name) {
-        return Err(format!("`{name}` is not one of {}", Pens::names().collect::<Vec<_>>().join(", ")));
+        return Err(format!(
+            "`{name}` is not one of {}",
+            Pens::names().collect::<Vec<_>>().join(", ")
+        ));
     }
     let width = values::positive(width)?;
-    if width > 100.0 { Err("at most 100 mm is required".to_owned()) } else { Ok((name.to_owned(), width)) }
+    if width > 100.0 {
+        Err("at most 100 mm is required".to_owned())
+    } else {
+        Ok((name.to_owned(), width))
+    }
 }
 
 /// `1:2`, `2:1` or `0.5`.
 fn scale(text: &str) -> Result<f64, String> {
     let wrong = || format!("`{text}` is not a scale: 1:2, 2:1 or a number above 0 is required");
     let ratio = match text.split_once(':') {
-        Some((paper, model)) => values::positive(paper).and_then(|paper| Ok(paper / values::positive(model)?)),
+        Some((paper, model)) => {
+            values::positive(paper).and_then(|paper| Ok(paper / values::positive(model)?))
+        }
         None => values::positive(text),
     };
     ratio.ok().filter(|ratio| ratio.is_finite() && *ratio > 0.0).ok_or_else(wrong)
@@ -393,7 +410,11 @@ fn title_row(text: &str) -> Result<(String, String), String> {
 /// A distance of at least 0 mm.
 fn margin(text: &str) -> Result<f64, String> {
     let margin = values::number(text)?;
-    if (0.0..=1000.0).contains(&margin) { Ok(margin) } else { Err("0 to 1000 is required".to_owned()) }
+    if (0.0..=1000.0).contains(&margin) {
+        Ok(margin)
+    } else {
+        Err("0 to 1000 is required".to_owned())
+    }
 }
 
 #[cfg(test)]
@@ -403,17 +424,31 @@ mod tests {
     #[test]
     fn lines_and_sheets_are_read() {
         assert_eq!(line_classes("crease"), Ok(LineClasses::one(LineClass::Crease)));
-        assert_eq!(line_classes("contour,boundary,crease,material,intersection,section"), Ok(LineClasses::USUAL));
+        assert_eq!(
+            line_classes("contour,boundary,crease,material,intersection,section"),
+            Ok(LineClasses::USUAL)
+        );
         assert_eq!(line_classes("all"), Ok(LineClasses::ALL));
         assert!(line_classes("all,crease").is_err() && line_classes("").is_err());
         assert!(line_classes("hatch").unwrap_err().contains("is not one of"));
-        assert_eq!((page_size("fit"), page_size("a4")), (Ok(Sheet::Fit), Ok(Sheet::Size([210.0, 297.0]))));
+        assert_eq!(
+            (page_size("fit"), page_size("a4")),
+            (Ok(Sheet::Fit), Ok(Sheet::Size([210.0, 297.0])))
+        );
         assert_eq!(page_size("20x10.5mm"), Ok(Sheet::Size([20.0, 10.5])));
-        assert!(["A9", "20x10", "0x3mm", "-1x1mm", "1e9x1mm"].iter().all(|text| page_size(text).is_err()));
+        assert!(
+            ["A9", "20x10", "0x3mm", "-1x1mm", "1e9x1mm"]
+                .iter()
+                .all(|text| page_size(text).is_err())
+        );
         assert_eq!((scale("1:2"), scale("2.5"), scale("25.4:1")), (Ok(0.5), Ok(2.5), Ok(25.4)));
         assert!(["1:0", "0", "-1:2", "1:2:3", "a"].iter().all(|text| scale(text).is_err()));
         assert_eq!((decimals(".001"), decimals("1")), (Ok(3), Ok(0)));
-        assert!(decimals("0.002").is_err() && stroke("contour").is_err() && stroke("contour=0").is_err());
+        assert!(
+            decimals("0.002").is_err()
+                && stroke("contour").is_err()
+                && stroke("contour=0").is_err()
+        );
         assert_eq!(stroke("hidden=.2"), Ok(("hidden".to_owned(), 0.2)));
         assert!(stroke("outline=1").unwrap_err().contains("contour, boundary"));
         assert_eq!(title_row("Scale=1:2"), Ok(("Scale".to_owned(), "1:2".to_owned())));

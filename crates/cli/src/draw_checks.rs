@@ -1,13 +1,16 @@
-//! Which options of `vitral draw` suit each other. An option without effect beside the others is an error, with a way out.
+//! Which options of `vitral draw` suit each other. An option without effect beside the others is an
+//! error, with a way out.
 //!
-//! Each function below has a table of one kind of conflict; a row tells whether it holds, the message and the hint. The first row that
-//! holds is reported.
+//! Each function below has a table of one kind of conflict; a row tells whether it holds, the
+//! message and the hint. The first row that holds is reported.
 
 use crate::draw_args::{DrawArgs, Hidden, Style};
 use crate::draw_sheet;
 use crate::report::Failure;
 use crate::section_args::Hatching;
-use vitral::{ColorBy, DrawingFormat, DrawingSettings, LineClass, LineClasses, State, View, Viewpoint, names};
+use vitral::{
+    ColorBy, DrawingFormat, DrawingSettings, LineClass, LineClasses, State, View, Viewpoint, names,
+};
 
 /// A conflict: whether it holds, the message, the hint.
 type Row<'t> = (bool, &'t str, &'t str);
@@ -19,7 +22,9 @@ const SECTION_PLANE: &str = "add --section-plane 0,0,0,0,0,1";
 /// Refuses options that have no effect in a file of this format.
 pub(crate) fn check(args: &DrawArgs, state: &State, format: DrawingFormat) -> Result<(), Failure> {
     if args.light.environment.is_some() {
-        return Err(Failure::usage("--environment: drawings show no reflections").with_hint("leave it out"));
+        return Err(
+            Failure::usage("--environment: drawings show no reflections").with_hint("leave it out")
+        );
     }
     check_polygons(args)?;
     check_sheet(args, state)?;
@@ -47,7 +52,8 @@ fn check_polygons(args: &DrawArgs) -> Result<(), Failure> {
     let Some(algorithm) = args.polygons() else { return Ok(()) };
     let exact = "leave it out, or choose --algorithm exact";
     let refuse = |option: &str, why: &str| {
-        Err(Failure::usage(format!("{option}: with --algorithm {algorithm}, {why}")).with_hint(exact))
+        Err(Failure::usage(format!("{option}: with --algorithm {algorithm}, {why}"))
+            .with_hint(exact))
     };
 
     // The outlines of the polygons are all lines there are.
@@ -66,7 +72,9 @@ fn check_polygons(args: &DrawArgs) -> Result<(), Failure> {
     let outline = LineClass::Smooth.name();
     let mut classes = lines.stroke.iter().map(|(class, _)| class.as_str());
     if let Some(class) = classes.find(|class| ![outline, "title"].contains(class)) {
-        let what = format!("--stroke {class}: with --algorithm {algorithm}, all outlines are of the class {outline}");
+        let what = format!(
+            "--stroke {class}: with --algorithm {algorithm}, all outlines are of the class {outline}"
+        );
         return Err(Failure::usage(what).with_hint(format!("give --stroke {outline}=MM")));
     }
 
@@ -74,7 +82,11 @@ fn check_polygons(args: &DrawArgs) -> Result<(), Failure> {
     let changing = [
         (args.fill.transparency, "--transparency", "polygons are always opaque"),
         (args.fill.seams.is_some(), "--seams", "polygons are drawn as they are"),
-        (args.overlaps() && args.page.simplify.is_some(), "--simplify", "polygons are drawn as they are"),
+        (
+            args.overlaps() && args.page.simplify.is_some(),
+            "--simplify",
+            "polygons are drawn as they are",
+        ),
         (!args.page.views.is_empty(), "--views", "the polygons are those of one view"),
     ];
     match changing.into_iter().find(|(is_typed, ..)| *is_typed) {
@@ -93,7 +105,8 @@ fn check_sheet(args: &DrawArgs, state: &State) -> Result<(), Failure> {
     }
     if let Some(i) = (1..views.len()).find(|&i| views[..i].contains(&views[i])) {
         let name = names::view_name(views[i]);
-        return Err(Failure::usage(format!("--views: {name} is named twice")).with_hint("name each view once"));
+        return Err(Failure::usage(format!("--views: {name} is named twice"))
+            .with_hint("name each view once"));
     }
 
     // Refuse what each view has of its own.
@@ -102,7 +115,8 @@ fn check_sheet(args: &DrawArgs, state: &State) -> Result<(), Failure> {
         let hint = format!("leave out --view, and give --views {},...", names::view_name(view));
         return Err(Failure::usage("--view: --views names the views of a sheet").with_hint(hint));
     }
-    let has_camera = state.viewpoint != (Viewpoint { view, up, orthographic, ..Viewpoint::default() });
+    let has_camera =
+        state.viewpoint != (Viewpoint { view, up, orthographic, ..Viewpoint::default() });
     let orthographic_views = views.iter().filter(|&&view| view != View::Iso).count();
     first(&[
         (
@@ -137,11 +151,31 @@ fn check_lines(args: &DrawArgs) -> Result<(), Failure> {
         || classes.has(LineClass::Material)
         || classes.has(LineClass::Crease) && crease_angle < 1f64.to_radians();
     first(&[
-        (is_filled && lines.lines.is_some(), "--lines: --style filled draws no lines", FILLED_LINES),
-        (is_filled && lines.hidden.is_some(), "--hidden: --style filled draws no lines", FILLED_LINES),
-        (is_filled && lines.hide_tangent, "--hide-tangent: --style filled draws no lines", FILLED_LINES),
-        (is_filled && !lines.stroke.is_empty(), "--stroke: --style filled draws no lines", FILLED_LINES),
-        (is_filled && args.page.simplify.is_some(), "--simplify: --style filled draws no lines", FILLED_LINES),
+        (
+            is_filled && lines.lines.is_some(),
+            "--lines: --style filled draws no lines",
+            FILLED_LINES,
+        ),
+        (
+            is_filled && lines.hidden.is_some(),
+            "--hidden: --style filled draws no lines",
+            FILLED_LINES,
+        ),
+        (
+            is_filled && lines.hide_tangent,
+            "--hide-tangent: --style filled draws no lines",
+            FILLED_LINES,
+        ),
+        (
+            is_filled && !lines.stroke.is_empty(),
+            "--stroke: --style filled draws no lines",
+            FILLED_LINES,
+        ),
+        (
+            is_filled && args.page.simplify.is_some(),
+            "--simplify: --style filled draws no lines",
+            FILLED_LINES,
+        ),
         (
             lines.hide_tangent && !has_tangent,
             "--hide-tangent: no tangent edges are drawn",
@@ -152,9 +186,15 @@ fn check_lines(args: &DrawArgs) -> Result<(), Failure> {
             "--hidden-max-layers: hidden lines are not drawn",
             HIDDEN_DASHED,
         ),
-        (has_pen(args, "hidden") && !is_hidden_drawn, "--stroke hidden: hidden lines are not drawn", HIDDEN_DASHED),
         (
-            has_pen(args, "title") && args.page.title_block.is_empty() && draw_sheet::projection_symbol(args).is_none(),
+            has_pen(args, "hidden") && !is_hidden_drawn,
+            "--stroke hidden: hidden lines are not drawn",
+            HIDDEN_DASHED,
+        ),
+        (
+            has_pen(args, "title")
+                && args.page.title_block.is_empty()
+                && draw_sheet::projection_symbol(args).is_none(),
             "--stroke title: there is no title block",
             "add --title-block",
         ),
@@ -164,7 +204,8 @@ fn check_lines(args: &DrawArgs) -> Result<(), Failure> {
 /// Options of sections without a plane or without hatching.
 fn check_sections(args: &DrawArgs) -> Result<(), Failure> {
     let is_cut = !args.section.section_plane.is_empty();
-    let names_section = |classes: LineClasses| classes.has(LineClass::Section) && classes != LineClasses::ALL;
+    let names_section =
+        |classes: LineClasses| classes.has(LineClass::Section) && classes != LineClasses::ALL;
     let is_hatched = is_cut && args.section.hatch != Some(Hatching::None);
     first(&[
         (
@@ -172,7 +213,11 @@ fn check_sections(args: &DrawArgs) -> Result<(), Failure> {
             "--lines section: there is no section plane",
             SECTION_PLANE,
         ),
-        (has_pen(args, "section") && !is_cut, "--stroke section: there is no section plane", SECTION_PLANE),
+        (
+            has_pen(args, "section") && !is_cut,
+            "--stroke section: there is no section plane",
+            SECTION_PLANE,
+        ),
         (
             has_pen(args, "hatch") && !is_hatched,
             "--stroke hatch: there is no hatching",
@@ -213,8 +258,16 @@ fn check_file(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure> {
             "--precision: HP-GL always has steps of 1/40 mm",
             "leave it out, or choose .svg, .pdf or .dxf",
         ),
-        (page.svg_ids && format != DrawingFormat::Svg, "--svg-ids: only SVG files can hold ids", "choose .svg"),
-        (page.svg_ids && (!has_regions || has_lines_alone), "--svg-ids: no regions are drawn", "add --style filled"),
+        (
+            page.svg_ids && format != DrawingFormat::Svg,
+            "--svg-ids: only SVG files can hold ids",
+            "choose .svg",
+        ),
+        (
+            page.svg_ids && (!has_regions || has_lines_alone),
+            "--svg-ids: no regions are drawn",
+            "add --style filled",
+        ),
     ])
 }
 
@@ -238,14 +291,22 @@ fn check_surfaces(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure>
         (fill.transparency, "--transparency"),
         (fill.seams.is_some(), "--seams"),
     ];
-    let refuse = |name: &str, why: &str, hint: &str| Err(Failure::usage(format!("{name}: {why}")).with_hint(hint));
+    let refuse = |name: &str, why: &str, hint: &str| {
+        Err(Failure::usage(format!("{name}: {why}")).with_hint(hint))
+    };
 
     // Without fills, all of them are idle; without shading, those of light.
     let is_filled = args.style() != Style::HiddenLine && !args.page.plotter && format.has_fills();
     if let Some(name) = typed(&of_light).or(typed(&of_fills)).filter(|_| !is_filled) {
-        return refuse(name, "no surfaces are filled", "give --style filled or filled-lines, in an .svg or .pdf");
+        return refuse(
+            name,
+            "no surfaces are filled",
+            "give --style filled or filled-lines, in an .svg or .pdf",
+        );
     }
-    if let Some(name) = typed(&of_light).filter(|_| fill.color_by.is_some_and(|by| by != ColorBy::Shading)) {
+    if let Some(name) =
+        typed(&of_light).filter(|_| fill.color_by.is_some_and(|by| by != ColorBy::Shading))
+    {
         return refuse(name, "only --color-by shading depends on light", "give --color-by shading");
     }
     first(&[(

@@ -9,12 +9,15 @@ use crate::models::{self, ReadLimits};
 use crate::outputs::expand;
 use crate::progress::Progress;
 use crate::report::{self, Failure};
-use crate::resolve::{execution_within, overlay_files, save_state, set_lights, set_reading, set_viewpoint};
+use crate::resolve::{
+    execution_within, overlay_files, save_state, set_lights, set_reading, set_viewpoint,
+};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use vitral::{
-    Drawing, DrawingSettings, Drawn, LineClass, LineClasses, PageSize, PolygonDrawing, Renderer, State, View, World,
+    Drawing, DrawingSettings, Drawn, LineClass, LineClasses, PageSize, PolygonDrawing, Renderer,
+    State, View, World,
 };
 
 /// Runs the verb; gives the exit code.
@@ -24,8 +27,15 @@ pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     let state = state_of(args)?;
     let models = models::named(&args.models, &state);
     let apart = models::are_apart(&models, args.together, [args.output.as_path()]);
-    let sheets = if apart { models.iter().map(|model| vec![model.clone()]).collect() } else { vec![models.clone()] };
-    let jobs: Vec<Job> = sheets.into_iter().map(|models| Job::new(args, &state, models)).collect::<Result<_, _>>()?;
+    let sheets = if apart {
+        models.iter().map(|model| vec![model.clone()]).collect()
+    } else {
+        vec![models.clone()]
+    };
+    let jobs: Vec<Job> = sheets
+        .into_iter()
+        .map(|models| Job::new(args, &state, models))
+        .collect::<Result<_, _>>()?;
     if apart {
         models::check_files(&models, |name| Ok(expand(args.output.as_os_str(), name, 0)?.into()))?;
     }
@@ -39,13 +49,18 @@ pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     let execution = execution_within(&args.process, listener)?;
     interrupt::heed(&execution.budget.clone(), || {
         if !apart {
-            return jobs.iter().try_for_each(|job| draw(args, job, execution.clone(), start)).map(|()| 0);
+            return jobs
+                .iter()
+                .try_for_each(|job| draw(args, job, execution.clone(), start))
+                .map(|()| 0);
         }
         let mut progress = Progress::new(when, quiet, jobs.len() as u64, "drawings");
         let mut jobs = jobs.iter();
         let (_, code) = models::for_each(&models, &execution.budget, |_| {
-            let execution = vitral::Execution { budget: execution.budget.renewed(), ..execution.clone() };
-            let drawn = jobs.next().map_or(Ok(()), |job| draw(args, job, execution, Instant::now()));
+            let execution =
+                vitral::Execution { budget: execution.budget.renewed(), ..execution.clone() };
+            let drawn =
+                jobs.next().map_or(Ok(()), |job| draw(args, job, execution, Instant::now()));
             progress.step();
             drawn
         });
@@ -70,7 +85,8 @@ impl Job {
     fn new(args: &DrawArgs, state: &State, models: Vec<PathBuf>) -> Result<Self, Failure> {
         let apart = models::named(&args.models, state).len() > models.len();
         let state = State { models: models::in_unicode(&models), ..state.clone() };
-        let file = DrawFile::new(args, &state, models.first().map_or(Path::new(""), PathBuf::as_path))?;
+        let file =
+            DrawFile::new(args, &state, models.first().map_or(Path::new(""), PathBuf::as_path))?;
         let mut settings = settings_of(args)?;
         settings.page = file.page_above_title(settings.page, settings.margin)?;
         Ok(Self { state, models, file, settings, apart })
@@ -78,11 +94,21 @@ impl Job {
 }
 
 /// Reads the models, draws, writes.
-fn draw(args: &DrawArgs, job: &Job, execution: vitral::Execution, start: Instant) -> Result<(), Failure> {
+fn draw(
+    args: &DrawArgs,
+    job: &Job,
+    execution: vitral::Execution,
+    start: Instant,
+) -> Result<(), Failure> {
     // Read the models.
     let Job { state, models, file, settings, apart } = job;
     let mut settings = *settings;
-    let scene = models::load_scene(state, models, &execution, ReadLimits::of(&args.process).among_others(*apart))?;
+    let scene = models::load_scene(
+        state,
+        models,
+        &execution,
+        ReadLimits::of(&args.process).among_others(*apart),
+    )?;
     let scene = args.section.apply(scene, &execution)?;
     if !args.report.quiet {
         report::warnings(&scene.warnings);
@@ -137,7 +163,9 @@ pub(crate) fn make(
     }
     settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
     let made = match args.polygons() {
-        Some(algorithm) => Made::Polygons(Box::new(draw_polygons::draw(args, algorithm, renderer, settings)?)),
+        Some(algorithm) => {
+            Made::Polygons(Box::new(draw_polygons::draw(args, algorithm, renderer, settings)?))
+        }
         None => Made::Exact(match args.surfaces() {
             Some(fill) => renderer.draw_filled(settings, &fill)?,
             None => renderer.draw(settings)?,
@@ -187,8 +215,8 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
     Ok(state)
 }
 
-/// The state with the projection of drawings: a parallel one, unless that is said or the camera has an angle of view. What is
-/// framed for it is seen at equal angles to all axes, if no side is said.
+/// The state with the projection of drawings: a parallel one, unless that is said or the camera has
+/// an angle of view. What is framed for it is seen at equal angles to all axes, if no side is said.
 pub(crate) fn projected(args: &DrawArgs, state: &State, world: &World) -> State {
     let mut state = state.clone();
     if args.page.views.is_empty() {
@@ -196,7 +224,8 @@ pub(crate) fn projected(args: &DrawArgs, state: &State, world: &World) -> State 
     }
     let viewpoint = &mut state.viewpoint;
     let has_angle = viewpoint.view_angle_degrees.is_some() || viewpoint.camera_index.is_some();
-    viewpoint.orthographic = !args.perspective && (!args.page.views.is_empty() || viewpoint.orthographic || !has_angle);
+    viewpoint.orthographic =
+        !args.perspective && (!args.page.views.is_empty() || viewpoint.orthographic || !has_angle);
     if viewpoint.orthographic && viewpoint.is_framed() {
         viewpoint.view.get_or_insert(View::Iso);
     }
@@ -231,13 +260,16 @@ pub(crate) fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
 fn page_of(args: &PageArgs) -> Result<PageSize, Failure> {
     let Some(Sheet::Size([width, height])) = args.page else {
         if args.landscape {
-            return Err(Failure::usage("--landscape: it needs a sheet with a fixed size").with_hint("give --page A4"));
+            return Err(Failure::usage("--landscape: it needs a sheet with a fixed size")
+                .with_hint("give --page A4"));
         }
         return Ok(PageSize::default());
     };
     let margin = args.margin.unwrap_or(DrawingSettings::default().margin);
     if 2.0 * margin >= width.min(height) {
-        return Err(Failure::usage(format!("--margin {margin}: no room is left on a sheet of {width} x {height} mm")));
+        return Err(Failure::usage(format!(
+            "--margin {margin}: no room is left on a sheet of {width} x {height} mm"
+        )));
     }
     let (shorter, longer) = (width.min(height), width.max(height));
     Ok(match args.landscape {

@@ -3,7 +3,10 @@
 use crate::draw_args::{DrawArgs, Style};
 use crate::report::{self, Failure};
 use serde_json::{Value, json};
-use vitral::{DrawingSettings, PolygonDrawing, PolygonFill, PolygonSettings, Renderer, Visibility, covered_area};
+use vitral::{
+    DrawingSettings, PolygonDrawing, PolygonFill, PolygonSettings, Renderer, Visibility,
+    covered_area,
+};
 
 /// Draws the polygons.
 pub(crate) fn draw(
@@ -12,10 +15,13 @@ pub(crate) fn draw(
     renderer: &Renderer,
     settings: &DrawingSettings,
 ) -> Result<PolygonDrawing, Failure> {
-    let lines: usize = renderer.world().instances.iter().map(|instance| instance.mesh.lines.len()).sum();
+    let lines: usize =
+        renderer.world().instances.iter().map(|instance| instance.mesh.lines.len()).sum();
     let mut warnings = Vec::new();
     if lines > 0 {
-        warnings.push(format!("--algorithm {algorithm} draws polygons only: {lines} free lines are not drawn"));
+        warnings.push(format!(
+            "--algorithm {algorithm} draws polygons only: {lines} free lines are not drawn"
+        ));
     }
     if !args.section.section_plane.is_empty() {
         warnings.push(format!("--algorithm {algorithm} draws polygons only: cuts are not hatched"));
@@ -29,7 +35,12 @@ pub(crate) fn draw(
         Style::Filled => (PolygonFill::Shaded, false),
         Style::FilledLines => (PolygonFill::Shaded, true),
     };
-    let polygons = PolygonSettings { algorithm, fill, outlines, surfaces: args.surfaces().unwrap_or_default() };
+    let polygons = PolygonSettings {
+        algorithm,
+        fill,
+        outlines,
+        surfaces: args.surfaces().unwrap_or_default(),
+    };
     Ok(renderer.draw_polygons(&polygons, settings)?)
 }
 

@@ -5,8 +5,8 @@ use crate::draw_file::too_large;
 use crate::report::{self, Failure};
 use serde_json::json;
 use vitral::{
-    DrawingSettings, Drawn, Error, Figure, Renderer, SYMBOL_SIZE, Sheet, SheetAngle, SheetError, SheetLayout, View,
-    names, symbol,
+    DrawingSettings, Drawn, Error, Figure, Renderer, SYMBOL_SIZE, Sheet, SheetAngle, SheetError,
+    SheetLayout, View, names, symbol,
 };
 
 /// Scales below this share of the others' are told.
@@ -41,17 +41,22 @@ pub(crate) fn draw(
         angle: angle_of(args),
         scale: args.page.scale.map(|scale| scale * unit_of(args)),
     };
-    let (drawn, layout) =
-        renderer.draw_sheet(settings, &sheet, args.surfaces().as_ref()).map_err(|error| failure(args, error))?;
+    let (drawn, layout) = renderer
+        .draw_sheet(settings, &sheet, args.surfaces().as_ref())
+        .map_err(|error| failure(args, error))?;
 
     // Tell where the axonometric view has a scale of its own.
-    let scale_of = |is_iso: bool| layout.views.iter().find(|view| (view.view == View::Iso) == is_iso).map(|v| v.scale);
+    let scale_of = |is_iso: bool| {
+        layout.views.iter().find(|view| (view.view == View::Iso) == is_iso).map(|v| v.scale)
+    };
     if let (Some(iso), Some(others)) = (scale_of(true), scale_of(false))
         && iso < others * SMALLER
         && !args.report.quiet
     {
         let [iso, others] = [iso, others].map(|scale| ratio(scale / unit_of(args)));
-        report::warnings(&[format!("--views: iso is drawn at {iso}, since it does not fit the sheet at {others}")]);
+        report::warnings(&[format!(
+            "--views: iso is drawn at {iso}, since it does not fit the sheet at {others}"
+        )]);
     }
     Ok((drawn, layout))
 }
@@ -59,7 +64,9 @@ pub(crate) fn draw(
 /// The message for a sheet that cannot be laid out.
 fn failure(args: &DrawArgs, error: Error) -> Failure {
     match error {
-        Error::Sheet(SheetError::TooLarge { size, room, fitting: Some(fitting) }) if args.page.scale.is_some() => {
+        Error::Sheet(SheetError::TooLarge { size, room, fitting: Some(fitting) })
+            if args.page.scale.is_some() =>
+        {
             too_large(size, room, fitting / unit_of(args))
         }
         Error::Sheet(SheetError::TooLarge { size, room, .. }) => {
@@ -67,7 +74,8 @@ fn failure(args: &DrawArgs, error: Error) -> Failure {
                 "--views: the gaps between views need {:.1} x {:.1} mm, the sheet has room for {:.1} x {:.1} mm",
                 size[0], size[1], room[0], room[1]
             );
-            Failure::usage(what).with_hint("choose a larger --page, a smaller --margin, or fewer views")
+            Failure::usage(what)
+                .with_hint("choose a larger --page, a smaller --margin, or fewer views")
         }
         error => error.into(),
     }

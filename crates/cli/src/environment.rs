@@ -15,13 +15,19 @@ pub(crate) fn parse(text: &str) -> Result<EnvironmentSource, String> {
     match kind {
         Some((kind, ..)) => Ok(EnvironmentSource::Kind(*kind)),
         None if text.contains(['.', '/', '\\']) => Ok(EnvironmentSource::File(text.to_owned())),
-        None => Err(format!("there is no environment of this name: {}, or a file such as studio.hdr", names())),
+        None => Err(format!(
+            "there is no environment of this name: {}, or a file such as studio.hdr",
+            names()
+        )),
     }
 }
 
 /// The help of `--environment`.
 pub(crate) fn help() -> String {
-    let kinds = Environment::ALL.iter().map(|(_, name, what)| format!("{name} ({what})")).collect::<Vec<_>>();
+    let kinds = Environment::ALL
+        .iter()
+        .map(|(_, name, what)| format!("{name} ({what})"))
+        .collect::<Vec<_>>();
     format!(
         "What surfaces of metal and with roughness (glTF, MTL's Pr and Pm) mirror: {}; or an image of all directions, .hdr .exr .png \
          .jpg, twice as wide as high, which lights them as well and is seen by rays that mirrors and glass turn (--light-intensity \

@@ -1,11 +1,12 @@
-//! What an error of the library means for the command: its exit code, and the hint that is shown below it.
+//! What an error of the library means for the command: its exit code, and the hint that is shown
+//! below it.
 
 use crate::similar;
 use vitral::internals::raster::MAX_SIDE;
 use vitral::{Error, InputError, Limit, RenderError, SettingsError};
 
-/// The exit code of a command that ends with this error: 2 usage, 3 input missing or malformed, 4 not supported,
-/// 5 cannot write, 7 a limit was reached, 130 interrupted, 1 anything else.
+/// The exit code of a command that ends with this error: 2 usage, 3 input missing or malformed, 4
+/// not supported, 5 cannot write, 7 a limit was reached, 130 interrupted, 1 anything else.
 pub(crate) fn exit_code(error: &Error) -> u8 {
     match error {
         Error::Usage { .. } | Error::Sheet(_) => 2,
@@ -20,11 +21,7 @@ pub(crate) fn exit_code(error: &Error) -> u8 {
         },
         Error::Render(error) => match error {
             RenderError::Settings(SettingsError::Resolution { width, height }) => {
-                if *width.max(height) > MAX_SIDE {
-                    7
-                } else {
-                    2
-                }
+                if *width.max(height) > MAX_SIDE { 7 } else { 2 }
             }
             RenderError::Settings(_) => 2,
             RenderError::World(_) | RenderError::Scene(_) | RenderError::Radiosity(_) => 3,
@@ -90,17 +87,27 @@ mod tests {
         };
         assert_eq!((size(0, 5), size(1, 99_999)), (2, 7));
         assert_eq!(exit_code(&Limit::Cancelled { stage: "x" }.into()), 130);
-        assert_eq!(exit_code(&Limit::Time { limit: 1.0, stage: "x", achieved: Achieved::default() }.into()), 7);
+        assert_eq!(
+            exit_code(
+                &Limit::Time { limit: 1.0, stage: "x", achieved: Achieved::default() }.into()
+            ),
+            7
+        );
     }
 
     #[test]
     fn hints_name_the_options_that_help() {
         let of = |error: SettingsError| hint(&RenderError::from(error).into()).unwrap();
-        let list =
-            SettingsError::ListOrder { visibility: vitral::Visibility::Z_BUFFER, choices: "painter, bsp".into() };
+        let list = SettingsError::ListOrder {
+            visibility: vitral::Visibility::Z_BUFFER,
+            choices: "painter, bsp".into(),
+        };
         assert!(of(list).contains("--visibility"));
-        let translucent =
-            SettingsError::Translucent { material: "pane".into(), order: "two-buffer", choices: "a-buffer".into() };
+        let translucent = SettingsError::Translucent {
+            material: "pane".into(),
+            order: "two-buffer",
+            choices: "a-buffer".into(),
+        };
         assert!(of(translucent).contains("pane.transmission=transparent"));
         assert!(of(SettingsError::OrderOfRays("sorted")).contains("--transparency-order"));
     }

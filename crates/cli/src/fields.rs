@@ -1,6 +1,7 @@
 //! Values with several parts as users type them: `key=value,key=value`.
 //!
-//! Keys are the same in upper and lower case. Values may hold commas: what has no `=` belongs to the field before it.
+//! Keys are the same in upper and lower case. Values may hold commas: what has no `=` belongs to
+//! the field before it.
 
 /// The fields that have not been used yet.
 pub(crate) struct Fields<'a>(Vec<(&'a str, String)>);
@@ -11,7 +12,9 @@ impl<'a> Fields<'a> {
         let mut fields: Vec<(&str, String)> = Vec::new();
         for piece in text.split(',').filter(|piece| !piece.is_empty()) {
             let pair = piece.split_once('=');
-            if let Some((key, _)) = pair.filter(|(key, _)| fields.iter().any(|f| f.0.eq_ignore_ascii_case(key))) {
+            if let Some((key, _)) =
+                pair.filter(|(key, _)| fields.iter().any(|f| f.0.eq_ignore_ascii_case(key)))
+            {
                 return Err(format!("`{key}` is given twice"));
             }
             match (pair, fields.last_mut()) {
@@ -27,8 +30,14 @@ impl<'a> Fields<'a> {
     }
 
     /// Takes a field out and reads it.
-    pub(crate) fn take<T>(&mut self, key: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<Option<T>, String> {
-        let Some(index) = self.0.iter().position(|f| f.0.eq_ignore_ascii_case(key)) else { return Ok(None) };
+    pub(crate) fn take<T>(
+        &mut self,
+        key: &str,
+        read: impl Fn(&str) -> Result<T, String>,
+    ) -> Result<Option<T>, String> {
+        let Some(index) = self.0.iter().position(|f| f.0.eq_ignore_ascii_case(key)) else {
+            return Ok(None);
+        };
         let (_, value) = self.0.swap_remove(index);
         read(&value).map(Some).map_err(|why| format!("{key}: {why}"))
     }

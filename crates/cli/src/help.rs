@@ -86,17 +86,24 @@ pub(crate) fn model_long_help() -> String {
     )
 }
 
-/// The definition of a verb with the option of help that knows groups, if the verb shows its options by groups.
+/// The definition of a verb with the option of help that knows groups, if the verb shows its
+/// options by groups.
 pub(crate) fn with_groups(verb: Command) -> Command {
     if essential(verb.get_name()).is_none() {
         return verb;
     }
     let about = "Print the help: a summary, or one of the groups of options as in `--help camera`; -h is shorter";
-    let help = Arg::new("help").short('h').long("help").action(ArgAction::Help).help(about).help_heading(REPORTS);
+    let help = Arg::new("help")
+        .short('h')
+        .long("help")
+        .action(ArgAction::Help)
+        .help(about)
+        .help_heading(REPORTS);
     verb.disable_help_flag(true).arg(help)
 }
 
-/// The options of a verb that most people need; `None`: the verb does not show its options by groups.
+/// The options of a verb that most people need; `None`: the verb does not show its options by
+/// groups.
 pub(crate) fn essential(verb: &str) -> Option<&'static [&'static str]> {
     ESSENTIAL.iter().find(|row| row.0 == verb).map(|row| row.1)
 }

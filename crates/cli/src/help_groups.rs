@@ -1,8 +1,9 @@
-//! The help of verbs with many options: `--help` shows the options that most people need, examples and the list of groups,
-//! `--help GROUP` one group, `--help all` everything.
+//! The help of verbs with many options: `--help` shows the options that most people need, examples
+//! and the list of groups, `--help GROUP` one group, `--help all` everything.
 //!
-//! A group is a heading of the command line's definition, so each option is in one group, and help and manual show the same groups.
-//! clap finds out that help is wanted; which help it is, this module finds in the words behind `--help`.
+//! A group is a heading of the command line's definition, so each option is in one group, and help
+//! and manual show the same groups. clap finds out that help is wanted; which help it is, this
+//! module finds in the words behind `--help`.
 
 use crate::args;
 use crate::examples;
@@ -35,20 +36,44 @@ const fn group(name: &'static str, heading: &'static str, about: &'static str) -
 /// All groups, in the order in which they are listed.
 const GROUPS: [Group; 19] = [
     group("output", help::OUTPUT, "files, formats and channels; comparison with a reference"),
-    group("animation", help::ANIMATION, "turntables, animations of glTF files, an algorithm step by step"),
-    group("picture", help::PICTURE, "size, samples, background, colour space, fading with distance"),
+    group(
+        "animation",
+        help::ANIMATION,
+        "turntables, animations of glTF files, an algorithm step by step",
+    ),
+    group(
+        "picture",
+        help::PICTURE,
+        "size, samples, background, colour space, fading with distance",
+    ),
     group("measurement", help::MEASUREMENT, "what is measured, and how often"),
-    group("algorithms", help::ALGORITHMS, "visible surfaces, culling, illumination, shading, normals"),
-    group("transparency", help::TRANSPARENCY, "how and in which order transparent surfaces are combined"),
+    group(
+        "algorithms",
+        help::ALGORITHMS,
+        "visible surfaces, culling, illumination, shading, normals",
+    ),
+    group(
+        "transparency",
+        help::TRANSPARENCY,
+        "how and in which order transparent surfaces are combined",
+    ),
     group("shadows", help::SHADOWS, "shadow algorithms and their settings"),
     group("global", help::GLOBAL, "ray tracing and radiosity"),
     group("lines", help::LINES, "edges, lines and points: which are drawn, and how"),
-    group("surfaces", help::SURFACES, "how regions are filled, with --style filled or filled-lines"),
+    group(
+        "surfaces",
+        help::SURFACES,
+        "how regions are filled, with --style filled or filled-lines",
+    ),
     group("lights", help::LIGHTS, "light sources, and what metals mirror"),
     group("materials", help::MATERIALS, "properties of surfaces"),
     group("sections", help::SECTIONS, "cuts through the model, hatching, exploded views"),
     group("page", help::PAGE, "sheet, scale, several views, title block, plotters"),
-    group("camera", help::CAMERA, "where the viewer is and looks; without these options the model is framed"),
+    group(
+        "camera",
+        help::CAMERA,
+        "where the viewer is and looks; without these options the model is framed",
+    ),
     group("lab3d", help::LAB3D, "exercises and camera of Lab3D, the program of a graphics course"),
     group("files", help::FILES, "configuration and state files, files that models name"),
     group("limits", help::LIMITS, "threads, time and memory"),
@@ -68,15 +93,20 @@ pub(crate) fn split(words: Vec<OsString>) -> Vec<OsString> {
     words.into_iter().flat_map(parts).collect()
 }
 
-/// The help that a command line asks for, of which clap has said that it asks for help; `None`: clap's own text.
+/// The help that a command line asks for, of which clap has said that it asks for help; `None`:
+/// clap's own text.
 pub(crate) fn asked_for(words: &[OsString]) -> Result<Option<StyledStr>, Failure> {
     let is_long = |word: &OsString| word == "--help";
-    let position = words.iter().position(is_long).or_else(|| words.iter().position(|word| word == "-h"));
+    let position =
+        words.iter().position(is_long).or_else(|| words.iter().position(|word| word == "-h"));
     let is_short = !words.iter().any(is_long);
-    let behind = position.and_then(|at| words.get(at + 1)).filter(|word| !word.to_string_lossy().starts_with('-'));
+    let behind = position
+        .and_then(|at| words.get(at + 1))
+        .filter(|word| !word.to_string_lossy().starts_with('-'));
     let command = args::command();
     let Some(verb) = words.get(1).and_then(|word| command.find_subcommand(word)) else {
-        return behind.map_or(Ok(None), |word| Err(unknown_verb(&command, &word.to_string_lossy())));
+        return behind
+            .map_or(Ok(None), |word| Err(unknown_verb(&command, &word.to_string_lossy())));
     };
     let name = verb.get_name();
     match behind.map(|word| (group_of(verb, word), word)) {
@@ -91,16 +121,22 @@ pub(crate) fn asked_for(words: &[OsString]) -> Result<Option<StyledStr>, Failure
 
 /// The error for a word behind `vitral --help` that is no verb.
 fn unknown_verb(command: &Command, word: &str) -> Failure {
-    let verbs: Vec<&str> =
-        command.get_subcommands().filter(|verb| !verb.is_hide_set()).map(Command::get_name).collect();
-    let meant = nearest(word, verbs.iter().copied()).map(|verb| format!("; did you mean `{verb}`?"));
+    let verbs: Vec<&str> = command
+        .get_subcommands()
+        .filter(|verb| !verb.is_hide_set())
+        .map(Command::get_name)
+        .collect();
+    let meant =
+        nearest(word, verbs.iter().copied()).map(|verb| format!("; did you mean `{verb}`?"));
     let text = format!("--help {word}: there is no such verb{}", meant.unwrap_or_default());
     Failure::usage(text).with_hint(format!("the verbs are {}", verbs.join(", ")))
 }
 
 /// The groups of a verb.
 fn groups(verb: &Command) -> impl Iterator<Item = &'static Group> {
-    let is_there = |group: &&Group| verb.get_arguments().any(|option| option.get_help_heading() == Some(group.heading));
+    let is_there = |group: &&Group| {
+        verb.get_arguments().any(|option| option.get_help_heading() == Some(group.heading))
+    };
     GROUPS.iter().filter(is_there)
 }
 
@@ -118,8 +154,10 @@ fn group_of(verb: &Command, word: &OsString) -> Option<Option<&'static Group>> {
 fn unknown(verb: &Command, word: &str) -> Failure {
     let name = verb.get_name();
     if essential(name).is_none() {
-        return Failure::usage(format!("--help {word}: the options of `vitral {name}` have no groups"))
-            .with_hint(format!("`vitral {name} --help` shows all of them"));
+        return Failure::usage(format!(
+            "--help {word}: the options of `vitral {name}` have no groups"
+        ))
+        .with_hint(format!("`vitral {name} --help` shows all of them"));
     }
 
     // A group may be meant by its beginning, by a similar name, or by one of its options.
@@ -128,18 +166,28 @@ fn unknown(verb: &Command, word: &str) -> Failure {
     let begins = names.iter().find(|group| !lower.is_empty() && group.starts_with(&lower)).copied();
     let of_option = || {
         let option = verb.get_arguments().find(|option| option.get_long() == Some(&lower))?;
-        groups(verb).find(|group| option.get_help_heading() == Some(group.heading)).map(|group| group.name)
+        groups(verb)
+            .find(|group| option.get_help_heading() == Some(group.heading))
+            .map(|group| group.name)
     };
     let similar = || nearest(&lower, names.iter().copied());
     let hint = match (begins, of_option()) {
         (None, Some(group)) => Some(format!("the option --{lower} is in the group {group}")),
-        (begins, _) => begins.or_else(similar).map(|group| format!("did you mean `vitral {name} --help {group}`?")),
+        (begins, _) => begins
+            .or_else(similar)
+            .map(|group| format!("did you mean `vitral {name} --help {group}`?")),
     };
-    let text = format!("--help {word}: there is no such group of options; the groups are {}", names.join(", "));
-    Failure::usage(text).with_hint(hint.unwrap_or_else(|| format!("`vitral {name} --help` says what is in each group")))
+    let text = format!(
+        "--help {word}: there is no such group of options; the groups are {}",
+        names.join(", ")
+    );
+    Failure::usage(text).with_hint(
+        hint.unwrap_or_else(|| format!("`vitral {name} --help` says what is in each group")),
+    )
 }
 
-/// The summary of a verb: the options that most people need, examples, the list of groups. `None` for a verb without groups.
+/// The summary of a verb: the options that most people need, examples, the list of groups. `None`
+/// for a verb without groups.
 fn summary(name: &str, is_short: bool) -> Option<StyledStr> {
     let essential = essential(name)?;
     let command = args::command();
@@ -177,7 +225,9 @@ fn summary(name: &str, is_short: bool) -> Option<StyledStr> {
 /// The options of one group.
 fn of_group(name: &str, group: &Group, is_short: bool) -> StyledStr {
     let is_in = |option: &Arg| option.get_help_heading() == Some(group.heading);
-    let after = format!("`vitral {name} --help` lists the other groups, `vitral {name} --help all` shows all options");
+    let after = format!(
+        "`vitral {name} --help` lists the other groups, `vitral {name} --help all` shows all options"
+    );
     let about = format!("{}: {}", group.heading, group.about);
     rendered(name, is_short, |verb| {
         let verb = verb.mut_args(|option| if is_in(&option) { option } else { option.hide(true) });
@@ -220,7 +270,8 @@ mod tests {
         for (name, essential) in ESSENTIAL {
             let verb = command.find_subcommand(name).unwrap();
             for option in verb.get_arguments().filter(|option| !option.is_positional()) {
-                let in_it = GROUPS.iter().filter(|group| option.get_help_heading() == Some(group.heading));
+                let in_it =
+                    GROUPS.iter().filter(|group| option.get_help_heading() == Some(group.heading));
                 assert_eq!(in_it.count(), 1, "{name}: {}", option.get_id());
             }
             for id in essential {
@@ -229,7 +280,10 @@ mod tests {
         }
         for group in &GROUPS {
             assert_eq!(
-                GROUPS.iter().filter(|other| other.name == group.name || other.heading == group.heading).count(),
+                GROUPS
+                    .iter()
+                    .filter(|other| other.name == group.name || other.heading == group.heading)
+                    .count(),
                 1
             );
         }
@@ -237,11 +291,13 @@ mod tests {
 
     /// The options that a help text defines, by their long names.
     fn defined(text: &str) -> Vec<&str> {
-        // An option stands two columns in, or six where it has no short name; its text begins farther to the right.
+        // An option stands two columns in, or six where it has no short name; its text begins
+        // farther to the right.
         let option = |line| {
             let line: &str = line;
-            let start =
-                line.strip_prefix("      --").or_else(|| line.strip_prefix("  -")?.split_once(", --").map(|p| p.1));
+            let start = line
+                .strip_prefix("      --")
+                .or_else(|| line.strip_prefix("  -")?.split_once(", --").map(|p| p.1));
             start.map(|name| name.split([' ', '[', '=']).next().unwrap_or_default())
         };
         text.lines().filter_map(option).collect()
@@ -253,7 +309,9 @@ mod tests {
         for (name, _) in ESSENTIAL {
             let verb = command.find_subcommand(name).unwrap();
             let named = |group: Option<&Group>| -> Vec<&str> {
-                let is_in = |option: &&Arg| group.is_none_or(|group| option.get_help_heading() == Some(group.heading));
+                let is_in = |option: &&Arg| {
+                    group.is_none_or(|group| option.get_help_heading() == Some(group.heading))
+                };
                 verb.get_arguments().filter(is_in).filter_map(Arg::get_long).collect()
             };
             for group in groups(verb) {
@@ -277,13 +335,18 @@ mod tests {
                 assert!((10..=most).contains(&count), "{name} {option}: {count} lines\n{text}");
                 let widest = text.lines().map(|line| line.chars().count()).max().unwrap();
                 assert!(widest <= WIDTH, "{name} {option}: {widest} columns\n{text}");
-                assert!(text.contains(&format!("vitral {name}")) && text.contains("by group"), "{text}");
+                assert!(
+                    text.contains(&format!("vitral {name}")) && text.contains("by group"),
+                    "{text}"
+                );
             }
         }
         // What has no groups is no longer than that.
         let mut command = args::command();
         command.build();
-        for verb in command.get_subcommands_mut().filter(|verb| essential(verb.get_name()).is_none()) {
+        for verb in
+            command.get_subcommands_mut().filter(|verb| essential(verb.get_name()).is_none())
+        {
             let count = verb.render_long_help().to_string().lines().count();
             assert!(verb.is_hide_set() || count <= 100, "{}: {count} lines", verb.get_name());
         }
@@ -296,14 +359,24 @@ mod tests {
             ("vitral render --help alg", "did you mean `vitral render --help algorithms`?"),
             ("vitral render --help shadow", "did you mean `vitral render --help shadows`?"),
             ("vitral draw --help camra", "did you mean `vitral draw --help camera`?"),
-            ("vitral render --help crease-angle", "the option --crease-angle is in the group algorithms"),
+            (
+                "vitral render --help crease-angle",
+                "the option --crease-angle is in the group algorithms",
+            ),
             ("vitral render --help quux", "`vitral render --help` says what is in each group"),
             ("vitral info --help alg", "`vitral info --help` shows all of them"),
         ] {
             let failure = failure(typed);
-            assert_eq!((failure.code(), failure.hint()), (2, Some(hint)), "{typed}: {}", failure.message());
+            assert_eq!(
+                (failure.code(), failure.hint()),
+                (2, Some(hint)),
+                "{typed}: {}",
+                failure.message()
+            );
         }
-        assert!(failure("vitral render --help alg").message().contains("output, animation, picture"));
+        assert!(
+            failure("vitral render --help alg").message().contains("output, animation, picture")
+        );
         assert!(failure("vitral --help rendr").message().ends_with("did you mean `render`?"));
     }
 
@@ -317,6 +390,9 @@ mod tests {
         assert!(group.contains("--camera-position") && !group.contains("--shadows"), "{group}");
         assert!(shown("vitral render -h camera").unwrap().len() < group.len());
         assert_eq!(shown("vitral info --help").unwrap(), "");
-        assert_eq!(split(words("vitral render --help=all -- --help=x")), words("vitral render --help all -- --help=x"));
+        assert_eq!(
+            split(words("vitral render --help=all -- --help=x")),
+            words("vitral render --help all -- --help=x")
+        );
     }
 }

@@ -9,7 +9,8 @@ use vitral::{FileColors, LoadOptions, Workers, info, load_on};
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &InfoArgs) -> Result<u8, Failure> {
     let workers = Workers::new(values::threads_or_environment(args.threads)?);
-    // Normals that the file has not would be told as if it had, and colours are told as the file gives them.
+    // Normals that the file has not would be told as if it had, and colours are told as the file
+    // gives them.
     let options = LoadOptions {
         allow_external: args.allow_external,
         make_normals: false,

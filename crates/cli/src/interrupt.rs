@@ -13,7 +13,10 @@ pub(crate) const INTERRUPTED: u8 = 130;
 const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Does some work within a budget, which Ctrl-C cancels; gives the exit code.
-pub(crate) fn heed(budget: &Budget, work: impl FnOnce() -> Result<u8, Failure>) -> Result<u8, Failure> {
+pub(crate) fn heed(
+    budget: &Budget,
+    work: impl FnOnce() -> Result<u8, Failure>,
+) -> Result<u8, Failure> {
     let cancelled = budget.cancel_flag();
     listen(cancelled.clone());
     let result = work();
@@ -36,7 +39,8 @@ pub(crate) fn watch() {
     listen(Arc::default());
 }
 
-/// Sets `cancelled` at the first Ctrl-C. Where no handler can be set, the system's default ends the process.
+/// Sets `cancelled` at the first Ctrl-C. Where no handler can be set, the system's default ends the
+/// process.
 fn listen(cancelled: Arc<AtomicBool>) {
     let is_first = FLAG.lock().expect("no thread panics with it").replace(cancelled).is_none();
     let handler = || {

@@ -61,11 +61,23 @@ pub(crate) fn load(name: &Path, options: &LoadOptions, workers: &Workers) -> Res
 }
 
 /// Reads a model, and notes which files that takes.
-fn read(name: &Path, key: String, options: &LoadOptions, workers: &Workers) -> Result<Model, Error> {
+fn read(
+    name: &Path,
+    key: String,
+    options: &LoadOptions,
+    workers: &Workers,
+) -> Result<Model, Error> {
     let files = Mutex::new(BTreeMap::new());
     let scene = vitral::load_telling(name, options, workers, &|file: ReadFile<'_>| {
         let path = file.path.to_string_lossy().into_owned();
-        files.lock().expect("no thread panics while it notes a file").insert(path, hash_of_bytes(file.bytes));
+        files
+            .lock()
+            .expect("no thread panics while it notes a file")
+            .insert(path, hash_of_bytes(file.bytes));
     })?;
-    Ok(Model { key, scene, files: files.into_inner().expect("no thread panicked while it noted a file") })
+    Ok(Model {
+        key,
+        scene,
+        files: files.into_inner().expect("no thread panicked while it noted a file"),
+    })
 }

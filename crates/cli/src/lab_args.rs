@@ -6,7 +6,8 @@ use std::path::PathBuf;
 /// Options of `vitral lab`.
 #[derive(Args, Debug)]
 pub(crate) struct LabPageArgs {
-    /// Models to open: files or `builtin:NAME`. Nothing else is served but these and the files that they name
+    /// Models to open: files or `builtin:NAME`. Nothing else is served but these and the files that
+    /// they name
     #[arg(value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
     /// State file to start from, as `vitral render --save-state` writes it
@@ -18,7 +19,8 @@ pub(crate) struct LabPageArgs {
     /// Do not open a browser
     #[arg(long)]
     pub(crate) no_open: bool,
-    /// Write the page instead of serving it: one file that needs no server (FILE.html), or a folder for any web server
+    /// Write the page instead of serving it: one file that needs no server (FILE.html), or a folder
+    /// for any web server
     #[arg(long, value_name = "FILE.html|DIR", conflicts_with_all = ["port", "no_open"])]
     pub(crate) export: Option<PathBuf>,
     /// Let models read files outside their folder

@@ -1,6 +1,8 @@
-//! The `vitral` command: a model file in, a picture out. No rendering logic lives here; everything is in crate `vitral`.
+//! The `vitral` command: a model file in, a picture out. No rendering logic lives here; everything
+//! is in crate `vitral`.
 //!
-//! A library, so that other programs offer the same command ([`command`]) and take the same options ([`options`]).
+//! A library, so that other programs offer the same command ([`command`]) and take the same options
+//! ([`options`]).
 
 pub mod allocator;
 mod animation_frames;
@@ -76,12 +78,18 @@ pub fn command(arguments: Vec<OsString>) -> u8 {
 /// Runs the verb that is typed.
 fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
     let typed = help_groups::split(batch_args::arrange(args::with_verb(arguments)));
-    let parsed = args::command().try_get_matches_from(&typed).and_then(|matches| Cli::from_arg_matches(&matches));
+    let parsed = args::command()
+        .try_get_matches_from(&typed)
+        .and_then(|matches| Cli::from_arg_matches(&matches));
     let cli = match parsed {
         Ok(cli) => cli,
         // Help and version are results, not errors.
         Err(e) if matches!(e.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
-            let asked = if e.kind() == ErrorKind::DisplayHelp { help_groups::asked_for(&typed)? } else { None };
+            let asked = if e.kind() == ErrorKind::DisplayHelp {
+                help_groups::asked_for(&typed)?
+            } else {
+                None
+            };
             let text = asked.unwrap_or_else(|| e.render());
             let text = if use_color() { text.ansi().to_string() } else { text.to_string() };
             return report::print(text.as_bytes()).map(|()| 0);

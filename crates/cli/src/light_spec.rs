@@ -10,13 +10,15 @@
 //! | `spot` | `position`, `direction`, `cutoff` and `inner` (half angles in degrees), `exponent` |
 //! | `area` | `center`, `normal`, `radius` for a disc; `corners` (three numbers each) for a polygon |
 //!
-//! All: `name`, `ambient`, `diffuse`, `specular` (one number, three, or a colour's name), `shadow`; those with a place: `attenuation`,
-//! which is `none`, `inverse-square`, `c1,c2,c3` for the course's `min(1 / (c1 + c2 d + c3 d²), 1)`,
-//! `gl,constant,linear,quadratic`, or `range,distance`.
+//! All: `name`, `ambient`, `diffuse`, `specular` (one number, three, or a colour's name), `shadow`;
+//! those with a place: `attenuation`, which is `none`, `inverse-square`, `c1,c2,c3` for the
+//! course's `min(1 / (c1 + c2 d + c3 d²), 1)`, `gl,constant,linear,quadratic`, or `range,distance`.
 
 use crate::fields::Fields;
 use crate::similar::not_one_of;
-use vitral::light_text::{attenuation, corners, direction, half_angle, intensity, not_negative, switch, vector};
+use vitral::light_text::{
+    attenuation, corners, direction, half_angle, intensity, not_negative, switch, vector,
+};
 use vitral::{AreaShape, Attenuation, Light, LightKind};
 
 /// The kinds of light.
@@ -31,12 +33,14 @@ struct LightFields<'a> {
     fields: Fields<'a>,
 }
 
-/// A light as typed, if it is one; what the names of colours mean is known when the colour space is.
+/// A light as typed, if it is one; what the names of colours mean is known when the colour space
+/// is.
 pub(crate) fn checked(text: &str) -> Result<String, String> {
     parse(text, false).map(|_| text.to_owned())
 }
 
-/// Reads a light; `raw` is the colour space in which a colour's name stands for its bytes, not for light.
+/// Reads a light; `raw` is the colour space in which a colour's name stands for its bytes, not for
+/// light.
 pub(crate) fn parse(text: &str, raw: bool) -> Result<Light, String> {
     let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
     let mut fields = LightFields { kind, fields: Fields::split(rest)? };
@@ -50,13 +54,16 @@ pub(crate) fn parse(text: &str, raw: bool) -> Result<Light, String> {
     let is_ambient = kind == LightKind::Ambient;
     let mut light = Light { kind, attenuation, ..Light::default() };
 
-    // A light of one colour is the common case: specular follows diffuse, and an ambient light has ambient alone.
+    // A light of one colour is the common case: specular follows diffuse, and an ambient light has
+    // ambient alone.
     if let Some(name) = fields.take("name", |text| Ok(text.to_owned()))? {
         light.name = name;
     }
     let intensity = |text: &str| intensity(text, raw);
-    light.ambient = fields.take("ambient", intensity)?.unwrap_or([if is_ambient { 0.2 } else { 0.0 }; 3]);
-    light.diffuse = fields.take("diffuse", intensity)?.unwrap_or([if is_ambient { 0.0 } else { 1.0 }; 3]);
+    light.ambient =
+        fields.take("ambient", intensity)?.unwrap_or([if is_ambient { 0.2 } else { 0.0 }; 3]);
+    light.diffuse =
+        fields.take("diffuse", intensity)?.unwrap_or([if is_ambient { 0.0 } else { 1.0 }; 3]);
     light.specular = fields.take("specular", intensity)?.unwrap_or(light.diffuse);
     if let Some(shadow) = fields.take("shadow", switch)? {
         light.shadow = shadow;
@@ -68,12 +75,20 @@ pub(crate) fn parse(text: &str, raw: bool) -> Result<Light, String> {
 
 impl LightFields<'_> {
     /// Takes a field out and reads it.
-    fn take<T>(&mut self, key: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<Option<T>, String> {
+    fn take<T>(
+        &mut self,
+        key: &str,
+        read: impl Fn(&str) -> Result<T, String>,
+    ) -> Result<Option<T>, String> {
         self.fields.take(key, read)
     }
 
     /// As [`Self::take`], for a field that the kind must have.
-    fn need<T>(&mut self, key: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<T, String> {
+    fn need<T>(
+        &mut self,
+        key: &str,
+        read: impl Fn(&str) -> Result<T, String>,
+    ) -> Result<T, String> {
         let missing = format!("a light of kind `{}` needs `{key}`", self.kind);
         self.take(key, read)?.ok_or(missing)
     }
@@ -81,7 +96,9 @@ impl LightFields<'_> {
     fn kind_of_light(&mut self) -> Result<LightKind, String> {
         match self.kind.to_lowercase().as_str() {
             "ambient" => Ok(LightKind::Ambient),
-            "directional" => Ok(LightKind::Directional { direction: self.need("direction", direction)? }),
+            "directional" => {
+                Ok(LightKind::Directional { direction: self.need("direction", direction)? })
+            }
             "point" => Ok(LightKind::Point { position: self.need("position", vector)? }),
             "spot" => {
                 let cutoff = self.take("cutoff", half_angle)?.unwrap_or(CUTOFF.to_radians());
@@ -103,7 +120,8 @@ impl LightFields<'_> {
             return Ok(AreaShape::Polygon { corners });
         }
         if !self.fields.has("center") {
-            return Err("a light of kind `area` needs `center`, `normal`, `radius`, or `corners`".to_owned());
+            return Err("a light of kind `area` needs `center`, `normal`, `radius`, or `corners`"
+                .to_owned());
         }
         Ok(AreaShape::Disc {
             center: self.need("center", vector)?,
@@ -128,7 +146,9 @@ mod tests {
 
     #[test]
     fn the_example_of_the_contract() {
-        let light = parse("point:position=1,2,3,diffuse=1,1,1,attenuation=1,0,0.1,shadow=on", false).unwrap();
+        let light =
+            parse("point:position=1,2,3,diffuse=1,1,1,attenuation=1,0,0.1,shadow=on", false)
+                .unwrap();
         assert_eq!(light.kind, LightKind::Point { position: DVec3::new(1.0, 2.0, 3.0) });
         assert_eq!(light.attenuation, Attenuation::Clamped { c1: 1.0, c2: 0.0, c3: 0.1 });
         assert_eq!((light.diffuse, light.specular, light.ambient), ([1.0; 3], [1.0; 3], [0.0; 3]));
@@ -137,30 +157,57 @@ mod tests {
     #[test]
     fn kinds_and_fields_have_no_case() {
         let typed = |text| parse(text, false).unwrap();
-        assert_eq!(typed("POINT:Position=1,2,3,Diffuse=red"), typed("point:position=1,2,3,diffuse=red"));
-        assert_eq!(parse("Spot:position=0,0,0,POSITION=1,1,1", false).unwrap_err(), "`POSITION` is given twice");
+        assert_eq!(
+            typed("POINT:Position=1,2,3,Diffuse=red"),
+            typed("point:position=1,2,3,diffuse=red")
+        );
+        assert_eq!(
+            parse("Spot:position=0,0,0,POSITION=1,1,1", false).unwrap_err(),
+            "`POSITION` is given twice"
+        );
     }
 
     #[test]
     fn every_kind() {
         assert_eq!(parse("ambient:ambient=0.3", false).unwrap().ambient, [0.3; 3]);
-        assert_eq!(parse("point:position=0,0,0,diffuse=red", false).unwrap().specular, [1.0, 0.0, 0.0]);
+        assert_eq!(
+            parse("point:position=0,0,0,diffuse=red", false).unwrap().specular,
+            [1.0, 0.0, 0.0]
+        );
         let grey = |raw| parse("ambient:ambient=gray", raw).unwrap().ambient[0];
         assert_eq!((grey(true), (grey(false) - 0.2159).abs() < 1e-4), (128.0 / 255.0, true));
-        let light =
-            parse("spot:position=0,1,0,direction=0,-1,0,cutoff=45,exponent=8,name=lamp,shadow=off", false).unwrap();
-        let LightKind::Spot { cutoff, inner, exponent, .. } = light.kind else { panic!("a spot light") };
+        let light = parse(
+            "spot:position=0,1,0,direction=0,-1,0,cutoff=45,exponent=8,name=lamp,shadow=off",
+            false,
+        )
+        .unwrap();
+        let LightKind::Spot { cutoff, inner, exponent, .. } = light.kind else {
+            panic!("a spot light")
+        };
         assert_eq!((cutoff, inner, exponent), (std::f64::consts::FRAC_PI_4, cutoff, 8.0));
         assert_eq!((light.name.as_str(), light.shadow), ("lamp", false));
-        let disc = parse("area:center=0,1,0,normal=0,-1,0,radius=2,diffuse=0.5,0.25,0", false).unwrap();
-        assert!(matches!(disc.kind, LightKind::Area { shape: AreaShape::Disc { radius: 2.0, .. } }));
+        let disc =
+            parse("area:center=0,1,0,normal=0,-1,0,radius=2,diffuse=0.5,0.25,0", false).unwrap();
+        assert!(matches!(
+            disc.kind,
+            LightKind::Area { shape: AreaShape::Disc { radius: 2.0, .. } }
+        ));
         assert_eq!(disc.specular, [0.5, 0.25, 0.0], "specular follows diffuse");
-        assert!(parse("area:center=0,1,0,normal=0,-1,0,radius=0", false).is_ok(), "a point that shines to one side");
-        let polygon = parse("area:corners=0,0,0,1,0,0,0,1,0,attenuation=inverse-square", false).unwrap();
-        let LightKind::Area { shape: AreaShape::Polygon { corners } } = polygon.kind else { panic!("a polygon") };
+        assert!(
+            parse("area:center=0,1,0,normal=0,-1,0,radius=0", false).is_ok(),
+            "a point that shines to one side"
+        );
+        let polygon =
+            parse("area:corners=0,0,0,1,0,0,0,1,0,attenuation=inverse-square", false).unwrap();
+        let LightKind::Area { shape: AreaShape::Polygon { corners } } = polygon.kind else {
+            panic!("a polygon")
+        };
         assert_eq!(corners, [DVec3::ZERO, DVec3::X, DVec3::Y]);
         assert_eq!(polygon.attenuation, Attenuation::InverseSquare);
-        assert!(matches!(parse("directional:direction=0,0,-1", false).unwrap().kind, LightKind::Directional { .. }));
+        assert!(matches!(
+            parse("directional:direction=0,0,-1", false).unwrap().kind,
+            LightKind::Directional { .. }
+        ));
         let gl = parse("point:position=0,0,0,attenuation=gl,1,2,3", false).unwrap().attenuation;
         assert_eq!(gl, Attenuation::Gl { constant: 1.0, linear: 2.0, quadratic: 3.0 });
         let range = parse("point:position=0,0,0,attenuation=range,5", false).unwrap().attenuation;
@@ -184,7 +231,10 @@ mod tests {
             ("ambient:attenuation=none", "a light of kind `ambient` has no `attenuation`"),
             ("point:position=1,2,3,shadow=maybe", "shadow: `maybe` is not one of on, off"),
             ("point:position=1,2,3,diffuse=-1", "diffuse: intensities of at least 0 are required"),
-            ("spot:position=0,0,0,direction=0,0,1,cutoff=91", "cutoff: a half angle from 0 to 90 degrees is required"),
+            (
+                "spot:position=0,0,0,direction=0,0,1,cutoff=91",
+                "cutoff: a half angle from 0 to 90 degrees is required",
+            ),
             (
                 "spot:position=0,0,0,direction=0,0,1,cutoff=0",
                 "cutoff: a half angle above 0, up to 90 degrees, is required",
@@ -192,9 +242,15 @@ mod tests {
             ("area:corners=0,5,0,1,5,0,2,5,0", "corners: a polygon with an area is required"),
             ("area:corners=0,0,0,1,1,0,1,0,0,0,1,0", "corners: the outline must not cross itself"),
             ("area:corners=0,0,0,1,0,0,1,1,1,0,1,0", "corners: they have to lie in one plane"),
-            ("area:center=0,0,0,normal=0,1,0,radius=-1", "radius: a number of at least 0 is required"),
+            (
+                "area:center=0,0,0,normal=0,1,0,radius=-1",
+                "radius: a number of at least 0 is required",
+            ),
             ("directional:direction=0,0,0", "direction: a direction of some length is required"),
-            ("area:radius=1", "a light of kind `area` needs `center`, `normal`, `radius`, or `corners`"),
+            (
+                "area:radius=1",
+                "a light of kind `area` needs `center`, `normal`, `radius`, or `corners`",
+            ),
         ] {
             assert_eq!(parse(text, false).unwrap_err(), expected, "{text}");
         }

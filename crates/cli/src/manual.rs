@@ -1,5 +1,6 @@
-//! `vitral man`: the manual, as one page or as a page for each verb. Options come from the definition of the command line, examples
-//! from [`examples`]; environment and related pages stand here.
+//! `vitral man`: the manual, as one page or as a page for each verb. Options come from the
+//! definition of the command line, examples from [`examples`]; environment and related pages stand
+//! here.
 
 use crate::args::{self, ManArgs};
 use crate::examples;
@@ -16,7 +17,11 @@ const ENVIRONMENT: [(&str, &str, &[&str]); 4] = [
         "Threads, where --threads is not given; 0, empty or unset: as many as the process may use.",
         &["render", "draw", "info", "bench", "lab"],
     ),
-    ("VITRAL_SIMD", "The instruction set, for tests; pictures do not depend on it.", &["render", "draw", "bench"]),
+    (
+        "VITRAL_SIMD",
+        "The instruction set, for tests; pictures do not depend on it.",
+        &["render", "draw", "bench"],
+    ),
     (
         "XDG_CONFIG_HOME",
         "The folder of vitral/config.json, the defaults of options; ~/.config where it is not set.",
@@ -46,22 +51,32 @@ fn write(folder: &Path, pages: &[(String, Vec<u8>)]) -> Result<(), Failure> {
 fn pages() -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let mut command = args::command();
     command.build();
-    let verbs: Vec<_> = command.get_subcommands().filter(|verb| !verb.is_hide_set()).cloned().collect();
+    let verbs: Vec<_> =
+        command.get_subcommands().filter(|verb| !verb.is_hide_set()).cloned().collect();
     let names: Vec<_> = verbs.iter().map(|verb| format!("vitral-{}", verb.get_name())).collect();
     let related = |name: &str| -> Vec<String> {
         let all = std::iter::once("vitral".to_owned()).chain(names.iter().cloned());
         all.filter(|other| other != name).collect()
     };
-    let mut pages = vec![("vitral".to_owned(), page(command.clone(), "vitral", "vitral", &related("vitral"))?)];
+    let mut pages =
+        vec![("vitral".to_owned(), page(command.clone(), "vitral", "vitral", &related("vitral"))?)];
     for (verb, name) in verbs.iter().zip(&names) {
         // Of a verb, the command itself is the related page.
-        pages.push((name.clone(), page(verb.clone(), verb.get_name(), name, &["vitral".to_owned()])?));
+        pages.push((
+            name.clone(),
+            page(verb.clone(), verb.get_name(), name, &["vitral".to_owned()])?,
+        ));
     }
     Ok(pages)
 }
 
 /// A page of the manual.
-fn page(command: clap::Command, verb: &str, name: &str, related: &[String]) -> Result<Vec<u8>, Failure> {
+fn page(
+    command: clap::Command,
+    verb: &str,
+    name: &str,
+    related: &[String],
+) -> Result<Vec<u8>, Failure> {
     // What the definition says. The verbs of a page are other pages.
     let mut page = Vec::new();
     let has_arguments = command.get_arguments().any(|argument| !argument.is_hide_set());
@@ -80,8 +95,9 @@ fn page(command: clap::Command, verb: &str, name: &str, related: &[String]) -> R
     let mut text = String::new();
     let exits = crate::help::EXIT_CODES.trim_start_matches("Exit codes: ");
     let _ = write!(text, ".SH \"EXIT STATUS\"\n{}\n", roff(exits));
-    let of_verb =
-        |variable: &&(&str, &str, &[&str])| verb == "vitral" || variable.2.is_empty() || variable.2.contains(&verb);
+    let of_verb = |variable: &&(&str, &str, &[&str])| {
+        verb == "vitral" || variable.2.is_empty() || variable.2.contains(&verb)
+    };
     text.push_str(".SH ENVIRONMENT\n");
     for (variable, what, _) in ENVIRONMENT.iter().filter(of_verb) {
         let _ = write!(text, ".TP\n.B {variable}\n{}\n", roff(what));

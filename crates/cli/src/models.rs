@@ -1,4 +1,5 @@
-//! The models of a command: their names as typed, whether each is drawn by itself, and how one bad model leaves the others alone.
+//! The models of a command: their names as typed, whether each is drawn by itself, and how one bad
+//! model leaves the others alone.
 
 use crate::allocator;
 use crate::kept_models;
@@ -26,7 +27,11 @@ pub(crate) fn in_unicode(models: &[PathBuf]) -> Vec<String> {
 }
 
 /// Whether each model is drawn by itself: there are several, and one of the outputs names them.
-pub(crate) fn are_apart<'o>(models: &[PathBuf], together: bool, outputs: impl IntoIterator<Item = &'o Path>) -> bool {
+pub(crate) fn are_apart<'o>(
+    models: &[PathBuf],
+    together: bool,
+    outputs: impl IntoIterator<Item = &'o Path>,
+) -> bool {
     !together && models.len() > 1 && outputs.into_iter().any(has_model)
 }
 
@@ -56,8 +61,9 @@ impl ReadLimits {
 /// The stack of a thread that reads: as much as the main thread has.
 const STACK: usize = 8 << 20;
 
-/// The scene of a state whose models are files of these names, which need not be Unicode. Readers know no limits: beyond that of time
-/// they are left to themselves, beyond that of memory the process ends.
+/// The scene of a state whose models are files of these names, which need not be Unicode. Readers
+/// know no limits: beyond that of time they are left to themselves, beyond that of memory the
+/// process ends.
 pub(crate) fn load_scene(
     state: &State,
     models: &[PathBuf],
@@ -67,7 +73,9 @@ pub(crate) fn load_scene(
     if let (Some(bytes), true) = (limits.memory, limits.goes_on) {
         let left = limits.time.map_or(f64::INFINITY, |limit| limit - execution.budget.elapsed());
         let threads = execution.workers.threads();
-        models.iter().try_for_each(|model| read_probe::check(model, &state.load, threads, bytes, left))?;
+        models
+            .iter()
+            .try_for_each(|model| read_probe::check(model, &state.load, threads, bytes, left))?;
     }
     let _held = limits.memory.map(allocator::hold);
     let (state, models, workers) = (state.clone(), models.to_vec(), execution.workers.clone());
@@ -83,7 +91,8 @@ pub(crate) fn load_scene(
     let Some(limit) = limits.time else { return Ok(read()?) };
 
     // Wait for another thread as long as there is time.
-    let reached = || Error::from(Limit::Time { limit, stage: "loading", achieved: Achieved::default() });
+    let reached =
+        || Error::from(Limit::Time { limit, stage: "loading", achieved: Achieved::default() });
     let left = (limit - execution.budget.elapsed()).max(0.0);
     let left = Duration::try_from_secs_f64(left).unwrap_or(Duration::MAX);
     let (told, waiting) = channel();
@@ -99,8 +108,10 @@ pub(crate) fn load_scene(
 
 /// Refuses an option whose one file or answer would come from each of several models.
 pub(crate) fn refuse_for_each(option: &str) -> Failure {
-    Failure::usage(format!("{option}: it works with one scene, and each model is a scene of its own here"))
-        .with_hint("add --together, or leave {model} out of --output")
+    Failure::usage(format!(
+        "{option}: it works with one scene, and each model is a scene of its own here"
+    ))
+    .with_hint("add --together, or leave {model} out of --output")
 }
 
 /// Refuses models that would be written into one file; `file` gives that of a model.
@@ -113,17 +124,20 @@ pub(crate) fn check_files(
         let file = file(&model_name(model))?;
         let shown = file.display().to_string();
         if let Some(other) = taken.insert(file, model) {
-            let what = format!("{} and {} would both be written to {shown}", other.display(), model.display());
-            return Err(
-                Failure::usage(what).with_hint("{model} is the last part of a model's name without its extension")
+            let what = format!(
+                "{} and {} would both be written to {shown}",
+                other.display(),
+                model.display()
             );
+            return Err(Failure::usage(what)
+                .with_hint("{model} is the last part of a model's name without its extension"));
         }
     }
     Ok(())
 }
 
-/// Does `work` for each model. What fails is told, and the others go on; gives what came of each, and the exit code: that of the
-/// first failure.
+/// Does `work` for each model. What fails is told, and the others go on; gives what came of each,
+/// and the exit code: that of the first failure.
 pub(crate) fn for_each<T>(
     models: &[PathBuf],
     budget: &Budget,

@@ -1,17 +1,19 @@
 //! Options that were typed and change nothing beside the others: each is told in a warning.
 //!
-//! [`ROWS`] has a row for each pair of an option and a condition under which it does nothing. An option that was not typed, or
-//! typed with the value that it has anyway, is never told; nor are options that by their nature leave pictures as they are
-//! (`--cull`, `--coherence`, `--threads`, ...).
+//! [`ROWS`] has a row for each pair of an option and a condition under which it does nothing. An
+//! option that was not typed, or typed with the value that it has anyway, is never told; nor are
+//! options that by their nature leave pictures as they are (`--cull`, `--coherence`, `--threads`,
+//! ...).
 
 use crate::environment::EnvironmentSource;
 use crate::no_effect_camera;
 use crate::render_args::RenderArgs;
 use std::sync::Arc;
 use vitral::{
-    AlphaMode, AreaShape, Camera, Channels, ColorSpace, Environment, Global, GroundShadow, Illumination, Interpolation,
-    Light, LightKind, LightTerm, Lines, Material, Normals, Projection, Renderer, Scene, Settings, Shading, State,
-    Transmission, Transparency, TransparencyOrder, View, Viewpoint,
+    AlphaMode, AreaShape, Camera, Channels, ColorSpace, Environment, Global, GroundShadow,
+    Illumination, Interpolation, Light, LightKind, LightTerm, Lines, Material, Normals, Projection,
+    Renderer, Scene, Settings, Shading, State, Transmission, Transparency, TransparencyOrder, View,
+    Viewpoint,
 };
 
 /// A row of the table: an option, a condition under which it has no effect, and the reason.
@@ -26,7 +28,12 @@ struct Row {
     why: &'static str,
 }
 
-const fn row(option: &'static str, given: fn(&RenderArgs) -> bool, idle: fn(&Case) -> bool, why: &'static str) -> Row {
+const fn row(
+    option: &'static str,
+    given: fn(&RenderArgs) -> bool,
+    idle: fn(&Case) -> bool,
+    why: &'static str,
+) -> Row {
     Row { option, given, idle, why }
 }
 
@@ -40,21 +47,37 @@ const OPAQUE: &str = "with --transparency none every surface is opaque";
 const SOLID: &str = "the models have no transparent surfaces";
 const NO_CASTER: &str = "no light casts shadows";
 const FLAT: &str = "with --shading flat each face has its own normal";
-const ALL_EDGES: &str = "all edges are drawn, hidden ones included (--wireframe-hidden-line leaves them out)";
+const ALL_EDGES: &str =
+    "all edges are drawn, hidden ones included (--wireframe-hidden-line leaves them out)";
 const RADIOSITY: &str = "radiosity computes what surfaces light each other with";
 const NO_AMBIENT: &str = "no light comes from everywhere: name an ambient one, or an --environment";
 const PARALLEL: &str = "the projection is parallel";
 
 /// What does nothing beside what. Rows of one option stand together; the first that holds is told.
 const ROWS: &[Row] = &[
-    row("--samples", gives_samples, Case::makes_no_color, "data channels have one sample per pixel"),
+    row(
+        "--samples",
+        gives_samples,
+        Case::makes_no_color,
+        "data channels have one sample per pixel",
+    ),
     row("--background-color", |a| a.picture.background_color.is_some(), Case::makes_no_color, DATA),
     row("--no-background", |a| a.picture.no_background, Case::makes_no_color, DATA),
     row("--color-space", gives_color_space, Case::makes_no_color, DATA),
     row("--depth-cue", |a| a.algorithms.depth_cue.is_some(), Case::makes_no_color, DATA),
     row("--edges", |a| a.algorithms.edges, Case::makes_no_color, DATA),
-    row("--wireframe-hidden-line", |a| a.algorithms.wireframe_hidden_line, Case::makes_no_color, DATA),
-    row("--line-width", |a| a.algorithms.line_width.is_some(), |c| !c.has_lines(), "there are no lines: add --edges"),
+    row(
+        "--wireframe-hidden-line",
+        |a| a.algorithms.wireframe_hidden_line,
+        Case::makes_no_color,
+        DATA,
+    ),
+    row(
+        "--line-width",
+        |a| a.algorithms.line_width.is_some(),
+        |c| !c.has_lines(),
+        "there are no lines: add --edges",
+    ),
     row("--edge-color", |a| a.algorithms.edge_color.is_some(), |c| !c.draws_edges(), NO_EDGES),
     row("--edge-classes", |a| a.algorithms.edge_classes.is_some(), |c| !c.draws_edges(), NO_EDGES),
     row("--illumination", gives_illumination, Case::makes_no_color, DATA),
@@ -82,15 +105,40 @@ const ROWS: &[Row] = &[
     row("--patch-size", |a| a.algorithms.patch_size.is_some(), Case::makes_no_color, DATA),
     row("--iterations", |a| a.algorithms.iterations.is_some(), Case::makes_no_color, DATA),
     row("--visibility", gives_visibility, |c| c.draws_all_edges() && c.has_no_steps(), ALL_EDGES),
-    row("--depth-bits", |a| a.algorithms.depth_bits.is_some(), |c| c.draws_all_edges() && c.has_no_steps(), ALL_EDGES),
-    row("--shadow-map-size", |a| a.algorithms.shadow_map_size.is_some(), |c| !c.casts_shadows(), NO_CASTER),
-    row("--shadow-cascades", |a| a.algorithms.shadow_cascades.is_some(), |c| !c.casts_shadows(), NO_CASTER),
-    row("--volume-counting", |a| a.algorithms.volume_counting.is_some(), |c| !c.casts_shadows(), NO_CASTER),
+    row(
+        "--depth-bits",
+        |a| a.algorithms.depth_bits.is_some(),
+        |c| c.draws_all_edges() && c.has_no_steps(),
+        ALL_EDGES,
+    ),
+    row(
+        "--shadow-map-size",
+        |a| a.algorithms.shadow_map_size.is_some(),
+        |c| !c.casts_shadows(),
+        NO_CASTER,
+    ),
+    row(
+        "--shadow-cascades",
+        |a| a.algorithms.shadow_cascades.is_some(),
+        |c| !c.casts_shadows(),
+        NO_CASTER,
+    ),
+    row(
+        "--volume-counting",
+        |a| a.algorithms.volume_counting.is_some(),
+        |c| !c.casts_shadows(),
+        NO_CASTER,
+    ),
     row("--terminator", |a| a.algorithms.terminator.is_some(), |c| !c.casts_shadows(), NO_CASTER),
     row("--together", |a| a.output.together, |c| c.models < 2, "there is one model"),
     row("--scatter-samples", gives_scatter, Case::makes_no_color, DATA),
     row("--scatter-samples", gives_scatter, Case::is_opaque, OPAQUE),
-    row("--scatter-samples", gives_scatter, |c| !c.scatters(), "the models have no translucent surfaces"),
+    row(
+        "--scatter-samples",
+        gives_scatter,
+        |c| !c.scatters(),
+        "the models have no translucent surfaces",
+    ),
     row("--shadows", gives_shadows, |c| c.makes_no_color() && !c.shows_shadows(), DATA),
     row("--shadows", gives_shadows, |c| c.draws_wires() && !c.shows_shadows(), WIRES),
     row("--shadows", gives_shadows, |c| c.is_dark() && !c.shows_shadows(), DARK),
@@ -98,14 +146,44 @@ const ROWS: &[Row] = &[
     row("--shadows", gives_shadows, |c| c.is_ambient() && !c.shows_shadows(), AMBIENT),
     row("--shadows", gives_shadows, |c| !c.casts_shadows(), NO_CASTER),
     row("--light-samples", gives_light_samples, |c| !c.has_areas(), "no light has an area"),
-    row("--light", |a| !a.light.light.is_empty(), |c| c.makes_no_color() && !c.shows_shadows(), DATA),
+    row(
+        "--light",
+        |a| !a.light.light.is_empty(),
+        |c| c.makes_no_color() && !c.shows_shadows(),
+        DATA,
+    ),
     row("--light", |a| !a.light.light.is_empty(), |c| c.is_dark() && !c.shows_shadows(), DARK),
-    row("--light", |a| !a.light.light.is_empty(), |c| c.is_constant() && !c.shows_shadows(), CONSTANT),
-    row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.makes_no_color() && !c.shows_shadows(), DATA),
-    row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.is_dark() && !c.shows_shadows(), DARK),
-    row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.is_constant() && !c.shows_shadows(), CONSTANT),
+    row(
+        "--light",
+        |a| !a.light.light.is_empty(),
+        |c| c.is_constant() && !c.shows_shadows(),
+        CONSTANT,
+    ),
+    row(
+        "--light-edit",
+        |a| !a.light.light_edit.is_empty(),
+        |c| c.makes_no_color() && !c.shows_shadows(),
+        DATA,
+    ),
+    row(
+        "--light-edit",
+        |a| !a.light.light_edit.is_empty(),
+        |c| c.is_dark() && !c.shows_shadows(),
+        DARK,
+    ),
+    row(
+        "--light-edit",
+        |a| !a.light.light_edit.is_empty(),
+        |c| c.is_constant() && !c.shows_shadows(),
+        CONSTANT,
+    ),
     row("--light", |a| !a.light.light.is_empty(), |c| c.draws_wires() && !c.shows_shadows(), WIRES),
-    row("--light-edit", |a| !a.light.light_edit.is_empty(), |c| c.draws_wires() && !c.shows_shadows(), WIRES),
+    row(
+        "--light-edit",
+        |a| !a.light.light_edit.is_empty(),
+        |c| c.draws_wires() && !c.shows_shadows(),
+        WIRES,
+    ),
     row("--lighting", gives_lighting, Case::makes_no_color, DATA),
     row("--lighting", gives_lighting, Case::draws_wires, WIRES),
     row("--light-intensity", gives_intensity, Case::draws_wires, WIRES),
@@ -119,18 +197,58 @@ const ROWS: &[Row] = &[
     row("--environment", |a| a.light.environment.is_some(), Case::draws_wires, WIRES),
     row("--environment", |a| a.light.environment.is_some(), Case::is_dark, DARK),
     row("--environment", |a| a.light.environment.is_some(), Case::has_radiosity, RADIOSITY),
-    row("--environment", gives_image, |c| c.shows_diffuse_term, "this term of the lights is not its own"),
-    row("--environment", gives_surroundings, |c| !c.mirrors_surroundings(), "no surface has metal or roughness"),
-    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), Case::makes_no_color, DATA),
-    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), Case::draws_wires, WIRES),
+    row(
+        "--environment",
+        gives_image,
+        |c| c.shows_diffuse_term,
+        "this term of the lights is not its own",
+    ),
+    row(
+        "--environment",
+        gives_surroundings,
+        |c| !c.mirrors_surroundings(),
+        "no surface has metal or roughness",
+    ),
+    row(
+        "--ambient-occlusion",
+        |a| a.algorithms.ambient_occlusion.is_some(),
+        Case::makes_no_color,
+        DATA,
+    ),
+    row(
+        "--ambient-occlusion",
+        |a| a.algorithms.ambient_occlusion.is_some(),
+        Case::draws_wires,
+        WIRES,
+    ),
     row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), Case::is_dark, DARK),
-    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), Case::is_constant, CONSTANT),
-    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), Case::has_radiosity, RADIOSITY),
-    row("--ambient-occlusion", |a| a.algorithms.ambient_occlusion.is_some(), |c| !c.has_ambient, NO_AMBIENT),
+    row(
+        "--ambient-occlusion",
+        |a| a.algorithms.ambient_occlusion.is_some(),
+        Case::is_constant,
+        CONSTANT,
+    ),
+    row(
+        "--ambient-occlusion",
+        |a| a.algorithms.ambient_occlusion.is_some(),
+        Case::has_radiosity,
+        RADIOSITY,
+    ),
+    row(
+        "--ambient-occlusion",
+        |a| a.algorithms.ambient_occlusion.is_some(),
+        |c| !c.has_ambient,
+        NO_AMBIENT,
+    ),
     row("--ground-shadow", gives_ground, Case::makes_no_color, DATA),
     row("--ground-shadow", gives_ground, Case::draws_wires, WIRES),
     row("--ground-shadow", gives_ground, Case::is_dark, DARK),
-    row("--ground-shadow", gives_ground, |c| c.lights_shade_ground && !c.casts_shadows(), NO_CASTER),
+    row(
+        "--ground-shadow",
+        gives_ground,
+        |c| c.lights_shade_ground && !c.casts_shadows(),
+        NO_CASTER,
+    ),
     row("--ground-shadow", gives_ground, |c| c.is_below_ground, "the viewer is below the ground"),
     row("--file-colors", |a| a.light.file_colors.is_some(), Case::makes_no_color, DATA),
     row("--file-colors", |a| a.light.file_colors.is_some(), Case::draws_wires, WIRES),
@@ -143,16 +261,36 @@ const ROWS: &[Row] = &[
     row("--normals", gives_normals, |c| c.is_flat() && c.is_solid() && !c.shows_normals(), FLAT),
     row("--crease-angle", gives_crease, |c| c.makes_no_color() && !c.shows_normals(), DATA),
     row("--crease-angle", gives_crease, |c| c.draws_wires() && !c.shows_normals(), WIRES),
-    row("--crease-angle", gives_crease, |c| c.is_dark() && c.is_solid() && !c.shows_normals(), DARK),
-    row("--crease-angle", gives_crease, |c| c.is_flat() && c.is_solid() && !c.shows_normals(), FLAT),
-    row("--view", gives_view, Case::has_camera, "--camera-index or --camera-direction decides the view"),
+    row(
+        "--crease-angle",
+        gives_crease,
+        |c| c.is_dark() && c.is_solid() && !c.shows_normals(),
+        DARK,
+    ),
+    row(
+        "--crease-angle",
+        gives_crease,
+        |c| c.is_flat() && c.is_solid() && !c.shows_normals(),
+        FLAT,
+    ),
+    row(
+        "--view",
+        gives_view,
+        Case::has_camera,
+        "--camera-index or --camera-direction decides the view",
+    ),
     row(
         "--up",
         |a| a.camera.up.is_some(),
         Case::has_own_up,
         "the camera of --camera-index has an upward direction of its own",
     ),
-    row("--camera-view-angle", |a| a.camera.camera_view_angle.is_some(), Case::is_parallel_without_angle, PARALLEL),
+    row(
+        "--camera-view-angle",
+        |a| a.camera.camera_view_angle.is_some(),
+        Case::is_parallel_without_angle,
+        PARALLEL,
+    ),
 ];
 
 fn gives_fill_light(args: &RenderArgs) -> bool {
@@ -213,7 +351,9 @@ fn gives_order(args: &RenderArgs) -> bool {
 }
 
 fn gives_scatter(args: &RenderArgs) -> bool {
-    args.algorithms.scatter_samples.is_some_and(|count| count != Settings::default().transparency.scatter_samples)
+    args.algorithms
+        .scatter_samples
+        .is_some_and(|count| count != Settings::default().transparency.scatter_samples)
 }
 
 fn gives_shadows(args: &RenderArgs) -> bool {
@@ -221,7 +361,9 @@ fn gives_shadows(args: &RenderArgs) -> bool {
 }
 
 fn gives_light_samples(args: &RenderArgs) -> bool {
-    args.algorithms.light_samples.is_some_and(|count| count != Settings::default().shadows.light_samples)
+    args.algorithms
+        .light_samples
+        .is_some_and(|count| count != Settings::default().shadows.light_samples)
 }
 
 fn gives_intensity(args: &RenderArgs) -> bool {
@@ -276,7 +418,9 @@ impl Case {
             viewpoint: state.viewpoint.clone(),
             turns: state.turntable.is_some(),
             models: state.models.len(),
-            traces: args.report.trace.is_some() || args.report.structure.is_some() || args.output.steps_video.is_some(),
+            traces: args.report.trace.is_some()
+                || args.report.structure.is_some()
+                || args.output.steps_video.is_some(),
             settings: renderer.settings.clone(),
             scene: Arc::clone(renderer.scene()),
             camera,
@@ -341,11 +485,13 @@ impl Case {
         self.settings.global.model == Global::Radiosity
     }
 
-    /// Whether some surface shows what is around the scene: by its roughness, or by rays that it turns.
+    /// Whether some surface shows what is around the scene: by its roughness, or by rays that it
+    /// turns.
     fn mirrors_surroundings(&self) -> bool {
         let illumination = self.settings.shading.illumination;
-        let is_rough =
-            |m: &Material| illumination.for_reflectance(&m.reflectance) == Illumination::CookTorrance && !m.unlit;
+        let is_rough = |m: &Material| {
+            illumination.for_reflectance(&m.reflectance) == Illumination::CookTorrance && !m.unlit
+        };
         let turns_rays = |m: &Material| m.mirror || m.alpha_mode == AlphaMode::Blend;
         let is_traced = self.settings.global.model == Global::RayTrace;
         let materials = &self.scene.materials;
@@ -374,7 +520,8 @@ impl Case {
     /// Whether all that is drawn is faces of which none is seen through.
     fn is_solid(&self) -> bool {
         let scene = &self.scene;
-        let opaque = scene.materials.iter().all(|material| material.alpha_mode == AlphaMode::Opaque);
+        let opaque =
+            scene.materials.iter().all(|material| material.alpha_mode == AlphaMode::Opaque);
         let faces = scene.meshes.iter().all(|mesh| mesh.lines.is_empty() && mesh.points.is_empty());
         opaque && faces && self.settings.picture.lines == Lines::None
     }
@@ -385,19 +532,25 @@ impl Case {
     }
 
     fn casts_shadows(&self) -> bool {
-        self.lights.iter().any(|light| light.enabled && light.shadow && light.kind != LightKind::Ambient)
+        self.lights
+            .iter()
+            .any(|light| light.enabled && light.shadow && light.kind != LightKind::Ambient)
     }
 
     fn has_areas(&self) -> bool {
-        let is_point = |shape: &AreaShape| matches!(shape, AreaShape::Disc { radius, .. } if *radius == 0.0);
-        self.lights.iter().any(|light| matches!(&light.kind, LightKind::Area { shape } if !is_point(shape)))
+        let is_point =
+            |shape: &AreaShape| matches!(shape, AreaShape::Disc { radius, .. } if *radius == 0.0);
+        self.lights
+            .iter()
+            .any(|light| matches!(&light.kind, LightKind::Area { shape } if !is_point(shape)))
     }
 
     fn is_parallel(&self) -> bool {
         matches!(self.camera.projection, Projection::Parallel { .. })
     }
 
-    /// Whether an angle of view has no say in a parallel projection: it has one where it opens a camera of the model first.
+    /// Whether an angle of view has no say in a parallel projection: it has one where it opens a
+    /// camera of the model first.
     fn is_parallel_without_angle(&self) -> bool {
         let viewpoint = &self.viewpoint;
         let opened = viewpoint.camera_index.is_some() && viewpoint.orthographic;
@@ -406,13 +559,17 @@ impl Case {
 
     /// Whether a camera of the model says which way is up, and nothing else asks for it.
     fn has_own_up(&self) -> bool {
-        self.viewpoint.camera_index.is_some() && !self.turns && self.settings.global.model != Global::Radiosity
+        self.viewpoint.camera_index.is_some()
+            && !self.turns
+            && self.settings.global.model != Global::Radiosity
     }
 
     /// Whether the direction of view comes from elsewhere than from a side.
     fn has_camera(&self) -> bool {
         let viewpoint = &self.viewpoint;
-        let alone = viewpoint.direction.is_some() && viewpoint.position.is_none() && viewpoint.focal_point.is_none();
+        let alone = viewpoint.direction.is_some()
+            && viewpoint.position.is_none()
+            && viewpoint.focal_point.is_none();
         viewpoint.camera_index.is_some() || alone
     }
 }
@@ -423,14 +580,19 @@ pub(crate) fn warnings(args: &RenderArgs, state: &State, renderer: &mut Renderer
     let case = Case::new(args, state, renderer);
     let mut told: Vec<(&str, &str)> = Vec::new();
     for row in ROWS {
-        if told.iter().all(|(option, _)| *option != row.option) && (row.given)(args) && (row.idle)(&case) {
+        if told.iter().all(|(option, _)| *option != row.option)
+            && (row.given)(args)
+            && (row.idle)(&case)
+        {
             told.push((row.option, row.why));
         }
     }
 
     // The camera's options are tried.
     for (option, why) in no_effect_camera::idle(&args.camera, state, renderer) {
-        if told.iter().all(|(other, _)| *other != option) && (option != "--view" || gives_view(args)) {
+        if told.iter().all(|(other, _)| *other != option)
+            && (option != "--view" || gives_view(args))
+        {
             told.push((option, why));
         }
     }

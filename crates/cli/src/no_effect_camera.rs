@@ -1,4 +1,5 @@
-//! Options of the camera that others leave nothing to decide: found by trying other values, which give the same views.
+//! Options of the camera that others leave nothing to decide: found by trying other values, which
+//! give the same views.
 
 use crate::render_args::CameraArgs;
 use vitral::names::VIEWS;
@@ -17,14 +18,22 @@ type Trials = Vec<Box<dyn Fn(&mut Viewpoint)>>;
 const ODD: [[f64; 3]; 2] = [[0.3, 0.5, 0.8], [-0.6, 0.2, -0.7]];
 
 /// The options of the camera that were typed and make no difference, with the reason.
-pub(crate) fn idle(args: &CameraArgs, state: &State, renderer: &mut Renderer) -> Vec<(&'static str, &'static str)> {
+pub(crate) fn idle(
+    args: &CameraArgs,
+    state: &State,
+    renderer: &mut Renderer,
+) -> Vec<(&'static str, &'static str)> {
     let own = seen(state, renderer);
     let mut tried: Vec<(&str, Trials)> = Vec::new();
     if args.view.is_some() {
-        tried.push(("--view", VIEWS.iter().map(|&(view, _)| of(move |v| v.view = Some(view))).collect()));
+        tried.push((
+            "--view",
+            VIEWS.iter().map(|&(view, _)| of(move |v| v.view = Some(view))).collect(),
+        ));
     }
     if args.up.is_some() {
-        let axes = [Axis::PlusX, Axis::MinusX, Axis::PlusY, Axis::MinusY, Axis::PlusZ, Axis::MinusZ];
+        let axes =
+            [Axis::PlusX, Axis::MinusX, Axis::PlusY, Axis::MinusY, Axis::PlusZ, Axis::MinusZ];
         tried.push(("--up", axes.map(|axis| of(move |v| v.up = Some(axis))).into()));
     }
     let mut try_points = |option, is_typed: bool, set: fn(&mut Viewpoint, Option<[f64; 3]>)| {
@@ -33,10 +42,13 @@ pub(crate) fn idle(args: &CameraArgs, state: &State, renderer: &mut Renderer) ->
             tried.push((option, values.map(|value| of(move |v| set(v, value))).into()));
         }
     };
-    try_points("--camera-focal-point", args.camera_focal_point.is_some(), |v, value| v.focal_point = value);
+    try_points("--camera-focal-point", args.camera_focal_point.is_some(), |v, value| {
+        v.focal_point = value
+    });
     try_points("--camera-view-up", args.camera_view_up.is_some(), |v, value| v.view_up = value);
     // The camera that a scene has anyway may be named.
-    let viewpoint = Viewpoint { camera_index: state.viewpoint.camera_index, ..Viewpoint::default() };
+    let viewpoint =
+        Viewpoint { camera_index: state.viewpoint.camera_index, ..Viewpoint::default() };
     if args.camera_index.is_some() && seen(&State { viewpoint, ..state.clone() }, renderer) != own {
         tried.push(("--camera-index", vec![of(|v| v.camera_index = None)]));
     }

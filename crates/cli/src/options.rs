@@ -1,5 +1,5 @@
-//! Options as other programs give them: by name, with `_` for `-`, and values as texts. They are read, checked and refused as on the
-//! command line.
+//! Options as other programs give them: by name, with `_` for `-`, and values as texts. They are
+//! read, checked and refused as on the command line.
 
 use crate::args::{Cli, Verb};
 use crate::draw_args::DrawArgs;
@@ -75,7 +75,8 @@ impl Purpose {
         if self == Self::Draw { "draw" } else { "render" }
     }
 
-    /// Whether an option of the verb is meant for this purpose; the others are about files, reports and processes.
+    /// Whether an option of the verb is meant for this purpose; the others are about files, reports
+    /// and processes.
     fn takes(self, argument: &Arg) -> bool {
         let name = argument.get_long().unwrap_or_default();
         let heading = argument.get_help_heading().unwrap_or_default();
@@ -92,7 +93,8 @@ impl Purpose {
     pub fn names(self) -> Vec<String> {
         let command = Cli::command();
         let verb = command.find_subcommand(self.verb());
-        let arguments = verb.into_iter().flat_map(clap::Command::get_arguments).filter(|a| self.takes(a));
+        let arguments =
+            verb.into_iter().flat_map(clap::Command::get_arguments).filter(|a| self.takes(a));
         arguments.filter_map(|a| Some(a.get_long()?.replace('-', "_"))).collect()
     }
 }
@@ -101,23 +103,33 @@ impl Purpose {
 fn typed(purpose: Purpose, given: &[(String, Given)]) -> Result<Vec<String>, Failure> {
     let command = Cli::command();
     let verb = command.find_subcommand(purpose.verb()).expect("the verb is there");
-    let mut words = vec!["vitral".to_owned(), purpose.verb().to_owned(), "builtin:teapot".to_owned()];
+    let mut words =
+        vec!["vitral".to_owned(), purpose.verb().to_owned(), "builtin:teapot".to_owned()];
     words.push(format!("--output={}", if purpose == Purpose::Draw { "-" } else { "picture.png" }));
     for (name, given) in given {
         let long = name.replace('_', "-");
-        let argument = verb.get_arguments().find(|a| a.get_long() == Some(long.as_str()) && purpose.takes(a));
+        let argument =
+            verb.get_arguments().find(|a| a.get_long() == Some(long.as_str()) && purpose.takes(a));
         let argument = argument.ok_or_else(|| unknown(purpose, name))?;
 
-        words.extend(option_words(argument, &long, given).map_err(|why| Failure::usage(format!("{name}: {why}")))?);
+        words.extend(
+            option_words(argument, &long, given)
+                .map_err(|why| Failure::usage(format!("{name}: {why}")))?,
+        );
     }
     Ok(words)
 }
 
 /// An option as it is typed on the command line, if it is given at all; else what it requires.
-pub(crate) fn option_words(argument: &Arg, long: &str, given: &Given) -> Result<Vec<String>, &'static str> {
+pub(crate) fn option_words(
+    argument: &Arg,
+    long: &str,
+    given: &Given,
+) -> Result<Vec<String>, &'static str> {
     // A switch is there or not; `on` and `off` are values.
     let is_switch = matches!(argument.get_action(), ArgAction::SetTrue);
-    let may_be_bare = is_switch || argument.get_num_args().is_some_and(|range| range.min_values() == 0);
+    let may_be_bare =
+        is_switch || argument.get_num_args().is_some_and(|range| range.min_values() == 0);
     let with = |value: &str| vec![format!("--{long}={value}")];
     Ok(match given {
         Given::Switch(false) if may_be_bare => Vec::new(),
@@ -265,7 +277,8 @@ impl Request {
         Ok((made.into_drawing(), warnings))
     }
 
-    /// The drawing as the bytes of a file with this name, whose extension tells the format; `-` is SVG.
+    /// The drawing as the bytes of a file with this name, whose extension tells the format; `-` is
+    /// SVG.
     ///
     /// # Errors
     /// A format that is not there, or cannot hold what was asked for.
@@ -300,14 +313,22 @@ mod tests {
             ("lighting".to_owned(), Given::Switch(false)),
             ("cull".to_owned(), Given::List(vec!["frustum".into(), "back-face".into()])),
             ("depth_cue".to_owned(), Given::Switch(true)),
-            ("light".to_owned(), Given::List(vec!["point:position=1,2,3".into(), "ambient".into()])),
+            (
+                "light".to_owned(),
+                Given::List(vec!["point:position=1,2,3".into(), "ambient".into()]),
+            ),
         ];
         let state = Resolved::new(Purpose::Render, &given).unwrap().state;
-        assert_eq!((state.settings.picture.width, state.settings.visibility), (64, vitral::Visibility::SCAN_LINE));
+        assert_eq!(
+            (state.settings.picture.width, state.settings.visibility),
+            (64, vitral::Visibility::SCAN_LINE)
+        );
         assert_eq!(state.settings.picture.lines, vitral::Lines::Edges);
         assert!(!state.settings.shading.lighting && state.settings.picture.depth_cue.is_some());
         assert_eq!(state.lights.map(|lights| lights.len()), Some(2));
-        assert!(state.settings.cull.frustum && state.settings.cull.back_face && state.models.is_empty());
+        assert!(
+            state.settings.cull.frustum && state.settings.cull.back_face && state.models.is_empty()
+        );
     }
 
     #[test]
@@ -317,14 +338,20 @@ mod tests {
             (failure.message().to_owned(), failure.hint().unwrap_or_default().to_owned())
         };
         let (message, hint) = failure(Purpose::Render, "visiblity", "z-buffer");
-        assert_eq!((message.as_str(), hint.as_str()), ("there is no option visiblity", "did you mean visibility?"));
+        assert_eq!(
+            (message.as_str(), hint.as_str()),
+            ("there is no option visiblity", "did you mean visibility?")
+        );
         let (_, hint) = failure(Purpose::Render, "crease_angle", "30");
         assert_eq!(hint, "give it to vitral.load");
         let (message, _) = failure(Purpose::Render, "visibility", "zbuffer");
         assert!(message.contains("zbuffer"), "{message}");
         // Files and reports are the program's own business.
         for name in ["output", "json", "turntable", "save_state", "config", "exercise", "quiet"] {
-            assert!(failure(Purpose::Render, name, "x").0.starts_with("there is no option"), "{name}");
+            assert!(
+                failure(Purpose::Render, name, "x").0.starts_with("there is no option"),
+                "{name}"
+            );
         }
     }
 
@@ -334,7 +361,10 @@ mod tests {
         let request = Request::new(&given, &State::default()).unwrap();
         let renderer = vitral::open("builtin:cubs").unwrap();
         let (drawing, warnings) = request.draw(&renderer, None, vitral::execution(1)).unwrap();
-        assert_eq!(([drawing.width, drawing.height], warnings), ([148.0, 210.0], Vec::<String>::new()));
+        assert_eq!(
+            ([drawing.width, drawing.height], warnings),
+            ([148.0, 210.0], Vec::<String>::new())
+        );
         let svg = request.encode(drawing.clone(), "-".into()).unwrap();
         assert!(svg.starts_with(b"<svg"));
         assert!(request.encode(drawing.clone(), "a.pdf".into()).unwrap().starts_with(b"%PDF"));

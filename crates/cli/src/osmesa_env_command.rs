@@ -9,8 +9,8 @@ use std::sync::OnceLock;
 /// The library's name at run time.
 const LIBRARY: &str = "libOSMesa.so.8";
 
-/// Where the library may be, seen from the folder of this program: beside it, in an installation, in cargo's folder, and
-/// there for programs in `target/PROFILE/deps` too.
+/// Where the library may be, seen from the folder of this program: beside it, in an installation,
+/// in cargo's folder, and there for programs in `target/PROFILE/deps` too.
 const PLACES: [&str; 5] = [".", "../lib", "../lib/vitral", "../osmesa", "../../osmesa"];
 
 /// Where the library is, if the program that runs the command knows.
@@ -46,13 +46,17 @@ fn find(chosen: Option<&Path>, beside: Option<&Path>) -> Result<PathBuf, Failure
     let Some(folder) = places.iter().find(|folder| folder.join(LIBRARY).is_file()) else {
         let looked: Vec<String> = places.iter().map(|place| place.display().to_string()).collect();
         let message = match looked.is_empty() {
-            true => format!("{LIBRARY} is looked for beside this program, and the system does not tell where that is"),
+            true => format!(
+                "{LIBRARY} is looked for beside this program, and the system does not tell where that is"
+            ),
             false => format!("{LIBRARY} is not in {}", looked.join(", ")),
         };
         return Err(Failure::with_code(MISSING, message)
             .with_hint("`cargo xtask osmesa` builds it into target/osmesa; --lib DIR names the folder where it is"));
     };
-    folder.canonicalize().map_err(|e| Failure::with_code(MISSING, format!("{}: {e}", folder.display())))
+    folder
+        .canonicalize()
+        .map_err(|e| Failure::with_code(MISSING, format!("{}: {e}", folder.display())))
 }
 
 /// The line, for POSIX shells. What was in `LD_LIBRARY_PATH` stays behind our folder.
@@ -61,7 +65,9 @@ fn line(folder: &Path, before: Option<&OsStr>) -> Result<String, Failure> {
         return Err(Failure::other(format!("{}: the path is not Unicode", folder.display())));
     };
     if folder.contains(':') {
-        return Err(Failure::other(format!("{folder}: LD_LIBRARY_PATH cannot name a folder with a colon")));
+        return Err(Failure::other(format!(
+            "{folder}: LD_LIBRARY_PATH cannot name a folder with a colon"
+        )));
     }
     // Said twice, it is still there once.
     let before = before.map(OsStr::to_string_lossy).unwrap_or_default();
@@ -74,7 +80,11 @@ fn line(folder: &Path, before: Option<&OsStr>) -> Result<String, Failure> {
 /// A word that a POSIX shell reads as it is.
 fn quoted(text: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "/._-:+,@%=".contains(c);
-    if text.chars().all(plain) { text.to_owned() } else { format!("'{}'", text.replace('\'', "'\\''")) }
+    if text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
 }
 
 #[cfg(test)]
@@ -83,10 +93,14 @@ mod tests {
 
     #[test]
     fn the_folder_comes_first_and_once() {
-        let line = |before: Option<&str>| line(Path::new("/a b/osmesa"), before.map(OsStr::new)).unwrap();
+        let line =
+            |before: Option<&str>| line(Path::new("/a b/osmesa"), before.map(OsStr::new)).unwrap();
         let rest = "MUJOCO_GL=osmesa PYOPENGL_PLATFORM=osmesa\n";
         assert_eq!(line(None), format!("export LD_LIBRARY_PATH='/a b/osmesa' {rest}"));
-        assert_eq!(line(Some("/x:/a b/osmesa::/y")), format!("export LD_LIBRARY_PATH='/a b/osmesa:/x:/y' {rest}"));
+        assert_eq!(
+            line(Some("/x:/a b/osmesa::/y")),
+            format!("export LD_LIBRARY_PATH='/a b/osmesa:/x:/y' {rest}")
+        );
         assert!(super::line(Path::new("/a:b"), None).is_err());
         assert_eq!([quoted("/a-b.c"), quoted("it's")], ["/a-b.c", "'it'\\''s'"]);
     }

@@ -11,7 +11,8 @@ use vitral::{Channel, EncodeOptions, Frame, PictureFormat};
 const FRAME_RATE: f64 = 25.0;
 
 /// What helps where one file would get several frames.
-pub(crate) const FRAMES_HINT: &str = "put {frame} or {frame:4} into its name, or write a .gif, .webp or .apng";
+pub(crate) const FRAMES_HINT: &str =
+    "put {frame} or {frame:4} into its name, or write a .gif, .webp or .apng";
 
 /// A file, or standard output, for one channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,17 +32,27 @@ impl Output {
         formats: &[PictureFormat],
     ) -> Result<Vec<Self>, Failure> {
         // Refuse numbers that do not fit together, and outputs that write over each other.
-        let channels = if channels.is_empty() && outputs.len() == 1 { &[Channel::Color] } else { channels };
+        let channels =
+            if channels.is_empty() && outputs.len() == 1 { &[Channel::Color] } else { channels };
         if channels.len() != outputs.len() {
             let counts = format!("{} --channel for {} --output", channels.len(), outputs.len());
-            return Err(Failure::usage(counts).with_hint("the n-th channel goes to the n-th output"));
+            return Err(
+                Failure::usage(counts).with_hint("the n-th channel goes to the n-th output")
+            );
         }
         if formats.len() > 1 && formats.len() != outputs.len() {
             let counts = format!("{} --format for {} --output", formats.len(), outputs.len());
-            return Err(Failure::usage(counts).with_hint("give one format for all outputs, or one for each"));
+            return Err(Failure::usage(counts)
+                .with_hint("give one format for all outputs, or one for each"));
         }
-        if let Some(twice) = outputs.iter().enumerate().find(|(i, o)| outputs[..*i].contains(o) && !is_null(o)) {
-            let name = if report::is_standard(twice.1) { "standard output".into() } else { twice.1.to_string_lossy() };
+        if let Some(twice) =
+            outputs.iter().enumerate().find(|(i, o)| outputs[..*i].contains(o) && !is_null(o))
+        {
+            let name = if report::is_standard(twice.1) {
+                "standard output".into()
+            } else {
+                twice.1.to_string_lossy()
+            };
             return Err(Failure::usage(format!("{name} cannot hold two pictures")));
         }
 
@@ -55,10 +66,17 @@ impl Output {
     }
 
     /// What holds each picture of a sequence that shows steps.
-    pub(crate) fn sequence(option: &str, pattern: &Path, formats: &[PictureFormat]) -> Result<Self, Failure> {
-        let output = Self::pair(&[pattern.to_owned()], &[Channel::Steps], &formats[..formats.len().min(1)])?.remove(0);
+    pub(crate) fn sequence(
+        option: &str,
+        pattern: &Path,
+        formats: &[PictureFormat],
+    ) -> Result<Self, Failure> {
+        let output =
+            Self::pair(&[pattern.to_owned()], &[Channel::Steps], &formats[..formats.len().min(1)])?
+                .remove(0);
         if !output.holds_frames() {
-            let what = format!("{option} {}: several pictures cannot share this name", pattern.display());
+            let what =
+                format!("{option} {}: several pictures cannot share this name", pattern.display());
             return Err(Failure::usage(what).with_hint(FRAMES_HINT));
         }
         Ok(output)
@@ -104,7 +122,13 @@ impl Output {
         if count < 2 || !self.is_animation() {
             return Ok(None);
         }
-        Ok(Some(Animation::new(self.channel, self.format, count, rate.unwrap_or(FRAME_RATE), options)?))
+        Ok(Some(Animation::new(
+            self.channel,
+            self.format,
+            count,
+            rate.unwrap_or(FRAME_RATE),
+            options,
+        )?))
     }
 
     /// The file of a frame: `{model}` and `{frame}` or `{frame:4}` filled in.
@@ -123,18 +147,30 @@ impl Output {
     }
 
     /// Whether each of the frames has a name and a place: what is wrong is told before the work.
-    pub(crate) fn check_places(&self, model: &OsStr, frames: RangeInclusive<u32>) -> Result<(), Failure> {
+    pub(crate) fn check_places(
+        &self,
+        model: &OsStr,
+        frames: RangeInclusive<u32>,
+    ) -> Result<(), Failure> {
         if self.is_standard() {
             return Ok(());
         }
         // Of most turntables all frames go into one folder.
-        let in_one_folder = self.pattern.parent().is_none_or(|folder| !folder.to_string_lossy().contains('{'));
+        let in_one_folder =
+            self.pattern.parent().is_none_or(|folder| !folder.to_string_lossy().contains('{'));
         let checked = if in_one_folder { 1 } else { usize::MAX };
-        frames.take(checked).try_for_each(|frame| Ok(picture::check_place(self.path(model, frame)?)?))
+        frames
+            .take(checked)
+            .try_for_each(|frame| Ok(picture::check_place(self.path(model, frame)?)?))
     }
 
     /// Encodes the channel and writes it.
-    pub(crate) fn write(&self, path: &Path, frame: &Frame, options: &EncodeOptions) -> Result<(), Failure> {
+    pub(crate) fn write(
+        &self,
+        path: &Path,
+        frame: &Frame,
+        options: &EncodeOptions,
+    ) -> Result<(), Failure> {
         self.write_bytes(path, &picture::encode_with(frame, self.channel, self.format, options)?)
     }
 
@@ -147,12 +183,19 @@ impl Output {
     }
 }
 
-/// The format that was asked for, else that of the name's extension; PNG for standard output, devices and pipes without one.
-pub(crate) fn format_of(path: &Path, asked: Option<PictureFormat>) -> Result<PictureFormat, Failure> {
+/// The format that was asked for, else that of the name's extension; PNG for standard output,
+/// devices and pipes without one.
+pub(crate) fn format_of(
+    path: &Path,
+    asked: Option<PictureFormat>,
+) -> Result<PictureFormat, Failure> {
     if let Some(format) = asked {
         return Ok(format);
     }
-    let is_device = || path.extension().is_none() && std::fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir());
+    let is_device = || {
+        path.extension().is_none()
+            && std::fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir())
+    };
     if report::is_standard(path) || is_device() {
         return Ok(PictureFormat::Png);
     }
@@ -202,7 +245,8 @@ pub(crate) fn expand(pattern: &OsStr, model: &OsStr, frame: u32) -> Result<OsStr
             None if place == "model" => out.push(model),
             None if place == "frame" => out.push(frame.to_string()),
             Some(("frame", width)) => {
-                let width: usize = width.parse().ok().filter(|w| (1..=20).contains(w)).ok_or_else(unknown)?;
+                let width: usize =
+                    width.parse().ok().filter(|w| (1..=20).contains(w)).ok_or_else(unknown)?;
                 out.push(format!("{frame:0width$}"));
             }
             _ => return Err(unknown()),
@@ -243,7 +287,11 @@ mod tests {
         assert_eq!(ok("{model}-{frame:4}.png"), "deer-0007.png");
         assert_eq!(ok("{frame}/{model}.png"), "7/deer.png");
         assert_eq!(ok("a}{model}}.png"), "a}deer}.png");
-        assert!(["{", "{what}.png", "{frame:x}.png", "{frame:99}.png"].iter().all(|p| expanded(p).is_err()));
+        assert!(
+            ["{", "{what}.png", "{frame:x}.png", "{frame:99}.png"]
+                .iter()
+                .all(|p| expanded(p).is_err())
+        );
         let name = |model: &str| model_name(Path::new(model));
         assert_eq!(name("x/y/deer.obj"), "deer");
         assert_eq!(name("builtin:teapot"), "teapot");
@@ -261,13 +309,17 @@ mod tests {
         assert!(one("a.bmp", Channel::Color).is_err());
         assert!(one("a.npy", Channel::Color).is_err(), "colours are no numbers");
         assert!(one("a.jpg", Channel::Depth).is_err() && one("a.gif", Channel::Depth).is_err());
-        let twice = |name: &str| Output::pair(&[name.into(), name.into()], &[Channel::Color, Channel::Depth], &[]);
+        let twice = |name: &str| {
+            Output::pair(&[name.into(), name.into()], &[Channel::Color, Channel::Depth], &[])
+        };
         assert!(twice("a.png").is_err() && twice("-").is_err());
         #[cfg(unix)]
         assert_eq!(twice("/dev/null").unwrap()[1].format, PictureFormat::Png);
 
         // One format is for all, several go in pairs.
-        let formats = |formats: &[PictureFormat]| Output::pair(&files, &[Channel::Object, Channel::Depth], formats);
+        let formats = |formats: &[PictureFormat]| {
+            Output::pair(&files, &[Channel::Object, Channel::Depth], formats)
+        };
         assert_eq!(
             formats(&[PictureFormat::Npy]).unwrap().iter().map(Output::format).collect::<Vec<_>>(),
             [PictureFormat::Npy; 2]

@@ -7,7 +7,8 @@ use std::sync::OnceLock;
 /// What starts this command in a process of its own, where that is not the program of this process.
 static PROGRAM: OnceLock<Vec<OsString>> = OnceLock::new();
 
-/// Says how the command is started, as a program and its first arguments, where it is part of another program.
+/// Says how the command is started, as a program and its first arguments, where it is part of
+/// another program.
 pub fn started_by(program: Vec<OsString>) {
     // Who says it first knows best.
     let _ = PROGRAM.set(program);

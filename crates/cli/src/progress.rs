@@ -1,4 +1,5 @@
-//! How far the work is: a bar on a terminal, lines elsewhere if they are wanted. Both tell per cent and the time that is left.
+//! How far the work is: a bar on a terminal, lines elsewhere if they are wanted. Both tell per cent
+//! and the time that is left.
 
 use crate::render_args::ProgressWhen;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -6,7 +7,8 @@ use std::io::IsTerminal;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A short bar, and a message that is cut where a terminal is narrow: it begins with what matters most. 40 columns hold per cent and time.
+/// A short bar, and a message that is cut where a terminal is narrow: it begins with what matters
+/// most. 40 columns hold per cent and time.
 const TEMPLATE: &str = "{bar:12} {wide_msg}";
 
 /// Tells how many pictures are done.
@@ -31,7 +33,8 @@ pub(crate) struct Counted {
 }
 
 impl Progress {
-    /// Progress over `total` pictures, which `unit` calls by their name. A single one has none unless it is always wanted.
+    /// Progress over `total` pictures, which `unit` calls by their name. A single one has none
+    /// unless it is always wanted.
     pub(crate) fn new(when: ProgressWhen, quiet: bool, total: u64, unit: &'static str) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let counted = Counted { unit, total, done: 0, start: Instant::now() };
@@ -145,7 +148,8 @@ struct Stage {
 }
 
 impl Stage {
-    /// The stage `name` has come so far; gives whether it has reached another tenth. What goes back begins anew.
+    /// The stage `name` has come so far; gives whether it has reached another tenth. What goes back
+    /// begins anew.
     fn reach(&mut self, name: &str, done: u64, total: u64) -> bool {
         if self.name != name || done < self.done || self.start.is_none() {
             *self = Self { name: name.to_owned(), start: Some(Instant::now()), done, tenth: 0 };

@@ -1,4 +1,5 @@
-//! The options of `vitral render` as typed. What was not typed is `None`, so that files can fill it in.
+//! The options of `vitral render` as typed. What was not typed is `None`, so that files can fill it
+//! in.
 
 use crate::draw_args::line_classes;
 use crate::environment::{self, EnvironmentSource};
@@ -9,9 +10,10 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use vitral::explain::Deciders;
 use vitral::{
-    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, FileColors, Global, GroundShadow, Illumination,
-    Interpolation, LightEdit, LightTerm, LineClass, LineClasses, MaterialOverride, Normals, PictureFormat, Shading,
-    Shadows, Terminator, Transparency, TransparencyOrder, View, Visibility, VolumeCounting,
+    Acceleration, Axis, Channel, ColorSpace, Culling, DVec3, DepthCue, FileColors, Global,
+    GroundShadow, Illumination, Interpolation, LightEdit, LightTerm, LineClass, LineClasses,
+    MaterialOverride, Normals, PictureFormat, Shading, Shadows, Terminator, Transparency,
+    TransparencyOrder, View, Visibility, VolumeCounting,
 };
 
 /// Options of `vitral render`.
@@ -214,12 +216,13 @@ pub(crate) struct AlgorithmArgs {
     #[arg(help_heading = help::SHADOWS)]
     #[arg(long, value_name = "RAYS", value_parser = values::whole(1..=4096u32), num_args = 0..=1, require_equals = true, default_missing_value = DEFAULT_RAYS, help = occlusion_help())]
     pub(crate) ambient_occlusion: Option<u32>,
-    /// How far away what is near may be for --ambient-occlusion, in the model's unit [default: half the radius of the scene]
+    /// How far away what is near may be for --ambient-occlusion, in the model's unit [default: half
+    /// the radius of the scene]
     #[arg(help_heading = help::SHADOWS)]
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) occlusion_radius: Option<f64>,
-    /// A ground at the lowest point of the model that only shows shadow: it darkens the background, a transparent one as well
-    /// [default: none; auto without a kind]
+    /// A ground at the lowest point of the model that only shows shadow: it darkens the background,
+    /// a transparent one as well [default: none; auto without a kind]
     #[arg(help_heading = help::SHADOWS)]
     #[arg(long, value_name = "KIND", value_parser = choices::ground_shadow(), num_args = 0..=1, require_equals = true, default_missing_value = "auto")]
     pub(crate) ground_shadow: Option<GroundShadow>,
@@ -254,7 +257,8 @@ pub(crate) struct AlgorithmArgs {
     #[arg(help_heading = help::GLOBAL)]
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) patch_size: Option<f64>,
-    /// The most patches that send light, with --global radiosity [default: until 0.2 % of the light is left to send]
+    /// The most patches that send light, with --global radiosity [default: until 0.2 % of the light
+    /// is left to send]
     #[arg(help_heading = help::GLOBAL)]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=u64::MAX), allow_negative_numbers = true)]
     pub(crate) iterations: Option<u64>,
@@ -347,7 +351,8 @@ pub(crate) struct LightArgs {
     pub(crate) material: Vec<MaterialOverride>,
 }
 
-/// Rays of `--ambient-occlusion` where it says none: folds look even, at a few times the cost of a picture with shadows.
+/// Rays of `--ambient-occlusion` where it says none: folds look even, at a few times the cost of a
+/// picture with shadows.
 const DEFAULT_RAYS: &str = "32";
 
 /// The help of `--ambient-occlusion`.
@@ -469,7 +474,8 @@ pub(crate) struct EyeArgs {
 }
 
 /// Options that place a camera as the eye of Lab3D does.
-const OTHER_CAMERAS: [&str; 5] = ["view", "camera_index", "camera_position", "camera_focal_point", "camera_direction"];
+const OTHER_CAMERAS: [&str; 5] =
+    ["view", "camera_index", "camera_position", "camera_focal_point", "camera_direction"];
 
 /// Files and limits.
 #[derive(Args, Clone, Debug, Default)]

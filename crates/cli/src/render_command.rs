@@ -38,8 +38,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     if let Some(file) = &args.process.save_state {
         save_state(&plan.state, &plan.models, file)?;
     }
-    let pictures =
-        u64::from(plan.frames.end() - plan.frames.start() + 1) * if plan.apart { plan.models.len() as u64 } else { 1 };
+    let pictures = u64::from(plan.frames.end() - plan.frames.start() + 1)
+        * if plan.apart { plan.models.len() as u64 } else { 1 };
     let (when, quiet) = (args.report.progress.unwrap_or_default(), args.report.quiet);
     let listener = Progress::stages(when, quiet).filter(|_| pictures == 1);
     let execution = execution_within(&args.process, listener)?;
@@ -56,7 +56,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<u8, Failure> {
     })
 }
 
-/// Renders the models one after the other, each as if it were alone; gives the exit code of the first failure.
+/// Renders the models one after the other, each as if it were alone; gives the exit code of the
+/// first failure.
 fn render_apart(
     args: &RenderArgs,
     plan: &Plan,
@@ -74,7 +75,8 @@ fn render_apart(
         let models = vec![model.to_owned()];
         let mut plan = Plan { models, ..plan.clone() };
         plan.state.models = models::in_unicode(&plan.models);
-        let execution = vitral::Execution { budget: execution.budget.renewed(), ..execution.clone() };
+        let execution =
+            vitral::Execution { budget: execution.budget.renewed(), ..execution.clone() };
         render(args, &plan, execution, Instant::now(), progress)
     });
     progress.advance_to(begun * frames);
@@ -168,8 +170,11 @@ fn render(
     }
 
     // Render the frames, and explain a pixel of the first.
-    let drawn = timed(&mut seconds, "frames", || draw_traced(args, plan, &mut renderer, &cameras, progress))?;
-    let explain = |pixel| timed(&mut seconds, "pixel", || explain_pixel(args, &renderer, first, pixel));
+    let drawn = timed(&mut seconds, "frames", || {
+        draw_traced(args, plan, &mut renderer, &cameras, progress)
+    })?;
+    let explain =
+        |pixel| timed(&mut seconds, "pixel", || explain_pixel(args, &renderer, first, pixel));
     let explained = args.report.pixel.map(explain).transpose()?;
 
     // Sum up.
@@ -187,13 +192,15 @@ fn render(
     Ok(Done { stats, result, explained, different: drawn.different })
 }
 
-/// Where the time went: loading and what else was done once, then the stages of all frames together, the longest first.
+/// Where the time went: loading and what else was done once, then the stages of all frames
+/// together, the longest first.
 fn times(once: &Map<String, Value>, frames: &[Value]) -> String {
     let mut stages: BTreeMap<&str, f64> = BTreeMap::new();
     for (name, value) in frames.iter().filter_map(|frame| frame["seconds"].as_object()).flatten() {
         *stages.entry(name).or_default() += value.as_f64().unwrap_or(0.0);
     }
-    let mut stages: Vec<(&str, f64)> = stages.into_iter().filter(|(_, seconds)| *seconds > 0.0).collect();
+    let mut stages: Vec<(&str, f64)> =
+        stages.into_iter().filter(|(_, seconds)| *seconds > 0.0).collect();
     stages.sort_by(|a, b| b.1.total_cmp(&a.1));
     let tell = |(name, seconds): (&str, f64)| format!("{name} {seconds:.3} s");
     let once = once
@@ -203,7 +210,10 @@ fn times(once: &Map<String, Value>, frames: &[Value]) -> String {
         .join(", ");
     match stages.is_empty() {
         true => format!("time: {once}"),
-        false => format!("time: {once} ({})", stages.into_iter().map(tell).collect::<Vec<_>>().join(", ")),
+        false => format!(
+            "time: {once} ({})",
+            stages.into_iter().map(tell).collect::<Vec<_>>().join(", ")
+        ),
     }
 }
 
@@ -215,8 +225,13 @@ fn timed<T>(seconds: &mut Map<String, Value>, name: &str, work: impl FnOnce() ->
     done
 }
 
-/// A renderer with the models, the settings and a solution of radiosity as asked for, and the warnings of the files.
-fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<(Renderer, Vec<String>), Failure> {
+/// A renderer with the models, the settings and a solution of radiosity as asked for, and the
+/// warnings of the files.
+fn load(
+    args: &RenderArgs,
+    plan: &Plan,
+    execution: vitral::Execution,
+) -> Result<(Renderer, Vec<String>), Failure> {
     let scene = models::load_scene(
         &plan.state,
         &plan.models,
@@ -243,7 +258,8 @@ fn load(args: &RenderArgs, plan: &Plan, execution: vitral::Execution) -> Result<
     Ok((renderer, warnings))
 }
 
-/// Draws the pictures, if any are wanted, with a trace of the steps and a picture of the structure if these are; saves the solution of radiosity.
+/// Draws the pictures, if any are wanted, with a trace of the steps and a picture of the structure
+/// if these are; saves the solution of radiosity.
 fn draw_traced(
     args: &RenderArgs,
     plan: &Plan,
@@ -264,7 +280,14 @@ fn draw_traced(
     if let Some(output) = &plan.steps_video {
         let camera = &cameras[*plan.frames.start() as usize];
         let options = encode_options(plan);
-        drawn.written.extend(step_pictures::video(args, output, &model_of(plan), renderer, camera, &options)?);
+        drawn.written.extend(step_pictures::video(
+            args,
+            output,
+            &model_of(plan),
+            renderer,
+            camera,
+            &options,
+        )?);
     }
     if let Some(file) = &args.output.save_radiosity
         && let Some(bytes) = renderer.session().save_radiosity()
@@ -331,8 +354,11 @@ fn draw(
         let camera = &cameras[number as usize];
         moments.iter().try_for_each(|moments| moments.show(number, renderer))?;
         let render_start = Instant::now();
-        let mut rendered =
-            if args.output.panels { vitral::panels(renderer, camera)? } else { renderer.render_from(camera)? };
+        let mut rendered = if args.output.panels {
+            vitral::panels(renderer, camera)?
+        } else {
+            renderer.render_from(camera)?
+        };
         if let Some(onlooker) = &mut onlooker {
             onlooker.take_frame(renderer, number)?;
         }
@@ -344,7 +370,8 @@ fn draw(
         let blank = blank::why(renderer, &rendered).map(str::to_owned);
         drawn.different |= blank.is_some() && args.output.fail_if_blank;
         rendered.warnings.extend(blank);
-        let news: Vec<_> = rendered.warnings.iter().filter(|w| !drawn.warnings.contains(*w)).cloned().collect();
+        let news: Vec<_> =
+            rendered.warnings.iter().filter(|w| !drawn.warnings.contains(*w)).cloned().collect();
         if !args.report.quiet {
             report::warnings(&news);
         }
@@ -353,7 +380,8 @@ fn draw(
         // Write it, if it is none that is there already.
         let encode_start = Instant::now();
         let render_seconds = (encode_start - render_start).as_secs_f64();
-        let wanted = plan.reference.as_ref().is_none_or(|expected| differs(args, expected, &rendered.frame));
+        let wanted =
+            plan.reference.as_ref().is_none_or(|expected| differs(args, expected, &rendered.frame));
         drawn.different |= wanted && plan.reference.is_some();
         for (output, animation) in plan.outputs.iter().zip(&mut animations).filter(|_| wanted) {
             if let Some(animation) = animation {
@@ -361,7 +389,11 @@ fn draw(
                 continue;
             }
             let path = output.path(&model, number)?;
-            output.write(&path, &rendered.frame, &EncodeOptions { exposure: rendered.exposure, ..options })?;
+            output.write(
+                &path,
+                &rendered.frame,
+                &EncodeOptions { exposure: rendered.exposure, ..options },
+            )?;
             drawn.note_file(args, output, &path);
         }
 
@@ -409,7 +441,9 @@ fn differs(args: &RenderArgs, expected: &Plane<[u8; 4]>, frame: &Frame) -> bool 
     let threshold = compare_command::threshold_byte(args.output.reference_threshold.unwrap_or(0.0));
     let found = compare::compare(expected, color, threshold);
     let different = compare_command::differs(&found);
-    if let Some(reference) = args.output.reference.as_ref().filter(|_| different && !args.report.quiet) {
+    if let Some(reference) =
+        args.output.reference.as_ref().filter(|_| different && !args.report.quiet)
+    {
         let text = found.as_ref().map_or_else(ToString::to_string, ToString::to_string);
         report::line(&format!("{}: {text}", reference.display()));
     }

@@ -1,4 +1,5 @@
-//! What the user is told: results on standard output, everything else on standard error, one line each.
+//! What the user is told: results on standard output, everything else on standard error, one line
+//! each.
 
 use crate::allocator::output_is_closed;
 use crate::exit::{exit_code, hint};
@@ -68,7 +69,9 @@ impl Failure {
     #[must_use]
     pub(crate) fn about(mut self, model: &Path) -> Self {
         let name = model.to_string_lossy();
-        self.message = self.message.map(|text| if text.starts_with(&*name) { text } else { format!("{name}: {text}") });
+        self.message = self
+            .message
+            .map(|text| if text.starts_with(&*name) { text } else { format!("{name}: {text}") });
         self
     }
 
@@ -77,7 +80,8 @@ impl Failure {
         serde_json::json!({"error": self.message, "exit-code": self.code})
     }
 
-    /// Standard output cannot be written. A reader that has gone away had enough, which is no failure.
+    /// Standard output cannot be written. A reader that has gone away had enough, which is no
+    /// failure.
     pub(crate) fn standard_output(error: &std::io::Error) -> Self {
         match error.kind() {
             std::io::ErrorKind::BrokenPipe => Self { code: 0, message: None, hint: None },
@@ -139,8 +143,13 @@ impl From<clap::Error> for Failure {
                     _ => None,
                 };
                 let verb = similar.map(|name| format!("did you mean the verb `{name}`?"));
-                let hint = verb.or_else(|| for_missing(Path::new(word))).unwrap_or_else(|| HELP.to_owned());
-                return Self::usage(format!("{word}: there is no such verb, and no file of that name")).with_hint(hint);
+                let hint = verb
+                    .or_else(|| for_missing(Path::new(word)))
+                    .unwrap_or_else(|| HELP.to_owned());
+                return Self::usage(format!(
+                    "{word}: there is no such verb, and no file of that name"
+                ))
+                .with_hint(hint);
             }
             ErrorKind::UnknownArgument if SIZES.contains(&context(ContextKind::InvalidArg)) => {
                 let option = context(ContextKind::InvalidArg);
@@ -206,8 +215,8 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     print(&json(value))
 }
 
-/// A value as JSON whose numbers have the digits that they need: numbers of single precision, such as the corners of a mesh, are
-/// told as a file has them, 0.8 and not 0.800000011920929.
+/// A value as JSON whose numbers have the digits that they need: numbers of single precision, such
+/// as the corners of a mesh, are told as a file has them, 0.8 and not 0.800000011920929.
 pub(crate) fn to_value(value: &impl serde::Serialize) -> Result<serde_json::Value, Failure> {
     let mut value = serde_json::to_value(value).map_err(|e| Failure::other(e.to_string()))?;
     shorten(&mut value);
@@ -222,8 +231,12 @@ fn shorten(value: &mut serde_json::Value) {
         Value::Object(fields) => fields.values_mut().for_each(shorten),
         Value::Number(number) => {
             let single = number.as_f64().filter(|_| number.is_f64()).map(|v| (v, v as f32));
-            let exact = single.filter(|(v, single)| f64::from(*single) == *v).map(|(_, single)| single.to_string());
-            if let Some(short) = exact.and_then(|text| text.parse().ok()).and_then(serde_json::Number::from_f64) {
+            let exact = single
+                .filter(|(v, single)| f64::from(*single) == *v)
+                .map(|(_, single)| single.to_string());
+            if let Some(short) =
+                exact.and_then(|text| text.parse().ok()).and_then(serde_json::Number::from_f64)
+            {
                 *number = short;
             }
         }
@@ -284,6 +297,9 @@ mod tests {
     #[test]
     fn a_reader_that_went_away_is_no_failure() {
         let code = |kind: std::io::ErrorKind| Failure::standard_output(&kind.into()).code;
-        assert_eq!([code(std::io::ErrorKind::BrokenPipe), code(std::io::ErrorKind::StorageFull)], [0, 5]);
+        assert_eq!(
+            [code(std::io::ErrorKind::BrokenPipe), code(std::io::ErrorKind::StorageFull)],
+            [0, 5]
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! From options as typed to a whole plan: defaults, then the configuration file, then the state file, then the options.
+//! From options as typed to a whole plan: defaults, then the configuration file, then the state
+//! file, then the options.
 
 use crate::animation_frames;
 use crate::compare_command;
@@ -19,8 +20,8 @@ use std::sync::Arc;
 use vitral::internals::render::registry;
 use vitral::internals::render::trace::structure::drawer;
 use vitral::{
-    Background, Channel, Channels, ColorSpace, Environment, Execution, FileColors, Global, GroundShadow, Lines,
-    Normals, Plane, Settings, State, Transparency, Viewpoint, Visibility,
+    Background, Channel, Channels, ColorSpace, Environment, Execution, FileColors, Global,
+    GroundShadow, Lines, Normals, Plane, Settings, State, Transparency, Viewpoint, Visibility,
 };
 
 /// Largest configuration or state file, in bytes.
@@ -55,7 +56,10 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
 
     // Outputs decide which channels are rendered.
     let outputs = Output::pair(&args.output.output, &args.output.channel, &args.output.format)?;
-    let mut channels = Channels { color: args.output.reference.is_some() || outputs.is_empty(), ..Channels::default() };
+    let mut channels = Channels {
+        color: args.output.reference.is_some() || outputs.is_empty(),
+        ..Channels::default()
+    };
     outputs.iter().for_each(|o| o.channel.request(&mut channels));
     state.settings.picture.channels = channels;
 
@@ -66,8 +70,9 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     check_background_and_pixel(args, &state, &outputs)?;
     step_pictures::check(args, &outputs)?;
     let video = args.output.steps_video.as_deref();
-    let steps_video =
-        video.map(|pattern| Output::sequence("--steps-video", pattern, &args.output.format)).transpose()?;
+    let steps_video = video
+        .map(|pattern| Output::sequence("--steps-video", pattern, &args.output.format))
+        .transpose()?;
 
     if args.output.animation_frames.is_some() {
         state.turntable = None;
@@ -89,7 +94,8 @@ pub(crate) fn resolve(args: &RenderArgs) -> Result<Plan, Failure> {
     Ok(Plan { state, models, apart, outputs, frames, views, steps_video, reference })
 }
 
-/// Refuses what cannot be done for each of several models: reports about one scene, outputs that all would write.
+/// Refuses what cannot be done for each of several models: reports about one scene, outputs that
+/// all would write.
 fn check_models_apart<'o>(
     args: &RenderArgs,
     models: &[PathBuf],
@@ -112,8 +118,13 @@ fn check_models_apart<'o>(
     }
     for output in outputs {
         if !output.names_models() {
-            let what = format!("--output {}: every model would be written to this file", output.pattern().display());
-            return Err(Failure::usage(what).with_hint("put {model} into its name, or add --together"));
+            let what = format!(
+                "--output {}: every model would be written to this file",
+                output.pattern().display()
+            );
+            return Err(
+                Failure::usage(what).with_hint("put {model} into its name, or add --together")
+            );
         }
         models::check_files(models, |model| output.path(model, frame))?;
     }
@@ -157,7 +168,10 @@ pub(crate) fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Fa
     }
     set_picture(state, &args.picture);
     set_algorithms(state, &args.algorithms)?;
-    let files = [("--save-radiosity", &args.output.save_radiosity), ("--load-radiosity", &args.output.load_radiosity)];
+    let files = [
+        ("--save-radiosity", &args.output.save_radiosity),
+        ("--load-radiosity", &args.output.load_radiosity),
+    ];
     if let Some((option, _)) = files.iter().find(|(_, file)| file.is_some())
         && state.settings.global.model != Global::Radiosity
     {
@@ -170,7 +184,8 @@ pub(crate) fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Fa
     if let Some(limit) = args.process.max_memory {
         state.load.max_file_bytes = state.load.max_file_bytes.min(limit);
         // Layers are dropped with a warning rather than that the picture fails.
-        state.settings.transparency.layer_memory = state.settings.transparency.layer_memory.min(limit / 2);
+        state.settings.transparency.layer_memory =
+            state.settings.transparency.layer_memory.min(limit / 2);
     }
     if let Some(views) = args.output.turntable {
         state.turntable = Some(views as usize);
@@ -179,9 +194,14 @@ pub(crate) fn set_options(state: &mut State, args: &RenderArgs) -> Result<(), Fa
 }
 
 /// Refuses options about pictures that are not made.
-fn check_pictures_are_made(args: &RenderArgs, state: &State, outputs: &[Output]) -> Result<(), Failure> {
+fn check_pictures_are_made(
+    args: &RenderArgs,
+    state: &State,
+    outputs: &[Output],
+) -> Result<(), Failure> {
     let output = &args.output;
-    for (option, file) in [("--trace", &args.report.trace), ("--structure", &args.report.structure)] {
+    for (option, file) in [("--trace", &args.report.trace), ("--structure", &args.report.structure)]
+    {
         if let Some(file) = file.as_ref().filter(|_| outputs.is_empty()) {
             let message = format!("{option} {}: no picture is made", file.display());
             return Err(Failure::usage(message).with_hint("give --output"));
@@ -189,9 +209,13 @@ fn check_pictures_are_made(args: &RenderArgs, state: &State, outputs: &[Output])
     }
     let visibility = state.settings.visibility;
     if args.report.structure.is_some() && drawer(visibility).is_none() {
-        let message = format!("--structure: the algorithm {visibility} builds no structure to draw");
-        let drawn: Vec<_> = Visibility::all().filter(|v| drawer(*v).is_some()).map(|v| v.name).collect();
-        return Err(Failure::usage(message).with_hint(format!("give --visibility {}", drawn.join(" or "))));
+        let message =
+            format!("--structure: the algorithm {visibility} builds no structure to draw");
+        let drawn: Vec<_> =
+            Visibility::all().filter(|v| drawer(*v).is_some()).map(|v| v.name).collect();
+        return Err(
+            Failure::usage(message).with_hint(format!("give --visibility {}", drawn.join(" or ")))
+        );
     }
     if let Some(other) = outputs.iter().find(|o| output.panels && o.channel != Channel::Color) {
         return Err(Failure::usage(format!(
@@ -204,26 +228,38 @@ fn check_pictures_are_made(args: &RenderArgs, state: &State, outputs: &[Output])
     }
     let drawn = !outputs.is_empty() || output.reference.is_some();
     if output.save_radiosity.is_some() && !(drawn && state.settings.picture.channels.color) {
-        return Err(Failure::usage("--save-radiosity: no colour picture is made").with_hint("give --output"));
+        return Err(Failure::usage("--save-radiosity: no colour picture is made")
+            .with_hint("give --output"));
     }
     Ok(())
 }
 
-/// Refuses a transparent background in a format without transparency, and a pixel outside the picture.
-fn check_background_and_pixel(args: &RenderArgs, state: &State, outputs: &[Output]) -> Result<(), Failure> {
-    if let Some(opaque) = outputs.iter().find(|o| args.picture.no_background && !o.keeps_transparency()) {
-        let what = format!("--no-background: {} files cannot be transparent", opaque.format().name());
+/// Refuses a transparent background in a format without transparency, and a pixel outside the
+/// picture.
+fn check_background_and_pixel(
+    args: &RenderArgs,
+    state: &State,
+    outputs: &[Output],
+) -> Result<(), Failure> {
+    if let Some(opaque) =
+        outputs.iter().find(|o| args.picture.no_background && !o.keeps_transparency())
+    {
+        let what =
+            format!("--no-background: {} files cannot be transparent", opaque.format().name());
         return Err(Failure::usage(what).with_hint("write a .png, or give --background-color"));
     }
     let [width, height] = [state.settings.picture.width, state.settings.picture.height];
     if let Some([x, y]) = args.report.pixel.filter(|[x, y]| *x >= width || *y >= height) {
-        return Err(Failure::usage(format!("--pixel {x},{y}: the picture has {width}x{height} pixels"))
-            .with_hint("they are counted from 0"));
+        return Err(Failure::usage(format!(
+            "--pixel {x},{y}: the picture has {width}x{height} pixels"
+        ))
+        .with_hint("they are counted from 0"));
     }
     Ok(())
 }
 
-/// The frames to render of a turntable or animation with this many views; each needs a name of its own.
+/// The frames to render of a turntable or animation with this many views; each needs a name of its
+/// own.
 fn frames_of(
     args: &RenderArgs,
     views: u32,
@@ -233,14 +269,18 @@ fn frames_of(
     let sequence = if args.output.animation_frames.is_some() { "animation" } else { "turntable" };
     let frames = args.output.frames.clone().unwrap_or(0..=views - 1);
     if *frames.end() >= views {
-        return Err(Failure::usage(format!("--frames {}: the {sequence} has {views} frames", frames.end()))
-            .with_hint("they are counted from 0"));
+        return Err(Failure::usage(format!(
+            "--frames {}: the {sequence} has {views} frames",
+            frames.end()
+        ))
+        .with_hint("they are counted from 0"));
     }
     if frames.end() > frames.start() && outputs.iter().any(|o| !o.holds_frames()) {
         let what = format!("--output has room for one picture, and the {sequence} has {views}");
         return Err(Failure::usage(what).with_hint(FRAMES_HINT));
     }
-    if let Some(animation) = outputs.iter().find(|o| frames.end() > frames.start() && o.is_animation())
+    if let Some(animation) =
+        outputs.iter().find(|o| frames.end() > frames.start() && o.is_animation())
         && args.output.reference.is_some()
     {
         let what = format!("--reference: {} holds several pictures", animation.pattern().display());
@@ -249,13 +289,15 @@ fn frames_of(
     let several = frames.end() > frames.start() || args.output.steps_video.is_some();
     let is_animated = outputs.iter().chain(steps_video).any(Output::is_animation);
     if args.output.frame_rate.is_some() && !(several && is_animated) {
-        return Err(Failure::usage("--frame-rate: no animation is written")
-            .with_hint("give --turntable, --animation-frames or --steps-video, and a .gif, .webp or .apng"));
+        return Err(Failure::usage("--frame-rate: no animation is written").with_hint(
+            "give --turntable, --animation-frames or --steps-video, and a .gif, .webp or .apng",
+        ));
     }
     Ok(frames)
 }
 
-/// Whether all that is written has a place: nobody wants to hear of a mistyped folder after hours of work.
+/// Whether all that is written has a place: nobody wants to hear of a mistyped folder after hours
+/// of work.
 fn check_files<'o>(
     args: &RenderArgs,
     models: &[PathBuf],
@@ -266,9 +308,12 @@ fn check_files<'o>(
         [] => vec![model_name(Path::new(""))],
         models => models.iter().map(|model| model_name(model)).collect(),
     };
-    outputs.try_for_each(|output| names.iter().try_for_each(|model| output.check_places(model, frames.clone())))?;
+    outputs.try_for_each(|output| {
+        names.iter().try_for_each(|model| output.check_places(model, frames.clone()))
+    })?;
     let stats = args.report.stats_file.as_ref().filter(|file| !report::is_standard(file));
-    let files = [stats, args.output.save_radiosity.as_ref(), args.output.export_shadow_polygons.as_ref()];
+    let files =
+        [stats, args.output.save_radiosity.as_ref(), args.output.export_shadow_polygons.as_ref()];
     files.into_iter().flatten().try_for_each(|file| Ok(vitral::picture::check_place(file)?))
 }
 
@@ -287,7 +332,9 @@ fn check_standard_output(args: &RenderArgs, outputs: &[Output]) -> Result<(), Fa
     ];
     let mut wanted = wanted.iter().filter(|(wants, _)| *wants).map(|(_, option)| option);
     match (wanted.next(), wanted.next()) {
-        (Some(one), Some(other)) => Err(Failure::usage(format!("{one} and {other} both write to standard output"))),
+        (Some(one), Some(other)) => {
+            Err(Failure::usage(format!("{one} and {other} both write to standard output")))
+        }
         _ => Ok(()),
     }
 }
@@ -295,7 +342,10 @@ fn check_standard_output(args: &RenderArgs, outputs: &[Output]) -> Result<(), Fa
 /// Writes the state into the file that `--save-state` names.
 pub(crate) fn save_state(state: &State, models: &[PathBuf], file: &Path) -> Result<(), Failure> {
     if let Some(odd) = models.iter().find(|model| model.to_str().is_none()) {
-        let what = format!("--save-state: the name {} is not Unicode, which JSON cannot hold", odd.display());
+        let what = format!(
+            "--save-state: the name {} is not Unicode, which JSON cannot hold",
+            odd.display()
+        );
         return Err(Failure::usage(what).with_hint("rename the model, or name a link to it"));
     }
     let mut state = state.clone();
@@ -314,7 +364,8 @@ fn config_file(args: &ProcessArgs) -> Result<Option<PathBuf>, Failure> {
         return Ok(Some(file.clone()));
     }
     let folder = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
-    let base = folder("XDG_CONFIG_HOME").or_else(|| folder("HOME").map(|home| home.join(".config")));
+    let base =
+        folder("XDG_CONFIG_HOME").or_else(|| folder("HOME").map(|home| home.join(".config")));
     Ok(base.map(|b| b.join("vitral").join("config.json")).filter(|f| f.is_file()))
 }
 
@@ -400,13 +451,14 @@ fn set_surfaces(settings: &mut Settings, args: &AlgorithmArgs) {
 fn set_transparency(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failure> {
     settings.transparency.model = args.transparency.unwrap_or(settings.transparency.model);
     if args.kay_exponent.is_some() && settings.transparency.model != Transparency::Kay {
-        return Err(
-            Failure::usage("--kay-exponent: it needs Kay's model of transparency").with_hint("add --transparency kay")
-        );
+        return Err(Failure::usage("--kay-exponent: it needs Kay's model of transparency")
+            .with_hint("add --transparency kay"));
     }
-    settings.transparency.kay_exponent = args.kay_exponent.unwrap_or(settings.transparency.kay_exponent);
+    settings.transparency.kay_exponent =
+        args.kay_exponent.unwrap_or(settings.transparency.kay_exponent);
     settings.transparency.order = args.transparency_order.unwrap_or(settings.transparency.order);
-    settings.transparency.scatter_samples = args.scatter_samples.unwrap_or(settings.transparency.scatter_samples);
+    settings.transparency.scatter_samples =
+        args.scatter_samples.unwrap_or(settings.transparency.scatter_samples);
     Ok(())
 }
 
@@ -415,19 +467,24 @@ fn set_global(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Failu
     if let Some(global) = args.global {
         // Each model comes with its own shadows, unless others are chosen.
         let row = registry::GLOBALS.iter().find(|row| row.value == global);
-        if let Some(row) = row.filter(|row| args.shadows.is_none() && row.value != settings.global.model) {
+        if let Some(row) =
+            row.filter(|row| args.shadows.is_none() && row.value != settings.global.model)
+        {
             settings.shadows.algorithm = row.shadows;
         }
         settings.global.model = global;
     }
     if let Some(depth) = args.max_depth {
         if settings.global.model != Global::RayTrace {
-            return Err(Failure::usage("--max-depth: no rays are traced").with_hint("add --global ray-trace"));
+            return Err(Failure::usage("--max-depth: no rays are traced")
+                .with_hint("add --global ray-trace"));
         }
         settings.global.max_depth = depth;
     }
     let radiosity = settings.global.model == Global::Radiosity;
-    for (option, given) in [("--patch-size", args.patch_size.is_some()), ("--iterations", args.iterations.is_some())] {
+    for (option, given) in
+        [("--patch-size", args.patch_size.is_some()), ("--iterations", args.iterations.is_some())]
+    {
         if given && !radiosity {
             return Err(no_radiosity(option));
         }
@@ -456,18 +513,23 @@ fn set_shadows(settings: &mut Settings, args: &AlgorithmArgs) -> Result<(), Fail
     set_occlusion(settings, args)?;
     let has_ground = settings.shadows.ground != GroundShadow::None;
     if args.light_samples.is_some() && settings.shadows.algorithm.is_none && !has_ground {
-        return Err(Failure::usage("--light-samples: no shadows are computed").with_hint("add --shadows ray"));
+        return Err(Failure::usage("--light-samples: no shadows are computed")
+            .with_hint("add --shadows ray"));
     }
     if args.terminator.is_some() && settings.shadows.algorithm.is_none {
-        return Err(Failure::usage("--terminator: no shadows are computed").with_hint("add --shadows ray"));
+        return Err(
+            Failure::usage("--terminator: no shadows are computed").with_hint("add --shadows ray")
+        );
     }
     settings.shadows.terminator = args.terminator.unwrap_or(settings.shadows.terminator);
     settings.shadows.light_samples = args.light_samples.unwrap_or(settings.shadows.light_samples);
-    let of_maps = [("--shadow-map-size", args.shadow_map_size), ("--shadow-cascades", args.shadow_cascades)];
+    let of_maps =
+        [("--shadow-map-size", args.shadow_map_size), ("--shadow-cascades", args.shadow_cascades)];
     if let Some((option, _)) =
         of_maps.iter().find(|(_, given)| given.is_some() && !settings.shadows.algorithm.draws_maps)
     {
-        return Err(Failure::usage(format!("{option}: no shadow maps are drawn")).with_hint("add --shadows map"));
+        return Err(Failure::usage(format!("{option}: no shadow maps are drawn"))
+            .with_hint("add --shadows map"));
     }
     settings.shadows.map_size = args.shadow_map_size.unwrap_or(settings.shadows.map_size);
     settings.shadows.cascades = args.shadow_cascades.unwrap_or(settings.shadows.cascades);
@@ -486,7 +548,8 @@ fn set_normals(state: &mut State, args: &AlgorithmArgs) -> Result<(), Failure> {
 
 /// An option of radiosity without radiosity.
 fn no_radiosity(option: &str) -> Failure {
-    Failure::usage(format!("{option}: radiosity is not computed")).with_hint("add --global radiosity")
+    Failure::usage(format!("{option}: radiosity is not computed"))
+        .with_hint("add --global radiosity")
 }
 
 /// How models are read.
@@ -497,16 +560,21 @@ pub(crate) fn set_reading(state: &mut State, args: &ProcessArgs) {
 }
 
 pub(crate) fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Failure> {
-    if args.file_colors == Some(FileColors::Srgb) && state.settings.picture.color_space == ColorSpace::Raw {
-        return Err(Failure::usage("--file-colors srgb: with --color-space raw, colours are the numbers in the file")
-            .with_hint("leave out one of the two"));
+    if args.file_colors == Some(FileColors::Srgb)
+        && state.settings.picture.color_space == ColorSpace::Raw
+    {
+        return Err(Failure::usage(
+            "--file-colors srgb: with --color-space raw, colours are the numbers in the file",
+        )
+        .with_hint("leave out one of the two"));
     }
     match &args.environment {
         Some(EnvironmentSource::Kind(kind)) => {
             (state.settings.shading.environment, state.environment_image) = (*kind, None);
         }
         Some(EnvironmentSource::File(file)) => {
-            (state.settings.shading.environment, state.environment_image) = (Environment::Auto, Some(file.clone()));
+            (state.settings.shading.environment, state.environment_image) =
+                (Environment::Auto, Some(file.clone()));
         }
         None => {}
     }
@@ -514,7 +582,8 @@ pub(crate) fn set_lights(state: &mut State, args: &LightArgs) -> Result<(), Fail
     state.settings.shading.lighting = args.lighting.unwrap_or(state.settings.shading.lighting);
     if !args.light.is_empty() {
         let raw = state.settings.picture.color_space == ColorSpace::Raw;
-        let lights = args.light.iter().map(|text| light_spec::parse(text, raw)).collect::<Result<_, _>>();
+        let lights =
+            args.light.iter().map(|text| light_spec::parse(text, raw)).collect::<Result<_, _>>();
         state.lights = Some(lights.map_err(|e| Failure::usage(format!("--light: {e}")))?);
     }
     state.light_edits.extend(args.light_edit.iter().cloned());
@@ -546,7 +615,9 @@ pub(crate) fn set_viewpoint(viewpoint: &mut Viewpoint, args: &CameraArgs, eye: &
     viewpoint.clip = args.camera_clip.or(viewpoint.clip);
     viewpoint.zoom_factor = args.camera_zoom_factor.unwrap_or(viewpoint.zoom_factor);
     viewpoint.azimuth_degrees = args.camera_azimuth_angle.unwrap_or(viewpoint.azimuth_degrees);
-    viewpoint.elevation_degrees = args.camera_elevation_angle.unwrap_or(viewpoint.elevation_degrees);
+    viewpoint.elevation_degrees =
+        args.camera_elevation_angle.unwrap_or(viewpoint.elevation_degrees);
     viewpoint.eye_rotation = eye.eye_rotation.map(|v| v.to_array()).or(viewpoint.eye_rotation);
-    viewpoint.eye_translation = eye.eye_translation.map(|v| v.to_array()).or(viewpoint.eye_translation);
+    viewpoint.eye_translation =
+        eye.eye_translation.map(|v| v.to_array()).or(viewpoint.eye_translation);
 }

@@ -69,22 +69,31 @@ impl SectionArgs {
         }
     }
 
-    /// The scene with its parts moved and its planes cut, and a warning where there is nothing to see of that.
-    pub(crate) fn apply(&self, mut scene: Scene, execution: &vitral::Execution) -> Result<Scene, Failure> {
+    /// The scene with its parts moved and its planes cut, and a warning where there is nothing to
+    /// see of that.
+    pub(crate) fn apply(
+        &self,
+        mut scene: Scene,
+        execution: &vitral::Execution,
+    ) -> Result<Scene, Failure> {
         let (workers, budget) = (&execution.workers, &execution.budget);
         if let Some(factor) = self.explode.filter(|&factor| factor > 0.0) {
-            scene =
-                scene.exploded_on(factor, workers).map_err(section::SectionError::from).map_err(vitral::Error::from)?;
+            scene = scene
+                .exploded_on(factor, workers)
+                .map_err(section::SectionError::from)
+                .map_err(vitral::Error::from)?;
         }
         if self.section_plane.is_empty() {
             return Ok(scene);
         }
-        scene = section::cut(&scene, &self.section_plane, workers, budget).map_err(vitral::Error::from)?;
+        scene = section::cut(&scene, &self.section_plane, workers, budget)
+            .map_err(vitral::Error::from)?;
         let warning = match scene.nodes.iter().any(|node| node.mesh.is_some()) {
             false => Some("--section-plane: nothing is left of the model"),
             true if !scene.is_cut() => Some("--section-plane: no plane cuts the model"),
-            true => (!scene.has_caps())
-                .then_some("--section-plane: no cut body is closed, so there is no cut surface to hatch"),
+            true => (!scene.has_caps()).then_some(
+                "--section-plane: no cut body is closed, so there is no cut surface to hatch",
+            ),
         };
         scene.warnings.extend(warning.map(str::to_owned));
         Ok(scene)
@@ -97,7 +106,8 @@ fn plane(text: &str) -> Result<SectionPlane, String> {
     let &[x, y, z, nx, ny, nz] = &numbers[..] else {
         return Err("six numbers X,Y,Z,NX,NY,NZ are required, such as 0,0,0,0,0,1".to_owned());
     };
-    SectionPlane::new([x, y, z], [nx, ny, nz]).ok_or_else(|| "the normal NX,NY,NZ must not be 0,0,0".to_owned())
+    SectionPlane::new([x, y, z], [nx, ny, nz])
+        .ok_or_else(|| "the normal NX,NY,NZ must not be 0,0,0".to_owned())
 }
 
 /// `45,2mm` or `none`.
@@ -105,7 +115,8 @@ fn hatch(text: &str) -> Result<Hatching, String> {
     if text == "none" {
         return Ok(Hatching::None);
     }
-    let (angle, distance) = text.split_once(',').ok_or("ANGLE,DISTANCE is required, such as 45,2mm; or none")?;
+    let (angle, distance) =
+        text.split_once(',').ok_or("ANGLE,DISTANCE is required, such as 45,2mm; or none")?;
     let angle = values::number(angle)?;
     let distance = values::positive(distance.strip_suffix("mm").unwrap_or(distance))?;
     if !(LEAST_DISTANCE..=1000.0).contains(&distance) {
@@ -120,12 +131,20 @@ mod tests {
 
     #[test]
     fn planes_and_hatching_are_read() {
-        assert_eq!(plane("1,2,-3,0,0,5").ok(), SectionPlane::new([1.0, 2.0, -3.0], [0.0, 0.0, 1.0]));
+        assert_eq!(
+            plane("1,2,-3,0,0,5").ok(),
+            SectionPlane::new([1.0, 2.0, -3.0], [0.0, 0.0, 1.0])
+        );
         assert!(plane("1,2,3").unwrap_err().contains("six numbers"));
-        assert!(plane("0,0,0,0,0,0").unwrap_err().contains("must not be 0,0,0") && plane("0,0,0,0,0,x").is_err());
+        assert!(
+            plane("0,0,0,0,0,0").unwrap_err().contains("must not be 0,0,0")
+                && plane("0,0,0,0,0,x").is_err()
+        );
         assert_eq!(hatch("45,2mm"), Ok(Hatching::Lines(Hatch::default())));
         assert_eq!(hatch("405,2"), hatch("45,2mm"));
         assert_eq!(hatch("none"), Ok(Hatching::None));
-        assert!(["45", "45,0mm", "45,.01mm", "x,2mm", "45,2cm"].iter().all(|text| hatch(text).is_err()));
+        assert!(
+            ["45", "45,0mm", "45,.01mm", "x,2mm", "45,2cm"].iter().all(|text| hatch(text).is_err())
+        );
     }
 }

@@ -11,7 +11,10 @@ pub(crate) fn for_missing(path: &Path) -> Option<String> {
     if let Some(name) = text.strip_prefix("builtin:") {
         let name = name.split_once('?').map_or(name, |(name, _)| name);
         let listed = "`vitral formats` lists the built-in scenes";
-        return Some(scene(name).map_or(listed.to_owned(), |name| format!("did you mean builtin:{name}? {listed}")));
+        return Some(
+            scene(name)
+                .map_or(listed.to_owned(), |name| format!("did you mean builtin:{name}? {listed}")),
+        );
     }
 
     // A folder that is missing is the first thing to tell.
@@ -20,9 +23,12 @@ pub(crate) fn for_missing(path: &Path) -> Option<String> {
         return Some(format!("there is no folder `{}`", folder.display()));
     }
     let files = beside(folder.unwrap_or(Path::new(".")), &path.file_name()?.to_string_lossy());
-    let files: Vec<String> =
-        files.iter().map(|name| folder.unwrap_or(Path::new("")).join(name).display().to_string()).collect();
-    let scene = scene(&text).filter(|_| path.extension().is_none()).map(|name| format!("builtin:{name}"));
+    let files: Vec<String> = files
+        .iter()
+        .map(|name| folder.unwrap_or(Path::new("")).join(name).display().to_string())
+        .collect();
+    let scene =
+        scene(&text).filter(|_| path.extension().is_none()).map(|name| format!("builtin:{name}"));
     let meant: Vec<String> = files.into_iter().chain(scene).collect();
     if meant.is_empty() { None } else { Some(format!("did you mean {}?", meant.join(" or "))) }
 }
@@ -31,14 +37,16 @@ pub(crate) fn for_missing(path: &Path) -> Option<String> {
 fn beside(folder: &Path, name: &str) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-    let mut near: Vec<_> =
-        names.filter(|n| !n.starts_with('.')).filter_map(|n| Some((distance(name, &n)?, n))).collect();
+    let mut near: Vec<_> = names
+        .filter(|n| !n.starts_with('.'))
+        .filter_map(|n| Some((distance(name, &n)?, n)))
+        .collect();
     near.sort();
     near.into_iter().take(MOST_FILES).map(|(_, name)| name).collect()
 }
 
-/// How many letters differ between a name as typed and one that may have been meant, if it may be: not more than a third, or the
-/// names differ in the extension alone.
+/// How many letters differ between a name as typed and one that may have been meant, if it may be:
+/// not more than a third, or the names differ in the extension alone.
 fn distance(typed: &str, meant: &str) -> Option<usize> {
     let [typed, meant] = [typed, meant].map(str::to_lowercase);
     let stem = |name: &str| Path::new(name).file_stem().map(|stem| stem.to_os_string());
@@ -58,9 +66,11 @@ pub(crate) fn nearest<'n>(name: &str, names: impl IntoIterator<Item = &'n str>) 
     near.min_by_key(|(letters, _)| *letters).map(|(_, meant)| meant)
 }
 
-/// The message about a word that is none of a list's; `alone` says what else there is, such as `; or none alone`.
+/// The message about a word that is none of a list's; `alone` says what else there is, such as
+/// `; or none alone`.
 pub(crate) fn not_one_of(word: &str, names: &[&str], alone: &str) -> String {
-    let meant = nearest(word, names.iter().copied()).map(|name| format!("; did you mean `{name}`?"));
+    let meant =
+        nearest(word, names.iter().copied()).map(|name| format!("; did you mean `{name}`?"));
     format!("`{word}` is not one of {}{alone}{}", names.join(", "), meant.unwrap_or_default())
 }
 
@@ -76,7 +86,10 @@ mod tests {
         assert_eq!(distance("a", "b"), Some(1));
         assert_eq!(distance("", "ab"), None);
         assert_eq!(nearest("creese", ["contour", "crease"]), Some("crease"));
-        assert_eq!(not_one_of("x1y", &["frustum"], "; or none alone"), "`x1y` is not one of frustum; or none alone");
+        assert_eq!(
+            not_one_of("x1y", &["frustum"], "; or none alone"),
+            "`x1y` is not one of frustum; or none alone"
+        );
         assert!(not_one_of("frustrum", &["frustum"], "").ends_with("; did you mean `frustum`?"));
     }
 
@@ -84,7 +97,10 @@ mod tests {
     fn scenes_are_found_with_and_without_their_prefix() {
         let meant = |name: &str| for_missing(Path::new(name)).unwrap_or_default();
         assert_eq!(meant("sphere"), "did you mean builtin:sphere?");
-        assert!(meant("builtin:sphre?slices=8").starts_with("did you mean builtin:sphere? `vitral formats`"));
+        assert!(
+            meant("builtin:sphre?slices=8")
+                .starts_with("did you mean builtin:sphere? `vitral formats`")
+        );
         assert_eq!(meant("builtin:nothing"), "`vitral formats` lists the built-in scenes");
         assert_eq!(meant("no/such/a.obj"), "there is no folder `no/such`");
         assert_eq!(meant("x"), "");

@@ -1,4 +1,5 @@
-//! `--channel steps --step N` and `--steps-video`: pictures as they are after a step of the algorithm.
+//! `--channel steps --step N` and `--steps-video`: pictures as they are after a step of the
+//! algorithm.
 
 use crate::outputs::Output;
 use crate::progress::Progress;
@@ -12,10 +13,11 @@ const MOST_FRAMES: usize = 240;
 
 /// Refuses `--step` where no steps are written.
 pub(crate) fn check(args: &RenderArgs, outputs: &[Output]) -> Result<(), Failure> {
-    if let Some(step) = args.output.step.filter(|_| outputs.iter().all(|o| o.channel != Channel::Steps)) {
-        return Err(
-            Failure::usage(format!("--step {step}: no picture of steps is written")).with_hint("add --channel steps")
-        );
+    if let Some(step) =
+        args.output.step.filter(|_| outputs.iter().all(|o| o.channel != Channel::Steps))
+    {
+        return Err(Failure::usage(format!("--step {step}: no picture of steps is written"))
+            .with_hint("add --channel steps"));
     }
     Ok(())
 }
@@ -49,10 +51,17 @@ pub(crate) fn video(
 ) -> Result<Vec<String>, Failure> {
     let watched = renderer.watch_steps(camera)?;
     let steps = watched.steps.len();
-    let most = args.output.steps_frames.map_or(MOST_FRAMES, |most| if most == 0 { steps } else { most as usize });
+    let most = args
+        .output
+        .steps_frames
+        .map_or(MOST_FRAMES, |most| if most == 0 { steps } else { most as usize });
     let count = steps.min(most).max(1);
-    let mut progress =
-        Progress::new(args.report.progress.unwrap_or_default(), args.report.quiet, count as u64, "pictures");
+    let mut progress = Progress::new(
+        args.report.progress.unwrap_or_default(),
+        args.report.quiet,
+        count as u64,
+        "pictures",
+    );
     let mut animation = output.animation(count as u32, args.output.frame_rate, options)?;
     let (mut replay, mut written) = (Replay::new(&watched), Vec::new());
     for number in 0..count {

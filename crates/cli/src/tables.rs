@@ -29,7 +29,9 @@ fn algorithms_as_text() -> String {
     add_section(&mut text, "Structures for rays (--acceleration)", rows);
     let rows = registry::SHADOWS.iter().map(|s| (s.name, sourced(s.description, s.source)));
     add_section(&mut text, "Shadows (--shadows)", rows);
-    let rows = registry::GLOBALS.iter().map(|g| (g.value.name(), sourced(g.value.description(), g.source)));
+    let rows = registry::GLOBALS
+        .iter()
+        .map(|g| (g.value.name(), sourced(g.value.description(), g.source)));
     add_section(&mut text, "Global illumination (--global)", rows);
     let rows = Illumination::ALL.iter().map(|m| (m.name(), m.description().to_owned()));
     add_section(&mut text, "Illumination (--illumination)", rows);
@@ -44,17 +46,28 @@ fn algorithms_as_text() -> String {
     add_section(&mut text, "Transparency (--transparency)", rows);
     let rows = transparency::ORDERS.iter().map(|o| (o.name, sourced(o.description, o.source)));
     add_section(&mut text, "Orders of transparency (--transparency-order)", rows);
-    let blurring: Vec<_> = transparency::ORDERS.iter().filter(|o| o.blurs).map(|o| o.name).collect();
-    let _ = writeln!(text, "  Translucent surfaces are shown by {}; the others refuse them.", blurring.join(", "));
-    let rows = transparency::TRANSLUCENCY.iter().map(|b| (b.global, sourced(b.description, b.source)));
-    add_section(&mut text, "Translucent surfaces (--material NAME.transmission=translucent), by --global", rows);
+    let blurring: Vec<_> =
+        transparency::ORDERS.iter().filter(|o| o.blurs).map(|o| o.name).collect();
+    let _ = writeln!(
+        text,
+        "  Translucent surfaces are shown by {}; the others refuse them.",
+        blurring.join(", ")
+    );
+    let rows =
+        transparency::TRANSLUCENCY.iter().map(|b| (b.global, sourced(b.description, b.source)));
+    add_section(
+        &mut text,
+        "Translucent surfaces (--material NAME.transmission=translucent), by --global",
+        rows,
+    );
     text
 }
 
 /// Adds the sections about visible-surface algorithms.
 fn add_visibility(text: &mut String) {
     let all = || registry::VISIBILITY.iter();
-    let rows = all().map(|a| (a.name, format!("{} ({} precision; {})", a.description, a.precision, a.source)));
+    let rows = all()
+        .map(|a| (a.name, format!("{} ({} precision; {})", a.description, a.precision, a.source)));
     add_section(text, "Visible surfaces (--visibility)", rows);
     let rows = all().map(|a| {
         let kinds: Vec<_> = a.coherence.iter().map(|kind| kind.name()).collect();
@@ -112,12 +125,21 @@ pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
             _ => "written",
         };
         let extensions = r.extensions.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(" ");
-        let _ = writeln!(text, "{:<12} {:<14} {:<8} {:<14} {}", r.name, extensions, kind(r), ways, r.description);
+        let _ = writeln!(
+            text,
+            "{:<12} {:<14} {:<8} {:<14} {}",
+            r.name,
+            extensions,
+            kind(r),
+            ways,
+            r.description
+        );
     }
     text.push_str("\nScenes that need no file\n");
     for (name, about) in vitral::builtin_names() {
         let _ = writeln!(text, "  {:<30} {about}", format!("builtin:{name}"));
-        let parameters: Vec<String> = vitral::builtin_parameters(name).iter().map(ToString::to_string).collect();
+        let parameters: Vec<String> =
+            vitral::builtin_parameters(name).iter().map(ToString::to_string).collect();
         if !parameters.is_empty() {
             let example = format!("builtin:{name}?{}=N", vitral::builtin_parameters(name)[0].name);
             let _ = writeln!(text, "  {:<30} {example}: {}", "", parameters.join(", "));

@@ -20,14 +20,20 @@ const NOTHING_SEEN: u8 = 4;
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &ThumbnailArgs) -> Result<u8, Failure> {
-    let limits =
-        ProcessArgs { threads: Some(0), time_limit: Some(SECONDS), max_memory: Some(BYTES), ..ProcessArgs::default() };
+    let limits = ProcessArgs {
+        threads: Some(0),
+        time_limit: Some(SECONDS),
+        max_memory: Some(BYTES),
+        ..ProcessArgs::default()
+    };
     let execution = execution_within(&limits, None)?;
     interrupt::heed(&execution.budget.clone(), || {
         // Choose a square picture on nothing.
-        let mut state = State { models: vec![args.model.to_string_lossy().into_owned()], ..State::default() };
+        let mut state =
+            State { models: vec![args.model.to_string_lossy().into_owned()], ..State::default() };
         let picture = &mut state.settings.picture;
-        (picture.width, picture.height, picture.background) = (args.size, args.size, Background::Transparent);
+        (picture.width, picture.height, picture.background) =
+            (args.size, args.size, Background::Transparent);
 
         // Render it.
         let files = std::slice::from_ref(&args.model);
@@ -38,10 +44,14 @@ pub(crate) fn run(args: &ThumbnailArgs) -> Result<u8, Failure> {
 
         // Write it, unless it is empty.
         if let Some(why) = blank::why(&renderer, &rendered) {
-            return Err(Failure::with_code(NOTHING_SEEN, format!("{}: {why}", args.model.display())));
+            return Err(Failure::with_code(
+                NOTHING_SEEN,
+                format!("{}: {why}", args.model.display()),
+            ));
         }
         let options = EncodeOptions { exposure: rendered.exposure, ..EncodeOptions::default() };
-        let bytes = picture::encode_with(&rendered.frame, Channel::Color, PictureFormat::Png, &options)?;
+        let bytes =
+            picture::encode_with(&rendered.frame, Channel::Color, PictureFormat::Png, &options)?;
         picture::write(&args.output, &bytes)?;
         Ok(0)
     })

@@ -1,4 +1,5 @@
-//! `--trace FILE`: the steps of the algorithm, a JSON object a line. `--structure FILE.svg`: the structure that they build.
+//! `--trace FILE`: the steps of the algorithm, a JSON object a line. `--structure FILE.svg`: the
+//! structure that they build.
 
 use crate::render_args::ReportArgs;
 use crate::report::{self, Failure, is_standard};
@@ -34,7 +35,11 @@ struct Line<'s> {
 
 impl Onlooker {
     /// Looks on at `renderer` if anybody asked for that; makes the file of the trace.
-    pub(crate) fn new(args: &ReportArgs, renderer: &mut Renderer, has_frames: bool) -> Result<Option<Self>, Failure> {
+    pub(crate) fn new(
+        args: &ReportArgs,
+        renderer: &mut Renderer,
+        has_frames: bool,
+    ) -> Result<Option<Self>, Failure> {
         if args.trace.is_none() && args.structure.is_none() {
             return Ok(None);
         }
@@ -48,7 +53,8 @@ impl Onlooker {
             };
             Ok::<_, Failure>((path.clone(), BufWriter::new(out)))
         };
-        let (trace, structure) = (args.trace.as_ref().map(open).transpose()?, args.structure.clone());
+        let (trace, structure) =
+            (args.trace.as_ref().map(open).transpose()?, args.structure.clone());
         // At the pixel that is explained, the z-buffer tells each comparison.
         let execution = renderer.execution_mut();
         let collector = Arc::new(Collector::new(execution.budget.clone(), args.pixel));
@@ -62,7 +68,8 @@ impl Onlooker {
         if let Some((path, out)) = &mut self.trace {
             let frame = self.has_frames.then_some(frame);
             for step in &steps {
-                let written = serde_json::to_writer(&mut *out, &Line { frame, step }).map_err(std::io::Error::from);
+                let written = serde_json::to_writer(&mut *out, &Line { frame, step })
+                    .map_err(std::io::Error::from);
                 written.and_then(|()| out.write_all(b"\n")).map_err(|e| failure(path, &e))?;
             }
         }

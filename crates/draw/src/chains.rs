@@ -1,13 +1,16 @@
 //! Strokes joined to long polylines.
 //!
-//! Strokes of one class and one number of layers form a graph: its nodes are the ends, rounded to the drawing's precision. Lines are
-//! trails through it that use each stroke once. They begin at nodes where an odd number of strokes is left, for there as many lines
-//! must begin or end; what remains then are closed lines. At a node a line goes on as straight as it can. Corners that lie on the way
-//! from one to the next are dropped.
+//! Strokes of one class and one number of layers form a graph: its nodes are the ends, rounded to
+//! the drawing's precision. Lines are trails through it that use each stroke once. They begin at
+//! nodes where an odd number of strokes is left, for there as many lines must begin or end; what
+//! remains then are closed lines. At a node a line goes on as straight as it can. Corners that lie
+//! on the way from one to the next are dropped.
 //!
-//! In:   strokes whose ends are whole steps of the precision. Out: polylines in these steps, in order of their classes.
+//! In:   strokes whose ends are whole steps of the precision. Out: polylines in these steps, in
+//!       order of their classes.
 //! Cost: `n log n` for the sort of the ends.
-//! Source: Euler's trails; the polylines are at most as many as half the odd nodes and the closed lines.
+//! Source: Euler's trails; the polylines are at most as many as half the odd nodes and the closed
+//!         lines.
 
 use std::collections::BTreeMap;
 use vitral_frame::drawing::LineClass;
@@ -87,7 +90,8 @@ impl<'s> Graph<'s> {
         // Start a trail at each node with an odd number of free strokes.
         while node < self.ends.len() {
             let ends = self.ends_at(node as u32);
-            let (count, free) = (ends.len(), ends.iter().filter(|&&end| !self.used[end as usize / 2]).count());
+            let (count, free) =
+                (ends.len(), ends.iter().filter(|&&end| !self.used[end as usize / 2]).count());
             if free % 2 == 1
                 && let Some(&start) = ends.iter().find(|&&end| !self.used[end as usize / 2])
             {
@@ -120,7 +124,8 @@ impl<'s> Graph<'s> {
         }
     }
 
-    /// Of the strokes that are left at the node of `arrival`, the one that turns least from the way from `departure`.
+    /// Of the strokes that are left at the node of `arrival`, the one that turns least from the way
+    /// from `departure`.
     fn straightest(&self, departure: u32, arrival: u32) -> Option<u32> {
         let [from, at] = [self.at(departure), self.at(arrival)];
         let before = step(from, at);
@@ -128,7 +133,10 @@ impl<'s> Graph<'s> {
             let after = step(at, self.at(end ^ 1));
             dot(before, after) / dot(after, after).sqrt()
         };
-        let free = self.ends_at(self.node[arrival as usize]).iter().filter(|&&end| !self.used[end as usize / 2]);
+        let free = self
+            .ends_at(self.node[arrival as usize])
+            .iter()
+            .filter(|&&end| !self.used[end as usize / 2]);
         free.copied().max_by(|&a, &b| cosine(a).total_cmp(&cosine(b)).then(b.cmp(&a)))
     }
 }
@@ -143,8 +151,11 @@ fn straightened(points: Vec<Step>) -> Vec<Step> {
         dropped.push(here);
         let goes_on = next.filter(|&next| {
             let ahead = dropped.iter().skip(1).chain([&next]);
-            let goes_ahead = dropped.iter().zip(ahead).all(|(&a, &b)| dot(step(anchor, next), step(a, b)) > 0.0);
-            dropped.len() < MOST_DROPPED && goes_ahead && dropped.iter().all(|&point| is_between(anchor, point, next))
+            let goes_ahead =
+                dropped.iter().zip(ahead).all(|(&a, &b)| dot(step(anchor, next), step(a, b)) > 0.0);
+            dropped.len() < MOST_DROPPED
+                && goes_ahead
+                && dropped.iter().all(|&point| is_between(anchor, point, next))
         });
         if goes_on.is_none() {
             kept.push(here);
@@ -183,8 +194,13 @@ mod tests {
 
     #[test]
     fn a_square_of_pieces_is_one_closed_line_of_four_corners() {
-        let strokes =
-            [[[0, 0], [5, 0]], [[10, 10], [10, 0]], [[5, 0], [10, 0]], [[0, 10], [10, 10]], [[0, 10], [0, 0]]];
+        let strokes = [
+            [[0, 0], [5, 0]],
+            [[10, 10], [10, 0]],
+            [[5, 0], [10, 0]],
+            [[0, 10], [10, 10]],
+            [[0, 10], [0, 0]],
+        ];
         let found = lines(&strokes);
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].len(), found[0][0]), (5, found[0][4]), "{found:?}");
@@ -192,15 +208,19 @@ mod tests {
 
     #[test]
     fn lines_go_on_straight_where_they_cross() {
-        let found = lines(&[[[0, 0], [5, 5]], [[5, 5], [0, 10]], [[5, 5], [10, 10]], [[10, 0], [5, 5]]]);
+        let found =
+            lines(&[[[0, 0], [5, 5]], [[5, 5], [0, 10]], [[5, 5], [10, 10]], [[10, 0], [5, 5]]]);
         assert_eq!(found, [[[0, 0], [10, 10]], [[0, 10], [10, 0]]]);
         assert!(lines(&[[[3, 3], [3, 3]]]).is_empty());
     }
 
     #[test]
     fn classes_and_layers_stay_apart() {
-        let found =
-            chains(&[(Crease, 0, [[1, 0], [2, 0]]), (Contour, 1, [[1, 0], [0, 0]]), (Contour, 0, [[1, 0], [1, 1]])]);
+        let found = chains(&[
+            (Crease, 0, [[1, 0], [2, 0]]),
+            (Contour, 1, [[1, 0], [0, 0]]),
+            (Contour, 0, [[1, 0], [1, 1]]),
+        ]);
         assert_eq!(
             found.iter().map(|c| (c.class, c.layers)).collect::<Vec<_>>(),
             [(Contour, 0), (Crease, 0), (Contour, 1)]

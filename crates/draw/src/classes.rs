@@ -1,7 +1,8 @@
 //! What an edge is, before any question of visibility.
 //!
-//! An edge may be several things at once: the outline of a box is a contour and a crease. It is drawn as a section if it is one, or else
-//! as the first of the classes in the order of [`LineClass::ALL`] that the user wants.
+//! An edge may be several things at once: the outline of a box is a contour and a crease. It is
+//! drawn as a section if it is one, or else as the first of the classes in the order of
+//! [`LineClass::ALL`] that the user wants.
 //!
 //! | class | an edge |
 //! |---|---|
@@ -12,10 +13,12 @@
 //! | section | along which a plane of section has cut a face |
 //! | smooth | of any face |
 //!
-//! Where the normals of its two faces agree within a degree, an edge is a tangent edge: the joint of a plane and a fillet, a line on a
-//! flat wall. If these are not wanted, it is a contour or nothing.
+//! Where the normals of its two faces agree within a degree, an edge is a tangent edge: the joint
+//! of a plane and a fillet, a line on a flat wall. If these are not wanted, it is a contour or
+//! nothing.
 //!
-//! Diagonals of faces that are not flat are contours where the face turns away between their corners, and nothing else.
+//! Diagonals of faces that are not flat are contours where the face turns away between their
+//! corners, and nothing else.
 //!
 //! Source: the classes are those of [Bénard & Hertzmann 2019], section 2.
 
@@ -51,8 +54,10 @@ pub(crate) fn classes_of(sides: &[Side<'_>], thresholds: Thresholds) -> Classes 
         return classes | Classes::one(LineClass::Boundary);
     }
 
-    // A face is to the left of the edge where it is seen from its front and runs along the edge, or neither.
-    let signs = sides.iter().map(|s| if s.reversed { -s.triangle.facing } else { s.triangle.facing });
+    // A face is to the left of the edge where it is seen from its front and runs along the edge, or
+    // neither.
+    let signs =
+        sides.iter().map(|s| if s.reversed { -s.triangle.facing } else { s.triangle.facing });
     let (left, right) = (signs.clone().any(|s| s > 0), signs.clone().any(|s| s < 0));
     if left != right {
         classes = classes | Classes::one(LineClass::Contour);
@@ -72,7 +77,8 @@ pub(crate) fn classes_of(sides: &[Side<'_>], thresholds: Thresholds) -> Classes 
     if is_left_out { classes.common(Classes::one(LineClass::Contour)) } else { classes }
 }
 
-/// The cosine of the angle between the normals of two faces, one of them turned where they run along the edge in the same direction.
+/// The cosine of the angle between the normals of two faces, one of them turned where they run
+/// along the edge in the same direction.
 fn cosine(a: &Side<'_>, b: &Side<'_>) -> f32 {
     let (n, m) = (a.source.normal, b.source.normal);
     let dot = n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
@@ -128,9 +134,16 @@ mod tests {
         let hidden = |sides: &[(i8, [f32; 3], u32, bool)]| with(Some(0.99), sides);
         let [near, far] = [[0.1, 0.0, 0.995], [0.2, 0.0, 0.98]];
         assert_eq!(hidden(&[(1, UP, 0, false), (1, near, 7, true)]), []);
-        assert_eq!(hidden(&[(1, UP, 0, false), (1, far, 7, true)]), [LineClass::Material, LineClass::Smooth]);
+        assert_eq!(
+            hidden(&[(1, UP, 0, false), (1, far, 7, true)]),
+            [LineClass::Material, LineClass::Smooth]
+        );
         assert_eq!(hidden(&[(1, UP, 0, false), (-1, near, 0, true)]), [LineClass::Contour]);
         assert_eq!(hidden(&[(1, UP, 0, false)]), [LineClass::Boundary, LineClass::Smooth]);
-        assert_eq!(hidden(&[(1, UP, 0, false), (1, UP, 0, true), (1, UP, 0, true)]).len(), 2, "not two faces");
+        assert_eq!(
+            hidden(&[(1, UP, 0, false), (1, UP, 0, true), (1, UP, 0, true)]).len(),
+            2,
+            "not two faces"
+        );
     }
 }

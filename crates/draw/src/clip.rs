@@ -1,10 +1,13 @@
-//! Clipping at the border of the page, the near and the far plane, in homogeneous coordinates of double precision.
+//! Clipping at the border of the page, the near and the far plane, in homogeneous coordinates of
+//! double precision.
 //!
-//! A triangle is cut by one plane after the other. A new vertex on a side of the triangle is computed from the two ends of the *whole*
-//! side, in the order of their numbers, even where another plane has cut the side before. So it depends on the side and the plane
-//! alone, and all triangles at the side get the same vertex: it is made once and found by its name.
+//! A triangle is cut by one plane after the other. A new vertex on a side of the triangle is
+//! computed from the two ends of the *whole* side, in the order of their numbers, even where
+//! another plane has cut the side before. So it depends on the side and the plane alone, and all
+//! triangles at the side get the same vertex: it is made once and found by its name.
 //!
-//! In:   triangles with vertices in clip space. Out: triangles inside, and the vertices that are new.
+//! In:   triangles with vertices in clip space. Out: triangles inside, and the vertices that are
+//!       new.
 //! Cost: constant for each triangle that crosses a plane; six planes.
 //! Source: [Sutherland & Hodgman 1974], in the clip space of [Blinn & Newell 1978].
 
@@ -45,7 +48,8 @@ pub(crate) fn outcode(p: DVec4) -> u8 {
     (0..PLANES).fold(0, |code, plane| code | u8::from(distance(p, plane) < 0.0) << plane)
 }
 
-/// What a side of a polygon is part of: a side of the triangle, by the numbers of its ends in order, or a plane.
+/// What a side of a polygon is part of: a side of the triangle, by the numbers of its ends in
+/// order, or a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Origin {
     /// A side of the facet: its ends, lower number first, and whether it is a side of the face and
@@ -94,7 +98,10 @@ impl<'v> Clipper<'v> {
                 let (a, b) = (facet.vertices[k], facet.vertices[(k + 1) % 3]);
                 let has = |bit: u32| facet.outline >> bit & 1 == 1;
                 let (outline, cut) = (has(k as u32), has(k as u32 + CUT_SIDES));
-                Corner { vertex: a, origin: Origin::Side { ends: [a.min(b), a.max(b)], outline, cut } }
+                Corner {
+                    vertex: a,
+                    origin: Origin::Side { ends: [a.min(b), a.max(b)], outline, cut },
+                }
             })
             .collect();
 
@@ -180,7 +187,8 @@ impl<'v> Clipper<'v> {
         vertex
     }
 
-    /// The vertex where the way between two vertices meets a plane: a new one, unless an end lies in the plane.
+    /// The vertex where the way between two vertices meets a plane: a new one, unless an end lies
+    /// in the plane.
     fn vertex_between(&mut self, a: u32, b: u32, plane: u32) -> u32 {
         let [p, q] = [a, b].map(|v| self.vertices[v as usize].at);
         let (d, e) = (distance(p, plane), distance(q, plane));
@@ -212,7 +220,8 @@ mod tests {
     #[test]
     fn neighbours_share_the_vertices_on_their_common_side() {
         // A square of two triangles that reaches beyond the right border.
-        let mut all = vertices(&[[0.0, 0.0, 0.5], [2.0, 0.0, 0.5], [2.0, 0.8, 0.5], [0.0, 0.8, 0.5]]);
+        let mut all =
+            vertices(&[[0.0, 0.0, 0.5], [2.0, 0.0, 0.5], [2.0, 0.8, 0.5], [0.0, 0.8, 0.5]]);
         let mut clipper = Clipper::new(&mut all);
         let mut facets = Vec::new();
         clipper.clip(&Facet { vertices: [0, 1, 2], source: 0, outline: 0b011 }, &mut facets);
@@ -222,7 +231,8 @@ mod tests {
         let distinct: std::collections::BTreeSet<u32> = cut.iter().copied().collect();
         assert_eq!(distinct.len(), 3, "two sides and the diagonal are cut once each: {facets:?}");
         assert!(all[4..].iter().all(|v| v.at.x == 1.0));
-        // The first is a triangle with one side along the page's border and one diagonal: one side of the face is left.
+        // The first is a triangle with one side along the page's border and one diagonal: one side
+        // of the face is left.
         let outlines: Vec<u32> = facets.iter().map(|f| u32::from(f.outline).count_ones()).collect();
         assert_eq!(outlines.iter().sum::<u32>(), 3, "{facets:?}");
     }
@@ -231,7 +241,8 @@ mod tests {
     fn a_corner_of_the_page_is_cut_by_two_planes() {
         let mut all = vertices(&[[-9.0, -9.0, 0.5], [9.0, -9.0, 0.5], [0.0, 20.0, 0.5]]);
         let mut facets = Vec::new();
-        Clipper::new(&mut all).clip(&Facet { vertices: [0, 1, 2], source: 0, outline: 0b111 }, &mut facets);
+        Clipper::new(&mut all)
+            .clip(&Facet { vertices: [0, 1, 2], source: 0, outline: 0b111 }, &mut facets);
         let area = |f: &Facet| {
             let [a, b, c] = f.vertices.map(|v| all[v as usize].at);
             ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2.0
@@ -242,8 +253,13 @@ mod tests {
 
     #[test]
     fn lines_are_cut_and_what_is_not_finite_vanishes() {
-        let mut all =
-            vertices(&[[-3.0, 0.0, 0.5], [3.0, 0.0, 0.5], [f64::NAN, 0.0, 0.0], [0.0, 0.0, 0.5], [5.0, 5.0, 0.5]]);
+        let mut all = vertices(&[
+            [-3.0, 0.0, 0.5],
+            [3.0, 0.0, 0.5],
+            [f64::NAN, 0.0, 0.0],
+            [0.0, 0.0, 0.5],
+            [5.0, 5.0, 0.5],
+        ]);
         let mut clipper = Clipper::new(&mut all);
         let [a, b] = clipper.clip_line([1, 0]).unwrap();
         assert!(clipper.clip_line([0, 2]).is_none() && clipper.clip_line([4, 1]).is_none());

@@ -1,16 +1,20 @@
 //! The lines in which triangles penetrate each other, as edges of the page's mesh.
 //!
-//! Two triangles cross if each has corners on both sides of the other's plane. Then two sides of each pierce the other's plane, and all
-//! four points lie on the line in which the planes meet: the common part of the two intervals is the line of intersection. A corner
-//! within the reach of snapping counts as in front of the plane, so that a body that stands on a floor does not cross it, and one whose
-//! edge lies in a face is cut once.
+//! Two triangles cross if each has corners on both sides of the other's plane. Then two sides of
+//! each pierce the other's plane, and all four points lie on the line in which the planes meet: the
+//! common part of the two intervals is the line of intersection. A corner within the reach of
+//! snapping counts as in front of the plane, so that a body that stands on a floor does not cross
+//! it, and one whose edge lies in a face is cut once.
 //!
-//! The point where a side pierces a plane is computed from the ends of the side in the order of their numbers and snapped: triangles
-//! that share the side get the same point, and the lines of neighbours join.
+//! The point where a side pierces a plane is computed from the ends of the side in the order of
+//! their numbers and snapped: triangles that share the side get the same point, and the lines of
+//! neighbours join.
 //!
-//! In:   the page's mesh and a grid of the triangles to ask. Out: more vertices and edges of class intersection, with both triangles.
+//! In:   the page's mesh and a grid of the triangles to ask. Out: more vertices and edges of class
+//!       intersection, with both triangles.
 //! Cost: one test for each pair of triangles whose boxes meet.
-//! Source: \[Möller 1997\] for the test of a pair; the decisions are exact ([`vitral_math::exact`]).
+//! Source: \[Möller 1997\] for the test of a pair; the decisions are exact
+//!         ([`vitral_math::exact`]).
 
 use crate::classes::Classes;
 use crate::grid::Grid;
@@ -26,7 +30,8 @@ use vitral_math::exact::{GridPlane, GridPoint};
 const BATCH: usize = 512;
 /// Pairs between two looks at the clock.
 const PAIRS_A_CHECK: u32 = 1 << 14;
-/// Sine of the angle between faces below which their intersection is not drawn: a line between faces that are almost the same.
+/// Sine of the angle between faces below which their intersection is not drawn: a line between
+/// faces that are almost the same.
 const LEAST_SINE: f32 = 1e-4;
 
 /// A line in which two triangles cross.
@@ -38,7 +43,8 @@ struct Crossing {
     ends: [GridPoint; 2],
 }
 
-/// Adds the lines of intersection among the triangles in a grid, which `asks` accepts; gives their number.
+/// Adds the lines of intersection among the triangles in a grid, which `asks` accepts; gives their
+/// number.
 pub(crate) fn add_crossings(
     mesh: &mut PageMesh,
     grid: &Grid,
@@ -71,7 +77,8 @@ pub(crate) fn add_crossings(
         for crossing in piece? {
             let vertex = mesh.vertices.len() as u32;
             mesh.vertices.extend(crossing.ends);
-            let (first, classes) = (mesh.edge_triangles.len() as u32, Classes::one(LineClass::Intersection));
+            let (first, classes) =
+                (mesh.edge_triangles.len() as u32, Classes::one(LineClass::Intersection));
             mesh.edge_triangles.extend(crossing.triangles);
             mesh.edges.push(Edge { ends: [vertex, vertex + 1], first, count: 2, classes });
         }
@@ -117,7 +124,8 @@ impl Pairs {
                 }
 
                 // Reject pairs whose boxes are disjoint, seen pairs and nearly parallel ones.
-                let apart = |k: usize| other.low[k] > triangle.high[k] || other.high[k] < triangle.low[k];
+                let apart =
+                    |k: usize| other.low[k] > triangle.high[k] || other.high[k] < triangle.low[k];
                 let twice = own_level && other_number <= number;
                 if twice || apart(0) || apart(1) || other.farthest() > triangle.nearest {
                     continue;
@@ -125,7 +133,10 @@ impl Pairs {
                 if std::mem::replace(&mut self.met[other_number as usize], number) == number {
                     continue;
                 }
-                let angle = sine(&mesh.sources[number as usize].normal, &mesh.sources[other_number as usize].normal);
+                let angle = sine(
+                    &mesh.sources[number as usize].normal,
+                    &mesh.sources[other_number as usize].normal,
+                );
                 if angle < LEAST_SINE {
                     continue;
                 }
@@ -138,7 +149,9 @@ impl Pairs {
             ControlFlow::Continue(())
         });
         // Two vertices, an edge and two entries in its list, here and in the mesh.
-        run.memory.add((found.len() - start) as u64 * (2 * size_of::<Crossing>() + size_of::<Edge>()) as u64)?;
+        run.memory.add(
+            (found.len() - start) as u64 * (2 * size_of::<Crossing>() + size_of::<Edge>()) as u64,
+        )?;
         if let ControlFlow::Break(limit) = flow { Err(limit) } else { Ok(()) }
     }
 }
@@ -163,7 +176,8 @@ fn crossing(a: &Triangle, b: &Triangle) -> Option<[GridPoint; 2]> {
     let [n, m] = planes.map(|p| DVec3::from_array(p.normal.map(|c| c as f64)).normalize_or_zero());
     let along = n.cross(m);
     let parameter = |p: &GridPoint| along.dot(DVec3::from_array(p.map(f64::from)));
-    let ordered = |[p, q]: [GridPoint; 2]| if parameter(&p) <= parameter(&q) { [p, q] } else { [q, p] };
+    let ordered =
+        |[p, q]: [GridPoint; 2]| if parameter(&p) <= parameter(&q) { [p, q] } else { [q, p] };
     let ([a, b], [c, d]) = (ordered(own), ordered(others));
     let start = if parameter(&a) >= parameter(&c) { a } else { c };
     let end = if parameter(&b) <= parameter(&d) { b } else { d };
@@ -174,12 +188,18 @@ fn crossing(a: &Triangle, b: &Triangle) -> Option<[GridPoint; 2]> {
 fn piercings(triangle: &Triangle, plane: &GridPlane) -> Option<[GridPoint; 2]> {
     let snapping = plane.snapping();
     let in_front = triangle.corners.map(|p| plane.rounded_height(p).0 >= -snapping);
-    let lone = (0..3).find(|&k| in_front[k] != in_front[(k + 1) % 3] && in_front[k] != in_front[(k + 2) % 3])?;
+    let lone = (0..3)
+        .find(|&k| in_front[k] != in_front[(k + 1) % 3] && in_front[k] != in_front[(k + 2) % 3])?;
     Some([(lone + 1) % 3, (lone + 2) % 3].map(|k| piercing(triangle, [lone, k], plane, snapping)))
 }
 
 /// The point in which the side between two corners pierces a plane, snapped.
-fn piercing(triangle: &Triangle, mut corners: [usize; 2], plane: &GridPlane, snapping: f64) -> GridPoint {
+fn piercing(
+    triangle: &Triangle,
+    mut corners: [usize; 2],
+    plane: &GridPlane,
+    snapping: f64,
+) -> GridPoint {
     if triangle.vertices[corners[0]] > triangle.vertices[corners[1]] {
         corners.reverse();
     }
@@ -206,7 +226,8 @@ mod tests {
                 let count = add_crossings(&mut mesh, &grid, |t| t.hides, run).unwrap();
                 assert_eq!(count as usize, mesh.edges.len() - before);
             });
-            let mut ends: Vec<_> = mesh.edges[before..].iter().map(|edge| mesh.ends(edge)).collect();
+            let mut ends: Vec<_> =
+                mesh.edges[before..].iter().map(|edge| mesh.ends(edge)).collect();
             ends.iter_mut().for_each(|ends| ends.sort_unstable());
             ends
         });

@@ -1,11 +1,13 @@
 //! Caps: the faces with which planes of section close the bodies that they cut.
 //!
-//! Parts are told apart by their hatching. A part is a material; what has no material is a part by itself in each instance. Parts are
-//! numbered in the order of their materials, then of instances, whatever is seen of them.
+//! Parts are told apart by their hatching. A part is a material; what has no material is a part by
+//! itself in each instance. Parts are numbered in the order of their materials, then of instances,
+//! whatever is seen of them.
 //!
 //! Where caps overlap, as of a body that lies in another one, the smaller is in front.
 //!
-//! In:   the world and the page's mesh. Out: visible regions of caps, with the number of their part.
+//! In:   the world and the page's mesh. Out: visible regions of caps, with the number of their
+//!       part.
 //! Cost: that of `fill.rs` for the triangles of caps.
 
 use crate::fill::{FaceLook, Facets, Seams, Surfaces, regions};
@@ -35,7 +37,8 @@ struct Cap {
 
 impl Caps {
     pub(crate) fn new(world: &World) -> Self {
-        // Gather the caps with their areas, and the parts that they are of: those with materials come first.
+        // Gather the caps with their areas, and the parts that they are of: those with materials
+        // come first.
         let (mut found, mut parts) = (Vec::new(), BTreeMap::new());
         for (i, instance) in world.instances.iter().enumerate() {
             let Some(section) = &instance.mesh.section else { continue };
@@ -56,7 +59,8 @@ impl Caps {
         // Rank them by area.
         let mut by_area: Vec<usize> = (0..found.len()).collect();
         by_area.sort_by(|&a, &b| found[a].2.total_cmp(&found[b].2).then(a.cmp(&b)));
-        let cap = |&(surface, part, _): &(u32, _, f64)| Cap { surface, part: parts[&part], rank: 0 };
+        let cap =
+            |&(surface, part, _): &(u32, _, f64)| Cap { surface, part: parts[&part], rank: 0 };
         let mut caps: Vec<Cap> = found.iter().map(cap).collect();
         by_area.iter().enumerate().for_each(|(rank, &cap)| caps[cap].rank = rank as u32 + 1);
         Self { caps }
@@ -71,7 +75,10 @@ impl Caps {
         if self.caps.is_empty() {
             return Vec::new();
         }
-        mesh.sources.iter().map(|source| self.of_surface(source.surface).map_or(0, |cap| cap.rank)).collect()
+        mesh.sources
+            .iter()
+            .map(|source| self.of_surface(source.surface).map_or(0, |cap| cap.rank))
+            .collect()
     }
 
     /// The visible parts of caps.
@@ -86,7 +93,9 @@ impl Caps {
         if self.caps.is_empty() {
             return Ok(Cuts { hatch, ..Cuts::default() });
         }
-        let part = |look: &FaceLook| Cuts::color_of_part(self.of_surface(look.surface).map_or(0, |cap| cap.part));
+        let part = |look: &FaceLook| {
+            Cuts::color_of_part(self.of_surface(look.surface).map_or(0, |cap| cap.part))
+        };
         let is_cap = |surface: u32| self.of_surface(surface).is_some();
         let caps = Surfaces { only: Some(&is_cap), seams: Seams::None, ..Surfaces::new(&part) };
         Ok(Cuts { regions: regions(mesh, grid, &caps, facets, run)?, hatch })

@@ -1,10 +1,13 @@
-//! The edges of the page's triangles: one for each pair of vertices, with the list of all triangles at it.
+//! The edges of the page's triangles: one for each pair of vertices, with the list of all triangles
+//! at it.
 //!
-//! Every triangle says for each of its sides "I run from a to b". Sorted by (lower vertex, higher vertex), the uses of one edge come
-//! together; an edge of more than two triangles keeps them all. Of triangles over the same three vertices only the first counts: the
-//! others hide nothing that it does not hide, and have no edges.
+//! Every triangle says for each of its sides "I run from a to b". Sorted by (lower vertex, higher
+//! vertex), the uses of one edge come together; an edge of more than two triangles keeps them all.
+//! Of triangles over the same three vertices only the first counts: the others hide nothing that it
+//! does not hide, and have no edges.
 //!
-//! In:   facets and triangles. Out: edges with their triangles and classes, in order of their vertices; duplicates hide nothing.
+//! In:   facets and triangles. Out: edges with their triangles and classes, in order of their
+//!       vertices; duplicates hide nothing.
 //! Cost: linear for meshes of bounded valence, at most `n log n`.
 //! Source: a counting sort by the lower vertex, as for the winged edges of [Baumgart 1975].
 
@@ -38,7 +41,8 @@ struct Use {
     cut: bool,
 }
 
-/// Makes the page's mesh. `crease_angle` in radians; tangent edges are left out where `hide_tangent` says so.
+/// Makes the page's mesh. `crease_angle` in radians; tangent edges are left out where
+/// `hide_tangent` says so.
 pub(crate) fn with_edges(
     projected: Projected,
     crease_angle: f64,
@@ -48,7 +52,8 @@ pub(crate) fn with_edges(
     // List the uses of each lower vertex.
     run.memory.add(projected.facets.len() as u64 * 3 * BYTES_A_SIDE)?;
     run.budget.check("edges")?;
-    let (starts, mut uses) = Dealt::new(&Sides(&projected.facets), projected.vertices.len()).into_parts();
+    let (starts, mut uses) =
+        Dealt::new(&Sides(&projected.facets), projected.vertices.len()).into_parts();
 
     // Sort the uses of each vertex by the other end, a batch of vertices on each thread.
     let mut lists: Vec<&mut [Use]> = Vec::new();
@@ -59,19 +64,24 @@ pub(crate) fn with_edges(
         lists.push(list);
         rest = others;
     }
-    let vertices_of = |batch: usize| batch * BATCH..projected.vertices.len().min((batch + 1) * BATCH);
-    run.workers.for_each(lists.into_iter().enumerate().collect(), |(batch, list): (usize, &mut [Use])| {
-        let base = starts[batch * BATCH];
-        for v in vertices_of(batch) {
-            list[(starts[v] - base) as usize..(starts[v + 1] - base) as usize].sort_unstable();
-        }
-    });
+    let vertices_of =
+        |batch: usize| batch * BATCH..projected.vertices.len().min((batch + 1) * BATCH);
+    run.workers.for_each(
+        lists.into_iter().enumerate().collect(),
+        |(batch, list): (usize, &mut [Use])| {
+            let base = starts[batch * BATCH];
+            for v in vertices_of(batch) {
+                list[(starts[v] - base) as usize..(starts[v + 1] - base) as usize].sort_unstable();
+            }
+        },
+    );
     run.budget.check("edges")?;
 
     // Find duplicates, then classify what the others have in common.
     let uses_of = |v: usize| &uses[starts[v] as usize..starts[v + 1] as usize];
     let batches = projected.vertices.len().div_ceil(BATCH);
-    let duplicates = duplicates(&projected, batches, &|batch| vertices_of(batch).map(uses_of).collect(), run);
+    let duplicates =
+        duplicates(&projected, batches, &|batch| vertices_of(batch).map(uses_of).collect(), run);
     let thresholds = Thresholds {
         crease: (func::cos(crease_angle.clamp(0.0, std::f64::consts::PI)) - 1e-6) as f32,
         tangent: hide_tangent.then(|| func::cos(TANGENT_DEGREES.to_radians()) as f32),
@@ -80,7 +90,15 @@ pub(crate) fn with_edges(
         let (mut edges, mut triangles) = (Vec::new(), Vec::new());
         for v in vertices_of(batch) {
             for edge in uses_of(v).chunk_by(|a, b| a.higher == b.higher) {
-                add_edge(v as u32, edge, &projected, &duplicates, thresholds, &mut edges, &mut triangles);
+                add_edge(
+                    v as u32,
+                    edge,
+                    &projected,
+                    &duplicates,
+                    thresholds,
+                    &mut edges,
+                    &mut triangles,
+                );
             }
         }
         (edges, triangles)
@@ -89,7 +107,11 @@ pub(crate) fn with_edges(
 }
 
 /// The mesh of the pieces, with the free lines as edges without triangles.
-fn put_together(projected: Projected, pieces: Vec<(Vec<Edge>, Vec<u32>)>, duplicates: &[u32]) -> PageMesh {
+fn put_together(
+    projected: Projected,
+    pieces: Vec<(Vec<Edge>, Vec<u32>)>,
+    duplicates: &[u32],
+) -> PageMesh {
     let Projected { size, vertices, mut triangles, sources, facets, lines, points } = projected;
     // Duplicates hide nothing and are not filled.
     for &t in duplicates {
@@ -124,7 +146,10 @@ impl Source<Use> for Sides<'_> {
                 let (a, b) = (facet.vertices[k], facet.vertices[(k + 1) % 3]);
                 let has = |bit: u32| facet.outline >> bit & 1 == 1;
                 let (outline, cut) = (has(k as u32), has(k as u32 + CUT_SIDES));
-                put(a.min(b) as usize, Use { higher: a.max(b), triangle: t as u32, reversed: a > b, outline, cut });
+                put(
+                    a.min(b) as usize,
+                    Use { higher: a.max(b), triangle: t as u32, reversed: a > b, outline, cut },
+                );
             }
         }
     }
@@ -178,17 +203,19 @@ fn add_edge(
         return;
     }
 
-    // Classify the edge. A diagonal of a face that is not flat may be a contour and nothing else, and so may a side that a face uses
-    // twice, as where a bridge leads to a hole.
+    // Classify the edge. A diagonal of a face that is not flat may be a contour and nothing else,
+    // and so may a side that a face uses twice, as where a bridge leads to a hole.
     let source = |t: u32| &projected.sources[projected.facets[t as usize].source as usize];
     let side = |u: &Use| Side {
         triangle: &projected.triangles[u.triangle as usize],
         source: source(u.triangle),
         reversed: u.reversed,
     };
-    let outlines: Vec<Side<'_>> = uses.iter().filter(counts).filter(|u| u.outline).map(side).collect();
+    let outlines: Vec<Side<'_>> =
+        uses.iter().filter(counts).filter(|u| u.outline).map(side).collect();
     let is_cut = uses.iter().filter(counts).any(|u| u.cut);
-    let is_bridge = outlines.len() > 1 && outlines.iter().all(|s| s.source.surface == outlines[0].source.surface);
+    let is_bridge = outlines.len() > 1
+        && outlines.iter().all(|s| s.source.surface == outlines[0].source.surface);
     let classes = if outlines.is_empty() || is_bridge {
         let all: Vec<Side<'_>> = uses.iter().filter(counts).map(side).collect();
         classes_of(&all, thresholds).common(Classes::one(LineClass::Contour))

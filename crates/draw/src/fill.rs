@@ -8,7 +8,8 @@
 //! | regions reach under those that are painted later | `fill/seams.rs` |
 //! | clear layers mixed with what is behind them | `fill/flatten.rs` |
 //!
-//! In:   the page's mesh, a grid of the triangles that hide, colours. Out: regions in units of the page, in the order of painting.
+//! In:   the page's mesh, a grid of the triangles that hide, colours. Out: regions in units of the
+//!       page, in the order of painting.
 //! Cost: for each triangle `k log k` with `k` triangles in front of it; the union of all parts.
 
 mod flatten;
@@ -46,7 +47,8 @@ pub struct FaceLook {
     pub material: Option<u32>,
     /// Unit normal on the side that is seen, world space.
     pub normal: [f32; 3],
-    /// A bit for each light that reaches the place, by [`LitPolygons::light`]; all bits without shadows.
+    /// A bit for each light that reaches the place, by [`LitPolygons::light`]; all bits without
+    /// shadows.
     pub lights: u32,
 }
 
@@ -75,7 +77,15 @@ pub struct Surfaces<'s> {
 impl<'s> Surfaces<'s> {
     /// Opaque surfaces of these colours without shadows.
     pub fn new(palette: &'s Palette<'s>) -> Self {
-        Self { palette, opacities: &[], flatten: false, lit: &[], seams: Seams::default(), by_face: false, only: None }
+        Self {
+            palette,
+            opacities: &[],
+            flatten: false,
+            lit: &[],
+            seams: Seams::default(),
+            by_face: false,
+            only: None,
+        }
     }
 
     /// The opacity of a material.
@@ -138,7 +148,8 @@ fn parts(
     run.budget.begin("triangles", count as u64);
     let pieces = run.workers.map(count.div_ceil(BATCH), |batch| {
         let range = batch * BATCH..count.min((batch + 1) * BATCH);
-        let parts = spare.lend(|clipping| parts_of(range, stage, clipping, surfaces, facets, run))?;
+        let parts =
+            spare.lend(|clipping| parts_of(range, stage, clipping, surfaces, facets, run))?;
         run.budget.check("visible surfaces")?;
         run.budget.progress("visible surfaces", run.budget.achieved().done, count as u64);
         Ok(parts)
@@ -149,7 +160,9 @@ fn parts(
     for piece in pieces {
         let (piece, before): (VisibleParts, _) = (piece?, parts.all.len() as u32);
         parts.all.extend(piece.all);
-        parts.contacts.extend(piece.contacts.into_iter().map(|[part, triangle]| [before + part, triangle]));
+        parts
+            .contacts
+            .extend(piece.contacts.into_iter().map(|[part, triangle]| [before + part, triangle]));
     }
     Ok(parts)
 }
@@ -175,7 +188,9 @@ fn parts_of(
         let VisibleShapes { layers, contacts } = clipping.visible_shapes(stage, t as u32, run)?;
 
         // Divide each layer between the lights, and colour the parts.
-        for (layer, shapes) in layers.into_iter().enumerate().filter(|(_, shapes)| !shapes.is_empty()) {
+        for (layer, shapes) in
+            layers.into_iter().enumerate().filter(|(_, shapes)| !shapes.is_empty())
+        {
             let divided = match surfaces.lit.is_empty() {
                 true => vec![(u32::MAX, shapes)],
                 false => {

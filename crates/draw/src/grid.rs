@@ -1,12 +1,15 @@
-//! A pyramid of grids over the page, which finds the triangles near an edge, the nearest to the viewer first.
+//! A pyramid of grids over the page, which finds the triangles near an edge, the nearest to the
+//! viewer first.
 //!
-//! Each triangle lies in the level whose cells are at least as large as its box, so in four cells at most; small triangles share the
-//! finest level. An edge asks the cells that it runs through on each level. The list of a cell is sorted by the nearest corners: it
-//! ends for an edge where triangles begin to lie wholly behind the edge.
+//! Each triangle lies in the level whose cells are at least as large as its box, so in four cells
+//! at most; small triangles share the finest level. An edge asks the cells that it runs through on
+//! each level. The list of a cell is sorted by the nearest corners: it ends for an edge where
+//! triangles begin to lie wholly behind the edge.
 //!
-//! A face that covers a cell ends the cell's list behind it, for whoever only asks what is visible: whatever it hides is hidden already.
-//! Large triangles are laid over the cells of a level [`COVER_LEVELS`] finer than their own, and finer levels inherit. Without this,
-//! models of many parts behind one wall cost as much as if there were no wall.
+//! A face that covers a cell ends the cell's list behind it, for whoever only asks what is visible:
+//! whatever it hides is hidden already. Large triangles are laid over the cells of a level
+//! [`COVER_LEVELS`] finer than their own, and finer levels inherit. Without this, models of many
+//! parts behind one wall cost as much as if there were no wall.
 //!
 //! In:   triangles on the page. Out: lists of triangles for an edge or a box.
 //! Cost: `O(n log n)` for the sort by depth; memory four entries a triangle at most.
@@ -63,7 +66,11 @@ fn level_of(low: [i32; 2], high: [i32; 2], finest: u32) -> u32 {
 
 impl Grid {
     /// Sorts the triangles that `wanted` accepts into cells.
-    pub(crate) fn new(mesh: &PageMesh, wanted: impl Fn(&Triangle) -> bool, run: &Run<'_>) -> Result<Self, Limit> {
+    pub(crate) fn new(
+        mesh: &PageMesh,
+        wanted: impl Fn(&Triangle) -> bool,
+        run: &Run<'_>,
+    ) -> Result<Self, Limit> {
         // Sort the triangles by depth, the nearest first.
         let (triangles, size) = (&mesh.triangles, mesh.size);
         let mut order: Vec<(i32, u32)> = (0..triangles.len() as u32)
@@ -93,7 +100,8 @@ impl Grid {
             levels.push(Level::new(shift, size, &by_level[shift as usize], triangles));
         }
         let covers = Covers::new(&by_level, finest, size, triangles);
-        run.workers.for_each(levels.iter_mut().collect(), |level| covers.end_lists(level, triangles));
+        run.workers
+            .for_each(levels.iter_mut().collect(), |level| covers.end_lists(level, triangles));
         Ok(Self { levels, finest })
     }
 
@@ -116,8 +124,10 @@ impl Grid {
                 let (mut from, mut to) = (left, right);
                 if to > from + 1 && top > bottom {
                     // Where the edge is within this row, a unit more on both sides.
-                    let at =
-                        |row: usize| f64::from(p[0]) + slope * (((row as i64) << level.shift) - i64::from(p[1])) as f64;
+                    let at = |row: usize| {
+                        f64::from(p[0])
+                            + slope * (((row as i64) << level.shift) - i64::from(p[1])) as f64
+                    };
                     let (a, b) = (at(row), at(row + 1));
                     from = from.max((a.min(b) - 1.0).max(0.0) as usize >> level.shift);
                     to = to.min((a.max(b) + 1.0).max(0.0) as usize >> level.shift);
@@ -153,8 +163,9 @@ impl Grid {
         ControlFlow::Continue(())
     }
 
-    /// Calls `visit` with the list of each cell that a triangle's box meets, on its own level and coarser ones, and whether it is the
-    /// triangle's own level: so each pair of triangles is met from the smaller one.
+    /// Calls `visit` with the list of each cell that a triangle's box meets, on its own level and
+    /// coarser ones, and whether it is the triangle's own level: so each pair of triangles is met
+    /// from the smaller one.
     pub(crate) fn around<B>(
         &self,
         triangle: &Triangle,
@@ -162,7 +173,8 @@ impl Grid {
     ) -> ControlFlow<B> {
         let own = level_of(triangle.low, triangle.high, self.finest);
         for level in self.levels.iter().filter(|level| level.shift >= own) {
-            let ([left, bottom], [right, top]) = (level.cell_of(triangle.low), level.cell_of(triangle.high));
+            let ([left, bottom], [right, top]) =
+                (level.cell_of(triangle.low), level.cell_of(triangle.high));
             for row in bottom..=top {
                 for column in left..=right {
                     visit(level.list(row * level.width + column, false), level.shift == own)?;
@@ -177,12 +189,19 @@ impl Level {
     /// Sorts triangles into cells, in the order given.
     fn new(shift: u32, size: [i32; 2], members: &[u32], triangles: &[Triangle]) -> Self {
         let [width, height] = size.map(|side| (side >> shift) as usize + 1);
-        let mut level = Self { shift, width, starts: vec![0; width * height + 1], ends: Vec::new(), items: Vec::new() };
+        let mut level = Self {
+            shift,
+            width,
+            starts: vec![0; width * height + 1],
+            ends: Vec::new(),
+            items: Vec::new(),
+        };
         let cells = |t: u32| {
             let triangle = &triangles[t as usize];
             let [[left, bottom], [right, top]] =
                 [triangle.low, triangle.high].map(|p| p.map(|c| (c >> shift) as usize));
-            (bottom..=top).flat_map(move |row| (left..=right).map(move |column| row * width + column))
+            (bottom..=top)
+                .flat_map(move |row| (left..=right).map(move |column| row * width + column))
         };
 
         // Count the triangles of each cell.
@@ -209,7 +228,8 @@ impl Level {
     }
 }
 
-/// For the cells of each level, the depth behind which a face that covers the cell hides everything.
+/// For the cells of each level, the depth behind which a face that covers the cell hides
+/// everything.
 struct Covers {
     /// By shift, from the finest; empty where no triangle is laid over the level's cells.
     depths: Vec<Vec<i32>>,
@@ -236,7 +256,8 @@ impl Covers {
     fn lay(&mut self, shift: u32, triangle: &Triangle) {
         // Find the cells of the triangle's box and the plane's margin for snapping.
         let (width, height) = (self.width(shift), (self.size[1] >> shift) as usize + 1);
-        let [[left, bottom], [right, top]] = [triangle.low, triangle.high].map(|p| p.map(|c| c >> shift));
+        let [[left, bottom], [right, top]] =
+            [triangle.low, triangle.high].map(|p| p.map(|c| c >> shift));
         let plane = triangle.plane();
         let [nx, ny, nz] = plane.normal.map(|n| n as f64);
         let margin = plane.snapping() / nz + 1.0;
@@ -244,8 +265,8 @@ impl Covers {
         for row in bottom..=top {
             for column in left..=right {
                 // A cell ends a unit before the next begins, and covers its border.
-                let corners =
-                    [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, y]| [(column + x) << shift, (row + y) << shift, 0]);
+                let corners = [[0, 0], [1, 0], [0, 1], [1, 1]]
+                    .map(|[x, y]| [(column + x) << shift, (row + y) << shift, 0]);
                 let inside = |p: GridPoint| {
                     let [a, b, c] = triangle.corners;
                     orient2d(a, b, p) >= 0 && orient2d(b, c, p) >= 0 && orient2d(c, a, p) >= 0
@@ -260,7 +281,9 @@ impl Covers {
                     f64::from(plane.origin[2]) - (nx * dx + ny * dy) / nz
                 };
                 let farthest = corners.into_iter().map(depth).fold(f64::INFINITY, f64::min);
-                let behind = (farthest - margin).floor().clamp(f64::from(i32::MIN), f64::from(i32::MAX)) as i32;
+                let behind =
+                    (farthest - margin).floor().clamp(f64::from(i32::MIN), f64::from(i32::MAX))
+                        as i32;
                 if depths.is_empty() {
                     depths.resize(width * height, i32::MIN);
                 }
@@ -270,10 +293,12 @@ impl Covers {
         }
     }
 
-    /// Ends the lists of a level at the faces that cover its cells, or coarser cells that these are in.
+    /// Ends the lists of a level at the faces that cover its cells, or coarser cells that these are
+    /// in.
     fn end_lists(&self, level: &mut Level, triangles: &[Triangle]) {
-        let covering: Vec<u32> =
-            (level.shift..32).filter(|&s| !self.depths[(s - self.finest) as usize].is_empty()).collect();
+        let covering: Vec<u32> = (level.shift..32)
+            .filter(|&s| !self.depths[(s - self.finest) as usize].is_empty())
+            .collect();
         if covering.is_empty() {
             return;
         }
@@ -281,8 +306,10 @@ impl Covers {
             let (row, column) = (cell / level.width, cell % level.width);
             let behind = covering.iter().fold(i32::MIN, |behind, &shift| {
                 let up = shift - level.shift;
-                behind
-                    .max(self.depths[(shift - self.finest) as usize][(row >> up) * self.width(shift) + (column >> up)])
+                behind.max(
+                    self.depths[(shift - self.finest) as usize]
+                        [(row >> up) * self.width(shift) + (column >> up)],
+                )
             });
             let (start, end) = (level.starts[cell] as usize, level.ends[cell] as usize);
             let list = &level.items[start..end];

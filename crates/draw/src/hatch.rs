@@ -1,13 +1,14 @@
 //! Hatching: parallel lines over the visible parts of cuts, at an angle and a distance on paper.
 //!
-//! The lines of one pattern belong to one family through the origin of the sheet, so that those of neighbouring regions line up. Parts
-//! differ by their patterns: the first six by the angle, 0, 90, 165, 75, 15 and 105 degrees from the first one's (45, 135, 30, 120, 60 and
-//! 150 degrees for 45), the next six by the distance as well, half as large again, and so on.
+//! The lines of one pattern belong to one family through the origin of the sheet, so that those of
+//! neighbouring regions line up. Parts differ by their patterns: the first six by the angle, 0, 90,
+//! 165, 75, 15 and 105 degrees from the first one's (45, 135, 30, 120, 60 and 150 degrees for 45),
+//! the next six by the distance as well, half as large again, and so on.
 //!
 //! In:   outlines of regions in millimetres. Out: lines inside, even-odd.
 //! Cost: for each region its corners, and `n log n` for the crossings with its lines.
-//! Source: the scan conversion of polygons with sorted crossings, [Foley et al. 1990], section 3.6, in a turned frame; ISO 128 for what
-//! hatching looks like.
+//! Source: the scan conversion of polygons with sorted crossings, [Foley et al. 1990], section 3.6,
+//! in a turned frame; ISO 128 for what hatching looks like.
 
 use crate::fill::PageRegion;
 use std::f64::consts::{FRAC_PI_4, PI};
@@ -40,7 +41,10 @@ impl Hatch {
     /// The pattern of the part with this number.
     pub(crate) fn of_part(self, number: usize) -> Self {
         let wider = 1.0 + WIDER * (number / ANGLES.len()) as f64;
-        Self { angle: self.angle + ANGLES[number % ANGLES.len()] * (PI / 180.0), distance: self.distance * wider }
+        Self {
+            angle: self.angle + ANGLES[number % ANGLES.len()] * (PI / 180.0),
+            distance: self.distance * wider,
+        }
     }
 }
 
@@ -70,7 +74,8 @@ impl Cuts {
 pub(crate) fn hatch(rings: &[Vec<[f64; 2]>], pattern: Hatch) -> Vec<Line> {
     let (sine, cosine) = (func::sin(pattern.angle), func::cos(pattern.angle));
     // How far along the lines a point is, and how many distances beside the one through the origin.
-    let turned = |[x, y]: [f64; 2]| [x * cosine + y * sine, (y * cosine - x * sine) / pattern.distance];
+    let turned =
+        |[x, y]: [f64; 2]| [x * cosine + y * sine, (y * cosine - x * sine) / pattern.distance];
     let back = |along: f64, number: i64| {
         let beside = number as f64 * pattern.distance;
         [along * cosine - beside * sine, along * sine + beside * cosine]
@@ -94,7 +99,8 @@ pub(crate) fn hatch(rings: &[Vec<[f64; 2]>], pattern: Hatch) -> Vec<Line> {
     let mut lines = Vec::new();
     for on_line in crossings.chunk_by(|a, b| a.0 == b.0) {
         for pair in on_line.chunks_exact(2).filter(|pair| pair[1].1 - pair[0].1 >= DUST) {
-            let points = [pair[0], pair[1]].map(|(number, along)| back(along, number).map(rounded)).to_vec();
+            let points =
+                [pair[0], pair[1]].map(|(number, along)| back(along, number).map(rounded)).to_vec();
             lines.push(Line { class: LineClass::Hatch, layers: 0, points });
         }
     }
@@ -129,7 +135,8 @@ mod tests {
         // At 45 degrees, the diagonal and pairs that are shorter by 4√2 … each.
         let tilted = hatch(&[square(0.0, 10.0)], Hatch { angle: FRAC_PI_4, distance: 2.0 });
         let root = 2f64.sqrt();
-        let expected: f64 = (-3..=3).map(|k| 10.0 * root - 2.0 * 2.0 * f64::from(i32::abs(k))).sum();
+        let expected: f64 =
+            (-3..=3).map(|k| 10.0 * root - 2.0 * 2.0 * f64::from(i32::abs(k))).sum();
         assert_eq!(tilted.len(), 7);
         assert!((length(&tilted) - expected).abs() < 0.01, "{} {expected}", length(&tilted));
     }
@@ -144,7 +151,8 @@ mod tests {
         let tilted = Hatch { angle: 1.0, distance: 1.7 };
         let shifted: Vec<[f64; 2]> = square(0.0, 5.0).iter().map(|p| [p[0] + 5.0, p[1]]).collect();
         let both = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 5.0], [0.0, 5.0]];
-        let apart = length(&hatch(&[square(0.0, 5.0)], tilted)) + length(&hatch(&[shifted], tilted));
+        let apart =
+            length(&hatch(&[square(0.0, 5.0)], tilted)) + length(&hatch(&[shifted], tilted));
         assert!((apart - length(&hatch(&[both], tilted))).abs() < 0.02);
         assert!(hatch(&[], level).is_empty());
     }
@@ -152,7 +160,13 @@ mod tests {
     #[test]
     fn parts_have_different_patterns() {
         let degrees = |k: usize| (Hatch::default().of_part(k).angle * 180.0 / PI).round();
-        assert_eq!([0, 1, 2, 3, 4, 5, 6].map(degrees), [45.0, 135.0, 30.0, 120.0, 60.0, 150.0, 45.0]);
-        assert_eq!([0, 5, 6, 12].map(|k| Hatch::default().of_part(k).distance), [2.0, 2.0, 3.0, 4.0]);
+        assert_eq!(
+            [0, 1, 2, 3, 4, 5, 6].map(degrees),
+            [45.0, 135.0, 30.0, 120.0, 60.0, 150.0, 45.0]
+        );
+        assert_eq!(
+            [0, 5, 6, 12].map(|k| Hatch::default().of_part(k).distance),
+            [2.0, 2.0, 3.0, 4.0]
+        );
     }
 }

@@ -1,6 +1,7 @@
 //! The sheet: strokes are scaled and placed, rounded to the precision, and joined.
 //!
-//! In:   strokes, regions and points in units of the page's grid. Out: a [`Drawing`] in millimetres.
+//! In:   strokes, regions and points in units of the page's grid. Out: a [`Drawing`] in
+//!       millimetres.
 //! Cost: that of [`chains`](crate::chains).
 
 use crate::chains::{Step, chains};
@@ -36,7 +37,8 @@ pub enum PageSize {
         /// Width and height of the sheet; `None`: as large as the drawing.
         sheet: Option<[f64; 2]>,
     },
-    /// The whole window of the camera, to scale and without margins: what is in the middle of the window is in the middle of the page.
+    /// The whole window of the camera, to scale and without margins: what is in the middle of the
+    /// window is in the middle of the page.
     Window {
         /// Millimetres on paper along its longer side.
         window: f64,
@@ -71,33 +73,36 @@ impl Placement {
     /// Places a box of these corners.
     fn new(low: [f64; 2], high: [f64; 2], page: PageSize, margin: f64) -> Self {
         let size = [0, 1].map(|k| high[k] - low[k]);
-        // Choose the scale.
-        // A drawing without width or height is placed by its other side; one without both is a point.
-        let ratio = |room: f64, side: f64| if side > 0.0 { (room / side).max(0.0) } else { f64::INFINITY };
+        // Choose the scale. A drawing without width or height is placed by its other side; one
+        // without both is a point.
+        let ratio =
+            |room: f64, side: f64| if side > 0.0 { (room / side).max(0.0) } else { f64::INFINITY };
         let scale = match page {
             PageSize::Fit { longer } => ratio(longer, size[0].max(size[1])),
             PageSize::Sheet { width, height } => {
                 ratio(width - 2.0 * margin, size[0]).min(ratio(height - 2.0 * margin, size[1]))
             }
-            PageSize::Scaled { window, .. } | PageSize::Window { window } => window / f64::from(PAGE_UNITS),
+            PageSize::Scaled { window, .. } | PageSize::Window { window } => {
+                window / f64::from(PAGE_UNITS)
+            }
         };
         let scale = if scale.is_finite() { scale } else { 0.0 };
 
         // Choose the sheet and centre the drawing on it.
         let sheet = match page {
-            PageSize::Fit { .. } | PageSize::Scaled { sheet: None, .. } | PageSize::Window { .. } => {
-                size.map(|side| side * scale + 2.0 * margin)
-            }
-            PageSize::Sheet { width, height } | PageSize::Scaled { sheet: Some([width, height]), .. } => {
-                [width, height]
-            }
+            PageSize::Fit { .. }
+            | PageSize::Scaled { sheet: None, .. }
+            | PageSize::Window { .. } => size.map(|side| side * scale + 2.0 * margin),
+            PageSize::Sheet { width, height }
+            | PageSize::Scaled { sheet: Some([width, height]), .. } => [width, height],
         };
         let offset = [0, 1].map(|k| (sheet[k] - size[k] * scale) / 2.0 - low[k] * scale);
         Self { scale, offset, sheet }
     }
 
     fn step(&self, point: [f64; 2]) -> Step {
-        [0, 1].map(|k| ((point[k] * self.scale + self.offset[k]) * STEPS_A_MILLIMETRE).round() as i32)
+        [0, 1]
+            .map(|k| ((point[k] * self.scale + self.offset[k]) * STEPS_A_MILLIMETRE).round() as i32)
     }
 
     /// A region on the sheet, unless nothing is left of it at the precision.
@@ -134,12 +139,14 @@ pub(crate) struct Content<'a> {
     pub(crate) points: &'a [[f64; 2]],
 }
 
-/// Places strokes, regions and points on the sheet, joins the strokes, and hatches the visible parts of cuts.
+/// Places strokes, regions and points on the sheet, joins the strokes, and hatches the visible
+/// parts of cuts.
 pub(crate) fn lay_out(content: &Content<'_>, page: PageSize, margin: f64) -> Drawing {
     let Content { size, strokes, regions, cuts, points } = *content;
 
     // Find the placement of everything on the sheet.
-    let outlines = regions.iter().chain(&cuts.regions).flat_map(|region| region.rings.iter().flatten());
+    let outlines =
+        regions.iter().chain(&cuts.regions).flat_map(|region| region.rings.iter().flatten());
     let all = strokes.iter().flat_map(|stroke| &stroke.ends).chain(outlines).chain(points);
     let placement = match (page, bounds(all.copied()).unwrap_or_default()) {
         (PageSize::Window { window }, _) => Placement::of_window(size, window),
@@ -147,7 +154,8 @@ pub(crate) fn lay_out(content: &Content<'_>, page: PageSize, margin: f64) -> Dra
     };
 
     // Join the strokes to chains.
-    let placed: Vec<_> = strokes.iter().map(|s| (s.class, s.layers, s.ends.map(|p| placement.step(p)))).collect();
+    let placed: Vec<_> =
+        strokes.iter().map(|s| (s.class, s.layers, s.ends.map(|p| placement.step(p)))).collect();
     let mut lines: Vec<Line> = chains(&placed)
         .into_iter()
         .map(|chain| {
@@ -177,8 +185,13 @@ mod tests {
     use vitral_frame::drawing::LineClass;
 
     fn lay_out(strokes: &[Stroke], points: &[[f64; 2]], page: PageSize, margin: f64) -> Drawing {
-        let content =
-            Content { size: [PAGE_UNITS, PAGE_UNITS / 2], strokes, regions: &[], cuts: &Cuts::default(), points };
+        let content = Content {
+            size: [PAGE_UNITS, PAGE_UNITS / 2],
+            strokes,
+            regions: &[],
+            cuts: &Cuts::default(),
+            points,
+        };
         super::lay_out(&content, page, margin)
     }
 
@@ -203,15 +216,24 @@ mod tests {
         let strokes = [line([0.0, 0.0], [half, 0.0])];
         let fit = lay_out(&strokes, &[], PageSize::Scaled { window: 40.0, sheet: None }, 5.0);
         assert_eq!((fit.width, fit.height), (30.0, 10.0));
-        let sheet = lay_out(&strokes, &[], PageSize::Scaled { window: 40.0, sheet: Some([30.0, 20.0]) }, 5.0);
+        let sheet = lay_out(
+            &strokes,
+            &[],
+            PageSize::Scaled { window: 40.0, sheet: Some([30.0, 20.0]) },
+            5.0,
+        );
         assert_eq!(sheet.lines[0].points, [[5.0, 10.0], [25.0, 10.0]]);
     }
 
     #[test]
     fn a_window_keeps_its_middle_and_points_are_drawn_once() {
         let [half, quarter] = [2.0, 4.0].map(|part| f64::from(PAGE_UNITS) / part);
-        let window =
-            lay_out(&[], &[[half, quarter], [half, quarter], [0.0, 0.0]], PageSize::Window { window: 40.0 }, 5.0);
+        let window = lay_out(
+            &[],
+            &[[half, quarter], [half, quarter], [0.0, 0.0]],
+            PageSize::Window { window: 40.0 },
+            5.0,
+        );
         assert_eq!((window.width, window.height), (40.0, 20.0));
         assert_eq!(window.points, [[0.0, 0.0], [20.0, 10.0]]);
     }
@@ -220,7 +242,12 @@ mod tests {
     fn nothing_and_lines_without_height_have_a_sheet() {
         let empty = lay_out(&[], &[], PageSize::default(), 5.0);
         assert_eq!((empty.width, empty.height, empty.lines.len()), (10.0, 10.0, 0));
-        let flat = lay_out(&[line([0.0, 7.0], [9.0, 7.0])], &[], PageSize::Sheet { width: 20.0, height: 10.0 }, 1.0);
+        let flat = lay_out(
+            &[line([0.0, 7.0], [9.0, 7.0])],
+            &[],
+            PageSize::Sheet { width: 20.0, height: 10.0 },
+            1.0,
+        );
         assert_eq!(flat.lines[0].points, [[1.0, 5.0], [19.0, 5.0]]);
     }
 }

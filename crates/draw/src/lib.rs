@@ -1,6 +1,8 @@
-//! Floor 3: exact vector drawings of meshes, visible and hidden lines, each with its class, and visible surfaces.
+//! Floor 3: exact vector drawings of meshes, visible and hidden lines, each with its class, and
+//! visible surfaces.
 //!
-//! All geometry is snapped to an integer grid once; afterwards every decision about visibility is exact. The way of a drawing:
+//! All geometry is snapped to an integer grid once; afterwards every decision about visibility is
+//! exact. The way of a drawing:
 //!
 //! | step | file |
 //! |---|---|
@@ -16,8 +18,8 @@
 //! | long polylines on the page | `chains.rs`, `layout.rs` |
 //! | several views on one sheet | `sheet/` |
 //!
-//! Polygons that another algorithm comes to are laid out on the same page (`listed.rs`), divided in lit and shadowed parts if that is
-//! wanted (`lit.rs`).
+//! Polygons that another algorithm comes to are laid out on the same page (`listed.rs`), divided in
+//! lit and shadowed parts if that is wanted (`lit.rs`).
 //!
 //! Nothing depends on the number of threads.
 //!
@@ -87,7 +89,8 @@ pub struct DrawingSettings {
     pub hidden_layers: u32,
     /// Edges at a larger angle are creases, radians.
     pub crease_angle: f64,
-    /// Leave out edges between two faces whose normals agree within a degree, unless they are contours.
+    /// Leave out edges between two faces whose normals agree within a degree, unless they are
+    /// contours.
     pub hide_tangent: bool,
     /// The most segments that lines and outlines may have in all.
     pub max_segments: Option<u64>,
@@ -95,9 +98,11 @@ pub struct DrawingSettings {
     pub page: PageSize,
     /// Distance of the drawing from the border of the sheet, millimetres.
     pub margin: f64,
-    /// Hatching where planes of section have cut bodies ([`Scene::cut`](vitral_scene::Scene::cut)), if lines are drawn; `None`: none.
+    /// Hatching where planes of section have cut bodies ([`Scene::cut`](vitral_scene::Scene::cut)),
+    /// if lines are drawn; `None`: none.
     pub hatch: Option<Hatch>,
-    /// Ask all triangles about each edge instead of those near it: the same lines in quadratic time, to check the grid by.
+    /// Ask all triangles about each edge instead of those near it: the same lines in quadratic
+    /// time, to check the grid by.
     pub brute_force: bool,
 }
 
@@ -143,8 +148,8 @@ pub struct DrawingStats {
     pub visibility: VisibilityStats,
 }
 
-/// Draws what `camera` sees in a window of `aspect` (width by height): lines, and with `surfaces` what is visible of the faces.
-/// Faces of materials that let light through hide no lines there.
+/// Draws what `camera` sees in a window of `aspect` (width by height): lines, and with `surfaces`
+/// what is visible of the faces. Faces of materials that let light through hide no lines there.
 ///
 /// # Errors
 /// A limit of the budget.
@@ -160,8 +165,9 @@ pub fn draw(
     draw_one_sided(world, camera, aspect, settings, surfaces, &[], workers, budget)
 }
 
-/// [`draw`] where faces of some materials show their front alone: from behind they hide nothing and are not filled. `front_only`
-/// says so of each material, by index; those beyond the end show both sides.
+/// [`draw`] where faces of some materials show their front alone: from behind they hide nothing and
+/// are not filled. `front_only` says so of each material, by index; those beyond the end show both
+/// sides.
 ///
 /// # Errors
 /// A limit of the budget.
@@ -182,10 +188,12 @@ pub fn draw_one_sided(
     if let Some(surfaces) = surfaces {
         projected.let_through(|material| surfaces.opacity(material));
     }
-    projected.leave_out_backs(|material| front_only.get(material as usize).copied().unwrap_or(false));
+    projected
+        .leave_out_backs(|material| front_only.get(material as usize).copied().unwrap_or(false));
 
     // Join the facets to a mesh of edges, and add the lines of intersection.
-    let mut mesh = edges::with_edges(projected, settings.crease_angle, settings.hide_tangent, &run)?;
+    let mut mesh =
+        edges::with_edges(projected, settings.crease_angle, settings.hide_tangent, &run)?;
     let caps = cuts::Caps::new(world);
     mesh.ranks = caps.ranks(&mesh);
     let grid = Grid::new(&mesh, |triangle| triangle.hides, &run)?;
@@ -202,8 +210,11 @@ pub fn draw_one_sided(
     }
 
     // Find the visible fragments of all edges, and join them to strokes.
-    let wanted =
-        Wanted { classes: settings.lines, most_layers: settings.hidden_layers, most_segments: settings.max_segments };
+    let wanted = Wanted {
+        classes: settings.lines,
+        most_layers: settings.hidden_layers,
+        most_segments: settings.max_segments,
+    };
     let search = if settings.brute_force { Search::All } else { Search::Grid(&grid) };
     let (fragments, visibility) = fragments(&mesh, search, wanted, &run)?;
     (stats.fragments, stats.visibility) = (fragments.len() as u64, visibility);
@@ -216,7 +227,8 @@ pub fn draw_one_sided(
     };
     budget.check("lines")?;
     let corner = |facet: u32| world.corners_of_facet(facet)[0];
-    let to_page = lit::Projector { clip_from_world: view.clip_from_world(), size: mesh.size.map(f64::from) };
+    let to_page =
+        lit::Projector { clip_from_world: view.clip_from_world(), size: mesh.size.map(f64::from) };
     let facets = fill::Facets { corner: &corner, to_page };
     let regions = match surfaces {
         Some(surfaces) => fill::regions(&mesh, &grid, surfaces, &facets, &run)?,
@@ -228,7 +240,13 @@ pub fn draw_one_sided(
     };
 
     // Lay everything out on the sheet.
-    let content = Content { size: mesh.size, strokes: &strokes, regions: &regions, cuts: &cuts, points: &points };
+    let content = Content {
+        size: mesh.size,
+        strokes: &strokes,
+        regions: &regions,
+        cuts: &cuts,
+        points: &points,
+    };
     let drawing = layout::lay_out(&content, settings.page, settings.margin);
     Ok(Drawn { drawing: settings.limited(drawing)?, stats })
 }
@@ -238,7 +256,8 @@ impl DrawingSettings {
     pub(crate) fn limited(&self, drawing: Drawing) -> Result<Drawing, Limit> {
         match self.max_segments.filter(|&limit| drawing.segments() > limit) {
             Some(limit) => {
-                let achieved = Achieved { done: limit, whole: drawing.segments(), pieces: "segments" };
+                let achieved =
+                    Achieved { done: limit, whole: drawing.segments(), pieces: "segments" };
                 Err(Limit::Segments { limit, stage: "the layout", achieved })
             }
             None => Ok(drawing),
@@ -246,9 +265,17 @@ impl DrawingSettings {
     }
 }
 
-/// Adds the lines of intersection. Where hidden lines are drawn, back faces of solid bodies have some, too.
-fn intersect(mesh: &mut PageMesh, grid: &Grid, with_backs: bool, run: &Run<'_>) -> Result<u64, Limit> {
-    let is_wanted = |triangle: &Triangle| !triangle.is_flat() && (with_backs || triangle.hides || triangle.clear);
+/// Adds the lines of intersection. Where hidden lines are drawn, back faces of solid bodies have
+/// some, too.
+fn intersect(
+    mesh: &mut PageMesh,
+    grid: &Grid,
+    with_backs: bool,
+    run: &Run<'_>,
+) -> Result<u64, Limit> {
+    let is_wanted = |triangle: &Triangle| {
+        !triangle.is_flat() && (with_backs || triangle.hides || triangle.clear)
+    };
     if mesh.triangles.iter().any(|triangle| is_wanted(triangle) && !triangle.hides) {
         let all = Grid::new(mesh, is_wanted, run)?;
         return crossings::add_crossings(mesh, &all, is_wanted, run);

@@ -1,9 +1,11 @@
-//! Polygons that another algorithm comes to, on the page: in its own order, overlapping or not, as it cut them.
+//! Polygons that another algorithm comes to, on the page: in its own order, overlapping or not, as
+//! it cut them.
 //!
-//! The page is that of [`draw`](crate::draw): the same camera brings a point to the same place. Nothing is decided about visibility here.
+//! The page is that of [`draw`](crate::draw): the same camera brings a point to the same place.
+//! Nothing is decided about visibility here.
 //!
-//! In:   polygons as shares of the camera's window. Out: regions in the same order and, if wanted, their outlines as lines, each part
-//!       once.
+//! In:   polygons as shares of the camera's window. Out: regions in the same order and, if wanted,
+//!       their outlines as lines, each part once.
 //! Cost: linear in corners, and that of [`strokes`](crate::strokes) for lines.
 
 use crate::DrawingSettings;
@@ -32,8 +34,9 @@ const BYTES_A_CORNER: u64 = 16;
 pub struct ListedPolygon {
     /// The facets of the flat polygon that it is a part of, at least one.
     pub facets: Vec<u32>,
-    /// Outlines, counter-clockwise round the polygon, clockwise round holes, closed without repeating the first point. The window of the
-    /// camera reaches from `[0, 0]`, lower left, to `[1, 1]`.
+    /// Outlines, counter-clockwise round the polygon, clockwise round holes, closed without
+    /// repeating the first point. The window of the camera reaches from `[0, 0]`, lower left, to
+    /// `[1, 1]`.
     pub outlines: Vec<Vec<[f64; 2]>>,
 }
 
@@ -49,7 +52,8 @@ pub struct ListedPolygons<'p> {
     pub lit: &'p [LitPolygons],
 }
 
-/// Lays polygons out on the page of a drawing of what `camera` sees in a window of `aspect` (width by height).
+/// Lays polygons out on the page of a drawing of what `camera` sees in a window of `aspect` (width
+/// by height).
 ///
 /// # Errors
 /// A limit of the budget.
@@ -79,7 +83,11 @@ pub fn draw_polygons(
         let corners: usize = polygon.outlines.iter().map(Vec::len).sum();
         run.memory.add(corners as u64 * BYTES_A_CORNER)?;
         let on_page = |p: [f64; 2]| [0, 1].map(|k| p[k] * f64::from(size[k]));
-        let rings = polygon.outlines.into_iter().map(|ring| ring.into_iter().map(on_page).collect()).collect();
+        let rings = polygon
+            .outlines
+            .into_iter()
+            .map(|ring| ring.into_iter().map(on_page).collect())
+            .collect();
         sides.add(rings, &polygon.facets, &polygons, &to_page, &mut regions);
     }
 
@@ -88,7 +96,8 @@ pub fn draw_polygons(
     if let Some(class) = polygons.lines {
         for ring in regions.iter().flat_map(|region| &region.rings) {
             let next = ring.iter().cycle().skip(1);
-            let sides = ring.iter().zip(next).map(|(&p, &q)| Stroke { class, layers: 0, ends: [p, q] });
+            let sides =
+                ring.iter().zip(next).map(|(&p, &q)| Stroke { class, layers: 0, ends: [p, q] });
             strokes.extend(sides.filter(|stroke| stroke.length() >= DUST));
         }
         run.memory.add((strokes.len() * size_of::<Stroke>()) as u64)?;
@@ -99,7 +108,8 @@ pub fn draw_polygons(
     if polygons.fill.is_none() {
         regions.clear();
     }
-    let content = Content { size, strokes: &strokes, regions: &regions, cuts: &Cuts::default(), points: &[] };
+    let content =
+        Content { size, strokes: &strokes, regions: &regions, cuts: &Cuts::default(), points: &[] };
     page.limited(layout::lay_out(&content, page.page, page.margin))
 }
 
@@ -115,7 +125,12 @@ impl<'w> Sides<'w> {
     fn new(world: &'w World, view: &ViewTransform) -> Self {
         let world_from_view = view.view_from_world.inverse();
         let eye = world_from_view.transform_point3(DVec3::ZERO);
-        Self { world, perspective: view.perspective, eye, backwards: world_from_view.transform_vector3(DVec3::Z) }
+        Self {
+            world,
+            perspective: view.perspective,
+            eye,
+            backwards: world_from_view.transform_vector3(DVec3::Z),
+        }
     }
 
     /// Adds the regions of a polygon: itself, or its lit and shadowed parts.
@@ -144,10 +159,12 @@ impl<'w> Sides<'w> {
             return;
         }
         let shape = rings.iter().map(|ring| ring.iter().map(|&p| corner_at(p)).collect()).collect();
-        let facets: Vec<_> = facets.iter().map(|&facet| (facet, self.world.corners_of_facet(facet)[0])).collect();
+        let facets: Vec<_> =
+            facets.iter().map(|&facet| (facet, self.world.corners_of_facet(facet)[0])).collect();
         let parts = lit::divide(vec![shape], &facets, look.normal, polygons.lit, to_page);
         regions.extend(parts.into_iter().map(|(lights, shapes)| {
-            let rings = shapes.iter().flatten().map(|ring| ring.iter().map(on_page).collect()).collect();
+            let rings =
+                shapes.iter().flatten().map(|ring| ring.iter().map(on_page).collect()).collect();
             region(lights, rings)
         }));
     }
@@ -155,7 +172,11 @@ impl<'w> Sides<'w> {
     /// What a facet's face shows to a palette.
     fn look(&self, facet: u32) -> FaceLook {
         let source = source_of_facet(self.world, facet);
-        let towards = if self.perspective { self.eye - self.world.corners_of_facet(facet)[0] } else { self.backwards };
+        let towards = if self.perspective {
+            self.eye - self.world.corners_of_facet(facet)[0]
+        } else {
+            self.backwards
+        };
         let is_back = towards.dot(DVec3::from_array(source.normal.map(f64::from))) < 0.0;
         let normal = if is_back { source.normal.map(|c| -c) } else { source.normal };
         let material = Some(source.material).filter(|&m| m != NONE);
@@ -169,7 +190,9 @@ pub fn covered_area(regions: &[Region]) -> f64 {
         let [x, y] = p.map(|at| (at * STEPS_A_MILLIMETRE).round() as i32);
         Corner::new(x, y)
     };
-    let outlines = |region: &Region| vec![region.rings.iter().map(|ring| ring.iter().map(step).collect()).collect()];
+    let outlines = |region: &Region| {
+        vec![region.rings.iter().map(|ring| ring.iter().map(step).collect()).collect()]
+    };
     let all: Vec<Shapes> = regions.iter().map(outlines).collect();
     area_of(&union(&all, 0)) / (STEPS_A_MILLIMETRE * STEPS_A_MILLIMETRE)
 }

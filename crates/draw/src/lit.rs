@@ -1,12 +1,14 @@
 //! Lit and shadowed parts of visible shapes.
 //!
-//! A light's lit polygons are details of the facets that they lie in, found in space. They are projected to the page, where they divide
-//! the visible shapes of their facet: a part outside all of them is in the light's shadow.
+//! A light's lit polygons are details of the facets that they lie in, found in space. They are
+//! projected to the page, where they divide the visible shapes of their facet: a part outside all
+//! of them is in the light's shadow.
 //!
-//! Lit polygons are enlarged by [`REACH`]. Otherwise rounding could leave hairs of shadow between two of them, and where one reaches a
-//! side of its facet.
+//! Lit polygons are enlarged by [`REACH`]. Otherwise rounding could leave hairs of shadow between
+//! two of them, and where one reaches a side of its facet.
 //!
-//! In:   shapes of facets on the page, lit polygons of these facets in world space. Out: shapes, each with the lights that reach it.
+//! In:   shapes of facets on the page, lit polygons of these facets in world space. Out: shapes,
+//!       each with the lights that reach it.
 //! Cost: `k log k` with `k` corners of lit polygons.
 //! Source: [Atherton, Weiler & Greenberg 1978].
 
@@ -15,8 +17,8 @@ use std::collections::BTreeMap;
 use vitral_frame::drawing::signed_area;
 use vitral_math::{DMat4, DVec3, DVec4};
 
-/// Units of the page by which lit polygons are made larger: what they lie on is rounded to a unit, and two that share a side leave no
-/// crack.
+/// Units of the page by which lit polygons are made larger: what they lie on is rounded to a unit,
+/// and two that share a side leave no crack.
 const REACH: f64 = 2.0;
 /// The sine of the angle from which on a light is before a plane.
 const GRAZING: f64 = 1e-6;
@@ -30,7 +32,8 @@ pub struct LitPolygons {
     pub light: u8,
     /// Where the light is: a point, or with `w` 0 the direction to it.
     pub place: DVec4,
-    /// For each facet of the world that it reaches, convex polygons that do not overlap, world space.
+    /// For each facet of the world that it reaches, convex polygons that do not overlap, world
+    /// space.
     pub of_facet: BTreeMap<u32, Vec<Vec<DVec3>>>,
 }
 
@@ -42,9 +45,10 @@ pub(crate) struct Projector {
     pub(crate) size: [f64; 2],
 }
 
-/// Divides shapes of some facets in one plane between the lights: each part comes with a bit for every light that reaches it. Lights
-/// that are not among `lights` reach everything. Facets come with a corner, world space; `normal` is the unit normal on the side
-/// that is seen: a light on the other side reaches nothing.
+/// Divides shapes of some facets in one plane between the lights: each part comes with a bit for
+/// every light that reaches it. Lights that are not among `lights` reach everything. Facets come
+/// with a corner, world space; `normal` is the unit normal on the side that is seen: a light on the
+/// other side reaches nothing.
 pub(crate) fn divide(
     shapes: Shapes,
     facets: &[(u32, DVec3)],
@@ -59,7 +63,10 @@ pub(crate) fn divide(
             let polygons = light.of_facet.get(&facet).map_or(&[][..], Vec::as_slice);
             lit.extend(polygons.iter().filter_map(|polygon| to_page.polygon(polygon)));
         }
-        parts = parts.into_iter().flat_map(|(lights, shapes)| split(lights, shapes, &lit, light.light)).collect();
+        parts = parts
+            .into_iter()
+            .flat_map(|(lights, shapes)| split(lights, shapes, &lit, light.light))
+            .collect();
     }
     parts
 }
@@ -94,15 +101,18 @@ fn split(lights: u32, shapes: Shapes, lit: &[Vec<Corner>], light: u8) -> Vec<(u3
 }
 
 impl Projector {
-    /// A convex polygon on the page, made larger; `None` if nothing of it is in front of the viewer or it is seen edge-on.
+    /// A convex polygon on the page, made larger; `None` if nothing of it is in front of the viewer
+    /// or it is seen edge-on.
     fn polygon(&self, polygon: &[DVec3]) -> Option<Vec<Corner>> {
         // Leave out what is behind the viewer.
-        let clip: Vec<DVec4> = polygon.iter().map(|p| self.clip_from_world * p.extend(1.0)).collect();
+        let clip: Vec<DVec4> =
+            polygon.iter().map(|p| self.clip_from_world * p.extend(1.0)).collect();
         let near = NEAR * clip.iter().fold(0.0f64, |most, p| most.max(p.w));
         let visible = in_front(&clip, near);
 
         // Far outside the page it does not matter where.
-        let within = |at: [f64; 2]| [0, 1].map(|k| at[k].clamp(-0.5 * self.size[k], 1.5 * self.size[k]));
+        let within =
+            |at: [f64; 2]| [0, 1].map(|k| at[k].clamp(-0.5 * self.size[k], 1.5 * self.size[k]));
         let mut outline: Vec<[f64; 2]> = visible.iter().map(|p| within(self.point(p))).collect();
         let area = signed_area(&outline);
         if area < 0.0 {
@@ -172,18 +182,25 @@ mod tests {
             of_facet: [(7, polygons.to_vec())].into_iter().filter(|(_, p)| !p.is_empty()).collect(),
         };
         let lights = [of(0, first), of(3, second)];
-        let divided = divide(vec![vec![whole]], &[(7, FACET[0])], [0.0, 0.0, 1.0], &lights, &TO_PAGE);
+        let divided =
+            divide(vec![vec![whole]], &[(7, FACET[0])], [0.0, 0.0, 1.0], &lights, &TO_PAGE);
         divided.iter().map(|(lights, shapes)| (lights & 0b1001, area(shapes))).collect()
     }
 
     #[test]
     fn a_facet_is_lit_dark_or_divided() {
-        let half = vec![dvec3(0.0, 0.0, 0.0), dvec3(0.5, 0.0, 0.0), dvec3(0.5, 0.5, 0.0), dvec3(0.0, 1.0, 0.0)];
+        let half = vec![
+            dvec3(0.0, 0.0, 0.0),
+            dvec3(0.5, 0.0, 0.0),
+            dvec3(0.5, 0.5, 0.0),
+            dvec3(0.0, 1.0, 0.0),
+        ];
         assert_eq!(parts(&[FACET.to_vec()], &[FACET.to_vec()]), [(0b1001, 125_000.0)]);
         assert_eq!(parts(&[], &[FACET.to_vec()]), [(0b1000, 125_000.0)]);
         let divided = parts(&[half], &[]);
         assert_eq!(divided.iter().map(|part| part.0).collect::<Vec<_>>(), [0b0001, 0b0000]);
-        // The shadow is a right triangle with legs of 250 units, and of 248 beside the enlarged polygon.
+        // The shadow is a right triangle with legs of 250 units, and of 248 beside the enlarged
+        // polygon.
         assert!((divided[1].1 - 248.0 * 248.0 / 2.0).abs() < 2.0, "{divided:?}");
         assert!((divided[0].1 + divided[1].1 - 125_000.0).abs() < 1.0, "{divided:?}");
     }

@@ -1,4 +1,5 @@
-//! The scene on the page: vertices on an integer grid, triangles that hide, and edges that may be drawn.
+//! The scene on the page: vertices on an integer grid, triangles that hide, and edges that may be
+//! drawn.
 
 use crate::classes::Classes;
 use vitral_math::exact::{GridPlane, GridPoint};
@@ -6,10 +7,12 @@ use vitral_math::exact::{GridPlane, GridPoint};
 /// No triangle, vertex or material.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Units of the grid along the longer side of the page. A page of 200 mm has steps of a twentieth of a micrometre.
+/// Units of the grid along the longer side of the page. A page of 200 mm has steps of a twentieth
+/// of a micrometre.
 pub(crate) const PAGE_UNITS: i32 = 1 << 22;
 
-/// The scene on the page. Everything is counter-clockwise as the viewer sees it; z grows towards the viewer.
+/// The scene on the page. Everything is counter-clockwise as the viewer sees it; z grows towards
+/// the viewer.
 #[derive(Debug, Default)]
 pub(crate) struct PageMesh {
     /// Size of the page in units.
@@ -26,7 +29,8 @@ pub(crate) struct PageMesh {
     pub(crate) edge_triangles: Vec<u32>,
     /// Free points, as vertices, each once.
     pub(crate) points: Vec<u32>,
-    /// For each triangle a rank: of coplanar triangles, the one of the lowest rank is in front. Empty: all are equal.
+    /// For each triangle a rank: of coplanar triangles, the one of the lowest rank is in front.
+    /// Empty: all are equal.
     pub(crate) ranks: Vec<u32>,
 }
 
@@ -43,7 +47,8 @@ pub(crate) struct Triangle {
     pub(crate) corners: [GridPoint; 3],
     /// The same, as vertices.
     pub(crate) vertices: [u32; 3],
-    /// Whether lines behind it are hidden by it: it has an area on the page and is not the back of a solid body.
+    /// Whether lines behind it are hidden by it: it has an area on the page and is not the back of
+    /// a solid body.
     pub(crate) hides: bool,
     /// Whether it is filled and hides nothing, since light passes it.
     pub(crate) clear: bool,
@@ -109,7 +114,16 @@ impl Triangle {
         let low = [0, 1].map(|k| of(k).into_iter().fold(i32::MAX, i32::min));
         let high = [0, 1].map(|k| of(k).into_iter().fold(i32::MIN, i32::max));
         let nearest = of(2).into_iter().fold(i32::MIN, i32::max);
-        Self { low, high, nearest, corners, vertices, hides: area != 0, clear: false, facing: area.signum() as i8 }
+        Self {
+            low,
+            high,
+            nearest,
+            corners,
+            vertices,
+            hides: area != 0,
+            clear: false,
+            facing: area.signum() as i8,
+        }
     }
 
     /// Its plane, exact on the grid of the page.

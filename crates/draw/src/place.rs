@@ -1,13 +1,16 @@
-//! Places along an edge: its ends, where it crosses the side of a triangle, where it pierces a triangle.
+//! Places along an edge: its ends, where it crosses the side of a triangle, where it pierces a
+//! triangle.
 //!
-//! A place is known by what makes it, and about where it is. Most comparisons are decided by the rounded fraction; those that are not
-//! compute the exact fractions from the grid points that make the places.
+//! A place is known by what makes it, and about where it is. Most comparisons are decided by the
+//! rounded fraction; those that are not compute the exact fractions from the grid points that make
+//! the places.
 
 use crate::page_mesh::PageMesh;
 use std::cmp::Ordering;
 use vitral_math::exact::{Fraction, GridPoint, orient2d};
 
-/// Rounded fractions that differ by more are in the order of the exact ones: each is a quotient of two rounded numbers and at most 1.
+/// Rounded fractions that differ by more are in the order of the exact ones: each is a quotient of
+/// two rounded numbers and at most 1.
 const CERTAIN: f64 = 1e-14;
 
 /// A place along an edge.
@@ -113,8 +116,11 @@ mod tests {
 
     #[test]
     fn places_that_rounding_cannot_tell_apart_are_ordered() {
-        // Two sides cross a long edge at fractions that differ by about 2^-56: their numerators by 1 of 2^28.
-        let triangle = |x: i32, dx: i32| Triangle::new([[x, 0, 0], [x + dx, 1 << 14, 0], [0, 1 << 14, 0]], [0, 1, 2]);
+        // Two sides cross a long edge at fractions that differ by about 2^-56: their numerators by
+        // 1 of 2^28.
+        let triangle = |x: i32, dx: i32| {
+            Triangle::new([[x, 0, 0], [x + dx, 1 << 14, 0], [0, 1 << 14, 0]], [0, 1, 2])
+        };
         let mesh = PageMesh {
             triangles: vec![triangle(1 << 13, 1), triangle(1 << 13, 1), triangle(1 << 13, 2)],
             ..PageMesh::default()
@@ -123,7 +129,10 @@ mod tests {
         let at = |triangle| EdgePosition { about: 0.5, maker: Maker::Side { triangle, side: 0 } };
         assert_eq!(segment.compare(&at(0), &at(1)), Ordering::Equal);
         assert_eq!(segment.compare(&at(0), &at(2)), Ordering::Less);
-        assert!(segment.is_before(&EdgePosition::START, &at(0)) && segment.is_before(&at(2), &EdgePosition::END));
+        assert!(
+            segment.is_before(&EdgePosition::START, &at(0))
+                && segment.is_before(&at(2), &EdgePosition::END)
+        );
         assert_eq!(segment.point(&at(0)), [8192.0, 1.0]);
         // A plane that rises along the edge.
         let slope = Triangle::new([[0, 0, -8], [1 << 14, 0, 8], [0, 1 << 14, -8]], [0, 1, 2]);

@@ -1,9 +1,10 @@
 //! Which free points are visible.
 //!
-//! A point is hidden by a triangle if it lies inside its outline on the page, the outline included, and behind it by more than snapping
-//! can make of a contact, as for lines in `hiding.rs`.
+//! A point is hidden by a triangle if it lies inside its outline on the page, the outline included,
+//! and behind it by more than snapping can make of a contact, as for lines in `hiding.rs`.
 //!
-//! In:   the page's mesh and a grid of the triangles that hide. Out: the visible points, in units of the page.
+//! In:   the page's mesh and a grid of the triangles that hide. Out: the visible points, in units
+//!       of the page.
 //! Cost: one test for each triangle in the cells of the point, the nearest first.
 
 use crate::page_mesh::{PageMesh, Triangle};
@@ -19,13 +20,19 @@ const BATCH: usize = 1024;
 const BYTES_A_POINT: u64 = 32;
 
 /// The free points that no triangle hides.
-pub(crate) fn visible_points(mesh: &PageMesh, search: Search<'_>, run: &Run<'_>) -> Result<Vec<[f64; 2]>, Limit> {
+pub(crate) fn visible_points(
+    mesh: &PageMesh,
+    search: Search<'_>,
+    run: &Run<'_>,
+) -> Result<Vec<[f64; 2]>, Limit> {
     run.memory.add(mesh.points.len() as u64 * BYTES_A_POINT)?;
     let pieces = run.workers.map(mesh.points.len().div_ceil(BATCH), |batch| {
         run.budget.check("free points")?;
         let points = &mesh.points[batch * BATCH..mesh.points.len().min((batch + 1) * BATCH)];
-        let visible =
-            points.iter().map(|&v| mesh.vertices[v as usize]).filter(|&point| !is_hidden(mesh, search, point));
+        let visible = points
+            .iter()
+            .map(|&v| mesh.vertices[v as usize])
+            .filter(|&point| !is_hidden(mesh, search, point));
         Ok(visible.map(|[x, y, _]| [x, y].map(f64::from)).collect::<Vec<_>>())
     });
     let mut all = Vec::with_capacity(mesh.points.len());
@@ -39,11 +46,17 @@ pub(crate) fn visible_points(mesh: &PageMesh, search: Search<'_>, run: &Run<'_>)
 fn is_hidden(mesh: &PageMesh, search: Search<'_>, point: GridPoint) -> bool {
     let grid = match search {
         Search::Grid(grid) => grid,
-        Search::All => return mesh.triangles.iter().any(|triangle| triangle.hides && triangle.hides_point(point)),
+        Search::All => {
+            return mesh
+                .triangles
+                .iter()
+                .any(|triangle| triangle.hides && triangle.hides_point(point));
+        }
     };
     let across = [point[0], point[1]];
     let flow = grid.over(across, across, |list| {
-        let in_front = list.iter().map(|&t| &mesh.triangles[t as usize]).take_while(|t| t.nearest > point[2]);
+        let in_front =
+            list.iter().map(|&t| &mesh.triangles[t as usize]).take_while(|t| t.nearest > point[2]);
         match in_front.into_iter().any(|triangle| triangle.hides_point(point)) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
@@ -80,7 +93,11 @@ mod tests {
         with_run(2, |run| {
             let grid = Grid::new(&mesh, |triangle| triangle.hides, run).unwrap();
             let found = visible_points(&mesh, Search::Grid(&grid), run).unwrap();
-            assert_eq!(found, visible_points(&mesh, Search::All, run).unwrap(), "as by brute force");
+            assert_eq!(
+                found,
+                visible_points(&mesh, Search::All, run).unwrap(),
+                "as by brute force"
+            );
             found
         })
     }
@@ -91,7 +108,11 @@ mod tests {
             visible(&[BIG], &[[500, 500, 0], [2000, 2000, 0], [0, 0, 0]]).is_empty(),
             "inside, on a side, at a corner"
         );
-        assert_eq!(visible(&[BIG], &[[500, 500, 1001], [3000, 3000, 0]]).len(), 2, "in front, beside");
+        assert_eq!(
+            visible(&[BIG], &[[500, 500, 1001], [3000, 3000, 0]]).len(),
+            2,
+            "in front, beside"
+        );
         assert_eq!(visible(&[BIG], &[[500, 500, 999], [0, 0, 1000]]).len(), 2, "contacts");
         assert_eq!(visible(&[BIG], &[[500, 500, 998], [600, 600, 1000]]), [[600.0, 600.0]]);
         assert_eq!(visible(&[], &[[7, 8, 9]]), [[7.0, 8.0]]);

@@ -1,12 +1,14 @@
 //! From the world to the page: vertices are welded, projected, clipped and snapped, each once.
 //!
-//! The window of the camera is the page: x and y of normalised device space become units of the grid, [`PAGE_UNITS`] along the longer
-//! side. Depth is `z / w`, which is an affine function of `1 / w` in perspective and of the distance in a parallel projection: planes
-//! of the world are planes on the page. The depths in use are stretched to [`DEPTH_UNITS`] in perspective; in a parallel projection they
-//! have the unit of the page, so that the grid's cells are cubes, unless the scene is deeper than [`PARALLEL_DEPTH_UNITS`].
+//! The window of the camera is the page: x and y of normalised device space become units of the
+//! grid, [`PAGE_UNITS`] along the longer side. Depth is `z / w`, which is an affine function of
+//! `1 / w` in perspective and of the distance in a parallel projection: planes of the world are
+//! planes on the page. The depths in use are stretched to [`DEPTH_UNITS`] in perspective; in a
+//! parallel projection they have the unit of the page, so that the grid's cells are cubes, unless
+//! the scene is deeper than [`PARALLEL_DEPTH_UNITS`].
 //!
-//! In:   the world and a view. Out: vertices on the grid, and triangles that lie on the page, clipped where they cross its border, the
-//!       near or the far plane.
+//! In:   the world and a view. Out: vertices on the grid, and triangles that lie on the page,
+//!       clipped where they cross its border, the near or the far plane.
 //! Cost: linear in vertices and triangles.
 //! Source: clipping in homogeneous coordinates is [Blinn & Newell 1978]; see `clip.rs`.
 
@@ -24,7 +26,8 @@ use vitral_scene::{Instance, Solids, ViewTransform, World};
 const DEPTH_UNITS: f64 = (1u64 << 30) as f64;
 /// Most units of depth in a parallel projection.
 const PARALLEL_DEPTH_UNITS: f64 = (1u64 << 25) as f64;
-/// Cosine of the angle between a face and the projectors' plane below which a face without area on the page is seen edge-on.
+/// Cosine of the angle between a face and the projectors' plane below which a face without area on
+/// the page is seen edge-on.
 const EDGE_ON: f64 = 1e-3;
 /// Triangles and vertices in one piece of work.
 const BATCH: usize = 1 << 14;
@@ -35,8 +38,8 @@ const BYTES_A_TRIANGLE: u64 = 176;
 /// Where in [`Facet::outline`] the bits of sides begin along which a plane of section has cut.
 pub(crate) const CUT_SIDES: u32 = 3;
 
-/// A triangle before it is snapped: welded vertices, the facet it was cut from, a bit for each side that is part of the outline of
-/// its face, and above these one for each side along a cut.
+/// A triangle before it is snapped: welded vertices, the facet it was cut from, a bit for each side
+/// that is part of the outline of its face, and above these one for each side along a cut.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Facet {
     pub(crate) vertices: [u32; 3],
@@ -64,8 +67,8 @@ pub(crate) struct Projected {
 }
 
 impl Projected {
-    /// Makes triangles clear whose materials have an opacity below 1, back faces of solid bodies as well: they are seen through the
-    /// others. Those of no opacity are not seen at all.
+    /// Makes triangles clear whose materials have an opacity below 1, back faces of solid bodies as
+    /// well: they are seen through the others. Those of no opacity are not seen at all.
     pub(crate) fn let_through(&mut self, opacity: impl Fn(u32) -> f32) {
         for (facet, triangle) in self.facets.iter().zip(&mut self.triangles) {
             let opacity = opacity(self.sources[facet.source as usize].material);
@@ -78,7 +81,8 @@ impl Projected {
 }
 
 impl Projected {
-    /// Makes triangles neither hide nor show where a material that shows its front alone is seen from behind.
+    /// Makes triangles neither hide nor show where a material that shows its front alone is seen
+    /// from behind.
     pub(crate) fn leave_out_backs(&mut self, is_front_only: impl Fn(u32) -> bool) {
         for (facet, triangle) in self.facets.iter().zip(&mut self.triangles) {
             if triangle.facing < 0 && is_front_only(self.sources[facet.source as usize].material) {
@@ -110,7 +114,9 @@ impl SolidTriangles {
         match self {
             Self::All => true,
             Self::None => false,
-            Self::Some(solids) => solids.some().is_some_and(|bits| bits[t / 32] >> (t % 32) & 1 == 1),
+            Self::Some(solids) => {
+                solids.some().is_some_and(|bits| bits[t / 32] >> (t % 32) & 1 == 1)
+            }
         }
     }
 }
@@ -123,10 +129,17 @@ pub(crate) fn page_size(aspect: f64) -> [i32; 2] {
 }
 
 /// Projects a world; `aspect` is the page's width by its height.
-pub(crate) fn project(world: &World, view: &ViewTransform, aspect: f64, run: &Run<'_>) -> Result<Projected, Limit> {
+pub(crate) fn project(
+    world: &World,
+    view: &ViewTransform,
+    aspect: f64,
+    run: &Run<'_>,
+) -> Result<Projected, Limit> {
     let size = page_size(aspect);
     let vertex_count: usize = world.instances.iter().map(|i| i.mesh.positions.len()).sum();
-    run.memory.add(vertex_count as u64 * BYTES_A_VERTEX + u64::from(world.facet_count) * BYTES_A_TRIANGLE)?;
+    run.memory.add(
+        vertex_count as u64 * BYTES_A_VERTEX + u64::from(world.facet_count) * BYTES_A_TRIANGLE,
+    )?;
 
     // Weld each mesh once, and give each instance its vertices in clip space.
     let mut welds: Vec<Option<(Weld, Vec<u32>)>> = Vec::new();
@@ -156,11 +169,13 @@ pub(crate) fn project(world: &World, view: &ViewTransform, aspect: f64, run: &Ru
     Ok(projected)
 }
 
-/// The welded vertices that triangles, free lines and free points of an instance's mesh use, in order.
+/// The welded vertices that triangles, free lines and free points of an instance's mesh use, in
+/// order.
 fn used_vertices(instance: &Instance, weld: &Weld) -> Vec<u32> {
     let mesh = &instance.mesh;
     let mut used = vec![false; mesh.positions.len()];
-    let named = mesh.triangles.as_flattened().iter().chain(mesh.lines.as_flattened()).chain(&mesh.points);
+    let named =
+        mesh.triangles.as_flattened().iter().chain(mesh.lines.as_flattened()).chain(&mesh.points);
     named.for_each(|&v| used[weld.representative[v as usize] as usize] = true);
     (0..used.len() as u32).filter(|&v| used[v as usize]).collect()
 }
@@ -231,8 +246,8 @@ pub(crate) fn source_of_facet(world: &World, facet: u32) -> Source {
     source_of(instance, t, face, outline_normal(instance, instance.mesh.face_corners(face)))
 }
 
-/// The source of a triangle whose face has this normal. An outline that crosses itself may have none, since its halves cancel out:
-/// each triangle has its own normal there.
+/// The source of a triangle whose face has this normal. An outline that crosses itself may have
+/// none, since its halves cancel out: each triangle has its own normal there.
 fn source_of(instance: &Instance, t: usize, face: usize, normal: [f32; 3]) -> Source {
     let mesh = &instance.mesh;
     let is_cancelled = normal == [0.0; 3];
@@ -244,7 +259,8 @@ fn source_of(instance: &Instance, t: usize, face: usize, normal: [f32; 3]) -> So
     }
 }
 
-/// The sources of some triangles of an instance. Neighbours often belong to one face, whose normal is computed once.
+/// The sources of some triangles of an instance. Neighbours often belong to one face, whose normal
+/// is computed once.
 fn sources_of(instance: &Instance, triangles: Range<usize>) -> Vec<Source> {
     let mesh = &instance.mesh;
     let (mut last, mut normal) = (usize::MAX, [0.0; 3]);
@@ -258,7 +274,8 @@ fn sources_of(instance: &Instance, triangles: Range<usize>) -> Vec<Source> {
     triangles.map(source).collect()
 }
 
-/// The unit normal of an outline of vertices, world space, by Newell's method; zero for one without area.
+/// The unit normal of an outline of vertices, world space, by Newell's method; zero for one without
+/// area.
 fn outline_normal(instance: &Instance, corners: &[u32]) -> [f32; 3] {
     let origin = instance.place(corners[0]);
     let mut sum = DVec3::ZERO;
@@ -272,7 +289,8 @@ fn outline_normal(instance: &Instance, corners: &[u32]) -> [f32; 3] {
     outward.try_normalize().unwrap_or(DVec3::ZERO).as_vec3().to_array()
 }
 
-/// Adds the triangles of an instance that are on the page: whole ones first, then the pieces of clipped ones.
+/// Adds the triangles of an instance that are on the page: whole ones first, then the pieces of
+/// clipped ones.
 fn add_triangles(
     placed: &Placed<'_>,
     clipper: &mut Clipper<'_>,
@@ -326,16 +344,19 @@ impl Outline {
         Self { face: usize::MAX, sides: Vec::new() }
     }
 
-    /// A bit for each side of a triangle: whether it is a side of its face as well, and no diagonal; and three more for cuts.
+    /// A bit for each side of a triangle: whether it is a side of its face as well, and no
+    /// diagonal; and three more for cuts.
     fn sides_of(&mut self, instance: &Instance, t: usize) -> u8 {
         // Mark the sides that lie along a cut.
         let mesh = &instance.mesh;
         let face = mesh.face_of_triangle(t);
         let corners = mesh.face_corners(face);
         let [a, b, c] = mesh.triangles[t];
-        let is_cut = |a: u32, b: u32| mesh.section.as_ref().is_some_and(|section| section.has_edge(a, b));
+        let is_cut =
+            |a: u32, b: u32| mesh.section.as_ref().is_some_and(|section| section.has_edge(a, b));
         let cuts = [(a, b), (b, c), (c, a)].into_iter().enumerate();
-        let cuts = cuts.fold(0, |bits, (k, (a, b))| bits | u8::from(is_cut(a, b)) << (k as u32 + CUT_SIDES));
+        let cuts = cuts
+            .fold(0, |bits, (k, (a, b))| bits | u8::from(is_cut(a, b)) << (k as u32 + CUT_SIDES));
 
         // Mark the sides of the face; all sides of a triangular one.
         if corners.len() == 3 {
@@ -348,7 +369,8 @@ impl Outline {
             self.sides.extend(corners.iter().zip(next).map(|(&a, &b)| [a.min(b), a.max(b)]));
             self.sides.sort_unstable();
         }
-        let is_side = |a: u32, b: u32| u8::from(self.sides.binary_search(&[a.min(b), a.max(b)]).is_ok());
+        let is_side =
+            |a: u32, b: u32| u8::from(self.sides.binary_search(&[a.min(b), a.max(b)]).is_ok());
         cuts | is_side(a, b) | is_side(b, c) << 1 | is_side(c, a) << 2
     }
 }
@@ -383,7 +405,8 @@ fn snap(to: &mut Projected, clip: &[ClipVertex], view: &ViewTransform, run: &Run
     let units = if view.perspective {
         DEPTH_UNITS
     } else {
-        // A unit of the page in world space is 2 / (width in units) in clip space, divided by the projection's scale.
+        // A unit of the page in world space is 2 / (width in units) in clip space, divided by the
+        // projection's scale.
         let world_per_unit = 2.0 / (page[0] * view.clip_from_view.x_axis.x);
         (range * (view.far - view.near) / world_per_unit).min(PARALLEL_DEPTH_UNITS)
     };
@@ -392,7 +415,9 @@ fn snap(to: &mut Projected, clip: &[ClipVertex], view: &ViewTransform, run: &Run
     // Round the vertices to the grid of the page.
     to.vertices.resize(clip.len(), [0; 3]);
     run.workers.for_each_chunk(&mut to.vertices, BATCH, |chunk, vertices| {
-        for (vertex, at) in vertices.iter_mut().zip(&clip[chunk * BATCH..]).filter(|(_, at)| at.outcode == 0) {
+        for (vertex, at) in
+            vertices.iter_mut().zip(&clip[chunk * BATCH..]).filter(|(_, at)| at.outcode == 0)
+        {
             let DVec4 { x, y, z, w } = at.at;
             let across = [x, y].map(|c| c / w * 0.5 + 0.5);
             let on_page = |k: usize| (across[k] * page[k]).round().clamp(0.0, page[k]) as i32;
@@ -402,7 +427,13 @@ fn snap(to: &mut Projected, clip: &[ClipVertex], view: &ViewTransform, run: &Run
 }
 
 /// Makes the page's triangles of the facets.
-fn finish_triangles(to: &mut Projected, world: &World, placed: &[Placed<'_>], view: &ViewTransform, run: &Run<'_>) {
+fn finish_triangles(
+    to: &mut Projected,
+    world: &World,
+    placed: &[Placed<'_>],
+    view: &ViewTransform,
+    run: &Run<'_>,
+) {
     let (facets, vertices, sources) = (&to.facets, &to.vertices, &to.sources);
 
     // Find the direction to the viewer.
@@ -423,7 +454,8 @@ fn finish_triangles(to: &mut Projected, world: &World, placed: &[Placed<'_>], vi
             if orient2d(corners[0], corners[1], corners[2]) == 0 {
                 // Ask the plane in the world where snapping has left no area.
                 let corner = one.instance.corners(t)[0];
-                let towards = if view.perspective { (eye - corner).normalize_or_zero() } else { backwards };
+                let towards =
+                    if view.perspective { (eye - corner).normalize_or_zero() } else { backwards };
                 let [x, y, z] = sources[facet.source as usize].normal.map(f64::from);
                 let cosine = towards.dot(DVec3::new(x, y, z));
                 triangle.facing = i8::from(cosine > EDGE_ON) - i8::from(cosine < -EDGE_ON);

@@ -1,6 +1,7 @@
 //! Shapes on a grid that is finer than the page's, and what is made of two of them.
 //!
-//! A shape is an outline, counter-clockwise, with holes, clockwise. The overlay of polygons is the crate `i_overlay`'s.
+//! A shape is an outline, counter-clockwise, with holes, clockwise. The overlay of polygons is the
+//! crate `i_overlay`'s.
 
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay::{IntOverlayOptions, Overlay, ShapeType};
@@ -8,9 +9,11 @@ use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::i_float::int::point::IntPoint;
 use vitral_math::exact::GridPoint;
 
-/// Steps of the finer grid in a unit of the page: the corners of what is left of clipped polygons are rounded to it.
+/// Steps of the finer grid in a unit of the page: the corners of what is left of clipped polygons
+/// are rounded to it.
 pub(crate) const FINER: i32 = 128;
-/// Shapes that are nowhere wider, in units of the page, are traces of rounding where they are not wanted.
+/// Shapes that are nowhere wider, in units of the page, are traces of rounding where they are not
+/// wanted.
 const HAIR: f64 = 0.25;
 
 /// A corner of the finer grid.
@@ -38,23 +41,34 @@ pub(crate) fn on_page(corner: &Corner) -> [f64; 2] {
 }
 
 /// What is left of `subject` without `polygons`.
-pub(crate) fn without<'p>(subject: &Shapes, polygons: impl IntoIterator<Item = &'p Vec<Corner>>) -> Shapes {
+pub(crate) fn without<'p>(
+    subject: &Shapes,
+    polygons: impl IntoIterator<Item = &'p Vec<Corner>>,
+) -> Shapes {
     overlaid(subject, polygons, OverlayRule::Difference)
 }
 
 /// What `subject` has in common with the union of `polygons`.
-pub(crate) fn within<'p>(subject: &Shapes, polygons: impl IntoIterator<Item = &'p Vec<Corner>>) -> Shapes {
+pub(crate) fn within<'p>(
+    subject: &Shapes,
+    polygons: impl IntoIterator<Item = &'p Vec<Corner>>,
+) -> Shapes {
     overlaid(subject, polygons, OverlayRule::Intersect)
 }
 
-fn overlaid<'p>(subject: &Shapes, polygons: impl IntoIterator<Item = &'p Vec<Corner>>, rule: OverlayRule) -> Shapes {
+fn overlaid<'p>(
+    subject: &Shapes,
+    polygons: impl IntoIterator<Item = &'p Vec<Corner>>,
+    rule: OverlayRule,
+) -> Shapes {
     let mut overlay = Overlay::<i32>::new(16);
     subject.iter().flatten().for_each(|ring| overlay.add_contour(ring, ShapeType::Subject));
     polygons.into_iter().for_each(|polygon| overlay.add_contour(polygon, ShapeType::Clip));
     overlay.overlay(rule, FillRule::NonZero)
 }
 
-/// The union of shapes, without those that are smaller than `least`, in steps squared, and without such holes.
+/// The union of shapes, without those that are smaller than `least`, in steps squared, and without
+/// such holes.
 pub(crate) fn union<'s>(all: impl IntoIterator<Item = &'s Shapes>, least: u64) -> Shapes {
     let options = IntOverlayOptions { min_output_area: least, ..IntOverlayOptions::default() };
     let mut overlay = Overlay::<i32>::new_custom(64, options, Default::default());
@@ -67,16 +81,19 @@ pub(crate) fn union<'s>(all: impl IntoIterator<Item = &'s Shapes>, least: u64) -
 /// Where at least `count` of some counter-clockwise polygons lie over each other.
 pub(crate) fn covered(polygons: &[Vec<Corner>], count: usize) -> Vec<Vec<Corner>> {
     let corners = || polygons.iter().flatten();
-    let (Some(left), Some(right)) = (corners().map(|p| p.x).min(), corners().map(|p| p.x).max()) else {
+    let (Some(left), Some(right)) = (corners().map(|p| p.x).min(), corners().map(|p| p.x).max())
+    else {
         return Vec::new();
     };
-    let (Some(bottom), Some(top)) = (corners().map(|p| p.y).min(), corners().map(|p| p.y).max()) else {
+    let (Some(bottom), Some(top)) = (corners().map(|p| p.y).min(), corners().map(|p| p.y).max())
+    else {
         return Vec::new();
     };
     // Each clockwise box takes one from how often a place is covered.
     let mut overlay = Overlay::<i32>::new(polygons.len() * 4);
     polygons.iter().for_each(|polygon| overlay.add_contour(polygon, ShapeType::Subject));
-    let clockwise = [[left, bottom], [left, top], [right, top], [right, bottom]].map(|[x, y]| IntPoint::new(x, y));
+    let clockwise = [[left, bottom], [left, top], [right, top], [right, bottom]]
+        .map(|[x, y]| IntPoint::new(x, y));
     (1..count).for_each(|_| overlay.add_contour(&clockwise, ShapeType::Subject));
     overlay.overlay(OverlayRule::Subject, FillRule::Positive).into_iter().flatten().collect()
 }
@@ -100,8 +117,10 @@ fn area_and_outline(ring: &[Corner]) -> [f64; 2] {
 /// Without shapes that are nowhere wider than a hair.
 pub(crate) fn without_hairs(mut shapes: Shapes) -> Shapes {
     shapes.retain(|shape| {
-        let [area, outline] =
-            shape.iter().map(|ring| area_and_outline(ring)).fold([0.0; 2], |s, r| [s[0] + r[0], s[1] + r[1]]);
+        let [area, outline] = shape
+            .iter()
+            .map(|ring| area_and_outline(ring))
+            .fold([0.0; 2], |s, r| [s[0] + r[0], s[1] + r[1]]);
         // A strip has half its outline times its width.
         area.abs() > outline / 2.0 * HAIR * f64::from(FINER)
     });
@@ -113,11 +132,15 @@ mod tests {
     use super::*;
 
     fn square(at: i32, side: i32) -> Vec<Corner> {
-        [[0, 0], [side, 0], [side, side], [0, side]].map(|[x, y]| IntPoint::new(at + x, at + y)).to_vec()
+        [[0, 0], [side, 0], [side, side], [0, side]]
+            .map(|[x, y]| IntPoint::new(at + x, at + y))
+            .to_vec()
     }
 
     fn area(rings: &[Vec<Corner>]) -> f64 {
-        let ring = |ring: &Vec<Corner>| ring.iter().map(|p| [f64::from(p.x), f64::from(p.y)]).collect::<Vec<_>>();
+        let ring = |ring: &Vec<Corner>| {
+            ring.iter().map(|p| [f64::from(p.x), f64::from(p.y)]).collect::<Vec<_>>()
+        };
         rings.iter().map(|r| vitral_frame::drawing::signed_area(&ring(r))).sum()
     }
 
@@ -140,8 +163,14 @@ mod tests {
 
     #[test]
     fn hairs_are_narrow_and_not_small() {
-        let strip =
-            |width: i32| [[0, 0], [10_000, 0], [10_000, width], [0, width]].map(|[x, y]| IntPoint::new(x, y)).to_vec();
-        assert_eq!(without_hairs(vec![vec![strip(20)], vec![strip(80)], vec![square(0, 200)]]).len(), 2);
+        let strip = |width: i32| {
+            [[0, 0], [10_000, 0], [10_000, width], [0, width]]
+                .map(|[x, y]| IntPoint::new(x, y))
+                .to_vec()
+        };
+        assert_eq!(
+            without_hairs(vec![vec![strip(20)], vec![strip(80)], vec![square(0, 200)]]).len(),
+            2
+        );
     }
 }

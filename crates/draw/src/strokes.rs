@@ -1,12 +1,14 @@
 //! From fragments to strokes on the page, of which no two coincide.
 //!
-//! Edges of different faces often lie on one another: the front and the back of a box, parts that touch, lines of intersection along an
-//! edge. Of strokes that coincide, the most important stays: visible before hidden, sections first, then in the order of the classes. A stroke gives way
-//! where another one lies within the reach of snapping all along their common part, and its new end is the other one's end, so that the
-//! rest still joins.
+//! Edges of different faces often lie on one another: the front and the back of a box, parts that
+//! touch, lines of intersection along an edge. Of strokes that coincide, the most important stays:
+//! visible before hidden, sections first, then in the order of the classes. A stroke gives way
+//! where another one lies within the reach of snapping all along their common part, and its new end
+//! is the other one's end, so that the rest still joins.
 //!
 //! In:   fragments of edges. Out: strokes in units of the page, in order of fragments.
-//! Cost: linear in strokes and their length in cells of a grid, whose cells hold about one stroke each.
+//! Cost: linear in strokes and their length in cells of a grid, whose cells hold about one stroke
+//!       each.
 
 use crate::classes::Classes;
 use crate::page_mesh::PageMesh;
@@ -64,14 +66,19 @@ pub(crate) fn strokes(
             let segment = Segment { mesh, ends: mesh.ends(edge) };
             let ends = [segment.point(&fragment.from), segment.point(&fragment.to)];
             let class = edge.classes.common(wanted).first()?;
-            Some(Stroke { class, layers: fragment.layers, ends }).filter(|stroke| stroke.length() >= DUST)
+            Some(Stroke { class, layers: fragment.layers, ends })
+                .filter(|stroke| stroke.length() >= DUST)
         })
         .collect();
     without_coincident(all, mesh.size, run)
 }
 
 /// Takes away the parts of strokes that lie on more important ones.
-pub(crate) fn without_coincident(all: Vec<Stroke>, size: [i32; 2], run: &Run<'_>) -> Result<Vec<Stroke>, Limit> {
+pub(crate) fn without_coincident(
+    all: Vec<Stroke>,
+    size: [i32; 2],
+    run: &Run<'_>,
+) -> Result<Vec<Stroke>, Limit> {
     let cells = Cells::new(&all, size);
 
     // Cut the strokes of each batch at the more important strokes nearby.
@@ -85,7 +92,8 @@ pub(crate) fn without_coincident(all: Vec<Stroke>, size: [i32; 2], run: &Run<'_>
                 for &other in cells.numbers.bucket(cell) {
                     let front = &all[other as usize];
                     if (front.rank(), other as usize) < (all[i].rank(), i) {
-                        parts = parts.iter().flat_map(|part| give_way(part, front)).flatten().collect();
+                        parts =
+                            parts.iter().flat_map(|part| give_way(part, front)).flatten().collect();
                     }
                 }
             });
@@ -100,7 +108,8 @@ pub(crate) fn without_coincident(all: Vec<Stroke>, size: [i32; 2], run: &Run<'_>
     Ok(left)
 }
 
-/// What is left of a stroke beside a more important one: all of it, or a piece before and a piece behind.
+/// What is left of a stroke beside a more important one: all of it, or a piece before and a piece
+/// behind.
 fn give_way(stroke: &Stroke, front: &Stroke) -> [Option<Stroke>; 2] {
     // Measure along and across the stroke.
     let length = stroke.length();
@@ -129,7 +138,9 @@ fn give_way(stroke: &Stroke, front: &Stroke) -> [Option<Stroke>; 2] {
     }
 
     // Keep the pieces before and behind.
-    let piece = |ends: [[f64; 2]; 2]| Some(Stroke { ends, ..*stroke }).filter(|piece| piece.length() >= DUST);
+    let piece = |ends: [[f64; 2]; 2]| {
+        Some(Stroke { ends, ..*stroke }).filter(|piece| piece.length() >= DUST)
+    };
     let before = if low > 0.0 { piece([p, from]) } else { None };
     let behind = if high < length { piece([to, q]) } else { None };
     [before, behind]
@@ -186,12 +197,16 @@ impl CellGrid {
     /// Calls `f` for the cells within reach of a stroke.
     fn visit(&self, stroke: &Stroke, mut f: impl FnMut(usize)) {
         // Order the ends from bottom to top.
-        let [p, q] =
-            if stroke.ends[0][1] <= stroke.ends[1][1] { stroke.ends } else { [stroke.ends[1], stroke.ends[0]] };
+        let [p, q] = if stroke.ends[0][1] <= stroke.ends[1][1] {
+            stroke.ends
+        } else {
+            [stroke.ends[1], stroke.ends[0]]
+        };
         let slope = (q[0] - p[0]) / (q[1] - p[1]);
         for row in self.range(p[1], q[1], self.height) {
             // The part of the stroke within the row.
-            let border = |row: usize, slack: f64| ((row << self.shift) as f64 + slack).clamp(p[1], q[1]);
+            let border =
+                |row: usize, slack: f64| ((row << self.shift) as f64 + slack).clamp(p[1], q[1]);
             let at = |y: f64| {
                 if y == p[1] {
                     p[0]
@@ -233,8 +248,10 @@ mod tests {
         use LineClass::{Contour, Crease};
         let long = stroke(Crease, 0, [100.0, 100.0], [900.0, 900.0]);
         let middle = stroke(Contour, 0, [700.0, 700.5], [300.0, 300.0]);
-        let rest =
-            [stroke(Crease, 0, [100.0, 100.0], [300.0, 300.0]), stroke(Crease, 0, [700.0, 700.5], [900.0, 900.0])];
+        let rest = [
+            stroke(Crease, 0, [100.0, 100.0], [300.0, 300.0]),
+            stroke(Crease, 0, [700.0, 700.5], [900.0, 900.0]),
+        ];
         assert_eq!(left(&[long, middle]), [rest[0], rest[1], middle]);
         // A hidden line gives way to a visible one of any class, and of equal ones the first stays.
         assert_eq!(left(&[stroke(Contour, 1, [0.0, 0.0], [1000.0, 1000.0]), long]).len(), 3);
@@ -242,8 +259,9 @@ mod tests {
         // A level line that runs the other way coincides, too.
         let level = stroke(Crease, 0, [100.0, 500.0], [4000.0, 500.0]);
         let back = Stroke { ends: [level.ends[1], level.ends[0]], ..level };
-        let others: Vec<Stroke> =
-            (1..90).map(|i| stroke(Crease, 0, [f64::from(i) * 40.0, 900.0], [f64::from(i) * 40.0, 990.0])).collect();
+        let others: Vec<Stroke> = (1..90)
+            .map(|i| stroke(Crease, 0, [f64::from(i) * 40.0, 900.0], [f64::from(i) * 40.0, 990.0]))
+            .collect();
         assert_eq!(left(&[&[level, back], &others[..]].concat()).len(), 90);
     }
 

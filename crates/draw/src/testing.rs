@@ -40,6 +40,7 @@ pub(crate) fn mesh_of(size: [i32; 2], corners: &[[GridPoint; 3]]) -> PageMesh {
 
 /// Calls `f` with so many threads and without limits.
 pub(crate) fn with_run<R>(threads: usize, f: impl FnOnce(&Run<'_>) -> R) -> R {
-    let (workers, budget) = (if threads == 1 { Workers::single() } else { Workers::new(threads) }, Budget::default());
+    let (workers, budget) =
+        (if threads == 1 { Workers::single() } else { Workers::new(threads) }, Budget::default());
     f(&Run::new(&workers, &budget))
 }

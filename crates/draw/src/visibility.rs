@@ -1,15 +1,19 @@
 //! Visible and hidden parts of edges, each edge by itself.
 //!
-//! An edge begins wholly visible. Triangles near it are asked in the order of their nearest points, and what each hides is taken away,
-//! until nothing is left or all that could hide were asked. Where hidden lines are wanted, nothing ends early: all hidden intervals
-//! are sorted, and one sweep counts how many of them cover each part, which is Appel's quantitative invisibility.
+//! An edge begins wholly visible. Triangles near it are asked in the order of their nearest points,
+//! and what each hides is taken away, until nothing is left or all that could hide were asked.
+//! Where hidden lines are wanted, nothing ends early: all hidden intervals are sorted, and one
+//! sweep counts how many of them cover each part, which is Appel's quantitative invisibility.
 //!
-//! No decision about an edge depends on another edge's, so edges are shared among threads, and a mistake could not spread. Brute force
-//! is the same code that asks all triangles instead of the grid; the result is the same to the last bit.
+//! No decision about an edge depends on another edge's, so edges are shared among threads, and a
+//! mistake could not spread. Brute force is the same code that asks all triangles instead of the
+//! grid; the result is the same to the last bit.
 //!
-//! In:   the page's mesh and a grid of the triangles that hide. Out: fragments of edges, in order of edges and along each.
+//! In:   the page's mesh and a grid of the triangles that hide. Out: fragments of edges, in order
+//!       of edges and along each.
 //! Cost: `O(k log k)` for an edge with `k` triangles in its cells; short-lived lists only.
-//! Source: [Appel 1967] for the counts. Departs from it: counts are not propagated from edge to edge.
+//! Source: [Appel 1967] for the counts. Departs from it: counts are not propagated from edge to
+//!         edge.
 
 use crate::classes::Classes;
 use crate::grid::Grid;
@@ -26,7 +30,8 @@ use vitral_exec::{Limit, Spare};
 const BATCH: usize = 512;
 /// Pieces of work in a round.
 const ROUND: usize = 32;
-/// Visible pieces of an edge beyond which intervals are collected and sorted instead: inserting many is quadratic.
+/// Visible pieces of an edge beyond which intervals are collected and sorted instead: inserting
+/// many is quadratic.
 const MOST_PIECES: usize = 16;
 /// Triangles that are asked between two looks at the clock.
 const TESTS_A_CHECK: u32 = 1 << 16;
@@ -102,7 +107,8 @@ pub(crate) fn fragments(
         })
     };
 
-    // Where segments are limited, go on in rounds, and look now and then at what the fragments would become.
+    // Where segments are limited, go on in rounds, and look now and then at what the fragments
+    // would become.
     let (mut fragments, mut watch) = (Vec::new(), wanted.most_segments.map(SegmentWatch::new));
     let round = if watch.is_some() { ROUND } else { batches.max(1) };
     for first in (0..batches).step_by(round) {
@@ -113,15 +119,18 @@ pub(crate) fn fragments(
             watch.look(mesh, &fragments, wanted.classes, run)?;
         }
     }
-    let stats = spare.into_inner().iter().fold(VisibilityStats::default(), |sum, walk| sum.plus(&walk.stats));
+    let stats = spare
+        .into_inner()
+        .iter()
+        .fold(VisibilityStats::default(), |sum, walk| sum.plus(&walk.stats));
     Ok((fragments, stats))
 }
 
 /// Stops the search for fragments where their segments are far too many.
 ///
-/// Fragments still get fewer: coincident ones are dropped, and those in a line are joined. So they are joined to be counted, each time
-/// that they have doubled. What is found later may join what was found, so only twice the limit stops the search; the finished
-/// drawing is counted exactly.
+/// Fragments still get fewer: coincident ones are dropped, and those in a line are joined. So they
+/// are joined to be counted, each time that they have doubled. What is found later may join what
+/// was found, so only twice the limit stops the search; the finished drawing is counted exactly.
 struct SegmentWatch {
     limit: u64,
     /// Fragments at which they are counted next.
@@ -133,7 +142,13 @@ impl SegmentWatch {
         Self { limit, next: 2 * limit }
     }
 
-    fn look(&mut self, mesh: &PageMesh, fragments: &[Fragment], wanted: Classes, run: &Run<'_>) -> Result<(), Limit> {
+    fn look(
+        &mut self,
+        mesh: &PageMesh,
+        fragments: &[Fragment],
+        wanted: Classes,
+        run: &Run<'_>,
+    ) -> Result<(), Limit> {
         let count = fragments.len() as u64;
         if count <= self.next {
             return Ok(());
@@ -149,7 +164,11 @@ impl SegmentWatch {
         };
         let segments = lay_out(&content, PageSize::default(), 0.0).segments();
         let (limit, achieved) = (self.limit, run.budget.achieved());
-        if segments > 2 * limit { Err(Limit::Segments { limit, stage: "visibility", achieved }) } else { Ok(()) }
+        if segments > 2 * limit {
+            Err(Limit::Segments { limit, stage: "visibility", achieved })
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -213,18 +232,19 @@ impl Walk {
 
         // Subtract what the triangles hide, by the grid or one by one.
         let visible_only = most_layers == 0;
-        let flow =
-            match search {
-                Search::Grid(grid) => grid.along(segment.ends, visible_only, |list: &[u32]| {
-                    self.ask(list, &segment, edge, number, visible_only, run)
-                }),
-                Search::All => (0..mesh.triangles.len() as u32)
-                    .filter(|&t| mesh.triangles[t as usize].hides)
-                    .try_for_each(|t| match self.ask(&[t], &segment, edge, number, visible_only, run) {
+        let flow = match search {
+            Search::Grid(grid) => grid.along(segment.ends, visible_only, |list: &[u32]| {
+                self.ask(list, &segment, edge, number, visible_only, run)
+            }),
+            Search::All => (0..mesh.triangles.len() as u32)
+                .filter(|&t| mesh.triangles[t as usize].hides)
+                .try_for_each(|t| {
+                    match self.ask(&[t], &segment, edge, number, visible_only, run) {
                         ControlFlow::Break(Some(limit)) => ControlFlow::Break(Some(limit)),
                         _ => ControlFlow::Continue(()),
-                    }),
-            };
+                    }
+                }),
+        };
         if let ControlFlow::Break(Some(limit)) = flow {
             return Err(limit);
         }
@@ -233,7 +253,12 @@ impl Walk {
         self.stats.intervals += self.hidden.len() as u64;
         if visible_only && self.pieces.len() <= MOST_PIECES {
             self.pieces.sort_by(|a, b| segment.compare(&a.0, &b.0));
-            let visible = |&(from, to): &(EdgePosition, EdgePosition)| Fragment { edge: number, layers: 0, from, to };
+            let visible = |&(from, to): &(EdgePosition, EdgePosition)| Fragment {
+                edge: number,
+                layers: 0,
+                from,
+                to,
+            };
             found.extend(self.pieces.iter().map(visible));
         } else {
             self.sweep(&segment, number, most_layers, found);
@@ -241,7 +266,8 @@ impl Walk {
         Ok(())
     }
 
-    /// Tests the triangles of a list, the nearest first; breaks when all of the edge is hidden, or at a limit.
+    /// Tests the triangles of a list, the nearest first; breaks when all of the edge is hidden, or
+    /// at a limit.
     fn ask(
         &mut self,
         list: &[u32],
@@ -272,7 +298,10 @@ impl Walk {
 
             // Skip triangles beside the edge, tested ones, and those at the edge itself.
             let apart = |k: usize| triangle.low[k] > high[k] || triangle.high[k] < low[k];
-            if apart(0) || apart(1) || std::mem::replace(&mut self.asked[t as usize], number) == number {
+            if apart(0)
+                || apart(1)
+                || std::mem::replace(&mut self.asked[t as usize], number) == number
+            {
                 continue;
             }
             if segment.mesh.triangles_at(edge).contains(&t) {
@@ -327,7 +356,13 @@ impl Walk {
     }
 
     /// Counts the layers along the edge, and adds the parts with few enough.
-    fn sweep(&mut self, segment: &Segment<'_>, number: u32, most_layers: u32, found: &mut Vec<Fragment>) {
+    fn sweep(
+        &mut self,
+        segment: &Segment<'_>,
+        number: u32,
+        most_layers: u32,
+        found: &mut Vec<Fragment>,
+    ) {
         // Sort the changes of the number of layers along the edge.
         self.changes.clear();
         for interval in &self.hidden {

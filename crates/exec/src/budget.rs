@@ -1,4 +1,5 @@
-//! What may stop a computation: time, memory, or the user. Clocks come in from the faces, so that wasm works.
+//! What may stop a computation: time, memory, or the user. Clocks come in from the faces, so that
+//! wasm works.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -19,8 +20,8 @@ impl Clock for NoClock {
     }
 }
 
-/// Steps beyond which [`Budget::check_work`] refuses a computation: tests of a triangle at a sample, about an hour of them on
-/// one thread.
+/// Steps beyond which [`Budget::check_work`] refuses a computation: tests of a triangle at a
+/// sample, about an hour of them on one thread.
 pub const MAX_STEPS: u64 = 1 << 40;
 
 /// Called with a stage's name, the work done and the whole work.
@@ -116,7 +117,11 @@ pub struct Budget {
 
 impl std::fmt::Debug for Budget {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Budget {{ time: {:?} s, memory: {:?} bytes }}", self.time_limit, self.memory_limit)
+        write!(
+            f,
+            "Budget {{ time: {:?} s, memory: {:?} bytes }}",
+            self.time_limit, self.memory_limit
+        )
     }
 }
 
@@ -163,8 +168,8 @@ impl Budget {
         self
     }
 
-    /// A budget with the same clock, cancellation and listener that starts with the call, with nothing charged: for one of
-    /// several computations with limits of their own.
+    /// A budget with the same clock, cancellation and listener that starts with the call, with
+    /// nothing charged: for one of several computations with limits of their own.
     #[must_use]
     pub fn renewed(&self) -> Self {
         let start = self.clock.seconds();
@@ -189,7 +194,8 @@ impl Budget {
         self.clock.seconds() - self.start
     }
 
-    /// Fails when the deadline has passed or the user cancelled. Call it once for each batch of work.
+    /// Fails when the deadline has passed or the user cancelled. Call it once for each batch of
+    /// work.
     ///
     /// # Errors
     /// [`Limit::Time`] and [`Limit::Cancelled`].
@@ -198,14 +204,18 @@ impl Budget {
             return Err(Limit::Cancelled { stage });
         }
         match self.time_limit {
-            Some(limit) if self.elapsed() > limit => Err(Limit::Time { limit, stage, achieved: self.achieved() }),
+            Some(limit) if self.elapsed() > limit => {
+                Err(Limit::Time { limit, stage, achieved: self.achieved() })
+            }
             _ => Ok(()),
         }
     }
 
-    /// Begins a stage of `whole` pieces, of which [`Self::advance`] counts the finished ones: for who asks how far it came.
+    /// Begins a stage of `whole` pieces, of which [`Self::advance`] counts the finished ones: for
+    /// who asks how far it came.
     pub fn begin(&self, pieces: &'static str, whole: u64) {
-        *self.counted.lock().expect("no thread panics while it counts") = Achieved { done: 0, whole, pieces };
+        *self.counted.lock().expect("no thread panics while it counts") =
+            Achieved { done: 0, whole, pieces };
         self.done.store(0, Ordering::Relaxed);
     }
 
@@ -259,12 +269,17 @@ impl Budget {
         result
     }
 
-    /// Refuses work of more than [`MAX_STEPS`] steps, whatever the time limit: a combination of choices that nobody waits for.
+    /// Refuses work of more than [`MAX_STEPS`] steps, whatever the time limit: a combination of
+    /// choices that nobody waits for.
     ///
     /// # Errors
     /// [`Limit::Work`].
     pub fn check_work(&self, needed: u64, stage: &'static str) -> Result<(), Limit> {
-        if needed > MAX_STEPS { Err(Limit::Work { needed, limit: MAX_STEPS, stage }) } else { Ok(()) }
+        if needed > MAX_STEPS {
+            Err(Limit::Work { needed, limit: MAX_STEPS, stage })
+        } else {
+            Ok(())
+        }
     }
 
     /// The most bytes that were charged at one time.
@@ -299,17 +314,26 @@ mod tests {
         budget.advance();
         let late = budget.check("b").unwrap_err();
         assert!(matches!(late, Limit::Time { stage: "b", .. }));
-        assert_eq!(late.to_string(), "the time limit of 1.5 s was reached during b, after 1 of 12 tiles");
+        assert_eq!(
+            late.to_string(),
+            "the time limit of 1.5 s was reached during b, after 1 of 12 tiles"
+        );
         let budget = Budget::default().with_memory_limit(Some(100));
         assert!(budget.charge(80, "x").is_ok());
-        assert!(matches!(budget.charge(30, "y"), Err(Limit::Memory { needed: 110, limit: 100, .. })));
+        assert!(matches!(
+            budget.charge(30, "y"),
+            Err(Limit::Memory { needed: 110, limit: 100, .. })
+        ));
         budget.release(80);
         assert!(budget.charge(100, "z").is_ok());
         assert_eq!((budget.peak(), budget.renewed().peak()), (100, 0));
         assert_eq!(budget.charged(0, "z", || Ok(1)), Ok(1));
         assert!(budget.charged(1, "z", || Ok(())).is_err());
         assert!(budget.check_work(MAX_STEPS, "steps").is_ok());
-        assert!(matches!(budget.check_work(MAX_STEPS + 1, "steps"), Err(Limit::Work { stage: "steps", .. })));
+        assert!(matches!(
+            budget.check_work(MAX_STEPS + 1, "steps"),
+            Err(Limit::Work { stage: "steps", .. })
+        ));
         budget.cancel_flag().store(true, Ordering::Relaxed);
         assert!(matches!(budget.check("c"), Err(Limit::Cancelled { .. })));
     }

@@ -1,7 +1,8 @@
-//! Floor 0: who works, and how much work is allowed. [`Workers`] run loops over threads, a [`Budget`] may stop them.
+//! Floor 0: who works, and how much work is allowed. [`Workers`] run loops over threads, a
+//! [`Budget`] may stop them.
 //!
-//! Results never depend on the number of threads: work is cut by size, never by thread, and each piece writes its own
-//! output.
+//! Results never depend on the number of threads: work is cut by size, never by thread, and each
+//! piece writes its own output.
 #![forbid(unsafe_code)]
 
 mod budget;

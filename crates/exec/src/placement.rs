@@ -1,10 +1,11 @@
 //! Keeps workers off the processor of the thread that shares its work with them.
 //!
-//! Linux wakes a thread where it last ran, and looks for an idle processor only as long as few are busy: of two that are busy two
-//! thirds of the time it looks at none. A worker then waits behind the very thread that woke it, until the next tick of the
-//! scheduler: longer than many pictures take. So workers are kept off that thread's processor; asking where it runs costs
-//! some ten nanoseconds, and system calls are made only when it has moved. Where several threads share their work with
-//! the same workers by turns, these are left where they are.
+//! Linux wakes a thread where it last ran, and looks for an idle processor only as long as few are
+//! busy: of two that are busy two thirds of the time it looks at none. A worker then waits behind
+//! the very thread that woke it, until the next tick of the scheduler: longer than many pictures
+//! take. So workers are kept off that thread's processor; asking where it runs costs some ten
+//! nanoseconds, and system calls are made only when it has moved. Where several threads share their
+//! work with the same workers by turns, these are left where they are.
 //!
 //! Workers stay within the processors that they were given, by `taskset` for example.
 
@@ -58,12 +59,13 @@ impl Placement {
         }
     }
 
-    /// Where workers are kept off a processor, puts one of them on it: the calling thread waits for them as long as what is
-    /// returned lives. Then all may go everywhere again.
+    /// Where workers are kept off a processor, puts one of them on it: the calling thread waits for
+    /// them as long as what is returned lives. Then all may go everywhere again.
     pub(crate) fn lend(&self) -> Option<Lent<'_>> {
         let avoided = self.avoided.swap(0, Ordering::Relaxed).checked_sub(1)?;
         let mut workers = self.workers.lock().unwrap_or_else(PoisonError::into_inner);
-        let worker = workers.iter_mut().find(|w| avoided < CpuSet::MAX_CPU && w.allowed.is_set(avoided))?;
+        let worker =
+            workers.iter_mut().find(|w| avoided < CpuSet::MAX_CPU && w.allowed.is_set(avoided))?;
         let mut there = CpuSet::new();
         there.set(avoided);
         if sched_setaffinity(Some(worker.thread), &there).is_ok() {
@@ -85,7 +87,8 @@ impl Placement {
                 others.unset(here);
             }
             worker.given = if others.count() > 0 { others } else { worker.allowed };
-            if worker.given != now && sched_setaffinity(Some(worker.thread), &worker.given).is_err() {
+            if worker.given != now && sched_setaffinity(Some(worker.thread), &worker.given).is_err()
+            {
                 worker.given = now;
             }
         }
@@ -134,7 +137,9 @@ mod tests {
             assert_ne!(placement.avoided.load(Ordering::Relaxed), 0);
             let here = placement.avoided.load(Ordering::Relaxed) - 1;
             let lent = placement.lend();
-            assert!(mask() != all && mask().is_set(here) && mask().count() == 1 || all.count() == 1);
+            assert!(
+                mask() != all && mask().is_set(here) && mask().count() == 1 || all.count() == 1
+            );
             drop(lent);
             assert_eq!((mask(), placement.avoided.load(Ordering::Relaxed)), (all, 0));
             assert!(placement.lend().is_none());

@@ -2,7 +2,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
-/// As many `T` as there are threads at work on pieces; who begins a piece takes one that another has left.
+/// As many `T` as there are threads at work on pieces; who begins a piece takes one that another
+/// has left.
 #[derive(Debug, Default)]
 pub struct Spare<T>(Mutex<Vec<T>>);
 

@@ -1,11 +1,12 @@
 //! Work that goes on while the thread that asked for it does something else.
 //!
-//! It runs on a thread of its own, which shares what there is to share among the workers: a worker that waits for others takes
-//! up whatever is waiting meanwhile, another such work included, and would stand before locks that it holds itself.
+//! It runs on a thread of its own, which shares what there is to share among the workers: a worker
+//! that waits for others takes up whatever is waiting meanwhile, another such work included, and
+//! would stand before locks that it holds itself.
 //!
-//! A process that forks while such work is going on would leave half of it to the child, whose threads are not there. So
-//! whoever may be part of a process that forks has [`hold_for_fork`] called before it, and after it [`forked`] and, in the child,
-//! [`born_of_fork`].
+//! A process that forks while such work is going on would leave half of it to the child, whose
+//! threads are not there. So whoever may be part of a process that forks has [`hold_for_fork`]
+//! called before it, and after it [`forked`] and, in the child, [`born_of_fork`].
 
 #[cfg(all(feature = "threads", target_os = "linux", not(miri)))]
 use crate::placement::Placement;
@@ -56,9 +57,13 @@ impl std::fmt::Debug for Started {
 }
 
 impl Started {
-    /// Starts `f` on a thread of its own; gives `f` back if there is none, or while the process is about to fork.
+    /// Starts `f` on a thread of its own; gives `f` back if there is none, or while the process is
+    /// about to fork.
     #[cfg(feature = "threads")]
-    pub(crate) fn new<F>(f: F, #[cfg(all(target_os = "linux", not(miri)))] placement: Arc<Placement>) -> Result<Self, F>
+    pub(crate) fn new<F>(
+        f: F,
+        #[cfg(all(target_os = "linux", not(miri)))] placement: Arc<Placement>,
+    ) -> Result<Self, F>
     where
         F: FnOnce() + Send + 'static,
     {
@@ -84,7 +89,9 @@ impl Started {
         let run = move || {
             IS_STARTED.set(true);
             let work = lock(&taken).take();
-            let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| work.map_or((), |work| work())));
+            let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+                work.map_or((), |work| work())
+            }));
             *lock(&outcome.done) = Some(result);
             outcome.told.notify_all();
             drop(outcome);
@@ -123,7 +130,8 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Waits until nothing is going on, and lets nothing start until [`forked`] or [`born_of_fork`] is called.
+/// Waits until nothing is going on, and lets nothing start until [`forked`] or [`born_of_fork`] is
+/// called.
 pub fn hold_for_fork() {
     FORKING.fetch_add(1, SeqCst);
     while GOING_ON.load(SeqCst) != 0 {
@@ -136,8 +144,8 @@ pub fn forked() {
     FORKING.fetch_sub(1, SeqCst);
 }
 
-/// To be called in the child after a fork. Other threads of the parent, which are not there, may have been about to start
-/// something, or to fork.
+/// To be called in the child after a fork. Other threads of the parent, which are not there, may
+/// have been about to start something, or to fork.
 pub fn born_of_fork() {
     GOING_ON.store(0, SeqCst);
     FORKING.store(0, SeqCst);
@@ -149,7 +157,8 @@ mod tests {
     use crate::Workers;
     use std::sync::mpsc::channel;
 
-    /// Held by tests that start something, since what they hold up is held up for the whole process.
+    /// Held by tests that start something, since what they hold up is held up for the whole
+    /// process.
     static ALONE: Mutex<()> = Mutex::new(());
 
     #[test]
@@ -169,13 +178,15 @@ mod tests {
         assert_eq!(answer.recv(), Ok(3 * 4950));
         started.wait();
 
-        let broken = workers.start(|| panic!("as it should")).unwrap_or_else(|_| panic!("there are threads"));
+        let broken = workers
+            .start(|| panic!("as it should"))
+            .unwrap_or_else(|_| panic!("there are threads"));
         assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| broken.wait())).is_err());
         assert!(Workers::single().start(|| ()).is_err(), "there is no thread that could");
     }
 
-    /// The first work holds a lock and waits for workers, the second one wants the lock: no worker may take up the second
-    /// one while the first waits there.
+    /// The first work holds a lock and waits for workers, the second one wants the lock: no worker
+    /// may take up the second one while the first waits there.
     #[test]
     fn works_that_hold_locks_do_not_stand_before_their_own() {
         let _alone = lock(&ALONE);
@@ -204,7 +215,9 @@ mod tests {
         let _alone = lock(&ALONE);
         let workers = Workers::new(2);
         let (to, from) = channel::<()>();
-        let started = workers.start(move || from.recv().unwrap()).unwrap_or_else(|_| panic!("there are threads"));
+        let started = workers
+            .start(move || from.recv().unwrap())
+            .unwrap_or_else(|_| panic!("there are threads"));
         let about_to_fork = thread::spawn(hold_for_fork);
         while FORKING.load(SeqCst) == 0 {
             thread::yield_now();
@@ -216,7 +229,8 @@ mod tests {
         forked();
         workers.start(|| ()).unwrap_or_else(|_| panic!("it may start again")).wait();
 
-        // Two threads fork, and a third one starts something: a child has the counts, but not the threads.
+        // Two threads fork, and a third one starts something: a child has the counts, but not the
+        // threads.
         (0..2).for_each(|_| hold_for_fork());
         GOING_ON.fetch_add(1, SeqCst);
         born_of_fork();

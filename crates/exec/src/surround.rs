@@ -4,8 +4,9 @@ use std::sync::OnceLock;
 
 static AROUND: OnceLock<fn(&mut dyn FnMut())> = OnceLock::new();
 
-/// Has `around` called whenever threads are made: it calls what makes them, once. Threads inherit much of the thread that
-/// makes them, such as the mask of signals, which is a matter of the face. The first call counts.
+/// Has `around` called whenever threads are made: it calls what makes them, once. Threads inherit
+/// much of the thread that makes them, such as the mask of signals, which is a matter of the face.
+/// The first call counts.
 pub fn surround_thread_starts(around: fn(&mut dyn FnMut())) {
     let _ = AROUND.set(around);
 }

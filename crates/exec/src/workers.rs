@@ -35,16 +35,19 @@ impl Workers {
         }
     }
 
-    /// The most threads of a pool: more than machines have processors, and few enough to start at once.
+    /// The most threads of a pool: more than machines have processors, and few enough to start at
+    /// once.
     pub const MOST: usize = 1024;
 
-    /// `threads` workers, at most [`Self::MOST`]; 0 means as many as the process may use (affinity, cgroup). Falls back to the
-    /// calling thread alone where threads cannot be made.
+    /// `threads` workers, at most [`Self::MOST`]; 0 means as many as the process may use (affinity,
+    /// cgroup). Falls back to the calling thread alone where threads cannot be made.
     pub fn new(threads: usize) -> Self {
         let threads = number(threads);
         #[cfg(feature = "threads")]
         if threads > 1 {
-            let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("vitral-{i}"));
+            let builder = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .thread_name(|i| format!("vitral-{i}"));
             #[cfg(all(target_os = "linux", not(miri)))]
             let placement = Arc::<Placement>::default();
             #[cfg(all(target_os = "linux", not(miri)))]
@@ -91,16 +94,23 @@ impl Workers {
         results.into_iter().map(|(_, result)| result).collect()
     }
 
-    /// Calls `f(index of the chunk, chunk)` for each piece of `chunk` elements (the last may be shorter).
+    /// Calls `f(index of the chunk, chunk)` for each piece of `chunk` elements (the last may be
+    /// shorter).
     ///
     /// # Panics
     /// If `chunk` is 0.
-    pub fn for_each_chunk<T: Send>(&self, slice: &mut [T], chunk: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
+    pub fn for_each_chunk<T: Send>(
+        &self,
+        slice: &mut [T],
+        chunk: usize,
+        f: impl Fn(usize, &mut [T]) + Sync + Send,
+    ) {
         self.share(slice.chunks_mut(chunk).enumerate(), |(i, chunk)| f(i, chunk));
     }
 
-    /// Hands items to threads, one at a time. The calling thread takes part, so that little work is done before others wake. It
-    /// takes the first, they the last: neighbours, who share cache lines, mostly stay together.
+    /// Hands items to threads, one at a time. The calling thread takes part, so that little work is
+    /// done before others wake. It takes the first, they the last: neighbours, who share cache
+    /// lines, mostly stay together.
     fn share<T: Send>(
         &self,
         mut items: impl ExactSizeIterator<Item = T> + DoubleEndedIterator + Send,
@@ -136,7 +146,8 @@ impl Workers {
     /// Has `f` run while the calling thread goes on; it may share work among the same threads.
     ///
     /// # Errors
-    /// `f` itself, where there are no threads, and while the process is about to fork ([`hold_for_fork`](crate::hold_for_fork)).
+    /// `f` itself, where there are no threads, and while the process is about to fork
+    /// ([`hold_for_fork`](crate::hold_for_fork)).
     pub fn start<F: FnOnce() + Send + 'static>(&self, f: F) -> Result<Started, F> {
         #[cfg(feature = "threads")]
         if self.pool.is_some() {
@@ -160,7 +171,11 @@ impl Workers {
     }
 
     /// Runs both, at the same time where there are threads.
-    pub fn join<A: Send, B: Send>(&self, a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    pub fn join<A: Send, B: Send>(
+        &self,
+        a: impl FnOnce() -> A + Send,
+        b: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
         #[cfg(feature = "threads")]
         if let Some(pool) = &self.pool {
             #[cfg(all(target_os = "linux", not(miri)))]
@@ -184,7 +199,10 @@ mod tests {
 
     #[test]
     fn no_pool_has_more_threads_than_can_start() {
-        assert_eq!([3, Workers::MOST, Workers::MOST + 1, usize::MAX].map(number), [3, 1024, 1024, 1024]);
+        assert_eq!(
+            [3, Workers::MOST, Workers::MOST + 1, usize::MAX].map(number),
+            [3, 1024, 1024, 1024]
+        );
         assert!((1..=Workers::MOST).contains(&number(0)));
     }
 

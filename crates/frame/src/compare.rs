@@ -1,8 +1,8 @@
 //! How far two pictures are apart, as numbers and as a picture.
 //!
-//! Golden tests and the command `vitral compare` share this: a pixel differs when any of its four channels is further
-//! apart than a threshold. The peak signal-to-noise ratio looks at red, green and blue only, since an alpha plane that is
-//! opaque on both sides would flatter it.
+//! Golden tests and the command `vitral compare` share this: a pixel differs when any of its four
+//! channels is further apart than a threshold. The peak signal-to-noise ratio looks at red, green
+//! and blue only, since an alpha plane that is opaque on both sides would flatter it.
 //!
 //! In: two planes of RGBA of one size, of 8 or 16 bits a channel, the top row first.
 //! Out: a [`Difference`], and [`picture`], which shows where it lies.
@@ -65,7 +65,8 @@ pub struct Difference<T = u8> {
     pub over: u64,
     /// Largest distance in each channel, whatever the threshold.
     pub max: [T; 4],
-    /// Peak signal-to-noise ratio over red, green and blue, in decibels; infinite when they are equal.
+    /// Peak signal-to-noise ratio over red, green and blue, in decibels; infinite when they are
+    /// equal.
     pub psnr: f64,
     /// The topmost, then leftmost pixel over the threshold: column, row.
     pub first: Option<[u32; 2]>,
@@ -100,7 +101,8 @@ impl<T: Component> std::fmt::Display for Difference<T> {
     }
 }
 
-/// Compares two pictures; a pixel counts as different when a channel is more than `threshold` apart.
+/// Compares two pictures; a pixel counts as different when a channel is more than `threshold`
+/// apart.
 ///
 /// # Errors
 /// If the sizes differ.
@@ -148,19 +150,27 @@ pub fn compare<T: Component>(
     Ok(found)
 }
 
-/// A picture of the difference: `a` faded to grey, and over it each differing pixel in red, the brighter the further
-/// apart it is. Any difference at all is visible: the red starts at half brightness.
+/// A picture of the difference: `a` faded to grey, and over it each differing pixel in red, the
+/// brighter the further apart it is. Any difference at all is visible: the red starts at half
+/// brightness.
 ///
 /// # Errors
 /// If the sizes differ.
-pub fn picture<T: Component>(a: &Plane<[T; 4]>, b: &Plane<[T; 4]>) -> Result<Plane<[u8; 4]>, SizeMismatch> {
+pub fn picture<T: Component>(
+    a: &Plane<[T; 4]>,
+    b: &Plane<[T; 4]>,
+) -> Result<Plane<[u8; 4]>, SizeMismatch> {
     check_sizes(a, b)?;
     let byte = |value: T| value.into() * 255 / T::LARGEST.into();
     let shown = a.data().iter().zip(b.data()).map(|(p, q)| {
         let apart = (0..4).map(|c| p[c].difference(q[c])).max().unwrap_or_default();
         let grey = (byte(p[0]) + 2 * byte(p[1]) + byte(p[2])) / 4;
         let faded = (160 + grey / 4) as u8;
-        if apart == T::default() { [faded, faded, faded, 255] } else { [(128 + byte(apart) / 2) as u8, 0, 0, 255] }
+        if apart == T::default() {
+            [faded, faded, faded, 255]
+        } else {
+            [(128 + byte(apart) / 2) as u8, 0, 0, 255]
+        }
     });
     Ok(Plane::from_rows(a.width(), a.height(), shown.collect()).unwrap_or_default())
 }
@@ -190,7 +200,10 @@ mod tests {
     #[test]
     fn equal_pictures_are_infinitely_close() {
         let found = compare(&black(3, 2), &black(3, 2), 0).unwrap();
-        assert_eq!((found.pixels, found.over, found.max, found.first, found.bounds), (6, 0, [0; 4], None, None));
+        assert_eq!(
+            (found.pixels, found.over, found.max, found.first, found.bounds),
+            (6, 0, [0; 4], None, None)
+        );
         assert!(found.psnr.is_infinite() && found.share() == 0.0);
     }
 
@@ -201,7 +214,10 @@ mod tests {
         b.data_mut()[8 + 1] = [0, 3, 0, 250];
         let found = compare(&a, &b, 0).unwrap();
         assert_eq!((found.over, found.max, found.max_any()), (2, [9, 3, 0, 5], 9));
-        assert_eq!((found.first, found.bounds), (Some([2, 1]), Some(Bounds { min: [1, 1], max: [2, 2] })));
+        assert_eq!(
+            (found.first, found.bounds),
+            (Some([2, 1]), Some(Bounds { min: [1, 1], max: [2, 2] }))
+        );
         let found = compare(&a, &b, 5).unwrap();
         assert_eq!((found.over, found.first, found.max), (1, Some([2, 1]), [9, 3, 0, 5]));
     }

@@ -1,7 +1,8 @@
-//! What a vector algorithm hands to whoever writes a file: lines with their classes and filled regions, in millimetres.
+//! What a vector algorithm hands to whoever writes a file: lines with their classes and filled
+//! regions, in millimetres.
 //!
-//! A [`Drawing`] is to vector output what a [`Frame`](crate::Frame) is to pictures. It says what is on the page and not how it looks:
-//! pens, dashes and colours belong to the writers.
+//! A [`Drawing`] is to vector output what a [`Frame`](crate::Frame) is to pictures. It says what is
+//! on the page and not how it looks: pens, dashes and colours belong to the writers.
 //!
 //! Page coordinates are millimetres, x to the right and y upwards from the lower left corner.
 
@@ -14,9 +15,9 @@ pub struct Drawing {
     pub height: f64,
     /// Lines, in the order of [`LineClass::ALL`], visible ones first; then the hatching.
     pub lines: Vec<Line>,
-    /// Filled regions in the order in which they are painted. Those of visible surfaces overlap only where they reach under each other
-    /// and where they are clear; in a list from back to front, as painter's algorithm and BSP trees make it, later regions cover
-    /// earlier ones.
+    /// Filled regions in the order in which they are painted. Those of visible surfaces overlap
+    /// only where they reach under each other and where they are clear; in a list from back to
+    /// front, as painter's algorithm and BSP trees make it, later regions cover earlier ones.
     pub regions: Vec<Region>,
     /// Free points of the model that are visible, each once.
     pub points: Vec<[f64; 2]>,
@@ -46,17 +47,19 @@ pub struct Region {
     pub opacity: f32,
     /// The lights that do not reach it, a bit each, where shadows are drawn; else 0.
     pub unlit: u32,
-    /// Outlines, closed without repeating the first point: counter-clockwise round the region, clockwise round holes.
+    /// Outlines, closed without repeating the first point: counter-clockwise round the region,
+    /// clockwise round holes.
     pub rings: Vec<Vec<[f64; 2]>>,
 }
 
-/// What a line shows. The order is that of importance: of lines that coincide, a [`Section`](Self::Section) stays, or else the first
-/// class.
+/// What a line shows. The order is that of importance: of lines that coincide, a
+/// [`Section`](Self::Section) stays, or else the first class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LineClass {
     /// Where a surface turns away from the viewer.
     Contour,
-    /// Where a surface ends: an edge of one face; a free line of the model. Free points are drawn where this class is.
+    /// Where a surface ends: an edge of one face; a free line of the model. Free points are drawn
+    /// where this class is.
     Boundary,
     /// A sharp edge.
     Crease,
@@ -76,7 +79,11 @@ impl LineClass {
     /// All classes of edges with their names and a line each, the most important first.
     pub const ALL: [(Self, &'static str, &'static str); 7] = [
         (Self::Contour, "contour", "where a surface turns away from the viewer"),
-        (Self::Boundary, "boundary", "where a surface ends, and free lines and points of the model"),
+        (
+            Self::Boundary,
+            "boundary",
+            "where a surface ends, and free lines and points of the model",
+        ),
         (Self::Crease, "crease", "edges with an angle above the crease angle"),
         (Self::Material, "material", "where two materials meet"),
         (Self::Intersection, "intersection", "where faces penetrate each other"),
@@ -100,7 +107,10 @@ impl Drawing {
     /// The straight segments of all lines and outlines of regions.
     pub fn segments(&self) -> u64 {
         let lines = self.lines.iter().map(|line| line.points.len() as u64 - 1);
-        let outlines = self.regions.iter().flat_map(|region| region.rings.iter().map(|ring| ring.len() as u64));
+        let outlines = self
+            .regions
+            .iter()
+            .flat_map(|region| region.rings.iter().map(|ring| ring.len() as u64));
         lines.chain(outlines).sum()
     }
 
@@ -108,7 +118,10 @@ impl Drawing {
     pub fn shift(&mut self, by: [f64; 2]) {
         let lines = self.lines.iter_mut().flat_map(|line| &mut line.points);
         let outlines = self.regions.iter_mut().flat_map(|region| region.rings.iter_mut().flatten());
-        lines.chain(outlines).chain(&mut self.points).for_each(|point| *point = [point[0] + by[0], point[1] + by[1]]);
+        lines
+            .chain(outlines)
+            .chain(&mut self.points)
+            .for_each(|point| *point = [point[0] + by[0], point[1] + by[1]]);
     }
 
     /// Width and height of the box round all lines, regions and points, in millimetres.
@@ -119,7 +132,8 @@ impl Drawing {
         around.map_or([0.0; 2], |[low, high]| [high[0] - low[0], high[1] - low[1]])
     }
 
-    /// The sum of the areas of all regions, in square millimetres: where they overlap, it counts more than once.
+    /// The sum of the areas of all regions, in square millimetres: where they overlap, it counts
+    /// more than once.
     pub fn area(&self) -> f64 {
         self.regions.iter().map(Region::area).sum()
     }
@@ -170,7 +184,9 @@ mod tests {
 
     #[test]
     fn lengths_and_areas_are_measured() {
-        let square = |at: f64, side: f64| [[at, at], [at + side, at], [at + side, at + side], [at, at + side]];
+        let square = |at: f64, side: f64| {
+            [[at, at], [at + side, at], [at + side, at + side], [at, at + side]]
+        };
         let mut hole = square(1.0, 1.0).to_vec();
         hole.reverse();
         let region = Region {
@@ -181,13 +197,29 @@ mod tests {
             unlit: 0,
             rings: vec![square(0.0, 3.0).to_vec(), hole],
         };
-        let line = |layers, points: &[[f64; 2]]| Line { class: LineClass::Crease, layers, points: points.to_vec() };
+        let line = |layers, points: &[[f64; 2]]| Line {
+            class: LineClass::Crease,
+            layers,
+            points: points.to_vec(),
+        };
         let lines = vec![line(0, &square(0.0, 3.0)), line(2, &[[0.0, 0.0], [3.0, 4.0]])];
-        let mut drawing = Drawing { width: 3.0, height: 4.0, lines, regions: vec![region], points: vec![[1.0, 5.0]] };
-        assert_eq!((drawing.area(), drawing.length(|l| l.layers == 0), drawing.length(|_| true)), (8.0, 9.0, 14.0));
+        let mut drawing = Drawing {
+            width: 3.0,
+            height: 4.0,
+            lines,
+            regions: vec![region],
+            points: vec![[1.0, 5.0]],
+        };
+        assert_eq!(
+            (drawing.area(), drawing.length(|l| l.layers == 0), drawing.length(|_| true)),
+            (8.0, 9.0, 14.0)
+        );
         assert_eq!((drawing.extent(), drawing.segments()), ([3.0, 5.0], 3 + 1 + 8));
         drawing.shift([1.0, -2.0]);
         assert_eq!((drawing.points[0], drawing.lines[1].points[1]), ([2.0, 3.0], [4.0, 2.0]));
-        assert_eq!((signed_area(&[]), bounds([]), Drawing::default().extent()), (0.0, None, [0.0; 2]));
+        assert_eq!(
+            (signed_area(&[]), bounds([]), Drawing::default().extent()),
+            (0.0, None, [0.0; 2])
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Floor 1: pixels. Planes of values, textures with their samplers, and the finished [`Frame`]; and its counterpart for vector
-//! output, the [`Drawing`].
+//! Floor 1: pixels. Planes of values, textures with their samplers, and the finished [`Frame`]; and
+//! its counterpart for vector output, the [`Drawing`].
 #![forbid(unsafe_code)]
 
 pub mod compare;

@@ -84,7 +84,9 @@ impl<'de> Deserialize<'de> for LineClasses {
         let names = Vec::<String>::deserialize(deserializer)?;
         let class = |name: &String| {
             let found = LineClass::ALL.iter().find(|row| row.1 == name);
-            found.map(|row| row.0).ok_or_else(|| D::Error::custom(format!("`{name}` is no class of lines")))
+            found
+                .map(|row| row.0)
+                .ok_or_else(|| D::Error::custom(format!("`{name}` is no class of lines")))
         };
         names.iter().map(class).collect()
     }
@@ -99,7 +101,10 @@ mod tests {
         assert_eq!(LineClasses::ALL.first(), Some(LineClass::Section));
         let uncut: LineClasses = [LineClass::Smooth, LineClass::Contour].into_iter().collect();
         assert_eq!(uncut.first(), Some(LineClass::Contour));
-        assert_eq!((LineClasses::EMPTY.first(), LineClasses::USUAL.has(LineClass::Smooth)), (None, false));
+        assert_eq!(
+            (LineClasses::EMPTY.first(), LineClasses::USUAL.has(LineClass::Smooth)),
+            (None, false)
+        );
         let two: LineClasses = [LineClass::Smooth, LineClass::Material].into_iter().collect();
         assert_eq!(two.common(LineClasses::USUAL), LineClasses::one(LineClass::Material));
     }

@@ -27,7 +27,8 @@ fn main() -> std::io::Result<()> {
     assert!(c.make_current(BUFFER, gl::UNSIGNED_BYTE, SIZE[0], SIZE[1]));
 
     let (cyan, yellow) = ([0.0, 1.0, 1.0, 0.75], [1.0, 1.0, 0.0, 0.75]);
-    let (left, right) = ([[-0.9, -0.8], [0.5, 0.0], [-0.9, 0.8]], [[0.9, -0.8], [0.9, 0.8], [-0.5, 0.0]]);
+    let (left, right) =
+        ([[-0.9, -0.8], [0.5, 0.0], [-0.9, 0.8]], [[0.9, -0.8], [0.9, 0.8], [-0.5, 0.0]]);
     c.clear(gl::COLOR_BUFFER_BIT);
     c.enable(gl::BLEND);
     c.blend_func(gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA);

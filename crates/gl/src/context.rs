@@ -50,8 +50,8 @@ pub struct Context {
 }
 
 impl Context {
-    /// A context in its initial state, without a framebuffer. Objects are shared with every context that has the same
-    /// `shared`.
+    /// A context in its initial state, without a framebuffer. Objects are shared with every context
+    /// that has the same `shared`.
     pub fn new(memory: Arc<dyn ClientMemory>, shared: Arc<Shared>) -> Self {
         Self {
             state: State::default(),

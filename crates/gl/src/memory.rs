@@ -5,17 +5,19 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Reads and writes the client's memory. Addresses are as the client gave them; 0 is never passed.
 pub trait ClientMemory: Send + Sync + std::fmt::Debug {
-    /// Copies `out.len()` bytes from `address`. `false` if that range is not the client's (nothing is promised of `out`).
+    /// Copies `out.len()` bytes from `address`. `false` if that range is not the client's (nothing
+    /// is promised of `out`).
     fn read(&self, address: usize, out: &mut [u8]) -> bool;
     /// Copies `bytes` to `address`. `false` if that range is not the client's.
     fn write(&self, address: usize, bytes: &[u8]) -> bool;
-    /// Whether `length` bytes from `address` on are still the client's, asked before a picture is stored or loaded in a call that
-    /// does not say so.
+    /// Whether `length` bytes from `address` on are still the client's, asked before a picture is
+    /// stored or loaded in a call that does not say so.
     fn is_there(&self, address: usize, length: usize) -> bool {
         let _ = (address, length);
         true
     }
-    /// Hands a buffer's bytes to the client and returns their address (not 0), where it may read and write them.
+    /// Hands a buffer's bytes to the client and returns their address (not 0), where it may read
+    /// and write them.
     fn map(&self, bytes: Vec<u8>) -> usize;
     /// Takes mapped bytes back; `None` if nothing is mapped there.
     fn unmap(&self, address: usize) -> Option<Vec<u8>>;
@@ -24,7 +26,8 @@ pub trait ClientMemory: Send + Sync + std::fmt::Debug {
 /// Memory of at least so many bytes is asked for before it is taken: less can nearly always be had.
 pub(crate) const LARGE: usize = 1 << 20;
 
-/// Whether so many bytes can be had. What cannot is an error of the program, and not the end of the process.
+/// Whether so many bytes can be had. What cannot is an error of the program, and not the end of the
+/// process.
 pub(crate) fn can_have(bytes: usize) -> bool {
     if bytes < LARGE {
         return true;
@@ -36,7 +39,8 @@ pub(crate) fn can_have(bytes: usize) -> bool {
     reserved
 }
 
-/// A bounded piece of memory at a made-up address, for tests and fuzzing. Mapped buffers lie behind it.
+/// A bounded piece of memory at a made-up address, for tests and fuzzing. Mapped buffers lie behind
+/// it.
 #[derive(Debug)]
 pub struct Arena {
     regions: Mutex<Regions>,
@@ -59,7 +63,13 @@ impl Arena {
     /// `len` zero bytes that appear to the state machine at `base` (not 0).
     pub fn new(base: usize, len: usize) -> Self {
         let bytes = BTreeMap::from([(base, vec![0; len])]);
-        Self { regions: Mutex::new(Regions { bytes, base, next: base.saturating_add(len).saturating_add(GAP) }) }
+        Self {
+            regions: Mutex::new(Regions {
+                bytes,
+                base,
+                next: base.saturating_add(len).saturating_add(GAP),
+            }),
+        }
     }
 
     fn lock(&self) -> MutexGuard<'_, Regions> {
@@ -114,7 +124,11 @@ mod tests {
         let mut two = [9; 2];
         assert!(arena.write(1006, &[1, 2]) && arena.read(1006, &mut two));
         assert_eq!(two, [1, 2]);
-        assert!(!arena.read(1007, &mut two) && !arena.read(999, &mut two) && !arena.read(usize::MAX, &mut two));
+        assert!(
+            !arena.read(1007, &mut two)
+                && !arena.read(999, &mut two)
+                && !arena.read(usize::MAX, &mut two)
+        );
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Names of objects.
 //!
-//! Contexts that share objects hand out names from a range of their own. A program that deletes objects while a context of
-//! another range is current then deletes nothing, instead of objects of that context.
+//! Contexts that share objects hand out names from a range of their own. A program that deletes
+//! objects while a context of another range is current then deletes nothing, instead of objects of
+//! that context.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -28,7 +29,8 @@ impl NameRange {
     /// Names of a range: more than programs make objects of a kind.
     const LENGTH: u32 = 1 << 20;
 
-    /// Ranges before the first one comes up again. Names stay below 2^31, since programs keep them as signed numbers.
+    /// Ranges before the first one comes up again. Names stay below 2^31, since programs keep them
+    /// as signed numbers.
     const COUNT: u32 = 1 << 11;
 
     /// The range after the one that was given last; the first begins with 1.
@@ -51,10 +53,12 @@ impl NameRange {
         self.first + (Self::LENGTH - 1)
     }
 
-    /// Reserves `count` unused names: above all others of the range as long as there is room, then in the gaps, then beyond.
+    /// Reserves `count` unused names: above all others of the range as long as there is room, then
+    /// in the gaps, then beyond.
     pub(crate) fn generate<T>(self, names: &mut Names<T>, count: usize) -> Vec<u32> {
         let below = self.first - 1;
-        let highest = names.range(self.first..=self.last()).next_back().map_or(below, |(name, _)| *name);
+        let highest =
+            names.range(self.first..=self.last()).next_back().map_or(below, |(name, _)| *name);
         let mut candidate = if (self.last() - highest) as usize >= count { highest } else { below };
 
         let mut free = Vec::with_capacity(count);
@@ -88,7 +92,10 @@ mod tests {
     #[test]
     fn ranges_do_not_overlap() {
         let ranges: Vec<NameRange> = (0..NameRange::COUNT).map(NameRange::numbered).collect();
-        assert_eq!((ranges[0], ranges[1].first()), (NameRange::default(), NameRange::default().last() + 1));
+        assert_eq!(
+            (ranges[0], ranges[1].first()),
+            (NameRange::default(), NameRange::default().last() + 1)
+        );
         assert!(ranges.windows(2).all(|pair| pair[0].last() < pair[1].first()));
         assert_eq!(ranges.last().map(|range| range.last()), Some(1 << 31));
         assert_eq!(NameRange::numbered(NameRange::COUNT), ranges[0]);

@@ -31,10 +31,15 @@ pub struct Shared {
 }
 
 impl Shared {
-    /// An empty store, whose names differ from those of other stores: see `names.rs`. A default store begins with 1.
+    /// An empty store, whose names differ from those of other stores: see `names.rs`. A default
+    /// store begins with 1.
     pub fn with_own_names() -> Self {
         let names = NameRange::next();
-        Self { names, fences: Mutex::new(crate::api::Fences::after(names.first() as usize - 1)), ..Self::default() }
+        Self {
+            names,
+            fences: Mutex::new(crate::api::Fences::after(names.first() as usize - 1)),
+            ..Self::default()
+        }
     }
 
     /// Tells all contexts that attached images may have new storage.

@@ -1,7 +1,9 @@
-//! Primitives: which of a run of vertices form elements, which triangles these are, and where a long run may be cut.
+//! Primitives: which of a run of vertices form elements, which triangles these are, and where a
+//! long run may be cut.
 
 use crate::enums::{
-    LINE_LOOP, LINE_STRIP, LINES, POINTS, POLYGON, QUAD_STRIP, QUADS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES,
+    LINE_LOOP, LINE_STRIP, LINES, POINTS, POLYGON, QUAD_STRIP, QUADS, TRIANGLE_FAN, TRIANGLE_STRIP,
+    TRIANGLES,
 };
 use std::ops::Range;
 
@@ -73,8 +75,8 @@ pub(crate) fn add_triangles(p: &Primitive, range: Range<u32>, out: &mut Vec<[u32
 /// About how many vertices [`cut_into_parts`] puts into a part.
 const PART_VERTICES: u32 = 1024;
 
-/// Cuts primitives into parts of about equal size. Fans, loops and polygons stay whole, and so do strips of lines if a stipple
-/// runs along them.
+/// Cuts primitives into parts of about equal size. Fans, loops and polygons stay whole, and so do
+/// strips of lines if a stipple runs along them.
 pub(crate) fn cut_into_parts(primitives: &[Primitive], stippled: bool) -> Vec<Vec<Primitive>> {
     let (mut parts, mut weight) = (Vec::new(), u32::MAX);
     for primitive in primitives {
@@ -99,7 +101,11 @@ pub(crate) fn cut_into_parts(primitives: &[Primitive], stippled: bool) -> Vec<Ve
             }
             weight += count;
             if let Some(part) = parts.last_mut() {
-                part.push(Primitive { mode: primitive.mode, first: primitive.first + start, count });
+                part.push(Primitive {
+                    mode: primitive.mode,
+                    first: primitive.first + start,
+                    count,
+                });
             }
         }
     }
@@ -137,7 +143,13 @@ mod tests {
 
     #[test]
     fn parts_hold_all_elements_once() {
-        let all = [(LINE_STRIP, 3000), (TRIANGLE_STRIP, 2501), (QUADS, 8), (LINE_LOOP, 2000), (POINTS, 1)];
+        let all = [
+            (LINE_STRIP, 3000),
+            (TRIANGLE_STRIP, 2501),
+            (QUADS, 8),
+            (LINE_LOOP, 2000),
+            (POINTS, 1),
+        ];
         let mut first = 5;
         let primitives = all.map(|(mode, count)| {
             first += count;
@@ -155,7 +167,10 @@ mod tests {
             let found: Vec<u32> = parts.iter().flatten().flat_map(elements).collect();
             assert_eq!(found, primitives.iter().flat_map(elements).collect::<Vec<_>>());
             let strips = parts.iter().flatten().filter(|p| p.mode == TRIANGLE_STRIP);
-            assert!(strips.clone().count() == 3 && strips.clone().all(|p| (p.first - primitives[1].first) % 2 == 0));
+            assert!(
+                strips.clone().count() == 3
+                    && strips.clone().all(|p| (p.first - primitives[1].first) % 2 == 0)
+            );
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Vertices on their way to the pipeline.
 //!
-//! A batch is one draw: attributes side by side, and the primitives they form. Primitives keep the mode they were given
-//! with, also when a display list merged many of them: unfilled polygons need the original edges, and the flat colour of
-//! a `POLYGON` is that of its first vertex. Neighbours of the same independent mode (`POINTS`, `LINES`, `TRIANGLES`,
-//! `QUADS`) are one [`Primitive`], so that a list of thousands of quads holds one. Incomplete primitives are cut off:
-//! `count` is a multiple of 2, 3 or 4 for `LINES`, `TRIANGLES`, `QUADS`, even for `QUAD_STRIP`, and large enough for at
-//! least one element.
+//! A batch is one draw: attributes side by side, and the primitives they form. Primitives keep the
+//! mode they were given with, also when a display list merged many of them: unfilled polygons need
+//! the original edges, and the flat colour of a `POLYGON` is that of its first vertex. Neighbours
+//! of the same independent mode (`POINTS`, `LINES`, `TRIANGLES`, `QUADS`) are one [`Primitive`], so
+//! that a list of thousands of quads holds one. Incomplete primitives are cut off: `count` is a
+//! multiple of 2, 3 or 4 for `LINES`, `TRIANGLES`, `QUADS`, even for `QUAD_STRIP`, and large enough
+//! for at least one element.
 
 pub use crate::primitive::Primitive;
 use crate::primitive::{complete, is_independent};
@@ -39,8 +40,8 @@ impl CurrentState {
     }
 }
 
-/// Vertices and what they form. An attribute that is `None` has the current value for all vertices, taken when drawn.
-/// Every attribute that is there has one entry a vertex.
+/// Vertices and what they form. An attribute that is `None` has the current value for all vertices,
+/// taken when drawn. Every attribute that is there has one entry a vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VertexBatch {
     /// Model-space positions.
@@ -57,8 +58,8 @@ pub struct VertexBatch {
     pub tex: [Option<Vec<[f32; 4]>>; MAX_TEXTURE_UNITS],
     /// Edge flags.
     pub edges: Option<Vec<bool>>,
-    /// Materials (front, back) set between vertices: they hold from the given vertex on. If there are any, the first
-    /// holds from vertex 0; without any the current material holds.
+    /// Materials (front, back) set between vertices: they hold from the given vertex on. If there
+    /// are any, the first holds from vertex 0; without any the current material holds.
     pub materials: Vec<(u32, [MaterialFace; 2])>,
     /// Modelview matrices set between primitives, in the same way.
     pub modelviews: Vec<(u32, Mat4)>,
@@ -71,7 +72,8 @@ pub struct VertexBatch {
 }
 
 impl VertexBatch {
-    /// The materials at a vertex, if they were set between vertices. `near` is a guess at their number, and then is that.
+    /// The materials at a vertex, if they were set between vertices. `near` is a guess at their
+    /// number, and then is that.
     pub(crate) fn material(&self, vertex: u32, near: &mut usize) -> Option<&[MaterialFace; 2]> {
         let all = &self.materials;
         let from = |i: usize| all.get(i).map_or(u32::MAX, |(from, _)| *from);
@@ -85,18 +87,21 @@ impl VertexBatch {
         Some(&all[*near].1)
     }
 
-    /// The modelview matrix at a vertex, if it was set between primitives, and how many vertices from there on have it.
+    /// The modelview matrix at a vertex, if it was set between primitives, and how many vertices
+    /// from there on have it.
     pub(crate) fn modelview(&self, vertex: u32) -> Option<(&Mat4, u32)> {
         let next = self.modelviews.partition_point(|(from, _)| *from <= vertex);
         let end = self.modelviews.get(next).map_or(u32::MAX, |(from, _)| *from);
         Some((&self.modelviews.get(next.checked_sub(1)?)?.1, end - vertex))
     }
 
-    /// Whether its primitives have so few indices (or vertices) that preparing it for being drawn again costs more than drawing it.
+    /// Whether its primitives have so few indices (or vertices) that preparing it for being drawn
+    /// again costs more than drawing it.
     pub(crate) fn is_small(&self) -> bool {
         const SMALL: usize = 48;
         // Each has some, so that many need not be counted.
-        self.primitives.len() <= SMALL && self.primitives.iter().map(|p| p.count as usize).sum::<usize>() <= SMALL
+        self.primitives.len() <= SMALL
+            && self.primitives.iter().map(|p| p.count as usize).sum::<usize>() <= SMALL
     }
 
     /// The vertex that the `i`-th index names (the `i`-th vertex, without indices).
@@ -104,7 +109,8 @@ impl VertexBatch {
         self.indices.as_ref().map_or(i, |indices| indices[i as usize]) as usize
     }
 
-    /// Adds a primitive without what is incomplete of it; joins it with the one before if that is the same drawing.
+    /// Adds a primitive without what is incomplete of it; joins it with the one before if that is
+    /// the same drawing.
     pub fn add_primitive(&mut self, mode: u32, first: u32, count: u32) {
         let count = complete(mode, count);
         if count == 0 {

@@ -1,5 +1,6 @@
-//! What programs that others wrote rely on, found by running them with Mesa and with us: lines, framebuffers that lack or mix
-//! attachments, depth textures with several levels or six faces, colours beyond 0..=1.
+//! What programs that others wrote rely on, found by running them with Mesa and with us: lines,
+//! framebuffers that lack or mix attachments, depth textures with several levels or six faces,
+//! colours beyond 0..=1.
 
 use crate::common::{BUFFER, Stage, assert_color};
 use vitral_gl::enums as gl;
@@ -56,7 +57,9 @@ fn a_closed_line_draws_each_pixel_once() {
     let lit = c.bytes();
     for y in 0..8 {
         for x in 0..8 {
-            let edge = (1..=5).contains(&x) && (1..=6).contains(&y) && (x == 1 || x == 5 || y == 1 || y == 6);
+            let edge = (1..=5).contains(&x)
+                && (1..=6).contains(&y)
+                && (x == 1 || x == 5 || y == 1 || y == 6);
             assert_eq!(lit[y * 8 + x][0], if edge { 64 } else { 0 }, "({x}, {y})");
         }
     }
@@ -83,7 +86,8 @@ fn the_stipple_goes_on_round_corners() {
 
 #[test]
 fn an_edge_that_two_polygons_share_passes_a_test_for_equal_depth() {
-    // Polygon mode LINE draws the shared edge twice, in opposite directions: depths must agree bit by bit.
+    // Polygon mode LINE draws the shared edge twice, in opposite directions: depths must agree bit
+    // by bit.
     let mut c = Stage::new(64, 64);
     c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
     c.frustum(-1.0, 1.0, -1.0, 1.0, 1.0, 9.0);
@@ -107,7 +111,11 @@ fn an_edge_that_two_polygons_share_passes_a_test_for_equal_depth() {
     let lit: Vec<u8> = c.bytes().iter().map(|p| p[0]).filter(|&v| v > 0).collect();
     let twice = lit.iter().filter(|&&v| v == 128).count();
     // But for the two ends, where one direction draws and the other does not.
-    assert!(lit.len() > 20 && twice + 2 >= lit.len(), "{twice} of {} pixels were drawn twice", lit.len());
+    assert!(
+        lit.len() > 20 && twice + 2 >= lit.len(),
+        "{twice} of {} pixels were drawn twice",
+        lit.len()
+    );
 }
 
 #[test]
@@ -167,7 +175,10 @@ fn renderbuffers_hold_all_kinds_of_colours() {
         c.clear(gl::COLOR_BUFFER_BIT);
         let found = c.pixel(1, 1);
         for k in 0..4 {
-            assert!((f32::from(found[k]) / 255.0 - expected[k]).abs() < 0.01, "{format:#x}: {found:?}");
+            assert!(
+                (f32::from(found[k]) / 255.0 - expected[k]).abs() < 0.01,
+                "{format:#x}: {found:?}"
+            );
         }
         c.no_error();
     }
@@ -180,7 +191,17 @@ fn levels_of_a_depth_texture_are_drawn_to_and_sampled() {
     c.bind_texture(gl::TEXTURE_2D, 1);
     for (level, size) in [(0, 4), (1, 2), (2, 1)] {
         let internal = gl::DEPTH_COMPONENT24 as i32;
-        c.tex_image_2d(gl::TEXTURE_2D, level, internal, size, size, 0, gl::DEPTH_COMPONENT, gl::FLOAT, 0);
+        c.tex_image_2d(
+            gl::TEXTURE_2D,
+            level,
+            internal,
+            size,
+            size,
+            0,
+            gl::DEPTH_COMPONENT,
+            gl::FLOAT,
+            0,
+        );
     }
     c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::NEAREST_MIPMAP_NEAREST as i32);
     c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MAG_FILTER, gl::NEAREST as i32);
@@ -214,7 +235,17 @@ fn floating_point_depths_are_compared_with_any_number() {
     c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_COMPARE_MODE, gl::COMPARE_R_TO_TEXTURE as i32);
     for (format, passes) in [(gl::DEPTH_COMPONENT24, 255), (gl::DEPTH_COMPONENT32F, 0)] {
         let at = c.put(&[1.0f32]);
-        c.tex_image_2d(gl::TEXTURE_2D, 0, format as i32, 1, 1, 0, gl::DEPTH_COMPONENT, gl::FLOAT, at);
+        c.tex_image_2d(
+            gl::TEXTURE_2D,
+            0,
+            format as i32,
+            1,
+            1,
+            0,
+            gl::DEPTH_COMPONENT,
+            gl::FLOAT,
+            at,
+        );
         c.begin(gl::QUADS);
         c.tex_coord_3f(0.5, 0.5, 1.5);
         for [x, y] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
@@ -261,7 +292,8 @@ fn cube_maps_may_hold_depths() {
     }
     for face in 0..6 {
         let at = c.put(&[0.1 + 0.15 * face as f32; 4]);
-        let (target, internal) = (gl::TEXTURE_CUBE_MAP_POSITIVE_X + face, gl::DEPTH_COMPONENT24 as i32);
+        let (target, internal) =
+            (gl::TEXTURE_CUBE_MAP_POSITIVE_X + face, gl::DEPTH_COMPONENT24 as i32);
         c.tex_image_2d(target, 0, internal, 2, 2, 0, gl::DEPTH_COMPONENT, gl::FLOAT, at);
     }
     // One face is drawn to.
@@ -273,7 +305,8 @@ fn cube_maps_may_hold_depths() {
     c.bind_framebuffer_ext(gl::FRAMEBUFFER, 0);
     c.enable(gl::TEXTURE_CUBE_MAP);
     c.tex_envi(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, gl::REPLACE as i32);
-    let directions = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
+    let directions =
+        [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
     for (face, [s, t, r]) in directions.into_iter().enumerate() {
         c.begin(gl::QUADS);
         c.tex_coord_3f(s, t, r);
@@ -285,13 +318,26 @@ fn cube_maps_may_hold_depths() {
         assert_color(c.pixel(2, 1), [depth, depth, depth, 1.0]);
     }
     c.no_error();
-    c.tex_image_3d(gl::TEXTURE_3D, 0, gl::DEPTH_COMPONENT as i32, 2, 2, 2, 0, gl::DEPTH_COMPONENT, gl::FLOAT, 0);
+    c.tex_image_3d(
+        gl::TEXTURE_3D,
+        0,
+        gl::DEPTH_COMPONENT as i32,
+        2,
+        2,
+        2,
+        0,
+        gl::DEPTH_COMPONENT,
+        gl::FLOAT,
+        0,
+    );
     assert_eq!(c.get_error(), gl::INVALID_OPERATION);
 }
 
 #[test]
 fn the_constant_colour_is_clamped_where_it_is_used() {
-    for (format, expected) in [(gl::RGBA32F_ARB, [2.0, 0.0, 0.25, 1.5]), (gl::RGBA8, [1.0, 0.0, 0.25, 1.0])] {
+    for (format, expected) in
+        [(gl::RGBA32F_ARB, [2.0, 0.0, 0.25, 1.5]), (gl::RGBA8, [1.0, 0.0, 0.25, 1.0])]
+    {
         let mut c = Stage::new(2, 2);
         framebuffer(&mut c);
         attach(&mut c, gl::COLOR_ATTACHMENT0, format, [2, 2], 1);
@@ -325,9 +371,11 @@ fn logic_operations_combine_16_bits() {
     framebuffer(&mut c);
     for (format, combined) in [(gl::RGBA8, true), (gl::RGBA16, true), (gl::RGBA32F_ARB, false)] {
         attach(&mut c, gl::COLOR_ATTACHMENT0, format, [2, 2], 1);
-        for (op, expected) in
-            [(gl::INVERT, [0.8, 0.6, 0.0, 1.0]), (gl::SET, [1.0; 4]), (gl::NOOP, [0.2, 0.4, 1.0, 0.0])]
-        {
+        for (op, expected) in [
+            (gl::INVERT, [0.8, 0.6, 0.0, 1.0]),
+            (gl::SET, [1.0; 4]),
+            (gl::NOOP, [0.2, 0.4, 1.0, 0.0]),
+        ] {
             c.clear_color(0.2, 0.4, 1.0, 0.0);
             c.clear(gl::COLOR_BUFFER_BIT);
             c.enable(gl::COLOR_LOGIC_OP);
@@ -373,7 +421,8 @@ fn framebuffers_of_srgb_colours_encode_them_on_demand() {
 
 #[test]
 fn a_light_at_infinity_has_a_cone() {
-    // Equation 2.5: the spot factor is the cosine between the ray and the cone's axis, to the exponent.
+    // Equation 2.5: the spot factor is the cosine between the ray and the cone's axis, to the
+    // exponent.
     let mut c = Stage::new(2, 2);
     c.enable(gl::LIGHTING);
     c.enable(gl::LIGHT0);
@@ -412,7 +461,8 @@ fn luminance_of_a_texture_is_its_red_and_of_a_picture_the_sum() {
 
 #[test]
 fn the_scale_of_alpha_holds_beside_an_unscaled_dot_product() {
-    // EXT_texture_env_dot3: RGB_SCALE does not apply to DOT3_RGB_EXT; ALPHA_SCALE belongs to the function of alpha.
+    // EXT_texture_env_dot3: RGB_SCALE does not apply to DOT3_RGB_EXT; ALPHA_SCALE belongs to the
+    // function of alpha.
     let mut c = Stage::new(2, 2);
     c.texture(&[(1, vec![[255, 255, 255, 64]])]);
     for (name, value) in [
@@ -465,7 +515,10 @@ fn counts_of_static_elements_are_kept() {
     let at = c.put(&[0.0f32; 8]);
     c.vertex_pointer_ext(2, gl::FLOAT, 0, 4, at);
     c.color_pointer_ext(3, gl::FLOAT, 0, 2, at);
-    assert_eq!((c.get(gl::VERTEX_ARRAY_COUNT_EXT), c.get(gl::COLOR_ARRAY_COUNT_EXT)), ([4.0], [2.0]));
+    assert_eq!(
+        (c.get(gl::VERTEX_ARRAY_COUNT_EXT), c.get(gl::COLOR_ARRAY_COUNT_EXT)),
+        ([4.0], [2.0])
+    );
     c.normal_pointer_ext(gl::FLOAT, 0, -1, at);
     assert_eq!(c.get_error(), gl::INVALID_VALUE);
     c.vertex_pointer(2, gl::FLOAT, 0, at);

@@ -1,4 +1,5 @@
-//! The course's OpenGL, item by item: each test is named by its item, and its expectations are closed forms.
+//! The course's OpenGL, item by item: each test is named by its item, and its expectations are
+//! closed forms.
 
 use crate::common::{Stage, assert_color};
 use vitral_gl::{Context, OSMESA_RGB_565, enums as gl};
@@ -74,7 +75,11 @@ fn t14_alphas_are_compared_as_stored() {
                 }
                 let larger = matches!(func, gl::GREATER | gl::NOTEQUAL | gl::GEQUAL);
                 let expected = if equal { passes } else { larger };
-                assert_eq!(c.pixel(8, 8)[0] == 255, expected, "{format:#x} {kind:#x} {func:#x} {figure}");
+                assert_eq!(
+                    c.pixel(8, 8)[0] == 255,
+                    expected,
+                    "{format:#x} {kind:#x} {func:#x} {figure}"
+                );
             }
         }
     }
@@ -256,7 +261,9 @@ fn f16_yellow_and_cyan_in_both_orders() {
     let mut c = Stage::new(4, 4);
     c.enable(gl::BLEND);
     c.blend_func(gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA);
-    for (first, second, [r, g, b]) in [(cyan, yellow, [0.75, 0.9375, 0.1875]), (yellow, cyan, [0.1875, 0.9375, 0.75])] {
+    for (first, second, [r, g, b]) in
+        [(cyan, yellow, [0.75, 0.9375, 0.1875]), (yellow, cyan, [0.1875, 0.9375, 0.75])]
+    {
         c.clear(gl::COLOR_BUFFER_BIT);
         c.fill(first, 0.0);
         c.fill(second, 0.0);
@@ -309,14 +316,17 @@ fn f17_filters_antialiasing_and_cut_out_textures() {
 /// For each pixel of a picture, how many of 4x4 places in it are inside, from 0 to 1.
 fn supersampled(side: usize, inside: impl Fn(f32, f32) -> bool) -> Vec<f32> {
     let place = |pixel: usize, i: usize| pixel as f32 + (i as f32 + 0.5) / 4.0;
-    let count = |at: usize| (0..16).filter(|i| inside(place(at % side, i % 4), place(at / side, i / 4))).count();
+    let count = |at: usize| {
+        (0..16).filter(|i| inside(place(at % side, i % 4), place(at / side, i / 4))).count()
+    };
     (0..side * side).map(|at| count(at) as f32 / 16.0).collect()
 }
 
 #[test]
 fn f17_antialiasing_by_coverage_is_4x4_supersampling_at_every_slant() {
     const SIDE: usize = 32;
-    // In one pixel a corner or the way in which 4x4 places lie may do much; on the mean little is left.
+    // In one pixel a corner or the way in which 4x4 places lie may do much; on the mean little is
+    // left.
     const MOST: f32 = 0.23;
     const MEAN: f32 = 0.036;
     let mut c = Stage::new(SIDE as i32, SIDE as i32);
@@ -326,7 +336,8 @@ fn f17_antialiasing_by_coverage_is_4x4_supersampling_at_every_slant() {
     let (mut total, mut border, mut worst) = (0.0, 0, 0.0f32);
     let mut compare = |c: &mut Stage, expected: &[f32], what: &str| {
         for (at, expected) in expected.iter().enumerate() {
-            let found = f32::from(c.pixel(at as i32 % SIDE as i32, at as i32 / SIDE as i32)[0]) / 255.0;
+            let found =
+                f32::from(c.pixel(at as i32 % SIDE as i32, at as i32 / SIDE as i32)[0]) / 255.0;
             let error = (found - expected).abs();
             assert!(error <= MOST, "{what}, pixel {at}: {found} instead of {expected}");
             if *expected > 0.0 && *expected < 1.0 {
@@ -363,7 +374,10 @@ fn f17_antialiasing_by_coverage_is_4x4_supersampling_at_every_slant() {
         c.clear(gl::COLOR_BUFFER_BIT);
         c.begin(gl::QUADS);
         for (along, across) in [(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0)] {
-            c.vertex_2f(middle[0] + cos * along - sin * across, middle[1] + sin * along + cos * across);
+            c.vertex_2f(
+                middle[0] + cos * along - sin * across,
+                middle[1] + sin * along + cos * across,
+            );
         }
         c.end();
         c.disable(gl::POLYGON_SMOOTH);
@@ -420,14 +434,17 @@ fn l11_eight_lights_are_independent() {
     let into = c.put(&[9.0f32; 4]);
     c.get_lightfv(gl::LIGHT3, gl::DIFFUSE, into);
     let found: Vec<f32> = c.take(into, 4);
-    assert!((found[0] - 1.0).abs() < 1e-6 && found[1].abs() < 1e-6 && (found[2] + 1.0).abs() < 1e-6);
+    assert!(
+        (found[0] - 1.0).abs() < 1e-6 && found[1].abs() < 1e-6 && (found[2] + 1.0).abs() < 1e-6
+    );
 }
 
 #[test]
 fn l12_a_position_is_transformed_at_the_call() {
     let mut c = lit();
     c.enable(gl::LIGHT0);
-    // The light goes with the view that was current when it was set, and stays when the view changes.
+    // The light goes with the view that was current when it was set, and stays when the view
+    // changes.
     c.rotatef(60.0, 0.0, 1.0, 0.0);
     light(&mut c, 0, gl::POSITION, [0.0, 0.0, 1.0, 0.0]);
     c.load_identity();
@@ -451,7 +468,10 @@ fn l12_a_position_is_transformed_at_the_call() {
 #[test]
 fn l13_each_light_adds_its_own_part() {
     let mut c = lit();
-    for (i, color) in [[0.25, 0.0, 0.0, 1.0], [0.0, 0.5, 0.0, 1.0], [0.125, 0.0, 0.75, 1.0]].into_iter().enumerate() {
+    for (i, color) in [[0.25, 0.0, 0.0, 1.0], [0.0, 0.5, 0.0, 1.0], [0.125, 0.0, 0.75, 1.0]]
+        .into_iter()
+        .enumerate()
+    {
         light(&mut c, i as u32, gl::DIFFUSE, color);
     }
     let mut with = |on: [bool; 3]| {
@@ -474,8 +494,11 @@ fn l14_e10_the_shade_model_decides_not_the_normals() {
         c.shade_model(model);
         c.clear(gl::COLOR_BUFFER_BIT);
         c.begin(gl::TRIANGLES);
-        for (x, y, color) in [(-1.0, -1.0, [1.0, 0.0, 0.0]), (3.0, -1.0, [0.0, 1.0, 0.0]), (-1.0, 3.0, [0.0, 0.0, 1.0])]
-        {
+        for (x, y, color) in [
+            (-1.0, -1.0, [1.0, 0.0, 0.0]),
+            (3.0, -1.0, [0.0, 1.0, 0.0]),
+            (-1.0, 3.0, [0.0, 0.0, 1.0]),
+        ] {
             c.color_3f(color[0], color[1], color[2]);
             c.vertex_2f(x, y);
         }
@@ -491,7 +514,8 @@ fn l14_e10_the_shade_model_decides_not_the_normals() {
 
 #[test]
 fn l14_e10_one_normal_is_smooth_and_four_normals_are_flat_if_the_model_says_so() {
-    // A square under a lamp nearby, over one of its corners, with one normal for all corners or with one for each.
+    // A square under a lamp nearby, over one of its corners, with one normal for all corners or
+    // with one for each.
     let colors = |model: u32, normals: &[[f32; 3]]| {
         let mut c = lit();
         c.enable(gl::LIGHT0);
@@ -499,7 +523,9 @@ fn l14_e10_one_normal_is_smooth_and_four_normals_are_flat_if_the_model_says_so()
         c.shade_model(model);
         c.clear(gl::COLOR_BUFFER_BIT);
         c.begin(gl::QUADS);
-        for (i, (x, y)) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].into_iter().enumerate() {
+        for (i, (x, y)) in
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].into_iter().enumerate()
+        {
             if let Some([nx, ny, nz]) = normals.get(i).copied() {
                 c.normal_3f(nx, ny, nz);
             }
@@ -519,7 +545,8 @@ fn l14_e10_one_normal_is_smooth_and_four_normals_are_flat_if_the_model_says_so()
     assert!(other.abs_diff(beside) <= 1, "the same on both sides: {beside} {other}");
     // None given: the current normal counts, (0, 0, 1) here, for all.
     assert_eq!(colors(gl::SMOOTH, &[]), colors(gl::SMOOTH, &[up]));
-    // Four normals: with flat shading the last vertex gives one colour. N·L there: L = (-0.8, -0.8, 0.6) - (-1, 1, 0).
+    // Four normals: with flat shading the last vertex gives one colour. N·L there: L = (-0.8, -0.8,
+    // 0.6) - (-1, 1, 0).
     let (count, [flat, ..]) = colors(gl::FLAT, &[aslant, aslant, aslant, up]);
     let cosine = 0.6 / (0.2f32 * 0.2 + 1.8 * 1.8 + 0.6 * 0.6).sqrt();
     assert_eq!(count, 1);
@@ -533,8 +560,11 @@ fn l16_the_view_and_model_matrices_are_hand_products() {
     // T(1, 2, 3) Rz(90): x goes to y, y to -x.
     c.translated(1.0, 2.0, 3.0);
     c.rotated(90.0, 0.0, 0.0, 1.0);
-    let expected = [0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 2.0, 3.0, 1.0];
-    let near = |found: [f32; 16], expected: [f32; 16]| (0..16).all(|i| (found[i] - expected[i]).abs() < 1e-6);
+    let expected =
+        [0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 2.0, 3.0, 1.0];
+    let near = |found: [f32; 16], expected: [f32; 16]| {
+        (0..16).all(|i| (found[i] - expected[i]).abs() < 1e-6)
+    };
     assert!(near(c.get(gl::MODELVIEW_MATRIX), expected));
     c.push_matrix();
     c.scaled(2.0, 2.0, 2.0);
@@ -569,7 +599,9 @@ fn l22_without_normals_an_object_has_one_colour() {
         c.rotatef(angle, 0.0, 1.0, 0.0);
         c.clear(gl::COLOR_BUFFER_BIT);
         c.begin(gl::TRIANGLE_FAN);
-        for [x, y, z] in [[0.0, 0.0, 0.5], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]] {
+        for [x, y, z] in
+            [[0.0, 0.0, 0.5], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]
+        {
             c.vertex_3f(x, y, z);
         }
         c.end();

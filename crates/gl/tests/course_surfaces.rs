@@ -1,15 +1,20 @@
-//! The course's OpenGL, item by item, second part: lights as the exercises have them, errata, and what the notes on visible
-//! surfaces and illumination ask of the fixed functions. Each test is named by its item; expectations are closed forms.
+//! The course's OpenGL, item by item, second part: lights as the exercises have them, errata, and
+//! what the notes on visible surfaces and illumination ask of the fixed functions. Each test is
+//! named by its item; expectations are closed forms.
 
-#![expect(clippy::disallowed_methods, reason = "expected values may differ by the machine's last bit")]
+#![expect(
+    clippy::disallowed_methods,
+    reason = "expected values may differ by the machine's last bit"
+)]
 
 use crate::common::{Stage, assert_color};
 use vitral_gl::enums as gl;
 
 const WHOLE: [f32; 4] = [-1.0, -1.0, 1.0, 1.0];
 
-/// `light_ambient`, `light_diffuse`, `light_specular` and `light_position` of the exercises' scenes, whose numbers are lost
-/// in the notes: those that vitral's own scenes have (`vitral_scene::lab`). A lamp, and a light at infinity.
+/// `light_ambient`, `light_diffuse`, `light_specular` and `light_position` of the exercises'
+/// scenes, whose numbers are lost in the notes: those that vitral's own scenes have
+/// (`vitral_scene::lab`). A lamp, and a light at infinity.
 const AMBIENT: [[f32; 4]; 2] = [[0.2, 0.2, 0.2, 1.0], [0.02, 0.03, 0.05, 1.0]];
 const DIFFUSE: [[f32; 4]; 2] = [[0.8, 0.76, 0.68, 1.0], [0.2, 0.25, 0.35, 1.0]];
 const SPECULAR: [[f32; 4]; 2] = [[0.9, 0.88, 0.84, 1.0], [0.2, 0.25, 0.35, 1.0]];
@@ -46,7 +51,12 @@ fn l15_light0_and_light1_shine_as_their_arrays_say() {
     let mut c = Stage::new(4, 4);
     let (grey, exponent) = ([0.5, 0.7, 0.4], 8.0);
     material(&mut c, grey, exponent);
-    let tables = [(gl::AMBIENT, AMBIENT), (gl::DIFFUSE, DIFFUSE), (gl::SPECULAR, SPECULAR), (gl::POSITION, POSITION)];
+    let tables = [
+        (gl::AMBIENT, AMBIENT),
+        (gl::DIFFUSE, DIFFUSE),
+        (gl::SPECULAR, SPECULAR),
+        (gl::POSITION, POSITION),
+    ];
     let into = c.put(&[9.0f32; 4]);
     for (name, table) in tables {
         for (number, values) in table.into_iter().enumerate() {
@@ -62,8 +72,10 @@ fn l15_light0_and_light1_shine_as_their_arrays_say() {
             let l = unit([x, y, z]);
             let h = unit([l[0], l[1], l[2] + 1.0]);
             let facing = dot(normal, l).max(0.0);
-            let shine = if facing > 0.0 { dot(normal, h).max(0.0).powf(f64::from(exponent)) } else { 0.0 };
-            let colors = [AMBIENT, DIFFUSE, SPECULAR].map(|table| f64::from(table[number][channel]));
+            let shine =
+                if facing > 0.0 { dot(normal, h).max(0.0).powf(f64::from(exponent)) } else { 0.0 };
+            let colors =
+                [AMBIENT, DIFFUSE, SPECULAR].map(|table| f64::from(table[number][channel]));
             let [ka, kd, ks] = grey.map(f64::from);
             ka * colors[0] + kd * facing * colors[1] + ks * shine * colors[2]
         };
@@ -78,7 +90,10 @@ fn l15_light0_and_light1_shine_as_their_arrays_say() {
             c.begin(gl::POINTS);
             c.vertex_3f(0.0, 0.0, 0.0);
             c.end();
-            let sum = |k| (if first { part(0, k) } else { 0.0 } + if second { part(1, k) } else { 0.0 }) as f32;
+            let sum = |k| {
+                (if first { part(0, k) } else { 0.0 } + if second { part(1, k) } else { 0.0 })
+                    as f32
+            };
             assert_color(c.pixel(2, 2), [sum(0), sum(1), sum(2), 1.0]);
         }
     }
@@ -86,7 +101,8 @@ fn l15_light0_and_light1_shine_as_their_arrays_say() {
 
 #[test]
 fn l16_the_eye_is_the_inverse_of_placing_it() {
-    // Rx(-a) Ry(-b) Rz(-c) T(-t), then the object's T Rz Ry Rx with the same angles and place: the object is before the eye.
+    // Rx(-a) Ry(-b) Rz(-c) T(-t), then the object's T Rz Ry Rx with the same angles and place: the
+    // object is before the eye.
     let mut c = Stage::new(4, 4);
     let ([a, b, g], [x, y, z]) = ([20.0, -35.0, 50.0], [1.0, -2.0, 3.0]);
     c.rotated(-a, 1.0, 0.0, 0.0);
@@ -124,7 +140,10 @@ fn t13_opacity_is_one_minus_kt() {
     c.fill([0.2, 0.6, 1.0, 0.7], 0.0);
     let kt = 0.3;
     let mixed = |near: f32, far: f32| (1.0 - kt) * near + kt * far;
-    assert_color(c.pixel(1, 1), [mixed(0.2, 0.9), mixed(0.6, 0.1), mixed(1.0, 0.5), 0.7 * 0.7 + 0.3]);
+    assert_color(
+        c.pixel(1, 1),
+        [mixed(0.2, 0.9), mixed(0.6, 0.1), mixed(1.0, 0.5), 0.7 * 0.7 + 0.3],
+    );
 }
 
 #[test]
@@ -145,7 +164,8 @@ fn e5_the_blue_triangle_is_cyan() {
 
 #[test]
 fn e7_a_fragment_that_fails_the_alpha_test_is_discarded() {
-    // As `discard`: neither colour nor depth nor stencil nor an occlusion query hear of it, whatever the tests behind say.
+    // As `discard`: neither colour nor depth nor stencil nor an occlusion query hear of it,
+    // whatever the tests behind say.
     let mut c = Stage::new(4, 4);
     for cap in [gl::ALPHA_TEST, gl::STENCIL_TEST, gl::DEPTH_TEST] {
         c.enable(cap);
@@ -173,7 +193,8 @@ fn e7_a_fragment_that_fails_the_alpha_test_is_discarded() {
 
 #[test]
 fn e10_one_normal_and_a_near_light_still_interpolate() {
-    // A light above the left end of a strip with a single normal: the left is lit straight on (1), the right at 60 degrees (1/2).
+    // A light above the left end of a strip with a single normal: the left is lit straight on (1),
+    // the right at 60 degrees (1/2).
     let mut c = Stage::new(64, 1);
     material(&mut c, [0.0, 1.0, 0.0], 0.0);
     light(&mut c, 0, gl::POSITION, [-1.0, 0.0, 2.0 / f32::sqrt(3.0), 1.0]);
@@ -186,7 +207,10 @@ fn e10_one_normal_and_a_near_light_still_interpolate() {
         [0, 31, 63].map(|x| f64::from(c.pixel(x, 0)[0]) / 255.0)
     };
     let flat = along(gl::FLAT);
-    assert!(flat == [flat[0]; 3] && (flat[0] - 1.0).abs().min((flat[0] - 0.5).abs()) < 0.005, "{flat:?}");
+    assert!(
+        flat == [flat[0]; 3] && (flat[0] - 1.0).abs().min((flat[0] - 0.5).abs()) < 0.005,
+        "{flat:?}"
+    );
     for (found, x) in along(gl::SMOOTH).into_iter().zip([0.0, 31.0, 63.0]) {
         let expected = 1.0 - 0.5 * (x + 0.5) / 64.0;
         assert!((found - expected).abs() < 0.005, "{found} instead of {expected} at {x}");
@@ -195,11 +219,17 @@ fn e10_one_normal_and_a_near_light_still_interpolate() {
 
 #[test]
 fn p17_the_depth_buffer_finds_what_rays_find() {
-    // Six planes z = a x + b y + d through one another, in any order: at each pixel the nearest of them stays, as a ray
-    // through the pixel's centre says.
+    // Six planes z = a x + b y + d through one another, in any order: at each pixel the nearest of
+    // them stays, as a ray through the pixel's centre says.
     const SIDE: i32 = 33;
-    let planes: [[f64; 3]; 6] =
-        [[0.5, 0.1, 0.0], [-0.4, 0.3, 0.1], [0.0, -0.6, -0.05], [0.2, 0.25, -0.1], [-0.1, -0.2, 0.2], [0.0, 0.0, 0.05]];
+    let planes: [[f64; 3]; 6] = [
+        [0.5, 0.1, 0.0],
+        [-0.4, 0.3, 0.1],
+        [0.0, -0.6, -0.05],
+        [0.2, 0.25, -0.1],
+        [-0.1, -0.2, 0.2],
+        [0.0, 0.0, 0.05],
+    ];
     let at = |[a, b, d]: [f64; 3], x: f64, y: f64| a * x + b * y + d;
     let mut c = Stage::new(SIDE, SIDE);
     c.enable(gl::DEPTH_TEST);
@@ -218,14 +248,18 @@ fn p17_the_depth_buffer_finds_what_rays_find() {
     for y in 0..SIDE {
         for x in 0..SIDE {
             let [u, v] = [x, y].map(|i| (f64::from(i) + 0.5) / f64::from(SIDE) * 2.0 - 1.0);
-            let mut hits: Vec<(f64, u8)> = (0..6).map(|id| (at(planes[id], u, v), id as u8)).collect();
+            let mut hits: Vec<(f64, u8)> =
+                (0..6).map(|id| (at(planes[id], u, v), id as u8)).collect();
             hits.sort_by(|a, b| a.0.total_cmp(&b.0));
             // Where two planes meet in less than two steps of a 24-bit buffer either may win.
             if hits[1].0 - hits[0].0 > 4.0 / f64::from(1 << 24) {
                 let place = (y * SIDE + x) as usize;
                 for (colors, depths) in &mut pictures {
                     assert_eq!(colors[place][0], 10 * (hits[0].1 + 1), "pixel {x}, {y}");
-                    assert!((f64::from(depths[place]) - (hits[0].0 + 1.0) / 2.0).abs() < 2.0 / f64::from(1 << 24));
+                    assert!(
+                        (f64::from(depths[place]) - (hits[0].0 + 1.0) / 2.0).abs()
+                            < 2.0 / f64::from(1 << 24)
+                    );
                 }
             }
         }
@@ -234,7 +268,8 @@ fn p17_the_depth_buffer_finds_what_rays_find() {
 
 #[test]
 fn p17_depths_closer_than_a_step_fight() {
-    // 24 bits: what is a quarter of a step behind falls on the same number, so the first (LESS) stays; four steps do not.
+    // 24 bits: what is a quarter of a step behind falls on the same number, so the first (LESS)
+    // stays; four steps do not.
     let step = 2.0 / f64::from((1 << 24) - 1);
     let mut c = Stage::new(4, 4);
     c.enable(gl::DEPTH_TEST);
@@ -255,7 +290,8 @@ fn p17_depths_closer_than_a_step_fight() {
 
 #[test]
 fn p41_fog_is_depth_cueing() {
-    // Atmospheric depth cueing: between two depths the colour goes to that of the distance, linearly.
+    // Atmospheric depth cueing: between two depths the colour goes to that of the distance,
+    // linearly.
     let mut c = Stage::new(4, 4);
     c.enable(gl::FOG);
     c.fogi(gl::FOG_MODE, gl::LINEAR as i32);
@@ -263,9 +299,15 @@ fn p41_fog_is_depth_cueing() {
     c.fogf(gl::FOG_END, 0.75);
     let far = c.put(&[0.1f32, 0.2, 0.8, 1.0]);
     c.fogfv(gl::FOG_COLOR, far);
-    for (distance, kept) in
-        [(0.0f32, 1.0f32), (0.25, 1.0), (0.375, 0.75), (0.5, 0.5), (0.7, 0.1), (0.75, 0.0), (0.9, 0.0)]
-    {
+    for (distance, kept) in [
+        (0.0f32, 1.0f32),
+        (0.25, 1.0),
+        (0.375, 0.75),
+        (0.5, 0.5),
+        (0.7, 0.1),
+        (0.75, 0.0),
+        (0.9, 0.0),
+    ] {
         c.clear(gl::COLOR_BUFFER_BIT);
         c.fill([1.0, 0.6, 0.0, 1.0], -distance);
         let mixed = |near: f32, far: f32| kept * near + (1.0 - kept) * far;
@@ -275,8 +317,9 @@ fn p41_fog_is_depth_cueing() {
 
 #[test]
 fn p41_the_highlight_is_blinns_and_lights_add_up() {
-    // Light and viewer at infinity, straight ahead: the halfway vector is z, so a normal at angle t shines with cos^n t, and
-    // Phong's reflected ray, at 2t, with cos^m 2t, which has the same width for n = 4 m.
+    // Light and viewer at infinity, straight ahead: the halfway vector is z, so a normal at angle t
+    // shines with cos^n t, and Phong's reflected ray, at 2t, with cos^m 2t, which has the same
+    // width for n = 4 m.
     let mut c = Stage::new(4, 4);
     let shine = |c: &mut Stage, degrees: f64| {
         let t = degrees.to_radians();
@@ -292,7 +335,10 @@ fn p41_the_highlight_is_blinns_and_lights_add_up() {
         for degrees in [0.0, 3.0, 6.0, 10.0, 20.0, 44.0] {
             let t = f64::to_radians(degrees);
             let found = shine(&mut c, degrees);
-            assert!((found - t.cos().powf(4.0 * f64::from(exponent))).abs() < 0.005, "{degrees} degrees: {found}");
+            assert!(
+                (found - t.cos().powf(4.0 * f64::from(exponent))).abs() < 0.005,
+                "{degrees} degrees: {found}"
+            );
             let phong = (2.0 * t).cos().powf(f64::from(exponent));
             assert!((found - phong).abs() < 0.03, "{degrees} degrees: {found}, Phong {phong}");
         }

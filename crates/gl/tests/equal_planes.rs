@@ -1,4 +1,5 @@
-//! Faces in one plane: decals that are drawn over a floor with polygon offset, and faces that are drawn again.
+//! Faces in one plane: decals that are drawn over a floor with polygon offset, and faces that are
+//! drawn again.
 
 use crate::common::Stage;
 use vitral_gl::enums as gl;
@@ -32,7 +33,8 @@ fn stage([tilt, turn, distance]: [f32; 3]) -> Stage {
 
 /// A square of `n` by `n` cells of two triangles each, turned in its plane.
 fn grid(c: &mut Stage, n: u32, half: f32, angle: f32, [x, y]: [f32; 2]) {
-    let [cos, sin] = [vitral_math::func::cos, vitral_math::func::sin].map(|f| f(f64::from(angle)) as f32);
+    let [cos, sin] =
+        [vitral_math::func::cos, vitral_math::func::sin].map(|f| f(f64::from(angle)) as f32);
     c.begin(gl::TRIANGLES);
     for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
         for [i, j] in [[i, j], [i + 1, j], [i + 1, j + 1], [i, j], [i + 1, j + 1], [i, j + 1]] {
@@ -69,7 +71,10 @@ fn a_decal_with_polygon_offset_loses_no_more_pixels_than_with_mesa() {
             lost += alone - decal(view, offset, true);
         }
         assert!((24_000..24_500).contains(&whole), "{whole}");
-        assert!(lost <= mesa + whole / 500, "offset {offset:?}: {lost} of {whole}, {mesa} with Mesa");
+        assert!(
+            lost <= mesa + whole / 500,
+            "offset {offset:?}: {lost} of {whole}, {mesa} with Mesa"
+        );
     }
 }
 
@@ -84,9 +89,14 @@ fn depths_of_a_plane_are_the_same_to_a_few_steps_however_it_is_cut() {
         let whole = depths(1, 0.0);
         for (n, angle) in [(2, 0.3), (7, 0.0), (60, 0.7)] {
             let both = whole.iter().zip(depths(n, angle)).filter(|(a, b)| **a < 1.0 && *b < 1.0);
-            let apart = both.map(|(a, b)| (f64::from(*a) - f64::from(b)).abs() * f64::from((1 << 24) - 1));
-            let (most, sum, count) = apart.fold((0.0f64, 0.0, 0), |(m, s, n), d| (m.max(d), s + d, n + 1));
-            assert!(count > 20 && most < 6.5 && sum / f64::from(count) < 2.0, "{view:?}, {n}: {most}, {sum} / {count}");
+            let apart =
+                both.map(|(a, b)| (f64::from(*a) - f64::from(b)).abs() * f64::from((1 << 24) - 1));
+            let (most, sum, count) =
+                apart.fold((0.0f64, 0.0, 0), |(m, s, n), d| (m.max(d), s + d, n + 1));
+            assert!(
+                count > 20 && most < 6.5 && sum / f64::from(count) < 2.0,
+                "{view:?}, {n}: {most}, {sum} / {count}"
+            );
         }
     }
 }

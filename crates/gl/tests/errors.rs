@@ -1,5 +1,5 @@
-//! What is an error, and when: draws in display lists, incomplete framebuffers, copies between formats, names whose object is
-//! gone.
+//! What is an error, and when: draws in display lists, incomplete framebuffers, copies between
+//! formats, names whose object is gone.
 
 use crate::common::Stage;
 use vitral_gl::enums as gl;
@@ -39,7 +39,10 @@ fn a_draw_in_a_list_is_wrong_when_the_list_is_executed() {
         (|c, _| c.draw_arrays(gl::TRIANGLES, -1, 3), gl::INVALID_VALUE),
         (|c, at| c.draw_elements(gl::TRIANGLES, 3, gl::FLOAT, at), gl::INVALID_ENUM),
         (|c, at| c.draw_elements(gl::TRIANGLES, -3, gl::UNSIGNED_INT, at), gl::INVALID_VALUE),
-        (|c, at| c.draw_range_elements(gl::TRIANGLES, 2, 1, 3, gl::UNSIGNED_INT, at), gl::INVALID_VALUE),
+        (
+            |c, at| c.draw_range_elements(gl::TRIANGLES, 2, 1, 3, gl::UNSIGNED_INT, at),
+            gl::INVALID_VALUE,
+        ),
         (|c, at| c.multi_draw_arrays(gl::TRIANGLES, at, at + 12, 1), gl::INVALID_VALUE),
         (|c, at| c.multi_draw_arrays(gl::TRIANGLES, at, at, -1), gl::INVALID_VALUE),
         (|c, _| c.array_element(-1), gl::INVALID_VALUE),
@@ -98,8 +101,11 @@ fn begin_in_a_list_needs_a_complete_framebuffer() {
 #[test]
 fn stencil_values_are_copied_between_equal_formats() {
     const BOTH: &[u32] = &[gl::DEPTH_ATTACHMENT, gl::STENCIL_ATTACHMENT];
-    let formats: [(u32, &[u32]); 3] =
-        [(gl::DEPTH24_STENCIL8, BOTH), (gl::DEPTH32F_STENCIL8, BOTH), (gl::STENCIL_INDEX8, &[gl::STENCIL_ATTACHMENT])];
+    let formats: [(u32, &[u32]); 3] = [
+        (gl::DEPTH24_STENCIL8, BOTH),
+        (gl::DEPTH32F_STENCIL8, BOTH),
+        (gl::STENCIL_INDEX8, &[gl::STENCIL_ATTACHMENT]),
+    ];
     let mut c = Stage::new(4, 4);
     let made = formats.map(|(format, points)| {
         let framebuffer = framebuffer(&mut c);
@@ -136,7 +142,17 @@ fn names_on_the_attribute_stack_whose_texture_is_gone() {
     let texels = c.put(&[[255u8; 4]; 4]);
     for reused in [false, true] {
         c.bind_texture(gl::TEXTURE_2D, 7);
-        c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 2, 2, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+        c.tex_image_2d(
+            gl::TEXTURE_2D,
+            0,
+            gl::RGBA as i32,
+            2,
+            2,
+            0,
+            gl::RGBA,
+            gl::UNSIGNED_BYTE,
+            texels,
+        );
         c.push_attrib(gl::TEXTURE_BIT);
         c.delete_textures(1, name);
         if reused {

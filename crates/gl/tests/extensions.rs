@@ -3,7 +3,8 @@
 use crate::common::{BUFFER, Stage};
 use vitral_gl::enums as gl;
 
-/// What a texture of one texel gives where it replaces a fragment's colour of (64, 64, 64, 64), read from bytes.
+/// What a texture of one texel gives where it replaces a fragment's colour of (64, 64, 64, 64),
+/// read from bytes.
 fn replaced(c: &mut Stage) -> [u8; 4] {
     let part = 64.0 / 255.0;
     c.fill([part; 4], 0.0);
@@ -47,8 +48,20 @@ fn textures_of_red_and_of_red_and_green() {
     c.texture(&[(1, vec![[0; 4]])]);
     let texel = c.put(&[10u8, 20, 30, 40]);
     // What they lack is 0, and alpha stays the fragment's.
-    for (internal, expected) in [(gl::R8, [10, 0, 0, 64]), (gl::RG16, [10, 20, 0, 64]), (gl::RG32F, [10, 20, 0, 64])] {
-        c.tex_image_2d(gl::TEXTURE_2D, 0, internal as i32, 1, 1, 0, gl::RGBA, gl::UNSIGNED_BYTE, texel);
+    for (internal, expected) in
+        [(gl::R8, [10, 0, 0, 64]), (gl::RG16, [10, 20, 0, 64]), (gl::RG32F, [10, 20, 0, 64])]
+    {
+        c.tex_image_2d(
+            gl::TEXTURE_2D,
+            0,
+            internal as i32,
+            1,
+            1,
+            0,
+            gl::RGBA,
+            gl::UNSIGNED_BYTE,
+            texel,
+        );
         assert_eq!(replaced(&mut c), expected, "{internal:#x}");
     }
     // A format of two components in memory.

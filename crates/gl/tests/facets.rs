@@ -10,14 +10,16 @@ use vitral_math::lanes::Level;
 use vitral_raster::forward::Runner;
 
 /// So many threads that tiles are cut into strips.
-static THREADS: LazyLock<Arc<Runner>> = LazyLock::new(|| Arc::new(Runner::new(Workers::new(16), Level::new())));
+static THREADS: LazyLock<Arc<Runner>> =
+    LazyLock::new(|| Arc::new(Runner::new(Workers::new(16), Level::new())));
 
 /// What sends facets which way, and changes nothing.
 #[derive(Clone, Copy, Debug)]
 enum Way {
     /// Tiny ones eight at a time.
     Tiny,
-    /// Tiny ones that change depths one by one: an alpha test that always passes has them written after colours are known.
+    /// Tiny ones that change depths one by one: an alpha test that always passes has them written
+    /// after colours are known.
     LateDepth,
     /// By blocks: a stencil is written that nobody asks for.
     Blocks,
@@ -47,8 +49,14 @@ enum With {
     StencilAlone,
 }
 
-/// A picture of random triangles, most of them small, some across tiles, at many depths and in perspective.
-fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bool) -> Vec<[u8; 4]> {
+/// A picture of random triangles, most of them small, some across tiles, at many depths and in
+/// perspective.
+fn picture(
+    (samples, multisample): (i32, bool),
+    with: With,
+    way: Way,
+    strips: bool,
+) -> Vec<[u8; 4]> {
     let mut c = Stage::new(150, 90);
     if strips {
         c.set_runner_source(|| Arc::clone(&THREADS));
@@ -59,9 +67,10 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
     let [framebuffer, color, depth] = c.take::<u32>(names, 3).try_into().unwrap();
     if samples > 0 {
         c.bind_framebuffer(gl::FRAMEBUFFER, framebuffer);
-        for (buffer, format, at) in
-            [(color, gl::RGBA8, gl::COLOR_ATTACHMENT0), (depth, gl::DEPTH24_STENCIL8, gl::DEPTH_STENCIL_ATTACHMENT)]
-        {
+        for (buffer, format, at) in [
+            (color, gl::RGBA8, gl::COLOR_ATTACHMENT0),
+            (depth, gl::DEPTH24_STENCIL8, gl::DEPTH_STENCIL_ATTACHMENT),
+        ] {
             c.bind_renderbuffer(gl::RENDERBUFFER, buffer);
             c.renderbuffer_storage_multisample(gl::RENDERBUFFER, samples, format, 150, 90);
             c.framebuffer_renderbuffer(gl::FRAMEBUFFER, at, gl::RENDERBUFFER, buffer);
@@ -81,33 +90,85 @@ fn picture((samples, multisample): (i32, bool), with: With, way: Way, strips: bo
             c.fogf(gl::FOG_DENSITY, 0.3);
         }
         With::Texture => {
-            let texels = c.put(&[[255u8, 0, 0, 255], [0, 255, 0, 128], [0, 0, 255, 0], [255, 255, 255, 60]]);
-            c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 2, 2, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+            let texels =
+                c.put(&[[255u8, 0, 0, 255], [0, 255, 0, 128], [0, 0, 255, 0], [255, 255, 255, 60]]);
+            c.tex_image_2d(
+                gl::TEXTURE_2D,
+                0,
+                gl::RGBA as i32,
+                2,
+                2,
+                0,
+                gl::RGBA,
+                gl::UNSIGNED_BYTE,
+                texels,
+            );
             c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::LINEAR as i32);
             c.enable(gl::TEXTURE_2D);
         }
         With::Mipmaps => {
-            let texels: Vec<u32> = (1..=20 * 12u32).map(|k| k.wrapping_mul(2_654_435_761)).collect();
+            let texels: Vec<u32> =
+                (1..=20 * 12u32).map(|k| k.wrapping_mul(2_654_435_761)).collect();
             let texels = c.put(&texels);
             c.tex_parameteri(gl::TEXTURE_2D, gl::GENERATE_MIPMAP, 1);
-            c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 20, 12, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
-            c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::LINEAR_MIPMAP_LINEAR as i32);
+            c.tex_image_2d(
+                gl::TEXTURE_2D,
+                0,
+                gl::RGBA as i32,
+                20,
+                12,
+                0,
+                gl::RGBA,
+                gl::UNSIGNED_BYTE,
+                texels,
+            );
+            c.tex_parameteri(
+                gl::TEXTURE_2D,
+                gl::TEXTURE_MIN_FILTER,
+                gl::LINEAR_MIPMAP_LINEAR as i32,
+            );
             c.enable(gl::TEXTURE_2D);
         }
         With::Cube => {
             c.tex_parameteri(gl::TEXTURE_CUBE_MAP, gl::GENERATE_MIPMAP, 1);
             for face in 0..6 {
-                let texels: Vec<u32> = (1..=8 * 8u32).map(|k| (k + 64 * face).wrapping_mul(2_654_435_761)).collect();
+                let texels: Vec<u32> =
+                    (1..=8 * 8u32).map(|k| (k + 64 * face).wrapping_mul(2_654_435_761)).collect();
                 let (texels, face) = (c.put(&texels), gl::TEXTURE_CUBE_MAP_POSITIVE_X + face);
-                c.tex_image_2d(face, 0, gl::RGBA as i32, 8, 8, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+                c.tex_image_2d(
+                    face,
+                    0,
+                    gl::RGBA as i32,
+                    8,
+                    8,
+                    0,
+                    gl::RGBA,
+                    gl::UNSIGNED_BYTE,
+                    texels,
+                );
             }
-            c.tex_parameteri(gl::TEXTURE_CUBE_MAP, gl::TEXTURE_MIN_FILTER, gl::LINEAR_MIPMAP_LINEAR as i32);
+            c.tex_parameteri(
+                gl::TEXTURE_CUBE_MAP,
+                gl::TEXTURE_MIN_FILTER,
+                gl::LINEAR_MIPMAP_LINEAR as i32,
+            );
             c.enable(gl::TEXTURE_CUBE_MAP_SEAMLESS);
             c.enable(gl::TEXTURE_CUBE_MAP);
         }
         With::Shadow => {
-            let texels = c.put(&[[255u8, 40, 90, 255], [90, 255, 70, 255], [60, 80, 255, 255], [255; 4]]);
-            c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGB as i32, 2, 2, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+            let texels =
+                c.put(&[[255u8, 40, 90, 255], [90, 255, 70, 255], [60, 80, 255, 255], [255; 4]]);
+            c.tex_image_2d(
+                gl::TEXTURE_2D,
+                0,
+                gl::RGB as i32,
+                2,
+                2,
+                0,
+                gl::RGBA,
+                gl::UNSIGNED_BYTE,
+                texels,
+            );
             c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::NEAREST as i32);
             c.enable(gl::TEXTURE_2D);
             c.active_texture(gl::TEXTURE1);
@@ -236,7 +297,11 @@ fn shadow_map(c: &mut Stage, names: usize) {
     for _ in 0..40 {
         let middle = [random(), random(), random()];
         for _ in 0..3 {
-            c.vertex_3f(middle[0] + random() * 0.3, middle[1] + random() * 0.3, middle[2] * 0.8 + random() * 0.1);
+            c.vertex_3f(
+                middle[0] + random() * 0.3,
+                middle[1] + random() * 0.3,
+                middle[2] * 0.8 + random() * 0.1,
+            );
         }
     }
     c.end();
@@ -264,11 +329,18 @@ fn triangles(c: &mut Stage, with: With) {
             let (s, t, r) = (random(2.0), random(2.0), if cube { random(2.0) - 1.0 } else { 0.0 });
             c.tex_coord_4f(s, t, r, if cube && k % 3 == 0 { random(2.0) - 1.0 } else { 1.0 });
             if matches!(with, With::Shadow) {
-                c.multi_tex_coord_4f(gl::TEXTURE1, random(1.6), random(1.6), random(1.6), 1.0 + random(0.6));
+                c.multi_tex_coord_4f(
+                    gl::TEXTURE1,
+                    random(1.6),
+                    random(1.6),
+                    random(1.6),
+                    1.0 + random(0.6),
+                );
             }
             // The eye is near to some.
             let w = 1.0 + random(if k % 7 == 0 { 30.0 } else { 2.0 });
-            let (x, y) = ((middle[0] + random(size)) / 75.0 - 1.0, (middle[1] + random(size)) / 45.0 - 1.0);
+            let (x, y) =
+                ((middle[0] + random(size)) / 75.0 - 1.0, (middle[1] + random(size)) / 45.0 - 1.0);
             c.vertex_4f(x * w, y * w, (middle[2] * 0.9 + random(0.1)) * w, w);
         }
     }
@@ -297,19 +369,35 @@ fn facets_look_the_same_whichever_way_they_go() {
             let tiny = picture(samples, with, Way::Tiny, false);
             assert!(tiny.iter().filter(|pixel| **pixel != [0; 4]).count() > 2000, "{with:?}");
             let strips = [(Way::Tiny, true), (Way::Blocks, true), (Way::Everything, true)];
-            for (way, strips) in
-                [Way::LateDepth, Way::Blocks, Way::Everything].map(|w| (w, false)).into_iter().chain(strips)
+            for (way, strips) in [Way::LateDepth, Way::Blocks, Way::Everything]
+                .map(|w| (w, false))
+                .into_iter()
+                .chain(strips)
             {
-                let differ = tiny.iter().zip(&picture(samples, with, way, strips)).filter(|(a, b)| a != b).count();
-                assert_eq!(differ, 0, "{samples:?} samples with {with:?}: {way:?}, strips: {strips}");
+                let differ = tiny
+                    .iter()
+                    .zip(&picture(samples, with, way, strips))
+                    .filter(|(a, b)| a != b)
+                    .count();
+                assert_eq!(
+                    differ, 0,
+                    "{samples:?} samples with {with:?}: {way:?}, strips: {strips}"
+                );
             }
         }
     }
 }
 
-/// Colours and depths after large triangles, of which many cover whole blocks, were drawn, small ones and a clear among them, and
-/// then the large ones again, in a pass of their own, where `func` lets them.
-fn again(samples: i32, depth_format: u32, func: u32, way: Way, strips: bool) -> (Vec<[u8; 4]>, Vec<f32>) {
+/// Colours and depths after large triangles, of which many cover whole blocks, were drawn, small
+/// ones and a clear among them, and then the large ones again, in a pass of their own, where `func`
+/// lets them.
+fn again(
+    samples: i32,
+    depth_format: u32,
+    func: u32,
+    way: Way,
+    strips: bool,
+) -> (Vec<[u8; 4]>, Vec<f32>) {
     let mut c = Stage::new(150, 90);
     if strips {
         c.set_runner_source(|| Arc::clone(&THREADS));
@@ -319,11 +407,14 @@ fn again(samples: i32, depth_format: u32, func: u32, way: Way, strips: bool) -> 
     c.gen_renderbuffers(4, names + 8);
     let [framebuffer, resolved] = c.take::<u32>(names, 2).try_into().unwrap();
     let buffers = c.take::<u32>(names + 8, 4);
-    for (framebuffer, buffers, samples) in [(resolved, &buffers[2..], 0), (framebuffer, &buffers[..2], samples)] {
+    for (framebuffer, buffers, samples) in
+        [(resolved, &buffers[2..], 0), (framebuffer, &buffers[..2], samples)]
+    {
         c.bind_framebuffer(gl::FRAMEBUFFER, framebuffer);
-        for (buffer, format, at) in
-            [(buffers[0], gl::RGBA8, gl::COLOR_ATTACHMENT0), (buffers[1], depth_format, gl::DEPTH_ATTACHMENT)]
-        {
+        for (buffer, format, at) in [
+            (buffers[0], gl::RGBA8, gl::COLOR_ATTACHMENT0),
+            (buffers[1], depth_format, gl::DEPTH_ATTACHMENT),
+        ] {
             c.bind_renderbuffer(gl::RENDERBUFFER, buffer);
             c.renderbuffer_storage_multisample(gl::RENDERBUFFER, samples, format, 150, 90);
             c.framebuffer_renderbuffer(gl::FRAMEBUFFER, at, gl::RENDERBUFFER, buffer);
@@ -350,7 +441,8 @@ fn again(samples: i32, depth_format: u32, func: u32, way: Way, strips: bool) -> 
             let middle = [random(150.0), random(90.0), random(1.6) - 0.8];
             for _ in 0..3 {
                 c.color_4f(random(0.4), random(0.4), random(0.4), 1.0);
-                let (x, y) = (middle[0] + random(size) - size / 2.0, middle[1] + random(size) - size / 2.0);
+                let (x, y) =
+                    (middle[0] + random(size) - size / 2.0, middle[1] + random(size) - size / 2.0);
                 c.vertex_3f(x / 75.0 - 1.0, y / 45.0 - 1.0, middle[2] + random(0.4) - 0.2);
             }
         }
@@ -370,7 +462,18 @@ fn again(samples: i32, depth_format: u32, func: u32, way: Way, strips: bool) -> 
     c.blend_func(gl::ONE, gl::ONE);
     triangles(&mut c, 3, 12, 220.0);
     c.bind_framebuffer(gl::DRAW_FRAMEBUFFER, resolved);
-    c.blit_framebuffer(0, 0, 150, 90, 0, 0, 150, 90, gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT, gl::NEAREST);
+    c.blit_framebuffer(
+        0,
+        0,
+        150,
+        90,
+        0,
+        0,
+        150,
+        90,
+        gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT,
+        gl::NEAREST,
+    );
     c.bind_framebuffer(gl::READ_FRAMEBUFFER, resolved);
     let found = (c.bytes(), c.depths());
     assert_eq!(c.get_error(), gl::NO_ERROR);
@@ -388,21 +491,34 @@ fn what_is_drawn_again_meets_its_own_depths() {
         for func in [gl::GEQUAL, gl::LEQUAL, gl::EQUAL, gl::GREATER, gl::NOTEQUAL, gl::ALWAYS] {
             let (colors, depths) = again(samples, format, func, Way::Everything, false);
             assert!(colors.iter().filter(|pixel| **pixel != [0; 4]).count() > 9000);
-            for (way, strips) in
-                [(Way::Tiny, false), (Way::LateDepth, false), (Way::Tiny, true), (Way::Everything, true)]
-            {
+            for (way, strips) in [
+                (Way::Tiny, false),
+                (Way::LateDepth, false),
+                (Way::Tiny, true),
+                (Way::Everything, true),
+            ] {
                 let (other_colors, other_depths) = again(samples, format, func, way, strips);
-                let case = format!("{samples} samples of {format:#x}, {func:#x}: {way:?}, strips: {strips}");
-                assert_eq!(colors.iter().zip(&other_colors).filter(|(a, b)| a != b).count(), 0, "{case}");
-                let differ = depths.iter().zip(&other_depths).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+                let case = format!(
+                    "{samples} samples of {format:#x}, {func:#x}: {way:?}, strips: {strips}"
+                );
+                assert_eq!(
+                    colors.iter().zip(&other_colors).filter(|(a, b)| a != b).count(),
+                    0,
+                    "{case}"
+                );
+                let differ = depths
+                    .iter()
+                    .zip(&other_depths)
+                    .filter(|(a, b)| a.to_bits() != b.to_bits())
+                    .count();
                 assert_eq!(differ, 0, "depths, {case}");
             }
         }
     }
 }
 
-/// Random small triangles, some across the near plane, and lines and points between them, of one colour: given once, or with
-/// every vertex.
+/// Random small triangles, some across the near plane, and lines and points between them, of one
+/// colour: given once, or with every vertex.
 fn one_color(again: bool, prepare: fn(&mut Stage)) -> Vec<[u8; 4]> {
     let mut c = Stage::new(150, 90);
     prepare(&mut c);
@@ -454,14 +570,21 @@ fn one_color_for_all_vertices_looks_like_the_same_color_at_each() {
     for (number, prepare) in prepare.into_iter().enumerate() {
         let (once, again) = (one_color(false, prepare), one_color(true, prepare));
         assert!(once.iter().filter(|pixel| **pixel != [0; 4]).count() > 2000);
-        let away = |(a, b): (&[u8; 4], &[u8; 4])| (0..4).map(|k| a[k].abs_diff(b[k])).max().unwrap();
+        let away =
+            |(a, b): (&[u8; 4], &[u8; 4])| (0..4).map(|k| a[k].abs_diff(b[k])).max().unwrap();
         // Where a triangle is clipped, interpolation of equal colours may round.
         let differ = |by: u8| once.iter().zip(&again).filter(|pair| away(*pair) > by).count();
-        assert!(differ(0) <= 10 && differ(1) == 0, "case {number}: {} and {}", differ(0), differ(1));
+        assert!(
+            differ(0) <= 10 && differ(1) == 0,
+            "case {number}: {} and {}",
+            differ(0),
+            differ(1)
+        );
     }
 }
 
-/// So many triangles that a pass draws them in several rounds; each shows, as later ones mix with what is there.
+/// So many triangles that a pass draws them in several rounds; each shows, as later ones mix with
+/// what is there.
 fn many(flush: bool) -> Vec<[u8; 4]> {
     let mut c = Stage::new(150, 90);
     c.enable(gl::BLEND);
@@ -500,7 +623,8 @@ fn a_pass_in_rounds_draws_what_passes_one_after_the_other_draw() {
     assert_eq!(differ, 0);
 }
 
-/// A floor that reaches behind the eye is cut near it, far outside of the picture: depth is still that of the plane.
+/// A floor that reaches behind the eye is cut near it, far outside of the picture: depth is still
+/// that of the plane.
 #[test]
 fn a_cut_floor_has_the_depths_of_its_plane() {
     const SIDE: i32 = 84;

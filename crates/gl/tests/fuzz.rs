@@ -37,7 +37,12 @@ fn replay(seed: u64) {
         eprintln!("stream {seed}, after {} calls, the last of them {tail:?}", names.len());
         resume_unwind(panic);
     }
-    assert!(slowest.0 < Duration::from_secs(20), "stream {seed}: {} took {:?}", slowest.1, slowest.0);
+    assert!(
+        slowest.0 < Duration::from_secs(20),
+        "stream {seed}: {} took {:?}",
+        slowest.1,
+        slowest.0
+    );
 }
 
 #[test]
@@ -45,12 +50,15 @@ fn random_calls_are_survived() {
     (0..6).for_each(replay);
 }
 
-/// More of them by `GL_FUZZ=1000..2000 cargo test -p vitral-gl --test gl_suite fuzz:: -- --nocapture`; two without it.
+/// More of them by
+/// `GL_FUZZ=1000..2000 cargo test -p vitral-gl --test gl_suite fuzz:: -- --nocapture`; two without
+/// it.
 #[test]
 fn chosen_random_calls_are_survived() {
     let range = std::env::var("GL_FUZZ").unwrap_or_else(|_| "6..8".to_owned());
     let (first, end) = range.split_once("..").expect("a range");
     let [first, end]: [u64; 2] = [first, end].map(|n| n.parse().expect("a number"));
-    let failed: Vec<u64> = (first..end).filter(|&seed| catch_unwind(|| replay(seed)).is_err()).collect();
+    let failed: Vec<u64> =
+        (first..end).filter(|&seed| catch_unwind(|| replay(seed)).is_err()).collect();
     assert!(failed.is_empty(), "{failed:?}");
 }

@@ -8,7 +8,14 @@ use vitral_math::lanes::Level;
 use vitral_raster::forward::Runner;
 
 fn material(c: &mut Stage, d: &mut Dice) {
-    let names = [gl::AMBIENT, gl::DIFFUSE, gl::SPECULAR, gl::EMISSION, gl::AMBIENT_AND_DIFFUSE, gl::SHININESS];
+    let names = [
+        gl::AMBIENT,
+        gl::DIFFUSE,
+        gl::SPECULAR,
+        gl::EMISSION,
+        gl::AMBIENT_AND_DIFFUSE,
+        gl::SHININESS,
+    ];
     let faces = [gl::FRONT, gl::BACK, gl::FRONT_AND_BACK];
     let (face, name, color) = (faces[d.below(3) as usize], names[d.below(6) as usize], d.color());
     let color = c.put(&color);
@@ -115,7 +122,8 @@ fn run(c: &mut Stage, seed: u64) {
     c.enable(gl::DEPTH_TEST);
     c.blend_func(gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA);
     c.line_stipple(1, 0x6d);
-    let corners: Vec<[f32; 3]> = (0..40).map(|_| [d.number(), d.number(), d.number() * 0.5]).collect();
+    let corners: Vec<[f32; 3]> =
+        (0..40).map(|_| [d.number(), d.number(), d.number() * 0.5]).collect();
     let corners = c.put(&corners);
     let colors: Vec<[f32; 4]> = (0..40).map(|_| d.color()).collect();
     let colors = c.put(&colors);
@@ -146,7 +154,11 @@ fn run(c: &mut Stage, seed: u64) {
             8 => arrays(c, &mut d),
             9 => {
                 let on = d.below(2) == 1;
-                if on { c.enable_client_state(gl::COLOR_ARRAY) } else { c.disable_client_state(gl::COLOR_ARRAY) }
+                if on {
+                    c.enable_client_state(gl::COLOR_ARRAY)
+                } else {
+                    c.disable_client_state(gl::COLOR_ARRAY)
+                }
             }
             10 => c.color_4fv(Some(d.color())),
             _ => pair(c, &mut d),
@@ -193,7 +205,10 @@ fn lines_and_polygons_of_a_list_are_drawn_in_their_order() {
     c.end_list();
     c.call_list(1);
     let (red, green, blue) = ([255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255]);
-    assert_eq!([c.pixel(1, 1), c.pixel(1, 4), c.pixel(6, 1), c.pixel(6, 4)], [red, green, blue, blue]);
+    assert_eq!(
+        [c.pixel(1, 1), c.pixel(1, 4), c.pixel(6, 1), c.pixel(6, 4)],
+        [red, green, blue, blue]
+    );
 }
 
 /// A draw from arrays that has too few vertices for its primitive leaves nothing behind.
@@ -227,7 +242,8 @@ fn threads() -> Arc<Runner> {
     Arc::clone(RUNNER.get_or_init(|| Arc::new(Runner::new(Workers::new(3), Level::new()))))
 }
 
-/// Long primitives, of which a part is drawn before they end, between calls that change what they are drawn with.
+/// Long primitives, of which a part is drawn before they end, between calls that change what they
+/// are drawn with.
 fn run_long(c: &mut Stage, mode: u32) {
     let mut d = Dice(u64::from(mode));
     c.enable(gl::BLEND);
@@ -237,7 +253,8 @@ fn run_long(c: &mut Stage, mode: u32) {
     c.enable(gl::TEXTURE_2D);
     let mut queries = [0; 4];
     for (part, query) in queries.iter_mut().enumerate() {
-        let texels: Vec<[u8; 4]> = (0..16).map(|i| [i * 16, 255, 60 * part as u8, 255 - i]).collect();
+        let texels: Vec<[u8; 4]> =
+            (0..16).map(|i| [i * 16, 255, 60 * part as u8, 255 - i]).collect();
         // As the library does before most calls.
         c.flush_vertices();
         c.bind_texture(gl::TEXTURE_2D, 1);
@@ -255,7 +272,8 @@ fn run_long(c: &mut Stage, mode: u32) {
                 2 => material(c, &mut d),
                 _ => {}
             }
-            let [x, y] = [(vertex / 3 % 97) as f32 / 50.0 - 1.0, (vertex / 3 % 89) as f32 / 45.0 - 1.0];
+            let [x, y] =
+                [(vertex / 3 % 97) as f32 / 50.0 - 1.0, (vertex / 3 % 89) as f32 / 45.0 - 1.0];
             c.tex_coord_2f(x, y);
             let place = [x + d.number() * 0.05, y + d.number() * 0.05, d.number()];
             if !c.quick_vertex(Some(place)) {
@@ -290,6 +308,9 @@ fn long_primitives_are_drawn_while_they_are_given() {
         let (a, b) = (alone.bytes(), together.bytes());
         assert_eq!(a.iter().zip(&b).filter(|(a, b)| a != b).count(), 0, "pixels of mode {mode}");
         assert!(alone.depths() == together.depths(), "depths of mode {mode}");
-        assert!(passed[0] > 1000 && a.iter().filter(|p| **p != a[0]).count() > 50, "mode {mode} draws something");
+        assert!(
+            passed[0] > 1000 && a.iter().filter(|p| **p != a[0]).count() > 50,
+            "mode {mode} draws something"
+        );
     }
 }

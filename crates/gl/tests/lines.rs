@@ -1,4 +1,5 @@
-//! Lines and outlines of polygons, fragment by fragment: what clipping adds, what stipples count, how far polygon offset moves.
+//! Lines and outlines of polygons, fragment by fragment: what clipping adds, what stipples count,
+//! how far polygon offset moves.
 
 use crate::common::Stage;
 use vitral_gl::enums as gl;
@@ -40,7 +41,8 @@ fn half_flagged(c: &mut Stage) {
     c.end();
 }
 
-/// The specification leaves open which way halves are rounded; Mesa rounds those of points down, and those of lines up.
+/// The specification leaves open which way halves are rounded; Mesa rounds those of points down,
+/// and those of lines up.
 #[test]
 fn halves_of_point_sizes_are_rounded_down() {
     for (size, side) in [(0.5, 1), (1.5, 1), (1.6, 2), (2.5, 2), (2.6, 3), (3.5, 3)] {
@@ -71,7 +73,8 @@ fn wide_points_and_lines_reach_over_the_viewport() {
         (gl::POINT, triangle),
         (gl::LINE, triangle),
     ] {
-        // What the whole window shows, as if it were the viewport, a scissor, and the viewport with a filled triangle.
+        // What the whole window shows, as if it were the viewport, a scissor, and the viewport with
+        // a filled triangle.
         let picture = |view: bool, scissor: bool, filled: bool| {
             let mut c = paper(16, 16);
             match enabled {
@@ -133,7 +136,14 @@ fn wide_points_reach_over_the_viewport_of_a_shadow_map() {
     let depths = c.depths();
     c.no_error();
     let drawn = |x: usize, y: usize| depths[16 * y + x] < 1.0;
-    assert!(drawn(2, 2) && drawn(6, 2) && !drawn(1, 2) && drawn(5, 11) && !drawn(5, 12) && !drawn(3, 11));
+    assert!(
+        drawn(2, 2)
+            && drawn(6, 2)
+            && !drawn(1, 2)
+            && drawn(5, 11)
+            && !drawn(5, 12)
+            && !drawn(3, 11)
+    );
 }
 
 #[test]
@@ -142,8 +152,12 @@ fn edges_along_a_clip_plane_are_drawn() {
     c.polygon_mode(gl::FRONT_AND_BACK, gl::LINE);
     clip(&mut c, gl::CLIP_PLANE0, [-1.0, 0.0, 0.0, 4.5]);
     half_flagged(&mut c);
-    // The right edge is cut off, the upper one cut, the plane's edge new: the lower and the left one stay without flag.
-    let expected = ["........", "....#...", "....#...", "....#...", "....#...", "....#...", "..###...", "........"];
+    // The right edge is cut off, the upper one cut, the plane's edge new: the lower and the left
+    // one stay without flag.
+    let expected = [
+        "........", "....#...", "....#...", "....#...", "....#...", "....#...", "..###...",
+        "........",
+    ];
     assert_eq!(rows(&mut c), expected);
 }
 
@@ -157,10 +171,16 @@ fn the_view_volume_makes_neither_edges_nor_points() {
     };
     // What is left of it reaches the left and the upper side.
     let upright = ".....#..";
-    assert_eq!(picture(gl::LINE), ["........", "........", "######..", upright, upright, upright, upright, upright]);
+    assert_eq!(
+        picture(gl::LINE),
+        ["........", "........", "######..", upright, upright, upright, upright, upright]
+    );
     assert_eq!(
         picture(gl::POINT),
-        ["........", "........", upright, "........", "........", "........", "........", "........"]
+        [
+            "........", "........", upright, "........", "........", "........", "........",
+            "........"
+        ]
     );
     // At the far plane the cut runs across the window, just above the fifth row.
     for (mode, cut) in [(gl::LINE, ".#....#."), (gl::POINT, "........")] {
@@ -182,7 +202,10 @@ fn corners_that_clipping_makes_are_points() {
     clip(&mut c, gl::CLIP_PLANE0, [-1.0, 0.0, 0.0, 4.5]);
     half_flagged(&mut c);
     // The new corners begin the plane's edge and the rest of the upper one.
-    let expected = ["........", "....#...", "........", "........", "........", "........", "....#...", "........"];
+    let expected = [
+        "........", "....#...", "........", "........", "........", "........", "....#...",
+        "........",
+    ];
     assert_eq!(rows(&mut c), expected);
 }
 
@@ -190,7 +213,9 @@ fn corners_that_clipping_makes_are_points() {
 fn colours_along_an_outline_cut_by_two_planes() {
     let mut c = paper(16, 16);
     c.polygon_mode(gl::FRONT_AND_BACK, gl::LINE);
-    for (plane, equation) in [(gl::CLIP_PLANE0, [-1.0, 0.0, 0.0, 8.5]), (gl::CLIP_PLANE1, [0.0, -1.0, 0.0, 8.5])] {
+    for (plane, equation) in
+        [(gl::CLIP_PLANE0, [-1.0, 0.0, 0.0, 8.5]), (gl::CLIP_PLANE1, [0.0, -1.0, 0.0, 8.5])]
+    {
         clip(&mut c, plane, equation);
     }
     c.begin(gl::POLYGON);
@@ -202,9 +227,13 @@ fn colours_along_an_outline_cut_by_two_planes() {
     let bytes = c.bytes();
     for i in 1..8 {
         for [x, y] in [[8, i], [i, 8]] {
-            let expected = [255.0, (x as f32 + 0.5) / 16.0 * 255.0, (y as f32 + 0.5) / 16.0 * 255.0];
+            let expected =
+                [255.0, (x as f32 + 0.5) / 16.0 * 255.0, (y as f32 + 0.5) / 16.0 * 255.0];
             let found = bytes[y * 16 + x];
-            assert!((0..3).all(|k| (f32::from(found[k]) - expected[k]).abs() < 1.5), "{x}, {y}: {found:?}");
+            assert!(
+                (0..3).all(|k| (f32::from(found[k]) - expected[k]).abs() < 1.5),
+                "{x}, {y}: {found:?}"
+            );
         }
     }
 }
@@ -224,13 +253,18 @@ fn a_stipple_counts_fragments() {
                 c.line_stipple(1, 0x5555);
                 draw(&mut c, gl::LINES, &[at(from), at(to)]);
                 let found = c.bytes();
-                let mut fragments: Vec<usize> = (0..whole.len()).filter(|&i| whole[i][0] > 0).collect();
+                let mut fragments: Vec<usize> =
+                    (0..whole.len()).filter(|&i| whole[i][0] > 0).collect();
                 if from > to {
                     fragments.reverse();
                 }
                 assert_eq!(fragments.len(), 9);
                 let passed: Vec<bool> = fragments.iter().map(|&i| found[i][0] > 0).collect();
-                assert_eq!(passed, [true, false, true, false, true, false, true, false, true], "{from} to {to}");
+                assert_eq!(
+                    passed,
+                    [true, false, true, false, true, false, true, false, true],
+                    "{from} to {to}"
+                );
             }
         }
     }
@@ -242,7 +276,11 @@ fn a_stipple_goes_on_along_a_strip() {
     let mut c = paper(12, 12);
     c.enable(gl::LINE_STIPPLE);
     c.line_stipple(1, 0x9249);
-    draw(&mut c, gl::LINE_STRIP, &[[0.7, 0.5], [2.7, 0.5], [2.75, 0.5], [5.7, 0.5], [5.7, 3.4], [5.7, 5.4]]);
+    draw(
+        &mut c,
+        gl::LINE_STRIP,
+        &[[0.7, 0.5], [2.7, 0.5], [2.75, 0.5], [5.7, 0.5], [5.7, 3.4], [5.7, 5.4]],
+    );
     let found = rows(&mut c);
     assert_eq!(&found[0], "#..#........");
     assert_eq!(&found[1], ".....#......");
@@ -264,7 +302,8 @@ fn a_clipped_line_counts_what_it_draws() {
 
 #[test]
 fn pieces_of_a_smooth_line() {
-    // Pieces of a pixel's length from 0.25 on, each second one: pixels hold three quarters of one or a quarter.
+    // Pieces of a pixel's length from 0.25 on, each second one: pixels hold three quarters of one
+    // or a quarter.
     let mut c = paper(8, 3);
     c.enable(gl::LINE_STIPPLE);
     c.enable(gl::LINE_SMOOTH);
@@ -289,7 +328,9 @@ fn pieces_of_a_smooth_line() {
 #[test]
 fn polygon_offset_of_edges_and_corners_has_the_slope_of_the_polygon() {
     // Depth grows by 1/16 for a row; the lower edge itself is level.
-    for (mode, enable) in [(gl::LINE, gl::POLYGON_OFFSET_LINE), (gl::POINT, gl::POLYGON_OFFSET_POINT)] {
+    for (mode, enable) in
+        [(gl::LINE, gl::POLYGON_OFFSET_LINE), (gl::POINT, gl::POLYGON_OFFSET_POINT)]
+    {
         let mut c = Stage::new(8, 8);
         c.clear(gl::DEPTH_BUFFER_BIT);
         c.enable(gl::DEPTH_TEST);
@@ -311,9 +352,12 @@ fn polygon_offset_of_edges_and_corners_has_the_slope_of_the_polygon() {
 /// What has no area is a back face; it has no inside, but edges and corners.
 #[test]
 fn polygons_without_area_have_edges_and_corners() {
-    let flat: [&[[f32; 2]]; 2] = [&[[1.5, 1.5], [1.5, 1.5], [6.5, 1.5]], &[[1.5, 1.5], [3.5, 1.5], [6.5, 1.5]]];
+    let flat: [&[[f32; 2]]; 2] =
+        [&[[1.5, 1.5], [1.5, 1.5], [6.5, 1.5]], &[[1.5, 1.5], [3.5, 1.5], [6.5, 1.5]]];
     for corners in flat {
-        for (mode, expected) in [(gl::FILL, "........"), (gl::LINE, ".######."), (gl::POINT, ".#....#.")] {
+        for (mode, expected) in
+            [(gl::FILL, "........"), (gl::LINE, ".######."), (gl::POINT, ".#....#.")]
+        {
             let mut c = paper(8, 3);
             c.polygon_mode(gl::FRONT_AND_BACK, mode);
             draw(&mut c, gl::TRIANGLES, corners);

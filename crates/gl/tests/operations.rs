@@ -1,5 +1,6 @@
-//! What happens to fragments after they are coloured, with each state alone and on primitives of all sizes: a rectangle over all of
-//! the window, tiny squares, points, each against the specification's formula for bytes.
+//! What happens to fragments after they are coloured, with each state alone and on primitives of
+//! all sizes: a rectangle over all of the window, tiny squares, points, each against the
+//! specification's formula for bytes.
 
 use crate::common::Stage;
 use vitral_gl::enums as gl;
@@ -43,7 +44,10 @@ fn cover(c: &mut Stage, with: With) {
         With::Points => 1,
     };
     c.begin(if side == 1 { gl::POINTS } else { gl::QUADS });
-    for (x, y) in (0..SIDE).step_by(side as usize).flat_map(|y| (0..SIDE).step_by(side as usize).map(move |x| (x, y))) {
+    for (x, y) in (0..SIDE)
+        .step_by(side as usize)
+        .flat_map(|y| (0..SIDE).step_by(side as usize).map(move |x| (x, y)))
+    {
         let (x, y, side) = (x as f32, y as f32, side as f32);
         if side == 1.0 {
             c.vertex_3f(x + 0.5, y + 0.5, 0.0);
@@ -60,7 +64,11 @@ fn cover(c: &mut Stage, with: With) {
 fn assert_all(c: &mut Stage, expected: [u8; 4], what: &str) {
     let found = c.bytes();
     assert_eq!(c.get_error(), gl::NO_ERROR, "{what}");
-    assert!(found.iter().all(|pixel| *pixel == expected), "{what}: {:?} instead of {expected:?}", found[0]);
+    assert!(
+        found.iter().all(|pixel| *pixel == expected),
+        "{what}: {:?} instead of {expected:?}",
+        found[0]
+    );
 }
 
 #[test]
@@ -73,7 +81,10 @@ fn a_mask_of_all_colours_holds_with_an_alpha_test() {
         c.color_mask(0, 0, 0, 0);
         cover(&mut c, with);
         assert_all(&mut c, STORED, &format!("{with:?}"));
-        assert!(c.depths().iter().all(|depth| (depth - 0.5).abs() < 1e-6), "{with:?}: depths are written");
+        assert!(
+            c.depths().iter().all(|depth| (depth - 0.5).abs() < 1e-6),
+            "{with:?}: depths are written"
+        );
     }
 }
 
@@ -90,9 +101,15 @@ fn masks_keep_their_components() {
                     c.blend_func(gl::ONE, gl::ONE);
                 }
                 cover(&mut c, with);
-                let sum = |k: usize| if blends { SOURCE[k].saturating_add(STORED[k]) } else { SOURCE[k] };
-                let expected = [0, 1, 2, 3].map(|k| if mask >> k & 1 == 1 { sum(k) } else { STORED[k] });
-                assert_all(&mut c, expected, &format!("{with:?}, mask {mask:04b}, blends {blends}"));
+                let sum =
+                    |k: usize| if blends { SOURCE[k].saturating_add(STORED[k]) } else { SOURCE[k] };
+                let expected =
+                    [0, 1, 2, 3].map(|k| if mask >> k & 1 == 1 { sum(k) } else { STORED[k] });
+                assert_all(
+                    &mut c,
+                    expected,
+                    &format!("{with:?}, mask {mask:04b}, blends {blends}"),
+                );
             }
         }
     }
@@ -151,7 +168,9 @@ const FACTORS: [Factor; 15] = [
     (gl::ONE_MINUS_CONSTANT_COLOR, |k| 255 - u32::from(CONSTANT[k])),
     (gl::CONSTANT_ALPHA, |_| CONSTANT[3].into()),
     (gl::ONE_MINUS_CONSTANT_ALPHA, |_| 255 - u32::from(CONSTANT[3])),
-    (gl::SRC_ALPHA_SATURATE, |k| if k == 3 { 255 } else { u32::from(SOURCE[3]).min(255 - u32::from(STORED[3])) }),
+    (gl::SRC_ALPHA_SATURATE, |k| {
+        if k == 3 { 255 } else { u32::from(SOURCE[3]).min(255 - u32::from(STORED[3])) }
+    }),
 ];
 
 #[test]
@@ -162,7 +181,9 @@ fn all_factors_give_the_nearest_byte() {
         let [r, g, b, a] = unit(CONSTANT);
         c.blend_color(r, g, b, a);
         for (source, s) in FACTORS {
-            for (destination, d) in FACTORS.into_iter().filter(|(token, _)| *token != gl::SRC_ALPHA_SATURATE) {
+            for (destination, d) in
+                FACTORS.into_iter().filter(|(token, _)| *token != gl::SRC_ALPHA_SATURATE)
+            {
                 c.clear(gl::COLOR_BUFFER_BIT);
                 c.blend_func(source, destination);
                 cover(&mut c, with);
@@ -171,7 +192,11 @@ fn all_factors_give_the_nearest_byte() {
                     let sum = u32::from(SOURCE[k]) * s(k) + u32::from(STORED[k]) * d(k);
                     ((2 * sum + 255) / 510).min(255) as u8
                 });
-                assert_all(&mut c, expected, &format!("{with:?}, factors {source:#x} and {destination:#x}"));
+                assert_all(
+                    &mut c,
+                    expected,
+                    &format!("{with:?}, factors {source:#x} and {destination:#x}"),
+                );
             }
         }
     }
@@ -192,8 +217,8 @@ fn equations_of_colour_and_alpha() {
             c.blend_func(gl::ONE, gl::ONE);
             c.blend_equation(token);
             cover(&mut c, with);
-            let expected =
-                [0, 1, 2, 3].map(|k| function(i32::from(SOURCE[k]), i32::from(STORED[k])).clamp(0, 255) as u8);
+            let expected = [0, 1, 2, 3]
+                .map(|k| function(i32::from(SOURCE[k]), i32::from(STORED[k])).clamp(0, 255) as u8);
             assert_all(&mut c, expected, &format!("{with:?}, equation {token:#x}"));
         }
     }
@@ -211,7 +236,8 @@ fn stipples_let_pass_their_bits_of_polygons() {
         cover(&mut c, with);
         for (i, pixel) in c.bytes().into_iter().enumerate() {
             let (x, y) = (i % SIDE as usize, i / SIDE as usize);
-            let shows = matches!(with, With::Points) || pattern[4 * y + x / 8] >> (7 - x % 8) & 1 == 1;
+            let shows =
+                matches!(with, With::Points) || pattern[4 * y + x / 8] >> (7 - x % 8) & 1 == 1;
             assert_eq!(pixel, if shows { SOURCE } else { STORED }, "{with:?} at ({x}, {y})");
         }
     }

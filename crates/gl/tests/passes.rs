@@ -1,5 +1,5 @@
-//! Pictures with shadow maps between their draws: what is drawn in one pass, or after what came later, is what would have been
-//! drawn one by one.
+//! Pictures with shadow maps between their draws: what is drawn in one pass, or after what came
+//! later, is what would have been drawn one by one.
 
 use crate::common::{Dice, Stage};
 use vitral_gl::enums as gl;
@@ -41,7 +41,9 @@ fn prepare(c: &mut Stage) {
         c.clear(gl::DEPTH_BUFFER_BIT | gl::COLOR_BUFFER_BIT);
     }
     c.bind_texture(gl::TEXTURE_2D, TILES);
-    let texels = |size: i32| (0..size * size).map(|i| [(i * 37) as u8, (i * i) as u8, 200, 255 - i as u8]).collect();
+    let texels = |size: i32| {
+        (0..size * size).map(|i| [(i * 37) as u8, (i * i) as u8, 200, 255 - i as u8]).collect()
+    };
     let levels: Vec<(i32, Vec<[u8; 4]>)> = [16, 8, 4, 2, 1].map(|size| (size, texels(size))).into();
     c.texture(&levels);
     c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::LINEAR_MIPMAP_LINEAR as i32);
@@ -118,7 +120,8 @@ fn draw(c: &mut Stage, d: &mut Dice) {
 
 /// Textures and blending for draws in the picture; the map if there is one to ask.
 fn look(c: &mut Stage, d: &mut Dice, map: Option<u32>) {
-    let set = |c: &mut Stage, on: bool, what: u32| if on { c.enable(what) } else { c.disable(what) };
+    let set =
+        |c: &mut Stage, on: bool, what: u32| if on { c.enable(what) } else { c.disable(what) };
     set(c, d.below(3) > 0, gl::BLEND);
     c.blend_func(gl::ONE, gl::ONE);
     set(c, d.below(2) == 0, gl::LIGHTING);
@@ -171,7 +174,9 @@ fn run(c: &mut Stage, seed: u64, waits: bool) {
             }
             _ => {
                 c.bind_framebuffer_ext(gl::FRAMEBUFFER, PICTURE);
-                c.clear(gl::DEPTH_BUFFER_BIT | if d.below(3) == 0 { gl::COLOR_BUFFER_BIT } else { 0 });
+                c.clear(
+                    gl::DEPTH_BUFFER_BIT | if d.below(3) == 0 { gl::COLOR_BUFFER_BIT } else { 0 },
+                );
             }
         }
         if waits {

@@ -1,4 +1,5 @@
-//! What programs met: objects of other contexts, small updates, careless arrays, colours beyond 1, old extensions.
+//! What programs met: objects of other contexts, small updates, careless arrays, colours beyond 1,
+//! old extensions.
 
 use crate::common::{BUFFER, Stage, assert_color};
 use std::sync::Arc;
@@ -16,7 +17,8 @@ fn groups_of_contexts_have_names_of_their_own() {
         assert!(memory.read(address, &mut name));
         u32::from_ne_bytes(name)
     };
-    let mut groups = [0; 2].map(|_| Context::new(memory.clone(), Arc::new(Shared::with_own_names())));
+    let mut groups =
+        [0; 2].map(|_| Context::new(memory.clone(), Arc::new(Shared::with_own_names())));
     let names = groups.each_mut().map(|c| {
         c.gen_textures(1, 4096);
         let texture = name(4096);
@@ -62,7 +64,10 @@ fn draws_that_wait_keep_the_texels_they_saw() {
         }
         c.end();
         let pixels = c.bytes();
-        assert!(pixels[..32].iter().all(|&pixel| pixel == BLACK) && pixels[32..].iter().all(|&pixel| pixel == WHITE));
+        assert!(
+            pixels[..32].iter().all(|&pixel| pixel == BLACK)
+                && pixels[32..].iter().all(|&pixel| pixel == WHITE)
+        );
         c.no_error();
     }
 }
@@ -179,9 +184,11 @@ fn the_combiner_multiplies_and_adds() {
     let mut c = Stage::new(2, 2);
     c.texture(&[(1, vec![[102, 102, 102, 255]])]);
     c.tex_envi(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, gl::COMBINE as i32);
-    for (name, source) in
-        [(gl::SOURCE0_RGB, gl::TEXTURE), (gl::SOURCE1_RGB, gl::CONSTANT), (gl::SOURCE2_RGB, gl::PRIMARY_COLOR)]
-    {
+    for (name, source) in [
+        (gl::SOURCE0_RGB, gl::TEXTURE),
+        (gl::SOURCE1_RGB, gl::CONSTANT),
+        (gl::SOURCE2_RGB, gl::PRIMARY_COLOR),
+    ] {
         c.tex_envi(gl::TEXTURE_ENV, name, source as i32);
     }
     c.tex_envi(gl::TEXTURE_ENV, gl::OPERAND2_RGB, gl::SRC_COLOR as i32);
@@ -208,7 +215,17 @@ fn the_combiner_multiplies_and_adds() {
 fn textures_are_mirrored_once() {
     let mut c = Stage::new(8, 1);
     let texels = c.put(&[[255u8, 0, 0, 255], [0, 255, 0, 255]]);
-    c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 2, 1, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+    c.tex_image_2d(
+        gl::TEXTURE_2D,
+        0,
+        gl::RGBA as i32,
+        2,
+        1,
+        0,
+        gl::RGBA,
+        gl::UNSIGNED_BYTE,
+        texels,
+    );
     c.tex_envi(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, gl::REPLACE as i32);
     let border = c.put(&[0.0f32, 0.0, 1.0, 1.0]);
     c.tex_parameterfv(gl::TEXTURE_2D, gl::TEXTURE_BORDER_COLOR, border);
@@ -301,7 +318,10 @@ fn there_is_one_draw_buffer() {
     let mut c = Stage::new(2, 2);
     let tokens = c.put(&[gl::BACK_LEFT, gl::NONE]);
     c.draw_buffers(1, tokens);
-    assert_eq!((c.get::<1>(gl::MAX_DRAW_BUFFERS), c.get::<1>(gl::DRAW_BUFFER0)), ([1.0], [gl::BACK_LEFT as f32]));
+    assert_eq!(
+        (c.get::<1>(gl::MAX_DRAW_BUFFERS), c.get::<1>(gl::DRAW_BUFFER0)),
+        ([1.0], [gl::BACK_LEFT as f32])
+    );
     c.draw_buffers(1, tokens + 4);
     c.fill([1.0; 4], 0.0);
     assert_eq!(c.pixel(0, 0), BLACK);

@@ -1,12 +1,14 @@
-//! Corners of the specification, each worked out by hand: clipping and depth, polygon offset, provoking vertices, level
-//! selection, antialiasing, window-system buffers, pixel transfer, feedback, evaluators, accumulation.
+//! Corners of the specification, each worked out by hand: clipping and depth, polygon offset,
+//! provoking vertices, level selection, antialiasing, window-system buffers, pixel transfer,
+//! feedback, evaluators, accumulation.
 
 use crate::common::{BUFFER, Stage, assert_color};
 use vitral_gl::{OSMESA_ARGB, OSMESA_BGR, OSMESA_BGRA, enums as gl};
 
 #[test]
 fn a_floor_through_the_eye_with_depth_clamp() {
-    // Near 1, far 3: depth in ndc is 2 - 3 / d. The floor y = -1/2 is at distance 0.5 / |y| of a pixel at y in ndc.
+    // Near 1, far 3: depth in ndc is 2 - 3 / d. The floor y = -1/2 is at distance 0.5 / |y| of a
+    // pixel at y in ndc.
     for range in [[0.0, 1.0], [0.25, 0.75], [1.0, 0.0]] {
         let mut c = Stage::new(32, 32);
         c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
@@ -28,7 +30,10 @@ fn a_floor_through_the_eye_with_depth_clamp() {
             for x in 0..32 {
                 assert_eq!(colors[y * 32 + x][0], 255, "({x}, {y}) is not covered");
                 let found = f64::from(depths[y * 32 + x]);
-                assert!((found - expected).abs() < 1e-4, "({x}, {y}): {found} instead of {expected}");
+                assert!(
+                    (found - expected).abs() < 1e-4,
+                    "({x}, {y}): {found} instead of {expected}"
+                );
             }
         }
         assert!(colors[17 * 32..].iter().all(|p| p[0] == 0));
@@ -49,7 +54,11 @@ fn depth_clamp_of_lines_and_points() {
     let depths = c.depths();
     for x in 0..32 {
         let expected = (((x as f32 + 0.5) / 16.0 - 1.0) * 3.0).clamp(-1.0, 1.0) * 0.5 + 0.5;
-        assert!((depths[2 * 32 + x] - expected).abs() < 1e-4, "{x}: {} instead of {expected}", depths[64 + x]);
+        assert!(
+            (depths[2 * 32 + x] - expected).abs() < 1e-4,
+            "{x}: {} instead of {expected}",
+            depths[64 + x]
+        );
     }
     c.depth_range(0.25, 0.5);
     c.begin(gl::POINTS);
@@ -107,7 +116,11 @@ fn polygon_offset_is_slope_times_factor_and_units() {
     // The unit is two steps of 24 bits.
     for units in [1.0, 8.0, -64.0] {
         let moved = depths(&mut c, 3.0, units, 0.0);
-        assert!((moved - plain - 2.0 * f64::from(units)).abs() < 1.01, "{units}: {}", moved - plain);
+        assert!(
+            (moved - plain - 2.0 * f64::from(units)).abs() < 1.01,
+            "{units}: {}",
+            moved - plain
+        );
     }
     // Depth changes by 0.25 * 0.5 / 4 for a pixel.
     c.disable(gl::POLYGON_OFFSET_FILL);
@@ -151,12 +164,18 @@ fn provoking_vertices_of_all_primitives() {
     }
 }
 
-/// A window filled with a texture whose level 0 is red, level 1 green, so large that `lod` levels are skipped.
+/// A window filled with a texture whose level 0 is red, level 1 green, so large that `lod` levels
+/// are skipped.
 fn mixed_levels(mag: u32, min: u32, lod: f64) -> [u8; 4] {
     let mut c = Stage::new(16, 16);
     let level = |size: usize, color: [u8; 4]| (size as i32, vec![color; size * size]);
     let blue = [0, 0, 255, 255];
-    c.texture(&[level(8, [255, 0, 0, 255]), level(4, [0, 255, 0, 255]), level(2, blue), level(1, blue)]);
+    c.texture(&[
+        level(8, [255, 0, 0, 255]),
+        level(4, [0, 255, 0, 255]),
+        level(2, blue),
+        level(1, blue),
+    ]);
     c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MAG_FILTER, mag as i32);
     c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, min as i32);
     // The rectangle's coordinates run from 0 to 1 over 16 pixels: texels per pixel are 8 s / 16.
@@ -201,7 +220,10 @@ fn a_smooth_point_covers_its_area() {
             c.vertex_2f(center[0], center[1]);
             c.end();
             let (sum, area) = (alpha_sum(&mut c), std::f32::consts::PI * size * size / 4.0);
-            assert!((sum / area - 1.0).abs() < 0.03, "{size} at {center:?}: {sum} instead of {area}");
+            assert!(
+                (sum / area - 1.0).abs() < 0.03,
+                "{size} at {center:?}: {sum} instead of {area}"
+            );
         }
     }
 }
@@ -229,9 +251,12 @@ fn a_smooth_line_has_the_coverage_of_its_rectangle() {
     for (found, expected) in ends.iter().zip([0.0, 0.75, 0.5, 0.0]) {
         assert!((found - expected).abs() < 0.01, "{ends:?}");
     }
-    for (width, [x, y]) in [(1.0, [24.0, 4.0]), (1.0, [20.0, 13.0]), (3.0, [11.0, 27.0]), (5.5, [25.0, 25.0])] {
+    for (width, [x, y]) in
+        [(1.0, [24.0, 4.0]), (1.0, [20.0, 13.0]), (3.0, [11.0, 27.0]), (5.5, [25.0, 25.0])]
+    {
         line(&mut c, width, [4.0, 4.0, x, y]);
-        let (sum, area) = (alpha_sum(&mut c), width * ((x - 4.0) * (x - 4.0) + (y - 4.0) * (y - 4.0)).sqrt());
+        let (sum, area) =
+            (alpha_sum(&mut c), width * ((x - 4.0) * (x - 4.0) + (y - 4.0) * (y - 4.0)).sqrt());
         assert!((sum / area - 1.0).abs() < 0.03, "{width} to ({x}, {y}): {sum} instead of {area}");
     }
 }
@@ -240,7 +265,9 @@ fn a_smooth_line_has_the_coverage_of_its_rectangle() {
 fn an_aliased_line_is_as_wide_as_the_nearest_whole_number() {
     let mut c = Stage::new(16, 16);
     c.pixels();
-    for (width, expected) in [(0.3, 1), (1.0, 1), (1.6, 2), (2.4, 2), (2.5, 3), (2.76, 3), (3.5, 4), (4.6, 5)] {
+    for (width, expected) in
+        [(0.3, 1), (1.0, 1), (1.6, 2), (2.4, 2), (2.5, 3), (2.76, 3), (3.5, 4), (4.6, 5)]
+    {
         for [x, y] in [[13.0, 8.5], [8.5, 13.0], [13.0, 12.0], [12.0, 13.0]] {
             c.clear(gl::COLOR_BUFFER_BIT);
             c.line_width(width);
@@ -250,7 +277,9 @@ fn an_aliased_line_is_as_wide_as_the_nearest_whole_number() {
             c.end();
             let bytes = c.bytes();
             // Across the longer axis in its middle.
-            let drawn = (0..16).filter(|&i| bytes[if x > y { i * 16 + 8 } else { 8 * 16 + i }][0] == 255).count();
+            let drawn = (0..16)
+                .filter(|&i| bytes[if x > y { i * 16 + 8 } else { 8 * 16 + i }][0] == 255)
+                .count();
             assert_eq!(drawn, expected, "{width} to ({x}, {y})");
         }
     }
@@ -264,14 +293,28 @@ fn a_point_sprite_covers_the_centres_in_its_square_and_counts_from_its_place() {
     c.tex_envi(gl::POINT_SPRITE_ARB, gl::COORD_REPLACE_ARB, 1);
     let texels: Vec<[u8; 4]> = (0..=255).map(|s| [s, 0, 0, 255]).collect();
     let texels = c.put(&texels);
-    c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, 256, 1, 0, gl::RGBA, gl::UNSIGNED_BYTE, texels);
+    c.tex_image_2d(
+        gl::TEXTURE_2D,
+        0,
+        gl::RGBA as i32,
+        256,
+        1,
+        0,
+        gl::RGBA,
+        gl::UNSIGNED_BYTE,
+        texels,
+    );
     c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, gl::NEAREST as i32);
     c.tex_parameteri(gl::TEXTURE_2D, gl::TEXTURE_MAG_FILTER, gl::NEAREST as i32);
     c.tex_envi(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, gl::REPLACE as i32);
     c.enable(gl::TEXTURE_2D);
-    for (size, x, y) in
-        [(2.0f32, 8.5f32, 7.5f32), (2.0, 8.25, 7.75), (3.5, 8.25, 6.0), (4.25, 5.5, 9.75), (1.0, 8.0, 8.0)]
-    {
+    for (size, x, y) in [
+        (2.0f32, 8.5f32, 7.5f32),
+        (2.0, 8.25, 7.75),
+        (3.5, 8.25, 6.0),
+        (4.25, 5.5, 9.75),
+        (1.0, 8.0, 8.0),
+    ] {
         c.clear(gl::COLOR_BUFFER_BIT);
         c.point_size(size);
         c.begin(gl::POINTS);
@@ -281,8 +324,13 @@ fn a_point_sprite_covers_the_centres_in_its_square_and_counts_from_its_place() {
             let (px, py) = ((i % 16) as f32 + 0.5, (i / 16) as f32 + 0.5);
             let inside = |p: f32, middle: f32| p >= middle - size / 2.0 && p < middle + size / 2.0;
             let s = 0.5 + (px - x) / size;
-            let expected = if inside(px, x) && inside(py, y) { [(s * 256.0) as u8, 255] } else { [0, 0] };
-            assert_eq!([pixel[0], pixel[3]], expected, "size {size} at ({x}, {y}): pixel ({px}, {py})");
+            let expected =
+                if inside(px, x) && inside(py, y) { [(s * 256.0) as u8, 255] } else { [0, 0] };
+            assert_eq!(
+                [pixel[0], pixel[3]],
+                expected,
+                "size {size} at ({x}, {y}): pixel ({px}, {py})"
+            );
         }
     }
 }
@@ -292,7 +340,8 @@ fn a_smooth_polygon_covers_its_area() {
     let mut c = Stage::new(32, 32);
     c.pixels();
     c.enable(gl::POLYGON_SMOOTH);
-    let triangles = [[[4.3, 5.1], [27.2, 9.4], [11.6, 26.8]], [[3.0, 3.0], [25.0, 3.0], [3.0, 25.0]]];
+    let triangles =
+        [[[4.3, 5.1], [27.2, 9.4], [11.6, 26.8]], [[3.0, 3.0], [25.0, 3.0], [3.0, 25.0]]];
     for [a, b, d] in triangles {
         c.clear(gl::COLOR_BUFFER_BIT);
         c.begin(gl::TRIANGLES);
@@ -312,7 +361,8 @@ fn a_smooth_polygon_covers_its_area() {
         c.vertex_2f(x, y);
     }
     c.end();
-    let found = [[10, 4], [4, 10], [4, 4], [20, 12], [10, 17]].map(|[x, y]| f32::from(c.pixel(x, y)[3]) / 255.0);
+    let found = [[10, 4], [4, 10], [4, 4], [20, 12], [10, 17]]
+        .map(|[x, y]| f32::from(c.pixel(x, y)[3]) / 255.0);
     for (found, expected) in found.iter().zip([0.5, 0.75, 0.375, 0.5, 0.0]) {
         assert!((found - expected).abs() < 0.01, "{found} instead of {expected}");
     }
@@ -455,15 +505,21 @@ fn fog_takes_the_distance_that_its_mode_says() {
 
 #[test]
 fn zoomed_pixels_have_their_left_and_lower_boundaries() {
-    for (zoom, origin) in [(-1.5f32, 20.0f32), (-0.5, 20.0), (-1.0, 20.5), (-1.0, 20.0), (1.0, 4.5), (1.5, 4.0)] {
+    for (zoom, origin) in
+        [(-1.5f32, 20.0f32), (-0.5, 20.0), (-1.0, 20.5), (-1.0, 20.0), (1.0, 4.5), (1.5, 4.0)]
+    {
         // What columns show is the same for rows, and for pixels that are copied.
         for (axis, copied) in [(0, false), (1, false), (0, true), (1, true)] {
             let mut c = Stage::new(32, 32);
             c.clear(gl::COLOR_BUFFER_BIT);
             let size = if axis == 0 { [8, 1] } else { [1, 8] };
-            let pixels = c.put(&std::array::from_fn::<[u8; 4], 8, _>(|i| [10 * (i as u8 + 1), 0, 0, 255]));
+            let pixels =
+                c.put(&std::array::from_fn::<[u8; 4], 8, _>(|i| [10 * (i as u8 + 1), 0, 0, 255]));
             let start = |c: &mut Stage, origin: f32| {
-                c.window_pos_2f(if axis == 0 { origin } else { 28.0 }, if axis == 0 { 28.0 } else { origin });
+                c.window_pos_2f(
+                    if axis == 0 { origin } else { 28.0 },
+                    if axis == 0 { 28.0 } else { origin },
+                );
             };
             if copied {
                 start(&mut c, 22.0);
@@ -480,10 +536,15 @@ fn zoomed_pixels_have_their_left_and_lower_boundaries() {
             for at in 0..22 {
                 let center = at as f32 + 0.5;
                 let ends = |i: usize| [origin + zoom * i as f32, origin + zoom * (i + 1) as f32];
-                let holds = |i: &usize| ends(*i)[0].min(ends(*i)[1]) <= center && center < ends(*i)[0].max(ends(*i)[1]);
+                let holds = |i: &usize| {
+                    ends(*i)[0].min(ends(*i)[1]) <= center && center < ends(*i)[0].max(ends(*i)[1])
+                };
                 let expected = (0..8).find(holds).map_or(0, |i| 10 * (i as u8 + 1));
                 let found = if axis == 0 { c.pixel(at, 28) } else { c.pixel(28, at) };
-                assert_eq!(found[0], expected, "zoom {zoom} from {origin}, axis {axis}, copied {copied}, {at}");
+                assert_eq!(
+                    found[0], expected,
+                    "zoom {zoom} from {origin}, axis {axis}, copied {copied}, {at}"
+                );
             }
         }
     }
@@ -500,7 +561,10 @@ fn luminance_of_unsigned_integers_is_scaled_by_their_largest() {
     let into = c.put(&[0u32; 2]);
     c.read_pixels(0, 0, 2, 1, gl::LUMINANCE, gl::UNSIGNED_INT, into);
     let found: Vec<u32> = c.take(into, 2);
-    assert!((f64::from(found[0]) / f64::from(u32::MAX) - 0.6).abs() < 1e-6 && found[1] == u32::MAX, "{found:?}");
+    assert!(
+        (f64::from(found[0]) / f64::from(u32::MAX) - 0.6).abs() < 1e-6 && found[1] == u32::MAX,
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -556,7 +620,8 @@ fn an_incomplete_2d_texture_switches_its_unit_off_even_with_1d_enabled() {
     c.enable(gl::TEXTURE_1D);
     c.fill([1.0, 0.0, 0.0, 1.0], 0.0);
     assert_eq!(c.pixel(0, 0), [0, 255, 0, 255]);
-    // The higher dimension is the one in use; it is incomplete, so that texturing is as if disabled.
+    // The higher dimension is the one in use; it is incomplete, so that texturing is as if
+    // disabled.
     c.enable(gl::TEXTURE_2D);
     c.fill([1.0, 0.0, 0.0, 1.0], 0.0);
     assert_eq!(c.pixel(0, 0), [255, 0, 0, 255]);
@@ -636,7 +701,8 @@ fn accumulation_holds_more_than_one() {
     let mut c = Stage::new(2, 2);
     c.clear_color(0.8, 0.4, 0.2, 1.0);
     c.clear(gl::COLOR_BUFFER_BIT | gl::ACCUM_BUFFER_BIT);
-    // The range of the buffer is at least -1..1; sums of weights up to 1 are exact, and RETURN clamps.
+    // The range of the buffer is at least -1..1; sums of weights up to 1 are exact, and RETURN
+    // clamps.
     c.accum(gl::LOAD, 0.5);
     c.accum(gl::ACCUM, 0.5);
     c.clear(gl::COLOR_BUFFER_BIT);

@@ -1,4 +1,5 @@
-//! Tests of the OpenGL machine. One program: linking and starting dominate the cost of many small ones.
+//! Tests of the OpenGL machine. One program: linking and starting dominate the cost of many small
+//! ones.
 
 mod clients;
 mod common;

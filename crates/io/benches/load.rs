@@ -1,6 +1,7 @@
 //! Loading speed: a torus of a million triangles in each format, on one thread and on two.
 //!
-//! Targets on two cores: OBJ 200 MB/s, binary PLY 1 GB/s, binary STL 400 MB/s with its vertices welded.
+//! Targets on two cores: OBJ 200 MB/s, binary PLY 1 GB/s, binary STL 400 MB/s with its vertices
+//! welded.
 #![allow(missing_docs)]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

@@ -1,13 +1,14 @@
 //! Whether colours are written as 0 to 1 or as bytes.
 //!
-//! Formats leave it open. Colours above 1 are bytes where they look like them: all of them whole numbers and the largest
-//! at least 2, or the largest so far above 1 that no light is meant. Otherwise a value slipped over the end by
-//! rounding, and is clamped.
+//! Formats leave it open. Colours above 1 are bytes where they look like them: all of them whole
+//! numbers and the largest at least 2, or the largest so far above 1 that no light is meant.
+//! Otherwise a value slipped over the end by rounding, and is clamped.
 
 /// The least largest value of bytes that are not whole numbers, as averages of bytes are.
 const LEAST_LARGEST: f32 = 64.0;
 
-/// What is known of the values of all colours in a file: the largest, and whether all are whole numbers.
+/// What is known of the values of all colours in a file: the largest, and whether all are whole
+/// numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ColorRange {
     pub(crate) largest: f32,

@@ -1,36 +1,46 @@
-//! A material for surfaces that have colours at their vertices and no material: white, so that they are seen in these colours.
+//! A material for surfaces that have colours at their vertices and no material: white, so that they
+//! are seen in these colours.
 
 use std::sync::Arc;
 use vitral_light::{AlphaMode, Material, Reflectance};
 use vitral_scene::{Mesh, Scene};
 
-/// Makes colours opaque that would leave nothing of a mesh to be seen: all of them have alpha 0, which programs write that do
-/// not know alpha. Warns of it.
+/// Makes colours opaque that would leave nothing of a mesh to be seen: all of them have alpha 0,
+/// which programs write that do not know alpha. Warns of it.
 pub(crate) fn ignore_clear_colors(scene: &mut Scene, file: &str) {
     let is_clear = |mesh: &Mesh| {
         let colors = mesh.colors.as_ref().filter(|colors| !colors.values.is_empty());
         colors.is_some_and(|colors| colors.values.iter().all(|color| color[3] == 0.0))
     };
-    let clear: Vec<usize> = (0..scene.meshes.len()).filter(|&number| is_clear(&scene.meshes[number])).collect();
+    let clear: Vec<usize> =
+        (0..scene.meshes.len()).filter(|&number| is_clear(&scene.meshes[number])).collect();
     for &number in &clear {
         let colors = Arc::make_mut(&mut scene.meshes[number]).colors.as_mut();
         colors.into_iter().flat_map(|colors| &mut colors.values).for_each(|color| color[3] = 1.0);
     }
     if !clear.is_empty() {
-        scene.warnings.push(format!("{file}: all colours have alpha 0 and would be invisible; alpha is ignored"));
+        scene.warnings.push(format!(
+            "{file}: all colours have alpha 0 and would be invisible; alpha is ignored"
+        ));
     }
 }
 
-/// Gives parts without a material one if their mesh has colours; where some of these are not opaque it blends, if `alpha_counts`.
+/// Gives parts without a material one if their mesh has colours; where some of these are not opaque
+/// it blends, if `alpha_counts`.
 pub(crate) fn give_materials(scene: &mut Scene, alpha_counts: bool) {
-    let bare = |mesh: &Mesh| mesh.colors.is_some() && mesh.parts.iter().any(|part| part.material.is_none());
+    let bare = |mesh: &Mesh| {
+        mesh.colors.is_some() && mesh.parts.iter().any(|part| part.material.is_none())
+    };
     let mut known = [None; 2];
     for number in 0..scene.meshes.len() {
-        let Some(colors) = scene.meshes[number].colors.as_ref().filter(|_| bare(&scene.meshes[number])) else {
+        let Some(colors) =
+            scene.meshes[number].colors.as_ref().filter(|_| bare(&scene.meshes[number]))
+        else {
             continue;
         };
         let blends = alpha_counts && colors.values.iter().any(|color| color[3] < 1.0);
-        let index = *known[usize::from(blends)].get_or_insert_with(|| scene.add_material(white(blends)));
+        let index =
+            *known[usize::from(blends)].get_or_insert_with(|| scene.add_material(white(blends)));
         for part in &mut Arc::make_mut(&mut scene.meshes[number]).parts {
             part.material.get_or_insert(index);
         }
@@ -58,20 +68,33 @@ mod tests {
     #[test]
     fn colours_of_vertices_are_not_dimmed_and_their_opacity_counts() {
         let square = |alphas: &str| {
-            let corners = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"].map(|p| format!("{p} 255 128 0 {alphas}\n")).concat();
+            let corners = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"]
+                .map(|p| format!("{p} 255 128 0 {alphas}\n"))
+                .concat();
             format!("COFF\n4 1 0\n{corners}4 0 1 2 3\n")
         };
         for (alphas, mode) in [("255", AlphaMode::Opaque), ("128", AlphaMode::Blend)] {
-            let scene = load(square(alphas).as_bytes(), "square.off", &NoFiles, &Workers::single()).unwrap();
+            let scene = load(square(alphas).as_bytes(), "square.off", &NoFiles, &Workers::single())
+                .unwrap();
             let material = &scene.materials[scene.meshes[0].parts[0].material.unwrap() as usize];
             assert_eq!(material.alpha_mode, mode);
-            assert!(matches!(material.reflectance, Reflectance::Phong { kd: [1.0, 1.0, 1.0], .. }), "{material:?}");
+            assert!(
+                matches!(material.reflectance, Reflectance::Phong { kd: [1.0, 1.0, 1.0], .. }),
+                "{material:?}"
+            );
         }
-        let clear = load(square("0").as_bytes(), "square.off", &NoFiles, &Workers::single()).unwrap();
+        let clear =
+            load(square("0").as_bytes(), "square.off", &NoFiles, &Workers::single()).unwrap();
         assert_eq!(clear.materials[0].alpha_mode, AlphaMode::Opaque);
         assert_eq!(clear.meshes[0].colors.as_ref().unwrap().values[0][3], 1.0);
         assert!(clear.warnings[0].contains("alpha 0"), "{:?}", clear.warnings);
-        let plain = load(b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a.off", &NoFiles, &Workers::single()).unwrap();
+        let plain = load(
+            b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+            "a.off",
+            &NoFiles,
+            &Workers::single(),
+        )
+        .unwrap();
         assert!(plain.materials.is_empty());
     }
 

@@ -1,9 +1,10 @@
 //! Which format a file has: by its content first, by its extension second.
 //!
-//! Formats with a magic number are certain. STL has none: a binary one is known by its length, which its triangle count
-//! fixes, an ASCII one by its first word. OBJ is known by its first statements, the two kinds of JSON by the keys of their
-//! outermost object, OFF without its first word by its counts, where the name does not tell. What nobody claims is refused
-//! with the list of what is read; formats that are known but not read are named.
+//! Formats with a magic number are certain. STL has none: a binary one is known by its length,
+//! which its triangle count fixes, an ASCII one by its first word. OBJ is known by its first
+//! statements, the two kinds of JSON by the keys of their outermost object, OFF without its first
+//! word by its counts, where the name does not tell. What nobody claims is refused with the list of
+//! what is read; formats that are known but not read are named.
 
 use crate::file_name::extension;
 use crate::format::{obj_statement, off_header, stl_size};
@@ -11,10 +12,12 @@ use crate::text::{Cursor, to_utf8};
 use crate::{Error, Format, Place};
 
 impl Format {
-    /// The format of `bytes`, which were read from `file`. It may be one that this build leaves out ([`Self::is_read`]).
+    /// The format of `bytes`, which were read from `file`. It may be one that this build leaves out
+    /// ([`Self::is_read`]).
     ///
     /// # Errors
-    /// [`Error::Malformed`] for an empty file, [`Error::Unsupported`] for a format that is not read or not known.
+    /// [`Error::Malformed`] for an empty file, [`Error::Unsupported`] for a format that is not read
+    /// or not known.
     pub fn detect(bytes: &[u8], file: &str) -> Result<Self, Error> {
         if bytes.is_empty() {
             return Err(Error::malformed(file, Place::File, "empty file"));
@@ -79,8 +82,12 @@ const FOREIGN_EXTENSIONS: [(&str, &str); 26] = [
 
 fn not_read(file: &str, name: &str) -> Error {
     let read = Format::ALL.iter().filter(|format| format.is_read());
-    let list: Vec<String> = read.map(|f| format!("{} (.{})", f.name(), f.extensions().join(", ."))).collect();
-    Error::Unsupported { file: file.to_owned(), what: format!("{name} is not read; readable are {}", list.join(", ")) }
+    let list: Vec<String> =
+        read.map(|f| format!("{} (.{})", f.name(), f.extensions().join(", ."))).collect();
+    Error::Unsupported {
+        file: file.to_owned(),
+        what: format!("{name} is not read; readable are {}", list.join(", ")),
+    }
 }
 
 fn by_magic(bytes: &[u8]) -> Option<Format> {
@@ -138,12 +145,14 @@ fn foreign_content(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// The kind of JSON file: by the first root key that one kind must have and the other cannot, else by the name. One pass
-/// over the text at most.
+/// The kind of JSON file: by the first root key that one kind must have and the other cannot, else
+/// by the name. One pass over the text at most.
 fn json_format(text: &[u8], file: &str) -> Format {
     let by_name = if extension(file) == "gltf" { Format::Gltf } else { Format::SceneJson };
     let (mut depth, mut at) = (0usize, 0);
-    while let Some(step) = text[at..].iter().position(|b| matches!(b, b'"' | b'{' | b'[' | b'}' | b']')) {
+    while let Some(step) =
+        text[at..].iter().position(|b| matches!(b, b'"' | b'{' | b'[' | b'}' | b']'))
+    {
         at += step + 1;
         match text[at - 1] {
             b'"' => {
@@ -188,7 +197,8 @@ fn by_text(head: &[u8]) -> Option<Format> {
     if off_header::Header::begin(word).is_some() {
         return Some(Format::Off);
     }
-    let begins_facet = word.eq_ignore_ascii_case(b"facet") && cursor.word().eq_ignore_ascii_case(b"normal");
+    let begins_facet =
+        word.eq_ignore_ascii_case(b"facet") && cursor.word().eq_ignore_ascii_case(b"normal");
     if (word.eq_ignore_ascii_case(b"solid") || begins_facet) && !head.contains(&0) {
         return Some(Format::Stl);
     }
@@ -209,7 +219,8 @@ mod tests {
         assert_eq!(detect(b"glTF\x02\0\0\0", "x"), Format::Glb);
         assert_eq!(detect(b" {\"asset\":{}}", "x"), Format::Gltf);
         assert_eq!(detect(b"{\"nodes\":[]}", "x"), Format::SceneJson);
-        let late = format!("{{\"buffers\": [{{\"uri\": \"{}\"}}], \"asset\": {{}}}}", "A".repeat(1 << 17));
+        let late =
+            format!("{{\"buffers\": [{{\"uri\": \"{}\"}}], \"asset\": {{}}}}", "A".repeat(1 << 17));
         assert_eq!(detect(late.as_bytes(), "-"), Format::Gltf);
         for scene in [
             r#"{"nodes": [{"name": "asset"}], "vitral-scene": 1}"#,
@@ -225,31 +236,49 @@ mod tests {
         let mut stl = vec![b' '; 84 + 50];
         stl[..5].copy_from_slice(b"solid");
         stl[80..84].copy_from_slice(&1u32.to_le_bytes());
-        for header in
-            [&b"solid"[..], b"ply\nformat", b"glTF\x02", b"OFF 1 2", b"v 1 2 3", b"PK\x03\x04", b"\xEF\xBB\xBFply\n"]
-        {
+        for header in [
+            &b"solid"[..],
+            b"ply\nformat",
+            b"glTF\x02",
+            b"OFF 1 2",
+            b"v 1 2 3",
+            b"PK\x03\x04",
+            b"\xEF\xBB\xBFply\n",
+        ] {
             stl[..header.len()].copy_from_slice(header);
             assert_eq!(detect(&stl, "x"), Format::Stl);
         }
         assert_eq!(detect(b"\xEF\xBB\xBFply\nformat", "-"), Format::Ply);
         assert_eq!(detect(b"facet normal 0 0 1\nouter loop", "-"), Format::Stl);
         assert_eq!(detect(&vec![0; 84 + 150], "-"), Format::Stl, "written into a pipe");
-        for text in ["vp 0 1\nv 0 0 0", "# c\ncstype bezier\ndeg 3 \\\n3\nv 1 2 3", "mg 0\nlod 1\nbevel on\ng a\n"] {
+        for text in [
+            "vp 0 1\nv 0 0 0",
+            "# c\ncstype bezier\ndeg 3 \\\n3\nv 1 2 3",
+            "mg 0\nlod 1\nbevel on\ng a\n",
+        ] {
             assert_eq!(detect(text.as_bytes(), "-"), Format::Obj, "{text}");
         }
-        assert_eq!(detect(b"# c\n3 1 0 # counts\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "-"), Format::Off);
+        assert_eq!(
+            detect(b"# c\n3 1 0 # counts\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "-"),
+            Format::Off
+        );
         assert_eq!(detect(b"# nothing but a comment", "dir.ply/X.OBJ"), Format::Obj);
     }
 
     #[test]
     fn what_is_not_read_is_named() {
-        let refuse = |bytes: &[u8], file: &str| Format::detect(bytes, file).unwrap_err().to_string();
+        let refuse =
+            |bytes: &[u8], file: &str| Format::detect(bytes, file).unwrap_err().to_string();
         assert_eq!(refuse(b"", "e.x"), "e.x: empty file");
         assert!(
-            refuse(b"<?xml?><COLLADA>", "m").starts_with("m: Collada (DAE) is not read; readable are glTF (.gltf), ")
+            refuse(b"<?xml?><COLLADA>", "m")
+                .starts_with("m: Collada (DAE) is not read; readable are glTF (.gltf), ")
         );
         assert!(refuse(b"PK\x03\x04", "m.3mf").contains("3MF"));
-        assert!(refuse(b"\x1f\x8b\x08\0", "m.obj").starts_with("m.obj: a gzip file (unpack it first) is not read; "));
+        assert!(
+            refuse(b"\x1f\x8b\x08\0", "m.obj")
+                .starts_with("m.obj: a gzip file (unpack it first) is not read; ")
+        );
         assert!(refuse(b"?", "m.blend").contains("Blender"));
         for text in ["call\nme\n", "1 2 3\n", "1 2 3\n4 5 six\n", "1 2 3 4\n5 6 7\n"] {
             assert!(refuse(text.as_bytes(), "-").contains("this format is not read"), "{text}");

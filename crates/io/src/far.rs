@@ -1,14 +1,16 @@
-//! Models far from the origin, as maps, buildings and scans have them: single precision would leave few digits of their shape.
+//! Models far from the origin, as maps, buildings and scans have them: single precision would leave
+//! few digits of their shape.
 //!
-//! A model is read in single precision first. If it lies far away, for its size, it is read once more: an offset is taken
-//! from each position in double precision, and the node that shows the mesh moves it back.
+//! A model is read in single precision first. If it lies far away, for its size, it is read once
+//! more: an offset is taken from each position in double precision, and the node that shows the
+//! mesh moves it back.
 
-/// How many times its size a model may be away from the origin. At 64, 18 bits are left for its shape: a quarter of a pixel
-/// in a picture of 65536.
+/// How many times its size a model may be away from the origin. At 64, 18 bits are left for its
+/// shape: a quarter of a pixel in a picture of 65536.
 const FARTHEST: f64 = 64.0;
 
-/// The offset for a model with these positions; `None` for one that is near enough. Positions that are not finite do not
-/// count.
+/// The offset for a model with these positions; `None` for one that is near enough. Positions that
+/// are not finite do not count.
 pub(crate) fn offset(positions: &[[f32; 3]]) -> Option<[f64; 3]> {
     offset_of_box(bounds(positions))
 }
@@ -46,7 +48,10 @@ mod tests {
 
     #[test]
     fn distance_counts_by_size() {
-        assert_eq!(offset(&[[1e6, 5.0, 0.0], [1e6 + 2.0, 7.0, 0.0]]), Some([1_000_001.0, 6.0, 0.0]));
+        assert_eq!(
+            offset(&[[1e6, 5.0, 0.0], [1e6 + 2.0, 7.0, 0.0]]),
+            Some([1_000_001.0, 6.0, 0.0])
+        );
         assert_eq!(offset(&[[100.0, 0.0, 0.0], [102.0, 0.0, 0.0]]), None);
         assert_eq!(offset(&[[1e7; 3], [1e7; 3], [f32::NAN; 3]]), Some([1e7; 3]));
         assert_eq!((offset(&[[3.0; 3]]), offset(&[])), (None, None));

@@ -1,5 +1,5 @@
-//! The formats that are read and written: names, extensions, descriptions, features; and how a file of each begins
-//! (`format/`), which is known whether or not a build reads the format.
+//! The formats that are read and written: names, extensions, descriptions, features; and how a file
+//! of each begins (`format/`), which is known whether or not a build reads the format.
 
 pub(crate) mod obj_statement;
 pub(crate) mod off_header;
@@ -26,7 +26,8 @@ pub enum Format {
 
 impl Format {
     /// Every format that is read.
-    pub const ALL: [Self; 7] = [Self::Gltf, Self::Glb, Self::Obj, Self::Stl, Self::Ply, Self::Off, Self::SceneJson];
+    pub const ALL: [Self; 7] =
+        [Self::Gltf, Self::Glb, Self::Obj, Self::Stl, Self::Ply, Self::Off, Self::SceneJson];
 
     /// Its short name.
     pub fn name(self) -> &'static str {
@@ -92,7 +93,13 @@ impl Format {
     }
 
     /// Why a file is refused where this build does not read its format.
-    #[cfg(not(all(feature = "gltf", feature = "obj", feature = "stl", feature = "ply", feature = "off")))]
+    #[cfg(not(all(
+        feature = "gltf",
+        feature = "obj",
+        feature = "stl",
+        feature = "ply",
+        feature = "off"
+    )))]
     pub(crate) fn left_out(self) -> String {
         left_out(self.name(), self.feature().unwrap_or_default())
     }
@@ -158,22 +165,44 @@ pub fn formats() -> Vec<FormatRow> {
         write: true,
     };
     let coded = cfg!(feature = "images");
-    let texture =
-        |name, extensions, description| FormatRow { write: false, ..picture(name, extensions, description, coded) };
+    let texture = |name, extensions, description| FormatRow {
+        write: false,
+        ..picture(name, extensions, description, coded)
+    };
 
     // List the formats.
     let mut rows: Vec<FormatRow> = Format::ALL.into_iter().map(model).collect();
-    rows.push(picture("PNG", &["png"], "Portable network graphics, lossless, with transparency", true));
+    rows.push(picture(
+        "PNG",
+        &["png"],
+        "Portable network graphics, lossless, with transparency",
+        true,
+    ));
     let jpeg = picture("JPEG", &["jpg", "jpeg"], "JPEG, lossy, without transparency", coded);
     rows.push(FormatRow { write: coded, ..jpeg });
     rows.push(texture("TGA", &["tga"], "Truevision TGA, as textures"));
     rows.push(texture("BMP", &["bmp"], "Windows bitmap, as textures"));
-    let written = |name, extensions, description| FormatRow { write: coded, ..texture(name, extensions, description) };
-    rows.push(written("GIF", &["gif"], "GIF of 256 colours, turntables as animations; the first picture as textures"));
-    rows.push(written("WebP", &["webp"], "WebP, lossless, turntables as animations; the first picture as textures"));
+    let written = |name, extensions, description| FormatRow {
+        write: coded,
+        ..texture(name, extensions, description)
+    };
+    rows.push(written(
+        "GIF",
+        &["gif"],
+        "GIF of 256 colours, turntables as animations; the first picture as textures",
+    ));
+    rows.push(written(
+        "WebP",
+        &["webp"],
+        "WebP, lossless, turntables as animations; the first picture as textures",
+    ));
     rows.push(picture("APNG", &["apng"], "PNG with turntables as animations", false));
     rows.push(texture("TIFF", &["tif", "tiff"], "TIFF, the first picture, as textures"));
-    rows.push(texture("DDS", &["dds"], "DirectDraw surface, packed by S3TC (DXT1, DXT3, DXT5), as textures"));
+    rows.push(texture(
+        "DDS",
+        &["dds"],
+        "DirectDraw surface, packed by S3TC (DXT1, DXT3, DXT5), as textures",
+    ));
     rows.push(picture(
         "PPM",
         &["ppm"],
@@ -197,7 +226,8 @@ mod tests {
 
     #[test]
     fn the_table_names_every_extension_once() {
-        let mut extensions: Vec<&str> = formats().iter().flat_map(|r| r.extensions.iter().copied()).collect();
+        let mut extensions: Vec<&str> =
+            formats().iter().flat_map(|r| r.extensions.iter().copied()).collect();
         let count = extensions.len();
         extensions.sort_unstable();
         extensions.dedup();

@@ -1,9 +1,12 @@
-//! Images in: PNG, JPEG, TGA, BMP, GIF, WebP, TIFF and DDS, known by their content, as 8-bit RGBA with straight alpha.
+//! Images in: PNG, JPEG, TGA, BMP, GIF, WebP, TIFF and DDS, known by their content, as 8-bit RGBA
+//! with straight alpha.
 //!
-//! In:   the bytes of a file. Out: a plane, the top row first. PNG: every colour type, 16 bits reduced to 8,
-//! transparency chunks and interlacing. JPEG: grey, RGB and CMYK, baseline and progressive. GIF, WebP and
-//! TIFF: the first picture. DDS: the largest level of what S3TC packs (DXT1, DXT3, DXT5).
-//! Cost: that of the decoder, linear in bytes and pixels. The header's size is checked before anything is allocated.
+//! In:   the bytes of a file. Out: a plane, the top row first. PNG: every colour type, 16 bits
+//! reduced to 8, transparency chunks and interlacing. JPEG: grey, RGB and CMYK, baseline and
+//! progressive. GIF, WebP and TIFF: the first picture. DDS: the largest level of what S3TC packs
+//! (DXT1, DXT3, DXT5).
+//! Cost: that of the decoder, linear in bytes and pixels. The header's size is checked before
+//!       anything is allocated.
 
 #[cfg(feature = "images")]
 mod codecs;
@@ -23,19 +26,27 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 const DECODER_MEMORY: usize = 64 << 20;
 
 /// What is read, for messages about other formats.
-const READ: &str = if cfg!(feature = "images") { "PNG, JPEG, TGA, BMP, GIF, WebP, TIFF and DDS are" } else { "PNG is" };
+const READ: &str = if cfg!(feature = "images") {
+    "PNG, JPEG, TGA, BMP, GIF, WebP, TIFF and DDS are"
+} else {
+    "PNG is"
+};
 
 /// Decodes a picture. `file` is its name, for messages.
 ///
 /// # Errors
-/// Formats that are known but not read are [`Error::Unsupported`], damaged files [`Error::Malformed`].
+/// Formats that are known but not read are [`Error::Unsupported`], damaged files
+/// [`Error::Malformed`].
 pub fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     whole(bytes, file)?;
     decode_else(bytes, file, READ)
 }
 
 /// [`decode`] for textures: a JPEG that is cut off is shown as far as it goes; the message says so.
-pub(crate) fn decode_texture(bytes: &[u8], file: &str) -> Result<(Plane<[u8; 4]>, Option<String>), Error> {
+pub(crate) fn decode_texture(
+    bytes: &[u8],
+    file: &str,
+) -> Result<(Plane<[u8; 4]>, Option<String>), Error> {
     let plane = decode_else(bytes, file, READ)?;
     Ok((plane, whole(bytes, file).err().map(|e| e.to_string())))
 }
@@ -49,16 +60,21 @@ pub(crate) fn whole(bytes: &[u8], file: &str) -> Result<(), Error> {
     Ok(())
 }
 
-/// Whether a JPEG's markers lead to the end of an image: segments by their lengths, the data of scans byte by byte.
+/// Whether a JPEG's markers lead to the end of an image: segments by their lengths, the data of
+/// scans byte by byte.
 fn has_jpeg_end(bytes: &[u8]) -> bool {
     let mut at = 2;
-    while let Some(found) = bytes.get(at..).and_then(|rest| rest.windows(2).position(is_jpeg_marker)) {
+    while let Some(found) =
+        bytes.get(at..).and_then(|rest| rest.windows(2).position(is_jpeg_marker))
+    {
         at += found + 2;
         match bytes[at - 1] {
             0xd9 => return true,
             0x01 | 0xd8 => {}
             _ => match bytes.get(at..at + 2) {
-                Some(length) => at += usize::from(u16::from_be_bytes([length[0], length[1]])).max(2),
+                Some(length) => {
+                    at += usize::from(u16::from_be_bytes([length[0], length[1]])).max(2)
+                }
                 None => return false,
             },
         }
@@ -72,9 +88,15 @@ fn is_jpeg_marker(pair: &[u8]) -> bool {
 }
 
 /// [`decode`]; `readable` is what the message about another format says in its place.
-pub(crate) fn decode_else(bytes: &[u8], file: &str, readable: &str) -> Result<Plane<[u8; 4]>, Error> {
-    let unsupported =
-        |what: &str| Error::Unsupported { file: file.to_owned(), what: format!("{what} is not read; {readable}") };
+pub(crate) fn decode_else(
+    bytes: &[u8],
+    file: &str,
+    readable: &str,
+) -> Result<Plane<[u8; 4]>, Error> {
+    let unsupported = |what: &str| Error::Unsupported {
+        file: file.to_owned(),
+        what: format!("{what} is not read; {readable}"),
+    };
     match bytes {
         [] => Err(Error::malformed(file, Place::File, "empty file")),
         [0x89, b'P', b'N', b'G', ..] => decode_png(bytes, file),
@@ -139,14 +161,19 @@ fn decode_coded(codec: Codec, _: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Er
 
 /// A TGA has no magic number: look at its colour map type, image type and depth.
 fn has_tga_header(bytes: &[u8]) -> bool {
-    matches!(bytes, [_, 0 | 1, 1 | 2 | 3 | 9 | 10 | 11, ..]) && matches!(bytes.get(16), Some(8 | 15 | 16 | 24 | 32))
+    matches!(bytes, [_, 0 | 1, 1 | 2 | 3 | 9 | 10 | 11, ..])
+        && matches!(bytes.get(16), Some(8 | 15 | 16 | 24 | 32))
 }
 
 /// Refuses pictures beyond the limits.
 pub(crate) fn check_size(width: u32, height: u32, file: &str) -> Result<(), Error> {
-    let fits = width <= MAX_SIDE && height <= MAX_SIDE && u64::from(width) * u64::from(height) <= MAX_PIXELS;
+    let fits = width <= MAX_SIDE
+        && height <= MAX_SIDE
+        && u64::from(width) * u64::from(height) <= MAX_PIXELS;
     if width == 0 || height == 0 || !fits {
-        let what = format!("{width} x {height} pixels; 1 to {MAX_SIDE} a side and {MAX_PIXELS} in all are read");
+        let what = format!(
+            "{width} x {height} pixels; 1 to {MAX_SIDE} a side and {MAX_PIXELS} in all are read"
+        );
         return Err(Error::malformed(file, Place::File, what));
     }
     Ok(())
@@ -160,7 +187,8 @@ fn plane(width: u32, height: u32, rgba: Vec<[u8; 4]>, file: &str) -> Result<Plan
 
 fn decode_png(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     let bad = |e: png::DecodingError| Error::malformed(file, Place::File, format!("PNG: {e}"));
-    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: DECODER_MEMORY });
+    let mut decoder =
+        png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: DECODER_MEMORY });
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
@@ -168,36 +196,50 @@ fn decode_png(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     let (width, height) = (header.width, header.height);
     check_size(width, height, file)?;
     let mut reader = decoder.read_info().map_err(bad)?;
-    let size = reader.output_buffer_size().ok_or_else(|| Error::malformed(file, Place::File, "PNG: too large"))?;
+    let size = reader
+        .output_buffer_size()
+        .ok_or_else(|| Error::malformed(file, Place::File, "PNG: too large"))?;
     let mut data = vec![0; size];
     let info = reader.next_frame(&mut data).map_err(bad)?;
     data.truncate(info.buffer_size());
     let rgba = match info.color_type {
         png::ColorType::Grayscale => data.iter().map(|&l| [l, l, l, 255]).collect(),
-        png::ColorType::GrayscaleAlpha => data.as_chunks().0.iter().map(|&[l, a]| [l, l, l, a]).collect(),
+        png::ColorType::GrayscaleAlpha => {
+            data.as_chunks().0.iter().map(|&[l, a]| [l, l, l, a]).collect()
+        }
         png::ColorType::Rgb => data.as_chunks().0.iter().map(|&[r, g, b]| [r, g, b, 255]).collect(),
         png::ColorType::Rgba => rgba_from_bytes(data),
-        png::ColorType::Indexed => return Err(Error::malformed(file, Place::File, "PNG: palette without entries")),
+        png::ColorType::Indexed => {
+            return Err(Error::malformed(file, Place::File, "PNG: palette without entries"));
+        }
     };
     plane(width, height, rgba, file)
 }
 
-/// The channels of a PNG file of 16 bits a channel; `None` for anything else, damaged files among it.
+/// The channels of a PNG file of 16 bits a channel; `None` for anything else, damaged files among
+/// it.
 pub fn decode_deep(bytes: &[u8]) -> Option<Plane<[u16; 4]>> {
-    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: DECODER_MEMORY });
+    let mut decoder =
+        png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: DECODER_MEMORY });
     let header = decoder.read_header_info().ok()?;
     let (width, height, color) = (header.width, header.height, header.color_type);
     check_size(width, height, "").ok()?;
-    let mut reader = decoder.read_info().ok().filter(|r| r.info().bit_depth == png::BitDepth::Sixteen)?;
+    let mut reader =
+        decoder.read_info().ok().filter(|r| r.info().bit_depth == png::BitDepth::Sixteen)?;
     let mut data = vec![0; reader.output_buffer_size()?];
     let info = reader.next_frame(&mut data).ok()?;
     data.truncate(info.buffer_size());
-    let values: Vec<u16> = data.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)).collect();
+    let values: Vec<u16> =
+        data.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)).collect();
     const OPAQUE: u16 = u16::MAX;
     let rgba = match color {
         png::ColorType::Grayscale => values.iter().map(|&l| [l, l, l, OPAQUE]).collect(),
-        png::ColorType::GrayscaleAlpha => values.as_chunks().0.iter().map(|&[l, a]| [l, l, l, a]).collect(),
-        png::ColorType::Rgb => values.as_chunks().0.iter().map(|&[r, g, b]| [r, g, b, OPAQUE]).collect(),
+        png::ColorType::GrayscaleAlpha => {
+            values.as_chunks().0.iter().map(|&[l, a]| [l, l, l, a]).collect()
+        }
+        png::ColorType::Rgb => {
+            values.as_chunks().0.iter().map(|&[r, g, b]| [r, g, b, OPAQUE]).collect()
+        }
         png::ColorType::Rgba => values.as_chunks().0.to_vec(),
         png::ColorType::Indexed => return None,
     };
@@ -206,7 +248,8 @@ pub fn decode_deep(bytes: &[u8]) -> Option<Plane<[u16; 4]>> {
 
 /// Groups bytes into pixels, without a copy where the allocation allows it.
 fn rgba_from_bytes(bytes: Vec<u8>) -> Vec<[u8; 4]> {
-    bytemuck::allocation::try_cast_vec(bytes).unwrap_or_else(|(_, bytes)| bytes.as_chunks().0.to_vec())
+    bytemuck::allocation::try_cast_vec(bytes)
+        .unwrap_or_else(|(_, bytes)| bytes.as_chunks().0.to_vec())
 }
 
 #[cfg(test)]
@@ -244,12 +287,25 @@ mod tests {
             read(png_of(ColorType::Grayscale, BitDepth::Sixteen, 1, 1, &[0x80, 0xff], none)),
             [[128, 128, 128, 255]]
         );
-        let deep = decode_deep(&png_of(ColorType::Grayscale, BitDepth::Sixteen, 1, 1, &[0x80, 0xfe], none));
+        let deep = decode_deep(&png_of(
+            ColorType::Grayscale,
+            BitDepth::Sixteen,
+            1,
+            1,
+            &[0x80, 0xfe],
+            none,
+        ));
         assert_eq!(deep.unwrap().into_data(), [[0x80fe, 0x80fe, 0x80fe, 0xffff]]);
-        assert!(decode_deep(&png_of(ColorType::Rgb, BitDepth::Eight, 1, 1, &[1, 2, 3], none)).is_none());
-        assert_eq!(read(png_of(ColorType::GrayscaleAlpha, BitDepth::Eight, 1, 1, &[9, 7], none)), [[9, 9, 9, 7]]);
+        assert!(
+            decode_deep(&png_of(ColorType::Rgb, BitDepth::Eight, 1, 1, &[1, 2, 3], none)).is_none()
+        );
         assert_eq!(
-            read(png_of(ColorType::Rgb, BitDepth::Eight, 1, 1, &[1, 2, 3], |e| e.set_trns(vec![0, 1, 0, 2, 0, 3]))),
+            read(png_of(ColorType::GrayscaleAlpha, BitDepth::Eight, 1, 1, &[9, 7], none)),
+            [[9, 9, 9, 7]]
+        );
+        assert_eq!(
+            read(png_of(ColorType::Rgb, BitDepth::Eight, 1, 1, &[1, 2, 3], |e| e
+                .set_trns(vec![0, 1, 0, 2, 0, 3]))),
             [[1, 2, 3, 0]]
         );
         assert_eq!(
@@ -291,28 +347,43 @@ mod tests {
 
     #[test]
     fn a_jpeg_that_is_cut_off_is_told() {
-        let picture = Plane::from_rows(16, 16, (0..256).map(|i| [(i * 37) as u8, i as u8, 9, 255]).collect()).unwrap();
+        let picture =
+            Plane::from_rows(16, 16, (0..256).map(|i| [(i * 37) as u8, i as u8, 9, 255]).collect())
+                .unwrap();
         let bytes = crate::encode::jpeg(&picture, 90).unwrap();
         assert!(decode_texture(&bytes, "a.jpg").unwrap().1.is_none());
-        assert!(decode_texture(&[&bytes[..], &[0; 9]].concat(), "a.jpg").unwrap().1.is_none(), "padding is harmless");
+        assert!(
+            decode_texture(&[&bytes[..], &[0; 9]].concat(), "a.jpg").unwrap().1.is_none(),
+            "padding is harmless"
+        );
         let cut = &bytes[..bytes.len() - 20];
-        let message = format!("a.jpg: byte {}: JPEG: the file ends before the image does", cut.len());
+        let message =
+            format!("a.jpg: byte {}: JPEG: the file ends before the image does", cut.len());
         assert_eq!(decode_texture(cut, "a.jpg").unwrap().1.as_ref(), Some(&message));
         assert_eq!(decode(cut, "a.jpg").unwrap_err().to_string(), message);
     }
 
     /// The colours of a picture of three by two pixels.
-    const SIX: [[u8; 4]; 6] =
-        [[255, 0, 0, 255], [0, 255, 0, 128], [0, 0, 255, 255], [1, 2, 3, 255], [250, 128, 4, 0], [9, 8, 7, 255]];
+    const SIX: [[u8; 4]; 6] = [
+        [255, 0, 0, 255],
+        [0, 255, 0, 128],
+        [0, 0, 255, 255],
+        [1, 2, 3, 255],
+        [250, 128, 4, 0],
+        [9, 8, 7, 255],
+    ];
 
     fn of_hex(text: &str) -> Vec<u8> {
-        (0..text.len() / 2).map(|k| u8::from_str_radix(&text[2 * k..2 * k + 2], 16).unwrap()).collect()
+        (0..text.len() / 2)
+            .map(|k| u8::from_str_radix(&text[2 * k..2 * k + 2], 16).unwrap())
+            .collect()
     }
 
     #[test]
     fn pictures_of_old_programs_and_of_the_web() {
         let opaque = SIX.map(|[r, g, b, _]| [r, g, b, 255]);
-        let tga = "000002000000000000000000030002002008030201ff0480fa00070809ff0000ffff00ff0080ff0000ff";
+        let tga =
+            "000002000000000000000000030002002008030201ff0480fa00070809ff0000ffff00ff0080ff0000ff";
         let runs = "00000a00000000000000000003000200200802030201ff0480fa00070809ff020000ffff00ff0080ff0000ff";
         let bmp = "424d4e0000000000000036000000280000000300000002000000010018000000000018000000c40e0000c40e0000000000\
                    00000000000302010480fa0708090000000000ff00ff00ff0000000000";
@@ -328,7 +399,15 @@ mod tests {
                     000101030001000000020000000201030004000000ac00000003010300010000000500000006010300010000000200\
                     000011010400010000000800000015010300010000000400000016010300010000000200000017010400010000001a\
                     0000001c0103000100000001000000520103000100000002000000000000000800080008000800";
-        let files = [(tga, SIX), (runs, SIX), (bmp, opaque), (webp, SIX), (gif, opaque), (tiff, SIX), (lzw, SIX)];
+        let files = [
+            (tga, SIX),
+            (runs, SIX),
+            (bmp, opaque),
+            (webp, SIX),
+            (gif, opaque),
+            (tiff, SIX),
+            (lzw, SIX),
+        ];
         for (number, (file, colors)) in files.into_iter().enumerate() {
             let bytes = of_hex(file);
             let picture = decode(&bytes, "a").unwrap();
@@ -342,18 +421,26 @@ mod tests {
         let mut large = of_hex(gif);
         large[6..10].copy_from_slice(&[0, 0x40, 0, 0x40]);
         let error = decode(&large, "a.gif").unwrap_err().to_string();
-        assert!(error.contains("16384 x 16384 pixels are announced, the file has 60 bytes"), "{error}");
+        assert!(
+            error.contains("16384 x 16384 pixels are announced, the file has 60 bytes"),
+            "{error}"
+        );
         let grey = of_hex("00000300000000000000000002000100080007c8");
         assert_eq!(decode(&grey, "a").unwrap().into_data(), [[7, 7, 7, 255], [200, 200, 200, 255]]);
     }
 
     #[test]
     fn packed_blocks_of_dds() {
-        // Four by four pixels: red and blue are the ends, the rows below each other are red, blue and the mixtures between.
+        // Four by four pixels: red and blue are the ends, the rows below each other are red, blue
+        // and the mixtures between.
         let header = |packing: &[u8; 4]| {
             let numbers = [124u32, 0x0008_1007, 4, 4, 8, 0, 0];
-            let mut bytes =
-                [b"DDS ".to_vec(), numbers.iter().flat_map(|n| n.to_le_bytes()).collect(), vec![0; 44]].concat();
+            let mut bytes = [
+                b"DDS ".to_vec(),
+                numbers.iter().flat_map(|n| n.to_le_bytes()).collect(),
+                vec![0; 44],
+            ]
+            .concat();
             bytes.extend([32u32, 4].iter().flat_map(|n| n.to_le_bytes()));
             bytes.extend(packing);
             bytes.resize(128, 0);
@@ -367,11 +454,14 @@ mod tests {
         for (at, &[r, g, b, a]) in picture.data().iter().enumerate() {
             assert_eq!(([r, g, b], a), (rows[at / 4], 255), "pixel {at}");
         }
-        let dxt3 = [header(b"DXT3"), vec![0xf0, 0xf0, 0, 0, 0x88, 0x88, 0xff, 0xff], block.to_vec()].concat();
+        let dxt3 =
+            [header(b"DXT3"), vec![0xf0, 0xf0, 0, 0, 0x88, 0x88, 0xff, 0xff], block.to_vec()]
+                .concat();
         let picture = decode(&dxt3, "a.dds").unwrap();
         assert_eq!(picture.data()[..2], [[255, 0, 0, 0], [255, 0, 0, 255]]);
         assert_eq!((picture.data()[4], picture.data()[8]), ([0, 0, 255, 0], [170, 0, 85, 136]));
-        let other = decode(&[header(b"DX9!"), block.to_vec()].concat(), "a.dds").unwrap_err().to_string();
+        let other =
+            decode(&[header(b"DX9!"), block.to_vec()].concat(), "a.dds").unwrap_err().to_string();
         assert!(other.starts_with("a.dds: DDS: "), "{other}");
         assert!(decode(&dxt1[..dxt1.len() - 1], "a.dds").is_err());
     }
@@ -382,7 +472,12 @@ mod tests {
         for cut in 0..good.len() - 12 {
             assert!(decode(&good[..cut], "a.png").is_err(), "cut at {cut}");
         }
-        assert!(decode(b"\xabKTX 20", "a.ktx2").unwrap_err().to_string().contains("KTX is not read; PNG, JPEG, TGA"));
+        assert!(
+            decode(b"\xabKTX 20", "a.ktx2")
+                .unwrap_err()
+                .to_string()
+                .contains("KTX is not read; PNG, JPEG, TGA")
+        );
         assert!(decode(b"II*\0", "a.tif").unwrap_err().to_string().starts_with("a.tif: TIFF: "));
         assert!(decode(b"\xff\xd8\xff\xe0junk", "a.jpg").is_err());
     }

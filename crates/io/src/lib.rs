@@ -1,13 +1,21 @@
 //! Floor 3: model files in, pictures out.
 //!
-//! Readers take bytes and a [`Resolver`] for the files that a model names (buffers, materials, textures); nothing here
-//! touches the file system or the clock, so the same code runs in a browser.
+//! Readers take bytes and a [`Resolver`] for the files that a model names (buffers, materials,
+//! textures); nothing here touches the file system or the clock, so the same code runs in a
+//! browser.
 //!
-//! Each format is a feature of its own name, on by default: `obj`, `stl`, `ply`, `off`, `gltf`; `images` reads textures of
-//! other formats than PNG and writes JPEG. A file of a format that is left out is refused with the name of its feature.
+//! Each format is a feature of its own name, on by default: `obj`, `stl`, `ply`, `off`, `gltf`;
+//! `images` reads textures of other formats than PNG and writes JPEG. A file of a format that is
+//! left out is refused with the name of its feature.
 #![forbid(unsafe_code)]
 #![cfg_attr(
-    not(all(feature = "obj", feature = "stl", feature = "ply", feature = "off", feature = "gltf")),
+    not(all(
+        feature = "obj",
+        feature = "stl",
+        feature = "ply",
+        feature = "off",
+        feature = "gltf"
+    )),
     allow(
         dead_code,
         unused_variables,
@@ -63,16 +71,23 @@ pub use resolve::{NoFiles, ResolveError, Resolver};
 use vitral_exec::Workers;
 use vitral_scene::{Scene, normals};
 
-/// Reads a model or scene file of any readable [`Format`], known by its content first, by its extension second.
+/// Reads a model or scene file of any readable [`Format`], known by its content first, by its
+/// extension second.
 ///
-/// `file` is its name, for messages and for the extension; `-` for what came in by standard input. `resolver` gives the
-/// files that it names. What is odd but readable is told in [`Scene::warnings`]. The scene does not depend on the number
-/// of `workers`.
+/// `file` is its name, for messages and for the extension; `-` for what came in by standard input.
+/// `resolver` gives the files that it names. What is odd but readable is told in
+/// [`Scene::warnings`]. The scene does not depend on the number of `workers`.
 ///
 /// # Errors
-/// [`Error::Malformed`] says where the file breaks the rules of its format, [`Error::Missing`] names a file that it
-/// cannot do without, [`Error::Unsupported`] a format or feature that is not read.
-pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
+/// [`Error::Malformed`] says where the file breaks the rules of its format, [`Error::Missing`]
+/// names a file that it cannot do without, [`Error::Unsupported`] a format or feature that is not
+/// read.
+pub fn load(
+    bytes: &[u8],
+    file: &str,
+    resolver: &dyn Resolver,
+    workers: &Workers,
+) -> Result<Scene, Error> {
     load_at(bytes, file, resolver, workers, None)
 }
 

@@ -1,5 +1,6 @@
-//! The readers of model formats, and what they share after reading: the usual upward axis of the format, and materials
-//! for vertex colours. Scene files refer to models and therefore stand above this file.
+//! The readers of model formats, and what they share after reading: the usual upward axis of the
+//! format, and materials for vertex colours. Scene files refer to models and therefore stand above
+//! this file.
 
 #[cfg(feature = "gltf")]
 use crate::gltf;
@@ -37,7 +38,13 @@ pub(crate) fn load(
         #[cfg(feature = "off")]
         Format::Off => off::load(bytes, file, workers),
         Format::SceneJson => return None,
-        #[cfg(not(all(feature = "gltf", feature = "obj", feature = "stl", feature = "ply", feature = "off")))]
+        #[cfg(not(all(
+            feature = "gltf",
+            feature = "obj",
+            feature = "stl",
+            feature = "ply",
+            feature = "off"
+        )))]
         _ => Err(Error::Unsupported { file: file.to_owned(), what: format.left_out() }),
     };
     Some(scene.map(|scene| completed(scene, format, file, workers)))

@@ -1,26 +1,33 @@
 //! MTL, the material library of OBJ files.
 //!
-//! A library is a list of `newmtl NAME` blocks of statements. The illumination number (`illum`) says which of them
-//! count: 0 is the constant colour `Kd` without light, 1 has no highlights, 2 and above have them (their reflections
-//! and refractions belong to ray tracing: from 3 to 7 the surface is a mirror, in the proportion `Ks`; `Ni` bends light). Without `illum`, a `Ks` gives highlights.
+//! A library is a list of `newmtl NAME` blocks of statements. The illumination number (`illum`)
+//! says which of them count: 0 is the constant colour `Kd` without light, 1 has no highlights, 2
+//! and above have them (their reflections and refractions belong to ray tracing: from 3 to 7 the
+//! surface is a mirror, in the proportion `Ks`; `Ni` bends light). Without `illum`, a `Ks` gives
+//! highlights.
 //!
-//! What the format leaves open is chosen here: missing `Ka` is 0.2, `Kd` 0.8, `Ks` 0, `Ns` 10, `Ni` 1; `Ns` below 1
-//! counts as 1 (an exponent of 0 would paint the whole surface with its highlight); colours are those of
-//! displays (sRGB), as the programs that write them show them. Opacity is `d`, else `1 - Tr`, else, for the transparent models (`illum` 4, 6, 7, 9),
-//! `1 - mean(Tf)`, and the filter is the hue of `Tf`; elsewhere `Tf` is ignored, as exporters write `Tf 1 1 1` into
-//! opaque materials. `Tr 1` without `d` is opaque, with a warning: MeshLab means that by it, and nobody wants a surface that
-//! is not seen.
+//! What the format leaves open is chosen here: missing `Ka` is 0.2, `Kd` 0.8, `Ks` 0, `Ns` 10, `Ni`
+//! 1; `Ns` below 1 counts as 1 (an exponent of 0 would paint the whole surface with its highlight);
+//! colours are those of displays (sRGB), as the programs that write them show them. Opacity is `d`,
+//! else `1 - Tr`, else, for the transparent models (`illum` 4, 6, 7, 9), `1 - mean(Tf)`, and the
+//! filter is the hue of `Tf`; elsewhere `Tf` is ignored, as exporters write `Tf 1 1 1` into opaque
+//! materials. `Tr 1` without `d` is opaque, with a warning: MeshLab means that by it, and nobody
+//! wants a surface that is not seen.
 //!
-//! A material with `Pr` (roughness) or `Pm` (metal), or maps of them, is one of metallic-roughness with the base colour `Kd`;
-//! what is missing follows from `Ns` as Blender writes it, `Ns = 1000 (1 - roughness)^2`, or is 0.5 and 0.
+//! A material with `Pr` (roughness) or `Pm` (metal), or maps of them, is one of metallic-roughness
+//! with the base colour `Kd`; what is missing follows from `Ns` as Blender writes it,
+//! `Ns = 1000 (1 - roughness)^2`, or is 0.5 and 0.
 //!
-//! Maps: `map_Kd` (shown alone: many programs leave the colour of their viewport in `Kd`, which is kept as the tint; sRGB; its alpha, unless `map_d` is there, blends in a material that `d` makes transparent and cuts out
-//! or blends in others), `map_Pr`, `map_Pm` (linear), `bump` or `map_Bump` (a height map, or a normal map, which programs
-//! write there, too), `map_Ks` (linear), `map_Ke`
-//! (sRGB), `map_d` (linear; the channel that `-imfchan` names, else alpha where the image has any, else luminance) and
-//! `norm` (a normal map). Options stand before the name or behind it. Of them `-s`, `-o`, `-clamp`, `-bm` (of bump maps) and
-//! `-imfchan` are obeyed; others, if they would change the picture, are told. Texture coordinates of OBJ run upwards, ours run downwards from the image's top: the loader
-//! turns `v` to `1 - v`, and so scale and offset along v become `s v + 1 - s - o`.
+//! Maps: `map_Kd` (shown alone: many programs leave the colour of their viewport in `Kd`, which is
+//! kept as the tint; sRGB; its alpha, unless `map_d` is there, blends in a material that `d` makes
+//! transparent and cuts out or blends in others), `map_Pr`, `map_Pm` (linear), `bump` or `map_Bump`
+//! (a height map, or a normal map, which programs write there, too), `map_Ks` (linear), `map_Ke`
+//! (sRGB), `map_d` (linear; the channel that `-imfchan` names, else alpha where the image has any,
+//! else luminance) and `norm` (a normal map). Options stand before the name or behind it. Of them
+//! `-s`, `-o`, `-clamp`, `-bm` (of bump maps) and `-imfchan` are obeyed; others, if they would
+//! change the picture, are told. Texture coordinates of OBJ run upwards, ours run downwards from
+//! the image's top: the loader turns `v` to `1 - v`, and so scale and offset along v become
+//! `s v + 1 - s - o`.
 //!
 //! Source: \[MTL\].
 
@@ -87,10 +94,13 @@ pub(crate) fn parse(bytes: &[u8], warnings: &mut Warnings) -> Vec<MtlMaterial> {
         } else if let Some(material) = materials.last_mut() {
             material.statement(keyword, &mut cursor, warnings);
         } else {
-            warnings.note("before newmtl", place, || format!("`{}` before any newmtl", show(keyword)));
+            warnings
+                .note("before newmtl", place, || format!("`{}` before any newmtl", show(keyword)));
         }
         if cursor.take_ill_formed() {
-            warnings.note("number", Place::Line(cursor.line()), || "ill-formed number; its beginning is used".into());
+            warnings.note("number", Place::Line(cursor.line()), || {
+                "ill-formed number; its beginning is used".into()
+            });
         }
         cursor.next_line();
     }
@@ -101,14 +111,16 @@ pub(crate) fn parse(bytes: &[u8], warnings: &mut Warnings) -> Vec<MtlMaterial> {
 /// Names the materials whose `Tr 1` is not obeyed, the first few of them.
 fn tell_of_reversed(materials: &[MtlMaterial], warnings: &mut Warnings) {
     const NAMED: usize = 4;
-    let names: Vec<&str> = materials.iter().filter(|m| m.is_reversed()).map(|m| m.name.as_str()).collect();
+    let names: Vec<&str> =
+        materials.iter().filter(|m| m.is_reversed()).map(|m| m.name.as_str()).collect();
     if names.is_empty() {
         return;
     }
     warnings.note("reversed Tr", Place::File, || {
         let more = names.len().saturating_sub(NAMED);
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        let list = names.iter().take(NAMED).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+        let list =
+            names.iter().take(NAMED).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         format!("`Tr 1` without `d` would be invisible, it is taken for opaque: {list}{more}")
     });
 }
@@ -128,12 +140,23 @@ impl MtlMaterial {
             b"ke" => self.ke = color(cursor, warnings).or(self.ke),
             b"tf" => self.tf = color(cursor, warnings).or(self.tf),
             b"ns" => self.ns = number(cursor, warnings).or(self.ns),
-            b"d" => self.d = dissolve(cursor, warnings).map(|d| share(d, "d", line, warnings)).or(self.d),
-            b"tr" => self.tr = number(cursor, warnings).map(|t| share(t, "Tr", line, warnings)).or(self.tr),
-            b"ni" => self.ni = number(cursor, warnings).and_then(|n| index(n, line, warnings)).or(self.ni),
+            b"d" => {
+                self.d =
+                    dissolve(cursor, warnings).map(|d| share(d, "d", line, warnings)).or(self.d)
+            }
+            b"tr" => {
+                self.tr =
+                    number(cursor, warnings).map(|t| share(t, "Tr", line, warnings)).or(self.tr)
+            }
+            b"ni" => {
+                self.ni =
+                    number(cursor, warnings).and_then(|n| index(n, line, warnings)).or(self.ni)
+            }
             b"illum" => {
                 self.illum = cursor.integer().filter(|i| (0..=10).contains(i)).or_else(|| {
-                    warnings.note("illum", Place::Line(line), || "illum must be 0 to 10; ignored".into());
+                    warnings.note("illum", Place::Line(line), || {
+                        "illum must be 0 to 10; ignored".into()
+                    });
                     self.illum
                 })
             }
@@ -142,8 +165,14 @@ impl MtlMaterial {
             b"map_ke" => self.map_ke = map(cursor, warnings),
             b"map_d" => self.map_d = map(cursor, warnings),
             b"norm" => self.norm = map(cursor, warnings),
-            b"pr" => self.pr = number(cursor, warnings).map(|r| share(r, "Pr", line, warnings)).or(self.pr),
-            b"pm" => self.pm = number(cursor, warnings).map(|m| share(m, "Pm", line, warnings)).or(self.pm),
+            b"pr" => {
+                self.pr =
+                    number(cursor, warnings).map(|r| share(r, "Pr", line, warnings)).or(self.pr)
+            }
+            b"pm" => {
+                self.pm =
+                    number(cursor, warnings).map(|m| share(m, "Pm", line, warnings)).or(self.pm)
+            }
             b"map_pr" => self.map_pr = map(cursor, warnings),
             b"map_pm" => self.map_pm = map(cursor, warnings),
             b"bump" | b"map_bump" => self.bump = map(cursor, warnings).or(self.bump.take()),
@@ -154,19 +183,25 @@ impl MtlMaterial {
             b"map_ka" => {
                 let ambient = map(cursor, warnings).map(|m| m.path);
                 if self.map_kd.as_ref().is_some_and(|m| Some(&m.path) != ambient.as_ref()) {
-                    warnings
-                        .note("map_Ka", Place::Line(line), || "map_Ka is not used: ambient light takes map_Kd".into());
+                    warnings.note("map_Ka", Place::Line(line), || {
+                        "map_Ka is not used: ambient light takes map_Kd".into()
+                    });
                 }
             }
             b"pc" | b"pcr" => {
                 let what = || format!("`{}` is not used: clear coats are not shown", show(keyword));
                 warnings.note("mtl coat", Place::Line(line), what);
             }
-            b"disp" | b"map_disp" | b"decal" | b"map_ns" | b"map_tr" | b"map_ni" | b"refl" | b"map_refl"
-            | b"map_aat" | b"sharpness" | b"ps" | b"aniso" | b"anisor" | b"map_ps" => {
-                warnings.note("mtl unused", Place::Line(line), || format!("`{}` is not used", show(keyword)));
+            b"disp" | b"map_disp" | b"decal" | b"map_ns" | b"map_tr" | b"map_ni" | b"refl"
+            | b"map_refl" | b"map_aat" | b"sharpness" | b"ps" | b"aniso" | b"anisor"
+            | b"map_ps" => {
+                warnings.note("mtl unused", Place::Line(line), || {
+                    format!("`{}` is not used", show(keyword))
+                });
             }
-            _ => warnings.note("mtl unknown", Place::Line(line), || format!("unknown statement `{}`", show(keyword))),
+            _ => warnings.note("mtl unknown", Place::Line(line), || {
+                format!("unknown statement `{}`", show(keyword))
+            }),
         }
     }
 
@@ -175,7 +210,11 @@ impl MtlMaterial {
         let lit = self.illum != Some(0);
         let shiny = self.illum.is_none_or(|i| i >= 2);
         let map_ks = self.map_ks.as_ref().filter(|_| shiny);
-        let ks = if shiny { self.ks.unwrap_or(if map_ks.is_some() { [1.0; 3] } else { [0.0; 3] }) } else { [0.0; 3] };
+        let ks = if shiny {
+            self.ks.unwrap_or(if map_ks.is_some() { [1.0; 3] } else { [0.0; 3] })
+        } else {
+            [0.0; 3]
+        };
         let (opacity, filter) = (self.opacity(), self.filter());
         let is_metallic_roughness = self.has_roughness();
         let is_transparent = opacity < 1.0 || self.map_d.is_some();
@@ -195,22 +234,27 @@ impl MtlMaterial {
             (None, Some(_)) => texture(&self.bump, Usage::Bump),
             _ => texture(&self.norm, Usage::Data),
         };
-        let normal_scale = self.norm.as_ref().or(self.bump.as_ref()).and_then(|m| m.strength).unwrap_or(1.0);
-        let opacity_usage = Usage::Grey(self.map_d.as_ref().and_then(|m| m.channel).unwrap_or(Channel::Matte));
+        let normal_scale =
+            self.norm.as_ref().or(self.bump.as_ref()).and_then(|m| m.strength).unwrap_or(1.0);
+        let opacity_usage =
+            Usage::Grey(self.map_d.as_ref().and_then(|m| m.channel).unwrap_or(Channel::Matte));
         Material {
             name: self.name.clone(),
-            reflectance: if is_metallic_roughness { self.metallic_roughness() } else { self.phong(ks) },
+            reflectance: if is_metallic_roughness {
+                self.metallic_roughness()
+            } else {
+                self.phong(ks)
+            },
             srgb_colors: true,
             texture_tint: self.kd.filter(|kd| self.map_kd.is_some() && *kd != [1.0; 3]),
             emission: self.ke.unwrap_or(if self.map_ke.is_some() { [1.0; 3] } else { [0.0; 3] }),
             opacity,
             filter,
             alpha_mode: if is_transparent { AlphaMode::Blend } else { AlphaMode::Opaque },
-            ior: self.ni.filter(|ni| !is_metallic_roughness || *ni > 1.0).unwrap_or(if is_metallic_roughness {
-                1.5
-            } else {
-                1.0
-            }),
+            ior: self
+                .ni
+                .filter(|ni| !is_metallic_roughness || *ni > 1.0)
+                .unwrap_or(if is_metallic_roughness { 1.5 } else { 1.0 }),
             // The models with ray-traced reflection.
             mirror: matches!(self.illum, Some(3..=7)),
             unlit: !lit,
@@ -253,16 +297,23 @@ impl MtlMaterial {
 
     /// The maps of roughness and metal as one texture, placed as the first of them.
     fn roughness_texture(&self, library: &str, requests: &mut Requests) -> Option<TextureRef> {
-        let mut image = |map: &Option<Map>| map.as_ref().map(|m| requests.image(library, m.line, &m.path));
+        let mut image =
+            |map: &Option<Map>| map.as_ref().map(|m| requests.image(library, m.line, &m.path));
         let images = [image(&self.map_pr), image(&self.map_pm)];
         let map = self.map_pr.as_ref().or(self.map_pm.as_ref())?;
         let number = requests.add_metallic_roughness(images);
-        Some(TextureRef { transform: map.transform(), sampler: map.sampler(), ..TextureRef::new(number) })
+        Some(TextureRef {
+            transform: map.transform(),
+            sampler: map.sampler(),
+            ..TextureRef::new(number)
+        })
     }
 
     /// The colour of what passes, apart from how much: `kt` times it is `Tf` where `Tf` gives both.
     fn filter(&self) -> [f32; 3] {
-        let Some(tf) = self.tf.filter(|_| matches!(self.illum, Some(4 | 6 | 7 | 9))) else { return [1.0; 3] };
+        let Some(tf) = self.tf.filter(|_| matches!(self.illum, Some(4 | 6 | 7 | 9))) else {
+            return [1.0; 3];
+        };
         let tf = tf.map(|c| c.clamp(0.0, 1.0));
         let whole = match (self.d, self.tr) {
             (None, None) => (tf[0] + tf[1] + tf[2]) / 3.0,
@@ -271,7 +322,8 @@ impl MtlMaterial {
         if whole > 0.0 { tf.map(|c| c / whole) } else { [1.0; 3] }
     }
 
-    /// Whether the material would be invisible by `Tr` alone, which some exporters write for opaque ones.
+    /// Whether the material would be invisible by `Tr` alone, which some exporters write for opaque
+    /// ones.
     fn is_reversed(&self) -> bool {
         self.d.is_none() && self.tr == Some(1.0)
     }
@@ -281,7 +333,8 @@ impl MtlMaterial {
             return 1.0;
         }
         let filtered = matches!(self.illum, Some(4 | 6 | 7 | 9));
-        let from_filter = self.tf.filter(|_| filtered).map(|tf| 1.0 - (tf[0] + tf[1] + tf[2]) / 3.0);
+        let from_filter =
+            self.tf.filter(|_| filtered).map(|tf| 1.0 - (tf[0] + tf[1] + tf[2]) / 3.0);
         self.d.or(self.tr.map(|t| 1.0 - t)).or(from_filter).unwrap_or(1.0).clamp(0.0, 1.0)
     }
 }
@@ -304,7 +357,10 @@ fn color(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<[f32; 3]> {
     if cursor.at_line_end() {
         return Some([red; 3]);
     }
-    let (green, blue) = (number(cursor, warnings)?, if cursor.at_line_end() { None } else { number(cursor, warnings) });
+    let (green, blue) = (
+        number(cursor, warnings)?,
+        if cursor.at_line_end() { None } else { number(cursor, warnings) },
+    );
     Some([red, green, blue.unwrap_or(green)])
 }
 
@@ -313,8 +369,9 @@ fn number(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<f32> {
     let value = cursor.float().filter(|v| v.is_finite());
     if value.is_none() {
         let word = show(cursor.word());
-        warnings
-            .note("mtl number", Place::Line(line), || format!("`{word}` is not a number; the statement is ignored"));
+        warnings.note("mtl number", Place::Line(line), || {
+            format!("`{word}` is not a number; the statement is ignored")
+        });
     }
     value
 }
@@ -345,18 +402,21 @@ fn dissolve(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<f32> {
     let mut ahead = *cursor;
     if ahead.word() == b"-halo" {
         *cursor = ahead;
-        warnings.note("halo", Place::Line(cursor.line()), || "`-halo` is not used: opacity is even".into());
+        warnings.note("halo", Place::Line(cursor.line()), || {
+            "`-halo` is not used: opacity is even".into()
+        });
     }
     number(cursor, warnings)
 }
 
-/// The name of a file as resolvers take it: without quotes, blanks without the `\` that some writers put before them, and `/`
-/// between folders.
+/// The name of a file as resolvers take it: without quotes, blanks without the `\` that some
+/// writers put before them, and `/` between folders.
 pub(crate) fn file_name(text: &str) -> String {
     text.trim_matches('"').replace("\\ ", " ").replace('\\', "/")
 }
 
-/// A texture statement: options, a file name that may hold blanks, and options that belong before it.
+/// A texture statement: options, a file name that may hold blanks, and options that belong before
+/// it.
 fn map(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<Map> {
     let line = cursor.line();
     let mut map = Map {
@@ -370,10 +430,12 @@ fn map(cursor: &mut Cursor, warnings: &mut Warnings) -> Option<Map> {
     };
     map.options(cursor, warnings);
     let rest = cursor.rest_of_line();
-    let name = map.options_behind(rest, line, warnings).map_or(rest, |end| rest[..end].trim_ascii_end());
+    let name =
+        map.options_behind(rest, line, warnings).map_or(rest, |end| rest[..end].trim_ascii_end());
     map.path = file_name(&text::name(name));
     if map.path.is_empty() {
-        warnings.note("map name", Place::Line(line), || "texture statement without a file name".into());
+        warnings
+            .note("map name", Place::Line(line), || "texture statement without a file name".into());
         return None;
     }
     Some(map)
@@ -385,8 +447,8 @@ impl Map {
         loop {
             let mut ahead = *cursor;
             let option = ahead.word();
-            let known =
-                option.first() == Some(&b'-') && self.option(&option.to_ascii_lowercase(), &mut ahead, warnings);
+            let known = option.first() == Some(&b'-')
+                && self.option(&option.to_ascii_lowercase(), &mut ahead, warnings);
             if !known {
                 return;
             }
@@ -394,10 +456,12 @@ impl Map {
         }
     }
 
-    /// Reads options behind the name of a file, and tells where they begin: behind a word with an extension, if nothing else
-    /// follows. A name may hold anything that looks like an option otherwise.
+    /// Reads options behind the name of a file, and tells where they begin: behind a word with an
+    /// extension, if nothing else follows. A name may hold anything that looks like an option
+    /// otherwise.
     fn options_behind(&mut self, rest: &[u8], line: u64, warnings: &mut Warnings) -> Option<usize> {
-        let begins = |&k: &usize| rest[k] == b'-' && is_blank(rest[k - 1]) && rest[..k].contains(&b'.');
+        let begins =
+            |&k: &usize| rest[k] == b'-' && is_blank(rest[k - 1]) && rest[..k].contains(&b'.');
         let start = (1..rest.len()).find(begins)?;
         let (mut with_options, mut own) = (self.clone(), Warnings::default());
         // A word in place of the name ends them.
@@ -418,7 +482,9 @@ impl Map {
         let mut unused = |changes: bool| {
             if changes {
                 let name = show(option);
-                warnings.note("map option", place.clone(), || format!("texture option `{name}` is not used"));
+                warnings.note("map option", place.clone(), || {
+                    format!("texture option `{name}` is not used")
+                });
             }
         };
         match option {
@@ -480,9 +546,17 @@ mod tests {
         assert_eq!(m.name, "a b");
         assert_eq!(
             m.reflectance,
-            Reflectance::Phong { ka: [0.1, 0.2, 0.3], kd: [0.5; 3], ks: [1.0; 3], shininess: 250.0 }
+            Reflectance::Phong {
+                ka: [0.1, 0.2, 0.3],
+                kd: [0.5; 3],
+                ks: [1.0; 3],
+                shininess: 250.0
+            }
         );
-        assert_eq!((m.emission, m.opacity, m.ior, m.alpha_mode), ([0.0, 1.0, 0.0], 0.25, 1.33, AlphaMode::Blend));
+        assert_eq!(
+            (m.emission, m.opacity, m.ior, m.alpha_mode),
+            ([0.0, 1.0, 0.0], 0.25, 1.33, AlphaMode::Blend)
+        );
         assert!(warnings.is_empty(), "{warnings:?}");
     }
 
@@ -502,9 +576,13 @@ mod tests {
 
     #[test]
     fn a_surface_that_tr_alone_makes_invisible_is_opaque() {
-        let (m, _, warnings) = one("newmtl a\nTr 1.000000\nnewmtl b\nTr 1\nd 0\nnewmtl c\nTr 1\nnewmtl d\nTr .99");
+        let (m, _, warnings) =
+            one("newmtl a\nTr 1.000000\nnewmtl b\nTr 1\nd 0\nnewmtl c\nTr 1\nnewmtl d\nTr .99");
         assert_eq!((m.opacity, m.alpha_mode), (1.0, AlphaMode::Opaque));
-        assert_eq!(warnings, ["m.mtl: `Tr 1` without `d` would be invisible, it is taken for opaque: `a`, `c`"]);
+        assert_eq!(
+            warnings,
+            ["m.mtl: `Tr 1` without `d` would be invisible, it is taken for opaque: `a`, `c`"]
+        );
         let (m, _, warnings) = one("newmtl a\nd 0\nTr 1");
         assert_eq!((m.opacity, warnings.len()), (0.0, 0), "`d` says so, too");
         let many: String = (0..6).map(|k| format!("newmtl m{k}\nTr 1\n")).collect();
@@ -516,11 +594,18 @@ mod tests {
         let (m, _, warnings) = one("newmtl a\nd 1.5\nNi -2\n");
         assert_eq!((m.opacity, m.ior), (1.0, 1.0));
         assert!(warnings[0].contains("`d 1.5`: 0 to 1 is possible; 1 is used"), "{warnings:?}");
-        assert!(warnings[1].contains("`Ni -2`: an index of refraction is 0.001 or more"), "{warnings:?}");
+        assert!(
+            warnings[1].contains("`Ni -2`: an index of refraction is 0.001 or more"),
+            "{warnings:?}"
+        );
         let (m, _, warnings) = one("newmtl a\nTr -0.5\nNi 1.2\nNi 0\n");
         assert_eq!((m.opacity, m.ior, warnings.len()), (1.0, 1.2, 2));
         assert_eq!(one("newmtl a\nTf .5 .5 .5\nillum 2").0.filter, [1.0; 3]);
-        assert_eq!(one("newmtl a\nTf 0 .375 .375\nillum 4").0.filter, [0.0, 1.5, 1.5], "kt is 0.25");
+        assert_eq!(
+            one("newmtl a\nTf 0 .375 .375\nillum 4").0.filter,
+            [0.0, 1.5, 1.5],
+            "kt is 0.25"
+        );
         assert_eq!(one("newmtl a\nTf 0 .5 .25\nd .4\nillum 4").0.filter, [0.0, 1.0, 0.5]);
         assert_eq!(one("newmtl a\nTf 0 0 0\nillum 4").0.filter, [1.0; 3]);
     }
@@ -552,15 +637,24 @@ mod tests {
         let (m, requests, warnings) =
             one("newmtl a\nmap_Kd my t.png -clamp on -s 2 3\nmap_Ks a -b.png\nmap_Ke b.png -o x");
         let base = m.base_texture.unwrap();
-        assert_eq!((base.sampler.wrap_s, base.transform), (Wrap::ClampToEdge, [[2.0, 0.0, 0.0], [0.0, 3.0, -2.0]]));
-        assert_eq!((requests.paths(), warnings.len()), (vec!["my t.png", "a -b.png", "b.png -o x"], 0));
+        assert_eq!(
+            (base.sampler.wrap_s, base.transform),
+            (Wrap::ClampToEdge, [[2.0, 0.0, 0.0], [0.0, 3.0, -2.0]])
+        );
+        assert_eq!(
+            (requests.paths(), warnings.len()),
+            (vec!["my t.png", "a -b.png", "b.png -o x"], 0)
+        );
     }
 
     #[test]
     fn roughness_and_metal_make_the_other_form() {
         let form = |text: &str| one(text).0.reflectance;
-        let expected =
-            |metallic, roughness| Reflectance::MetallicRoughness { base_color: [0.5; 3], metallic, roughness };
+        let expected = |metallic, roughness| Reflectance::MetallicRoughness {
+            base_color: [0.5; 3],
+            metallic,
+            roughness,
+        };
         assert_eq!(form("newmtl a\nKd .5\nPr 0.25\nPm 1"), expected(1.0, 0.25));
         assert_eq!(form("newmtl a\nKd .5\nNs 250\nPm 1"), expected(1.0, 0.5));
         assert_eq!(form("newmtl a\nKd .5\nPm 0"), expected(0.0, 0.5));
@@ -571,7 +665,10 @@ mod tests {
         assert_eq!((m.normal_scale, warnings.len()), (0.5, 0), "{warnings:?}");
         assert!(m.normal_texture.is_some() && m.metallic_roughness_texture.is_some());
         assert_eq!(requests.paths().len(), 3);
-        assert_eq!(one("newmtl a\nPc 0.5").2, ["m.mtl: line 2: `Pc` is not used: clear coats are not shown"]);
+        assert_eq!(
+            one("newmtl a\nPc 0.5").2,
+            ["m.mtl: line 2: `Pc` is not used: clear coats are not shown"]
+        );
         assert!(one("newmtl a\nbump b.png\nnorm n.png").1.paths() == ["n.png"]);
     }
 

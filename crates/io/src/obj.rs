@@ -1,29 +1,36 @@
 //! Wavefront OBJ: polygons with separate indices for positions, texture coordinates and normals.
 //!
-//! The text is cut at line ends into pieces of equal size, which are read independently (`chunk`): each gathers the
-//! vertices and faces of its lines. Positive indices are absolute; negative ones count back from the vertices read so
-//! far, of which a piece only knows its own, so they are kept relative to the piece's beginning. When all pieces are
-//! read, their vertex counts give the bases, and the faces are put together and cut into triangles, again piece by
-//! piece (`stitch`); materials and textures are read at the same time (`materials`).
+//! The text is cut at line ends into pieces of equal size, which are read independently (`chunk`):
+//! each gathers the vertices and faces of its lines. Positive indices are absolute; negative ones
+//! count back from the vertices read so far, of which a piece only knows its own, so they are kept
+//! relative to the piece's beginning. When all pieces are read, their vertex counts give the bases,
+//! and the faces are put together and cut into triangles, again piece by piece (`stitch`);
+//! materials and textures are read at the same time (`materials`).
 //!
-//! The file becomes one mesh and one node; each run of faces with one group (or object) and one material is a part.
+//! The file becomes one mesh and one node; each run of faces with one group (or object) and one
+//! material is a part.
 //!
-//! * `v x y z [w]`: `w` is left out. Six or seven numbers: a colour `r g b` follows (sRGB, `0..=1`, or
-//!   `0..=255` where they look like bytes: `color_range`); or ZBrush's comments `#MRGB` have them.
-//!   `vt u [v [w]]`: `v` runs upwards in the file and becomes `1 - v`.
-//! * `f`, `fo`: any number of corners, `v`, `v/vt`, `v//vn`, `v/vt/vn`. Fewer than three corners: warning, left out.
-//!   Corners without texture coordinates get `(0, 0)`; corners without a normal, in a file that has some, the face's.
-//! * `l`, `p`: free lines and points, with the material in force. A file of vertices alone is a point cloud.
-//! * `o`, `g`, `s`, `usemtl`, `mtllib`. An unknown material is the default one, with a warning. In a file without any
-//!   `usemtl`, everything has the material of its library, if that has a single one.
-//! * A number with something glued to it (`3.1+e2`) counts up to there, with a warning; a word that is no number is an
-//!   error that names the line. Faces, lines and points with the index of a vertex that leads nowhere are left out, with a
-//!   warning, unless nothing else is there; so are texture coordinates and normals that lead nowhere.
+//! * `v x y z [w]`: `w` is left out. Six or seven numbers: a colour `r g b` follows (sRGB, `0..=1`,
+//!   or `0..=255` where they look like bytes: `color_range`); or ZBrush's comments `#MRGB` have
+//!   them. `vt u [v [w]]`: `v` runs upwards in the file and becomes `1 - v`.
+//! * `f`, `fo`: any number of corners, `v`, `v/vt`, `v//vn`, `v/vt/vn`. Fewer than three corners:
+//!   warning, left out. Corners without texture coordinates get `(0, 0)`; corners without a normal,
+//!   in a file that has some, the face's.
+//! * `l`, `p`: free lines and points, with the material in force. A file of vertices alone is a
+//!   point cloud.
+//! * `o`, `g`, `s`, `usemtl`, `mtllib`. An unknown material is the default one, with a warning. In
+//!   a file without any `usemtl`, everything has the material of its library, if that has a single
+//!   one.
+//! * A number with something glued to it (`3.1+e2`) counts up to there, with a warning; a word that
+//!   is no number is an error that names the line. Faces, lines and points with the index of a
+//!   vertex that leads nowhere are left out, with a warning, unless nothing else is there; so are
+//!   texture coordinates and normals that lead nowhere.
 //! * A model far from the origin keeps its shape: `far`.
 //! * Free-form curves and surfaces are left out, with a warning.
 //! * `\` at the end of a line joins the next one to it, in every statement but not in comments.
 //!
-//! In:   UTF-8 or UTF-16 text; names in Latin-1, too. Out: a scene in model space, right-handed, any orientation of axes.
+//! In:   UTF-8 or UTF-16 text; names in Latin-1, too. Out: a scene in model space, right-handed,
+//!       any orientation of axes.
 //! Cost: `O(bytes)`; the memory of the mesh twice, for a moment.
 //! Source: \[OBJ\].
 
@@ -41,14 +48,22 @@ use chunk::Chunk;
 use vitral_exec::Workers;
 use vitral_scene::Scene;
 
-/// Bytes of a piece: so few that threads end at about the same time, since faces take longer to read than vertices.
+/// Bytes of a piece: so few that threads end at about the same time, since faces take longer to
+/// read than vertices.
 const PIECE: usize = 1 << 18;
 
-/// Reads an OBJ file. `resolver` gives its material libraries and textures; missing ones are warnings.
+/// Reads an OBJ file. `resolver` gives its material libraries and textures; missing ones are
+/// warnings.
 ///
 /// # Errors
-/// [`Error::Malformed`] with the line of an index out of range, if all are, or of a statement that has no number where one is due.
-pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
+/// [`Error::Malformed`] with the line of an index out of range, if all are, or of a statement that
+/// has no number where one is due.
+pub fn load(
+    bytes: &[u8],
+    file: &str,
+    resolver: &dyn Resolver,
+    workers: &Workers,
+) -> Result<Scene, Error> {
     load_in_pieces(bytes, file, resolver, workers, PIECE)
 }
 
@@ -67,12 +82,15 @@ fn load_in_pieces(
     let mut warnings = Warnings::default();
     let (first_lines, error) = gather(&mut chunks, file, &mut warnings);
     let understood = chunks.iter().any(|chunk| chunk.understood);
-    if !understood && let Some(line) = chunks.iter().zip(&first_lines).find_map(|(c, l)| Some(c.first_unknown? + l)) {
+    if !understood
+        && let Some(line) =
+            chunks.iter().zip(&first_lines).find_map(|(c, l)| Some(c.first_unknown? + l))
+    {
         return Err(Error::malformed(file, Place::Line(line), "no statement of an OBJ file"));
     }
 
-    // Check all indices, and leave out what leads nowhere: attributes first, while each corner is still there to be found in the
-    // text.
+    // Check all indices, and leave out what leads nowhere: attributes first, while each corner is
+    // still there to be found in the text.
     if let Some(error) = error {
         return Err(error);
     }
@@ -81,7 +99,13 @@ fn load_in_pieces(
     if stitch::leave_out_bad_attributes(&mut chunks, &totals, text_of, &mut warnings, workers) {
         totals = stitch::Totals::new(&chunks, file)?;
     }
-    if stitch::leave_out_bad_elements(&mut chunks, &totals, text_of, file, (&mut warnings, workers))? {
+    if stitch::leave_out_bad_elements(
+        &mut chunks,
+        &totals,
+        text_of,
+        file,
+        (&mut warnings, workers),
+    )? {
         totals = stitch::Totals::new(&chunks, file)?;
     }
     let events = materials::Events::new(&chunks, &pieces, &first_lines);
@@ -104,13 +128,15 @@ fn load_in_pieces(
     );
     events.apply(&mut mesh, &library);
     mesh.name = stem(file);
-    let mut scene = Scene { materials: library.materials, textures: library.textures, ..Scene::default() };
+    let mut scene =
+        Scene { materials: library.materials, textures: library.textures, ..Scene::default() };
     scene.warnings = warnings.into_messages(file);
     scene.warnings.extend(library.warnings);
     Ok(with_mesh_at(scene, mesh, offset, file))
 }
 
-/// The line before the first one of each piece, and the first error. The warnings of all pieces become one list.
+/// The line before the first one of each piece, and the first error. The warnings of all pieces
+/// become one list.
 fn gather(chunks: &mut [Chunk], file: &str, warnings: &mut Warnings) -> (Vec<u64>, Option<Error>) {
     let mut first_lines = Vec::with_capacity(chunks.len());
     let (mut lines, mut error) = (0, None);

@@ -1,16 +1,18 @@
 //! OFF, Geomview's object file format: vertices, then polygons.
 //!
-//! The first word says what a vertex line holds, in this order: `[ST][C][N][4]OFF`: position (four homogeneous
-//! coordinates with `4`), normal with `N`, colour with `C`, texture coordinates with `ST`. Prefixes in another order and lower
-//! case, which exist, mean the same. A line with the numbers of vertices, faces and edges follows (the last may be
-//! missing; it is not used; some files have the first of them glued to the word, `OFF8 6 12`), then each vertex and each face: the
-//! corner count, the corners, and possibly a colour. Both begin a line and may go on over several, but a colour that may be left
-//! out is on the line of what is before it. `#` begins a comment.
+//! The first word says what a vertex line holds, in this order: `[ST][C][N][4]OFF`: position (four
+//! homogeneous coordinates with `4`), normal with `N`, colour with `C`, texture coordinates with
+//! `ST`. Prefixes in another order and lower case, which exist, mean the same. A line with the
+//! numbers of vertices, faces and edges follows (the last may be missing; it is not used; some
+//! files have the first of them glued to the word, `OFF8 6 12`), then each vertex and each face:
+//! the corner count, the corners, and possibly a colour. Both begin a line and may go on over
+//! several, but a colour that may be left out is on the line of what is before it. `#` begins a
+//! comment.
 //!
-//! Colours are sRGB, `0..=255` where they look like bytes, else `0..=1` (`color_range`); those of faces count if vertices have
-//! none.
-//! Texture coordinates run upwards and are turned to `1 - v`. Faces with fewer than three corners are left out with a
-//! warning. Binary and `n`-dimensional files are not read.
+//! Colours are sRGB, `0..=255` where they look like bytes, else `0..=1` (`color_range`); those of
+//! faces count if vertices have none. Texture coordinates run upwards and are turned to `1 - v`.
+//! Faces with fewer than three corners are left out with a warning. Binary and `n`-dimensional
+//! files are not read.
 //!
 //! In:   text. Out: one mesh in model space.
 //! Cost: `O(bytes)`; counts in the file allocate nothing.
@@ -31,8 +33,8 @@ use vitral_scene::{Attribute, Mesh, Part, Scene};
 /// Reads an OFF file.
 ///
 /// # Errors
-/// [`Error::Malformed`] with the line at which the file breaks its own announcements; [`Error::Unsupported`] for binary
-/// and `n`-dimensional files.
+/// [`Error::Malformed`] with the line at which the file breaks its own announcements;
+/// [`Error::Unsupported`] for binary and `n`-dimensional files.
 pub fn load(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
     let text = to_utf8(bytes);
     let (mut scene, offset) = read(&text, file, None, workers)?;
@@ -42,14 +44,16 @@ pub fn load(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error>
     Ok(scene)
 }
 
-/// Reads the text, and takes an offset from each position. Without one, gives that of a model far from the origin.
+/// Reads the text, and takes an offset from each position. Without one, gives that of a model far
+/// from the origin.
 fn read(
     text: &[u8],
     file: &str,
     offset: Option<[f64; 3]>,
     workers: &Workers,
 ) -> Result<(Scene, Option<[f64; 3]>), Error> {
-    let mut reader = Reader { cursor: Cursor::new(text), file, warnings: Warnings::default(), offset };
+    let mut reader =
+        Reader { cursor: Cursor::new(text), file, warnings: Warnings::default(), offset };
     let header = reader.header()?;
     let [vertices, faces] = reader.counts()?;
     let mut lists = Lists::default();
@@ -120,7 +124,10 @@ impl<'a> Reader<'a> {
         let is_binary = self.cursor.word_at(self.cursor.offset()).eq_ignore_ascii_case(b"BINARY");
         if header.dimensions || is_binary {
             let kind = if is_binary { "binary" } else { "n-dimensional" };
-            return Err(Error::Unsupported { file: self.file.to_owned(), what: format!("{kind} OFF is not read") });
+            return Err(Error::Unsupported {
+                file: self.file.to_owned(),
+                what: format!("{kind} OFF is not read"),
+            });
         }
         Ok(header)
     }
@@ -128,21 +135,27 @@ impl<'a> Reader<'a> {
     /// The numbers of vertices and faces, which the rest of the file must be able to hold.
     fn counts(&mut self) -> Result<[usize; 2], Error> {
         if !self.cursor.next_content() {
-            return Err(self.error("the file ends here, the numbers of vertices, faces and edges are required"));
+            return Err(self.error(
+                "the file ends here, the numbers of vertices, faces and edges are required",
+            ));
         }
         let mut counts = [0; 3];
         for (k, count) in counts.iter_mut().enumerate() {
             *count = match self.cursor.integer() {
                 Some(n @ 0..) => n as u64,
                 None if k == 2 && self.cursor.at_line_end() => 0,
-                _ => return Err(self.error("the numbers of vertices, faces and edges are required")),
+                _ => {
+                    return Err(self.error("the numbers of vertices, faces and edges are required"));
+                }
             };
         }
         // A vertex takes six bytes with its line end, a face two.
         let room = self.cursor.remaining() as u64;
         for (count, size, what) in [(counts[0], 6, "vertices"), (counts[1], 2, "faces")] {
             if count > (room + 1) / size {
-                return Err(self.error(format!("{count} {what} are announced, the file has {room} bytes left")));
+                return Err(self.error(format!(
+                    "{count} {what} are announced, the file has {room} bytes left"
+                )));
             }
         }
         self.cursor.next_line();
@@ -189,7 +202,9 @@ impl<'a> Reader<'a> {
         }
         if self.cursor.take_ill_formed() {
             let place = Place::Line(self.cursor.line());
-            self.warnings.note("number", place, || "ill-formed number; only its beginning counts".to_owned());
+            self.warnings.note("number", place, || {
+                "ill-formed number; only its beginning counts".to_owned()
+            });
         }
         Ok(values)
     }
@@ -224,8 +239,11 @@ impl<'a> Reader<'a> {
         if header.color {
             // Three or four numbers, unless texture coordinates follow.
             let rgb = self.floats::<3>("colour")?;
-            let alpha =
-                if header.texture || !self.cursor.at_line_end() { Some(self.floats::<1>("colour")?[0]) } else { None };
+            let alpha = if header.texture || !self.cursor.at_line_end() {
+                Some(self.floats::<1>("colour")?[0])
+            } else {
+                None
+            };
             lists.colors.push([rgb[0], rgb[1], rgb[2], alpha.unwrap_or(f32::NAN)]);
         }
         if header.texture {
@@ -234,7 +252,9 @@ impl<'a> Reader<'a> {
         }
         if !self.cursor.at_line_end() {
             let place = Place::Line(self.cursor.line());
-            self.warnings.note("vertex tail", place, || "more numbers than a vertex has; left out".to_owned());
+            self.warnings.note("vertex tail", place, || {
+                "more numbers than a vertex has; left out".to_owned()
+            });
         }
         self.cursor.next_line();
         Ok(())
@@ -249,9 +269,14 @@ impl<'a> Reader<'a> {
         let start = lists.corners.len();
         for k in 0..size {
             match self.here_or_below(Cursor::integer) {
-                Some(index) if (0..lists.positions.len() as i64).contains(&index) => lists.corners.push(index as u32),
+                Some(index) if (0..lists.positions.len() as i64).contains(&index) => {
+                    lists.corners.push(index as u32)
+                }
                 Some(index) => {
-                    return Err(self.error(format!("index {index}, the file has {} vertices", lists.positions.len())));
+                    return Err(self.error(format!(
+                        "index {index}, the file has {} vertices",
+                        lists.positions.len()
+                    )));
                 }
                 None => return Err(self.error(format!("{k} indices, the face has {size} corners"))),
             }
@@ -270,7 +295,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// What follows a face's corners: nothing, an index into a colour map that is not there, or three or four numbers.
+    /// What follows a face's corners: nothing, an index into a colour map that is not there, or
+    /// three or four numbers.
     fn face_color(&mut self) -> Option<[f32; 4]> {
         let mut values = [f32::NAN; 4];
         let mut count = 0;
@@ -291,19 +317,33 @@ impl<'a> Reader<'a> {
 }
 
 impl Lists {
-    fn into_mesh(self, name: String, header: Header, warnings: &mut Warnings, workers: &Workers) -> Mesh {
+    fn into_mesh(
+        self,
+        name: String,
+        header: Header,
+        warnings: &mut Warnings,
+        workers: &Workers,
+    ) -> Mesh {
         let built = crate::polygons::build(&self.positions, &self.sizes, self.corners, workers);
         let colors = if header.color {
             Some(Attribute::per_vertex(decode(&self.colors, warnings)))
         } else if self.face_colors.iter().any(Option::is_some) {
-            let colors: Vec<[f32; 4]> = self.face_colors.iter().map(|c| c.unwrap_or([f32::NAN; 4])).collect();
-            Some(Attribute { values: decode(&colors, warnings), corners: Some(built.per_face(&self.sizes)) })
+            let colors: Vec<[f32; 4]> =
+                self.face_colors.iter().map(|c| c.unwrap_or([f32::NAN; 4])).collect();
+            Some(Attribute {
+                values: decode(&colors, warnings),
+                corners: Some(built.per_face(&self.sizes)),
+            })
         } else {
             None
         };
         Mesh {
             name,
-            parts: vec![Part { name: String::new(), triangles: 0..built.triangles.len() as u32, material: None }],
+            parts: vec![Part {
+                name: String::new(),
+                triangles: 0..built.triangles.len() as u32,
+                material: None,
+            }],
             triangles: built.triangles,
             faces: built.faces,
             normals: header.normal.then_some(Attribute::per_vertex(self.normals)),
@@ -311,18 +351,23 @@ impl Lists {
             colors_from_srgb: colors.is_some(),
             colors,
             // Vertices without faces are a point cloud.
-            points: if self.sizes.is_empty() { (0..self.positions.len() as u32).collect() } else { Vec::new() },
+            points: if self.sizes.is_empty() {
+                (0..self.positions.len() as u32).collect()
+            } else {
+                Vec::new()
+            },
             positions: self.positions,
             ..Mesh::default()
         }
     }
 }
 
-/// Linear colours from encoded ones; NaN is 1 (white, opaque). Bytes are whole numbers as the format has them; other values
-/// above 1 are told.
+/// Linear colours from encoded ones; NaN is 1 (white, opaque). Bytes are whole numbers as the
+/// format has them; other values above 1 are told.
 fn decode(encoded: &[[f32; 4]], warnings: &mut Warnings) -> Vec<[f32; 4]> {
     let range = ColorRange::of(encoded.iter().flat_map(|c| [c[0], c[1], c[2]]));
-    let (scale, alpha_scale) = (range.scale(), ColorRange::of(encoded.iter().map(|c| c[3])).scale());
+    let (scale, alpha_scale) =
+        (range.scale(), ColorRange::of(encoded.iter().map(|c| c[3])).scale());
     if let Some(what) = range.oddity("colours").filter(|_| !range.is_whole) {
         warnings.note("", Place::File, || what);
     }
@@ -349,9 +394,15 @@ mod tests {
 
     #[test]
     fn polygons_and_comments() {
-        let s = read("OFF # a square\n\n4 2 0\n0 0 0\n1 0 0 # corner\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 1 2\n").unwrap();
+        let s = read(
+            "OFF # a square\n\n4 2 0\n0 0 0\n1 0 0 # corner\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 1 2\n",
+        )
+        .unwrap();
         let m = &s.meshes[0];
-        assert_eq!(m.faces, Faces::Polygons { starts: vec![0, 4, 7], corners: vec![0, 1, 2, 3, 0, 1, 2] });
+        assert_eq!(
+            m.faces,
+            Faces::Polygons { starts: vec![0, 4, 7], corners: vec![0, 1, 2, 3, 0, 1, 2] }
+        );
         assert_eq!((m.triangles.len(), s.warnings.len()), (3, 0));
     }
 
@@ -383,9 +434,15 @@ mod tests {
             assert_eq!(parse(word), parse(usual), "{word}");
         }
         assert!(parse("nOFF").unwrap().dimensions && parse("4nOFF").unwrap().dimensions);
-        assert_eq!([parse("CCOFF"), parse("SOFF"), parse("OF"), parse("F"), parse("OFFS")], [None; 5]);
+        assert_eq!(
+            [parse("CCOFF"), parse("SOFF"), parse("OF"), parse("F"), parse("OFFS")],
+            [None; 5]
+        );
         let normals = "0 0 1  255 0 0 255";
-        let s = read(&format!("NCOFF 3 1 0\n0 0 0 {normals}\n1 0 0 {normals}\n0 1 0 {normals}\n3 0 1 2\n")).unwrap();
+        let s = read(&format!(
+            "NCOFF 3 1 0\n0 0 0 {normals}\n1 0 0 {normals}\n0 1 0 {normals}\n3 0 1 2\n"
+        ))
+        .unwrap();
         let m = &s.meshes[0];
         assert_eq!(
             (m.normals.as_ref().unwrap().values[2], m.colors.as_ref().unwrap().values[2][0]),
@@ -400,9 +457,17 @@ mod tests {
             let s = read(&format!("{head}{rest}")).unwrap();
             assert_eq!((s.meshes[0].triangles.len(), s.warnings.len()), (1, 0), "{head}");
         }
-        let begin = |word: &str| Header::begin(word.as_bytes()).map(|(header, length)| (Some(header), length));
-        for (word, header) in [("COFF12", "COFF"), ("4OFF8", "4OFF"), ("STCN4OFF", "STCN4OFF"), ("OFF", "OFF")] {
-            assert_eq!(begin(word), Some((Header::parse(header.as_bytes()), header.len())), "{word}");
+        let begin = |word: &str| {
+            Header::begin(word.as_bytes()).map(|(header, length)| (Some(header), length))
+        };
+        for (word, header) in
+            [("COFF12", "COFF"), ("4OFF8", "4OFF"), ("STCN4OFF", "STCN4OFF"), ("OFF", "OFF")]
+        {
+            assert_eq!(
+                begin(word),
+                Some((Header::parse(header.as_bytes()), header.len())),
+                "{word}"
+            );
         }
         assert_eq!([begin("OFF8x"), begin("12"), begin("8OFF"), begin("")], [None; 4]);
         let text = format!("OFF3{rest}");
@@ -416,12 +481,16 @@ mod tests {
         )
         .unwrap();
         let m = &s.meshes[0];
-        assert_eq!((m.positions[1], m.face_corners(0), s.warnings.len()), ([1.0, 0.0, 0.0], &[0, 1, 2, 3][..], 0));
+        assert_eq!(
+            (m.positions[1], m.face_corners(0), s.warnings.len()),
+            ([1.0, 0.0, 0.0], &[0, 1, 2, 3][..], 0)
+        );
     }
 
     #[test]
     fn faces_may_have_colours() {
-        let s = read("OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 1 2\n3 0 1 2 7").unwrap();
+        let s =
+            read("OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 1 2\n3 0 1 2 7").unwrap();
         let colors = s.meshes[0].colors.as_ref().unwrap();
         assert_eq!(colors.at(0, &s.meshes[0].triangles), [[1.0, 0.0, 0.0, 1.0]; 3]);
         assert_eq!(colors.at(1, &s.meshes[0].triangles), [[1.0; 4]; 3]);
@@ -431,17 +500,38 @@ mod tests {
     #[test]
     fn false_announcements_are_refused() {
         let refusal = |text: &str| read(text).unwrap_err().to_string();
-        assert_eq!(refusal("OFF\n3 4\n0 0 0\n"), "t.off: line 2: 3 vertices are announced, the file has 7 bytes left");
-        assert_eq!(refusal("OFF\n3\n0 0 0\n"), "t.off: line 2: the numbers of vertices, faces and edges are required");
+        assert_eq!(
+            refusal("OFF\n3 4\n0 0 0\n"),
+            "t.off: line 2: 3 vertices are announced, the file has 7 bytes left"
+        );
+        assert_eq!(
+            refusal("OFF\n3\n0 0 0\n"),
+            "t.off: line 2: the numbers of vertices, faces and edges are required"
+        );
         assert_eq!(
             refusal("OFF\n9999999999 0 0\n"),
             "t.off: line 2: 9999999999 vertices are announced, the file has 1 bytes left"
         );
-        assert_eq!(refusal("OFF\n1 2 0\n0 0 0\n3 0 0 1"), "t.off: line 4: index 1, the file has 1 vertices");
-        assert_eq!(refusal("OFF\n1 1 0\n0 0 0\n3 0 0"), "t.off: line 4: 2 indices, the face has 3 corners");
-        assert_eq!(refusal("OFF\n1 1 0\n0 0 0\n"), "t.off: line 4: the file ends here, a face is required");
-        assert_eq!(refusal("OFF\n1 0 0\n0 zero 0\n"), "t.off: line 3: `zero` is not a number, a vertex has 3");
-        assert_eq!(refusal("OFF\n1 0 0\n0 00000\n"), "t.off: line 4: the file ends here: 2 numbers, a vertex has 3");
+        assert_eq!(
+            refusal("OFF\n1 2 0\n0 0 0\n3 0 0 1"),
+            "t.off: line 4: index 1, the file has 1 vertices"
+        );
+        assert_eq!(
+            refusal("OFF\n1 1 0\n0 0 0\n3 0 0"),
+            "t.off: line 4: 2 indices, the face has 3 corners"
+        );
+        assert_eq!(
+            refusal("OFF\n1 1 0\n0 0 0\n"),
+            "t.off: line 4: the file ends here, a face is required"
+        );
+        assert_eq!(
+            refusal("OFF\n1 0 0\n0 zero 0\n"),
+            "t.off: line 3: `zero` is not a number, a vertex has 3"
+        );
+        assert_eq!(
+            refusal("OFF\n1 0 0\n0 00000\n"),
+            "t.off: line 4: the file ends here: 2 numbers, a vertex has 3"
+        );
         assert_eq!(refusal("OFF BINARY\n"), "t.off: binary OFF is not read");
     }
 }

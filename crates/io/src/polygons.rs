@@ -14,9 +14,14 @@ pub(crate) struct Polygons {
     pub(crate) faces: Faces,
 }
 
-/// Cuts polygons into triangles. `sizes` has at least 3 for each face, and their sum is the number of `corners`, which
-/// are indices into `positions`.
-pub(crate) fn build(positions: &[[f32; 3]], sizes: &[u32], corners: Vec<u32>, workers: &Workers) -> Polygons {
+/// Cuts polygons into triangles. `sizes` has at least 3 for each face, and their sum is the number
+/// of `corners`, which are indices into `positions`.
+pub(crate) fn build(
+    positions: &[[f32; 3]],
+    sizes: &[u32],
+    corners: Vec<u32>,
+    workers: &Workers,
+) -> Polygons {
     if sizes.iter().all(|&s| s == 3) {
         return Polygons { triangles: corners.as_chunks().0.to_vec(), faces: Faces::Triangles };
     }
@@ -67,7 +72,8 @@ pub(crate) fn places(positions: &[[f32; 3]], sizes: &[u32], corners: &[u32]) -> 
 }
 
 impl Polygons {
-    /// For each triangle, three times the number of its face: the corners of an attribute with one value a face.
+    /// For each triangle, three times the number of its face: the corners of an attribute with one
+    /// value a face.
     pub(crate) fn per_face(&self, sizes: &[u32]) -> Vec<Corners> {
         let mut corners = Vec::with_capacity(self.triangles.len());
         for (f, &size) in sizes.iter().enumerate() {
@@ -83,12 +89,15 @@ mod tests {
 
     #[test]
     fn a_pentagon_and_a_triangle() {
-        let positions: Vec<[f32; 3]> =
-            [[0, 0], [2, 0], [3, 1], [1, 3], [-1, 1]].map(|p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0]).into();
+        let positions: Vec<[f32; 3]> = [[0, 0], [2, 0], [3, 1], [1, 3], [-1, 1]]
+            .map(|p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0])
+            .into();
         let built = build(&positions, &[5, 3], vec![0, 1, 2, 3, 4, 0, 2, 4], &Workers::single());
         assert_eq!(built.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 2, 4]]);
         let corners = [0, 1, 2, 3, 4, 0, 2, 4];
-        let named = places(&positions, &[5, 3], &corners).into_iter().map(|t| t.map(|k| corners[k as usize]));
+        let named = places(&positions, &[5, 3], &corners)
+            .into_iter()
+            .map(|t| t.map(|k| corners[k as usize]));
         assert!(named.eq(built.triangles.iter().copied()));
         assert_eq!(built.per_face(&[5, 3]), [[0; 3], [0; 3], [0; 3], [1; 3]]);
     }

@@ -1,4 +1,5 @@
-//! How a reader gets at the files that a model names. Faces implement it: a folder, a browser's upload, nothing.
+//! How a reader gets at the files that a model names. Faces implement it: a folder, a browser's
+//! upload, nothing.
 
 /// Why a named file cannot be had.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -17,16 +18,18 @@ pub enum ResolveError {
 
 /// Access to the files beside a model.
 pub trait Resolver: Sync {
-    /// The bytes of the file that the model calls `path`: `/`-separated, relative to the model's folder, already
-    /// freed of URI escapes and in Unicode, whatever the model's encoding. Implementations refuse absolute paths and those that
-    /// leave the folder by `..`, unless the user allowed them.
+    /// The bytes of the file that the model calls `path`: `/`-separated, relative to the model's
+    /// folder, already freed of URI escapes and in Unicode, whatever the model's encoding.
+    /// Implementations refuse absolute paths and those that leave the folder by `..`, unless the
+    /// user allowed them.
     ///
     /// # Errors
     /// [`ResolveError`]: there is no such file, or it may not be read.
     fn read(&self, path: &str) -> Result<Vec<u8>, ResolveError>;
 
-    /// The name of a file that differs from `path` in the case of letters alone, the first in order if there are several:
-    /// models come from systems that do not tell case apart. `None` where there is none or names cannot be listed.
+    /// The name of a file that differs from `path` in the case of letters alone, the first in order
+    /// if there are several: models come from systems that do not tell case apart. `None` where
+    /// there is none or names cannot be listed.
     fn in_other_case(&self, _path: &str) -> Option<String> {
         None
     }
@@ -41,7 +44,8 @@ pub(crate) struct Found {
     pub(crate) oddity: Option<String>,
 }
 
-/// The first of the files called `names` that is there; of those that are not, the first that is in other case.
+/// The first of the files called `names` that is there; of those that are not, the first that is in
+/// other case.
 ///
 /// # Errors
 /// Why the first cannot be had.
@@ -57,7 +61,8 @@ pub(crate) fn read_first(resolver: &dyn Resolver, names: &[String]) -> Result<Fo
         if let Some(name) = resolver.in_other_case(wanted)
             && let Ok(bytes) = resolver.read(&name)
         {
-            let oddity = Some(format!("there is no `{wanted}`; `{name}` is read, whose case differs"));
+            let oddity =
+                Some(format!("there is no `{wanted}`; `{name}` is read, whose case differs"));
             return Ok(Found { bytes, name, oddity });
         }
     }

@@ -1,19 +1,21 @@
 //! Text as model files have it: bytes to UTF-8, and a cursor that reads words, numbers and lines.
 //!
-//! The cursor never copies and never looks back. Numbers are the hot spot of every text format: digits are gathered in
-//! a 64-bit integer; when that integer is below 2^53 and the power of ten at most 10^22, one exact `f64` product or
-//! quotient is the correctly rounded `f64` (Clinger 1990). It is also the correctly rounded `f32`, unless it lies
-//! exactly between two of them or is subnormal; these rare cases, and longer numbers, go to the standard library.
-//! Numbers in foreign spellings go there, too: with a decimal comma (`0,5`), with Fortran's exponents (`2.0D+00`, and
+//! The cursor never copies and never looks back. Numbers are the hot spot of every text format:
+//! digits are gathered in a 64-bit integer; when that integer is below 2^53 and the power of ten at
+//! most 10^22, one exact `f64` product or quotient is the correctly rounded `f64` (Clinger 1990).
+//! It is also the correctly rounded `f32`, unless it lies exactly between two of them or is
+//! subnormal; these rare cases, and longer numbers, go to the standard library. Numbers in foreign
+//! spellings go there, too: with a decimal comma (`0,5`), with Fortran's exponents (`2.0D+00`, and
 //! `0.25-101`, where three digits leave no room for the letter).
 //!
 //! Cost: one look at each byte.
 
 use std::borrow::Cow;
 
-/// The bytes as UTF-8 text without a byte-order mark, lines ended by `\n` or `\r\n`. UTF-16 is known by its mark or by
-/// its zero bytes and converted; a `\r` alone ends a line, too, and becomes `\n`. Invalid UTF-8 is kept:
-/// keywords and numbers are ASCII, and names are converted by [`name`].
+/// The bytes as UTF-8 text without a byte-order mark, lines ended by `\n` or `\r\n`. UTF-16 is
+/// known by its mark or by its zero bytes and converted; a `\r` alone ends a line, too, and becomes
+/// `\n`. Invalid UTF-8 is kept: keywords and numbers are ASCII, and names are converted by
+/// [`name`].
 pub(crate) fn to_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     let text = match bytes {
         [0xEF, 0xBB, 0xBF, rest @ ..] => Cow::Borrowed(rest),
@@ -29,22 +31,30 @@ pub(crate) fn to_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
         return text;
     }
     let next = text[1..].iter().copied().chain([0]);
-    Cow::Owned(text.iter().zip(next).map(|(&b, next)| if b == b'\r' && next != b'\n' { b'\n' } else { b }).collect())
+    Cow::Owned(
+        text.iter()
+            .zip(next)
+            .map(|(&b, next)| if b == b'\r' && next != b'\n' { b'\n' } else { b })
+            .collect(),
+    )
 }
 
-/// Whether there is a `\r` that no `\n` follows. Looks at blocks without a branch for each byte, so that it costs next to nothing
-/// whether or not there are many `\r\n`.
+/// Whether there is a `\r` that no `\n` follows. Looks at blocks without a branch for each byte, so
+/// that it costs next to nothing whether or not there are many `\r\n`.
 fn has_lone_return(text: &[u8]) -> bool {
     const BLOCK: usize = 1 << 12;
     let next = text.get(1..).unwrap_or_default();
     let lone = |(a, b): (&[u8], &[u8])| {
-        a.iter().zip(b).fold(0, |lone, (&a, &b)| lone | (u8::from(a == b'\r') & u8::from(b != b'\n'))) != 0
+        a.iter()
+            .zip(b)
+            .fold(0, |lone, (&a, &b)| lone | (u8::from(a == b'\r') & u8::from(b != b'\n')))
+            != 0
     };
     text.last() == Some(&b'\r') || text.chunks(BLOCK).zip(next.chunks(BLOCK)).any(lone)
 }
 
-/// A name or a line of names as text: continued lines become one, with a blank between, and what is not UTF-8 is taken for
-/// Latin-1, as old programs wrote it.
+/// A name or a line of names as text: continued lines become one, with a blank between, and what is
+/// not UTF-8 is taken for Latin-1, as old programs wrote it.
 pub(crate) fn name(bytes: &[u8]) -> Cow<'_, str> {
     if bytes.contains(&b'\n') {
         let lines = bytes.split(|&b| b == b'\n').map(|line| {
@@ -61,18 +71,23 @@ pub(crate) fn name(bytes: &[u8]) -> Cow<'_, str> {
 
 fn from_utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Vec<u8> {
     let units = bytes.as_chunks::<2>().0.iter().map(|&pair| unit(pair));
-    let text: String = char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+    let text: String =
+        char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
     text.into_bytes()
 }
 
-/// Zero bytes at even and at odd offsets among the first 64, if every pair of bytes has at least one ASCII character
-/// and the zeros are all on one side; `(0, 0)` for anything else.
+/// Zero bytes at even and at odd offsets among the first 64, if every pair of bytes has at least
+/// one ASCII character and the zeros are all on one side; `(0, 0)` for anything else.
 fn zero_bytes(bytes: &[u8]) -> (usize, usize) {
     let pairs = &bytes.as_chunks::<2>().0;
     let pairs = &pairs[..pairs.len().min(32)];
     let even = pairs.iter().filter(|p| p[0] == 0 && p[1].is_ascii() && p[1] != 0).count();
     let odd = pairs.iter().filter(|p| p[1] == 0 && p[0].is_ascii() && p[0] != 0).count();
-    if pairs.len() >= 2 && (even == pairs.len() || odd == pairs.len()) { (even, odd) } else { (0, 0) }
+    if pairs.len() >= 2 && (even == pairs.len() || odd == pairs.len()) {
+        (even, odd)
+    } else {
+        (0, 0)
+    }
 }
 
 /// Whether `byte` separates words on a line.
@@ -80,8 +95,8 @@ pub(crate) fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | 0x0B | 0x0C)
 }
 
-/// `name` without a comment behind it: a `#` after a blank, unless a digit follows, since 3ds Max calls materials
-/// `Material #25`.
+/// `name` without a comment behind it: a `#` after a blank, unless a digit follows, since 3ds Max
+/// calls materials `Material #25`.
 pub(crate) fn without_comment(name: &str) -> &str {
     comment_behind(name.as_bytes()).map_or(name, |k| name[..k].trim_ascii_end())
 }
@@ -101,7 +116,8 @@ fn is_continued(line: &[u8]) -> bool {
     line.last() == Some(&b'\\') && line[0] != b'#' && comment_behind(line).is_none()
 }
 
-/// Cuts `text` into pieces of about `size` bytes, each ending after a line break that no `\` continues.
+/// Cuts `text` into pieces of about `size` bytes, each ending after a line break that no `\`
+/// continues.
 pub(crate) fn cut_at_lines(text: &[u8], size: usize) -> Vec<&[u8]> {
     let mut pieces = Vec::with_capacity(text.len() / size + 1);
     let mut rest = text;
@@ -122,8 +138,9 @@ pub(crate) fn cut_at_lines(text: &[u8], size: usize) -> Vec<&[u8]> {
     pieces
 }
 
-/// A place in a text. Every reading method first skips blanks; none but [`Cursor::next_line`] leaves the line, except
-/// that a `\` at the end of a line, but for comments, joins the next line to it.
+/// A place in a text. Every reading method first skips blanks; none but [`Cursor::next_line`]
+/// leaves the line, except that a `\` at the end of a line, but for comments, joins the next line
+/// to it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -227,7 +244,8 @@ impl<'a> Cursor<'a> {
         matches!(self.peek(), b'\n' | b'#')
     }
 
-    /// Goes to the beginning of the next line, whatever is left on this one and those that continue it.
+    /// Goes to the beginning of the next line, whatever is left on this one and those that continue
+    /// it.
     #[inline]
     pub(crate) fn next_line(&mut self) {
         self.finish_line();
@@ -252,7 +270,8 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Goes to the first line that holds more than blanks and a comment; false at the end of the text.
+    /// Goes to the first line that holds more than blanks and a comment; false at the end of the
+    /// text.
     pub(crate) fn next_content(&mut self) -> bool {
         while self.at_line_end() {
             if self.at_end() {
@@ -272,7 +291,8 @@ impl<'a> Cursor<'a> {
             self.at += 1;
         }
         // The sign of a continued line is no part of a word.
-        if self.at > start && self.bytes[self.at - 1] == b'\\' && self.is_continuation(self.at - 1) {
+        if self.at > start && self.bytes[self.at - 1] == b'\\' && self.is_continuation(self.at - 1)
+        {
             self.at -= 1;
         }
         &self.bytes[start..self.at]
@@ -297,7 +317,8 @@ impl<'a> Cursor<'a> {
         let start = self.at;
         let single = self.float()?;
 
-        // Read the same bytes once more. What the library does not know has no more digits than single precision.
+        // Read the same bytes once more. What the library does not know has no more digits than
+        // single precision.
         let word = self.bytes[start..self.at].trim_ascii();
         let spelled = foreign_spelling(word);
         let word = spelled.as_deref().unwrap_or(word);
@@ -305,9 +326,9 @@ impl<'a> Cursor<'a> {
         Some(parsed.filter(|value| value.is_finite()).unwrap_or(f64::from(single)))
     }
 
-    /// The next number as `f32`, or `None` (and no step) if the next word does not begin as one or has commas that could
-    /// part numbers. Anything else glued to the number is skipped and noted for [`Self::take_ill_formed`]. Reads `nan`,
-    /// `inf` and MSVC's `1.#QNAN` too.
+    /// The next number as `f32`, or `None` (and no step) if the next word does not begin as one or
+    /// has commas that could part numbers. Anything else glued to the number is skipped and noted
+    /// for [`Self::take_ill_formed`]. Reads `nan`, `inf` and MSVC's `1.#QNAN` too.
     #[inline]
     pub(crate) fn float(&mut self) -> Option<f32> {
         self.skip_blanks();
@@ -348,7 +369,8 @@ impl<'a> Cursor<'a> {
         if is_blank(next) || next == b'\n' { Some(value) } else { self.tail_of_float(start, value) }
     }
 
-    /// The digits at `at`, appended to `mantissa` (which wraps round: the caller counts); gives their number.
+    /// The digits at `at`, appended to `mantissa` (which wraps round: the caller counts); gives
+    /// their number.
     #[inline(always)]
     fn digits(&self, at: &mut usize, mantissa: &mut u64) -> usize {
         let start = *at;
@@ -429,7 +451,8 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// The next integer, saturated at 2^62, or `None` (and no step) if there is none. It may be followed by anything.
+    /// The next integer, saturated at 2^62, or `None` (and no step) if there is none. It may be
+    /// followed by anything.
     #[inline]
     pub(crate) fn integer(&mut self) -> Option<i64> {
         self.skip_blanks();
@@ -455,8 +478,8 @@ impl<'a> Cursor<'a> {
 }
 
 const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
-    1e21, 1e22,
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
 /// `mantissa * 10^power` correctly rounded to `f32`, where that takes one exact step.
@@ -473,7 +496,8 @@ fn exact(mantissa: u64, digits: usize, power: i32) -> Option<f32> {
     if half_way || subnormal { None } else { Some(value as f32) }
 }
 
-/// `word` as the standard library spells numbers, if it has a decimal comma between digits or an exponent of Fortran's.
+/// `word` as the standard library spells numbers, if it has a decimal comma between digits or an
+/// exponent of Fortran's.
 #[cold]
 fn foreign_spelling(word: &[u8]) -> Option<Vec<u8>> {
     let is_digit = |k: usize| word.get(k).is_some_and(u8::is_ascii_digit);
@@ -493,7 +517,10 @@ fn foreign_spelling(word: &[u8]) -> Option<Vec<u8>> {
     if let Some(k) = exponent {
         spelled[k] = b'e';
     }
-    let sign = word.iter().rposition(|b| matches!(b, b'+' | b'-')).filter(|&k| k > 0 && k + 4 == word.len());
+    let sign = word
+        .iter()
+        .rposition(|b| matches!(b, b'+' | b'-'))
+        .filter(|&k| k > 0 && k + 4 == word.len());
     let bare = sign.filter(|&k| is_digit(k - 1) || word[k - 1] == b'.');
     if let Some(k) = bare {
         spelled.insert(k, b'e');
@@ -520,18 +547,30 @@ mod tests {
 
     #[test]
     fn numbers_in_all_spellings() {
-        for text in ["1", "-0", "2.", ".5", "+3.25", "1e2", "2.e1", "-1E-3", "16777217", "3.4e38", "1e-45", "1e-300"] {
-            assert_eq!(float(text).unwrap().to_bits(), text.parse::<f32>().unwrap().to_bits(), "{text}");
+        for text in [
+            "1", "-0", "2.", ".5", "+3.25", "1e2", "2.e1", "-1E-3", "16777217", "3.4e38", "1e-45",
+            "1e-300",
+        ] {
+            assert_eq!(
+                float(text).unwrap().to_bits(),
+                text.parse::<f32>().unwrap().to_bits(),
+                "{text}"
+            );
         }
         assert_eq!(float("1e999"), Some(f32::INFINITY));
         assert!(float("nan").unwrap().is_nan() && float("-1.#IND").unwrap().is_nan());
-        assert_eq!((float("-inf"), float("1.#INF00")), (Some(f32::NEG_INFINITY), Some(f32::INFINITY)));
+        assert_eq!(
+            (float("-inf"), float("1.#INF00")),
+            (Some(f32::NEG_INFINITY), Some(f32::INFINITY))
+        );
         assert_eq!((float("abc"), float("-"), float("")), (None, None, None));
     }
 
     #[test]
     fn comments_behind_names_begin_after_a_blank() {
-        for (name, plain) in [("a # b", "a"), ("a b #c", "a b"), ("a\t#", "a"), ("a#b # c # d", "a#b")] {
+        for (name, plain) in
+            [("a # b", "a"), ("a b #c", "a b"), ("a\t#", "a"), ("a#b # c # d", "a#b")]
+        {
             assert_eq!(without_comment(name), plain);
         }
         for name in ["", "#", "# a", "a#b", "Material #25", "ä"] {
@@ -569,9 +608,15 @@ mod tests {
         }
         for text in ["1,2,3", "1.5,2.5", "0.5,1,2"] {
             let mut cursor = Cursor::new(text.as_bytes());
-            assert_eq!((cursor.float(), cursor.word()), (None, text.as_bytes()), "it may be several numbers");
+            assert_eq!(
+                (cursor.float(), cursor.word()),
+                (None, text.as_bytes()),
+                "it may be several numbers"
+            );
         }
-        for (text, head) in [("1, 2", 1.0), ("2d", 2.0), ("3.1+e2", 3.1), ("2.0Dx", 2.0), ("1+22", 1.0)] {
+        for (text, head) in
+            [("1, 2", 1.0), ("2d", 2.0), ("3.1+e2", 3.1), ("2.0Dx", 2.0), ("1+22", 1.0)]
+        {
             let mut cursor = Cursor::new(text.as_bytes());
             assert_eq!((cursor.float(), cursor.take_ill_formed()), (Some(head), true), "{text}");
         }
@@ -579,13 +624,19 @@ mod tests {
 
     #[test]
     fn doubles_keep_what_singles_round_away() {
-        for (text, value) in
-            [("4500067.8900001", 4_500_067.890_000_1), ("500012,34", 500_012.34), ("1.5D7 2", 1.5e7), ("-.25#", -0.25)]
-        {
+        for (text, value) in [
+            ("4500067.8900001", 4_500_067.890_000_1),
+            ("500012,34", 500_012.34),
+            ("1.5D7 2", 1.5e7),
+            ("-.25#", -0.25),
+        ] {
             assert_eq!(Cursor::new(text.as_bytes()).double(), Some(value), "{text}");
         }
         assert!(Cursor::new(b"nan").double().unwrap().is_nan());
-        assert_eq!((Cursor::new(b"1e999").double(), Cursor::new(b"x").double()), (Some(f64::INFINITY), None));
+        assert_eq!(
+            (Cursor::new(b"1e999").double(), Cursor::new(b"x").double()),
+            (Some(f64::INFINITY), None)
+        );
     }
 
     #[test]
@@ -601,8 +652,14 @@ mod tests {
     #[test]
     fn whatever_stands_on_a_line_is_continued() {
         let mut cursor = Cursor::new(b"v 1\\\n2 word\\\r\n 3 \\\n# c \\\nx\ng a \\\n b # c \\\ny");
-        assert_eq!((cursor.word(), cursor.float(), cursor.float()), (&b"v"[..], Some(1.0), Some(2.0)));
-        assert_eq!((cursor.word(), cursor.float(), cursor.take_ill_formed()), (&b"word"[..], Some(3.0), false));
+        assert_eq!(
+            (cursor.word(), cursor.float(), cursor.float()),
+            (&b"v"[..], Some(1.0), Some(2.0))
+        );
+        assert_eq!(
+            (cursor.word(), cursor.float(), cursor.take_ill_formed()),
+            (&b"word"[..], Some(3.0), false)
+        );
         cursor.next_line();
         assert_eq!((cursor.line(), cursor.word()), (5, &b"x"[..]));
         cursor.next_line();

@@ -1,5 +1,5 @@
-//! Textures that a material library asks for: each image is read and decoded once, however often and however it is
-//! used, and all of them at the same time where there are threads.
+//! Textures that a material library asks for: each image is read and decoded once, however often
+//! and however it is used, and all of them at the same time where there are threads.
 
 use crate::Resolver;
 use crate::resolve::read_first;
@@ -44,9 +44,11 @@ pub(crate) enum Usage {
     Data,
     /// One channel in all of red, green and blue, linear.
     Grey(Channel),
-    /// Normals: the image as it is, if it looks like a map of them, else those of the surface whose height it is.
+    /// Normals: the image as it is, if it looks like a map of them, else those of the surface whose
+    /// height it is.
     Bump,
-    /// Roughness in green and metal in blue, linear, each the luminance of an image; 1 where there is none.
+    /// Roughness in green and metal in blue, linear, each the luminance of an image; 1 where there
+    /// is none.
     MetallicRoughness([Option<usize>; 2]),
 }
 
@@ -69,7 +71,8 @@ struct Image {
     path: String,
 }
 
-/// The images and their uses. A use's number is the texture index that materials carry until [`Requests::load`].
+/// The images and their uses. A use's number is the texture index that materials carry until
+/// [`Requests::load`].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Requests {
     images: Vec<Image>,
@@ -144,8 +147,11 @@ impl Requests {
         });
 
         // Close the gaps that missing images leave.
-        let mut loaded =
-            Loaded { warnings: images.into_iter().flat_map(|i| i.warnings).collect(), alpha, ..Loaded::default() };
+        let mut loaded = Loaded {
+            warnings: images.into_iter().flat_map(|i| i.warnings).collect(),
+            alpha,
+            ..Loaded::default()
+        };
         for texture in textures {
             loaded.index.push(texture.is_some().then_some(loaded.textures.len() as u32));
             loaded.textures.extend(texture);
@@ -167,8 +173,8 @@ fn folder_of(path: &str) -> &str {
 }
 
 impl Image {
-    /// Tries the name beside the library, then as it stands, then its last part alone: exporters like to write the
-    /// paths of the machine they ran on. Then the same without a comment.
+    /// Tries the name beside the library, then as it stands, then its last part alone: exporters
+    /// like to write the paths of the machine they ran on. Then the same without a comment.
     fn read(&self, resolver: &dyn Resolver) -> Read {
         let folder = folder_of(&self.library);
         let plain = without_comment(&self.path).trim_end_matches('"');
@@ -184,7 +190,8 @@ impl Image {
         };
         match crate::image::decode_texture(&found.bytes, &found.name) {
             Ok((plane, odd)) => {
-                let warnings = found.oddity.into_iter().chain(odd).map(|what| self.told(&what)).collect();
+                let warnings =
+                    found.oddity.into_iter().chain(odd).map(|what| self.told(&what)).collect();
                 Read { plane: Some(plane), warnings }
             }
             Err(e) => self.left_out(&e.to_string()),
@@ -192,7 +199,10 @@ impl Image {
     }
 
     fn left_out(&self, why: &str) -> Read {
-        Read { plane: None, warnings: vec![self.told(&format!("texture `{}` is left out: {why}", self.path))] }
+        Read {
+            plane: None,
+            warnings: vec![self.told(&format!("texture `{}` is left out: {why}", self.path))],
+        }
     }
 
     fn told(&self, what: &str) -> String {
@@ -205,7 +215,9 @@ fn prepare(plane: &Plane<[u8; 4]>, usage: Usage) -> (Plane<[u8; 4]>, Encoding) {
         Usage::Color => (plane.clone(), Encoding::Srgb),
         Usage::OpaqueColor => (plane.map(|&[r, g, b, _]| [r, g, b, 255]), Encoding::Srgb),
         Usage::Bump if !is_normal_map(plane) => (normals_of_heights(plane), Encoding::Linear),
-        Usage::Data | Usage::Bump | Usage::MetallicRoughness(_) => (plane.clone(), Encoding::Linear),
+        Usage::Data | Usage::Bump | Usage::MetallicRoughness(_) => {
+            (plane.clone(), Encoding::Linear)
+        }
         Usage::Grey(channel) => {
             let has_alpha = plane.data().iter().any(|p| p[3] < 255);
             let grey = |p: &[u8; 4]| {
@@ -223,8 +235,8 @@ fn prepare(plane: &Plane<[u8; 4]>, usage: Usage) -> (Plane<[u8; 4]>, Encoding) {
     }
 }
 
-/// What the alpha of an image says: how much there is of the surface, if more than a third of what is not clear is not opaque
-/// either, which is more than the soft rims of holes.
+/// What the alpha of an image says: how much there is of the surface, if more than a third of what
+/// is not clear is not opaque either, which is more than the soft rims of holes.
 fn alpha_of(plane: &Plane<[u8; 4]>) -> Alpha {
     const CLEAR: u8 = 8;
     const OPAQUE: u8 = 247;
@@ -238,19 +250,25 @@ fn alpha_of(plane: &Plane<[u8; 4]>) -> Alpha {
     }
 }
 
-/// Whether an image holds normals: its mean is bluish, as of vectors that point out of the surface. Heights are grey.
+/// Whether an image holds normals: its mean is bluish, as of vectors that point out of the surface.
+/// Heights are grey.
 fn is_normal_map(plane: &Plane<[u8; 4]>) -> bool {
     let count = plane.data().len().max(1) as u64;
-    let [r, g, b] = [0, 1, 2].map(|k| plane.data().iter().map(|p| u64::from(p[k])).sum::<u64>() / count);
+    let [r, g, b] =
+        [0, 1, 2].map(|k| plane.data().iter().map(|p| u64::from(p[k])).sum::<u64>() / count);
     b > 170 && b > r + 40 && b > g + 40
 }
 
-/// The normals of the surface whose height is the luminance of an image, from black at 0 to white at `HEIGHT` texels.
+/// The normals of the surface whose height is the luminance of an image, from black at 0 to white
+/// at `HEIGHT` texels.
 fn normals_of_heights(plane: &Plane<[u8; 4]>) -> Plane<[u8; 4]> {
-    /// Half black and half white side by side make a step of two texels, which stands steeply but keeps its shading.
+    /// Half black and half white side by side make a step of two texels, which stands steeply but
+    /// keeps its shading.
     const HEIGHT: f32 = 2.0;
     let (width, height) = (plane.width(), plane.height());
-    let at = |x: u32, y: u32| f32::from(luminance(plane.data()[(y * width + x) as usize])) / 255.0 * HEIGHT;
+    let at = |x: u32, y: u32| {
+        f32::from(luminance(plane.data()[(y * width + x) as usize])) / 255.0 * HEIGHT
+    };
     let mut normals = Vec::with_capacity(plane.data().len());
     for y in 0..height {
         for x in 0..width {
@@ -266,20 +284,24 @@ fn normals_of_heights(plane: &Plane<[u8; 4]>) -> Plane<[u8; 4]> {
     Plane::from_rows(width, height, normals).unwrap_or_else(|| plane.clone())
 }
 
-/// One image of roughness (green) and metal (blue), as large as the first that is there; `None` if there is none.
+/// One image of roughness (green) and metal (blue), as large as the first that is there; `None` if
+/// there is none.
 fn metallic_roughness(images: [Option<&Plane<[u8; 4]>>; 2]) -> Option<Plane<[u8; 4]>> {
     let first = images[0].or(images[1])?;
     let (width, height) = (first.width(), first.height());
     let value = |image: Option<&Plane<[u8; 4]>>, x: u32, y: u32| {
         image.map_or(255, |image| {
             // Take the texel at the same place of an image of another size.
-            let scaled = |k: u32, from: u32, to: u32| (u64::from(k) * u64::from(to) / u64::from(from)) as usize;
+            let scaled = |k: u32, from: u32, to: u32| {
+                (u64::from(k) * u64::from(to) / u64::from(from)) as usize
+            };
             let (x, y) = (scaled(x, width, image.width()), scaled(y, height, image.height()));
             luminance(image.data()[y * image.width() as usize + x])
         })
     };
     let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    let texels = texels.map(|(x, y)| [255, value(images[0], x, y), value(images[1], x, y), 255]).collect();
+    let texels =
+        texels.map(|(x, y)| [255, value(images[0], x, y), value(images[1], x, y), 255]).collect();
     Plane::from_rows(width, height, texels)
 }
 
@@ -295,11 +317,15 @@ mod tests {
     #[test]
     fn an_image_is_asked_for_once() {
         let mut requests = Requests::default();
-        let ids = [Usage::Color, Usage::Color, Usage::Data].map(|u| requests.add("m.mtl", 1, "a.png", u));
+        let ids =
+            [Usage::Color, Usage::Color, Usage::Data].map(|u| requests.add("m.mtl", 1, "a.png", u));
         assert_eq!((ids, requests.paths().len()), ([0, 0, 1], 1));
         let loaded = requests.load(&crate::NoFiles, &Workers::single());
         assert_eq!(loaded.index, [None, None]);
-        assert_eq!(loaded.warnings, ["m.mtl: line 1: texture `a.png` is left out: there is no such file"]);
+        assert_eq!(
+            loaded.warnings,
+            ["m.mtl: line 1: texture `a.png` is left out: there is no such file"]
+        );
     }
 
     #[test]
@@ -308,7 +334,10 @@ mod tests {
             let texels = values.iter().map(|&a| [9, 9, 9, a]).collect();
             alpha_of(&Plane::from_rows(values.len() as u32, 1, texels).unwrap())
         };
-        assert_eq!((alpha(&[255, 255]), alpha(&[0, 0]), alpha(&[255, 250])), (Alpha::None, Alpha::None, Alpha::None));
+        assert_eq!(
+            (alpha(&[255, 255]), alpha(&[0, 0]), alpha(&[255, 250])),
+            (Alpha::None, Alpha::None, Alpha::None)
+        );
         assert_eq!((alpha(&[255, 0]), alpha(&[255, 255, 255, 100, 0])), (Alpha::Hard, Alpha::Hard));
         assert_eq!((alpha(&[128; 4]), alpha(&[255, 128, 128, 0])), (Alpha::Soft, Alpha::Soft));
     }
@@ -316,12 +345,14 @@ mod tests {
     #[test]
     fn heights_become_normals_and_normals_stay() {
         // A ramp that rises along u: the normal leans back along u.
-        let ramp = Plane::from_rows(4, 1, [0u8, 64, 128, 192].map(|v| [v, v, v, 255]).to_vec()).unwrap();
+        let ramp =
+            Plane::from_rows(4, 1, [0u8, 64, 128, 192].map(|v| [v, v, v, 255]).to_vec()).unwrap();
         let normals = prepare(&ramp, Usage::Bump).0;
         let [r, g, b, _] = normals.data()[1];
         assert!(r < 100 && (g == 127 || g == 128) && b > 200, "{:?}", normals.data());
         // Brighter above: the normal leans downwards in the picture.
-        let step = Plane::from_rows(1, 4, [192u8, 128, 64, 0].map(|v| [v, v, v, 255]).to_vec()).unwrap();
+        let step =
+            Plane::from_rows(1, 4, [192u8, 128, 64, 0].map(|v| [v, v, v, 255]).to_vec()).unwrap();
         assert!(prepare(&step, Usage::Bump).0.data()[1][1] < 100);
         let flat = Plane::filled(2, 2, [128, 128, 255, 255]);
         assert_eq!(prepare(&flat, Usage::Bump).0.data(), flat.data());
@@ -333,7 +364,10 @@ mod tests {
         let metal = Plane::filled(1, 1, [200, 200, 200, 255]);
         let both = metallic_roughness([Some(&rough), Some(&metal)]).unwrap();
         assert_eq!(both.data(), [[255, 10, 200, 255], [255, 20, 200, 255]]);
-        assert_eq!(metallic_roughness([None, Some(&metal)]).unwrap().data(), [[255, 255, 200, 255]]);
+        assert_eq!(
+            metallic_roughness([None, Some(&metal)]).unwrap().data(),
+            [[255, 255, 200, 255]]
+        );
         assert!(metallic_roughness([None, None]).is_none());
     }
 

@@ -1,23 +1,26 @@
 //! Cuts a polygon with `n` corners into exactly `n - 2` triangles, by ear clipping.
 //!
-//! The polygon is seen along its average normal (Newell's sum), so that a slightly bent polygon has a plane to live
-//! in. Three cases, from cheap to dear: a quadrangle is cut along the diagonal that starts at its inward corner, if it
-//! has one; a strictly convex polygon becomes a fan; anything else loses one *ear* after the other: a corner that
-//! bends outward and whose triangle holds no other corner, or one that comes twice in a row. A polygon that crosses
-//! itself or has no area may run out of ears; then corners that at least do not bend inward are cut, and at last any
-//! corner, so that there are always `n - 2` triangles.
+//! The polygon is seen along its average normal (Newell's sum), so that a slightly bent polygon has
+//! a plane to live in. Three cases, from cheap to dear: a quadrangle is cut along the diagonal that
+//! starts at its inward corner, if it has one; a strictly convex polygon becomes a fan; anything
+//! else loses one *ear* after the other: a corner that bends outward and whose triangle holds no
+//! other corner, or one that comes twice in a row. A polygon that crosses itself or has no area may
+//! run out of ears; then corners that at least do not bend inward are cut, and at last any corner,
+//! so that there are always `n - 2` triangles.
 //!
 //! In:   positions in model space and a polygon's corners, in order, either orientation.
-//! Out:  triangles with the polygon's orientation, as corner numbers `0..n`. The same for every run and machine.
-//! Cost: `O(n)` for convex polygons; ear clipping takes `O(n * r)` ear tests of `O(r)` with `r` inward corners. Its work is
-//!       limited to a multiple of `n` plus a constant; what is left then becomes a fan (a polygon of 100 000 corners must
-//!       not stop the program).
+//! Out:  triangles with the polygon's orientation, as corner numbers `0..n`. The same for every run
+//!       and machine.
+//! Cost: `O(n)` for convex polygons; ear clipping takes `O(n * r)` ear tests of `O(r)` with `r`
+//!       inward corners. Its work is limited to a multiple of `n` plus a constant; what is left
+//!       then becomes a fan (a polygon of 100 000 corners must not stop the program).
 //! Source: [Meisters 1975] (every simple polygon has two ears); Newell's normal after
 //! [Sutherland, Sproull & Schumacker 1974].
 
-/// Cuts the polygon whose corners are `corners` (indices into `positions`, at least three) into triangles and appends
-/// them to `out`. The triangles' indices count the polygon's corners: `0` is `corners[0]`. Fewer than three corners
-/// give nothing. A polygon with a NaN or infinite coordinate becomes a fan.
+/// Cuts the polygon whose corners are `corners` (indices into `positions`, at least three) into
+/// triangles and appends them to `out`. The triangles' indices count the polygon's corners: `0` is
+/// `corners[0]`. Fewer than three corners give nothing. A polygon with a NaN or infinite coordinate
+/// becomes a fan.
 ///
 /// # Panics
 /// If a corner is not an index into `positions`.
@@ -28,7 +31,8 @@ pub fn triangulate(positions: &[[f32; 3]], corners: &[u32], out: &mut Vec<[u32; 
         4 => out.extend(quadrangle(std::array::from_fn(|k| positions[corners[k] as usize]))),
         _ => {
             let space: Vec<[f32; 3]> = corners.iter().map(|&c| positions[c as usize]).collect();
-            let points = plane_axes(&space).map(|axes| space.iter().map(|&p| along(p, axes)).collect::<Vec<_>>());
+            let points = plane_axes(&space)
+                .map(|axes| space.iter().map(|&p| along(p, axes)).collect::<Vec<_>>());
             match points {
                 Some(points) if !is_convex(&points) => EarClipper::new(points).run(out),
                 _ => fan(&(0..corners.len() as u32).collect::<Vec<_>>(), out),
@@ -37,7 +41,8 @@ pub fn triangulate(positions: &[[f32; 3]], corners: &[u32], out: &mut Vec<[u32; 
     }
 }
 
-/// The unit normal of a polygon by its orientation; zero where it has no area or a coordinate is not finite.
+/// The unit normal of a polygon by its orientation; zero where it has no area or a coordinate is
+/// not finite.
 pub(crate) fn polygon_normal(positions: &[[f32; 3]], corners: &[u32]) -> [f32; 3] {
     let space: Vec<[f32; 3]> = corners.iter().map(|&c| positions[c as usize]).collect();
     let n = newell(&space);
@@ -53,11 +58,13 @@ fn cross(a: Point, b: Point, c: Point) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Newell's normal: twice the areas of the projections along the axes. Relative to the first corner, so that a small
-/// polygon far from the origin keeps its digits.
+/// Newell's normal: twice the areas of the projections along the axes. Relative to the first
+/// corner, so that a small polygon far from the origin keeps its digits.
 fn newell(space: &[[f32; 3]]) -> [f64; 3] {
     let origin = space[0].map(f64::from);
-    let local = |p: [f32; 3]| [f64::from(p[0]) - origin[0], f64::from(p[1]) - origin[1], f64::from(p[2]) - origin[2]];
+    let local = |p: [f32; 3]| {
+        [f64::from(p[0]) - origin[0], f64::from(p[1]) - origin[1], f64::from(p[2]) - origin[2]]
+    };
     let mut normal = [0.0; 3];
     let mut a = local(space[space.len() - 1]);
     for &p in space {
@@ -70,11 +77,12 @@ fn newell(space: &[[f32; 3]]) -> [f64; 3] {
     normal
 }
 
-/// The two axes to keep when the polygon is seen along the axis nearest to its normal, ordered so that it appears
-/// counter-clockwise; `None` without area or with a coordinate that is not finite.
+/// The two axes to keep when the polygon is seen along the axis nearest to its normal, ordered so
+/// that it appears counter-clockwise; `None` without area or with a coordinate that is not finite.
 fn plane_axes(space: &[[f32; 3]]) -> Option<[usize; 2]> {
     let normal = newell(space);
-    let axis = (0..3).fold(0, |best, k| if normal[k].abs() > normal[best].abs() { k } else { best });
+    let axis =
+        (0..3).fold(0, |best, k| if normal[k].abs() > normal[best].abs() { k } else { best });
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     if !normal.iter().all(|n| n.is_finite()) || normal[axis] == 0.0 {
         return None;
@@ -92,7 +100,12 @@ fn quadrangle(space: [[f32; 3]; 4]) -> [[u32; 3]; 2] {
     let Some(axes) = plane_axes(&space) else { return from_0 };
     let p = space.map(|p| along(p, axes));
     // The diagonal 0-2 leaves the triangles 1 and 3; the other one leaves 0 and 2.
-    let outward = [cross(p[3], p[0], p[1]), cross(p[0], p[1], p[2]), cross(p[1], p[2], p[3]), cross(p[2], p[3], p[0])];
+    let outward = [
+        cross(p[3], p[0], p[1]),
+        cross(p[0], p[1], p[2]),
+        cross(p[1], p[2], p[3]),
+        cross(p[2], p[3], p[0]),
+    ];
     if outward[1] > 0.0 && outward[3] > 0.0 {
         from_0
     } else if outward[0] > 0.0 && outward[2] > 0.0 {
@@ -121,7 +134,8 @@ fn fan(corners: &[u32], out: &mut Vec<[u32; 3]>) {
     out.extend(corners.windows(2).skip(1).map(|w| [corners[0], w[0], w[1]]));
 }
 
-/// What a corner must be, to be cut: requirements are given up one after the other when no corner meets them.
+/// What a corner must be, to be cut: requirements are given up one after the other when no corner
+/// meets them.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Demand {
     /// Bends outward, and its triangle holds no other corner; or holds nothing at all.
@@ -137,8 +151,8 @@ struct EarClipper {
     points: Vec<Point>,
     next: Vec<u32>,
     previous: Vec<u32>,
-    /// Corners that do not bend outward: only they can lie in an ear. A corner that bends outward stays so in a simple
-    /// polygon; those that were cut or have become outward are removed lazily.
+    /// Corners that do not bend outward: only they can lie in an ear. A corner that bends outward
+    /// stays so in a simple polygon; those that were cut or have become outward are removed lazily.
     inward: Vec<u32>,
     is_inward: Vec<bool>,
     /// Point tests left.
@@ -178,7 +192,9 @@ impl EarClipper {
             // Out of time: a fan of what is left.
             if self.work == 0 {
                 let ring: Vec<u32> =
-                    std::iter::successors(Some(i), |&k| Some(self.next[k as usize])).take(left as usize).collect();
+                    std::iter::successors(Some(i), |&k| Some(self.next[k as usize]))
+                        .take(left as usize)
+                        .collect();
                 return fan(&ring, out);
             }
             if self.meets(i, demand) {
@@ -208,15 +224,17 @@ impl EarClipper {
         }
     }
 
-    /// Whether the corner is that of the next one again, or the end of an edge to and fro: without it the outline is round the
-    /// same area, and with it neither it nor its double would ever bend.
+    /// Whether the corner is that of the next one again, or the end of an edge to and fro: without
+    /// it the outline is round the same area, and with it neither it nor its double would ever
+    /// bend.
     fn is_hair(&self, i: u32) -> bool {
         let [a, b, c] = self.corner(i).map(|k| self.points[k as usize]);
         b == c || a == c
     }
 
-    /// Whether no inward corner lies in the triangle at `i`, its border included. Corners at the place of the triangle's
-    /// own are passed over: outlines with a bridge to a hole visit such places twice.
+    /// Whether no inward corner lies in the triangle at `i`, its border included. Corners at the
+    /// place of the triangle's own are passed over: outlines with a bridge to a hole visit such
+    /// places twice.
     fn is_empty_ear(&mut self, i: u32) -> bool {
         let ear = self.corner(i);
         let [a, b, c] = ear.map(|k| self.points[k as usize]);
@@ -238,8 +256,8 @@ impl EarClipper {
         empty
     }
 
-    /// Removes corner `i` and gives the one to go on with: one further than the next, so that ears are taken all round
-    /// and no corner collects a fan of slivers.
+    /// Removes corner `i` and gives the one to go on with: one further than the next, so that ears
+    /// are taken all round and no corner collects a fan of slivers.
     fn cut(&mut self, i: u32) -> u32 {
         let [before, _, after] = self.corner(i);
         self.next[before as usize] = after;
@@ -289,7 +307,8 @@ mod tests {
     fn a_concave_outline_keeps_its_area() {
         // A comb with three teeth, standing in the plane z = x.
         let comb = [[0, 0], [6, 0], [6, 3], [5, 1], [4, 3], [3, 1], [2, 3], [1, 1], [0, 3]];
-        let flat: Vec<[f32; 3]> = comb.iter().map(|p| [p[0] as f32, p[1] as f32, p[0] as f32]).collect();
+        let flat: Vec<[f32; 3]> =
+            comb.iter().map(|p| [p[0] as f32, p[1] as f32, p[0] as f32]).collect();
         let (signed, unsigned) = areas(&flat, &cut(&flat));
         assert_eq!((signed, unsigned), (12.0, 12.0));
         let reversed: Vec<[f32; 3]> = flat.iter().rev().copied().collect();
@@ -314,8 +333,9 @@ mod tests {
 
     #[test]
     fn corners_on_a_straight_edge_make_no_empty_triangles() {
-        let square: Vec<[f32; 3]> =
-            [[0, 0], [1, 0], [2, 0], [2, 2], [1, 2], [0, 2]].map(|p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0]).into();
+        let square: Vec<[f32; 3]> = [[0, 0], [1, 0], [2, 0], [2, 2], [1, 2], [0, 2]]
+            .map(|p: [i32; 2]| [p[0] as f32, p[1] as f32, 0.0])
+            .into();
         let triangles = cut(&square);
         assert!(triangles.iter().all(|t| areas(&square, &[*t]).0 > 0.0), "{triangles:?}");
     }
@@ -323,11 +343,23 @@ mod tests {
     #[test]
     fn degenerate_outlines_still_give_all_triangles() {
         cut(&[[1.0; 3]; 7]);
-        cut(&[[f32::NAN, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.5, 0.0]]);
+        cut(&[
+            [f32::NAN, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [-1.0, 0.5, 0.0],
+        ]);
         let round = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         cut(&round.repeat(200));
         // A pentagram goes round twice: no fan, still three triangles.
-        cut(&[[0.0, 3.0, 0.0], [-2.0, -3.0, 0.0], [3.0, 1.0, 0.0], [-3.0, 1.0, 0.0], [2.0, -3.0, 0.0]]);
+        cut(&[
+            [0.0, 3.0, 0.0],
+            [-2.0, -3.0, 0.0],
+            [3.0, 1.0, 0.0],
+            [-3.0, 1.0, 0.0],
+            [2.0, -3.0, 0.0],
+        ]);
     }
 
     #[test]
@@ -335,7 +367,8 @@ mod tests {
         let n = 100_000;
         let star: Vec<[f32; 3]> = (0..n)
             .map(|i| {
-                let (s, c) = vitral_math::func::sin_cos(f64::from(i) * std::f64::consts::TAU / f64::from(n));
+                let (s, c) =
+                    vitral_math::func::sin_cos(f64::from(i) * std::f64::consts::TAU / f64::from(n));
                 let r = if i % 2 == 0 { 2.0 } else { 1.0 };
                 [(r * c) as f32, (r * s) as f32, 0.0]
             })
@@ -356,7 +389,8 @@ mod tests {
             prop_assert!((signed - unsigned).abs() <= 1e-9 * unsigned, "{signed} {unsigned}");
         }
 
-        /// Corners that come several times change nothing: the triangles have the outline's area and cover each point once.
+        /// Corners that come several times change nothing: the triangles have the outline's area
+        /// and cover each point once.
         #[test]
         fn doubled_corners_change_nothing(
             spokes in proptest::collection::vec((0.2f64..2.0, 0usize..4), 5..30),

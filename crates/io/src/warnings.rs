@@ -1,4 +1,5 @@
-//! What was odd in a file but could be read: collected by kind, so that a million odd lines make one message.
+//! What was odd in a file but could be read: collected by kind, so that a million odd lines make
+//! one message.
 
 use crate::Place;
 
@@ -11,15 +12,16 @@ struct Entry {
     count: u64,
 }
 
-/// The warnings of one file (or of one piece of it), in the order in which the kinds first appeared.
+/// The warnings of one file (or of one piece of it), in the order in which the kinds first
+/// appeared.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Warnings {
     entries: Vec<Entry>,
 }
 
 impl Warnings {
-    /// Notes an oddity. `what` is only evaluated for the first of its `kind`; later ones are counted. A kind of `""`
-    /// is always a message of its own.
+    /// Notes an oddity. `what` is only evaluated for the first of its `kind`; later ones are
+    /// counted. A kind of `""` is always a message of its own.
     pub(crate) fn note(&mut self, kind: &'static str, place: Place, what: impl FnOnce() -> String) {
         match self.entries.iter_mut().find(|e| e.kind == kind && !kind.is_empty()) {
             Some(entry) => entry.count += 1,
@@ -61,6 +63,9 @@ mod tests {
         b.note("k", Place::Line(1), || "also odd".into());
         b.note("other", Place::Line(2), || "strange".into());
         a.append(b, 10);
-        assert_eq!(a.into_messages("f"), ["f: line 3: odd (and 1 more of the kind)", "f: line 12: strange"]);
+        assert_eq!(
+            a.into_messages("f"),
+            ["f: line 3: odd (and 1 more of the kind)", "f: line 12: strange"]
+        );
     }
 }

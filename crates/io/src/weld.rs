@@ -1,21 +1,26 @@
-//! Welds triangles that come as loose corners (STL): corners at exactly equal positions become one vertex.
+//! Welds triangles that come as loose corners (STL): corners at exactly equal positions become one
+//! vertex.
 //!
-//! Vertices are numbered by their first occurrence in the file, so the result does not depend on threads. Neighbours in a mesh
-//! are mostly neighbours in the file: each block of triangles first finds the places of its own corners, with a hash table that
-//! stays in the processor's cache. Then the places of all blocks, far fewer than corners, are dealt into partitions by a hash of
-//! their position; each partition's hash table stays in the cache, too, and partitions are independent:
+//! Vertices are numbered by their first occurrence in the file, so the result does not depend on
+//! threads. Neighbours in a mesh are mostly neighbours in the file: each block of triangles first
+//! finds the places of its own corners, with a hash table that stays in the processor's cache. Then
+//! the places of all blocks, far fewer than corners, are dealt into partitions by a hash of their
+//! position; each partition's hash table stays in the cache, too, and partitions are independent:
 //!
-//! 1. each block gives its places in the order in which they occur, and for each corner the number of its place;
+//! 1. each block gives its places in the order in which they occur, and for each corner the number
+//!    of its place;
 //! 2. each block of places is sorted by partition (counting sort, 2 bytes a place);
-//! 3. each partition walks its places in file order and finds for each the first one at the same position;
-//! 4. each block fetches these answers back; places that are their own first occurrence are new vertices, marked in a
-//!    bit set;
+//! 3. each partition walks its places in file order and finds for each the first one at the same
+//!    position;
+//! 4. each block fetches these answers back; places that are their own first occurrence are new
+//!    vertices, marked in a bit set;
 //! 5. a corner's vertex number is the number of marks before the first occurrence of its place.
 //!
-//! In:   a function that gives the three corners of each triangle. `-0` equals `0`; a NaN equals the same NaN.
+//! In:   a function that gives the three corners of each triangle. `-0` equals `0`; a NaN equals
+//!       the same NaN.
 //! Out:  vertices, and triangles of indices to them.
-//! Cost: `O(n)`, or `O(n log n)` for positions made to collide in the hash; 6 bytes of working memory a triangle and about 24 a
-//! place.
+//! Cost: `O(n)`, or `O(n log n)` for positions made to collide in the hash; 6 bytes of working
+//! memory a triangle and about 24 a place.
 //! Source: partitioned hash join, [Shatdal, Kant & Naughton 1994].
 
 use vitral_exec::Workers;
@@ -72,7 +77,8 @@ pub(crate) fn weld(
 ) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     assert!(count <= u32::MAX as usize / 3, "corner numbers have 32 bits");
     let blocks = count.div_ceil(BLOCK);
-    let mut locals = workers.map(blocks, |b| local_places(b * BLOCK..count.min((b + 1) * BLOCK), &corners));
+    let mut locals =
+        workers.map(blocks, |b| local_places(b * BLOCK..count.min((b + 1) * BLOCK), &corners));
     let mut starts = Vec::with_capacity(blocks);
     let mut places = Vec::with_capacity(locals.iter().map(|local| local.places.len()).sum());
     for local in &mut locals {
@@ -83,7 +89,9 @@ pub(crate) fn weld(
     let rank = Rank::new(&numbers, workers);
     let positions = gather(&places, &rank, workers);
     drop(places);
-    workers.for_each_chunk(&mut numbers, PLACES, |_, chunk| chunk.iter_mut().for_each(|n| *n = rank.of(*n)));
+    workers.for_each_chunk(&mut numbers, PLACES, |_, chunk| {
+        chunk.iter_mut().for_each(|n| *n = rank.of(*n))
+    });
     let mut triangles = vec![[0u32; 3]; count];
     workers.for_each_chunk(&mut triangles, BLOCK, |b, chunk| {
         let numbers = &numbers[starts[b]..];
@@ -94,9 +102,12 @@ pub(crate) fn weld(
     (positions, triangles)
 }
 
-/// The places of the corners of some triangles. Where few of the first ones share places, or positions collide in the hash too
-/// often, later ones get places of their own.
-fn local_places(triangles: std::ops::Range<usize>, corners: &impl Fn(usize) -> [[f32; 3]; 3]) -> Local {
+/// The places of the corners of some triangles. Where few of the first ones share places, or
+/// positions collide in the hash too often, later ones get places of their own.
+fn local_places(
+    triangles: std::ops::Range<usize>,
+    corners: &impl Fn(usize) -> [[f32; 3]; 3],
+) -> Local {
     const EMPTY: u16 = u16::MAX;
     let count = 3 * triangles.len();
     let mut table = vec![EMPTY; (2 * count).next_power_of_two()];
@@ -132,13 +143,15 @@ fn first_places(places: &[[f32; 3]], workers: &Workers) -> Vec<u32> {
     let count = places.len();
     let partitions = (count / PARTITION).next_power_of_two().min(1 << 12);
     let blocks = count.div_ceil(PLACES);
-    let dealt = workers.map(blocks, |b| deal(&places[b * PLACES..count.min((b + 1) * PLACES)], partitions));
+    let dealt =
+        workers.map(blocks, |b| deal(&places[b * PLACES..count.min((b + 1) * PLACES)], partitions));
     let firsts = workers.map(partitions, |p| first_occurrences(&dealt, p, places));
     let mut numbers = vec![0u32; count];
     let segments = segment_offsets(&dealt, partitions);
     workers.for_each_chunk(&mut numbers, PLACES, |b, chunk| {
         for p in 0..partitions {
-            let mine = &dealt[b].order[dealt[b].starts[p] as usize..dealt[b].starts[p + 1] as usize];
+            let mine =
+                &dealt[b].order[dealt[b].starts[p] as usize..dealt[b].starts[p + 1] as usize];
             let answers = &firsts[p][segments[b * partitions + p] as usize..][..mine.len()];
             for (&local, &first) in mine.iter().zip(answers) {
                 chunk[local as usize] = first;
@@ -182,7 +195,8 @@ fn segment_offsets(dealt: &[Dealt], partitions: usize) -> Vec<u32> {
     offsets
 }
 
-/// For each place of partition `p`, in file order: the number of the first one at the same position.
+/// For each place of partition `p`, in file order: the number of the first one at the same
+/// position.
 fn first_occurrences(dealt: &[Dealt], p: usize, places: &[[f32; 3]]) -> Vec<u32> {
     const EMPTY: u32 = u32::MAX;
     let members = || {
@@ -236,7 +250,10 @@ fn regrown(table: &[(Key, u32)]) -> Vec<(Key, u32)> {
     larger
 }
 
-fn first_occurrences_by_sorting(members: impl Iterator<Item = u32>, places: &[[f32; 3]]) -> Vec<u32> {
+fn first_occurrences_by_sorting(
+    members: impl Iterator<Item = u32>,
+    places: &[[f32; 3]],
+) -> Vec<u32> {
     let mut sorted: Vec<(Key, u32, u32)> =
         members.enumerate().map(|(rank, c)| (key(places[c as usize]), c, rank as u32)).collect();
     sorted.sort_unstable();
@@ -332,8 +349,10 @@ mod tests {
 
     #[test]
     fn two_triangles_share_an_edge() {
-        let soup =
-            [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 1.0, -0.0], [-0.0, 1.0, 0.0]]];
+        let soup = [
+            [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            [[1.0, 0.0, 0.0], [1.0, 1.0, -0.0], [-0.0, 1.0, 0.0]],
+        ];
         let (positions, triangles) = weld(2, |t| soup[t], &Workers::single());
         assert_eq!((positions.len(), triangles), (4, vec![[0, 1, 2], [1, 3, 2]]));
         assert_eq!(weld(0, |_| [[0.0; 3]; 3], &Workers::single()), (vec![], vec![]));
@@ -365,9 +384,13 @@ mod tests {
 
     #[test]
     fn sorting_finds_the_same_first_occurrences() {
-        let points: Vec<[f32; 3]> = (0..300).map(|i| [(i * i % 7) as f32, (i % 5) as f32, 0.0]).collect();
+        let points: Vec<[f32; 3]> =
+            (0..300).map(|i| [(i * i % 7) as f32, (i % 5) as f32, 0.0]).collect();
         let dealt = [deal(&points, 1)];
-        assert_eq!(first_occurrences(&dealt, 0, &points), first_occurrences_by_sorting(0..300, &points));
+        assert_eq!(
+            first_occurrences(&dealt, 0, &points),
+            first_occurrences_by_sorting(0..300, &points)
+        );
     }
 
     proptest! {

@@ -56,7 +56,11 @@ fn a_rendered_looking_picture_is_small() {
         let (x, y) = (i % w, i / w);
         let (dx, dy) = (x as f32 - 128.0, y as f32 - 96.0);
         let inside = dx * dx + dy * dy < 60.0 * 60.0;
-        if inside { [(x / 2) as u8, (y / 2) as u8, 90, 255] } else { [200, 210, (220 - y / 8) as u8, 255] }
+        if inside {
+            [(x / 2) as u8, (y / 2) as u8, 90, 255]
+        } else {
+            [200, 210, (220 - y / 8) as u8, 255]
+        }
     };
     let picture = Plane::from_rows(w, h, (0..w * h).map(pixel).collect()).unwrap();
     let file = png(&picture, PngOptions::default()).unwrap();

@@ -1,4 +1,5 @@
-//! glTF and GLB: the shared models, the table of malformed files, small files made here, and files damaged at random.
+//! glTF and GLB: the shared models, the table of malformed files, small files made here, and files
+//! damaged at random.
 
 use crate::common::documents::{FLOAT, Memory, ONE_NODE, document, floats, load_text, triangle};
 use proptest::prelude::*;
@@ -43,7 +44,11 @@ fn check(scene: &Scene) {
     }
     World::new(scene).unwrap();
     for mut material in scene.materials.iter().cloned() {
-        assert!(material.textures_mut().all(|t| (t.texture as usize) < scene.textures.len() && t.uv_set < 2));
+        assert!(
+            material
+                .textures_mut()
+                .all(|t| (t.texture as usize) < scene.textures.len() && t.uv_set < 2)
+        );
     }
     let materials = scene.materials.len() as u32;
     for mesh in &scene.meshes {
@@ -54,11 +59,13 @@ fn check(scene: &Scene) {
 #[test]
 fn every_shared_model_loads_as_the_manifest_says() {
     let Some(manifest) = shared("manifest.json") else { return };
-    let manifest: serde_json::Value = serde_json::from_slice(&std::fs::read(manifest).unwrap()).unwrap();
+    let manifest: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(manifest).unwrap()).unwrap();
     let mut seen = 0;
     for entry in manifest["files"].as_array().unwrap() {
         let path = entry["path"].as_str().unwrap();
-        if !path.starts_with("assimp/gltf") || !(path.ends_with(".gltf") || path.ends_with(".glb")) {
+        if !path.starts_with("assimp/gltf") || !(path.ends_with(".gltf") || path.ends_with(".glb"))
+        {
             continue;
         }
         let scene = load_path(&Path::new(MODELS).join(path)).unwrap_or_else(|e| panic!("{e}"));
@@ -75,18 +82,30 @@ fn every_shared_model_loads_as_the_manifest_says() {
                 entry["instances"].as_u64().unwrap(),
                 "{path}"
             );
-            assert_eq!(parts(&mut scene.meshes.iter().map(|m| &**m)), entry["meshes"].as_u64().unwrap(), "{path}");
+            assert_eq!(
+                parts(&mut scene.meshes.iter().map(|m| &**m)),
+                entry["meshes"].as_u64().unwrap(),
+                "{path}"
+            );
             let bounds = Aabb::from_points(world.instances.iter().flat_map(|i| {
                 let positions = i.mesh.positions.iter();
-                positions.map(|p| i.world_from_model.transform_point3(DVec3::from_array(p.map(f64::from))))
+                positions.map(|p| {
+                    i.world_from_model.transform_point3(DVec3::from_array(p.map(f64::from)))
+                })
             }));
             for (k, size) in entry["extent"].as_array().unwrap().iter().enumerate() {
                 let (ours, theirs) = (bounds.size()[k], size.as_f64().unwrap());
-                assert!((ours - theirs).abs() < 1e-3 * theirs.max(1.0), "{path}: axis {k}: {ours} against {theirs}");
+                assert!(
+                    (ours - theirs).abs() < 1e-3 * theirs.max(1.0),
+                    "{path}: axis {k}: {ours} against {theirs}"
+                );
             }
         } else {
             let mesh = &scene.meshes[0];
-            assert!(!mesh.points.is_empty() || !mesh.lines.is_empty() || !mesh.triangles.is_empty(), "{path}");
+            assert!(
+                !mesh.points.is_empty() || !mesh.lines.is_empty() || !mesh.triangles.is_empty(),
+                "{path}"
+            );
         }
         seen += 1;
     }
@@ -95,7 +114,9 @@ fn every_shared_model_loads_as_the_manifest_says() {
 
 #[test]
 fn all_primitive_modes_of_the_asset_generator() {
-    let Some(folder) = shared("assimp/gltf/glTF-Asset-Generator/Mesh_PrimitiveMode") else { return };
+    let Some(folder) = shared("assimp/gltf/glTF-Asset-Generator/Mesh_PrimitiveMode") else {
+        return;
+    };
     // Points, lines and triangles of files 00 to 15, after the README beside them.
     let expected = [
         (1024, 0, 0),
@@ -156,12 +177,16 @@ fn three_containers_of_one_box_are_equal() {
 
 #[test]
 fn the_engine_shares_its_meshes() {
-    let Some(path) = shared("assimp/gltf/2CylinderEngine-glTF-Binary/2CylinderEngine.glb") else { return };
+    let Some(path) = shared("assimp/gltf/2CylinderEngine-glTF-Binary/2CylinderEngine.glb") else {
+        return;
+    };
     let scene = load_path(&path).unwrap();
     let world = World::new(&scene).unwrap();
     assert_eq!((scene.meshes.len(), world.instances.len(), world.facet_count), (29, 67, 121_496));
     for workers in [Workers::single(), Workers::new(3)] {
-        let again = gltf::load(&std::fs::read(&path).unwrap(), "2CylinderEngine.glb", &NoFiles, &workers).unwrap();
+        let again =
+            gltf::load(&std::fs::read(&path).unwrap(), "2CylinderEngine.glb", &NoFiles, &workers)
+                .unwrap();
         assert_eq!((again.meshes, again.warnings), (scene.meshes.clone(), scene.warnings.clone()));
     }
 }
@@ -170,7 +195,9 @@ fn the_engine_shares_its_meshes() {
 fn cameras_of_the_shared_file() {
     let Some(path) = shared("assimp/gltf/cameras/Cameras.gltf") else { return };
     let world = World::new(&load_path(&path).unwrap()).unwrap();
-    let [perspective, parallel] = &world.cameras[..] else { panic!("two cameras, not {}", world.cameras.len()) };
+    let [perspective, parallel] = &world.cameras[..] else {
+        panic!("two cameras, not {}", world.cameras.len())
+    };
     assert_eq!(perspective.position, DVec3::new(0.5, 0.5, 3.0));
     assert_eq!(perspective.projection, Projection::Perspective { view_angle: f64::from(0.7f32) });
     assert_eq!(perspective.clip, Some((f64::from(0.01f32), 100.0)));
@@ -180,11 +207,15 @@ fn cameras_of_the_shared_file() {
 
 #[test]
 fn the_texture_transform_test_points_at_its_own_marks() {
-    let Some(path) = shared("assimp/gltf/textureTransform/TextureTransformTest.gltf") else { return };
+    let Some(path) = shared("assimp/gltf/textureTransform/TextureTransformTest.gltf") else {
+        return;
+    };
     let scene = load_path(&path).unwrap();
-    let transform =
-        |name: &str| scene.materials.iter().find(|m| m.name == name).unwrap().base_texture.unwrap().transform;
-    // Under the mark "correct" lies the arrow's diagonal, just beyond its tip at (0.68, 0.68) of the image.
+    let transform = |name: &str| {
+        scene.materials.iter().find(|m| m.name == name).unwrap().base_texture.unwrap().transform
+    };
+    // Under the mark "correct" lies the arrow's diagonal, just beyond its tip at (0.68, 0.68) of
+    // the image.
     for (name, x, y) in [("Rotation", -0.079_048_22f32, -0.516_267_5f32), ("All", -0.07, -0.25)] {
         let [u, v] = transform(name).map(|row| row[0] * (x + 0.5) + row[1] * (0.5 - y) + row[2]);
         assert!((u - v).abs() < 0.05 && (0.7..0.85).contains(&u), "{name}: ({u}, {v})");
@@ -203,7 +234,11 @@ fn a_skin_in_its_bind_pose() {
     }
     assert_eq!(scene.meshes[0].positions, expected);
     let root = &scene.nodes[*scene.roots.last().unwrap() as usize];
-    assert_eq!((root.mesh, root.transform), (Some(0), NodeTransform::default()), "the mesh hangs in the world");
+    assert_eq!(
+        (root.mesh, root.transform),
+        (Some(0), NodeTransform::default()),
+        "the mesh hangs in the world"
+    );
     assert!(scene.nodes[0].mesh.is_none());
 }
 
@@ -225,7 +260,10 @@ fn the_table_of_malformed_files() {
         &["meshes[0].primitives[0].indices", "the primitive has 24 vertices"],
     );
     fails("IndexOutOfRange/AllIndicesOutOfRange.gltf", &["meshes[0].primitives[0].indices"]);
-    fails("MissingBin/BoxTextured.gltf", &["BoxTextured.gltf: needs `BoxTextured0.bin`: there is no such file"]);
+    fails(
+        "MissingBin/BoxTextured.gltf",
+        &["BoxTextured.gltf: needs `BoxTextured0.bin`: there is no such file"],
+    );
     fails("RecursiveNodes/RecursiveNodes.gltf", &["nodes[0]", "its own ancestor"]);
     fails("SchemaFailures/sceneWrongType.gltf", &["scene: invalid type: string"]);
     fails("wrongTypes/badArray.gltf", &["badArray.gltf: meshes[0].primitives: invalid type: map"]);
@@ -248,9 +286,12 @@ fn the_table_of_malformed_files() {
         scene
     };
     assert!(loads("TestNoRootNode/NoScene.gltf", "there is no scene").nodes.is_empty());
-    assert!(loads("TestNoRootNode/SceneWithoutNodes.gltf", "the scene has no nodes").nodes.is_empty());
+    assert!(
+        loads("TestNoRootNode/SceneWithoutNodes.gltf", "the scene has no nodes").nodes.is_empty()
+    );
     loads("BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb", "positions are not finite");
-    let mended = loads("BoxBadNormals-glTF-Binary/BoxBadNormals.glb", "normals are zero or not finite");
+    let mended =
+        loads("BoxBadNormals-glTF-Binary/BoxBadNormals.glb", "normals are zero or not finite");
     for mesh in &mended.meshes {
         let finite = |n: &[f32; 3]| n.iter().all(|c| c.is_finite()) && n.iter().any(|&c| c != 0.0);
         assert!(mesh.normals.iter().all(|n| n.values.iter().all(finite)));
@@ -276,7 +317,10 @@ fn primitives_share_vertices_and_read_only_what_they_use() {
     let mesh = &scene.meshes[0];
     assert_eq!(mesh.positions.len(), 4, "vertices 4 to 7, once");
     assert_eq!(mesh.positions[0], [12.0, 13.0, 14.0]);
-    assert_eq!((mesh.triangles.as_slice(), mesh.lines.as_slice()), (&[[0, 1, 2], [2, 1, 3]][..], &[[3, 1]][..]));
+    assert_eq!(
+        (mesh.triangles.as_slice(), mesh.lines.as_slice()),
+        (&[[0, 1, 2], [2, 1, 3]][..], &[[3, 1]][..])
+    );
     assert_eq!(
         mesh.parts.iter().map(|p| (p.triangles.clone(), p.material)).collect::<Vec<_>>(),
         [(0..1, Some(1)), (1..2, None)]
@@ -291,16 +335,35 @@ fn primitives_share_vertices_and_read_only_what_they_use() {
 fn quantised_and_normalised_attributes() {
     let arrays = [
         (vec![0u8, 0, 0, 0, 100, 0, 0, 0, 0, 50, 0, 0], 5121, "VEC3", 3, ""),
-        (vec![0u8, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0], 5120, "VEC3", 3, r#","normalized":true"#),
-        (vec![0u8, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255, 255], 5123, "VEC2", 3, r#","normalized":true"#),
-        (vec![255u8, 0, 51, 0, 255, 0, 51, 0, 255, 0, 51, 0], 5121, "VEC3", 3, r#","normalized":true"#),
+        (
+            vec![0u8, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0],
+            5120,
+            "VEC3",
+            3,
+            r#","normalized":true"#,
+        ),
+        (
+            vec![0u8, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255, 255],
+            5123,
+            "VEC2",
+            3,
+            r#","normalized":true"#,
+        ),
+        (
+            vec![255u8, 0, 51, 0, 255, 0, 51, 0, 255, 0, 51, 0],
+            5121,
+            "VEC3",
+            3,
+            r#","normalized":true"#,
+        ),
     ];
     let rest = format!(
         r#"{ONE_NODE},"extensionsRequired":["KHR_mesh_quantization"],"extensionsUsed":["KHR_mesh_quantization"],
         "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2,"COLOR_0":3}}}}]}}]"#
     );
     // Elements of three bytes are four bytes apart, as the format demands.
-    let text = document(&arrays, &rest).replace(r#""byteLength":12}"#, r#""byteLength":12,"byteStride":4}"#);
+    let text = document(&arrays, &rest)
+        .replace(r#""byteLength":12}"#, r#""byteLength":12,"byteStride":4}"#);
     let scene = load_text(&text).unwrap();
     check(&scene);
     let mesh = &scene.meshes[0];
@@ -313,17 +376,29 @@ fn quantised_and_normalised_attributes() {
 #[test]
 fn tangents_come_along_where_all_surfaces_have_them_and_stay_as_they_are() {
     let normals = (floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0]), FLOAT, "VEC3", 3, "");
-    let tangents = (floats(&[1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 1.0, 0.0, 0.0, 1.0]), FLOAT, "VEC4", 3, "");
+    let tangents = (
+        floats(&[1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 1.0, 0.0, 0.0, 1.0]),
+        FLOAT,
+        "VEC4",
+        3,
+        "",
+    );
     let read = |primitives: &str| {
         let rest = format!(r#"{ONE_NODE},"meshes":[{{"primitives":[{primitives}]}}]"#);
-        load_text(&document(&[triangle(), normals.clone(), tangents.clone()], &rest)).unwrap().meshes[0]
+        load_text(&document(&[triangle(), normals.clone(), tangents.clone()], &rest))
+            .unwrap()
+            .meshes[0]
             .tangents
             .clone()
     };
     let with = r#"{"attributes":{"POSITION":0,"NORMAL":1,"TANGENT":2}}"#;
     assert_eq!(read(with).unwrap().values[1], [0.0, 1.0, 0.0, -1.0]);
     assert_eq!(read(&format!(r#"{with},{{"attributes":{{"POSITION":0,"NORMAL":1}}}}"#)), None);
-    assert_eq!(read(r#"{"attributes":{"POSITION":0,"TANGENT":2}}"#), None, "they belong to normals");
+    assert_eq!(
+        read(r#"{"attributes":{"POSITION":0,"TANGENT":2}}"#),
+        None,
+        "they belong to normals"
+    );
 }
 
 #[test]
@@ -331,10 +406,12 @@ fn attribute_counts_must_agree() {
     let two = (floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]), FLOAT, "VEC3", 2, "");
     let fails = |primitive: &str, part: &str| {
         let rest = format!(r#"{ONE_NODE},"meshes":[{{"primitives":[{primitive}]}}]"#);
-        let message = load_text(&document(&[triangle(), two.clone()], &rest)).unwrap_err().to_string();
+        let message =
+            load_text(&document(&[triangle(), two.clone()], &rest)).unwrap_err().to_string();
         assert!(message.contains(part), "{message}");
     };
-    let differ = "meshes[0].primitives[0].attributes.NORMAL: accessor 1 has 2 elements, POSITION has 3";
+    let differ =
+        "meshes[0].primitives[0].attributes.NORMAL: accessor 1 has 2 elements, POSITION has 3";
     fails(r#"{"attributes":{"POSITION":0,"NORMAL":1}}"#, differ);
     fails(
         r#"{"attributes":{"POSITION":0},"targets":[{},{"POSITION":1}]}"#,
@@ -344,7 +421,10 @@ fn attribute_counts_must_agree() {
         r#"{"attributes":{"POSITION":0,"TEXCOORD_0":0}}"#,
         "TEXCOORD_0: accessor 0 has 3 components an element, 2 are needed",
     );
-    fails(r#"{"attributes":{"POSITION":0},"indices":0}"#, "primitives[0].indices: accessor 0 is not SCALAR");
+    fails(
+        r#"{"attributes":{"POSITION":0},"indices":0}"#,
+        "primitives[0].indices: accessor 0 is not SCALAR",
+    );
     fails(r#"{"attributes":{"POSITION":0},"mode":1}"#, "3 vertices, LINES need a multiple of 2");
 }
 
@@ -361,8 +441,13 @@ fn indices_behind_the_last_whole_triangle_are_left_out() {
     assert_eq!(scene.warnings, [format!("a.gltf: meshes[0].primitives[0].indices: {told}")]);
     assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]]);
     let scene = shown(vec![2, 1, 0], 1);
-    assert!(scene.warnings[0].contains("3 indices, LINES need a multiple of 2; the rest is left out"));
-    assert_eq!((scene.meshes[0].lines.as_slice(), scene.meshes[0].positions.len()), (&[[1, 0]][..], 2));
+    assert!(
+        scene.warnings[0].contains("3 indices, LINES need a multiple of 2; the rest is left out")
+    );
+    assert_eq!(
+        (scene.meshes[0].lines.as_slice(), scene.meshes[0].positions.len()),
+        (&[[1, 0]][..], 2)
+    );
     assert_eq!(shown(vec![0, 1, 2, 0], 5).warnings.len(), 0);
 }
 
@@ -381,9 +466,16 @@ fn morph_targets_at_default_weights() {
 
 #[test]
 fn a_skin_blends_its_joints() {
-    // Vertex 0 goes with joint 0 (at x = 10), vertex 1 with joint 1 (turned a quarter about z), vertex 2 with both.
+    // Vertex 0 goes with joint 0 (at x = 10), vertex 1 with joint 1 (turned a quarter about z),
+    // vertex 2 with both.
     let joints = (vec![0u8, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0], 5121, "VEC4", 3, "");
-    let weights = (floats(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0]), FLOAT, "VEC4", 3, "");
+    let weights = (
+        floats(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0]),
+        FLOAT,
+        "VEC4",
+        3,
+        "",
+    );
     let normals = (floats(&[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]), FLOAT, "VEC3", 3, "");
     let rest = r#""scenes":[{"nodes":[0,1,2]}],
         "nodes":[{"mesh":0,"skin":0,"translation":[99,0,0]},{"translation":[10,0,0]},{"rotation":[0,0,0.70710678,0.70710678]}],
@@ -400,7 +492,10 @@ fn a_skin_blends_its_joints() {
     assert!(near(mesh.normals.as_ref().unwrap().values[1], [0.0, 1.0, 0.0]));
     let out_of_range = document(&arrays, &rest.replace(r#""joints":[1,2]"#, r#""joints":[1]"#));
     let message = load_text(&out_of_range).unwrap_err().to_string();
-    assert!(message.contains("attributes.JOINTS_0: vertex 1 has joint 1, the skin has 1"), "{message}");
+    assert!(
+        message.contains("attributes.JOINTS_0: vertex 1 has joint 1, the skin has 1"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -414,7 +509,11 @@ fn primitives_with_and_without_normals() {
     let mesh = &scene.meshes[0];
     let normals = mesh.normals.as_ref().unwrap();
     assert_eq!(normals.at(0, &mesh.triangles), [[0.0, 0.0, 2.0]; 3]);
-    assert_eq!(normals.at(1, &mesh.triangles), [[0.0, 0.0, 1.0]; 3], "flat, as the specification asks");
+    assert_eq!(
+        normals.at(1, &mesh.triangles),
+        [[0.0, 0.0, 1.0]; 3],
+        "flat, as the specification asks"
+    );
 }
 
 #[test]
@@ -439,20 +538,36 @@ fn materials_and_their_extensions() {
     );
     assert_eq!((glass.glass, glass.filter), (true, [1.0, 0.5, 0.25]));
     assert_eq!((blend.glass, blend.filter), (false, [1.0; 3]), "alpha alone is no glass");
-    assert_eq!((mask.alpha_mode, mask.opacity, mask.double_sided), (AlphaMode::Mask { cutoff: 0.25 }, 0.5, true));
-    let expected = Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 0.0, roughness: 0.3 };
+    assert_eq!(
+        (mask.alpha_mode, mask.opacity, mask.double_sided),
+        (AlphaMode::Mask { cutoff: 0.25 }, 0.5, true)
+    );
+    let expected =
+        Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 0.0, roughness: 0.3 };
     assert_eq!(
         (blend.alpha_mode, blend.opacity, blend.unlit, blend.reflectance),
         (AlphaMode::Blend, 0.5, true, expected)
     );
-    assert_eq!((opaque.alpha_mode, opaque.opacity, opaque.base_texture), (AlphaMode::Opaque, 1.0, None));
+    assert_eq!(
+        (opaque.alpha_mode, opaque.opacity, opaque.base_texture),
+        (AlphaMode::Opaque, 1.0, None)
+    );
     let told = |part: &str| scene.warnings.iter().filter(|w| w.contains(part)).count();
     assert_eq!(
-        (told("extensions not read: KHR_materials_clearcoat"), told("missing.png"), told("no nodes")),
+        (
+            told("extensions not read: KHR_materials_clearcoat"),
+            told("missing.png"),
+            told("no nodes")
+        ),
         (1, 1, 1)
     );
     assert_eq!(
-        (opaque.ior, told("materials[3]: an index of refraction of 0 (no light enters) is not shown, 1.5 is used")),
+        (
+            opaque.ior,
+            told(
+                "materials[3]: an index of refraction of 0 (no light enters) is not shown, 1.5 is used"
+            )
+        ),
         (1.5, 1)
     );
 }
@@ -461,7 +576,10 @@ fn materials_and_their_extensions() {
 fn samplers_and_texture_sets() {
     let mut files = BTreeMap::new();
     let picture = vitral_frame::Plane::filled(2, 2, [255, 0, 0, 255]);
-    files.insert("a b.png", vitral_io::encode::png(&picture, vitral_io::encode::PngOptions::default()).unwrap());
+    files.insert(
+        "a b.png",
+        vitral_io::encode::png(&picture, vitral_io::encode::PngOptions::default()).unwrap(),
+    );
     let text = r#"{"asset":{"version":"2.0"},"materials":[{
         "pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1},"metallicRoughnessTexture":{"index":0}},
         "normalTexture":{"index":0,"scale":0.5,"extensions":{"KHR_texture_transform":{"offset":[0.5,0],"texCoord":1}}},
@@ -487,7 +605,14 @@ fn samplers_and_texture_sets() {
     };
     assert_eq!(base.sampler, expected);
     assert_eq!([0, 1].map(|i| scene.textures[i].encoding), [Encoding::Srgb, Encoding::Linear]);
-    assert_eq!(scene.warnings.iter().filter(|w| w.contains("texCoord 3") || w.contains("occlusion")).count(), 1);
+    assert_eq!(
+        scene
+            .warnings
+            .iter()
+            .filter(|w| w.contains("texCoord 3") || w.contains("occlusion"))
+            .count(),
+        1
+    );
 }
 
 #[test]
@@ -503,9 +628,14 @@ fn a_picture_in_webp_goes_before_the_one_for_other_readers() {
     ))
     .unwrap();
     let material = &scene.materials[0];
-    let numbers = [material.base_texture, material.emission_texture].map(|texture| texture.unwrap().texture);
+    let numbers =
+        [material.base_texture, material.emission_texture].map(|texture| texture.unwrap().texture);
     assert_eq!((scene.textures.len(), numbers), (1, [0, 0]));
-    assert!(!scene.warnings.iter().any(|w| w.contains("missing.png") || w.contains("webp")), "{:?}", scene.warnings);
+    assert!(
+        !scene.warnings.iter().any(|w| w.contains("missing.png") || w.contains("webp")),
+        "{:?}",
+        scene.warnings
+    );
 }
 
 #[test]
@@ -519,7 +649,10 @@ fn lights_shine_along_minus_z() {
     let world = World::new(&load_text(text).unwrap()).unwrap();
     let [sun, lamp, spot] = &world.lights[..] else { panic!("{:?}", world.lights) };
     let LightKind::Directional { direction } = sun.kind else { panic!("{sun:?}") };
-    assert!((direction - DVec3::Y).length() < 1e-6, "-z turned a quarter about x is +y, not {direction}");
+    assert!(
+        (direction - DVec3::Y).length() < 1e-6,
+        "-z turned a quarter about x is +y, not {direction}"
+    );
     // One lux on a white Lambert surface reflects 1/pi.
     let lux = std::f32::consts::FRAC_1_PI;
     assert_eq!((sun.diffuse, sun.specular), ([2.0 * lux, lux, 0.0], [2.0 * lux, lux, 0.0]));
@@ -527,29 +660,44 @@ fn lights_shine_along_minus_z() {
     assert_eq!(lamp.kind, LightKind::Point { position: DVec3::new(1.0, 2.0, 3.0) });
     assert_eq!(lamp.attenuation, Attenuation::Range { range: 7.0 });
     let LightKind::Spot { cutoff, inner, exponent, .. } = spot.kind else { panic!("{spot:?}") };
-    assert_eq!((cutoff, inner, exponent, spot.attenuation), (0.5, 0.25, 0.0, Attenuation::InverseSquare));
+    assert_eq!(
+        (cutoff, inner, exponent, spot.attenuation),
+        (0.5, 0.25, 0.0, Attenuation::InverseSquare)
+    );
 }
 
 #[test]
 fn bad_trees_and_odd_nodes() {
     let with = |nodes: &str| {
-        load_text(&format!(r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{nodes}]}}"#))
+        load_text(&format!(
+            r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{nodes}]}}"#
+        ))
     };
     let two_parents = with(r#"{"children":[1,2]},{"children":[2]},{}"#).unwrap_err().to_string();
-    assert!(two_parents.contains("nodes[1].children[0]: node 2 is a child of node 0 already"), "{two_parents}");
+    assert!(
+        two_parents.contains("nodes[1].children[0]: node 2 is a child of node 0 already"),
+        "{two_parents}"
+    );
     assert!(with(r#"{"children":[0]}"#).unwrap_err().to_string().contains("its own ancestor"));
-    assert!(with(r#"{"translation":[1e300,0,0]}"#).unwrap_err().to_string().contains("nodes[0].translation"));
+    assert!(
+        with(r#"{"translation":[1e300,0,0]}"#)
+            .unwrap_err()
+            .to_string()
+            .contains("nodes[0].translation")
+    );
     let odd = with(r#"{"rotation":[0,0,0,0],"scale":[2,2,2]}"#).unwrap();
     assert_eq!((odd.warnings.len(), odd.nodes[0].transform.matrix().x_axis), (2, DVec4::X * 2.0));
     assert_eq!(odd.warnings[1], "a.gltf: the file holds nothing to show");
 
     // A very deep chain is walked without recursion.
-    let chain: Vec<String> = (1..50_000).map(|i| format!(r#"{{"children":[{i}],"translation":[0,0,1]}}"#)).collect();
+    let chain: Vec<String> =
+        (1..50_000).map(|i| format!(r#"{{"children":[{i}],"translation":[0,0,1]}}"#)).collect();
     let deep = with(&format!("{},{{}}", chain.join(","))).unwrap();
     assert_eq!(deep.nodes.len(), 50_000);
 
     // A root below another root is shown once.
-    let text = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1,0]}],"nodes":[{"children":[1]},{}]}"#;
+    let text =
+        r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1,0]}],"nodes":[{"children":[1]},{}]}"#;
     let scene = load_text(text).unwrap();
     assert_eq!((scene.roots.len(), scene.nodes.len(), scene.warnings.len()), (1, 2, 2));
 }

@@ -19,13 +19,15 @@ fn metals_are_not_transmissive() {
         )
     };
     let texture = r#""metallicRoughnessTexture":{"index":0}"#;
-    let list = ["", r#""metallicFactor":0.5"#, r#""metallicFactor":0"#, texture].map(material).join(",");
+    let list =
+        ["", r#""metallicFactor":0.5"#, r#""metallicFactor":0"#, texture].map(material).join(",");
     let scene = load_text(&format!(
         r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[]}}],"materials":[{list}],
         "textures":[{{"source":0}}],"images":[{{"uri":"missing.png"}}]}}"#
     ))
     .unwrap();
-    let seen: Vec<_> = scene.materials.iter().map(|m| (m.glass, (m.opacity * 100.0).round())).collect();
+    let seen: Vec<_> =
+        scene.materials.iter().map(|m| (m.glass, (m.opacity * 100.0).round())).collect();
     // What is metal in part, or where a texture says so, is asked point by point.
     assert_eq!(seen, [(false, 100.0), (true, 20.0), (true, 20.0), (true, 20.0)]);
 }
@@ -40,7 +42,8 @@ fn a_transmission_texture_says_where_a_surface_is_glass() {
             "KHR_materials_transmission":{{"transmissionFactor":{factor},"transmissionTexture":{{"index":{image},"texCoord":1}}}}}}}}"#
         )
     };
-    let list = [material(1.0, 0, ""), material(0.5, 0, ""), material(0.0, 0, ""), material(1.0, 1, "")];
+    let list =
+        [material(1.0, 0, ""), material(0.5, 0, ""), material(0.0, 0, ""), material(1.0, 1, "")];
     let mask = material(1.0, 0, r#""alphaMode":"MASK","#);
     let text = format!(
         r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[]}}],"materials":[{},{mask}],
@@ -52,7 +55,10 @@ fn a_transmission_texture_says_where_a_surface_is_glass() {
     let [clear, half, none, lost, mask] = &scene.materials[..] else { panic!() };
 
     for (material, greys) in [(clear, [255, 0, 153]), (half, [255, 128, 204])] {
-        assert_eq!((material.opacity, material.alpha_mode, material.glass), (1.0, AlphaMode::Blend, true));
+        assert_eq!(
+            (material.opacity, material.alpha_mode, material.glass),
+            (1.0, AlphaMode::Blend, true)
+        );
         let reference = material.opacity_texture.unwrap();
         let texture = &scene.textures[reference.texture as usize];
         assert_eq!((reference.uv_set, texture.encoding), (1, Encoding::Linear));
@@ -61,15 +67,26 @@ fn a_transmission_texture_says_where_a_surface_is_glass() {
         let base = &scene.textures[material.base_texture.unwrap().texture as usize];
         assert_eq!(base.levels[0].data(), [[0, 255, 255, 255], [255, 0, 0, 255], [102, 9, 9, 255]]);
     }
-    assert_eq!((none.opacity, none.alpha_mode, none.opacity_texture), (1.0, AlphaMode::Opaque, None));
-    assert_eq!((lost.opacity, lost.opacity_texture), (1.0, None), "rather opaque than not to be seen");
+    assert_eq!(
+        (none.opacity, none.alpha_mode, none.opacity_texture),
+        (1.0, AlphaMode::Opaque, None)
+    );
+    assert_eq!(
+        (lost.opacity, lost.opacity_texture),
+        (1.0, None),
+        "rather opaque than not to be seen"
+    );
     assert_eq!((mask.glass, mask.opacity_texture), (false, None));
     let told = |part: &str| scene.warnings.iter().filter(|w| w.contains(part)).count();
     assert_eq!((told("missing.png"), told("ransmission")), (1, 1), "{:?}", scene.warnings);
 }
 
 /// A node at (0, 0, 5) with a mesh and copies of it: `attributes` name accessors from 1 on.
-fn copies(attributes: &str, more: &str, arrays: &[(Vec<u8>, u32, &'static str, usize, &'static str)]) -> String {
+fn copies(
+    attributes: &str,
+    more: &str,
+    arrays: &[(Vec<u8>, u32, &'static str, usize, &'static str)],
+) -> String {
     let rest = format!(
         r#""extensionsUsed":["EXT_mesh_gpu_instancing"],"extensionsRequired":["EXT_mesh_gpu_instancing"],
         "scenes":[{{"nodes":[0,2]}}],"nodes":[{{"mesh":0,"translation":[0,0,5],"children":[1],{more}
@@ -88,12 +105,18 @@ fn copies_of_a_mesh_share_it() {
     let all = r#""TRANSLATION":1,"ROTATION":2,"SCALE":3,"_ID":77"#;
     let scene = load_text(&copies(all, "", &[moves, turns, scales])).unwrap();
     assert_eq!((scene.meshes.len(), scene.nodes.len(), scene.nodes[0].mesh), (1, 5, None));
-    assert_eq!((scene.nodes[0].children.as_slice(), &scene.warnings), (&[1, 3, 4][..], &Vec::<String>::new()));
+    assert_eq!(
+        (scene.nodes[0].children.as_slice(), &scene.warnings),
+        (&[1, 3, 4][..], &Vec::<String>::new())
+    );
     let world = World::new(&scene).unwrap();
-    let corner = |i: &Instance| (i.world_from_model.transform_point3(DVec3::X) * 100.0).round().as_ivec3().to_array();
+    let corner = |i: &Instance| {
+        (i.world_from_model.transform_point3(DVec3::X) * 100.0).round().as_ivec3().to_array()
+    };
     let mut corners: Vec<[i32; 3]> = world.instances.iter().map(corner).collect();
     corners.sort_unstable();
-    // The node beside, the child, and both copies: doubled and turned at (1, 0, 5), and moved to (0, 2, 5).
+    // The node beside, the child, and both copies: doubled and turned at (1, 0, 5), and moved to
+    // (0, 2, 5).
     assert_eq!(corners, [[100, 0, 0], [100, 0, 500], [100, 200, 500], [100, 200, 500]]);
 }
 
@@ -114,10 +137,18 @@ fn wrong_copies_are_refused_with_their_place() {
         ".attributes.SCALE: accessor 2 has 3 elements, TRANSLATION has 2",
     );
     refused(r#""ROTATION":1"#, &[moves(2)], "3 components an element, 4 are needed");
-    refused(r#""SCALE":1"#, &[(vec![0; 8], 5121, "VEC3", 2, "")], "accessor 1 has other components than floats");
+    refused(
+        r#""SCALE":1"#,
+        &[(vec![0; 8], 5121, "VEC3", 2, "")],
+        "accessor 1 has other components than floats",
+    );
     let infinite = (floats(&[0.0, 0.0, 0.0, 0.0, f32::NAN, 0.0]), FLOAT, "VEC3", 2, "");
     refused(r#""TRANSLATION":1"#, &[infinite], "element 1 of accessor 1 is not finite");
-    let claimed = load_text(&copies(r#""TRANSLATION":1"#, "", &[(vec![0; 12], FLOAT, "VEC3", 4_000_000_000, "")]));
+    let claimed = load_text(&copies(
+        r#""TRANSLATION":1"#,
+        "",
+        &[(vec![0; 12], FLOAT, "VEC3", 4_000_000_000, "")],
+    ));
     assert!(claimed.unwrap_err().to_string().starts_with("a.gltf: accessors[1]: count 4000000000"));
 
     let scene = load_text(&copies(r#""ROTATION":1"#, "", &[zeros])).unwrap();
@@ -131,7 +162,8 @@ fn wrong_copies_are_refused_with_their_place() {
 #[test]
 fn a_small_file_cannot_unfold_into_many_copies() {
     // 100 nodes with 60000 copies each, in an accessor without bytes.
-    let node = r#"{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}}}"#;
+    let node =
+        r#"{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}}}"#;
     let roots: Vec<String> = (0..100).map(|k| k.to_string()).collect();
     let rest = format!(
         r#""scenes":[{{"nodes":[{}]}}],"nodes":[{}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}]"#,
@@ -164,9 +196,15 @@ fn vertices_that_are_only_there_compressed_are_refused() {
     };
     let draco = "meshes[0].primitives[0] is compressed with KHR_draco_mesh_compression, which is not supported";
     refused("", "", draco);
-    assert_eq!(load(r#","bufferView":0"#, "").unwrap().meshes[0].triangles.len(), 1, "there a second time");
+    assert_eq!(
+        load(r#","bufferView":0"#, "").unwrap().meshes[0].triangles.len(),
+        1,
+        "there a second time"
+    );
     for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
-        let packed = format!(r#","extensions":{{"{name}":{{"buffer":1,"byteLength":9,"byteStride":12,"count":3}}}}"#);
+        let packed = format!(
+            r#","extensions":{{"{name}":{{"buffer":1,"byteLength":9,"byteStride":12,"count":3}}}}"#
+        );
         let what = format!("bufferViews[1] is compressed with {name}, which is not supported");
         refused(r#","bufferView":1"#, &packed, &what);
     }

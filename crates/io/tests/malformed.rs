@@ -1,4 +1,5 @@
-//! Bad files: each is refused with its place, or read with a warning; never a panic, a hang or a large allocation.
+//! Bad files: each is refused with its place, or read with a warning; never a panic, a hang or a
+//! large allocation.
 
 use crate::common::{Folder, files, models};
 use proptest::prelude::*;
@@ -26,8 +27,14 @@ const TABLE: &[(&str, Expected)] = &[
     ("assimp-invalid/OutOfMemory.off", Refused(&["line 2", "353535235358 vertices"])),
     ("assimp-invalid/empty.", Refused(&["empty file"])),
     ("assimp-invalid/emptyIrrMesh.xml", Refused(&["XML is not read"])),
-    ("assimp-invalid/malformed.obj", Warned(&["line 23: index 12, the file has 8 vertices; 2 faces with"])),
-    ("assimp-invalid/malformed2.obj", Warned(&["line 22: unknown material", "line 23: a face with 0 corners"])),
+    (
+        "assimp-invalid/malformed.obj",
+        Warned(&["line 23: index 12, the file has 8 vertices; 2 faces with"]),
+    ),
+    (
+        "assimp-invalid/malformed2.obj",
+        Warned(&["line 22: unknown material", "line 23: a face with 0 corners"]),
+    ),
     ("assimp-invalid/readme.txt", Refused(&["is not read"])),
     ("off/invalid.off", Refused(&["line 8", "index 20, the file has 3 vertices"])),
     ("gltf/IndexOutOfRange/", Refused(&["ndex"])),
@@ -67,7 +74,8 @@ fn check(name: &str, result: Result<Scene, Error>, expected: &Expected) {
 fn every_malformed_file_does_what_the_table_says() {
     let Some(models) = models() else { return };
     let folder = models.join("malformed");
-    let is_model = |name: &str| !["bin", "png", "jpg"].contains(&name.rsplit('.').next().unwrap_or(""));
+    let is_model =
+        |name: &str| !["bin", "png", "jpg"].contains(&name.rsplit('.').next().unwrap_or(""));
     for name in files(&folder).iter().filter(|n| is_model(n)) {
         let path = folder.join(name);
         let Some((_, expected)) = TABLE.iter().find(|(prefix, _)| name.starts_with(prefix)) else {
@@ -75,7 +83,8 @@ fn every_malformed_file_does_what_the_table_says() {
         };
         let bytes = std::fs::read(&path).unwrap();
         let start = Instant::now();
-        let result = load(&bytes, name, &Folder(path.parent().unwrap().to_path_buf()), &Workers::new(2));
+        let result =
+            load(&bytes, name, &Folder(path.parent().unwrap().to_path_buf()), &Workers::new(2));
         assert!(start.elapsed() < Duration::from_secs(1), "{name} took {:?}", start.elapsed());
         check(name, result, expected);
     }
@@ -89,22 +98,42 @@ fn tiny_malformed_files_do_what_the_table_says() {
     let cases: [(&str, String, Expected); 10] = [
         ("empty.obj", String::new(), Refused(&["empty file"])),
         ("empty.x", String::new(), Refused(&["empty file"])),
-        ("memory.off", format!("OFF\n353535235358 6 0\n{off}"), Refused(&["line 2: 353535235358 vertices"])),
+        (
+            "memory.off",
+            format!("OFF\n353535235358 6 0\n{off}"),
+            Refused(&["line 2: 353535235358 vertices"]),
+        ),
         (
             "invalid.off",
             "OFF\n3 4\n0 0 0\n0 0 0\n0 0 0\n0\n220\n4\n".into(),
             Refused(&["line 8", "index 4, the file has 3 vertices"]),
         ),
-        ("range.obj", format!("o 1\n{vertices}f 4 12 2 1\nf 0 1 2"), Refused(&["line 10: index 12"])),
-        ("zero.obj", format!("o 1\n{vertices}f 4 2 1\nf 0 1 2"), Warned(&["line 11: vertex index 0"])),
+        (
+            "range.obj",
+            format!("o 1\n{vertices}f 4 12 2 1\nf 0 1 2"),
+            Refused(&["line 10: index 12"]),
+        ),
+        (
+            "zero.obj",
+            format!("o 1\n{vertices}f 4 2 1\nf 0 1 2"),
+            Warned(&["line 11: vertex index 0"]),
+        ),
         (
             "bare.obj",
             format!("{vertices}usemtl no\nf\nf 1 2 3"),
             Warned(&["line 9: unknown material", "line 10: a face"]),
         ),
-        ("nan.obj", "v nan 0 0\nv 0 1e99 0\nv 0 0 1\nf 1 2 3".into(), Warned(&["2 vertices have coordinates"])),
+        (
+            "nan.obj",
+            "v nan 0 0\nv 0 1e99 0\nv 0 0 1\nf 1 2 3".into(),
+            Warned(&["2 vertices have coordinates"]),
+        ),
         ("box.3mf", "PK\u{3}\u{4}".into(), Refused(&["3MF", "readable are glTF (.gltf)"])),
-        ("cut.stl", "solid s\nfacet normal 0 0 1\nouter loop\n".into(), Refused(&["line 4: the file ends here"])),
+        (
+            "cut.stl",
+            "solid s\nfacet normal 0 0 1\nouter loop\n".into(),
+            Refused(&["line 4: the file ends here"]),
+        ),
     ];
     for (name, text, expected) in &cases {
         check(name, load(text.as_bytes(), name, &NoFiles, &Workers::single()), expected);
@@ -116,7 +145,8 @@ fn tiny_malformed_files_do_what_the_table_says() {
 fn claimed_counts_allocate_nothing() {
     let mut stl = vec![0u8; 84];
     stl[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-    let header = |rest: &str| format!("ply\nformat binary_big_endian 1.0\n{rest}end_header\n").into_bytes();
+    let header =
+        |rest: &str| format!("ply\nformat binary_big_endian 1.0\n{rest}end_header\n").into_bytes();
     let vertex = "property float x\nproperty float y\nproperty float z\n";
     let files = [
         ("claim.stl", stl),
@@ -129,7 +159,9 @@ fn claimed_counts_allocate_nothing() {
         ),
         (
             "empty.ply",
-            header(&format!("element none 18446744073709551615\nelement vertex 18446744073709551615\n{vertex}")),
+            header(&format!(
+                "element none 18446744073709551615\nelement vertex 18446744073709551615\n{vertex}"
+            )),
         ),
     ];
     for (name, bytes) in files {
@@ -166,8 +198,13 @@ fn seed(index: usize) -> (Target, PathBuf, Vec<u8>) {
 fn the_seeds_are_valid() {
     for index in 0..MODELS {
         let (_, path, bytes) = seed(index);
-        let scene = load(&bytes, &path.to_string_lossy(), &Beside { library: b"newmtl m" }, &Workers::single())
-            .unwrap_or_else(|e| panic!("{e}"));
+        let scene = load(
+            &bytes,
+            &path.to_string_lossy(),
+            &Beside { library: b"newmtl m" },
+            &Workers::single(),
+        )
+        .unwrap_or_else(|e| panic!("{e}"));
         assert_sound(&scene);
         assert!(!scene.meshes[0].triangles.is_empty(), "{}", path.display());
         assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
@@ -193,8 +230,13 @@ fn the_fuzz_crate_has_every_target() {
     let manifest = std::fs::read_to_string(repository().join("fuzz/Cargo.toml")).unwrap();
     assert_eq!(manifest.matches("[[bin]]").count(), fuzz::TARGETS.len());
     for Target { name, .. } in fuzz::TARGETS {
-        assert!(manifest.contains(&format!("name = \"{name}\"\npath = \"fuzz_targets/{name}.rs\"")), "{name}");
-        let source = std::fs::read_to_string(repository().join(format!("fuzz/fuzz_targets/{name}.rs"))).unwrap();
+        assert!(
+            manifest.contains(&format!("name = \"{name}\"\npath = \"fuzz_targets/{name}.rs\"")),
+            "{name}"
+        );
+        let source =
+            std::fs::read_to_string(repository().join(format!("fuzz/fuzz_targets/{name}.rs")))
+                .unwrap();
         assert!(source.contains(&format!("vitral_testkit::fuzz::{name}(bytes)")), "{name}");
     }
 }

@@ -21,7 +21,8 @@ fn extension(path: &str) -> String {
 #[test]
 fn triangle_counts_are_those_of_the_manifest() {
     let Some(models) = models() else { return };
-    let manifest: Value = serde_json::from_slice(&std::fs::read(models.join("manifest.json")).unwrap()).unwrap();
+    let manifest: Value =
+        serde_json::from_slice(&std::fs::read(models.join("manifest.json")).unwrap()).unwrap();
     let mut compared = 0;
     for entry in manifest["files"].as_array().unwrap() {
         let path = entry["path"].as_str().unwrap();
@@ -36,11 +37,16 @@ fn triangle_counts_are_those_of_the_manifest() {
             compared += 1;
         }
         // The extent is the second witness: it tells a wrong number or axis.
-        if let Some(extent) = entry["extent"].as_array().filter(|_| !extension(path).starts_with("gl")) {
+        if let Some(extent) =
+            entry["extent"].as_array().filter(|_| !extension(path).starts_with("gl"))
+        {
             let size = world.bounds.size();
             for (axis, expected) in extent.iter().enumerate() {
                 let (seen, expected) = (size[axis], expected.as_f64().unwrap());
-                assert!((seen - expected).abs() <= 1e-3 * world.bounds.diagonal() + 1e-3, "{path}: {seen} {expected}");
+                assert!(
+                    (seen - expected).abs() <= 1e-3 * world.bounds.diagonal() + 1e-3,
+                    "{path}: {seen} {expected}"
+                );
             }
         }
     }
@@ -86,7 +92,10 @@ fn both_spiders_are_equal() {
     if models().is_none() {
         return;
     }
-    let (text, binary) = (open("assimp/stl/Spider_ascii.stl").unwrap(), open("assimp/stl/Spider_binary.stl").unwrap());
+    let (text, binary) = (
+        open("assimp/stl/Spider_ascii.stl").unwrap(),
+        open("assimp/stl/Spider_binary.stl").unwrap(),
+    );
     let (text, binary) = (&text.meshes[0], &binary.meshes[0]);
     assert_eq!((text.positions.len(), binary.positions.len()), (722, 722));
     assert_eq!(text.triangles, binary.triangles);
@@ -101,7 +110,9 @@ fn results_do_not_depend_on_threads() {
     if models().is_none() {
         return;
     }
-    for path in ["furniture-cc0/peterbilt/peterbilt.obj", "robot/laser_link.stl", "assimp/ply/Wuson.ply"] {
+    for path in
+        ["furniture-cc0/peterbilt/peterbilt.obj", "robot/laser_link.stl", "assimp/ply/Wuson.ply"]
+    {
         let full = models().unwrap().join(path);
         let bytes = std::fs::read(&full).unwrap();
         let folder = Folder(full.parent().unwrap().to_path_buf());
@@ -118,7 +129,12 @@ fn materials_and_textures_are_found() {
         return;
     }
     let pool = open("furniture-cc0/poolTable/poolTable.obj").unwrap();
-    assert_eq!((pool.materials.len(), pool.textures.len(), pool.warnings.len()), (27, 17, 0), "{:?}", pool.warnings);
+    assert_eq!(
+        (pool.materials.len(), pool.textures.len(), pool.warnings.len()),
+        (27, 17, 0),
+        "{:?}",
+        pool.warnings
+    );
     let spider = open("assimp/obj/spider.obj").unwrap();
     // The fifth material of its library, Brusttex, is used by no face.
     assert_eq!((spider.materials.len(), spider.textures.len()), (4, 4), "{:?}", spider.warnings);

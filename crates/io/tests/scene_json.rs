@@ -1,4 +1,5 @@
-//! Scene files: everything comes back, references are followed, what is wrong is told with its place.
+//! Scene files: everything comes back, references are followed, what is wrong is told with its
+//! place.
 
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -7,11 +8,13 @@ use vitral_exec::Workers;
 use vitral_frame::{Encoding, Filter, MipFilter, Plane, Sampler, Texture, Wrap};
 use vitral_io::{Error, NoFiles, ResolveError, Resolver, scene_json};
 use vitral_light::{
-    AlphaMode, AreaShape, Attenuation, Light, LightKind, Material, Reflectance, TextureRef, Transmission,
+    AlphaMode, AreaShape, Attenuation, Light, LightKind, Material, Reflectance, TextureRef,
+    Transmission,
 };
 use vitral_math::{DMat4, DQuat, DVec3, func};
 use vitral_scene::{
-    Attribute, Axis, Camera, Faces, FreePart, Mesh, Node, NodeTransform, Part, Projection, Scene, World,
+    Attribute, Axis, Camera, Faces, FreePart, Mesh, Node, NodeTransform, Part, Projection, Scene,
+    World,
 };
 
 /// Files in memory.
@@ -20,7 +23,12 @@ struct Memory(BTreeMap<String, Vec<u8>>);
 
 impl Memory {
     fn with(files: &[(&str, &str)]) -> Self {
-        Self(files.iter().map(|(name, text)| ((*name).to_owned(), text.as_bytes().to_vec())).collect())
+        Self(
+            files
+                .iter()
+                .map(|(name, text)| ((*name).to_owned(), text.as_bytes().to_vec()))
+                .collect(),
+        )
     }
 }
 
@@ -42,23 +50,38 @@ fn assert_equal(a: &Scene, b: &Scene) {
     assert_eq!(a.materials, b.materials);
     assert_eq!(a.textures, b.textures);
     assert_eq!(format!("{:?}", a.nodes), format!("{:?}", b.nodes));
-    assert_eq!((&a.roots, &a.lights, &a.cameras, a.ambient), (&b.roots, &b.lights, &b.cameras, b.ambient));
+    assert_eq!(
+        (&a.roots, &a.lights, &a.cameras, a.ambient),
+        (&b.roots, &b.lights, &b.cameras, b.ambient)
+    );
 }
 
 /// A mesh with everything that a mesh can have, its cut not the usual one.
 fn full_mesh() -> Mesh {
     Mesh {
         name: "patch \"1\"".to_owned(),
-        positions: vec![[0.1, 0.0, -0.0], [1.0, 1e-30, 0.0], [1.0, 1.0, 3.4e38], [0.0, 1.0, 0.0], [2.0, 0.5, 0.0]],
+        positions: vec![
+            [0.1, 0.0, -0.0],
+            [1.0, 1e-30, 0.0],
+            [1.0, 1.0, 3.4e38],
+            [0.0, 1.0, 0.0],
+            [2.0, 0.5, 0.0],
+        ],
         triangles: vec![[1, 2, 3], [1, 3, 0], [1, 4, 2]],
         faces: Faces::Polygons { starts: vec![0, 4, 7], corners: vec![0, 1, 2, 3, 1, 4, 2] },
         parts: vec![
             Part { name: "left".to_owned(), triangles: 0..2, material: Some(1) },
             Part { name: String::new(), triangles: 2..3, material: None },
         ],
-        normals: Some(Attribute { values: vec![[0.0, 0.0, 1.0]; 2], corners: Some(vec![[0, 0, 1]; 3]) }),
+        normals: Some(Attribute {
+            values: vec![[0.0, 0.0, 1.0]; 2],
+            corners: Some(vec![[0, 0, 1]; 3]),
+        }),
         normals_stay: true,
-        tangents: Some(Attribute { values: vec![[1.0, 0.0, 0.0, -1.0]], corners: Some(vec![[0; 3]; 3]) }),
+        tangents: Some(Attribute {
+            values: vec![[1.0, 0.0, 0.0, -1.0]],
+            corners: Some(vec![[0; 3]; 3]),
+        }),
         uvs: vec![
             Attribute::per_vertex(vec![[0.1, 0.7]; 5]),
             Attribute { values: vec![[0.3; 2]], corners: Some(vec![[0; 3]; 3]) },
@@ -84,10 +107,19 @@ fn full_materials() -> Vec<Material> {
         minify: Filter::Nearest,
         mip: MipFilter::None,
     };
-    let reference = TextureRef { texture: 1, sampler, uv_set: 1, transform: [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]] };
+    let reference = TextureRef {
+        texture: 1,
+        sampler,
+        uv_set: 1,
+        transform: [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]],
+    };
     let glass = Material {
         name: "glass".to_owned(),
-        reflectance: Reflectance::MetallicRoughness { base_color: [0.1, 0.2, 0.3], metallic: 0.4, roughness: 0.7 },
+        reflectance: Reflectance::MetallicRoughness {
+            base_color: [0.1, 0.2, 0.3],
+            metallic: 0.4,
+            roughness: 0.7,
+        },
         srgb_colors: true,
         texture_tint: Some([0.2, 0.4, 0.6]),
         emission: [1.5, 0.0, 0.1],
@@ -112,7 +144,11 @@ fn full_materials() -> Vec<Material> {
         normal_texture: Some(reference),
         normal_scale: 0.9,
     };
-    vec![Material::default(), glass, Material { alpha_mode: AlphaMode::Blend, ..Material::default() }]
+    vec![
+        Material::default(),
+        glass,
+        Material { alpha_mode: AlphaMode::Blend, ..Material::default() },
+    ]
 }
 
 fn full_lights() -> Vec<Light> {
@@ -127,13 +163,24 @@ fn full_lights() -> Vec<Light> {
             Attenuation::Range { range: 9.0 },
         ),
         (
-            LightKind::Area { shape: AreaShape::Disc { center: position, normal: direction, radius: 2.0 } },
+            LightKind::Area {
+                shape: AreaShape::Disc { center: position, normal: direction, radius: 2.0 },
+            },
             Attenuation::Gl { constant: 1.0, linear: 0.3, quadratic: 0.2 },
         ),
         (LightKind::Area { shape: AreaShape::Polygon { corners } }, Attenuation::None),
     ];
-    let light = |(kind, attenuation)| Light { kind, attenuation, diffuse: [0.3, 2.0, 0.1], ..Light::default() };
-    kinds.into_iter().map(light).chain([Light { enabled: false, shadow: false, ..Light::default() }]).collect()
+    let light = |(kind, attenuation)| Light {
+        kind,
+        attenuation,
+        diffuse: [0.3, 2.0, 0.1],
+        ..Light::default()
+    };
+    kinds
+        .into_iter()
+        .map(light)
+        .chain([Light { enabled: false, shadow: false, ..Light::default() }])
+        .collect()
 }
 
 fn full_scene() -> Scene {
@@ -240,9 +287,15 @@ fn what_could_not_be_read_back_is_not_written() {
         let mut scene = full_scene();
         change(&mut scene);
         let error = scene_json::write(&scene).unwrap_err();
-        assert!(matches!(error, Error::Encode { .. }) && error.to_string().contains(part), "{error}");
+        assert!(
+            matches!(error, Error::Encode { .. }) && error.to_string().contains(part),
+            "{error}"
+        );
     };
-    refused(|scene| scene.materials[0].occlusion_strength = 3.0, "materials[0]: ``: occlusion-strength 3");
+    refused(
+        |scene| scene.materials[0].occlusion_strength = 3.0,
+        "materials[0]: ``: occlusion-strength 3",
+    );
     refused(|scene| scene.lights[0].diffuse = [-1.0; 3], "lights[0]: ");
     refused(|scene| scene.ambient = [f32::NAN; 3], "ambient[0]: ");
     refused(|scene| scene.roots.push(99), "node 99");
@@ -254,7 +307,10 @@ fn the_smallest_files() {
     assert!(World::new(&teapot).unwrap().facet_count > 500);
     let text = r#"{"vitral-scene":1,"materials":[{}],"meshes":[{"positions":[[0,0,0],[1,0,0],[0,1,0]],"triangles":[[0,1,2]],"material":0}]}"#;
     let scene = load(text).unwrap();
-    assert_eq!((scene.nodes.len(), scene.roots.as_slice(), scene.meshes[0].parts[0].material), (1, &[0][..], Some(0)));
+    assert_eq!(
+        (scene.nodes.len(), scene.roots.as_slice(), scene.meshes[0].parts[0].material),
+        (1, &[0][..], Some(0))
+    );
     assert!(load(r#"{"vitral-scene":1}"#).unwrap().nodes.is_empty());
 }
 
@@ -312,33 +368,61 @@ fn references_are_followed_from_folder_to_folder() {
     let text = r#"{"vitral-scene":1,"materials":[{"name":"blue"}],
         "meshes":[{"file":"./parts/a.json"},{"file":"parts/x/../obj/square.obj","material":0}],
         "nodes":[{"mesh":0,"translation":[10,0,0]},{"mesh":0,"translation":[20,0,0]},{"mesh":1}]}"#;
-    let scene = scene_json::load(text.as_bytes(), "dir/root.json", &files, &Workers::single()).unwrap();
+    let scene =
+        scene_json::load(text.as_bytes(), "dir/root.json", &files, &Workers::single()).unwrap();
     assert_eq!(scene.warnings, [""; 0]);
     let world = World::new(&scene).unwrap();
     let at: Vec<DVec3> = world.instances.iter().map(|i| i.bounds.min).collect();
     let expected = [(10.0, 1.0), (10.0, 2.0), (20.0, 1.0), (20.0, 2.0), (0.0, 0.0)];
     assert_eq!(at, expected.map(|(x, z)| DVec3::new(x, 0.0, z)));
-    assert_eq!(world.lights.iter().filter(|l| l.name == "lamp").count(), 2, "a light for each place");
+    assert_eq!(
+        world.lights.iter().filter(|l| l.name == "lamp").count(),
+        2,
+        "a light for each place"
+    );
     assert_eq!(scene.ambient, [0.5, 0.0, 0.0]);
 
     // Placed four times, the square of a.json is one mesh; with another material it is another one.
     let meshes: Vec<u32> = world.instances.iter().map(|i| i.mesh_index).collect();
     assert!(meshes[..4].iter().all(|&m| m == meshes[0]) && meshes[4] != meshes[0]);
-    let material = |i: usize| scene.materials[world.instances[i].mesh.parts[0].material.unwrap() as usize].name.clone();
+    let material = |i: usize| {
+        scene.materials[world.instances[i].mesh.parts[0].material.unwrap() as usize].name.clone()
+    };
     assert_eq!((material(0), material(4)), ("red".to_owned(), "blue".to_owned()));
 }
 
 #[test]
 fn what_is_no_object_is_told_in_words() {
     for (text, what) in [
-        ("[]", "a.json: line 1: column 1: a scene file is an object, `{ \"vitral-scene\": 1, ... }`"),
+        (
+            "[]",
+            "a.json: line 1: column 1: a scene file is an object, `{ \"vitral-scene\": 1, ... }`",
+        ),
         ("{", "a.json: line 1: column 1: EOF while parsing an object"),
-        (r#"{"vitral-scene":1,"nodes":[3]}"#, "nodes[0]: invalid type: integer `3`, expected an object"),
-        (r#"{"vitral-scene":1,"materials":[7]}"#, "materials[0]: invalid type: integer `7`, expected an object"),
-        (r#"{"vitral-scene":1,"lights":[[]]}"#, "lights[0]: invalid type: sequence, expected an object"),
-        (r#"{"vitral-scene":1,"nodes":[{"light":[]}]}"#, "nodes[0].light: invalid type: sequence, expected an object"),
-        (r#"{"vitral-scene":1,"meshes":[{},["a.obj"]]}"#, "meshes[1]: invalid type: sequence, expected an object"),
-        (r#"{"vitral-scene":1,"nodes":[[]]}"#, "nodes[0]: invalid type: sequence, expected an object"),
+        (
+            r#"{"vitral-scene":1,"nodes":[3]}"#,
+            "nodes[0]: invalid type: integer `3`, expected an object",
+        ),
+        (
+            r#"{"vitral-scene":1,"materials":[7]}"#,
+            "materials[0]: invalid type: integer `7`, expected an object",
+        ),
+        (
+            r#"{"vitral-scene":1,"lights":[[]]}"#,
+            "lights[0]: invalid type: sequence, expected an object",
+        ),
+        (
+            r#"{"vitral-scene":1,"nodes":[{"light":[]}]}"#,
+            "nodes[0].light: invalid type: sequence, expected an object",
+        ),
+        (
+            r#"{"vitral-scene":1,"meshes":[{},["a.obj"]]}"#,
+            "meshes[1]: invalid type: sequence, expected an object",
+        ),
+        (
+            r#"{"vitral-scene":1,"nodes":[[]]}"#,
+            "nodes[0]: invalid type: sequence, expected an object",
+        ),
     ] {
         let error = load(text).unwrap_err().to_string();
         assert!(error.contains(what), "{error}");
@@ -348,12 +432,18 @@ fn what_is_no_object_is_told_in_words() {
 #[test]
 fn circles_depth_and_floods_are_refused() {
     let fails = |files: &Memory, text: &str, part: &str| {
-        let error = scene_json::load(text.as_bytes(), "root.json", files, &Workers::single()).unwrap_err().to_string();
+        let error = scene_json::load(text.as_bytes(), "root.json", files, &Workers::single())
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(part), "{error}");
     };
     let refer = |to: &str| format!(r#"{{"vitral-scene":1,"meshes":[{{"file":"{to}"}}]}}"#);
     let circle = Memory::with(&[("x/b.json", &refer("../root.json"))]);
-    fails(&circle, &refer("x/b.json"), "x/b.json: meshes[0]: needs `../root.json`: it refers back to itself");
+    fails(
+        &circle,
+        &refer("x/b.json"),
+        "x/b.json: meshes[0]: needs `../root.json`: it refers back to itself",
+    );
     fails(&Memory::default(), &refer("no.obj"), "needs `no.obj`: there is no such file");
     fails(&Memory::default(), &refer("../out.obj"), "outside the model's folder");
 
@@ -381,7 +471,10 @@ fn circles_depth_and_floods_are_refused() {
 #[test]
 fn lights_that_cannot_shine_are_refused() {
     for (kind, part) in [
-        (r#""directional","direction":[0,0,0]"#, "direction: a direction of some length is required"),
+        (
+            r#""directional","direction":[0,0,0]"#,
+            "direction: a direction of some length is required",
+        ),
         (
             r#""spot","position":[0,0,0],"direction":[0,1,0],"cutoff":0,"inner":0,"exponent":0"#,
             "cutoff: a half angle above 0",
@@ -394,20 +487,28 @@ fn lights_that_cannot_shine_are_refused() {
             r#""spot","position":[0,0,0],"direction":[0,1,0],"cutoff":0.5,"inner":0.6,"exponent":0"#,
             "inner: a half angle from 0 to the cutoff",
         ),
-        (r#""ambient"},"ambient":[0,-1,0],"attenuation":{"form":"none""#, "intensities of at least 0 are required"),
+        (
+            r#""ambient"},"ambient":[0,-1,0],"attenuation":{"form":"none""#,
+            "intensities of at least 0 are required",
+        ),
         (
             r#""ambient"},"attenuation":{"form":"clamped","c1":1,"c2":-1,"c3":0"#,
             "attenuation: three terms of at least 0",
         ),
     ] {
         let light = format!(r#"{{"kind":{{"type":{kind}}}}}"#);
-        let error = load(&format!(r#"{{"vitral-scene":1,"lights":[{{}},{light}]}}"#)).unwrap_err().to_string();
+        let error = load(&format!(r#"{{"vitral-scene":1,"lights":[{{}},{light}]}}"#))
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("lights[1]") && error.contains(part), "{error}");
-        let error = load(&format!(r#"{{"vitral-scene":1,"nodes":[{{"light":{light}}}]}}"#)).unwrap_err().to_string();
+        let error = load(&format!(r#"{{"vitral-scene":1,"nodes":[{{"light":{light}}}]}}"#))
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("nodes[0].light") && error.contains(part), "{error}");
     }
     let point = r#"{"shape":"disc","center":[0,1,0],"normal":[0,-1,0],"radius":0}"#;
-    let text = format!(r#"{{"vitral-scene":1,"lights":[{{"kind":{{"type":"area","shape":{point}}}}}]}}"#);
+    let text =
+        format!(r#"{{"vitral-scene":1,"lights":[{{"kind":{{"type":"area","shape":{point}}}}}]}}"#);
     assert!(load(&text).is_ok(), "a disc of radius 0 is a point");
     let error = load(r#"{"vitral-scene":1,"ambient":[0.1,-0.1,0.1]}"#).unwrap_err().to_string();
     assert!(error.contains("ambient: intensities of at least 0 are required"), "{error}");
@@ -432,11 +533,15 @@ fn materials_out_of_range_are_refused() {
             "shininess -3: a number of at least 0 is required",
         ),
     ] {
-        let text = format!(r#"{{"vitral-scene":1,"materials":[{{}},{{"name":"glass",{property}}}]}}"#);
+        let text =
+            format!(r#"{{"vitral-scene":1,"materials":[{{}},{{"name":"glass",{property}}}]}}"#);
         let error = load(&text).unwrap_err().to_string();
         assert!(error.contains(part), "{error}");
     }
-    assert!(load(r#"{"vitral-scene":1,"materials":[{"opacity":0,"ior":0.7,"filter":[0,1,0.5]}]}"#).is_ok());
+    assert!(
+        load(r#"{"vitral-scene":1,"materials":[{"opacity":0,"ior":0.7,"filter":[0,1,0.5]}]}"#)
+            .is_ok()
+    );
 }
 
 #[test]
@@ -448,21 +553,45 @@ fn what_is_wrong_is_told_with_its_place() {
         (r#"{"vitral-scene":2}"#, "version 2"),
         (r#"{"vitral-scene":1,"nodes":[{"mesh":3}]}"#, "nodes[0].mesh: mesh 3, there are 0"),
         (r#"{"vitral-scene":1,"nodes":[{"camera":0}]}"#, "nodes[0].camera: camera 0, there are 0"),
-        (r#"{"vitral-scene":1,"nodes":[{"children":[0]}]}"#, "nodes[0]: the node is its own ancestor"),
+        (
+            r#"{"vitral-scene":1,"nodes":[{"children":[0]}]}"#,
+            "nodes[0]: the node is its own ancestor",
+        ),
         (
             r#"{"vitral-scene":1,"nodes":[{"children":[2]},{"children":[2]},{}]}"#,
             "nodes[1].children[0]: node 2 has a parent",
         ),
-        (r#"{"vitral-scene":1,"nodes":[{}],"roots":[0,0]}"#, "roots[1]: node 0 is in the tree already"),
-        (r#"{"vitral-scene":1,"nodes":[{"matrix":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}]}"#, "0 0 0 1 as its last row"),
+        (
+            r#"{"vitral-scene":1,"nodes":[{}],"roots":[0,0]}"#,
+            "roots[1]: node 0 is in the tree already",
+        ),
+        (
+            r#"{"vitral-scene":1,"nodes":[{"matrix":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}]}"#,
+            "0 0 0 1 as its last row",
+        ),
         (r#"{"vitral-scene":1,"nodes":[{"rotation":[0,0,0,0]}]}"#, "is zero"),
-        (r#"{"vitral-scene":1,"materials":[{"opacity":1e39}]}"#, "materials[0].opacity: number out of range"),
-        (r#"{"vitral-scene":1,"materials":[{"base-texture":{"texture":0}}]}"#, "materials[0]: texture 0, there are 0"),
+        (
+            r#"{"vitral-scene":1,"materials":[{"opacity":1e39}]}"#,
+            "materials[0].opacity: number out of range",
+        ),
+        (
+            r#"{"vitral-scene":1,"materials":[{"base-texture":{"texture":0}}]}"#,
+            "materials[0]: texture 0, there are 0",
+        ),
         (r#"{"vitral-scene":1,"meshes":[{"positions":[],"points":[0]}]}"#, "meshes[0]: "),
-        (r#"{"vitral-scene":1,"meshes":[{"points":[],"material":0}]}"#, "meshes[0]: material 0, there are 0"),
-        (r#"{"vitral-scene":1,"meshes":[{"builtin":"cow"}]}"#, "no built-in scene `cow`; there are cubs, sphere"),
+        (
+            r#"{"vitral-scene":1,"meshes":[{"points":[],"material":0}]}"#,
+            "meshes[0]: material 0, there are 0",
+        ),
+        (
+            r#"{"vitral-scene":1,"meshes":[{"builtin":"cow"}]}"#,
+            "no built-in scene `cow`; there are cubs, sphere",
+        ),
         (r#"{"vitral-scene":1,"textures":[{}]}"#, "textures[0]: either `file` or `data`"),
-        (r#"{"vitral-scene":1,"lights":[{"diffuse":[1e39,0,0]}]}"#, "lights[0].diffuse[0]: number out of range"),
+        (
+            r#"{"vitral-scene":1,"lights":[{"diffuse":[1e39,0,0]}]}"#,
+            "lights[0].diffuse[0]: number out of range",
+        ),
         (
             r#"{"vitral-scene":1,"cameras":[{"position":[0,0,1],"focal-point":[0,0,0],"view-up":[0,1,0],"projection":{"type":"perspective","view-angle":4}}]}"#,
             "cameras[0].projection",
@@ -474,7 +603,10 @@ fn what_is_wrong_is_told_with_its_place() {
     let missing =
         load(r#"{"vitral-scene":1,"textures":[{"file":"no.png"}],"materials":[{"base-texture":{"texture":0}}]}"#)
             .unwrap();
-    assert_eq!((missing.warnings.len(), missing.materials[0].base_texture, missing.textures.len()), (1, None, 0));
+    assert_eq!(
+        (missing.warnings.len(), missing.materials[0].base_texture, missing.textures.len()),
+        (1, None, 0)
+    );
 }
 
 proptest! {
@@ -506,8 +638,11 @@ proptest! {
 /// What docs/scene-format.md shows can be copied.
 #[test]
 fn the_examples_of_the_documentation_are_read() {
-    let text = std::fs::read_to_string(vitral_testkit::fixture::repository().join("docs/scene-format.md")).unwrap();
-    let examples: Vec<&str> = text.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    let text =
+        std::fs::read_to_string(vitral_testkit::fixture::repository().join("docs/scene-format.md"))
+            .unwrap();
+    let examples: Vec<&str> =
+        text.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
     assert_eq!(examples.len(), 2);
     for example in examples {
         let beside = vitral_testkit::fuzz::Beside::default();
@@ -519,7 +654,9 @@ fn the_examples_of_the_documentation_are_read() {
 
 #[test]
 fn the_documentation_has_all_builtin_scenes() {
-    let text = std::fs::read_to_string(vitral_testkit::fixture::repository().join("docs/scene-format.md")).unwrap();
+    let text =
+        std::fs::read_to_string(vitral_testkit::fixture::repository().join("docs/scene-format.md"))
+            .unwrap();
     for (name, _) in vitral_scene::builtin::names() {
         assert!(text.contains(&format!("`{name}`")), "{name}");
     }
@@ -530,6 +667,7 @@ fn the_documentation_has_all_builtin_scenes() {
 fn keys_have_hyphens() {
     let text = scene_json::write(&full_scene()).unwrap();
     let keys = text.split('"').skip(1).step_by(2);
-    let wrong: Vec<&str> = keys.filter(|key| key.contains('_') && !key.starts_with("data:")).collect();
+    let wrong: Vec<&str> =
+        keys.filter(|key| key.contains('_') && !key.starts_with("data:")).collect();
     assert!(wrong.is_empty(), "{wrong:?}");
 }

@@ -1,4 +1,5 @@
-//! Tests of readers and writers. One program: linking and starting dominate the cost of many small ones.
+//! Tests of readers and writers. One program: linking and starting dominate the cost of many small
+//! ones.
 
 mod common;
 mod encode;

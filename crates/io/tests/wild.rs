@@ -1,4 +1,5 @@
-//! Files as programs write them in the wild, each with the shape, the colours and the warning that are right for it.
+//! Files as programs write them in the wild, each with the shape, the colours and the warning that
+//! are right for it.
 
 use crate::common::Folder;
 use std::path::PathBuf;
@@ -21,7 +22,11 @@ fn read(path: &str) -> Result<Scene, String> {
 /// The same, with exactly one warning, which has these words.
 fn read_with_warning(path: &str, words: &str) -> Scene {
     let scene = read(path).unwrap();
-    assert!(scene.warnings.len() == 1 && scene.warnings[0].contains(words), "{path}: {:?}", scene.warnings);
+    assert!(
+        scene.warnings.len() == 1 && scene.warnings[0].contains(words),
+        "{path}: {:?}",
+        scene.warnings
+    );
     scene
 }
 
@@ -62,7 +67,10 @@ fn ascii_stl_is_read_as_it_is_written() {
 #[test]
 fn numbers_of_fortran_are_read() {
     let scene = read("fortran.obj").unwrap();
-    assert_eq!((bounds(&scene), scene.warnings.len()), ([DVec3::ZERO, DVec3::new(2.0, 2.0, 0.0)], 0));
+    assert_eq!(
+        (bounds(&scene), scene.warnings.len()),
+        ([DVec3::ZERO, DVec3::new(2.0, 2.0, 0.0)], 0)
+    );
 }
 
 #[test]
@@ -126,10 +134,16 @@ fn alpha_of_a_texture_cuts_out() {
 fn names_from_windows_are_found() {
     let scene = read("windows-gltf/backslash.gltf").unwrap();
     assert_eq!(scene.textures.len(), 1);
-    assert_eq!(scene.warnings, ["windows-gltf/backslash.gltf: there is no `sub\\t.png`; `sub/t.png` is read"]);
+    assert_eq!(
+        scene.warnings,
+        ["windows-gltf/backslash.gltf: there is no `sub\\t.png`; `sub/t.png` is read"]
+    );
     let scene = read("other-case/a.obj").unwrap();
     assert_eq!((only_material(&scene).name.as_str(), scene.textures.len()), ("m", 1));
-    let told = ["there is no `A.MTL`; `a.mtl` is read, whose case differs", "there is no `T.PNG`; `t.png` is read"];
+    let told = [
+        "there is no `A.MTL`; `a.mtl` is read, whose case differs",
+        "there is no `T.PNG`; `t.png` is read",
+    ];
     assert_eq!(scene.warnings.len(), told.len(), "{:?}", scene.warnings);
     assert!(scene.warnings.iter().zip(told).all(|(w, t)| w.contains(t)), "{:?}", scene.warnings);
 }
@@ -149,7 +163,9 @@ fn shapes_far_away_are_those_near_by() {
     let moved = far_low - near_low;
     let (world_near, world_far) = (World::new(&near).unwrap(), World::new(&far).unwrap());
     for facet in 0..world_near.facet_count {
-        for (a, b) in world_near.corners_of_facet(facet).into_iter().zip(world_far.corners_of_facet(facet)) {
+        for (a, b) in
+            world_near.corners_of_facet(facet).into_iter().zip(world_far.corners_of_facet(facet))
+        {
             assert!((b - a - moved).abs().max_element() < 2e-3, "{a} {b}");
         }
     }
@@ -160,7 +176,12 @@ fn shapes_far_away_are_those_near_by() {
 #[test]
 fn hidden_nodes_are_hidden() {
     let scene = read("vis0.gltf").unwrap();
-    assert_eq!((World::new(&scene).unwrap().instances.len(), scene.warnings.len()), (1, 0), "{:?}", scene.warnings);
+    assert_eq!(
+        (World::new(&scene).unwrap().instances.len(), scene.warnings.len()),
+        (1, 0),
+        "{:?}",
+        scene.warnings
+    );
     assert_eq!(bounds(&scene), [DVec3::ZERO, DVec3::new(2.0, 2.0, 0.0)]);
 }
 
@@ -177,5 +198,8 @@ fn nodes_keep_the_digits_of_their_place() {
         {"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, -4500067.89,0.5,0,1]}]}"#;
     let scene = load(text.as_bytes(), "far.gltf", &vitral_io::NoFiles, &Workers::single()).unwrap();
     let places = [0, 1].map(|n: usize| scene.nodes[n].transform.matrix().w_axis.truncate());
-    assert_eq!(places, [DVec3::new(500_012.34, 0.0, 4_500_067.89), DVec3::new(-4_500_067.89, 0.5, 0.0)]);
+    assert_eq!(
+        places,
+        [DVec3::new(500_012.34, 0.0, 4_500_067.89), DVec3::new(-4_500_067.89, 0.5, 0.0)]
+    );
 }

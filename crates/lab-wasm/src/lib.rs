@@ -1,7 +1,9 @@
-//! The Lab's engine for JavaScript, without any bindings but memory: a message goes in at a place that `lab_alloc` gave, and the
-//! answer lies at the place that `lab_request` gives, its length first.
+//! The Lab's engine for JavaScript, without any bindings but memory: a message goes in at a place
+//! that `lab_alloc` gave, and the answer lies at the place that `lab_request` gives, its length
+//! first.
 
-// Exporting functions by name and reading what JavaScript wrote into memory are the only ways into a WebAssembly module.
+// Exporting functions by name and reading what JavaScript wrote into memory are the only ways into
+// a WebAssembly module.
 #![allow(unsafe_code)]
 
 use std::cell::RefCell;
@@ -52,8 +54,9 @@ pub extern "C" fn lab_alloc(length: usize) -> *mut u8 {
     })
 }
 
-/// Answers the message that was written to where [`lab_alloc`] said. At the place that is given lie the length of the answer, four
-/// bytes from the lowest, then the answer; it stays there until the next request.
+/// Answers the message that was written to where [`lab_alloc`] said. At the place that is given lie
+/// the length of the answer, four bytes from the lowest, then the answer; it stays there until the
+/// next request.
 #[unsafe(no_mangle)]
 pub extern "C" fn lab_request() -> *const u8 {
     KEPT.with_borrow_mut(|kept| {

@@ -23,8 +23,9 @@ struct RenderedPlanes {
 /// Both pictures, their difference, and how far they agree.
 pub(crate) fn compare(stage: &mut Stage, files: &Files, a: &State, b: &State) -> Answer {
     let [a, b] = [seen(stage.show(a, files)?)?, seen(stage.show(b, files)?)?];
-    let sizes =
-        |e: frames::SizeMismatch| Error::usage(format!("A and B cannot be compared: {e}"), "give both one size");
+    let sizes = |e: frames::SizeMismatch| {
+        Error::usage(format!("A and B cannot be compared: {e}"), "give both one size")
+    };
     let difference = frames::compare(&a.color, &b.color, 0).map_err(sizes)?;
     let shown = frames::picture(&a.color, &b.color).map_err(sizes)?;
 
@@ -58,13 +59,21 @@ pub(crate) fn compare_all(renderer: &mut Renderer) -> Answer {
     let camera = renderer.frame_camera();
     let (time_limit, memory_limit) = (None, None);
     let scene = renderer.scene();
-    let task = Task { scene, camera: &camera, settings: &renderer.settings, frames: 1, time_limit, memory_limit };
+    let task = Task {
+        scene,
+        camera: &camera,
+        settings: &renderer.settings,
+        frames: 1,
+        time_limit,
+        memory_limit,
+    };
     let (mut first, mut rows) = (None, Vec::new());
     for entrant in Entrant::all() {
         let row = match measure(&task, &entrant, renderer.execution())? {
             Err(limit) => json!({"algorithm": entrant.name(), "limit": limit.to_string()}),
             Ok(measured) => {
-                let differ = first.get_or_insert_with(|| measured.seen.clone()).differing(&measured.seen);
+                let differ =
+                    first.get_or_insert_with(|| measured.seen.clone()).differing(&measured.seen);
                 let counters = serde_json::to_value(measured.counters).unwrap_or(Value::Null);
                 json!({
                     "algorithm": entrant.name(),
@@ -83,7 +92,10 @@ pub(crate) fn compare_all(renderer: &mut Renderer) -> Answer {
 /// Seconds of pictures of the state: the first, with what is built once, the median and the least.
 pub(crate) fn bench(renderer: &mut Renderer, frames: u32) -> Answer {
     if !(1..=MOST_FRAMES).contains(&frames) {
-        return Err(Error::usage(format!("{frames} pictures cannot be timed"), format!("1 to {MOST_FRAMES} can")));
+        return Err(Error::usage(
+            format!("{frames} pictures cannot be timed"),
+            format!("1 to {MOST_FRAMES} can"),
+        ));
     }
     let camera = renderer.frame_camera();
     let mut seconds = Vec::new();
@@ -96,13 +108,18 @@ pub(crate) fn bench(renderer: &mut Renderer, frames: u32) -> Answer {
     let first = seconds[0];
     seconds.sort_by(f64::total_cmp);
     let (median, fastest) = (seconds[seconds.len() / 2], seconds[0]);
-    Ok((json!({"frames": frames, "first": first, "median": median, "fastest": fastest}), Vec::new()))
+    Ok((
+        json!({"frames": frames, "first": first, "median": median, "fastest": fastest}),
+        Vec::new(),
+    ))
 }
 
 /// Fields that are not zero.
 fn not_zero(counters: Value) -> Value {
     match counters {
-        Value::Object(fields) => fields.into_iter().filter(|(_, value)| value.as_f64() != Some(0.0)).collect(),
+        Value::Object(fields) => {
+            fields.into_iter().filter(|(_, value)| value.as_f64() != Some(0.0)).collect()
+        }
         other => other,
     }
 }

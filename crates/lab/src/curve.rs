@@ -20,7 +20,8 @@ pub(crate) fn curve(what: Curve, ns: Option<f64>, c: Option<[f64; 3]>) -> Answer
     let points: Vec<[f64; 2]> = match what {
         Curve::CosN => {
             let ns = ns.filter(|n| n.is_finite() && *n >= 0.0);
-            let ns = ns.ok_or_else(|| Error::usage("the exponent `ns` is a number of at least 0", ""))?;
+            let ns =
+                ns.ok_or_else(|| Error::usage("the exponent `ns` is a number of at least 0", ""))?;
             let point = |i: u32| {
                 let degrees = at(i) * 180.0 - 90.0;
                 [degrees, func::pow(func::cos(degrees.to_radians()).max(0.0), ns)]
@@ -29,7 +30,8 @@ pub(crate) fn curve(what: Curve, ns: Option<f64>, c: Option<[f64; 3]>) -> Answer
         }
         Curve::Attenuation => {
             let c = c.filter(|c| c.iter().all(|c| c.is_finite() && *c >= 0.0));
-            let [c1, c2, c3] = c.ok_or_else(|| Error::usage("`c` are three numbers of at least 0", ""))?;
+            let [c1, c2, c3] =
+                c.ok_or_else(|| Error::usage("`c` are three numbers of at least 0", ""))?;
             let point = |i: u32| {
                 let d = at(i) * FARTHEST;
                 [d, (1.0 / (c1 + c2 * d + c3 * d * d)).min(1.0)]
@@ -69,7 +71,10 @@ mod tests {
                 assert_eq!(value >= 0.5, degrees.abs() <= half, "{ns} {degrees}");
             }
         }
-        assert!(curve(Curve::CosN, Some(-1.0), None).is_err() && curve(Curve::CosN, None, None).is_err());
+        assert!(
+            curve(Curve::CosN, Some(-1.0), None).is_err()
+                && curve(Curve::CosN, None, None).is_err()
+        );
     }
 
     #[test]

@@ -10,7 +10,8 @@ use vitral::{Error, LightKind, Renderer};
 /// Seconds after which an algorithm that is asked gives up.
 const TIME_LIMIT: f64 = 30.0;
 
-/// Its surfaces and what became of each, its light, the formula with its numbers, and why it is as it is.
+/// Its surfaces and what became of each, its light, the formula with its numbers, and why it is as
+/// it is.
 pub(crate) fn explain(renderer: &mut Renderer, pixel: [u32; 2]) -> Answer {
     let camera = renderer.frame_camera();
     let told = explain_pixel(renderer, &camera, pixel, &Deciders::Chosen, None)?;
@@ -30,7 +31,13 @@ pub(crate) fn explain(renderer: &mut Renderer, pixel: [u32; 2]) -> Answer {
 /// What every visibility algorithm decides about it, and why.
 pub(crate) fn ask_all(renderer: &mut Renderer, pixel: [u32; 2]) -> Answer {
     let camera = renderer.frame_camera();
-    let told = explain_pixel(renderer, &camera, pixel, &Deciders::Named(Entrant::all()), Some(TIME_LIMIT))?;
+    let told = explain_pixel(
+        renderer,
+        &camera,
+        pixel,
+        &Deciders::Named(Entrant::all()),
+        Some(TIME_LIMIT),
+    )?;
     Ok((json!({"decisions": as_json(&told)?["decisions"]}), Vec::new()))
 }
 

@@ -1,9 +1,12 @@
-//! The user's own files, in memory. A model among them is called `file:NAME#HASH`, so that a link names what it was made with.
+//! The user's own files, in memory. A model among them is called `file:NAME#HASH`, so that a link
+//! names what it was made with.
 
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use vitral::{Error, Format, LoadOptions, ResolveError, Resolver, Scene, load_bytes_with, load_with};
+use vitral::{
+    Error, Format, LoadOptions, ResolveError, Resolver, Scene, load_bytes_with, load_with,
+};
 
 /// How many digits of a hash name a file.
 const HASH_DIGITS: usize = 12;
@@ -27,7 +30,8 @@ impl Files {
         self.files.insert(name.to_owned(), File { bytes, hash });
     }
 
-    /// Each file: its name, its hash, whether it is a model, and the names of files that it needs and that are missing.
+    /// Each file: its name, its hash, whether it is a model, and the names of files that it needs
+    /// and that are missing.
     pub(crate) fn list(&self) -> Value {
         let tell = |(name, file): (&String, &File)| {
             let is_model = Format::detect(&file.bytes, name).is_ok();
@@ -60,18 +64,24 @@ impl Files {
         };
         let (name, wanted) = name.rsplit_once('#').unwrap_or((name, ""));
         let Some(file) = self.files.get(name) else {
-            return Err(Error::usage(format!("{name}: this file is needed"), "open it, or drop it on the page"));
+            return Err(Error::usage(
+                format!("{name}: this file is needed"),
+                "open it, or drop it on the page",
+            ));
         };
         if !wanted.is_empty() && wanted != file.hash {
-            let what =
-                format!("{name}: this is another file than the link was made with ({}, not {wanted})", file.hash);
+            let what = format!(
+                "{name}: this is another file than the link was made with ({}, not {wanted})",
+                file.hash
+            );
             return Err(Error::usage(what, "open the file that belongs to the link"));
         }
         load_bytes_with(&file.bytes, name, &Beside { files: self, model: name }, options)
     }
 }
 
-/// A model's name without its kind and its hash: `builtin:teapot` is `teapot`, `file:chair.obj#0123456789ab` is `chair.obj`.
+/// A model's name without its kind and its hash: `builtin:teapot` is `teapot`,
+/// `file:chair.obj#0123456789ab` is `chair.obj`.
 pub(crate) fn plain_name(model: &str) -> &str {
     let model = model.rsplit_once('#').map_or(model, |(name, _)| name);
     model.split_once(':').map_or(model, |(_, name)| name)
@@ -83,7 +93,8 @@ fn hash(bytes: &[u8]) -> String {
     digits[..HASH_DIGITS].to_owned()
 }
 
-/// Finds the files that a model names among the user's, by the whole path, else by its last part: folders are lost when files are dropped.
+/// Finds the files that a model names among the user's, by the whole path, else by its last part:
+/// folders are lost when files are dropped.
 struct Beside<'f> {
     files: &'f Files,
     model: &'f str,
@@ -95,7 +106,12 @@ impl Beside<'_> {
         let folder = self.model.rsplit_once('/').map_or("", |(folder, _)| folder);
         let whole = if folder.is_empty() { path.to_owned() } else { format!("{folder}/{path}") };
         let last = path.rsplit(['/', '\\']).next().unwrap_or(path);
-        let same_end = || files.iter().find(|(name, _)| name.rsplit('/').next() == Some(last)).map(|(_, file)| file);
+        let same_end = || {
+            files
+                .iter()
+                .find(|(name, _)| name.rsplit('/').next() == Some(last))
+                .map(|(_, file)| file)
+        };
         files.get(&whole).or_else(|| files.get(path)).or_else(same_end)
     }
 }
@@ -126,7 +142,8 @@ impl Resolver for Asked<'_> {
 mod tests {
     use super::*;
 
-    const SQUARE: &[u8] = b"mtllib square.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl red\nf 1 2 3 4\n";
+    const SQUARE: &[u8] =
+        b"mtllib square.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl red\nf 1 2 3 4\n";
     const MATERIAL: &[u8] = b"newmtl red\nKd 1 0 0\n";
 
     #[test]
@@ -134,7 +151,10 @@ mod tests {
         let mut files = Files::default();
         files.keep("square.obj", SQUARE.to_vec());
         let list = files.list();
-        assert_eq!((&list[0]["model"], &list[0]["missing"]), (&json!(true), &json!(["square.mtl"])));
+        assert_eq!(
+            (&list[0]["model"], &list[0]["missing"]),
+            (&json!(true), &json!(["square.mtl"]))
+        );
         files.keep("square.mtl", MATERIAL.to_vec());
         let list = files.list();
         assert_eq!((&list[0]["model"], &list[1]["missing"]), (&json!(false), &json!([])));

@@ -1,6 +1,8 @@
-//! The formula of illumination in force, in MathML: in the course's letters, then with the pixel's numbers; and its values as a table.
+//! The formula of illumination in force, in MathML: in the course's letters, then with the pixel's
+//! numbers; and its values as a table.
 //!
-//! Source: the course, notes V, illumination: `I = Σ Ia ka f + S f (Id kd N·L + Is ks (R·V)ⁿ)`, with Blinn's `N·H`.
+//! Source: the course, notes V, illumination: `I = Σ Ia ka f + S f (Id kd N·L + Is ks (R·V)ⁿ)`,
+//!         with Blinn's `N·H`.
 
 use serde_json::{Value, json};
 use vitral::explain::Explanation;
@@ -19,7 +21,11 @@ pub(crate) fn formula(told: &Explanation, lights: &[String]) -> Value {
 }
 
 fn identifier(name: &str, index: &str) -> String {
-    if index.is_empty() { format!("<mi>{name}</mi>") } else { format!("<msub><mi>{name}</mi><mi>{index}</mi></msub>") }
+    if index.is_empty() {
+        format!("<mi>{name}</mi>")
+    } else {
+        format!("<msub><mi>{name}</mi><mi>{index}</mi></msub>")
+    }
 }
 
 fn number(value: f32) -> String {
@@ -94,7 +100,9 @@ fn numbers(evaluation: &Evaluation, told: &Explanation) -> String {
 fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec<Value> {
     let mut rows = Vec::new();
     let mut row = |symbol: String, value: String, meaning: &str, setting: Option<String>| {
-        rows.push(json!({"symbol": symbol, "value": value, "meaning": meaning, "setting": setting}));
+        rows.push(
+            json!({"symbol": symbol, "value": value, "meaning": meaning, "setting": setting}),
+        );
     };
 
     // List the vectors and the material's coefficients.
@@ -103,13 +111,33 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
     row("V".to_owned(), three(evaluation.viewer), "unit vector to the viewer, view space", None);
     match evaluation.coefficients {
         CoefficientValues::Empirical { ka, kd, ks, shininess } => {
-            row("ka".to_owned(), three(ka), "ambient coefficient of the material", Some("materials.ka".to_owned()));
+            row(
+                "ka".to_owned(),
+                three(ka),
+                "ambient coefficient of the material",
+                Some("materials.ka".to_owned()),
+            );
             row("kd".to_owned(), three(kd), "diffuse coefficient", Some("materials.kd".to_owned()));
-            row("ks".to_owned(), three(ks), "specular coefficient", Some("materials.ks".to_owned()));
-            row("n".to_owned(), digits(shininess), "exponent of the highlight", Some("materials.shininess".to_owned()));
+            row(
+                "ks".to_owned(),
+                three(ks),
+                "specular coefficient",
+                Some("materials.ks".to_owned()),
+            );
+            row(
+                "n".to_owned(),
+                digits(shininess),
+                "exponent of the highlight",
+                Some("materials.shininess".to_owned()),
+            );
         }
         CoefficientValues::Microfacet { base_color, metallic, roughness, occlusion } => {
-            row("base".to_owned(), three(base_color), "base colour", Some("materials.base-color".to_owned()));
+            row(
+                "base".to_owned(),
+                three(base_color),
+                "base colour",
+                Some("materials.base-color".to_owned()),
+            );
             row("metallic".to_owned(), digits(metallic), "0 a dielectric, 1 a metal", None);
             row("roughness".to_owned(), digits(roughness), "roughness of the surface", None);
             row("occlusion".to_owned(), digits(occlusion), "how much ambient light arrives", None);
@@ -129,7 +157,12 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
     for of_light in &evaluation.lights {
         let (t, name) = (&of_light.terms, &lights[of_light.light]);
         let mut of = |symbol: &str, value: String, meaning: &str| {
-            row(format!("{symbol} ({name})"), value, meaning, Some(format!("lights.{}", of_light.light)));
+            row(
+                format!("{symbol} ({name})"),
+                value,
+                meaning,
+                Some(format!("lights.{}", of_light.light)),
+            );
         };
         let [ambient, diffuse, specular] = t.colors.map(three);
         of("Ia", ambient, "ambient colour of the light");
@@ -145,7 +178,11 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
                 None => ("N·H", "cosine between the normal and the halfway vector"),
             };
             of(symbol, digits(highlight.cosine), meaning);
-            of("lobe", digits(highlight.lobe), "that cosine to the power n, or the microfacets' lobe");
+            of(
+                "lobe",
+                digits(highlight.lobe),
+                "that cosine to the power n, or the microfacets' lobe",
+            );
         }
         of("ambient", three(t.ambient), "ambient term");
         of("diffuse", three(t.diffuse), "diffuse term");
@@ -153,7 +190,12 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
     }
 
     // List the sum and the pixel's bytes.
-    row("I".to_owned(), three(told.light.straight), "the sum of all samples, before it is encoded", None);
+    row(
+        "I".to_owned(),
+        three(told.light.straight),
+        "the sum of all samples, before it is encoded",
+        None,
+    );
     row(
         "bytes".to_owned(),
         told.light.bytes[..3].iter().map(u8::to_string).collect::<Vec<_>>().join(" "),

@@ -1,7 +1,9 @@
-//! The engine of the Lab, a page on which every algorithm and formula of the course can be watched and questioned.
+//! The engine of the Lab, a page on which every algorithm and formula of the course can be watched
+//! and questioned.
 //!
-//! The page sends requests, JSON with planes of bytes beside it, and gets answers of the same form; [`Lab::answer`] is all there is.
-//! A request names what it wants, and carries the state, in the form of the command line's state files:
+//! The page sends requests, JSON with planes of bytes beside it, and gets answers of the same form;
+//! [`Lab::answer`] is all there is. A request names what it wants, and carries the state, in the
+//! form of the command line's state files:
 //!
 //! ```
 //! let mut lab = vitral_lab::Lab::default();
@@ -97,7 +99,11 @@ impl Lab {
             Ok((ok, planes)) => Message { json: json!({"ok": ok}).to_string(), planes },
             Err(error) => {
                 let hint = match &error {
-                    Error::Usage { hint, .. } | Error::Unsupported { hint, .. } if !hint.is_empty() => Some(hint),
+                    Error::Usage { hint, .. } | Error::Unsupported { hint, .. }
+                        if !hint.is_empty() =>
+                    {
+                        Some(hint)
+                    }
                     _ => None,
                 };
                 let told = json!({"error": {"message": error.to_string(), "hint": hint}});
@@ -112,21 +118,38 @@ impl Lab {
         match want {
             Want::Catalog => catalog::catalog(),
             Want::Files { files: names } => {
-                names.into_iter().zip(planes).for_each(|(file, bytes)| files.keep(&file.name, bytes));
+                names
+                    .into_iter()
+                    .zip(planes)
+                    .for_each(|(file, bytes)| files.keep(&file.name, bytes));
                 stage.forget();
                 Ok((json!({"files": files.list()}), Vec::new()))
             }
             Want::Complete => complete::complete(stage.show(&state, files)?, &state),
-            Want::Picture { channel, coarse } => picture::picture(stage.show(&state, files)?, &state, channel, coarse),
-            Want::Record { pixel } => steps::record(&Asked { stage, files, state: &state, pixel }, recordings),
-            Want::Step { number, show, pixel } => {
-                steps::step(&Asked { stage, files, state: &state, pixel }, recordings, number, show.as_deref())
+            Want::Picture { channel, coarse } => {
+                picture::picture(stage.show(&state, files)?, &state, channel, coarse)
             }
-            Want::Steps { from, to, show, pixel } => {
-                steps::steps(&Asked { stage, files, state: &state, pixel }, recordings, [from, to], show.as_deref())
+            Want::Record { pixel } => {
+                steps::record(&Asked { stage, files, state: &state, pixel }, recordings)
             }
-            Want::Structure => steps::structure(&Asked { stage, files, state: &state, pixel: None }, recordings),
-            Want::Overview { second } => overview::overview(stage.show(&state, files)?, second.as_deref()),
+            Want::Step { number, show, pixel } => steps::step(
+                &Asked { stage, files, state: &state, pixel },
+                recordings,
+                number,
+                show.as_deref(),
+            ),
+            Want::Steps { from, to, show, pixel } => steps::steps(
+                &Asked { stage, files, state: &state, pixel },
+                recordings,
+                [from, to],
+                show.as_deref(),
+            ),
+            Want::Structure => {
+                steps::structure(&Asked { stage, files, state: &state, pixel: None }, recordings)
+            }
+            Want::Overview { second } => {
+                overview::overview(stage.show(&state, files)?, second.as_deref())
+            }
             Want::Explain { pixel } => explain::explain(stage.show(&state, files)?, pixel),
             Want::AskAll { pixel } => explain::ask_all(stage.show(&state, files)?, pixel),
             Want::Compare { b } => compare::compare(stage, files, &state, &b),
@@ -134,7 +157,9 @@ impl Lab {
             Want::Bench { frames } => compare::bench(stage.show(&state, files)?, frames),
             Want::Stages { pixel } => stages::stages(stage.show(&state, files)?, pixel),
             Want::Info => stages::info(stage.show(&state, files)?),
-            Want::Check { exercise, pixel } => exercises::check(stage.show(&state, files)?, &state, &exercise, pixel),
+            Want::Check { exercise, pixel } => {
+                exercises::check(stage.show(&state, files)?, &state, &exercise, pixel)
+            }
             Want::Save { what } => save::save(stage.show(&state, files)?, &state, what),
             Want::Curve { what, ns, c } => curve::curve(what, ns, c),
         }

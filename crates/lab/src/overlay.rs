@@ -9,7 +9,9 @@ pub(crate) fn place(step: &Step) -> [u32; 2] {
     match step {
         Step::Window { pixels: [x, y, ..], .. } | Step::Rays { pixels: [x, y, ..], .. } => [*x, *y],
         Step::Line { row, spans, .. } => [spans.first().map_or(0, |span| span.pixels[0]), *row],
-        Step::DepthTest { pixel, .. } | Step::RayMeets { pixel, .. } | Step::RayGoesOn { pixel, .. } => *pixel,
+        Step::DepthTest { pixel, .. }
+        | Step::RayMeets { pixel, .. }
+        | Step::RayGoesOn { pixel, .. } => *pixel,
         Step::Drawn { stays, hidden, .. } => {
             stays.first().or_else(|| hidden.first()).map_or([0; 2], |[row, from, _]| [*from, *row])
         }
@@ -17,19 +19,29 @@ pub(crate) fn place(step: &Step) -> [u32; 2] {
     }
 }
 
-/// An SVG of the picture's size with the step's windows, lines, outlines; each shape has a class that says what it is.
+/// An SVG of the picture's size with the step's windows, lines, outlines; each shape has a class
+/// that says what it is.
 pub(crate) fn drawing(step: &Step, width: u32, height: u32) -> String {
-    let mut svg = format!(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">"#);
+    let mut svg =
+        format!(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">"#);
     match step {
         Step::Window { pixels, verdict, .. } => {
             let verdict = serde_json::to_value(verdict).unwrap_or_default();
-            rectangle(&mut svg, *pixels, &format!("window {}", verdict.as_str().unwrap_or_default()));
+            rectangle(
+                &mut svg,
+                *pixels,
+                &format!("window {}", verdict.as_str().unwrap_or_default()),
+            );
         }
         Step::Rays { pixels, .. } => rectangle(&mut svg, *pixels, "rays"),
         Step::Line { row, spans, .. } => {
             rectangle(&mut svg, [0, *row, width, 1], "line");
             for span in spans {
-                rectangle(&mut svg, [span.pixels[0], *row, span.pixels[1] - span.pixels[0], 1], "span");
+                rectangle(
+                    &mut svg,
+                    [span.pixels[0], *row, span.pixels[1] - span.pixels[0], 1],
+                    "span",
+                );
             }
         }
         Step::Drawn { stays, hidden, .. } => {
@@ -51,7 +63,8 @@ pub(crate) fn drawing(step: &Step, width: u32, height: u32) -> String {
 // Writing to a String cannot fail.
 
 fn rectangle(svg: &mut String, [x, y, width, height]: [u32; 4], class: &str) {
-    let _ = write!(svg, r#"<rect class="{class}" x="{x}" y="{y}" width="{width}" height="{height}"/>"#);
+    let _ =
+        write!(svg, r#"<rect class="{class}" x="{x}" y="{y}" width="{width}" height="{height}"/>"#);
 }
 
 /// Rows of pixels as one path.
@@ -89,11 +102,21 @@ mod tests {
 
     #[test]
     fn a_step_is_drawn_where_it_is() {
-        let rays =
-            Step::Rays { pixels: [2, 3, 8, 4], rays: 1, boxes: 0, facets: 0, tested: vec![], through: Passed::Nowhere };
+        let rays = Step::Rays {
+            pixels: [2, 3, 8, 4],
+            rays: 1,
+            boxes: 0,
+            facets: 0,
+            tested: vec![],
+            through: Passed::Nowhere,
+        };
         assert_eq!(place(&rays), [2, 3]);
         let svg = drawing(&rays, 20, 10);
-        assert!(svg.contains(r#"viewBox="0 0 20 10""#) && svg.contains(r#"x="2" y="3" width="8" height="4""#), "{svg}");
+        assert!(
+            svg.contains(r#"viewBox="0 0 20 10""#)
+                && svg.contains(r#"x="2" y="3" width="8" height="4""#),
+            "{svg}"
+        );
         let drawn = Step::Drawn { facet: 0, stays: vec![[5, 1, 4]], hidden: Vec::new() };
         assert!(drawing(&drawn, 20, 10).contains("M1 5h3v1H1z"));
     }

@@ -1,4 +1,5 @@
-//! The scene from outside: the view volume of its camera, its lights and the boxes of its objects as lines over a picture from elsewhere.
+//! The scene from outside: the view volume of its camera, its lights and the boxes of its objects
+//! as lines over a picture from elsewhere.
 //!
 //! Source: the course, notes P, the view volume.
 
@@ -12,7 +13,8 @@ use vitral::{Aabb, Camera, DMat4, DVec3, Error, LightKind, Renderer, Viewpoint};
 /// How much of the picture is filled.
 const FILL: f64 = 0.8;
 
-/// The picture from `second`, or from beside the camera, with what belongs to the camera drawn over it.
+/// The picture from `second`, or from beside the camera, with what belongs to the camera drawn over
+/// it.
 pub(crate) fn overview(renderer: &mut Renderer, second: Option<&Viewpoint>) -> Answer {
     let camera = renderer.frame_camera();
     let lights = renderer.frame_lights(&camera);
@@ -30,12 +32,18 @@ pub(crate) fn overview(renderer: &mut Renderer, second: Option<&Viewpoint>) -> A
     let seen_by_camera = clip_from_world(&camera, renderer);
     let clip_from_world = clip_from_world(&outside, renderer);
     let screen = Screen { clip_from_world, size: [f64::from(width), f64::from(height)] };
-    let mut svg = format!(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">"#);
+    let mut svg =
+        format!(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">"#);
     for instance in renderer.world().instances.iter().filter(|i| !i.bounds.is_empty()) {
         let corners = instance.bounds.corners();
         let plane = beyond(&corners, &seen_by_camera);
         let (class, told) = plane.map_or(("box kept", ""), |plane| ("box culled", plane));
-        screen.cuboid(&mut svg, corners, class, [instance.mesh.name.as_str(), told].join(" ").trim());
+        screen.cuboid(
+            &mut svg,
+            corners,
+            class,
+            [instance.mesh.name.as_str(), told].join(" ").trim(),
+        );
     }
     screen.cuboid(&mut svg, volume, "volume", "");
     for light in lights.iter().filter(|light| light.enabled) {
@@ -60,15 +68,20 @@ fn beyond(corners: &[DVec3; 8], clip_from_world: &DMat4) -> Option<&'static str>
     let clip = corners.map(|corner| *clip_from_world * corner.extend(1.0));
     let distances = |c: &DVec4| [c.w + c.x, c.w - c.x, c.w + c.y, c.w - c.y, c.w - c.z, c.z];
     let names = ["left", "right", "bottom", "top", "near", "far"];
-    (0..6).find(|&plane| clip.iter().all(|corner| distances(corner)[plane] < 0.0)).map(|plane| names[plane])
+    (0..6)
+        .find(|&plane| clip.iter().all(|corner| distances(corner)[plane] < 0.0))
+        .map(|plane| names[plane])
 }
 
 /// World to clip for what a camera sees of the scene.
 fn clip_from_world(camera: &Camera, renderer: &Renderer) -> DMat4 {
-    camera.transform(renderer.aspect(), depth_range(camera, &renderer.world().bounds)).clip_from_world()
+    camera
+        .transform(renderer.aspect(), depth_range(camera, &renderer.world().bounds))
+        .clip_from_world()
 }
 
-/// The corners of the view volume, in the order of a box's corners; the far ones come first, as depth is 0 there.
+/// The corners of the view volume, in the order of a box's corners; the far ones come first, as
+/// depth is 0 there.
 fn view_volume(camera: &Camera, renderer: &Renderer) -> [DVec3; 8] {
     let world_from_clip = clip_from_world(camera, renderer).inverse();
     let clip = Aabb { min: DVec3::new(-1.0, -1.0, 0.0), max: DVec3::ONE };
@@ -100,16 +113,19 @@ impl Screen {
         (clip.w > 0.0 && pixel.iter().all(|c| c.is_finite())).then_some(pixel)
     }
 
-    /// The twelve edges of a box; corners differ in x by the first bit of their number, in y by the second, in z by the third.
+    /// The twelve edges of a box; corners differ in x by the first bit of their number, in y by the
+    /// second, in z by the third.
     fn cuboid(&self, svg: &mut String, corners: [DVec3; 8], class: &str, name: &str) {
         // Writing to a String cannot fail.
         let _ = write!(svg, r#"<g class="{class}"><title>{}</title>"#, plain(name));
         let at = corners.map(|corner| self.place(corner));
-        for (from, bit) in
-            (0..8usize).flat_map(|from| [1, 2, 4].map(|bit| (from, bit))).filter(|(from, bit)| from & bit == 0)
+        for (from, bit) in (0..8usize)
+            .flat_map(|from| [1, 2, 4].map(|bit| (from, bit)))
+            .filter(|(from, bit)| from & bit == 0)
         {
             if let (Some([x1, y1]), Some([x2, y2])) = (at[from], at[from | bit]) {
-                let _ = write!(svg, r#"<line x1="{x1:.2}" y1="{y1:.2}" x2="{x2:.2}" y2="{y2:.2}"/>"#);
+                let _ =
+                    write!(svg, r#"<line x1="{x1:.2}" y1="{y1:.2}" x2="{x2:.2}" y2="{y2:.2}"/>"#);
             }
         }
         svg.push_str("</g>");
@@ -120,7 +136,10 @@ impl Screen {
         let Some([x, y]) = self.place(at) else { return };
         let name = plain(name);
         // Writing to a String cannot fail.
-        let _ = write!(svg, r#"<circle class="{class}" cx="{x:.2}" cy="{y:.2}" r="4"><title>{name}</title></circle>"#);
+        let _ = write!(
+            svg,
+            r#"<circle class="{class}" cx="{x:.2}" cy="{y:.2}" r="4"><title>{name}</title></circle>"#
+        );
     }
 }
 
@@ -135,9 +154,12 @@ mod tests {
 
     #[test]
     fn p10_a_box_is_culled_by_the_plane_that_it_lies_beyond() {
-        let clip_from_world = Camera::look_at([0.0, 0.0, 10.0], [0.0; 3]).transform(1.0, (1.0, 20.0)).clip_from_world();
+        let clip_from_world = Camera::look_at([0.0, 0.0, 10.0], [0.0; 3])
+            .transform(1.0, (1.0, 20.0))
+            .clip_from_world();
         let cube = |x: f64, z: f64| {
-            Aabb { min: DVec3::new(x - 1.0, -1.0, z - 1.0), max: DVec3::new(x + 1.0, 1.0, z + 1.0) }.corners()
+            Aabb { min: DVec3::new(x - 1.0, -1.0, z - 1.0), max: DVec3::new(x + 1.0, 1.0, z + 1.0) }
+                .corners()
         };
         assert_eq!(beyond(&cube(0.0, 0.0), &clip_from_world), None);
         assert_eq!(beyond(&cube(-20.0, 0.0), &clip_from_world), Some("left"));
@@ -148,8 +170,10 @@ mod tests {
     #[test]
     fn places_are_where_the_picture_shows_them() {
         let camera = Camera::look_at([0.0, 0.0, 10.0], [0.0, 0.0, 0.0]);
-        let screen =
-            Screen { clip_from_world: camera.transform(2.0, (1.0, 20.0)).clip_from_world(), size: [200.0, 100.0] };
+        let screen = Screen {
+            clip_from_world: camera.transform(2.0, (1.0, 20.0)).clip_from_world(),
+            size: [200.0, 100.0],
+        };
         assert_eq!(screen.place(DVec3::ZERO), Some([100.0, 50.0]));
         assert_eq!(screen.place(DVec3::new(0.0, 0.0, 11.0)), None);
         let top = 10.0 * vitral::internals::math::func::tan(Camera::VIEW_ANGLE / 2.0);

@@ -8,7 +8,12 @@ use vitral::picture::{self, Channel};
 use vitral::{Error, LightKind, Renderer, State, VisibilityCounters};
 
 /// The picture of a state; with one sample a pixel where it may be coarse.
-pub(crate) fn picture(renderer: &mut Renderer, state: &State, channel: Option<String>, coarse: bool) -> Answer {
+pub(crate) fn picture(
+    renderer: &mut Renderer,
+    state: &State,
+    channel: Option<String>,
+    coarse: bool,
+) -> Answer {
     let channel: Channel = channel.as_deref().unwrap_or("color").parse()?;
     if coarse {
         renderer.settings.picture.samples = 1;
@@ -52,7 +57,11 @@ fn description(renderer: &Renderer, state: &State, lights: usize) -> String {
         false => "unlit".to_owned(),
     };
     let lights = if lights == 1 { "1 light".to_owned() } else { format!("{lights} lights") };
-    format!("{} seen from {view}, {}, {shading}, {lights}", models.join(" and "), settings.visibility)
+    format!(
+        "{} seen from {view}, {}, {shading}, {lights}",
+        models.join(" and "),
+        settings.visibility
+    )
 }
 
 /// Counters that are not zero, with what they mean.
@@ -69,7 +78,9 @@ fn counters(stats: &Value) -> Vec<Value> {
             let name = name.replace('_', "-");
             let value = &stats[group][&name];
             if value.as_f64().is_some_and(|value| value != 0.0) {
-                rows.push(json!({"name": format!("{group}.{name}"), "value": value, "meaning": meaning}));
+                rows.push(
+                    json!({"name": format!("{group}.{name}"), "value": value, "meaning": meaning}),
+                );
             }
         }
     }

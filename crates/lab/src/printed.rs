@@ -1,6 +1,8 @@
-//! Formulas of illumination that the notes print wrongly, beside the right ones, with the numbers of a pixel.
+//! Formulas of illumination that the notes print wrongly, beside the right ones, with the numbers
+//! of a pixel.
 //!
-//! Source: the course, notes V: reflectance, Phong's formula, attenuation; Phong 1975 for the clamps.
+//! Source: the course, notes V: reflectance, Phong's formula, attenuation; Phong 1975 for the
+//!         clamps.
 
 use serde_json::{Value, json};
 use vitral::explain::Explanation;
@@ -14,8 +16,12 @@ const GREEN: usize = 1;
 /// A row for each formula: what it is, both forms as MathML, both results.
 pub(crate) fn printed(told: &Explanation, lights: &[Light], names: &[String]) -> Vec<Value> {
     let point = told.light.points.first();
-    let Some(evaluation) = point.and_then(|point| point.evaluations.first()) else { return Vec::new() };
-    let CoefficientValues::Empirical { kd, ks, shininess, .. } = evaluation.coefficients else { return Vec::new() };
+    let Some(evaluation) = point.and_then(|point| point.evaluations.first()) else {
+        return Vec::new();
+    };
+    let CoefficientValues::Empirical { kd, ks, shininess, .. } = evaluation.coefficients else {
+        return Vec::new();
+    };
     let mut rows = Vec::new();
 
     // A reflectance is what is reflected of what arrives.
@@ -36,7 +42,8 @@ pub(crate) fn printed(told: &Explanation, lights: &[Light], names: &[String]) ->
         let [_, light_d, light_s] = colors;
         let (kd, ks) = (f64::from(kd[GREEN]), f64::from(ks[GREEN]));
         let arrives = f64::from(t.attenuation) * f64::from(t.visibility[GREEN]);
-        let without = arrives * (light_d * kd * cosines[0] + light_s * ks * power(cosines[1], f64::from(shininess)));
+        let without = arrives
+            * (light_d * kd * cosines[0] + light_s * ks * power(cosines[1], f64::from(shininess)));
         let with = f64::from(t.diffuse[GREEN]) + f64::from(t.specular[GREEN]);
         rows.push(row(
             &format!("diffuse and specular light of {name}"),
@@ -66,7 +73,8 @@ pub(crate) fn printed(told: &Explanation, lights: &[Light], names: &[String]) ->
 }
 
 fn row(what: &str, right: &str, printed: &str, values: [f64; 2]) -> Value {
-    let mathml = |inner: &str| format!("<math xmlns=\"http://www.w3.org/1998/Math/MathML\">{inner}</math>");
+    let mathml =
+        |inner: &str| format!("<math xmlns=\"http://www.w3.org/1998/Math/MathML\">{inner}</math>");
     json!({"what": what, "right": mathml(right), "printed": mathml(printed), "right-value": values[0], "printed-value": values[1]})
 }
 

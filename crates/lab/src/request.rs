@@ -138,7 +138,8 @@ fn state_value<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Box<
 
 impl Request {
     pub(crate) fn from_json(json: &str) -> Result<Self, Error> {
-        let unreadable = |e: serde_json::Error| Error::usage(format!("a request that cannot be read: {e}"), "");
+        let unreadable =
+            |e: serde_json::Error| Error::usage(format!("a request that cannot be read: {e}"), "");
         let mut value: Value = serde_json::from_str(json).map_err(unreadable)?;
         let state = value.as_object_mut().and_then(|object| object.remove("state"));
         let state = match state {

@@ -13,7 +13,10 @@ pub(crate) fn save(renderer: &mut Renderer, state: &State, what: Saved) -> Answe
         Saved::Command => command(state),
         Saved::Drawing => {
             let drawing = renderer.draw(&DrawingSettings::default())?.drawing;
-            String::from_utf8_lossy(&DrawingFormat::Svg.encode(&drawing, &DrawingOptions::default())).into_owned()
+            String::from_utf8_lossy(
+                &DrawingFormat::Svg.encode(&drawing, &DrawingOptions::default()),
+            )
+            .into_owned()
         }
     };
     Ok((json!({"text": text}), Vec::new()))
@@ -39,7 +42,8 @@ fn command(state: &State) -> String {
     format!("vitral render --load-state - -o '{stem}.png' <<'STATE'\n{differing:#}\nSTATE\n")
 }
 
-/// The fields of `value` that differ from `default`, object by object; lists and tagged choices are wholes.
+/// The fields of `value` that differ from `default`, object by object; lists and tagged choices are
+/// wholes.
 fn difference(value: &serde_json::Value, default: &serde_json::Value) -> Option<serde_json::Value> {
     if value == default {
         return None;
@@ -62,8 +66,7 @@ mod tests {
 
     #[test]
     fn a_command_names_what_differs_alone() {
-        let text =
-            r#"{"models": ["file:a/bob's chair.obj#0123456789ab"], "settings": {"shading": "flat", "width": 64}}"#;
+        let text = r#"{"models": ["file:a/bob's chair.obj#0123456789ab"], "settings": {"shading": "flat", "width": 64}}"#;
         let told = command(&State::from_json(text, "s").unwrap());
         let (first, rest) = told.split_once('\n').unwrap();
         assert_eq!(first, r"vitral render --load-state - -o 'a/bob'\''s chair.png' <<'STATE'");

@@ -54,7 +54,8 @@ impl Stage {
         let load = state.load_options();
         let scene = state.load_scene_by(|model| files.load(model, &load))?;
         let budget = Budget::new(Arc::clone(&self.clock));
-        let execution = Execution { workers: Workers::single(), level: Level::new(), budget, observer: None };
+        let execution =
+            Execution { workers: Workers::single(), level: Level::new(), budget, observer: None };
         let mut renderer = Renderer::with_execution(scene, execution)?;
         state.apply(&mut renderer)?;
         Ok(renderer)
@@ -64,5 +65,13 @@ impl Stage {
 /// What a scene is made of, as text.
 fn key(state: &State) -> String {
     let raw = state.settings.picture.color_space == ColorSpace::Raw;
-    json!([state.models, state.load, state.materials, state.objects, state.viewpoint.up.is_none(), raw]).to_string()
+    json!([
+        state.models,
+        state.load,
+        state.materials,
+        state.objects,
+        state.viewpoint.up.is_none(),
+        raw
+    ])
+    .to_string()
 }

@@ -7,15 +7,18 @@ use vitral::explain::{Deciders, FacetSpaces, explain, spaces};
 use vitral::info::info_on;
 use vitral::{Error, Renderer};
 
-/// The stages with their input and output; for the facet that is seen at a pixel, its corners in each space.
+/// The stages with their input and output; for the facet that is seen at a pixel, its corners in
+/// each space.
 pub(crate) fn stages(renderer: &mut Renderer, pixel: Option<[u32; 2]>) -> Answer {
     let camera = renderer.frame_camera();
     let picture = renderer.render_from(&camera)?;
-    let stats = serde_json::to_value(&picture.stats).map_err(|e| Error::usage(e.to_string(), ""))?;
+    let stats =
+        serde_json::to_value(&picture.stats).map_err(|e| Error::usage(e.to_string(), ""))?;
     renderer.recycle(picture);
 
     // Bring the corners of the facet at the pixel through all spaces.
-    let mut answer = json!({"stages": rows(&stats), "facet": null, "spaces": null, "projector": null});
+    let mut answer =
+        json!({"stages": rows(&stats), "facet": null, "spaces": null, "projector": null});
     if let Some(pixel) = pixel {
         let surfaces = explain(renderer, &camera, pixel, &Deciders::Chosen, None)?.surfaces;
         if let Some(nearest) = surfaces.first() {
@@ -50,14 +53,19 @@ fn rows_of(corners: &FacetSpaces) -> Value {
 fn rows(stats: &Value) -> Vec<Value> {
     let (cull, geometry, picture) = (&stats["cull"], &stats["geometry"], &stats["picture"]);
     let count = |value: &Value| value.as_u64().unwrap_or(0);
-    let left = count(&cull["triangles"]) - count(&cull["triangles-culled"]).min(count(&cull["triangles"]));
-    let gone = ["outside", "back-facing", "degenerate", "no-sample", "not-finite"].map(|name| count(&geometry[name]));
-    let row =
-        |stage: &str, goes_in: String, comes_out: String| json!({"stage": stage, "in": goes_in, "out": comes_out});
+    let left =
+        count(&cull["triangles"]) - count(&cull["triangles-culled"]).min(count(&cull["triangles"]));
+    let gone = ["outside", "back-facing", "degenerate", "no-sample", "not-finite"]
+        .map(|name| count(&geometry[name]));
+    let row = |stage: &str, goes_in: String, comes_out: String| json!({"stage": stage, "in": goes_in, "out": comes_out});
     vec![
         row(
             "model transform and culling of boxes",
-            format!("{} triangles of {} objects", count(&cull["triangles"]), count(&cull["instances"])),
+            format!(
+                "{} triangles of {} objects",
+                count(&cull["triangles"]),
+                count(&cull["instances"])
+            ),
             format!("{left} triangles"),
         ),
         row(
@@ -81,8 +89,11 @@ fn rows(stats: &Value) -> Vec<Value> {
             "visible surfaces and shading",
             format!("{} triangles", count(&geometry["set-up"])),
             picture.as_object().map_or(String::new(), |fields| {
-                let told = fields.iter().filter(|(_, value)| value.as_f64().is_some_and(|v| v != 0.0));
-                told.map(|(name, value)| format!("{value} {}", name.replace('-', " "))).collect::<Vec<_>>().join(", ")
+                let told =
+                    fields.iter().filter(|(_, value)| value.as_f64().is_some_and(|v| v != 0.0));
+                told.map(|(name, value)| format!("{value} {}", name.replace('-', " ")))
+                    .collect::<Vec<_>>()
+                    .join(", ")
             }),
         ),
     ]
@@ -94,7 +105,9 @@ pub(crate) fn info(renderer: &mut Renderer) -> Answer {
     let all = serde_json::to_value(&info).map_err(|e| Error::usage(e.to_string(), ""))?;
     let simple = |(name, value): (&String, &Value)| match value {
         Value::Number(_) | Value::Bool(_) => Some(json!({"name": name, "value": value})),
-        Value::Array(list) if name != "warnings" => Some(json!({"name": name, "value": list.len()})),
+        Value::Array(list) if name != "warnings" => {
+            Some(json!({"name": name, "value": list.len()}))
+        }
         _ => None,
     };
     let rows: Vec<Value> = all.as_object().into_iter().flatten().filter_map(simple).collect();

@@ -85,11 +85,15 @@ impl Recording {
         match show.unwrap_or("all") {
             "all" => Ok(numbers.collect()),
             "pixel" => {
-                let pixel = pixel.ok_or_else(|| Error::usage("no pixel is inspected", "choose one in the picture"))?;
+                let pixel = pixel.ok_or_else(|| {
+                    Error::usage("no pixel is inspected", "choose one in the picture")
+                })?;
                 Ok(numbers.filter(|&n| steps[n as usize].step.concerns(pixel)).collect())
             }
             group => match self.groups.iter().position(|name| name == group) {
-                Some(kind) => Ok(numbers.filter(|&n| usize::from(self.kinds[n as usize]) == kind).collect()),
+                Some(kind) => {
+                    Ok(numbers.filter(|&n| usize::from(self.kinds[n as usize]) == kind).collect())
+                }
                 None => Err(Error::usage(
                     format!("the algorithm has no steps `{group}`"),
                     format!("choose all, pixel or {}", self.groups.join(", ")),
@@ -119,10 +123,16 @@ impl Asked<'_> {
 pub(crate) fn record(asked: &Asked<'_>, kept: &mut Recordings) -> Answer {
     let recording = asked.recording(kept)?;
     let count = |kind: usize| recording.kinds.iter().filter(|&&k| usize::from(k) == kind).count();
-    let groups: Vec<Value> =
-        recording.groups.iter().enumerate().map(|(kind, name)| json!({"name": name, "count": count(kind)})).collect();
-    let about =
-        asked.pixel.map(|_| recording.shown(Some("pixel"), asked.pixel).map(|steps| steps.len())).transpose()?;
+    let groups: Vec<Value> = recording
+        .groups
+        .iter()
+        .enumerate()
+        .map(|(kind, name)| json!({"name": name, "count": count(kind)}))
+        .collect();
+    let about = asked
+        .pixel
+        .map(|_| recording.shown(Some("pixel"), asked.pixel).map(|steps| steps.len()))
+        .transpose()?;
     let answer = json!({
         "steps": recording.watched.steps.len(),
         "groups": groups,
@@ -133,13 +143,21 @@ pub(crate) fn record(asked: &Asked<'_>, kept: &mut Recordings) -> Answer {
 }
 
 /// A step: the picture so far, what it is about as a drawing over it, its words and its fields.
-pub(crate) fn step(asked: &Asked<'_>, kept: &mut Recordings, number: u32, show: Option<&str>) -> Answer {
+pub(crate) fn step(
+    asked: &Asked<'_>,
+    kept: &mut Recordings,
+    number: u32,
+    show: Option<&str>,
+) -> Answer {
     // Find it among those that are shown.
     let recording = asked.recording(kept)?;
     let shown = recording.shown(show, asked.pixel)?;
     let place = (number as usize).checked_sub(1).and_then(|place| shown.get(place));
     let &at = place.ok_or_else(|| {
-        Error::usage(format!("there is no step {number}"), format!("they are counted from 1 to {}", shown.len()))
+        Error::usage(
+            format!("there is no step {number}"),
+            format!("they are counted from 1 to {}", shown.len()),
+        )
     })?;
 
     // Go there from the first.
@@ -163,41 +181,54 @@ pub(crate) fn step(asked: &Asked<'_>, kept: &mut Recordings, number: u32, show: 
     Ok((answer, vec![decided.data().as_flattened().to_vec()]))
 }
 
-/// The words and fields of the steps from one number to another, without pictures. Long lists in them are cut.
-pub(crate) fn steps(asked: &Asked<'_>, kept: &mut Recordings, [from, to]: [u32; 2], show: Option<&str>) -> Answer {
+/// The words and fields of the steps from one number to another, without pictures. Long lists in
+/// them are cut.
+pub(crate) fn steps(
+    asked: &Asked<'_>,
+    kept: &mut Recordings,
+    [from, to]: [u32; 2],
+    show: Option<&str>,
+) -> Answer {
     // Refuse numbers that are none, or too many.
     let recording = asked.recording(kept)?;
     let shown = recording.shown(show, asked.pixel)?;
     if from == 0 || to < from || to - from >= MOST_STEPS {
-        let hint = format!("they are counted from 1 to {}, and at most {MOST_STEPS} come at once", shown.len());
+        let hint = format!(
+            "they are counted from 1 to {}, and at most {MOST_STEPS} come at once",
+            shown.len()
+        );
         return Err(Error::usage(format!("there are no steps {from} to {to}"), hint));
     }
 
     // Tell the others without what only their pictures show.
-    let told = shown.iter().enumerate().skip(from as usize - 1).take((to - from) as usize + 1).map(|(place, &at)| {
-        let numbered = &recording.watched.steps[at as usize];
-        let mut fields = serde_json::to_value(numbered).unwrap_or(Value::Null);
-        if let Some(fields) = fields.as_object_mut() {
-            if matches!(numbered.step, Step::Drawn { .. }) {
-                fields.retain(|name, _| name != "stays" && name != "hidden");
+    let told = shown.iter().enumerate().skip(from as usize - 1).take((to - from) as usize + 1).map(
+        |(place, &at)| {
+            let numbered = &recording.watched.steps[at as usize];
+            let mut fields = serde_json::to_value(numbered).unwrap_or(Value::Null);
+            if let Some(fields) = fields.as_object_mut() {
+                if matches!(numbered.step, Step::Drawn { .. }) {
+                    fields.retain(|name, _| name != "stays" && name != "hidden");
+                }
+                fields.values_mut().for_each(shorten);
             }
-            fields.values_mut().for_each(shorten);
-        }
-        json!({
-            "number": place + 1,
-            "at": at + 1,
-            "parent": numbered.parent.map(|parent| parent + 1),
-            "words": words(&numbered.step, asked.pixel),
-            "fields": fields,
-        })
-    });
+            json!({
+                "number": place + 1,
+                "at": at + 1,
+                "parent": numbered.parent.map(|parent| parent + 1),
+                "words": words(&numbered.step, asked.pixel),
+                "fields": fields,
+            })
+        },
+    );
     let told: Vec<Value> = told.collect();
     Ok((json!({"steps": told, "total": shown.len()}), Vec::new()))
 }
 
 /// A step in words, for the pixel if it is about that.
 fn words(step: &Step, pixel: Option<[u32; 2]>) -> String {
-    step.describe(pixel.filter(|&pixel| step.concerns(pixel)).unwrap_or_else(|| overlay::place(step)))
+    step.describe(
+        pixel.filter(|&pixel| step.concerns(pixel)).unwrap_or_else(|| overlay::place(step)),
+    )
 }
 
 /// Leaves of a list its first members.

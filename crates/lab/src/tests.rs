@@ -29,7 +29,8 @@ fn the_catalog_has_all_that_can_be_chosen() {
     let (catalog, _) = ask(&mut Lab::default(), json!({"want": "catalog"}));
     assert_eq!(catalog["algorithms"], vitral::algorithms());
     for want in catalog["wants"].as_array().unwrap() {
-        let answer = Lab::default().answer(Message { json: json!({"want": want}).to_string(), planes: Vec::new() });
+        let answer = Lab::default()
+            .answer(Message { json: json!({"want": want}).to_string(), planes: Vec::new() });
         assert!(!answer.json.contains("unknown variant"), "{}", answer.json);
     }
     assert_eq!(catalog["models"].as_array().unwrap().len(), vitral::builtin_names().len());
@@ -45,10 +46,16 @@ fn the_picture_is_the_renderers_byte_for_byte() {
     let mut renderer = vitral::Renderer::new(state.load_scene().unwrap()).unwrap();
     state.apply(&mut renderer).unwrap();
     assert_eq!(planes[0], renderer.render().unwrap().rgba8());
-    assert_eq!(told["description"], "cubs seen from the default side, warnock, gouraud shading, 2 lights");
+    assert_eq!(
+        told["description"],
+        "cubs seen from the default side, warnock, gouraud shading, 2 lights"
+    );
     let counters = told["counters"].as_array().unwrap();
     let windows = counters.iter().find(|row| row["name"] == "visibility.windows").unwrap();
-    assert!(windows["value"].as_u64().unwrap() > 0 && windows["meaning"] == "Area subdivision: windows looked at.");
+    assert!(
+        windows["value"].as_u64().unwrap() > 0
+            && windows["meaning"] == "Area subdivision: windows looked at."
+    );
 }
 
 #[test]
@@ -59,7 +66,8 @@ fn every_algorithm_is_stepped_and_ends_with_the_picture() {
         let (_, picture) = ask(&mut lab, json!({"want": "picture", "state": state}));
         let (told, _) = ask(&mut lab, json!({"want": "record", "state": state, "pixel": [24, 18]}));
         let steps = told["steps"].as_u64().unwrap();
-        let counted: u64 = told["groups"].as_array().unwrap().iter().map(|g| g["count"].as_u64().unwrap()).sum();
+        let counted: u64 =
+            told["groups"].as_array().unwrap().iter().map(|g| g["count"].as_u64().unwrap()).sum();
         assert!(steps > 0 && counted == steps, "{} {told}", algorithm.name);
 
         // The last step shows what is left; any other is reached from there.
@@ -73,9 +81,13 @@ fn every_algorithm_is_stepped_and_ends_with_the_picture() {
         assert!(error(&mut lab, step(steps + 1)).contains("there is no step"));
 
         // Every step is told in words, not as data.
-        let (all, _) = ask(&mut lab, json!({"want": "steps", "state": state, "from": 1, "to": 20_000}));
-        let words = all["steps"].as_array().unwrap().iter().map(|step| step["words"].as_str().unwrap());
-        words.for_each(|words| assert!(!words.contains('{') && words.len() > 5, "{}: {words}", algorithm.name));
+        let (all, _) =
+            ask(&mut lab, json!({"want": "steps", "state": state, "from": 1, "to": 20_000}));
+        let words =
+            all["steps"].as_array().unwrap().iter().map(|step| step["words"].as_str().unwrap());
+        words.for_each(|words| {
+            assert!(!words.contains('{') && words.len() > 5, "{}: {words}", algorithm.name)
+        });
     }
 }
 
@@ -84,7 +96,9 @@ fn steps_of_a_group_and_of_a_pixel_are_fewer() {
     let mut lab = Lab::default();
     let state = small("builtin:cubs", json!({"visibility": "warnock"}));
     let (told, _) = ask(&mut lab, json!({"want": "record", "state": state, "pixel": [24, 18]}));
-    let windows = told["groups"].as_array().unwrap().iter().find(|g| g["name"] == "window").unwrap()["count"].clone();
+    let windows =
+        told["groups"].as_array().unwrap().iter().find(|g| g["name"] == "window").unwrap()["count"]
+            .clone();
     let step = |show: &str, number: u64| json!({"want": "step", "state": state, "number": number, "show": show, "pixel": [24, 18]});
     let (told_window, _) = ask(&mut lab, step("window", 1));
     assert_eq!((&told_window["total"], &told_window["group"]), (&windows, &json!("window")));
@@ -94,7 +108,8 @@ fn steps_of_a_group_and_of_a_pixel_are_fewer() {
     assert!(error(&mut lab, step("line", 1)).contains("no steps `line`"));
     let many = json!({"want": "steps", "state": state, "from": 2, "to": 4, "show": "window"});
     let (many, _) = ask(&mut lab, many);
-    let numbers: Vec<u64> = many["steps"].as_array().unwrap().iter().map(|s| s["number"].as_u64().unwrap()).collect();
+    let numbers: Vec<u64> =
+        many["steps"].as_array().unwrap().iter().map(|s| s["number"].as_u64().unwrap()).collect();
     assert_eq!(numbers, [2, 3, 4]);
     assert_eq!((&many["total"], &many["steps"][0]["fields"]["path"]), (&windows, &json!("0")));
     let (structure, _) = ask(&mut lab, json!({"want": "structure", "state": state}));
@@ -107,12 +122,18 @@ fn the_scene_is_seen_from_outside_with_its_view_volume() {
     let state = small("builtin:scene0", json!({}));
     let (told, planes) = ask(&mut lab, json!({"want": "overview", "state": state}));
     let drawing = told["drawing"].as_str().unwrap();
-    let volume = drawing.split("<g class=\"volume\">").nth(1).unwrap().split("</g>").next().unwrap();
+    let volume =
+        drawing.split("<g class=\"volume\">").nth(1).unwrap().split("</g>").next().unwrap();
     assert_eq!(volume.matches("<line").count(), 12);
     assert_eq!(drawing.matches("<g class=\"box kept\">").count(), 5);
-    assert!(drawing.contains("class=\"eye\"") && drawing.contains("<title>LIGHT0</title>"), "{drawing}");
+    assert!(
+        drawing.contains("class=\"eye\"") && drawing.contains("<title>LIGHT0</title>"),
+        "{drawing}"
+    );
     let (own, picture) = ask(&mut lab, json!({"want": "picture", "state": state}));
-    assert!(own["width"] == told["width"] && planes[0].len() == picture[0].len() && planes != picture);
+    assert!(
+        own["width"] == told["width"] && planes[0].len() == picture[0].len() && planes != picture
+    );
     let second = json!({"want": "overview", "state": state, "second": {"view": "top"}});
     assert_ne!(ask(&mut lab, second).1, planes);
 }
@@ -128,10 +149,14 @@ fn a_pixel_is_explained_with_its_formula_and_why() {
     let mathml = told["formula"]["mathml"].as_str().unwrap();
     assert!(mathml.starts_with("<math") && mathml.contains("<mi mathvariant=\"bold\">R</mi>"));
     let values = told["formula"]["values"].as_array().unwrap();
-    let bytes = values.iter().find(|row| row["symbol"] == "bytes").unwrap()["value"].as_str().unwrap();
+    let bytes =
+        values.iter().find(|row| row["symbol"] == "bytes").unwrap()["value"].as_str().unwrap();
     let (_, picture) = ask(&mut lab, json!({"want": "picture", "state": state}));
     let at = (18 * 48 + 24) * 4;
-    assert_eq!(bytes, picture[0][at..at + 3].iter().map(u8::to_string).collect::<Vec<_>>().join(" "));
+    assert_eq!(
+        bytes,
+        picture[0][at..at + 3].iter().map(u8::to_string).collect::<Vec<_>>().join(" ")
+    );
 
     // Behind the sphere's edge there is nothing.
     let (nothing, _) = ask(&mut lab, json!({"want": "explain", "state": state, "pixel": [0, 0]}));
@@ -145,8 +170,12 @@ fn a_pixel_is_explained_with_its_formula_and_why() {
 #[test]
 fn algorithms_agree_and_defects_do_not() {
     let mut lab = Lab::default();
-    let [a, b, c] = [json!({"visibility": "bsp"}), json!({"visibility": "painter"}), json!({"shading": "flat"})]
-        .map(|settings| small("builtin:sphere", settings));
+    let [a, b, c] = [
+        json!({"visibility": "bsp"}),
+        json!({"visibility": "painter"}),
+        json!({"shading": "flat"}),
+    ]
+    .map(|settings| small("builtin:sphere", settings));
     let (same, planes) = ask(&mut lab, json!({"want": "compare", "state": a, "b": b}));
     assert_eq!((&same["agreement"]["differ"], planes.len()), (&json!(0), 3));
     let (other, _) = ask(&mut lab, json!({"want": "compare", "state": a, "b": c}));
@@ -164,7 +193,8 @@ fn exercises_are_refused_at_first_and_passed_when_done() {
     for exercise in catalog["exercises"].as_array().unwrap() {
         let (id, start) = (exercise["id"].as_str().unwrap(), &exercise["start"]);
         let mut check = |state: &Value, pixel: Option<[u32; 2]>| {
-            ask(&mut lab, json!({"want": "check", "state": state, "exercise": id, "pixel": pixel})).0
+            ask(&mut lab, json!({"want": "check", "state": state, "exercise": id, "pixel": pixel}))
+                .0
         };
         let refused = check(start, None);
         assert!(refused["passed"] == false, "{id}: {refused}");
@@ -189,7 +219,10 @@ fn exercises_are_refused_at_first_and_passed_when_done() {
             }
             "5.2" => done["load"]["normals"] = json!("none"),
             "P17" => done["settings"]["depth-bits"] = json!(8),
-            "P7" => done["settings"]["coherence"] = json!(["object", "face", "scan-line", "area", "depth", "frame"]),
+            "P7" => {
+                done["settings"]["coherence"] =
+                    json!(["object", "face", "scan-line", "area", "depth", "frame"])
+            }
             "P8" => (pixel, near_miss) = (Some([340, 200]), Some([5, 5])),
             "P10" => done["viewpoint"]["zoom-factor"] = json!(10),
             "P14" => done["settings"]["cull"]["back-face"] = json!(true),
@@ -199,14 +232,18 @@ fn exercises_are_refused_at_first_and_passed_when_done() {
             "P22" => done["viewpoint"]["azimuth-angle"] = json!(180),
             "L8" => {
                 done["settings"]["shading"] = json!("gouraud");
-                (done["load"]["normals"], done["load"]["crease-angle"]) = (json!("made"), json!(2.0));
+                (done["load"]["normals"], done["load"]["crease-angle"]) =
+                    (json!("made"), json!(2.0));
             }
             "L9" => {
                 done["settings"]["shading"] = json!("gouraud");
                 (pixel, near_miss) = (Some([130, 200]), Some([200, 200]));
             }
             "L20" => (pixel, near_miss) = (Some([222, 156]), Some([240, 240])),
-            "P37" => done["materials"] = json!([{"material": "*", "property": "shininess", "value": "45"}]),
+            "P37" => {
+                done["materials"] =
+                    json!([{"material": "*", "property": "shininess", "value": "45"}])
+            }
             "P40" => done["light-edits"] = json!([edit("LIGHT0", "attenuation", "0,0,0.1")]),
             other => panic!("{other} has no way to be done here"),
         }
@@ -243,25 +280,37 @@ fn stages_info_and_texts_are_told() {
 fn a_pixel_tells_its_projector_and_what_the_notes_misprint() {
     let mut lab = Lab::default();
     let mut state = small("builtin:cubs", json!({"width": 640, "height": 480}));
-    state["light-edits"] = json!([{"light": "LIGHT0", "field": "attenuation", "value": "0,0,0.05"}]);
+    state["light-edits"] =
+        json!([{"light": "LIGHT0", "field": "attenuation", "value": "0,0,0.05"}]);
     let (told, _) = ask(&mut lab, json!({"want": "stages", "state": state, "pixel": [390, 200]}));
     assert_eq!(told["projector"].as_array().unwrap().len(), 2);
 
     // LIGHT0 is behind this face: the printed formula takes light away.
     let (told, _) = ask(&mut lab, json!({"want": "explain", "state": state, "pixel": [390, 200]}));
     let rows = told["printed"].as_array().unwrap();
-    let find = |what: &str| rows.iter().find(|row| row["what"] == what).unwrap_or_else(|| panic!("{what}: {told}"));
+    let find = |what: &str| {
+        rows.iter().find(|row| row["what"] == what).unwrap_or_else(|| panic!("{what}: {told}"))
+    };
     let behind = find("diffuse and specular light of LIGHT0");
-    assert!(behind["right-value"] == 0.0 && behind["printed-value"].as_f64().unwrap() < 0.0, "{behind}");
+    assert!(
+        behind["right-value"] == 0.0 && behind["printed-value"].as_f64().unwrap() < 0.0,
+        "{behind}"
+    );
     assert_eq!(find("reflectance kd")["right-value"].as_f64().unwrap() as f32, 0.85);
     let far = find("attenuation of LIGHT0");
     assert!(far["right-value"].as_f64().unwrap() < 0.3 && far["printed-value"] == 1.0, "{far}");
 
-    let (timed, _) = ask(&mut lab, json!({"want": "bench", "state": small("builtin:cubs", json!({})), "frames": 3}));
+    let (timed, _) = ask(
+        &mut lab,
+        json!({"want": "bench", "state": small("builtin:cubs", json!({})), "frames": 3}),
+    );
     assert_eq!(timed["frames"], 3);
     assert!(
-        error(&mut lab, json!({"want": "bench", "state": small("builtin:cubs", json!({})), "frames": 0}))
-            .contains("cannot be timed")
+        error(
+            &mut lab,
+            json!({"want": "bench", "state": small("builtin:cubs", json!({})), "frames": 0})
+        )
+        .contains("cannot be timed")
     );
 }
 
@@ -277,7 +326,9 @@ fn depths_round_a_pixel_change_where_the_facet_of_the_step_stays() {
     for number in 1..=recorded["steps"].as_u64().unwrap() {
         let request = json!({"want": "step", "state": state, "number": number, "pixel": pixel});
         let (step, _) = ask(&mut lab, request);
-        let numbers = |name: &str| -> Vec<f64> { serde_json::from_value(step["depths"][name].clone()).unwrap() };
+        let numbers = |name: &str| -> Vec<f64> {
+            serde_json::from_value(step["depths"][name].clone()).unwrap()
+        };
         assert_eq!(numbers("before"), before, "step {number}");
         before = numbers("after");
         assert!(numbers("before").iter().zip(&before).all(|(before, after)| before <= after));
@@ -285,10 +336,14 @@ fn depths_round_a_pixel_change_where_the_facet_of_the_step_stays() {
     }
     // The last is the picture's depth.
     let (told, _) = ask(&mut lab, json!({"want": "explain", "state": state, "pixel": pixel}));
-    assert_eq!(told["explanation"]["surfaces"][0]["depth"].as_f64().unwrap() as f32, before[40] as f32);
+    assert_eq!(
+        told["explanation"]["surfaces"][0]["depth"].as_f64().unwrap() as f32,
+        before[40] as f32
+    );
 
     let brute = small("builtin:cubs", json!({"visibility": "brute-force"}));
-    let (step, _) = ask(&mut lab, json!({"want": "step", "state": brute, "number": 1, "pixel": [24, 18]}));
+    let (step, _) =
+        ask(&mut lab, json!({"want": "step", "state": brute, "number": 1, "pixel": [24, 18]}));
     assert!(!step["depths"]["facets"].as_array().unwrap().is_empty());
 }
 
@@ -296,9 +351,13 @@ fn depths_round_a_pixel_change_where_the_facet_of_the_step_stays() {
 fn mistakes_are_told_and_the_next_request_works() {
     let mut lab = Lab::default();
     assert!(error(&mut lab, json!({"want": "tea"})).contains("unknown variant `tea`"));
-    let told = error(&mut lab, json!({"want": "picture", "state": {"settings": {"visiblity": "bsp"}}}));
+    let told =
+        error(&mut lab, json!({"want": "picture", "state": {"settings": {"visiblity": "bsp"}}}));
     assert!(told.contains("settings") && told.contains("visiblity"), "{told}");
-    assert!(error(&mut lab, json!({"want": "picture", "state": {"models": ["x.obj"]}})).contains("no such model"));
+    assert!(
+        error(&mut lab, json!({"want": "picture", "state": {"models": ["x.obj"]}}))
+            .contains("no such model")
+    );
     let told = lab.answer(Message { json: "{".to_owned(), planes: Vec::new() });
     assert!(told.json.contains("cannot be read"));
     ask(&mut lab, json!({"want": "picture", "state": small("builtin:cubs", json!({}))}));
@@ -312,7 +371,9 @@ fn own_files_are_models() {
     let told = lab.answer(Message { json: request.to_string(), planes: vec![file] });
     let told: Value = serde_json::from_str(&told.json).unwrap();
     let hash = told["ok"]["files"][0]["hash"].as_str().unwrap();
-    let (picture, _) =
-        ask(&mut lab, json!({"want": "picture", "state": small(&format!("file:t.obj#{hash}"), json!({}))}));
+    let (picture, _) = ask(
+        &mut lab,
+        json!({"want": "picture", "state": small(&format!("file:t.obj#{hash}"), json!({}))}),
+    );
     assert_eq!(picture["facts"]["triangles"], 1);
 }

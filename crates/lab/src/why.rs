@@ -24,7 +24,8 @@ pub(crate) fn why(told: &Explanation, lights: &[String]) -> Vec<String> {
 /// What is seen.
 fn seen(told: &Explanation, point: &PointLight) -> String {
     let found = told.candidates.iter().find(|c| c.candidate.facet == point.facet);
-    let (surface, mesh) = found.map_or((point.facet, String::new()), |c| (c.surface, c.mesh.clone()));
+    let (surface, mesh) =
+        found.map_or((point.facet, String::new()), |c| (c.surface, c.mesh.clone()));
     let of = if mesh.is_empty() { String::new() } else { format!(" of {mesh}") };
     format!("Surface {surface}{of} is seen here.")
 }
@@ -32,7 +33,8 @@ fn seen(told: &Explanation, point: &PointLight) -> String {
 /// What a light adds, and why not more.
 fn of_light(told: &Explanation, point: &PointLight, number: usize, name: &str) -> Option<String> {
     // Add up what it does at the places where the formula is evaluated: one, or the corners.
-    let terms = || point.evaluations.iter().flat_map(|e| e.lights.iter().map(move |l| (e.weight, l)));
+    let terms =
+        || point.evaluations.iter().flat_map(|e| e.lights.iter().map(move |l| (e.weight, l)));
     let of_this = || terms().filter(|(_, l)| l.light == number);
     of_this().next()?;
     let added = of_this().map(|(weight, l)| {
@@ -44,7 +46,8 @@ fn of_light(told: &Explanation, point: &PointLight, number: usize, name: &str) -
 
     // Name what stands in its way.
     let shadow = point.shadows.iter().find(|shadow| shadow.light == number);
-    if let Some(shadow) = shadow.filter(|shadow| !shadow.attached && shadow.visibility == [0.0; 3]) {
+    if let Some(shadow) = shadow.filter(|shadow| !shadow.attached && shadow.visibility == [0.0; 3])
+    {
         return Some(format!("{name} {share}: {} is in the way.", blocker(told, shadow)));
     }
     let n_l = of_this().map(|(weight, l)| weight * cosine(point, l.terms.l)).sum::<f32>();
@@ -59,9 +62,9 @@ fn of_light(told: &Explanation, point: &PointLight, number: usize, name: &str) -
     }
     let highlight = of_this().any(|(_, l)| l.terms.specular.iter().any(|&c| c > 1.0 / 255.0));
     let with = if highlight { ", with a highlight" } else { "" };
-    let partly = shadow
-        .filter(|s| s.visibility != [1.0; 3])
-        .map_or(String::new(), |shadow| format!(" Some of it is kept away by {}.", blocker(told, shadow)));
+    let partly = shadow.filter(|s| s.visibility != [1.0; 3]).map_or(String::new(), |shadow| {
+        format!(" Some of it is kept away by {}.", blocker(told, shadow))
+    });
     let facing = of_this().map(|(weight, l)| weight * l.terms.n_l).sum::<f32>();
     Some(format!("{name} shines on the surface (N·L = {facing:.2}){with}.{partly}"))
 }

@@ -1,22 +1,28 @@
 //! What arrives at a point from a whole shape: the irradiance of an area light, without sampling.
 //!
-//! A flat shape that shines like a Lambert surface sends to a point `E = L ∫ cos θ cos θ' / d² dA`, an integral that
-//! Lambert turned into one along the outline: for a polygon with corners `a1, a2, …` as seen from the point,
-//! `E = L/2 Σ Θi (n·Γi)`, where `Θi` is the angle under which the edge from `ai` to `ai+1` is seen, and `Γi` the unit normal of
-//! the plane through the edge and the point. Only what is above the point's horizon counts, so edges are cut there.
-//! The cut polygon has new edges in the plane of the horizon. They all lie on one line, where that plane meets the
-//! light's; the angle of a place on this line can be told for each place alone, so each cut adds its own, and it does not
-//! matter which of them an edge joins: concave outlines need no more.
+//! A flat shape that shines like a Lambert surface sends to a point `E = L ∫ cos θ cos θ' / d² dA`,
+//! an integral that Lambert turned into one along the outline: for a polygon with corners
+//! `a1, a2, …` as seen from the point, `E = L/2 Σ Θi (n·Γi)`, where `Θi` is the angle under which
+//! the edge from `ai` to `ai+1` is seen, and `Γi` the unit normal of the plane through the edge and
+//! the point. Only what is above the point's horizon counts, so edges are cut there. The cut
+//! polygon has new edges in the plane of the horizon. They all lie on one line, where that plane
+//! meets the light's; the angle of a place on this line can be told for each place alone, so each
+//! cut adds its own, and it does not matter which of them an edge joins: concave outlines need no
+//! more.
 //!
-//! A disc that the horizon does not cut has a closed form: its irradiance on a surface with normal `n` is `n·F`, where `F` has
-//! a part along the axis and one towards it. Where the horizon cuts it, a polygon of its area takes its place.
+//! A disc that the horizon does not cut has a closed form: its irradiance on a surface with normal
+//! `n` is `n·F`, where `F` has a part along the axis and one towards it. Where the horizon cuts it,
+//! a polygon of its area takes its place.
 //!
-//! What is computed is the mean `G` of `cos θ cos θ' / d²` over the shape, which tends to that of a point as the shape becomes
-//! small; a shape that is seen under a hair's breadth counts as a point, where single precision would lose the sum of angles.
+//! What is computed is the mean `G` of `cos θ cos θ' / d²` over the shape, which tends to that of a
+//! point as the shape becomes small; a shape that is seen under a hair's breadth counts as a point,
+//! where single precision would lose the sum of angles.
 //!
 //! In:   a shape; a point and a unit normal in the same space. Out: `G`, 0 behind the light.
-//! Cost: for each edge two divisions, a square root and a polynomial; for a disc three square roots.
-//! Source: \[Lambert 1760\], \[Baum, Rushmeier & Winget 1989\]; the disc after \[Howell, Mengüç & Siegel 2010\].
+//! Cost: for each edge two divisions, a square root and a polynomial; for a disc three square
+//!       roots.
+//! Source: \[Lambert 1760\], \[Baum, Rushmeier & Winget 1989\]; the disc after \[Howell, Mengüç &
+//!         Siegel 2010\].
 
 use crate::AreaShape;
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -25,7 +31,8 @@ use vitral_math::{DVec3, func};
 
 /// Corners of the polygon that stands for a disc cut by the horizon.
 const DISC_CORNERS: usize = 32;
-/// A shape whose mean square radius is less than this part of the squared distance counts as a point.
+/// A shape whose mean square radius is less than this part of the squared distance counts as a
+/// point.
 const TINY: f32 = 1e-5;
 /// No mean is larger.
 const LARGEST: f32 = 1e18;
@@ -79,12 +86,16 @@ impl Shape {
                 Some(Self::of(&corners, center, normal, area, spread, Some(radius as f32)))
             }
             AreaShape::Polygon { corners } => {
-                // Add up the triangles of a fan, weighted with their signed area along the polygon's normal.
+                // Add up the triangles of a fan, weighted with their signed area along the
+                // polygon's normal.
                 let fan = || corners.windows(2).skip(1).map(|pair| (corners[0], pair[0], pair[1]));
                 let twice: DVec3 = fan().map(|(a, b, c)| (b - a).cross(c - a)).sum();
                 let normal = twice.try_normalize().filter(|_| corners.iter().all(sound))?;
-                let share = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).dot(twice) / twice.length_squared();
-                let centroid: DVec3 = fan().map(|(a, b, c)| (a + b + c) * (share(a, b, c) / 3.0)).sum();
+                let share = |a: DVec3, b: DVec3, c: DVec3| {
+                    (b - a).cross(c - a).dot(twice) / twice.length_squared()
+                };
+                let centroid: DVec3 =
+                    fan().map(|(a, b, c)| (a + b + c) * (share(a, b, c) / 3.0)).sum();
                 let spread: f64 = fan()
                     .map(|(a, b, c)| {
                         let [a, b, c] = [a, b, c].map(|p| p - centroid);
@@ -92,12 +103,21 @@ impl Shape {
                         share(a, b, c) * (squares + (a + b + c).length_squared()) / 12.0
                     })
                     .sum();
-                sound(&centroid).then(|| Self::of(corners, centroid, normal, 0.5 * twice.length(), spread, None))
+                sound(&centroid).then(|| {
+                    Self::of(corners, centroid, normal, 0.5 * twice.length(), spread, None)
+                })
             }
         }
     }
 
-    fn of(corners: &[DVec3], centroid: DVec3, normal: DVec3, area: f64, spread: f64, radius: Option<f32>) -> Self {
+    fn of(
+        corners: &[DVec3],
+        centroid: DVec3,
+        normal: DVec3,
+        area: f64,
+        spread: f64,
+        radius: Option<f32>,
+    ) -> Self {
         let three = |v: DVec3| v.as_vec3().to_array();
         let edge = |i: usize| {
             let (from, to) = (corners[i], corners[(i + 1) % corners.len()]);
@@ -113,8 +133,9 @@ impl Shape {
         }
     }
 
-    /// The mean of `cos θ cos θ' / d²` over the shape, at `position` on a surface with unit normal `n`; 0 where the light
-    /// is not in front of the surface, or the point not in front of the light.
+    /// The mean of `cos θ cos θ' / d²` over the shape, at `position` on a surface with unit normal
+    /// `n`; 0 where the light is not in front of the surface, or the point not in front of the
+    /// light.
     #[inline(always)]
     pub(crate) fn mean<T: Lanes>(&self, position: V3<T>, n: V3<T>) -> T {
         let zero = position.x.splat(0.0);
@@ -180,7 +201,8 @@ impl Shape {
                 let (start, end) = (V3::select(a_above, a, at), V3::select(b_above, b, at));
                 let edge = seen(across.scale(kept), start.dot(end), n);
                 sum = sum + T::select(a_above | b_above, edge, zero);
-                // The edges that close the polygon again leave from where it goes down and arrive where it comes up.
+                // The edges that close the polygon again leave from where it goes down and arrive
+                // where it comes up.
                 let side = at.dot(along);
                 let angle = angle(side.abs(), height);
                 let leaves = a_above;
@@ -228,7 +250,8 @@ impl Shape {
     }
 }
 
-/// `Θ (n·Γ)` of an edge: `across` is along `Γ`, as long as the sine of the angle is; `along` is in proportion to the cosine.
+/// `Θ (n·Γ)` of an edge: `across` is along `Γ`, as long as the sine of the angle is; `along` is in
+/// proportion to the cosine.
 #[inline(always)]
 fn seen<T: Lanes>(across: V3<T>, along: T, n: V3<T>) -> T {
     let zero = along.splat(0.0);
@@ -238,7 +261,8 @@ fn seen<T: Lanes>(across: V3<T>, along: T, n: V3<T>) -> T {
     T::select(zero.lt(sine), part, zero)
 }
 
-/// The angle between the x axis and the direction `(x, y)`, `y` not negative: `0..=π`, relative error below 3e-7.
+/// The angle between the x axis and the direction `(x, y)`, `y` not negative: `0..=π`, relative
+/// error below 3e-7.
 #[inline(always)]
 fn angle<T: Lanes>(y: T, x: T) -> T {
     let size = x.abs();
@@ -247,9 +271,16 @@ fn angle<T: Lanes>(y: T, x: T) -> T {
     // Chebyshev series of atan(t) / t in t², cut off below 1e-8.
     let t2 = t * t;
     let mut p = t.splat(0.002_834_064_2);
-    for c in
-        [-0.016_005_03, 0.042_587_608, -0.074_954_46, 0.106_367_54, -0.142_025_71, 0.199_924_84, -0.333_330_66, 1.0]
-    {
+    for c in [
+        -0.016_005_03,
+        0.042_587_608,
+        -0.074_954_46,
+        0.106_367_54,
+        -0.142_025_71,
+        0.199_924_84,
+        -0.333_330_66,
+        1.0,
+    ] {
         p = p * t2 + c;
     }
     let acute = p * t;
@@ -270,7 +301,8 @@ mod tests {
         Shape::new(&shape, 1e18).unwrap()
     }
 
-    /// The form factor from an element at the origin: the part of what it sends out that meets the shape.
+    /// The form factor from an element at the origin: the part of what it sends out that meets the
+    /// shape.
     fn form_factor(shape: &Shape, n: DVec3, area: f64) -> f64 {
         f64::from(shape.mean(v3(DVec3::ZERO), v3(n))) * area / std::f64::consts::PI
     }
@@ -284,10 +316,15 @@ mod tests {
     #[test]
     fn the_centroid_of_a_concave_polygon_is_its_centre_of_mass() {
         // An L of three unit squares.
-        let l = [[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]].map(|[x, y]| dvec3(x, y, 0.0)).to_vec();
+        let l = [[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]]
+            .map(|[x, y]| dvec3(x, y, 0.0))
+            .to_vec();
         let l = shape(AreaShape::Polygon { corners: l });
         let [x, y, z] = l.centroid.map(f64::from);
-        assert!(dvec3(x, y, z).distance(dvec3(2.5 / 3.0, 2.5 / 3.0, 0.0)) < 1e-6 && l.normal == [0.0, 0.0, 1.0]);
+        assert!(
+            dvec3(x, y, z).distance(dvec3(2.5 / 3.0, 2.5 / 3.0, 0.0)) < 1e-6
+                && l.normal == [0.0, 0.0, 1.0]
+        );
         assert!((l.half_density - 0.5 / 3.0).abs() < 1e-7);
         // A square's own is 1/6; the squared ways to the middles of the three are 2/9, 5/9, 5/9.
         assert!((f64::from(l.spread) - (1.0 / 6.0 + 4.0 / 9.0)).abs() < 1e-6, "{}", l.spread);
@@ -305,7 +342,8 @@ mod tests {
 
     #[test]
     fn a_parallel_rectangle_over_one_of_its_corners() {
-        // F = (A atan(B / √(1 + A²)) / √(1 + A²) + B atan(A / √(1 + B²)) / √(1 + B²)) / 2π, with A = a / h and B = b / h.
+        // F = (A atan(B / √(1 + A²)) / √(1 + A²) + B atan(A / √(1 + B²)) / √(1 + B²)) / 2π, with A
+        // = a / h and B = b / h.
         for (a, b, h) in [(1.0, 1.0, 1.0), (2.0, 0.5, 1.0), (0.3, 0.4, 2.0), (5.0, 7.0, 0.5)] {
             let part = |a: f64, b: f64| {
                 let root = (1.0 + a * a).sqrt();
@@ -322,18 +360,24 @@ mod tests {
 
     #[test]
     fn a_perpendicular_rectangle() {
-        // F = (atan(1 / Y) - Y / √(X² + Y²) atan(1 / √(X² + Y²))) / 2π, the rectangle as wide as b and as high as a at
-        // distance c, with X = a / b and Y = c / b.
+        // F = (atan(1 / Y) - Y / √(X² + Y²) atan(1 / √(X² + Y²))) / 2π, the rectangle as wide as b
+        // and as high as a at distance c, with X = a / b and Y = c / b.
         for (a, b, c) in [(1.0, 1.0, 1.0), (2.0, 0.5, 1.5), (0.2, 3.0, 0.4)] {
             let (x, y) = (a / b, c / b);
             let root = f64::sqrt(x * x + y * y);
-            let wanted = (func::atan2(1.0, y) - y / root * func::atan2(1.0, root)) / std::f64::consts::TAU;
+            let wanted =
+                (func::atan2(1.0, y) - y / root * func::atan2(1.0, root)) / std::f64::consts::TAU;
             let wall = [dvec3(c, 0.0, 0.0), dvec3(c, 0.0, a), dvec3(c, b, a), dvec3(c, b, 0.0)];
-            let found = form_factor(&shape(AreaShape::Polygon { corners: wall.to_vec() }), DVec3::Z, a * b);
+            let found =
+                form_factor(&shape(AreaShape::Polygon { corners: wall.to_vec() }), DVec3::Z, a * b);
             assert!((found - wanted).abs() < 1e-6, "{a} {b} {c}: {found}, {wanted}");
             // Twice as high, half of it below the horizon.
             let wall = [dvec3(c, 0.0, -a), dvec3(c, 0.0, a), dvec3(c, b, a), dvec3(c, b, -a)];
-            let found = form_factor(&shape(AreaShape::Polygon { corners: wall.to_vec() }), DVec3::Z, 2.0 * a * b);
+            let found = form_factor(
+                &shape(AreaShape::Polygon { corners: wall.to_vec() }),
+                DVec3::Z,
+                2.0 * a * b,
+            );
             assert!((found - wanted).abs() < 1e-6, "cut, {a} {b} {c}: {found}, {wanted}");
         }
     }
@@ -345,9 +389,13 @@ mod tests {
             let disc = shape(AreaShape::Disc { center, normal: DVec3::NEG_Z, radius });
             let wanted = radius * radius / (radius * radius + height * height);
             let found = form_factor(&disc, DVec3::Z, std::f64::consts::PI * radius * radius);
-            assert!((found - wanted).abs() < 1e-6 * wanted.max(1e-3), "{radius} {height}: {found}, {wanted}");
+            assert!(
+                (found - wanted).abs() < 1e-6 * wanted.max(1e-3),
+                "{radius} {height}: {found}, {wanted}"
+            );
         }
-        // Beside the axis, on a parallel and on a perpendicular surface: Z = 1 + H² + R², in units of the way to the axis.
+        // Beside the axis, on a parallel and on a perpendicular surface: Z = 1 + H² + R², in units
+        // of the way to the axis.
         for (radius, height, way) in [(0.5, 1.0, 1.0), (1.0, 0.3, 2.0), (2.0, 1.0, 0.7)] {
             let center = dvec3(way, 0.0, height);
             let disc = shape(AreaShape::Disc { center, normal: DVec3::NEG_Z, radius });
@@ -364,8 +412,14 @@ mod tests {
         }
     }
 
-    /// The mean over a shape by adding up many small pieces: midpoints of squares, clipped by the horizon.
-    fn summed(corner: DVec3, sides: [DVec3; 2], inside: impl Fn(f64, f64) -> bool, n: DVec3) -> f64 {
+    /// The mean over a shape by adding up many small pieces: midpoints of squares, clipped by the
+    /// horizon.
+    fn summed(
+        corner: DVec3,
+        sides: [DVec3; 2],
+        inside: impl Fn(f64, f64) -> bool,
+        n: DVec3,
+    ) -> f64 {
         let normal = sides[0].cross(sides[1]).normalize();
         let count = 1000;
         let (mut sum, mut pieces) = (0.0, 0.0);
@@ -376,22 +430,33 @@ mod tests {
             }
             let p = corner + sides[0] * u + sides[1] * v;
             pieces += 1.0;
-            sum += n.dot(p).max(0.0) * (-normal.dot(p)).max(0.0) / (p.length_squared() * p.length_squared());
+            sum += n.dot(p).max(0.0) * (-normal.dot(p)).max(0.0)
+                / (p.length_squared() * p.length_squared());
         }
         sum / pieces
     }
 
     #[test]
     fn tilted_cut_and_concave_shapes_are_the_sum_of_their_pieces() {
-        let normals =
-            [DVec3::Z, dvec3(1.0, 0.3, 0.2), dvec3(-0.7, 0.2, 0.4), dvec3(0.2, -1.0, -0.4), dvec3(0.0, 0.0, -1.0)];
-        let (corner, sides) = (dvec3(-0.7, -0.4, 1.1), [dvec3(0.3, 1.5, 0.4), dvec3(2.0, -0.3, 0.1)]);
+        let normals = [
+            DVec3::Z,
+            dvec3(1.0, 0.3, 0.2),
+            dvec3(-0.7, 0.2, 0.4),
+            dvec3(0.2, -1.0, -0.4),
+            dvec3(0.0, 0.0, -1.0),
+        ];
+        let (corner, sides) =
+            (dvec3(-0.7, -0.4, 1.1), [dvec3(0.3, 1.5, 0.4), dvec3(2.0, -0.3, 0.1)]);
         let at = |u: f64, v: f64| corner + sides[0] * u + sides[1] * v;
         let square = vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
         // A U: the horizon cuts it in up to three places.
-        let u = [[0., 0.], [1., 0.], [1., 1.], [0., 1.], [0., 0.7], [0.8, 0.7], [0.8, 0.3], [0., 0.3]];
+        let u =
+            [[0., 0.], [1., 0.], [1., 1.], [0., 1.], [0., 0.7], [0.8, 0.7], [0.8, 0.3], [0., 0.3]];
         let u = u.map(|[x, y]| at(x, y)).to_vec();
-        let (square, u) = (shape(AreaShape::Polygon { corners: square }), shape(AreaShape::Polygon { corners: u }));
+        let (square, u) = (
+            shape(AreaShape::Polygon { corners: square }),
+            shape(AreaShape::Polygon { corners: u }),
+        );
         let mut cut = 0;
         for n in normals.map(DVec3::normalize) {
             let wanted = summed(corner, sides, |_, _| true, n);
@@ -410,8 +475,11 @@ mod tests {
         let (center, normal) = (dvec3(0.2, 0.1, 1.0), dvec3(0.3, -0.2, -1.0).normalize());
         let (x, y) = normal.any_orthonormal_pair();
         let disc = shape(AreaShape::Disc { center, normal, radius: 0.8 });
-        let inside = |u: f64, v: f64| f64::sqrt((u - 0.5) * (u - 0.5) + (v - 0.5) * (v - 0.5)) < 0.5;
-        for n in [dvec3(1.0, 0.2, 0.1), dvec3(-0.5, 1.0, 0.0), dvec3(0.3, 0.9, -0.3)].map(DVec3::normalize) {
+        let inside =
+            |u: f64, v: f64| f64::sqrt((u - 0.5) * (u - 0.5) + (v - 0.5) * (v - 0.5)) < 0.5;
+        for n in [dvec3(1.0, 0.2, 0.1), dvec3(-0.5, 1.0, 0.0), dvec3(0.3, 0.9, -0.3)]
+            .map(DVec3::normalize)
+        {
             let wanted = summed(center - (x + y) * 0.8, [x * 1.6, y * 1.6], inside, n);
             let found = f64::from(disc.mean(v3(DVec3::ZERO), v3(n)));
             assert!((found - wanted).abs() < 2e-3 * wanted, "{n}: {found}, {wanted}");
@@ -422,7 +490,8 @@ mod tests {
             f64::from(disc.mean(v3(DVec3::ZERO), v3(dvec3(sin, 0.0, cos))))
         });
         let steps: Vec<f64> = steps.collect();
-        let largest = steps.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).fold(0.0, f64::max);
+        let largest =
+            steps.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).fold(0.0, f64::max);
         assert!(largest < 2e-4 * steps[0], "{largest} of {}", steps[0]);
     }
 
@@ -448,7 +517,8 @@ mod tests {
 
     #[test]
     fn behind_the_light_on_it_and_in_its_plane_nothing_arrives() {
-        let corners = [[0., 0.], [0., 1.], [1., 1.], [1., 0.]].map(|[x, y]| dvec3(x, y, 1.0)).to_vec();
+        let corners =
+            [[0., 0.], [0., 1.], [1., 1.], [1., 0.]].map(|[x, y]| dvec3(x, y, 1.0)).to_vec();
         let square = shape(AreaShape::Polygon { corners });
         let disc = shape(AreaShape::Disc { center: DVec3::Z, normal: DVec3::NEG_Z, radius: 0.5 });
         for light in [square, disc] {
@@ -459,7 +529,8 @@ mod tests {
             }
             // Close before it all that is seen is light.
             let area = 0.5 / f64::from(light.half_density);
-            let close = f64::from(light.mean(v3(dvec3(0.2, 0.2, 0.9999)), v3(DVec3::Z))) * area / std::f64::consts::PI;
+            let close = f64::from(light.mean(v3(dvec3(0.2, 0.2, 0.9999)), v3(DVec3::Z))) * area
+                / std::f64::consts::PI;
             assert!((close - 1.0).abs() < 1e-3, "{close}");
         }
     }

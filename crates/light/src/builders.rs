@@ -1,4 +1,5 @@
-//! Short ways to lights and materials: a constructor for each kind, then what differs from its defaults.
+//! Short ways to lights and materials: a constructor for each kind, then what differs from its
+//! defaults.
 //!
 //! ```
 //! use vitral_light::{Attenuation, Light, Material};
@@ -18,7 +19,12 @@ impl Light {
 
     /// Light from everywhere, which the ambient coefficient reflects.
     pub fn ambient(color: Rgb) -> Self {
-        Self { ambient: color, diffuse: [0.0; 3], specular: [0.0; 3], ..Self::new(LightKind::Ambient) }
+        Self {
+            ambient: color,
+            diffuse: [0.0; 3],
+            specular: [0.0; 3],
+            ..Self::new(LightKind::Ambient)
+        }
     }
 
     /// Parallel white light that travels along `direction`.
@@ -31,7 +37,8 @@ impl Light {
         Self::new(LightKind::Point { position: position.into() })
     }
 
-    /// White light from `position` into a cone about `direction`; `cutoff` is the cone's half angle in radians.
+    /// White light from `position` into a cone about `direction`; `cutoff` is the cone's half angle
+    /// in radians.
     pub fn spot(position: impl Into<DVec3>, direction: impl Into<DVec3>, cutoff: f64) -> Self {
         let (position, direction) = (position.into(), direction.into());
         Self::new(LightKind::Spot { position, direction, cutoff, inner: cutoff, exponent: 0.0 })
@@ -55,7 +62,8 @@ impl Light {
         Self { name: name.into(), ..self }
     }
 
-    /// With this intensity: of ambient light the ambient one, of other light the diffuse and the specular one.
+    /// With this intensity: of ambient light the ambient one, of other light the diffuse and the
+    /// specular one.
     #[must_use]
     pub fn with_color(self, color: Rgb) -> Self {
         match self.kind {
@@ -88,7 +96,8 @@ impl Material {
         Self::new(Reflectance::Phong { ka: color, kd: color, ks: [0.0; 3], shininess: 1.0 })
     }
 
-    /// As [`matte`](Self::matte), with highlights: the larger `shininess`, the smaller they are (10 is dull, 200 polished).
+    /// As [`matte`](Self::matte), with highlights: the larger `shininess`, the smaller they are (10
+    /// is dull, 200 polished).
     pub fn glossy(color: Rgb, shininess: f32) -> Self {
         Self::new(Reflectance::Phong { ka: color, kd: color, ks: [0.4; 3], shininess })
     }
@@ -131,6 +140,9 @@ mod tests {
         let sky = Light::ambient([0.5; 3]).with_color(red);
         assert_eq!((sky.ambient, sky.diffuse, sky.specular), (red, [0.0; 3], [0.0; 3]));
         let sun = Light::directional([0.0, -1.0, 0.0]).with_color(red).with_shadow(false);
-        assert_eq!((sun.ambient, sun.diffuse, sun.specular, sun.shadow), ([0.0; 3], red, red, false));
+        assert_eq!(
+            (sun.ambient, sun.diffuse, sun.specular, sun.shadow),
+            ([0.0; 3], red, red, false)
+        );
     }
 }

@@ -1,28 +1,33 @@
 //! The physical model: a surface made of tiny mirrors.
 //!
-//! Seen closely, a glossy surface consists of facets, each a perfect mirror, tilted at random. Only the facets whose
-//! normal is the halfway vector `H` between light and viewer send light to the viewer. How many they are says the
-//! distribution `D`; how much of them hides behind neighbours, for the light or for the viewer, the geometric term `G`; how
-//! much a mirror of this material reflects at this angle, the Fresnel term `F`. What a dielectric does not mirror enters it
-//! and comes out again, coloured and in all directions: the diffuse part. A metal swallows it, but mirrors in colour.
+//! Seen closely, a glossy surface consists of facets, each a perfect mirror, tilted at random. Only
+//! the facets whose normal is the halfway vector `H` between light and viewer send light to the
+//! viewer. How many they are says the distribution `D`; how much of them hides behind neighbours,
+//! for the light or for the viewer, the geometric term `G`; how much a mirror of this material
+//! reflects at this angle, the Fresnel term `F`. What a dielectric does not mirror enters it and
+//! comes out again, coloured and in all directions: the diffuse part. A metal swallows it, but
+//! mirrors in colour.
 //!
 //! `specular = π F D G / (4 N·L N·V) · N·L`, with
-//! * `D = exp(-(tan α / m)²) / (π m² cos⁴ α)`, `α` between `N` and `H`, `m = roughness²` (Beckmann),
+//! * `D = exp(-(tan α / m)²) / (π m² cos⁴ α)`, `α` between `N` and `H`, `m = roughness²`
+//!   (Beckmann),
 //! * `G = min(1, 2 N·H N·V / V·H, 2 N·H N·L / V·H)` (V-shaped grooves),
-//! * `F = F0 + (1 - F0) (1 - V·H)^5`, `F0` = 0.04 for dielectrics, the base colour for metals (Schlick).
+//! * `F = F0 + (1 - F0) (1 - V·H)^5`, `F0` = 0.04 for dielectrics, the base colour for metals
+//!   (Schlick).
 //!
-//! `diffuse = (1 - metallic) base (1 - F(N·L)) (1 - F(N·V)) N·L`: light is mirrored on its way in and on its way out, so that
-//! both parts together never exceed what arrives. The factor π belongs to the scale of the house, in which a
-//! white Lambert surface reflects 1 of 1.
+//! `diffuse = (1 - metallic) base (1 - F(N·L)) (1 - F(N·V)) N·L`: light is mirrored on its way in
+//! and on its way out, so that both parts together never exceed what arrives. The factor π belongs
+//! to the scale of the house, in which a white Lambert surface reflects 1 of 1.
 //!
 //! In:   lights and a point in one space; base colour in linear RGB.
 //! Out:  linear RGB, diffuse and specular apart.
 //! Cost: one exponential and three divisions for each light in front of the surface.
-//! Source: \[Cook & Torrance 1982\]; \[Beckmann & Spizzichino 1963\] for `D`; \[Schlick 1994\] for `F`.
-//! Departs from it: Schlick's form instead of Fresnel's, because it needs no index of refraction per channel, is finite for
-//! `F0 = 1`, and stays within a hundredth of the exact curve for glass. `m` is at least 0.01, where the highlight of a
-//! point is about as wide as the mirrored disc of the sun; `N·V` at least 0.001. Ambient light is reflected by the base
-//! colour, also by metals, which would be black without surroundings to mirror.
+//! Source: \[Cook & Torrance 1982\]; \[Beckmann & Spizzichino 1963\] for `D`; \[Schlick 1994\] for
+//! `F`. Departs from it: Schlick's form instead of Fresnel's, because it needs no index of
+//! refraction per channel, is finite for `F0 = 1`, and stays within a hundredth of the exact curve
+//! for glass. `m` is at least 0.01, where the highlight of a point is about as wide as the mirrored
+//! disc of the sun; `N·V` at least 0.001. Ambient light is reflected by the base colour, also by
+//! metals, which would be black without surroundings to mirror.
 
 use crate::surface::tint;
 use crate::{PreparedLight, Reflected, Rgb, Surface};
@@ -73,11 +78,13 @@ pub fn cook_torrance<T: Lanes>(
 
     // Start with the ambient light.
     let ambient = m.base_color.scale(m.occlusion);
-    let mut sum = Reflected { diffuse: tint(ambient, global_ambient), specular: V3::new(zero, zero, zero) };
+    let mut sum =
+        Reflected { diffuse: tint(ambient, global_ambient), specular: V3::new(zero, zero, zero) };
     for (j, light) in lights.iter().enumerate() {
         let incident = light.incident(s.position);
         if light.ambient != [0.0; 3] {
-            sum.diffuse = sum.diffuse + tint(ambient, light.ambient).scale(incident.ambient_intensity);
+            sum.diffuse =
+                sum.diffuse + tint(ambient, light.ambient).scale(incident.ambient_intensity);
         }
         let n_l = s.n.dot(incident.l).saturate();
         let visible = visibility(j);
@@ -90,7 +97,9 @@ pub fn cook_torrance<T: Lanes>(
         let entering = match light.irradiance(s.position, s.n) {
             Some(irradiance) => {
                 // At the angle whose cosine is the mean over the shape.
-                let mean = T::select(zero.lt(incident.intensity), irradiance / incident.intensity, n_l).saturate();
+                let mean =
+                    T::select(zero.lt(incident.intensity), irradiance / incident.intensity, n_l)
+                        .saturate();
                 visible.scale(irradiance * enters(mean))
             }
             None => arriving.scale(n_l * enters(n_l)),
@@ -135,7 +144,8 @@ pub(crate) fn microfacet_lobe(s: &Surface<f32>, m: &Microfacet<f32>, l: V3<f32>)
     let n_l = s.n.dot(l).saturate();
     let h = (l + s.v).normalize();
     let v_h = s.v.dot(h).clamp(LEAST_COSINE, 1.0);
-    let lobe = if n_l > 0.0 { Facets::new(m.roughness).mirrored(s.n, h, n_l, n_v, v_h) } else { 0.0 };
+    let lobe =
+        if n_l > 0.0 { Facets::new(m.roughness).mirrored(s.n, h, n_l, n_v, v_h) } else { 0.0 };
     let fresnel = f0.map(|channel| schlick(channel, v_h)).to_array();
     MicrofacetLobe { h: h.to_array(), n_h: s.n.dot(h), fresnel, lobe }
 }
@@ -207,7 +217,12 @@ mod tests {
             n: V3::new(0.0, 0.0, 1.0),
             v: V3::splat(0.0, v.as_vec3().to_array()),
         };
-        let m = Microfacet { base_color: V3::splat(0.0, [base; 3]), metallic, roughness, occlusion: 1.0 };
+        let m = Microfacet {
+            base_color: V3::splat(0.0, [base; 3]),
+            metallic,
+            roughness,
+            occlusion: 1.0,
+        };
         cook_torrance(&[sun(l)], [0.0; 3], &s, &m, |_| V3::new(1.0, 1.0, 1.0))
     }
 
@@ -218,21 +233,30 @@ mod tests {
         assert!((r.diffuse.x - 0.5 * 0.96 * 0.96).abs() < 1e-6, "{}", r.diffuse.x);
         assert!((reflected(DVec3::Z, DVec3::Z, 1.0, 1.0, 1.0).specular.x - 0.25).abs() < 1e-6);
         let mirror = reflected(DVec3::Z, DVec3::Z, 1.0, 1.0, 0.0).specular.x;
-        assert!((mirror / 2500.0 - 1.0).abs() < 1e-5, "the least slope keeps a mirror finite: {mirror}");
+        assert!(
+            (mirror / 2500.0 - 1.0).abs() < 1e-5,
+            "the least slope keeps a mirror finite: {mirror}"
+        );
     }
 
     #[test]
     fn ambient_light_shows_metals_too() {
         let z = V3::new(0.0f32, 0.0, 1.0);
         let s = Surface { position: z, n: z, v: z };
-        let m = Microfacet { base_color: V3::new(1.0f32, 0.5, 0.25), metallic: 1.0, roughness: 0.3, occlusion: 1.0 };
+        let m = Microfacet {
+            base_color: V3::new(1.0f32, 0.5, 0.25),
+            metallic: 1.0,
+            roughness: 0.3,
+            occlusion: 1.0,
+        };
         let r = cook_torrance(&[], [0.5; 3], &s, &m, |_| V3::new(1.0, 1.0, 1.0));
         assert_eq!((r.diffuse.x, r.diffuse.y, r.diffuse.z, r.specular.x), (0.5, 0.25, 0.125, 0.0));
     }
 
-    /// The part of a beam from direction `v` that a surface scatters, over the whole hemisphere. By symmetry it is the
-    /// light that the viewer at `v` sees under a sky of 1, so the sky is summed up: the diffuse part over directions with
-    /// density `cos/π`, the specular part over halfway vectors with the density of the facets.
+    /// The part of a beam from direction `v` that a surface scatters, over the whole hemisphere. By
+    /// symmetry it is the light that the viewer at `v` sees under a sky of 1, so the sky is summed
+    /// up: the diffuse part over directions with density `cos/π`, the specular part over halfway
+    /// vectors with the density of the facets.
     fn scattered(v: DVec3, base: f32, metallic: f32, roughness: f32) -> (f64, f64) {
         const STEPS: usize = 48;
         let m = f64::from((roughness * roughness).max(LEAST_SLOPE));
@@ -241,7 +265,8 @@ mod tests {
         for i in 0..STEPS {
             for j in 0..STEPS {
                 let u = (i as f64 + 0.5) / STEPS as f64;
-                let (sin, cos) = func::sin_cos((j as f64 + 0.5) / STEPS as f64 * std::f64::consts::TAU);
+                let (sin, cos) =
+                    func::sin_cos((j as f64 + 0.5) / STEPS as f64 * std::f64::consts::TAU);
                 let ring = |cos_theta: f64| {
                     let sin_theta = (1.0 - cos_theta * cos_theta).sqrt();
                     dvec3(sin_theta * cos, sin_theta * sin, cos_theta)
@@ -254,7 +279,8 @@ mod tests {
                 let l = h * (2.0 * h.dot(v)) - v;
                 if l.z > 1e-6 && h.dot(v) > 0.0 {
                     // Density of h: D cos α; of l: that over 4 V·H. u is exp(-tan²/m²).
-                    let density = u / (std::f64::consts::PI * m2 * cos2 * cos2) * h.z / (4.0 * h.dot(v));
+                    let density =
+                        u / (std::f64::consts::PI * m2 * cos2 * cos2) * h.z / (4.0 * h.dot(v));
                     let seen = f64::from(reflected(l, v, base, metallic, roughness).specular.x);
                     specular += seen / std::f64::consts::PI / density;
                 }
@@ -268,7 +294,8 @@ mod tests {
     fn e12_never_reflects_more_than_arrives() {
         for roughness in [0.0, 0.1, 0.25, 0.5, 0.7, 1.0] {
             for cos in [0.02, 0.1, 0.3, 0.6, 0.9, 1.0] {
-                for (base, metallic) in [(1.0, 1.0), (0.5, 1.0), (1.0, 0.0), (0.2, 0.0), (1.0, 0.5)] {
+                for (base, metallic) in [(1.0, 1.0), (0.5, 1.0), (1.0, 0.0), (0.2, 0.0), (1.0, 0.5)]
+                {
                     let (diffuse, specular) = scattered(tilted(cos), base, metallic, roughness);
                     let sum = diffuse + specular;
                     assert!(
@@ -295,8 +322,12 @@ mod tests {
             let (l, v) = (tilted(a), dvec3(-tilted(b).x, 0.0, b));
             let there = reflected(l, v, 0.6, 0.4, 0.6);
             let back = reflected(v, l, 0.6, 0.4, 0.6);
-            assert!((f64::from(there.specular.x) / l.z - f64::from(back.specular.x) / v.z).abs() < 1e-5);
-            assert!((f64::from(there.diffuse.x) / l.z - f64::from(back.diffuse.x) / v.z).abs() < 1e-5);
+            assert!(
+                (f64::from(there.specular.x) / l.z - f64::from(back.specular.x) / v.z).abs() < 1e-5
+            );
+            assert!(
+                (f64::from(there.diffuse.x) / l.z - f64::from(back.diffuse.x) / v.z).abs() < 1e-5
+            );
         }
     }
 }

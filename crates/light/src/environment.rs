@@ -1,18 +1,23 @@
-//! Light from an image of the surroundings: what a polished surface mirrors, what a rough one blurs, and what a matt one gathers.
+//! Light from an image of the surroundings: what a polished surface mirrors, what a rough one
+//! blurs, and what a matt one gathers.
 //!
-//! Idea: a rough surface mirrors a mean of the surroundings over the tilts of its facets. That mean depends on the mirror direction
-//! and the roughness alone, if the surface is taken to be seen straight on, so it is computed before the picture: a pyramid of images,
-//! one for each of some roughnesses, and a lookup interpolates between two of them. A mean is a sum over tilts that the distribution
-//! itself chooses; each looks up an image halved as often as the tilt stands for many texels, so that a few dozen are enough. What a
-//! matt surface gathers varies so slowly that nine spherical harmonics say it.
+//! Idea: a rough surface mirrors a mean of the surroundings over the tilts of its facets. That mean
+//! depends on the mirror direction and the roughness alone, if the surface is taken to be seen
+//! straight on, so it is computed before the picture: a pyramid of images, one for each of some
+//! roughnesses, and a lookup interpolates between two of them. A mean is a sum over tilts that the
+//! distribution itself chooses; each looks up an image halved as often as the tilt stands for many
+//! texels, so that a few dozen are enough. What a matt surface gathers varies so slowly that nine
+//! spherical harmonics say it.
 //!
-//! How much is mirrored is Schlick's term with the rim of rough surfaces lowered, as for the [`crate::Sky`]; what a dielectric does not
-//! mirror it reflects diffusely. In white surroundings of radiance 1 a white dielectric is 1 all over.
+//! How much is mirrored is Schlick's term with the rim of rough surfaces lowered, as for the
+//! [`crate::Sky`]; what a dielectric does not mirror it reflects diffusely. In white surroundings
+//! of radiance 1 a white dielectric is 1 all over.
 //!
 //! In:   a [`Panorama`]. Out: mirrored and diffuse light at points, linear RGB.
 //! Cost: about two million lookups to build; three a point.
-//! Source: \[Colbert & Krivanek 2007\] for the pyramid, \[Ramamoorthi & Hanrahan 2001\] for the harmonics, \[Lagarde 2011\] for
-//! the Fresnel term. Departs from them: the distribution is that of [`crate::cook_torrance`], Beckmann's.
+//! Source: \[Colbert & Krivanek 2007\] for the pyramid, \[Ramamoorthi & Hanrahan 2001\] for the
+//! harmonics, \[Lagarde 2011\] for the Fresnel term. Departs from them: the distribution is that of
+//! [`crate::cook_torrance`], Beckmann's.
 
 use crate::cook_torrance::{LEAST_SLOPE, Microfacet};
 use crate::sky::mirrored_share;
@@ -22,9 +27,11 @@ use std::sync::Arc;
 use vitral_math::func;
 use vitral_math::lanes::{Lanes, V3};
 
-/// Columns of the blurred images and tilts that each of their texels is a mean of, for roughnesses in equal steps up to 1. A texel
-/// is about as wide as the lobe of its roughness, until more texels show nothing.
-const LEVELS: [(usize, u32); 8] = [(256, 16), (256, 24), (128, 32), (64, 64), (64, 64), (64, 64), (64, 64), (64, 64)];
+/// Columns of the blurred images and tilts that each of their texels is a mean of, for roughnesses
+/// in equal steps up to 1. A texel is about as wide as the lobe of its roughness, until more texels
+/// show nothing.
+const LEVELS: [(usize, u32); 8] =
+    [(256, 16), (256, 24), (128, 32), (64, 64), (64, 64), (64, 64), (64, 64), (64, 64)];
 /// Columns of the image that the harmonics are summed over, at the most.
 const HARMONIC_COLUMNS: usize = 64;
 
@@ -46,7 +53,8 @@ impl EnvironmentMap {
         while halves.last().is_some_and(|last| last.size() != [1, 1]) {
             halves.extend(halves.last().map(Panorama::halved));
         }
-        let coarse = halves.iter().find(|image| image.size()[0] <= HARMONIC_COLUMNS).unwrap_or(&halves[0]);
+        let coarse =
+            halves.iter().find(|image| image.size()[0] <= HARMONIC_COLUMNS).unwrap_or(&halves[0]);
         let gathered = gathered(coarse);
         let step = 1.0 / LEVELS.len() as f32;
         let blur = |(i, &(columns, tilts)): (usize, &(usize, u32))| {
@@ -66,7 +74,10 @@ impl EnvironmentMap {
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> u64 {
-        self.levels.iter().map(|level| (level.size()[0] * level.size()[1] * size_of::<Rgb>()) as u64).sum()
+        self.levels
+            .iter()
+            .map(|level| (level.size()[0] * level.size()[1] * size_of::<Rgb>()) as u64)
+            .sum()
     }
 
     /// The light from a direction (unit, space of the image), mixed as roughness mixes it.
@@ -104,15 +115,22 @@ impl Tilts {
         let texel = 4.0 * PI / (columns * rows) as f32;
         let tilt = |i: u32| {
             // The inverse of the distribution, with numbers that fill the square evenly.
-            let (u, v) = ((i as f32 + 0.5) / count as f32, i.reverse_bits() as f32 / 4_294_967_296.0);
+            let (u, v) =
+                ((i as f32 + 0.5) / count as f32, i.reverse_bits() as f32 / 4_294_967_296.0);
             let tan2 = -slope * slope * func::ln32(1.0 - u);
             let cos2 = 1.0 / (1.0 + tan2);
             let (cos, sin) = (cos2.sqrt(), (1.0 - cos2).sqrt());
             let across = 2.0 * cos * sin;
-            let towards = [across * func::cos32(2.0 * PI * v), across * func::sin32(2.0 * PI * v), 2.0 * cos2 - 1.0];
+            let towards = [
+                across * func::cos32(2.0 * PI * v),
+                across * func::sin32(2.0 * PI * v),
+                2.0 * cos2 - 1.0,
+            ];
 
-            // Choose the half whose texels are as large as the solid angle that the tilt stands for.
-            let density = func::exp32(-tan2 / (slope * slope)) / (4.0 * PI * slope * slope * cos2 * cos2);
+            // Choose the half whose texels are as large as the solid angle that the tilt stands
+            // for.
+            let density =
+                func::exp32(-tan2 / (slope * slope)) / (4.0 * PI * slope * slope * cos2 * cos2);
             let solid_angle = 1.0 / (count as f32 * density);
             let half = (0.5 * func::log2_32((solid_angle / texel).max(1.0))).round() as usize;
             (towards, towards[2], half.min(halves.len() - 1))
@@ -139,7 +157,8 @@ impl Tilts {
     }
 }
 
-/// The nine lowest spherical harmonics, each times the square root of 4π: their mean square over the sphere is 1.
+/// The nine lowest spherical harmonics, each times the square root of 4π: their mean square over
+/// the sphere is 1.
 fn harmonics([x, y, z]: [f32; 3]) -> [f32; 9] {
     let [root3, root5, root15] = [3f32.sqrt(), 5f32.sqrt(), 15f32.sqrt()];
     [
@@ -155,12 +174,14 @@ fn harmonics([x, y, z]: [f32; 3]) -> [f32; 9] {
     ]
 }
 
-/// Coefficients of what a white matt surface gathers of an image: those of the image, each band weakened as the cosine weakens it.
+/// Coefficients of what a white matt surface gathers of an image: those of the image, each band
+/// weakened as the cosine weakens it.
 fn gathered(image: &Panorama) -> [Rgb; 9] {
     const BANDS: [f32; 9] = [1.0, 2.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 0.25, 0.25, 0.25, 0.25, 0.25];
     let mut sums = [[0.0; 3]; 9];
     for (direction, color, part) in image.parts() {
-        for (sum, (basis, band)) in sums.iter_mut().zip(harmonics(direction).into_iter().zip(BANDS)) {
+        for (sum, (basis, band)) in sums.iter_mut().zip(harmonics(direction).into_iter().zip(BANDS))
+        {
             (0..3).for_each(|k| sum[k] += color[k] * basis * band * part);
         }
     }
@@ -179,7 +200,11 @@ pub struct EnvironmentLight {
 
 impl EnvironmentLight {
     /// Light from `map`, turned, its diffuse and its mirrored part multiplied.
-    pub fn new(map: Arc<EnvironmentMap>, image_from_shading: [[f32; 3]; 3], factors: [f32; 2]) -> Self {
+    pub fn new(
+        map: Arc<EnvironmentMap>,
+        image_from_shading: [[f32; 3]; 3],
+        factors: [f32; 2],
+    ) -> Self {
         Self { map, image_from_shading, factors }
     }
 
@@ -188,14 +213,16 @@ impl EnvironmentLight {
         self.map.radiance(self.turned(direction), 0.0).map(|c| c * self.factors[1])
     }
 
-    /// What a white matt surface with this normal reflects, and what a white mirror of this roughness shows in a direction (both unit).
+    /// What a white matt surface with this normal reflects, and what a white mirror of this
+    /// roughness shows in a direction (both unit).
     pub fn arriving(&self, normal: [f32; 3], direction: [f32; 3], roughness: f32) -> [Rgb; 2] {
         let [diffuse, mirrored] = self.factors;
         let gathered = self.map.gathered(self.turned(normal)).map(|c| c * diffuse);
         [gathered, self.map.radiance(self.turned(direction), roughness).map(|c| c * mirrored)]
     }
 
-    /// The diffuse and the mirrored light of a point. `arriving` is [`Self::arriving`], lane by lane.
+    /// The diffuse and the mirrored light of a point. `arriving` is [`Self::arriving`], lane by
+    /// lane.
     #[inline(always)]
     pub fn reflected<T: Lanes>(
         s: &Surface<T>,
@@ -225,7 +252,9 @@ mod tests {
     }
 
     fn directions() -> impl Iterator<Item = [f32; 3]> {
-        let round = |i: usize| V3::splat(0.0f32, [(i % 5) as f32 - 2.1, (i % 7) as f32 - 3.2, (i % 3) as f32 - 0.9]);
+        let round = |i: usize| {
+            V3::splat(0.0f32, [(i % 5) as f32 - 2.1, (i % 7) as f32 - 3.2, (i % 3) as f32 - 0.9])
+        };
         (0..105).map(move |i| round(i).normalize().to_array())
     }
 
@@ -247,10 +276,17 @@ mod tests {
         for (metallic, roughness) in [(0.0, 0.0), (0.0, 0.3), (0.0, 1.0), (1.0, 0.4)] {
             for cos in [1.0f32, 0.5, 0.1] {
                 let s = Surface { position: n, n, v: V3::new((1.0 - cos * cos).sqrt(), 0.0, cos) };
-                let m = Microfacet { base_color: V3::new(1.0f32, 1.0, 1.0), metallic, roughness, occlusion: 1.0 };
-                let [matt, mirrored] = EnvironmentLight::reflected(&s, &m, |n, towards, roughness| {
-                    even.arriving(n.to_array(), towards.to_array(), roughness).map(V3::from_array)
-                });
+                let m = Microfacet {
+                    base_color: V3::new(1.0f32, 1.0, 1.0),
+                    metallic,
+                    roughness,
+                    occlusion: 1.0,
+                };
+                let [matt, mirrored] =
+                    EnvironmentLight::reflected(&s, &m, |n, towards, roughness| {
+                        even.arriving(n.to_array(), towards.to_array(), roughness)
+                            .map(V3::from_array)
+                    });
                 assert!(
                     (matt.x + mirrored.x - 1.0).abs() < 1e-3,
                     "{metallic} {roughness} {cos}: {matt:?} {mirrored:?}"
@@ -261,11 +297,16 @@ mod tests {
 
     #[test]
     fn a_matt_surface_gathers_by_the_cosine() {
-        // Radiance 1 + y: the mean over the hemisphere round n, weighted by the cosine, is 1 + 2/3 n.y.
+        // Radiance 1 + y: the mean over the hemisphere round n, weighted by the cosine, is 1 + 2/3
+        // n.y.
         let sloped = map(|[_, y, _]| [1.0 + y, 0.0, 0.0]);
         for n in directions() {
             let expected = 1.0 + 2.0 / 3.0 * n[1];
-            assert!((sloped.gathered(n)[0] - expected).abs() < 5e-3, "{n:?}: {:?}", sloped.gathered(n));
+            assert!(
+                (sloped.gathered(n)[0] - expected).abs() < 5e-3,
+                "{n:?}: {:?}",
+                sloped.gathered(n)
+            );
         }
         // Half a sphere of light gives half of it to a wall, all to the floor.
         let sky = map(|[_, y, _]| [if y > 0.0 { 1.0 } else { 0.0 }; 3]);

@@ -1,7 +1,7 @@
 //! The illumination models by name.
 //!
-//! *Illumination* is how much light leaves one point of a surface; *shading* is where it is computed and how it is spread
-//! over a polygon. The two choices are independent.
+//! *Illumination* is how much light leaves one point of a surface; *shading* is where it is
+//! computed and how it is spread over a polygon. The two choices are independent.
 
 use crate::Reflectance;
 use serde::{Deserialize, Serialize};
@@ -36,8 +36,15 @@ pub struct UnknownIllumination(pub String);
 
 impl Illumination {
     /// Every model, the simplest first.
-    pub const ALL: [Self; 7] =
-        [Self::Auto, Self::Constant, Self::Ambient, Self::Lambert, Self::Phong, Self::BlinnPhong, Self::CookTorrance];
+    pub const ALL: [Self; 7] = [
+        Self::Auto,
+        Self::Constant,
+        Self::Ambient,
+        Self::Lambert,
+        Self::Phong,
+        Self::BlinnPhong,
+        Self::CookTorrance,
+    ];
 
     /// The name in files and on the command line.
     pub fn name(self) -> &'static str {
@@ -55,7 +62,9 @@ impl Illumination {
     /// One line for lists.
     pub fn description(self) -> &'static str {
         match self {
-            Self::Auto => "what the material asks for: Cook-Torrance for metallic-roughness, Phong for the others",
+            Self::Auto => {
+                "what the material asks for: Cook-Torrance for metallic-roughness, Phong for the others"
+            }
             Self::Constant => "self-luminous: one colour per object, no lights",
             Self::Ambient => "ambient light alone",
             Self::Lambert => "ambient and diffuse reflection, the same from every side",
@@ -65,7 +74,8 @@ impl Illumination {
         }
     }
 
-    /// The model to compute for a surface: `self`, or for [`Illumination::Auto`] the one that fits the coefficients.
+    /// The model to compute for a surface: `self`, or for [`Illumination::Auto`] the one that fits
+    /// the coefficients.
     #[must_use]
     pub fn for_reflectance(self, reflectance: &Reflectance) -> Self {
         match (self, reflectance) {
@@ -86,7 +96,10 @@ impl FromStr for Illumination {
     type Err = UnknownIllumination;
 
     fn from_str(name: &str) -> Result<Self, UnknownIllumination> {
-        Self::ALL.into_iter().find(|model| model.name() == name).ok_or_else(|| UnknownIllumination(name.into()))
+        Self::ALL
+            .into_iter()
+            .find(|model| model.name() == name)
+            .ok_or_else(|| UnknownIllumination(name.into()))
     }
 }
 
@@ -102,14 +115,21 @@ mod tests {
             assert!(!model.description().is_empty() && !model.description().contains('\n'));
         }
         let error = "gouraud".parse::<Illumination>().unwrap_err().to_string();
-        assert!(error.contains("`gouraud`") && error.contains("lambert, phong, blinn-phong"), "{error}");
+        assert!(
+            error.contains("`gouraud`") && error.contains("lambert, phong, blinn-phong"),
+            "{error}"
+        );
     }
 
     #[test]
     fn auto_follows_the_material() {
-        let metal = Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 1.0, roughness: 0.5 };
+        let metal =
+            Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 1.0, roughness: 0.5 };
         assert_eq!(Illumination::Auto.for_reflectance(&metal), Illumination::CookTorrance);
-        assert_eq!(Illumination::Auto.for_reflectance(&Reflectance::default()), Illumination::Phong);
+        assert_eq!(
+            Illumination::Auto.for_reflectance(&Reflectance::default()),
+            Illumination::Phong
+        );
         assert_eq!(Illumination::Lambert.for_reflectance(&metal), Illumination::Lambert);
     }
 }

@@ -1,10 +1,11 @@
-//! Floor 1: light meets surface. Lights, materials and the formulas of reflection, written once and used by every
-//! renderer of the house, for one point or for eight at a time.
+//! Floor 1: light meets surface. Lights, materials and the formulas of reflection, written once and
+//! used by every renderer of the house, for one point or for eight at a time.
 //!
-//! The formulas are generic over [`vitral_math::lanes::Lanes`], so a vertex (`f32`) and eight pixels run the same lines
-//! and get the same bits. `docs/materials.md` explains the conventions.
+//! The formulas are generic over [`vitral_math::lanes::Lanes`], so a vertex (`f32`) and eight
+//! pixels run the same lines and get the same bits. `docs/materials.md` explains the conventions.
 //!
-//! Scale: a white Lambert surface that faces a directional light of intensity 1 reflects 1. There is no `1/π`.
+//! Scale: a white Lambert surface that faces a directional light of intensity 1 reflects 1. There
+//! is no `1/π`.
 #![forbid(unsafe_code)]
 
 mod area;

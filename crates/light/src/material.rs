@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use vitral_frame::Sampler;
 use vitral_math::color::linear_from_srgb;
 
-/// A surface's optical properties. All colours are linear RGB coefficients, but for [`srgb_colors`](Self::srgb_colors).
+/// A surface's optical properties. All colours are linear RGB coefficients, but for
+/// [`srgb_colors`](Self::srgb_colors).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Material {
@@ -16,23 +17,26 @@ pub struct Material {
     /// The colours are those of displays (sRGB), as programs write them into MTL files, until
     /// [`decode_colors`](Self::decode_colors) makes coefficients of them.
     pub srgb_colors: bool,
-    /// The diffuse (or base) colour that the file gave beside a base texture, which is shown alone. Linear RGB, but for
-    /// [`srgb_colors`](Self::srgb_colors).
+    /// The diffuse (or base) colour that the file gave beside a base texture, which is shown alone.
+    /// Linear RGB, but for [`srgb_colors`](Self::srgb_colors).
     pub texture_tint: Option<Rgb>,
     /// Light that the surface sends out by itself (ki), RGB.
     pub emission: Rgb,
     /// 1: opaque, 0: invisible. With `kt` of the course, `opacity = 1 - kt`.
     pub opacity: f32,
-    /// What a blended surface lets through at its silhouette in Kay's model (`kmin`), 0 to 1; no more than `kt` counts.
+    /// What a blended surface lets through at its silhouette in Kay's model (`kmin`), 0 to 1; no
+    /// more than `kt` counts.
     pub kt_min: f32,
     /// How `opacity`, and the alpha of the base texture, are used.
     pub alpha_mode: AlphaMode,
     /// What kind of transparency the surface has.
     pub transmission: Transmission,
-    /// `opacity` is that of glass, not of a surface with holes: highlights stay whole, and what the surface mirrors (Fresnel)
-    /// does not pass, so that clear bodies have a rim. Metal lets nothing pass.
+    /// `opacity` is that of glass, not of a surface with holes: highlights stay whole, and what the
+    /// surface mirrors (Fresnel) does not pass, so that clear bodies have a rim. Metal lets nothing
+    /// pass.
     pub glass: bool,
-    /// Colour of coloured glass: how much of each colour passes of the light that `1 - opacity` lets through.
+    /// Colour of coloured glass: how much of each colour passes of the light that `1 - opacity`
+    /// lets through.
     pub filter: Rgb,
     /// Index of refraction, above 0; 1 bends no light.
     pub ior: f32,
@@ -40,8 +44,9 @@ pub struct Material {
     pub mirror: bool,
     /// Both sides are visible and lit, whatever the mesh's closedness.
     pub double_sided: bool,
-    /// Seen from the front alone, as glTF's `doubleSided: false` has it: the viewer looks through its back faces. Shadows, rays and
-    /// radiosity take it as solid. Counts for nothing where `double_sided` is set.
+    /// Seen from the front alone, as glTF's `doubleSided: false` has it: the viewer looks through
+    /// its back faces. Shadows, rays and radiosity take it as solid. Counts for nothing where
+    /// `double_sided` is set.
     pub front_only: bool,
     /// Shown with its base colour alone, without any light.
     pub unlit: bool,
@@ -51,8 +56,8 @@ pub struct Material {
     pub specular_texture: Option<TextureRef>,
     /// Multiplies `emission`.
     pub emission_texture: Option<TextureRef>,
-    /// Its red channel multiplies `opacity` (`map_d`): of `glass` how much light the surface keeps, of all else how much of
-    /// the surface there is.
+    /// Its red channel multiplies `opacity` (`map_d`): of `glass` how much light the surface keeps,
+    /// of all else how much of the surface there is.
     pub opacity_texture: Option<TextureRef>,
     /// Green multiplies roughness, blue multiplies metallic (glTF).
     pub metallic_roughness_texture: Option<TextureRef>,
@@ -60,8 +65,8 @@ pub struct Material {
     pub occlusion_texture: Option<TextureRef>,
     /// How much the occlusion texture counts, 0 to 1.
     pub occlusion_strength: f32,
-    /// Normals in tangent space, `0..=255` for `-1..=1`: red along growing u, green along falling v, which is upwards in the
-    /// picture, blue outwards.
+    /// Normals in tangent space, `0..=255` for `-1..=1`: red along growing u, green along falling
+    /// v, which is upwards in the picture, blue outwards.
     pub normal_texture: Option<TextureRef>,
     /// Scales x and y of the normal texture.
     pub normal_scale: f32,
@@ -101,7 +106,12 @@ impl Default for Material {
 
 /// Reflection coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "form", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
+#[serde(
+    tag = "form",
+    rename_all = "kebab-case",
+    rename_all_fields = "kebab-case",
+    deny_unknown_fields
+)]
 pub enum Reflectance {
     /// The empirical model's: ambient, diffuse and specular coefficients and the exponent `n`.
     Phong {
@@ -133,12 +143,18 @@ impl Default for Reflectance {
 
 /// How opacity is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "mode", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
+#[serde(
+    tag = "mode",
+    rename_all = "kebab-case",
+    rename_all_fields = "kebab-case",
+    deny_unknown_fields
+)]
 pub enum AlphaMode {
     /// Not at all: the surface is opaque.
     #[default]
     Opaque,
-    /// Cut-out: fully there where opacity reaches `cutoff` (see [`AlphaMode::least_opacity`]), gone elsewhere.
+    /// Cut-out: fully there where opacity reaches `cutoff` (see [`AlphaMode::least_opacity`]), gone
+    /// elsewhere.
     Mask {
         /// The threshold, usually 0.5.
         cutoff: f32,
@@ -148,8 +164,8 @@ pub enum AlphaMode {
 }
 
 impl AlphaMode {
-    /// The opacity from which on a cut-out surface is there: its cutoff less what interpolation may round away, so that a
-    /// surface whose opacity is its cutoff everywhere has no holes.
+    /// The opacity from which on a cut-out surface is there: its cutoff less what interpolation may
+    /// round away, so that a surface whose opacity is its cutoff everywhere has no holes.
     pub fn least_opacity(cutoff: f32) -> f32 {
         cutoff - 1.0 / (1u32 << 20) as f32
     }
@@ -162,7 +178,8 @@ pub enum Transmission {
     /// Light passes along a straight or refracted ray: things behind are seen sharply.
     #[default]
     Transparent,
-    /// Light is scattered on its way: things behind are blurred, as much as highlights are wide (shininess, roughness).
+    /// Light is scattered on its way: things behind are blurred, as much as highlights are wide
+    /// (shininess, roughness).
     Translucent,
 }
 
@@ -205,17 +222,22 @@ impl Material {
 }
 
 impl Material {
-    /// What number of the material has no meaning, for those who read materials that somebody wrote by hand and can say so.
-    /// Models bring such numbers; they are drawn as well as can be.
+    /// What number of the material has no meaning, for those who read materials that somebody wrote
+    /// by hand and can say so. Models bring such numbers; they are drawn as well as can be.
     ///
     /// # Errors
     /// Which it is, and what is required.
     pub fn check(&self) -> Result<(), String> {
         let unit = |value: f32| (0.0..=1.0).contains(&value);
         let positive = |value: f32| value >= 0.0 && value.is_finite();
-        let bad = |what: &str, value: f32, required: &str| Err(format!("{what} {value}: {required} is required"));
-        let shares =
-            [("opacity", self.opacity), ("kt-min", self.kt_min), ("occlusion-strength", self.occlusion_strength)];
+        let bad = |what: &str, value: f32, required: &str| {
+            Err(format!("{what} {value}: {required} is required"))
+        };
+        let shares = [
+            ("opacity", self.opacity),
+            ("kt-min", self.kt_min),
+            ("occlusion-strength", self.occlusion_strength),
+        ];
         let (mut shares, mut colors) = (shares.to_vec(), vec![("emission", self.emission)]);
         match self.reflectance {
             Reflectance::Phong { ka, kd, ks, shininess } => {
@@ -235,7 +257,8 @@ impl Material {
         if let Some(&part) = self.filter.iter().find(|part| !unit(**part)) {
             return bad("filter", part, "0 to 1 in each channel");
         }
-        let channels = colors.iter().flat_map(|(what, color)| color.map(|channel| (*what, channel)));
+        let channels =
+            colors.iter().flat_map(|(what, color)| color.map(|channel| (*what, channel)));
         match channels.into_iter().find(|(_, channel)| !positive(*channel)) {
             Some((what, channel)) => bad(what, channel, "a number of at least 0"),
             None => Ok(()),
@@ -261,8 +284,8 @@ impl Material {
         self.texture_tint.iter_mut().for_each(decode);
     }
 
-    /// Lets the colour that the file gave beside the base texture multiply it, as the letter of MTL has it. Changes nothing
-    /// where there is none.
+    /// Lets the colour that the file gave beside the base texture multiply it, as the letter of MTL
+    /// has it. Changes nothing where there is none.
     pub fn multiply_texture(&mut self) {
         let Some(tint) = self.texture_tint.take() else { return };
         match &mut self.reflectance {
@@ -291,7 +314,8 @@ impl Material {
 }
 
 impl Material {
-    /// The course's transmission coefficient `kt`: 0 opaque, 1 fully transparent. `opacity`, the A of RGBA, is `1 - kt`.
+    /// The course's transmission coefficient `kt`: 0 opaque, 1 fully transparent. `opacity`, the A
+    /// of RGBA, is `1 - kt`.
     pub fn kt(&self) -> f32 {
         1.0 - self.opacity
     }
@@ -302,8 +326,9 @@ impl Material {
     }
 }
 
-/// The self-luminous model, `I = ki`: one value for the whole object, whatever the lights are. `ki` is the emission; a
-/// material that emits nothing shows its diffuse or base colour instead, so that the model draws every scene.
+/// The self-luminous model, `I = ki`: one value for the whole object, whatever the lights are. `ki`
+/// is the emission; a material that emits nothing shows its diffuse or base colour instead, so that
+/// the model draws every scene.
 pub fn constant_color(material: &Material) -> Rgb {
     if material.emission.iter().any(|&channel| channel != 0.0) {
         return material.emission;
@@ -321,7 +346,12 @@ mod tests {
     #[test]
     fn display_colours_become_coefficients_once() {
         let mut material = Material {
-            reflectance: Reflectance::Phong { ka: [0.2; 3], kd: [0.69, 0.2, 0.0], ks: [1.0; 3], shininess: 10.0 },
+            reflectance: Reflectance::Phong {
+                ka: [0.2; 3],
+                kd: [0.69, 0.2, 0.0],
+                ks: [1.0; 3],
+                shininess: 10.0,
+            },
             srgb_colors: true,
             texture_tint: Some([0.5; 3]),
             emission: [5.0, 0.5, 0.0],
@@ -329,9 +359,17 @@ mod tests {
         };
         let written = material.clone();
         material.decode_colors();
-        let Reflectance::Phong { kd, ks, .. } = material.reflectance else { panic!("the form stays") };
-        assert!((kd[0] - 0.433_6).abs() < 1e-3 && (kd[1] - 0.033_1).abs() < 1e-3 && kd[2] == 0.0, "{kd:?}");
-        assert!(ks == [1.0; 3] && material.emission[0] == 5.0, "what a display shows whole, or cannot show, stays");
+        let Reflectance::Phong { kd, ks, .. } = material.reflectance else {
+            panic!("the form stays")
+        };
+        assert!(
+            (kd[0] - 0.433_6).abs() < 1e-3 && (kd[1] - 0.033_1).abs() < 1e-3 && kd[2] == 0.0,
+            "{kd:?}"
+        );
+        assert!(
+            ks == [1.0; 3] && material.emission[0] == 5.0,
+            "what a display shows whole, or cannot show, stays"
+        );
         assert!((material.emission[1] - 0.214).abs() < 1e-3);
         let decoded = material.clone();
         material.decode_colors();
@@ -347,8 +385,11 @@ mod tests {
     fn p30_the_constant_model_is_one_value_per_object() {
         let mut material = Material::default();
         assert_eq!(constant_color(&material), [0.8; 3]);
-        material.reflectance =
-            Reflectance::MetallicRoughness { base_color: [1.0, 0.5, 0.0], metallic: 1.0, roughness: 0.2 };
+        material.reflectance = Reflectance::MetallicRoughness {
+            base_color: [1.0, 0.5, 0.0],
+            metallic: 1.0,
+            roughness: 0.2,
+        };
         assert_eq!(constant_color(&material), [1.0, 0.5, 0.0]);
         material.emission = [0.0, 0.0, 0.3];
         assert_eq!(constant_color(&material), [0.0, 0.0, 0.3]);
@@ -364,7 +405,8 @@ mod tests {
 
     #[test]
     fn t1_both_kinds_of_transmission_can_be_set() {
-        for (name, expected) in [("transparent", Transmission::Transparent), ("translucent", Transmission::Translucent)]
+        for (name, expected) in
+            [("transparent", Transmission::Transparent), ("translucent", Transmission::Translucent)]
         {
             let json = format!(r#"{{"transmission": "{name}", "opacity": 0.5}}"#);
             let material: Material = serde_json::from_str(&json).unwrap();
@@ -374,8 +416,17 @@ mod tests {
 
     #[test]
     fn numbers_without_meaning_are_told() {
-        let phong = |ks: f32, shininess| Reflectance::Phong { ka: [0.1; 3], kd: [0.5; 3], ks: [ks; 3], shininess };
-        let rough = |metallic, roughness| Reflectance::MetallicRoughness { base_color: [2.0; 3], metallic, roughness };
+        let phong = |ks: f32, shininess| Reflectance::Phong {
+            ka: [0.1; 3],
+            kd: [0.5; 3],
+            ks: [ks; 3],
+            shininess,
+        };
+        let rough = |metallic, roughness| Reflectance::MetallicRoughness {
+            base_color: [2.0; 3],
+            metallic,
+            roughness,
+        };
         let told = |reflectance| Material { reflectance, ..Material::default() }.check();
         assert_eq!([told(phong(3.0, 0.0)), told(rough(0.0, 1.0))], [Ok(()), Ok(())]);
         for (reflectance, expected) in [
@@ -394,7 +445,8 @@ mod tests {
 
     #[test]
     fn textures_can_be_visited() {
-        let mut material = Material { base_texture: Some(TextureRef::new(3)), ..Material::default() };
+        let mut material =
+            Material { base_texture: Some(TextureRef::new(3)), ..Material::default() };
         for texture in material.textures_mut() {
             texture.texture += 1;
         }

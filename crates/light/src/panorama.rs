@@ -1,8 +1,9 @@
 //! An image of all directions: latitude and longitude on a rectangle (equirectangular).
 //!
-//! The columns are longitudes, the rows latitudes. The middle of the image lies in the direction -z, the quarter to its right in +x, the
-//! upper edge is +y: somebody who looks along -z, with y upwards, sees it as it is. Values between texel centres are interpolated
-//! linearly in both axes; columns go round, rows end at the poles.
+//! The columns are longitudes, the rows latitudes. The middle of the image lies in the direction
+//! -z, the quarter to its right in +x, the upper edge is +y: somebody who looks along -z, with y
+//! upwards, sees it as it is. Values between texel centres are interpolated linearly in both axes;
+//! columns go round, rows end at the poles.
 //!
 //! In:   linear RGB, row by row from the top. Out: the colour in a direction.
 //! Cost: two inverse functions of angles and four texels a lookup.
@@ -26,8 +27,8 @@ pub struct Panorama {
 }
 
 impl Panorama {
-    /// The image of `width` by `height` texels; `None` if it has none, or another number of them. What is negative or no
-    /// number counts as black.
+    /// The image of `width` by `height` texels; `None` if it has none, or another number of them.
+    /// What is negative or no number counts as black.
     pub fn new(width: usize, height: usize, mut texels: Vec<Rgb>) -> Option<Self> {
         if texels.is_empty() || width.checked_mul(height) != Some(texels.len()) {
             return None;
@@ -48,7 +49,11 @@ impl Panorama {
     }
 
     /// An image of this size whose texels are what `color` says of their directions (unit).
-    pub(crate) fn by_direction(width: usize, height: usize, color: impl Fn([f32; 3]) -> Rgb) -> Self {
+    pub(crate) fn by_direction(
+        width: usize,
+        height: usize,
+        color: impl Fn([f32; 3]) -> Rgb,
+    ) -> Self {
         let texel = |i: usize| color(direction(i % width, i / width, [width, height]));
         Self { width, height, texels: (0..width * height).map(texel).collect() }
     }
@@ -60,7 +65,8 @@ impl Panorama {
         let mean = |i: usize| {
             let (x, y) = (i % width * 2, i / width * 2);
             let (right, below) = ((x + 1).min(self.width - 1), (y + 1).min(self.height - 1));
-            let four = [(x, y), (right, y), (x, below), (right, below)].map(|(x, y)| self.texels[y * self.width + x]);
+            let four = [(x, y), (right, y), (x, below), (right, below)]
+                .map(|(x, y)| self.texels[y * self.width + x]);
             [0, 1, 2].map(|k| (four[0][k] + four[1][k] + four[2][k] + four[3][k]) * 0.25)
         };
         Self { width, height, texels: (0..width * height).map(mean).collect() }
@@ -70,7 +76,8 @@ impl Panorama {
     pub fn at(&self, [x, y, z]: [f32; 3]) -> Rgb {
         let longitude = func::atan2_32(x, -z) * (0.5 * FRAC_1_PI) + 0.5;
         let latitude = func::acos32(y.clamp(-1.0, 1.0)) * FRAC_1_PI;
-        let (column, row) = (longitude * self.width as f32 - 0.5, latitude * self.height as f32 - 0.5);
+        let (column, row) =
+            (longitude * self.width as f32 - 0.5, latitude * self.height as f32 - 0.5);
         let (left, above) = (column.floor(), row.floor());
         let (right_part, lower_part) = (column - left, row - above);
         let columns = [left, left + 1.0].map(|c| (c as i64).rem_euclid(self.width as i64) as usize);
@@ -83,12 +90,14 @@ impl Panorama {
         [0, 1, 2].map(|k| upper[k] + (lower[k] - upper[k]) * lower_part)
     }
 
-    /// Each texel with its direction (unit) and the part of the sphere that it fills; the parts sum up to 1.
+    /// Each texel with its direction (unit) and the part of the sphere that it fills; the parts sum
+    /// up to 1.
     pub(crate) fn parts(&self) -> impl Iterator<Item = ([f32; 3], Rgb, f32)> + '_ {
         let size = [self.width, self.height];
         let edge = |row: usize| func::cos(std::f64::consts::PI * row as f64 / self.height as f64);
-        let parts: Vec<f32> =
-            (0..self.height).map(|row| ((edge(row) - edge(row + 1)) * 0.5 / self.width as f64) as f32).collect();
+        let parts: Vec<f32> = (0..self.height)
+            .map(|row| ((edge(row) - edge(row + 1)) * 0.5 / self.width as f64) as f32)
+            .collect();
         let texel = move |(i, &color): (usize, &Rgb)| {
             let row = i / size[0];
             (direction(i % size[0], row, size), color, parts[row])
@@ -117,17 +126,23 @@ mod tests {
     #[test]
     fn directions_meet_their_texels() {
         let image = numbered();
-        // Centres of the columns are 45 degrees beside the axes, those of the rows 45 degrees above and below the horizon.
+        // Centres of the columns are 45 degrees beside the axes, those of the rows 45 degrees above
+        // and below the horizon.
         let (side, up) = (0.5, 0.5f32.sqrt());
-        let cases =
-            [([-side, up, side], 0.0), ([-side, up, -side], 1.0), ([side, up, -side], 2.0), ([side, -up, side], 7.0)];
+        let cases = [
+            ([-side, up, side], 0.0),
+            ([-side, up, -side], 1.0),
+            ([side, up, -side], 2.0),
+            ([side, -up, side], 7.0),
+        ];
         for (towards, number) in cases {
             assert!((image.at(towards)[0] - number).abs() < 1e-5, "{towards:?}");
         }
         for i in 0..8 {
             assert!((image.at(direction(i % 4, i / 4, [4, 2]))[0] - i as f32).abs() < 1e-5);
         }
-        // Straight ahead between the two in the middle, straight back between the last column and the first.
+        // Straight ahead between the two in the middle, straight back between the last column and
+        // the first.
         assert!((image.at([0.0, up, -up])[0] - 1.5).abs() < 1e-5);
         assert!((image.at([0.0, up, up])[0] - 1.5).abs() < 1e-5);
     }
@@ -142,7 +157,10 @@ mod tests {
 
     #[test]
     fn sizes_and_values_are_checked() {
-        assert!(Panorama::new(2, 2, vec![[0.0; 3]; 3]).is_none() && Panorama::new(0, 0, Vec::new()).is_none());
+        assert!(
+            Panorama::new(2, 2, vec![[0.0; 3]; 3]).is_none()
+                && Panorama::new(0, 0, Vec::new()).is_none()
+        );
         let odd = Panorama::new(1, 1, vec![[f32::NAN, -1.0, f32::INFINITY]]).unwrap();
         assert_eq!(odd.at([0.0, 1.0, 0.0]), [0.0, 0.0, BRIGHTEST]);
         let wide = Panorama::new(10_000, 1, vec![[0.5; 3]; 10_000]).unwrap();

@@ -1,13 +1,15 @@
 //! The empirical models: ambient, Lambert, Phong, Blinn–Phong.
 //!
-//! What a surface reflects is the sum of three parts. Ambient light, which comes from everywhere, is reflected in the
-//! proportion `ka`. Light from a source spreads evenly in all directions (diffuse), in proportion to `kd` and to how much
-//! of the beam the tilted surface catches, `cos θ = N·L`. And a glossy surface sends a beam round the mirror direction `R`
-//! (specular), which fades with the angle to the viewer like `cos^n`; Blinn measures the angle between the normal and the vector
-//! half way between light and viewer instead, which is four times as tolerant with the exponent.
+//! What a surface reflects is the sum of three parts. Ambient light, which comes from everywhere,
+//! is reflected in the proportion `ka`. Light from a source spreads evenly in all directions
+//! (diffuse), in proportion to `kd` and to how much of the beam the tilted surface catches,
+//! `cos θ = N·L`. And a glossy surface sends a beam round the mirror direction `R` (specular),
+//! which fades with the angle to the viewer like `cos^n`; Blinn measures the angle between the
+//! normal and the vector half way between light and viewer instead, which is four times as tolerant
+//! with the exponent.
 //!
-//! `I = Ia ka + Σj S_j f_j [ I_j kd max(0, N·L) + I_j ks max(0, R·V)^n ]`, the specular term 0 unless `N·L > 0`; the ambient
-//! colour of each light adds to `Ia`, attenuated but not shadowed.
+//! `I = Ia ka + Σj S_j f_j [ I_j kd max(0, N·L) + I_j ks max(0, R·V)^n ]`, the specular term 0
+//! unless `N·L > 0`; the ambient colour of each light adds to `Ia`, attenuated but not shadowed.
 //!
 //! In:   lights and a point in one space; coefficients in linear RGB.
 //! Out:  linear RGB, diffuse and specular apart.
@@ -34,11 +36,13 @@ pub struct Phong<T> {
 
 /// What a point reflects by an empirical model.
 ///
-/// `illumination` chooses the terms: [`Illumination::Ambient`], [`Illumination::Lambert`], [`Illumination::Phong`] or
-/// [`Illumination::BlinnPhong`]. [`Illumination::Constant`] reflects nothing (see [`crate::constant_color`]); the others
-/// count as Phong. `visibility(j)` says how much of each colour of light `j` is not in shadow, `0..=1`; it does not touch ambient light.
-/// A light is in front of the surface where `N·L` is more than what `grazing` says, usually 0; where rounding decides whether a light
-/// in the surface's plane is in front, [`PreparedLight::direction_rounding`] keeps highlights from coming in specks.
+/// `illumination` chooses the terms: [`Illumination::Ambient`], [`Illumination::Lambert`],
+/// [`Illumination::Phong`] or [`Illumination::BlinnPhong`]. [`Illumination::Constant`] reflects
+/// nothing (see [`crate::constant_color`]); the others count as Phong. `visibility(j)` says how
+/// much of each colour of light `j` is not in shadow, `0..=1`; it does not touch ambient light. A
+/// light is in front of the surface where `N·L` is more than what `grazing` says, usually 0; where
+/// rounding decides whether a light in the surface's plane is in front,
+/// [`PreparedLight::direction_rounding`] keeps highlights from coming in specks.
 #[inline(always)]
 pub fn phong<T: Lanes>(
     illumination: Illumination,
@@ -50,7 +54,8 @@ pub fn phong<T: Lanes>(
     grazing: impl Fn(&PreparedLight) -> T,
 ) -> Reflected<T> {
     let zero = s.n.x.splat(0.0);
-    let mut sum = Reflected { diffuse: tint(k.ka, global_ambient), specular: V3::new(zero, zero, zero) };
+    let mut sum =
+        Reflected { diffuse: tint(k.ka, global_ambient), specular: V3::new(zero, zero, zero) };
     if illumination == Illumination::Constant {
         return Reflected { diffuse: sum.specular, ..sum };
     }
@@ -64,7 +69,8 @@ pub fn phong<T: Lanes>(
             continue;
         }
 
-        // Diffuse: the beam spreads over 1/cos of its width, and not over the back. Area lights send many beams.
+        // Diffuse: the beam spreads over 1/cos of its width, and not over the back. Area lights
+        // send many beams.
         let n_l = s.n.dot(incident.l).positive();
         let visible = visibility(j);
         let arriving = visible.scale(incident.intensity);
@@ -87,7 +93,8 @@ pub fn phong<T: Lanes>(
             _ => reflect(s.n, incident.l).dot(s.v),
         };
 
-        // Away from the mirror direction the power is 0 (unless the exponent is), and need not be computed.
+        // Away from the mirror direction the power is 0 (unless the exponent is), and need not be
+        // computed.
         let shining = in_front & (zero.lt(cos) | shininess.le(zero));
         if !T::any(shining) {
             continue;
@@ -121,7 +128,15 @@ mod tests {
             ks: V3::splat(0.0, [1.0; 3]),
             shininess,
         };
-        let r = phong(illumination, &[sun(from)], [0.2; 3], &s, &k, |_| V3::new(1.0, 1.0, 1.0), |_| 0.0);
+        let r = phong(
+            illumination,
+            &[sun(from)],
+            [0.2; 3],
+            &s,
+            &k,
+            |_| V3::new(1.0, 1.0, 1.0),
+            |_| 0.0,
+        );
         (r.diffuse.x, r.specular.x)
     }
 
@@ -137,7 +152,8 @@ mod tests {
 
     #[test]
     fn e13_a_light_behind_gives_exactly_nothing() {
-        // Exponent 0 would be 1 everywhere without the clamp; grazing light from behind has R close to V for Blinn.
+        // Exponent 0 would be 1 everywhere without the clamp; grazing light from behind has R close
+        // to V for Blinn.
         for from in [[0.0, 0.0, -1.0], [1.0, 0.0, -1e-3], [1.0, 0.0, 0.0]] {
             for model in [Illumination::Phong, Illumination::BlinnPhong] {
                 assert_eq!(red(model, from, 0.0), (0.15, 0.0), "{model} from {from:?}");

@@ -1,13 +1,15 @@
 //! Refraction: the direction of a ray behind the surface between two media.
 //!
-//! Light is slower in the denser medium, so a ray that meets the surface at an angle bends: `η1 sin θi = η2 sin θt`. With
-//! `L` from the point back along the ray, `N` on the side of `L` and `ηr = η1 / η2`, the part of the transmitted vector
-//! in the surface is `-ηr` times that of `L`, and its length is 1, which gives
+//! Light is slower in the denser medium, so a ray that meets the surface at an angle bends:
+//! `η1 sin θi = η2 sin θt`. With `L` from the point back along the ray, `N` on the side of `L` and
+//! `ηr = η1 / η2`, the part of the transmitted vector in the surface is `-ηr` times that of `L`,
+//! and its length is 1, which gives
 //!
 //! `T = [ηr (N·L) - √(1 - ηr² (1 - (N·L)²))] N - ηr L`.
 //!
-//! Where the radicand is negative no direction has the length 1: nothing passes, the surface reflects everything (total
-//! internal reflection). On the way out the caller turns `N` round, so that `N·L` stays positive, and swaps the media.
+//! Where the radicand is negative no direction has the length 1: nothing passes, the surface
+//! reflects everything (total internal reflection). On the way out the caller turns `N` round, so
+//! that `N·L` stays positive, and swaps the media.
 //!
 //! In:   unit vectors in one space, indices of refraction. Out: a unit vector.
 //! Cost: one square root.
@@ -15,16 +17,18 @@
 
 use vitral_math::DVec3;
 
-/// The unit direction in which a ray goes on that came from the unit direction `l` (towards where it came from) through a
-/// surface with unit normal `n`, `n·l ≥ 0`; `eta_r = η1 / η2` with `l` in medium 1. `None`: total internal reflection.
+/// The unit direction in which a ray goes on that came from the unit direction `l` (towards where
+/// it came from) through a surface with unit normal `n`, `n·l ≥ 0`; `eta_r = η1 / η2` with `l` in
+/// medium 1. `None`: total internal reflection.
 pub fn transmitted(n: DVec3, l: DVec3, eta_r: f64) -> Option<DVec3> {
     let cos_i = n.dot(l);
     let radicand = 1.0 - eta_r * eta_r * (1.0 - cos_i * cos_i);
     (radicand >= 0.0).then(|| n * (eta_r * cos_i - radicand.sqrt()) - l * eta_r)
 }
 
-/// The share of light that a clear surface reflects, of both polarisations in equal parts, by Fresnel's formulas: of a ray
-/// at these cosines to the normal, before and behind the surface; `eta_r = η1 / η2`.
+/// The share of light that a clear surface reflects, of both polarisations in equal parts, by
+/// Fresnel's formulas: of a ray at these cosines to the normal, before and behind the surface;
+/// `eta_r = η1 / η2`.
 pub fn reflected_share(cos_before: f64, cos_behind: f64, eta_r: f64) -> f64 {
     let across = (eta_r * cos_before - cos_behind) / (eta_r * cos_before + cos_behind);
     let within = (eta_r * cos_behind - cos_before) / (eta_r * cos_behind + cos_before);
@@ -67,7 +71,9 @@ mod tests {
         let snell = func::asin(func::sin(40f64.to_radians()) / 1.5);
         assert!((func::asin(-t.x) - snell).abs() < 1e-12);
         // Between equal media nothing bends.
-        assert!(transmitted(DVec3::Z, tilted(40.0), 1.0).unwrap().abs_diff_eq(-tilted(40.0), 1e-15));
+        assert!(
+            transmitted(DVec3::Z, tilted(40.0), 1.0).unwrap().abs_diff_eq(-tilted(40.0), 1e-15)
+        );
         // Straight on nothing bends either.
         assert_eq!(transmitted(DVec3::Z, DVec3::Z, 0.4), Some(DVec3::NEG_Z));
     }
@@ -87,7 +93,8 @@ mod tests {
         // 4 % head on, whichever way.
         assert!((reflected_share(1.0, 1.0, 1.0 / 1.5) - 0.04).abs() < 1e-12);
         assert!((reflected_share(1.0, 1.0, 1.5) - 0.04).abs() < 1e-12);
-        // At Brewster's angle, whose tangent is 1.5, one polarisation passes whole: half of (1.25 / 3.25)^2 is left.
+        // At Brewster's angle, whose tangent is 1.5, one polarisation passes whole: half of (1.25 /
+        // 3.25)^2 is left.
         let (before, behind) = (1.0 / 3.25f64.sqrt(), 1.5 / 3.25f64.sqrt());
         let half = 0.5 * (1.25f64 / 3.25) * (1.25 / 3.25);
         assert!((reflected_share(before, behind, 1.0 / 1.5) - half).abs() < 1e-12);

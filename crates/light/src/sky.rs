@@ -1,15 +1,18 @@
 //! What polished surfaces mirror where nothing else is there: a soft sky over a darker ground.
 //!
-//! A metal has no colour of its own, it shows its surroundings. With lights alone all of a polished body but its highlights is
-//! of one tone, and its form is lost. A bright sky, a horizon and a ground give each direction its own value.
+//! A metal has no colour of its own, it shows its surroundings. With lights alone all of a polished
+//! body but its highlights is of one tone, and its form is lost. A bright sky, a horizon and a
+//! ground give each direction its own value.
 //!
-//! Idea: the colour depends on the height `y` of the mirror direction over the horizon alone: it runs from the horizon to the
-//! zenith, and from the horizon to the nadir, and a smooth step at the horizon leads from ground to sky. A rough surface mixes
-//! directions, so the step widens with roughness. How much is mirrored is Schlick's term with the rim of rough surfaces
-//! lowered: `F0 + (max(1 - roughness, F0) - F0) (1 - N·V)^5`.
+//! Idea: the colour depends on the height `y` of the mirror direction over the horizon alone: it
+//! runs from the horizon to the zenith, and from the horizon to the nadir, and a smooth step at the
+//! horizon leads from ground to sky. A rough surface mixes directions, so the step widens with
+//! roughness. How much is mirrored is Schlick's term with the rim of rough surfaces lowered:
+//! `F0 + (max(1 - roughness, F0) - F0) (1 - N·V)^5`.
 //!
 //! In:   a point, its microfacet coefficients, the upward direction in the space of both.
-//! Out:  mirrored light, linear RGB; a white mirror that sees as much sky as ground mirrors about 0.5 on average.
+//! Out:  mirrored light, linear RGB; a white mirror that sees as much sky as ground mirrors about
+//!       0.5 on average.
 //! Cost: constant, no transcendental function.
 //! Source: \[Lagarde 2011\] for the Fresnel term; the sky is ours.
 
@@ -17,12 +20,14 @@ use crate::cook_torrance::{DIELECTRIC_F0, Microfacet};
 use crate::{Rgb, Surface, reflect};
 use vitral_math::lanes::{Lanes, V3};
 
-/// Linear RGB straight up, at the horizon on the sky's side, on the ground's side, and straight down.
+/// Linear RGB straight up, at the horizon on the sky's side, on the ground's side, and straight
+/// down.
 const ZENITH: Rgb = [0.55, 0.66, 0.85];
 const SKY_HORIZON: Rgb = [1.0, 1.0, 1.0];
 const GROUND_HORIZON: Rgb = [0.22, 0.21, 0.20];
 const NADIR: Rgb = [0.10, 0.09, 0.085];
-/// Half the height of the step at the horizon for a perfect mirror, and what full roughness adds to it.
+/// Half the height of the step at the horizon for a perfect mirror, and what full roughness adds to
+/// it.
 const STEP: f32 = 0.05;
 const STEP_ROUGH: f32 = 1.0;
 
@@ -65,7 +70,8 @@ pub(crate) fn mirrored_share<T: Lanes>(s: &Surface<T>, m: &Microfacet<T>) -> V3<
     )
 }
 
-/// The light from directions `y` above the horizon (their sine, `-1..=1`), mixed as roughness mixes them.
+/// The light from directions `y` above the horizon (their sine, `-1..=1`), mixed as roughness mixes
+/// them.
 #[inline(always)]
 fn radiance<T: Lanes>(y: T, roughness: T) -> V3<T> {
     let one = y.splat(1.0);
@@ -91,7 +97,12 @@ mod tests {
     fn mirrored(towards: [f32; 3], metallic: f32, roughness: f32) -> Rgb {
         let v = V3::splat(0.0f32, towards).normalize();
         let s = Surface { position: V3::splat(0.0f32, [0.0; 3]), n: v, v };
-        let m = Microfacet { base_color: V3::splat(0.0f32, [1.0, 0.5, 0.0]), metallic, roughness, occlusion: 1.0 };
+        let m = Microfacet {
+            base_color: V3::splat(0.0f32, [1.0, 0.5, 0.0]),
+            metallic,
+            roughness,
+            occlusion: 1.0,
+        };
         Sky { up: [0.0, 1.0, 0.0] }.mirrored(&s, &m).to_array()
     }
 
@@ -109,8 +120,10 @@ mod tests {
 
     #[test]
     fn roughness_softens_the_horizon() {
-        let contrast =
-            |roughness| mirrored([1.0, 0.1, 0.0], 1.0, roughness)[0] - mirrored([1.0, -0.1, 0.0], 1.0, roughness)[0];
+        let contrast = |roughness| {
+            mirrored([1.0, 0.1, 0.0], 1.0, roughness)[0]
+                - mirrored([1.0, -0.1, 0.0], 1.0, roughness)[0]
+        };
         assert!(contrast(0.0) > 0.7 && contrast(0.5) < 0.4 && contrast(1.0) < 0.2);
         assert!(contrast(1.0) > 0.05, "what faces up is still brighter");
     }

@@ -22,8 +22,8 @@ pub struct Reflected<T> {
     pub specular: V3<T>,
 }
 
-/// The direction into which a mirror with unit normal `n` sends light that comes from the unit direction `l` (which
-/// points towards the light): `R = 2 N (N·L) - L`.
+/// The direction into which a mirror with unit normal `n` sends light that comes from the unit
+/// direction `l` (which points towards the light): `R = 2 N (N·L) - L`.
 #[inline(always)]
 pub fn reflect<T: Lanes>(n: V3<T>, l: V3<T>) -> V3<T> {
     n.scale(n.dot(l) * 2.0) - l

@@ -1,15 +1,19 @@
 //! The arithmetic of one light at one point, term by term: what [`phong`](fn@crate::phong) and
 //! [`cook_torrance`](fn@crate::cook_torrance) add up, for whoever wants to see it.
 //!
-//! The terms come from the very functions that make pictures, asked about one light at a time, so that their sum is what the
-//! picture shows, to the last bit. The factors beside them say how each term comes about.
+//! The terms come from the very functions that make pictures, asked about one light at a time, so
+//! that their sum is what the picture shows, to the last bit. The factors beside them say how each
+//! term comes about.
 //!
 //! In:   a light, a point and its coefficients, in one space. Out: [`LightTerms`].
 //! Cost: twice that of illuminating the point.
 
 use crate::cook_torrance::microfacet_lobe;
 use crate::surface::tint;
-use crate::{Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, Surface, cook_torrance, phong, reflect};
+use crate::{
+    Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, Surface, cook_torrance, phong,
+    reflect,
+};
 use serde::Serialize;
 use std::slice;
 use vitral_math::lanes::V3;
@@ -38,7 +42,8 @@ pub struct LightTerms {
     pub n_l: f32,
     /// What a diffuse surface gets of an area light, in place of `intensity * N·L`.
     pub irradiance: Option<f32>,
-    /// How the light is mirrored, where the model has highlights and the light is in front of the surface.
+    /// How the light is mirrored, where the model has highlights and the light is in front of the
+    /// surface.
     pub highlight: Option<Highlight>,
     /// The light's colours: for the ambient, the diffuse and the specular coefficient.
     pub colors: [Rgb; 3],
@@ -109,7 +114,8 @@ pub fn ambient_term(ka: [f32; 3], ambient: Rgb) -> Rgb {
     tint(V3::from_array(ka), ambient).to_array()
 }
 
-/// What `light` adds by an empirical model; as [`phong`](fn@crate::phong) with [`PreparedLight::direction_rounding`].
+/// What `light` adds by an empirical model; as [`phong`](fn@crate::phong) with
+/// [`PreparedLight::direction_rounding`].
 pub fn phong_terms(
     illumination: Illumination,
     light: &PreparedLight,
@@ -120,29 +126,45 @@ pub fn phong_terms(
     let mut terms = LightTerms::factors(light, s, visibility);
     let (alone, visible) = (without_ambient(light), V3::from_array(visibility));
     let grazing = |light: &PreparedLight| light.direction_rounding(s.position);
-    let reflected = phong(illumination, slice::from_ref(&alone), [0.0; 3], s, k, |_| visible, grazing);
+    let reflected =
+        phong(illumination, slice::from_ref(&alone), [0.0; 3], s, k, |_| visible, grazing);
     terms.set(tint(k.ka, light.ambient).scale(terms.ambient_intensity), &reflected);
-    let mirrors = !matches!(illumination, Illumination::Constant | Illumination::Ambient | Illumination::Lambert);
+    let mirrors = !matches!(
+        illumination,
+        Illumination::Constant | Illumination::Ambient | Illumination::Lambert
+    );
     if mirrors && terms.n_l > light.direction_rounding(s.position) {
-        terms.highlight = Some(highlight(illumination, s, k.shininess.max(0.0), V3::from_array(terms.l)));
+        terms.highlight =
+            Some(highlight(illumination, s, k.shininess.max(0.0), V3::from_array(terms.l)));
     }
     terms
 }
 
 /// The highlight of a light in front of the surface.
-fn highlight(illumination: Illumination, s: &Surface<f32>, shininess: f32, l: V3<f32>) -> Highlight {
+fn highlight(
+    illumination: Illumination,
+    s: &Surface<f32>,
+    shininess: f32,
+    l: V3<f32>,
+) -> Highlight {
     use vitral_math::lanes::Lanes;
     let (r, h) = match illumination {
         Illumination::BlinnPhong => (None, Some((l + s.v).normalize())),
         _ => (Some(reflect(s.n, l)), None),
     };
     let cosine = r.map_or(0.0, |r| r.dot(s.v)) + h.map_or(0.0, |h| s.n.dot(h));
-    let lobe = if cosine > 0.0 || shininess <= 0.0 { cosine.positive().pow(shininess) } else { 0.0 };
+    let lobe =
+        if cosine > 0.0 || shininess <= 0.0 { cosine.positive().pow(shininess) } else { 0.0 };
     Highlight { r: r.map(V3::to_array), h: h.map(V3::to_array), cosine, lobe, fresnel: None }
 }
 
 /// What `light` adds by the physical model; as [`cook_torrance`](fn@crate::cook_torrance).
-pub fn microfacet_terms(light: &PreparedLight, s: &Surface<f32>, m: &Microfacet<f32>, visibility: Rgb) -> LightTerms {
+pub fn microfacet_terms(
+    light: &PreparedLight,
+    s: &Surface<f32>,
+    m: &Microfacet<f32>,
+    visibility: Rgb,
+) -> LightTerms {
     let mut terms = LightTerms::factors(light, s, visibility);
     let (alone, visible) = (without_ambient(light), V3::from_array(visibility));
     let reflected = cook_torrance(slice::from_ref(&alone), [0.0; 3], s, m, |_| visible);
@@ -150,7 +172,8 @@ pub fn microfacet_terms(light: &PreparedLight, s: &Surface<f32>, m: &Microfacet<
     terms.set(tint(ambient, light.ambient).scale(terms.ambient_intensity), &reflected);
     if terms.n_l > 0.0 {
         let found = microfacet_lobe(s, m, V3::from_array(terms.l));
-        let (h, cosine, lobe, fresnel) = (Some(found.h), found.n_h, found.lobe, Some(found.fresnel));
+        let (h, cosine, lobe, fresnel) =
+            (Some(found.h), found.n_h, found.lobe, Some(found.fresnel));
         terms.highlight = Some(Highlight { r: None, h, cosine, lobe, fresnel });
     }
     terms
@@ -178,7 +201,13 @@ mod tests {
 
     fn lights() -> Vec<PreparedLight> {
         let at = dvec3(1.0, 2.0, 1.5);
-        let spot = LightKind::Spot { position: at, direction: -at, cutoff: 0.6, inner: 0.2, exponent: 3.0 };
+        let spot = LightKind::Spot {
+            position: at,
+            direction: -at,
+            cutoff: 0.6,
+            inner: 0.2,
+            exponent: 3.0,
+        };
         let kinds = [
             LightKind::Ambient,
             LightKind::Directional { direction: dvec3(-0.3, -0.2, -1.0) },
@@ -187,7 +216,8 @@ mod tests {
             LightKind::Point { position: DVec3::NEG_Z },
         ];
         let attenuation = Attenuation::Clamped { c1: 0.3, c2: 0.2, c3: 0.1 };
-        let light = |kind| Light { kind, ambient: [0.1, 0.05, 0.0], attenuation, ..Light::default() };
+        let light =
+            |kind| Light { kind, ambient: [0.1, 0.05, 0.0], attenuation, ..Light::default() };
         kinds.map(|kind| PreparedLight::new(&light(kind), &DMat4::IDENTITY).unwrap()).to_vec()
     }
 
@@ -201,12 +231,24 @@ mod tests {
     fn terms_add_up_to_what_the_models_reflect() {
         let (lights, visible) = (lights(), |j: usize| [1.0, 0.5, 1.0 - j as f32 * 0.125]);
         let ka = V3::new(0.3f32, 0.2, 0.1);
-        let k = Phong { ka, kd: V3::new(0.7, 0.6, 0.5), ks: V3::new(0.9, 0.8, 0.7), shininess: 7.5 };
-        let m = Microfacet { base_color: V3::new(0.8, 0.5, 0.2), metallic: 0.4, roughness: 0.5, occlusion: 0.9f32 };
-        let bits = |r: Reflected<f32>| [r.diffuse, r.specular].map(|v| v.to_array().map(f32::to_bits));
+        let k =
+            Phong { ka, kd: V3::new(0.7, 0.6, 0.5), ks: V3::new(0.9, 0.8, 0.7), shininess: 7.5 };
+        let m = Microfacet {
+            base_color: V3::new(0.8, 0.5, 0.2),
+            metallic: 0.4,
+            roughness: 0.5,
+            occlusion: 0.9f32,
+        };
+        let bits =
+            |r: Reflected<f32>| [r.diffuse, r.specular].map(|v| v.to_array().map(f32::to_bits));
         let see = |j| V3::from_array(visible(j));
         for s in (0..20).map(point) {
-            for model in [Illumination::Ambient, Illumination::Lambert, Illumination::Phong, Illumination::BlinnPhong] {
+            for model in [
+                Illumination::Ambient,
+                Illumination::Lambert,
+                Illumination::Phong,
+                Illumination::BlinnPhong,
+            ] {
                 let terms = |(j, light)| phong_terms(model, light, &s, &k, visible(j));
                 let terms: Vec<_> = lights.iter().enumerate().map(terms).collect();
                 let sum = sum_of_terms(ambient_term(k.ka.to_array(), [0.2; 3]), &terms);
@@ -223,11 +265,15 @@ mod tests {
             }
             let terms = |(j, light)| microfacet_terms(light, &s, &m, visible(j));
             let terms: Vec<_> = lights.iter().enumerate().map(terms).collect();
-            let sum = sum_of_terms(ambient_term(m.base_color.scale(m.occlusion).to_array(), [0.2; 3]), &terms);
+            let sum = sum_of_terms(
+                ambient_term(m.base_color.scale(m.occlusion).to_array(), [0.2; 3]),
+                &terms,
+            );
             assert_eq!(bits(sum), bits(cook_torrance(&lights, [0.2; 3], &s, &m, see)));
             for t in terms.iter().filter(|t| t.highlight.is_some()) {
                 let h = t.highlight.unwrap();
-                let expected = h.fresnel.unwrap()[1] * t.colors[2][1] * t.visibility[1] * t.intensity * h.lobe;
+                let expected =
+                    h.fresnel.unwrap()[1] * t.colors[2][1] * t.visibility[1] * t.intensity * h.lobe;
                 assert!((t.specular[1] - expected).abs() <= 1e-6 * expected.max(1.0), "{t:?}");
             }
         }

@@ -1,17 +1,21 @@
 //! Translucent surfaces: light is scattered on its way through.
 //!
-//! A polished pane lets light go on in one direction. A rough one is made of tiny facets that bend it in different
-//! directions, as they also mirror it in different directions: what is behind is blurred, the more the farther it is, and
-//! by the same roughness that makes highlights wide. So the directions in which light leaves lie round the one of clear
-//! glass as a highlight lies round the mirror direction, `cos^n`, with the exponent of the material's highlight: 1 scatters nearly
+//! A polished pane lets light go on in one direction. A rough one is made of tiny facets that bend
+//! it in different directions, as they also mirror it in different directions: what is behind is
+//! blurred, the more the farther it is, and by the same roughness that makes highlights wide. So
+//! the directions in which light leaves lie round the one of clear glass as a highlight lies round
+//! the mirror direction, `cos^n`, with the exponent of the material's highlight: 1 scatters nearly
 //! all over the half space, 1000 hardly blurs.
 //!
-//! A light source is too small to be found by looking through the surface. What it sends through is taken as scattered
-//! evenly: the side that is turned away from it glows, `f Ip max(0, -N·L)`, in proportion to the transmission.
+//! A light source is too small to be found by looking through the surface. What it sends through is
+//! taken as scattered evenly: the side that is turned away from it glows, `f Ip max(0, -N·L)`, in
+//! proportion to the transmission.
 //!
-//! In:   reflectance; numbers from 0 to 1; lights and a point in one space. Out: exponent; directions; light, linear RGB.
-//! Source: \[Cook, Porter & Carpenter 1984\] for scattered directions, \[Walter et al. 2007\] for one roughness of both,
-//! \[Rushmeier & Torrance 1990\] for diffuse transmission. Departs from the second: the lobe is the empirical one.
+//! In:   reflectance; numbers from 0 to 1; lights and a point in one space. Out: exponent;
+//!       directions; light, linear RGB.
+//! Source: \[Cook, Porter & Carpenter 1984\] for scattered directions, \[Walter et al. 2007\] for
+//! one roughness of both, \[Rushmeier & Torrance 1990\] for diffuse transmission. Departs from the
+//! second: the lobe is the empirical one.
 
 use crate::surface::tint;
 use crate::{LEAST_SLOPE, PreparedLight, Reflectance};
@@ -21,7 +25,8 @@ use vitral_math::lanes::{Lanes, V3};
 /// The widest and the narrowest lobe.
 const EXPONENTS: (f32, f32) = (1.0, 1000.0);
 
-/// The exponent of the directions in which a surface scatters what passes it: that of its highlight, from 1 to 1000.
+/// The exponent of the directions in which a surface scatters what passes it: that of its
+/// highlight, from 1 to 1000.
 pub fn scattering_exponent(reflectance: &Reflectance) -> f32 {
     let exponent = match *reflectance {
         Reflectance::Phong { shininess, .. } => shininess,
@@ -35,7 +40,8 @@ pub fn scattering_exponent(reflectance: &Reflectance) -> f32 {
     exponent.max(EXPONENTS.0).min(EXPONENTS.1)
 }
 
-/// A direction round +z, unit, from two numbers in `0..1` that are spread evenly: as dense as `cos^exponent`.
+/// A direction round +z, unit, from two numbers in `0..1` that are spread evenly: as dense as
+/// `cos^exponent`.
 pub fn scattered(u: f64, v: f64, exponent: f32) -> [f64; 3] {
     let z = func::pow(u.clamp(0.0, 1.0), 1.0 / (f64::from(exponent) + 1.0));
     let r = (1.0 - z * z).max(0.0).sqrt();
@@ -43,8 +49,9 @@ pub fn scattered(u: f64, v: f64, exponent: f32) -> [f64; 3] {
     [r * cos, r * sin, z]
 }
 
-/// The light that comes through evenly from behind a surface which lets all of it pass: position and unit normal on the
-/// viewer's side, `visibility(j)` as in [`crate::phong`], for the other side.
+/// The light that comes through evenly from behind a surface which lets all of it pass: position
+/// and unit normal on the viewer's side, `visibility(j)` as in [`crate::phong`], for the other
+/// side.
 #[inline(always)]
 pub fn transmitted_light<T: Lanes>(
     lights: &[PreparedLight],
@@ -61,7 +68,8 @@ pub fn transmitted_light<T: Lanes>(
             #[inline(always)]
             |channel| channel.splat(1.0),
         );
-        sum = sum + tint(white, light.diffuse).times(visibility(j).scale(incident.intensity * behind));
+        sum = sum
+            + tint(white, light.diffuse).times(visibility(j).scale(incident.intensity * behind));
     }
     sum
 }
@@ -74,10 +82,15 @@ mod tests {
 
     #[test]
     fn rough_surfaces_scatter_widely() {
-        let phong = |shininess| Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess };
+        let phong =
+            |shininess| Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess };
         let exponents = [-1.0, 0.0, 40.0, 1e9, f32::NAN].map(|n| scattering_exponent(&phong(n)));
         assert_eq!(exponents, [1.0, 1.0, 40.0, 1000.0, 1.0]);
-        let rough = |roughness| Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 0.0, roughness };
+        let rough = |roughness| Reflectance::MetallicRoughness {
+            base_color: [1.0; 3],
+            metallic: 0.0,
+            roughness,
+        };
         assert_eq!([0.0, 1.0].map(|r| scattering_exponent(&rough(r))), [1000.0, 1.0]);
         let half = scattering_exponent(&rough(0.5));
         assert!((half - 7.5).abs() < 1e-4, "m = 1/4: (32 - 2) / 4, {half}");
@@ -89,7 +102,8 @@ mod tests {
         for n in [1.0, 7.0, 40.0] {
             let (mut mean, count) = ([0.0; 3], 64);
             for i in 0..count * count {
-                let [u, v] = [i % count, i / count].map(|k| (f64::from(k) + 0.5) / f64::from(count));
+                let [u, v] =
+                    [i % count, i / count].map(|k| (f64::from(k) + 0.5) / f64::from(count));
                 let d = scattered(u, v, n);
                 assert!((d.iter().map(|c| c * c).sum::<f64>() - 1.0).abs() < 1e-12);
                 (0..3).for_each(|k| mean[k] += d[k] / f64::from(count * count));
@@ -107,7 +121,9 @@ mod tests {
         let light = PreparedLight::new(&light, &DMat4::IDENTITY).unwrap();
         let at = V3::new(0.0f32, 0.0, 0.0);
         let glow = |z: f32, part: f32| {
-            transmitted_light(std::slice::from_ref(&light), at, V3::new(0.0, 0.0, z), |_| V3::new(part, part, part))
+            transmitted_light(std::slice::from_ref(&light), at, V3::new(0.0, 0.0, z), |_| {
+                V3::new(part, part, part)
+            })
         };
         let v = glow(1.0, 0.5);
         assert!((v.x - 0.4).abs() < 1e-6 && (v.y - 0.2).abs() < 1e-6 && v.z == 0.0, "{v:?}");

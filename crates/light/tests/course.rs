@@ -39,7 +39,13 @@ fn material(ka: f32, kd: f32, ks: f32, shininess: f32) -> Phong<f32> {
     Phong { ka: grey(ka), kd: grey(kd), ks: grey(ks), shininess }
 }
 
-fn lit(model: Illumination, lights: &[Light], ambient: Rgb, s: &Point, k: &Phong<f32>) -> Reflected<f32> {
+fn lit(
+    model: Illumination,
+    lights: &[Light],
+    ambient: Rgb,
+    s: &Point,
+    k: &Phong<f32>,
+) -> Reflected<f32> {
     phong(model, &prepared(lights), ambient, s, k, |_| V3::new(1.0, 1.0, 1.0), |_| 0.0)
 }
 
@@ -47,7 +53,8 @@ fn lit(model: Illumination, lights: &[Light], ambient: Rgb, s: &Point, k: &Phong
 fn l3_diffuse_is_the_cosine() {
     for (degrees, expected) in [(0.0, 1.0), (60.0, 0.5), (90.0, 0.0)] {
         let k = material(0.0, 1.0, 0.0, 1.0);
-        let r = lit(Illumination::Lambert, &[sun(leaning(degrees))], [0.0; 3], &point(DVec3::Z), &k);
+        let r =
+            lit(Illumination::Lambert, &[sun(leaning(degrees))], [0.0; 3], &point(DVec3::Z), &k);
         assert!((r.diffuse.x - expected).abs() < 1e-6, "{degrees}: {}", r.diffuse.x);
     }
 }
@@ -61,7 +68,10 @@ fn l4_specular_is_a_power_of_the_cosine() {
     // It varies over a plane, because the direction to a viewer at finite distance does.
     let at = |x: f64| {
         let position = dvec3(x, 0.0, 0.0);
-        let s = Surface { position: v3(position), ..point((dvec3(0.0, 0.0, 2.0) - position).normalize()) };
+        let s = Surface {
+            position: v3(position),
+            ..point((dvec3(0.0, 0.0, 2.0) - position).normalize())
+        };
         lit(Illumination::Phong, &[sun(DVec3::Z)], [0.0; 3], &s, &k).specular.x
     };
     assert!(at(0.0) > at(0.5) && at(0.5) > at(1.0));
@@ -71,7 +81,8 @@ fn l4_specular_is_a_power_of_the_cosine() {
 fn l5_the_total_is_the_sum_of_the_layers() {
     let lights = [sun(leaning(35.0))];
     let s = point(leaning(-20.0));
-    let (a, d, p) = (material(0.3, 0.0, 0.0, 9.0), material(0.0, 0.6, 0.0, 9.0), material(0.0, 0.0, 0.5, 9.0));
+    let (a, d, p) =
+        (material(0.3, 0.0, 0.0, 9.0), material(0.0, 0.6, 0.0, 9.0), material(0.0, 0.0, 0.5, 9.0));
     let layer = |k: &Phong<f32>| {
         let r = lit(Illumination::Phong, &lights, [0.4; 3], &s, k);
         r.diffuse.x + r.specular.x
@@ -85,7 +96,8 @@ fn l5_the_total_is_the_sum_of_the_layers() {
 fn p31_ambient_is_the_exact_product_per_channel() {
     let k = Phong { ka: V3::new(0.25, 0.5, 0.75), ..material(0.0, 1.0, 1.0, 9.0) };
     let sky = Light { kind: LightKind::Ambient, ambient: [0.5, 0.25, 0.125], ..Light::default() };
-    let r = lit(Illumination::Ambient, &[sky, sun(DVec3::Z)], [0.5, 1.0, 2.0], &point(DVec3::Z), &k);
+    let r =
+        lit(Illumination::Ambient, &[sky, sun(DVec3::Z)], [0.5, 1.0, 2.0], &point(DVec3::Z), &k);
     assert_eq!(rgb(r.diffuse), [0.25 * 1.0, 0.5 * 1.25, 0.75 * 2.125]);
     assert_eq!(rgb(r.specular), [0.0; 3]);
 }
@@ -97,15 +109,27 @@ fn p32_every_kind_of_light_reaches_the_surface_below_it() {
     let kinds = [
         LightKind::Directional { direction: DVec3::NEG_Z },
         LightKind::Point { position: above },
-        LightKind::Spot { position: above, direction: DVec3::NEG_Z, cutoff: 0.4, inner: 0.4, exponent: 3.0 },
+        LightKind::Spot {
+            position: above,
+            direction: DVec3::NEG_Z,
+            cutoff: 0.4,
+            inner: 0.4,
+            exponent: 3.0,
+        },
         LightKind::Area { shape: disc },
     ];
     for kind in kinds {
         let light = Light { kind, ..Light::default() };
         let k = material(0.0, 1.0, 0.0, 9.0);
-        let r = lit(Illumination::Lambert, std::slice::from_ref(&light), [0.0; 3], &point(DVec3::Z), &k);
-        // A disc's border is seen from the side: F = R² / (R² + h²), in units of what would come from its middle; without
-        // loss over the way, which is √(h² + R² / 2) in the mean.
+        let r = lit(
+            Illumination::Lambert,
+            std::slice::from_ref(&light),
+            [0.0; 3],
+            &point(DVec3::Z),
+            &k,
+        );
+        // A disc's border is seen from the side: F = R² / (R² + h²), in units of what would come
+        // from its middle; without loss over the way, which is √(h² + R² / 2) in the mean.
         let whole = if matches!(light.kind, LightKind::Area { .. }) { 4.125 / 4.25 } else { 1.0 };
         assert!((r.diffuse.x - whole).abs() < 1e-6, "{light:?}: {}", r.diffuse.x);
     }
@@ -115,7 +139,8 @@ fn p32_every_kind_of_light_reaches_the_surface_below_it() {
 fn area_lights_send_what_their_whole_shape_sends() {
     let k = material(0.0, 1.0, 0.0, 9.0);
     let ceiling = |center: DVec3, half: f64, attenuation: Attenuation| {
-        let corners = [[-1., -1.], [-1., 1.], [1., 1.], [1., -1.]].map(|[x, y]| center + dvec3(x, y, 0.0) * half);
+        let corners = [[-1., -1.], [-1., 1.], [1., 1.], [1., -1.]]
+            .map(|[x, y]| center + dvec3(x, y, 0.0) * half);
         let shape = AreaShape::Polygon { corners: corners.to_vec() };
         Light { kind: LightKind::Area { shape }, attenuation, ..Light::default() }
     };
@@ -123,16 +148,26 @@ fn area_lights_send_what_their_whole_shape_sends() {
         let surface = Surface { n: v3(n), ..point(n) };
         lit(Illumination::Lambert, std::slice::from_ref(light), [0.0; 3], &surface, &k).diffuse.x
     };
-    // Under the middle of a square, by the inverse square: E = 4 · 2 A / √(1 + A²) atan(A / √(1 + A²)) / 2 / area.
+    // Under the middle of a square, by the inverse square: E = 4 · 2 A / √(1 + A²) atan(A / √(1 +
+    // A²)) / 2 / area.
     let square = ceiling(DVec3::Z, 1.0, Attenuation::InverseSquare);
     let wanted = 4.0 * (0.5f64.sqrt() * func::atan2(0.5f64.sqrt(), 1.0)) / 4.0;
-    assert!((f64::from(get(&square, DVec3::Z)) - wanted).abs() < 1e-6, "{} {wanted}", get(&square, DVec3::Z));
-    // Its middle is below the horizon, but not all of it: the integral summed over 16 million points.
+    assert!(
+        (f64::from(get(&square, DVec3::Z)) - wanted).abs() < 1e-6,
+        "{} {wanted}",
+        get(&square, DVec3::Z)
+    );
+    // Its middle is below the horizon, but not all of it: the integral summed over 16 million
+    // points.
     let tilted = dvec3(1.0, 0.0, -0.2).normalize();
     assert!((get(&square, tilted) - 0.049_403_6).abs() < 1e-5, "{}", get(&square, tilted));
     assert_eq!(get(&square, DVec3::NEG_Z), 0.0);
     // Far away it is a point, by any law.
-    let laws = [Attenuation::None, Attenuation::InverseSquare, Attenuation::Clamped { c1: 0.2, c2: 0.01, c3: 0.001 }];
+    let laws = [
+        Attenuation::None,
+        Attenuation::InverseSquare,
+        Attenuation::Clamped { c1: 0.2, c2: 0.01, c3: 0.001 },
+    ];
     for attenuation in laws {
         let at = dvec3(30.0, 0.0, 40.0);
         let whole = get(&ceiling(at, 0.3, attenuation), DVec3::Z);
@@ -157,7 +192,8 @@ fn area_lights_send_what_their_whole_shape_sends() {
 #[test]
 fn p33_lambert_does_not_depend_on_the_viewer() {
     let k = material(0.1, 0.7, 0.5, 9.0);
-    let lamp = Light { kind: LightKind::Point { position: dvec3(1.0, 2.0, 3.0) }, ..Light::default() };
+    let lamp =
+        Light { kind: LightKind::Point { position: dvec3(1.0, 2.0, 3.0) }, ..Light::default() };
     for degrees in [-80.0, -30.0, 15.0, 60.0] {
         let n = leaning(degrees);
         let seen_by = |v: DVec3| {
@@ -167,7 +203,12 @@ fn p33_lambert_does_not_depend_on_the_viewer() {
         assert_eq!(seen_by(n + DVec3::X), seen_by(n + DVec3::Y * 3.0));
     }
     // Only up to 90 degrees.
-    assert_eq!(lit(Illumination::Lambert, &[sun(leaning(100.0))], [0.0; 3], &point(DVec3::Z), &k).diffuse.x, 0.0);
+    assert_eq!(
+        lit(Illumination::Lambert, &[sun(leaning(100.0))], [0.0; 3], &point(DVec3::Z), &k)
+            .diffuse
+            .x,
+        0.0
+    );
 }
 
 #[test]
@@ -191,14 +232,21 @@ fn p35_a_highlight_has_the_colour_of_the_light_except_on_metals() {
     let base_color = V3::new(0.8f32, 0.05, 0.05);
     let shown = |metallic: f32, lamp: &Light| {
         let m = Microfacet { base_color, metallic, roughness: 0.2, occlusion: 1.0 };
-        let r = cook_torrance(&prepared(std::slice::from_ref(lamp)), [0.0; 3], &point(DVec3::Z), &m, |_| {
-            V3::new(1.0, 1.0, 1.0)
-        });
+        let r = cook_torrance(
+            &prepared(std::slice::from_ref(lamp)),
+            [0.0; 3],
+            &point(DVec3::Z),
+            &m,
+            |_| V3::new(1.0, 1.0, 1.0),
+        );
         (rgb(r.specular), rgb(r.diffuse + r.specular))
     };
     let (specular, total) = shown(0.0, &lamp);
     assert!(near(hue(specular), [0.5, 0.25]), "{specular:?}");
-    assert!((hue(total)[0] - 0.5).abs() < 0.08, "the centre tends to the light's colour: {total:?}");
+    assert!(
+        (hue(total)[0] - 0.5).abs() < 0.08,
+        "the centre tends to the light's colour: {total:?}"
+    );
 
     // The same in copper: the light's colour times the metal's.
     let white = Light { specular: [1.0; 3], ..lamp.clone() };
@@ -206,7 +254,10 @@ fn p35_a_highlight_has_the_colour_of_the_light_except_on_metals() {
 
     // Phong says the same with a grey ks.
     let k = Phong { kd: base_color, ..material(0.0, 0.0, 1.0, 50.0) };
-    assert!(near(hue(rgb(lit(Illumination::Phong, &[lamp], [0.0; 3], &point(DVec3::Z), &k).specular)), [0.5, 0.25]));
+    assert!(near(
+        hue(rgb(lit(Illumination::Phong, &[lamp], [0.0; 3], &point(DVec3::Z), &k).specular)),
+        [0.5, 0.25]
+    ));
 }
 
 /// Angle in degrees between viewer and mirror direction at which a highlight has half its height.
@@ -234,7 +285,8 @@ fn p37_the_half_width_of_a_highlight() {
 #[test]
 fn p41_blinn_needs_four_times_the_exponent() {
     for exponent in [10.0f32, 30.0, 100.0] {
-        let ratio = half_width(Illumination::BlinnPhong, 4.0 * exponent) / half_width(Illumination::Phong, exponent);
+        let ratio = half_width(Illumination::BlinnPhong, 4.0 * exponent)
+            / half_width(Illumination::Phong, exponent);
         assert!((ratio - 1.0).abs() < 0.02, "n = {exponent}: {ratio}");
     }
 }
@@ -266,7 +318,10 @@ fn p39_lights_add_up_channel_by_channel() {
         }
     }
     for (together, total) in shine(&lights).into_iter().zip(sum) {
-        assert!((together - total).abs() <= 1e-5 * total.abs().max(1.0), "{together}, one by one {total}");
+        assert!(
+            (together - total).abs() <= 1e-5 * total.abs().max(1.0),
+            "{together}, one by one {total}"
+        );
     }
 }
 
@@ -278,9 +333,21 @@ fn p40_two_parallel_surfaces_differ_by_their_distance() {
     };
     let at = |attenuation, z: f64| {
         let s = Surface { position: v3(DVec3::Z * z), ..point(DVec3::Z) };
-        lit(Illumination::Lambert, &[lamp(attenuation)], [0.0; 3], &s, &material(0.0, 1.0, 0.0, 1.0)).diffuse.x
+        lit(
+            Illumination::Lambert,
+            &[lamp(attenuation)],
+            [0.0; 3],
+            &s,
+            &material(0.0, 1.0, 0.0, 1.0),
+        )
+        .diffuse
+        .x
     };
-    assert_eq!(at(Attenuation::None, 0.0), at(Attenuation::None, -2.0), "without attenuation they merge");
+    assert_eq!(
+        at(Attenuation::None, 0.0),
+        at(Attenuation::None, -2.0),
+        "without attenuation they merge"
+    );
     assert_eq!(at(Attenuation::InverseSquare, 0.0) / at(Attenuation::InverseSquare, -2.0), 4.0);
     let clamped = Attenuation::Clamped { c1: 1.0, c2: 0.0, c3: 1.0 };
     assert_eq!((at(clamped, 0.0), at(clamped, -2.0)), (0.2, 1.0 / 17.0));
@@ -293,7 +360,13 @@ fn e12_reflectance_is_reflected_over_incident() {
     let (mut arrived, mut reflected) = (0.0, 0.0);
     for i in 0..90 {
         let (sin, cos) = func::sin_cos((f64::from(i) + 0.5).to_radians());
-        let r = lit(Illumination::Lambert, &[sun(leaning(f64::from(i) + 0.5))], [0.0; 3], &point(DVec3::Z), &k);
+        let r = lit(
+            Illumination::Lambert,
+            &[sun(leaning(f64::from(i) + 0.5))],
+            [0.0; 3],
+            &point(DVec3::Z),
+            &k,
+        );
         arrived += sin * cos;
         reflected += sin * f64::from(r.diffuse.x);
     }
@@ -304,13 +377,26 @@ fn e12_reflectance_is_reflected_over_incident() {
 fn f20_shadow_takes_all_but_ambient_light() {
     let lights = prepared(&[Light { ambient: [0.5; 3], ..sun(DVec3::Z) }]);
     let k = material(0.4, 0.6, 0.5, 20.0);
-    let r = phong(Illumination::Phong, &lights, [0.25; 3], &point(DVec3::Z), &k, |_| V3::new(0.0, 0.0, 0.0), |_| 0.0);
+    let r = phong(
+        Illumination::Phong,
+        &lights,
+        [0.25; 3],
+        &point(DVec3::Z),
+        &k,
+        |_| V3::new(0.0, 0.0, 0.0),
+        |_| 0.0,
+    );
     assert!((r.diffuse.x - 0.3).abs() < 1e-7 && r.specular.x == 0.0);
 }
 
 /// Any light, degenerate ones included.
 fn any_light() -> impl Strategy<Value = Light> {
-    let vector = || prop_oneof![Just(DVec3::ZERO), proptest::array::uniform3(-5.0f64..5.0).prop_map(DVec3::from)];
+    let vector = || {
+        prop_oneof![
+            Just(DVec3::ZERO),
+            proptest::array::uniform3(-5.0f64..5.0).prop_map(DVec3::from)
+        ]
+    };
     let kind = prop_oneof![
         Just(LightKind::Ambient),
         vector().prop_map(|direction| LightKind::Directional { direction }),
@@ -324,26 +410,26 @@ fn any_light() -> impl Strategy<Value = Light> {
                 exponent
             }
         ),
-        (vector(), vector())
-            .prop_map(|(center, normal)| LightKind::Area { shape: AreaShape::Disc { center, normal, radius: 1.0 } }),
+        (vector(), vector()).prop_map(|(center, normal)| LightKind::Area {
+            shape: AreaShape::Disc { center, normal, radius: 1.0 }
+        }),
     ];
     let attenuation = prop_oneof![
         Just(Attenuation::None),
         Just(Attenuation::InverseSquare),
-        proptest::array::uniform3(-1.0f64..1.0).prop_map(|[constant, linear, quadratic]| Attenuation::Gl {
-            constant,
-            linear,
-            quadratic
+        proptest::array::uniform3(-1.0f64..1.0).prop_map(|[constant, linear, quadratic]| {
+            Attenuation::Gl { constant, linear, quadratic }
         }),
-        proptest::array::uniform3(0.0f64..1.0).prop_map(|[c1, c2, c3]| Attenuation::Clamped { c1, c2, c3 }),
+        proptest::array::uniform3(0.0f64..1.0).prop_map(|[c1, c2, c3]| Attenuation::Clamped {
+            c1,
+            c2,
+            c3
+        }),
         (-1.0f64..9.0).prop_map(|range| Attenuation::Range { range }),
     ];
-    (kind, attenuation, proptest::array::uniform3(0.0f32..1e6)).prop_map(|(kind, attenuation, diffuse)| Light {
-        kind,
-        attenuation,
-        diffuse,
-        ..Light::default()
-    })
+    (kind, attenuation, proptest::array::uniform3(0.0f32..1e6)).prop_map(
+        |(kind, attenuation, diffuse)| Light { kind, attenuation, diffuse, ..Light::default() },
+    )
 }
 
 fn any_unit() -> impl Strategy<Value = V3<f32>> {

@@ -1,4 +1,5 @@
-//! One point at a time and eight at a time give the same bits, at every level of the instruction set.
+//! One point at a time and eight at a time give the same bits, at every level of the instruction
+//! set.
 
 use vitral_light::*;
 use vitral_math::lanes::prelude::*;
@@ -46,9 +47,14 @@ fn lights() -> Vec<PreparedLight> {
         Attenuation::Range { range: 1.7 },
     ];
     let all = kinds.iter().flat_map(|kind| losses.map(|attenuation| (kind.clone(), attenuation)));
-    all.map(|(kind, attenuation)| Light { kind, attenuation, ambient: [0.1, 0.0, 0.2], ..Light::default() })
-        .filter_map(|light| PreparedLight::new(&light, &DMat4::IDENTITY))
-        .collect()
+    all.map(|(kind, attenuation)| Light {
+        kind,
+        attenuation,
+        ambient: [0.1, 0.0, 0.2],
+        ..Light::default()
+    })
+    .filter_map(|light| PreparedLight::new(&light, &DMat4::IDENTITY))
+    .collect()
 }
 
 /// Every formula of the crate, on one lane or eight.
@@ -61,10 +67,18 @@ fn formulas<T: Lanes>(lights: &[PreparedLight], x: [T; 14], out: &mut impl FnMut
         v: V3::new(vx, vy, vz).normalize(),
     };
     let color = V3::new(r.abs(), g.abs(), b.abs());
-    let k = Phong { ka: color, kd: color, ks: V3::new(b.abs(), r.abs(), a.abs()), shininess: (e + 1.0) * 60.0 };
-    let m = Microfacet { base_color: color, metallic: a.abs(), roughness: e.abs(), occlusion: b.abs() };
+    let k = Phong {
+        ka: color,
+        kd: color,
+        ks: V3::new(b.abs(), r.abs(), a.abs()),
+        shininess: (e + 1.0) * 60.0,
+    };
+    let m =
+        Microfacet { base_color: color, metallic: a.abs(), roughness: e.abs(), occlusion: b.abs() };
     let mut put = |r: Reflected<T>| {
-        for channel in [r.diffuse.x, r.diffuse.y, r.diffuse.z, r.specular.x, r.specular.y, r.specular.z] {
+        for channel in
+            [r.diffuse.x, r.diffuse.y, r.diffuse.z, r.specular.x, r.specular.y, r.specular.z]
+        {
             out(channel);
         }
     };
@@ -81,7 +95,9 @@ fn formulas<T: Lanes>(lights: &[PreparedLight], x: [T; 14], out: &mut impl FnMut
                 |l| l.direction_rounding(s.position),
             ));
         }
-        put(cook_torrance(light, [0.1; 3], &s, &m, |_| V3::new(a.saturate(), a.saturate(), a.saturate())));
+        put(cook_torrance(light, [0.1; 3], &s, &m, |_| {
+            V3::new(a.saturate(), a.saturate(), a.saturate())
+        }));
     }
     put(phong(
         Illumination::Phong,
@@ -92,7 +108,9 @@ fn formulas<T: Lanes>(lights: &[PreparedLight], x: [T; 14], out: &mut impl FnMut
         |_| V3::splat(e, [1.0; 3]),
         |_| e * 0.0,
     ));
-    put(cook_torrance(lights, [0.1; 3], &s, &microfacet_from_phong(&k), |_| V3::splat(e, [1.0; 3])));
+    put(cook_torrance(lights, [0.1; 3], &s, &microfacet_from_phong(&k), |_| {
+        V3::splat(e, [1.0; 3])
+    }));
 }
 
 #[test]
@@ -120,7 +138,11 @@ fn one_point_and_eight_give_the_same_bits_at_every_level() {
             });
             assert_eq!(wide.len(), expected.len());
             for (k, (w, e)) in wide.iter().zip(&expected).enumerate() {
-                assert_eq!(w.map(f32::to_bits), e.map(f32::to_bits), "{name}, seed {seed}, output {k}: {w:?}, {e:?}");
+                assert_eq!(
+                    w.map(f32::to_bits),
+                    e.map(f32::to_bits),
+                    "{name}, seed {seed}, output {k}: {w:?}, {e:?}"
+                );
             }
         }
     }

@@ -1,8 +1,9 @@
 //! A small sphere round points.
 //!
-//! Idea: walk from any point to the farthest, and from there to the farthest again: these two are nearly a diameter.
-//! Take the sphere on it and grow it for every point outside, just enough to hold what it held before. A second
-//! candidate is the sphere round the middle of the axis-aligned box; the smaller of the two is kept.
+//! Idea: walk from any point to the farthest, and from there to the farthest again: these two are
+//! nearly a diameter. Take the sphere on it and grow it for every point outside, just enough to
+//! hold what it held before. A second candidate is the sphere round the middle of the axis-aligned
+//! box; the smaller of the two is kept.
 //!
 //! In:   points in any space.
 //! Out:  a sphere that holds them all, usually within 5 % of the smallest.
@@ -13,7 +14,8 @@ use crate::{Aabb, Sphere};
 use glam::DVec3;
 
 impl Sphere {
-    /// A small sphere round `points`; points that are not finite are passed over, `None` if there is no other.
+    /// A small sphere round `points`; points that are not finite are passed over, `None` if there
+    /// is no other.
     pub fn from_points(points: &[DVec3]) -> Option<Self> {
         let finite = || points.iter().copied().filter(|p| p.is_finite());
         let farthest = |from: DVec3| {
@@ -36,7 +38,8 @@ impl Sphere {
         }
 
         // Measure both candidates once more: rounding may have left a point outside by a hair.
-        let round = |center: DVec3| Self { center, radius: farthest(center).0.sqrt() * (1.0 + 1e-15) };
+        let round =
+            |center: DVec3| Self { center, radius: farthest(center).0.sqrt() * (1.0 + 1e-15) };
         let (ritter, boxed) = (round(center), round(Aabb::from_points(finite()).center()));
         Some(if boxed.radius < ritter.radius { boxed } else { ritter })
     }
@@ -54,7 +57,8 @@ mod tests {
 
     #[test]
     fn p13_two_points_and_a_cube_have_their_smallest_sphere() {
-        let pair = Sphere::from_points(&[DVec3::ZERO, DVec3::new(6.0, 0.0, 0.0), DVec3::NAN]).unwrap();
+        let pair =
+            Sphere::from_points(&[DVec3::ZERO, DVec3::new(6.0, 0.0, 0.0), DVec3::NAN]).unwrap();
         assert!((pair.radius - 3.0).abs() < 1e-12 && pair.center == DVec3::new(3.0, 0.0, 0.0));
         let cube = Aabb { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) };
         let sphere = Sphere::from_points(&cube.corners()).unwrap();

@@ -113,7 +113,11 @@ mod tests {
 
     #[test]
     fn a_box_holds_its_points_and_passes_over_nan() {
-        let b = Aabb::from_points([DVec3::ZERO, DVec3::new(f64::NAN, 0.0, 0.0), DVec3::new(1.0, 2.0, 3.0)]);
+        let b = Aabb::from_points([
+            DVec3::ZERO,
+            DVec3::new(f64::NAN, 0.0, 0.0),
+            DVec3::new(1.0, 2.0, 3.0),
+        ]);
         assert_eq!((b.min, b.max), (DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)));
         assert!(b.corners().iter().all(|&c| b.contains(c)));
         assert!(Aabb::EMPTY.is_empty() && Aabb::EMPTY.diagonal() == 0.0);

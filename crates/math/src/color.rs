@@ -28,9 +28,10 @@ pub fn byte_from_unit(value: f32) -> u8 {
 
 /// Display bytes of linear light, looked up.
 ///
-/// Values are dealt into cells by their exponent and the first seven bits of their mantissa. A cell is too narrow for two steps
-/// of the byte. It holds a number to which the rest of the mantissa is added, and the byte is above that: the byte at the
-/// cell's lower end, and as much as is missing to the next where a step is in the cell.
+/// Values are dealt into cells by their exponent and the first seven bits of their mantissa. A cell
+/// is too narrow for two steps of the byte. It holds a number to which the rest of the mantissa is
+/// added, and the byte is above that: the byte at the cell's lower end, and as much as is missing
+/// to the next where a step is in the cell.
 pub struct SrgbBytes {
     cells: Box<[u32; CELLS]>,
 }
@@ -57,7 +58,11 @@ impl SrgbBytes {
             let mut high = 1f32.to_bits();
             while low < high {
                 let middle = low.midpoint(high);
-                if srgb_byte(f32::from_bits(middle)) >= byte { high = middle } else { low = middle + 1 }
+                if srgb_byte(f32::from_bits(middle)) >= byte {
+                    high = middle
+                } else {
+                    low = middle + 1
+                }
             }
             let (cell, whole) = (cell(low), u32::from(byte) << WITHIN_CELL);
             cells[cell] = whole - within(low);
@@ -76,7 +81,8 @@ impl SrgbBytes {
     /// [`Self::byte`] of eight values.
     #[inline(always)]
     pub fn eight<S: Simd>(&self, linear: F32x8<S>) -> U32x8<S> {
-        let bits: U32x8<S> = Lanes::min(Lanes::max(linear, linear.splat(LEAST)), linear.splat(1.0)).bitcast();
+        let bits: U32x8<S> =
+            Lanes::min(Lanes::max(linear, linear.splat(LEAST)), linear.splat(1.0)).bitcast();
         let cells = ((bits >> WITHIN_CELL) - (LEAST.to_bits() >> WITHIN_CELL)).to_array();
         let found = cells.map(
             #[inline(always)]
@@ -126,7 +132,9 @@ mod tests {
             }
         }
         assert_eq!(steps, 255, "a cell has one step at most");
-        for (odd, byte) in [(-1.0, 0), (f32::NAN, 0), (f32::INFINITY, 255), (f32::NEG_INFINITY, 0), (-0.0, 0)] {
+        for (odd, byte) in
+            [(-1.0, 0), (f32::NAN, 0), (f32::INFINITY, 255), (f32::NEG_INFINITY, 0), (-0.0, 0)]
+        {
             assert_eq!(table.byte(odd), byte, "{odd}");
         }
     }
@@ -140,7 +148,8 @@ mod tests {
         for (name, level) in available_levels() {
             for eight in values.chunks_exact(8) {
                 let found = dispatch!(level, simd => table.eight(F32x8::from_slice(simd, eight)).to_array());
-                let expected: Vec<u32> = eight.iter().map(|&value| u32::from(table.byte(value))).collect();
+                let expected: Vec<u32> =
+                    eight.iter().map(|&value| u32::from(table.byte(value))).collect();
                 assert_eq!(found[..], expected[..], "{name}: {eight:?}");
             }
         }
@@ -149,7 +158,10 @@ mod tests {
     #[test]
     fn every_byte_survives_the_round_trip() {
         for byte in 0..=255u8 {
-            assert_eq!(byte_from_unit(srgb_from_linear(linear_from_srgb(f32::from(byte) / 255.0))), byte);
+            assert_eq!(
+                byte_from_unit(srgb_from_linear(linear_from_srgb(f32::from(byte) / 255.0))),
+                byte
+            );
         }
         assert_eq!(byte_from_unit(f32::NAN), 0);
     }

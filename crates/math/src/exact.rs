@@ -1,15 +1,18 @@
-//! Exact predicates on points of an integer grid: the side of a line, the side of a plane, the order of fractions.
+//! Exact predicates on points of an integer grid: the side of a line, the side of a plane, the
+//! order of fractions.
 //!
-//! A geometric algorithm stays consistent if its decisions never contradict each other. Rounded decisions do, so points are
-//! rounded once, to a grid, and decisions about them are exact. Differences of coordinates are below [`MAX_STEP`] across the page and
-//! below 2^31 in depth: twice an area fits 64 bits, six times a volume fits 128. Signs of volumes are computed in floating point
-//! first, and only those too close to zero are computed again in 128 bits.
+//! A geometric algorithm stays consistent if its decisions never contradict each other. Rounded
+//! decisions do, so points are rounded once, to a grid, and decisions about them are exact.
+//! Differences of coordinates are below [`MAX_STEP`] across the page and below 2^31 in depth: twice
+//! an area fits 64 bits, six times a volume fits 128. Signs of volumes are computed in floating
+//! point first, and only those too close to zero are computed again in 128 bits.
 //!
-//! Intersections are not rounded at all. Where a segment meets a line or a plane is a fraction of its length, and two fractions are
-//! compared by their continued fractions, which needs no product of the four numbers.
+//! Intersections are not rounded at all. Where a segment meets a line or a plane is a fraction of
+//! its length, and two fractions are compared by their continued fractions, which needs no product
+//! of the four numbers.
 //!
-//! Source: the filter is the simplest stage of [Shewchuk 1997]; comparison by continued fractions is Euclid's algorithm on both
-//! fractions at once [Knuth 1997], section 4.5.3.
+//! Source: the filter is the simplest stage of [Shewchuk 1997]; comparison by continued fractions
+//! is Euclid's algorithm on both fractions at once [Knuth 1997], section 4.5.3.
 
 use std::cmp::Ordering;
 
@@ -19,7 +22,8 @@ pub const MAX_STEP: i64 = 1 << 25;
 /// A point of the grid: x to the right, y upwards, z towards the viewer.
 pub type GridPoint = [i32; 3];
 
-/// Twice the area of the triangle `a b p` on the page: positive where `p` is to the left of the way from `a` to `b`.
+/// Twice the area of the triangle `a b p` on the page: positive where `p` is to the left of the way
+/// from `a` to `b`.
 #[inline(always)]
 pub fn orient2d(a: GridPoint, b: GridPoint, p: GridPoint) -> i64 {
     let d = |p: GridPoint, k: usize| i64::from(p[k]) - i64::from(a[k]);
@@ -31,23 +35,28 @@ pub fn orient2d(a: GridPoint, b: GridPoint, p: GridPoint) -> i64 {
 pub struct GridPlane {
     /// One of the points.
     pub origin: GridPoint,
-    /// The cross product of two sides of the triangle; its z is twice the triangle's area on the page.
+    /// The cross product of two sides of the triangle; its z is twice the triangle's area on the
+    /// page.
     pub normal: [i64; 3],
 }
 
 impl GridPlane {
-    /// The plane of a triangle. Its normal points to the viewer where the corners run counter-clockwise on the page.
+    /// The plane of a triangle. Its normal points to the viewer where the corners run
+    /// counter-clockwise on the page.
     #[inline(always)]
     pub fn new([a, b, c]: [GridPoint; 3]) -> Self {
         let d = |p: GridPoint| [0, 1, 2].map(|k| i64::from(p[k]) - i64::from(a[k]));
         let (u, v) = (d(b), d(c));
-        let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        let normal =
+            [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
         Self { origin: a, normal }
     }
 
-    /// Six times the volume of the triangle and `p`: positive on the side to which the normal points.
+    /// Six times the volume of the triangle and `p`: positive on the side to which the normal
+    /// points.
     pub fn height(&self, p: GridPoint) -> i128 {
-        let term = |k: usize| i128::from(self.normal[k]) * (i128::from(p[k]) - i128::from(self.origin[k]));
+        let term =
+            |k: usize| i128::from(self.normal[k]) * (i128::from(p[k]) - i128::from(self.origin[k]));
         term(0) + term(1) + term(2)
     }
 
@@ -73,8 +82,9 @@ impl GridPlane {
         }
     }
 
-    /// How much the height of a point changes at most while all coordinates of the point and of the triangle's corners move by half a
-    /// unit, if the point is over the triangle: how far apart snapping can bring what touched.
+    /// How much the height of a point changes at most while all coordinates of the point and of the
+    /// triangle's corners move by half a unit, if the point is over the triangle: how far apart
+    /// snapping can bring what touched.
     #[inline(always)]
     pub fn snapping(&self) -> f64 {
         self.normal.iter().map(|n| n.abs() as f64).sum()
@@ -98,7 +108,8 @@ impl Fraction {
         }
     }
 
-    /// Where a value that runs evenly from `a` to `b` is zero, as a fraction of the way; 0 where the two are equal.
+    /// Where a value that runs evenly from `a` to `b` is zero, as a fraction of the way; 0 where
+    /// the two are equal.
     pub fn zero_between(a: i128, b: i128) -> Self {
         Self::new(a, a - b).unwrap_or(Self::whole(0))
     }
@@ -165,7 +176,8 @@ mod tests {
         d(b, 0) * d(p, 1) - d(b, 1) * d(p, 0)
     }
 
-    /// The volume by the expansion along the last column, which shares no term with [`GridPlane::height`].
+    /// The volume by the expansion along the last column, which shares no term with
+    /// [`GridPlane::height`].
     fn wide_volume(t: [GridPoint; 3], p: GridPoint) -> i128 {
         let d = |a: GridPoint| [0, 1, 2].map(|k| i128::from(a[k]) - i128::from(p[k]));
         let [a, b, c] = t.map(d);
@@ -189,7 +201,10 @@ mod tests {
         assert_eq!(orient2d(t[1], t[0], t[2]), -16);
         assert_eq!(orient2d(t[0], t[1], [9, 0, 7]), 0);
         let plane = GridPlane::new(t);
-        assert_eq!([plane.side([1, 1, 1]), plane.side([1, 1, -1]), plane.side([9, -5, 0])], [1, -1, 0]);
+        assert_eq!(
+            [plane.side([1, 1, 1]), plane.side([1, 1, -1]), plane.side([9, -5, 0])],
+            [1, -1, 0]
+        );
         assert_eq!((plane.height([1, 1, 3]), plane.snapping()), (48, 16.0));
     }
 
@@ -209,7 +224,10 @@ mod tests {
         assert_eq!(fraction(-1, -2), fraction(2, 4));
         assert!(fraction(1, -3) < Fraction::whole(0) && fraction(1, 3) < fraction(334, 1000));
         assert_eq!(fraction(-7, 2).to_f64(), -3.5);
-        assert_eq!((Fraction::zero_between(-1, 3), Fraction::zero_between(5, 5)), (fraction(1, 4), Fraction::whole(0)));
+        assert_eq!(
+            (Fraction::zero_between(-1, 3), Fraction::zero_between(5, 5)),
+            (fraction(1, 4), Fraction::whole(0))
+        );
     }
 
     proptest! {
@@ -228,7 +246,8 @@ mod tests {
         fn points_in_a_plane_and_beside_it_are_told_apart(
             t in prop::array::uniform3(point()), i in 0i32..8, j in 0i32..8, off in -1i32..=1,
         ) {
-            // A corner, moved along whole multiples of the sides, then by a unit at most: the products cancel down to the last bit.
+            // A corner, moved along whole multiples of the sides, then by a unit at most: the
+            // products cancel down to the last bit.
             let small = t.map(|p| [p[0] / 64, p[1] / 64, p[2] / 64]);
             let moved = [0, 1, 2].map(|k| {
                 small[0][k] + i * (small[1][k] - small[0][k]) + j * (small[2][k] - small[0][k])
@@ -245,7 +264,8 @@ mod tests {
             t in prop::array::uniform3(point()), weights in prop::array::uniform3(0.0f64..1.0),
             moves in prop::array::uniform4(prop::array::uniform3(-0.5f64..0.5)),
         ) {
-            // A point of the triangle; everything moves by up to half a unit and is then rounded, which is another half: twice the bound.
+            // A point of the triangle; everything moves by up to half a unit and is then rounded,
+            // which is another half: twice the bound.
             let sum: f64 = weights.iter().sum::<f64>().max(1e-9);
             let real = t.map(|p| p.map(f64::from));
             let at = [0, 1, 2].map(|k| (0..3).map(|i| real[i][k] * weights[i] / sum).sum::<f64>());

@@ -1,7 +1,8 @@
 //! Fingerprints of data: whether they are what they were.
 
-/// Eight hashes side by side, so that no step waits for the one before. Data of one length that differ in one word never
-/// have the same; others only by chance. Not for what someone may have made on purpose.
+/// Eight hashes side by side, so that no step waits for the one before. Data of one length that
+/// differ in one word never have the same; others only by chance. Not for what someone may have
+/// made on purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fingerprint(pub [u64; 8]);
 
@@ -13,7 +14,8 @@ impl Fingerprint {
         fingerprint
     }
 
-    /// Adds words. What it becomes depends on how they are cut into calls, too, unless all but the last have a multiple of 16.
+    /// Adds words. What it becomes depends on how they are cut into calls, too, unless all but the
+    /// last have a multiple of 16.
     pub fn add(&mut self, words: &[u32]) {
         let (sixteens, rest) = words.as_chunks::<16>();
         // By value: hashes in memory would have to be written at each step.
@@ -31,7 +33,8 @@ impl Fingerprint {
 /// A hash with one more word. Different hashes stay different.
 #[inline(always)]
 pub fn mixed(hash: u64, word: u64) -> u64 {
-    let product = (hash ^ word).wrapping_add(0x9e37_79b9_7f4a_7c15).wrapping_mul(0xd6e8_feb8_6659_fd93);
+    let product =
+        (hash ^ word).wrapping_add(0x9e37_79b9_7f4a_7c15).wrapping_mul(0xd6e8_feb8_6659_fd93);
     product ^ product >> 29
 }
 

@@ -1,4 +1,5 @@
-//! The view volume as six planes in any space, to reject boxes before anything else is done with them.
+//! The view volume as six planes in any space, to reject boxes before anything else is done with
+//! them.
 //!
 //! Source: the rows of the clip matrix are the planes [Gribb & Hartmann 2001]. The volume is
 //! `-w <= x, y <= w`, `0 <= z <= w`.
@@ -17,7 +18,8 @@ pub enum Containment {
     Inside,
 }
 
-/// Six planes with unit normals pointing inwards: left, right, bottom, top, far (`z = 0`), near (`z = w`).
+/// Six planes with unit normals pointing inwards: left, right, bottom, top, far (`z = 0`), near
+/// (`z = w`).
 #[derive(Clone, Copy, Debug)]
 pub struct Frustum {
     /// `plane · (x, y, z, 1) >= 0` inside.
@@ -43,7 +45,8 @@ impl Frustum {
         self.find_box(b).0
     }
 
-    /// [`test_box`](Self::test_box), with the index of the first plane that the box lies beyond, if it is outside.
+    /// [`test_box`](Self::test_box), with the index of the first plane that the box lies beyond, if
+    /// it is outside.
     pub fn find_box(&self, b: &Aabb) -> (Containment, Option<usize>) {
         if b.is_empty() {
             return (Containment::Outside, None);
@@ -77,7 +80,10 @@ mod tests {
         let cube = |c: DVec3, h: f64| Aabb { min: c - h, max: c + h };
         assert_eq!(f.test_box(&cube(DVec3::new(0.0, 0.0, 0.5), 0.1)), Containment::Inside);
         assert_eq!(f.test_box(&cube(DVec3::new(1.0, 0.0, 0.5), 0.1)), Containment::Crossing);
-        assert_eq!(f.find_box(&cube(DVec3::new(2.0, 0.0, 0.5), 0.1)), (Containment::Outside, Some(1)));
+        assert_eq!(
+            f.find_box(&cube(DVec3::new(2.0, 0.0, 0.5), 0.1)),
+            (Containment::Outside, Some(1))
+        );
         assert_eq!(Frustum::NAMES[1], "right");
     }
 }

@@ -1,7 +1,8 @@
 //! Functions that std computes differently from machine to machine, computed the same everywhere.
 //!
-//! `+ - * / sqrt` are exact in IEEE 754; everything else that the project needs is here, from the `libm` crate, which
-//! is plain Rust arithmetic. The lane-wise versions that shading uses are in [`crate::lanes`].
+//! `+ - * / sqrt` are exact in IEEE 754; everything else that the project needs is here, from the
+//! `libm` crate, which is plain Rust arithmetic. The lane-wise versions that shading uses are in
+//! [`crate::lanes`].
 
 macro_rules! forward {
     ($($(#[$doc:meta])* $name:ident($($arg:ident),+) = $f64:ident, $f32:ident as $name32:ident;)*) => {$(

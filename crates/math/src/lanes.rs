@@ -1,24 +1,27 @@
 //! Eight numbers at a time, sixteen, or one: the only place that names SIMD types.
 //!
-//! A formula written over [`Lanes`] serves one vertex (`f32`) and eight pixels (`F32x8`) with the same operations in
-//! the same order, so both give the same bits. One written over [`Floats`] serves eight pixels or sixteen, and may use whole
-//! numbers. There is no fused multiply-add and no approximate reciprocal; `exp2`/`log2` are polynomials of ours, made of exact
-//! operations only.
+//! A formula written over [`Lanes`] serves one vertex (`f32`) and eight pixels (`F32x8`) with the
+//! same operations in the same order, so both give the same bits. One written over [`Floats`]
+//! serves eight pixels or sixteen, and may use whole numbers. There is no fused multiply-add and no
+//! approximate reciprocal; `exp2`/`log2` are polynomials of ours, made of exact operations only.
 //!
-//! Functions over lanes must be `#[inline(always)]`; one [`dispatch`] per pass chooses the instruction set.
+//! Functions over lanes must be `#[inline(always)]`; one [`dispatch`] per pass chooses the
+//! instruction set.
 
 mod rows;
 
 use fearless_simd::prelude::*;
 pub use fearless_simd::{
-    Level, Simd, dispatch, f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x4 as F64x4, f64x8 as F64x8,
-    i32x4 as I32x4, i32x8 as I32x8, i32x16 as I32x16, mask32x8 as Mask8, mask32x16 as Mask16, u8x16 as U8x16,
-    u16x16 as U16x16, u16x32 as U16x32, u32x8 as U32x8, u32x16 as U32x16,
+    Level, Simd, dispatch, f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x4 as F64x4,
+    f64x8 as F64x8, i32x4 as I32x4, i32x8 as I32x8, i32x16 as I32x16, mask32x8 as Mask8,
+    mask32x16 as Mask16, u8x16 as U8x16, u16x16 as U16x16, u16x32 as U16x32, u32x8 as U32x8,
+    u32x16 as U32x16,
 };
 pub use rows::{columns_of_rows, narrowed, rows_of_columns, wide_points, widened};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// What fearless_simd's methods need in scope (`from_slice`, `store_slice`, `select`, comparisons ...).
+/// What fearless_simd's methods need in scope (`from_slice`, `store_slice`, `select`, comparisons
+/// ...).
 pub mod prelude {
     pub use fearless_simd::prelude::*;
 }
@@ -43,7 +46,10 @@ pub trait Lanes:
     + Div<f32, Output = Self>
 {
     /// One truth value for each lane.
-    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
+    type Mask: Copy
+        + BitAnd<Output = Self::Mask>
+        + BitOr<Output = Self::Mask>
+        + Not<Output = Self::Mask>;
 
     /// `value` in every lane (`self` only lends its instruction set).
     fn splat(self, value: f32) -> Self;
@@ -65,8 +71,8 @@ pub trait Lanes:
     fn exp2_whole(self) -> Self;
     /// For a positive normal number: its exponent as a whole number, and its mantissa in `1..2`.
     fn split_exponent(self) -> (Self, Self);
-    /// What `f` gives, in a function of its own: for what is large and seldom needed. Functions in which everything is
-    /// inlined grow until compilers take minutes over one.
+    /// What `f` gives, in a function of its own: for what is large and seldom needed. Functions in
+    /// which everything is inlined grow until compilers take minutes over one.
     fn outlined<R>(self, f: impl FnOnce() -> R) -> R;
 
     /// The larger; `other` if either is NaN.
@@ -93,7 +99,8 @@ pub trait Lanes:
         self.max(self.splat(0.0))
     }
 
-    /// 2 to the power `self`, relative error below 2e-7. Below -126 the result is 0, above 127 it stays at `2^127`.
+    /// 2 to the power `self`, relative error below 2e-7. Below -126 the result is 0, above 127 it
+    /// stays at `2^127`.
     #[inline(always)]
     fn exp2(self) -> Self {
         let underflow = self.lt(self.splat(-126.0));
@@ -116,8 +123,8 @@ pub trait Lanes:
         Self::select(underflow, self.splat(0.0), p * whole.exp2_whole())
     }
 
-    /// Logarithm to base 2 of a positive number, absolute error below 2e-7 near 1 (relative elsewhere). Zero,
-    /// negative and subnormal numbers count as `2^-126`.
+    /// Logarithm to base 2 of a positive number, absolute error below 2e-7 near 1 (relative
+    /// elsewhere). Zero, negative and subnormal numbers count as `2^-126`.
     #[inline(always)]
     fn log2(self) -> Self {
         let (mut e, mut m) = self.max(self.splat(f32::MIN_POSITIVE)).split_exponent();
@@ -128,7 +135,13 @@ pub trait Lanes:
         let t = (m - 1.0) / (m + 1.0);
         let t2 = t * t;
         let mut p = self.splat(2.885_390_1 / 11.0);
-        for c in [2.885_390_1 / 9.0, 2.885_390_1 / 7.0, 2.885_390_1 / 5.0, 2.885_390_1 / 3.0, 2.885_390_1] {
+        for c in [
+            2.885_390_1 / 9.0,
+            2.885_390_1 / 7.0,
+            2.885_390_1 / 5.0,
+            2.885_390_1 / 3.0,
+            2.885_390_1,
+        ] {
             p = p * t2 + c;
         }
         e + p * t
@@ -287,8 +300,8 @@ lanes!(F32x16, Mask16, I32x16, abs_f32x16, max_f32x16, min_f32x16);
 /// A truth value for each lane of `V`.
 pub type MaskOf<S, V> = <V as SimdBase<S>>::Mask;
 
-/// Eight floats or sixteen, and the whole numbers of as many lanes: [`F32x8`], [`F32x16`]. Where the two traits share a name,
-/// say which is meant.
+/// Eight floats or sixteen, and the whole numbers of as many lanes: [`F32x8`], [`F32x16`]. Where
+/// the two traits share a name, say which is meant.
 pub trait Floats<S: Simd>:
     SimdFloat<S, Element = f32> + SimdCvtFloat<Self::Ints> + Lanes<Mask = <Self as SimdBase<S>>::Mask>
 {
@@ -300,7 +313,8 @@ pub trait Floats<S: Simd>:
     /// Two unsigned integers of 16 bits for each lane.
     type Halves: SimdInt<S, Element = u16, ByteVector = Self::ByteVector>;
 
-    /// What `f` makes of eight lanes at a time, for what is written for eight; it is also told the first lane.
+    /// What `f` makes of eight lanes at a time, for what is written for eight; it is also told the
+    /// first lane.
     fn by_eights<const IN: usize, const OUT: usize>(
         simd: S,
         numbers: [Self; IN],
@@ -353,8 +367,9 @@ fn outlined<S: Simd, R>(simd: S, f: impl FnOnce() -> R) -> R {
     simd.vectorize(f)
 }
 
-/// Whether the instruction for the larger (smaller) of two numbers gives the second where they do not compare, which is
-/// what [`Lanes::max`] promises. The instructions of x86 do; elsewhere it takes a comparison and a selection.
+/// Whether the instruction for the larger (smaller) of two numbers gives the second where they do
+/// not compare, which is what [`Lanes::max`] promises. The instructions of x86 do; elsewhere it
+/// takes a comparison and a selection.
 #[inline(always)]
 fn takes_second(level: Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -365,7 +380,8 @@ fn takes_second(level: Level) -> bool {
     false
 }
 
-/// Whether a machine has no more than every x86-64 of 2003 had: its code is the longest, and hardly anybody runs it.
+/// Whether a machine has no more than every x86-64 of 2003 had: its code is the longest, and hardly
+/// anybody runs it.
 #[inline(always)]
 pub fn is_oldest(level: Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -376,7 +392,8 @@ pub fn is_oldest(level: Level) -> bool {
     false
 }
 
-/// Whether registers hold sixteen numbers: where two must hold them, formulas of many numbers are better off with eight.
+/// Whether registers hold sixteen numbers: where two must hold them, formulas of many numbers are
+/// better off with eight.
 #[inline(always)]
 pub fn has_sixteen(level: Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -387,12 +404,12 @@ pub fn has_sixteen(level: Level) -> bool {
     false
 }
 
-/// What sixteen numbers are computed with where registers may hold as many; elsewhere [`F32x8`], so that nobody compiles what
-/// nobody calls.
+/// What sixteen numbers are computed with where registers may hold as many; elsewhere [`F32x8`], so
+/// that nobody compiles what nobody calls.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub type Widest<S> = F32x16<S>;
-/// What sixteen numbers are computed with where registers may hold as many; elsewhere [`F32x8`], so that nobody compiles what
-/// nobody calls.
+/// What sixteen numbers are computed with where registers may hold as many; elsewhere [`F32x8`], so
+/// that nobody compiles what nobody calls.
 #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
 pub type Widest<S> = F32x8<S>;
 
@@ -436,7 +453,11 @@ impl<T: Lanes> V3<T> {
     /// Cross product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
-        Self::new(self.y * o.z - self.z * o.y, self.z * o.x - self.x * o.z, self.x * o.y - self.y * o.x)
+        Self::new(
+            self.y * o.z - self.z * o.y,
+            self.z * o.x - self.x * o.z,
+            self.x * o.y - self.y * o.x,
+        )
     }
     /// Each component times `s`.
     #[inline(always)]
@@ -496,8 +517,8 @@ impl<T: Lanes> Neg for V3<T> {
     }
 }
 
-/// Gives `f` back. A closure in a call may carry `#[inline(always)]`; one on its own may not, and a closure that is not
-/// inlined computes without the pass's instruction set.
+/// Gives `f` back. A closure in a call may carry `#[inline(always)]`; one on its own may not, and a
+/// closure that is not inlined computes without the pass's instruction set.
 #[inline(always)]
 pub fn inlined<F>(f: F) -> F {
     f
@@ -526,8 +547,8 @@ pub fn orders_bytes(level: Level) -> bool {
     }
 }
 
-/// The instruction set to use: the machine's best, or what the environment variable `VITRAL_SIMD` names
-/// (`scalar`, `sse2`, `avx2`, `avx512`, `best`).
+/// The instruction set to use: the machine's best, or what the environment variable `VITRAL_SIMD`
+/// names (`scalar`, `sse2`, `avx2`, `avx512`, `best`).
 ///
 /// # Errors
 /// A name that is unknown or not available; the text lists those that are.
@@ -556,7 +577,12 @@ pub fn available_levels() -> Vec<(&'static str, Level)> {
     #[cfg(feature = "scalar")]
     levels.push(("scalar", Level::fallback()));
     // Where there is nothing else, it needs no feature.
-    #[cfg(not(any(feature = "scalar", target_arch = "x86_64", target_arch = "aarch64", target_feature = "simd128")))]
+    #[cfg(not(any(
+        feature = "scalar",
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        target_feature = "simd128"
+    )))]
     levels.push(("scalar", Level::new()));
     #[cfg(target_arch = "x86_64")]
     {
@@ -592,15 +618,31 @@ mod tests {
     #[test]
     fn one_lane_eight_and_sixteen_give_the_same_bits_at_every_level() {
         let x: [f32; 8] = [0.0, 1.0, -3.7, 0.25, 88.2, -140.0, 1e-20, 0.5];
-        let more: [f32; 16] = std::array::from_fn(|lane| if lane < 8 { x[7 - lane] } else { x[lane - 8] });
+        let more: [f32; 16] =
+            std::array::from_fn(|lane| if lane < 8 { x[7 - lane] } else { x[lane - 8] });
         for (name, level) in available_levels() {
             let (w, ww) = (wide(level, x), wider(level, more));
             for lane in 0..8 {
                 let one = formula(x[lane]);
                 for k in 0..4 {
-                    assert_eq!(one[k].to_bits(), w[k][lane].to_bits(), "{name}: function {k} of {}", x[lane]);
-                    assert_eq!(one[k].to_bits(), ww[k][7 - lane].to_bits(), "{name}: function {k} of {}", x[lane]);
-                    assert_eq!(one[k].to_bits(), ww[k][8 + lane].to_bits(), "{name}: function {k} of {}", x[lane]);
+                    assert_eq!(
+                        one[k].to_bits(),
+                        w[k][lane].to_bits(),
+                        "{name}: function {k} of {}",
+                        x[lane]
+                    );
+                    assert_eq!(
+                        one[k].to_bits(),
+                        ww[k][7 - lane].to_bits(),
+                        "{name}: function {k} of {}",
+                        x[lane]
+                    );
+                    assert_eq!(
+                        one[k].to_bits(),
+                        ww[k][8 + lane].to_bits(),
+                        "{name}: function {k} of {}",
+                        x[lane]
+                    );
                 }
             }
         }
@@ -617,8 +659,18 @@ mod tests {
                 (narrow.to_array(), z.to_array())
             });
             for lane in (0..8).filter(|lane| *lane != 6) {
-                assert_eq!(narrow[lane].to_bits(), (x[lane] as f32).to_bits(), "{name}: {}", x[lane]);
-                assert_eq!(wide[lane].to_bits(), f64::from(x[lane] as f32).to_bits(), "{name}: {}", x[lane]);
+                assert_eq!(
+                    narrow[lane].to_bits(),
+                    (x[lane] as f32).to_bits(),
+                    "{name}: {}",
+                    x[lane]
+                );
+                assert_eq!(
+                    wide[lane].to_bits(),
+                    f64::from(x[lane] as f32).to_bits(),
+                    "{name}: {}",
+                    x[lane]
+                );
             }
             assert!(narrow[6].is_nan() && wide[6].is_nan(), "{name}");
         }
@@ -644,7 +696,8 @@ mod tests {
 
     #[test]
     fn rows_become_columns_and_rows_again() {
-        let rows: [[i32; 4]; 8] = std::array::from_fn(|r| std::array::from_fn(|c| 10 * r as i32 + c as i32));
+        let rows: [[i32; 4]; 8] =
+            std::array::from_fn(|r| std::array::from_fn(|c| 10 * r as i32 + c as i32));
         for (name, level) in available_levels() {
             let mut again = [[0; 4]; 8];
             let columns = dispatch!(level, simd => {
@@ -666,7 +719,10 @@ mod tests {
             let y = libm::exp2f(x);
             if (1e-37..1e37).contains(&y) {
                 let exact = libm::log2(f64::from(y));
-                assert!((f64::from(Lanes::log2(y)) - exact).abs() < 3e-7 * exact.abs().max(1.0), "log2 {y}");
+                assert!(
+                    (f64::from(Lanes::log2(y)) - exact).abs() < 3e-7 * exact.abs().max(1.0),
+                    "log2 {y}"
+                );
             }
         }
         assert_eq!(Lanes::pow(0.0f32, 5.0), 0.0);

@@ -1,8 +1,9 @@
 //! The oriented bounding box: a box that may be turned to fit.
 //!
-//! Idea: the directions in which points spread most, least and in between are the eigenvectors of their covariance; a
-//! long thing lying askew has its length along the first. A box along them is usually smaller than one along the axes,
-//! but not always (points crowded in one place pull the directions their way), so both are made and the smaller kept.
+//! Idea: the directions in which points spread most, least and in between are the eigenvectors of
+//! their covariance; a long thing lying askew has its length along the first. A box along them is
+//! usually smaller than one along the axes, but not always (points crowded in one place pull the
+//! directions their way), so both are made and the smaller kept.
 //!
 //! In:   points in any space.
 //! Out:  centre, three perpendicular directions and half lengths; every point is inside.
@@ -25,7 +26,8 @@ pub struct Obb {
 }
 
 impl Obb {
-    /// A small box round `points`; points that are not finite are passed over, `None` if there is no other.
+    /// A small box round `points`; points that are not finite are passed over, `None` if there is
+    /// no other.
     pub fn from_points(points: &[DVec3]) -> Option<Self> {
         let axis_aligned = Self::along(DMat3::IDENTITY, points)?;
         let turned = Self::along(principal_axes(points), points)?;
@@ -54,7 +56,8 @@ impl Obb {
         (self.axes.transpose() * (p - self.center)).abs().cmple(self.half).all()
     }
 
-    /// The eight corners. Bit 0 of the index chooses the first axis, bit 1 the second, bit 2 the third.
+    /// The eight corners. Bit 0 of the index chooses the first axis, bit 1 the second, bit 2 the
+    /// third.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| {
             let sign = |bit: usize| if i & bit == 0 { -1.0 } else { 1.0 };
@@ -132,11 +135,15 @@ mod tests {
 
     #[test]
     fn p13_a_turned_box_is_found_again() {
-        let rotation = DMat3::from_quat(glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 0.9, -1.3));
+        let rotation =
+            DMat3::from_quat(glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 0.9, -1.3));
         let half = DVec3::new(5.0, 2.0, 1.0);
         let original = Obb { center: DVec3::new(3.0, -7.0, 2.0), axes: rotation, half };
         let found = Obb::from_points(&original.corners()).unwrap();
-        assert!((found.surface() - original.surface()).abs() < 1e-9 * original.surface(), "{found:?}");
+        assert!(
+            (found.surface() - original.surface()).abs() < 1e-9 * original.surface(),
+            "{found:?}"
+        );
         assert!((found.axes.determinant() - 1.0).abs() < 1e-12);
     }
 

@@ -46,7 +46,8 @@ unsafe fn put<T>(place: *mut T, value: T) {
 /// The machine of a handle.
 ///
 /// # Safety
-/// `handle` is null or alive; it is the calling thread's, or no thread's, context; no other borrow of the machine lives.
+/// `handle` is null or alive; it is the calling thread's, or no thread's, context; no other borrow
+/// of the machine lives.
 unsafe fn machine<'a>(handle: *const Handle) -> Option<&'a mut Machine> {
     // SAFETY: promised by the caller.
     unsafe { handle.as_ref().map(|handle| &mut *handle.machine()) }
@@ -56,7 +57,11 @@ unsafe fn machine<'a>(handle: *const Handle) -> Option<&'a mut Machine> {
 ///
 /// # Safety
 /// `share` is null, or a context that was not destroyed before.
-unsafe fn create(name: &str, attributes: Result<Attributes, String>, share: *const Handle) -> *const Handle {
+unsafe fn create(
+    name: &str,
+    attributes: Result<Attributes, String>,
+    share: *const Handle,
+) -> *const Handle {
     guarded(name, ptr::null(), || match attributes {
         // SAFETY: promised by the caller.
         Ok(attributes) => Handle::create(attributes, unsafe { share.as_ref() }),
@@ -70,7 +75,10 @@ unsafe fn create(name: &str, attributes: Result<Attributes, String>, share: *con
 /// # Safety
 /// `share` is null, or a context that was not destroyed before.
 #[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn OSMesaCreateContext(format: u32, share: *const Handle) -> *const Handle {
+pub(crate) unsafe extern "C" fn OSMesaCreateContext(
+    format: u32,
+    share: *const Handle,
+) -> *const Handle {
     // SAFETY: promised by the client.
     unsafe { create("OSMesaCreateContext", Attributes::new(format.cast_signed(), 24, 8, 0), share) }
 }
@@ -91,9 +99,13 @@ pub(crate) unsafe extern "C" fn OSMesaCreateContextExt(
 }
 
 /// # Safety
-/// `list` is null, or pairs of numbers that end with a 0; `share` is null, or a context that was not destroyed before.
+/// `list` is null, or pairs of numbers that end with a 0; `share` is null, or a context that was
+/// not destroyed before.
 #[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn OSMesaCreateContextAttribs(list: *const i32, share: *const Handle) -> *const Handle {
+pub(crate) unsafe extern "C" fn OSMesaCreateContextAttribs(
+    list: *const i32,
+    share: *const Handle,
+) -> *const Handle {
     let mut pairs = Vec::new();
     while !list.is_null() && pairs.len() < MOST_ATTRIBUTES {
         // SAFETY: no attribute so far was the final 0, so one more number is there.
@@ -105,7 +117,13 @@ pub(crate) unsafe extern "C" fn OSMesaCreateContextAttribs(list: *const i32, sha
         pairs.push((attribute, unsafe { list.add(2 * pairs.len() + 1).read_unaligned() }));
     }
     // SAFETY: promised by the client.
-    unsafe { create("OSMesaCreateContextAttribs", Attributes::from_list(&pairs, gives_1_5_for_2_1), share) }
+    unsafe {
+        create(
+            "OSMesaCreateContextAttribs",
+            Attributes::from_list(&pairs, gives_1_5_for_2_1),
+            share,
+        )
+    }
 }
 
 /// # Safety
@@ -141,7 +159,8 @@ pub(crate) unsafe extern "C" fn OSMesaMakeCurrent(
             unsafe { leave(ptr::null()) };
             return 1;
         }
-        // SAFETY: the context is alive and the calling thread's to use; this is the only borrow of it.
+        // SAFETY: the context is alive and the calling thread's to use; this is the only borrow of
+        // it.
         let refused = match unsafe { machine(handle) } {
             None => Some("there is no context".to_owned()),
             Some(machine) => refusal(&machine.attributes, buffer, kind, [width, height]),
@@ -153,12 +172,19 @@ pub(crate) unsafe extern "C" fn OSMesaMakeCurrent(
         // SAFETY: the context is alive, as above.
         unsafe { leave(handle) };
         let address = buffer.expose_provenance();
-        call("OSMesaMakeCurrent", |context| u8::from(context.make_current(address, kind, width, height)))
+        call("OSMesaMakeCurrent", |context| {
+            u8::from(context.make_current(address, kind, width, height))
+        })
     })
 }
 
 /// Why a buffer cannot be drawn to.
-fn refusal(attributes: &Attributes, buffer: *const c_void, kind: u32, size: [i32; 2]) -> Option<String> {
+fn refusal(
+    attributes: &Attributes,
+    buffer: *const c_void,
+    kind: u32,
+    size: [i32; 2],
+) -> Option<String> {
     let [width, height] = size;
     if buffer.is_null() {
         Some("there is no buffer".to_owned())
@@ -171,8 +197,8 @@ fn refusal(attributes: &Attributes, buffer: *const c_void, kind: u32, size: [i32
     }
 }
 
-/// Makes `next` (null: none) current. The context before it, if it is another one, finishes its drawing and lets go of
-/// its buffer.
+/// Makes `next` (null: none) current. The context before it, if it is another one, finishes its
+/// drawing and lets go of its buffer.
 ///
 /// # Safety
 /// `next` is null or alive.
@@ -196,7 +222,9 @@ pub(crate) extern "C" fn OSMesaPixelStore(name: i32, value: i32) {
         let Some(machine) = (unsafe { machine(current()) }) else { return };
         match (name, usize::try_from(value)) {
             (tokens::ROW_LENGTH, Ok(pixels)) => machine.context.set_buffer_row_length(pixels),
-            (tokens::ROW_LENGTH, Err(_)) => tell(&format!("OSMesaPixelStore: a row cannot have {value} pixels")),
+            (tokens::ROW_LENGTH, Err(_)) => {
+                tell(&format!("OSMesaPixelStore: a row cannot have {value} pixels"))
+            }
             (tokens::Y_UP, _) => machine.context.set_buffer_y_up(value != 0),
             _ => tell(&format!("OSMesaPixelStore: {name:#x} is no parameter")),
         }
@@ -229,7 +257,8 @@ pub(crate) unsafe extern "C" fn OSMesaGetIntegerv(name: i32, value: *mut i32) {
 }
 
 /// # Safety
-/// `handle` is null or a context that no other thread uses; the other pointers are null, or can be written.
+/// `handle` is null or a context that no other thread uses; the other pointers are null, or can be
+/// written.
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn OSMesaGetDepthBuffer(
     handle: *const Handle,
@@ -252,8 +281,8 @@ pub(crate) unsafe extern "C" fn OSMesaGetDepthBuffer(
     u8::from(found.is_some())
 }
 
-/// Size, bytes a value, and address of a fresh copy of the depth buffer, if there is one. The address stays while the
-/// size does.
+/// Size, bytes a value, and address of a fresh copy of the depth buffer, if there is one. The
+/// address stays while the size does.
 fn depths(machine: &mut Machine) -> Option<([i32; 2], i32, usize)> {
     let copy = machine.context.default_depths()?;
     machine.depths.clear();
@@ -267,7 +296,8 @@ fn depths(machine: &mut Machine) -> Option<([i32; 2], i32, usize)> {
 }
 
 /// # Safety
-/// `handle` is null or a context that no other thread uses; the other pointers are null, or can be written.
+/// `handle` is null or a context that no other thread uses; the other pointers are null, or can be
+/// written.
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn OSMesaGetColorBuffer(
     handle: *const Handle,
@@ -283,13 +313,17 @@ pub(crate) unsafe extern "C" fn OSMesaGetColorBuffer(
         context.store_default_framebuffer();
         Some(context.buffer_info()).filter(|info| info.address != 0)
     });
-    let size = found.as_ref().map_or([0; 2], |info| [info.width, info.height].map(u32::cast_signed));
+    let size =
+        found.as_ref().map_or([0; 2], |info| [info.width, info.height].map(u32::cast_signed));
     // SAFETY: the client's promise.
     unsafe {
         put(width, size[0]);
         put(height, size[1]);
         put(format, found.as_ref().map_or(0, |info| info.format.cast_signed()));
-        put(buffer, ptr::with_exposed_provenance_mut(found.as_ref().map_or(0, |info| info.address)));
+        put(
+            buffer,
+            ptr::with_exposed_provenance_mut(found.as_ref().map_or(0, |info| info.address)),
+        );
     }
     u8::from(found.is_some())
 }
@@ -311,7 +345,11 @@ pub(crate) extern "C" fn OSMesaColorClamp(enable: u8) {
 /// # Safety
 /// `filter` is null, or a text that ends with a 0.
 #[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn OSMesaPostprocess(_handle: *const Handle, filter: *const c_char, value: u32) {
+pub(crate) unsafe extern "C" fn OSMesaPostprocess(
+    _handle: *const Handle,
+    filter: *const c_char,
+    value: u32,
+) {
     if value != 0 && !filter.is_null() {
         // SAFETY: not null, and the client promises the rest.
         let filter = unsafe { CStr::from_ptr(filter) };

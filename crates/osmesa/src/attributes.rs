@@ -51,7 +51,9 @@ impl Attributes {
     pub(crate) fn new(format: i32, depth: i32, stencil: i32, accum: i32) -> Result<Self, String> {
         let format = format.cast_unsigned();
         if ![RGBA, BGRA, ARGB, RGB, BGR, RGB_565].contains(&format) {
-            return Err(format!("the format {format:#x} is none of OSMESA_RGBA, BGRA, ARGB, RGB, BGR, RGB_565"));
+            return Err(format!(
+                "the format {format:#x} is none of OSMESA_RGBA, BGRA, ARGB, RGB, BGR, RGB_565"
+            ));
         }
         if depth < 0 || stencil < 0 || accum < 0 {
             return Err(format!(
@@ -68,8 +70,12 @@ impl Attributes {
         Ok(Self { format, depth_bits, stencil_bits, accum_bits, says_2_1: false })
     }
 
-    /// Reads pairs of attribute and value, in the order given. `lenient`: 1.5 is given to who asks for 2.0 or 2.1.
-    pub(crate) fn from_list(pairs: &[(i32, i32)], lenient: impl Fn() -> bool) -> Result<Self, String> {
+    /// Reads pairs of attribute and value, in the order given. `lenient`: 1.5 is given to who asks
+    /// for 2.0 or 2.1.
+    pub(crate) fn from_list(
+        pairs: &[(i32, i32)],
+        lenient: impl Fn() -> bool,
+    ) -> Result<Self, String> {
         let (mut format, mut depth, mut stencil, mut accum) = (RGBA.cast_signed(), 0, 0, 0);
         let (mut profile, mut major, mut minor) = (COMPAT_PROFILE, 1, 0);
         for &(attribute, value) in pairs {
@@ -101,13 +107,16 @@ impl Attributes {
 
         // A program may say 2.1 and use nothing of it: the user knows.
         let (has_major, has_minor) = VERSION;
-        let refused =
-            format!("OpenGL {major}.{minor} was asked for, there is {has_major}.{has_minor}, without shaders");
+        let refused = format!(
+            "OpenGL {major}.{minor} was asked for, there is {has_major}.{has_minor}, without shaders"
+        );
         match (major, minor) {
-            (2, 0 | 1) if lenient() => Ok(Self { says_2_1: true, ..Self::new(format, depth, stencil, accum)? }),
-            (2, 0 | 1) => {
-                Err(format!("{refused}; VITRAL_GL_COMPAT=2.1 gives 1.5 to a program that does not need more"))
+            (2, 0 | 1) if lenient() => {
+                Ok(Self { says_2_1: true, ..Self::new(format, depth, stencil, accum)? })
             }
+            (2, 0 | 1) => Err(format!(
+                "{refused}; VITRAL_GL_COMPAT=2.1 gives 1.5 to a program that does not need more"
+            )),
             _ => Err(refused),
         }
     }
@@ -128,7 +137,9 @@ mod tests {
 
     #[test]
     fn bits_are_rounded_up_to_what_there_is() {
-        let bits = |d, s, a| Attributes::new(0x1908, d, s, a).map(|b| (b.depth_bits, b.stencil_bits, b.accum_bits));
+        let bits = |d, s, a| {
+            Attributes::new(0x1908, d, s, a).map(|b| (b.depth_bits, b.stencil_bits, b.accum_bits))
+        };
         assert_eq!(bits(0, 0, 0), Ok((0, 0, 0)));
         assert_eq!(bits(16, 0, 16), Ok((16, 0, 16)));
         assert_eq!(bits(16, 8, 1), Ok((24, 8, 16)), "packed with stencil");
@@ -159,7 +170,10 @@ mod tests {
     #[test]
     fn who_asks_for_2_1_gets_1_5_if_the_user_says_so() {
         let asked = |major, minor, lenient| {
-            Attributes::from_list(&[(CONTEXT_MAJOR_VERSION, major), (CONTEXT_MINOR_VERSION, minor)], || lenient)
+            Attributes::from_list(
+                &[(CONTEXT_MAJOR_VERSION, major), (CONTEXT_MINOR_VERSION, minor)],
+                || lenient,
+            )
         };
         assert_eq!(asked(2, 1, true).map(|made| made.says_2_1), Ok(true));
         assert_eq!(asked(2, 0, true).map(|made| made.says_2_1), Ok(true));
@@ -172,7 +186,11 @@ mod tests {
     fn formats_have_their_types() {
         let with = |format| Attributes::new(format, 0, 0, 0).unwrap();
         for format in [0x1908, 1, 2, 0x1907, 4] {
-            assert!([enums::UNSIGNED_BYTE, enums::UNSIGNED_SHORT, enums::FLOAT].iter().all(|k| with(format).takes(*k)));
+            assert!(
+                [enums::UNSIGNED_BYTE, enums::UNSIGNED_SHORT, enums::FLOAT]
+                    .iter()
+                    .all(|k| with(format).takes(*k))
+            );
             assert!(!with(format).takes(UNSIGNED_SHORT_5_6_5) && !with(format).takes(enums::BYTE));
         }
         assert!(with(5).takes(UNSIGNED_SHORT_5_6_5) && !with(5).takes(enums::UNSIGNED_BYTE));

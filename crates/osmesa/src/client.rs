@@ -1,9 +1,10 @@
-//! A client in this process: it calls the C functions as programs do, on pictures so small that an interpreter can follow
-//! (`cargo xtask sanitize`).
+//! A client in this process: it calls the C functions as programs do, on pictures so small that an
+//! interpreter can follow (`cargo xtask sanitize`).
 
 use crate::api::{
     OSMesaCreateContextAttribs, OSMesaCreateContextExt, OSMesaDestroyContext, OSMesaGetColorBuffer,
-    OSMesaGetCurrentContext, OSMesaGetDepthBuffer, OSMesaGetIntegerv, OSMesaMakeCurrent, OSMesaPixelStore,
+    OSMesaGetCurrentContext, OSMesaGetDepthBuffer, OSMesaGetIntegerv, OSMesaMakeCurrent,
+    OSMesaPixelStore,
 };
 use crate::entry_points::*;
 use crate::handle::Handle;
@@ -27,15 +28,23 @@ impl Window {
         // SAFETY: `share` is null or alive.
         let context = unsafe { OSMesaCreateContextExt(gl::RGBA, 24, 8, 0, share) };
         assert!(!context.is_null());
-        let window = Self { context, buffer: Box::into_raw(Box::new([[0_u8; 4]; SIDE * SIDE])).cast() };
+        let window =
+            Self { context, buffer: Box::into_raw(Box::new([[0_u8; 4]; SIDE * SIDE])).cast() };
         window.make_current();
         window
     }
 
     fn make_current(&self) {
         // SAFETY: the context is alive, the buffer has room.
-        let made =
-            unsafe { OSMesaMakeCurrent(self.context, self.buffer.cast(), gl::UNSIGNED_BYTE, SIDE as i32, SIDE as i32) };
+        let made = unsafe {
+            OSMesaMakeCurrent(
+                self.context,
+                self.buffer.cast(),
+                gl::UNSIGNED_BYTE,
+                SIDE as i32,
+                SIDE as i32,
+            )
+        };
         assert_eq!(made, 1);
     }
 
@@ -230,7 +239,15 @@ fn a_context_goes_with_the_last_thread_that_has_it() {
 }
 
 /// A callback that destroys the context whose message it gets, given as `user`.
-extern "C" fn destroy_it(_: u32, _: u32, _: u32, _: u32, length: i32, text: *const u8, user: usize) {
+extern "C" fn destroy_it(
+    _: u32,
+    _: u32,
+    _: u32,
+    _: u32,
+    length: i32,
+    text: *const u8,
+    user: usize,
+) {
     // SAFETY: KHR_debug: a text of this length with a zero behind it.
     assert_eq!(unsafe { text.add(length as usize).read() }, 0);
     // SAFETY: the test's context, destroyed here alone.

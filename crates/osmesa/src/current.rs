@@ -19,10 +19,12 @@ thread_local! {
 /// The key of threads that have had a context, made with the first one.
 static KEY: OnceLock<Option<libc::pthread_key_t>> = OnceLock::new();
 
-/// Rounds in which the C library calls the destructors of keys, at least (`PTHREAD_DESTRUCTOR_ITERATIONS`).
+/// Rounds in which the C library calls the destructors of keys, at least
+/// (`PTHREAD_DESTRUCTOR_ITERATIONS`).
 const ROUNDS: usize = 4;
 
-/// Lets go of the current context when the thread ends, in the last round: destructors of the client find it current.
+/// Lets go of the current context when the thread ends, in the last round: destructors of the
+/// client find it current.
 extern "C" fn at_thread_end(rounds: *mut c_void) {
     let rounds = rounds.addr() + 1;
     if rounds < ROUNDS {
@@ -38,7 +40,8 @@ extern "C" fn at_thread_end(rounds: *mut c_void) {
 fn count_rounds(rounds: usize) {
     let key = KEY.get_or_init(|| {
         let mut key = 0;
-        // SAFETY: writes the key. The library is linked to be never unloaded (`build.rs`), so that the function stays.
+        // SAFETY: writes the key. The library is linked to be never unloaded (`build.rs`), so that
+        // the function stays.
         (unsafe { libc::pthread_key_create(&raw mut key, Some(at_thread_end)) } == 0).then_some(key)
     });
     if let Some(key) = *key {
@@ -69,27 +72,29 @@ pub(crate) unsafe fn replace(handle: *const Handle) {
     }
 }
 
-/// Calls `body` with the calling thread's context. Without one nothing happens, and the result is 0. A panic becomes an
-/// error of OpenGL.
+/// Calls `body` with the calling thread's context. Without one nothing happens, and the result is
+/// 0. A panic becomes an error of OpenGL.
 #[inline]
 pub(crate) fn call<R: Default>(name: &'static str, body: impl FnOnce(&mut Context) -> R) -> R {
     // SAFETY: the current handle is alive until it is replaced.
     let Some(handle) = (unsafe { CURRENT.get().as_ref() }) else { return R::default() };
-    // SAFETY: the machine belongs to this thread. Calls do not nest: `body` runs no code of the client, whose debug
-    // callback is called below, when this borrow has ended.
+    // SAFETY: the machine belongs to this thread. Calls do not nest: `body` runs no code of the
+    // client, whose debug callback is called below, when this borrow has ended.
     let context = unsafe { &mut (*handle.machine()).context };
-    let result = in_default_environment(|| match catch_unwind(AssertUnwindSafe(|| body(context))) {
-        Ok(result) => result,
-        Err(cause) => panicked(context, name, cause),
-    });
+    let result =
+        in_default_environment(|| match catch_unwind(AssertUnwindSafe(|| body(context))) {
+            Ok(result) => result,
+            Err(cause) => panicked(context, name, cause),
+        });
     if handle.messages.any() {
         deliver(handle);
     }
     result
 }
 
-/// Calls `quick` with the calling thread's context, and [`call`]s `body` if that says that it did nothing. `quick` must neither
-/// panic nor leave a message: an entry point that does no more than this keeps no register.
+/// Calls `quick` with the calling thread's context, and [`call`]s `body` if that says that it did
+/// nothing. `quick` must neither panic nor leave a message: an entry point that does no more than
+/// this keeps no register.
 #[inline(always)]
 pub(crate) fn call_unless<R: Default>(
     name: &'static str,
@@ -112,10 +117,15 @@ fn call_apart<R: Default>(name: &'static str, body: impl FnOnce(&mut Context) ->
 #[cold]
 #[inline(never)]
 fn panicked<R: Default>(context: &mut Context, name: &str, cause: Box<dyn Any + Send>) -> R {
-    let what = cause.downcast_ref::<String>().map(String::as_str).or_else(|| cause.downcast_ref::<&str>().copied());
+    let what = cause
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| cause.downcast_ref::<&str>().copied());
     let what = what.unwrap_or("no reason given");
     environment::say(&format!("{name}: this is a fault of vitral: {what}"));
-    let record = AssertUnwindSafe(|| context.record_error(enums::INVALID_OPERATION, name, "the library failed"));
+    let record = AssertUnwindSafe(|| {
+        context.record_error(enums::INVALID_OPERATION, name, "the library failed")
+    });
     if catch_unwind(record).is_err() {
         environment::say(&format!("{name}: and the error could not be recorded"));
     }
@@ -125,8 +135,8 @@ fn panicked<R: Default>(context: &mut Context, name: &str, cause: Box<dyn Any + 
 /// `GLDEBUGPROC`.
 type DebugProc = unsafe extern "C" fn(u32, u32, u32, u32, i32, *const u8, usize);
 
-/// Calls the client's debug callback with each message that waits for the current context's. The callback may call OpenGL, and
-/// even destroy the context: nothing of its handle is borrowed here.
+/// Calls the client's debug callback with each message that waits for the current context's. The
+/// callback may call OpenGL, and even destroy the context: nothing of its handle is borrowed here.
 #[cold]
 #[inline(never)]
 fn deliver(handle: *const Handle) {
@@ -136,11 +146,20 @@ fn deliver(handle: *const Handle) {
         let length = i32::try_from(message.text.len()).unwrap_or(i32::MAX);
         message.text.push(0);
         let callback = ptr::with_exposed_provenance::<()>(callback);
-        // SAFETY: the client gave this address as a GLDEBUGPROC; the state machine calls no hook for address 0.
+        // SAFETY: the client gave this address as a GLDEBUGPROC; the state machine calls no hook
+        // for address 0.
         let callback = unsafe { std::mem::transmute::<*const (), DebugProc>(callback) };
         // SAFETY: a call as KHR_debug says, with a terminated text that lives until it returns.
         unsafe {
-            callback(message.source, message.kind, message.id, message.severity, length, message.text.as_ptr(), user);
+            callback(
+                message.source,
+                message.kind,
+                message.id,
+                message.severity,
+                length,
+                message.text.as_ptr(),
+                user,
+            );
         }
     }
 }

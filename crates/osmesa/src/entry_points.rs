@@ -1,14 +1,15 @@
-//! The entry points: names and types from the Khronos registry (`gl.xml`), one line for each method of [`vitral_gl::Context`]
-//! with all names it has. Pointers are addresses, but for those at a few numbers that are taken at the call.
+//! The entry points: names and types from the Khronos registry (`gl.xml`), one line for each method
+//! of [`vitral_gl::Context`] with all names it has. Pointers are addresses, but for those at a few
+//! numbers that are taken at the call.
 #![allow(non_snake_case)]
 
 use crate::current::{call, call_unless};
 use crate::memory::Argument;
 use crate::procedure::{Procedure, procedures};
 
-/// Exports each name as a C function that calls the method of the current context, and makes the table of them. What waits to be
-/// drawn is drawn before, unless the method is in brackets: such calls leave it waiting, and some are done by another method
-/// if it can.
+/// Exports each name as a C function that calls the method of the current context, and makes the
+/// table of them. What waits to be drawn is drawn before, unless the method is in brackets: such
+/// calls leave it waiting, and some are done by another method if it can.
 macro_rules! entry_points {
     ($($name:ident $($alias:ident)* => $method:tt $arguments:tt -> $result:ty;)+) => {
         $(
@@ -17,7 +18,8 @@ macro_rules! entry_points {
         )+
         pub(crate) static PROCEDURES: &[Procedure] = procedures! { $($name $($alias)*)+ };
     };
-    // Another name of a function leads to it, which makes the library smaller than to have its code again.
+    // Another name of a function leads to it, which makes the library smaller than to have its code
+    // again.
     (@ $alias:ident = $name:ident ($($argument:ident: $kind:ty),*) $result:ty) => {
         #[unsafe(no_mangle)]
         pub(crate) extern "C" fn $alias($($argument: $kind),*) -> $result {

@@ -1,8 +1,10 @@
-//! The floating-point environment: what computes runs in the default one, so that its bytes are the same whatever rounding mode,
-//! traps or flushing of small numbers the program has set. The program's own comes back with the call's end. Threads
-//! inherit the environment of the thread that makes them, which is such a call.
+//! The floating-point environment: what computes runs in the default one, so that its bytes are the
+//! same whatever rounding mode, traps or flushing of small numbers the program has set. The
+//! program's own comes back with the call's end. Threads inherit the environment of the thread that
+//! makes them, which is such a call.
 
-/// The control word of the thread: rounding, traps, small numbers. Bits that only tell what has happened are left out.
+/// The control word of the thread: rounding, traps, small numbers. Bits that only tell what has
+/// happened are left out.
 #[cfg(all(target_arch = "x86_64", not(miri)))]
 mod control {
     use std::arch::asm;

@@ -27,8 +27,8 @@ const _: () = {
     can_be_sent::<Machine>();
 };
 
-/// What an `OSMesaContext` points to. One thread at a time may have the context current; others may destroy it: then
-/// it goes when that thread lets go of it.
+/// What an `OSMesaContext` points to. One thread at a time may have the context current; others may
+/// destroy it: then it goes when that thread lets go of it.
 #[derive(Debug)]
 pub(crate) struct Handle {
     /// Messages for the client's debug callback.
@@ -39,7 +39,8 @@ pub(crate) struct Handle {
     memory: Arc<ProcessMemory>,
     /// Threads that have it current, plus one until it is destroyed.
     users: AtomicUsize,
-    /// Only for the thread that has it current, or, while nobody has, for the one that calls an OSMesa function with it.
+    /// Only for the thread that has it current, or, while nobody has, for the one that calls an
+    /// OSMesa function with it.
     machine: UnsafeCell<Machine>,
 }
 
@@ -62,7 +63,13 @@ impl Handle {
         }
         context.configure_default_framebuffer(format, depth_bits, stencil_bits, accum_bits);
         let machine = UnsafeCell::new(Machine { context, attributes, depths: Vec::new() });
-        Box::into_raw(Box::new(Self { messages, shared, memory, users: AtomicUsize::new(1), machine }))
+        Box::into_raw(Box::new(Self {
+            messages,
+            shared,
+            memory,
+            users: AtomicUsize::new(1),
+            machine,
+        }))
     }
 
     /// The machine.
@@ -78,8 +85,8 @@ impl Handle {
     /// A thread, or the client, lets go of it; the last one frees it.
     ///
     /// # Safety
-    /// `handle` came from [`Handle::create`], and this is called once for the creation and once for each
-    /// [`Handle::acquire`].
+    /// `handle` came from [`Handle::create`], and this is called once for the creation and once for
+    /// each [`Handle::acquire`].
     pub(crate) unsafe fn release(handle: *const Self) {
         // SAFETY: one use is still counted, the caller's, so the handle is alive.
         let users = unsafe { &(*handle).users };

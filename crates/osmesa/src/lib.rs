@@ -1,7 +1,9 @@
-//! `libOSMesa.so.8`: the C interface of [`vitral_gl`], a drop-in for Mesa's library of the same name.
+//! `libOSMesa.so.8`: the C interface of [`vitral_gl`], a drop-in for Mesa's library of the same
+//! name.
 //!
-//! Shims only: each exported function finds the calling thread's context and calls the method of the same name. All
-//! memory of the client is reached in `memory.rs`, all state of OSMesa itself is in `handle.rs` and `api.rs`.
+//! Shims only: each exported function finds the calling thread's context and calls the method of
+//! the same name. All memory of the client is reached in `memory.rs`, all state of OSMesa itself is
+//! in `handle.rs` and `api.rs`.
 #![allow(unsafe_code, non_snake_case)]
 #![deny(unsafe_op_in_unsafe_fn)]
 

@@ -18,16 +18,28 @@ pub(crate) struct ProcessMemory {
 
 impl ClientMemory for ProcessMemory {
     fn read(&self, address: usize, out: &mut [u8]) -> bool {
-        // SAFETY: OpenGL's contract: the client gave an address from which this many bytes can be read. `out` is ours
-        // alone, so the two do not overlap.
-        unsafe { ptr::copy_nonoverlapping(ptr::with_exposed_provenance(address), out.as_mut_ptr(), out.len()) };
+        // SAFETY: OpenGL's contract: the client gave an address from which this many bytes can be
+        // read. `out` is ours alone, so the two do not overlap.
+        unsafe {
+            ptr::copy_nonoverlapping(
+                ptr::with_exposed_provenance(address),
+                out.as_mut_ptr(),
+                out.len(),
+            )
+        };
         true
     }
 
     fn write(&self, address: usize, bytes: &[u8]) -> bool {
-        // SAFETY: OpenGL's contract: the client gave an address to which this many bytes can be written. `bytes` is
-        // ours, so the two do not overlap.
-        unsafe { ptr::copy_nonoverlapping(bytes.as_ptr(), ptr::with_exposed_provenance_mut(address), bytes.len()) };
+        // SAFETY: OpenGL's contract: the client gave an address to which this many bytes can be
+        // written. `bytes` is ours, so the two do not overlap.
+        unsafe {
+            ptr::copy_nonoverlapping(
+                bytes.as_ptr(),
+                ptr::with_exposed_provenance_mut(address),
+                bytes.len(),
+            )
+        };
         true
     }
 
@@ -36,7 +48,8 @@ impl ClientMemory for ProcessMemory {
     }
 
     fn map(&self, mut bytes: Vec<u8>) -> usize {
-        // An empty vector has no address of its own. Others stay where they are: a large one may not be had twice.
+        // An empty vector has no address of its own. Others stay where they are: a large one may
+        // not be had twice.
         if bytes.capacity() == 0 {
             bytes.reserve(1);
         }
@@ -50,9 +63,11 @@ impl ClientMemory for ProcessMemory {
     fn unmap(&self, address: usize) -> Option<Vec<u8>> {
         let mut mapped = self.mapped.lock().unwrap_or_else(PoisonError::into_inner);
         let (length, capacity) = mapped.remove(&address)?;
-        // SAFETY: `map` took apart a vector of this address, length and capacity; the entry was removed, so it is put
-        // together once.
-        Some(unsafe { Vec::from_raw_parts(ptr::with_exposed_provenance_mut(address), length, capacity) })
+        // SAFETY: `map` took apart a vector of this address, length and capacity; the entry was
+        // removed, so it is put together once.
+        Some(unsafe {
+            Vec::from_raw_parts(ptr::with_exposed_provenance_mut(address), length, capacity)
+        })
     }
 }
 
@@ -81,7 +96,8 @@ impl<T: Copy, const N: usize> Argument for *const [T; N] {
     type Given = Option<[T; N]>;
     #[inline(always)]
     fn given(self) -> Option<[T; N]> {
-        // SAFETY: OpenGL's contract: the client gave an address from which so many numbers can be read, aligned or not.
+        // SAFETY: OpenGL's contract: the client gave an address from which so many numbers can be
+        // read, aligned or not.
         (!self.is_null()).then(|| unsafe { self.read_unaligned() })
     }
 }

@@ -1,5 +1,5 @@
-//! The way of a debug message from the state machine to the client's callback: it waits until the call that caused it has
-//! ended, since the callback may itself call OpenGL.
+//! The way of a debug message from the state machine to the client's callback: it waits until the
+//! call that caused it has ended, since the callback may itself call OpenGL.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -69,7 +69,8 @@ mod tests {
             hook(1, &DebugMessage { source: 0, kind: 0, id, severity: 0, text: Vec::new() }, 2);
         }
         assert!(messages.any());
-        let ids: Vec<u32> = std::iter::from_fn(|| messages.next()).map(|waiting| waiting.message.id).collect();
+        let ids: Vec<u32> =
+            std::iter::from_fn(|| messages.next()).map(|waiting| waiting.message.id).collect();
         assert_eq!(ids, [0, 1, 2]);
         assert!(!messages.any());
     }

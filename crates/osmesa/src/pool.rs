@@ -1,6 +1,6 @@
-//! The threads that draw, shared by all contexts of the process. They belong to the process that made them: after a fork
-//! the child makes its own, and never looks at its parent's, since their threads are not there. What they draw while the
-//! program goes on is waited for before a fork.
+//! The threads that draw, shared by all contexts of the process. They belong to the process that
+//! made them: after a fork the child makes its own, and never looks at its parent's, since their
+//! threads are not there. What they draw while the program goes on is waited for before a fork.
 
 use crate::environment;
 use std::ptr;
@@ -10,8 +10,8 @@ use vitral_exec::{Workers, born_of_fork, forked, hold_for_fork, surround_thread_
 use vitral_math::lanes::{Level, level_from_environment};
 use vitral_raster::forward::Runner;
 
-/// A runner and the process that made it. It is never freed: a thread may be asking while another replaces it, and a
-/// library that is closed at the process' end must not wait for threads.
+/// A runner and the process that made it. It is never freed: a thread may be asking while another
+/// replaces it, and a library that is closed at the process' end must not wait for threads.
 struct Pool {
     process: u32,
     runner: Arc<Runner>,
@@ -21,8 +21,13 @@ struct Pool {
 static POOL: AtomicPtr<Pool> = AtomicPtr::new(ptr::null_mut());
 
 unsafe extern "C" {
-    /// POSIX: calls `prepare` before a fork, `parent` and `child` after it. Not 0 if there is no memory for it.
-    fn pthread_atfork(prepare: extern "C" fn(), parent: extern "C" fn(), child: extern "C" fn()) -> i32;
+    /// POSIX: calls `prepare` before a fork, `parent` and `child` after it. Not 0 if there is no
+    /// memory for it.
+    fn pthread_atfork(
+        prepare: extern "C" fn(),
+        parent: extern "C" fn(),
+        child: extern "C" fn(),
+    ) -> i32;
 }
 
 extern "C" fn before_fork() {
@@ -50,8 +55,9 @@ pub(crate) fn runner() -> Arc<Runner> {
         Level::new()
     });
     if found.is_null() {
-        // The child has the same handlers. Where two threads come here at the same time, there are two of each: no harm.
-        // SAFETY: the library is linked to be never unloaded (`build.rs`), so that the functions stay.
+        // The child has the same handlers. Where two threads come here at the same time, there are
+        // two of each: no harm. SAFETY: the library is linked to be never unloaded (`build.rs`), so
+        // that the functions stay.
         let failed = unsafe { pthread_atfork(before_fork, after_fork, in_child) };
         if failed != 0 {
             environment::say("no memory to be told of forks: do not fork while something is drawn");
@@ -64,7 +70,8 @@ pub(crate) fn runner() -> Arc<Runner> {
         // SAFETY: never freed, as it is in `POOL`.
         Ok(_) => Arc::clone(&unsafe { &*made }.runner),
         Err(other) => {
-            // SAFETY: another thread was faster, so that `made` is ours alone; theirs is never freed.
+            // SAFETY: another thread was faster, so that `made` is ours alone; theirs is never
+            // freed.
             unsafe {
                 drop(Box::from_raw(made));
                 Arc::clone(&(*other).runner)

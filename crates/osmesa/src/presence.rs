@@ -1,7 +1,9 @@
-//! Whether memory of the client is still there, before the library stores or loads a picture that nobody asked for in this call:
-//! programs free a buffer while its context is current, and go on with another context.
+//! Whether memory of the client is still there, before the library stores or loads a picture that
+//! nobody asked for in this call: programs free a buffer while its context is current, and go on
+//! with another context.
 
-/// Whether `length` bytes from `address` on can be read and written. On systems other than Linux they are taken to be.
+/// Whether `length` bytes from `address` on can be read and written. On systems other than Linux
+/// they are taken to be.
 #[cfg(all(target_os = "linux", not(miri)))]
 pub(crate) fn is_there(address: usize, length: usize) -> bool {
     if length == 0 {
@@ -30,7 +32,8 @@ fn is_mapped(first: usize, last: usize) -> bool {
     unsafe { libc::mincore(start, pages * page, resident.as_mut_ptr()) == 0 }
 }
 
-/// Whether bytes can be read and written: the kernel copies them to a pipe and back, and tells a fault as an error.
+/// Whether bytes can be read and written: the kernel copies them to a pipe and back, and tells a
+/// fault as an error.
 #[cfg(all(target_os = "linux", not(miri)))]
 fn are_writable(addresses: [usize; 2]) -> bool {
     let mut ends = [0; 2];
@@ -58,21 +61,35 @@ mod tests {
 
     fn pages(access: i32) -> *mut libc::c_void {
         // SAFETY: new pages.
-        unsafe { libc::mmap(std::ptr::null_mut(), 3 << 16, access, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS, -1, 0) }
+        unsafe {
+            libc::mmap(
+                std::ptr::null_mut(),
+                3 << 16,
+                access,
+                libc::MAP_PRIVATE | libc::MAP_ANONYMOUS,
+                -1,
+                0,
+            )
+        }
     }
 
     #[test]
     fn memory_that_is_gone_or_cannot_be_written_is_not_there() {
         let bytes = [1_u8, 2, 3];
         let address = bytes.as_ptr().expose_provenance();
-        assert!(is_there(address, 3) && is_there(0, 0) && !is_there(usize::MAX, 2) && !is_there(8, 8));
+        assert!(
+            is_there(address, 3) && is_there(0, 0) && !is_there(usize::MAX, 2) && !is_there(8, 8)
+        );
         assert_eq!(bytes, [1, 2, 3]);
 
         let whole = pages(libc::PROT_READ | libc::PROT_WRITE);
         assert!(is_there(whole.expose_provenance(), 3 << 16));
         // SAFETY: our pages, which nobody uses.
         unsafe { libc::munmap(whole.byte_add(1 << 16), 1 << 16) };
-        assert!(is_there(whole.expose_provenance(), 1 << 16) && !is_there(whole.expose_provenance(), 3 << 16));
+        assert!(
+            is_there(whole.expose_provenance(), 1 << 16)
+                && !is_there(whole.expose_provenance(), 3 << 16)
+        );
         let constant = pages(libc::PROT_READ);
         assert!(!is_there(constant.expose_provenance(), 1));
     }

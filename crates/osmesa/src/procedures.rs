@@ -1,5 +1,5 @@
-//! `OSMesaGetProcAddress`: every function that does something by its name. Those of `unsupported.rs` are exported alone:
-//! programs ask by name what there is.
+//! `OSMesaGetProcAddress`: every function that does something by its name. Those of
+//! `unsupported.rs` are exported alone: programs ask by name what there is.
 
 use crate::procedure::{Procedure, procedures};
 use crate::{api, entry_points};

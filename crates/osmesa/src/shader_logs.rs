@@ -5,8 +5,8 @@ use crate::unsupported::refuse;
 use std::ffi::c_char;
 use std::ptr;
 
-/// `COMPILE_STATUS`, `LINK_STATUS` and `VALIDATE_STATUS` (`gl.xml`; those of ARB_shader_objects have the same numbers) are
-/// false. `INFO_LOG_LENGTH` is that of [`LOG`] with its end.
+/// `COMPILE_STATUS`, `LINK_STATUS` and `VALIDATE_STATUS` (`gl.xml`; those of ARB_shader_objects
+/// have the same numbers) are false. `INFO_LOG_LENGTH` is that of [`LOG`] with its end.
 const INFO_LOG_LENGTH: u32 = 0x8b84;
 
 /// What all logs say.
@@ -39,7 +39,9 @@ unsafe fn write_log(room: i32, length: *mut i32, log: *mut c_char) {
 unsafe fn write_parameter(pname: u32, value: *mut i32) {
     if !value.is_null() {
         // SAFETY: not null, and the client promises the rest.
-        unsafe { value.write_unaligned(if pname == INFO_LOG_LENGTH { LOG.len() as i32 } else { 0 }) };
+        unsafe {
+            value.write_unaligned(if pname == INFO_LOG_LENGTH { LOG.len() as i32 } else { 0 })
+        };
     }
 }
 
@@ -85,7 +87,8 @@ mod tests {
         let (mut length, mut log) = (-1, [1 as c_char; 100]);
         // SAFETY: both have the room that is told.
         unsafe { glGetShaderInfoLog(1, 100, &raw mut length, log.as_mut_ptr()) };
-        let text: Vec<u8> = log.iter().take_while(|&&c| c != 0).map(|&c| c.cast_unsigned()).collect();
+        let text: Vec<u8> =
+            log.iter().take_while(|&&c| c != 0).map(|&c| c.cast_unsigned()).collect();
         assert_eq!((text.len(), &text[..]), (length as usize, &LOG[..LOG.len() - 1]));
         // SAFETY: as above.
         unsafe { glGetProgramInfoLog(1, 5, &raw mut length, log.as_mut_ptr()) };

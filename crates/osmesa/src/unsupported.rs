@@ -1,5 +1,6 @@
-//! Names that Mesa's library exports and that are beyond OpenGL 1.5 with our extensions: from the Khronos registry
-//! (`gl.xml`). Programs that are linked with all symbols bound at start need them; calling one is an INVALID_OPERATION.
+//! Names that Mesa's library exports and that are beyond OpenGL 1.5 with our extensions: from the
+//! Khronos registry (`gl.xml`). Programs that are linked with all symbols bound at start need them;
+//! calling one is an INVALID_OPERATION.
 #![allow(non_snake_case)]
 
 use crate::current::call;
@@ -10,12 +11,17 @@ use vitral_gl::enums::INVALID_OPERATION;
 #[inline(never)]
 pub(crate) fn refuse(name: &'static str) -> usize {
     call(name, |context| {
-        context.record_error(INVALID_OPERATION, name, "this is beyond OpenGL 1.5 and the extensions that are there");
+        context.record_error(
+            INVALID_OPERATION,
+            name,
+            "this is beyond OpenGL 1.5 and the extensions that are there",
+        );
         0
     })
 }
 
-/// Exports each name as a C function that takes whatever it is given and returns 0, and makes the table of them.
+/// Exports each name as a C function that takes whatever it is given and returns 0, and makes the
+/// table of them.
 macro_rules! unsupported {
     ($($name:ident)+) => {
         $(
@@ -24,8 +30,8 @@ macro_rules! unsupported {
                 refuse(stringify!($name))
             }
         )+
-        /// The functions of this file but those of [`logs`]: exported, and not handed out by name, since programs take what they
-        /// are given for what there is.
+        /// The functions of this file but those of [`logs`]: exported, and not handed out by name,
+        /// since programs take what they are given for what there is.
         #[cfg(test)]
         pub(crate) static PROCEDURES: &[crate::procedure::Procedure] = crate::procedure::procedures! { $($name)+ };
     };

@@ -10,10 +10,12 @@ use vitral::{Camera, DMat4, DVec3, Projection};
 /// How far the axes of a camera's matrix may be from unit length and from right angles.
 const RIGID: f64 = 1e-6;
 
-/// A viewer, made by :meth:`look_at`, :meth:`orthographic` or :meth:`from_matrix`. Lengths are in scene units, angles in degrees.
+/// A viewer, made by :meth:`look_at`, :meth:`orthographic` or :meth:`from_matrix`. Lengths are in
+/// scene units, angles in degrees.
 ///
-/// A camera looks along its own -z axis, with x to the right and y up in the picture. ``near`` and ``far`` are the distances of the
-/// clipping planes along the direction of view; left out, they are fitted to the scene.
+/// A camera looks along its own -z axis, with x to the right and y up in the picture. ``near`` and
+/// ``far`` are the distances of the clipping planes along the direction of view; left out, they are
+/// fitted to the scene.
 ///
 /// >>> import vitral
 /// >>> camera = vitral.Camera.look_at((4, 3, 6), (0, 1, 0), view_angle=40)
@@ -46,33 +48,45 @@ impl PyCamera {
 fn clip(near: Option<f64>, far: Option<f64>, perspective: bool) -> PyResult<Option<(f64, f64)>> {
     match (near, far) {
         (None, None) => Ok(None),
-        (Some(near), Some(far)) if near < far && (near > 0.0 || !perspective) && (near - far).is_finite() => {
+        (Some(near), Some(far))
+            if near < far && (near > 0.0 || !perspective) && (near - far).is_finite() =>
+        {
             Ok(Some((near, far)))
         }
-        _ => {
-            Err(PyValueError::new_err("near and far: both or none are needed, near < far, and near > 0 in perspective"))
-        }
+        _ => Err(PyValueError::new_err(
+            "near and far: both or none are needed, near < far, and near > 0 in perspective",
+        )),
     }
 }
 
-fn placed(eye: &Bound<'_, PyAny>, target: &Bound<'_, PyAny>, up: &Bound<'_, PyAny>) -> PyResult<Camera> {
+fn placed(
+    eye: &Bound<'_, PyAny>,
+    target: &Bound<'_, PyAny>,
+    up: &Bound<'_, PyAny>,
+) -> PyResult<Camera> {
     let (eye, target) = (values::vector(eye, "eye")?, values::vector(target, "target")?);
     let up = values::vector(up, "up")?;
     if eye == target || !DVec3::from(eye).is_finite() || !DVec3::from(target).is_finite() {
-        return Err(PyValueError::new_err("eye and target: two different, finite points are needed"));
+        return Err(PyValueError::new_err(
+            "eye and target: two different, finite points are needed",
+        ));
     }
     let forward = DVec3::from(target) - DVec3::from(eye);
     if forward.normalize().cross(DVec3::from(up).normalize_or_zero()).length() < 1e-9 {
-        return Err(PyValueError::new_err("up: a direction across the direction of view is needed"));
+        return Err(PyValueError::new_err(
+            "up: a direction across the direction of view is needed",
+        ));
     }
     Ok(Camera::look_at(eye, target).with_up(up))
 }
 
 #[pymethods]
 impl PyCamera {
-    /// A perspective camera at ``eye`` that looks at ``target`` (three numbers each), with ``up`` upwards in the picture.
+    /// A perspective camera at ``eye`` that looks at ``target`` (three numbers each), with ``up``
+    /// upwards in the picture.
     ///
-    /// ``view_angle`` is the vertical angle of view, above 0 and below 180 degrees. Raises ``ValueError`` for values outside their range.
+    /// ``view_angle`` is the vertical angle of view, above 0 and below 180 degrees. Raises
+    /// ``ValueError`` for values outside their range.
     ///
     /// >>> import vitral
     /// >>> vitral.Camera.look_at((0, 0, 5), (0, 0, 0)).view_angle
@@ -88,14 +102,18 @@ impl PyCamera {
         far: Option<f64>,
     ) -> PyResult<Self> {
         if !(view_angle > 0.0 && view_angle < 180.0) {
-            return Err(PyValueError::new_err("view_angle: an angle between 0 and 180 degrees is needed"));
+            return Err(PyValueError::new_err(
+                "view_angle: an angle between 0 and 180 degrees is needed",
+            ));
         }
         let default = PyTuple::new(eye.py(), [0, 1, 0])?.into_any();
-        let camera = placed(eye, target, up.unwrap_or(&default))?.with_view_angle(view_angle.to_radians());
+        let camera =
+            placed(eye, target, up.unwrap_or(&default))?.with_view_angle(view_angle.to_radians());
         Ok(Self::of(Camera { clip: clip(near, far, true)?, ..camera }))
     }
 
-    /// A camera with parallel projectors whose picture is ``height`` scene units high; else as :meth:`look_at`.
+    /// A camera with parallel projectors whose picture is ``height`` scene units high; else as
+    /// :meth:`look_at`.
     ///
     /// >>> import vitral
     /// >>> vitral.Camera.orthographic((0, 0, 5), (0, 0, 0), height=2).height
@@ -119,14 +137,17 @@ impl PyCamera {
         Ok(Self::of(Camera { projection, clip: clip(near, far, false)?, ..camera }))
     }
 
-    /// A camera by its pose ``world_from_camera``, shape (4, 4), row-major, column vectors: a rotation and a translation.
+    /// A camera by its pose ``world_from_camera``, shape (4, 4), row-major, column vectors: a
+    /// rotation and a translation.
     ///
-    /// The camera looks along -z of its own space, with y up (as OpenGL and glTF have it; of a camera that looks along +z with y
-    /// down, negate the second and third column). ``intrinsics`` is the matrix K, shape (3, 3), in pixels:
-    /// ``[[fx, 0, cx], [0, fy, cy], [0, 0, 1]]``; the picture's top left corner is at (0, 0), so that the middle is at
-    /// (width / 2, height / 2). Without it, ``view_angle`` is the vertical angle of view in degrees.
+    /// The camera looks along -z of its own space, with y up (as OpenGL and glTF have it; of a
+    /// camera that looks along +z with y down, negate the second and third column). ``intrinsics``
+    /// is the matrix K, shape (3, 3), in pixels: ``[[fx, 0, cx], [0, fy, cy], [0, 0, 1]]``; the
+    /// picture's top left corner is at (0, 0), so that the middle is at (width / 2, height / 2).
+    /// Without it, ``view_angle`` is the vertical angle of view in degrees.
     ///
-    /// Raises ``ValueError`` for a matrix that is no rotation and translation, and for intrinsics of another form.
+    /// Raises ``ValueError`` for a matrix that is no rotation and translation, and for intrinsics
+    /// of another form.
     ///
     /// >>> import numpy, vitral
     /// >>> pose = numpy.eye(4); pose[2, 3] = 5
@@ -146,19 +167,23 @@ impl PyCamera {
         let pose = values::transform(world_from_camera, "world_from_camera")?;
         let axes = [pose.x_axis, pose.y_axis, pose.z_axis].map(|axis| axis.truncate());
         let [x, y, z] = axes;
-        let is_rigid = axes.iter().all(|axis| (axis.length() - 1.0).abs() < RIGID) && x.cross(y).abs_diff_eq(z, RIGID);
+        let is_rigid = axes.iter().all(|axis| (axis.length() - 1.0).abs() < RIGID)
+            && x.cross(y).abs_diff_eq(z, RIGID);
         if !is_rigid {
             return Err(PyValueError::new_err(
                 "world_from_camera: a rotation and a translation are needed, without scale",
             ));
         }
         let eye = pose.w_axis.truncate();
-        let camera = Camera { clip: clip(near, far, true)?, ..Camera::look_at(eye, eye - z).with_up(y) };
+        let camera =
+            Camera { clip: clip(near, far, true)?, ..Camera::look_at(eye, eye - z).with_up(y) };
 
         // Read the lens.
         let Some(intrinsics) = intrinsics else {
             if !(view_angle > 0.0 && view_angle < 180.0) {
-                return Err(PyValueError::new_err("view_angle: an angle between 0 and 180 degrees is needed"));
+                return Err(PyValueError::new_err(
+                    "view_angle: an angle between 0 and 180 degrees is needed",
+                ));
             }
             return Ok(Self::of(camera.with_view_angle(view_angle.to_radians())));
         };
@@ -194,7 +219,9 @@ impl PyCamera {
     fn view_angle(&self) -> Option<f64> {
         match (self.camera.projection, self.intrinsics) {
             // Degrees that went through radians come back round.
-            (Projection::Perspective { view_angle }, None) => Some((view_angle.to_degrees() * 1e10).round() / 1e10),
+            (Projection::Perspective { view_angle }, None) => {
+                Some((view_angle.to_degrees() * 1e10).round() / 1e10)
+            }
             _ => None,
         }
     }
@@ -231,8 +258,8 @@ impl PyCamera {
     }
 
     fn __repr__(&self) -> String {
-        let [eye, target] =
-            [self.camera.position, self.camera.focal_point].map(|p| format!("({}, {}, {})", p.x, p.y, p.z));
+        let [eye, target] = [self.camera.position, self.camera.focal_point]
+            .map(|p| format!("({}, {}, {})", p.x, p.y, p.z));
         format!("<vitral.Camera at {eye} looking at {target}>")
     }
 
@@ -240,17 +267,20 @@ impl PyCamera {
         other.cast::<Self>().is_ok_and(|other| other.get() == self)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let this = slf.get();
-        let text =
-            serde_json::to_string(&(this.camera, this.intrinsics)).map_err(|e| PyValueError::new_err(e.to_string()))?;
+        let text = serde_json::to_string(&(this.camera, this.intrinsics))
+            .map_err(|e| PyValueError::new_err(e.to_string()))?;
         Ok((slf.get_type().getattr("_from_state")?, PyTuple::new(slf.py(), [text])?))
     }
 
     /// The camera that was pickled.
     #[staticmethod]
     fn _from_state(text: &str) -> PyResult<Self> {
-        let (camera, intrinsics) = serde_json::from_str(text).map_err(|e| PyValueError::new_err(e.to_string()))?;
+        let (camera, intrinsics) =
+            serde_json::from_str(text).map_err(|e| PyValueError::new_err(e.to_string()))?;
         Ok(Self { camera, intrinsics })
     }
 }

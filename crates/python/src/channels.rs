@@ -2,7 +2,10 @@
 
 use crate::errors::usage;
 use crate::values::shown;
-use numpy::{Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use numpy::{
+    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadwriteArrayDyn,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -40,7 +43,9 @@ impl Channel {
     pub(crate) fn named(name: &str) -> PyResult<Self> {
         let found = CHANNELS.iter().find(|(_, known)| *known == name).map(|(channel, _)| *channel);
         let names = CHANNELS.map(|(_, name)| name).join(", ");
-        found.ok_or_else(|| usage(format!("there is no channel {name}"), format!("there are {names}")))
+        found.ok_or_else(|| {
+            usage(format!("there is no channel {name}"), format!("there are {names}"))
+        })
     }
 
     /// The channels of a sequence of names, or of one name.
@@ -116,7 +121,8 @@ pub(crate) enum Pixels<'a> {
 }
 
 impl<'py> Target<'py> {
-    /// A fresh array for `pictures` (`None`: one, without an axis of its own) of a size, or `out` if it fits.
+    /// A fresh array for `pictures` (`None`: one, without an axis of its own) of a size, or `out`
+    /// if it fits.
     pub(crate) fn new(
         py: Python<'py>,
         channel: Channel,
@@ -124,11 +130,16 @@ impl<'py> Target<'py> {
         [width, height]: [u32; 2],
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Self> {
-        let shape: Vec<usize> =
-            pictures.into_iter().chain([height as usize, width as usize]).chain(channel.components()).collect();
+        let shape: Vec<usize> = pictures
+            .into_iter()
+            .chain([height as usize, width as usize])
+            .chain(channel.components())
+            .collect();
         Ok(match channel {
             Channel::Rgb | Channel::Rgba => Self::Bytes(array(py, channel, &shape, out)?),
-            Channel::Ids | Channel::Faces | Channel::Materials => Self::Numbers(array(py, channel, &shape, out)?),
+            Channel::Ids | Channel::Faces | Channel::Materials => {
+                Self::Numbers(array(py, channel, &shape, out)?)
+            }
             _ => Self::Floats(array(py, channel, &shape, out)?),
         })
     }
@@ -177,8 +188,9 @@ fn array<'py, T: Element>(
     let name = channel.name();
     let wanted = shown(&shape.iter().copied().map(Some).collect::<Vec<_>>());
     let dtype = numpy::dtype::<T>(py);
-    let needed =
-        format!("out: the channel {name} needs a writeable C-contiguous array of dtype {dtype} and shape {wanted}");
+    let needed = format!(
+        "out: the channel {name} needs a writeable C-contiguous array of dtype {dtype} and shape {wanted}"
+    );
     let Ok(untyped) = out.cast::<numpy::PyUntypedArray>() else {
         return Err(PyTypeError::new_err(format!("{needed}, got {}", out.get_type().name()?)));
     };
@@ -194,7 +206,12 @@ fn array<'py, T: Element>(
 }
 
 /// Writes the channel of a picture that was seen so.
-pub(crate) fn fill_from(channel: Channel, picture: &Picture, view: &ViewTransform, pixels: &mut Pixels<'_>) {
+pub(crate) fn fill_from(
+    channel: Channel,
+    picture: &Picture,
+    view: &ViewTransform,
+    pixels: &mut Pixels<'_>,
+) {
     let frame = &picture.frame;
     match (channel, pixels) {
         (Channel::Rgba, Pixels::Bytes(to)) => to.copy_from_slice(picture.rgba8()),
@@ -203,7 +220,9 @@ pub(crate) fn fill_from(channel: Channel, picture: &Picture, view: &ViewTransfor
             to.iter_mut().zip(from).for_each(|(to, [r, g, b, _])| *to = [*r, *g, *b]);
         }
         (Channel::Depth, Pixels::Floats(to)) => {
-            let distance = |depth: f32| if depth > 0.0 { view.distance_at(depth) as f32 } else { f32::INFINITY };
+            let distance = |depth: f32| {
+                if depth > 0.0 { view.distance_at(depth) as f32 } else { f32::INFINITY }
+            };
             let depths = frame.depth.iter().flat_map(|plane| plane.data());
             to.iter_mut().zip(depths).for_each(|(to, depth)| *to = distance(*depth));
         }
@@ -212,8 +231,14 @@ pub(crate) fn fill_from(channel: Channel, picture: &Picture, view: &ViewTransfor
             to.iter_mut().zip(normals).for_each(|(to, value)| *to = *value);
         }
         (Channel::AttachedShadow | Channel::CastShadow, Pixels::Floats(to)) => {
-            let plane = if channel == Channel::CastShadow { &frame.cast_shadow } else { &frame.attached_shadow };
-            to.iter_mut().zip(plane.iter().flat_map(|plane| plane.data())).for_each(|(to, value)| *to = *value);
+            let plane = if channel == Channel::CastShadow {
+                &frame.cast_shadow
+            } else {
+                &frame.attached_shadow
+            };
+            to.iter_mut()
+                .zip(plane.iter().flat_map(|plane| plane.data()))
+                .for_each(|(to, value)| *to = *value);
         }
         (_, Pixels::Numbers(to)) => {
             let plane = match channel {
@@ -222,7 +247,9 @@ pub(crate) fn fill_from(channel: Channel, picture: &Picture, view: &ViewTransfor
                 _ => &frame.material,
             };
             // The background is the largest number, which is -1 with a sign.
-            to.iter_mut().zip(plane.iter().flat_map(|plane| plane.data())).for_each(|(to, id)| *to = id.cast_signed());
+            to.iter_mut()
+                .zip(plane.iter().flat_map(|plane| plane.data()))
+                .for_each(|(to, id)| *to = id.cast_signed());
         }
         _ => {}
     }
@@ -233,8 +260,13 @@ pub(crate) struct Shelf<'a>(Vec<Mutex<Vec<(Channel, Pixels<'a>)>>>);
 
 impl<'a> Shelf<'a> {
     /// The memory of `count` pictures in the targets of `channels`.
-    pub(crate) fn new(channels: &[Channel], targets: &'a mut [Target<'_>], count: usize) -> PyResult<Self> {
-        let mut pictures: Vec<Vec<(Channel, Pixels<'a>)>> = (0..count).map(|_| Vec::new()).collect();
+    pub(crate) fn new(
+        channels: &[Channel],
+        targets: &'a mut [Target<'_>],
+        count: usize,
+    ) -> PyResult<Self> {
+        let mut pictures: Vec<Vec<(Channel, Pixels<'a>)>> =
+            (0..count).map(|_| Vec::new()).collect();
         for (channel, target) in channels.iter().zip(targets) {
             for (picture, pixels) in pictures.iter_mut().zip(target.pictures(count)?) {
                 picture.push((*channel, pixels));

@@ -37,9 +37,10 @@ impl PyDrawing {
         (self.drawing.width, self.drawing.height)
     }
 
-    /// The lines by class: a dict from the class (``contour``, ``boundary``, ``crease``, ``material``, ``intersection``, ``section``,
-    /// ``smooth``, ``hatch``) to a list of polylines, float64 of shape (k, 2), millimetres, x to the right and y upwards from the lower
-    /// left corner. Hidden lines are in classes of their own, ``hidden-contour`` and so on.
+    /// The lines by class: a dict from the class (``contour``, ``boundary``, ``crease``,
+    /// ``material``, ``intersection``, ``section``, ``smooth``, ``hatch``) to a list of polylines,
+    /// float64 of shape (k, 2), millimetres, x to the right and y upwards from the lower left
+    /// corner. Hidden lines are in classes of their own, ``hidden-contour`` and so on.
     #[getter]
     fn lines<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let lines = PyDict::new(py);
@@ -47,7 +48,8 @@ impl PyDrawing {
             let hidden = if line.layers > 0 { "hidden-" } else { "" };
             let class = format!("{hidden}{}", line.class.name());
             let points: Vec<Vec<f64>> = line.points.iter().map(|point| point.to_vec()).collect();
-            let points = PyArray2::from_vec2(py, &points).map_err(|e| PyValueError::new_err(e.to_string()))?;
+            let points = PyArray2::from_vec2(py, &points)
+                .map_err(|e| PyValueError::new_err(e.to_string()))?;
             if !lines.contains(&class)? {
                 lines.set_item(&class, PyList::empty(py))?;
             }
@@ -70,9 +72,11 @@ impl PyDrawing {
         self.warnings.clone()
     }
 
-    /// Writes the drawing into a file: ``.svg``, ``.pdf``, ``.dxf``, ``.hpgl`` or ``.plt``. The file appears complete or not at all.
+    /// Writes the drawing into a file: ``.svg``, ``.pdf``, ``.dxf``, ``.hpgl`` or ``.plt``. The
+    /// file appears complete or not at all.
     ///
-    /// Raises :class:`UnsupportedError` for another extension, :class:`UsageError` for options that the format cannot express.
+    /// Raises :class:`UnsupportedError` for another extension, :class:`UsageError` for options that
+    /// the format cannot express.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let write = || -> Result<(), Trouble> {
             let bytes = self.request.encode(self.drawing.clone(), path.clone())?;
@@ -90,6 +94,9 @@ impl PyDrawing {
 
     fn __repr__(&self) -> String {
         let (width, height) = self.size();
-        format!("<vitral.Drawing: {} lines on {width:.1} x {height:.1} mm>", self.drawing.lines.len())
+        format!(
+            "<vitral.Drawing: {} lines on {width:.1} x {height:.1} mm>",
+            self.drawing.lines.len()
+        )
     }
 }

@@ -61,7 +61,9 @@ fn class_of_code(code: u8) -> &'static str {
 fn of_library(error: Error) -> PyErr {
     let (path, place) = match &error {
         Error::Read { path, .. } | Error::TooLarge { path, .. } => (Some(shown(path)), None),
-        Error::Input(InputError::Malformed { file, place, .. }) => (Some(file.clone()), Some(place.to_string())),
+        Error::Input(InputError::Malformed { file, place, .. }) => {
+            (Some(file.clone()), Some(place.to_string()))
+        }
         Error::Input(InputError::Missing { file, .. } | InputError::Unsupported { file, .. }) => {
             (Some(file.clone()), None)
         }
@@ -82,9 +84,16 @@ fn shown(path: &Path) -> String {
 }
 
 /// An exception of a class of `vitral._errors`.
-fn raise(class: &str, message: &str, hint: Option<&str>, path: Option<String>, place: Option<String>) -> PyErr {
+fn raise(
+    class: &str,
+    message: &str,
+    hint: Option<&str>,
+    path: Option<String>,
+    place: Option<String>,
+) -> PyErr {
     Python::attach(|py| {
-        let make = || py.import("vitral._errors")?.getattr(class)?.call1((message, hint, path, place));
+        let make =
+            || py.import("vitral._errors")?.getattr(class)?.call1((message, hint, path, place));
         make().map_or_else(|error| error, PyErr::from_value)
     })
 }

@@ -31,22 +31,30 @@ fn handles_signals(py: Python<'_>) -> PyResult<bool> {
     Ok(is_main)
 }
 
-/// Does some work while other Python threads run. On the thread that handles signals, they are handled meanwhile; an exception
-/// from there, such as `KeyboardInterrupt`, sets `cancel`, and is raised when the work has ended.
-pub(crate) fn run<R: Send>(py: Python<'_>, cancel: &AtomicBool, work: impl FnOnce() -> R + Send) -> PyResult<R> {
+/// Does some work while other Python threads run. On the thread that handles signals, they are
+/// handled meanwhile; an exception from there, such as `KeyboardInterrupt`, sets `cancel`, and is
+/// raised when the work has ended.
+pub(crate) fn run<R: Send>(
+    py: Python<'_>,
+    cancel: &AtomicBool,
+    work: impl FnOnce() -> R + Send,
+) -> PyResult<R> {
     if !handles_signals(py)? {
         return Ok(py.detach(work));
     }
     py.detach(|| {
         thread::scope(|scope| {
             let (done, finished) = sync_channel::<()>(1);
-            let started =
-                thread::Builder::new().stack_size(STACK).name("vitral".to_owned()).spawn_scoped(scope, || {
+            let started = thread::Builder::new()
+                .stack_size(STACK)
+                .name("vitral".to_owned())
+                .spawn_scoped(scope, || {
                     // Dropped when the work has ended, however it ends.
                     let _done = done;
                     work()
                 });
-            let worker = started.map_err(|e| pyo3::exceptions::PyOSError::new_err(e.to_string()))?;
+            let worker =
+                started.map_err(|e| pyo3::exceptions::PyOSError::new_err(e.to_string()))?;
             let mut raised = None;
             while let Err(RecvTimeoutError::Timeout) = finished.recv_timeout(INTERVAL) {
                 if raised.is_none()

@@ -1,5 +1,6 @@
-//! The Python package `vitral`: scenes, cameras and lights from Python's values, pictures as numpy arrays. No rendering logic lives here;
-//! everything is in crate `vitral`, and options are those of the command line.
+//! The Python package `vitral`: scenes, cameras and lights from Python's values, pictures as numpy
+//! arrays. No rendering logic lives here; everything is in crate `vitral`, and options are those of
+//! the command line.
 #![forbid(unsafe_code)]
 
 mod camera;
@@ -19,10 +20,16 @@ use pyo3::prelude::*;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Runs the command ``vitral`` with these arguments, of which the first is its name; gives its exit code.
+/// Runs the command ``vitral`` with these arguments, of which the first is its name; gives its exit
+/// code.
 #[pyfunction]
 #[pyo3(signature = (arguments, library=None, program=None))]
-fn command(py: Python<'_>, arguments: Vec<OsString>, library: Option<PathBuf>, program: Option<Vec<OsString>>) -> u8 {
+fn command(
+    py: Python<'_>,
+    arguments: Vec<OsString>,
+    library: Option<PathBuf>,
+    program: Option<Vec<OsString>>,
+) -> u8 {
     if let Some(program) = program {
         vitral_cli::started_by(program);
     }

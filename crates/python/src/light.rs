@@ -9,11 +9,12 @@ use vitral_cli::options;
 
 /// A light source, made by one of the static methods, or from the text of the option ``--light``.
 ///
-/// All constructors take the keyword arguments ``name`` (str), ``ambient``, ``diffuse``, ``specular`` (linear RGB: one number, three,
-/// or a colour's name; above 1 for stronger lights; specular follows diffuse) and ``shadow`` (bool, casts shadows). Those with a place
-/// take ``attenuation``: ``"none"``, ``"inverse-square"``, three numbers c1, c2, c3 for ``min(1/(c1 + c2 d + c3 d^2), 1)``,
-/// ``"gl,constant,linear,quadratic"`` or ``"range,distance"``. Positions are in scene units, directions are those in which light
-/// travels, angles are degrees.
+/// All constructors take the keyword arguments ``name`` (str), ``ambient``, ``diffuse``,
+/// ``specular`` (linear RGB: one number, three, or a colour's name; above 1 for stronger lights;
+/// specular follows diffuse) and ``shadow`` (bool, casts shadows). Those with a place take
+/// ``attenuation``: ``"none"``, ``"inverse-square"``, three numbers c1, c2, c3 for ``min(1/(c1 + c2
+/// d + c3 d^2), 1)``, ``"gl,constant,linear,quadratic"`` or ``"range,distance"``. Positions are in
+/// scene units, directions are those in which light travels, angles are degrees.
 ///
 /// Raises :class:`UsageError` for a field that is not there or has another form.
 ///
@@ -36,7 +37,11 @@ impl PyLight {
     }
 
     /// A light of a kind with required fields and others.
-    fn of(kind: &str, required: &[(&str, &Bound<'_, PyAny>)], others: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+    fn of(
+        kind: &str,
+        required: &[(&str, &Bound<'_, PyAny>)],
+        others: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
         let mut fields = Vec::new();
         for (name, value) in required {
             fields.push(format!("{name}={}", values::text(value)?));
@@ -44,7 +49,11 @@ impl PyLight {
         for (name, value) in others.into_iter().flatten() {
             if !value.is_none() {
                 let (name, value) = (name.extract::<String>()?, values::text(&value)?);
-                let value = if name == "shadow" { value.replace("true", "on").replace("false", "off") } else { value };
+                let value = if name == "shadow" {
+                    value.replace("true", "on").replace("false", "off")
+                } else {
+                    value
+                };
                 fields.push(format!("{name}={value}"));
             }
         }
@@ -70,7 +79,10 @@ impl PyLight {
     /// Parallel rays that travel along ``direction`` (three numbers).
     #[staticmethod]
     #[pyo3(signature = (direction, **fields))]
-    fn directional(direction: &Bound<'_, PyAny>, fields: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+    fn directional(
+        direction: &Bound<'_, PyAny>,
+        fields: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
         Self::of("directional", &[("direction", direction)], fields)
     }
 
@@ -81,7 +93,8 @@ impl PyLight {
         Self::of("point", &[("position", position)], fields)
     }
 
-    /// Light from a point into a cone; ``cutoff`` and ``inner`` are half angles in degrees, ``exponent`` its fall-off.
+    /// Light from a point into a cone; ``cutoff`` and ``inner`` are half angles in degrees,
+    /// ``exponent`` its fall-off.
     #[staticmethod]
     #[pyo3(signature = (position, direction, **fields))]
     fn spot(
@@ -104,7 +117,8 @@ impl PyLight {
         Self::of("area", &[("center", center), ("normal", normal), ("radius", radius)], fields)
     }
 
-    /// Light from a planar polygon (n corners, shape (n, 3)), to the side from which they run counter-clockwise.
+    /// Light from a planar polygon (n corners, shape (n, 3)), to the side from which they run
+    /// counter-clockwise.
     #[staticmethod]
     #[pyo3(signature = (corners, **fields))]
     fn polygon(corners: &Bound<'_, PyAny>, fields: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -125,7 +139,9 @@ impl PyLight {
         other.cast::<Self>().is_ok_and(|other| other.get().light == self.light)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), [&slf.get().spec])?))
     }
 }

@@ -57,11 +57,15 @@ impl<'a, 'py> Given<'a, 'py> {
     /// The mesh, checked.
     pub(crate) fn mesh(&self) -> PyResult<Mesh> {
         if !(0.0..=180.0).contains(&self.crease_angle) {
-            return Err(PyValueError::new_err("crease_angle: an angle from 0 to 180 degrees is needed"));
+            return Err(PyValueError::new_err(
+                "crease_angle: an angle from 0 to 180 degrees is needed",
+            ));
         }
         let (shape, positions) = numbers::<f32>(self.vertices, "vertices", &[None, Some(3)])?;
         let count = shape[0];
-        let mut mesh = faces(self.faces, count)?.mesh(positions.as_chunks::<3>().0.to_vec()).with_name(self.name);
+        let mut mesh = faces(self.faces, count)?
+            .mesh(positions.as_chunks::<3>().0.to_vec())
+            .with_name(self.name);
         if let Some(material) = self.material {
             mesh = mesh.with_material(material);
         }
@@ -79,8 +83,13 @@ impl<'a, 'py> Given<'a, 'py> {
             mesh = mesh.with_normals(normals.as_chunks::<3>().0.to_vec());
         }
         mesh.check().map_err(PyValueError::new_err)?;
-        let makes_normals = self.normals.is_none() && self.crease_angle > 0.0 && !mesh.triangles.is_empty();
-        Ok(if makes_normals { mesh.with_smooth_normals(self.crease_angle.to_radians()) } else { mesh })
+        let makes_normals =
+            self.normals.is_none() && self.crease_angle > 0.0 && !mesh.triangles.is_empty();
+        Ok(if makes_normals {
+            mesh.with_smooth_normals(self.crease_angle.to_radians())
+        } else {
+            mesh
+        })
     }
 }
 
@@ -103,7 +112,11 @@ impl Faces {
 fn faces(value: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Faces> {
     let index = |index: i64| {
         let there = u32::try_from(index).ok().filter(|&index| (index as usize) < vertices);
-        there.ok_or_else(|| PyIndexError::new_err(format!("faces: there is no vertex {index}, there are {vertices}")))
+        there.ok_or_else(|| {
+            PyIndexError::new_err(format!(
+                "faces: there is no vertex {index}, there are {vertices}"
+            ))
+        })
     };
     let rows = value.len()?;
     if rows == 0 {
@@ -114,13 +127,17 @@ fn faces(value: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Faces> {
     let first = value.get_item(0)?;
     let is_array = value.hasattr("dtype")?;
     let corners = first.len().unwrap_or(0);
-    let is_even =
-        is_array || (0..rows).all(|row| value.get_item(row).and_then(|row| row.len()).is_ok_and(|n| n == corners));
+    let is_even = is_array
+        || (0..rows)
+            .all(|row| value.get_item(row).and_then(|row| row.len()).is_ok_and(|n| n == corners));
     if is_even {
         let (shape, indices) = numbers::<i64>(value, "faces", &[None, None])?;
         if shape[1] < 3 {
             let needed = "faces: an array of shape (m, 3) or a list of polygons is needed";
-            return Err(PyValueError::new_err(format!("{needed}, got {}", shown(&[Some(shape[0]), Some(shape[1])]))));
+            return Err(PyValueError::new_err(format!(
+                "{needed}, got {}",
+                shown(&[Some(shape[0]), Some(shape[1])])
+            )));
         }
         let indices = indices.into_iter().map(index).collect::<PyResult<Vec<_>>>()?;
         return Ok(match shape[1] {
@@ -156,7 +173,9 @@ fn vertex_colors(value: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<[f32; 4
     let is_bytes = kind != "f";
     let limit = if is_bytes { 255.0 } else { 1.0 };
     if numbers.iter().any(|v| !(0.0..=limit).contains(v)) {
-        return Err(PyValueError::new_err("colors: bytes from 0 to 255, or floats from 0 to 1 are needed"));
+        return Err(PyValueError::new_err(
+            "colors: bytes from 0 to 255, or floats from 0 to 1 are needed",
+        ));
     }
     let color = |v: &[f32]| {
         let channel = |k: usize| if is_bytes { linear_from_srgb(v[k] / 255.0) } else { v[k] };
@@ -170,7 +189,9 @@ fn vertex_colors(value: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<[f32; 4
 pub(crate) fn texture(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Texture> {
     let (kind, columns) = kind_and_columns(value)?;
     if kind != "u" {
-        return Err(PyTypeError::new_err(format!("texture: uint8 is needed, got dtype kind {kind}")));
+        return Err(PyTypeError::new_err(format!(
+            "texture: uint8 is needed, got dtype kind {kind}"
+        )));
     }
     let columns = if columns == 4 { 4 } else { 3 };
     let (shape, bytes) = numbers::<u8>(value, "texture", &[None, None, Some(columns)])?;

@@ -43,14 +43,18 @@ impl PyPicture {
         self.picture.height()
     }
 
-    /// A channel as an array of its own, as :meth:`Renderer.render` describes it; ``rgb``, ``rgba`` and those that were asked for.
+    /// A channel as an array of its own, as :meth:`Renderer.render` describes it; ``rgb``, ``rgba``
+    /// and those that were asked for.
     ///
     /// Raises :class:`UsageError` for a channel that was not rendered.
     #[pyo3(signature = (channel="rgb"))]
     fn numpy<'py>(&self, py: Python<'py>, channel: &str) -> PyResult<Bound<'py, PyAny>> {
         let channel = Channel::named(channel)?;
         if !channel.is_in(&self.picture) {
-            return Err(usage(format!("the channel {} was not rendered", channel.name()), "name it in channels="));
+            return Err(usage(
+                format!("the channel {} was not rendered", channel.name()),
+                "name it in channels=",
+            ));
         }
         let size = [self.picture.width(), self.picture.height()];
         let mut target = Target::new(py, channel, None, size, None)?;
@@ -60,9 +64,11 @@ impl PyPicture {
         Target::result(py, vec![target])
     }
 
-    /// Writes the colours into a file: ``.png``, ``.jpg`` or ``.ppm``. The file appears complete or not at all.
+    /// Writes the colours into a file: ``.png``, ``.jpg`` or ``.ppm``. The file appears complete or
+    /// not at all.
     ///
-    /// Raises :class:`UnsupportedError` for another extension, :class:`Error` if the file cannot be written.
+    /// Raises :class:`UnsupportedError` for another extension, :class:`Error` if the file cannot be
+    /// written.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         Ok(py.detach(|| self.picture.save(path)).map_err(Trouble::from)?)
     }

@@ -17,14 +17,18 @@ use vitral_cli::options::{Given, Purpose, Request, Resolved};
 
 /// Makes pictures and drawings of a scene.
 ///
-/// ``height`` and ``width`` are in pixels. Options are those of ``vitral render``, with ``_`` for ``-``: ``visibility``, ``shadows``,
-/// ``samples``, ``shading``, ``background_color``, ``light``, ``view``, ``camera_position``, ``threads``, ``time_limit`` (seconds a call),
-/// ``max_memory``, ... Switches are bools, lists are sequences, lights may be :class:`Light`. Results do not depend on ``threads``.
+/// ``height`` and ``width`` are in pixels. Options are those of ``vitral render``, with ``_`` for
+/// ``-``: ``visibility``, ``shadows``, ``samples``, ``shading``, ``background_color``, ``light``,
+/// ``view``, ``camera_position``, ``threads``, ``time_limit`` (seconds a call), ``max_memory``, ...
+/// Switches are bools, lists are sequences, lights may be :class:`Light`. Results do not depend on
+/// ``threads``.
 ///
-/// The renderer follows its scene: what is added to it or moved is in the next picture. Other Python threads run while a picture is made,
-/// and Ctrl-C ends it. A renderer can be pickled, by its scene and options.
+/// The renderer follows its scene: what is added to it or moved is in the next picture. Other
+/// Python threads run while a picture is made, and Ctrl-C ends it. A renderer can be pickled, by
+/// its scene and options.
 ///
-/// Raises :class:`UsageError` for an option that is not there, with a suggestion, or has another value.
+/// Raises :class:`UsageError` for an option that is not there, with a suggestion, or has another
+/// value.
 ///
 /// >>> import vitral
 /// >>> renderer = vitral.Renderer(vitral.load("builtin:teapot"), height=48, width=64, samples=1)
@@ -51,9 +55,16 @@ struct Engine {
 
 impl Engine {
     fn new(data: &SceneData, resolved: Resolved) -> Result<Self, Trouble> {
-        let mut renderer = Renderer::with_execution(data.scene.as_ref().clone(), resolved.execution()?)?;
+        let mut renderer =
+            Renderer::with_execution(data.scene.as_ref().clone(), resolved.execution()?)?;
         resolved.state.apply(&mut renderer)?;
-        Ok(Self { renderer, resolved, edition: data.edition, moves: data.moves, process: std::process::id() })
+        Ok(Self {
+            renderer,
+            resolved,
+            edition: data.edition,
+            moves: data.moves,
+            process: std::process::id(),
+        })
     }
 
     /// Brings the scene up to date, and limits what follows.
@@ -62,7 +73,10 @@ impl Engine {
         let process = std::process::id();
         if process != self.process {
             let threads = self.renderer.execution().workers.threads();
-            let lost = std::mem::replace(&mut self.renderer.execution_mut().workers, Workers::new(threads));
+            let lost = std::mem::replace(
+                &mut self.renderer.execution_mut().workers,
+                Workers::new(threads),
+            );
             // Ending threads that are not there would wait for them.
             std::mem::forget(lost);
             self.process = process;
@@ -75,7 +89,8 @@ impl Engine {
         } else if data.moves != self.moves {
             let nodes = data.scene.nodes.iter().zip(&self.renderer.scene().nodes).enumerate();
             let moved = nodes.filter(|(_, (new, old))| new.transform != old.transform);
-            let moved: Vec<(u32, DMat4)> = moved.map(|(i, (new, _))| (i as u32, new.transform.matrix())).collect();
+            let moved: Vec<(u32, DMat4)> =
+                moved.map(|(i, (new, _))| (i as u32, new.transform.matrix())).collect();
             self.renderer.place(&moved)?;
         } else {
             return Ok(());
@@ -141,7 +156,9 @@ fn with_size(
     let mut given = values::options(options)?;
     let has_resolution = given.iter().any(|(name, _)| name == "resolution");
     if (height.is_some() || width.is_some()) && has_resolution {
-        return Err(PyValueError::new_err("resolution: the size is given twice, as height and width, too"));
+        return Err(PyValueError::new_err(
+            "resolution: the size is given twice, as height and width, too",
+        ));
     }
     if !has_resolution {
         let size = format!("{}x{}", width.unwrap_or(1024), height.unwrap_or(768));
@@ -172,7 +189,12 @@ impl PyRenderer {
         }
         let of = scene.get();
         let engine = py.detach(|| Engine::new(&of.lock(), resolved))?;
-        Ok(Self { scene: scene.clone().unbind(), size, options: kept.unbind(), engine: Mutex::new(engine) })
+        Ok(Self {
+            scene: scene.clone().unbind(),
+            size,
+            options: kept.unbind(),
+            engine: Mutex::new(engine),
+        })
     }
 
     /// The scene.
@@ -193,19 +215,26 @@ impl PyRenderer {
         self.size[0]
     }
 
-    /// Renders one picture. ``camera`` left out: the camera of the options, or one that frames the scene.
+    /// Renders one picture. ``camera`` left out: the camera of the options, or one that frames the
+    /// scene.
     ///
-    /// ``channels`` names what is returned, as one array or as a tuple in that order; H and W are height and width, row 0 is the top:
+    /// ``channels`` names what is returned, as one array or as a tuple in that order; H and W are
+    /// height and width, row 0 is the top:
     ///
     /// - ``rgb`` uint8 (H, W, 3) and ``rgba`` uint8 (H, W, 4), sRGB, straight alpha
-    /// - ``depth`` float32 (H, W): distance along the direction of view in scene units, ``inf`` where nothing is
-    /// - ``ids``, ``faces``, ``materials`` int32 (H, W): instance, face, material at the pixel's centre, -1 where none is
-    /// - ``normals`` float32 (H, W, 3), world space; ``attached_shadow`` and ``cast_shadow`` float32 (H, W), 0 to 1
+    /// - ``depth`` float32 (H, W): distance along the direction of view in scene units, ``inf``
+    ///   where nothing is
+    /// - ``ids``, ``faces``, ``materials`` int32 (H, W): instance, face, material at the pixel's
+    ///   centre, -1 where none is
+    /// - ``normals`` float32 (H, W, 3), world space; ``attached_shadow`` and ``cast_shadow``
+    ///   float32 (H, W), 0 to 1
     ///
-    /// ``out`` is filled instead of new arrays: an array, or a sequence of one for each channel, C-contiguous and of that shape and dtype.
+    /// ``out`` is filled instead of new arrays: an array, or a sequence of one for each channel,
+    /// C-contiguous and of that shape and dtype.
     ///
-    /// Raises :class:`UsageError` for what cannot be rendered, :class:`LimitError` at a limit, ``ValueError`` or ``TypeError`` for an
-    /// ``out`` that does not fit, ``KeyboardInterrupt`` at Ctrl-C.
+    /// Raises :class:`UsageError` for what cannot be rendered, :class:`LimitError` at a limit,
+    /// ``ValueError`` or ``TypeError`` for an ``out`` that does not fit, ``KeyboardInterrupt`` at
+    /// Ctrl-C.
     ///
     /// >>> import numpy, vitral
     /// >>> renderer = vitral.Renderer(vitral.load("builtin:teapot"), height=48, width=64)
@@ -239,10 +268,11 @@ impl PyRenderer {
 
     /// Renders N pictures on all threads, each as :meth:`render` makes it, byte for byte.
     ///
-    /// ``cameras``: a sequence of N :class:`Camera` or ``None``. ``transforms``: float64, shape (N, K, 4, 4): where the K instances of the
-    /// scene are in each picture; the scene is left as it was. Meshes and what is known of them are shared by all pictures. Arrays are
-    /// those of :meth:`render` with N in front: ``rgb`` has shape (N, H, W, 3). Raises as :meth:`render` does, at the first picture that
-    /// cannot be made.
+    /// ``cameras``: a sequence of N :class:`Camera` or ``None``. ``transforms``: float64, shape (N,
+    /// K, 4, 4): where the K instances of the scene are in each picture; the scene is left as it
+    /// was. Meshes and what is known of them are shared by all pictures. Arrays are those of
+    /// :meth:`render` with N in front: ``rgb`` has shape (N, H, W, 3). Raises as :meth:`render`
+    /// does, at the first picture that cannot be made.
     ///
     /// >>> import vitral
     /// >>> renderer = vitral.Renderer(vitral.load("builtin:teapot"), height=24, width=32, samples=1)
@@ -258,7 +288,10 @@ impl PyRenderer {
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let channels = Channel::all_named(channels)?;
-        let cameras = cameras.try_iter()?.map(|camera| self.batch_camera(&camera?)).collect::<PyResult<Vec<_>>>()?;
+        let cameras = cameras
+            .try_iter()?
+            .map(|camera| self.batch_camera(&camera?))
+            .collect::<PyResult<Vec<_>>>()?;
         let count = cameras.len();
         let mut targets = self.targets(py, &channels, Some(count), out)?;
 
@@ -308,8 +341,9 @@ impl PyRenderer {
         self.make_picture(py, self.camera(camera), &channels)
     }
 
-    /// Draws the scene as lines and filled regions. Options are those of ``vitral draw``: ``style``, ``lines``, ``hidden``, ``page``,
-    /// ``scale``, ``section_plane``, ``views``, ... A camera, and the renderer's view and lights, hold where these say nothing else.
+    /// Draws the scene as lines and filled regions. Options are those of ``vitral draw``:
+    /// ``style``, ``lines``, ``hidden``, ``page``, ``scale``, ``section_plane``, ``views``, ... A
+    /// camera, and the renderer's view and lights, hold where these say nothing else.
     ///
     /// Raises :class:`UsageError` for options that are not there or do not suit each other.
     ///
@@ -333,8 +367,9 @@ impl PyRenderer {
         })
     }
 
-    /// Explains pixel ``x``, ``y`` (from the top left corner): the object of ``vitral render --pixel``, with the facets over it, how its
-    /// colour comes about, and what the visibility algorithm decided.
+    /// Explains pixel ``x``, ``y`` (from the top left corner): the object of ``vitral render
+    /// --pixel``, with the facets over it, how its colour comes about, and what the visibility
+    /// algorithm decided.
     ///
     /// >>> import vitral
     /// >>> renderer = vitral.Renderer(vitral.load("builtin:teapot"), height=48, width=64)
@@ -351,12 +386,19 @@ impl PyRenderer {
         let camera = self.camera(camera);
         let explained = self.work(py, move |engine| {
             let camera = camera.unwrap_or_else(|| engine.renderer.frame_camera());
-            Ok(explain(&engine.renderer, &camera, [x, y], &Deciders::Chosen, engine.resolved.time_limit())?)
+            Ok(explain(
+                &engine.renderer,
+                &camera,
+                [x, y],
+                &Deciders::Chosen,
+                engine.resolved.time_limit(),
+            )?)
         })?;
         values::object(py, &explained)
     }
 
-    /// The pictures of ``count`` views around the scene, one after the other, as an iterator of :class:`Picture`.
+    /// The pictures of ``count`` views around the scene, one after the other, as an iterator of
+    /// :class:`Picture`.
     ///
     /// >>> import vitral
     /// >>> renderer = vitral.Renderer(vitral.load("builtin:teapot"), height=24, width=32)
@@ -382,7 +424,9 @@ impl PyRenderer {
         format!("<vitral.Renderer: {} x {}>", self.size[0], self.size[1])
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let (py, this) = (slf.py(), slf.get());
         let state = (this.scene.clone_ref(py), this.options.clone_ref(py)).into_pyobject(py)?;
         Ok((py.import("vitral._convert")?.getattr("renderer")?, state))
@@ -400,8 +444,9 @@ impl PyRenderer {
         }
         let class = camera.get_type().name()?;
         let camera = camera.cast::<PyCamera>();
-        let camera =
-            camera.map_err(|_| PyTypeError::new_err(format!("cameras: a Camera or None is needed, not {class}")))?;
+        let camera = camera.map_err(|_| {
+            PyTypeError::new_err(format!("cameras: a Camera or None is needed, not {class}"))
+        })?;
         Ok(self.camera(Some(camera)))
     }
 

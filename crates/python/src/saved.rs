@@ -5,8 +5,8 @@ use std::ops::Range;
 use std::sync::Arc;
 use vitral::internals::scene::{Animation, FreePart};
 use vitral::{
-    Attribute, Axis, Camera, DMat4, Encoding, Faces, Light, Material, Mesh, Node, NodeTransform, Part, Plane, Scene,
-    Texture,
+    Attribute, Axis, Camera, DMat4, Encoding, Faces, Light, Material, Mesh, Node, NodeTransform,
+    Part, Plane, Scene, Texture,
 };
 
 /// The version of the form.
@@ -97,7 +97,11 @@ impl SavedMesh {
                 Faces::Triangles => None,
                 Faces::Polygons { starts, corners } => Some((starts.clone(), corners.clone())),
             },
-            parts: mesh.parts.iter().map(|p| (p.name.clone(), p.triangles.clone(), p.material)).collect(),
+            parts: mesh
+                .parts
+                .iter()
+                .map(|p| (p.name.clone(), p.triangles.clone(), p.material))
+                .collect(),
             normals: mesh.normals.as_ref().map(taken),
             normals_stay: mesh.normals_stay,
             tangents: mesh.tangents.as_ref().map(taken),
@@ -145,7 +149,11 @@ impl SavedTexture {
     }
 
     fn texture(self) -> Option<Texture> {
-        Some(Texture::new(self.name, Plane::from_rows(self.size[0], self.size[1], self.bytes)?, self.encoding))
+        Some(Texture::new(
+            self.name,
+            Plane::from_rows(self.size[0], self.size[1], self.bytes)?,
+            self.encoding,
+        ))
     }
 }
 
@@ -183,7 +191,11 @@ pub(crate) fn bytes(scene: &Scene) -> Result<Vec<u8>, String> {
         ambient: scene.ambient,
         ups: scene.ups.iter().map(Axis::to_string).collect(),
         warnings: scene.warnings.clone(),
-        animations: scene.animations.iter().map(|animation| (animation.name.clone(), animation.seconds)).collect(),
+        animations: scene
+            .animations
+            .iter()
+            .map(|animation| (animation.name.clone(), animation.seconds))
+            .collect(),
     };
     rmp_serde::to_vec_named(&saved).map_err(|e| e.to_string())
 }
@@ -194,7 +206,9 @@ pub(crate) fn scene(bytes: &[u8]) -> Result<Scene, String> {
     if saved.version != VERSION {
         return Err(format!("version {} is not known, only {VERSION}", saved.version));
     }
-    let texture = |texture: SavedTexture| texture.texture().map(Arc::new).ok_or("a texture of the wrong size");
+    let texture = |texture: SavedTexture| {
+        texture.texture().map(Arc::new).ok_or("a texture of the wrong size")
+    };
     Ok(Scene {
         meshes: saved.meshes.into_iter().map(|mesh| Arc::new(mesh.mesh())).collect(),
         materials: saved.materials,
@@ -207,6 +221,10 @@ pub(crate) fn scene(bytes: &[u8]) -> Result<Scene, String> {
         ambient: saved.ambient,
         ups: saved.ups.iter().filter_map(|up| up.parse().ok()).collect(),
         warnings: saved.warnings,
-        animations: saved.animations.into_iter().map(|(name, seconds)| Animation { name, seconds }).collect(),
+        animations: saved
+            .animations
+            .into_iter()
+            .map(|(name, seconds)| Animation { name, seconds })
+            .collect(),
     })
 }

@@ -12,15 +12,16 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use vitral::internals::render::Error as RenderError;
 use vitral::{
-    DMat4, Error, LoadOptions, MaterialOverride, NoFiles, Scene, TextureRef, World, info, load_bytes_with, load_on,
-    material_properties,
+    DMat4, Error, LoadOptions, MaterialOverride, NoFiles, Scene, TextureRef, World, info,
+    load_bytes_with, load_on, material_properties,
 };
 use vitral_cli::options::{Given, Purpose, Resolved};
 
 /// Meshes, materials, lights, and instances that place meshes in the world.
 ///
-/// ``Scene()`` is empty; :func:`load` reads files. Everything that is added gets a number, which other methods take. Rendering works on
-/// the scene as it is then, so a scene may change between pictures. A scene can be pickled.
+/// ``Scene()`` is empty; :func:`load` reads files. Everything that is added gets a number, which
+/// other methods take. Rendering works on the scene as it is then, so a scene may change between
+/// pictures. A scene can be pickled.
 ///
 /// >>> import numpy, vitral
 /// >>> scene = vitral.Scene()
@@ -78,7 +79,9 @@ impl SceneData {
     pub(crate) fn nodes_of(&self, instances: &[usize]) -> PyResult<Vec<u32>> {
         let node = |&instance: &usize| {
             let there = self.instances.len();
-            let none = || PyIndexError::new_err(format!("there is no instance {instance}, there are {there}"));
+            let none = || {
+                PyIndexError::new_err(format!("there is no instance {instance}, there are {there}"))
+            };
             self.instances.get(instance).copied().ok_or_else(none)
         };
         instances.iter().map(node).collect()
@@ -111,7 +114,10 @@ impl Source {
         }
         if let Ok(path) = source.extract::<PathBuf>() {
             return match format {
-                Some(_) => Err(usage("format: the format of a file is told by its content and name", "leave it out")),
+                Some(_) => Err(usage(
+                    "format: the format of a file is told by its content and name",
+                    "leave it out",
+                )),
                 None => Ok(Self::Paths(vec![path])),
             };
         }
@@ -121,7 +127,9 @@ impl Source {
         let paths: PyResult<Vec<PathBuf>> =
             source.try_iter().and_then(|items| items.map(|item| item?.extract()).collect());
         let class = source.get_type().name()?;
-        let needed = format!("source: a path, a list of paths, or bytes with a format are needed, not {class}");
+        let needed = format!(
+            "source: a path, a list of paths, or bytes with a format are needed, not {class}"
+        );
         paths.map(Self::Paths).map_err(|_| PyTypeError::new_err(needed))
     }
 
@@ -130,7 +138,8 @@ impl Source {
         let (load, execution) = (state.load_options(), resolved.execution()?);
         Ok(match self {
             Self::Paths(paths) => {
-                state.models = paths.iter().map(|path| path.to_string_lossy().into_owned()).collect();
+                state.models =
+                    paths.iter().map(|path| path.to_string_lossy().into_owned()).collect();
                 state.load_scene_by(|model| load_on(model, &load, &execution.workers))?
             }
             Self::Bytes(bytes, name) => {
@@ -141,14 +150,17 @@ impl Source {
     }
 }
 
-/// Reads a scene: a path, a list of paths, ``"builtin:NAME"``, or bytes with their ``format`` (``"stl"``, ``"glb"``, ``"obj"``, ...).
+/// Reads a scene: a path, a list of paths, ``"builtin:NAME"``, or bytes with their ``format``
+/// (``"stl"``, ``"glb"``, ``"obj"``, ...).
 ///
-/// Options are those of the command line: ``normals``, ``crease_angle`` (degrees), ``file_colors`` (``"srgb"`` or ``"linear"``: how MTL
-/// files mean their colours), ``material`` (``"NAME.PROPERTY=VALUE"`` or a list),
-/// ``allow_external``, ``all_rotation``, ``all_translation``, ``max_memory``, ``threads``.
+/// Options are those of the command line: ``normals``, ``crease_angle`` (degrees), ``file_colors``
+/// (``"srgb"`` or ``"linear"``: how MTL files mean their colours), ``material``
+/// (``"NAME.PROPERTY=VALUE"`` or a list), ``allow_external``, ``all_rotation``,
+/// ``all_translation``, ``max_memory``, ``threads``.
 ///
-/// Raises :class:`InputError` for a file that is missing or malformed, with its ``path`` and ``where``; :class:`UnsupportedError` for a
-/// format that is not known; :class:`UsageError` for options that are not there.
+/// Raises :class:`InputError` for a file that is missing or malformed, with its ``path`` and
+/// ``where``; :class:`UnsupportedError` for a format that is not known; :class:`UsageError` for
+/// options that are not there.
 ///
 /// >>> import vitral
 /// >>> scene = vitral.load("builtin:teapot")
@@ -162,7 +174,8 @@ pub(crate) fn load(
     format: Option<&str>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<PyScene> {
-    let resolved = Resolved::new(Purpose::Load, &values::options(options)?).map_err(Trouble::from)?;
+    let resolved =
+        Resolved::new(Purpose::Load, &values::options(options)?).map_err(Trouble::from)?;
     let source = Source::of(source, format)?;
     let load = move || source.load(&resolved).and_then(|scene| Ok(PyScene::of(scene)?));
     Ok(interrupt::run(py, &AtomicBool::default(), load)??)
@@ -177,10 +190,11 @@ impl PyScene {
 
     /// Adds a material and gives its number.
     ///
-    /// Properties are those of ``--material`` (docs/materials.md): ``diffuse``, ``specular``, ``ambient`` (linear RGB, 0 to 1, or a
-    /// colour's name) with ``shininess``, or ``base_color`` with ``metallic`` and ``roughness`` (0 to 1); ``opacity`` (1 opaque), ``ior``,
-    /// ``mirror``, ``emission``, ``double_sided``, ``unlit`` and others. ``texture`` is an image that multiplies the colour: uint8, shape
-    /// (height, width, 3) or (height, width, 4), sRGB.
+    /// Properties are those of ``--material`` (docs/materials.md): ``diffuse``, ``specular``,
+    /// ``ambient`` (linear RGB, 0 to 1, or a colour's name) with ``shininess``, or ``base_color``
+    /// with ``metallic`` and ``roughness`` (0 to 1); ``opacity`` (1 opaque), ``ior``, ``mirror``,
+    /// ``emission``, ``double_sided``, ``unlit`` and others. ``texture`` is an image that
+    /// multiplies the colour: uint8, shape (height, width, 3) or (height, width, 4), sRGB.
     ///
     /// Raises :class:`UsageError` for a property that is not there or has another form.
     ///
@@ -203,7 +217,9 @@ impl PyScene {
             false => vitral::Material::default(),
         };
         one.add_material(vitral::Material { name: "material".to_owned(), ..material });
-        if options.iter().any(|(key, _)| is_physical(key)) && !options.iter().any(|(key, _)| key == "metallic") {
+        if options.iter().any(|(key, _)| is_physical(key))
+            && !options.iter().any(|(key, _)| key == "metallic")
+        {
             set(&mut one, "metallic", "0")?;
         }
         for (key, value) in options {
@@ -213,7 +229,8 @@ impl PyScene {
             };
             if !material_properties().any(|(known, _)| known == property) {
                 let names = COEFFICIENTS.iter().map(|(name, _)| (*name).to_owned());
-                let names = names.chain(material_properties().map(|(name, _)| name.replace('-', "_")));
+                let names =
+                    names.chain(material_properties().map(|(name, _)| name.replace('-', "_")));
                 let names: Vec<String> = names.collect();
                 return Err(usage(
                     format!("materials have no property {key}"),
@@ -227,7 +244,9 @@ impl PyScene {
             };
             set(&mut one, &property, &value)?;
             // What reflects diffuse light reflects ambient light of that colour, unless it is said.
-            if property == "kd" && !properties.is_some_and(|p| p.contains("ambient").unwrap_or(false)) {
+            if property == "kd"
+                && !properties.is_some_and(|p| p.contains("ambient").unwrap_or(false))
+            {
                 set(&mut one, "ka", &value)?;
             }
         }
@@ -247,12 +266,15 @@ impl PyScene {
 
     /// Adds a mesh, without placing it, and gives its number for :meth:`add_instance`.
     ///
-    /// ``vertices``: float, shape (n, 3), scene units. ``faces``: integers, shape (m, 3) or (m, k), or a list of convex polygons; indices
-    /// from 0, counter-clockwise seen from outside. ``normals``: float, shape (n, 3); left out, they are made with edges where faces meet at
-    /// more than ``crease_angle`` degrees (0: all faces are flat). ``uvs``: float, shape (n, 2), with (0, 0) at the image's top left.
-    /// ``colors``: shape (n, 3) or (n, 4), uint8 for sRGB or float for linear RGB from 0 to 1. ``material``: the number of a material.
+    /// ``vertices``: float, shape (n, 3), scene units. ``faces``: integers, shape (m, 3) or (m, k),
+    /// or a list of convex polygons; indices from 0, counter-clockwise seen from outside.
+    /// ``normals``: float, shape (n, 3); left out, they are made with edges where faces meet at
+    /// more than ``crease_angle`` degrees (0: all faces are flat). ``uvs``: float, shape (n, 2),
+    /// with (0, 0) at the image's top left. ``colors``: shape (n, 3) or (n, 4), uint8 for sRGB or
+    /// float for linear RGB from 0 to 1. ``material``: the number of a material.
     ///
-    /// Raises ``ValueError`` for another shape or an index that is not there, ``TypeError`` for another dtype.
+    /// Raises ``ValueError`` for another shape or an index that is not there, ``TypeError`` for
+    /// another dtype.
     ///
     /// >>> import numpy, vitral
     /// >>> vitral.Scene().add_mesh(numpy.zeros((3, 3)), [[0, 1, 2]])
@@ -276,16 +298,20 @@ impl PyScene {
         let mut data = self.lock();
         if let Some(material) = material.filter(|&m| m as usize >= data.scene.materials.len()) {
             let there = data.scene.materials.len();
-            return Err(PyIndexError::new_err(format!("there is no material {material}, there are {there}")));
+            return Err(PyIndexError::new_err(format!(
+                "there is no material {material}, there are {there}"
+            )));
         }
         let scene = data.edit();
         scene.meshes.push(Arc::new(mesh));
         Ok(scene.meshes.len() as u32 - 1)
     }
 
-    /// Shows a mesh at a place and gives the number of the instance, which the channel ``ids`` shows.
+    /// Shows a mesh at a place and gives the number of the instance, which the channel ``ids``
+    /// shows.
     ///
-    /// ``transform``: float64, shape (4, 4), row-major, column vectors: from the mesh's space to the world's.
+    /// ``transform``: float64, shape (4, 4), row-major, column vectors: from the mesh's space to
+    /// the world's.
     ///
     /// >>> import numpy, vitral
     /// >>> scene = vitral.Scene()
@@ -293,21 +319,28 @@ impl PyScene {
     /// 0
     #[pyo3(signature = (mesh, transform=None))]
     fn add_instance(&self, mesh: u32, transform: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
-        let transform = transform.map(|t| values::transform(t, "transform")).transpose()?.unwrap_or(DMat4::IDENTITY);
+        let transform = transform
+            .map(|t| values::transform(t, "transform"))
+            .transpose()?
+            .unwrap_or(DMat4::IDENTITY);
         let mut data = self.lock();
         let there = data.scene.meshes.len();
         if mesh as usize >= there {
-            return Err(PyIndexError::new_err(format!("there is no mesh {mesh}, there are {there}")));
+            return Err(PyIndexError::new_err(format!(
+                "there is no mesh {mesh}, there are {there}"
+            )));
         }
         let node = data.edit().add_instance(mesh, transform);
         data.instances.push(node);
         Ok(data.instances.len() - 1)
     }
 
-    /// Moves instances. ``transforms``: float64, shape (k, 4, 4), from each mesh's space to the world's, for the k numbers in
-    /// ``instances``. Meshes and what is known of them stay, so that moving costs little.
+    /// Moves instances. ``transforms``: float64, shape (k, 4, 4), from each mesh's space to the
+    /// world's, for the k numbers in ``instances``. Meshes and what is known of them stay, so that
+    /// moving costs little.
     ///
-    /// The first move of a scene that was read makes its instances independent of each other and of the file's nodes.
+    /// The first move of a scene that was read makes its instances independent of each other and of
+    /// the file's nodes.
     ///
     /// >>> import numpy, vitral
     /// >>> scene = vitral.load("builtin:teapot")
@@ -315,8 +348,10 @@ impl PyScene {
     fn set_transforms(&self, instances: Vec<usize>, transforms: &Bound<'_, PyAny>) -> PyResult<()> {
         let shape = [Some(instances.len()), Some(4), Some(4)];
         let (_, numbers) = values::numbers::<f64>(transforms, "transforms", &shape)?;
-        let matrices =
-            numbers.chunks(16).map(|rows| values::affine(rows, "transforms")).collect::<PyResult<Vec<_>>>()?;
+        let matrices = numbers
+            .chunks(16)
+            .map(|rows| values::affine(rows, "transforms"))
+            .collect::<PyResult<Vec<_>>>()?;
         let mut data = self.lock();
         let nodes = data.nodes_of(&instances)?;
         data.flatten().map_err(Trouble::from)?;
@@ -329,15 +364,19 @@ impl PyScene {
         Ok(())
     }
 
-    /// Where the instances are: float64, shape (number of instances, 4, 4), from each mesh's space to the world's.
+    /// Where the instances are: float64, shape (number of instances, 4, 4), from each mesh's space
+    /// to the world's.
     #[getter]
     fn transforms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let world = self.lock().world().map_err(Trouble::from)?;
         let rows = |m: &DMat4| (0..4).map(|row| m.row(row).to_array().to_vec()).collect::<Vec<_>>();
-        let all: Vec<Vec<Vec<f64>>> = world.instances.iter().map(|instance| rows(&instance.world_from_model)).collect();
+        let all: Vec<Vec<Vec<f64>>> =
+            world.instances.iter().map(|instance| rows(&instance.world_from_model)).collect();
         match all.is_empty() {
             true => Ok(PyArray3::zeros(py, [0, 4, 4], false)),
-            false => PyArray3::from_vec3(py, &all).map_err(|e| PyValueError::new_err(e.to_string())),
+            false => {
+                PyArray3::from_vec3(py, &all).map_err(|e| PyValueError::new_err(e.to_string()))
+            }
         }
     }
 
@@ -346,20 +385,25 @@ impl PyScene {
         self.lock().edit().add_light(light.get().light.clone());
     }
 
-    /// The box round all instances: two float64 arrays of shape (3,), the lowest and the highest corner. Raises ``ValueError`` for an
-    /// empty scene.
+    /// The box round all instances: two float64 arrays of shape (3,), the lowest and the highest
+    /// corner. Raises ``ValueError`` for an empty scene.
     #[getter]
     #[allow(clippy::type_complexity)]
-    fn bounds<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    fn bounds<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
         let bounds = self.lock().world().map_err(Trouble::from)?.bounds;
         if bounds.is_empty() {
             return Err(PyValueError::new_err("bounds: the scene shows nothing"));
         }
-        let [low, high] = [bounds.min, bounds.max].map(|corner| PyArray1::from_slice(py, &corner.to_array()));
+        let [low, high] =
+            [bounds.min, bounds.max].map(|corner| PyArray1::from_slice(py, &corner.to_array()));
         Ok((low, high))
     }
 
-    /// What is in the scene, as ``vitral info --json`` tells it of a model: counts, meshes, materials, lights, cameras, warnings.
+    /// What is in the scene, as ``vitral info --json`` tells it of a model: counts, meshes,
+    /// materials, lights, cameras, warnings.
     fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let scene = Arc::clone(&self.lock().scene);
         let info = py.detach(|| info::info(&scene)).map_err(Trouble::from)?;
@@ -384,10 +428,14 @@ impl PyScene {
     fn __repr__(&self) -> String {
         let data = self.lock();
         let (meshes, materials) = (data.scene.meshes.len(), data.scene.materials.len());
-        format!("<vitral.Scene: {} instances, {meshes} meshes, {materials} materials>", data.instances.len())
+        format!(
+            "<vitral.Scene: {} instances, {meshes} meshes, {materials} materials>",
+            data.instances.len()
+        )
     }
 
-    /// A scene of a ``trimesh.Trimesh`` or ``trimesh.Scene``, with its vertex colours, or texture and texture coordinates.
+    /// A scene of a ``trimesh.Trimesh`` or ``trimesh.Scene``, with its vertex colours, or texture
+    /// and texture coordinates.
     #[staticmethod]
     fn from_trimesh<'py>(mesh: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         mesh.py().import("vitral._convert")?.call_method1("from_trimesh", (mesh,))
@@ -399,7 +447,9 @@ impl PyScene {
         mesh.py().import("vitral._convert")?.call_method1("from_pyvista", (mesh,))
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let data = slf.get().lock();
         let bytes = saved::bytes(&data.scene).map_err(PyValueError::new_err)?;
         let state = (PyBytes::new(slf.py(), &bytes), data.flat).into_pyobject(slf.py())?;
@@ -421,7 +471,8 @@ const COEFFICIENTS: [(&str, &str); 3] = [("diffuse", "kd"), ("specular", "ks"), 
 
 /// Sets a property of the only material.
 fn set(scene: &mut Scene, property: &str, value: &str) -> Result<(), Trouble> {
-    let (material, property, value) = ("material".to_owned(), property.to_owned(), value.to_owned());
+    let (material, property, value) =
+        ("material".to_owned(), property.to_owned(), value.to_owned());
     Ok(MaterialOverride { material, property, value }.apply(scene)?)
 }
 

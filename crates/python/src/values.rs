@@ -61,7 +61,9 @@ pub(crate) fn text(value: &Bound<'_, PyAny>) -> PyResult<String> {
         return value.call_method0("__fspath__")?.extract();
     }
     let class = value.get_type().name()?;
-    Err(PyTypeError::new_err(format!("a text, a number, or a sequence of them is required, not {class}")))
+    Err(PyTypeError::new_err(format!(
+        "a text, a number, or a sequence of them is required, not {class}"
+    )))
 }
 
 /// Three numbers.
@@ -87,13 +89,20 @@ pub(crate) fn numbers<T: Element + Copy>(
     let is_empty = array.getattr("size")?.extract::<usize>()? == 0;
     if !is_empty && !(if is_float { "fiu" } else { "iu" }).contains(&kind) {
         let needed = if is_float { "numbers are" } else { "integers are" };
-        return Err(PyTypeError::new_err(format!("{name}: {needed} needed, got dtype {}", array.getattr("dtype")?)));
+        return Err(PyTypeError::new_err(format!(
+            "{name}: {needed} needed, got dtype {}",
+            array.getattr("dtype")?
+        )));
     }
     let found: Vec<usize> = array.getattr("shape")?.extract()?;
-    let fits = |(wanted, found): (&Option<usize>, &usize)| wanted.is_none_or(|wanted| wanted == *found);
+    let fits =
+        |(wanted, found): (&Option<usize>, &usize)| wanted.is_none_or(|wanted| wanted == *found);
     if found.len() != shape.len() || !shape.iter().zip(&found).all(fits) {
-        let (needed, got) = (shown(shape), shown(&found.iter().copied().map(Some).collect::<Vec<_>>()));
-        return Err(PyValueError::new_err(format!("{name}: an array of shape {needed} is needed, got {got}")));
+        let (needed, got) =
+            (shown(shape), shown(&found.iter().copied().map(Some).collect::<Vec<_>>()));
+        return Err(PyValueError::new_err(format!(
+            "{name}: an array of shape {needed} is needed, got {got}"
+        )));
     }
     let array = py.import("numpy")?.call_method1("ascontiguousarray", (array, wanted))?;
     let array = array.cast::<PyArrayDyn<T>>()?;
@@ -102,17 +111,20 @@ pub(crate) fn numbers<T: Element + Copy>(
 
 /// A shape as Python writes it.
 pub(crate) fn shown(shape: &[Option<usize>]) -> String {
-    let sides: Vec<String> = shape.iter().map(|side| side.map_or("n".to_owned(), |side| side.to_string())).collect();
+    let sides: Vec<String> =
+        shape.iter().map(|side| side.map_or("n".to_owned(), |side| side.to_string())).collect();
     if let [side] = &sides[..] { format!("({side},)") } else { format!("({})", sides.join(", ")) }
 }
 
 /// A matrix of 16 numbers, row by row, that keeps points points.
 pub(crate) fn affine(rows: &[f64], name: &str) -> PyResult<DMat4> {
-    let matrix: [f64; 16] =
-        rows.try_into().map_err(|_| PyValueError::new_err(format!("{name}: 16 numbers are needed")))?;
+    let matrix: [f64; 16] = rows
+        .try_into()
+        .map_err(|_| PyValueError::new_err(format!("{name}: 16 numbers are needed")))?;
     let matrix = DMat4::from_cols_array(&matrix).transpose();
     if !matrix.is_finite() || matrix.row(3).to_array() != [0.0, 0.0, 0.0, 1.0] {
-        let needed = "finite numbers and a last row of 0, 0, 0, 1 are needed (row-major, column vectors)";
+        let needed =
+            "finite numbers and a last row of 0, 0, 0, 1 are needed (row-major, column vectors)";
         return Err(PyValueError::new_err(format!("{name}: {needed}")));
     }
     Ok(matrix)
@@ -124,7 +136,10 @@ pub(crate) fn transform(value: &Bound<'_, PyAny>, name: &str) -> PyResult<DMat4>
 }
 
 /// JSON as Python's objects.
-pub(crate) fn object<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn object<'py>(
+    py: Python<'py>,
+    value: &impl serde::Serialize,
+) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(|e| PyValueError::new_err(e.to_string()))?;
     py.import("json")?.call_method1("loads", (text,))
 }

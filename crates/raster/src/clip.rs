@@ -1,16 +1,16 @@
 //! Polygon clipping in clip space, before the division by `w`.
 //!
-//! The polygon walks past the planes one after the other, like a workpiece past saws; each keeps the vertices on its
-//! inner side and adds a vertex where an edge crosses it. A vertex behind the eye (`w <= 0`) needs no special case: it
-//! is outside the near plane.
+//! The polygon walks past the planes one after the other, like a workpiece past saws; each keeps
+//! the vertices on its inner side and adds a vertex where an edge crosses it. A vertex behind the
+//! eye (`w <= 0`) needs no special case: it is outside the near plane.
 //!
 //! In:   a convex polygon in clip space.
-//! Out:  its part with `0 <= z <= w` and `|x| <= g.x w`, `|y| <= g.y w`, in the same order; fewer than three vertices
-//!       mean nothing is left.
+//! Out:  its part with `0 <= z <= w` and `|x| <= g.x w`, `|y| <= g.y w`, in the same order; fewer
+//!       than three vertices mean nothing is left.
 //! Cost: `O(planes * vertices)`.
-//! Source: [Sutherland & Hodgman 1974], homogeneous after [Blinn & Newell 1978]. Departs from it: the side planes are
-//!       a guard band `g` wider than the view, so that few triangles are cut; samples outside the view are simply not
-//!       visited.
+//! Source: [Sutherland & Hodgman 1974], homogeneous after [Blinn & Newell 1978]. Departs from it:
+//!       the side planes are a guard band `g` wider than the view, so that few triangles are cut;
+//!       samples outside the view are simply not visited.
 
 use vitral_math::{Vec2, Vec4};
 
@@ -54,7 +54,8 @@ impl Polygon {
                 result.push(from);
             }
             if (d_from >= 0.0) != (d_to >= 0.0) {
-                // Always from the inner to the outer vertex: two polygons that share the edge get the same point.
+                // Always from the inner to the outer vertex: two polygons that share the edge get
+                // the same point.
                 let (inner, outer, d_inner, d_outer) =
                     if d_from >= 0.0 { (from, to, d_from, d_to) } else { (to, from, d_to, d_from) };
                 result.push(inner + (outer - inner) * (d_inner / (d_inner - d_outer)));
@@ -67,13 +68,19 @@ impl Polygon {
 /// The planes that cut, in their order: near, far, and the sides of the guard band.
 pub const PLANES: [&str; 6] = ["near", "far", "right", "left", "top", "bottom"];
 
-/// Clips against near, far and the guard band `guard` (how many times wider than the view, per axis).
+/// Clips against near, far and the guard band `guard` (how many times wider than the view, per
+/// axis).
 pub fn clip(polygon: Polygon, guard: Vec2) -> Polygon {
     clip_watched(polygon, guard, |_, _, _| ())
 }
 
-/// [`clip`], which tells `cut` each time that a plane cuts: its index in [`PLANES`], the polygon before and after.
-pub fn clip_watched(polygon: Polygon, guard: Vec2, mut cut: impl FnMut(usize, &Polygon, &Polygon)) -> Polygon {
+/// [`clip`], which tells `cut` each time that a plane cuts: its index in [`PLANES`], the polygon
+/// before and after.
+pub fn clip_watched(
+    polygon: Polygon,
+    guard: Vec2,
+    mut cut: impl FnMut(usize, &Polygon, &Polygon),
+) -> Polygon {
     let planes: [&dyn Fn(Vec4) -> f32; 6] = [
         &|p| p.w - p.z,
         &|p| p.z,
@@ -100,34 +107,53 @@ mod tests {
 
     /// Area of the projection in NDC.
     fn projected_area(polygon: &Polygon) -> f32 {
-        let ndc: Vec<_> = polygon.corners().iter().map(|p| (*p / p.w).truncate().truncate()).collect();
+        let ndc: Vec<_> =
+            polygon.corners().iter().map(|p| (*p / p.w).truncate().truncate()).collect();
         (0..ndc.len()).map(|i| ndc[i].perp_dot(ndc[(i + 1) % ndc.len()])).sum::<f32>() / 2.0
     }
 
     #[test]
     fn a_polygon_round_the_guard_band_becomes_the_guard_band() {
-        let triangle = Polygon::triangle([vec4(-9., -9., 0.5, 1.), vec4(9., -9., 0.5, 1.), vec4(0., 30., 0.5, 1.)]);
+        let triangle = Polygon::triangle([
+            vec4(-9., -9., 0.5, 1.),
+            vec4(9., -9., 0.5, 1.),
+            vec4(0., 30., 0.5, 1.),
+        ]);
         assert!((projected_area(&clip(triangle, Vec2::ONE)) - 4.0).abs() < 1e-5);
     }
 
     #[test]
     fn a_vertex_behind_the_eye_leaves_only_what_is_in_front() {
-        let triangle = Polygon::triangle([vec4(-0.5, 0., 0.5, 1.), vec4(0.5, 0., 0.5, 1.), vec4(0., 0.5, -3., -1.)]);
+        let triangle = Polygon::triangle([
+            vec4(-0.5, 0., 0.5, 1.),
+            vec4(0.5, 0., 0.5, 1.),
+            vec4(0., 0.5, -3., -1.),
+        ]);
         let clipped = clip(triangle, Vec2::splat(10.0));
         assert!(clipped.corners().len() >= 3);
-        assert!(clipped.corners().iter().all(|p| p.w > 0.0 && p.z >= 0.0 && p.z <= p.w * 1.000_001));
+        assert!(
+            clipped.corners().iter().all(|p| p.w > 0.0 && p.z >= 0.0 && p.z <= p.w * 1.000_001)
+        );
     }
 
     #[test]
     fn the_parts_on_both_sides_of_a_plane_add_up() {
-        let t = Polygon::triangle([vec4(-0.9, -0.8, 0.5, 1.), vec4(0.7, -0.3, 0.5, 1.), vec4(0.1, 0.9, 0.5, 1.)]);
+        let t = Polygon::triangle([
+            vec4(-0.9, -0.8, 0.5, 1.),
+            vec4(0.7, -0.3, 0.5, 1.),
+            vec4(0.1, 0.9, 0.5, 1.),
+        ]);
         let (right, left) = (t.cut(|p| p.x - 0.05 * p.w), t.cut(|p| 0.05 * p.w - p.x));
         assert!((projected_area(&right) + projected_area(&left) - projected_area(&t)).abs() < 1e-6);
     }
 
     #[test]
     fn a_polygon_beyond_the_far_plane_vanishes() {
-        let triangle = Polygon::triangle([vec4(0., 0., -0.1, 1.), vec4(1., 0., -0.2, 1.), vec4(0., 1., -0.1, 1.)]);
+        let triangle = Polygon::triangle([
+            vec4(0., 0., -0.1, 1.),
+            vec4(1., 0., -0.2, 1.),
+            vec4(0., 1., -0.1, 1.),
+        ]);
         assert!(clip(triangle, Vec2::ONE).corners().len() < 3);
     }
 }

@@ -1,7 +1,9 @@
-//! Layers gathered pixel by pixel: a facet in a pixel is one entry, however many of the pixel's samples it covers.
+//! Layers gathered pixel by pixel: a facet in a pixel is one entry, however many of the pixel's
+//! samples it covers.
 //!
-//! A triangle is walked sample by sample; its masks and depths wait in rows of eight pixels until it is done. Then the bits
-//! of a pixel are put together: of a mesh finer than a few pixels, that is a fourth of the entries.
+//! A triangle is walked sample by sample; its masks and depths wait in rows of eight pixels until
+//! it is done. Then the bits of a pixel are put together: of a mesh finer than a few pixels, that
+//! is a fourth of the entries.
 
 use crate::layers::Fragment;
 use crate::samples::MOST_SAMPLES;
@@ -16,11 +18,13 @@ pub struct FragmentSink<'a> {
     tile: &'a Tile,
     pattern: &'a SamplePattern,
     layers: &'a mut LayerList,
-    /// What of the triangle at hand is seen in each row of the tile, sample by sample; 0 between triangles.
+    /// What of the triangle at hand is seen in each row of the tile, sample by sample; 0 between
+    /// triangles.
     seen: [[u8; MOST_SAMPLES]; TILE],
     /// Its depths there.
     depths: [[[f32; LANES]; MOST_SAMPLES]; TILE],
-    /// The first row in which something is seen, the one behind the last, and the column of their first pixel.
+    /// The first row in which something is seen, the one behind the last, and the column of their
+    /// first pixel.
     rows: [usize; 2],
     left: usize,
     facet: u32,
@@ -58,7 +62,13 @@ impl<'a> FragmentSink<'a> {
             let (depths, first) = (&self.depths[y], y * TILE + self.left);
             let place = |lane: usize| {
                 let pixel = (first + lane) as u16;
-                Fragment { facet: self.facet, pixel, far: far[lane], near: near[lane], ..Fragment::default() }
+                Fragment {
+                    facet: self.facet,
+                    pixel,
+                    far: far[lane],
+                    near: near[lane],
+                    ..Fragment::default()
+                }
             };
             // Pixels that are covered whole, then the others, whose order does not matter.
             let mut rest = pixels & !full;
@@ -70,7 +80,9 @@ impl<'a> FragmentSink<'a> {
             while rest != 0 {
                 let lane = rest.trailing_zeros() as usize % LANES;
                 rest &= rest - 1;
-                self.layers.push_fragment::<MAX>(place(lane), samples, |s| (seen[s] >> lane & 1 == 1, depths[s][lane]));
+                self.layers.push_fragment::<MAX>(place(lane), samples, |s| {
+                    (seen[s] >> lane & 1 == 1, depths[s][lane])
+                });
             }
         }
         self.layers.spread_at_limit();

@@ -1,8 +1,11 @@
-//! From draws to tiles: vertices to the screen, triangles culled, clipped, set up and sorted into the tiles they touch.
+//! From draws to tiles: vertices to the screen, triangles culled, clipped, set up and sorted into
+//! the tiles they touch.
 //!
-//! In:   [`Draw`]s: a mesh's positions and triangles, and the matrix from its model space to clip space.
+//! In:   [`Draw`]s: a mesh's positions and triangles, and the matrix from its model space to clip
+//!       space.
 //! Out:  [`Batch`]es of [`Setup`]s with a list for each tile.
-//! Cost: linear in vertices and triangles, plus one list entry for each tile that a triangle touches.
+//! Cost: linear in vertices and triangles, plus one list entry for each tile that a triangle
+//!       touches.
 
 use crate::clip::{Polygon, clip};
 use crate::kernel::sift::{Sieve, sift};
@@ -32,7 +35,8 @@ impl BackFaces<'_> {
         self.eight(triangle) & 1 == 1
     }
 
-    /// The same for eight triangles in a row, a bit each. Those behind the last one are dropped or not.
+    /// The same for eight triangles in a row, a bit each. Those behind the last one are dropped or
+    /// not.
     #[inline(always)]
     fn eight(self, first: u32) -> u32 {
         match self {
@@ -62,8 +66,8 @@ pub struct Draw<'a> {
     pub first_facet: u32,
     /// Which triangles are dropped if they face away.
     pub back_faces: BackFaces<'a>,
-    /// For each triangle the number of the plane that it lies in with others, see [`Screen::with_planes`], or a number beyond;
-    /// empty if it is so for all.
+    /// For each triangle the number of the plane that it lies in with others, see
+    /// [`Screen::with_planes`], or a number beyond; empty if it is so for all.
     pub planes: &'a [u32],
     /// The transform mirrors: what runs clockwise in model space is the front.
     pub mirrored: bool,
@@ -121,7 +125,8 @@ pub enum TileLists {
     /// It does.
     #[default]
     Kept,
-    /// It does, and copies them so that those of a tile lie side by side in memory: for who walks all tiles.
+    /// It does, and copies them so that those of a tile lie side by side in memory: for who walks
+    /// all tiles.
     Copied,
     /// Nobody is going to ask: all tiles are empty.
     Unwanted,
@@ -130,8 +135,9 @@ pub enum TileLists {
     WithBoxes,
 }
 
-/// Pixels of a tile as four bytes: how far columns and rows begin behind the tile's first, and end before its last ones. In
-/// the lowest byte the first column, then the last, the first row, the last.
+/// Pixels of a tile as four bytes: how far columns and rows begin behind the tile's first, and end
+/// before its last ones. In the lowest byte the first column, then the last, the first row, the
+/// last.
 #[cfg(feature = "forward")]
 #[inline(always)]
 pub(crate) fn packed_box([x0, y0, x1, y1]: [i32; 4]) -> i32 {
@@ -157,7 +163,8 @@ pub struct Batch {
     pub counters: GeometryCounters,
 }
 
-/// Memory that a batch needs up to [`Batch::finish`] only: those who make batches one after the other need one of it.
+/// Memory that a batch needs up to [`Batch::finish`] only: those who make batches one after the
+/// other need one of it.
 #[derive(Clone, Debug, Default)]
 pub struct Unsorted {
     setups: Vec<Setup>,
@@ -265,12 +272,14 @@ impl Batch {
             let plane = draw.plane(facet, screen);
             self.add_corners(corners, cull_back, draw.mirrored, plane, facet, screen);
         } else {
-            let corners = corners.map(|i| transform_point(&draw.clip_from_model, draw.positions[i as usize]));
+            let corners =
+                corners.map(|i| transform_point(&draw.clip_from_model, draw.positions[i as usize]));
             self.add_clipped(draw, corners, facet, screen);
         }
     }
 
-    /// Adds one triangle of snapped corners inside the guard band, with the depths of the plane that it shares, if it does.
+    /// Adds one triangle of snapped corners inside the guard band, with the depths of the plane
+    /// that it shares, if it does.
     #[inline(always)]
     pub fn add_corners(
         &mut self,
@@ -290,7 +299,9 @@ impl Batch {
             self.counters.back_facing += 1;
         } else if let Some(pixels) = covered_pixels(&corners, screen) {
             let setup = match plane {
-                Some(plane) => Setup::with_plane(corners, area, &plane.of_facet(&corners, faces_away), facet),
+                Some(plane) => {
+                    Setup::with_plane(corners, area, &plane.of_facet(&corners, faces_away), facet)
+                }
                 None => Setup::new(corners, area, facet),
             };
             self.push(setup, pixels, screen);
@@ -299,8 +310,8 @@ impl Batch {
         }
     }
 
-    /// Clips a triangle given in clip space and adds the pieces: one facet with one depth plane, that which it shares or that of
-    /// the largest piece of the fan.
+    /// Clips a triangle given in clip space and adds the pieces: one facet with one depth plane,
+    /// that which it shares or that of the largest piece of the fan.
     #[cold]
     fn add_clipped(&mut self, draw: &Draw<'_>, corners: [Vec4; 3], facet: u32, screen: &Screen) {
         self.counters.clipped += 1;
@@ -323,7 +334,9 @@ impl Batch {
             Setup::doubled_area(a, b, c)
         };
         let total: i64 = (1..count - 1).map(areas).sum();
-        let Some(largest) = (1..count - 1).max_by_key(|&i| areas(i).abs()).filter(|&i| areas(i) != 0) else {
+        let Some(largest) =
+            (1..count - 1).max_by_key(|&i| areas(i).abs()).filter(|&i| areas(i) != 0)
+        else {
             self.counters.degenerate += 1;
             return;
         };
@@ -405,9 +418,16 @@ impl Batch {
         self.entries.push([ty * tiles_x + tx, index]);
         #[cfg(feature = "forward")]
         if self.tile_lists == TileLists::WithBoxes {
-            let within = |v: u32, tile: u32| (v as i32 - (tile * TILE as u32) as i32).clamp(0, TILE as i32 - 1);
+            let within = |v: u32, tile: u32| {
+                (v as i32 - (tile * TILE as u32) as i32).clamp(0, TILE as i32 - 1)
+            };
             let [x0, y0, x1, y1] = pixels;
-            self.entry_boxes.push(packed_box([within(x0, tx), within(y0, ty), within(x1, tx), within(y1, ty)]));
+            self.entry_boxes.push(packed_box([
+                within(x0, tx),
+                within(y0, ty),
+                within(x1, tx),
+                within(y1, ty),
+            ]));
         }
         #[cfg(not(feature = "forward"))]
         let _ = pixels;
@@ -418,7 +438,8 @@ impl Batch {
         self.finish_with(screen, |_, _, _| {});
     }
 
-    /// [`Self::finish`]; `placed` gets each entry's place among those of all tiles, its number before, and its triangle.
+    /// [`Self::finish`]; `placed` gets each entry's place among those of all tiles, its number
+    /// before, and its triangle.
     #[inline(always)]
     fn finish_with(&mut self, screen: &Screen, mut placed: impl FnMut(usize, usize, &Setup)) {
         // Count the entries of each tile.
@@ -456,17 +477,22 @@ impl Batch {
         self.counters.tile_entries = self.entries.len() as u64;
     }
 
-    /// [`Self::finish`] of a batch with boxes; `placed` gets each entry's place among those of all tiles, its box and its
-    /// triangle.
+    /// [`Self::finish`] of a batch with boxes; `placed` gets each entry's place among those of all
+    /// tiles, its box and its triangle.
     #[cfg(feature = "forward")]
-    pub(crate) fn finish_with_boxes(&mut self, screen: &Screen, mut placed: impl FnMut(usize, i32, &Setup)) {
+    pub(crate) fn finish_with_boxes(
+        &mut self,
+        screen: &Screen,
+        mut placed: impl FnMut(usize, i32, &Setup),
+    ) {
         let boxes = std::mem::take(&mut self.entry_boxes);
         self.finish_with(screen, |place, number, setup| placed(place, boxes[number], setup));
         self.entry_boxes = boxes;
     }
 
-    /// Exchanges the memory of what is needed up to [`Batch::finish`]: once after [`Batch::clear`], once after `finish`. What
-    /// was in `unsorted` is forgotten. Of [`TileLists::Copied`] that is [`Batch::setups`], too: what is left is the copies.
+    /// Exchanges the memory of what is needed up to [`Batch::finish`]: once after [`Batch::clear`],
+    /// once after `finish`. What was in `unsorted` is forgotten. Of [`TileLists::Copied`] that is
+    /// [`Batch::setups`], too: what is left is the copies.
     pub fn exchange(&mut self, unsorted: &mut Unsorted) {
         unsorted.setups.clear();
         unsorted.entries.clear();
@@ -498,12 +524,18 @@ impl Batch {
     /// Hands out those of some tiles that have triangles, in order.
     #[cfg(feature = "forward")]
     #[inline(always)]
-    pub(crate) fn touched_tiles<S: Simd>(&self, simd: S, tiles: Range<usize>, mut touched: impl FnMut(u32)) {
+    pub(crate) fn touched_tiles<S: Simd>(
+        &self,
+        simd: S,
+        tiles: Range<usize>,
+        mut touched: impl FnMut(u32),
+    ) {
         use vitral_math::lanes::{U32x8, prelude::*};
         let mut tile = tiles.start;
         while tile + LANES <= tiles.end {
             let starts = &self.starts[tile..tile + LANES + 1];
-            let (first, next) = (U32x8::from_slice(simd, &starts[..LANES]), U32x8::from_slice(simd, &starts[1..]));
+            let (first, next) =
+                (U32x8::from_slice(simd, &starts[..LANES]), U32x8::from_slice(simd, &starts[1..]));
             let mut some = !first.simd_eq(next).to_bitmask() & 0xff;
             while some != 0 {
                 touched(tile as u32 + some.trailing_zeros());
@@ -511,7 +543,9 @@ impl Batch {
             }
             tile += LANES;
         }
-        (tile..tiles.end).filter(|&t| !self.tile_range(t).is_empty()).for_each(|t| touched(t as u32));
+        (tile..tiles.end)
+            .filter(|&t| !self.tile_range(t).is_empty())
+            .for_each(|t| touched(t as u32));
     }
 
     /// Whether setups are copied into the order of tiles.

@@ -1,11 +1,15 @@
-//! Depth as an integer of a few bits, as depth buffers of hardware have it: faces nearer to each other than a step get equal depths.
+//! Depth as an integer of a few bits, as depth buffers of hardware have it: faces nearer to each
+//! other than a step get equal depths.
 //!
-//! The depth of a facet at a sample, 0 far to 1 near, is rounded to a multiple of `1 / (2^N - 1)` before it is compared. Two faces
-//! closer than a step lie at the same depth in bands, where the lower facet is seen although it may lie behind: z-fighting. In
-//! perspective, depth goes with the reciprocal of distance, so that steps grow with the square of the distance.
+//! The depth of a facet at a sample, 0 far to 1 near, is rounded to a multiple of `1 / (2^N - 1)`
+//! before it is compared. Two faces closer than a step lie at the same depth in bands, where the
+//! lower facet is seen although it may lie behind: z-fighting. In perspective, depth goes with the
+//! reciprocal of distance, so that steps grow with the square of the distance.
 //!
-//! In:   rows of covered samples (screen space). Out: the same for another sink, with depths rounded.
-//! Cost: a multiplication and a division more for each sample; nothing is rejected unseen, since far depths are not rounded.
+//! In:   rows of covered samples (screen space). Out: the same for another sink, with depths
+//!       rounded.
+//! Cost: a multiplication and a division more for each sample; nothing is rejected unseen, since
+//!       far depths are not rounded.
 //! Source: [Catmull 1974], whose z-buffer holds integers.
 
 use crate::{RowPlane, RowSink, Setup, Tile};
@@ -98,7 +102,8 @@ mod tests {
             for i in seen().filter(|_| bits < 20) {
                 let integer = tile.depth[i] * most;
                 assert!(
-                    (integer - integer.round()).abs() < 1e-2 && (tile.depth[i] - exact.depth[i]).abs() <= 1.0 / most
+                    (integer - integer.round()).abs() < 1e-2
+                        && (tile.depth[i] - exact.depth[i]).abs() <= 1.0 / most
                 );
             }
             assert_eq!(seen().count(), exact.facet.iter().filter(|&&f| f != NO_FACET).count());

@@ -1,13 +1,14 @@
 //! The layers of a tile, as many as memory is allowed for.
 //!
-//! Every facet in front of a sample is one entry. Thousands of faces behind each other would fill any memory, so the
-//! list has a limit. When it is reached, each sample keeps its nearest few and loses the ones behind, which count least
-//! in the picture; what was lost is counted, so that the user can be told. Which entries survive depends on depth and
-//! facet alone: in whatever order facets come, the same ones stay.
+//! Every facet in front of a sample is one entry. Thousands of faces behind each other would fill
+//! any memory, so the list has a limit. When it is reached, each sample keeps its nearest few and
+//! loses the ones behind, which count least in the picture; what was lost is counted, so that the
+//! user can be told. Which entries survive depends on depth and facet alone: in whatever order
+//! facets come, the same ones stay.
 //!
-//! Whoever wants to know which facets are in a pixel, at whichever samples, asks for fragments ([`LayerList::gather`]): they
-//! take half the memory. Before they could take more than is allowed they are spread out into samples, so that the
-//! limit means the same.
+//! Whoever wants to know which facets are in a pixel, at whichever samples, asks for fragments
+//! ([`LayerList::gather`]): they take half the memory. Before they could take more than is allowed
+//! they are spread out into samples, so that the limit means the same.
 //!
 //! Cost: constant an entry; at the limit a sort, after which at least half the list is free.
 
@@ -29,7 +30,8 @@ pub struct Layer {
 pub struct Fragment {
     /// Id of the facet.
     pub facet: u32,
-    /// Where its depths begin in [`LayerList::depths`]: one for each sample that it covers, in the order of samples.
+    /// Where its depths begin in [`LayerList::depths`]: one for each sample that it covers, in the
+    /// order of samples.
     pub start: u32,
     /// The farthest of them.
     pub far: f32,
@@ -66,27 +68,39 @@ impl Default for LayerList {
     /// Without a limit.
     fn default() -> Self {
         let (list, fragments, depths) = (Vec::new(), Vec::new(), Vec::new());
-        Self { list, limit: usize::MAX, kept: usize::MAX, lost: 0, from_back: false, gathers: false, fragments, depths }
+        Self {
+            list,
+            limit: usize::MAX,
+            kept: usize::MAX,
+            lost: 0,
+            from_back: false,
+            gathers: false,
+            fragments,
+            depths,
+        }
     }
 }
 
 impl LayerList {
-    /// At most `limit` entries of a tile with `samples` samples a pixel; two for each sample are always allowed.
+    /// At most `limit` entries of a tile with `samples` samples a pixel; two for each sample are
+    /// always allowed.
     pub fn new(limit: usize, samples: usize) -> Self {
         let tile = TILE_PIXELS * samples;
         let limit = limit.max(2 * tile);
-        // Half the list at most stays: then a sort pays for at least as many entries as it looked at.
+        // Half the list at most stays: then a sort pays for at least as many entries as it looked
+        // at.
         Self { limit, kept: limit / (2 * tile), ..Self::default() }
     }
 
-    /// For entries that come from back to front: their order is kept, and the nearest of a sample are its last.
+    /// For entries that come from back to front: their order is kept, and the nearest of a sample
+    /// are its last.
     #[must_use]
     pub fn from_back_to_front(self) -> Self {
         Self { from_back: true, ..self }
     }
 
-    /// Keeps fragments as they are, for someone who takes [`Self::fragments`]; to be called before the first entry. By a
-    /// list, where parts of a facet come at different times, there are none.
+    /// Keeps fragments as they are, for someone who takes [`Self::fragments`]; to be called before
+    /// the first entry. By a list, where parts of a facet come at different times, there are none.
     pub fn gather(&mut self) {
         self.gathers = !self.from_back && self.list.is_empty();
     }
@@ -124,8 +138,8 @@ impl LayerList {
         }
     }
 
-    /// Adds a fragment, given its place and facet, of a pixel with `samples` samples, at most `MAX`: `at` says whether it
-    /// covers a sample, and its depth there.
+    /// Adds a fragment, given its place and facet, of a pixel with `samples` samples, at most
+    /// `MAX`: `at` says whether it covers a sample, and its depth there.
     #[inline(always)]
     pub(crate) fn push_fragment<const MAX: usize>(
         &mut self,
@@ -156,11 +170,12 @@ impl LayerList {
         }
     }
 
-    /// Spreads fragments out into samples as soon as they, and then the samples besides, could take more memory than the list
-    /// may have.
+    /// Spreads fragments out into samples as soon as they, and then the samples besides, could take
+    /// more memory than the list may have.
     #[inline(always)]
     pub(crate) fn spread_at_limit(&mut self) {
-        let bytes = self.fragments.len() * size_of::<Fragment>() + self.depths.len() * size_of::<f32>();
+        let bytes =
+            self.fragments.len() * size_of::<Fragment>() + self.depths.len() * size_of::<f32>();
         if bytes / size_of::<Layer>() > self.limit / 3 {
             self.spread_all();
         }
@@ -170,9 +185,13 @@ impl LayerList {
     #[inline(never)]
     fn spread_all(&mut self) {
         self.gathers = false;
-        let (fragments, depths) = (std::mem::take(&mut self.fragments), std::mem::take(&mut self.depths));
+        let (fragments, depths) =
+            (std::mem::take(&mut self.fragments), std::mem::take(&mut self.depths));
         for fragment in fragments {
-            self.spread(fragment, &depths[fragment.start as usize..][..usize::from(fragment.count)]);
+            self.spread(
+                fragment,
+                &depths[fragment.start as usize..][..usize::from(fragment.count)],
+            );
         }
     }
 
@@ -193,7 +212,8 @@ impl LayerList {
         self.list.push(layer);
     }
 
-    /// To be called after the last entry: if the limit was reached, every sample has its nearest few and no more.
+    /// To be called after the last entry: if the limit was reached, every sample has its nearest
+    /// few and no more.
     pub fn finish(&mut self) {
         if self.lost > 0 || self.list.len() >= self.limit {
             self.keep_nearest();
@@ -211,8 +231,9 @@ impl LayerList {
         if self.from_back {
             return self.keep_last();
         }
-        self.list
-            .sort_unstable_by(|a, b| (a.at.cmp(&b.at)).then(b.depth.total_cmp(&a.depth)).then(a.facet.cmp(&b.facet)));
+        self.list.sort_unstable_by(|a, b| {
+            (a.at.cmp(&b.at)).then(b.depth.total_cmp(&a.depth)).then(a.facet.cmp(&b.facet))
+        });
         let before = self.list.len();
         let (mut at, mut rank) = (u32::MAX, 0);
         let kept = self.kept;
@@ -271,7 +292,8 @@ mod tests {
         let (left, lost) = run(&all);
         assert_eq!((left.len(), lost), (3, 29_997));
         for layer in &left {
-            let nearest = all.iter().filter(|l| l.at == layer.at).map(|l| l.depth).fold(0.0, f32::max);
+            let nearest =
+                all.iter().filter(|l| l.at == layer.at).map(|l| l.depth).fold(0.0, f32::max);
             assert_eq!(layer.depth, nearest);
         }
         all.reverse();
@@ -296,12 +318,17 @@ mod tests {
         let mut samples = LayerList::new(2 * TILE_PIXELS, 4);
         for i in 0..60_000u32 {
             // Samples 0 and 2 of a pixel each.
-            let (pixel, depths) = ((i * 7919 % 3) as u16, [(i % 1000) as f32 / 1000.0, 0.5, 0.0, 0.0]);
+            let (pixel, depths) =
+                ((i * 7919 % 3) as u16, [(i % 1000) as f32 / 1000.0, 0.5, 0.0, 0.0]);
             let place = Fragment { facet: i, pixel, ..Fragment::default() };
             gathered.push_fragment::<4>(place, 4, |s| (s % 2 == 0, depths[s / 2]));
             gathered.spread_at_limit();
             for (sample, depth) in [0, 2].into_iter().zip(depths) {
-                samples.push(Layer { at: (sample * TILE_PIXELS) as u32 + u32::from(pixel), depth, facet: i });
+                samples.push(Layer {
+                    at: (sample * TILE_PIXELS) as u32 + u32::from(pixel),
+                    depth,
+                    facet: i,
+                });
             }
         }
         let ends = [&mut gathered, &mut samples].map(|list| {

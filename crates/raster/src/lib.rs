@@ -1,17 +1,18 @@
 //! Floor 2: triangles to samples. Clip, project, snap, set up, bin, and walk the tiles.
 //!
-//! A picture is cut into tiles of 64x64 pixels, each owned by one worker at a time. [`geometry`] turns triangles into
-//! [`Setup`]s (integer edge functions, a depth plane) and sorts them into the tiles they touch; [`traverse`] walks a
-//! tile's triangles in blocks of 8x8 pixels and hands each block with its coverage masks to a [`BlockSink`], which
-//! decides what a covered sample means: [`VisibilitySink`] keeps the nearest facet, [`LayerSink`] collects every
-//! facet in front of it, [`FragmentSink`] likewise, pixel by pixel. [`traverse_by_rows`] hands triangles that are at most
-//! eight pixels wide row by row to a [`RowSink`], wherever the rows begin: of a fine mesh, most are. [`NearestDepths`]
-//! keeps depths alone, for shadow maps.
+//! A picture is cut into tiles of 64x64 pixels, each owned by one worker at a time. [`geometry`]
+//! turns triangles into [`Setup`]s (integer edge functions, a depth plane) and sorts them into the
+//! tiles they touch; [`traverse`] walks a tile's triangles in blocks of 8x8 pixels and hands each
+//! block with its coverage masks to a [`BlockSink`], which decides what a covered sample means:
+//! [`VisibilitySink`] keeps the nearest facet, [`LayerSink`] collects every facet in front of it,
+//! [`FragmentSink`] likewise, pixel by pixel. [`traverse_by_rows`] hands triangles that are at most
+//! eight pixels wide row by row to a [`RowSink`], wherever the rows begin: of a fine mesh, most
+//! are. [`NearestDepths`] keeps depths alone, for shadow maps.
 //!
-//! Coverage is decided in integers on corners snapped to 1/256 pixel, with the top-left rule: two triangles that share
-//! an edge cover each sample along it exactly once. Depth is `1` at the near plane and `0` at the far plane; the
-//! larger wins, and of equal depths the lower facet. So neither the order of triangles nor the number of threads nor
-//! the instruction set can change a picture.
+//! Coverage is decided in integers on corners snapped to 1/256 pixel, with the top-left rule: two
+//! triangles that share an edge cover each sample along it exactly once. Depth is `1` at the near
+//! plane and `0` at the far plane; the larger wins, and of equal depths the lower facet. So neither
+//! the order of triangles nor the number of threads nor the instruction set can change a picture.
 #![forbid(unsafe_code)]
 
 pub mod clip;
@@ -55,8 +56,8 @@ pub const TILE_PIXELS: usize = TILE * TILE;
 pub const SUBPIXEL: i32 = 256;
 /// The facet that no triangle has: background.
 pub const NO_FACET: u32 = u32::MAX;
-/// Screen coordinates stay within this many pixels of the viewport's centre: farther triangles are clipped, so that
-/// edge functions fit in 32 bits inside a tile.
+/// Screen coordinates stay within this many pixels of the viewport's centre: farther triangles are
+/// clipped, so that edge functions fit in 32 bits inside a tile.
 pub const GUARD_BAND: f32 = 16384.0;
 /// Largest width and height of a viewport.
 pub const MAX_SIDE: u32 = 16384;

@@ -1,24 +1,27 @@
 //! Where the samples of a pixel lie.
 //!
-//! The positions are those of a rooks placement: each sample has a row and a column of its own, so that nearly
-//! horizontal and nearly vertical edges both show as many steps as there are samples. With four samples it is the
-//! rotated grid that GPUs use. Beyond sixteen there are thirty-two: one in each cell of a mask of 4 columns and 8 rows, so that
-//! they are spread evenly, and in a rooks placement still. An edge through the pixel, at any angle, is off by 1/64 of the pixel's
-//! area on average, by at most 1/32 in nine cases of ten, and by 0.07 where it is worst.
+//! The positions are those of a rooks placement: each sample has a row and a column of its own, so
+//! that nearly horizontal and nearly vertical edges both show as many steps as there are samples.
+//! With four samples it is the rotated grid that GPUs use. Beyond sixteen there are thirty-two: one
+//! in each cell of a mask of 4 columns and 8 rows, so that they are spread evenly, and in a rooks
+//! placement still. An edge through the pixel, at any angle, is off by 1/64 of the pixel's area on
+//! average, by at most 1/32 in nine cases of ten, and by 0.07 where it is worst.
 
 use crate::SUBPIXEL;
 
 /// Most samples a pixel.
 pub(crate) const MOST_SAMPLES: usize = 32;
 
-/// Columns of the thirty-two samples, from the top row to the bottom one: of 60,000 placements that annealing tried, with one sample
-/// in each cell of 4 columns and 8 rows, the one whose worst half-planes are nearest to their areas.
+/// Columns of the thirty-two samples, from the top row to the bottom one: of 60,000 placements that
+/// annealing tried, with one sample in each cell of 4 columns and 8 rows, the one whose worst
+/// half-planes are nearest to their areas.
 const MASK_4X8: [i32; 32] = [
-    2, 22, 14, 26, 9, 31, 4, 16, 19, 24, 10, 0, 5, 27, 18, 13, 23, 8, 30, 3, 15, 20, 28, 7, 12, 25, 1, 17, 21, 6, 11,
-    29,
+    2, 22, 14, 26, 9, 31, 4, 16, 19, 24, 10, 0, 5, 27, 18, 13, 23, 8, 30, 3, 15, 20, 28, 7, 12, 25,
+    1, 17, 21, 6, 11, 29,
 ];
 
-/// Sample positions within a pixel, in 1/256 pixel from its top left corner, sorted from top to bottom.
+/// Sample positions within a pixel, in 1/256 pixel from its top left corner, sorted from top to
+/// bottom.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SamplePattern {
     positions: Vec<[i32; 2]>,
@@ -35,18 +38,23 @@ impl SamplePattern {
     pub fn new(count: usize) -> Self {
         if count > 16 {
             let place = |i: i32| (2 * i + 1) * SUBPIXEL / 64;
-            return Self::at((0..).zip(MASK_4X8).map(|(row, column)| [place(column), place(row)]).collect());
+            return Self::at(
+                (0..).zip(MASK_4X8).map(|(row, column)| [place(column), place(row)]).collect(),
+            );
         }
         let n = count.clamp(1, 16) as i32;
-        // Multiplicative step modulo n + 1, coprime to it and near the golden section: rows i get columns (i+1)k mod (n+1) - 1.
+        // Multiplicative step modulo n + 1, coprime to it and near the golden section: rows i get
+        // columns (i+1)k mod (n+1) - 1.
         let gcd = |mut a: i32, mut b: i32| {
             while b != 0 {
                 (a, b) = (b, a % b);
             }
             a
         };
-        let step =
-            (1..=n).filter(|&k| gcd(k, n + 1) == 1).min_by_key(|&k| (k * 1000 - (n + 1) * 382).abs()).unwrap_or(1);
+        let step = (1..=n)
+            .filter(|&k| gcd(k, n + 1) == 1)
+            .min_by_key(|&k| (k * 1000 - (n + 1) * 382).abs())
+            .unwrap_or(1);
         let place = |i: i32| ((2 * i + 1) * SUBPIXEL) / (2 * n);
         Self::at((0..n).map(|i| [place((i + 1) * step % (n + 1) - 1), place(i)]).collect())
     }
@@ -58,7 +66,9 @@ impl SamplePattern {
             [values.clone().min().unwrap_or(0), values.max().unwrap_or(0)]
         });
         let axes = [0, 1].map(|k: usize| {
-            std::array::from_fn(|s| positions.get(s).or(positions.first()).map_or(0, |p: &[i32; 2]| p[k]))
+            std::array::from_fn(|s| {
+                positions.get(s).or(positions.first()).map_or(0, |p: &[i32; 2]| p[k])
+            })
         });
         Self { positions, axes, extent }
     }
@@ -76,7 +86,8 @@ impl SamplePattern {
         self.positions[s]
     }
 
-    /// Along an axis, samples lie on the lines `offset + k * 2^shift` (1/256 pixel), `[offset, shift]`: the largest such step.
+    /// Along an axis, samples lie on the lines `offset + k * 2^shift` (1/256 pixel),
+    /// `[offset, shift]`: the largest such step.
     pub fn lines(&self, axis: usize) -> [i32; 2] {
         let first = self.positions[0][axis];
         let apart = self.positions.iter().fold(SUBPIXEL, |bits, p| bits | (p[axis] - first));
@@ -113,7 +124,8 @@ mod tests {
         for n in (1..=16).chain([32]) {
             let pattern = SamplePattern::new(n);
             for k in 0..2 {
-                let mut seen: Vec<_> = pattern.positions.iter().map(|p| p[k] as usize * n / 256).collect();
+                let mut seen: Vec<_> =
+                    pattern.positions.iter().map(|p| p[k] as usize * n / 256).collect();
                 seen.sort_unstable();
                 assert_eq!(seen, (0..n).collect::<Vec<_>>(), "{n} samples, axis {k}");
             }
@@ -123,7 +135,8 @@ mod tests {
     #[test]
     fn thirty_two_samples_fill_a_mask_of_4_columns_and_8_rows() {
         let pattern = SamplePattern::new(32);
-        let mut cells: Vec<_> = pattern.positions.iter().map(|[x, y]| (y / 32) * 4 + x / 64).collect();
+        let mut cells: Vec<_> =
+            pattern.positions.iter().map(|[x, y]| (y / 32) * 4 + x / 64).collect();
         cells.sort_unstable();
         assert_eq!(cells, (0..32).collect::<Vec<_>>());
         assert_eq!(SamplePattern::new(17), pattern);
@@ -150,8 +163,11 @@ mod tests {
                 let low = c.min(0.0) + s.min(0.0);
                 for step in 1..100 {
                     let at = f64::from(step) / 100.0 * (c.abs() + s.abs());
-                    let inside = |p: &&[i32; 2]| (c * f64::from(p[0]) + s * f64::from(p[1])) / 256.0 - low <= at;
-                    let covered = pattern.positions.iter().filter(inside).count() as f64 / count as f64;
+                    let inside = |p: &&[i32; 2]| {
+                        (c * f64::from(p[0]) + s * f64::from(p[1])) / 256.0 - low <= at
+                    };
+                    let covered =
+                        pattern.positions.iter().filter(inside).count() as f64 / count as f64;
                     let error = 32.0 * (covered - area([c.abs(), s.abs()], at)).abs();
                     (sum, largest, edges) = (sum + error, largest.max(error), edges + 1);
                     small += i32::from(error <= 1.0);

@@ -1,4 +1,5 @@
-//! The screen: where vertices land, on a grid of 1/256 pixel, and which pixels and samples lie there.
+//! The screen: where vertices land, on a grid of 1/256 pixel, and which pixels and samples lie
+//! there.
 
 use crate::setup::{CornerPosition, SharedPlane};
 use crate::{GUARD_BAND, SUBPIXEL, SamplePattern, Viewport};
@@ -60,7 +61,8 @@ impl ScreenVertex {
         CornerPosition { x: self.x, y: self.y, z: self.z }
     }
 
-    /// How far right of and below its snapped place it lies, in units of [`RESIDUE`], -256 to 255; 0 from those who keep none.
+    /// How far right of and below its snapped place it lies, in units of [`RESIDUE`], -256 to 255;
+    /// 0 from those who keep none.
     #[cfg(any(test, feature = "forward"))]
     #[inline(always)]
     pub(crate) fn residue(self) -> [i32; 2] {
@@ -89,8 +91,9 @@ impl ViewportTransform {
         }
     }
 
-    /// Projects and snaps a clipped point. Rounding may leave a corner of a vast triangle far outside the guard band: it is moved to twice
-    /// the band, where setup still computes without overflow.
+    /// Projects and snaps a clipped point. Rounding may leave a corner of a vast triangle far
+    /// outside the guard band: it is moved to twice the band, where setup still computes without
+    /// overflow.
     pub fn project(&self, clip: Vec4) -> CornerPosition {
         let most = 2.0 * GUARD_BAND * SUBPIXEL as f32;
         let snapped = |v: f32| (v.clamp(-most, most) + 0.5).floor() as i32;
@@ -114,7 +117,8 @@ pub struct Screen {
     transform: ViewportTransform,
     pattern: SamplePattern,
     lines: [[i32; 2]; 2],
-    /// Depths of planes that several facets lie in, by number; `None` where the facets keep to their corners.
+    /// Depths of planes that several facets lie in, by number; `None` where the facets keep to
+    /// their corners.
     planes: Vec<Option<SharedPlane>>,
 }
 
@@ -131,7 +135,8 @@ impl Screen {
         }
     }
 
-    /// The same with the depths of planes that several facets lie in, by the numbers of [`Draw::planes`](crate::Draw::planes).
+    /// The same with the depths of planes that several facets lie in, by the numbers of
+    /// [`Draw::planes`](crate::Draw::planes).
     #[must_use]
     pub fn with_planes(self, planes: Vec<Option<SharedPlane>>) -> Self {
         Self { planes, ..self }
@@ -156,8 +161,8 @@ impl Screen {
         (high - offset) >> shift > (low - 1 - offset) >> shift
     }
 
-    /// Along an axis: the lines of samples (offset and shift of their distance), the outermost samples in a pixel, and how many
-    /// pixels there are.
+    /// Along an axis: the lines of samples (offset and shift of their distance), the outermost
+    /// samples in a pixel, and how many pixels there are.
     #[inline(always)]
     pub(crate) fn along(&self, axis: usize) -> ([i32; 2], [i32; 2], u32) {
         let Viewport { width, height, .. } = self.viewport;
@@ -169,7 +174,8 @@ impl Screen {
         &self.transform
     }
 
-    /// First and last pixel of `size` whose samples may lie in `min..=max` (1/256 pixel); empty if the first is larger.
+    /// First and last pixel of `size` whose samples may lie in `min..=max` (1/256 pixel); empty if
+    /// the first is larger.
     #[inline(always)]
     fn pixels(min: i32, max: i32, samples: [i32; 2], size: u32) -> (i32, i32) {
         let first = (min - samples[1] + SUBPIXEL - 1) >> 8;

@@ -1,8 +1,8 @@
 //! Triangle setup: from three snapped corners to edge functions and a depth plane.
 //!
-//! The depth of a facet at a sample is one function of the facet and the sample's position, with a fixed order of
-//! operations, clamped to the facet's own range: [`Setup::depth`]. Every algorithm that decides what is nearer calls
-//! it, so that all of them decide alike.
+//! The depth of a facet at a sample is one function of the facet and the sample's position, with a
+//! fixed order of operations, clamped to the facet's own range: [`Setup::depth`]. Every algorithm
+//! that decides what is nearer calls it, so that all of them decide alike.
 //!
 //! Source: edge functions after [Pineda 1988].
 
@@ -22,7 +22,8 @@ pub struct CornerPosition {
     pub z: f32,
 }
 
-/// Snaps a screen coordinate in pixels to the grid of 1/256 pixel. The caller has clipped it to the guard band.
+/// Snaps a screen coordinate in pixels to the grid of 1/256 pixel. The caller has clipped it to the
+/// guard band.
 pub fn snap(pixels: f32) -> i32 {
     (pixels * SUBPIXEL as f32 + 0.5).floor() as i32
 }
@@ -69,7 +70,8 @@ pub(crate) struct DepthPlane {
 }
 
 impl DepthPlane {
-    /// The plane through `a`, `b`, `c`; `area` is twice their signed area in 1/65536 square pixels, not 0.
+    /// The plane through `a`, `b`, `c`; `area` is twice their signed area in 1/65536 square pixels,
+    /// not 0.
     #[inline(always)]
     pub(crate) fn new(a: CornerPosition, b: CornerPosition, c: CornerPosition, area: i64) -> Self {
         let (dx1, dy1) = ((b.x - a.x) as f32, (b.y - a.y) as f32);
@@ -87,13 +89,18 @@ impl DepthPlane {
         }
     }
 
-    /// The plane through `a`, `b`, `c` where they lay before they were snapped: `residues` are [`ScreenVertex::residue`]'s.
-    /// Triangles in one plane get one plane so, up to rounding, however their corners were snapped.
+    /// The plane through `a`, `b`, `c` where they lay before they were snapped: `residues` are
+    /// [`ScreenVertex::residue`]'s. Triangles in one plane get one plane so, up to rounding,
+    /// however their corners were snapped.
     ///
     /// [`ScreenVertex::residue`]: crate::ScreenVertex::residue
     #[cfg(any(test, feature = "forward"))]
     #[inline(always)]
-    pub(crate) fn unsnapped(corners: [CornerPosition; 3], residues: [[i32; 2]; 3], area: i64) -> Self {
+    pub(crate) fn unsnapped(
+        corners: [CornerPosition; 3],
+        residues: [[i32; 2]; 3],
+        area: i64,
+    ) -> Self {
         let [a, b, c] = corners;
         let rest = |k: usize, axis: usize| (residues[k][axis] - residues[0][axis]) as f32 * RESIDUE;
         let (ex1, ey1, ex2, ey2) = (rest(1, 0), rest(1, 1), rest(2, 0), rest(2, 1));
@@ -111,11 +118,14 @@ impl DepthPlane {
         let scale = SUBPIXEL as f32 / (snapped + rest);
         let (dz_dx, dz_dy) = ((dz1 * y2 - dz2 * y1) * scale, (dz2 * x1 - dz1 * x2) * scale);
 
-        // Depths are those of the corners' own places: go back to where they were snapped to, so that the range holds there, too.
+        // Depths are those of the corners' own places: go back to where they were snapped to, so
+        // that the range holds there, too.
         let unit = RESIDUE / SUBPIXEL as f32;
-        let snapped =
-            |corner: CornerPosition, [x, y]: [i32; 2]| corner.z - (x as f32 * unit * dz_dx + y as f32 * unit * dz_dy);
-        let [za, zb, zc] = [snapped(a, residues[0]), snapped(b, residues[1]), snapped(c, residues[2])];
+        let snapped = |corner: CornerPosition, [x, y]: [i32; 2]| {
+            corner.z - (x as f32 * unit * dz_dx + y as f32 * unit * dz_dy)
+        };
+        let [za, zb, zc] =
+            [snapped(a, residues[0]), snapped(b, residues[1]), snapped(c, residues[2])];
         let (z_min, z_max) = (za.min(zb).min(zc).max(0.0), za.max(zb).max(zc).min(1.0));
         Self { z: za, dz_dx, dz_dy, origin: [a.x, a.y], z_min, z_max }
     }
@@ -130,8 +140,8 @@ impl DepthPlane {
     }
 }
 
-/// The depths of a plane of the world on the screen, shared by all facets in it: these have equal depths wherever they meet,
-/// whatever their corners.
+/// The depths of a plane of the world on the screen, shared by all facets in it: these have equal
+/// depths wherever they meet, whatever their corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SharedPlane {
     /// As in [`DepthPlane`].
@@ -142,19 +152,20 @@ pub struct SharedPlane {
     dz_dy: f32,
     /// As in [`DepthPlane`].
     origin: [i32; 2],
-    /// Added to the depth of facets that face the viewer, taken from that of facets that face away. A front and a back facet
-    /// may have an edge of the outline in common, and snapping moves its corners by up to half of 1/256 pixel: beside the
-    /// edge the back one's plane may be the nearer of the two by as much as both planes change over that distance. Rounding is
-    /// in it, too.
+    /// Added to the depth of facets that face the viewer, taken from that of facets that face away.
+    /// A front and a back facet may have an edge of the outline in common, and snapping moves its
+    /// corners by up to half of 1/256 pixel: beside the edge the back one's plane may be the nearer
+    /// of the two by as much as both planes change over that distance. Rounding is in it, too.
     apart: f32,
 }
 
-/// Change of depth over a pixel above which a plane is seen so much from the side that its facets keep to their corners.
+/// Change of depth over a pixel above which a plane is seen so much from the side that its facets
+/// keep to their corners.
 const STEEP: f64 = 1.0;
 
 impl SharedPlane {
-    /// The plane `a x + b y + c z + d = 0` of ndc (depth 1 near, 0 far), in a picture of this size; `None` if it is seen from
-    /// the side.
+    /// The plane `a x + b y + c z + d = 0` of ndc (depth 1 near, 0 far), in a picture of this size;
+    /// `None` if it is seen from the side.
     pub fn new([a, b, c, d]: [f64; 4], [width, height]: [u32; 2]) -> Option<Self> {
         // Solve for the depth in the middle of the picture and its change over a pixel.
         let [half_width, half_height] = [width, height].map(|side| f64::from(side) * 0.5);
@@ -167,7 +178,13 @@ impl SharedPlane {
         // Four roundings to 24 bits for each of two facets, of numbers no larger than the sum.
         let rounding = greatest * f64::from(f32::EPSILON) * 4.0;
         let apart = ((slopes[0] + slopes[1]) / f64::from(2 * SUBPIXEL) + rounding) as f32;
-        fits.then_some(Self { z: z as f32, dz_dx: dz_dx as f32, dz_dy: dz_dy as f32, origin, apart })
+        fits.then_some(Self {
+            z: z as f32,
+            dz_dx: dz_dx as f32,
+            dz_dy: dz_dy as f32,
+            origin,
+            apart,
+        })
     }
 
     /// For a facet with these corners on the screen. Between its corners it is never clamped.
@@ -175,7 +192,8 @@ impl SharedPlane {
     pub(crate) fn of_facet(&self, corners: &[CornerPosition], faces_away: bool) -> DepthPlane {
         let z = if faces_away { self.z - self.apart } else { self.z + self.apart };
 
-        // Take the plane's depths at the snapped corners as the range: those of the corners themselves may be off the plane.
+        // Take the plane's depths at the snapped corners as the range: those of the corners
+        // themselves may be off the plane.
         let (mut z_min, mut z_max) = (f32::INFINITY, f32::NEG_INFINITY);
         for corner in corners {
             let away = |v: i32, k: usize| (v - self.origin[k]) as f32 / SUBPIXEL as f32;
@@ -202,8 +220,8 @@ impl Setup {
         DepthPlane { z, dz_dx, dz_dy, origin, z_min, z_max }
     }
 
-    /// Twice the signed area, in 1/65536 square pixels: negative for corners that run counter-clockwise as the viewer
-    /// sees them (y points down).
+    /// Twice the signed area, in 1/65536 square pixels: negative for corners that run
+    /// counter-clockwise as the viewer sees them (y points down).
     #[inline(always)]
     pub fn doubled_area(a: CornerPosition, b: CornerPosition, c: CornerPosition) -> i64 {
         i64::from(b.x - a.x) * i64::from(c.y - a.y) - i64::from(c.x - a.x) * i64::from(b.y - a.y)
@@ -217,7 +235,12 @@ impl Setup {
     }
 
     #[inline(always)]
-    pub(crate) fn with_plane([a, b, c]: [CornerPosition; 3], area: i64, plane: &DepthPlane, facet: u32) -> Self {
+    pub(crate) fn with_plane(
+        [a, b, c]: [CornerPosition; 3],
+        area: i64,
+        plane: &DepthPlane,
+        facet: u32,
+    ) -> Self {
         let (b, c) = if area > 0 { (b, c) } else { (c, b) };
         Self {
             x: [a.x, b.x, c.x],
@@ -244,7 +267,8 @@ impl Setup {
         self.depth_along(self.depth_of_line(y), x)
     }
 
-    /// The plane's depth on the line at `y` in 1/256 pixel, straight above or below its origin; not clamped.
+    /// The plane's depth on the line at `y` in 1/256 pixel, straight above or below its origin; not
+    /// clamped.
     #[inline]
     pub fn depth_of_line(&self, y: i32) -> f32 {
         self.z + (y - self.origin[1]) as f32 / SUBPIXEL as f32 * self.dz_dy
@@ -254,34 +278,39 @@ impl Setup {
     #[inline]
     pub fn depth_along(&self, line: f32, x: i32) -> f32 {
         let z = line + (x - self.origin[0]) as f32 / SUBPIXEL as f32 * self.dz_dx;
-        // The order of comparisons is the lanes': a NaN plane (overflow on a needle) falls to z_min.
+        // The order of comparisons is the lanes': a NaN plane (overflow on a needle) falls to
+        // z_min.
         let z = if self.z_min < z { z } else { self.z_min };
         if z < self.z_max { z } else { self.z_max }
     }
 
-    /// Whether the sample at `(x, y)` in 1/256 pixel is covered: all edge functions positive, or zero on a top or left edge.
+    /// Whether the sample at `(x, y)` in 1/256 pixel is covered: all edge functions positive, or
+    /// zero on a top or left edge.
     #[inline]
     pub fn covers(&self, x: i32, y: i32) -> bool {
         (0..3).all(|i| {
             let j = (i + 1) % 3;
             let (dx, dy) = (self.x[j] - self.x[i], self.y[j] - self.y[i]);
-            let e = i64::from(dx) * i64::from(y - self.y[i]) - i64::from(dy) * i64::from(x - self.x[i]);
+            let e =
+                i64::from(dx) * i64::from(y - self.y[i]) - i64::from(dy) * i64::from(x - self.x[i]);
             e > 0 || (e == 0 && is_top_left(dx, dy))
         })
     }
 
-    /// [`Self::covers`] for samples a pixel apart, `columns` by `rows` of them, at most 8 by 8, from the one at `(x, y)` in
-    /// 1/256 pixel to the right and down: bit `8 * row + column`.
+    /// [`Self::covers`] for samples a pixel apart, `columns` by `rows` of them, at most 8 by 8,
+    /// from the one at `(x, y)` in 1/256 pixel to the right and down: bit `8 * row + column`.
     #[inline]
     pub fn covered(&self, [x, y]: [i32; 2], columns: usize, rows: usize) -> u64 {
         let edge = |i: usize| {
             let j = (i + 1) % 3;
             let (dx, dy) = (self.x[j] - self.x[i], self.y[j] - self.y[i]);
-            let corner = i64::from(dx) * i64::from(y - self.y[i]) - i64::from(dy) * i64::from(x - self.x[i]);
+            let corner =
+                i64::from(dx) * i64::from(y - self.y[i]) - i64::from(dy) * i64::from(x - self.x[i]);
             let right = -i64::from(dy) * i64::from(SUBPIXEL);
             (corner - i64::from(!is_top_left(dx, dy)), right, i64::from(dx) * i64::from(SUBPIXEL))
         };
-        let ([(mut a, ax, ay), (mut b, bx, by), (mut c, cx, cy)], mut mask) = ([edge(0), edge(1), edge(2)], 0);
+        let ([(mut a, ax, ay), (mut b, bx, by), (mut c, cx, cy)], mut mask) =
+            ([edge(0), edge(1), edge(2)], 0);
         for row in 0..rows.min(8) {
             let (mut e, mut f, mut g) = (a, b, c);
             for column in 0..columns.min(8) {
@@ -293,7 +322,8 @@ impl Setup {
         mask
     }
 
-    /// Whether a sample from `low` to `high`, x and y in 1/256 pixel, may be covered: no edge has all of them outside.
+    /// Whether a sample from `low` to `high`, x and y in 1/256 pixel, may be covered: no edge has
+    /// all of them outside.
     #[inline]
     pub fn reaches(&self, [low, high]: [[i32; 2]; 2]) -> bool {
         (0..3).all(|i| {
@@ -307,10 +337,12 @@ impl Setup {
     }
 }
 
-/// Whether an edge of a triangle whose edge functions are positive inside (y downwards) is a top or a left edge.
+/// Whether an edge of a triangle whose edge functions are positive inside (y downwards) is a top or
+/// a left edge.
 #[inline(always)]
 pub(crate) fn is_top_left(dx: i32, dy: i32) -> bool {
-    // Positive inside with y down means clockwise on the screen: left edges go up, top edges go right.
+    // Positive inside with y down means clockwise on the screen: left edges go up, top edges go
+    // right.
     dy < 0 || (dy == 0 && dx > 0)
 }
 
@@ -330,7 +362,8 @@ mod tests {
             let mask = setup.covered(first, columns, rows);
             for (row, column) in (0..8).flat_map(|row| (0..8).map(move |column| (row, column))) {
                 let inside = row < rows && column < columns;
-                let covers = inside && setup.covers(first[0] + column as i32 * 256, first[1] + row as i32 * 256);
+                let covers = inside
+                    && setup.covers(first[0] + column as i32 * 256, first[1] + row as i32 * 256);
                 assert_eq!(mask >> (8 * row + column) & 1 == 1, covers, "{setup:?}");
             }
         }
@@ -339,8 +372,9 @@ mod tests {
     #[test]
     fn a_square_of_two_triangles_covers_each_sample_once() {
         let q = [corner(0, 0, 0.5), corner(4, 0, 0.5), corner(4, 4, 0.5), corner(0, 4, 0.5)];
-        let make =
-            |a: usize, b: usize, c: usize| Setup::new([q[a], q[b], q[c]], Setup::doubled_area(q[a], q[b], q[c]), 0);
+        let make = |a: usize, b: usize, c: usize| {
+            Setup::new([q[a], q[b], q[c]], Setup::doubled_area(q[a], q[b], q[c]), 0)
+        };
         for (first, second) in [(make(0, 1, 2), make(0, 2, 3)), (make(2, 1, 0), make(1, 3, 2))] {
             let _ = second;
             assert!(first.covers(3 * 256, 128) && !first.covers(128, 3 * 256));
@@ -349,8 +383,13 @@ mod tests {
         for y in -1..=5 {
             for x in -1..=5 {
                 // Samples on corners and edges: the hardest places.
-                let count = u32::from(first.covers(x * 256, y * 256)) + u32::from(second.covers(x * 256, y * 256));
-                assert_eq!(count, u32::from((0..4).contains(&x) && (0..4).contains(&y)), "({x}, {y})");
+                let count = u32::from(first.covers(x * 256, y * 256))
+                    + u32::from(second.covers(x * 256, y * 256));
+                assert_eq!(
+                    count,
+                    u32::from((0..4).contains(&x) && (0..4).contains(&y)),
+                    "({x}, {y})"
+                );
             }
         }
     }
@@ -364,7 +403,8 @@ mod tests {
         };
         let mut beside = 0;
         for _ in 0..300 {
-            let corners = [(); 3].map(|()| CornerPosition { x: random(4000), y: random(4000), z: 0.5 });
+            let corners =
+                [(); 3].map(|()| CornerPosition { x: random(4000), y: random(4000), z: 0.5 });
             let [a, b, c] = corners;
             let area = Setup::doubled_area(a, b, c);
             if area == 0 {
@@ -373,7 +413,8 @@ mod tests {
             let setup = Setup::new(corners, area, 0);
             let low = [random(4000), random(4000)];
             let high = low.map(|v| v + 500);
-            let mut samples = (0..=25).flat_map(|y| (0..=25).map(move |x| [low[0] + x * 20, low[1] + y * 20]));
+            let mut samples =
+                (0..=25).flat_map(|y| (0..=25).map(move |x| [low[0] + x * 20, low[1] + y * 20]));
             let covered = samples.any(|[x, y]| setup.covers(x, y));
             assert!(setup.reaches([low, high]) || !covered, "{setup:?} {low:?}");
             beside += u32::from(!setup.reaches([low, high]));
@@ -401,8 +442,11 @@ mod tests {
             let snapped = exact.map(|p| p.map(|v| (v + 256) >> 9));
             let residues = [0, 1, 2].map(|i| [0, 1].map(|k| exact[i][k] - (snapped[i][k] << 9)));
             let places = exact.map(|p| p.map(|v| f64::from(v) / 131_072.0));
-            let corners =
-                [0, 1, 2].map(|i| CornerPosition { x: snapped[i][0], y: snapped[i][1], z: depth(places[i]) as f32 });
+            let corners = [0, 1, 2].map(|i| CornerPosition {
+                x: snapped[i][0],
+                y: snapped[i][1],
+                z: depth(places[i]) as f32,
+            });
             let [a, b, c] = corners;
             let area = Setup::doubled_area(a, b, c);
             if area.abs() < 256 * 256 {
@@ -418,12 +462,19 @@ mod tests {
             worst_snapped = worst_snapped.max(off(&DepthPlane::new(a, b, c, area)));
             count += 1;
         }
-        assert!(count > 1000 && worst < 1e-7 && worst_snapped > 1e-5, "{count} {worst} {worst_snapped}");
+        assert!(
+            count > 1000 && worst < 1e-7 && worst_snapped > 1e-5,
+            "{count} {worst} {worst_snapped}"
+        );
         // A sliver that snapping turned over keeps to its corners.
-        let (a, b, c) = (corner(0, 0, 0.2), corner(9, 0, 0.6), CornerPosition { x: 1000, y: 1, z: 0.4 });
+        let (a, b, c) =
+            (corner(0, 0, 0.2), corner(9, 0, 0.6), CornerPosition { x: 1000, y: 1, z: 0.4 });
         let residues = [[0; 2], [0; 2], [0, -256 - 255]];
         let area = Setup::doubled_area(a, b, c);
-        assert_eq!(DepthPlane::unsnapped([a, b, c], residues, area), DepthPlane::new(a, b, c, area));
+        assert_eq!(
+            DepthPlane::unsnapped([a, b, c], residues, area),
+            DepthPlane::new(a, b, c, area)
+        );
     }
 
     #[test]

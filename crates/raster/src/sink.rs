@@ -2,7 +2,9 @@
 
 use crate::kernel::block::{Block, RowSink};
 use crate::kernel::plane::RowPlane;
-use crate::{BLOCK, Layer, LayerList, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
+use crate::{
+    BLOCK, Layer, LayerList, NO_FACET, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile,
+};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Mask8, Simd, U32x8};
 
@@ -19,14 +21,24 @@ pub(crate) struct Row<S: Simd> {
 impl<S: Simd> Row<S> {
     /// Sample `sample` of the tile's pixels from `[x, y]`.
     #[inline(always)]
-    pub(crate) fn new(plane: &RowPlane<S>, sample: usize, [x, y]: [usize; 2], covered: Mask8<S>) -> Self {
+    pub(crate) fn new(
+        plane: &RowPlane<S>,
+        sample: usize,
+        [x, y]: [usize; 2],
+        covered: Mask8<S>,
+    ) -> Self {
         Self { at: sample * TILE_PIXELS + y * TILE + x, covered, z: plane.row(y) }
     }
 }
 
 /// [`RowSink::first`] in a tile.
 #[inline(always)]
-pub(crate) fn first_sample(tile: &Tile, pattern: &SamplePattern, sample: usize, x: usize) -> [i32; 2] {
+pub(crate) fn first_sample(
+    tile: &Tile,
+    pattern: &SamplePattern,
+    sample: usize,
+    x: usize,
+) -> [i32; 2] {
     let [sx, sy] = pattern.axes().map(|axis| axis[sample]);
     [(tile.x as usize + x) as i32 * SUBPIXEL + sx, tile.y as i32 * SUBPIXEL + sy]
 }
@@ -79,16 +91,23 @@ impl<'a> VisibilitySink<'a> {
         Self { tile, pattern, patience: (BLOCK * BLOCK * pattern.len()) as u32, written: 0 }
     }
 
-    /// Draws into `tile`, for someone who wants to know how far a block is as soon as it is full: facets that come from
-    /// front to back fill it once.
+    /// Draws into `tile`, for someone who wants to know how far a block is as soon as it is full:
+    /// facets that come from front to back fill it once.
     pub fn eager(tile: &'a mut Tile, pattern: &'a SamplePattern) -> Self {
         Self { tile, pattern, patience: 1, written: 0 }
     }
 }
 
-/// Brings `block_far` up to date once `patience` samples of a block, of `samples` samples a pixel, have been written.
+/// Brings `block_far` up to date once `patience` samples of a block, of `samples` samples a pixel,
+/// have been written.
 #[inline(always)]
-fn note_writes<S: Simd>(simd: S, tile: &mut Tile, samples: usize, block: &Block, (written, patience): (u32, u32)) {
+fn note_writes<S: Simd>(
+    simd: S,
+    tile: &mut Tile,
+    samples: usize,
+    block: &Block,
+    (written, patience): (u32, u32),
+) {
     let index = block.index();
     tile.touched |= written > 0;
     tile.block_writes[index] += written;
@@ -106,8 +125,8 @@ fn note_writes<S: Simd>(simd: S, tile: &mut Tile, samples: usize, block: &Block,
     tile.block_far[index] = far.to_array().into_iter().fold(f32::INFINITY, f32::min);
 }
 
-/// The block for which a triangle walked by rows counts, though its rows may reach into others: when far depths are
-/// computed anew does not matter to pictures.
+/// The block for which a triangle walked by rows counts, though its rows may reach into others:
+/// when far depths are computed anew does not matter to pictures.
 fn block_of([x, y]: [usize; 2]) -> Block {
     Block { x: x & !(BLOCK - 1), y: y & !(BLOCK - 1), rows: 0..BLOCK }
 }
@@ -158,9 +177,9 @@ pub struct PriorityCounts {
 /// Depths closer than this, 2^-20 of the range, count as a near tie.
 pub const NEAR_TIE: f32 = 1.0 / (1 << 20) as f32;
 
-/// Facets in a list from back to front, each covers what is there; or from front to back, each fills what is left, and
-/// blocks that are full are not looked at. The depth function has the last word: where it contradicts the list, the
-/// nearer facet is kept, and that is counted.
+/// Facets in a list from back to front, each covers what is there; or from front to back, each
+/// fills what is left, and blocks that are full are not looked at. The depth function has the last
+/// word: where it contradicts the list, the nearer facet is kept, and that is counted.
 #[derive(Debug)]
 pub struct PrioritySink<'a, const FRONT_FIRST: bool> {
     tile: &'a mut Tile,
@@ -182,7 +201,8 @@ impl<const FRONT_FIRST: bool> PrioritySink<'_, FRONT_FIRST> {
     /// Draws a row and counts; returns how many samples were written.
     #[inline(always)]
     fn draw<S: Simd>(&mut self, simd: S, facet: U32x8<S>, row: &Row<S>) -> u32 {
-        let DepthTest8 { nearer, wins, old_z, old_facet } = keep_nearer(simd, self.tile, facet, row);
+        let DepthTest8 { nearer, wins, old_z, old_facet } =
+            keep_nearer(simd, self.tile, facet, row);
         let filled = row.covered & !old_facet.simd_eq(U32x8::splat(simd, NO_FACET));
         let (overruled, gap) = if FRONT_FIRST {
             (filled & wins, row.z - old_z)
@@ -305,7 +325,8 @@ mod tests {
         for samples in [1, 4, 3] {
             let pattern = SamplePattern::new(samples);
             let empty = || {
-                let mut tile = TileGrid::new(Viewport::new(64, 64).unwrap(), samples).tiles.remove(0);
+                let mut tile =
+                    TileGrid::new(Viewport::new(64, 64).unwrap(), samples).tiles.remove(0);
                 tile.clear();
                 tile
             };
@@ -320,16 +341,26 @@ mod tests {
                 for at in 0..samples * TILE_PIXELS {
                     let [sx, sy] = pattern.position(at / TILE_PIXELS);
                     let pixel = at % TILE_PIXELS;
-                    let (x, y) = ((pixel % TILE) as i32 * SUBPIXEL + sx, (pixel / TILE) as i32 * SUBPIXEL + sy);
+                    let (x, y) = (
+                        (pixel % TILE) as i32 * SUBPIXEL + sx,
+                        (pixel / TILE) as i32 * SUBPIXEL + sy,
+                    );
                     let z = setup.depth(x, y);
                     let (old_z, old_facet) = (one_by_one.depth[at], one_by_one.facet[at]);
-                    if setup.covers(x, y) && (z > old_z || (z == old_z && setup.facet < old_facet)) {
+                    if setup.covers(x, y) && (z > old_z || (z == old_z && setup.facet < old_facet))
+                    {
                         (one_by_one.depth[at], one_by_one.facet[at]) = (z, setup.facet);
                     }
                 }
             }
-            assert!(one_by_one.facet.iter().filter(|f| **f != NO_FACET).count() > samples * TILE_PIXELS / 2);
-            assert!(rows.facet == one_by_one.facet && rows.depth == one_by_one.depth, "{samples} samples by rows");
+            assert!(
+                one_by_one.facet.iter().filter(|f| **f != NO_FACET).count()
+                    > samples * TILE_PIXELS / 2
+            );
+            assert!(
+                rows.facet == one_by_one.facet && rows.depth == one_by_one.depth,
+                "{samples} samples by rows"
+            );
             assert!(
                 blocks.facet == one_by_one.facet && blocks.depth == one_by_one.depth,
                 "{samples} samples by blocks"

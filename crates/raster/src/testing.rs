@@ -2,8 +2,8 @@
 
 use crate::{CornerPosition, SUBPIXEL, Setup};
 
-/// `count` triangles of all sizes and shapes all over the tile whose first pixel is `[origin, origin]`, across its borders, too.
-/// Those without area are left out.
+/// `count` triangles of all sizes and shapes all over the tile whose first pixel is
+/// `[origin, origin]`, across its borders, too. Those without area are left out.
 pub(crate) fn triangles(count: u32, origin: i32) -> Vec<Setup> {
     let mut state = 7u32;
     // Numbers without pattern, from a linear congruence.
@@ -30,7 +30,8 @@ pub(crate) fn triangles(count: u32, origin: i32) -> Vec<Setup> {
     setups
 }
 
-/// The box of a triangle's middles of pixels in the tile at pixel `origin`; where there is none, nothing lies within.
+/// The box of a triangle's middles of pixels in the tile at pixel `origin`; where there is none,
+/// nothing lies within.
 #[cfg(feature = "forward")]
 pub(crate) fn box_of(setup: &Setup, origin: [i32; 2]) -> i32 {
     use crate::TILE;

@@ -1,4 +1,5 @@
-//! Targets, stored tile by tile: a tile's planes lie together in memory and belong to one worker at a time.
+//! Targets, stored tile by tile: a tile's planes lie together in memory and belong to one worker at
+//! a time.
 
 use crate::{BLOCK, MAX_SIDE, NO_FACET, TILE, TILE_PIXELS};
 
@@ -29,8 +30,9 @@ impl Viewport {
     }
 }
 
-/// The samples of 64x64 pixels. Within a plane the index is `sample * TILE_PIXELS + y * TILE + x`. A new tile has no memory until
-/// it is [`clear`](Self::clear)ed: who works on it touches it first, and tiles that nobody works on cost nothing.
+/// The samples of 64x64 pixels. Within a plane the index is `sample * TILE_PIXELS + y * TILE + x`.
+/// A new tile has no memory until it is [`clear`](Self::clear)ed: who works on it touches it first,
+/// and tiles that nobody works on cost nothing.
 #[derive(Clone, Debug)]
 pub struct Tile {
     /// Left pixel column of the tile in the picture.
@@ -99,7 +101,9 @@ pub struct TileGrid {
 impl TileGrid {
     /// Empty tiles for `samples` samples a pixel.
     pub fn new(viewport: Viewport, samples: usize) -> Self {
-        let place = |i: u32| ((i % viewport.tiles_x()) * TILE as u32, (i / viewport.tiles_x()) * TILE as u32);
+        let place = |i: u32| {
+            ((i % viewport.tiles_x()) * TILE as u32, (i / viewport.tiles_x()) * TILE as u32)
+        };
         let count = viewport.tiles_x() * viewport.tiles_y();
         let tiles = (0..count).map(|i| Tile::new(place(i).0, place(i).1, samples)).collect();
         Self { viewport, samples, tiles }
@@ -117,7 +121,8 @@ impl TileGrid {
 
     /// Bytes that a grid of this size takes.
     pub fn bytes(viewport: Viewport, samples: usize) -> u64 {
-        u64::from(viewport.tiles_x() * viewport.tiles_y()) * (samples * TILE_PIXELS * 8 + size_of::<Tile>()) as u64
+        u64::from(viewport.tiles_x() * viewport.tiles_y())
+            * (samples * TILE_PIXELS * 8 + size_of::<Tile>()) as u64
     }
 
     /// The tile that holds pixel `(x, y)`, and the pixel's index in one of its planes.
@@ -125,7 +130,10 @@ impl TileGrid {
     /// # Panics
     /// If the pixel lies outside the viewport.
     pub fn locate(&self, x: u32, y: u32) -> (&Tile, usize) {
-        assert!(x < self.viewport.width && y < self.viewport.height, "pixel ({x}, {y}) is outside the picture");
+        assert!(
+            x < self.viewport.width && y < self.viewport.height,
+            "pixel ({x}, {y}) is outside the picture"
+        );
         let side = TILE as u32;
         let tile = &self.tiles[(y / side * self.viewport.tiles_x() + x / side) as usize];
         (tile, ((y % side) * side + x % side) as usize)

@@ -1,12 +1,13 @@
 //! What algorithms keep between frames: a cache with one slot for each type.
 //!
-//! A session makes many frames of one scene, and much of what an algorithm computes depends on the scene or its lights alone:
-//! trees over the triangles, shadow maps, a radiosity solution. An algorithm keeps such a value in the session's [`Cache`]. It
-//! implements [`Cached`] for the type, in its own file, and says with which key the value was built; a value whose key differs
-//! from the one asked for is dropped and built anew. The cache knows no algorithm: slots are found by type.
+//! A session makes many frames of one scene, and much of what an algorithm computes depends on the
+//! scene or its lights alone: trees over the triangles, shadow maps, a radiosity solution. An
+//! algorithm keeps such a value in the session's [`Cache`]. It implements [`Cached`] for the type,
+//! in its own file, and says with which key the value was built; a value whose key differs from the
+//! one asked for is dropped and built anew. The cache knows no algorithm: slots are found by type.
 //!
-//! Cost: a lookup takes two locks and a hash of the type. While a value is built its slot stays locked, so that two threads never
-//! build the same one; a build may look other types up.
+//! Cost: a lookup takes two locks and a hash of the type. While a value is built its slot stays
+//! locked, so that two threads never build the same one; a build may look other types up.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;
@@ -20,10 +21,12 @@ pub trait Cached: Any + Send + Sync {
     /// How long the value serves.
     const REUSE: Reuse = Reuse::Scene;
 
-    /// Whether the value depends on where instances are. Such values are dropped when instances move.
+    /// Whether the value depends on where instances are. Such values are dropped when instances
+    /// move.
     const PLACED: bool = true;
 
-    /// How many reusable results the value holds, for the statistics: 1 unless it gathers results of many meshes.
+    /// How many reusable results the value holds, for the statistics: 1 unless it gathers results
+    /// of many meshes.
     fn results(&self) -> usize {
         1
     }
@@ -35,9 +38,11 @@ pub enum Reuse {
     /// For the frames of a scene. Dropped without frame coherence, and counted in
     /// [`Stats::reused`](crate::Stats::reused).
     Scene,
-    /// For frames from one viewpoint. Dropped without frame coherence, but not counted: a moving camera never meets it twice.
+    /// For frames from one viewpoint. Dropped without frame coherence, but not counted: a moving
+    /// camera never meets it twice.
     View,
-    /// Whether or not frames are coherent: solutions that are asked for by name, and memory to reuse.
+    /// Whether or not frames are coherent: solutions that are asked for by name, and memory to
+    /// reuse.
     Session,
 }
 
@@ -76,7 +81,10 @@ impl<T: Cached> AnySlot for Slot<T> {
     }
 
     fn results(&self) -> usize {
-        self.lock().ok().and_then(|slot| slot.as_ref().map(|(_, value)| value.results())).unwrap_or(0)
+        self.lock()
+            .ok()
+            .and_then(|slot| slot.as_ref().map(|(_, value)| value.results()))
+            .unwrap_or(0)
     }
 
     fn clear(&self) {
@@ -85,12 +93,17 @@ impl<T: Cached> AnySlot for Slot<T> {
 }
 
 impl Cache {
-    /// The value for `key`: the cached one, or the one that `build` makes, which is cached from then on. A value with another key
-    /// is dropped first, so that both never take memory at a time.
+    /// The value for `key`: the cached one, or the one that `build` makes, which is cached from
+    /// then on. A value with another key is dropped first, so that both never take memory at a
+    /// time.
     ///
     /// # Errors
     /// That of `build`; nothing is cached then.
-    pub fn get_or_build<T: Cached, E>(&self, key: T::Key, build: impl FnOnce() -> Result<T, E>) -> Result<Arc<T>, E> {
+    pub fn get_or_build<T: Cached, E>(
+        &self,
+        key: T::Key,
+        build: impl FnOnce() -> Result<T, E>,
+    ) -> Result<Arc<T>, E> {
         let slot = self.slot::<T>();
         let mut slot = lock::<T>(&slot);
         if let Some((known, value)) = &*slot
@@ -128,12 +141,15 @@ impl Cache {
         });
     }
 
-    /// A cache of another session of the same scene. Both share what depends on the scene alone and is already cached: it is the
-    /// same for both, however lights and cameras differ.
+    /// A cache of another session of the same scene. Both share what depends on the scene alone and
+    /// is already cached: it is the same for both, however lights and cameras differ.
     pub(crate) fn fork(&self) -> Self {
         let slots = self.slots.lock().expect(UNPOISONED);
         let is_shared = |slot: &dyn AnySlot| slot.reuse() == Reuse::Scene && !slot.has_key();
-        let shared = slots.iter().filter(|(_, slot)| is_shared(&***slot)).map(|(id, slot)| (*id, Arc::clone(slot)));
+        let shared = slots
+            .iter()
+            .filter(|(_, slot)| is_shared(&***slot))
+            .map(|(id, slot)| (*id, Arc::clone(slot)));
         Self { slots: Mutex::new(shared.collect()) }
     }
 
@@ -268,7 +284,10 @@ mod tests {
         let of_meshes = || Ok::<_, Infallible>(PerMesh::<u8>::new(3));
         let Ok(known) = cache.get_or_build((), of_meshes);
         let fork = cache.fork();
-        assert!(fork.get::<Tree>().is_none() && fork.get::<Solved>().is_none(), "a key, and memory");
+        assert!(
+            fork.get::<Tree>().is_none() && fork.get::<Solved>().is_none(),
+            "a key, and memory"
+        );
         assert!(Arc::ptr_eq(&known, &fork.get::<PerMesh<u8>>().unwrap()));
         // What is known of meshes stays when they move.
         cache.forget_placed();

@@ -1,7 +1,7 @@
 //! The catalogue: what is known of each algorithm besides its code.
 //!
-//! Faces list it, and settings are checked by its flags. Which algorithms there are, and their code, is in the
-//! [`registry`](crate::registry), which stands above all of them.
+//! Faces list it, and settings are checked by its flags. Which algorithms there are, and their
+//! code, is in the [`registry`](crate::registry), which stands above all of them.
 
 use crate::Coherence;
 use crate::choice::Choice;
@@ -37,7 +37,8 @@ pub struct VisibilityInfo {
     pub coherence: &'static [Coherence],
     /// What its picture of steps shows.
     pub steps: Legend,
-    /// How the polygons that it comes to before it looks at samples make a drawing; `None`: it comes to none.
+    /// How the polygons that it comes to before it looks at samples make a drawing; `None`: it
+    /// comes to none.
     pub polygons: Option<PolygonOrder>,
 }
 
@@ -51,7 +52,8 @@ pub enum PolygonOrder {
 }
 
 impl VisibilityInfo {
-    /// Whether it makes a list of polygons from back to front, which transparent ones can be drawn by.
+    /// Whether it makes a list of polygons from back to front, which transparent ones can be drawn
+    /// by.
     pub fn makes_list(&self) -> bool {
         self.precision == LIST_PRIORITY
     }
@@ -109,7 +111,11 @@ pub struct ShadowInfo {
 
 impl ShadowInfo {
     /// A way to find shadows that needs nothing but what all have.
-    pub(crate) const fn new(name: &'static str, description: &'static str, source: &'static str) -> Self {
+    pub(crate) const fn new(
+        name: &'static str,
+        description: &'static str,
+        source: &'static str,
+    ) -> Self {
         Self {
             name,
             description,

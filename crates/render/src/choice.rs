@@ -1,8 +1,11 @@
-//! Choices by name: a value that stands for a row of one of the [`registry`](crate::registry)'s tables.
+//! Choices by name: a value that stands for a row of one of the [`registry`](crate::registry)'s
+//! tables.
 //!
-//! A row tells what faces show and what the pipeline asks: name, description, source, flags. [`Choice`] is a reference to a row, so
-//! that a setting is read without a lookup (`settings.visibility.casts_rays`). Which rows there are is known to the registry alone: it
-//! implements [`Row`] for each kind of row. A choice is written as its name, on the command line, in files and in messages.
+//! A row tells what faces show and what the pipeline asks: name, description, source, flags.
+//! [`Choice`] is a reference to a row, so that a setting is read without a lookup
+//! (`settings.visibility.casts_rays`). Which rows there are is known to the registry alone: it
+//! implements [`Row`] for each kind of row. A choice is written as its name, on the command line,
+//! in files and in messages.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -72,7 +75,11 @@ impl<T: Row> FromStr for Choice<T> {
 
 impl UnknownName {
     /// `name` is none of `names`.
-    pub(crate) fn new(kind: &'static str, name: &str, names: impl Iterator<Item = &'static str> + Clone) -> Self {
+    pub(crate) fn new(
+        kind: &'static str,
+        name: &str,
+        names: impl Iterator<Item = &'static str> + Clone,
+    ) -> Self {
         let choices = names.clone().collect::<Vec<_>>().join(", ");
         Self { kind, name: name.to_owned(), choices, suggestion: nearest(name, names) }
     }
@@ -86,7 +93,8 @@ fn nearest(name: &str, names: impl Iterator<Item = &'static str>) -> Option<&'st
     (similarity > SIMILAR).then_some(candidate)
 }
 
-/// Jaro's similarity from which a name is taken for a misspelling of another; 1 is equality. The command line's parser uses the same.
+/// Jaro's similarity from which a name is taken for a misspelling of another; 1 is equality. The
+/// command line's parser uses the same.
 const SIMILAR: f64 = 0.7;
 
 impl<T: Row> Default for Choice<T> {
@@ -143,8 +151,9 @@ impl<'de, T: Row> Deserialize<'de> for Choice<T> {
     }
 }
 
-/// Makes a table of rows, each with a constant, and a constant of the choice for each of them. The rows of `TABLE: Row of Info` hold
-/// code beside the `info` that is chosen by; those of `TABLE: Row` are chosen themselves.
+/// Makes a table of rows, each with a constant, and a constant of the choice for each of them. The
+/// rows of `TABLE: Row of Info` hold code beside the `info` that is chosen by; those of
+/// `TABLE: Row` are chosen themselves.
 macro_rules! table {
     (
         $(#[$about:meta])* $table:ident: $row:ident of $info:ident, $kind:literal;
@@ -263,7 +272,10 @@ mod tests {
         assert_eq!("painter".parse(), Ok(Visibility::PAINTER));
         assert_eq!(Visibility::default(), Visibility::Z_BUFFER);
         assert_eq!(Shadows::all().count(), crate::registry::SHADOWS.len());
-        assert_eq!(format!("{:>10}|{:?}", Acceleration::GRID, Acceleration::GRID), "      grid|grid");
+        assert_eq!(
+            format!("{:>10}|{:?}", Acceleration::GRID, Acceleration::GRID),
+            "      grid|grid"
+        );
     }
 
     #[test]
@@ -271,7 +283,10 @@ mod tests {
         let error = "Scanline".parse::<Visibility>().unwrap_err();
         assert_eq!(error.suggestion, Some("scan-line"));
         let text = error.to_string();
-        assert!(text.starts_with("there is no visibility algorithm `Scanline`: choose z-buffer, "), "{text}");
+        assert!(
+            text.starts_with("there is no visibility algorithm `Scanline`: choose z-buffer, "),
+            "{text}"
+        );
         assert!(text.ends_with("; did you mean `scan-line`?"), "{text}");
         assert_eq!("magic".parse::<Visibility>().unwrap_err().suggestion, None);
     }

@@ -1,7 +1,9 @@
-//! Kinds of coherence: what one part of a picture, or one picture of a turntable, says about the next.
+//! Kinds of coherence: what one part of a picture, or one picture of a turntable, says about the
+//! next.
 //!
-//! The names are those of the course. An algorithm lists in the [`registry`](crate::registry) the kinds that it exploits
-//! and that can be switched off: the picture stays the same, and the work that was saved is done.
+//! The names are those of the course. An algorithm lists in the [`registry`](crate::registry) the
+//! kinds that it exploits and that can be switched off: the picture stays the same, and the work
+//! that was saved is done.
 //!
 //! What each kind means here is in [`Coherence::description`].
 
@@ -50,16 +52,30 @@ impl Coherence {
     /// What it means, in a line.
     pub fn description(self) -> &'static str {
         match self {
-            Self::Object => "what is true of an object's box is true of its polygons: outside the view volume, all are",
-            Self::Face => "the depth of a face in one place follows from its depth in a place beside",
-            Self::Edge => "where an edge crosses a line follows from where it crossed the line before",
+            Self::Object => {
+                "what is true of an object's box is true of its polygons: outside the view volume, all are"
+            }
+            Self::Face => {
+                "the depth of a face in one place follows from its depth in a place beside"
+            }
+            Self::Edge => {
+                "where an edge crosses a line follows from where it crossed the line before"
+            }
             Self::ImpliedEdge => {
                 "two points fix the line where two faces penetrate each other; it cuts the spans that area coherence makes"
             }
-            Self::ScanLine => "the edges that cross a line are nearly those that cross the line before",
-            Self::Area => "neighbouring pixels show the same surface: spans, windows, packets of rays",
-            Self::Depth => "what is nearest in a place is so around it, and hides whole polygons that are farther",
-            Self::Frame => "the next picture shows the same scene: trees and what is known of meshes are kept",
+            Self::ScanLine => {
+                "the edges that cross a line are nearly those that cross the line before"
+            }
+            Self::Area => {
+                "neighbouring pixels show the same surface: spans, windows, packets of rays"
+            }
+            Self::Depth => {
+                "what is nearest in a place is so around it, and hides whole polygons that are farther"
+            }
+            Self::Frame => {
+                "the next picture shows the same scene: trees and what is known of meshes are kept"
+            }
         }
     }
 }
@@ -88,7 +104,11 @@ mod tests {
     #[test]
     fn sets_hold_what_was_put_in() {
         let set = CoherenceSet::of(&[Coherence::Edge, Coherence::Frame]);
-        let held: Vec<_> = Coherence::ALL.iter().filter(|(kind, _)| set.has(*kind)).map(|(_, name)| *name).collect();
+        let held: Vec<_> = Coherence::ALL
+            .iter()
+            .filter(|(kind, _)| set.has(*kind))
+            .map(|(_, name)| *name)
+            .collect();
         assert_eq!(held, ["edge", "frame"]);
         assert_eq!(Coherence::ImpliedEdge.name(), "implied-edge");
     }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
 use vitral_math::lanes::Level;
 
-/// The means of a frame: threads, instruction set, limits, and who watches. Pictures do not depend on any of them.
+/// The means of a frame: threads, instruction set, limits, and who watches. Pictures do not depend
+/// on any of them.
 #[derive(Clone, Debug)]
 pub struct Execution {
     /// The threads.
@@ -31,6 +32,11 @@ impl Execution {
 impl Default for Execution {
     /// All threads that the process may use, the machine's best instruction set, no limits.
     fn default() -> Self {
-        Self { workers: Workers::new(0), level: Level::new(), budget: Budget::default(), observer: None }
+        Self {
+            workers: Workers::new(0),
+            level: Level::new(),
+            budget: Budget::default(),
+            observer: None,
+        }
     }
 }

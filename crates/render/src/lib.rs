@@ -1,8 +1,8 @@
 //! Floor 3: the classical algorithms, from a scene to a [`Frame`](vitral_frame::Frame).
 //!
-//! The way of the data is in [`pipeline`]: scene → cull → prepare → visible → shade → frame. Finding the visible
-//! surface of each sample and colouring it are separate, so every visibility algorithm works with every illumination
-//! and shading model. [`registry`] lists the algorithms.
+//! The way of the data is in [`pipeline`]: scene → cull → prepare → visible → shade → frame.
+//! Finding the visible surface of each sample and colouring it are separate, so every visibility
+//! algorithm works with every illumination and shading model. [`registry`] lists the algorithms.
 #![forbid(unsafe_code)]
 
 mod cache;
@@ -35,14 +35,16 @@ pub use choice::{Choice, UnknownName};
 pub use coherence::{Coherence, CoherenceSet};
 pub use execution::Execution;
 pub use pipeline::{
-    ExaminedPixel, Rendered, Shot, examine_pixel, illuminate_corners, outlined_polygons, render, watch_steps,
+    ExaminedPixel, Rendered, Shot, examine_pixel, illuminate_corners, outlined_polygons, render,
+    watch_steps,
 };
 pub use prepare::PreparedView;
 pub use session::Session;
 pub use settings::{
-    Background, Channels, ColorSpace, Culling, DepthCue, Environment, Global, GlobalSettings, GroundShadow,
-    Interpolation, Lines, PictureSettings, Settings, SettingsError, Shading, ShadingSettings, ShadowSettings,
-    Terminator, Transparency, TransparencyOrder, TransparencySettings, VolumeCounting,
+    Background, Channels, ColorSpace, Culling, DepthCue, Environment, Global, GlobalSettings,
+    GroundShadow, Interpolation, Lines, PictureSettings, Settings, SettingsError, Shading,
+    ShadingSettings, ShadowSettings, Terminator, Transparency, TransparencyOrder,
+    TransparencySettings, VolumeCounting,
 };
 pub use stats::Stats;
 pub use surroundings::Surroundings;

@@ -1,27 +1,31 @@
-//! Lines and points: no surfaces, but strokes and dots of a few pixels, drawn against the finished depth.
+//! Lines and points: no surfaces, but strokes and dots of a few pixels, drawn against the finished
+//! depth.
 //!
-//! The model's own lines and points, and the edges of faces where they are asked for, are cut at the view volume,
-//! projected, and widened on the screen into two triangles each. They lie a little nearer to the viewer than where
-//! they are, so that an edge is not hidden by the faces that meet in it.
+//! The model's own lines and points, and the edges of faces where they are asked for, are cut at
+//! the view volume, projected, and widened on the screen into two triangles each. They lie a little
+//! nearer to the viewer than where they are, so that an edge is not hidden by the faces that meet
+//! in it.
 //!
-//! A stroke is hardly wider than a pixel: counting which of a pixel's few samples it hits says badly how much of the pixel
-//! it covers, and a slanted stroke would look dashed. So where pixels have several samples a stroke's border is soft: a
-//! sample near it is covered in part, by its distance from the line.
+//! A stroke is hardly wider than a pixel: counting which of a pixel's few samples it hits says
+//! badly how much of the pixel it covers, and a slanted stroke would look dashed. So where pixels
+//! have several samples a stroke's border is soft: a sample near it is covered in part, by its
+//! distance from the line.
 //!
-//! Colours of vertices are interpolated along a line as on a face: as in space, or linearly on the screen where faces are.
-//! Of a material count its diffuse or base colour, its emission and its opacity, not its textures; lines are not lit, points
-//! are where they have normals (`cloud.rs`).
+//! Colours of vertices are interpolated along a line as on a face: as in space, or linearly on the
+//! screen where faces are. Of a material count its diffuse or base colour, its emission and its
+//! opacity, not its textures; lines are not lit, points are where they have normals (`cloud.rs`).
 //!
-//! Marks are layers in front of the surfaces. Opaque dots hide what lies behind them, else clouds of points would be layers by
-//! the million.
+//! Marks are layers in front of the surfaces. Opaque dots hide what lies behind them, else clouds
+//! of points would be layers by the million.
 //!
-//! Which edges are drawn is decided by their class (`edge_choice.rs`). Pictures with edges also show the lines in which faces
-//! penetrate each other ([`penetrations`]).
+//! Which edges are drawn is decided by their class (`edge_choice.rs`). Pictures with edges also
+//! show the lines in which faces penetrate each other ([`penetrations`]).
 //!
 //! In:   visible instances, model space. Out: [`Marks`] on the screen, and the colour of each.
 //! Cost: linear in lines and points.
-//! Source: opacity by distance from the line is [Gupta & Sproull 1981]'s, here with a ramp and sample by sample; the polygon
-//! offset is that of the GL specification in spirit, a fixed number of pixels in depth.
+//! Source: opacity by distance from the line is [Gupta & Sproull 1981]'s, here with a ramp and
+//! sample by sample; the polygon offset is that of the GL specification in spirit, a fixed number
+//! of pixels in depth.
 
 mod cloud;
 mod edge_choice;
@@ -44,8 +48,8 @@ use vitral_scene::{FreePart, Instance};
 
 /// Width of a stroke's soft border in pixels, half of it within the stroke.
 const SOFT: f32 = 0.5;
-/// How many pixels' depth a mark lies in front of its place. Those of wider lines lie the farther in front: their borders are farther
-/// from the edge, where faces may be nearer.
+/// How many pixels' depth a mark lies in front of its place. Those of wider lines lie the farther
+/// in front: their borders are farther from the edge, where faces may be nearer.
 const LIFT: f64 = 2.5;
 /// Colour of faces' edges, display encoding.
 const EDGE: [f32; 3] = [0.11, 0.12, 0.14];
@@ -72,9 +76,11 @@ pub struct MarkColors {
     gradients: Vec<(u32, Gradient)>,
     /// How distance shows.
     fade: Option<Fade>,
-    /// Depth of each mark along the direction of sight, and how it goes on from there; a dot's stays. Empty where distance does not show.
+    /// Depth of each mark along the direction of sight, and how it goes on from there; a dot's
+    /// stays. Empty where distance does not show.
     depths: Vec<(f32, Gradient)>,
-    /// Ends of each stroke on the screen, pixels; not numbers for dots. Empty where borders are not soft.
+    /// Ends of each stroke on the screen, pixels; not numbers for dots. Empty where borders are not
+    /// soft.
     ends: Vec<[Vec2; 2]>,
     /// Samples within a pixel, pixels; none where borders are not soft.
     samples: Vec<Vec2>,
@@ -97,7 +103,8 @@ struct Gradient {
 
 impl Gradient {
     /// Of a mark that begins and ends with 0.
-    const NONE: Self = Self { origin: Vec2::ZERO, along: Vec2::ZERO, weights: [1.0; 2], end: [0.0; 4] };
+    const NONE: Self =
+        Self { origin: Vec2::ZERO, along: Vec2::ZERO, weights: [1.0; 2], end: [0.0; 4] };
 
     /// The colour at a place on the screen, of a line that begins with `start`.
     fn at(&self, start: [f32; 4], place: Vec2) -> [f32; 4] {
@@ -114,8 +121,9 @@ impl MarkColors {
         (!self.colors.is_empty() && id >= self.first).then(|| id - self.first)
     }
 
-    /// Premultiplied colour in the space of composition at the samples of a pixel that a mark hits, whichever of them are seen;
-    /// `corner` is the pixel's upper left one on the screen, `background` the background of its row.
+    /// Premultiplied colour in the space of composition at the samples of a pixel that a mark hits,
+    /// whichever of them are seen; `corner` is the pixel's upper left one on the screen,
+    /// `background` the background of its row.
     pub(crate) fn color(&self, mark: usize, corner: Vec2, background: [f32; 4]) -> [f32; 4] {
         let color = self.colors[mark];
         let color = match self.gradients.binary_search_by_key(&(mark as u32), |g| g.0) {
@@ -134,7 +142,9 @@ impl MarkColors {
 
     /// How much a mark covers of the samples that it hits, on average, `0..=1`.
     fn covered(&self, mark: usize, corner: Vec2) -> f32 {
-        let Some(&[a, b]) = self.ends.get(mark).filter(|ends| ends[0].is_finite()) else { return 1.0 };
+        let Some(&[a, b]) = self.ends.get(mark).filter(|ends| ends[0].is_finite()) else {
+            return 1.0;
+        };
         let (way, from) = (b - a, corner - a);
         let inverse = way.length_squared().max(f32::MIN_POSITIVE).recip();
         let of_sample = |&sample: &Vec2| {
@@ -142,7 +152,9 @@ impl MarkColors {
             let t = (from.dot(way) * inverse).clamp(0.0, 1.0);
             (((self.width + SOFT) * 0.5 - (from - way * t).length()) / SOFT).clamp(0.0, 1.0)
         };
-        let add = |(sum, hit): (f32, f32), covered: f32| (sum + covered, hit + f32::from(u8::from(covered > 0.0)));
+        let add = |(sum, hit): (f32, f32), covered: f32| {
+            (sum + covered, hit + f32::from(u8::from(covered > 0.0)))
+        };
         let (sum, hit) = self.samples.iter().map(of_sample).fold((0.0, 0.0), add);
         // Only a corner of the triangles may hit.
         sum / hit.max(1.0)
@@ -160,7 +172,10 @@ impl MarkColors {
 
     /// Gives out the next id; `None` when ids are used up.
     fn next(&mut self, color: [f32; 4]) -> Option<u32> {
-        let id = self.first.checked_add(self.colors.len() as u32).filter(|&id| id < vitral_raster::NO_FACET)?;
+        let id = self
+            .first
+            .checked_add(self.colors.len() as u32)
+            .filter(|&id| id < vitral_raster::NO_FACET)?;
         self.colors.push(color);
         if !self.samples.is_empty() {
             self.ends.push([Vec2::NAN; 2]);
@@ -177,7 +192,8 @@ impl MarkColors {
             *ends = drawn.ends;
         }
         if let Some(of_mark) = self.depths.last_mut() {
-            let ([start, ..], gradient) = drawn.gradient(depths.map(|d| [d; 4]), Interpolation::Perspective);
+            let ([start, ..], gradient) =
+                drawn.gradient(depths.map(|d| [d; 4]), Interpolation::Perspective);
             *of_mark = (start, gradient);
         }
     }
@@ -199,13 +215,24 @@ pub(crate) fn build(
     execution: &Execution,
 ) -> Result<(Marks, MarkColors), Limit> {
     let (world, count) = (&view.session.world, view.pattern.len());
-    let samples =
-        if count == 1 { Vec::new() } else { (0..count).map(|s| Vec2::from(view.pattern.offset(s))).collect() };
+    let samples = if count == 1 {
+        Vec::new()
+    } else {
+        (0..count).map(|s| Vec2::from(view.pattern.offset(s))).collect()
+    };
     let width = settings.picture.line_width;
     let half = if samples.is_empty() { width } else { width + SOFT } * 0.5;
-    let colors = MarkColors { first: world.facet_count, samples, fade, width, ..MarkColors::default() };
+    let colors =
+        MarkColors { first: world.facet_count, samples, fade, width, ..MarkColors::default() };
     let (drawn, clip_from_model, lift) = (Marks::default(), Mat4::IDENTITY, Lift::new(view, width));
-    let pen = Pen { view, drawn, clip_from_model, lift, half, half_dot: settings.picture.point_size * 0.5 };
+    let pen = Pen {
+        view,
+        drawn,
+        clip_from_model,
+        lift,
+        half,
+        half_dot: settings.picture.point_size * 0.5,
+    };
 
     // Draw edges, lines and points, instance by instance.
     let mut drawing = Drawing { view, settings, lighting, execution, pen, colors };
@@ -213,7 +240,9 @@ pub(crate) fn build(
         drawing.instance(&world.instances[prepared.instance]);
     }
     let shows_penetrations = settings.picture.edge_classes.has(LineClass::Intersection);
-    if shows_penetrations && matches!(settings.picture.lines, Lines::Edges | Lines::WireframeHiddenLine) {
+    if shows_penetrations
+        && matches!(settings.picture.lines, Lines::Edges | Lines::WireframeHiddenLine)
+    {
         drawing.penetrations(&*Penetrations::of(view.session, execution)?);
     }
     let Drawing { pen: Pen { drawn: mut marks, .. }, colors, .. } = drawing;
@@ -250,7 +279,8 @@ impl Subject<'_> {
 impl Drawing<'_, '_> {
     fn instance(&mut self, instance: &Instance) {
         let (session, view) = (self.view.session, &self.view.view);
-        let (positions, clip_from_model) = session.placed_positions(instance, &view.clip_from_world());
+        let (positions, clip_from_model) =
+            session.placed_positions(instance, &view.clip_from_world());
         self.pen.clip_from_model = clip_from_model;
         let toward = (view.view_from_world * instance.world_from_model).row(2).as_vec4();
         let subject = Subject { instance, positions, toward };
@@ -264,11 +294,14 @@ impl Drawing<'_, '_> {
     /// Draws the edges of faces, as long as there are ids.
     fn edges(&mut self, subject: &Subject<'_>) {
         let color = self.edge_color();
-        let chosen = EdgeChoice::new(self.view, subject.instance, self.settings, &self.execution.workers);
+        let chosen =
+            EdgeChoice::new(self.view, subject.instance, self.settings, &self.execution.workers);
         let edges = self.view.session.edges(subject.instance.mesh_index, &self.execution.workers);
         for edge in edges.iter().filter(|edge| chosen.has(edge)) {
             let Some(id) = self.colors.next(color) else { break };
-            if let Some(drawn) = self.pen.stroke(edge.ends.map(|i| subject.positions[i as usize]), id) {
+            if let Some(drawn) =
+                self.pen.stroke(edge.ends.map(|i| subject.positions[i as usize]), id)
+            {
                 self.colors.place(&drawn, edge.ends.map(|i| subject.depth(i)));
             }
         }
@@ -305,7 +338,10 @@ impl Drawing<'_, '_> {
             let material = FreePart::material_of(&mesh.line_parts, i);
             let [start, end] = line.map(|vertex| paint.color(material, vertex));
             let Some(id) = self.colors.next(start) else { break };
-            let Some(drawn) = self.pen.stroke(line.map(|i| subject.positions[i as usize]), id) else { continue };
+            let Some(drawn) = self.pen.stroke(line.map(|i| subject.positions[i as usize]), id)
+            else {
+                continue;
+            };
             self.colors.place(&drawn, line.map(|i| subject.depth(i)));
             if start != end {
                 let mark = self.colors.colors.len() - 1;
@@ -339,7 +375,11 @@ fn edge_color(background: &Background) -> [f32; 3] {
         Background::Color { color } => *color,
         Background::Gradient { top, bottom } => [0, 1, 2].map(|k| (top[k] + bottom[k]) * 0.5),
     };
-    if ground[0] * 0.3 + ground[1] * 0.6 + ground[2] * 0.1 > 0.35 { EDGE } else { EDGE.map(|c| 1.0 - c) }
+    if ground[0] * 0.3 + ground[1] * 0.6 + ground[2] * 0.1 > 0.35 {
+        EDGE
+    } else {
+        EDGE.map(|c| 1.0 - c)
+    }
 }
 
 /// What the lines and points of an instance are drawn with.
@@ -350,13 +390,15 @@ struct Paint<'p, 'a> {
 }
 
 impl Paint<'_, '_> {
-    /// Premultiplied colour at a vertex: the material's times the vertex's, or the one that is there.
+    /// Premultiplied colour at a vertex: the material's times the vertex's, or the one that is
+    /// there.
     fn color(&self, material: Option<u32>, vertex: u32) -> [f32; 4] {
         // Take the vertex's own colour, encoded if the picture is.
         let mesh = &self.instance.mesh;
         let colors = mesh.colors.as_ref().filter(|c| c.corners.is_none());
         let own = colors.and_then(|c| c.values.get(vertex as usize)).map(|&[r, g, b, a]| {
-            let raw = self.settings.picture.color_space == crate::ColorSpace::Raw && mesh.colors_from_srgb;
+            let raw = self.settings.picture.color_space == crate::ColorSpace::Raw
+                && mesh.colors_from_srgb;
             let [r, g, b] = if raw { [r, g, b].map(srgb_from_linear) } else { [r, g, b] };
             [r, g, b, a]
         });
@@ -378,7 +420,9 @@ impl Paint<'_, '_> {
         let glow = material.emission;
         let alpha = match material.alpha_mode {
             AlphaMode::Opaque => 1.0,
-            AlphaMode::Mask { cutoff } => f32::from(u8::from(alpha >= AlphaMode::least_opacity(cutoff))),
+            AlphaMode::Mask { cutoff } => {
+                f32::from(u8::from(alpha >= AlphaMode::least_opacity(cutoff)))
+            }
             AlphaMode::Blend if !self.settings.transparency.model.sees_through() => 1.0,
             AlphaMode::Blend => alpha,
         };
@@ -398,10 +442,16 @@ struct Drawn {
 }
 
 impl Drawn {
-    /// The colour where it begins and how it goes on, for a line with these colours at the ends of the whole.
-    fn gradient(&self, colors: [[f32; 4]; 2], interpolation: Interpolation) -> ([f32; 4], Gradient) {
+    /// The colour where it begins and how it goes on, for a line with these colours at the ends of
+    /// the whole.
+    fn gradient(
+        &self,
+        colors: [[f32; 4]; 2],
+        interpolation: Interpolation,
+    ) -> ([f32; 4], Gradient) {
         let [from, to] = colors;
-        let [start, end] = self.shares.map(|t| std::array::from_fn(|k| from[k] + (to[k] - from[k]) * t));
+        let [start, end] =
+            self.shares.map(|t| std::array::from_fn(|k| from[k] + (to[k] - from[k]) * t));
         let along = self.ends[1] - self.ends[0];
         // A line that is seen as a point shows its first colour.
         let along = along * along.length_squared().recip().min(1e12);
@@ -428,17 +478,22 @@ impl Lift {
     fn new(view: &PreparedView<'_>, width: f32) -> Self {
         let pixels = LIFT * f64::from(width / PictureSettings::LINE_WIDTH).max(1.0);
         let (clip_from_view, height) = (view.view.clip_from_view, f64::from(view.viewport.height));
-        // Vertical size of a pixel: at distance 1 for a perspective, anywhere for a parallel projection.
+        // Vertical size of a pixel: at distance 1 for a perspective, anywhere for a parallel
+        // projection.
         let pixel = 2.0 / (clip_from_view.y_axis.y * height);
         if view.view.perspective {
-            Self { offset: clip_from_view.z_axis.z, scale: 1.0 - (pixels * pixel).min(0.5), shift: 0.0 }
+            Self {
+                offset: clip_from_view.z_axis.z,
+                scale: 1.0 - (pixels * pixel).min(0.5),
+                shift: 0.0,
+            }
         } else {
             Self { offset: 0.0, scale: 1.0, shift: pixels * pixel * clip_from_view.z_axis.z }
         }
     }
 
-    /// The depth of a mark that lies at depth `z`. What would come before the near plane lies in it: the fitted one is just in
-    /// front of the model.
+    /// The depth of a mark that lies at depth `z`. What would come before the near plane lies in
+    /// it: the fitted one is just in front of the model.
     fn lifted(&self, z: f32) -> f32 {
         let z = (f64::from(z) + self.offset) / self.scale - self.offset + self.shift;
         z.clamp(0.0, 1.0) as f32
@@ -501,17 +556,23 @@ impl Pen<'_, '_> {
     }
 
     fn quad(&mut self, corners: [Vec2; 4], depths: [Vec2; 4], id: u32, hides: bool) {
-        let corner = |i: usize| CornerPosition { x: snap(corners[i].x), y: snap(corners[i].y), z: depths[i].x };
+        let corner = |i: usize| CornerPosition {
+            x: snap(corners[i].x),
+            y: snap(corners[i].y),
+            z: depths[i].x,
+        };
         let [a, b, c, d] = [0, 1, 2, 3].map(corner);
-        for batch in std::iter::once(&mut self.drawn.all).chain(hides.then_some(&mut self.drawn.hiding)) {
+        for batch in
+            std::iter::once(&mut self.drawn.all).chain(hides.then_some(&mut self.drawn.hiding))
+        {
             batch.add_corners([a, b, c], false, false, None, id, &self.view.screen);
             batch.add_corners([a, c, d], false, false, None, id, &self.view.screen);
         }
     }
 }
 
-/// The part of a segment inside near, far and half the guard band (marks have a width): its ends as shares of the whole, and
-/// themselves.
+/// The part of a segment inside near, far and half the guard band (marks have a width): its ends as
+/// shares of the whole, and themselves.
 fn clip_segment([a, b]: [Vec4; 2], guard: Vec2) -> Option<([f32; 2], [Vec4; 2])> {
     let g = guard * 0.5;
     let planes = [

@@ -12,13 +12,15 @@ use crate::global::Whitted;
 use crate::marks::{self, MarkColors, Marks};
 use crate::radiosity::{Solution, lamps, solution};
 use crate::shading::{
-    BYTES_A_PIXEL, ChannelSink, ColorSink, DeepImage, FrameConstants, FrameLight, LitCorner, Shown, TileRows, Tracer,
-    lit_corners,
+    BYTES_A_PIXEL, ChannelSink, ColorSink, DeepImage, FrameConstants, FrameLight, LitCorner, Shown,
+    TileRows, Tracer, lit_corners,
 };
 use crate::shadow::{self, AmbientOcclusion, Ground, PreparedShadows};
 use crate::stats::{CullCounters, RadiosityCounters, Stats, TracingCounters};
 use crate::visible::{Resolved, VisibleSurface};
-use crate::{Coherence, Error, Execution, Global, PreparedView, Session, Settings, Surroundings, registry};
+use crate::{
+    Coherence, Error, Execution, Global, PreparedView, Session, Settings, Surroundings, registry,
+};
 use assemble::Assembler;
 use checks::{check_indices, check_order, check_size, warnings};
 pub use pixel::{ExaminedPixel, examine_pixel};
@@ -69,7 +71,8 @@ pub fn render(
     // Check the settings.
     let viewport = settings.check()?;
     check_size(session, settings)?;
-    let direct = (settings.global.model == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
+    let direct = (settings.global.model == Global::Radiosity)
+        .then(|| lamps::direct_lights(session, shot.lights));
     if settings.global.model == Global::RayTrace {
         check_indices(session.scene())?;
     }
@@ -85,24 +88,26 @@ pub fn render(
     let shot = &direct_shot(shot, direct.as_deref());
     let context = FrameContext { shot, settings, viewport, execution };
 
-    // Solve for radiosity, which the session keeps. Where that ended at the time limit, the picture of what was found is drawn
-    // all the same.
+    // Solve for radiosity, which the session keeps. Where that ended at the time limit, the picture
+    // of what was found is drawn all the same.
     if settings.picture.channels.color || settings.picture.channels.steps {
         let mut watch = StopWatch::start(&execution.budget);
         context.radiosity(session, &mut stats.radiosity)?;
         watch.add_to(&mut stats.seconds.radiosity);
     }
     let limit = if stats.radiosity.stopped { None } else { execution.budget.time_limit() };
-    let drawing = Execution { budget: execution.budget.clone().with_time_limit(limit), ..execution.clone() };
-    FrameContext { execution: &drawing, ..context }.render_channels(session, &mut stats, &mut frame)?;
+    let drawing =
+        Execution { budget: execution.budget.clone().with_time_limit(limit), ..execution.clone() };
+    FrameContext { execution: &drawing, ..context }
+        .render_channels(session, &mut stats, &mut frame)?;
     stats.picture.pixels = u64::from(viewport.width) * u64::from(viewport.height);
     stats.seconds.total = execution.budget.elapsed() - start;
     let warnings = warnings(&stats, session, settings, &execution.workers);
     Ok(Rendered { frame, stats, warnings })
 }
 
-/// The shot in the light that does not come from other surfaces; with radiosity these are the `direct` lights alone, and what the
-/// ambient terms guess at is computed.
+/// The shot in the light that does not come from other surfaces; with radiosity these are the
+/// `direct` lights alone, and what the ambient terms guess at is computed.
 fn direct_shot<'l>(shot: &Shot<'l>, direct: Option<&'l [Light]>) -> Shot<'l> {
     match direct {
         Some(lights) => Shot { lights, ambient: [0.0; 3], ..shot.clone() },
@@ -110,8 +115,8 @@ fn direct_shot<'l>(shot: &Shot<'l>, direct: Option<&'l [Light]>) -> Shot<'l> {
     }
 }
 
-/// Illuminates the corners of `only` one facet, or of all that culling leaves, in the order of the facets: what Gouraud's shading
-/// interpolates. No picture is made.
+/// Illuminates the corners of `only` one facet, or of all that culling leaves, in the order of the
+/// facets: what Gouraud's shading interpolates. No picture is made.
 ///
 /// # Errors
 /// As [`render`].
@@ -123,15 +128,19 @@ pub fn illuminate_corners(
     only: Option<u32>,
 ) -> Result<Vec<LitCorner>, Error> {
     let viewport = settings.check()?;
-    let direct = (settings.global.model == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
+    let direct = (settings.global.model == Global::Radiosity)
+        .then(|| lamps::direct_lights(session, shot.lights));
     let shot = &direct_shot(shot, direct.as_deref());
     let context = FrameContext { shot, settings, viewport, execution };
     let view = context.view(session, SamplePattern::new(1), &mut CullCounters::default());
 
     // List the facets.
     let draws = || view.instances.iter().flat_map(|i| i.opaque.iter().chain(&i.layered));
-    let facets_of = |d: &Draw<'_>| d.ranges.iter().cloned().flatten().map(|t| d.first_facet + t).collect::<Vec<_>>();
-    let mut facets = only.map_or_else(|| draws().flat_map(facets_of).collect(), |facet| vec![facet]);
+    let facets_of = |d: &Draw<'_>| {
+        d.ranges.iter().cloned().flatten().map(|t| d.first_facet + t).collect::<Vec<_>>()
+    };
+    let mut facets =
+        only.map_or_else(|| draws().flat_map(facets_of).collect(), |facet| vec![facet]);
     facets.sort_unstable();
 
     // Illuminate their corners.
@@ -140,9 +149,9 @@ pub fn illuminate_corners(
     let shade = context.shade(&view)?;
     let constants = context.constants(&view, &shade, radiosity.as_deref(), &tables);
     let bytes = facets.len() as u64 * 3 * size_of::<LitCorner>() as u64;
-    let corners = execution
-        .budget
-        .charged(bytes, "illuminated corners", || lit_corners(&facets, &constants, &execution.budget))?;
+    let corners = execution.budget.charged(bytes, "illuminated corners", || {
+        lit_corners(&facets, &constants, &execution.budget)
+    })?;
     Ok(corners)
 }
 
@@ -172,7 +181,12 @@ struct ShadedTiles {
 
 impl<'a> FrameContext<'a> {
     /// All channels that are wanted, in up to three passes. The observer sees the first alone.
-    fn render_channels(&self, session: &mut Session, stats: &mut Stats, frame: &mut Frame) -> Result<(), Error> {
+    fn render_channels(
+        &self,
+        session: &mut Session,
+        stats: &mut Stats,
+        frame: &mut Frame,
+    ) -> Result<(), Error> {
         let execution = Execution { observer: None, ..self.execution.clone() };
         let unwatched = FrameContext { execution: &execution, ..*self };
         let channels = self.settings.picture.channels;
@@ -194,7 +208,12 @@ impl<'a> FrameContext<'a> {
     }
 
     /// The colour picture, with all samples.
-    fn render_color(&self, session: &mut Session, stats: &mut Stats, frame: &mut Frame) -> Result<(), Error> {
+    fn render_color(
+        &self,
+        session: &mut Session,
+        stats: &mut Stats,
+        frame: &mut Frame,
+    ) -> Result<(), Error> {
         let Self { settings, execution, .. } = *self;
         let mut watch = StopWatch::start(&execution.budget);
         let pattern = SamplePattern::new(settings.picture.samples as usize);
@@ -210,7 +229,8 @@ impl<'a> FrameContext<'a> {
         watch.add_to(&mut stats.seconds.shadows);
         let constants = self.constants(&view, &shade, radiosity.as_deref(), &tables);
         watch.add_to(&mut stats.seconds.prepare);
-        let marks = marks::build(&view, settings, constants.fade, constants.point_lighting(), execution)?;
+        let marks =
+            marks::build(&view, settings, constants.fade, constants.point_lighting(), execution)?;
         watch.add_to(&mut stats.seconds.marks);
 
         // Find what is visible, and shade each tile as it is finished.
@@ -241,7 +261,8 @@ impl<'a> FrameContext<'a> {
     ) -> Result<ShadedTiles, Error> {
         let Self { settings, viewport, execution, .. } = *self;
 
-        // Set up who shades: shading itself, rays for mirrors and glass, or the whole picture for translucent surfaces.
+        // Set up who shades: shading itself, rays for mirrors and glass, or the whole picture for
+        // translucent surfaces.
         let tracer = self.tracer(constants, grid)?;
         let deep = self.deep_image(constants, mark_colors, tracer.is_some())?;
         let mut picture = self.take_picture(constants.view.session);
@@ -267,7 +288,8 @@ impl<'a> FrameContext<'a> {
         let resolved = self.visibility().resolve(constants.view, marks, grid, execution, &sink);
         watch.add_to(&mut stats.seconds.tiles);
         stats.picture = sink.counters();
-        let shown = if resolved.is_ok() { sink.finish(&execution.workers) } else { Ok(Shown::default()) };
+        let shown =
+            if resolved.is_ok() { sink.finish(&execution.workers) } else { Ok(Shown::default()) };
         watch.add_to(&mut stats.seconds.compose);
         let traced = tracer.map_or_else(|| Ok(TracingCounters::default()), Whitted::finish);
         let resolved = resolved?;
@@ -277,7 +299,12 @@ impl<'a> FrameContext<'a> {
     }
 
     /// Sets the colour picture and what shows how it came about.
-    fn assemble_color(&self, picture: Vec<[u8; 4]>, shown: &Shown, frame: &mut Frame) -> Result<(), Error> {
+    fn assemble_color(
+        &self,
+        picture: Vec<[u8; 4]>,
+        shown: &Shown,
+        frame: &mut Frame,
+    ) -> Result<(), Error> {
         let (viewport, workers) = (self.viewport, &self.execution.workers);
         let assembler = Assembler { viewport, workers };
         frame.color = Plane::from_rows(viewport.width, viewport.height, picture);
@@ -289,7 +316,12 @@ impl<'a> FrameContext<'a> {
     }
 
     /// Depth, ids, normals and shadows at pixel centres.
-    fn render_data(&self, session: &mut Session, stats: &mut Stats, frame: &mut Frame) -> Result<(), Error> {
+    fn render_data(
+        &self,
+        session: &mut Session,
+        stats: &mut Stats,
+        frame: &mut Frame,
+    ) -> Result<(), Error> {
         let Self { settings, viewport, execution, .. } = *self;
         let mut grid = self.take_grid(session, 1)?;
         let mut cull = CullCounters::default();
@@ -297,13 +329,23 @@ impl<'a> FrameContext<'a> {
         let tables = DecodeTables::new(settings.picture.color_space);
         let shade = Shade { shadows: self.shadows(&view)?, ..Shade::default() };
         let constants = self.constants(&view, &shade, None, &tables);
-        let sink = ChannelSink::new(&constants, settings.picture.channels, grid.tiles.len(), &execution.budget);
+        let sink = ChannelSink::new(
+            &constants,
+            settings.picture.channels,
+            grid.tiles.len(),
+            &execution.budget,
+        );
         let resolved = self.visibility().resolve(&view, None, &mut grid, execution, &sink)?;
         if !settings.picture.channels.color {
             // Beside a colour picture, its numbers count.
-            (stats.cull, stats.geometry, stats.visibility) = (cull, resolved.geometry, resolved.counters);
+            (stats.cull, stats.geometry, stats.visibility) =
+                (cull, resolved.geometry, resolved.counters);
         }
-        Assembler { viewport, workers: &execution.workers }.data(&sink.finish()?, settings.picture.channels, frame);
+        Assembler { viewport, workers: &execution.workers }.data(
+            &sink.finish()?,
+            settings.picture.channels,
+            frame,
+        );
         drop(constants);
         drop(shade);
         drop(view);
@@ -317,28 +359,51 @@ impl<'a> FrameContext<'a> {
     }
 
     /// The view, with what culling leaves of the scene.
-    fn view<'v>(&self, session: &'v Session, pattern: SamplePattern, counters: &mut CullCounters) -> PreparedView<'v> {
+    fn view<'v>(
+        &self,
+        session: &'v Session,
+        pattern: SamplePattern,
+        counters: &mut CullCounters,
+    ) -> PreparedView<'v> {
         let Self { shot, settings, viewport, execution } = *self;
         PreparedView::new(session, &shot.camera, settings, viewport, pattern, execution, counters)
     }
 
     /// Light from other surfaces, if it is wanted.
-    fn radiosity(&self, session: &Session, counters: &mut RadiosityCounters) -> Result<Option<Arc<Solution>>, Error> {
+    fn radiosity(
+        &self,
+        session: &Session,
+        counters: &mut RadiosityCounters,
+    ) -> Result<Option<Arc<Solution>>, Error> {
         match self.settings.global.model {
-            Global::Radiosity => {
-                Ok(Some(solution(session, self.shot.lights, self.settings, self.execution, counters)?))
-            }
+            Global::Radiosity => Ok(Some(solution(
+                session,
+                self.shot.lights,
+                self.settings,
+                self.execution,
+                counters,
+            )?)),
             Global::None | Global::RayTrace => Ok(None),
         }
     }
 
-    /// The chosen shadow algorithm, ready for the lights; `None` without shadows. Radiosity always has some: surfaces that shine
-    /// are lights there, and what stands in their way keeps their light from others.
-    fn shadows<'v>(&self, view: &PreparedView<'v>) -> Result<Option<Box<dyn PreparedShadows + 'v>>, Limit> {
+    /// The chosen shadow algorithm, ready for the lights; `None` without shadows. Radiosity always
+    /// has some: surfaces that shine are lights there, and what stands in their way keeps their
+    /// light from others.
+    fn shadows<'v>(
+        &self,
+        view: &PreparedView<'v>,
+    ) -> Result<Option<Box<dyn PreparedShadows + 'v>>, Limit> {
         let chosen = self.settings.shadows.algorithm;
         let needs_some = self.settings.global.model == Global::Radiosity && chosen.is_none;
         let algorithm = if needs_some { crate::Shadows::RAY } else { chosen };
-        shadow::prepare(registry::shadows(algorithm), view, self.shot.lights, self.settings, self.execution)
+        shadow::prepare(
+            registry::shadows(algorithm),
+            view,
+            self.shot.lights,
+            self.settings,
+            self.execution,
+        )
     }
 
     /// What darkens the background.
@@ -363,13 +428,19 @@ impl<'a> FrameContext<'a> {
     ) -> FrameConstants<'v> {
         let Shot { lights, ambient, ref surroundings, .. } = *self.shot;
         let Shade { shadows, occlusion, ground } = shade;
-        let (shadows, occlusion, ground) = (shadows.as_deref(), occlusion.as_ref(), ground.as_ref());
-        let light = FrameLight { lights, ambient, surroundings, shadows, occlusion, ground, radiosity };
+        let (shadows, occlusion, ground) =
+            (shadows.as_deref(), occlusion.as_ref(), ground.as_ref());
+        let light =
+            FrameLight { lights, ambient, surroundings, shadows, occlusion, ground, radiosity };
         FrameConstants::new(view, self.settings, &light, tables, self.execution)
     }
 
     /// Ray tracing for mirrors and glass, if it is wanted.
-    fn tracer<'v>(&self, constants: &'v FrameConstants<'v>, grid: &TileGrid) -> Result<Option<Whitted<'v>>, Error>
+    fn tracer<'v>(
+        &self,
+        constants: &'v FrameConstants<'v>,
+        grid: &TileGrid,
+    ) -> Result<Option<Whitted<'v>>, Error>
     where
         'a: 'v,
     {
@@ -382,7 +453,8 @@ impl<'a> FrameContext<'a> {
         }
     }
 
-    /// The whole picture for what translucent surfaces show, if some are in view and no rays are traced through the scene.
+    /// The whole picture for what translucent surfaces show, if some are in view and no rays are
+    /// traced through the scene.
     fn deep_image<'v>(
         &self,
         constants: &'v FrameConstants<'v>,
@@ -392,28 +464,38 @@ impl<'a> FrameContext<'a> {
     where
         'a: 'v,
     {
-        let Some(material) = constants.translucent().filter(|_| !is_traced) else { return Ok(None) };
+        let Some(material) = constants.translucent().filter(|_| !is_traced) else {
+            return Ok(None);
+        };
         check_order(material, self.settings)?;
-        Ok(Some(DeepImage::new(constants, marks, self.settings.transparency.scatter_samples, &self.execution.budget)))
+        Ok(Some(DeepImage::new(
+            constants,
+            marks,
+            self.settings.transparency.scatter_samples,
+            &self.execution.budget,
+        )))
     }
 
     /// Room for the two buffers, for which memory is needed for a while.
     fn check_room_for_buffers(&self) -> Result<(), Limit> {
-        let bytes = u64::from(self.viewport.width) * u64::from(self.viewport.height) * BYTES_A_PIXEL;
+        let bytes =
+            u64::from(self.viewport.width) * u64::from(self.viewport.height) * BYTES_A_PIXEL;
         self.execution.budget.charge(bytes, "the two buffers")?;
         self.execution.budget.release(bytes);
         Ok(())
     }
 
-    /// Memory for the picture: the session's if it fits. Its contents do not matter, since every tile is written whole.
+    /// Memory for the picture: the session's if it fits. Its contents do not matter, since every
+    /// tile is written whole.
     fn take_picture(&self, session: &Session) -> Vec<[u8; 4]> {
         let pixels = self.viewport.width as usize * self.viewport.height as usize;
         let spare = std::mem::take(&mut *session.spare_picture.lock().expect("spare picture"));
         if spare.len() == pixels { spare } else { vec![[0; 4]; pixels] }
     }
 
-    /// The session's tiles if they fit, else new ones, charged to the budget: all of them, though the z-buffer often needs but a
-    /// few ([`TileSink::keeps_tiles`](crate::visible::TileSink::keeps_tiles)).
+    /// The session's tiles if they fit, else new ones, charged to the budget: all of them, though
+    /// the z-buffer often needs but a few
+    /// ([`TileSink::keeps_tiles`](crate::visible::TileSink::keeps_tiles)).
     fn take_grid(&self, session: &mut Session, samples: usize) -> Result<TileGrid, Error> {
         let (viewport, budget) = (self.viewport, &self.execution.budget);
         let bytes = TileGrid::bytes(viewport, samples);

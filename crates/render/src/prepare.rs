@@ -1,8 +1,10 @@
-//! Prepare: from the world to draws that a visibility algorithm can take, with one numbering and one depth function.
+//! Prepare: from the world to draws that a visibility algorithm can take, with one numbering and
+//! one depth function.
 //!
-//! Facets are the triangles of all instances, counted in scene order before anything is culled. For any
-//! facet, [`PreparedView::setups`] gives its pieces on the screen, whose `covers` and `depth` say which samples they
-//! cover and how near they are there; the z-buffer's kernels compute the same in bulk.
+//! Facets are the triangles of all instances, counted in scene order before anything is culled. For
+//! any facet, [`PreparedView::setups`] gives its pieces on the screen, whose `covers` and `depth`
+//! say which samples they cover and how near they are there; the z-buffer's kernels compute the
+//! same in bulk.
 
 use crate::cull::frustum::{self, VisibleInstance};
 use crate::cull::opacity::is_layered;
@@ -18,7 +20,8 @@ use vitral_math::{DMat4, DVec3, DVec4, Mat4, Vec4};
 use vitral_raster::clip::{PLANES, Polygon, clip, clip_watched};
 use vitral_raster::geometry::{Screen, flag, transform_point};
 use vitral_raster::{
-    BackFaces, Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, SharedPlane, TILE, Viewport,
+    BackFaces, Batch, Draw, Layer, LayerList, SamplePattern, ScreenVertex, Setup, SharedPlane,
+    TILE, Viewport,
 };
 use vitral_scene::{Camera, Instance, SharedPlanes, ViewTransform, depth_range};
 
@@ -93,14 +96,21 @@ impl<'a> PreparedView<'a> {
         let visible = frustum::cull(session, &clip_from_world, cull_objects, execution, counters);
 
         // Sort the visible triangles into draws.
-        let preparation = Preparation { session, camera, settings, view: &view, clip_from_world, execution };
-        let instances: Vec<_> = visible.into_iter().map(|visible| preparation.instance(&visible)).collect();
+        let preparation =
+            Preparation { session, camera, settings, view: &view, clip_from_world, execution };
+        let instances: Vec<_> =
+            visible.into_iter().map(|visible| preparation.instance(&visible)).collect();
         let drops = |draw: &Draw<'_>| draw.back_faces != BackFaces::Kept;
         counters.back_face_culled_instances +=
             instances.iter().filter(|instance| instance.opaque.iter().any(drops)).count() as u64;
 
         // Bring the planes shared by facets to the screen.
-        let planes = equal_planes(session.planes(&execution.workers), &clip_from_world, viewport, &execution.workers);
+        let planes = equal_planes(
+            session.planes(&execution.workers),
+            &clip_from_world,
+            viewport,
+            &execution.workers,
+        );
         let screen = Screen::new(viewport, &pattern).with_planes(planes);
         let acceleration = settings.acceleration.unwrap_or_default();
         let layer_limit = layer_limit(viewport, settings.transparency.layer_memory);
@@ -121,8 +131,8 @@ impl<'a> PreparedView<'a> {
         }
     }
 
-    /// Leaves the tile with this number alone to be made, of the facets that may touch it: it becomes what it is in the whole
-    /// picture, whatever the algorithm.
+    /// Leaves the tile with this number alone to be made, of the facets that may touch it: it
+    /// becomes what it is in the whole picture, whatever the algorithm.
     pub fn limit_to_tile(&mut self, tile: usize) {
         let (columns, side) = (self.viewport.tiles_x(), TILE as u32);
         let corner = [tile as u32 % columns * side, tile as u32 / columns * side];
@@ -163,14 +173,19 @@ impl<'a> PreparedView<'a> {
         (self.camera.position, self.view.perspective)
     }
 
-    /// The same as one homogeneous point: `w` is 0 in a parallel view, the rest points towards the viewer.
+    /// The same as one homogeneous point: `w` is 0 in a parallel view, the rest points towards the
+    /// viewer.
     pub fn viewer(&self) -> DVec4 {
         let (eye, perspective) = self.eye();
-        if perspective { eye.extend(1.0) } else { self.view.view_from_world.row(2).truncate().extend(0.0) }
+        if perspective {
+            eye.extend(1.0)
+        } else {
+            self.view.view_from_world.row(2).truncate().extend(0.0)
+        }
     }
 
-    /// The pieces of a facet on the screen (several if it was clipped), culled as the draws say. For tests, reports
-    /// and algorithms that take facets one by one.
+    /// The pieces of a facet on the screen (several if it was clipped), culled as the draws say.
+    /// For tests, reports and algorithms that take facets one by one.
     pub fn setups(&self, facet: u32, back_faces: BackFaces<'_>) -> Vec<Setup> {
         self.set_up(facet, back_faces).setups().to_vec()
     }
@@ -188,7 +203,11 @@ impl<'a> PreparedView<'a> {
             ranges: Vec::new(),
             clip_from_model,
             first_facet: facet,
-            back_faces: if back_faces.drops(triangle as u32) { BackFaces::Dropped } else { BackFaces::Kept },
+            back_faces: if back_faces.drops(triangle as u32) {
+                BackFaces::Dropped
+            } else {
+                BackFaces::Kept
+            },
             planes: of_facet,
             mirrored: mirrors(&instance.world_from_model),
         };
@@ -202,9 +221,10 @@ impl<'a> PreparedView<'a> {
         self.placed(Level::new(), facet).3.map(|vertex| vertex.flags)
     }
 
-    /// The polygon in clip space that clipping leaves of a facet, before the division by `w`, and whether it was cut; `None` if
-    /// nothing is left. Only near and far plane and a guard band round the picture cut, and facets that lie beyond one plane of
-    /// the view are dropped whole. Which way it faces is asked later.
+    /// The polygon in clip space that clipping leaves of a facet, before the division by `w`, and
+    /// whether it was cut; `None` if nothing is left. Only near and far plane and a guard band
+    /// round the picture cut, and facets that lie beyond one plane of the view are dropped whole.
+    /// Which way it faces is asked later.
     pub fn clipped(&self, facet: u32) -> Option<(Vec<Vec4>, bool)> {
         let (_, corners, clip_from_model, vertices) = self.placed(Level::new(), facet);
         let [a, b, c] = vertices.map(|v| v.flags);
@@ -219,18 +239,21 @@ impl<'a> PreparedView<'a> {
         (polygon.corners().len() >= 3).then(|| (polygon.corners().to_vec(), true))
     }
 
-    /// Tells the planes that cut the facets in view, facet by facet: the polygon before and after each.
+    /// Tells the planes that cut the facets in view, facet by facet: the polygon before and after
+    /// each.
     pub(crate) fn tell_clipping(&self, execution: &Execution) {
         let draws = || self.instances.iter().flat_map(|i| i.opaque.iter().chain(&i.layered));
         let facets_of = |draw: &Draw<'_>| {
             let triangles = draw.ranges.iter().cloned().flatten();
             triangles.map(|triangle| draw.first_facet + triangle).collect::<Vec<_>>()
         };
-        let points = |polygon: &Polygon| polygon.corners().iter().map(|corner| corner.to_array()).collect();
+        let points =
+            |polygon: &Polygon| polygon.corners().iter().map(|corner| corner.to_array()).collect();
         for facet in draws().flat_map(facets_of) {
             let (_, corners, clip_from_model, vertices) = self.placed(Level::new(), facet);
             let flags = vertices.iter().fold(0, |all, vertex| all | vertex.flags);
-            let beyond = vertices.iter().fold(flag::FRUSTUM, |common, vertex| common & vertex.flags);
+            let beyond =
+                vertices.iter().fold(flag::FRUSTUM, |common, vertex| common & vertex.flags);
             if flags & flag::NOT_FINITE != 0 || flags & flag::CLIP == 0 || beyond != 0 {
                 continue;
             }
@@ -242,15 +265,27 @@ impl<'a> PreparedView<'a> {
         }
     }
 
-    /// A facet's instance, its corners, the matrix from their space to clip space, and where that brings them.
-    fn placed(&self, level: Level, facet: u32) -> (&'a Instance, [[f32; 3]; 3], Mat4, [ScreenVertex; 3]) {
+    /// A facet's instance, its corners, the matrix from their space to clip space, and where that
+    /// brings them.
+    fn placed(
+        &self,
+        level: Level,
+        facet: u32,
+    ) -> (&'a Instance, [[f32; 3]; 3], Mat4, [ScreenVertex; 3]) {
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
         let triangle = instance.mesh.triangles[(facet - instance.first_facet) as usize];
-        let (positions, clip_from_model) = self.session.placed_positions(instance, &self.view.clip_from_world());
+        let (positions, clip_from_model) =
+            self.session.placed_positions(instance, &self.view.clip_from_world());
         let corners = triangle.map(|i| positions[i as usize]);
         let mut vertices = [ScreenVertex::default(); 3];
-        vitral_raster::transform(level, &corners, &clip_from_model, self.screen.transform(), &mut vertices);
+        vitral_raster::transform(
+            level,
+            &corners,
+            &clip_from_model,
+            self.screen.transform(),
+            &mut vertices,
+        );
         (instance, corners, clip_from_model, vertices)
     }
 }
@@ -267,18 +302,20 @@ fn equal_planes(
 ) -> Vec<Option<SharedPlane>> {
     let size = [viewport.width, viewport.height];
     // A plane goes by the inverse, transposed.
-    let plane_from_world = (*clip_from_world * DMat4::from_translation(planes.center())).inverse().transpose();
+    let plane_from_world =
+        (*clip_from_world * DMat4::from_translation(planes.center())).inverse().transpose();
     let mut shared = vec![None; planes.equations().len()];
     workers.for_each_chunk(&mut shared, PLANES_A_JOB, |chunk, shared| {
-        for (shared, equation) in shared.iter_mut().zip(&planes.equations()[chunk * PLANES_A_JOB..]) {
+        for (shared, equation) in shared.iter_mut().zip(&planes.equations()[chunk * PLANES_A_JOB..])
+        {
             *shared = SharedPlane::new((plane_from_world * *equation).to_array(), size);
         }
     });
     shared
 }
 
-/// Whether only the outside of an instance can be seen: its mesh is solid without a window, and the near plane does not cut it
-/// open.
+/// Whether only the outside of an instance can be seen: its mesh is solid without a window, and the
+/// near plane does not cut it open.
 pub fn is_solid(
     session: &Session,
     instance: &Instance,
@@ -331,7 +368,11 @@ impl<'a> Preparation<'_, 'a> {
     fn instance(&self, visible: &VisibleInstance) -> PreparedInstance<'a> {
         let session = self.session;
         let instance = &session.world.instances[visible.instance];
-        let mut prepared = PreparedInstance { instance: visible.instance, opaque: Vec::new(), layered: Vec::new() };
+        let mut prepared = PreparedInstance {
+            instance: visible.instance,
+            opaque: Vec::new(),
+            layered: Vec::new(),
+        };
         if matches!(self.settings.picture.lines, crate::Lines::Wireframe) {
             return prepared;
         }
@@ -343,7 +384,11 @@ impl<'a> Preparation<'_, 'a> {
             if !drops || class.double_sided || class.layered {
                 return BackFaces::Kept;
             }
-            session.back_faces(instance.mesh_index, self.settings.transparency.model, &self.execution.workers)
+            session.back_faces(
+                instance.mesh_index,
+                self.settings.transparency.model,
+                &self.execution.workers,
+            )
         };
         for (class, draw) in self.draws(instance, &visible.ranges, back_faces) {
             if class.layered { &mut prepared.layered } else { &mut prepared.opaque }.push(draw);
@@ -360,7 +405,8 @@ impl<'a> Preparation<'_, 'a> {
     ) -> Vec<(Class, Draw<'a>)> {
         // Find the mesh's positions on their way to clip space, and its planes.
         let mesh = &*instance.mesh;
-        let (positions, clip_from_model) = self.session.placed_positions(instance, &self.clip_from_world);
+        let (positions, clip_from_model) =
+            self.session.placed_positions(instance, &self.clip_from_world);
         let facets = instance.first_facet..instance.first_facet + mesh.triangles.len() as u32;
         let planes = self.session.planes(&self.execution.workers).of(facets);
         let new_draw = |class: Class| Draw {
@@ -380,7 +426,8 @@ impl<'a> Preparation<'_, 'a> {
             let material = part.material.and_then(|m| self.session.scene.materials.get(m as usize));
             let class = class(material, self.settings.transparency.model);
             for range in ranges {
-                let (start, end) = (range.start.max(part.triangles.start), range.end.min(part.triangles.end));
+                let (start, end) =
+                    (range.start.max(part.triangles.start), range.end.min(part.triangles.end));
                 if start >= end {
                     continue;
                 }

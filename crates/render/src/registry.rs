@@ -1,9 +1,12 @@
 //! The one table of algorithms. Command line, documents, tests and other faces iterate over it.
 //!
-//! It stands on top of all algorithms, and nothing below looks into it: an algorithm that is asked for by name is a
-//! [`Choice`](crate::choice::Choice), and the pipeline hands its code in. A new algorithm is a row here.
+//! It stands on top of all algorithms, and nothing below looks into it: an algorithm that is asked
+//! for by name is a [`Choice`](crate::choice::Choice), and the pipeline hands its code in. A new
+//! algorithm is a row here.
 
-use crate::catalogue::{LIST_PRIORITY, Panels, PolygonOrder, ShadowInfo, Shadows, Visibility, VisibilityInfo};
+use crate::catalogue::{
+    LIST_PRIORITY, Panels, PolygonOrder, ShadowInfo, Shadows, Visibility, VisibilityInfo,
+};
 use crate::choice::table;
 use crate::shadow::{
     ShadowAlgorithm, map::MapShadows, object_precision::ObjectPrecisionShadows, ray::RayShadows,
@@ -11,8 +14,9 @@ use crate::shadow::{
 };
 use crate::trace::legend::Legend;
 use crate::visible::{
-    PolygonAlgorithm, VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter, ray_cast::RayCast,
-    scanline::ScanLine, warnock::Warnock, weiler_atherton::WeilerAtherton, zbuffer::ZBuffer,
+    PolygonAlgorithm, VisibleSurface, brute_force::BruteForce, bsp::Bsp, painter::Painter,
+    ray_cast::RayCast, scanline::ScanLine, warnock::Warnock, weiler_atherton::WeilerAtherton,
+    zbuffer::ZBuffer,
 };
 use crate::{Coherence, Global};
 
@@ -283,7 +287,11 @@ pub struct GlobalIllumination {
 pub static GLOBALS: &[GlobalIllumination] = &[
     GlobalIllumination { value: Global::None, source: "Foley et al. 1990", shadows: Shadows::NONE },
     GlobalIllumination { value: Global::RayTrace, source: "Whitted 1980", shadows: Shadows::RAY },
-    GlobalIllumination { value: Global::Radiosity, source: "Cohen et al. 1988", shadows: Shadows::RAY },
+    GlobalIllumination {
+        value: Global::Radiosity,
+        source: "Cohen et al. 1988",
+        shadows: Shadows::RAY,
+    },
 ];
 
 /// The code of a visible-surface algorithm.

@@ -15,10 +15,12 @@ use vitral_math::{Aabb, DMat4, DVec4, Mat4, Vec3};
 use vitral_raster::{BackFaces, Batch, ScreenVertex, Tile, TileGrid, Unsorted};
 use vitral_scene::bodies::{self, Side};
 use vitral_scene::edges::Edge;
-use vitral_scene::{Attribute, Instance, NodeTransform, Part, Scene, SharedPlanes, Solids, World, tangents};
+use vitral_scene::{
+    Attribute, Instance, NodeTransform, Part, Scene, SharedPlanes, Solids, World, tangents,
+};
 
-/// A scene made ready for many frames. Its nodes may be moved ([`Session::place`]); all else cannot change under it: edit a copy and
-/// make a new session.
+/// A scene made ready for many frames. Its nodes may be moved ([`Session::place`]); all else cannot
+/// change under it: edit a copy and make a new session.
 #[derive(Debug)]
 pub struct Session {
     pub(crate) scene: Arc<Scene>,
@@ -48,10 +50,12 @@ struct MeshKnowledge {
     tangents: [OnceLock<Option<Attribute<[f32; 4]>>>; 2],
 }
 
-/// Half sides of its box that a mesh lies away from the origin before its positions are moved there.
+/// Half sides of its box that a mesh lies away from the origin before its positions are moved
+/// there.
 const FAR: f64 = 64.0;
 
-/// The middle of a box far away from the origin, along the axes along which it is; `None` if it is along none.
+/// The middle of a box far away from the origin, along the axes along which it is; `None` if it is
+/// along none.
 fn far_middle(bounds: &Aabb) -> Option<Vec3> {
     let (middle, half) = (bounds.center(), bounds.size().max_element() * 0.5);
     let far = middle.to_array().map(|m| if m.abs() > FAR * half { m as f32 } else { 0.0 });
@@ -90,7 +94,10 @@ impl Session {
             mesh.check_with(workers).map_err(Error::Scene)?;
             let materials = scene.materials.len();
             if let Some(bad) = mesh.materials().find(|&m| m as usize >= materials) {
-                return Err(Error::Scene(format!("mesh `{}`: material {bad}, there are {materials}", mesh.name)));
+                return Err(Error::Scene(format!(
+                    "mesh `{}`: material {bad}, there are {materials}",
+                    mesh.name
+                )));
             }
         }
         let mut materials = scene.materials.clone();
@@ -98,7 +105,10 @@ impl Session {
             let name = material.name.clone();
             let count = scene.textures.len();
             if let Some(bad) = material.textures_mut().find(|t| t.texture as usize >= count) {
-                return Err(Error::Scene(format!("material `{name}`: texture {}, there are {count}", bad.texture)));
+                return Err(Error::Scene(format!(
+                    "material `{name}`: texture {}, there are {count}",
+                    bad.texture
+                )));
             }
         }
         let world = World::with_workers(&scene, workers)?;
@@ -106,7 +116,12 @@ impl Session {
         Ok(Self::assemble(scene, world, meshes, Cache::default()))
     }
 
-    fn assemble(scene: Arc<Scene>, world: World, meshes: Arc<Vec<MeshKnowledge>>, cache: Cache) -> Self {
+    fn assemble(
+        scene: Arc<Scene>,
+        world: World,
+        meshes: Arc<Vec<MeshKnowledge>>,
+        cache: Cache,
+    ) -> Self {
         Self {
             scene,
             world,
@@ -122,19 +137,21 @@ impl Session {
         }
     }
 
-    /// Another session of the same scene, for another thread. Both share what is known of the meshes, whichever finds it out, and
-    /// the acceleration structures that are built already.
+    /// Another session of the same scene, for another thread. Both share what is known of the
+    /// meshes, whichever finds it out, and the acceleration structures that are built already.
     #[must_use]
     pub fn fork(&self) -> Self {
         let (scene, meshes) = (Arc::clone(&self.scene), Arc::clone(&self.meshes));
         Self::assemble(scene, self.world.clone(), meshes, self.cache.fork())
     }
 
-    /// Moves nodes: each of `nodes` gets the transform to its parent that stands beside it. What is known of the meshes stays;
-    /// what depends on where they are is found out anew when it is needed.
+    /// Moves nodes: each of `nodes` gets the transform to its parent that stands beside it. What is
+    /// known of the meshes stays; what depends on where they are is found out anew when it is
+    /// needed.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a node that is not there, and for a transform that is not affine; nothing is moved then.
+    /// [`Error::Scene`] for a node that is not there, and for a transform that is not affine;
+    /// nothing is moved then.
     pub fn place(&mut self, nodes: &[(u32, DMat4)]) -> Result<(), Error> {
         let count = self.scene.nodes.len();
         for (node, transform) in nodes {
@@ -142,7 +159,9 @@ impl Session {
                 return Err(Error::Scene(format!("there is no node {node}, there are {count}")));
             }
             if !transform.is_finite() || transform.row(3) != DVec4::W {
-                return Err(Error::Scene(format!("the transform of node {node} is no finite affine matrix")));
+                return Err(Error::Scene(format!(
+                    "the transform of node {node} is no finite affine matrix"
+                )));
             }
         }
 
@@ -157,7 +176,8 @@ impl Session {
         Ok(())
     }
 
-    /// Takes back a picture that the caller has done with; the next one of its size is made in the same memory.
+    /// Takes back a picture that the caller has done with; the next one of its size is made in the
+    /// same memory.
     pub fn recycle(&mut self, frame: Frame) {
         if let Some(color) = frame.color {
             self.spare_picture = Mutex::new(color.into_data());
@@ -181,12 +201,15 @@ impl Session {
 
     /// The cached values of type `T`, one for each mesh.
     pub fn per_mesh<T: Any + Send + Sync>(&self) -> Arc<PerMesh<T>> {
-        let Ok(values) = self.cache.get_or_build((), || Ok::<_, Infallible>(PerMesh::new(self.scene.meshes.len())));
+        let Ok(values) = self
+            .cache
+            .get_or_build((), || Ok::<_, Infallible>(PerMesh::new(self.scene.meshes.len())));
         values
     }
 
-    /// An instance's positions as they are brought to clip space, and by which matrix. A mesh far away from the origin of
-    /// its model is moved there first, which costs no digit; single precision would lose some as its products are added up.
+    /// An instance's positions as they are brought to clip space, and by which matrix. A mesh far
+    /// away from the origin of its model is moved there first, which costs no digit; single
+    /// precision would lose some as its products are added up.
     pub(crate) fn placed_positions<'a>(
         &'a self,
         instance: &'a Instance,
@@ -208,13 +231,15 @@ impl Session {
         self.planes.get_or_init(|| SharedPlanes::new(&self.world, workers))
     }
 
-    /// Whether a mesh is closed, consistently wound and wound outwards, and which of its bodies are.
+    /// Whether a mesh is closed, consistently wound and wound outwards, and which of its bodies
+    /// are.
     pub fn solids(&self, mesh: u32, workers: &Workers) -> &Solids {
         let known = &self.meshes[mesh as usize].solids;
         known.get_or_init(|| Solids::of(&self.scene.meshes[mesh as usize], workers))
     }
 
-    /// Whether back faces of a mesh can never be seen from outside: neither past its skin nor through a window in it.
+    /// Whether back faces of a mesh can never be seen from outside: neither past its skin nor
+    /// through a window in it.
     pub fn is_solid(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> bool {
         // What is opaque is asked about first: of a mesh with windows that is known already.
         let opaque = self.opaque_solids(mesh, transparency, workers);
@@ -223,8 +248,15 @@ impl Session {
     }
 
     /// Which of a mesh's opaque triangles are never seen from behind, from outside the mesh.
-    pub fn back_faces(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> BackFaces<'_> {
-        let solids = self.opaque_solids(mesh, transparency, workers).unwrap_or_else(|| self.solids(mesh, workers));
+    pub fn back_faces(
+        &self,
+        mesh: u32,
+        transparency: Transparency,
+        workers: &Workers,
+    ) -> BackFaces<'_> {
+        let solids = self
+            .opaque_solids(mesh, transparency, workers)
+            .unwrap_or_else(|| self.solids(mesh, workers));
         match solids.some() {
             _ if backface::applies(solids.solidity) => BackFaces::Dropped,
             Some(triangles) => BackFaces::DroppedOf(triangles),
@@ -232,37 +264,49 @@ impl Session {
         }
     }
 
-    /// The solids that what is opaque of a mesh makes by itself, if that is not all and not nothing.
-    fn opaque_solids(&self, mesh: u32, transparency: Transparency, workers: &Workers) -> Option<&Solids> {
-        let known = &self.meshes[mesh as usize].opaque_solids[usize::from(!transparency.sees_through())];
+    /// The solids that what is opaque of a mesh makes by itself, if that is not all and not
+    /// nothing.
+    fn opaque_solids(
+        &self,
+        mesh: u32,
+        transparency: Transparency,
+        workers: &Workers,
+    ) -> Option<&Solids> {
+        let known =
+            &self.meshes[mesh as usize].opaque_solids[usize::from(!transparency.sees_through())];
         let mesh = &self.scene.meshes[mesh as usize];
         let make = || {
             let is_opaque = |part: &&Part| {
                 let material = part.material.and_then(|m| self.scene.materials.get(m as usize));
                 !is_layered(material, transparency)
             };
-            let opaque: Vec<_> = mesh.parts.iter().filter(is_opaque).map(|part| part.triangles.clone()).collect();
+            let opaque: Vec<_> =
+                mesh.parts.iter().filter(is_opaque).map(|part| part.triangles.clone()).collect();
             let count: usize = opaque.iter().map(|triangles| triangles.len()).sum();
-            (count != 0 && count != mesh.triangles.len()).then(|| Solids::of_some(mesh, &opaque, workers))
+            (count != 0 && count != mesh.triangles.len())
+                .then(|| Solids::of_some(mesh, &opaque, workers))
         };
         known.get_or_init(make).as_ref()
     }
 
-    /// Forgets what the steps of a picture have found out for earlier ones: each picture of the steps is the first. Light from
-    /// other surfaces stays, which has no steps, and the background.
+    /// Forgets what the steps of a picture have found out for earlier ones: each picture of the
+    /// steps is the first. Light from other surfaces stays, which has no steps, and the background.
     pub(crate) fn forget(&mut self) {
-        self.meshes = Arc::new(self.scene.meshes.iter().map(|_| MeshKnowledge::default()).collect());
+        self.meshes =
+            Arc::new(self.scene.meshes.iter().map(|_| MeshKnowledge::default()).collect());
         self.planes = OnceLock::new();
         self.cache.forget_frames();
     }
 
-    /// How many things were found out for earlier pictures: properties of meshes, trees, structures for rays, shadows.
+    /// How many things were found out for earlier pictures: properties of meshes, trees, structures
+    /// for rays, shadows.
     pub(crate) fn known(&self) -> u64 {
         let of_meshes: usize = self.meshes.iter().map(MeshKnowledge::count).sum();
         (of_meshes + self.cache.results()) as u64
     }
 
-    /// The tangents of a mesh: its own, or along a set of texture coordinates, if it has these and normals.
+    /// The tangents of a mesh: its own, or along a set of texture coordinates, if it has these and
+    /// normals.
     pub(crate) fn tangents(&self, mesh: u32, set: u32) -> Option<&Attribute<[f32; 4]>> {
         if let Some(own) = &self.scene.meshes[mesh as usize].tangents {
             return Some(own);
@@ -271,8 +315,8 @@ impl Session {
         known.get_or_init(|| tangents(&self.scene.meshes[mesh as usize], set as usize)).as_ref()
     }
 
-    /// For each triangle where its body is; asked of transparent materials where any bends light. One whose index is 1 is a
-    /// medium, too: a bubble in glass.
+    /// For each triangle where its body is; asked of transparent materials where any bends light.
+    /// One whose index is 1 is a medium, too: a bubble in glass.
     pub(crate) fn sides(&self, mesh: u32, workers: &Workers) -> &[Side] {
         let known = &self.meshes[mesh as usize].sides;
         let is_medium = |material: Option<u32>| {
@@ -306,6 +350,8 @@ impl Session {
 
     pub(crate) fn edges(&self, mesh: u32, workers: &Workers) -> &[Edge] {
         let known = &self.meshes[mesh as usize].edges;
-        known.get_or_init(|| vitral_scene::edges::edges(&self.scene.meshes[mesh as usize], 0.0, workers))
+        known.get_or_init(|| {
+            vitral_scene::edges::edges(&self.scene.meshes[mesh as usize], 0.0, workers)
+        })
     }
 }

@@ -3,8 +3,9 @@
 use serde::Serialize;
 use vitral_raster::GeometryCounters;
 
-/// Declares a group of counters, each once: the struct, which is written under the same names in kebab case, the sum
-/// with another group, and what each means. A `count` is added up. A `number` and a `measure` are set by whoever knows them.
+/// Declares a group of counters, each once: the struct, which is written under the same names in
+/// kebab case, the sum with another group, and what each means. A `count` is added up. A `number`
+/// and a `measure` are set by whoever knows them.
 macro_rules! counters {
     (
         $(#[$about:meta])*
@@ -49,7 +50,8 @@ pub struct Stats {
     pub geometry: GeometryStats,
     /// What finding the visible surfaces took.
     pub visibility: VisibilityCounters,
-    /// Saved by frame coherence: what earlier pictures found out (properties of meshes, trees, structures for rays).
+    /// Saved by frame coherence: what earlier pictures found out (properties of meshes, trees,
+    /// structures for rays).
     pub reused: u64,
     /// Rays that were followed on from what is seen.
     pub tracing: TracingCounters,
@@ -75,7 +77,8 @@ pub struct CullCounters {
     pub triangles: u64,
     /// Triangles thrown away with the box round them.
     pub triangles_culled: u64,
-    /// Instances of which faces turned away are thrown away: all, or those of the bodies that are solid.
+    /// Instances of which faces turned away are thrown away: all, or those of the bodies that are
+    /// solid.
     pub back_face_culled_instances: u64,
 }
 
@@ -107,24 +110,28 @@ counters! {
 }
 
 counters! {
-    /// What finding the visible surfaces took, each algorithm in its own terms; 0 where an algorithm has no such thing.
+    /// What finding the visible surfaces took, each algorithm in its own terms; 0 where an
+    /// algorithm has no such thing.
     #[derive(Eq)]
     VisibilityCounters += Self {
-        /// Comparisons of two facets' depths, at a sample, over a span or over a window. The z-buffer does not count its own.
+        /// Comparisons of two facets' depths, at a sample, over a span or over a window. The
+        /// z-buffer does not count its own.
         depth_comparisons: count,
-        /// Saved by face coherence: looks at a face whose depth had been brought to the line for another.
+        /// Saved by face coherence: looks at a face whose depth had been brought to the line for
+        /// another.
         saved_by_face: count,
         /// Saved by edge coherence: crossings stepped from the line before.
         saved_by_edge: count,
-        /// Saved by implied-edge coherence: samples at which two depths were not compared, since the line where their faces
-        /// penetrate each other lies beside.
+        /// Saved by implied-edge coherence: samples at which two depths were not compared, since
+        /// the line where their faces penetrate each other lies beside.
         saved_by_implied_edge: count,
         /// Saved by scan-line coherence: edges that stayed in the table.
         saved_by_scan_line: count,
-        /// Saved by area coherence: pixels decided with their neighbours, inherited surrounders, rays that went together or met
-        /// what the one before met.
+        /// Saved by area coherence: pixels decided with their neighbours, inherited surrounders,
+        /// rays that went together or met what the one before met.
         saved_by_area: count,
-        /// Saved by depth coherence: polygons passed over because something nearer hides them in a whole span or window.
+        /// Saved by depth coherence: polygons passed over because something nearer hides them in a
+        /// whole span or window.
         saved_by_depth: count,
         /// Saved by frame coherence: nodes of a tree that was there already.
         saved_by_frame: count,
@@ -134,7 +141,8 @@ counters! {
         spans: count,
         /// Scan-line: spans, or parts of them, that had to be decided sample by sample.
         penetrated_spans: count,
-        /// Scan-line: lines found along which two polygons penetrate each other, or would if they went on.
+        /// Scan-line: lines found along which two polygons penetrate each other, or would if they
+        /// went on.
         implied_edges: count,
         /// Area subdivision: windows looked at.
         windows: count,
@@ -144,11 +152,13 @@ counters! {
         window_tests: count,
         /// Ray casting and brute force: rays, one for each sample.
         rays: count,
-        /// Ray casting: boxes of a tree, or cells of a grid, tested against a ray or a packet of rays.
+        /// Ray casting: boxes of a tree, or cells of a grid, tested against a ray or a packet of
+        /// rays.
         box_tests: count,
         /// Ray casting and brute force: pairs of a ray and a facet on the screen that were tested.
         triangle_tests: count,
-        /// Ray casting: pairs of a ray and a facet on the screen that bounding volumes left untested.
+        /// Ray casting: pairs of a ray and a facet on the screen that bounding volumes left
+        /// untested.
         tests_saved: count,
         /// BSP: nodes of the tree.
         tree_nodes: count,
@@ -166,9 +176,11 @@ counters! {
         by_x_extent: count,
         /// Painter: pairs decided by the second test, extents in y.
         by_y_extent: count,
-        /// Painter: pairs decided by the third test, the farther polygon lies behind the nearer one's plane, or in it.
+        /// Painter: pairs decided by the third test, the farther polygon lies behind the nearer
+        /// one's plane, or in it.
         by_plane_of_nearer: count,
-        /// Painter: pairs decided by the fourth test, the nearer polygon lies in front of the farther one's plane.
+        /// Painter: pairs decided by the fourth test, the nearer polygon lies in front of the
+        /// farther one's plane.
         by_plane_of_farther: count,
         /// Painter: pairs decided by the fifth test, the projections do not overlap.
         by_projection: count,
@@ -188,17 +200,20 @@ counters! {
         overdrawn: count,
         /// List priority: samples where the depth function contradicted the list.
         overruled: count,
-        /// List priority: those of them with at least 2^-20 of the depth range between the two surfaces.
+        /// List priority: those of them with at least 2^-20 of the depth range between the two
+        /// surfaces.
         overruled_far: count,
     }
 }
 
 counters! {
-    /// Rays that were followed on from what is seen: to mirror images, through transparent surfaces, to lights.
+    /// Rays that were followed on from what is seen: to mirror images, through transparent
+    /// surfaces, to lights.
     TracingCounters += Self {
         /// Rays that look for the first thing they meet.
         rays: count,
-        /// Rays to lights, which end at the first opaque thing; from what is seen and from what rays meet.
+        /// Rays to lights, which end at the first opaque thing; from what is seen and from what
+        /// rays meet.
         shadow_rays: count,
         /// Rays that met something.
         hits: count,
@@ -232,7 +247,8 @@ impl TracingCounters {
     }
 }
 
-/// What solving for radiosity took. Light is in units of intensity times area, all colours together.
+/// What solving for radiosity took. Light is in units of intensity times area, all colours
+/// together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct RadiosityCounters {
@@ -275,8 +291,8 @@ counters! {
     }
 }
 
-/// Seconds a stage, which together are the whole but for a few allocations. The first ones are those of the colour picture;
-/// rasterising and shading share the tiles, so they count as one.
+/// Seconds a stage, which together are the whole but for a few allocations. The first ones are
+/// those of the colour picture; rasterising and shading share the tiles, so they count as one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct StageSeconds {

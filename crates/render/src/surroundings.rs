@@ -8,10 +8,12 @@ use vitral_scene::Axis;
 /// See the module.
 #[derive(Clone, Debug)]
 pub struct Surroundings {
-    /// Which way is up, world space: there is the upper edge of the image, and opposite is the ground.
+    /// Which way is up, world space: there is the upper edge of the image, and opposite is the
+    /// ground.
     pub up: Axis,
-    /// What metallic-roughness materials mirror and are lit by instead of the soft sky, and what mirrored and bent rays see that
-    /// leave the scene. Its middle lies behind the model, seen from the front.
+    /// What metallic-roughness materials mirror and are lit by instead of the soft sky, and what
+    /// mirrored and bent rays see that leave the scene. Its middle lies behind the model, seen from
+    /// the front.
     pub image: Option<Arc<EnvironmentMap>>,
     /// Factors of the diffuse and of the mirrored light of the image.
     pub factors: [f32; 2],
@@ -39,8 +41,9 @@ mod tests {
 
     #[test]
     fn the_image_stands_on_the_ground() {
-        let turned =
-            |up: Axis, direction: DVec3| Surroundings { up, ..Surroundings::default() }.image_from_world() * direction;
+        let turned = |up: Axis, direction: DVec3| {
+            Surroundings { up, ..Surroundings::default() }.image_from_world() * direction
+        };
         assert_eq!(turned(Axis::PlusY, DVec3::new(1.0, 2.0, 3.0)), DVec3::new(1.0, 2.0, 3.0));
         assert_eq!(turned(Axis::PlusZ, DVec3::new(1.0, 2.0, 3.0)), DVec3::new(1.0, 3.0, -2.0));
         for up in [Axis::PlusX, Axis::MinusX, Axis::MinusY, Axis::MinusZ] {

@@ -1,9 +1,10 @@
 //! The steps of the algorithms, for whoever wants to look on.
 //!
-//! An [`Observer`] in the [`Execution`](crate::Execution) is told each step as it is done, from any thread: in one tile or
-//! band they come in order, those of different tiles mix ([`numbered`] puts them in the algorithm's own). Nobody listening costs
-//! nothing that can be measured: the question is asked once for a window, a line, a polygon of a list, a ray or a block of rays,
-//! never in a loop within.
+//! An [`Observer`] in the [`Execution`](crate::Execution) is told each step as it is done, from any
+//! thread: in one tile or band they come in order, those of different tiles mix ([`numbered`] puts
+//! them in the algorithm's own). Nobody listening costs nothing that can be measured: the question
+//! is asked once for a window, a line, a polygon of a list, a ray or a block of rays, never in a
+//! loop within.
 //!
 //! [`picture`] draws the steps over the image.
 
@@ -33,7 +34,8 @@ pub trait Observer: std::fmt::Debug + Send + Sync {
         false
     }
 
-    /// Whether it reads [`Step::NearestFirst`] and [`Step::Clip`], whose outlines grow with the square of the scene.
+    /// Whether it reads [`Step::NearestFirst`] and [`Step::Clip`], whose outlines grow with the
+    /// square of the scene.
     fn reads_clips(&self) -> bool {
         true
     }
@@ -100,10 +102,11 @@ pub struct Span {
 pub enum Passed {
     /// There is no structure.
     Nowhere,
-    /// Nodes of a tree of boxes, or of a partition of space, that were opened, numbered from the root, 0, each before those below it.
+    /// Nodes of a tree of boxes, or of a partition of space, that were opened, numbered from the
+    /// root, 0, each before those below it.
     Nodes(Vec<u32>),
-    /// Cells of an octree that were opened, by the way down from the root, which has no name: a digit a level, the sum
-    /// of 1 for the larger x, 2 for the larger y, 4 for the larger z.
+    /// Cells of an octree that were opened, by the way down from the root, which has no name: a
+    /// digit a level, the sum of 1 for the larger x, 2 for the larger y, 4 for the larger z.
     Octants(Vec<String>),
     /// Cells of a grid along x, y and z.
     Cells(Vec<[u32; 3]>),
@@ -117,9 +120,15 @@ impl Passed {
         const MAX_NAMED: usize = 16;
         let (what, mut names): (_, Vec<String>) = match self {
             Self::Nowhere => return String::new(),
-            Self::Nodes(nodes) => ("node(s)", nodes.iter().take(MAX_NAMED).map(u32::to_string).collect()),
-            Self::Objects(objects) => ("object(s)", objects.iter().take(MAX_NAMED).map(u32::to_string).collect()),
-            Self::Octants(cells) => ("octant(s)", cells.iter().take(MAX_NAMED).map(|c| format!("\"{c}\"")).collect()),
+            Self::Nodes(nodes) => {
+                ("node(s)", nodes.iter().take(MAX_NAMED).map(u32::to_string).collect())
+            }
+            Self::Objects(objects) => {
+                ("object(s)", objects.iter().take(MAX_NAMED).map(u32::to_string).collect())
+            }
+            Self::Octants(cells) => {
+                ("octant(s)", cells.iter().take(MAX_NAMED).map(|c| format!("\"{c}\"")).collect())
+            }
             Self::Cells(cells) => {
                 let name = |[x, y, z]: &[u32; 3]| format!("{x},{y},{z}");
                 ("cell(s)", cells.iter().take(MAX_NAMED).map(name).collect())
@@ -208,12 +217,13 @@ pub enum Step {
         /// What is left of it; nothing with fewer than three corners.
         after: Vec<[f32; 4]>,
     },
-    /// Z-buffer: a facet came, in the order of the scene, and its depth was compared at the first samples that it covers.
+    /// Z-buffer: a facet came, in the order of the scene, and its depth was compared at the first
+    /// samples that it covers.
     Drawn {
         /// Id of the facet.
         facet: u32,
-        /// Where it is nearer than what was there, and stays: runs of pixels, each by its row, its first and the one behind its
-        /// last.
+        /// Where it is nearer than what was there, and stays: runs of pixels, each by its row, its
+        /// first and the one behind its last.
         stays: Vec<[u32; 3]>,
         /// Where it is hidden by what was there.
         hidden: Vec<[u32; 3]>,
@@ -237,8 +247,9 @@ pub enum Step {
     Window {
         /// Left, top, width, height.
         pixels: [u32; 4],
-        /// The way down from the whole picture: for each cut the quarter, `0` top left, `1` top right, `2` bottom left, `3`
-        /// bottom right. Its parent is the window without the last digit.
+        /// The way down from the whole picture: for each cut the quarter, `0` top left, `1` top
+        /// right, `2` bottom left, `3` bottom right. Its parent is the window without the last
+        /// digit.
         path: String,
         /// How many polygons of the list that was handed down have no sample in it.
         disjoint: u32,
@@ -248,7 +259,8 @@ pub enum Step {
         intersecting: Vec<u32>,
         /// Of those that cover it.
         surrounding: Vec<u32>,
-        /// Of those that are taken off the list, as one that surrounds the window hides them in all of it.
+        /// Of those that are taken off the list, as one that surrounds the window hides them in all
+        /// of it.
         hidden: Vec<u32>,
         /// What that means.
         verdict: WindowVerdict,
@@ -261,8 +273,8 @@ pub enum Step {
         rows: [u32; 2],
         /// The polygon table.
         polygons: Vec<TablePolygon>,
-        /// The edge table, from top to bottom; lines on which no edge begins have no bucket. Edges that begin above the band
-        /// are in the bucket of its first line.
+        /// The edge table, from top to bottom; lines on which no edge begins have no bucket. Edges
+        /// that begin above the band are in the bucket of its first line.
         buckets: Vec<Bucket>,
     },
     /// Scan-line: a line of samples was swept.
@@ -295,7 +307,8 @@ pub enum Step {
         boxes: u64,
         /// How many tests of facets there were.
         facets: u64,
-        /// The facets of these tests in order, ray after ray; none for brute force, which tests all in the order of their numbers.
+        /// The facets of these tests in order, ray after ray; none for brute force, which tests all
+        /// in the order of their numbers.
         tested: Vec<u32>,
         /// What they went through, each part once.
         through: Passed,
@@ -316,7 +329,8 @@ pub enum Step {
         distance: Option<f64>,
         /// How red, green and blue of what it meets count in the pixel.
         weight: [f32; 3],
-        /// What the surface's own light, or the background, adds to the pixel, before that is encoded.
+        /// What the surface's own light, or the background, adds to the pixel, before that is
+        /// encoded.
         light: [f32; 3],
     },
     /// Ray tracing: a ray goes on from the surface that it met.
@@ -336,8 +350,8 @@ pub enum Step {
         /// How red, green and blue of what it will meet count in the pixel.
         weight: [f32; 3],
     },
-    /// BSP: a node of the tree, each after the one that it hangs below. A tree that is there already is told like one that was
-    /// just built.
+    /// BSP: a node of the tree, each after the one that it hangs below. A tree that is there
+    /// already is told like one that was just built.
     TreeNode {
         /// Its number. The root is 0.
         node: u32,
@@ -345,7 +359,8 @@ pub enum Step {
         above: Option<u32>,
         /// The side of that node's plane that it divides.
         side: Option<PlaneSide>,
-        /// The first facet of the polygon that gave the plane, the splitter; none for a plane across an axis.
+        /// The first facet of the polygon that gave the plane, the splitter; none for a plane
+        /// across an axis.
         splitter: Option<u32>,
         /// `a x + b y + c z + d = 0`, world units; `(a, b, c)` is unit and points to the front.
         plane: [f64; 4],
@@ -358,8 +373,8 @@ pub enum Step {
         /// The polygons that cross the plane and are cut, the lowest facet first.
         cut: PolygonSet,
     },
-    /// BSP: the walk through the tree comes to a node, whose polygons are next in the list. All nodes on the far side of its
-    /// plane came before, all on the viewer's side follow.
+    /// BSP: the walk through the tree comes to a node, whose polygons are next in the list. All
+    /// nodes on the far side of its plane came before, all on the viewer's side follow.
     TreeVisit {
         /// Its place in the walk, 0 for the farthest node.
         order: u32,
@@ -377,7 +392,8 @@ pub enum Step {
         /// The polygons, the farthest first.
         polygons: Vec<ListedPolygon>,
     },
-    /// Painter: the farthest polygon that is left has its turn, and is compared with those that it might cover.
+    /// Painter: the farthest polygon that is left has its turn, and is compared with those that it
+    /// might cover.
     Turn {
         /// Its number.
         polygon: u32,
@@ -399,7 +415,8 @@ pub enum Step {
         /// What it decided: before lets P be painted before Q.
         verdict: ListVerdict,
     },
-    /// Painter: a polygon has to be painted before one that was farther in the first order. It is moved and marked.
+    /// Painter: a polygon has to be painted before one that was farther in the first order. It is
+    /// moved and marked.
     Moved {
         /// The number of the polygon that is moved.
         polygon: u32,
@@ -410,7 +427,8 @@ pub enum Step {
         /// The first facet of that one.
         before: u32,
     },
-    /// Painter: polygons wait for each other in a circle. Each waits for the next one, the last for the first.
+    /// Painter: polygons wait for each other in a circle. Each waits for the next one, the last for
+    /// the first.
     Circle {
         /// Their numbers.
         polygons: Vec<u32>,
@@ -445,7 +463,8 @@ pub enum Step {
     Piece {
         /// The place, 0 for the farthest.
         order: u32,
-        /// The number of the polygon, or of the part: painter's as in the steps before, a BSP tree's as it is kept in the tree.
+        /// The number of the polygon, or of the part: painter's as in the steps before, a BSP
+        /// tree's as it is kept in the tree.
         polygon: u32,
         /// The number of the node in whose plane it lies; none in a painter's list.
         node: Option<u32>,
@@ -468,8 +487,8 @@ pub enum Step {
         /// The polygons in the order, with what they were sorted by.
         polygons: Vec<SortedPolygon>,
     },
-    /// Weiler–Atherton: a list was clipped with a polygon. The inside list is treated before the outside list: clips of the
-    /// inside list follow, then that of the outside list.
+    /// Weiler–Atherton: a list was clipped with a polygon. The inside list is treated before the
+    /// outside list: clips of the inside list follow, then that of the outside list.
     Clip {
         /// The clip's own number, from 0 in the order of steps.
         clip: u32,
@@ -479,16 +498,18 @@ pub enum Step {
         facet: u32,
         /// The clipping polygon's corners in order, clockwise, as it came in, pixels.
         outline: Vec<[f32; 2]>,
-        /// Polygons of the list with an area inside the clipping polygon, in the list's order, the clipping polygon among
-        /// them.
+        /// Polygons of the list with an area inside the clipping polygon, in the list's order, the
+        /// clipping polygon among them.
         cut: Vec<CutPolygon>,
         /// First facets of the inside list, in order: what is inside and not hidden.
         inside: Vec<u32>,
-        /// First facets of the outside list, in order, at most [`MAX_LISTED`](outlines::MAX_LISTED) of them.
+        /// First facets of the outside list, in order, at most [`MAX_LISTED`](outlines::MAX_LISTED)
+        /// of them.
         outside: Vec<u32>,
         /// How many polygons the outside list has.
         outside_count: u32,
-        /// First facets of polygons with a part that was removed, since the clipping polygon hides it.
+        /// First facets of polygons with a part that was removed, since the clipping polygon hides
+        /// it.
         hidden: Vec<u32>,
         /// The preliminary order erred: the inside list is clipped again.
         again: bool,
@@ -531,7 +552,12 @@ pub(crate) mod tests {
         let window = window([8, 4, 4, 2], WindowVerdict::Cut);
         assert!(window.concerns([8, 4]) && window.concerns([11, 5]));
         let drawn = Step::Drawn { facet: 0, stays: vec![[2, 1, 3]], hidden: vec![[2, 3, 4]] };
-        assert!(drawn.concerns([1, 2]) && drawn.concerns([3, 2]) && !drawn.concerns([4, 2]) && !drawn.concerns([1, 1]));
+        assert!(
+            drawn.concerns([1, 2])
+                && drawn.concerns([3, 2])
+                && !drawn.concerns([4, 2])
+                && !drawn.concerns([1, 1])
+        );
         assert!(!window.concerns([12, 4]) && !window.concerns([8, 6]) && !window.concerns([7, 4]));
         let outline = vec![[0.0, 0.0], [10.0, 0.0], [0.0, 10.0]];
         let piece = Step::Piece { order: 1, polygon: 5, node: None, facet: 2, cuts: 0, outline };

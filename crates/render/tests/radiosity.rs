@@ -11,8 +11,8 @@ use vitral_render::radiosity::patch::Trees;
 use vitral_render::radiosity::{RESIDUAL, Solution, form_factor, gather, progressive};
 use vitral_render::raytrace::triangles::Triangles;
 use vitral_render::{
-    Background, ColorSpace, Execution, Global, GlobalSettings, PictureSettings, Session, Settings, ShadowSettings,
-    Shadows, Shot, Surroundings, render,
+    Background, ColorSpace, Execution, Global, GlobalSettings, PictureSettings, Session, Settings,
+    ShadowSettings, Shadows, Shot, Surroundings, render,
 };
 use vitral_scene::builtin::{self, solids};
 use vitral_scene::{Attribute, Camera, Mesh, Projection, Scene};
@@ -28,12 +28,21 @@ fn room(size: DVec3, reflectance: f32, emission: [f32; 6]) -> Scene {
     mesh.parts = (0..6u32)
         .map(|wall| {
             let material = Material {
-                reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [reflectance; 3], ks: [0.0; 3], shininess: 1.0 },
+                reflectance: Reflectance::Phong {
+                    ka: [0.0; 3],
+                    kd: [reflectance; 3],
+                    ks: [0.0; 3],
+                    shininess: 1.0,
+                },
                 emission: [emission[wall as usize]; 3],
                 ..Material::default()
             };
             let material = Some(scene.add_material(material));
-            vitral_scene::Part { name: format!("wall {wall}"), triangles: 2 * wall..2 * wall + 2, material }
+            vitral_scene::Part {
+                name: format!("wall {wall}"),
+                triangles: 2 * wall..2 * wall + 2,
+                material,
+            }
         })
         .collect();
     scene.add_mesh(mesh, DMat4::IDENTITY);
@@ -64,10 +73,16 @@ fn a_furnace_is_the_same_everywhere() {
     }
     let radiosity = gather::solve(&room, &rows, 1e-12);
     assert!(radiosity.iter().step_by(2).flatten().all(|b| (b - 2.0).abs() < 1e-9));
-    let progress = progressive::solve(&room, &[hemicube()], 1e-6, u64::MAX, &Execution::default()).unwrap();
+    let progress =
+        progressive::solve(&room, &[hemicube()], 1e-6, u64::MAX, &Execution::default()).unwrap();
     let mean = |k: usize| {
         let area: f64 = room.elements.iter().map(|e| e.area).sum();
-        room.elements.iter().zip(progress.irradiance.iter().step_by(2)).map(|(e, i)| i[k] * e.area).sum::<f64>() / area
+        room.elements
+            .iter()
+            .zip(progress.irradiance.iter().step_by(2))
+            .map(|(e, i)| i[k] * e.area)
+            .sum::<f64>()
+            / area
     };
     assert!((mean(0) - 2.0).abs() < 1e-5 && (mean(2) - 2.0).abs() < 1e-5, "{}", mean(0));
 }
@@ -75,15 +90,21 @@ fn a_furnace_is_the_same_everywhere() {
 #[test]
 fn light_is_neither_made_nor_lost() {
     let room = enclosure(room(dvec3(1.0, 0.8, 1.2), 0.6, [0.0, 0.0, 3.0, 0.0, 0.0, 0.0]), 0.3);
-    let progress = progressive::solve(&room, &[hemicube()], 1e-5, u64::MAX, &Execution::default()).unwrap();
+    let progress =
+        progressive::solve(&room, &[hemicube()], 1e-5, u64::MAX, &Execution::default()).unwrap();
     assert!(
-        (progress.absorbed + progress.emitted * progress.residual - progress.emitted).abs() < 1e-9 * progress.emitted
+        (progress.absorbed + progress.emitted * progress.residual - progress.emitted).abs()
+            < 1e-9 * progress.emitted
     );
     assert!(progress.escaped.abs() < 1e-9 * progress.emitted, "{}", progress.escaped);
     // Reflected light is what arrived, times the reflectance, on top of what was sent out.
     let area: f64 = room.elements.iter().map(|e| e.area).sum();
-    let arrived: f64 =
-        room.elements.iter().zip(progress.irradiance.iter().step_by(2)).map(|(e, i)| i[1] * e.area).sum();
+    let arrived: f64 = room
+        .elements
+        .iter()
+        .zip(progress.irradiance.iter().step_by(2))
+        .map(|(e, i)| i[1] * e.area)
+        .sum();
     let emitted = progress.emitted / 3.0;
     assert!((arrived * 0.4 / emitted - 1.0).abs() < 1e-4, "{arrived} {emitted} {area}");
 }
@@ -93,17 +114,25 @@ fn form_factors_of_hemicubes_are_those_of_the_formula_and_reciprocal() {
     let room = enclosure(room(dvec3(1.0, 1.0, 1.0), 0.5, [0.0; 6]), 0.8);
     let rows = gather::rows(&room, &hemicube(), &Execution::default()).unwrap();
     let corners = |e: usize| room.trees.places(room.elements[e].node);
-    let factor =
-        |i: usize, j: usize| rows[2 * i].iter().find(|(other, _)| *other as usize == 2 * j).map_or(0.0, |(_, f)| *f);
+    let factor = |i: usize, j: usize| {
+        rows[2 * i].iter().find(|(other, _)| *other as usize == 2 * j).map_or(0.0, |(_, f)| *f)
+    };
     let (mut worst, mut exact_worst) = (0.0f64, 0.0f64);
     for i in 0..room.elements.len() {
         let mut sum = 0.0;
-        for j in (0..room.elements.len()).filter(|&j| room.elements[j].normal.dot(room.elements[i].normal) < 0.9) {
+        for j in (0..room.elements.len())
+            .filter(|&j| room.elements[j].normal.dot(room.elements[i].normal) < 0.9)
+        {
             let analytic = form_factor::between(&corners(i), &corners(j));
             let back = form_factor::between(&corners(j), &corners(i));
-            exact_worst = exact_worst.max((room.elements[i].area * analytic - room.elements[j].area * back).abs());
+            exact_worst = exact_worst
+                .max((room.elements[i].area * analytic - room.elements[j].area * back).abs());
             sum += analytic;
-            let point = form_factor::from_point(room.elements[i].center, room.elements[i].normal, &corners(j));
+            let point = form_factor::from_point(
+                room.elements[i].center,
+                room.elements[i].normal,
+                &corners(j),
+            );
             worst = worst.max((point - factor(i, j)).abs());
         }
         assert!((sum - 1.0).abs() < 1e-9, "the row of element {i}: {sum}");
@@ -132,10 +161,15 @@ fn shooting_and_gathering_agree() {
 #[test]
 fn fewer_shots_are_made_up_for_by_the_ambient_term() {
     let room = enclosure(room(dvec3(1.0, 1.0, 1.0), 0.7, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]), 0.4);
-    let solve = |most| progressive::solve(&room, &[hemicube()], 1e-6, most, &Execution::default()).unwrap();
+    let solve =
+        |most| progressive::solve(&room, &[hemicube()], 1e-6, most, &Execution::default()).unwrap();
     let mean = |p: &progressive::Progress| {
-        let sum: f64 =
-            room.elements.iter().zip(p.irradiance.iter().step_by(2)).map(|(e, i)| (i[0] + p.ambient[0]) * e.area).sum();
+        let sum: f64 = room
+            .elements
+            .iter()
+            .zip(p.irradiance.iter().step_by(2))
+            .map(|(e, i)| (i[0] + p.ambient[0]) * e.area)
+            .sum();
         sum / 6.0
     };
     let (few, all) = (solve(40), solve(u64::MAX));
@@ -148,9 +182,16 @@ fn fewer_shots_are_made_up_for_by_the_ambient_term() {
 fn parallel_squares() -> Scene {
     let mut scene = Scene::default();
     let turned = DMat4::from_rotation_x(std::f64::consts::PI);
-    for (kd, emission, at) in [(0.0, 3.0, DMat4::from_translation(DVec3::Y) * turned), (0.9, 0.0, DMat4::IDENTITY)] {
+    for (kd, emission, at) in
+        [(0.0, 3.0, DMat4::from_translation(DVec3::Y) * turned), (0.9, 0.0, DMat4::IDENTITY)]
+    {
         let material = Some(scene.add_material(Material {
-            reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [kd; 3], ks: [0.0; 3], shininess: 1.0 },
+            reflectance: Reflectance::Phong {
+                ka: [0.0; 3],
+                kd: [kd; 3],
+                ks: [0.0; 3],
+                shininess: 1.0,
+            },
             emission: [emission; 3],
             ..Material::default()
         }));
@@ -164,12 +205,14 @@ fn parallel_squares() -> Scene {
 #[test]
 fn a_finished_solution_does_without_the_ambient_term() {
     let open = enclosure(parallel_squares(), 0.2);
-    let solve = |most| progressive::solve(&open, &[hemicube()], 0.01, most, &Execution::default()).unwrap();
+    let solve =
+        |most| progressive::solve(&open, &[hemicube()], 0.01, most, &Execution::default()).unwrap();
     assert!(solve(4).ambient[0] > 0.0, "light is on its way");
     let solution = solve(u64::MAX);
     assert_eq!(solution.ambient, [0.0; 3]);
     let receiving = || (0..open.elements.len()).filter(|&e| open.elements[e].center.y < 0.0);
-    let arriving: f64 = receiving().map(|e| solution.irradiance[2 * e][0] * open.elements[e].area).sum();
+    let arriving: f64 =
+        receiving().map(|e| solution.irradiance[2 * e][0] * open.elements[e].area).sum();
     let expected = 3.0 * 0.199_824_895_7;
     assert!((arriving / expected - 1.0).abs() < 0.01, "{arriving}, by the form factor {expected}");
 }
@@ -183,7 +226,9 @@ fn light_that_leaves_does_not_end_the_rest_early() {
     lamp.parts.iter_mut().for_each(|p| p.material = material);
     scene.add_mesh(lamp, DMat4::from_translation(DVec3::Y * 2.0));
     let both = enclosure(scene, 0.5);
-    let progress = progressive::solve(&both, &[hemicube()], RESIDUAL, u64::MAX, &Execution::default()).unwrap();
+    let progress =
+        progressive::solve(&both, &[hemicube()], RESIDUAL, u64::MAX, &Execution::default())
+            .unwrap();
     let inside = (0..both.elements.len()).filter(|&e| both.elements[e].center.y < 0.4);
     let light: Vec<f64> = inside.map(|e| progress.irradiance[2 * e][1]).collect();
     assert!(light.len() > 12 && light.iter().all(|i| (i / 0.4 - 1.0).abs() < 0.01), "{light:?}");
@@ -196,11 +241,21 @@ fn light_passes_where_surfaces_are_cut_out() {
     // A sheet between a lamp and the floor, of which the texture leaves one half.
     let lit = |alpha: [u8; 2]| {
         let mut scene = parallel_squares();
-        let texels = (0..64 * 4).map(|i| [255, 255, 255, alpha[usize::from(i % 64 >= 32)]]).collect();
-        let texture = Texture::new("holes".to_owned(), Plane::from_rows(64, 4, texels).unwrap(), Encoding::Linear);
+        let texels =
+            (0..64 * 4).map(|i| [255, 255, 255, alpha[usize::from(i % 64 >= 32)]]).collect();
+        let texture = Texture::new(
+            "holes".to_owned(),
+            Plane::from_rows(64, 4, texels).unwrap(),
+            Encoding::Linear,
+        );
         scene.textures.push(Arc::new(texture));
         let material = scene.add_material(Material {
-            reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess: 1.0 },
+            reflectance: Reflectance::Phong {
+                ka: [0.0; 3],
+                kd: [0.0; 3],
+                ks: [0.0; 3],
+                shininess: 1.0,
+            },
             alpha_mode: AlphaMode::Mask { cutoff: 0.5 },
             base_texture: Some(TextureRef::new(0)),
             ..Material::default()
@@ -209,7 +264,9 @@ fn light_passes_where_surfaces_are_cut_out() {
         sheet.parts.iter_mut().for_each(|p| p.material = Some(material));
         scene.add_mesh(sheet, DMat4::from_translation(DVec3::Y * 0.95));
         let room = enclosure(scene, 0.2);
-        let progress = progressive::solve(&room, &[hemicube()], 1e-3, u64::MAX, &Execution::default()).unwrap();
+        let progress =
+            progressive::solve(&room, &[hemicube()], 1e-3, u64::MAX, &Execution::default())
+                .unwrap();
         let floor = (0..room.elements.len()).filter(|&e| room.elements[e].center.y < -0.1);
         floor.map(|e| progress.irradiance[2 * e][0] * room.elements[e].area).sum::<f64>()
     };
@@ -218,9 +275,10 @@ fn light_passes_where_surfaces_are_cut_out() {
     assert!((half / open - 0.5).abs() < 0.05 && closed < 0.1 * open, "{half} {closed} of {open}");
 }
 
-/// Mean radiance of the box's walls: floor, ceiling, back, left, right, with what the blocks stand on. Made with Mitsuba
-/// 3.9.1 (`scalar_rgb`, integrator `path` to depth 100, the same triangles and colours): rays from 0.1 mm before the wall
-/// straight into it, at 160,000 stratified points a wall, one path each; standard errors are below 0.4 %.
+/// Mean radiance of the box's walls: floor, ceiling, back, left, right, with what the blocks stand
+/// on. Made with Mitsuba 3.9.1 (`scalar_rgb`, integrator `path` to depth 100, the same triangles
+/// and colours): rays from 0.1 mm before the wall straight into it, at 160,000 stratified points a
+/// wall, one path each; standard errors are below 0.4 %.
 const PATH_TRACED: [[f64; 3]; 5] = [
     [0.11264, 0.07485, 0.02033],
     [0.09560, 0.05733, 0.013453],
@@ -239,7 +297,12 @@ fn shining_floor(mirror: DMat4) {
     // A wall, askew to the patches of the floor, which it cuts in two.
     let mut scene = Scene::default();
     let material = |emission: f32| Material {
-        reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [0.5; 3], ks: [0.0; 3], shininess: 1.0 },
+        reflectance: Reflectance::Phong {
+            ka: [0.0; 3],
+            kd: [0.5; 3],
+            ks: [0.0; 3],
+            shininess: 1.0,
+        },
         emission: [emission; 3],
         ..Material::default()
     };
@@ -252,8 +315,14 @@ fn shining_floor(mirror: DMat4) {
         scene.add_mesh(plane, place * mirror);
     }
     let room = enclosure(scene, 0.4);
-    let progress = progressive::solve(&room, &[hemicube()], 1e-4, u64::MAX, &Execution::default()).unwrap();
-    let floor = [dvec3(-2.0, 0.0, 2.0), dvec3(2.0, 0.0, 2.0), dvec3(2.0, 0.0, -2.0), dvec3(-2.0, 0.0, -2.0)];
+    let progress =
+        progressive::solve(&room, &[hemicube()], 1e-4, u64::MAX, &Execution::default()).unwrap();
+    let floor = [
+        dvec3(-2.0, 0.0, 2.0),
+        dvec3(2.0, 0.0, 2.0),
+        dvec3(2.0, 0.0, -2.0),
+        dvec3(-2.0, 0.0, -2.0),
+    ];
     let mut low = 0;
     for (element, sides) in room.elements.iter().zip(progress.irradiance.chunks(2)) {
         // The scene's middle is as high as the wall's.
@@ -292,7 +361,8 @@ fn the_cornell_box_is_as_bright_as_by_path_tracing() {
     let trees = Trees::new(session.world().facet_count, corners, 0.06, 1 << 20).unwrap();
     let execution = Execution::default();
     let room = Enclosure::new(trees, &session, &[], &Settings::default(), &execution).unwrap();
-    let hemicubes = [32, 64, 128, 256, 512].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
+    let hemicubes =
+        [32, 64, 128, 256, 512].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
     let progress = progressive::solve(&room, &hemicubes, RESIDUAL, u64::MAX, &execution).unwrap();
     for (wall, expected) in PATH_TRACED.iter().enumerate() {
         let (mut sum, mut area) = ([0.0; 3], 0.0);
@@ -324,14 +394,18 @@ fn hemicubes_by_the_light_that_is_sent_are_as_good_as_fine_ones_for_all() {
     let execution = Execution::default();
     let room = Enclosure::new(trees, &session, &[], &Settings::default(), &execution).unwrap();
     assert!((500..700).contains(&room.patches.len()), "{}", room.patches.len());
-    let hemicubes = [16, 32, 64, 128, 256].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
-    let solve = |hemicubes| progressive::solve(&room, hemicubes, 0.01, u64::MAX, &execution).unwrap();
+    let hemicubes =
+        [16, 32, 64, 128, 256].map(|side| Hemicube::new(side, session.world().bounds.diagonal()));
+    let solve =
+        |hemicubes| progressive::solve(&room, hemicubes, 0.01, u64::MAX, &execution).unwrap();
     let fine = solve(&hemicubes[4..]);
     // The mean difference of irradiance, as a part of the mean irradiance.
     let difference = |other: &progressive::Progress| {
         let areas = room.elements.iter().flat_map(|e| [e.area; 2]);
         let pairs = areas.zip(fine.irradiance.iter().zip(&other.irradiance));
-        let of = |value: fn(f64, f64) -> f64| pairs.clone().map(|(area, (a, b))| value(a[1], b[1]) * area).sum::<f64>();
+        let of = |value: fn(f64, f64) -> f64| {
+            pairs.clone().map(|(area, (a, b))| value(a[1], b[1]) * area).sum::<f64>()
+        };
         of(|a, b| (a - b).abs()) / of(|a, _| a)
     };
     let (by_light, coarse) = (difference(&solve(&hemicubes)), difference(&solve(&hemicubes[..1])));
@@ -353,7 +427,11 @@ fn settings() -> Settings {
             background: Background::Color { color: [0.0; 3] },
             ..PictureSettings::default()
         },
-        global: GlobalSettings { model: Global::Radiosity, patch_size: Some(0.21), ..GlobalSettings::default() },
+        global: GlobalSettings {
+            model: Global::Radiosity,
+            patch_size: Some(0.21),
+            ..GlobalSettings::default()
+        },
         ..Settings::default()
     }
 }
@@ -363,7 +441,12 @@ fn one_solution_serves_all_cameras_threads_and_files() {
     let scene = builtin::scene("cornell").unwrap();
     let (mut session, camera) = look_in(&scene);
     let lights = session.world().lights.clone();
-    let shot = |camera| Shot { camera, lights: &lights, ambient: [0.3; 3], surroundings: Surroundings::default() };
+    let shot = |camera| Shot {
+        camera,
+        lights: &lights,
+        ambient: [0.3; 3],
+        surroundings: Surroundings::default(),
+    };
     let execution = Execution::default();
     let first = render(&mut session, &shot(camera), &settings(), &execution).unwrap();
     assert!(
@@ -371,7 +454,10 @@ fn one_solution_serves_all_cameras_threads_and_files() {
         "{:?}",
         first.stats.radiosity
     );
-    assert!(first.stats.radiosity.elements > first.stats.radiosity.patches, "some patches were cut");
+    assert!(
+        first.stats.radiosity.elements > first.stats.radiosity.patches,
+        "some patches were cut"
+    );
     let other = Camera { position: camera.position + dvec3(0.1, 0.05, 0.0), ..camera };
     let second = render(&mut session, &shot(other), &settings(), &execution).unwrap();
     assert_eq!(second.stats.radiosity.shots, 0, "solved once");
@@ -383,13 +469,18 @@ fn one_solution_serves_all_cameras_threads_and_files() {
     assert!(alone.save_radiosity().is_none());
     let one_thread = Execution { workers: Workers::single(), ..Execution::default() };
     let again = render(&mut alone, &shot(camera), &settings(), &one_thread).unwrap();
-    assert!(again.frame.color == first.frame.color && again.stats.radiosity.shots == first.stats.radiosity.shots);
+    assert!(
+        again.frame.color == first.frame.color
+            && again.stats.radiosity.shots == first.stats.radiosity.shots
+    );
     let (mut loaded, _) = look_in(&scene);
     loaded.load_radiosity(&stored).unwrap();
     let from_file = render(&mut loaded, &shot(camera), &settings(), &execution).unwrap();
     assert!(from_file.frame.color == first.frame.color && from_file.stats.radiosity.shots == 0);
-    let dimmer: Vec<_> = lights.iter().map(|l| Light { diffuse: l.diffuse.map(|c| c * 0.5), ..l.clone() }).collect();
-    let refused = render(&mut loaded, &Shot { lights: &dimmer, ..shot(camera) }, &settings(), &execution);
+    let dimmer: Vec<_> =
+        lights.iter().map(|l| Light { diffuse: l.diffuse.map(|c| c * 0.5), ..l.clone() }).collect();
+    let refused =
+        render(&mut loaded, &Shot { lights: &dimmer, ..shot(camera) }, &settings(), &execution);
     assert!(refused.unwrap_err().to_string().contains("other lights"));
     let (elsewhere, _) = look_in(&builtin::scene("scene0").unwrap());
     assert!(elsewhere.load_radiosity(&stored).unwrap_err().to_string().contains("another scene"));
@@ -422,19 +513,29 @@ fn stored_solutions_belong_to_textures_colours_and_settings_too() {
         global: GlobalSettings { patch_size: Some(0.8), ..settings().global },
         ..settings()
     };
-    let shot = Shot { camera, lights: &[], ambient: [0.0; 3], surroundings: Surroundings::default() };
-    let picture = |session: &mut Session, settings: &Settings| render(session, &shot, settings, &Execution::default());
+    let shot =
+        Shot { camera, lights: &[], ambient: [0.0; 3], surroundings: Surroundings::default() };
+    let picture = |session: &mut Session, settings: &Settings| {
+        render(session, &shot, settings, &Execution::default())
+    };
     let red = [255, 0, 0, 255];
     let mut session = textured(red, &|_| ());
     picture(&mut session, &settings).unwrap();
     let stored = session.save_radiosity().unwrap();
-    let refused = |session: &Session| session.load_radiosity(&stored).is_err_and(|e| e.to_string().contains("other"));
+    let refused = |session: &Session| {
+        session.load_radiosity(&stored).is_err_and(|e| e.to_string().contains("other"))
+    };
     assert!(refused(&textured([0, 0, 255, 255], &|_| ())), "another texture");
-    let change = |f: &dyn Fn(&mut Mesh)| textured(red, &|scene| f(Arc::make_mut(&mut scene.meshes[0])));
+    let change =
+        |f: &dyn Fn(&mut Mesh)| textured(red, &|scene| f(Arc::make_mut(&mut scene.meshes[0])));
     assert!(refused(&change(&|m| m.uvs[0].values[3] = [0.0; 2])), "other texture coordinates");
-    let colors = |m: &mut Mesh| m.colors = Some(Attribute::per_vertex(vec![[0.5; 4]; m.positions.len()]));
+    let colors =
+        |m: &mut Mesh| m.colors = Some(Attribute::per_vertex(vec![[0.5; 4]; m.positions.len()]));
     assert!(refused(&change(&colors)), "colours of vertices");
-    assert!(refused(&textured(red, &|scene| scene.materials[2].double_sided = true)), "it shines to both sides");
+    assert!(
+        refused(&textured(red, &|scene| scene.materials[2].double_sided = true)),
+        "it shines to both sides"
+    );
     let mut same = textured(red, &|scene| scene.materials[2].ior = 1.7);
     same.load_radiosity(&stored).unwrap();
     assert_eq!(picture(&mut same, &settings).unwrap().stats.radiosity.shots, 0);
@@ -450,10 +551,15 @@ fn glass_in_radiosity_is_warned_about_once() {
         let (mut session, camera) = look_in(scene);
         let settings = Settings {
             picture: PictureSettings { width: 8, height: 8, ..settings().picture },
-            global: GlobalSettings { patch_size: Some(2.0), iterations: Some(1), ..settings().global },
+            global: GlobalSettings {
+                patch_size: Some(2.0),
+                iterations: Some(1),
+                ..settings().global
+            },
             ..settings()
         };
-        let shot = Shot { camera, lights: &[], ambient: [0.0; 3], surroundings: Surroundings::default() };
+        let shot =
+            Shot { camera, lights: &[], ambient: [0.0; 3], surroundings: Surroundings::default() };
         render(&mut session, &shot, &settings, &execution).unwrap().warnings
     };
     assert!(warnings(&scene).is_empty());
@@ -466,7 +572,8 @@ fn glass_in_radiosity_is_warned_about_once() {
 
 #[test]
 fn what_lamps_light_lights_the_rest() {
-    // A lamp over a red floor under a white ceiling: the ceiling, which the lamp does not reach, becomes reddish.
+    // A lamp over a red floor under a white ceiling: the ceiling, which the lamp does not reach,
+    // becomes reddish.
     let mut scene = Scene::default();
     let matt = |color: [f32; 3]| Material {
         reflectance: Reflectance::Phong { ka: color, kd: color, ks: [0.0; 3], shininess: 1.0 },
@@ -500,7 +607,8 @@ fn what_lamps_light_lights_the_rest() {
         shadows: ShadowSettings { algorithm: Shadows::RAY, ..settings().shadows },
         ..settings()
     };
-    let shot = Shot { camera, lights: &lights, ambient: [0.0; 3], surroundings: Surroundings::default() };
+    let shot =
+        Shot { camera, lights: &lights, ambient: [0.0; 3], surroundings: Surroundings::default() };
     let lit = render(&mut session, &shot, &settings, &Execution::default()).unwrap();
     let [r, g, b, _] = lit.frame.color.unwrap().data()[32 * 64 + 32];
     assert!(r > 10 && g == b && r > 5 * g, "{r} {g} {b}");
@@ -511,7 +619,8 @@ fn what_lamps_light_lights_the_rest() {
 
 #[test]
 fn narrow_lights_bring_what_they_bring_wherever_they_fall() {
-    // A spot that is smaller than an element, and no element's middle: what its light is worth is known.
+    // A spot that is smaller than an element, and no element's middle: what its light is worth is
+    // known.
     let mut scene = Scene::default();
     let kd = [0.8; 3];
     let material = Some(scene.add_material(Material {
@@ -528,11 +637,23 @@ fn narrow_lights_bring_what_they_bring_wherever_they_fall() {
         let trees = Trees::new(session.world().facet_count, corners, 0.4, 1 << 20).unwrap();
         let (height, cutoff) = (2.0, 0.035f64);
         let position = dvec3(x, height, z);
-        let kind = LightKind::Spot { position, direction: DVec3::NEG_Y, cutoff, inner: cutoff, exponent: 0.0 };
+        let kind = LightKind::Spot {
+            position,
+            direction: DVec3::NEG_Y,
+            cutoff,
+            inner: cutoff,
+            exponent: 0.0,
+        };
         let lights = [Light { kind, ..Light::default() }];
-        let room = Enclosure::new(trees, &session, &lights, &Settings::default(), &Execution::default()).unwrap();
-        let sent: f64 =
-            room.elements.iter().enumerate().map(|(e, element)| room.emission[2 * e][0] * element.area).sum();
+        let room =
+            Enclosure::new(trees, &session, &lights, &Settings::default(), &Execution::default())
+                .unwrap();
+        let sent: f64 = room
+            .elements
+            .iter()
+            .enumerate()
+            .map(|(e, element)| room.emission[2 * e][0] * element.area)
+            .sum();
         let (sin, cos) = func::sin_cos(cutoff);
         let radius = height * sin / cos;
         let expected = 0.8 * std::f64::consts::PI * radius * radius;
@@ -542,18 +663,25 @@ fn narrow_lights_bring_what_they_bring_wherever_they_fall() {
 
 #[test]
 fn interpolated_light_has_no_steps_at_hanging_vertices() {
-    // One leaf of the floor is cut twice, or a third of its edge once; along all edges, both sides must show the same light.
-    for (longest, edges) in [(0.8, [0.125f32, 0.25, 0.5]), (0.5, [1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0])] {
+    // One leaf of the floor is cut twice, or a third of its edge once; along all edges, both sides
+    // must show the same light.
+    for (longest, edges) in [(0.8, [0.125f32, 0.25, 0.5]), (0.5, [1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0])]
+    {
         let scene = room(dvec3(1.0, 1.0, 1.0), 0.5, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
         let mut trees = enclosure(scene.clone(), longest).trees;
         for _ in 0..3 {
-            let leaf = *trees.leaves().iter().find(|&&l| trees.nodes[l as usize].facet == 6).unwrap();
+            let leaf =
+                *trees.leaves().iter().find(|&&l| trees.nodes[l as usize].facet == 6).unwrap();
             trees.split(leaf as usize);
         }
         trees.balance();
         let session = Session::new(Arc::new(scene)).unwrap();
-        let room = Enclosure::new(trees, &session, &[], &Settings::default(), &Execution::default()).unwrap();
-        let progress = progressive::solve(&room, &[hemicube()], 0.05, u64::MAX, &Execution::default()).unwrap();
+        let room =
+            Enclosure::new(trees, &session, &[], &Settings::default(), &Execution::default())
+                .unwrap();
+        let progress =
+            progressive::solve(&room, &[hemicube()], 0.05, u64::MAX, &Execution::default())
+                .unwrap();
         let solution = Solution::new(&room, &progress);
         let light = |w: [f32; 3]| solution.irradiance(6, w, true)[0];
         let mut hanging = 0;

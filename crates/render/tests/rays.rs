@@ -1,5 +1,5 @@
-//! Ray casting through each structure, and brute force, hold the law of agreement: facet, depth and layers of every
-//! sample are the z-buffer's.
+//! Ray casting through each structure, and brute force, hold the law of agreement: facet, depth and
+//! layers of every sample are the z-buffer's.
 
 use std::sync::{Arc, Mutex};
 use vitral_exec::{Budget, Limit, Workers};
@@ -12,7 +12,9 @@ use vitral_render::raytrace::octree::Octree;
 use vitral_render::stats::{CullCounters, VisibilityCounters};
 use vitral_render::trace::{Observer, Passed, Step};
 use vitral_render::visible::TileSink;
-use vitral_render::{Acceleration, Execution, PictureSettings, PreparedView, Session, Settings, registry};
+use vitral_render::{
+    Acceleration, Execution, PictureSettings, PreparedView, Session, Settings, registry,
+};
 use vitral_scene::{Camera, Faces, Mesh, Projection, Scene, builtin};
 
 const SIZE: [u32; 2] = [68, 66];
@@ -29,8 +31,12 @@ struct Collect {
 
 impl TileSink for Collect {
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
-        let mut picture: Picture =
-            tile.depth.iter().zip(&tile.facet).map(|(d, f)| (d.to_bits(), *f, Vec::new())).collect();
+        let mut picture: Picture = tile
+            .depth
+            .iter()
+            .zip(&tile.facet)
+            .map(|(d, f)| (d.to_bits(), *f, Vec::new()))
+            .collect();
         for layer in layers.iter() {
             picture[layer.at as usize].2.push((layer.depth.to_bits(), layer.facet));
         }
@@ -61,10 +67,19 @@ const RAYS: [Choice; 8] = [
     ("ray-cast", Some(Acceleration::NONE)),
 ];
 
-fn settings([width, height]: [u32; 2], samples: usize, (visibility, acceleration): Choice) -> Settings {
+fn settings(
+    [width, height]: [u32; 2],
+    samples: usize,
+    (visibility, acceleration): Choice,
+) -> Settings {
     let visibility = visibility.parse().unwrap();
     Settings {
-        picture: PictureSettings { width, height, samples: samples as u32, ..PictureSettings::default() },
+        picture: PictureSettings {
+            width,
+            height,
+            samples: samples as u32,
+            ..PictureSettings::default()
+        },
         visibility,
         acceleration,
         ..Settings::default()
@@ -82,7 +97,10 @@ fn resolve(
     let counters = &mut CullCounters::default();
     let view = PreparedView::new(session, camera, settings, viewport, pattern, execution, counters);
     let mut grid = TileGrid::new(viewport, samples);
-    let sink = Collect { size: [settings.picture.width, settings.picture.height], tiles: Mutex::default() };
+    let sink = Collect {
+        size: [settings.picture.width, settings.picture.height],
+        tiles: Mutex::default(),
+    };
     let algorithm = registry::visibility(settings.visibility);
     let resolved = algorithm.resolve(&view, None, &mut grid, execution, &sink)?;
     let mut tiles = sink.tiles.into_inner().unwrap();
@@ -94,19 +112,25 @@ fn resolve(
 /// Compares ray casting and brute force with the z-buffer.
 fn agree(session: &Session, camera: &Camera, samples: usize, what: &str) {
     let execution = Execution { workers: Workers::new(2), ..Execution::default() };
-    let found = |size, choice| resolve(session, camera, &settings(size, samples, choice), &execution).unwrap();
+    let found = |size, choice| {
+        resolve(session, camera, &settings(size, samples, choice), &execution).unwrap()
+    };
     let z_buffers = [SIZE, SMALL].map(|size| found(size, Z_BUFFER).0);
     for choice in RAYS.into_iter().chain([BRUTE_FORCE]) {
         let asks_all = choice == BRUTE_FORCE || choice.1 == Some(Acceleration::NONE);
-        let of_objects =
-            [Acceleration::BOX, Acceleration::ORIENTED_BOX, Acceleration::SPHERE].map(Some).contains(&choice.1);
+        let of_objects = [Acceleration::BOX, Acceleration::ORIENTED_BOX, Acceleration::SPHERE]
+            .map(Some)
+            .contains(&choice.1);
         let small = (asks_all || of_objects) && session.world().facet_count > 400;
         let (size, expected) = if small { (SMALL, &z_buffers[1]) } else { (SIZE, &z_buffers[0]) };
         let seen = expected.iter().flatten().filter(|s| s.0 != 0 || !s.2.is_empty()).count();
         assert!(seen > 0, "{what}: something is seen");
         let (picture, counters) = found(size, choice);
         assert_eq!(counters.rays, u64::from(size[0] * size[1]) * samples as u64);
-        assert!(counters.triangle_tests > 0 && asks_all == (counters.box_tests == 0), "{choice:?}: {counters:?}");
+        assert!(
+            counters.triangle_tests > 0 && asks_all == (counters.box_tests == 0),
+            "{choice:?}: {counters:?}"
+        );
         let pairs = || picture.iter().flatten().zip(expected.iter().flatten());
         let wrong: Vec<_> = (0..).zip(pairs()).filter(|(_, (a, b))| a != b).collect();
         assert!(
@@ -198,12 +222,19 @@ fn traps_agree() {
     let needles = random_soup(300, [2.0, 0.0005, 0.0005], 3);
     let dust = random_soup(4000, [0.04; 3], 5);
     let walls = random_soup(40, [2.0; 3], 7);
-    let far_away: Vec<_> = dust[..1000].iter().map(|t| t.map(|p| [p[0] + 3000.0, p[1] - 700.0, p[2]])).collect();
+    let far_away: Vec<_> =
+        dust[..1000].iter().map(|t| t.map(|p| [p[0] + 3000.0, p[1] - 700.0, p[2]])).collect();
     let mut broken = walls.clone();
     broken[3][1][0] = f32::NAN;
     broken[4][2][2] = f32::INFINITY;
     broken[5] = [[0.1; 3]; 3];
-    let all = [("needles", needles), ("dust", dust), ("walls", walls), ("far away", far_away), ("broken", broken)];
+    let all = [
+        ("needles", needles),
+        ("dust", dust),
+        ("walls", walls),
+        ("far away", far_away),
+        ("broken", broken),
+    ];
     for (what, triangles) in all {
         agree_from_three_sides(Scene::from_mesh(soup(&triangles)), what);
     }
@@ -227,7 +258,13 @@ fn facets_through_the_eye_plane_agree() {
         (DVec3::new(-1.0, 0.2, 0.3), DVec3::new(0.7, 0.8, 1.2)),
     ] {
         let projection = Projection::Perspective { view_angle: 1.4 };
-        let camera = Camera { position, focal_point: target, projection, clip: Some((0.05, 20.0)), ..camera };
+        let camera = Camera {
+            position,
+            focal_point: target,
+            projection,
+            clip: Some((0.05, 20.0)),
+            ..camera
+        };
         agree(&session, &camera, 1, &format!("the eye at {position}"));
     }
 }
@@ -251,16 +288,32 @@ fn structures_are_built_once_and_save_work() {
     let session = Session::new(Arc::new(builtin::scene("teapot").unwrap())).unwrap();
     let execution = Execution::default();
     let camera = camera_of(&session);
-    assert!(Arc::ptr_eq(&Bvh::of(&session, &execution).unwrap(), &Bvh::of(&session, &execution).unwrap()));
-    assert!(Arc::ptr_eq(&Octree::of(&session, &execution).unwrap(), &Octree::of(&session, &execution).unwrap()));
-    assert!(Arc::ptr_eq(&KdTree::of(&session, &execution).unwrap(), &KdTree::of(&session, &execution).unwrap()));
-    assert!(Arc::ptr_eq(&Grid::of(&session, &execution).unwrap(), &Grid::of(&session, &execution).unwrap()));
-    let count = |choice| resolve(&session, &camera, &settings(SIZE, 1, choice), &execution).unwrap().1;
+    assert!(Arc::ptr_eq(
+        &Bvh::of(&session, &execution).unwrap(),
+        &Bvh::of(&session, &execution).unwrap()
+    ));
+    assert!(Arc::ptr_eq(
+        &Octree::of(&session, &execution).unwrap(),
+        &Octree::of(&session, &execution).unwrap()
+    ));
+    assert!(Arc::ptr_eq(
+        &KdTree::of(&session, &execution).unwrap(),
+        &KdTree::of(&session, &execution).unwrap()
+    ));
+    assert!(Arc::ptr_eq(
+        &Grid::of(&session, &execution).unwrap(),
+        &Grid::of(&session, &execution).unwrap()
+    ));
+    let count =
+        |choice| resolve(&session, &camera, &settings(SIZE, 1, choice), &execution).unwrap().1;
     let all = count(("ray-cast", Some(Acceleration::NONE)));
     for choice in &RAYS[..4] {
         let counters = count(*choice);
         assert!(counters.triangle_tests * 50 < all.triangle_tests, "{choice:?}: {counters:?}");
-        assert!(counters.tests_saved + counters.triangle_tests >= all.rays * 500, "{choice:?}: {counters:?}");
+        assert!(
+            counters.tests_saved + counters.triangle_tests >= all.rays * 500,
+            "{choice:?}: {counters:?}"
+        );
     }
 }
 
@@ -306,12 +359,20 @@ fn looked_on(settings: &Settings) -> Told {
         clip: None,
     };
     let observer = Arc::new(Steps::default());
-    let watched = Execution { observer: Some(Arc::clone(&observer) as Arc<dyn Observer>), ..Execution::default() };
+    let watched = Execution {
+        observer: Some(Arc::clone(&observer) as Arc<dyn Observer>),
+        ..Execution::default()
+    };
     let told = resolve(&session, &camera, settings, &watched).unwrap();
-    assert!(told == resolve(&session, &camera, settings, &Execution::default()).unwrap(), "looking on changes nothing");
+    assert!(
+        told == resolve(&session, &camera, settings, &Execution::default()).unwrap(),
+        "looking on changes nothing"
+    );
     let mut steps = std::mem::take(&mut *observer.0.lock().unwrap());
     steps.retain(|step| !matches!(step, Step::Box { .. }));
-    let Step::Space { min, max, cells } = steps.remove(0) else { panic!("the space is told first") };
+    let Step::Space { min, max, cells } = steps.remove(0) else {
+        panic!("the space is told first")
+    };
     Told { steps, space: [min, max], cells, center, pixel: height / f64::from(SIZE[1]) }
 }
 
@@ -323,7 +384,14 @@ fn p15_the_trace_tells_the_cells_of_a_grid_that_each_ray_goes_through() {
     assert_eq!(told.steps.len(), (SIZE[0] * SIZE[1]) as usize, "a step a pixel");
     let (mut through_all, mut stopped) = (0, 0);
     for step in &told.steps {
-        let Step::Rays { pixels: [x, y, 1, 1], rays: 1, boxes, through: Passed::Cells(through), .. } = step else {
+        let Step::Rays {
+            pixels: [x, y, 1, 1],
+            rays: 1,
+            boxes,
+            through: Passed::Cells(through),
+            ..
+        } = step
+        else {
             panic!("{step:?}")
         };
         assert_eq!(*boxes, through.len().max(1) as u64, "each cell is looked at once");
@@ -358,10 +426,13 @@ fn p15_p16_the_trace_tells_the_cells_of_an_octree_and_the_nodes_of_a_tree_of_box
         assert_eq!(told.steps.len(), count);
         let mut deepest = 0;
         for step in &told.steps {
-            let Step::Rays { pixels, through: Passed::Octants(through), .. } = step else { panic!("{step:?}") };
+            let Step::Rays { pixels, through: Passed::Octants(through), .. } = step else {
+                panic!("{step:?}")
+            };
             // At the picture's edge whole blocks are followed, too.
             let [x, y, width, height] = [pixels[0], pixels[1], side, side].map(f64::from);
-            let ([left, top], [right, bottom]) = (told.place([x, y]), told.place([x + width, y + height]));
+            let ([left, top], [right, bottom]) =
+                (told.place([x, y]), told.place([x + width, y + height]));
             for (i, name) in through.iter().enumerate() {
                 assert!(!through[..i].contains(name), "{name} is told once");
                 assert!(
@@ -377,8 +448,10 @@ fn p15_p16_the_trace_tells_the_cells_of_an_octree_and_the_nodes_of_a_tree_of_box
                     }
                 }
                 let room = (max[0] - min[0]) * 1e-4;
-                let met =
-                    low[0] - room < right && left < high[0] + room && low[1] - room < top && bottom < high[1] + room;
+                let met = low[0] - room < right
+                    && left < high[0] + room
+                    && low[1] - room < top
+                    && bottom < high[1] + room;
                 assert!(met, "{name}: {step:?}");
                 deepest = deepest.max(name.len());
             }
@@ -389,11 +462,20 @@ fn p15_p16_the_trace_tells_the_cells_of_an_octree_and_the_nodes_of_a_tree_of_box
         assert_eq!(steps.len(), count);
         let mut opened = std::collections::BTreeSet::<u32>::new();
         for step in &steps {
-            let Step::Rays { boxes, through: Passed::Nodes(through), .. } = step else { panic!("{step:?}") };
-            assert!(through.first().is_none_or(|&root| root == 0) && through.len() as u64 <= *boxes, "{step:?}");
+            let Step::Rays { boxes, through: Passed::Nodes(through), .. } = step else {
+                panic!("{step:?}")
+            };
+            assert!(
+                through.first().is_none_or(|&root| root == 0) && through.len() as u64 <= *boxes,
+                "{step:?}"
+            );
             opened.extend(through);
         }
-        assert!(opened.len() > 500 && opened.last().is_some_and(|last| *last < 20_000), "{}", opened.len());
+        assert!(
+            opened.len() > 500 && opened.last().is_some_and(|last| *last < 20_000),
+            "{}",
+            opened.len()
+        );
     }
 }
 

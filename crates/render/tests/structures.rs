@@ -31,19 +31,22 @@ impl All {
     const OBJECT: u32 = 12;
 
     fn over(triangles: Triangles) -> Self {
-        let first_facets: Vec<u32> = (0..triangles.count() as u32).step_by(Self::OBJECT as usize).collect();
+        let first_facets: Vec<u32> =
+            (0..triangles.count() as u32).step_by(Self::OBJECT as usize).collect();
         Self::over_objects(triangles, &first_facets)
     }
 
     fn over_objects(triangles: Triangles, first_facets: &[u32]) -> Self {
-        let (triangles, workers, budget) = (Arc::new(triangles), Workers::new(2), Budget::default());
+        let (triangles, workers, budget) =
+            (Arc::new(triangles), Workers::new(2), Budget::default());
         Self {
             bvh: Bvh::build(&triangles, &workers, &budget).unwrap(),
             octree: Octree::build(&triangles, &workers, &budget).unwrap(),
             bsp: KdTree::build(&triangles, &workers, &budget).unwrap(),
             grid: Grid::build(&triangles, &budget).unwrap(),
             volumes: SHAPES.map(|shape| {
-                Volumes::build(&triangles, first_facets.iter().copied(), shape, &workers, &budget).unwrap()
+                Volumes::build(&triangles, first_facets.iter().copied(), shape, &workers, &budget)
+                    .unwrap()
             }),
             triangles,
         }
@@ -155,13 +158,15 @@ fn rays_parallel_to_slabs_and_in_the_planes_of_boxes_agree() {
 
 #[test]
 fn flat_boxes_agree() {
-    // A chequered plane across each axis: boxes without height, and rays within the plane, along it and through it.
+    // A chequered plane across each axis: boxes without height, and rays within the plane, along it
+    // and through it.
     for axis in 0..3 {
         let turn = |p: Vec3| Vec3::from_array([p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]]);
         let corner = |i: i32, j: i32| vec3(i as f32, j as f32, 1.0);
         let squares = (0..144).map(|n| (n % 12, n / 12));
         let corners = squares.flat_map(|(i, j)| {
-            let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)].map(turn);
+            let [a, b, c, d] =
+                [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)].map(turn);
             [[a, b, c], [a, c, d]]
         });
         let all = All::over_corners(corners.collect());
@@ -212,7 +217,10 @@ fn p13_the_volume_is_tested_first_and_tests_of_triangles_drop() {
     let (count, first_facets) = (corners.len() as u64, (0..40).map(|i| i * 8).collect::<Vec<_>>());
     let extent = corners.iter().flatten().fold(0.0f32, |m, p| m.max(p.abs().max_element()));
     let facets = (0..count as u32).collect();
-    let all = All::over_objects(Triangles { extent, corners, facets, ..Triangles::default() }, &first_facets);
+    let all = All::over_objects(
+        Triangles { extent, corners, facets, ..Triangles::default() },
+        &first_facets,
+    );
     let (mut counters, mut hits) = ([Counters::default(); 3], 0);
     for i in 0..2000 {
         let a = point(&mut state) * 30.0;
@@ -228,8 +236,14 @@ fn p13_the_volume_is_tested_first_and_tests_of_triangles_drop() {
     assert!(counters.iter().all(|c| c.boxes == 2000 * 40), "{counters:?}");
     // Every triangle is asked without volumes.
     let without = 2000 * count;
-    assert!(aligned.triangles * 4 < without && sphere.triangles * 2 < without, "{counters:?} of {without}");
-    assert!(oriented.triangles * 3 < aligned.triangles && aligned.triangles < sphere.triangles, "{counters:?}");
+    assert!(
+        aligned.triangles * 4 < without && sphere.triangles * 2 < without,
+        "{counters:?} of {without}"
+    );
+    assert!(
+        oriented.triangles * 3 < aligned.triangles && aligned.triangles < sphere.triangles,
+        "{counters:?}"
+    );
 }
 
 #[test]
@@ -238,7 +252,10 @@ fn structures_save_tests() {
     let mut state = 3;
     let mut counters = [Counters::default(); 5];
     for _ in 0..300 {
-        let (a, b) = (point(&mut state) * all.triangles.extent * 1.5, point(&mut state) * all.triangles.extent * 0.5);
+        let (a, b) = (
+            point(&mut state) * all.triangles.extent * 1.5,
+            point(&mut state) * all.triangles.extent * 0.5,
+        );
         let ray = Ray::new(a, b - a);
         all.triangles.closest_hit(&ray, &mut counters[0]);
         all.bvh.closest_hit(&ray, &mut counters[1]);

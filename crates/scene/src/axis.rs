@@ -72,7 +72,8 @@ impl Axis {
         }
     }
 
-    /// The direction from a model's middle to its front where this axis is up: +Z, but -Y and +Y where Z is up or down.
+    /// The direction from a model's middle to its front where this axis is up: +Z, but -Y and +Y
+    /// where Z is up or down.
     pub fn front(self) -> DVec3 {
         match self {
             Self::PlusZ => DVec3::NEG_Y,

@@ -1,10 +1,12 @@
-//! Bodies: which triangles of a mesh are skins of closed bodies, and on which side of them the body is.
+//! Bodies: which triangles of a mesh are skins of closed bodies, and on which side of them the body
+//! is.
 //!
-//! A ray of light bends where it enters a body of glass, and again where it leaves it; a single sheet of glass has no
-//! inside. Triangles of one material that meet at edges belong together. They are the skin of a body if each of their
-//! edges joins exactly two of them, in opposite directions. The winding says where the inside is; a skin wound inside
-//! out, with a negative volume, is turned round, unless it lies within another skin of the material: then it is the
-//! wall of a hollow, which has to look inwards.
+//! A ray of light bends where it enters a body of glass, and again where it leaves it; a single
+//! sheet of glass has no inside. Triangles of one material that meet at edges belong together. They
+//! are the skin of a body if each of their edges joins exactly two of them, in opposite directions.
+//! The winding says where the inside is; a skin wound inside out, with a negative volume, is turned
+//! round, unless it lies within another skin of the material: then it is the wall of a hollow,
+//! which has to look inwards.
 //!
 //! In:   a mesh, model space. Out: a side for each triangle.
 //! Cost: `O(triangles)` expected for the materials asked about.
@@ -58,7 +60,8 @@ fn sides_of(mesh: &Mesh, triangles: Vec<Corners>, workers: &Workers) -> Vec<Side
         [a, b] if a.reversed() != b.reversed() => skins.join(a.face(), b.face()),
         _ => broken.extend(uses.iter().map(|u| u.face())),
     };
-    let broken = for_each_edge(&part, &weld.representative, Outlines::SoundTriangles, workers, visit);
+    let broken =
+        for_each_edge(&part, &weld.representative, Outlines::SoundTriangles, workers, visit);
     let roots: Vec<usize> = (0..count as u32).map(|t| skins.find(t) as usize).collect();
     let mut open = vec![false; count];
     broken.iter().flatten().for_each(|&t| open[roots[t as usize]] = true);
@@ -71,12 +74,16 @@ fn sides_of(mesh: &Mesh, triangles: Vec<Corners>, workers: &Workers) -> Vec<Side
         volumes[root] += a.dot(b.cross(c));
         [a, b, c].into_iter().for_each(|p| boxes[root].include(p));
     }
-    let within = |inner: &Aabb, outer: &Aabb| inner.min.cmpge(outer.min).all() && inner.max.cmple(outer.max).all();
-    let outer: Vec<usize> = (0..count).filter(|&s| roots[s] == s && !open[s] && volumes[s] > 0.0).collect();
+    let within = |inner: &Aabb, outer: &Aabb| {
+        inner.min.cmpge(outer.min).all() && inner.max.cmple(outer.max).all()
+    };
+    let outer: Vec<usize> =
+        (0..count).filter(|&s| roots[s] == s && !open[s] && volumes[s] > 0.0).collect();
     let mut side_of_skin = vec![Side::None; count];
     for skin in (0..count).filter(|&s| roots[s] == s && !open[s] && volumes[s] != 0.0) {
         let hollow = || outer.iter().any(|&o| within(&boxes[skin], &boxes[o]));
-        side_of_skin[skin] = if volumes[skin] > 0.0 || hollow() { Side::Behind } else { Side::InFront };
+        side_of_skin[skin] =
+            if volumes[skin] > 0.0 || hollow() { Side::Behind } else { Side::InFront };
     }
     roots.into_iter().map(|root| side_of_skin[root]).collect()
 }
@@ -120,7 +127,10 @@ mod tests {
         sheet.positions.iter_mut().for_each(|p| p[1] = 4.0);
         let (both, first) = joined(cube, sheet);
         let found = all(&both);
-        assert!(found[..first].iter().all(|s| *s == Side::Behind) && found[first..].iter().all(|s| *s == Side::None));
+        assert!(
+            found[..first].iter().all(|s| *s == Side::Behind)
+                && found[first..].iter().all(|s| *s == Side::None)
+        );
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Records dealt out into buckets by a small key, in parallel and always in the same order.
 //!
-//! Idea: a sort of millions of records over a large key range misses the cache at every step. Dealt first into
-//! buckets that fit the cache, each bucket can be sorted or hashed alone, by whichever thread is free. The input is
-//! read in runs of fixed length; each run counts its records per bucket, then places them (a counting sort). A bucket
-//! is then the concatenation of its piece of every run, in the order of the input, whatever the number of threads.
+//! Idea: a sort of millions of records over a large key range misses the cache at every step. Dealt
+//! first into buckets that fit the cache, each bucket can be sorted or hashed alone, by whichever
+//! thread is free. The input is read in runs of fixed length; each run counts its records per
+//! bucket, then places them (a counting sort). A bucket is then the concatenation of its piece of
+//! every run, in the order of the input, whatever the number of threads.
 //!
 //! In:   a source that visits the records of a range of items, with the bucket of each.
 //! Out:  for each bucket, its records in input order.
@@ -20,7 +21,8 @@ const RUN: usize = 1 << 16;
 pub trait Source<T>: Sync {
     /// Number of items; each has any number of records.
     fn items(&self) -> usize;
-    /// Calls `put(bucket, record)` for the records of the items in `range`, in order. Called twice for each range.
+    /// Calls `put(bucket, record)` for the records of the items in `range`, in order. Called twice
+    /// for each range.
     fn visit(&self, range: Range<usize>, put: impl FnMut(usize, T));
 }
 
@@ -77,8 +79,9 @@ impl<T: Copy + Default + Send + Sync> Buckets<T> {
     /// Deals the records of `source` into `count` buckets.
     pub(crate) fn deal(source: &impl Source<T>, count: usize, workers: &Workers) -> Self {
         let items = source.items();
-        let runs =
-            workers.map(items.div_ceil(RUN), |r| Dealt::of_range(source, r * RUN..items.min((r + 1) * RUN), count));
+        let runs = workers.map(items.div_ceil(RUN), |r| {
+            Dealt::of_range(source, r * RUN..items.min((r + 1) * RUN), count)
+        });
         Self { runs, count }
     }
 
@@ -93,8 +96,8 @@ impl<T: Copy + Default + Send + Sync> Buckets<T> {
     }
 }
 
-/// How far to shift keys below `keys` to the right so that about 2048 of them share a bucket, and how many buckets
-/// that makes (never more than 1024).
+/// How far to shift keys below `keys` to the right so that about 2048 of them share a bucket, and
+/// how many buckets that makes (never more than 1024).
 pub(crate) fn shift_and_count(keys: usize) -> (u32, usize) {
     let bits = usize::BITS - keys.leading_zeros();
     let shift = bits.saturating_sub(10).max(11);

@@ -1,13 +1,15 @@
 //! Cameras: perspective (projectors meet in a point) and parallel (projectors share a direction).
 //!
-//! View space is right-handed, x to the right, y up, looking along -z. Clip space is `-w <= x, y <= w`,
-//! `0 <= z <= w` with **z = w on the near plane and z = 0 on the far plane**: larger is nearer, as in the course's
-//! convention (back plane 0, front plane zmax), and the precision of floating point is where perspective needs it.
+//! View space is right-handed, x to the right, y up, looking along -z. Clip space is
+//! `-w <= x, y <= w`, `0 <= z <= w` with **z = w on the near plane and z = 0 on the far plane**:
+//! larger is nearer, as in the course's convention (back plane 0, front plane zmax), and the
+//! precision of floating point is where perspective needs it.
 
 use serde::{Deserialize, Serialize};
 use vitral_math::{DMat4, DVec3, DVec4, func};
 
-/// A viewer. Position, focal point and up are in world space (or the space of the node that carries it).
+/// A viewer. Position, focal point and up are in world space (or the space of the node that carries
+/// it).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Camera {
@@ -19,15 +21,20 @@ pub struct Camera {
     pub view_up: DVec3,
     /// How rays run.
     pub projection: Projection,
-    /// Distances of the near and far plane along the direction of view, `0 < near < far` (parallel: `near < far`);
-    /// `None`: fitted to the scene.
+    /// Distances of the near and far plane along the direction of view, `0 < near < far` (parallel:
+    /// `near < far`); `None`: fitted to the scene.
     #[serde(default)]
     pub clip: Option<(f64, f64)>,
 }
 
 /// Perspective or parallel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "type", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
+#[serde(
+    tag = "type",
+    rename_all = "kebab-case",
+    rename_all_fields = "kebab-case",
+    deny_unknown_fields
+)]
 pub enum Projection {
     /// Projectors through the position.
     Perspective {
@@ -39,8 +46,9 @@ pub enum Projection {
         /// Height of the picture in world units.
         height: f64,
     },
-    /// Projectors through the position, and a picture whose middle need not lie on the direction of view, as of a measured
-    /// camera. The picture keeps this window whatever its aspect, so pixels need not be square.
+    /// Projectors through the position, and a picture whose middle need not lie on the direction of
+    /// view, as of a measured camera. The picture keeps this window whatever its aspect, so pixels
+    /// need not be square.
     Window {
         /// Left and right border of the picture at the distance 1, view space, in this order.
         across: [f64; 2],
@@ -65,14 +73,21 @@ pub struct ViewTransform {
 }
 
 impl Camera {
-    /// Vertical angle of view where none is chosen: 30 degrees in radians, a moderate telephoto lens with little distortion.
+    /// Vertical angle of view where none is chosen: 30 degrees in radians, a moderate telephoto
+    /// lens with little distortion.
     pub const VIEW_ANGLE: f64 = std::f64::consts::FRAC_PI_6;
 
-    /// A perspective camera at `position` that looks at `focal_point`, with +Y up in the picture, the angle of view
-    /// [`VIEW_ANGLE`](Self::VIEW_ANGLE) and clipping planes fitted to the scene.
+    /// A perspective camera at `position` that looks at `focal_point`, with +Y up in the picture,
+    /// the angle of view [`VIEW_ANGLE`](Self::VIEW_ANGLE) and clipping planes fitted to the scene.
     pub fn look_at(position: impl Into<DVec3>, focal_point: impl Into<DVec3>) -> Self {
         let projection = Projection::Perspective { view_angle: Self::VIEW_ANGLE };
-        Self { position: position.into(), focal_point: focal_point.into(), view_up: DVec3::Y, projection, clip: None }
+        Self {
+            position: position.into(),
+            focal_point: focal_point.into(),
+            view_up: DVec3::Y,
+            projection,
+            clip: None,
+        }
     }
 
     /// With this direction upwards in the picture.
@@ -87,8 +102,9 @@ impl Camera {
         Self { projection: Projection::Perspective { view_angle }, ..self }
     }
 
-    /// In perspective as a measured camera sees: the focal lengths and the principal point, both in pixels of a picture of
-    /// `size` pixels. The principal point counts from the picture's top left corner, so that `size / 2` is the middle.
+    /// In perspective as a measured camera sees: the focal lengths and the principal point, both in
+    /// pixels of a picture of `size` pixels. The principal point counts from the picture's top left
+    /// corner, so that `size / 2` is the middle.
     #[must_use]
     pub fn with_intrinsics(self, focal: [f64; 2], principal: [f64; 2], size: [u32; 2]) -> Self {
         let size = size.map(f64::from);
@@ -103,7 +119,8 @@ impl Camera {
         Self { clip: Some((near, far)), ..self }
     }
 
-    /// World to view. Falls back to another up vector where `view_up` is parallel to the view direction or zero.
+    /// World to view. Falls back to another up vector where `view_up` is parallel to the view
+    /// direction or zero.
     pub fn view_from_world(&self) -> DMat4 {
         let forward = (self.focal_point - self.position).try_normalize().unwrap_or(DVec3::NEG_Z);
         let side = |up: DVec3| forward.cross(up).try_normalize().filter(|s| s.is_finite());
@@ -116,12 +133,14 @@ impl Camera {
         DMat4::from_cols(rows[0], rows[1], rows[2], DVec4::W).transpose()
     }
 
-    /// The transform for a picture `aspect = width / height`. `depths` is the range of distances along the direction
-    /// of view that holds the scene; it chooses the clipping planes where the camera has none of its own.
+    /// The transform for a picture `aspect = width / height`. `depths` is the range of distances
+    /// along the direction of view that holds the scene; it chooses the clipping planes where the
+    /// camera has none of its own.
     pub fn transform(&self, aspect: f64, depths: (f64, f64)) -> ViewTransform {
         let (near, far) = self.clip.unwrap_or_else(|| self.fitted_clip(depths));
         let perspective = !matches!(self.projection, Projection::Parallel { .. });
-        // z_clip = (near z_view + near far) / (far - near): w = near at the near plane, 0 at the far plane.
+        // z_clip = (near z_view + near far) / (far - near): w = near at the near plane, 0 at the
+        // far plane.
         let central = |focal: [f64; 2], middle: [f64; 2]| {
             let (a, b) = (near / (far - near), near * far / (far - near));
             DMat4::from_cols(
@@ -151,11 +170,17 @@ impl Camera {
                 )
             }
         };
-        ViewTransform { view_from_world: self.view_from_world(), clip_from_view, near, far, perspective }
+        ViewTransform {
+            view_from_world: self.view_from_world(),
+            clip_from_view,
+            near,
+            far,
+            perspective,
+        }
     }
 
-    /// Clipping planes a little outside `depths`; for a perspective the near plane stays in front of the eye, in a parallel view it
-    /// goes through the position at the nearest.
+    /// Clipping planes a little outside `depths`; for a perspective the near plane stays in front
+    /// of the eye, in a parallel view it goes through the position at the nearest.
     fn fitted_clip(&self, (nearest, farthest): (f64, f64)) -> (f64, f64) {
         let usable = nearest.is_finite() && farthest.is_finite() && nearest <= farthest;
         let (nearest, farthest) = if usable { (nearest, farthest) } else { (0.1, 100.0) };
@@ -175,7 +200,8 @@ impl Camera {
 }
 
 impl ViewTransform {
-    /// The distance along the direction of view at a depth of a picture, 1 on the near plane and 0 on the far plane.
+    /// The distance along the direction of view at a depth of a picture, 1 on the near plane and 0
+    /// on the far plane.
     pub fn distance_at(&self, depth: f32) -> f64 {
         let (a, b) = (self.clip_from_view.z_axis.z, self.clip_from_view.w_axis.z);
         if self.perspective { b / (f64::from(depth) + a) } else { (b - f64::from(depth)) / a }
@@ -203,24 +229,37 @@ mod tests {
 
     #[test]
     fn a_camera_looks_at_its_focal_point() {
-        let camera =
-            Camera::look_at([0.0, -4.0, 0.0], [0.0; 3]).with_up(DVec3::Z).with_view_angle(1.0).with_clip(1.0, 9.0);
+        let camera = Camera::look_at([0.0, -4.0, 0.0], [0.0; 3])
+            .with_up(DVec3::Z)
+            .with_view_angle(1.0)
+            .with_clip(1.0, 9.0);
         let view = camera.view_from_world();
         assert!(view.transform_point3(DVec3::ZERO).abs_diff_eq(DVec3::new(0.0, 0.0, -4.0), 1e-12));
         assert!(view.transform_vector3(DVec3::Z).abs_diff_eq(DVec3::Y, 1e-12));
-        assert_eq!((camera.projection, camera.clip), (Projection::Perspective { view_angle: 1.0 }, Some((1.0, 9.0))));
+        assert_eq!(
+            (camera.projection, camera.clip),
+            (Projection::Perspective { view_angle: 1.0 }, Some((1.0, 9.0)))
+        );
     }
 
     #[test]
     fn depth_is_one_on_the_near_plane_and_zero_on_the_far_plane() {
-        for projection in [Projection::Perspective { view_angle: 1.0 }, Projection::Parallel { height: 2.0 }] {
+        for projection in
+            [Projection::Perspective { view_angle: 1.0 }, Projection::Parallel { height: 2.0 }]
+        {
             let clip = camera(projection).transform(1.0, (0.0, 0.0)).clip_from_world();
             for (z, depth) in [(4.0, 1.0), (-5.0, 0.0)] {
                 let p = clip * DVec4::new(0.0, 0.0, z, 1.0);
-                assert!((p.z / p.w - depth).abs() < 1e-12 && p.w > 0.0, "{projection:?} at z = {z}: {p}");
+                assert!(
+                    (p.z / p.w - depth).abs() < 1e-12 && p.w > 0.0,
+                    "{projection:?} at z = {z}: {p}"
+                );
             }
             let view = camera(projection).transform(1.0, (0.0, 0.0));
-            assert_eq!([1.0, 0.0].map(|depth| (view.distance_at(depth) * 1e9).round() / 1e9), [1.0, 10.0]);
+            assert_eq!(
+                [1.0, 0.0].map(|depth| (view.distance_at(depth) * 1e9).round() / 1e9),
+                [1.0, 10.0]
+            );
             let right = clip * DVec4::new(1.0, 0.0, 0.0, 1.0);
             let up = clip * DVec4::new(0.0, 1.0, 0.0, 1.0);
             assert!(right.x > 0.0 && up.y > 0.0);
@@ -229,15 +268,19 @@ mod tests {
 
     #[test]
     fn a_measured_camera_puts_its_axis_on_the_principal_point() {
-        let measured =
-            camera(Projection::Parallel { height: 1.0 }).with_intrinsics([200.0, 100.0], [30.0, 80.0], [320, 240]);
+        let measured = camera(Projection::Parallel { height: 1.0 }).with_intrinsics(
+            [200.0, 100.0],
+            [30.0, 80.0],
+            [320, 240],
+        );
         let clip = measured.transform(4.0 / 3.0, (0.0, 0.0)).clip_from_world();
         let pixel = |x: f64, y: f64, z: f64| {
             let p = clip * DVec4::new(x, y, z, 1.0);
             [(p.x / p.w + 1.0) * 160.0, (1.0 - p.y / p.w) * 120.0]
         };
         // One unit aside at the distance 5 is a fifth of a focal length; down is a larger row.
-        for (place, [x, y]) in [((0.0, 0.0, 0.0), [30.0, 80.0]), ((1.0, -2.0, 0.0), [70.0, 120.0])] {
+        for (place, [x, y]) in [((0.0, 0.0, 0.0), [30.0, 80.0]), ((1.0, -2.0, 0.0), [70.0, 120.0])]
+        {
             let [px, py] = pixel(place.0, place.1, place.2);
             assert!((px - x).abs() < 1e-9 && (py - y).abs() < 1e-9, "{px} {py}");
         }
@@ -250,11 +293,16 @@ mod tests {
 
     #[test]
     fn clipping_planes_fit_scenes_of_any_size() {
-        for projection in [Projection::Perspective { view_angle: 1.0 }, Projection::Parallel { height: 2.0 }] {
+        for projection in
+            [Projection::Perspective { view_angle: 1.0 }, Projection::Parallel { height: 2.0 }]
+        {
             let fitted = |depths| Camera { clip: None, ..camera(projection) }.fitted_clip(depths);
             for size in [1e-30, 1e-12, 1.0, 1e12] {
                 let (near, far) = fitted((3.0 * size, 5.0 * size));
-                assert!(2.9 * size < near && near < 3.0 * size && 5.0 * size < far && far < 5.1 * size, "{near} {far}");
+                assert!(
+                    2.9 * size < near && near < 3.0 * size && 5.0 * size < far && far < 5.1 * size,
+                    "{near} {far}"
+                );
             }
             for depths in [(0.0, 0.0), (-5.0, -3.0), (f64::NAN, 1.0)] {
                 let (near, far) = fitted(depths);

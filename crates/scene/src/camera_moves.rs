@@ -1,13 +1,14 @@
 //! Moves of a camera round what it looks at, with the names that model viewers give them.
 //!
-//! Angles are radians. Every move gives a new camera; the clipping planes, if the camera has its own, stay.
+//! Angles are radians. Every move gives a new camera; the clipping planes, if the camera has its
+//! own, stay.
 
 use crate::{Camera, Projection};
 use vitral_math::{Aabb, DQuat, DVec3, func};
 
 impl Camera {
-    /// Zooms in (`factor > 1`) or out without moving: the angle of view (perspective) or the height (parallel) is
-    /// divided. A factor that is not positive and finite changes nothing.
+    /// Zooms in (`factor > 1`) or out without moving: the angle of view (perspective) or the height
+    /// (parallel) is divided. A factor that is not positive and finite changes nothing.
     #[must_use]
     pub fn zoomed(&self, factor: f64) -> Self {
         if !(factor.is_finite() && factor > 0.0) {
@@ -18,23 +19,24 @@ impl Camera {
                 Projection::Perspective { view_angle: (view_angle / factor).clamp(1e-6, 3.1) }
             }
             Projection::Parallel { height } => Projection::Parallel { height: height / factor },
-            Projection::Window { across, upwards } => {
-                Projection::Window { across: about_middle(across, factor), upwards: about_middle(upwards, factor) }
-            }
+            Projection::Window { across, upwards } => Projection::Window {
+                across: about_middle(across, factor),
+                upwards: about_middle(upwards, factor),
+            },
         };
         Self { projection, ..*self }
     }
 
-    /// Walks round the focal point about the up vector; seen from above counter-clockwise for positive angles, so that
-    /// an eye at +z moves towards +x where y is up.
+    /// Walks round the focal point about the up vector; seen from above counter-clockwise for
+    /// positive angles, so that an eye at +z moves towards +x where y is up.
     #[must_use]
     pub fn azimuth(&self, angle: f64) -> Self {
         let axis = self.view_up.try_normalize().unwrap_or(DVec3::Y);
         self.turned(DQuat::from_axis_angle(axis, angle), self.view_up)
     }
 
-    /// Climbs over the focal point (positive) or dives below it. The up vector goes along, so that climbing past the
-    /// zenith does not flip the picture.
+    /// Climbs over the focal point (positive) or dives below it. The up vector goes along, so that
+    /// climbing past the zenith does not flip the picture.
     #[must_use]
     pub fn elevation(&self, angle: f64) -> Self {
         let view = self.view_from_world();
@@ -43,7 +45,8 @@ impl Camera {
         self.turned(rotation, rotation * up)
     }
 
-    /// The same view with parallel projectors: what lies in the plane of the focal point keeps its size.
+    /// The same view with parallel projectors: what lies in the plane of the focal point keeps its
+    /// size.
     #[must_use]
     pub fn orthographic(&self) -> Self {
         match self.projection {
@@ -60,8 +63,8 @@ impl Camera {
         }
     }
 
-    /// Looks along `direction` (from the eye) at the same focal point from the same distance. A zero or infinite
-    /// direction changes nothing.
+    /// Looks along `direction` (from the eye) at the same focal point from the same distance. A
+    /// zero or infinite direction changes nothing.
     #[must_use]
     pub fn with_direction(&self, direction: DVec3) -> Self {
         let Some(direction) = direction.try_normalize() else { return *self };
@@ -75,7 +78,11 @@ impl Camera {
     }
 
     fn turned(&self, rotation: DQuat, view_up: DVec3) -> Self {
-        Self { position: self.focal_point + rotation * (self.position - self.focal_point), view_up, ..*self }
+        Self {
+            position: self.focal_point + rotation * (self.position - self.focal_point),
+            view_up,
+            ..*self
+        }
     }
 }
 
@@ -115,11 +122,20 @@ mod tests {
         let c = camera();
         assert_eq!(c.zoomed(2.0).projection, Projection::Perspective { view_angle: 0.5 });
         assert_eq!(c.zoomed(0.0), c);
-        let window = Camera { projection: Projection::Window { across: [-1.0, 3.0], upwards: [0.0, 2.0] }, ..c };
-        assert_eq!(window.zoomed(2.0).projection, Projection::Window { across: [0.0, 2.0], upwards: [0.5, 1.5] });
+        let window = Camera {
+            projection: Projection::Window { across: [-1.0, 3.0], upwards: [0.0, 2.0] },
+            ..c
+        };
+        assert_eq!(
+            window.zoomed(2.0).projection,
+            Projection::Window { across: [0.0, 2.0], upwards: [0.5, 1.5] }
+        );
         assert_eq!(window.orthographic().projection, Projection::Parallel { height: 10.0 });
         assert_eq!(c.zoomed(f64::NAN), c);
-        assert_eq!(c.with_direction(DVec3::new(-3.0, 0.0, 0.0)).position, DVec3::new(6.0, 2.0, 3.0));
+        assert_eq!(
+            c.with_direction(DVec3::new(-3.0, 0.0, 0.0)).position,
+            DVec3::new(6.0, 2.0, 3.0)
+        );
         assert_eq!(c.with_direction(DVec3::ZERO), c);
         let flat = c.orthographic();
         assert_eq!(flat.orthographic(), flat);
@@ -127,7 +143,9 @@ mod tests {
 
         // A point in the focal plane is at the same place in both pictures.
         let p = DVec3::new(2.0, 2.5, 3.0).extend(1.0);
-        let [a, b] = [c, flat].map(|c| c.transform(1.0, (1.0, 9.0)).clip_from_world() * p).map(|p| p.truncate() / p.w);
+        let [a, b] = [c, flat]
+            .map(|c| c.transform(1.0, (1.0, 9.0)).clip_from_world() * p)
+            .map(|p| p.truncate() / p.w);
         assert!((a - b).truncate().length() < 1e-12);
     }
 }

@@ -1,14 +1,16 @@
 //! The faces round each vertex, and which of them are smooth together.
 //!
-//! Idea: deal the corners of faces to buckets of vertices. Most vertices take the average of all their faces. Only where a
-//! face is far from that average are corners listed by vertex (a counting sort). There, each face is averaged with those
-//! that the rule allows: faces within the crease angle of *it*, of its smoothing group where there are groups. Faces that end up with
-//! the same sum share one normal.
+//! Idea: deal the corners of faces to buckets of vertices. Most vertices take the average of all
+//! their faces. Only where a face is far from that average are corners listed by vertex (a counting
+//! sort). There, each face is averaged with those that the rule allows: faces within the crease
+//! angle of *it*, of its smoothing group where there are groups. Faces that end up with the same
+//! sum share one normal.
 //!
 //! In:   a mesh, welded vertices.
 //! Out:  normals, and for each corner of a face which one it takes.
-//! Cost: `O(k²)` at a vertex with `k` faces. From 257 faces on (the tip of a fine cone), faces are first gathered by
-//!       direction into cells about 6° wide, and the cells are compared: at most 1536² pairs, whatever the mesh.
+//! Cost: `O(k²)` at a vertex with `k` faces. From 257 faces on (the tip of a fine cone), faces are
+//!       first gathered by direction into cells about 6° wide, and the cells are compared: at most
+//!       1536² pairs, whatever the mesh.
 //! Source: the crease angle is that of \[VRML97\]; smoothing groups are those of \[OBJ\].
 
 mod bucket;
@@ -51,9 +53,10 @@ struct Scratch {
     seen: EdgeFindings,
 }
 
-/// Gives each vertex the average of the normals of all its faces, and marks in `apart` the vertices that need a closer look.
-/// By angle these are vertices where some face is farther from the average than half the angle: only there can two faces
-/// differ by more than the whole one. By groups all vertices with faces are marked. Returns whether any is.
+/// Gives each vertex the average of the normals of all its faces, and marks in `apart` the vertices
+/// that need a closer look. By angle these are vertices where some face is farther from the average
+/// than half the angle: only there can two faces differ by more than the whole one. By groups all
+/// vertices with faces are marked. Returns whether any is.
 fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Vec<bool>) -> bool {
     let has_faces = |degree: &u32| *degree > 0;
     if rule.groups.is_some() {
@@ -66,7 +69,9 @@ fn average(bucket: &Bucket, rule: Rule, normals: &mut [[f32; 3]], apart: &mut Ve
 
     // Average all faces. A vertex without a mean or with too many faces is marked at once.
     bucket.sums(normals);
-    for ((normal, apart), &degree) in normals.iter_mut().zip(&mut *apart).zip(&bucket.around.degrees) {
+    for ((normal, apart), &degree) in
+        normals.iter_mut().zip(&mut *apart).zip(&bucket.around.degrees)
+    {
         let mean = unit(*normal).filter(|_| degree as usize <= CELL_THRESHOLD);
         *apart = degree > 0 && mean.is_none();
         *normal = mean.unwrap_or(DEFAULT_NORMAL);
@@ -83,14 +88,20 @@ struct Maker<'a> {
     faces: AllFaces<'a>,
     skins: Option<Skins<'a>>,
     rule: Rule<'a>,
-    /// For each corner 0 if it takes its vertex's first normal, else one more than the position of a further one in its
-    /// bucket. Made when the first vertex with two normals is found.
+    /// For each corner 0 if it takes its vertex's first normal, else one more than the position of
+    /// a further one in its bucket. Made when the first vertex with two normals is found.
     further_of_corner: OnceLock<Vec<AtomicU32>>,
 }
 
 impl Maker<'_> {
     /// Makes the normals of bucket `b`: the first one of each of its vertices, and further ones.
-    fn make_bucket(&self, b: usize, first: &mut [[f32; 3]], further: &mut Vec<[f32; 3]>, scratch: &mut Scratch) {
+    fn make_bucket(
+        &self,
+        b: usize,
+        first: &mut [[f32; 3]],
+        further: &mut Vec<[f32; 3]>,
+        scratch: &mut Scratch,
+    ) {
         let Scratch { bucket, fan, apart, seen } = scratch;
         bucket.gather(&self.faces, b, first.len());
         if let Some(skins) = &self.skins {
@@ -145,15 +156,19 @@ pub(crate) fn fan_normals(mesh: &Mesh, weld: &Weld, rule: Rule, workers: &Worker
     let Maker { faces, skins, further_of_corner, .. } = maker;
     drop(faces);
     let spare = spare.into_inner();
-    let solids = skins.map(|skins| skins.solids(spare.iter().map(|scratch| &scratch.seen), workers));
+    let solids =
+        skins.map(|skins| skins.solids(spare.iter().map(|scratch| &scratch.seen), workers));
 
     // Number the normals of the corners, unless every vertex has one.
     match further_of_corner.into_inner() {
-        None => FanNormals { values: spread_to_welded(first, weld, workers), of_corner: None, solids },
+        None => {
+            FanNormals { values: spread_to_welded(first, weld, workers), of_corner: None, solids }
+        }
         Some(of_corner) => {
             let (values, numbers) = drop_welded(first, weld);
             let of_corner = of_corner.into_iter().map(AtomicU32::into_inner).collect();
-            let (values, of_corner) = number(mesh, weld, Numbered { values, numbers, further, of_corner }, workers);
+            let (values, of_corner) =
+                number(mesh, weld, Numbered { values, numbers, further, of_corner }, workers);
             FanNormals { values, of_corner: Some(of_corner), solids }
         }
     }
@@ -174,8 +189,8 @@ fn spread_to_welded(mut normals: Vec<[f32; 3]>, weld: &Weld, workers: &Workers) 
     normals
 }
 
-/// The normals of vertices that are not welded to others, and for each vertex the number of its normal; no numbers if
-/// they are those of the vertices.
+/// The normals of vertices that are not welded to others, and for each vertex the number of its
+/// normal; no numbers if they are those of the vertices.
 fn drop_welded(normals: Vec<[f32; 3]>, weld: &Weld) -> (Vec<[f32; 3]>, Vec<u32>) {
     if weld.distinct == normals.len() {
         return (normals, Vec::new());
@@ -204,8 +219,14 @@ struct Numbered {
     of_corner: Vec<u32>,
 }
 
-/// Puts further normals behind the first ones; gives all, and for each corner its number among them.
-fn number(mesh: &Mesh, weld: &Weld, normals: Numbered, workers: &Workers) -> (Vec<[f32; 3]>, Vec<u32>) {
+/// Puts further normals behind the first ones; gives all, and for each corner its number among
+/// them.
+fn number(
+    mesh: &Mesh,
+    weld: &Weld,
+    normals: Numbered,
+    workers: &Workers,
+) -> (Vec<[f32; 3]>, Vec<u32>) {
     let Numbered { mut values, numbers, further, mut of_corner } = normals;
     let (shift, _) = shift_and_count(mesh.positions.len());
 
@@ -223,7 +244,9 @@ fn number(mesh: &Mesh, weld: &Weld, normals: Numbered, workers: &Workers) -> (Ve
         for (c, index) in part.iter_mut().enumerate() {
             let v = weld.of(list[k * PIECE + c]);
             let first = numbers.get(v as usize).copied().unwrap_or(v);
-            *index = index.checked_sub(1).map_or(first, |further| starts[(v >> shift) as usize] + further);
+            *index = index
+                .checked_sub(1)
+                .map_or(first, |further| starts[(v >> shift) as usize] + further);
         }
     });
     (values, of_corner)

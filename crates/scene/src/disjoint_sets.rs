@@ -1,8 +1,9 @@
 //! Sets that grow together: union-find, by several threads at once.
 //!
-//! Idea: each member points to another of its set or, the set's root, to itself. Joining two sets makes the higher root
-//! point to the lower one, so that a set's root is its lowest member, whoever joins first. Only roots ever get a new
-//! parent from a join (compare and exchange); who looks for a root halves the path on the way.
+//! Idea: each member points to another of its set or, the set's root, to itself. Joining two sets
+//! makes the higher root point to the lower one, so that a set's root is its lowest member, whoever
+//! joins first. Only roots ever get a new parent from a join (compare and exchange); who looks for
+//! a root halves the path on the way.
 //!
 //! In:   pairs of members that belong together.
 //! Out:  the lowest member of each member's set.
@@ -28,7 +29,8 @@ impl DisjointSets {
             if parent == grandparent {
                 return parent;
             }
-            // Parents only ever get lower, towards the root: another thread's store may be lost without harm.
+            // Parents only ever get lower, towards the root: another thread's store may be lost
+            // without harm.
             self.parent[x as usize].store(grandparent, Relaxed);
             x = grandparent;
         }
@@ -60,10 +62,13 @@ mod tests {
 
     #[test]
     fn the_lowest_member_stands_for_its_set_whoever_joins() {
-        // A chain of even and one of odd numbers, joined in pieces by several threads, each piece from its far end.
+        // A chain of even and one of odd numbers, joined in pieces by several threads, each piece
+        // from its far end.
         let sets = DisjointSets::new(100_000);
         Workers::new(4).map(100, |piece| {
-            for i in (1000 * piece as u32..1000 * (piece as u32 + 1)).rev().filter(|i| i + 2 < 100_000) {
+            for i in
+                (1000 * piece as u32..1000 * (piece as u32 + 1)).rev().filter(|i| i + 2 < 100_000)
+            {
                 sets.join(i + 2, i);
             }
         });

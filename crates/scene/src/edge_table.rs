@@ -1,13 +1,16 @@
 //! The table of a mesh's edges: who uses each edge, and in which direction.
 //!
-//! Idea: every face says once for each of its sides "I run from a to b". Under the key (lower vertex, higher vertex)
-//! the uses of one edge come together. The uses are dealt into buckets by their lower vertex, then within a bucket
-//! placed by the lower vertex (counting sort); the few uses left under one vertex are sorted by the higher one.
+//! Idea: every face says once for each of its sides "I run from a to b". Under the key (lower
+//! vertex, higher vertex) the uses of one edge come together. The uses are dealt into buckets by
+//! their lower vertex, then within a bucket placed by the lower vertex (counting sort); the few
+//! uses left under one vertex are sorted by the higher one.
 //!
 //! In:   outlines of faces over welded vertices.
-//! Out:  one call for each edge, with its uses; within one bucket in order of (lower, higher vertex).
+//! Out:  one call for each edge, with its uses; within one bucket in order of (lower, higher
+//!       vertex).
 //! Cost: `O(sides)` for meshes of bounded valence; never worse than `O(sides log sides)`.
-//! Source: the winged-edge literature builds its tables so [Baumgart 1975]; the sort is distribution counting.
+//! Source: the winged-edge literature builds its tables so [Baumgart 1975]; the sort is
+//!         distribution counting.
 
 use crate::buckets::{Buckets, Source, shift_and_count};
 use crate::{Faces, Mesh};
@@ -17,8 +20,8 @@ use vitral_exec::Workers;
 /// Faces beyond this cannot be numbered in a use (one bit holds the direction).
 pub(crate) const MAX_FACES: usize = 1 << 31;
 
-/// One side of a face: the number of the face, and whether it runs from the higher to the lower vertex. In order of the higher
-/// vertex.
+/// One side of a face: the number of the face, and whether it runs from the higher to the lower
+/// vertex. In order of the higher vertex.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Use(u64);
 
@@ -51,7 +54,8 @@ pub(crate) enum Outlines {
     AllTriangles,
     /// Triangles whose three corners lie at three positions.
     SoundTriangles,
-    /// The file's faces with at least three different corners in a row; sides from a vertex to itself left out.
+    /// The file's faces with at least three different corners in a row; sides from a vertex to
+    /// itself left out.
     Faces,
 }
 
@@ -103,7 +107,8 @@ impl Sides<'_> {
 
 impl Source<[u32; 3]> for Sides<'_> {
     fn items(&self) -> usize {
-        let polygons = self.outlines == Outlines::Faces && matches!(self.mesh.faces, Faces::Polygons { .. });
+        let polygons =
+            self.outlines == Outlines::Faces && matches!(self.mesh.faces, Faces::Polygons { .. });
         if polygons { self.mesh.face_count() } else { self.mesh.triangles.len() }
     }
 
@@ -116,8 +121,8 @@ impl Source<[u32; 3]> for Sides<'_> {
     }
 }
 
-/// Calls `visit(result of the bucket, lower vertex, higher vertex, uses)` for every edge. Uses are in order of faces.
-/// The results come in order of the lower vertex.
+/// Calls `visit(result of the bucket, lower vertex, higher vertex, uses)` for every edge. Uses are
+/// in order of faces. The results come in order of the lower vertex.
 ///
 /// A mesh of [`MAX_FACES`] faces or more has no table: the caller must not ask for it.
 pub(crate) fn for_each_edge<R: Default + Send>(
@@ -134,7 +139,9 @@ pub(crate) fn for_each_edge<R: Default + Send>(
         let mut result = R::default();
         for (v, range) in starts.windows(2).enumerate() {
             let around = &mut uses[range[0] as usize..range[1] as usize];
-            edges_at(around, |higher, edge| visit(&mut result, ((b << shift) + v) as u32, higher, edge));
+            edges_at(around, |higher, edge| {
+                visit(&mut result, ((b << shift) + v) as u32, higher, edge)
+            });
         }
         result
     })
@@ -179,7 +186,11 @@ mod tests {
 
     #[test]
     fn two_triangles_have_five_edges_and_one_is_used_twice() {
-        let mesh = Mesh { positions: vec![[0.0; 3]; 4], triangles: vec![[0, 1, 2], [2, 1, 3]], ..Mesh::default() };
+        let mesh = Mesh {
+            positions: vec![[0.0; 3]; 4],
+            triangles: vec![[0, 1, 2], [2, 1, 3]],
+            ..Mesh::default()
+        };
         let identity = [0, 1, 2, 3];
         type Found = (u32, u32, Vec<(u32, bool)>);
         let push = |found: &mut Vec<Found>, a: u32, b: u32, uses: &[Use]| {

@@ -1,13 +1,15 @@
-//! The edges of a mesh's faces, with what lies on both sides: for wireframes, edge drawings and hidden-line work.
+//! The edges of a mesh's faces, with what lies on both sides: for wireframes, edge drawings and
+//! hidden-line work.
 //!
-//! Idea: the outline of every face, as in the file, is walked; sides between the same two places are one edge. The
-//! diagonals along which polygons were cut into triangles are not edges. The angle between the two faces tells a
-//! crease from a mere subdivision of a smooth surface.
+//! Idea: the outline of every face, as in the file, is walked; sides between the same two places
+//! are one edge. The diagonals along which polygons were cut into triangles are not edges. The
+//! angle between the two faces tells a crease from a mere subdivision of a smooth surface.
 //!
 //! In:   a mesh, model space; equal positions are welded first.
 //! Out:  each edge once, in order of its vertices.
 //! Cost: `O(corners)` expected.
-//! Source: the table is `edge_table`; the classes are those of [Bénard & Hertzmann 2019], section 2.
+//! Source: the table is `edge_table`; the classes are those of [Bénard & Hertzmann 2019], section
+//!         2.
 
 use crate::Mesh;
 use crate::edge_table::{MAX_FACES, Outlines, Use, for_each_edge};
@@ -32,15 +34,16 @@ pub enum EdgeKind {
 /// An edge between two faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// Its ends as indices into the mesh's positions, the lower first; of vertices at one place, the first.
+    /// Its ends as indices into the mesh's positions, the lower first; of vertices at one place,
+    /// the first.
     pub ends: [u32; 2],
     /// The faces at it in ascending order, `u32::MAX` for none. Of more than two, the first two.
     pub faces: [u32; 2],
     /// What it is.
     pub kind: EdgeKind,
-    /// Cosine of the angle between the faces' normals: 1 flat, 0 a right angle, -1 folded back. Where the faces run
-    /// along the edge in the same direction, one of them is turned first. 1 with fewer or more than two faces, and
-    /// beside a face without area.
+    /// Cosine of the angle between the faces' normals: 1 flat, 0 a right angle, -1 folded back.
+    /// Where the faces run along the edge in the same direction, one of them is turned first. 1
+    /// with fewer or more than two faces, and beside a face without area.
     pub cosine: f32,
 }
 
@@ -49,8 +52,8 @@ impl Edge {
     pub const NO_FACE: u32 = u32::MAX;
 }
 
-/// The edges of `mesh`. `crease_angle` in radians separates creases from smooth edges: `0` makes a crease of every
-/// edge that is not flat, `π` of none. A mesh of 2^31 faces or more has none.
+/// The edges of `mesh`. `crease_angle` in radians separates creases from smooth edges: `0` makes a
+/// crease of every edge that is not flat, `π` of none. A mesh of 2^31 faces or more has none.
 pub fn edges(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> Vec<Edge> {
     if mesh.face_count() >= MAX_FACES {
         return Vec::new();
@@ -68,7 +71,11 @@ pub fn edges(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> Vec<Edge> {
 fn classify(ends: [u32; 2], uses: &[Use], normals: &[[f32; 3]], threshold: f32) -> Edge {
     let faces = [uses[0].face(), uses.get(1).map_or(Edge::NO_FACE, |u| u.face())];
     let cosine = match uses {
-        [a, b] => cosine_between(normals[a.face() as usize], normals[b.face() as usize], a.reversed() == b.reversed()),
+        [a, b] => cosine_between(
+            normals[a.face() as usize],
+            normals[b.face() as usize],
+            a.reversed() == b.reversed(),
+        ),
         _ => 1.0,
     };
     let kind = match uses.len() {

@@ -1,8 +1,9 @@
 //! Exploded views: the parts of a scene moved apart.
 //!
-//! Each part moves by a multiple of the way from the centre of the whole to its own centre, both those of boxes in world space. Parts are
-//! the instances. If there is only one, its groups are; and if these have one name, its bodies: triangles that are connected by their
-//! corners. Free lines and points stay where they are when an instance is taken apart.
+//! Each part moves by a multiple of the way from the centre of the whole to its own centre, both
+//! those of boxes in world space. Parts are the instances. If there is only one, its groups are;
+//! and if these have one name, its bodies: triangles that are connected by their corners. Free
+//! lines and points stay where they are when an instance is taken apart.
 //!
 //! In:   a scene and a factor. Out: the scene with a root node for each part.
 //! Cost: linear; `n log n` where an instance is taken apart.
@@ -16,8 +17,8 @@ use vitral_exec::Workers;
 use vitral_math::{Aabb, DMat4};
 
 impl Scene {
-    /// The scene with its parts moved away from its centre by `factor` times the way from there to theirs. 0 moves nothing; lights and
-    /// cameras stay where they are.
+    /// The scene with its parts moved away from its centre by `factor` times the way from there to
+    /// theirs. 0 moves nothing; lights and cameras stay where they are.
     ///
     /// ```
     /// use vitral_scene::{Scene, World, builtin::solids};
@@ -54,13 +55,16 @@ impl Scene {
             _ => Vec::new(),
         };
         if taken_apart.is_empty() {
-            parts.extend(world.instances.iter().map(|i| (Arc::clone(&i.mesh), i.world_from_model, i.bounds)));
+            parts.extend(
+                world.instances.iter().map(|i| (Arc::clone(&i.mesh), i.world_from_model, i.bounds)),
+            );
         } else {
             let placement = world.instances[0].world_from_model;
             parts.extend(taken_apart.into_iter().map(|mesh| {
                 // Free lines and points stay.
                 let is_free = mesh.triangles.is_empty();
-                let bounds = if is_free { world.bounds } else { mesh.bounds().transformed(&placement) };
+                let bounds =
+                    if is_free { world.bounds } else { mesh.bounds().transformed(&placement) };
                 (Arc::new(mesh), placement, bounds)
             }));
         }
@@ -71,10 +75,13 @@ impl Scene {
         }
         for (i, (mesh, world_from_model, bounds)) in parts.into_iter().enumerate() {
             let way = (bounds.center() - world.bounds.center()) * factor;
-            let moved = if way.is_finite() { DMat4::from_translation(way) } else { DMat4::IDENTITY };
-            let instance = world.instances.get(i).filter(|instance| Arc::ptr_eq(&instance.mesh, &mesh));
+            let moved =
+                if way.is_finite() { DMat4::from_translation(way) } else { DMat4::IDENTITY };
+            let instance =
+                world.instances.get(i).filter(|instance| Arc::ptr_eq(&instance.mesh, &mesh));
             let index = instance.map_or(scene.meshes.len() as u32, |instance| instance.mesh_index);
-            let name = instance.map_or(mesh.name.clone(), |i| self.nodes[i.node as usize].name.clone());
+            let name =
+                instance.map_or(mesh.name.clone(), |i| self.nodes[i.node as usize].name.clone());
             if instance.is_none() {
                 scene.meshes.push(mesh);
             }
@@ -86,7 +93,8 @@ impl Scene {
 }
 
 impl World {
-    /// The number of the part of each surface, by surface id. Parts are those of [`Scene::exploded`].
+    /// The number of the part of each surface, by surface id. Parts are those of
+    /// [`Scene::exploded`].
     pub fn parts_of_surfaces(&self, workers: &Workers) -> Vec<u32> {
         match &self.instances[..] {
             [one] => parts_of_faces(&one.mesh, workers).0,
@@ -99,7 +107,8 @@ impl World {
     }
 }
 
-/// For each face of a mesh the number of its part, a group or else a body, in order of their first faces; and how many there are.
+/// For each face of a mesh the number of its part, a group or else a body, in order of their first
+/// faces; and how many there are.
 fn parts_of_faces(mesh: &Mesh, workers: &Workers) -> (Vec<u32>, usize) {
     let mut names: BTreeMap<&str, u32> = BTreeMap::new();
     for part in mesh.parts.iter().filter(|part| !part.triangles.is_empty()) {
@@ -128,7 +137,8 @@ fn parts_of_faces(mesh: &Mesh, workers: &Workers) -> (Vec<u32>, usize) {
     }
 }
 
-/// The groups or bodies of a mesh as meshes of their own, in order of their first faces; none if there is only one.
+/// The groups or bodies of a mesh as meshes of their own, in order of their first faces; none if
+/// there is only one.
 fn taken_apart(mesh: &Mesh, workers: &Workers) -> Vec<Mesh> {
     let (part_of_face, count) = parts_of_faces(mesh, workers);
     if count < 2 {
@@ -137,7 +147,10 @@ fn taken_apart(mesh: &Mesh, workers: &Workers) -> Vec<Mesh> {
 
     // Deal the faces, and make a mesh of each part and one of free lines and points.
     let mut faces_of_part: Vec<Vec<u32>> = vec![Vec::new(); count];
-    part_of_face.iter().enumerate().for_each(|(face, &part)| faces_of_part[part as usize].push(face as u32));
+    part_of_face
+        .iter()
+        .enumerate()
+        .for_each(|(face, &part)| faces_of_part[part as usize].push(face as u32));
     let mut parts: Vec<Mesh> = faces_of_part.iter().map(|faces| subset(mesh, faces)).collect();
     if !mesh.lines.is_empty() || !mesh.points.is_empty() {
         let free = Mesh {
@@ -167,7 +180,8 @@ fn bodies(mesh: &Mesh, workers: &Workers) -> Vec<u32> {
 
 /// Some faces of a mesh, with the positions and values that they use.
 fn subset(mesh: &Mesh, faces: &[u32]) -> Mesh {
-    let triangles: Vec<usize> = faces.iter().flat_map(|&face| mesh.face_triangles(face as usize)).collect();
+    let triangles: Vec<usize> =
+        faces.iter().flat_map(|&face| mesh.face_triangles(face as usize)).collect();
     let own: Vec<Corners> = triangles.iter().map(|&t| mesh.triangles[t]).collect();
     let (used, own) = compacted(&own);
     let corners_of = |all: Option<&[Corners]>| {
@@ -189,7 +203,9 @@ fn subset(mesh: &Mesh, faces: &[u32]) -> Mesh {
         let index = mesh.parts.partition_point(|part| part.triangles.end as usize <= t);
         let Some(of) = mesh.parts.get(index) else { continue };
         match parts.last_mut() {
-            Some(last) if last.material == of.material && last.name == of.name => last.triangles.end = i as u32 + 1,
+            Some(last) if last.material == of.material && last.name == of.name => {
+                last.triangles.end = i as u32 + 1
+            }
             _ => parts.push(Part { triangles: i as u32..i as u32 + 1, ..of.clone() }),
         }
     }
@@ -198,15 +214,35 @@ fn subset(mesh: &Mesh, faces: &[u32]) -> Mesh {
         name: name.unwrap_or_else(|| mesh.name.clone()),
         positions: used.iter().map(|&v| mesh.positions[v as usize]).collect(),
         triangles: own,
-        faces: if mesh.faces == Faces::Triangles { Faces::Triangles } else { Faces::Polygons { starts, corners } },
+        faces: if mesh.faces == Faces::Triangles {
+            Faces::Triangles
+        } else {
+            Faces::Polygons { starts, corners }
+        },
         parts,
-        normals: mesh.normals.as_ref().map(|all| some_values(all, corners_of(all.corners.as_deref()))),
+        normals: mesh
+            .normals
+            .as_ref()
+            .map(|all| some_values(all, corners_of(all.corners.as_deref()))),
         normals_stay: mesh.normals_stay,
-        tangents: mesh.tangents.as_ref().map(|all| some_values(all, corners_of(all.corners.as_deref()))),
-        uvs: mesh.uvs.iter().map(|all| some_values(all, corners_of(all.corners.as_deref()))).collect(),
-        colors: mesh.colors.as_ref().map(|all| some_values(all, corners_of(all.corners.as_deref()))),
+        tangents: mesh
+            .tangents
+            .as_ref()
+            .map(|all| some_values(all, corners_of(all.corners.as_deref()))),
+        uvs: mesh
+            .uvs
+            .iter()
+            .map(|all| some_values(all, corners_of(all.corners.as_deref())))
+            .collect(),
+        colors: mesh
+            .colors
+            .as_ref()
+            .map(|all| some_values(all, corners_of(all.corners.as_deref()))),
         colors_from_srgb: mesh.colors_from_srgb,
-        smoothing_groups: mesh.smoothing_groups.as_ref().map(|g| faces.iter().map(|&f| g[f as usize]).collect()),
+        smoothing_groups: mesh
+            .smoothing_groups
+            .as_ref()
+            .map(|g| faces.iter().map(|&f| g[f as usize]).collect()),
         ..Mesh::default()
     }
 }
@@ -216,13 +252,20 @@ fn compacted(corners: &[Corners]) -> (Vec<u32>, Vec<Corners>) {
     let mut used = corners.as_flattened().to_vec();
     used.sort_unstable();
     used.dedup();
-    let places = corners.iter().map(|c| c.map(|v| used.partition_point(|&u| u < v) as u32)).collect();
+    let places =
+        corners.iter().map(|c| c.map(|v| used.partition_point(|&u| u < v) as u32)).collect();
     (used, places)
 }
 
 /// The values of an attribute at these indices, with these corners.
-fn some_values<T: Copy>(all: &Attribute<T>, (used, corners): (Vec<u32>, Vec<Corners>)) -> Attribute<T> {
-    Attribute { values: used.iter().map(|&i| all.values[i as usize]).collect(), corners: Some(corners) }
+fn some_values<T: Copy>(
+    all: &Attribute<T>,
+    (used, corners): (Vec<u32>, Vec<Corners>),
+) -> Attribute<T> {
+    Attribute {
+        values: used.iter().map(|&i| all.values[i as usize]).collect(),
+        corners: Some(corners),
+    }
 }
 
 #[cfg(test)]
@@ -257,7 +300,10 @@ mod tests {
     #[test]
     fn instances_move_by_a_multiple_of_their_distance() {
         let mut scene = Scene::default();
-        scene.add_mesh(solids::cuboid(DVec3::ONE), DMat4::from_translation(DVec3::new(1.0, 0.0, 0.0)));
+        scene.add_mesh(
+            solids::cuboid(DVec3::ONE),
+            DMat4::from_translation(DVec3::new(1.0, 0.0, 0.0)),
+        );
         let child = Node {
             transform: NodeTransform::Matrix(DMat4::from_translation(DVec3::new(-4.0, 2.0, 0.0))),
             mesh: Some(0),
@@ -296,14 +342,20 @@ mod tests {
         let part = |name: &str, triangles| Part { name: name.into(), triangles, material: Some(3) };
         mesh.parts = vec![part("a", 0..half), part("b", half..2 * half)];
         let count = mesh.positions.len() as u32;
-        mesh = mesh.with_smooth_normals(0.1).with_uvs((0..count).map(|i| [i as f32; 2]).collect::<Vec<_>>());
+        mesh = mesh
+            .with_smooth_normals(0.1)
+            .with_uvs((0..count).map(|i| [i as f32; 2]).collect::<Vec<_>>());
         let parts = taken_apart(&mesh, &Workers::single());
         assert_eq!(parts.iter().map(Mesh::face_count).collect::<Vec<_>>(), [3, 3]);
         for t in 0..half as usize {
             let [own, whole] = [&parts[1], &mesh].map(|m| {
                 let t = if std::ptr::eq(m, &mesh) { t + half as usize } else { t };
                 let normals = m.normals.as_ref().map(|n| n.at(t, &m.triangles));
-                (m.triangles[t].map(|v| m.positions[v as usize]), m.uvs[0].at(t, &m.triangles), normals)
+                (
+                    m.triangles[t].map(|v| m.positions[v as usize]),
+                    m.uvs[0].at(t, &m.triangles),
+                    normals,
+                )
             });
             assert_eq!(own, whole);
         }

@@ -1,18 +1,22 @@
-//! Exposure of photometric lights: files have them in candela and lux, often tens of thousands, and a picture shows 0 to 1.
+//! Exposure of photometric lights: files have them in candela and lux, often tens of thousands, and
+//! a picture shows 0 to 1.
 //!
-//! Idea: a light meter held to the model. Some thousand points, spread evenly over its triangles, tell the light that white
-//! Lambert surfaces get there. The mean of its logarithm, weighted by area and by the square root of the light itself, is the
-//! reading: unlit parts have no weight, and a spot next to a lamp has little. The reading is brought between 1/8 and 1/2; one
-//! that lies there is left alone. Every step is continuous, so a lamp that moves a little changes the picture a little.
+//! Idea: a light meter held to the model. Some thousand points, spread evenly over its triangles,
+//! tell the light that white Lambert surfaces get there. The mean of its logarithm, weighted by
+//! area and by the square root of the light itself, is the reading: unlit parts have no weight, and
+//! a spot next to a lamp has little. The reading is brought between 1/8 and 1/2; one that lies
+//! there is left alone. Every step is continuous, so a lamp that moves a little changes the picture
+//! a little.
 //!
-//! Only lights marked as photometric are scaled. All other light, ambient light included, is shown by its numbers, and leaves
-//! the photometric lights that much less room. The reading depends on scene and lights alone: pictures from all sides of a
-//! turntable agree.
+//! Only lights marked as photometric are scaled. All other light, ambient light included, is shown
+//! by its numbers, and leaves the photometric lights that much less room. The reading depends on
+//! scene and lights alone: pictures from all sides of a turntable agree.
 //!
 //! In:   instances and lights in world space. Occlusion is not considered.
 //! Out:  the factor for the photometric lights.
 //! Cost: linear in the points times the lights.
-//! Source: points by the sequence of [Roberts 2018]; log-average metering is photographers' practice; the numbers are ours.
+//! Source: points by the sequence of [Roberts 2018]; log-average metering is photographers'
+//!         practice; the numbers are ours.
 
 use crate::{Instance, World};
 use vitral_light::{PreparedLight, Rgb};
@@ -21,9 +25,11 @@ use vitral_math::{DMat4, DVec3, func};
 
 /// Points at which light is measured.
 pub(crate) const POINTS: u32 = 4096;
-/// Readings between these need no exposure: half-lit white surfaces are a dark grey, or the best lit ones are just white.
+/// Readings between these need no exposure: half-lit white surfaces are a dark grey, or the best
+/// lit ones are just white.
 const SHOWN: [f64; 2] = [0.125, 0.5];
-/// Multiples of these, less their whole parts, fill a square evenly: the inverses of the root of `x³ = x + 1` and of its square.
+/// Multiples of these, less their whole parts, fill a square evenly: the inverses of the root of
+/// `x³ = x + 1` and of its square.
 const SPREAD: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 /// Shares of red, green and blue in the brightness of linear colours ([sRGB]).
 pub(crate) const BRIGHTNESS: [f32; 3] = [0.2126, 0.7152, 0.0722];
@@ -47,13 +53,15 @@ impl LightMeter {
         Self { photometric: reading(world, true), other: reading(world, false) }
     }
 
-    /// The factor for the photometric lights under `ambient` light; 1 without such lights, or where they reach nothing.
+    /// The factor for the photometric lights under `ambient` light; 1 without such lights, or where
+    /// they reach nothing.
     pub fn exposure(&self, ambient: Rgb) -> f32 {
         if self.photometric <= 0.0 {
             return 1.0;
         }
         let other = self.other + (0..3).map(|k| f64::from(BRIGHTNESS[k] * ambient[k])).sum::<f64>();
-        // Other light leaves less room, but never less than the dark end: lights that are there must be seen.
+        // Other light leaves less room, but never less than the dark end: lights that are there
+        // must be seen.
         let least = (SHOWN[0] - other).max(0.0);
         let most = (SHOWN[1] - other).max(SHOWN[0]);
         let factor = self.photometric.clamp(least, most) / self.photometric;
@@ -64,7 +72,8 @@ impl LightMeter {
 /// The reading of the lights that are photometric, or of those that are not.
 fn reading(world: &World, photometric: bool) -> f64 {
     let chosen = world.lights.iter().filter(|light| light.photometric == photometric);
-    let lights: Vec<_> = chosen.filter_map(|light| PreparedLight::new(light, &DMat4::IDENTITY)).collect();
+    let lights: Vec<_> =
+        chosen.filter_map(|light| PreparedLight::new(light, &DMat4::IDENTITY)).collect();
     if lights.is_empty() || world.facet_count == 0 {
         return 0.0;
     }
@@ -72,10 +81,13 @@ fn reading(world: &World, photometric: bool) -> f64 {
     for number in 0..POINTS {
         let facet = (u64::from(number) * u64::from(world.facet_count) / u64::from(POINTS)) as u32;
         let instance = &world.instances[world.instance_of_facet(facet)];
-        let Some((point, normal, area)) = surface_point(instance, facet - instance.first_facet, number) else {
+        let Some((point, normal, area)) =
+            surface_point(instance, facet - instance.first_facet, number)
+        else {
             continue;
         };
-        let light: f64 = lights.iter().map(|light| f64::from(brightness(light, point, normal))).sum();
+        let light: f64 =
+            lights.iter().map(|light| f64::from(brightness(light, point, normal))).sum();
         if light.is_finite() && light > 0.0 {
             let weight = area * light.sqrt();
             weights += weight;
@@ -85,8 +97,13 @@ fn reading(world: &World, photometric: bool) -> f64 {
     if weights > 0.0 { func::exp(sum / weights) } else { 0.0 }
 }
 
-/// A point in an instance's triangle with the unit normal there and the triangle's area, world space; none if it has no area.
-pub(crate) fn surface_point(instance: &Instance, triangle: u32, number: u32) -> Option<(DVec3, DVec3, f64)> {
+/// A point in an instance's triangle with the unit normal there and the triangle's area, world
+/// space; none if it has no area.
+pub(crate) fn surface_point(
+    instance: &Instance,
+    triangle: u32,
+    number: u32,
+) -> Option<(DVec3, DVec3, f64)> {
     let [a, b, c] = instance.corners(triangle);
     let twice = (b - a).cross(c - a);
     let area = twice.length();
@@ -98,7 +115,8 @@ pub(crate) fn surface_point(instance: &Instance, triangle: u32, number: u32) -> 
     Some((a + (b - a) * u + (c - a) * v, normal, area))
 }
 
-/// What a white Lambert surface gets from a light, on the side that faces it: files wind triangles either way.
+/// What a white Lambert surface gets from a light, on the side that faces it: files wind triangles
+/// either way.
 fn brightness(light: &PreparedLight, point: DVec3, normal: DVec3) -> f32 {
     let [x, y, z] = point.as_vec3().to_array();
     let [nx, ny, nz] = normal.as_vec3().to_array();
@@ -131,7 +149,11 @@ mod tests {
     }
 
     fn lamp(candela: f32, position: DVec3) -> Light {
-        Light { kind: LightKind::Point { position }, attenuation: Attenuation::InverseSquare, ..sun(candela) }
+        Light {
+            kind: LightKind::Point { position },
+            attenuation: Attenuation::InverseSquare,
+            ..sun(candela)
+        }
     }
 
     fn exposure(lights: Vec<Light>, ambient: Rgb) -> f32 {
@@ -160,7 +182,8 @@ mod tests {
             let position = bounds.center() + DVec3::X * size.length() * (1.0 + 0.01 * f64::from(i));
             exposure(vec![lamp(100.0, position)], DARK)
         };
-        let strengthen = |i: u32| exposure(vec![sun((0..i).fold(0.05, |strength, _| strength * 1.02))], DARK);
+        let strengthen =
+            |i: u32| exposure(vec![sun((0..i).fold(0.05, |strength, _| strength * 1.02))], DARK);
         let brighten = |i: u32| exposure(vec![sun(30.0)], [i as f32 * 0.005; 3]);
         for step in [&walk as &dyn Fn(u32) -> f32, &strengthen, &brighten] {
             let factors: Vec<f32> = (0..300).map(step).collect();
@@ -177,8 +200,15 @@ mod tests {
         let bounds = world("teapot", Vec::new()).bounds;
         let reach = (bounds.max - bounds.min).length();
         let slide = |i: u32| {
-            let position = bounds.center() + DVec3::new(reach * 0.002 * f64::from(i), 0.0, reach * 2.0);
-            let kind = LightKind::Spot { position, direction: DVec3::NEG_Z, cutoff: 0.1, inner: 0.0, exponent: 0.0 };
+            let position =
+                bounds.center() + DVec3::new(reach * 0.002 * f64::from(i), 0.0, reach * 2.0);
+            let kind = LightKind::Spot {
+                position,
+                direction: DVec3::NEG_Z,
+                cutoff: 0.1,
+                inner: 0.0,
+                exponent: 0.0,
+            };
             exposure(vec![Light { kind, ..sun(1e5) }], DARK)
         };
         let factors: Vec<f32> = (0..200).map(slide).collect();
@@ -190,7 +220,10 @@ mod tests {
         let alone = exposure(vec![sun(1e4)], DARK);
         let half = exposure(vec![sun(1e4)], [0.25; 3]);
         let bright = exposure(vec![sun(1e4)], [7.0; 3]);
-        assert!((half / alone - 0.5).abs() < 1e-3 && (bright / alone - 0.25).abs() < 1e-3, "{alone} {half} {bright}");
+        assert!(
+            (half / alone - 0.5).abs() < 1e-3 && (bright / alone - 0.25).abs() < 1e-3,
+            "{alone} {half} {bright}"
+        );
         // Faint lights beside enough other light stay faint.
         assert_eq!(exposure(vec![sun(1e-3)], [0.3; 3]), 1.0);
         let other = Light { photometric: false, ..sun(0.3) };

@@ -1,7 +1,9 @@
-//! Extents: intervals in one dimension, windows in two. The cheapest test that two things do not meet.
+//! Extents: intervals in one dimension, windows in two. The cheapest test that two things do not
+//! meet.
 //!
-//! Idea: if the projections of two polygons on one axis are apart, so are the polygons. The converse does not hold:
-//! windows may overlap while the polygons pass each other by, so "overlap" only means "look closer".
+//! Idea: if the projections of two polygons on one axis are apart, so are the polygons. The
+//! converse does not hold: windows may overlap while the polygons pass each other by, so "overlap"
+//! only means "look closer".
 //!
 //! In:   coordinates in any one space; NaN is passed over.
 //! Out:  whether extents overlap. Touching counts: nothing is lost by looking closer.
@@ -33,8 +35,8 @@ impl Extent1 {
         !(other.max < self.min || self.max < other.min)
     }
 
-    /// Whether they share more than one number, or one is a number within the other: where extents only touch, polygons share no
-    /// area.
+    /// Whether they share more than one number, or one is a number within the other: where extents
+    /// only touch, polygons share no area.
     pub fn crosses(&self, other: &Self) -> bool {
         self.min < other.max && other.min < self.max
     }
@@ -89,7 +91,9 @@ mod tests {
         assert!(!a.overlaps(&Extent1::EMPTY) && !Extent1::EMPTY.overlaps(&a));
         assert_eq!(Extent1::of([f64::NAN, 1.0, 0.0]), a);
         let crosses = |min, max| a.crosses(&Extent1 { min, max });
-        assert!(crosses(0.5, 2.0) && crosses(0.5, 0.5) && !crosses(1.0, 2.0) && !crosses(-1.0, 0.0));
+        assert!(
+            crosses(0.5, 2.0) && crosses(0.5, 0.5) && !crosses(1.0, 2.0) && !crosses(-1.0, 0.0)
+        );
         assert!(!a.crosses(&Extent1::EMPTY));
     }
 

@@ -1,12 +1,14 @@
 //! What faces say to their vertices: their normals, and their angles there.
 //!
-//! Idea: a polygon's normal is the sum of the cross products of the fan from its first corner. Triangles are taken eight at a
-//! time, whichever faces they are; so are the arc tangents of the angles of other polygons.
+//! Idea: a polygon's normal is the sum of the cross products of the fan from its first corner.
+//! Triangles are taken eight at a time, whichever faces they are; so are the arc tangents of the
+//! angles of other polygons.
 //!
 //! In:   a mesh, model space.
 //! Out:  unit normals and angles in radians; zero for faces without area.
 //! Cost: `O(corners)`.
-//! Source: Newell's normal after [Sutherland, Sproull & Schumacker 1974]; arc tangent: [Abramowitz & Stegun 1964], 4.4.49.
+//! Source: Newell's normal after [Sutherland, Sproull & Schumacker 1974]; arc tangent: [Abramowitz
+//!         & Stegun 1964], 4.4.49.
 
 use crate::Mesh;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -17,7 +19,8 @@ use vitral_math::lanes::{self, F64x8, LANES, Level, Simd, dispatch};
 
 /// Faces or corners that are worked on together.
 pub(crate) const BATCH: usize = 1 << 14;
-/// Normals before they are made unit must be longer than this times the largest squared distance between corners.
+/// Normals before they are made unit must be longer than this times the largest squared distance
+/// between corners.
 const MOST_SLENDER: f64 = 1e-7;
 
 /// What the faces say to their vertices.
@@ -52,12 +55,23 @@ pub(crate) fn face_data(mesh: &Mesh, workers: &Workers) -> FaceData {
 }
 
 /// The normals of the triangles in `list`, and their angles, three each.
-pub(crate) fn measure_triangles(mesh: &Mesh, list: &[u32], normals: &mut [[f32; 3]], angles: &mut [f32]) {
+pub(crate) fn measure_triangles(
+    mesh: &Mesh,
+    list: &[u32],
+    normals: &mut [[f32; 3]],
+    angles: &mut [f32],
+) {
     dispatch!(Level::new(), simd => measure_listed(simd, mesh, list, normals, angles));
 }
 
 #[inline(always)]
-fn measure_listed<S: Simd>(simd: S, mesh: &Mesh, list: &[u32], normals: &mut [[f32; 3]], angles: &mut [f32]) {
+fn measure_listed<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    list: &[u32],
+    normals: &mut [[f32; 3]],
+    angles: &mut [f32],
+) {
     let mut triangles = Triangles::default();
     for (k, &triangle) in list.iter().enumerate() {
         triangles.push(k, 3 * k, mesh.triangles[triangle as usize]);
@@ -70,7 +84,13 @@ fn measure_listed<S: Simd>(simd: S, mesh: &Mesh, list: &[u32], normals: &mut [[f
 
 /// The normals of the faces from `first` on, and their angles.
 #[inline(always)]
-fn measure_faces<S: Simd>(simd: S, mesh: &Mesh, first: usize, normals: &mut [[f32; 3]], weights: &mut [f32]) {
+fn measure_faces<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    first: usize,
+    normals: &mut [[f32; 3]],
+    weights: &mut [f32],
+) {
     let (mut triangles, mut angles) = (Triangles::default(), Angles::default());
     let mut at = 0;
     for face in 0..normals.len() {
@@ -111,13 +131,20 @@ struct Triangles {
 impl Triangles {
     #[inline(always)]
     fn push(&mut self, face: usize, at: usize, corners: [u32; 3]) {
-        (self.face[self.count], self.at[self.count], self.corners[self.count]) = (face, at, corners);
+        (self.face[self.count], self.at[self.count], self.corners[self.count]) =
+            (face, at, corners);
         self.count += 1;
     }
 
     /// Writes the normals and angles of those that wait; all three angles share one cross product.
     #[inline(always)]
-    fn measure<S: Simd>(&mut self, simd: S, mesh: &Mesh, normals: &mut [[f32; 3]], weights: &mut [f32]) {
+    fn measure<S: Simd>(
+        &mut self,
+        simd: S,
+        mesh: &Mesh,
+        normals: &mut [[f32; 3]],
+        weights: &mut [f32],
+    ) {
         if self.count == 0 {
             return;
         }
@@ -135,8 +162,13 @@ impl Triangles {
 
         // Compute the cross product of two sides.
         let [a, b, c] = [corner(0), corner(1), corner(2)];
-        let (ab, ac) = ([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]);
-        let cross = [ab[1] * ac[2] - ac[1] * ab[2], ab[2] * ac[0] - ac[2] * ab[0], ab[0] * ac[1] - ac[0] * ab[1]];
+        let (ab, ac) =
+            ([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]);
+        let cross = [
+            ab[1] * ac[2] - ac[1] * ab[2],
+            ab[2] * ac[0] - ac[2] * ab[0],
+            ab[0] * ac[1] - ac[0] * ab[1],
+        ];
         let length = dot(cross, cross).sqrt();
         let longest = dot(ab, ab).max(dot(ac, ac));
 
@@ -147,14 +179,16 @@ impl Triangles {
         let at_c = (F64x8::splat(simd, PI) - at_a - at_b).max(F64x8::splat(simd, 0.0));
         let zero = F64x8::splat(simd, 0.0);
         // As `has_area` says.
-        let sound = length.simd_lt(F64x8::splat(simd, f64::INFINITY)) & length.simd_gt(longest * MOST_SLENDER);
+        let sound = length.simd_lt(F64x8::splat(simd, f64::INFINITY))
+            & length.simd_gt(longest * MOST_SLENDER);
         let out = lanes::inlined(
             #[inline(always)]
             |value: F64x8<S>| lanes::narrowed(simd, sound.select(value, zero)).bitcast(),
         );
 
         // Store unit normals, and the angles as weights.
-        let normal = [out(cross[0] / length), out(cross[1] / length), out(cross[2] / length), out(zero)];
+        let normal =
+            [out(cross[0] / length), out(cross[1] / length), out(cross[2] / length), out(zero)];
         let three = lanes::inlined(
             #[inline(always)]
             |row: [i32; 4]| {
@@ -219,7 +253,8 @@ impl Angles {
     #[inline(always)]
     fn push(&mut self, at: usize, angle: Angle) {
         let k = self.count;
-        (self.at[k], self.sine[k], self.cosine[k], self.reflex[k]) = (at, angle.sine, angle.cosine, angle.reflex);
+        (self.at[k], self.sine[k], self.cosine[k], self.reflex[k]) =
+            (at, angle.sine, angle.cosine, angle.reflex);
         self.count += 1;
     }
 
@@ -237,7 +272,8 @@ impl Angles {
     }
 }
 
-/// Newell's normal as a fan of cross products from the first corner, unit; zero without area or with bad coordinates.
+/// Newell's normal as a fan of cross products from the first corner, unit; zero without area or
+/// with bad coordinates.
 pub(crate) fn outline_normal(mesh: &Mesh, outline: &[u32]) -> DVec3 {
     let origin = mesh.position(outline[0]);
     let (mut sum, mut longest) = (DVec3::ZERO, 0.0f64);
@@ -252,8 +288,9 @@ pub(crate) fn outline_normal(mesh: &Mesh, outline: &[u32]) -> DVec3 {
     if has_area(length, longest) { sum / length } else { DVec3::ZERO }
 }
 
-/// Whether a normal of this length, before it is made unit, means anything, for the largest squared distance between
-/// corners. A sliver only as wide as the rounding of its coordinates has no direction worth averaging.
+/// Whether a normal of this length, before it is made unit, means anything, for the largest squared
+/// distance between corners. A sliver only as wide as the rounding of its coordinates has no
+/// direction worth averaging.
 fn has_area(length: f64, longest_squared: f64) -> bool {
     length.is_finite() && length > MOST_SLENDER * longest_squared
 }
@@ -263,8 +300,8 @@ fn dot<S: Simd>(a: [F64x8<S>; 3], b: [F64x8<S>; 3]) -> F64x8<S> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The angles in `0..=π` whose sine and cosine are proportional to `y >= 0` and `x`; 0 for the zero vector. Absolute
-/// error below 2e-8.
+/// The angles in `0..=π` whose sine and cosine are proportional to `y >= 0` and `x`; 0 for the zero
+/// vector. Absolute error below 2e-8.
 #[inline(always)]
 fn angle_from<S: Simd>(simd: S, y: F64x8<S>, x: F64x8<S>) -> F64x8<S> {
     let zero = F64x8::splat(simd, 0.0);
@@ -285,7 +322,8 @@ fn angle_from<S: Simd>(simd: S, y: F64x8<S>, x: F64x8<S>) -> F64x8<S> {
         p = p * t2 + c;
     }
     let first_octant = p * t;
-    let quadrant = y.simd_gt(x.abs()).select(F64x8::splat(simd, FRAC_PI_2) - first_octant, first_octant);
+    let quadrant =
+        y.simd_gt(x.abs()).select(F64x8::splat(simd, FRAC_PI_2) - first_octant, first_octant);
     x.simd_lt(zero).select(F64x8::splat(simd, PI) - quadrant, quadrant)
 }
 
@@ -313,7 +351,12 @@ mod tests {
     fn angles_are_right_in_every_octant() {
         let angle = |k: i32| PI * f64::from(k) / 1000.0;
         let (sines, cosines): (Vec<_>, Vec<_>) = (0..=1000)
-            .map(|k| (vitral_math::func::sin(angle(k)).max(0.0) * 3.0, vitral_math::func::cos(angle(k)) * 3.0))
+            .map(|k| {
+                (
+                    vitral_math::func::sin(angle(k)).max(0.0) * 3.0,
+                    vitral_math::func::cos(angle(k)) * 3.0,
+                )
+            })
             .unzip();
         for (k, found) in (0..).zip(angles(&sines, &cosines)) {
             assert!((found - angle(k)).abs() < 3e-8, "{}", angle(k));
@@ -321,7 +364,8 @@ mod tests {
         assert_eq!(angles(&[0.0], &[0.0]), [0.0]);
     }
 
-    /// Faces of three, four and five corners, one of them without area, in odd numbers: each gets its own.
+    /// Faces of three, four and five corners, one of them without area, in odd numbers: each gets
+    /// its own.
     #[test]
     fn every_face_gets_its_own_normal_and_angles() {
         let mut positions = Vec::new();
@@ -330,24 +374,35 @@ mod tests {
             let n = 3 + face % 3;
             let first = positions.len() as u32;
             for k in 0..n {
-                // A regular polygon in a plane z = face, turned over for every fourth; of no size for one.
-                let turn = std::f64::consts::TAU * f64::from(k) / f64::from(n) * if face % 4 == 0 { -1.0 } else { 1.0 };
+                // A regular polygon in a plane z = face, turned over for every fourth; of no size
+                // for one.
+                let turn = std::f64::consts::TAU * f64::from(k) / f64::from(n)
+                    * if face % 4 == 0 { -1.0 } else { 1.0 };
                 let size = if face == 21 { 0.0 } else { 1.0 + f64::from(face) };
-                let (x, y) = (size * vitral_math::func::cos(turn), size * vitral_math::func::sin(turn));
+                let (x, y) =
+                    (size * vitral_math::func::cos(turn), size * vitral_math::func::sin(turn));
                 positions.push([x as f32, y as f32, face as f32]);
             }
             corners.extend(first..first + n);
             starts.push(corners.len() as u32);
             triangles.extend((1..n - 1).map(|k| [first, first + k, first + k + 1]));
         }
-        let mesh = Mesh { positions, triangles, faces: Faces::Polygons { starts, corners }, ..Mesh::default() };
+        let mesh = Mesh {
+            positions,
+            triangles,
+            faces: Faces::Polygons { starts, corners },
+            ..Mesh::default()
+        };
         let data = face_data(&mesh, &Workers::single());
         for face in 0..53 {
             let n = 3 + face % 3;
             let z = if face % 4 == 0 { -1.0 } else { 1.0 };
             let expected = if face == 21 { [0.0; 3] } else { [0.0, 0.0, z] };
             let normal = data.normals[face];
-            assert!((0..3).all(|k| (normal[k] - expected[k]).abs() < 1e-6), "face {face}: {normal:?}");
+            assert!(
+                (0..3).all(|k| (normal[k] - expected[k]).abs() < 1e-6),
+                "face {face}: {normal:?}"
+            );
             let angle = if face == 21 { 0.0 } else { PI * (1.0 - 2.0 / n as f64) };
             for weight in &data.weights[mesh.first_corner(face)..mesh.first_corner(face + 1)] {
                 assert!((f64::from(*weight) - angle).abs() < 1e-6, "face {face}: {weight}");

@@ -1,11 +1,13 @@
 //! Framing: a camera that shows a whole box from a standard side, filling the picture.
 //!
-//! Idea: a corner of the box at sideways offset `x` and height `y` from the line of view is inside the picture if it
-//! is at least `|x| / tan(horizontal half angle)` and `|y| / tan(vertical half angle)` in front of the eye. Each of
-//! the eight corners so tells how far back the eye must be; the largest answer fits the box exactly, where the
-//! sphere round the box would leave much of the picture empty. The points of a model seldom lie evenly round the middle of
-//! their box, least in perspective, so for them the eye also moves sideways: what the right side needs less what the left side
-//! needs, halved, brings both margins to the same width, and the mean of both is the distance.
+//! Idea: a corner of the box at sideways offset `x` and height `y` from the line of view is inside
+//! the picture if it is at least `|x| / tan(horizontal half angle)` and
+//! `|y| / tan(vertical half angle)` in front of the eye. Each of the eight corners so tells how far
+//! back the eye must be; the largest answer fits the box exactly, where the sphere round the box
+//! would leave much of the picture empty. The points of a model seldom lie evenly round the middle
+//! of their box, least in perspective, so for them the eye also moves sideways: what the right side
+//! needs less what the left side needs, halved, brings both margins to the same width, and the mean
+//! of both is the distance.
 //!
 //! In:   a box in world space, which way is up, the side to look from, the shape of the picture.
 //! Out:  a [`Camera`] with its focal point in the middle of the box.
@@ -86,17 +88,26 @@ pub fn frame(bounds: &Aabb, view: View, up: Axis, lens: Lens, aspect: f64) -> Ca
     frame_from(bounds, eye, picture_up, lens, aspect, FILL)
 }
 
-/// As [`frame`], looking from the direction `eye` (from the box to the eye, any length) with `view_up` upwards; the
-/// box fills `fill` (0 to 1, more zooms in) of the picture. An empty or single-point box is shown as a unit sphere's.
-pub fn frame_from(bounds: &Aabb, eye: DVec3, view_up: DVec3, lens: Lens, aspect: f64, fill: f64) -> Camera {
+/// As [`frame`], looking from the direction `eye` (from the box to the eye, any length) with
+/// `view_up` upwards; the box fills `fill` (0 to 1, more zooms in) of the picture. An empty or
+/// single-point box is shown as a unit sphere's.
+pub fn frame_from(
+    bounds: &Aabb,
+    eye: DVec3,
+    view_up: DVec3,
+    lens: Lens,
+    aspect: f64,
+    fill: f64,
+) -> Camera {
     let bounds = presentable(bounds);
     let fit = Fit::new(&bounds, eye, view_up, lens, aspect, fill);
     let need = bounds.corners().into_iter().fold(0.0, |most, corner| fit.need(corner).max(most));
     fit.camera(need)
 }
 
-/// As [`frame_from`], fitting all finite points of a world instead of the corners of the box round it: closer where the
-/// model leaves the corners of its box empty, and with the same margins left and right, above and below.
+/// As [`frame_from`], fitting all finite points of a world instead of the corners of the box round
+/// it: closer where the model leaves the corners of its box empty, and with the same margins left
+/// and right, above and below.
 pub fn frame_world(
     world: &World,
     eye: DVec3,
@@ -110,12 +121,14 @@ pub fn frame_world(
         return frame_from(&world.bounds, eye, view_up, lens, aspect, fill);
     }
     let fit = Fit::new(&world.bounds, eye, view_up, lens, aspect, fill);
-    let needs = [0, 1, 2, 3].map(|side| greatest_need(world, |point| fit.sides(point)[side], workers));
+    let needs =
+        [0, 1, 2, 3].map(|side| greatest_need(world, |point| fit.sides(point)[side], workers));
     fit.centered(needs)
 }
 
-/// As [`frame_world`], for pictures in which the model turns about `axis` (unit) through the middle of its box: what all finite
-/// points of the world sweep fills [`FILL`] of the picture, so that nothing leaves it and the size does not pulse.
+/// As [`frame_world`], for pictures in which the model turns about `axis` (unit) through the middle
+/// of its box: what all finite points of the world sweep fills [`FILL`] of the picture, so that
+/// nothing leaves it and the size does not pulse.
 pub fn frame_turning(
     world: &World,
     eye: DVec3,
@@ -129,7 +142,9 @@ pub fn frame_turning(
     let fit = Fit::new(&bounds, eye, view_up, lens, aspect, FILL);
     let turning = Turning::new(&fit, axis);
     if bounds != world.bounds {
-        return fit.camera(bounds.corners().into_iter().map(|corner| turning.need(corner)).fold(0.0, f64::max));
+        return fit.camera(
+            bounds.corners().into_iter().map(|corner| turning.need(corner)).fold(0.0, f64::max),
+        );
     }
     let need = greatest_need(world, |point| turning.need(point), workers);
     fit.camera(need.max(0.0))
@@ -142,11 +157,14 @@ pub fn reach(world: &World, center: DVec3, direction: DVec3, workers: &Workers) 
 
 /// The greatest of what the finite points of a world need; negative infinity without points.
 ///
-/// What a point needs must be convex: no point of a box needs more than its neediest corner then, and runs of triangles are looked
-/// at neediest box first, until no box can need more than a point that was seen.
+/// What a point needs must be convex: no point of a box needs more than its neediest corner then,
+/// and runs of triangles are looked at neediest box first, until no box can need more than a point
+/// that was seen.
 fn greatest_need(world: &World, need: impl Fn(DVec3) -> f64 + Sync, workers: &Workers) -> f64 {
     let of_vertices = |instance: &Instance, vertices: &[u32]| {
-        let points = vertices.iter().map(|&v| instance.world_from_model.transform_point3(instance.mesh.position(v)));
+        let points = vertices
+            .iter()
+            .map(|&v| instance.world_from_model.transform_point3(instance.mesh.position(v)));
         points.filter(|p| p.is_finite()).fold(f64::NEG_INFINITY, |most, p| need(p).max(most))
     };
     let mut runs = Vec::new();
@@ -156,7 +174,8 @@ fn greatest_need(world: &World, need: impl Fn(DVec3) -> f64 + Sync, workers: &Wo
         seen = seen.max(of_vertices(instance, lines)).max(of_vertices(instance, points));
         for (run, bounds) in world.run_bounds[instance.mesh_index as usize].iter().enumerate() {
             if !bounds.is_empty() {
-                let corners = bounds.corners().map(|c| need(instance.world_from_model.transform_point3(c)));
+                let corners =
+                    bounds.corners().map(|c| need(instance.world_from_model.transform_point3(c)));
                 runs.push((corners.into_iter().fold(f64::NEG_INFINITY, f64::max), instance, run));
             }
         }
@@ -165,13 +184,15 @@ fn greatest_need(world: &World, need: impl Fn(DVec3) -> f64 + Sync, workers: &Wo
     let (mut rest, mut batch) = (runs.as_slice(), 16);
     loop {
         // A hair more, for what rounding may do to corners.
-        let open = rest[..rest.len().min(batch)].partition_point(|(most, ..)| most + 1e-9 * most.abs() >= seen);
+        let open = rest[..rest.len().min(batch)]
+            .partition_point(|(most, ..)| most + 1e-9 * most.abs() >= seen);
         if open == 0 {
             return seen;
         }
         let found = workers.map(open, |i| {
             let (_, instance, run) = rest[i];
-            let triangles = instance.mesh.triangles.chunks(TRIANGLES_A_RUN).nth(run).unwrap_or_default();
+            let triangles =
+                instance.mesh.triangles.chunks(TRIANGLES_A_RUN).nth(run).unwrap_or_default();
             of_vertices(instance, triangles.as_flattened())
         });
         seen = found.into_iter().fold(seen, f64::max);
@@ -203,17 +224,32 @@ impl Fit {
         let center = bounds.center();
         let projection = Projection::Perspective { view_angle: angle };
         // Directions alone count, and far from the origin a step of 1 would be lost.
-        let camera = Camera { position: eye, focal_point: DVec3::ZERO, view_up, projection, clip: None };
+        let camera =
+            Camera { position: eye, focal_point: DVec3::ZERO, view_up, projection, clip: None };
         let view_from_world = camera.view_from_world();
         let camera = Camera { position: center + eye, focal_point: center, ..camera };
         let half = func::tan(angle * 0.5) * fill;
-        let (per_width, per_height) =
-            if lens == Lens::Parallel { (1.0 / aspect, 1.0) } else { (1.0 / (half * aspect), 1.0 / half) };
+        let (per_width, per_height) = if lens == Lens::Parallel {
+            (1.0 / aspect, 1.0)
+        } else {
+            (1.0 / (half * aspect), 1.0 / half)
+        };
         let diagonal = bounds.diagonal();
-        Self { camera, lens, eye, view_from_world, per_width, per_height, least: 1e-3 * diagonal, diagonal, fill }
+        Self {
+            camera,
+            lens,
+            eye,
+            view_from_world,
+            per_width,
+            per_height,
+            least: 1e-3 * diagonal,
+            diagonal,
+            fill,
+        }
     }
 
-    /// How far from the middle the eye must be to see `point` (world space), or half the height of a parallel picture.
+    /// How far from the middle the eye must be to see `point` (world space), or half the height of
+    /// a parallel picture.
     fn need(&self, point: DVec3) -> f64 {
         // As seen from the middle of the box: to the right, up, and towards the eye.
         let p = self.view_from_world.transform_vector3(point - self.camera.focal_point);
@@ -225,23 +261,34 @@ impl Fit {
     fn sides(&self, point: DVec3) -> [f64; 4] {
         let p = self.view_from_world.transform_vector3(point - self.camera.focal_point);
         let depth = if self.lens == Lens::Parallel { 0.0 } else { p.z };
-        [p.x * self.per_width, -p.x * self.per_width, p.y * self.per_height, -p.y * self.per_height].map(|n| depth + n)
+        [p.x * self.per_width, -p.x * self.per_width, p.y * self.per_height, -p.y * self.per_height]
+            .map(|n| depth + n)
     }
 
-    /// The camera that gives the neediest point of each side (see [`Self::sides`]) its room, with equal margins on opposite sides.
+    /// The camera that gives the neediest point of each side (see [`Self::sides`]) its room, with
+    /// equal margins on opposite sides.
     fn centered(self, [right, left, above, below]: [f64; 4]) -> Camera {
         let need = (0.5 * (right + left)).max(0.5 * (above + below));
-        let aside = DVec3::new(0.5 * (right - left) / self.per_width, 0.5 * (above - below) / self.per_height, 0.0);
+        let aside = DVec3::new(
+            0.5 * (right - left) / self.per_width,
+            0.5 * (above - below) / self.per_height,
+            0.0,
+        );
         let aside = self.view_from_world.inverse().transform_vector3(aside);
         let camera = self.camera(need);
-        Camera { position: camera.position + aside, focal_point: camera.focal_point + aside, ..camera }
+        Camera {
+            position: camera.position + aside,
+            focal_point: camera.focal_point + aside,
+            ..camera
+        }
     }
 
     /// The camera that gives the neediest point its room.
     fn camera(mut self, need: f64) -> Camera {
         if self.lens == Lens::Parallel {
             self.camera.position = self.camera.focal_point + self.eye * self.diagonal;
-            self.camera.projection = Projection::Parallel { height: 2.0 * need.max(self.least) / self.fill };
+            self.camera.projection =
+                Projection::Parallel { height: 2.0 * need.max(self.least) / self.fill };
         } else {
             let distance = need.max(self.least * self.per_height).max(self.least);
             self.camera.position = self.camera.focal_point + self.eye * distance;
@@ -252,9 +299,10 @@ impl Fit {
 
 /// What points need while they turn about an axis through the middle.
 ///
-/// A point at height `h` and radius `r` runs through `h·a + r·(u·cos φ + v·sin φ)`, with unit vectors `a` along the axis and `u`,
-/// `v` across it. What it needs is the greatest of four linear functions `f` (its place on the right, on the left, above and below,
-/// each with its depth), and over the circle each has the maximum `h·(f·a) + r·√((f·u)² + (f·v)²)`.
+/// A point at height `h` and radius `r` runs through `h·a + r·(u·cos φ + v·sin φ)`, with unit
+/// vectors `a` along the axis and `u`, `v` across it. What it needs is the greatest of four linear
+/// functions `f` (its place on the right, on the left, above and below, each with its depth), and
+/// over the circle each has the maximum `h·(f·a) + r·√((f·u)² + (f·v)²)`.
 struct Turning {
     center: DVec3,
     axis: DVec3,
@@ -268,10 +316,11 @@ impl Turning {
         let a = fit.view_from_world.transform_vector3(axis);
         let depth = if fit.lens == Lens::Parallel { 0.0 } else { 1.0 };
         let (width, height) = (fit.per_width, fit.per_height);
-        let functions = [(width, 0.0), (-width, 0.0), (0.0, height), (0.0, -height)].map(|(x, y)| {
-            let f = DVec3::new(x, y, depth);
-            (f.dot(a), (f.length_squared() - f.dot(a) * f.dot(a)).max(0.0).sqrt())
-        });
+        let functions =
+            [(width, 0.0), (-width, 0.0), (0.0, height), (0.0, -height)].map(|(x, y)| {
+                let f = DVec3::new(x, y, depth);
+                (f.dot(a), (f.length_squared() - f.dot(a) * f.dot(a)).max(0.0).sqrt())
+            });
         Self { center: fit.camera.focal_point, axis, functions }
     }
 
@@ -280,19 +329,23 @@ impl Turning {
         let p = point - self.center;
         let h = p.dot(self.axis);
         let r = (p - self.axis * h).length();
-        self.functions.iter().fold(0.0, |most, (of_height, of_radius)| (h * of_height + r * of_radius).max(most))
+        self.functions
+            .iter()
+            .fold(0.0, |most, (of_height, of_radius)| (h * of_height + r * of_radius).max(most))
     }
 }
 
-/// Distances along the direction of view to the nearest and farthest corner of `bounds`, for [`Camera::transform`].
-/// Negative behind the eye; `(0, 0)` for an empty box.
+/// Distances along the direction of view to the nearest and farthest corner of `bounds`, for
+/// [`Camera::transform`]. Negative behind the eye; `(0, 0)` for an empty box.
 pub fn depth_range(camera: &Camera, bounds: &Aabb) -> (f64, f64) {
     if bounds.is_empty() {
         return (0.0, 0.0);
     }
     let view = camera.view_from_world();
     let depths = bounds.corners().map(|c| -view.transform_point3(c).z);
-    depths.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), &d| (near.min(d), far.max(d)))
+    depths
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), &d| (near.min(d), far.max(d)))
 }
 
 impl Lens {
@@ -309,7 +362,8 @@ fn sane_aspect(aspect: f64) -> f64 {
     if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 }
 }
 
-/// The box, or one of size 2 round its middle if it has no extent; larger where positions of single precision lie farther apart.
+/// The box, or one of size 2 round its middle if it has no extent; larger where positions of single
+/// precision lie farther apart.
 fn presentable(bounds: &Aabb) -> Aabb {
     let sound = !bounds.is_empty() && bounds.min.is_finite() && bounds.max.is_finite();
     let center = if sound { bounds.center() } else { DVec3::ZERO };
@@ -326,9 +380,18 @@ mod tests {
     use std::f64::consts::TAU;
     use vitral_math::DQuat;
 
-    const VIEWS: [View; 8] =
-        [View::ThreeQuarter, View::Iso, View::Front, View::Back, View::Left, View::Right, View::Top, View::Bottom];
-    const AXES: [Axis; 6] = [Axis::PlusX, Axis::MinusX, Axis::PlusY, Axis::MinusY, Axis::PlusZ, Axis::MinusZ];
+    const VIEWS: [View; 8] = [
+        View::ThreeQuarter,
+        View::Iso,
+        View::Front,
+        View::Back,
+        View::Left,
+        View::Right,
+        View::Top,
+        View::Bottom,
+    ];
+    const AXES: [Axis; 6] =
+        [Axis::PlusX, Axis::MinusX, Axis::PlusY, Axis::MinusY, Axis::PlusZ, Axis::MinusZ];
 
     /// The largest |x| and |y| of the box's corners in the picture; 1 is its border.
     fn reach(camera: &Camera, bounds: &Aabb, aspect: f64) -> f64 {
@@ -336,7 +399,10 @@ mod tests {
         let clip = transform.clip_from_world();
         bounds.corners().iter().fold(0.0, |most: f64, c| {
             let p = clip * c.extend(1.0);
-            assert!(p.w > 0.0 && p.z >= 0.0 && p.z <= p.w, "in front of the eye and within the depth range: {p}");
+            assert!(
+                p.w > 0.0 && p.z >= 0.0 && p.z <= p.w,
+                "in front of the eye and within the depth range: {p}"
+            );
             most.max((p.x / p.w).abs()).max((p.y / p.w).abs())
         })
     }
@@ -371,7 +437,10 @@ mod tests {
                 for view in VIEWS {
                     let camera = frame(&bounds, view, Axis::PlusY, Lens::default(), 1.0);
                     let eye = (camera.position - camera.focal_point).normalize();
-                    assert!(eye.distance(view.eye_and_up(Axis::PlusY).0) < 1e-6, "{far} {half} {view:?}: {eye}");
+                    assert!(
+                        eye.distance(view.eye_and_up(Axis::PlusY).0) < 1e-6,
+                        "{far} {half} {view:?}: {eye}"
+                    );
                 }
             }
         }
@@ -380,11 +449,14 @@ mod tests {
     #[test]
     fn fitting_the_points_of_a_ball_shows_it_larger_than_its_box_would() {
         let ball = solids::sphere(1.0, 64, 32);
-        let points: Vec<_> = ball.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
+        let points: Vec<_> =
+            ball.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
         let bounds = ball.bounds();
         let world = World::new(&crate::Scene::from_mesh(ball)).unwrap();
         let lenses = [Lens::default(), Lens::Parallel].into_iter();
-        for (lens, workers) in lenses.flat_map(|lens| [(lens, Workers::single()), (lens, Workers::new(3))]) {
+        for (lens, workers) in
+            lenses.flat_map(|lens| [(lens, Workers::single()), (lens, Workers::new(3))])
+        {
             let (eye, up) = View::Iso.eye_and_up(Axis::PlusY);
             let camera = frame_world(&world, eye, up, lens, 1.0, FILL, &workers);
             let clip = camera.transform(1.0, depth_range(&camera, &bounds)).clip_from_world();
@@ -398,35 +470,58 @@ mod tests {
     fn margins_are_equal_on_opposite_sides() {
         // A cone that stands on its tip, far from the middle of its box as a picture shows it.
         let mut cone = solids::sphere(1.0, 32, 16);
-        cone.positions.iter_mut().for_each(|p| *p = [p[0] * (p[1] + 1.0) + 0.3 * p[1], p[1], p[2] * (p[1] + 1.0)]);
-        let points: Vec<_> = cone.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
+        cone.positions
+            .iter_mut()
+            .for_each(|p| *p = [p[0] * (p[1] + 1.0) + 0.3 * p[1], p[1], p[2] * (p[1] + 1.0)]);
+        let points: Vec<_> =
+            cone.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
         let world = World::new(&crate::Scene::from_mesh(cone)).unwrap();
-        for (lens, aspect) in [(Lens::default(), 1.0), (Lens::default(), 2.5), (Lens::Parallel, 0.5)] {
+        for (lens, aspect) in
+            [(Lens::default(), 1.0), (Lens::default(), 2.5), (Lens::Parallel, 0.5)]
+        {
             let (eye, up) = View::ThreeQuarter.eye_and_up(Axis::PlusY);
             let camera = frame_world(&world, eye, up, lens, aspect, FILL, &Workers::single());
-            let clip = camera.transform(aspect, depth_range(&camera, &world.bounds)).clip_from_world();
-            let seen: Vec<_> = points.iter().map(|p| clip * p.extend(1.0)).map(|p| [p.x / p.w, p.y / p.w]).collect();
+            let clip =
+                camera.transform(aspect, depth_range(&camera, &world.bounds)).clip_from_world();
+            let seen: Vec<_> = points
+                .iter()
+                .map(|p| clip * p.extend(1.0))
+                .map(|p| [p.x / p.w, p.y / p.w])
+                .collect();
             let margins = [0, 1].map(|k| {
-                let most = |sign: f64| 1.0 - seen.iter().map(|p| sign * p[k]).fold(f64::MIN, f64::max);
+                let most =
+                    |sign: f64| 1.0 - seen.iter().map(|p| sign * p[k]).fold(f64::MIN, f64::max);
                 (most(-1.0), most(1.0))
             });
-            let tight = margins.iter().filter(|(a, b)| (a - 0.1).abs() < 1e-6 && (b - 0.1).abs() < 1e-6).count();
+            let tight = margins
+                .iter()
+                .filter(|(a, b)| (a - 0.1).abs() < 1e-6 && (b - 0.1).abs() < 1e-6)
+                .count();
             assert!(tight >= 1, "{margins:?}");
-            assert!(margins.iter().all(|(a, b)| (a - b).abs() < 0.05 && a.min(*b) > 0.1 - 1e-6), "{margins:?}");
+            assert!(
+                margins.iter().all(|(a, b)| (a - b).abs() < 0.05 && a.min(*b) > 0.1 - 1e-6),
+                "{margins:?}"
+            );
         }
     }
 
     #[test]
     fn boxes_without_extent_and_odd_numbers_still_give_a_camera() {
         let point = Aabb { min: DVec3::ONE, max: DVec3::ONE };
-        for bounds in [Aabb::EMPTY, point, Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY }] {
-            for lens in [Lens::default(), Lens::Parallel, Lens::Perspective { view_angle: f64::NAN }] {
+        for bounds in [Aabb::EMPTY, point, Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY }]
+        {
+            for lens in
+                [Lens::default(), Lens::Parallel, Lens::Perspective { view_angle: f64::NAN }]
+            {
                 let camera = frame_from(&bounds, DVec3::ZERO, DVec3::ZERO, lens, f64::NAN, -1.0);
                 assert!(camera.view_from_world().is_finite());
                 assert!(camera.position.distance(camera.focal_point) > 0.1);
             }
         }
-        assert_eq!(depth_range(&frame(&point, View::Iso, Axis::PlusY, Lens::Parallel, 1.0), &Aabb::EMPTY), (0.0, 0.0));
+        assert_eq!(
+            depth_range(&frame(&point, View::Iso, Axis::PlusY, Lens::Parallel, 1.0), &Aabb::EMPTY),
+            (0.0, 0.0)
+        );
     }
 
     proptest! {

@@ -1,4 +1,5 @@
-//! Floor 1: what there is to see. Meshes (model space), nodes and instances (world space), cameras (view and clip space).
+//! Floor 1: what there is to see. Meshes (model space), nodes and instances (world space), cameras
+//! (view and clip space).
 #![forbid(unsafe_code)]
 
 mod axis;

@@ -1,5 +1,5 @@
-//! Lights as scene and state files write them: what a light leaves out is what the course's light of its name has, and white
-//! light without loss for all other names.
+//! Lights as scene and state files write them: what a light leaves out is what the course's light
+//! of its name has, and white light without loss for all other names.
 
 use crate::lab;
 use serde::{Deserialize, Deserializer};
@@ -29,7 +29,9 @@ pub struct LightForm {
 }
 
 /// A field that is there; `null` is no value of it.
-fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }
 
@@ -75,7 +77,12 @@ mod tests {
             read(json!({ "name": "LIGHT2", "shadow": false })),
             Light { name: "LIGHT2".to_owned(), shadow: false, ..Light::default() }
         );
-        let black = Light { name: "LIGHT0".to_owned(), diffuse: [0.0; 3], photometric: true, ..Light::default() };
+        let black = Light {
+            name: "LIGHT0".to_owned(),
+            diffuse: [0.0; 3],
+            photometric: true,
+            ..Light::default()
+        };
         assert_eq!(read(serde_json::to_value(&black).unwrap()), black);
         assert!(serde_json::from_value::<LightForm>(json!({ "diffuse": null })).is_err());
         assert!(serde_json::from_value::<LightForm>(json!({ "color": [1, 0, 0] })).is_err());

@@ -1,11 +1,13 @@
-//! A mesh in model space: positions, faces as in the file, the triangles they were cut into, and attributes.
+//! A mesh in model space: positions, faces as in the file, the triangles they were cut into, and
+//! attributes.
 //!
-//! Positions are indexed by themselves; normals, texture coordinates and colours may have indices of their own, as in
-//! OBJ. So a crease or a seam does not tear the surface apart, and edges are found where the model has them.
+//! Positions are indexed by themselves; normals, texture coordinates and colours may have indices
+//! of their own, as in OBJ. So a crease or a seam does not tear the surface apart, and edges are
+//! found where the model has them.
 //!
-//! A **face** is a polygon as in the file (its number within the mesh gives the *surface id*). Every polygon with `n`
-//! corners is cut into exactly `n - 2` triangles (its *facets*), in order, so that triangle numbers follow from
-//! corner numbers.
+//! A **face** is a polygon as in the file (its number within the mesh gives the *surface id*).
+//! Every polygon with `n` corners is cut into exactly `n - 2` triangles (its *facets*), in order,
+//! so that triangle numbers follow from corner numbers.
 
 use crate::KnownSolidity;
 use crate::cut_marks::Section;
@@ -39,29 +41,32 @@ pub struct Mesh {
     pub normals: Option<Attribute<[f32; 3]>>,
     /// Normals are not the surface's: they stay as they are where its back is seen (exercise 5.2).
     pub normals_stay: bool,
-    /// Directions in which the normal texture's u grows, model space, zero where none is known; `w` is 1 where its falling v, the
-    /// upwards of the picture, is normal × tangent, and -1 where it is the opposite. `None`: made from normals and texture
-    /// coordinates, see [`tangents`](crate::tangents::tangents).
+    /// Directions in which the normal texture's u grows, model space, zero where none is known; `w`
+    /// is 1 where its falling v, the upwards of the picture, is normal × tangent, and -1 where it
+    /// is the opposite. `None`: made from normals and texture coordinates, see
+    /// [`tangents`](crate::tangents::tangents).
     pub tangents: Option<Attribute<[f32; 4]>>,
     /// Up to two sets of texture coordinates, `(0, 0)` at the image's top left.
     pub uvs: Vec<Attribute<[f32; 2]>>,
     /// Linear RGBA that multiplies the material's diffuse or base colour.
     pub colors: Option<Attribute<[f32; 4]>>,
-    /// Whether the file had `colors` in sRGB. They are linear here all the same; the raw colour space shows them as the
-    /// file had them.
+    /// Whether the file had `colors` in sRGB. They are linear here all the same; the raw colour
+    /// space shows them as the file had them.
     pub colors_from_srgb: bool,
     /// Free line segments, as pairs of indices into `positions`.
     pub lines: Vec<[u32; 2]>,
     /// Free points, as indices into `positions`.
     pub points: Vec<u32>,
-    /// Runs of `lines` with one material each, in order, from the first; lines behind the last run have none.
+    /// Runs of `lines` with one material each, in order, from the first; lines behind the last run
+    /// have none.
     pub line_parts: Vec<FreePart>,
     /// The same for `points`.
     pub point_parts: Vec<FreePart>,
-    /// Smoothing group of each face (OBJ; 0 = none), if the file has any: faces of one group are smooth together.
+    /// Smoothing group of each face (OBJ; 0 = none), if the file has any: faces of one group are
+    /// smooth together.
     pub smoothing_groups: Option<Vec<u32>>,
-    /// What was found out about the surface while normals were made; counts as long as positions and triangles stay as
-    /// they were then.
+    /// What was found out about the surface while normals were made; counts as long as positions
+    /// and triangles stay as they were then.
     pub solidity: Option<KnownSolidity>,
     /// What planes of section have made of it ([`Scene::cut`](crate::Scene::cut)).
     pub section: Option<Arc<Section>>,
@@ -95,8 +100,9 @@ pub enum Faces {
     /// Each triangle is a face.
     #[default]
     Triangles,
-    /// Polygons. Face `f` has the corners `corners[starts[f]..starts[f + 1]]`, at least three, as indices into the
-    /// positions; its triangles are `starts[f] - 2 f .. starts[f + 1] - 2 (f + 1)`.
+    /// Polygons. Face `f` has the corners `corners[starts[f]..starts[f + 1]]`, at least three, as
+    /// indices into the positions; its triangles are
+    /// `starts[f] - 2 f .. starts[f + 1] - 2 (f + 1)`.
     Polygons {
         /// One more than there are faces; the first is 0.
         starts: Vec<u32>,
@@ -176,7 +182,9 @@ impl Mesh {
     pub fn face_triangles(&self, f: usize) -> Range<usize> {
         match &self.faces {
             Faces::Triangles => f..f + 1,
-            Faces::Polygons { starts, .. } => starts[f] as usize - 2 * f..starts[f + 1] as usize - 2 * (f + 1),
+            Faces::Polygons { starts, .. } => {
+                starts[f] as usize - 2 * f..starts[f + 1] as usize - 2 * (f + 1)
+            }
         }
     }
 
@@ -184,7 +192,9 @@ impl Mesh {
     pub fn face_corners(&self, f: usize) -> &[u32] {
         match &self.faces {
             Faces::Triangles => &self.triangles[f],
-            Faces::Polygons { starts, corners } => &corners[starts[f] as usize..starts[f + 1] as usize],
+            Faces::Polygons { starts, corners } => {
+                &corners[starts[f] as usize..starts[f + 1] as usize]
+            }
         }
     }
 
@@ -197,7 +207,11 @@ impl Mesh {
                 let (mut low, mut high) = (0, starts.len() - 1);
                 while high - low > 1 {
                     let middle = (low + high) / 2;
-                    if starts[middle] as usize - 2 * middle <= t { low = middle } else { high = middle }
+                    if starts[middle] as usize - 2 * middle <= t {
+                        low = middle
+                    } else {
+                        high = middle
+                    }
                 }
                 low
             }
@@ -225,7 +239,8 @@ impl Mesh {
         DVec3::from_array(self.positions[i as usize].map(f64::from))
     }
 
-    /// The boxes round the finite corners of each [`TRIANGLES_A_RUN`] triangles in order, model space.
+    /// The boxes round the finite corners of each [`TRIANGLES_A_RUN`] triangles in order, model
+    /// space.
     pub fn run_bounds(&self, workers: &Workers) -> Vec<Aabb> {
         const BATCH: usize = 64;
         let mut boxes = vec![Aabb::EMPTY; self.triangles.len().div_ceil(TRIANGLES_A_RUN)];
@@ -238,7 +253,8 @@ impl Mesh {
         boxes
     }
 
-    /// The box round all finite positions that something uses, model space: a stray vertex is not to be seen.
+    /// The box round all finite positions that something uses, model space: a stray vertex is not
+    /// to be seen.
     pub fn bounds(&self) -> Aabb {
         self.bounds_from(&self.run_bounds(&Workers::single()))
     }
@@ -273,7 +289,8 @@ impl Mesh {
                     bytemuck::cast([x, y, z, 0.0])
                 },
             );
-            let p: [F32x8<S>; 3] = [columns[0].bitcast(), columns[1].bitcast(), columns[2].bitcast()];
+            let p: [F32x8<S>; 3] =
+                [columns[0].bitcast(), columns[1].bitcast(), columns[2].bitcast()];
             // Only a finite number times 0 is 0.
             let finite = (p[0] * 0.0 + p[1] * 0.0 + p[2] * 0.0).simd_eq(zero);
             for k in 0..3 {
@@ -282,8 +299,11 @@ impl Mesh {
             }
         }
         // Which of two zeros is the lesser is left to the processor: plus 0.0, both are 0.0.
-        let least = |of: F32x8<S>| f64::from(of.to_array().into_iter().fold(f32::INFINITY, f32::min) + 0.0);
-        let greatest = |of: F32x8<S>| f64::from(of.to_array().into_iter().fold(f32::NEG_INFINITY, f32::max) + 0.0);
+        let least =
+            |of: F32x8<S>| f64::from(of.to_array().into_iter().fold(f32::INFINITY, f32::min) + 0.0);
+        let greatest = |of: F32x8<S>| {
+            f64::from(of.to_array().into_iter().fold(f32::NEG_INFINITY, f32::max) + 0.0)
+        };
         Aabb {
             min: DVec3::new(least(min[0]), least(min[1]), least(min[2])),
             max: DVec3::new(greatest(max[0]), greatest(max[1]), greatest(max[2])),
@@ -296,7 +316,8 @@ impl Mesh {
         self.parts.get(i).and_then(|p| p.material)
     }
 
-    /// Tells what is unsound: an index out of range, a part list with gaps, attribute counts that do not fit.
+    /// Tells what is unsound: an index out of range, a part list with gaps, attribute counts that
+    /// do not fit.
     ///
     /// # Errors
     /// The first unsound thing, in words.
@@ -322,7 +343,13 @@ impl Mesh {
     }
 
     /// Refuses an index that is not below `count`.
-    fn check_indices(&self, what: &str, indices: &[u32], count: usize, workers: &Workers) -> Result<(), String> {
+    fn check_indices(
+        &self,
+        what: &str,
+        indices: &[u32],
+        count: usize,
+        workers: &Workers,
+    ) -> Result<(), String> {
         const PIECE: usize = 1 << 17;
         // The greatest is found many at a time; which one is bad only matters where one is.
         let greatest = workers.map(indices.len().div_ceil(PIECE), |piece| {
@@ -350,9 +377,14 @@ impl Mesh {
         self.check_indices("face corner", corners, self.positions.len(), workers)?;
         let ordered = starts.first() == Some(&0) && starts.windows(2).all(|w| w[1] >= w[0] + 3);
         let fits = starts.last().is_some_and(|&last| {
-            last as usize == corners.len() && last as usize == self.triangles.len() + 2 * (starts.len() - 1)
+            last as usize == corners.len()
+                && last as usize == self.triangles.len() + 2 * (starts.len() - 1)
         });
-        if ordered && fits { Ok(()) } else { Err(format!("mesh `{}`: faces and triangles do not fit", self.name)) }
+        if ordered && fits {
+            Ok(())
+        } else {
+            Err(format!("mesh `{}`: faces and triangles do not fit", self.name))
+        }
     }
 
     /// That parts cover all triangles without a gap.
@@ -365,7 +397,11 @@ impl Mesh {
             next = part.triangles.end;
         }
         if next as usize != self.triangles.len() {
-            return Err(format!("mesh `{}`: parts end at {next} of {} triangles", self.name, self.triangles.len()));
+            return Err(format!(
+                "mesh `{}`: parts end at {next} of {} triangles",
+                self.name,
+                self.triangles.len()
+            ));
         }
         Ok(())
     }
@@ -375,12 +411,18 @@ impl Mesh {
         let mut next = 0;
         for part in parts {
             if part.elements.start != next || part.elements.end < next {
-                return Err(format!("mesh `{}`: {what} parts leave a gap at {what} {next}", self.name));
+                return Err(format!(
+                    "mesh `{}`: {what} parts leave a gap at {what} {next}",
+                    self.name
+                ));
             }
             next = part.elements.end;
         }
         if next as usize > count {
-            return Err(format!("mesh `{}`: {what} parts end at {next} of {count} {what}s", self.name));
+            return Err(format!(
+                "mesh `{}`: {what} parts end at {next} of {count} {what}s",
+                self.name
+            ));
         }
         Ok(())
     }
@@ -389,11 +431,16 @@ impl Mesh {
     fn check_attributes(&self, workers: &Workers) -> Result<(), String> {
         let vertices = self.positions.len();
         let check = |what: &str, count: usize, corners: Option<&[Corners]>| match corners {
-            Some(c) if c.len() != self.triangles.len() => {
-                Err(format!("mesh `{}`: {what} for {} of {} triangles", self.name, c.len(), self.triangles.len()))
-            }
+            Some(c) if c.len() != self.triangles.len() => Err(format!(
+                "mesh `{}`: {what} for {} of {} triangles",
+                self.name,
+                c.len(),
+                self.triangles.len()
+            )),
             Some(c) => self.check_indices(what, c.as_flattened(), count, workers),
-            None if count != vertices => Err(format!("mesh `{}`: {count} {what}s for {vertices} vertices", self.name)),
+            None if count != vertices => {
+                Err(format!("mesh `{}`: {count} {what}s for {vertices} vertices", self.name))
+            }
             None => Ok(()),
         };
         if let Some(n) = &self.normals {
@@ -421,7 +468,10 @@ mod tests {
         Mesh {
             positions: vec![[0.0; 3]; 6],
             triangles: vec![[0, 1, 2], [1, 2, 3], [1, 3, 4], [3, 4, 5]],
-            faces: Faces::Polygons { starts: vec![0, 3, 7, 10], corners: vec![0, 1, 2, 1, 2, 3, 4, 3, 4, 5] },
+            faces: Faces::Polygons {
+                starts: vec![0, 3, 7, 10],
+                corners: vec![0, 1, 2, 1, 2, 3, 4, 3, 4, 5],
+            },
             parts: vec![Part { name: String::new(), triangles: 0..4, material: None }],
             ..Mesh::default()
         }
@@ -448,13 +498,18 @@ mod tests {
     #[test]
     fn lines_have_materials_run_by_run() {
         let mut parts = Vec::new();
-        for (elements, material) in [(0..2, None), (2..3, Some(4)), (3..5, Some(4)), (5..5, Some(1)), (6..7, Some(0))] {
+        for (elements, material) in
+            [(0..2, None), (2..3, Some(4)), (3..5, Some(4)), (5..5, Some(1)), (6..7, Some(0))]
+        {
             FreePart::extend(&mut parts, elements, material);
         }
         let runs: Vec<_> = parts.iter().map(|p| (p.elements.clone(), p.material)).collect();
         assert_eq!(runs, [(0..2, None), (2..5, Some(4)), (5..6, None), (6..7, Some(0))]);
         let of = |i| FreePart::material_of(&parts, i);
-        assert_eq!([of(1), of(2), of(4), of(5), of(6), of(7)], [None, Some(4), Some(4), None, Some(0), None]);
+        assert_eq!(
+            [of(1), of(2), of(4), of(5), of(6), of(7)],
+            [None, Some(4), Some(4), None, Some(0), None]
+        );
         let mut mesh = strip();
         (mesh.lines, mesh.line_parts) = (vec![[0, 1]; 6], parts);
         assert!(mesh.check().unwrap_err().contains("line parts end at 7 of 6"));

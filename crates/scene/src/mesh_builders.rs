@@ -12,15 +12,20 @@ use crate::{Attribute, Corners, Faces, Mesh, Part, normals};
 use vitral_exec::Workers;
 
 impl Mesh {
-    /// A mesh of triangles, each a face, in one part without a material. Corners run counter-clockwise seen from outside.
+    /// A mesh of triangles, each a face, in one part without a material. Corners run
+    /// counter-clockwise seen from outside.
     pub fn new(positions: impl Into<Vec<[f32; 3]>>, triangles: impl Into<Vec<Corners>>) -> Self {
         let (positions, triangles) = (positions.into(), triangles.into());
-        let parts = vec![Part { name: String::new(), triangles: 0..triangles.len() as u32, material: None }];
+        let parts = vec![Part {
+            name: String::new(),
+            triangles: 0..triangles.len() as u32,
+            material: None,
+        }];
         Self { positions, triangles, parts, ..Self::default() }
     }
 
-    /// As [`new`](Self::new), of convex polygons with three or more corners, each a face. Polygons with fewer corners are
-    /// left out.
+    /// As [`new`](Self::new), of convex polygons with three or more corners, each a face. Polygons
+    /// with fewer corners are left out.
     pub fn from_polygons(
         positions: impl Into<Vec<[f32; 3]>>,
         polygons: impl IntoIterator<Item = impl AsRef<[u32]>>,
@@ -58,8 +63,9 @@ impl Mesh {
         Self { normals: Some(Attribute::per_vertex(normals.into())), ..self }
     }
 
-    /// With normals made from the faces. Faces whose normals differ by more than `crease_angle` radians have an edge between
-    /// them; others are smooth together. Without normals each face is flat.
+    /// With normals made from the faces. Faces whose normals differ by more than `crease_angle`
+    /// radians have an edge between them; others are smooth together. Without normals each face is
+    /// flat.
     ///
     /// # Panics
     /// Possibly, if the mesh is not sound ([`Mesh::check`]).
@@ -84,10 +90,15 @@ mod tests {
 
     #[test]
     fn polygons_become_fans_that_remember_their_faces() {
-        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 2.0, 0.0]];
-        let mesh = Mesh::from_polygons(positions, [&[0, 1, 2, 3][..], &[3, 2, 4], &[0, 1]]).with_material(7);
+        let positions =
+            [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 2.0, 0.0]];
+        let mesh = Mesh::from_polygons(positions, [&[0, 1, 2, 3][..], &[3, 2, 4], &[0, 1]])
+            .with_material(7);
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [3, 2, 4]]);
-        assert_eq!((mesh.face_count(), mesh.face_of_triangle(2), mesh.material_of_triangle(2)), (2, 1, Some(7)));
+        assert_eq!(
+            (mesh.face_count(), mesh.face_of_triangle(2), mesh.material_of_triangle(2)),
+            (2, 1, Some(7))
+        );
         mesh.check().unwrap();
         Mesh::new(positions, []).check().unwrap();
     }
@@ -95,8 +106,14 @@ mod tests {
     #[test]
     fn normals_are_smooth_up_to_the_crease_angle() {
         // Two squares at a right angle.
-        let positions =
-            [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, -1.0]];
+        let positions = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, -1.0],
+            [0.0, 1.0, -1.0],
+        ];
         let bent = || Mesh::from_polygons(positions, [[0, 1, 2, 3], [0, 3, 5, 4]]);
         let first = |mesh: Mesh| mesh.normals.as_ref().map(|n| n.at(0, &mesh.triangles)[0]);
         assert_eq!(first(bent()), None);

@@ -1,19 +1,23 @@
 //! Shading normals for meshes that come without, or with some of them missing.
 //!
-//! Idea: the normal of a vertex is the average of the normals of the faces round it. Each *polygon* counts once, with
-//! its own (Newell) normal, however many triangles it was cut into; it is weighted by its angle at the vertex, so that
-//! a surface gets the same normals whether a file holds it as quads or as triangles. Plain averaging over triangles
-//! would lean towards the side that happens to be cut through the vertex. Faces that meet at more than the crease
-//! angle are not averaged. Where the file has smoothing groups, faces of different groups, or of group 0, have creases
-//! between them, too; programs write one group for all faces of a box, so that within a group the angle still counts.
+//! Idea: the normal of a vertex is the average of the normals of the faces round it. Each *polygon*
+//! counts once, with its own (Newell) normal, however many triangles it was cut into; it is
+//! weighted by its angle at the vertex, so that a surface gets the same normals whether a file
+//! holds it as quads or as triangles. Plain averaging over triangles would lean towards the side
+//! that happens to be cut through the vertex. Faces that meet at more than the crease angle are not
+//! averaged. Where the file has smoothing groups, faces of different groups, or of group 0, have
+//! creases between them, too; programs write one group for all faces of a box, so that within a
+//! group the angle still counts.
 //!
 //! In:   a mesh, model space; equal positions count as one vertex, so that seams stay smooth.
-//! Out:  unit normals in [`Mesh::normals`]; one per vertex where no vertex needs two, else with corner indices.
+//! Out:  unit normals in [`Mesh::normals`]; one per vertex where no vertex needs two, else with
+//!       corner indices.
 //! Cost: `O(corners)`; with creases each vertex compares its faces in pairs (see `corner_fans`).
 //! Source: [Gouraud 1971] (the average); [Thürmer & Wüthrich 1998] (the angle as weight).
 //!
-//! A face without area has no say. A vertex with no other faces gets `(0, 0, 1)`, OpenGL's initial normal. Where the
-//! faces of a vertex cancel each other (two sheets back to back, smoothed together), it gets its first face's normal.
+//! A face without area has no say. A vertex with no other faces gets `(0, 0, 1)`, OpenGL's initial
+//! normal. Where the faces of a vertex cancel each other (two sheets back to back, smoothed
+//! together), it gets its first face's normal.
 
 use crate::corner_fans::{Rule, fan_normals};
 use crate::directions::{DEFAULT_NORMAL, unit};
@@ -25,16 +29,20 @@ use std::sync::Arc;
 use vitral_exec::Workers;
 use vitral_math::DVec3;
 
-/// Makes the normals that `mesh` lacks: all, or those that are zero or not finite. Does nothing where none is missing.
+/// Makes the normals that `mesh` lacks: all, or those that are zero or not finite. Does nothing
+/// where none is missing.
 ///
-/// `crease_angle` in radians: faces whose normals differ by more are not averaged. `π` (or NaN) is smooth everywhere,
-/// `0` gives each face its own normal.
+/// `crease_angle` in radians: faces whose normals differ by more are not averaged. `π` (or NaN) is
+/// smooth everywhere, `0` gives each face its own normal.
 ///
 /// # Panics
-/// Possibly, if the mesh is not sound ([`Mesh::check`]): its indices are followed without a look at their size.
+/// Possibly, if the mesh is not sound ([`Mesh::check`]): its indices are followed without a look at
+/// their size.
 pub fn generate(mesh: &mut Mesh, crease_angle: f64, workers: &Workers) {
     let missing = |n: &[f32; 3]| *n == [0.0; 3] || n.iter().any(|c| !c.is_finite());
-    if mesh.triangles.is_empty() || mesh.normals.as_ref().is_some_and(|n| !n.values.iter().any(missing)) {
+    if mesh.triangles.is_empty()
+        || mesh.normals.as_ref().is_some_and(|n| !n.values.iter().any(missing))
+    {
         return;
     }
     let (made, solids) = all_normals(mesh, crease_angle, workers);
@@ -45,7 +53,8 @@ pub fn generate(mesh: &mut Mesh, crease_angle: f64, workers: &Workers) {
     });
 }
 
-/// Makes normals unit whose length single precision cannot square, so that any length but 0 is as good as another.
+/// Makes normals unit whose length single precision cannot square, so that any length but 0 is as
+/// good as another.
 pub fn make_measurable(mesh: &mut Arc<Mesh>, workers: &Workers) {
     let is_extreme = |n: &[f32; 3]| {
         let length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
@@ -57,10 +66,13 @@ pub fn make_measurable(mesh: &mut Arc<Mesh>, workers: &Workers) {
         return;
     }
     let normals = Arc::make_mut(mesh).normals.iter_mut().flat_map(|n| &mut n.values);
-    normals.filter(|n| is_extreme(n)).for_each(|n| *n = DVec3::from(n.map(f64::from)).normalize().as_vec3().to_array());
+    normals
+        .filter(|n| is_extreme(n))
+        .for_each(|n| *n = DVec3::from(n.map(f64::from)).normalize().as_vec3().to_array());
 }
 
-/// The unit normal of face `face`, counter-clockwise outlines towards the viewer; zero for a face without area.
+/// The unit normal of face `face`, counter-clockwise outlines towards the viewer; zero for a face
+/// without area.
 pub fn face_normal(mesh: &Mesh, face: usize) -> [f32; 3] {
     outline_normal(mesh, mesh.face_corners(face)).as_vec3().to_array()
 }
@@ -76,12 +88,21 @@ pub fn face_normals(mesh: &Mesh, workers: &Workers) -> Vec<[f32; 3]> {
     normals
 }
 
-fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> (Attribute<[f32; 3]>, Option<Solids>) {
+fn all_normals(
+    mesh: &Mesh,
+    crease_angle: f64,
+    workers: &Workers,
+) -> (Attribute<[f32; 3]>, Option<Solids>) {
     let weld = Weld::new(&mesh.positions, workers);
     let rule = match &mesh.smoothing_groups {
-        Some(groups) if groups.len() == mesh.face_count() => Rule::within(crease_angle).in_groups(groups),
+        Some(groups) if groups.len() == mesh.face_count() => {
+            Rule::within(crease_angle).in_groups(groups)
+        }
         _ if crease_angle.is_nan() || crease_angle >= PI => {
-            return (Attribute::per_vertex(smooth(mesh, &weld, &face_data(mesh, workers), workers)), None);
+            return (
+                Attribute::per_vertex(smooth(mesh, &weld, &face_data(mesh, workers), workers)),
+                None,
+            );
         }
         _ => Rule::within(crease_angle),
     };
@@ -92,8 +113,8 @@ fn all_normals(mesh: &Mesh, crease_angle: f64, workers: &Workers) -> (Attribute<
 
 /// One normal per vertex, all faces averaged.
 fn smooth(mesh: &Mesh, weld: &Weld, faces: &FaceData, workers: &Workers) -> Vec<[f32; 3]> {
-    // Every thread owns a range of vertices and reads all faces: each sum is in the order of the faces, whatever the
-    // number of threads.
+    // Every thread owns a range of vertices and reads all faces: each sum is in the order of the
+    // faces, whatever the number of threads.
     let mut normals = vec![[0.0f32; 3]; mesh.positions.len()];
     let share = mesh.positions.len().div_ceil(workers.threads()).max(1);
     workers.for_each_chunk(&mut normals, share, |k, sums| {
@@ -155,7 +176,8 @@ fn triangle_corners(mesh: &Mesh, of_corner: &[u32], workers: &Workers) -> Vec<Co
             let outline = mesh.face_corners(face);
             let normals = &of_corner[mesh.first_corner(face)..][..outline.len()];
 
-            // A polygon's triangles name vertices: look up which corner that is. Long outlines are sorted for it.
+            // A polygon's triangles name vertices: look up which corner that is. Long outlines are
+            // sorted for it.
             sorted.clear();
             if outline.len() > 16 {
                 sorted.extend(outline.iter().copied().zip(normals.iter().copied()));

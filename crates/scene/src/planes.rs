@@ -1,11 +1,13 @@
 //! Planes that several facets of a world lie in, found once and numbered.
 //!
-//! A decal on a floor, the two sides of a sheet, the triangles of a flat polygon: they have equal depths only if their
-//! depths come from one plane, not from corners that were rounded each by itself. So facets are gathered by the planes of
-//! the world, in double precision. Large facets come first, since their corners tell a plane best; a facet joins a plane that
-//! is there if all its corners are within [`TOLERANCE`] of it. To find that plane, planes are hashed by normal and distance, on a
-//! grid whose cells are as wide as the rounding of corners can turn the facets at hand: small facets are looked up on a
-//! coarser grid than large ones. Facets too small for that share a plane where they have the same corners.
+//! A decal on a floor, the two sides of a sheet, the triangles of a flat polygon: they have equal
+//! depths only if their depths come from one plane, not from corners that were rounded each by
+//! itself. So facets are gathered by the planes of the world, in double precision. Large facets
+//! come first, since their corners tell a plane best; a facet joins a plane that is there if all
+//! its corners are within [`TOLERANCE`] of it. To find that plane, planes are hashed by normal and
+//! distance, on a grid whose cells are as wide as the rounding of corners can turn the facets at
+//! hand: small facets are looked up on a coarser grid than large ones. Facets too small for that
+//! share a plane where they have the same corners.
 //!
 //! In:   a world. Out: for each facet the number of its plane, if it shares it; the planes.
 //! Cost: linear in facets, some memory accesses each.
@@ -20,12 +22,12 @@ use vitral_math::{DVec3, DVec4};
 /// Number of the plane of a facet that shares its plane with no other.
 pub const NO_PLANE: u32 = u32::MAX;
 
-/// How far a corner may be from a plane that its facet lies in, in diagonals of the world's box: coordinates are often
-/// written with six digits.
+/// How far a corner may be from a plane that its facet lies in, in diagonals of the world's box:
+/// coordinates are often written with six digits.
 pub const TOLERANCE: f64 = 1.0 / (1 << 21) as f64;
 
-/// The heights of facets that are looked up by their planes, in powers of two times the tolerance. Lower ones hardly have a
-/// direction.
+/// The heights of facets that are looked up by their planes, in powers of two times the tolerance.
+/// Lower ones hardly have a direction.
 const LEVELS: Range<u32> = 6..24;
 
 /// Faces in one piece of work.
@@ -107,12 +109,14 @@ impl SharedPlanes {
         Self { of_facet, equations, center }
     }
 
-    /// For each of some facets the number of its plane, or [`NO_PLANE`]; empty if no facets share a plane.
+    /// For each of some facets the number of its plane, or [`NO_PLANE`]; empty if no facets share a
+    /// plane.
     pub fn of(&self, facets: Range<u32>) -> &[u32] {
         self.of_facet.get(facets.start as usize..facets.end as usize).unwrap_or(&[])
     }
 
-    /// The planes, by number: unit normal `n` and `d`, with `n·(p - center) + d = 0` for points `p` of world space.
+    /// The planes, by number: unit normal `n` and `d`, with `n·(p - center) + d = 0` for points `p`
+    /// of world space.
     pub fn equations(&self) -> &[DVec4] {
         &self.equations
     }
@@ -129,7 +133,9 @@ impl World64<'_> {
         let jobs: Vec<_> = (0..self.world.instances.len())
             .flat_map(|i| {
                 let faces = self.world.instances[i].mesh.face_count();
-                (0..faces).step_by(FACES_A_JOB).map(move |first| (i, first..faces.min(first + FACES_A_JOB)))
+                (0..faces)
+                    .step_by(FACES_A_JOB)
+                    .map(move |first| (i, first..faces.min(first + FACES_A_JOB)))
             })
             .collect();
         let pieces = workers.map(jobs.len(), |job| {
@@ -154,9 +160,11 @@ impl World64<'_> {
             return;
         }
         let Some(&largest) = own.iter().max_by_key(|piece| piece.level) else { return };
-        let corners = instance.mesh.face_corners(face).iter().map(|&c| instance.place(c) - self.center);
+        let corners =
+            instance.mesh.face_corners(face).iter().map(|&c| instance.place(c) - self.center);
         if LEVELS.contains(&largest.level) && largest.holds(corners, self.tolerance) {
-            let whole = Piece { first_facet: own[0].first_facet, facets: own.len() as u32, ..largest };
+            let whole =
+                Piece { first_facet: own[0].first_facet, facets: own.len() as u32, ..largest };
             pieces.truncate(start);
             pieces.push(whole);
         }
@@ -166,7 +174,8 @@ impl World64<'_> {
     fn triangle(&self, instance: &Instance, facet: u32) -> Piece {
         // Measure its height, the least of the three.
         let [a, b, c] = self.corners(instance, facet);
-        let (normal, longest) = ((b - a).cross(c - a), (b - a).length_squared().max((c - a).length_squared()));
+        let (normal, longest) =
+            ((b - a).cross(c - a), (b - a).length_squared().max((c - a).length_squared()));
         let longest = longest.max((c - b).length_squared()).sqrt();
         let area = normal.length();
         let height = area / longest / self.tolerance;
@@ -226,7 +235,13 @@ impl World64<'_> {
     }
 
     /// The first plane that a piece lies in.
-    fn plane_of(&self, piece: &Piece, grid: &Grid, planes: &[Gathered], pieces: &[Piece]) -> Option<u32> {
+    fn plane_of(
+        &self,
+        piece: &Piece,
+        grid: &Grid,
+        planes: &[Gathered],
+        pieces: &[Piece],
+    ) -> Option<u32> {
         let mut found: Option<u32> = None;
         grid.near(piece.normal, piece.distance, |mut candidate| {
             while candidate != NO_PLANE {
@@ -300,7 +315,8 @@ impl Hasher for AsItIs {
     }
 }
 
-/// Planes by normal and distance: a grid of four dimensions of which only the filled cells are kept.
+/// Planes by normal and distance: a grid of four dimensions of which only the filled cells are
+/// kept.
 struct Grid {
     cells: HashMap<u64, u32, BuildHasherDefault<AsItIs>>,
     /// How much corners' rounding can turn the facets of this level, radians.
@@ -324,9 +340,9 @@ impl Grid {
     }
 
     fn key(cell: [i64; 4]) -> u64 {
-        let mixed = cell
-            .iter()
-            .fold(0u64, |hash, &c| (hash ^ c.cast_unsigned()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29));
+        let mixed = cell.iter().fold(0u64, |hash, &c| {
+            (hash ^ c.cast_unsigned()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
+        });
         mixed ^ mixed >> 32
     }
 
@@ -368,7 +384,11 @@ mod tests {
             scene.meshes.push(Arc::new(mesh));
             let mesh = Some(scene.meshes.len() as u32 - 1);
             scene.roots.push(scene.nodes.len() as u32);
-            scene.nodes.push(Node { mesh, transform: NodeTransform::Matrix(transform), ..Node::default() });
+            scene.nodes.push(Node {
+                mesh,
+                transform: NodeTransform::Matrix(transform),
+                ..Node::default()
+            });
         }
         let world = World::new(&scene).unwrap();
         (SharedPlanes::new(&world, &Workers::single()), world)
@@ -377,12 +397,17 @@ mod tests {
     /// A square in z = 0 as a grid of `n` by `n` pairs of triangles, from `low` to `high`.
     fn square(low: f32, high: f32, n: u32) -> Mesh {
         let at = |i: u32| low + (high - low) * i as f32 / n as f32;
-        let positions: Vec<_> = (0..=n).flat_map(|y| (0..=n).map(move |x| [at(x), at(y), 0.0])).collect();
+        let positions: Vec<_> =
+            (0..=n).flat_map(|y| (0..=n).map(move |x| [at(x), at(y), 0.0])).collect();
         let cell = |x: u32, y: u32| {
-            let [a, b, c, d] = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]].map(|[x, y]| y * (n + 1) + x);
+            let [a, b, c, d] =
+                [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]].map(|[x, y]| y * (n + 1) + x);
             [[a, b, c], [a, c, d]]
         };
-        Mesh::new(positions, (0..n).flat_map(|y| (0..n).flat_map(move |x| cell(x, y))).collect::<Vec<_>>())
+        Mesh::new(
+            positions,
+            (0..n).flat_map(|y| (0..n).flat_map(move |x| cell(x, y))).collect::<Vec<_>>(),
+        )
     }
 
     #[test]
@@ -422,10 +447,18 @@ mod tests {
 
     #[test]
     fn a_flat_polygon_is_in_one_plane_and_a_bent_one_is_not() {
-        let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 2.0, 0.5]];
-        let faces = Faces::Polygons { starts: vec![0, 4, 8], corners: vec![0, 1, 2, 3, 3, 2, 1, 4] };
+        let corners = vec![
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 2.0, 0.5],
+        ];
+        let faces =
+            Faces::Polygons { starts: vec![0, 4, 8], corners: vec![0, 1, 2, 3, 3, 2, 1, 4] };
         let triangles = vec![[0, 1, 2], [0, 2, 3], [3, 2, 1], [3, 1, 4]];
-        let (shared, _) = planes(vec![(Mesh { faces, ..Mesh::new(corners, triangles) }, DMat4::IDENTITY)]);
+        let (shared, _) =
+            planes(vec![(Mesh { faces, ..Mesh::new(corners, triangles) }, DMat4::IDENTITY)]);
         assert_eq!(shared.of(0..4), [0, 0, 0, NO_PLANE]);
     }
 }

@@ -1,4 +1,5 @@
-//! The scene graph: nodes with transforms, each of which may show a mesh, carry a light or a camera.
+//! The scene graph: nodes with transforms, each of which may show a mesh, carry a light or a
+//! camera.
 
 use crate::{Axis, Camera, Mesh, WorldError};
 use std::sync::Arc;
@@ -6,7 +7,8 @@ use vitral_frame::Texture;
 use vitral_light::{Light, Material};
 use vitral_math::{DMat4, DQuat, DVec3};
 
-/// Everything there is to see, and how it is placed. Meshes and textures are shared, never copied by instances.
+/// Everything there is to see, and how it is placed. Meshes and textures are shared, never copied
+/// by instances.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Meshes, model space.
@@ -23,14 +25,16 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Cameras, each placed by the node that names it.
     pub cameras: Vec<Camera>,
-    /// Index into [`Scene::cameras`] of the one from which the scene is seen where nothing is said about the view; `None`: the scene
-    /// is framed.
+    /// Index into [`Scene::cameras`] of the one from which the scene is seen where nothing is said
+    /// about the view; `None`: the scene is framed.
     pub own_camera: Option<u32>,
     /// Global ambient light (Ia of the course), RGB, on top of the lights' own.
     pub ambient: [f32; 3],
-    /// Which ways are up in models of the formats that the scene comes from, each once, that of the first model first.
+    /// Which ways are up in models of the formats that the scene comes from, each once, that of the
+    /// first model first.
     pub ups: Vec<Axis>,
-    /// The animations of the files. The scene is one moment of at most one of them: that at which it was read.
+    /// The animations of the files. The scene is one moment of at most one of them: that at which
+    /// it was read.
     pub animations: Vec<Animation>,
     /// What was odd in the files, for the user to read.
     pub warnings: Vec<String>,
@@ -58,7 +62,8 @@ pub struct Node {
     pub mesh: Option<u32>,
     /// A light; its position and direction are in the node's space.
     pub light: Option<Light>,
-    /// Index into [`Scene::cameras`]; the camera's position, focal point and up are in the node's space.
+    /// Index into [`Scene::cameras`]; the camera's position, focal point and up are in the node's
+    /// space.
     pub camera: Option<u32>,
 }
 
@@ -110,8 +115,8 @@ impl Scene {
         self.add_instance(self.meshes.len() as u32 - 1, parent_from_model)
     }
 
-    /// Adds a root node that shows the mesh with index `mesh` in [`Scene::meshes`]; gives the node's index. Instances share
-    /// their mesh.
+    /// Adds a root node that shows the mesh with index `mesh` in [`Scene::meshes`]; gives the
+    /// node's index. Instances share their mesh.
     pub fn add_instance(&mut self, mesh: u32, parent_from_model: DMat4) -> u32 {
         let name = self.meshes.get(mesh as usize).map_or(String::new(), |mesh| mesh.name.clone());
         let transform = NodeTransform::Matrix(parent_from_model);
@@ -137,7 +142,8 @@ impl Scene {
         self.materials.len() as u32 - 1
     }
 
-    /// Takes everything of `other` into this scene, behind what is there: several models in one picture.
+    /// Takes everything of `other` into this scene, behind what is there: several models in one
+    /// picture.
     pub fn append(&mut self, other: Self) {
         // Count what is there, by which the other's indices move.
         let (meshes, materials, textures, nodes, cameras) = (
@@ -190,8 +196,9 @@ impl Scene {
         self.warnings.extend(other.warnings);
     }
 
-    /// Makes every shown node a root where it is in the world, so that nodes can be moved one by one. Instances, lights and cameras
-    /// keep their order; a node that is not shown stays as it is.
+    /// Makes every shown node a root where it is in the world, so that nodes can be moved one by
+    /// one. Instances, lights and cameras keep their order; a node that is not shown stays as it
+    /// is.
     ///
     /// # Errors
     /// A graph that is no tree, see [`WorldError`].

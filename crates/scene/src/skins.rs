@@ -1,15 +1,17 @@
 //! Solidity: is the surface the skin of solids, and are their insides inside?
 //!
-//! Idea: if every edge has exactly two triangles and they run along it in opposite directions, the surface is the skin of
-//! solids, and back faces can never be seen from outside; but only if the triangles look outwards, which the sign of the
-//! enclosed volume tells, body by body. A mesh is often many bodies, some of them solid and others not: a body is solid whatever
-//! the others are. Where more than two triangles meet in an edge, as where two boxes touch, it is those of each body that
-//! must run both ways equally often.
+//! Idea: if every edge has exactly two triangles and they run along it in opposite directions, the
+//! surface is the skin of solids, and back faces can never be seen from outside; but only if the
+//! triangles look outwards, which the sign of the enclosed volume tells, body by body. A mesh is
+//! often many bodies, some of them solid and others not: a body is solid whatever the others are.
+//! Where more than two triangles meet in an edge, as where two boxes touch, it is those of each
+//! body that must run both ways equally often.
 //!
 //! In:   a mesh, model space. Faces with more than three corners count as triangulated.
 //! Out:  [`Solidity`] and [`Solids`] for back-face culling.
-//! Cost: `O(triangles)` expected. Who lists the triangles round every vertex anyway, as for normals, has most of it for
-//!       nothing: the mesh keeps the answer, and what it is an answer to.
+//! Cost: `O(triangles)` expected. Who lists the triangles round every vertex anyway, as for
+//!       normals, has most of it for nothing: the mesh keeps the answer, and what it is an answer
+//!       to.
 //! Source: [Mirtich 1996] and others for the volume as a sum of signed tetrahedra.
 
 use crate::disjoint_sets::DisjointSets;
@@ -26,7 +28,8 @@ use vitral_math::lanes::{self, LANES, Level, Simd, dispatch};
 use vitral_math::{DVec3, Fingerprint, mixed};
 
 impl Solidity {
-    /// Asks everything that [`Self::is_solid`] needs. A body is what is connected through edges of two triangles.
+    /// Asks everything that [`Self::is_solid`] needs. A body is what is connected through edges of
+    /// two triangles.
     pub fn of(mesh: &Mesh, workers: &Workers) -> Self {
         Solids::of(mesh, workers).solidity
     }
@@ -54,7 +57,8 @@ impl Solids {
         skins.solids(spare.into_inner().iter().map(|(_, seen)| seen), workers)
     }
 
-    /// [`Self::of`] what these ranges of triangles are by themselves, as if the mesh had no others; their numbers stay what they are.
+    /// [`Self::of`] what these ranges of triangles are by themselves, as if the mesh had no others;
+    /// their numbers stay what they are.
     ///
     /// # Panics
     /// If a range goes beyond the mesh's triangles.
@@ -67,7 +71,8 @@ impl Solids {
             return Self { solidity, triangles };
         }
         let mut words = vec![0; mesh.triangles.len().div_ceil(32)];
-        for (_, t) in numbers().enumerate().filter(|&(k, _)| triangles[k / 32] >> (k % 32) & 1 == 1) {
+        for (_, t) in numbers().enumerate().filter(|&(k, _)| triangles[k / 32] >> (k % 32) & 1 == 1)
+        {
             words[t as usize / 32] |= 1 << (t % 32);
         }
         Self { solidity, triangles: words.into() }
@@ -180,7 +185,12 @@ impl<'a> Skins<'a> {
     pub(crate) fn new(mesh: &'a Mesh, weld: &'a Weld) -> Option<Self> {
         let countable = !mesh.triangles.is_empty() && mesh.triangles.len() < MAX_FACES;
         let count = mesh.triangles.len();
-        countable.then(|| Self { mesh, weld, bodies: DisjointSets::new(count), unsound: Bits::new(count) })
+        countable.then(|| Self {
+            mesh,
+            weld,
+            bodies: DisjointSets::new(count),
+            unsound: Bits::new(count),
+        })
     }
 
     fn welded(&self, corners: &[u32; 3]) -> [u32; 3] {
@@ -237,14 +247,16 @@ impl<'a> Skins<'a> {
         }
 
         // Look at each edge: those with one or two uses, then those with more.
-        let (edges, mut further) = (std::mem::take(&mut seen.edges), std::mem::take(&mut seen.further));
+        let (edges, mut further) =
+            (std::mem::take(&mut seen.edges), std::mem::take(&mut seen.further));
         for edge in edges.iter().filter(|edge| edge.count <= 2) {
             self.edge(seen, &edge.uses[..edge.count as usize]);
         }
         further.sort_unstable();
         for more in further.chunk_by(|a, b| a.0 == b.0) {
             let first = edges[more[0].0 as usize].uses;
-            let all: Vec<Use> = first.into_iter().chain(more.iter().map(|(_, side)| *side)).collect();
+            let all: Vec<Use> =
+                first.into_iter().chain(more.iter().map(|(_, side)| *side)).collect();
             self.edge(seen, &all);
         }
         (seen.edges, seen.further) = (edges, further);
@@ -273,19 +285,22 @@ impl<'a> Skins<'a> {
         seen.into_iter().for_each(|seen| self.weigh_crossings(&seen.crossings));
         self.blame_bodies();
         let inside_out = self.find_inside_out(workers);
-        let solidity = Solidity { closed, consistent, outward: closed && consistent && !inside_out };
-        let triangles = if solidity.is_solid() { Vec::new() } else { self.of_solid_bodies(workers) };
+        let solidity =
+            Solidity { closed, consistent, outward: closed && consistent && !inside_out };
+        let triangles =
+            if solidity.is_solid() { Vec::new() } else { self.of_solid_bodies(workers) };
         Solids { solidity, triangles: triangles.into() }
     }
 
-    /// Finds the bodies that run along an edge more often one way than the other, among edges of many triangles.
+    /// Finds the bodies that run along an edge more often one way than the other, among edges of
+    /// many triangles.
     fn weigh_crossings(&self, crossings: &[(bool, Use)]) {
         let mut ways: Vec<(u32, i32)> = Vec::new();
         for edge in crossings.chunk_by(|_, next| !next.0) {
             ways.clear();
-            ways.extend(
-                edge.iter().map(|(_, side)| (self.bodies.find(side.face()), 1 - 2 * i32::from(side.reversed()))),
-            );
+            ways.extend(edge.iter().map(|(_, side)| {
+                (self.bodies.find(side.face()), 1 - 2 * i32::from(side.reversed()))
+            }));
             ways.sort_unstable();
             for of_body in ways.chunk_by(|a, b| a.0 == b.0) {
                 if of_body.iter().map(|(_, way)| way).sum::<i32>() != 0 {
@@ -321,8 +336,8 @@ impl<'a> Skins<'a> {
         if words.iter().any(|word| *word != 0) { words } else { Vec::new() }
     }
 
-    /// Whether bodies have a negative volume. These are blamed for it, and flat ones (two sheets back to back): the sheets
-    /// are equally far away, so that the one behind may be seen.
+    /// Whether bodies have a negative volume. These are blamed for it, and flat ones (two sheets
+    /// back to back): the sheets are equally far away, so that the one behind may be seen.
     fn find_inside_out(&self, workers: &Workers) -> bool {
         const BATCH: usize = 1 << 14;
         let mesh = self.mesh;
@@ -346,7 +361,11 @@ impl<'a> Skins<'a> {
                         last.signed += tetrahedron;
                         last.magnitude += tetrahedron.abs();
                     }
-                    _ => volumes.push(Volume { body, signed: tetrahedron, magnitude: tetrahedron.abs() }),
+                    _ => volumes.push(Volume {
+                        body,
+                        signed: tetrahedron,
+                        magnitude: tetrahedron.abs(),
+                    }),
                 }
             }
             volumes
@@ -366,7 +385,8 @@ impl<'a> Skins<'a> {
     }
 }
 
-/// Six times the signed volumes of the tetrahedra between triangles and a point, the last repeated to fill up eight.
+/// Six times the signed volumes of the tetrahedra between triangles and a point, the last repeated
+/// to fill up eight.
 #[inline(always)]
 fn tetrahedra<S: Simd>(simd: S, mesh: &Mesh, triangles: &[Corners], point: DVec3) -> Vec<f64> {
     let mut volumes = vec![0.0; triangles.len().next_multiple_of(LANES)];
@@ -389,7 +409,8 @@ fn tetrahedra<S: Simd>(simd: S, mesh: &Mesh, triangles: &[Corners], point: DVec3
     volumes
 }
 
-/// A body's volume, times six, and the sum of the magnitudes it was added up from, to know what rounding may do.
+/// A body's volume, times six, and the sum of the magnitudes it was added up from, to know what
+/// rounding may do.
 struct Volume {
     body: u32,
     signed: f64,
@@ -428,7 +449,8 @@ mod tests {
         let mut ball = solids::sphere(1.0, 32, 16);
         (ball.normals, ball.faces, ball.solidity) = (None, crate::Faces::Triangles, None);
         let sound = ball.triangles.clone();
-        ball.triangles.extend(sound.iter().flat_map(|&[a, b, c]| [[a, a, b], [b, c, c], [c, a, c]]));
+        ball.triangles
+            .extend(sound.iter().flat_map(|&[a, b, c]| [[a, a, b], [b, c, c], [c, a, c]]));
         assert!(Solidity::of(&ball, &Workers::single()).is_solid());
         normals::generate(&mut ball, 1.0, &Workers::single());
         assert!(Solidity::of(&ball, &Workers::single()).is_solid());
@@ -437,7 +459,8 @@ mod tests {
     /// A ball, triangles alone, with this middle and radius; inside out if wanted.
     fn ball(middle: f32, radius: f64, inside_out: bool) -> Mesh {
         let mut ball = solids::sphere(radius, 12, 8);
-        (ball.normals, ball.faces, ball.solidity, ball.uvs) = (None, crate::Faces::Triangles, None, Vec::new());
+        (ball.normals, ball.faces, ball.solidity, ball.uvs) =
+            (None, crate::Faces::Triangles, None, Vec::new());
         ball.positions.iter_mut().for_each(|p| p[0] += middle);
         if inside_out {
             ball.triangles.iter_mut().for_each(|t| t.swap(0, 1));
@@ -463,7 +486,8 @@ mod tests {
         counts
             .iter()
             .map(|count| {
-                let bits: Vec<_> = (first..first + count).map(|t| words[t / 32] >> (t % 32) & 1 == 1).collect();
+                let bits: Vec<_> =
+                    (first..first + count).map(|t| words[t / 32] >> (t % 32) & 1 == 1).collect();
                 first += count;
                 assert!(bits.iter().all(|bit| *bit == bits[0]));
                 bits[0]
@@ -503,13 +527,21 @@ mod tests {
         let end = counts[..4].iter().sum::<usize>() as u32;
         let all = end..mesh.triangles.len() as u32;
         assert_eq!(
-            Solids::of_some(&mesh, &[0..counts[0] as u32, all.end - 3..all.end], &Workers::single())
-                .some()
-                .map(|words| words[0]),
+            Solids::of_some(
+                &mesh,
+                &[0..counts[0] as u32, all.end - 3..all.end],
+                &Workers::single()
+            )
+            .some()
+            .map(|words| words[0]),
             Some(u32::MAX)
         );
         let first = 0..counts[0] as u32;
-        assert!(Solids::of_some(&mesh, std::slice::from_ref(&first), &Workers::single()).solidity.is_solid());
+        assert!(
+            Solids::of_some(&mesh, std::slice::from_ref(&first), &Workers::single())
+                .solidity
+                .is_solid()
+        );
         let last = solids.some().expect("some are").to_vec();
         let others = Solids::of_some(&mesh, std::slice::from_ref(&all), &Workers::single());
         let others = others.some().expect("the small ball is");
@@ -523,7 +555,8 @@ mod tests {
     fn bodies_that_share_an_edge_are_solid_and_those_that_make_one_only_together_are_not() {
         let cube = |middle: [f32; 3]| {
             let mut cube = solids::cuboid(DVec3::ONE);
-            (cube.normals, cube.faces, cube.solidity, cube.uvs) = (None, crate::Faces::Triangles, None, Vec::new());
+            (cube.normals, cube.faces, cube.solidity, cube.uvs) =
+                (None, crate::Faces::Triangles, None, Vec::new());
             cube.positions.iter_mut().for_each(|p| *p = [0, 1, 2].map(|k| p[k] + middle[k]));
             cube
         };
@@ -539,8 +572,13 @@ mod tests {
         let mut inside_out = cube([-1.0, -1.0, 0.0]);
         inside_out.triangles.iter_mut().for_each(|t| t.swap(0, 1));
         let twice = [cube([5.0, 0.0, 0.0]), cube([5.0, 0.0, 0.0])];
-        let (mesh, counts) =
-            together(&[cubes[0].clone(), cubes[1].clone(), inside_out, twice[0].clone(), twice[1].clone()]);
+        let (mesh, counts) = together(&[
+            cubes[0].clone(),
+            cubes[1].clone(),
+            inside_out,
+            twice[0].clone(),
+            twice[1].clone(),
+        ]);
         let found = Solids::of(&mesh, &Workers::single());
         assert!(!found.solidity.closed);
         let solid = solid_bodies(&found, &counts);
@@ -559,10 +597,15 @@ mod tests {
             assert!(Solidity::of(&body, &workers).is_solid());
             let mut holed = body.clone();
             holed.triangles.remove(middle);
-            assert!(!Solidity::of(&holed, &workers).closed && Solidity::of(&holed, &workers).consistent);
+            assert!(
+                !Solidity::of(&holed, &workers).closed && Solidity::of(&holed, &workers).consistent
+            );
             let mut turned = body.clone();
             turned.triangles[middle].swap(0, 1);
-            assert!(Solidity::of(&turned, &workers).closed && !Solidity::of(&turned, &workers).consistent);
+            assert!(
+                Solidity::of(&turned, &workers).closed
+                    && !Solidity::of(&turned, &workers).consistent
+            );
             let mut doubled = body.clone();
             doubled.triangles.push(body.triangles[middle]);
             assert!(!Solidity::of(&doubled, &workers).closed);

@@ -1,24 +1,28 @@
 //! The perspective transformation: from view space to a space in which projectors are parallel.
 //!
-//! Idea: two points in view space are on one projector if `x1/z1 = x2/z2` and `y1/z1 = y2/z2`: four divisions for every
-//! pair. Divide each point by its depth once, before any comparison, and the test is `x1 = x2` and `y1 = y2`. The
-//! transformation keeps lines lines and planes planes and the order of depths, so hidden surfaces may be found after it.
+//! Idea: two points in view space are on one projector if `x1/z1 = x2/z2` and `y1/z1 = y2/z2`: four
+//! divisions for every pair. Divide each point by its depth once, before any comparison, and the
+//! test is `x1 = x2` and `y1 = y2`. The transformation keeps lines lines and planes planes and the
+//! order of depths, so hidden surfaces may be found after it.
 //!
 //! In:   points in view space in front of the eye.
-//! Out:  points in ndc: x and y in `-1..=1` inside the picture, z from 0 (far plane) to 1 (near plane).
+//! Out:  points in ndc: x and y in `-1..=1` inside the picture, z from 0 (far plane) to 1 (near
+//!       plane).
 //! Cost: three divisions a point, none a pair.
 //! Source: the course, notes P (docs/course.md P8, P9); [Foley et al. 1990], section 15.2.2.
 
 use crate::ViewTransform;
 use vitral_math::DVec3;
 
-/// Whether two points in view space lie on one projector of a perspective with its centre in the origin: by division,
-/// up to `tolerance` in the quotients. False for points in the plane of the eye.
+/// Whether two points in view space lie on one projector of a perspective with its centre in the
+/// origin: by division, up to `tolerance` in the quotients. False for points in the plane of the
+/// eye.
 pub fn share_projector_in_view(p: DVec3, q: DVec3, tolerance: f64) -> bool {
     (p.x / p.z - q.x / q.z).abs() <= tolerance && (p.y / p.z - q.y / q.z).abs() <= tolerance
 }
 
-/// Whether two points in ndc lie on one projector: by comparison, up to `tolerance`. Also right for parallel views.
+/// Whether two points in ndc lie on one projector: by comparison, up to `tolerance`. Also right for
+/// parallel views.
 pub fn share_projector_in_ndc(p: DVec3, q: DVec3, tolerance: f64) -> bool {
     (p.x - q.x).abs() <= tolerance && (p.y - q.y).abs() <= tolerance
 }
@@ -73,8 +77,9 @@ mod tests {
 
         #[test]
         fn p8_both_tests_agree_on_any_two_points(p in point(), q in point(), towards in 0.0f64..1.0) {
-            // Move q towards the projector of p, so that near misses are tried as well. With both tolerances as one
-            // through the focal length, the answers differ only within rounding of the tolerance.
+            // Move q towards the projector of p, so that near misses are tried as well. With both
+            // tolerances as one through the focal length, the answers differ only within rounding
+            // of the tolerance.
             let view = transform(true);
             let q = q + (p * (q.z / p.z) - q) * towards;
             let (sx, sy) = (view.clip_from_view.x_axis.x, view.clip_from_view.y_axis.y);

@@ -1,7 +1,7 @@
 //! Topology: is the surface closed, and what is it made of?
 //!
-//! Idea: after welding, count the triangles at every edge. One: the surface has a boundary there. Two: it goes on.
-//! More: it branches.
+//! Idea: after welding, count the triangles at every edge. One: the surface has a boundary there.
+//! Two: it goes on. More: it branches.
 //!
 //! In:   a mesh, model space. Faces with more than three corners count as triangulated.
 //! Out:  [`Topology`] for the reader of `vitral info`.
@@ -37,7 +37,8 @@ pub struct Topology {
     pub duplicate_triangles: usize,
     /// Bodies: sets of triangles connected through vertices.
     pub components: usize,
-    /// Vertices - edges + triangles, of the triangles with three different corners. 2 for a sphere, 0 for a torus.
+    /// Vertices - edges + triangles, of the triangles with three different corners. 2 for a sphere,
+    /// 0 for a torus.
     pub euler_characteristic: i64,
     /// Every edge has exactly two triangles, and there is at least one triangle.
     pub closed: bool,
@@ -66,11 +67,14 @@ impl Topology {
             workers,
             |c: &mut EdgeCounts, lower, higher, uses| {
                 c.edges += 1;
-                c.sound += usize::from(lower != higher && uses.iter().any(|u| !collapsed(u.face() as usize)));
+                c.sound += usize::from(
+                    lower != higher && uses.iter().any(|u| !collapsed(u.face() as usize)),
+                );
                 c.boundary += usize::from(uses.len() == 1);
                 c.non_manifold += usize::from(uses.len() > 2);
-                c.inconsistent +=
-                    usize::from(lower != higher && uses.len() == 2 && uses[0].reversed() == uses[1].reversed());
+                c.inconsistent += usize::from(
+                    lower != higher && uses.len() == 2 && uses[0].reversed() == uses[1].reversed(),
+                );
             },
         );
         let sum = |field: fn(&EdgeCounts) -> usize| parts.iter().map(field).sum::<usize>();
@@ -88,7 +92,8 @@ impl Topology {
             degenerate_triangles: (0..triangles).filter(|&t| has_no_area(mesh, t)).count(),
             duplicate_triangles: duplicates(mesh, &weld, workers),
             components,
-            euler_characteristic: sound_vertices as i64 - sum(|c| c.sound) as i64 + sound_triangles as i64,
+            euler_characteristic: sound_vertices as i64 - sum(|c| c.sound) as i64
+                + sound_triangles as i64,
             closed: boundary_edges == 0 && non_manifold_edges == 0,
         }
     }
@@ -110,10 +115,12 @@ pub fn is_closed(mesh: &Mesh, workers: &Workers) -> bool {
     }
     let weld = Weld::new(&mesh.positions, workers);
     let visit = |open: &mut bool, _, _, uses: &[_]| *open |= uses.len() != 2;
-    !for_each_edge(mesh, &weld.representative, Outlines::AllTriangles, workers, visit).contains(&true)
+    !for_each_edge(mesh, &weld.representative, Outlines::AllTriangles, workers, visit)
+        .contains(&true)
 }
 
-/// Number of bodies, of vertices in use, and of vertices in use by triangles with three different corners.
+/// Number of bodies, of vertices in use, and of vertices in use by triangles with three different
+/// corners.
 fn bodies(mesh: &Mesh, weld: &Weld) -> (usize, usize, usize) {
     let sets = DisjointSets::new(mesh.positions.len());
     let mut used = vec![0u8; mesh.positions.len()];
@@ -124,7 +131,8 @@ fn bodies(mesh: &Mesh, weld: &Weld) -> (usize, usize, usize) {
         let mark = if is_collapsed([a, b, c]) { 1 } else { 3 };
         [a, b, c].iter().for_each(|&v| used[v as usize] |= mark);
     }
-    let roots = (0..used.len()).filter(|&v| used[v] != 0 && sets.find(v as u32) as usize == v).count();
+    let roots =
+        (0..used.len()).filter(|&v| used[v] != 0 && sets.find(v as u32) as usize == v).count();
     (roots, used.iter().filter(|&&u| u != 0).count(), used.iter().filter(|&&u| u == 3).count())
 }
 
@@ -228,7 +236,8 @@ mod tests {
 
     #[test]
     fn degenerate_duplicate_and_branching_triangles_are_counted() {
-        // Three triangles on one edge, the last twice; one on a line; one with two corners at one place.
+        // Three triangles on one edge, the last twice; one on a line; one with two corners at one
+        // place.
         let positions = vec![
             [0.0, 0.0, 0.0],
             [1.0, 0.0, 0.0],

@@ -1,7 +1,8 @@
 //! Triangles by the vertices that they have corners at.
 //!
-//! Idea: triangles are dealt to buckets of neighbouring vertices, once to each that one of their corners lies in. What is asked
-//! of all triangles round a vertex is asked bucket by bucket then, in memory that fits the cache.
+//! Idea: triangles are dealt to buckets of neighbouring vertices, once to each that one of their
+//! corners lies in. What is asked of all triangles round a vertex is asked bucket by bucket then,
+//! in memory that fits the cache.
 //!
 //! In:   a mesh of triangles, welded vertices.
 //! Out:  for each bucket of vertices the triangles round them, in order.
@@ -35,7 +36,8 @@ impl Source<u32> for Undealt<'_> {
 
     fn visit(&self, range: Range<usize>, mut put: impl FnMut(usize, u32)) {
         for t in range {
-            let [a, b, c] = self.mesh.triangles[t].map(|v| (self.weld.of(v) >> self.shift) as usize);
+            let [a, b, c] =
+                self.mesh.triangles[t].map(|v| (self.weld.of(v) >> self.shift) as usize);
             put(a, t as u32);
             if b != a {
                 put(b, t as u32);
@@ -51,7 +53,12 @@ impl<'a> TriangleBuckets<'a> {
     /// Deals the triangles of `mesh`.
     pub(crate) fn new(mesh: &'a Mesh, weld: &'a Weld, workers: &Workers) -> Self {
         let (shift, count) = shift_and_count(mesh.positions.len());
-        Self { mesh, weld, shift, dealt: Buckets::deal(&Undealt { mesh, weld, shift }, count, workers) }
+        Self {
+            mesh,
+            weld,
+            shift,
+            dealt: Buckets::deal(&Undealt { mesh, weld, shift }, count, workers),
+        }
     }
 
     /// How many buckets there are.
@@ -83,9 +90,12 @@ impl Around {
         let welded = |t: &u32| all.mesh.triangles[*t as usize].map(|v| all.weld.of(v));
         self.welded.extend(self.faces.iter().map(welded));
         self.degrees.clear();
-        self.degrees.resize((1 << all.shift).min(all.mesh.positions.len().saturating_sub(first)), 0);
+        self.degrees
+            .resize((1 << all.shift).min(all.mesh.positions.len().saturating_sub(first)), 0);
         for vertex in self.welded.as_flattened() {
-            if let Some(degree) = self.degrees.get_mut(vertex.wrapping_sub(self.first_vertex) as usize) {
+            if let Some(degree) =
+                self.degrees.get_mut(vertex.wrapping_sub(self.first_vertex) as usize)
+            {
                 *degree += 1;
             }
         }
@@ -115,9 +125,12 @@ mod tests {
         for b in 0..all.count() {
             around.fill(&all, b);
             let last = around.first_vertex as usize + around.degrees.len();
-            let here =
-                |t: &[u32; 3]| t.iter().any(|&v| (around.first_vertex as usize..last).contains(&(weld.of(v) as usize)));
-            let expected = mesh.triangles.iter().enumerate().filter(|(_, t)| here(t)).map(|(t, _)| t as u32);
+            let here = |t: &[u32; 3]| {
+                t.iter()
+                    .any(|&v| (around.first_vertex as usize..last).contains(&(weld.of(v) as usize)))
+            };
+            let expected =
+                mesh.triangles.iter().enumerate().filter(|(_, t)| here(t)).map(|(t, _)| t as u32);
             assert!(expected.eq(around.faces.iter().copied()), "bucket {b}");
             corners += around.degrees.iter().sum::<u32>() as usize;
         }

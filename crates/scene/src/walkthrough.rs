@@ -1,4 +1,5 @@
-//! The walkthroughs of the course's program Lab3D: the pictures to look at, chapter by chapter of the notes.
+//! The walkthroughs of the course's program Lab3D: the pictures to look at, chapter by chapter of
+//! the notes.
 //!
 //! Source: the course, notes L, chapter 4.
 
@@ -23,14 +24,22 @@ pub const EXERCISES: [&str; 4] = ["cubs", "sphere", "scene0", "scene1"];
 /// The work of chapter 4 of the notes:
 ///
 /// * `"4.1"`: each scene under its lights, to compare what is bright with where the lights are;
-/// * `"4.2"`: the sphere under LIGHT0 alone, one component at a time, then with the light at other positions;
+/// * `"4.2"`: the sphere under LIGHT0 alone, one component at a time, then with the light at other
+///   positions;
 /// * `"4.3"`: each scene lit and unlit.
 pub fn walkthrough(number: &str) -> Option<Vec<Step>> {
     match number {
-        "4.1" => Some(EXERCISES.iter().filter_map(|name| step(name, "lit by LIGHT0 and LIGHT1", true)).collect()),
+        "4.1" => Some(
+            EXERCISES
+                .iter()
+                .filter_map(|name| step(name, "lit by LIGHT0 and LIGHT1", true))
+                .collect(),
+        ),
         "4.2" => Some(components().into_iter().chain(positions()).collect()),
         "4.3" => {
-            let both = |name: &&'static str| [step(name, "lighting on", true), step(name, "lighting off", false)];
+            let both = |name: &&'static str| {
+                [step(name, "lighting on", true), step(name, "lighting off", false)]
+            };
             Some(EXERCISES.iter().flat_map(both).flatten().collect())
         }
         _ => None,

@@ -1,14 +1,16 @@
 //! Welding: vertices at one place become one vertex, for everything that asks who is next to whom.
 //!
-//! Idea: file formats repeat a position at every seam of normals or texture coordinates. The mesh keeps its vertices;
-//! neighbourhood is asked of *representatives*: of all vertices with one position, the first. Positions are equal if
-//! their coordinates are; what is smaller than the rounding of the mesh's largest coordinate counts as 0, such as the sine of a
-//! half turn at a sphere's pole. There is no other tolerance, so welding is transitive and never closes a real gap.
+//! Idea: file formats repeat a position at every seam of normals or texture coordinates. The mesh
+//! keeps its vertices; neighbourhood is asked of *representatives*: of all vertices with one
+//! position, the first. Positions are equal if their coordinates are; what is smaller than the
+//! rounding of the mesh's largest coordinate counts as 0, such as the sine of a half turn at a
+//! sphere's pole. There is no other tolerance, so welding is transitive and never closes a real
+//! gap.
 //!
 //! In:   positions, model space.
 //! Out:  for each vertex the first vertex with the same position.
-//! Cost: expected `O(n)`: dealt into buckets by a hash, then one open-addressing table a bucket, small enough for the
-//!       cache.
+//! Cost: expected `O(n)`: dealt into buckets by a hash, then one open-addressing table a bucket,
+//!       small enough for the cache.
 //! Source: [Knuth 1998], section 6.4 (linear probing).
 
 use crate::buckets::{Buckets, Source, shift_and_count};
@@ -49,12 +51,16 @@ impl Weld {
     #[inline]
     pub(crate) fn of(&self, vertex: u32) -> u32 {
         // Files often share vertices where they can: nothing to look up then.
-        if self.distinct == self.representative.len() { vertex } else { self.representative[vertex as usize] }
+        if self.distinct == self.representative.len() {
+            vertex
+        } else {
+            self.representative[vertex as usize]
+        }
     }
 }
 
-/// Coordinates count as 0 up to this part of the largest one: two steps of single precision there, as far as the sine of a
-/// whole turn is from 0.
+/// Coordinates count as 0 up to this part of the largest one: two steps of single precision there,
+/// as far as the sine of a whole turn is from 0.
 const ROUNDING: f32 = 1.0 / (1 << 22) as f32;
 
 /// The coordinates that count as 0 in these positions.
@@ -97,8 +103,14 @@ impl Source<[u32; 2]> for Hashed<'_> {
     }
 }
 
-/// Pairs of a vertex and the first vertex at its position, for every vertex of bucket `b` that is not the first.
-fn repeated_in_bucket(positions: &[[f32; 3]], zero: f32, buckets: &Buckets<[u32; 2]>, b: usize) -> Vec<[u32; 2]> {
+/// Pairs of a vertex and the first vertex at its position, for every vertex of bucket `b` that is
+/// not the first.
+fn repeated_in_bucket(
+    positions: &[[f32; 3]],
+    zero: f32,
+    buckets: &Buckets<[u32; 2]>,
+    b: usize,
+) -> Vec<[u32; 2]> {
     const FREE: u32 = u32::MAX;
     let total: usize = buckets.pieces(b).map(<[_]>::len).sum();
     let mask = (total * 2).next_power_of_two() - 1;
@@ -129,7 +141,8 @@ mod tests {
 
     #[test]
     fn the_first_of_equal_positions_stands_for_all() {
-        let p = [[0.0, 1.0, 2.0], [3.0, 0.0, 0.0], [-0.0, 1.0, 2.0], [3.0, -0.0, 0.0], [0.0, 1.0, 2.5]];
+        let p =
+            [[0.0, 1.0, 2.0], [3.0, 0.0, 0.0], [-0.0, 1.0, 2.0], [3.0, -0.0, 0.0], [0.0, 1.0, 2.5]];
         let weld = Weld::new(&p, &Workers::single());
         assert_eq!(weld.representative, [0, 1, 0, 1, 4]);
         assert_eq!(weld.distinct, 3);
@@ -141,14 +154,21 @@ mod tests {
     #[test]
     fn what_rounding_leaves_of_a_zero_is_one() {
         // The pole of a sphere of radius 5, and the seam, by sines of half and whole turns.
-        let p = [[0.0, 5.0, 0.0], [4.4e-7, 5.0, -8.7e-7], [-6e-16, 5.0, 0.0], [1e-5, 5.0, 0.0], [0.0, 5.000_001, 0.0]];
+        let p = [
+            [0.0, 5.0, 0.0],
+            [4.4e-7, 5.0, -8.7e-7],
+            [-6e-16, 5.0, 0.0],
+            [1e-5, 5.0, 0.0],
+            [0.0, 5.000_001, 0.0],
+        ];
         assert_eq!(Weld::new(&p, &Workers::single()).representative, [0, 0, 0, 3, 4]);
     }
 
     #[test]
     fn many_vertices_are_welded_the_same_by_any_number_of_threads() {
         // 90000 vertices, each position three times.
-        let p: Vec<[f32; 3]> = (0..90_000).map(|i| [(i % 30_000) as f32, (i % 173) as f32 * 0.0, 1.0]).collect();
+        let p: Vec<[f32; 3]> =
+            (0..90_000).map(|i| [(i % 30_000) as f32, (i % 173) as f32 * 0.0, 1.0]).collect();
         let one = Weld::new(&p, &Workers::single());
         assert_eq!(one.distinct, 30_000);
         assert!(one.representative.iter().enumerate().all(|(i, &r)| r as usize == i % 30_000));

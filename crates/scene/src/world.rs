@@ -1,4 +1,5 @@
-//! The scene graph walked once: instances, lights and cameras in world space, and the numbering of surfaces.
+//! The scene graph walked once: instances, lights and cameras in world space, and the numbering of
+//! surfaces.
 
 use crate::{Camera, Mesh, Node, Scene};
 use std::sync::Arc;
@@ -34,13 +35,15 @@ pub struct World {
     pub instances: Vec<Instance>,
     /// Lights that are switched on or off, world space: the scene's own first, then the nodes'.
     pub lights: Vec<Light>,
-    /// Cameras in world space, in the order of [`Scene::cameras`]; one that several nodes name, in scene order.
+    /// Cameras in world space, in the order of [`Scene::cameras`]; one that several nodes name, in
+    /// scene order.
     pub cameras: Vec<Camera>,
     /// The one of these that is [`Scene::own_camera`].
     pub own_camera: Option<usize>,
     /// The box round all instances.
     pub bounds: Aabb,
-    /// For each mesh of the scene, the boxes round its runs of triangles ([`Mesh::run_bounds`]), model space.
+    /// For each mesh of the scene, the boxes round its runs of triangles ([`Mesh::run_bounds`]),
+    /// model space.
     pub run_bounds: Vec<Vec<Aabb>>,
     /// Number of surfaces (faces of all instances).
     pub surface_count: u32,
@@ -99,7 +102,8 @@ impl Instance {
 }
 
 impl World {
-    /// Walks the graph from its roots. Bounds of each mesh are computed once, however many instances it has.
+    /// Walks the graph from its roots. Bounds of each mesh are computed once, however many
+    /// instances it has.
     ///
     /// # Errors
     /// A scene whose graph or numbers cannot be, see [`WorldError`].
@@ -113,13 +117,15 @@ impl World {
     /// As [`Self::new`].
     pub fn with_workers(scene: &Scene, workers: &Workers) -> Result<Self, WorldError> {
         // Compute the boxes of meshes once, however many instances they have.
-        let run_bounds: Vec<Vec<Aabb>> = scene.meshes.iter().map(|m| m.run_bounds(workers)).collect();
-        let bounds: Vec<Aabb> = scene.meshes.iter().zip(&run_bounds).map(|(m, runs)| m.bounds_from(runs)).collect();
+        let run_bounds: Vec<Vec<Aabb>> =
+            scene.meshes.iter().map(|m| m.run_bounds(workers)).collect();
+        let bounds: Vec<Aabb> =
+            scene.meshes.iter().zip(&run_bounds).map(|(m, runs)| m.bounds_from(runs)).collect();
         Self::place(scene, run_bounds, &bounds)
     }
 
-    /// The world of a scene whose meshes are those of this world's scene, and whose nodes may be elsewhere. What is known of the
-    /// meshes is kept.
+    /// The world of a scene whose meshes are those of this world's scene, and whose nodes may be
+    /// elsewhere. What is known of the meshes is kept.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -133,13 +139,23 @@ impl World {
             bounds[instance.mesh_index as usize] = Some(instance.model_bounds);
         }
         let known = bounds.into_iter().zip(scene.meshes.iter().zip(&self.run_bounds));
-        let bounds: Vec<Aabb> = known.map(|(known, (m, runs))| known.unwrap_or_else(|| m.bounds_from(runs))).collect();
+        let bounds: Vec<Aabb> =
+            known.map(|(known, (m, runs))| known.unwrap_or_else(|| m.bounds_from(runs))).collect();
         Self::place(scene, self.run_bounds.clone(), &bounds)
     }
 
     /// Walks the graph. `run_bounds` and `bounds` are the boxes of the scene's meshes.
-    fn place(scene: &Scene, run_bounds: Vec<Vec<Aabb>>, bounds: &[Aabb]) -> Result<Self, WorldError> {
-        let mut world = Self { lights: scene.lights.clone(), bounds: Aabb::EMPTY, run_bounds, ..Self::default() };
+    fn place(
+        scene: &Scene,
+        run_bounds: Vec<Vec<Aabb>>,
+        bounds: &[Aabb],
+    ) -> Result<Self, WorldError> {
+        let mut world = Self {
+            lights: scene.lights.clone(),
+            bounds: Aabb::EMPTY,
+            run_bounds,
+            ..Self::default()
+        };
         let mut cameras: Vec<(u32, Camera)> = Vec::new();
         for (index, world_from_node) in placed_nodes(scene)? {
             let node = &scene.nodes[index as usize];
@@ -157,7 +173,8 @@ impl World {
 
         // Put the cameras in the order of the scene's list.
         cameras.sort_by_key(|&(c, _)| c);
-        world.own_camera = scene.own_camera.and_then(|own| cameras.iter().position(|&(c, _)| c == own));
+        world.own_camera =
+            scene.own_camera.and_then(|own| cameras.iter().position(|&(c, _)| c == own));
         world.cameras = cameras.into_iter().map(|(_, camera)| camera).collect();
         Ok(world)
     }
@@ -208,7 +225,8 @@ impl World {
     /// The surface id of a facet.
     pub fn surface_of_facet(&self, facet: u32) -> u32 {
         let instance = &self.instances[self.instance_of_facet(facet)];
-        instance.first_surface + instance.mesh.face_of_triangle((facet - instance.first_facet) as usize) as u32
+        instance.first_surface
+            + instance.mesh.face_of_triangle((facet - instance.first_facet) as usize) as u32
     }
 }
 
@@ -219,7 +237,8 @@ pub(crate) fn placed_nodes(scene: &Scene) -> Result<Vec<(u32, DMat4)>, WorldErro
     // Walk with a stack of our own: a deep graph must not overflow the thread's.
     let mut placed = Vec::with_capacity(scene.nodes.len());
     let mut seen = vec![false; scene.nodes.len()];
-    let mut stack: Vec<(u32, DMat4)> = scene.roots.iter().rev().map(|&r| (r, DMat4::IDENTITY)).collect();
+    let mut stack: Vec<(u32, DMat4)> =
+        scene.roots.iter().rev().map(|&r| (r, DMat4::IDENTITY)).collect();
     while let Some((index, world_from_parent)) = stack.pop() {
         let node = &scene.nodes[index as usize];
         check_references(scene, index, node)?;
@@ -278,35 +297,58 @@ mod tests {
         let turned = crate::NodeTransform::Matrix(DMat4::from_rotation_y(0.3));
         scene.cameras.push(Camera::look_at([1.0, 2.0, 3.0], [0.0; 3]));
         let (light, camera) = (Some(Light::default()), Some(scene.cameras.len() as u32 - 1));
-        scene.add_root(Node { transform: turned, children: roots, light, camera, ..Node::default() });
+        scene.add_root(Node {
+            transform: turned,
+            children: roots,
+            light,
+            camera,
+            ..Node::default()
+        });
         let nested = World::new(&scene).unwrap();
         scene.flatten().unwrap();
         assert!(scene.nodes.iter().all(|node| node.children.is_empty()));
         for flat in [World::new(&scene).unwrap(), nested.moved(&scene).unwrap()] {
-            let places =
-                |world: &World| world.instances.iter().map(|i| (i.node, i.world_from_model)).collect::<Vec<_>>();
+            let places = |world: &World| {
+                world.instances.iter().map(|i| (i.node, i.world_from_model)).collect::<Vec<_>>()
+            };
             assert_eq!(places(&flat), places(&nested));
-            assert_eq!((&flat.lights, &flat.cameras, flat.bounds), (&nested.lights, &nested.cameras, nested.bounds));
-            assert_eq!((flat.facet_count, flat.surface_count), (nested.facet_count, nested.surface_count));
+            assert_eq!(
+                (&flat.lights, &flat.cameras, flat.bounds),
+                (&nested.lights, &nested.cameras, nested.bounds)
+            );
+            assert_eq!(
+                (flat.facet_count, flat.surface_count),
+                (nested.facet_count, nested.surface_count)
+            );
         }
     }
 
     #[test]
     fn a_bad_index_is_told_with_the_node_that_has_it() {
-        let node =
-            |children: &[u32], mesh, camera| Node { children: children.to_vec(), mesh, camera, ..Node::default() };
+        let node = |children: &[u32], mesh, camera| Node {
+            children: children.to_vec(),
+            mesh,
+            camera,
+            ..Node::default()
+        };
         let told = |roots: &[u32], nodes: [Node; 2]| {
             let scene = Scene { roots: roots.to_vec(), nodes: nodes.to_vec(), ..Scene::default() };
             World::new(&scene).map_or_else(|e| e.to_string(), |_| String::new())
         };
         let good = || node(&[], None, None);
         assert_eq!(told(&[1], [good(), node(&[0], None, None)]), "");
-        assert_eq!(told(&[1], [good(), node(&[0, 7], None, None)]), "node 1 refers to node 7, there are 2");
+        assert_eq!(
+            told(&[1], [good(), node(&[0, 7], None, None)]),
+            "node 1 refers to node 7, there are 2"
+        );
         assert_eq!(
             told(&[0], [node(&[1], None, None), node(&[], Some(3), None)]),
             "node 1 refers to mesh 3, there are 0"
         );
-        assert_eq!(told(&[0, 1], [good(), node(&[], None, Some(0))]), "node 1 refers to camera 0, there are 0");
+        assert_eq!(
+            told(&[0, 1], [good(), node(&[], None, Some(0))]),
+            "node 1 refers to camera 0, there are 0"
+        );
         assert_eq!(told(&[0, 5], [good(), good()]), "roots[1] is node 5, there are 2");
     }
 }

@@ -1,5 +1,5 @@
-//! Meshes without rhyme or reason: nothing panics, nothing is NaN, counts agree with counting by hand, and the number
-//! of threads does not show.
+//! Meshes without rhyme or reason: nothing panics, nothing is NaN, counts agree with counting by
+//! hand, and the number of threads does not show.
 
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,9 +8,11 @@ use vitral_math::{Aabb, DVec3, Obb, Sphere};
 use vitral_scene::edges::{EdgeKind, edges};
 use vitral_scene::{Faces, Mesh, Part, Solidity, Solids, Topology, is_closed, normals};
 
-/// Up to 12 vertices on a small grid (so that many coincide), some of them not finite, and up to 30 faces.
+/// Up to 12 vertices on a small grid (so that many coincide), some of them not finite, and up to 30
+/// faces.
 fn mesh() -> impl Strategy<Value = Mesh> {
-    let coordinate = prop_oneof![20 => (-1i8..=1).prop_map(f32::from), 1 => Just(f32::NAN), 1 => Just(f32::MAX)];
+    let coordinate =
+        prop_oneof![20 => (-1i8..=1).prop_map(f32::from), 1 => Just(f32::NAN), 1 => Just(f32::MAX)];
     let positions = prop::collection::vec(prop::array::uniform3(coordinate), 3..12);
     let outlines = prop::collection::vec(prop::collection::vec(0u32..1000, 3..7), 0..30);
     (positions, outlines, prop::option::of(0u32..3), any::<bool>()).prop_map(
@@ -23,16 +25,23 @@ fn mesh() -> impl Strategy<Value = Mesh> {
                 corners.extend(&outline);
                 starts.push(corners.len() as u32);
             }
-            let faces = if polygons { Faces::Polygons { starts, corners } } else { Faces::Triangles };
-            let parts = vec![Part { name: String::new(), triangles: 0..triangles.len() as u32, material: None }];
+            let faces =
+                if polygons { Faces::Polygons { starts, corners } } else { Faces::Triangles };
+            let parts = vec![Part {
+                name: String::new(),
+                triangles: 0..triangles.len() as u32,
+                material: None,
+            }];
             let mut mesh = Mesh { positions, triangles, faces, parts, ..Mesh::default() };
-            mesh.smoothing_groups = groups.map(|g| (0..mesh.face_count() as u32).map(|f| f % (g + 1)).collect());
+            mesh.smoothing_groups =
+                groups.map(|g| (0..mesh.face_count() as u32).map(|f| f % (g + 1)).collect());
             mesh
         },
     )
 }
 
-/// The name of a vertex's position: what is as small as the rounding of the largest coordinate is 0.
+/// The name of a vertex's position: what is as small as the rounding of the largest coordinate is
+/// 0.
 fn place(mesh: &Mesh, i: u32) -> [u32; 3] {
     let finite = mesh.positions.as_flattened().iter().filter(|c| c.is_finite());
     let zero = finite.fold(0.0f32, |most, c| most.max(c.abs())) / (1 << 22) as f32;
@@ -100,7 +109,8 @@ proptest! {
         prop_assert_eq!(Solids::of(&triangles, &Workers::single()), solids.clone());
         prop_assert_eq!(Solidity::of(&triangles, &Workers::single()), solidity);
 
-        // The triangles of solid bodies together run along every edge as often one way as the other.
+        // The triangles of solid bodies together run along every edge as often one way as the
+        // other.
         let is_solid = |t: usize| solids.some().is_some_and(|words| words[t / 32] >> (t % 32) & 1 == 1);
         let mut balance: BTreeMap<_, i32> = BTreeMap::new();
         for t in (0..mesh.triangles.len()).filter(|t| is_solid(*t)) {

@@ -1,12 +1,13 @@
 //! Where test models are.
 //!
-//! Small ones live in the repository (`examples/`, `crates/*/fixtures`). The large corpus lies beside the checkout, in
-//! `../shared/models`, and may be absent: a test that needs it says so with one printed line and passes. `cargo xtask
-//! test` counts tests that print such a line as skipped.
+//! Small ones live in the repository (`examples/`, `crates/*/fixtures`). The large corpus lies
+//! beside the checkout, in `../shared/models`, and may be absent: a test that needs it says so with
+//! one printed line and passes. `cargo xtask test` counts tests that print such a line as skipped.
 
 use std::path::{Path, PathBuf};
 
-/// What a line of a test's output starts with when the test could not run. `cargo xtask test` looks for it.
+/// What a line of a test's output starts with when the test could not run. `cargo xtask test` looks
+/// for it.
 pub const SKIPPED: &str = "skipped: ";
 
 /// The repository's top folder.
@@ -15,7 +16,8 @@ pub fn repository() -> PathBuf {
     here.ancestors().nth(2).unwrap_or(here).to_path_buf()
 }
 
-/// A file of the shared corpus, such as `classics/utah-teapot.obj`; prints a skip line and gives `None` if it is absent.
+/// A file of the shared corpus, such as `classics/utah-teapot.obj`; prints a skip line and gives
+/// `None` if it is absent.
 pub fn shared_model(path: &str) -> Option<PathBuf> {
     let found = find(path);
     if found.is_none() {
@@ -29,8 +31,8 @@ fn find(path: &str) -> Option<PathBuf> {
     Some(repository().join("../shared/models").join(path)).filter(|found| found.exists())
 }
 
-/// All files of the shared corpus below `folder` whose extension (in lower case) is in `extensions`, sorted by path.
-/// Empty, with a skip line, if the folder is absent.
+/// All files of the shared corpus below `folder` whose extension (in lower case) is in
+/// `extensions`, sorted by path. Empty, with a skip line, if the folder is absent.
 pub fn shared_models(folder: &str, extensions: &[&str]) -> Vec<PathBuf> {
     let mut found = shared_files(folder);
     found.retain(|path| {
@@ -40,7 +42,8 @@ pub fn shared_models(folder: &str, extensions: &[&str]) -> Vec<PathBuf> {
     found
 }
 
-/// All files of the shared corpus below `folder`, sorted by path. Empty, with a skip line, if the folder is absent.
+/// All files of the shared corpus below `folder`, sorted by path. Empty, with a skip line, if the
+/// folder is absent.
 pub fn shared_files(folder: &str) -> Vec<PathBuf> {
     shared_model(folder).map(|folder| files_below(&folder)).unwrap_or_default()
 }
@@ -65,7 +68,10 @@ mod tests {
 
     #[test]
     fn the_repository_is_found() {
-        assert!(repository().join("Cargo.toml").exists() && repository().join("crates/testkit").exists());
+        assert!(
+            repository().join("Cargo.toml").exists()
+                && repository().join("crates/testkit").exists()
+        );
     }
 
     #[test]

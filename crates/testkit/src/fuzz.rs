@@ -1,9 +1,10 @@
-//! What the fuzzer feeds: for each reader, for the OpenGL state machine and for drawings, a function that takes any bytes and panics at
-//! what must not be.
+//! What the fuzzer feeds: for each reader, for the OpenGL state machine and for drawings, a
+//! function that takes any bytes and panics at what must not be.
 //!
-//! A reader may refuse; what it gives instead must be [`assert_sound`]. The targets in `fuzz/fuzz_targets` call these
-//! functions, and so does a plain test (`crates/io/tests/malformed.rs`) with every file of `fuzz/corpus`. Files beside
-//! the one that is read exist, see [`Beside`], so that the fuzzer reaches what reads them.
+//! A reader may refuse; what it gives instead must be [`assert_sound`]. The targets in
+//! `fuzz/fuzz_targets` call these functions, and so does a plain test
+//! (`crates/io/tests/malformed.rs`) with every file of `fuzz/corpus`. Files beside the one that is
+//! read exist, see [`Beside`], so that the fuzzer reaches what reads them.
 
 use crate::fixture::{files_below, repository};
 pub use crate::fuzz_draw::draw;
@@ -43,7 +44,10 @@ pub const TARGETS: [Target; 10] = [
 /// # Panics
 /// If there is none.
 pub fn target(name: &str) -> Target {
-    TARGETS.into_iter().find(|t| t.name == name).unwrap_or_else(|| panic!("no fuzz target is called {name}"))
+    TARGETS
+        .into_iter()
+        .find(|t| t.name == name)
+        .unwrap_or_else(|| panic!("no fuzz target is called {name}"))
 }
 
 impl Target {
@@ -89,9 +93,12 @@ pub fn ply(bytes: &[u8]) {
 
 /// Scene files; what is read can be written and read again.
 pub fn scene_json(bytes: &[u8]) {
-    let read = |bytes: &[u8]| scene_json::load(bytes, "a.json", &Beside::default(), &Workers::single());
+    let read =
+        |bytes: &[u8]| scene_json::load(bytes, "a.json", &Beside::default(), &Workers::single());
     let scene = read(bytes);
-    if let Ok(text) = scene.as_ref().map_err(|_| ()).and_then(|scene| scene_json::write(scene).map_err(|_| ())) {
+    if let Ok(text) =
+        scene.as_ref().map_err(|_| ()).and_then(|scene| scene_json::write(scene).map_err(|_| ()))
+    {
         assert!(read(text.as_bytes()).is_ok(), "what was written is not read");
     }
     check(scene);
@@ -121,10 +128,11 @@ pub fn assert_sound(scene: &Scene) {
 }
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-const USES_LIBRARY: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n";
+const USES_LIBRARY: &str =
+    "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n";
 
-/// The files beside the one that is read: every material library holds `library`, every OBJ file a triangle, every
-/// picture one pixel, every buffer 64 zeros. Others do not exist.
+/// The files beside the one that is read: every material library holds `library`, every OBJ file a
+/// triangle, every picture one pixel, every buffer 64 zeros. Others do not exist.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Beside<'a> {
     /// Content of all `.mtl` files.

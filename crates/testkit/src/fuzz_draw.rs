@@ -1,15 +1,16 @@
 //! Random drawings: any bytes are a few triangles, a camera, and what is to be drawn.
 //!
-//! Triangles lie on a small lattice, where everything coincides; a little beside it, where everything nearly does; or anywhere. A drawing
-//! ends within its limits or says which of them was reached, does not depend on threads, stays on its page, and can be written.
+//! Triangles lie on a small lattice, where everything coincides; a little beside it, where
+//! everything nearly does; or anywhere. A drawing ends within its limits or says which of them was
+//! reached, does not depend on threads, stays on its page, and can be written.
 
 use crate::fuzz_gl::source::Source;
 use std::sync::{Arc, OnceLock};
 use vitral::{
-    AlphaMode, Budget, Camera, ColorBy, DMat4, DVec3, Drawing, DrawingFormat, DrawingOptions, DrawingSettings, Drawn,
-    Error, Execution, FillSettings, Hatch, Lens, Light, LineClass, LineClasses, Material, Mesh, PageSize, PolygonFill,
-    PolygonSettings, Projection, RenderError, Renderer, Scene, Seams, SectionPlane, SystemClock, View, Visibility,
-    Workers,
+    AlphaMode, Budget, Camera, ColorBy, DMat4, DVec3, Drawing, DrawingFormat, DrawingOptions,
+    DrawingSettings, Drawn, Error, Execution, FillSettings, Hatch, Lens, Light, LineClass,
+    LineClasses, Material, Mesh, PageSize, PolygonFill, PolygonSettings, Projection, RenderError,
+    Renderer, Scene, Seams, SectionPlane, SystemClock, View, Visibility, Workers,
 };
 
 /// Most triangles of a scene.
@@ -18,7 +19,8 @@ const MOST_TRIANGLES: usize = 24;
 const SECONDS: f64 = 2.0;
 const BYTES: u64 = 64 << 20;
 const SEGMENTS: u64 = 20_000;
-/// How far rounding moves a point beyond the border of its page: millimetres, and a part of the page's size.
+/// How far rounding moves a point beyond the border of its page: millimetres, and a part of the
+/// page's size.
 const ROUNDING: [f64; 2] = [0.002, 1e-6];
 
 /// What is drawn.
@@ -81,7 +83,8 @@ pub fn outcome(bytes: &[u8]) -> Outcome {
     Outcome::Drawn(drawing.segments())
 }
 
-/// A drawing, or why there is none: a limit, or light that is not computed in scenes of such a size.
+/// A drawing, or why there is none: a limit, or light that is not computed in scenes of such a
+/// size.
 fn drawn(
     scene: &Scene,
     viewer: &Viewer,
@@ -93,8 +96,10 @@ fn drawn(
     let workers = WORKERS.get_or_init(|| [Workers::single(), Workers::new(2)]);
     let budget = Budget::new(Arc::new(SystemClock::default()));
     let budget = budget.with_time_limit(Some(SECONDS)).with_memory_limit(Some(BYTES));
-    let execution = Execution { workers: workers[threads - 1].clone(), budget, ..Execution::default() };
-    let mut renderer = Renderer::with_execution(scene.clone(), execution).unwrap_or_else(|error| panic!("{error}"));
+    let execution =
+        Execution { workers: workers[threads - 1].clone(), budget, ..Execution::default() };
+    let mut renderer = Renderer::with_execution(scene.clone(), execution)
+        .unwrap_or_else(|error| panic!("{error}"));
     viewer.apply(&mut renderer);
     let drawn = match kind {
         Kind::Lines => renderer.draw(settings),
@@ -115,7 +120,9 @@ fn check_page(drawing: &Drawing) {
     let size = [drawing.width, drawing.height];
     assert!(size.iter().all(|side| side.is_finite() && *side >= 0.0), "a page of {size:?}");
     let outlines = drawing.regions.iter().flat_map(|region| region.rings.iter().flatten());
-    for point in drawing.lines.iter().flat_map(|line| &line.points).chain(outlines).chain(&drawing.points) {
+    for point in
+        drawing.lines.iter().flat_map(|line| &line.points).chain(outlines).chain(&drawing.points)
+    {
         for k in 0..2 {
             let rounding = ROUNDING[0] + ROUNDING[1] * size[k];
             let is_on_page = point[k] >= -rounding && point[k] <= size[k] + rounding;
@@ -126,7 +133,10 @@ fn check_page(drawing: &Drawing) {
         assert!(line.points.len() > 1, "a line of one point");
     }
     for region in &drawing.regions {
-        assert!(!region.rings.is_empty() && region.rings.iter().all(|ring| ring.len() > 2), "an empty region");
+        assert!(
+            !region.rings.is_empty() && region.rings.iter().all(|ring| ring.len() > 2),
+            "an empty region"
+        );
         assert!((0.0..=1.0).contains(&region.opacity), "an opacity of {}", region.opacity);
     }
 }
@@ -150,7 +160,11 @@ fn settings(source: &mut Source<'_>) -> DrawingSettings {
     let lines = match classes {
         0..=63 => LineClasses::ALL,
         64..=127 => LineClasses::USUAL,
-        _ => LineClass::ALL.iter().map(|row| row.0).filter(|&class| classes >> class as u8 & 1 == 1).collect(),
+        _ => LineClass::ALL
+            .iter()
+            .map(|row| row.0)
+            .filter(|&class| classes >> class as u8 & 1 == 1)
+            .collect(),
     };
     let bits = source.byte();
     let size = 1.0 + f64::from(source.byte());
@@ -168,7 +182,8 @@ fn settings(source: &mut Source<'_>) -> DrawingSettings {
             4 | 5 => PageSize::Window { window: size },
             _ => PageSize::Fit { longer: size },
         },
-        hatch: Some(Hatch { angle: size / 40.0, distance: 0.5 + size / 64.0 }).filter(|_| size < 200.0),
+        hatch: Some(Hatch { angle: size / 40.0, distance: 0.5 + size / 64.0 })
+            .filter(|_| size < 200.0),
     }
 }
 
@@ -187,8 +202,10 @@ fn kind(source: &mut Source<'_>) -> Kind {
         0..=79 => Kind::Lines,
         80..=191 => Kind::Filled(fill),
         _ => {
-            let algorithms: Vec<Visibility> = Visibility::all().filter(|row| row.polygons.is_some()).collect();
-            let paint = [PolygonFill::None, PolygonFill::White, PolygonFill::Shaded, PolygonFill::Shaded];
+            let algorithms: Vec<Visibility> =
+                Visibility::all().filter(|row| row.polygons.is_some()).collect();
+            let paint =
+                [PolygonFill::None, PolygonFill::White, PolygonFill::Shaded, PolygonFill::Shaded];
             Kind::Polygons(PolygonSettings {
                 fill: paint[usize::from(kind & 3)],
                 outlines: bits & 128 != 0,
@@ -210,13 +227,23 @@ struct Viewer {
 impl Viewer {
     fn new(source: &mut Source<'_>) -> Self {
         let (kind, bits) = (source.byte(), source.byte());
-        let views = [View::Front, View::Back, View::Left, View::Right, View::Top, View::Bottom, View::Iso, View::Iso];
+        let views = [
+            View::Front,
+            View::Back,
+            View::Left,
+            View::Right,
+            View::Top,
+            View::Bottom,
+            View::Iso,
+            View::Iso,
+        ];
         let view_angle = 0.02 + f64::from(source.byte()) / 90.0;
         let projection = match bits & 1 {
             0 => Projection::Parallel { height: view_angle * 4.0 },
             _ => Projection::Perspective { view_angle },
         };
-        let mut place = || DVec3::from_array(std::array::from_fn(|_| f64::from(source.byte() as i8) / 32.0));
+        let mut place =
+            || DVec3::from_array(std::array::from_fn(|_| f64::from(source.byte() as i8) / 32.0));
         let camera = Camera {
             position: place(),
             focal_point: place(),
@@ -261,7 +288,8 @@ fn scene(source: &mut Source<'_>) -> Result<Scene, String> {
     let mut scene = Scene::default();
     for opacity in [1.0, 0.5, 0.25, 0.0] {
         let alpha_mode = if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque };
-        let material = Material { opacity, alpha_mode, double_sided: opacity == 0.25, ..Material::default() };
+        let material =
+            Material { opacity, alpha_mode, double_sided: opacity == 0.25, ..Material::default() };
         scene.add_material(material);
     }
     scene.add_light(Light { shadow: true, ..Light::directional([-1.0, -2.0, -1.5]) });
@@ -291,7 +319,8 @@ fn scene(source: &mut Source<'_>) -> Result<Scene, String> {
     }
 }
 
-/// Some triangles, some of whose corners are those of triangles before; a free line and a free point.
+/// Some triangles, some of whose corners are those of triangles before; a free line and a free
+/// point.
 fn mesh(source: &mut Source<'_>, space: Space) -> Mesh {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for _ in 0..source.below(MOST_TRIANGLES / 2 + 1) {
@@ -319,7 +348,9 @@ fn mesh(source: &mut Source<'_>, space: Space) -> Mesh {
 
 fn coordinate(source: &mut Source<'_>, space: Space) -> f32 {
     match space {
-        Space::Lattice(places) => f32::from(source.byte() % places) / f32::from(places - 1) * 2.0 - 1.0,
+        Space::Lattice(places) => {
+            f32::from(source.byte() % places) / f32::from(places - 1) * 2.0 - 1.0
+        }
         Space::Beside(step) => {
             let byte = source.byte();
             f32::from(byte % 4) - 1.0 + f32::from(byte / 4 % 5) * step
@@ -348,7 +379,10 @@ mod tests {
                 outcome(&bytes)
             })
             .collect();
-        let drawn = outcomes.iter().filter(|o| matches!(o, Outcome::Drawn(segments) if *segments > 0)).count();
+        let drawn = outcomes
+            .iter()
+            .filter(|o| matches!(o, Outcome::Drawn(segments) if *segments > 0))
+            .count();
         assert!(drawn > 60, "{drawn} of 100 show something: {outcomes:?}");
         assert!(matches!(outcome(&[]), Outcome::Drawn(0)));
     }

@@ -1,8 +1,10 @@
-//! Golden images: a picture is compared with the one that was once looked at and kept in `tests/golden`.
+//! Golden images: a picture is compared with the one that was once looked at and kept in
+//! `tests/golden`.
 //!
-//! A test calls [`check`] (or [`check_everywhere`], which also demands the same bytes at every SIMD level and thread
-//! count). On failure a page with expected, difference and actual is left in `target/golden-failures`. `cargo xtask
-//! bless`, or `VITRAL_BLESS=1`, writes the references anew; the review is the diff of the pictures.
+//! A test calls [`check`] (or [`check_everywhere`], which also demands the same bytes at every SIMD
+//! level and thread count). On failure a page with expected, difference and actual is left in
+//! `target/golden-failures`. `cargo xtask bless`, or `VITRAL_BLESS=1`, writes the references anew;
+//! the review is the diff of the pictures.
 
 use crate::matrix::{self, Setting};
 use crate::{fixture, page};
@@ -22,25 +24,28 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// Every byte. All of vitral's own pictures are held to this: only operations that IEEE 754 makes exact are used, so
-    /// instruction set, thread count, compiler and machine cannot change a byte, and a change means that an algorithm
-    /// changed.
+    /// Every byte. All of vitral's own pictures are held to this: only operations that IEEE 754
+    /// makes exact are used, so instruction set, thread count, compiler and machine cannot change a
+    /// byte, and a change means that an algorithm changed.
     pub const EXACT: Self = Self { per_channel: 0, pixels: 0.0 };
 
-    /// One step of an 8-bit channel, anywhere. For two ways to compute the same value in a different order (increments
-    /// along a span against barycentric weights, stages against a fused path before its equality is proved): each may
-    /// round the last bit of the byte differently, none may be further off.
+    /// One step of an 8-bit channel, anywhere. For two ways to compute the same value in a
+    /// different order (increments along a span against barycentric weights, stages against a fused
+    /// path before its equality is proved): each may round the last bit of the byte differently,
+    /// none may be further off.
     pub const ROUNDING: Self = Self { per_channel: 1, pixels: 0.0 };
 
-    /// Two steps, and one pixel in two hundred further off. For pictures of another program (Mesa, mitsuba) kept as
-    /// references: its snapping of vertices and its lines differ, which shows on silhouettes, but not on surfaces.
+    /// Two steps, and one pixel in two hundred further off. For pictures of another program (Mesa,
+    /// mitsuba) kept as references: its snapping of vertices and its lines differ, which shows on
+    /// silhouettes, but not on surfaces.
     pub const PEER: Self = Self { per_channel: 2, pixels: 0.005 };
 }
 
 /// Compares `actual` with the reference `name` (a path below `tests/golden` without its extension).
 ///
 /// # Panics
-/// If they differ by more than `tolerance`, or there is no reference; the message names the page that shows it.
+/// If they differ by more than `tolerance`, or there is no reference; the message names the page
+/// that shows it.
 #[track_caller]
 pub fn check(name: &str, actual: &Plane<[u8; 4]>, tolerance: Tolerance) {
     if let Err(message) = Golden::of_repository().check(name, actual, tolerance) {
@@ -48,12 +53,17 @@ pub fn check(name: &str, actual: &Plane<[u8; 4]>, tolerance: Tolerance) {
     }
 }
 
-/// Renders at every SIMD level with several thread counts, demands equal bytes, and compares them with the reference.
+/// Renders at every SIMD level with several thread counts, demands equal bytes, and compares them
+/// with the reference.
 ///
 /// # Panics
 /// As [`check`] and [`matrix::same_everywhere`].
 #[track_caller]
-pub fn check_everywhere(name: &str, tolerance: Tolerance, render: impl FnMut(&Setting) -> Plane<[u8; 4]>) {
+pub fn check_everywhere(
+    name: &str,
+    tolerance: Tolerance,
+    render: impl FnMut(&Setting) -> Plane<[u8; 4]>,
+) {
     check(name, &matrix::same_everywhere(render), tolerance);
 }
 
@@ -74,7 +84,12 @@ impl Golden {
         }
     }
 
-    fn check(&self, name: &str, actual: &Plane<[u8; 4]>, tolerance: Tolerance) -> Result<(), String> {
+    fn check(
+        &self,
+        name: &str,
+        actual: &Plane<[u8; 4]>,
+        tolerance: Tolerance,
+    ) -> Result<(), String> {
         let path = self.references.join(format!("{name}.png"));
         if self.bless {
             return self.rewrite(&path, actual);
@@ -95,12 +110,15 @@ impl Golden {
         if difference.share() <= tolerance.pixels {
             return Ok(());
         }
-        let allowed =
-            format!("{difference}; allowed: {} a channel, {} of the pixels", tolerance.per_channel, tolerance.pixels);
+        let allowed = format!(
+            "{difference}; allowed: {} a channel, {} of the pixels",
+            tolerance.per_channel, tolerance.pixels
+        );
         Err(self.fail(name, &allowed, Some(&expected), actual))
     }
 
-    /// Writes the reference unless the same pixels are there already, so that a bless changes only what changed.
+    /// Writes the reference unless the same pixels are there already, so that a bless changes only
+    /// what changed.
     fn rewrite(&self, path: &std::path::Path, actual: &Plane<[u8; 4]>) -> Result<(), String> {
         if path.exists() && page::read_png(path).is_ok_and(|old| old == *actual) {
             return Ok(());
@@ -115,7 +133,13 @@ impl Golden {
         page::put(path, &bytes)
     }
 
-    fn fail(&self, name: &str, message: &str, expected: Option<&Plane<[u8; 4]>>, actual: &Plane<[u8; 4]>) -> String {
+    fn fail(
+        &self,
+        name: &str,
+        message: &str,
+        expected: Option<&Plane<[u8; 4]>>,
+        actual: &Plane<[u8; 4]>,
+    ) -> String {
         match page::write(&self.failures, name, message, expected, actual) {
             Ok(page) => format!("golden image `{name}`: {message}\nsee {}", page.display()),
             Err(error) => format!("golden image `{name}`: {message}\n(no page: {error})"),
@@ -135,7 +159,11 @@ mod tests {
             Self(std::env::temp_dir().join(format!("vitral-golden-{name}-{}", std::process::id())))
         }
         fn golden(&self, bless: bool) -> Golden {
-            Golden { references: self.0.join("references"), failures: self.0.join("failures"), bless }
+            Golden {
+                references: self.0.join("references"),
+                failures: self.0.join("failures"),
+                bless,
+            }
         }
     }
 
@@ -158,11 +186,16 @@ mod tests {
         golden.check("a/grey", &grey(101), Tolerance::ROUNDING).unwrap();
         let message = golden.check("a/grey", &grey(101), Tolerance::EXACT).unwrap_err();
         assert!(message.contains("20 of 20 pixels"), "{message}");
-        for file in ["a/grey.html", "a/grey.expected.png", "a/grey.difference.png", "a/grey.actual.png"] {
+        for file in
+            ["a/grey.html", "a/grey.expected.png", "a/grey.difference.png", "a/grey.actual.png"]
+        {
             assert!(golden.failures.join(file).exists(), "{file} is left behind");
         }
         let page = std::fs::read_to_string(golden.failures.join("a/grey.html")).unwrap();
-        assert!(page.contains("src=\"grey.difference.png\""), "pictures are named relative to the page: {page}");
+        assert!(
+            page.contains("src=\"grey.difference.png\""),
+            "pictures are named relative to the page: {page}"
+        );
     }
 
     #[test]
@@ -179,7 +212,10 @@ mod tests {
     fn sizes_and_large_files_are_refused() {
         let sandbox = Sandbox::new("sizes");
         sandbox.golden(true).check("x", &grey(1), Tolerance::EXACT).unwrap();
-        let message = sandbox.golden(false).check("x", &Plane::filled(2, 2, [0; 4]), Tolerance::PEER).unwrap_err();
+        let message = sandbox
+            .golden(false)
+            .check("x", &Plane::filled(2, 2, [0; 4]), Tolerance::PEER)
+            .unwrap_err();
         assert!(message.contains("5x4 pixels, the second 2x2"), "{message}");
         let mut state = 1u32;
         let noise = Plane::filled(200, 200, 0).map(|_: &u8| {

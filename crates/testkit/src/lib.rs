@@ -1,5 +1,6 @@
-//! Beside the house: what tests share. [`golden`] images, the [`matrix`] of SIMD levels and thread counts, [`fixture`]
-//! files, and what the [`fuzz`] targets call. Nothing in the house depends on this crate except its tests.
+//! Beside the house: what tests share. [`golden`] images, the [`matrix`] of SIMD levels and thread
+//! counts, [`fixture`] files, and what the [`fuzz`] targets call. Nothing in the house depends on
+//! this crate except its tests.
 #![forbid(unsafe_code)]
 
 pub mod fixture;

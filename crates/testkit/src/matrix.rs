@@ -23,12 +23,17 @@ impl std::fmt::Display for Setting {
     }
 }
 
-/// Every level of this machine with every count of [`THREADS`]; the slowest level with one thread comes first. Plain scalar
-/// code is among the levels where vitral is built with the feature `scalar`.
+/// Every level of this machine with every count of [`THREADS`]; the slowest level with one thread
+/// comes first. Plain scalar code is among the levels where vitral is built with the feature
+/// `scalar`.
 pub fn settings() -> Vec<Setting> {
     let mut settings = Vec::new();
     for (level_name, level) in available_levels() {
-        settings.extend(THREADS.map(|threads| Setting { level_name, level, workers: Workers::new(threads) }));
+        settings.extend(THREADS.map(|threads| Setting {
+            level_name,
+            level,
+            workers: Workers::new(threads),
+        }));
     }
     settings
 }
@@ -55,7 +60,10 @@ mod tests {
     #[test]
     fn the_reference_comes_first_and_all_threads_are_tried() {
         let settings = settings();
-        assert_eq!((settings[0].level_name, settings[0].workers.threads()), (available_levels()[0].0, 1));
+        assert_eq!(
+            (settings[0].level_name, settings[0].workers.threads()),
+            (available_levels()[0].0, 1)
+        );
         assert_eq!(settings.len() % THREADS.len(), 0);
         assert_eq!(same_everywhere(|setting| setting.workers.map(3, |i| i * 2)), [0, 2, 4]);
     }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use vitral_frame::{Plane, compare};
 use vitral_io::encode;
 
-/// Writes `NAME.html` and its pictures into `folder`; gives the page's path. `expected` is `None` where there is no
-/// reference yet, or one of another size.
+/// Writes `NAME.html` and its pictures into `folder`; gives the page's path. `expected` is `None`
+/// where there is no reference yet, or one of another size.
 pub(crate) fn write(
     folder: &Path,
     name: &str,
@@ -16,7 +16,9 @@ pub(crate) fn write(
     // Write the pictures that there are, and a figure for each.
     let difference = expected.and_then(|expected| compare::picture(expected, actual).ok());
     let mut figures = String::new();
-    for (what, picture) in [("expected", expected), ("difference", difference.as_ref()), ("actual", Some(actual))] {
+    for (what, picture) in
+        [("expected", expected), ("difference", difference.as_ref()), ("actual", Some(actual))]
+    {
         let Some(picture) = picture else { continue };
         let file = format!("{name}.{what}.png");
         put(&folder.join(&file), &encode_png(picture)?)?;

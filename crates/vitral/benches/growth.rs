@@ -1,5 +1,6 @@
-//! How the time of a frame grows: with the triangles (a torus, 1024x768), and with the pixels (the same torus). Four
-//! sizes each, each four times the one before; linear growth shows as a throughput that stays.
+//! How the time of a frame grows: with the triangles (a torus, 1024x768), and with the pixels (the
+//! same torus). Four sizes each, each four times the one before; linear growth shows as a
+//! throughput that stays.
 #![allow(missing_docs)]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

@@ -1,5 +1,6 @@
-//! How the time of radiosity grows with the patches: the Cornell box, until 1 % of the light is left. Each size has about
-//! twice the patches of the one before; linear growth shows as a throughput that stays.
+//! How the time of radiosity grows with the patches: the Cornell box, until 1 % of the light is
+//! left. Each size has about twice the patches of the one before; linear growth shows as a
+//! throughput that stays.
 #![allow(missing_docs)]
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -10,7 +11,8 @@ use vitral::{Global, Renderer, Scene};
 /// Longest edges of patches.
 const PATCH_SIZES: [f64; 7] = [0.15, 0.1, 0.09, 0.055, 0.045, 0.025, 0.0225];
 
-/// A renderer that knows no solution yet. Its picture is as good as nothing: looking up light is not what is measured.
+/// A renderer that knows no solution yet. Its picture is as good as nothing: looking up light is
+/// not what is measured.
 fn renderer(scene: &Scene, patch_size: f64) -> Renderer {
     let mut renderer = Renderer::new(scene.clone()).expect("the box is a scene");
     renderer.camera = renderer.world().cameras.first().copied();
@@ -32,7 +34,11 @@ fn bench(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements(patches));
         group.bench_function(BenchmarkId::from_parameter(patches), |b| {
             let fresh = || renderer(&scene, patch_size);
-            b.iter_batched_ref(fresh, |r| black_box(r.render().expect("nothing limits it")), BatchSize::PerIteration);
+            b.iter_batched_ref(
+                fresh,
+                |r| black_box(r.render().expect("nothing limits it")),
+                BatchSize::PerIteration,
+            );
         });
     }
     group.finish();

@@ -1,9 +1,11 @@
-//! What shadows cost: frames of a turntable with and without them, in turns, as ratios of the fastest.
+//! What shadows cost: frames of a turntable with and without them, in turns, as ratios of the
+//! fastest.
 //!
-//! `cargo bench -p vitral --bench shadows -- MODEL [ROUNDS [WAY]...]`; without a model the teapot. One parallel light, maps
-//! of 2048 texels a side, four samples a pixel, 1024x768. *Kept*: the light stands still, and what was found out for it
-//! serves all frames. *Made anew*: the light turns a little before every frame, so that nothing can be kept.
-//! `VITRAL_THREADS` limits the threads.
+//! `cargo bench -p vitral --bench shadows -- MODEL [ROUNDS [WAY]...]`; without a model the teapot.
+//! One parallel light, maps of 2048 texels a side, four samples a pixel, 1024x768. *Kept*: the
+//! light stands still, and what was found out for it serves all frames. *Made anew*: the light
+//! turns a little before every frame, so that nothing can be kept. `VITRAL_THREADS` limits the
+//! threads.
 
 mod turntable;
 
@@ -27,7 +29,8 @@ const WAYS: [(&str, Shadows, Option<f64>); 9] = [
 ];
 
 fn sun(turn: f64) -> Light {
-    let kind = vitral::LightKind::Directional { direction: DVec3::new(-1.0 + turn, -2.0, -1.0 - turn) };
+    let kind =
+        vitral::LightKind::Directional { direction: DVec3::new(-1.0 + turn, -2.0, -1.0 - turn) };
     Light { kind, ..Light::default() }
 }
 
@@ -35,7 +38,8 @@ fn measure(arguments: &Arguments) -> Result<(), Error> {
     let mut renderer = arguments.renderer(arguments.scene()?)?;
     renderer.settings.shadows.map_size = 2048;
     let wanted = WAYS.into_iter().filter(|(name, ..)| arguments.wants(name));
-    let mut ways: Vec<_> = wanted.map(|(name, shadows, most)| (Way::new(name, most), shadows)).collect();
+    let mut ways: Vec<_> =
+        wanted.map(|(name, shadows, most)| (Way::new(name, most), shadows)).collect();
     for round in 0..arguments.rounds {
         for (way, (shadows, cascades, moves)) in &mut ways {
             renderer.settings.shadows.algorithm = shadows.parse().expect("a registered name");

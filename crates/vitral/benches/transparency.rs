@@ -1,9 +1,11 @@
-//! What transparent surfaces cost: frames of a turntable with and without them, in turns, as ratios of the fastest.
+//! What transparent surfaces cost: frames of a turntable with and without them, in turns, as ratios
+//! of the fastest.
 //!
-//! `cargo bench -p vitral --bench transparency -- MODEL [ROUNDS [WAY]...]`; without a model the teapot. A model without
-//! transparent materials gets `kt` 0.6 everywhere. Four samples a pixel, 1024x768. *Opaque* is the same model with
-//! `--transparency none`; the orders and models are those of the registry, *translucent* blurs what is behind every surface.
-//! `VITRAL_THREADS` limits the threads.
+//! `cargo bench -p vitral --bench transparency -- MODEL [ROUNDS [WAY]...]`; without a model the
+//! teapot. A model without transparent materials gets `kt` 0.6 everywhere. Four samples a pixel,
+//! 1024x768. *Opaque* is the same model with `--transparency none`; the orders and models are those
+//! of the registry, *translucent* blurs what is behind every surface. `VITRAL_THREADS` limits the
+//! threads.
 
 mod turntable;
 
@@ -34,7 +36,10 @@ fn ways(arguments: &Arguments) -> Result<Vec<(Way, Renderer)>, Error> {
         let most = (order.name == ORDERS[0].name).then_some(MOST);
         ways.push((Way::new(order.name, most), renderer));
     }
-    for model in MODELS.iter().filter(|m| m.value != Transparency::default() && m.value != Transparency::None) {
+    for model in MODELS
+        .iter()
+        .filter(|m| m.value != Transparency::default() && m.value != Transparency::None)
+    {
         let mut renderer = renderer()?;
         renderer.settings.transparency.model = model.value;
         ways.push((Way::new(model.value.name(), None), renderer));

@@ -7,7 +7,8 @@ use vitral::{Attenuation, Camera, DMat4, DVec3, Light, Material, Mesh, Renderer,
 
 /// A pyramid: five points, a square and four triangles, counter-clockwise seen from outside.
 fn pyramid() -> Mesh {
-    let corners = [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 0.0, -1.0], [0.0, 1.5, 0.0]];
+    let corners =
+        [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 0.0, -1.0], [0.0, 1.5, 0.0]];
     let faces = [&[3, 2, 1, 0][..], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]];
     Mesh::from_polygons(corners, faces).with_name("pyramid")
 }
@@ -25,7 +26,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     scene.add_mesh(pyramid().with_material(stone), DMat4::from_scale(DVec3::splat(1.4)));
     for i in 1..9 {
         let (angle, distance) = (f64::from(i) * 2.4, 1.9 + f64::from(i) * 0.5);
-        let turned = DMat4::from_rotation_y(angle) * DMat4::from_translation(DVec3::new(distance, 0.0, 0.0));
+        let turned =
+            DMat4::from_rotation_y(angle) * DMat4::from_translation(DVec3::new(distance, 0.0, 0.0));
         scene.add_instance(0, turned * DMat4::from_scale(DVec3::splat(0.45)));
     }
     scene.add_mesh(solids::plane(13.0, 13.0, 1, 1).with_material(sand), DMat4::IDENTITY);
@@ -33,10 +35,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A low sun, a lamp whose light fades with the distance, and a little light from everywhere.
     scene.add_light(Light::directional([-1.0, -0.6, -0.4]).with_color([0.9, 0.75, 0.55]));
     let fading = Attenuation::Clamped { c1: 0.5, c2: 0.0, c3: 0.4 };
-    scene.add_light(Light::point([-1.5, 1.2, 3.0]).with_color([0.3, 0.5, 1.0]).with_attenuation(fading));
+    scene.add_light(
+        Light::point([-1.5, 1.2, 3.0]).with_color([0.3, 0.5, 1.0]).with_attenuation(fading),
+    );
     scene.ambient = [0.12, 0.13, 0.18];
 
-    let camera = Camera::look_at([-6.0, 8.0, 18.0], [0.0, 0.3, 0.0]).with_view_angle(38.0f64.to_radians());
+    let camera =
+        Camera::look_at([-6.0, 8.0, 18.0], [0.0, 0.3, 0.0]).with_view_angle(38.0f64.to_radians());
     let path = folder.join("03_build_a_scene.png");
     Renderer::new(scene)?.with_camera(camera).render()?.save(&path)?;
     println!("wrote {}", path.display());

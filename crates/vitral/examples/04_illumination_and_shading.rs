@@ -1,10 +1,12 @@
-//! Illumination says how much light leaves a point, shading where that is computed: every pair works. One picture with
-//! a row for each shading model and a column for each illumination model.
+//! Illumination says how much light leaves a point, shading where that is computed: every pair
+//! works. One picture with a row for each shading model and a column for each illumination model.
 //!
 //! `cargo run --release -p vitral --example 04_illumination_and_shading [FOLDER]`
 
 use std::path::PathBuf;
-use vitral::{Frame, Illumination, Picture, Plane, Renderer, Scene, Settings, Shading, load_builtin, solids};
+use vitral::{
+    Frame, Illumination, Picture, Plane, Renderer, Scene, Settings, Shading, load_builtin, solids,
+};
 
 const SIDE: u32 = 220;
 
@@ -26,7 +28,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (row, &(shading, name, meaning)) in Shading::ALL.iter().enumerate() {
         println!("row {}: {name}, {meaning}", row + 1);
         for (column, illumination) in Illumination::ALL.into_iter().enumerate() {
-            (renderer.settings.shading.model, renderer.settings.shading.illumination) = (shading, illumination);
+            (renderer.settings.shading.model, renderer.settings.shading.illumination) =
+                (shading, illumination);
             let picture = renderer.render()?.frame.color.unwrap_or_default();
             for y in 0..SIDE {
                 let start = (row * SIDE as usize + y as usize) * width + column * SIDE as usize;
@@ -37,7 +40,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (column, illumination) in Illumination::ALL.into_iter().enumerate() {
         println!("column {}: {illumination}, {}", column + 1, illumination.description());
     }
-    let frame = Frame { width: sheet.width(), height: sheet.height(), color: Some(sheet), ..Frame::default() };
+    let frame = Frame {
+        width: sheet.width(),
+        height: sheet.height(),
+        color: Some(sheet),
+        ..Frame::default()
+    };
     let path = folder.join("04_illumination_and_shading.png");
     Picture::from(frame).save(&path)?;
     println!("wrote {}", path.display());

@@ -1,4 +1,5 @@
-//! Besides the picture: depth, ids of surfaces, objects and materials, and normals, as pictures and as numbers.
+//! Besides the picture: depth, ids of surfaces, objects and materials, and normals, as pictures and
+//! as numbers.
 //!
 //! `cargo run --release -p vitral --example 05_channels [FOLDER]`
 

@@ -1,4 +1,5 @@
-//! Views all round a model, from one renderer: what is known of the scene is kept from picture to picture.
+//! Views all round a model, from one renderer: what is known of the scene is kept from picture to
+//! picture.
 //!
 //! `cargo run --release -p vitral --example 06_turntable [MODEL] [FOLDER] [COUNT]`
 
@@ -19,6 +20,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         seconds += picture.stats.seconds.total;
         picture.save(folder.join(format!("06_turntable_{i:03}.png")))
     })?;
-    println!("wrote {count} pictures to {}, {:.1} ms each", folder.display(), seconds / count as f64 * 1e3);
+    println!(
+        "wrote {count} pictures to {}, {:.1} ms each",
+        folder.display(),
+        seconds / count as f64 * 1e3
+    );
     Ok(())
 }

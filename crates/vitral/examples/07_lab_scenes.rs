@@ -1,4 +1,5 @@
-//! The scenes of the course's program Lab3D, its exercises 5.1 and 5.2, and its walkthroughs 4.1 to 4.3.
+//! The scenes of the course's program Lab3D, its exercises 5.1 and 5.2, and its walkthroughs 4.1 to
+//! 4.3.
 //!
 //! `cargo run --release -p vitral --example 07_lab_scenes [FOLDER]`
 

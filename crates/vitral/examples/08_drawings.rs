@@ -4,8 +4,8 @@
 
 use std::path::PathBuf;
 use vitral::{
-    DrawingFormat, DrawingOptions, DrawingSettings, FillSettings, Lens, LineClass, PageSize, Renderer, SectionPlane,
-    Sheet, SheetAngle, View,
+    DrawingFormat, DrawingOptions, DrawingSettings, FillSettings, Lens, LineClass, PageSize,
+    Renderer, SectionPlane, Sheet, SheetAngle, View,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -29,11 +29,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let views = vec![View::Front, View::Top, View::Right, View::Iso];
     let sheet = Sheet { views, angle: SheetAngle::Third, scale: None };
     let page = PageSize::Sheet { width: 420.0, height: 297.0 };
-    let (drawn, _) = renderer.draw_sheet(&DrawingSettings { page, ..DrawingSettings::default() }, &sheet, None)?;
-    std::fs::write(folder.join("08_sheet.svg"), DrawingFormat::Svg.encode(&drawn.drawing, &options))?;
+    let (drawn, _) = renderer.draw_sheet(
+        &DrawingSettings { page, ..DrawingSettings::default() },
+        &sheet,
+        None,
+    )?;
+    std::fs::write(
+        folder.join("08_sheet.svg"),
+        DrawingFormat::Svg.encode(&drawn.drawing, &options),
+    )?;
 
     // A plane takes away what lies in front of it, and closes bodies with hatching.
-    let plane = SectionPlane::new([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]).ok_or("a normal has a length")?;
+    let plane =
+        SectionPlane::new([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]).ok_or("a normal has a length")?;
     let mut cut = Renderer::new(renderer.scene().cut(&[plane])?)?.with_view(View::Front);
     cut.lens = Lens::Parallel;
     let section = cut.draw(&DrawingSettings::default())?.drawing;

@@ -1,12 +1,15 @@
-//! How long rays take: builds the structures over a model's triangles and answers one ray a pixel. The other half of
-//! `benches/peers/embree/compare.py`, which runs Embree on the same triangles and rays.
+//! How long rays take: builds the structures over a model's triangles and answers one ray a pixel.
+//! The other half of `benches/peers/embree/compare.py`, which runs Embree on the same triangles and
+//! rays.
 //!
-//! `cargo run --release -p vitral --example ray_bench -- prepare MODEL RAYS` writes triangles and rays;
-//! `... -- measure MODEL ANSWERS THREADS ROUNDS` prints times as JSON and compares with the answers of others, a triangle
-//! a ray; `... -- check MODEL COUNT` compares all structures with brute force on COUNT random rays.
+//! `cargo run --release -p vitral --example ray_bench -- prepare MODEL RAYS` writes triangles and
+//! rays; `... -- measure MODEL ANSWERS THREADS ROUNDS` prints times as JSON and compares with the
+//! answers of others, a triangle a ray; `... -- check MODEL COUNT` compares all structures with
+//! brute force on COUNT random rays.
 //!
-//! `picture_ms` is the visible-surface pass: rays through all samples, with all that a view needs before (a frame of
-//! `--visibility ray-cast` less shading). `single_ms` follows the same rays one by one through the tree.
+//! `picture_ms` is the visible-surface pass: rays through all samples, with all that a view needs
+//! before (a frame of `--visibility ray-cast` less shading). `single_ms` follows the same rays one
+//! by one through the tree.
 
 use std::sync::Mutex;
 use std::time::Instant;
@@ -14,14 +17,15 @@ use vitral::internals::math::{Vec3, lanes::level_from_environment};
 use vitral::internals::raster::{LayerList, SamplePattern, Tile, TileGrid, Viewport};
 use vitral::internals::render::raytrace::intersect::Ray;
 use vitral::internals::render::raytrace::{
-    Counters, Structure, Tree, bsp::KdTree, bvh::Bvh, grid::Grid, octree::Octree, triangles::Triangles,
+    Counters, Structure, Tree, bsp::KdTree, bvh::Bvh, grid::Grid, octree::Octree,
+    triangles::Triangles,
 };
 use vitral::internals::render::stats::{CullCounters, VisibilityCounters};
 use vitral::internals::render::visible::TileSink;
 use vitral::internals::render::{PreparedView, registry};
 use vitral::{
-    Acceleration, Budget, DVec3, Execution, LoadOptions, Renderer, Transparency, Visibility, Workers, execution,
-    load_on,
+    Acceleration, Budget, DVec3, Execution, LoadOptions, Renderer, Transparency, Visibility,
+    Workers, execution, load_on,
 };
 
 type Failure = Box<dyn std::error::Error>;
@@ -36,9 +40,11 @@ fn renderer(model: &str, threads: usize) -> Result<Renderer, Failure> {
     let scene = load_on(model, &LoadOptions::default(), &execution.workers)?;
     let mut renderer = Renderer::with_execution(scene, execution)?;
     let settings = &mut renderer.settings;
-    (settings.picture.width, settings.picture.height, settings.picture.samples) = (WIDTH, HEIGHT, 1);
+    (settings.picture.width, settings.picture.height, settings.picture.samples) =
+        (WIDTH, HEIGHT, 1);
     settings.visibility = Visibility::RAY_CAST;
-    // The same triangles for everyone: none is left out because it is turned away, none is passed through.
+    // The same triangles for everyone: none is left out because it is turned away, none is passed
+    // through.
     settings.transparency.model = Transparency::None;
     (settings.cull.frustum, settings.cull.back_face) = (false, false);
     Ok(renderer)
@@ -50,13 +56,23 @@ fn prepared<'a>(renderer: &'a Renderer, acceleration: Acceleration) -> PreparedV
     let viewport = Viewport::new(WIDTH, HEIGHT).expect("the size is in range");
     let (pattern, counters) = (SamplePattern::new(1), &mut CullCounters::default());
     let camera = renderer.frame_camera();
-    PreparedView::new(renderer.session(), &camera, &settings, viewport, pattern, renderer.execution(), counters)
+    PreparedView::new(
+        renderer.session(),
+        &camera,
+        &settings,
+        viewport,
+        pattern,
+        renderer.execution(),
+        counters,
+    )
 }
 
 /// The pixels, block by block.
 fn pixels() -> impl Iterator<Item = [u32; 2]> {
     let blocks = (0..HEIGHT / BLOCK).flat_map(|by| (0..WIDTH / BLOCK).map(move |bx| (bx, by)));
-    blocks.flat_map(|(bx, by)| (0..BLOCK * BLOCK).map(move |i| [bx * BLOCK + i % BLOCK, by * BLOCK + i / BLOCK]))
+    blocks.flat_map(|(bx, by)| {
+        (0..BLOCK * BLOCK).map(move |i| [bx * BLOCK + i % BLOCK, by * BLOCK + i / BLOCK])
+    })
 }
 
 /// Rays through the middles of the pixels, world space less the triangles' centre.
@@ -96,8 +112,12 @@ impl TileSink for Finished {
     }
 }
 
-/// Milliseconds of each of `rounds` runs after one of warm-up, the fastest first, and the last result.
-fn timed<R>(rounds: usize, mut run: impl FnMut() -> Result<R, Failure>) -> Result<(Vec<f64>, R), Failure> {
+/// Milliseconds of each of `rounds` runs after one of warm-up, the fastest first, and the last
+/// result.
+fn timed<R>(
+    rounds: usize,
+    mut run: impl FnMut() -> Result<R, Failure>,
+) -> Result<(Vec<f64>, R), Failure> {
     let mut last = run()?;
     let mut times = Vec::new();
     for _ in 0..rounds {
@@ -130,7 +150,11 @@ fn picture(
 }
 
 /// All rays one by one: the facet that each meets, and what that took.
-fn follow(structure: &impl Structure, rays: &[[Vec3; 2]], workers: &Workers) -> (Vec<u32>, Counters) {
+fn follow(
+    structure: &impl Structure,
+    rays: &[[Vec3; 2]],
+    workers: &Workers,
+) -> (Vec<u32>, Counters) {
     let (mut facets, all) = (vec![u32::MAX; rays.len()], Mutex::new(Counters::default()));
     workers.for_each_chunk(&mut facets, 4096, |chunk, facets| {
         let mut counters = Counters::default();
@@ -139,7 +163,8 @@ fn follow(structure: &impl Structure, rays: &[[Vec3; 2]], workers: &Workers) -> 
             *facet = hit.map_or(u32::MAX, |(facet, _)| facet);
         }
         let mut all = all.lock().expect("counters are added");
-        (all.boxes, all.triangles) = (all.boxes + counters.boxes, all.triangles + counters.triangles);
+        (all.boxes, all.triangles) =
+            (all.boxes + counters.boxes, all.triangles + counters.triangles);
     });
     (facets, all.into_inner().expect("counters are added"))
 }
@@ -162,7 +187,8 @@ fn measure(model: &str, answers: &str, threads: usize, rounds: usize) -> Result<
     let (bsp_picture_ms, _, through_bsp) = picture(&renderer, Acceleration::BSP, 1)?;
     let (grid_picture_ms, _, through_grid) = picture(&renderer, Acceleration::GRID, 1)?;
     let rays = rays(&prepared(&renderer, Acceleration::BVH), triangles.center);
-    let (single_ms, (single, single_counters)) = timed(rounds.min(3), || Ok(follow(&bvh, &rays, workers)))?;
+    let (single_ms, (single, single_counters)) =
+        timed(rounds.min(3), || Ok(follow(&bvh, &rays, workers)))?;
 
     // Count the rays on which answers differ.
     let others: Vec<u32> = std::fs::read(answers)?
@@ -204,11 +230,13 @@ fn check(model: &str, count: usize) -> Result<(), Failure> {
     let triangles = Triangles::of(renderer.session(), renderer.execution())?;
     let mut state = 1u64;
     let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 40) as f32 / (1 << 23) as f32 - 1.0
     };
     let mut point = |scale: f32| Vec3::new(random(), random(), random()) * triangles.extent * scale;
-    let rays: Vec<[Vec3; 2]> = (0..count).map(|_| [point(1.5), point(0.9)]).map(|[a, b]| [a, b - a]).collect();
+    let rays: Vec<[Vec3; 2]> =
+        (0..count).map(|_| [point(1.5), point(0.9)]).map(|[a, b]| [a, b - a]).collect();
     let expected = follow(&*triangles, &rays, workers).0;
     let hits = expected.iter().filter(|&&f| f != u32::MAX).count();
     let bvh = follow(&Bvh::build(&triangles, workers, &budget)?, &rays, workers).0;
@@ -229,8 +257,13 @@ fn main() -> Result<(), Failure> {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
         ["prepare", model, file] => prepare(model, file),
-        ["measure", model, answers, threads, rounds] => measure(model, answers, threads.parse()?, rounds.parse()?),
+        ["measure", model, answers, threads, rounds] => {
+            measure(model, answers, threads.parse()?, rounds.parse()?)
+        }
         ["check", model, count] => check(model, count.parse()?),
-        _ => Err("usage: prepare MODEL RAYS | measure MODEL ANSWERS THREADS ROUNDS | check MODEL COUNT".into()),
+        _ => Err(
+            "usage: prepare MODEL RAYS | measure MODEL ANSWERS THREADS ROUNDS | check MODEL COUNT"
+                .into(),
+        ),
     }
 }

@@ -1,17 +1,21 @@
-//! How long a picture takes: loads a model once, renders views all round it, and prints the times as JSON.
+//! How long a picture takes: loads a model once, renders views all round it, and prints the times
+//! as JSON.
 //!
 //! `cargo run --release -p vitral --example turntable_bench -- MODEL FRAMES SAMPLES [WIDTHxHEIGHT]`
 //!
-//! Every frame ends as RGBA bytes in memory; nothing is encoded. The camera goes round the model as that of the peers does
-//! (`benches/peers/common.py`), with the same angle of view; `coverage` is the share of pixels of the last frame that show the
-//! model. `parts_ms` is what the parts of a whole run take one by
-//! one, the median of five each: reading the file, the first picture of a scene, encoding it as PNG. `VITRAL_THREADS` limits
-//! the threads, `VITRAL_SIMD` names the instruction set.
+//! Every frame ends as RGBA bytes in memory; nothing is encoded. The camera goes round the model as
+//! that of the peers does (`benches/peers/common.py`), with the same angle of view; `coverage` is
+//! the share of pixels of the last frame that show the model. `parts_ms` is what the parts of a
+//! whole run take one by one, the median of five each: reading the file, the first picture of a
+//! scene, encoding it as PNG. `VITRAL_THREADS` limits the threads, `VITRAL_SIMD` names the
+//! instruction set.
 
 use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 use vitral::internals::math::{func, lanes::level_from_environment};
-use vitral::{Camera, DVec3, Error, Execution, LoadOptions, PictureFormat, Renderer, execution, load_on};
+use vitral::{
+    Camera, DVec3, Error, Execution, LoadOptions, PictureFormat, Renderer, execution, load_on,
+};
 
 /// What is to be measured.
 struct Plan {
@@ -61,10 +65,14 @@ fn cameras(renderer: &Renderer, count: usize) -> Vec<Camera> {
     // The box round the model, as it is seen, fits 0.9 of the widest picture.
     let fill = |camera: &Camera| {
         let view = camera.view_from_world();
-        let corners = bounds.corners().map(|corner| view.transform_point3(corner)).map(|p| [p.x / -p.z, p.y / -p.z]);
+        let corners = bounds
+            .corners()
+            .map(|corner| view.transform_point3(corner))
+            .map(|p| [p.x / -p.z, p.y / -p.z]);
         let extent = |axis: usize| {
-            let of =
-                |least: f64, pick: fn(f64, f64) -> f64| corners.iter().fold(least, |so_far, c| pick(so_far, c[axis]));
+            let of = |least: f64, pick: fn(f64, f64) -> f64| {
+                corners.iter().fold(least, |so_far, c| pick(so_far, c[axis]))
+            };
             of(f64::NEG_INFINITY, f64::max) - of(f64::INFINITY, f64::min)
         };
         extent(1).max(extent(0) / aspect)
@@ -78,7 +86,8 @@ fn cameras(renderer: &Renderer, count: usize) -> Vec<Camera> {
 /// Reading, the first picture, encoding: the sum of their medians.
 fn parts(plan: &Plan, execution: &Execution) -> Result<f64, Error> {
     let mut times = [const { Vec::new() }; 3];
-    let mut timed = |part: usize, start: Instant| times[part].push(start.elapsed().as_secs_f64() * 1e3);
+    let mut timed =
+        |part: usize, start: Instant| times[part].push(start.elapsed().as_secs_f64() * 1e3);
     for _ in 0..5 {
         let start = Instant::now();
         let mut renderer = open(plan, execution)?;
@@ -99,7 +108,8 @@ fn parts(plan: &Plan, execution: &Execution) -> Result<f64, Error> {
 
 fn measure(plan: &Plan) -> Result<serde_json::Value, Error> {
     let threads = std::env::var("VITRAL_THREADS").ok().and_then(|n| n.parse().ok()).unwrap_or(0);
-    let level = level_from_environment().map_err(|what| Error::Usage { what, hint: String::new() })?;
+    let level =
+        level_from_environment().map_err(|what| Error::Usage { what, hint: String::new() })?;
     let execution = Execution { level, ..execution(threads) };
     let start = Instant::now();
     let mut renderer = open(plan, &execution)?;
@@ -110,7 +120,8 @@ fn measure(plan: &Plan) -> Result<serde_json::Value, Error> {
         let start = Instant::now();
         let picture = renderer.render_from(&camera)?;
         milliseconds.push(start.elapsed().as_secs_f64() * 1e3);
-        coverage = picture.stats.picture.covered_pixels as f64 / picture.stats.picture.pixels as f64;
+        coverage =
+            picture.stats.picture.covered_pixels as f64 / picture.stats.picture.pixels as f64;
         bytes += picture.rgba8().len();
         renderer.recycle(picture);
     }

@@ -1,6 +1,8 @@
-//! Many pictures of one scene at once: each is made by one thread, with what is known of the scene shared.
+//! Many pictures of one scene at once: each is made by one thread, with what is known of the scene
+//! shared.
 //!
-//! One small picture leaves most threads idle, since its stages wait for each other. A batch gives each thread pictures of its own.
+//! One small picture leaves most threads idle, since its stages wait for each other. A batch gives
+//! each thread pictures of its own.
 
 use crate::{Camera, DMat4, Error, Global, Picture, Renderer};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -13,7 +15,8 @@ pub struct Batch<'a> {
     pub cameras: &'a [Option<Camera>],
     /// Nodes that move from picture to picture.
     pub nodes: &'a [u32],
-    /// The transform of each of these nodes to its parent, picture by picture: empty, or one for each camera and node.
+    /// The transform of each of these nodes to its parent, picture by picture: empty, or one for
+    /// each camera and node.
     pub transforms: &'a [DMat4],
 }
 
@@ -27,12 +30,14 @@ impl Batch<'_> {
 }
 
 impl Renderer {
-    /// Renders the pictures of a batch, on all threads, and hands each to `take` with its number, in any order. They are those that
-    /// [`place`](Self::place) and [`render_from`](Self::render_from) give one after the other, byte for byte. The scene is left as
-    /// it was.
+    /// Renders the pictures of a batch, on all threads, and hands each to `take` with its number,
+    /// in any order. They are those that [`place`](Self::place) and
+    /// [`render_from`](Self::render_from) give one after the other, byte for byte. The scene is
+    /// left as it was.
     ///
     /// # Errors
-    /// As [`place`](Self::place) and [`render`](Self::render), and those of `take`: the error of the first picture that has one.
+    /// As [`place`](Self::place) and [`render`](Self::render), and those of `take`: the error of
+    /// the first picture that has one.
     ///
     /// # Panics
     /// If there are transforms, and not one for each camera and node.
@@ -42,9 +47,15 @@ impl Renderer {
         take: impl Fn(usize, &Renderer, &Camera, &Picture) -> Result<(), Error> + Sync,
     ) -> Result<(), Error> {
         let (count, moved) = (batch.cameras.len(), batch.transforms.len());
-        assert!(moved == 0 || moved == count * batch.nodes.len(), "one transform for each camera and node is needed");
+        assert!(
+            moved == 0 || moved == count * batch.nodes.len(),
+            "one transform for each camera and node is needed"
+        );
         let nodes = &self.scene().nodes;
-        let known = batch.nodes.iter().filter_map(|&node| Some((node, nodes.get(node as usize)?.transform.matrix())));
+        let known = batch
+            .nodes
+            .iter()
+            .filter_map(|&node| Some((node, nodes.get(node as usize)?.transform.matrix())));
         let home: Vec<(u32, DMat4)> = if moved == 0 { Vec::new() } else { known.collect() };
 
         // The first picture finds out what the others share.
@@ -61,7 +72,8 @@ impl Renderer {
         };
         // A solution of radiosity is found once, with all threads.
         let workers = self.execution().workers.clone();
-        let threads = if self.settings.global.model == Global::Radiosity { 1 } else { workers.threads() };
+        let threads =
+            if self.settings.global.model == Global::Radiosity { 1 } else { workers.threads() };
         let alone = if threads < 2 || count < 3 { count } else { 1 };
         let mut result = (0..alone).try_for_each(|i| one(self, i));
         if result.is_ok() && alone < count {
@@ -76,15 +88,17 @@ impl Renderer {
     }
 }
 
-/// Does the work of each number on the renderer's threads, each with a renderer of its own. Gives the error of the lowest number: numbers
-/// are taken in order, and all below one that fails are finished.
+/// Does the work of each number on the renderer's threads, each with a renderer of its own. Gives
+/// the error of the lowest number: numbers are taken in order, and all below one that fails are
+/// finished.
 fn share(
     renderer: &Renderer,
     numbers: std::ops::Range<usize>,
     work: impl Fn(&mut Renderer, usize) -> Result<(), Error> + Sync,
 ) -> Result<(), Error> {
     let workers = &renderer.execution().workers;
-    let forks: Vec<Renderer> = (0..workers.threads().min(numbers.len())).map(|_| renderer.fork()).collect();
+    let forks: Vec<Renderer> =
+        (0..workers.threads().min(numbers.len())).map(|_| renderer.fork()).collect();
     let (next, failed) = (AtomicUsize::new(numbers.start), AtomicBool::new(false));
     let first: Mutex<Option<(usize, Error)>> = Mutex::new(None);
     workers.for_each(forks, |mut fork| {
@@ -121,15 +135,17 @@ mod tests {
         let mut renderer = Renderer::with_execution(scene, execution(3)).unwrap();
         renderer.settings = renderer.settings.with_size(40, 30);
         let cameras = renderer.turntable_cameras(5).into_iter().map(Some).collect();
-        let moves =
-            (0..10).map(|i| DMat4::from_rotation_y(f64::from(i) * 0.2) * DMat4::from_translation(DVec3::X)).collect();
+        let moves = (0..10)
+            .map(|i| DMat4::from_rotation_y(f64::from(i) * 0.2) * DMat4::from_translation(DVec3::X))
+            .collect();
         (renderer, cameras, moves)
     }
 
     #[test]
     fn a_batch_has_the_pictures_that_single_renders_have() {
         let (mut renderer, cameras, transforms) = scene();
-        let nodes: Vec<u32> = renderer.world().instances.iter().rev().take(2).map(|i| i.node).collect();
+        let nodes: Vec<u32> =
+            renderer.world().instances.iter().rev().take(2).map(|i| i.node).collect();
         for (visibility, shadows) in [
             (Visibility::Z_BUFFER, Shadows::NONE),
             (Visibility::RAY_CAST, Shadows::RAY),
@@ -142,7 +158,9 @@ mod tests {
                 // Each picture by a renderer of its own.
                 let batch = Batch { cameras: &cameras, nodes: &nodes, transforms };
                 let single = |i: usize| {
-                    let mut fresh = Renderer::with_execution(renderer.scene().as_ref().clone(), execution(1)).unwrap();
+                    let mut fresh =
+                        Renderer::with_execution(renderer.scene().as_ref().clone(), execution(1))
+                            .unwrap();
                     fresh.settings = renderer.settings.clone();
                     fresh.place(&batch.moves(i)).unwrap();
                     fresh.render_from(&cameras[i].unwrap()).unwrap().rgba8().to_vec()

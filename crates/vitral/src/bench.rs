@@ -1,9 +1,11 @@
-//! Every visible-surface algorithm on one view: time, memory, counters, and whether it sees what the z-buffer sees.
+//! Every visible-surface algorithm on one view: time, memory, counters, and whether it sees what
+//! the z-buffer sees.
 //!
-//! What is measured is finding the surface of each sample (culling, preparing, the algorithm), without shading. The first
-//! picture also builds what outlives a frame (a BSP tree, boxes round triangles); the median is that of the ones after it.
-//! Memory is what the algorithm charged to its budget at the most: its own lists, trees and facets, not the picture's
-//! tiles, which all have. The z-buffer keeps nothing that grows with the model beyond one round of triangles, which it
+//! What is measured is finding the surface of each sample (culling, preparing, the algorithm),
+//! without shading. The first picture also builds what outlives a frame (a BSP tree, boxes round
+//! triangles); the median is that of the ones after it. Memory is what the algorithm charged to its
+//! budget at the most: its own lists, trees and facets, not the picture's tiles, which all have.
+//! The z-buffer keeps nothing that grows with the model beyond one round of triangles, which it
 //! does not charge.
 
 use std::sync::Arc;
@@ -13,7 +15,8 @@ use vitral_render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
 use vitral_render::visible::NullSink;
 use vitral_render::{
-    Acceleration, Channels, Error, Execution, PreparedView, Session, Settings, TransparencyOrder, Visibility,
+    Acceleration, Channels, Error, Execution, PreparedView, Session, Settings, TransparencyOrder,
+    Visibility,
 };
 use vitral_scene::{Camera, Scene};
 
@@ -33,7 +36,8 @@ impl std::fmt::Debug for Entrant {
 }
 
 impl Entrant {
-    /// All algorithms; those that cast rays once for each structure that is made for many triangles. The z-buffer comes first.
+    /// All algorithms; those that cast rays once for each structure that is made for many
+    /// triangles. The z-buffer comes first.
     pub fn all() -> Vec<Self> {
         let structures: Vec<_> = Acceleration::all().filter(|a| a.grows_slowly).map(Some).collect();
         let of = |algorithm: &'static VisibilityAlgorithm| {
@@ -43,13 +47,19 @@ impl Entrant {
         VISIBILITY.iter().flat_map(of).collect()
     }
 
-    /// These settings with the algorithm. It decides about opaque surfaces, since not every one has all orders of transparent ones.
+    /// These settings with the algorithm. It decides about opaque surfaces, since not every one has
+    /// all orders of transparent ones.
     pub(crate) fn settings(&self, settings: &Settings) -> Settings {
-        let mut settings =
-            Settings { visibility: self.algorithm.choice(), acceleration: self.acceleration, ..settings.clone() };
+        let mut settings = Settings {
+            visibility: self.algorithm.choice(),
+            acceleration: self.acceleration,
+            ..settings.clone()
+        };
         settings.transparency.order = TransparencyOrder::default();
-        settings.depth_bits = settings.depth_bits.filter(|_| settings.visibility == Visibility::Z_BUFFER);
-        settings.picture.channels = Channels { passes: false, buffers: false, ..settings.picture.channels };
+        settings.depth_bits =
+            settings.depth_bits.filter(|_| settings.visibility == Visibility::Z_BUFFER);
+        settings.picture.channels =
+            Channels { passes: false, buffers: false, ..settings.picture.channels };
         settings
     }
 
@@ -110,8 +120,12 @@ pub struct VisibilityDigest {
 impl VisibilityDigest {
     fn of(grid: &TileGrid, viewport: Viewport, samples: usize) -> Self {
         // Some algorithms fill tiles beyond the border of the picture, others do not.
-        let pixels = || (0..viewport.height).flat_map(|y| (0..viewport.width).map(move |x| grid.locate(x, y)));
-        let places = || pixels().flat_map(|(tile, at)| (0..samples).map(move |s| (tile, s * TILE_PIXELS + at)));
+        let pixels = || {
+            (0..viewport.height).flat_map(|y| (0..viewport.width).map(move |x| grid.locate(x, y)))
+        };
+        let places = || {
+            pixels().flat_map(|(tile, at)| (0..samples).map(move |s| (tile, s * TILE_PIXELS + at)))
+        };
         let (facets, depths) = places().map(|(tile, at)| (tile.facet[at], tile.depth[at])).unzip();
         Self { facets, depths }
     }
@@ -119,20 +133,30 @@ impl VisibilityDigest {
     /// Samples where the facet or the depth is another.
     pub fn differing(&self, other: &Self) -> u64 {
         let pairs = |s: &Self, i: usize| (s.facets[i], s.depths[i].to_bits());
-        (0..self.facets.len().min(other.facets.len())).filter(|&i| pairs(self, i) != pairs(other, i)).count() as u64
+        (0..self.facets.len().min(other.facets.len()))
+            .filter(|&i| pairs(self, i) != pairs(other, i))
+            .count() as u64
     }
 }
 
-/// Measures one algorithm, with a session of its own. The outer error is one of the task, the inner one the limit at
-/// which the algorithm gave up before its first picture was finished.
+/// Measures one algorithm, with a session of its own. The outer error is one of the task, the inner
+/// one the limit at which the algorithm gave up before its first picture was finished.
 ///
 /// # Errors
 /// Settings or a scene that cannot be.
-pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Result<Result<Measured, Limit>, Error> {
+pub fn measure(
+    task: &Task<'_>,
+    entrant: &Entrant,
+    execution: &Execution,
+) -> Result<Result<Measured, Limit>, Error> {
     let settings = entrant.settings(task.settings);
     let viewport = settings.check()?;
     let session = Session::with_workers(Arc::clone(task.scene), &execution.workers)?;
-    let budget = execution.budget.renewed().with_time_limit(task.time_limit).with_memory_limit(task.memory_limit);
+    let budget = execution
+        .budget
+        .renewed()
+        .with_time_limit(task.time_limit)
+        .with_memory_limit(task.memory_limit);
     let execution = Execution { budget, ..execution.clone() };
     let samples = settings.picture.samples as usize;
     let mut grid = TileGrid::new(viewport, samples);
@@ -140,8 +164,17 @@ pub fn measure(task: &Task<'_>, entrant: &Entrant, execution: &Execution) -> Res
         let start = execution.budget.elapsed();
         let pattern = SamplePattern::new(samples);
         let culled = &mut CullCounters::default();
-        let view = PreparedView::new(&session, task.camera, &settings, viewport, pattern, &execution, culled);
-        let resolved = entrant.algorithm.algorithm.resolve(&view, None, grid, &execution, &NullSink)?;
+        let view = PreparedView::new(
+            &session,
+            task.camera,
+            &settings,
+            viewport,
+            pattern,
+            &execution,
+            culled,
+        );
+        let resolved =
+            entrant.algorithm.algorithm.resolve(&view, None, grid, &execution, &NullSink)?;
         Ok((execution.budget.elapsed() - start, resolved))
     };
     let (first_seconds, resolved) = match picture(&mut grid) {
@@ -187,18 +220,34 @@ mod tests {
     #[test]
     fn p25_every_algorithm_is_measured_and_agrees() {
         let mut renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
-        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
-            (48, 36, 1);
+        (
+            renderer.settings.picture.width,
+            renderer.settings.picture.height,
+            renderer.settings.picture.samples,
+        ) = (48, 36, 1);
         // The nearest cubes reach beyond the lower border.
         let camera = Camera::look_at(DVec3::new(3.0, 3.0, 3.0), DVec3::ZERO);
         let execution = execution(1);
         let (scene, settings) = (renderer.scene(), &renderer.settings);
-        let task = Task { scene, camera: &camera, settings, frames: 2, time_limit: None, memory_limit: None };
+        let task = Task {
+            scene,
+            camera: &camera,
+            settings,
+            frames: 2,
+            time_limit: None,
+            memory_limit: None,
+        };
         let all = Entrant::all();
-        let measured: Vec<_> = all.iter().map(|e| measure(&task, e, &execution).unwrap().unwrap()).collect();
+        let measured: Vec<_> =
+            all.iter().map(|e| measure(&task, e, &execution).unwrap().unwrap()).collect();
         assert!(measured[0].seen.facets.iter().any(|&f| f != u32::MAX), "something is seen");
         for (entrant, m) in all.iter().zip(&measured) {
-            assert_eq!((m.seen.differing(&measured[0].seen), m.frames), (0, 2), "{}", entrant.name());
+            assert_eq!(
+                (m.seen.differing(&measured[0].seen), m.frames),
+                (0, 2),
+                "{}",
+                entrant.name()
+            );
             assert!(m.bytes > 0 || entrant.algorithm.name == "z-buffer", "{}", entrant.name());
         }
         let other = VisibilityDigest { facets: vec![0; 9], depths: vec![0.5; 9] };
@@ -211,7 +260,14 @@ mod tests {
         let renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
         let (camera, execution) = (renderer.frame_camera(), execution(1));
         let (scene, settings) = (renderer.scene(), &renderer.settings);
-        let task = Task { scene, camera: &camera, settings, frames: 2, time_limit: Some(0.0), memory_limit: None };
+        let task = Task {
+            scene,
+            camera: &camera,
+            settings,
+            frames: 2,
+            time_limit: Some(0.0),
+            memory_limit: None,
+        };
         let first = measure(&task, &Entrant::all()[0], &execution).unwrap();
         assert!(matches!(first, Err(Limit::Time { .. })));
     }

@@ -6,7 +6,9 @@ use crate::{Camera, Error, Projection, Renderer};
 pub(crate) use colors::Colors;
 use std::collections::BTreeMap;
 use vitral_draw::sheet::{Sheet, SheetLayout};
-use vitral_draw::{DrawingSettings, Drawn, FaceLook, LitPolygons, PageSize, Seams, Surfaces, draw_one_sided};
+use vitral_draw::{
+    DrawingSettings, Drawn, FaceLook, LitPolygons, PageSize, Seams, Surfaces, draw_one_sided,
+};
 use vitral_exec::Limit;
 use vitral_frame::Drawing;
 use vitral_io::encode::{self, DrawingOptions};
@@ -27,7 +29,8 @@ pub enum ColorBy {
     Shading,
     /// The material's own colour.
     Material,
-    /// Which part of the scene a face belongs to; parts are those of [`Scene::exploded`](crate::Scene::exploded).
+    /// Which part of the scene a face belongs to; parts are those of
+    /// [`Scene::exploded`](crate::Scene::exploded).
     Part,
     /// Nothing: surfaces are white.
     None,
@@ -36,9 +39,17 @@ pub enum ColorBy {
 impl ColorBy {
     /// All with their names and a line each.
     pub const ALL: [(Self, &'static str, &'static str); 4] = [
-        (Self::Shading, "shading", "the light of each face, with the lights and models of pictures"),
+        (
+            Self::Shading,
+            "shading",
+            "the light of each face, with the lights and models of pictures",
+        ),
         (Self::Material, "material", "the material's own colour"),
-        (Self::Part, "part", "a colour for each object, group or body, as --explode takes them apart"),
+        (
+            Self::Part,
+            "part",
+            "a colour for each object, group or body, as --explode takes them apart",
+        ),
         (Self::None, "none", "white"),
     ];
 }
@@ -48,9 +59,11 @@ impl ColorBy {
 pub struct FillSettings {
     /// What colours tell.
     pub color_by: ColorBy,
-    /// Steps of brightness of shaded faces, at least 1: faces of one material and step become one region.
+    /// Steps of brightness of shaded faces, at least 1: faces of one material and step become one
+    /// region.
     pub shades: u32,
-    /// Divide faces where the shadows of lights fall that cast some; an area light counts as a point in its middle.
+    /// Divide faces where the shadows of lights fall that cast some; an area light counts as a
+    /// point in its middle.
     pub shadows: bool,
     /// Draw what is seen through materials that are blended, instead of taking them for opaque.
     pub transparency: bool,
@@ -77,7 +90,8 @@ impl Default for FillSettings {
 }
 
 impl Renderer {
-    /// Draws the lines that [`frame_camera`](Self::frame_camera) sees: the same window as [`render`](Self::render) shows.
+    /// Draws the lines that [`frame_camera`](Self::frame_camera) sees: the same window as
+    /// [`render`](Self::render) shows.
     ///
     /// ```
     /// use vitral::{DrawingFormat, DrawingOptions, DrawingSettings, Lens};
@@ -109,12 +123,16 @@ impl Renderer {
     ///
     /// # Errors
     /// Shadows of more than 32 lights; a limit that was reached.
-    pub fn draw_filled(&self, settings: &DrawingSettings, fill: &FillSettings) -> Result<Drawn, Error> {
+    pub fn draw_filled(
+        &self,
+        settings: &DrawingSettings,
+        fill: &FillSettings,
+    ) -> Result<Drawn, Error> {
         self.draw_from(&self.frame_camera(), self.aspect(), settings, Some(fill))
     }
 
-    /// Draws a sheet of views from standard sides, [`up`](Self::up) upwards in them, with filled surfaces if `fill` is given;
-    /// [`DrawingSettings::page`] is the whole sheet.
+    /// Draws a sheet of views from standard sides, [`up`](Self::up) upwards in them, with filled
+    /// surfaces if `fill` is given; [`DrawingSettings::page`] is the whole sheet.
     ///
     /// ```
     /// use vitral::{DrawingSettings, PageSize, Sheet, SheetAngle, View};
@@ -137,7 +155,13 @@ impl Renderer {
         sheet: &Sheet,
         fill: Option<&FillSettings>,
     ) -> Result<(Drawn, SheetLayout), Error> {
-        let layout = sheet.lay_out(self.world(), self.up, settings.page, settings.margin, &self.execution().workers)?;
+        let layout = sheet.lay_out(
+            self.world(),
+            self.up,
+            settings.page,
+            settings.margin,
+            &self.execution().workers,
+        )?;
         let (mut drawings, mut segments) = (Vec::new(), 0);
         for view in &layout.views {
             // Segments are limited over all views.
@@ -146,9 +170,10 @@ impl Renderer {
             let of_view = DrawingSettings { page, max_segments, ..*settings };
             let drawn = self.draw_from(&view.camera, 1.0, &of_view, fill);
             let drawn = drawn.map_err(|error| match (error, settings.max_segments) {
-                (Error::Render(RenderError::Limit(Limit::Segments { stage, achieved, .. })), Some(limit)) => {
-                    Limit::Segments { limit, stage, achieved }.into()
-                }
+                (
+                    Error::Render(RenderError::Limit(Limit::Segments { stage, achieved, .. })),
+                    Some(limit),
+                ) => Limit::Segments { limit, stage, achieved }.into(),
                 (error, _) => error,
             })?;
             segments += drawn.drawing.segments();
@@ -166,11 +191,24 @@ impl Renderer {
         fill: Option<&FillSettings>,
     ) -> Result<Drawn, Error> {
         let (world, execution) = (self.world(), self.execution());
-        let front_only: Vec<bool> =
-            self.scene().materials.iter().map(|material| material.front_only && !material.double_sided).collect();
+        let front_only: Vec<bool> = self
+            .scene()
+            .materials
+            .iter()
+            .map(|material| material.front_only && !material.double_sided)
+            .collect();
         let Some(fill) = fill else {
             let (workers, budget) = (&execution.workers, &execution.budget);
-            return Ok(draw_one_sided(world, camera, aspect, settings, None, &front_only, workers, budget)?);
+            return Ok(draw_one_sided(
+                world,
+                camera,
+                aspect,
+                settings,
+                None,
+                &front_only,
+                workers,
+                budget,
+            )?);
         };
         let colors = Colors::new(self, camera, fill);
         let palette = |look: &FaceLook| colors.of(look);
@@ -185,12 +223,23 @@ impl Renderer {
             ..Surfaces::new(&palette)
         };
         let (workers, budget) = (&execution.workers, &execution.budget);
-        Ok(draw_one_sided(world, camera, aspect, settings, Some(&surfaces), &front_only, workers, budget)?)
+        Ok(draw_one_sided(
+            world,
+            camera,
+            aspect,
+            settings,
+            Some(&surfaces),
+            &front_only,
+            workers,
+            budget,
+        )?)
     }
 
     /// The opacity of each material, 1 where it is not blended.
     pub fn opacities(&self) -> Vec<f32> {
-        let opacity = |mode, opacity: f32| if mode == AlphaMode::Blend { opacity.clamp(0.0, 1.0) } else { 1.0 };
+        let opacity = |mode, opacity: f32| {
+            if mode == AlphaMode::Blend { opacity.clamp(0.0, 1.0) } else { 1.0 }
+        };
         self.scene().materials.iter().map(|m| opacity(m.alpha_mode, m.opacity)).collect()
     }
 
@@ -203,16 +252,22 @@ impl Renderer {
         let mut lit: Vec<LitPolygons> = Vec::new();
         for (number, light) in casting {
             let place = place_of(light);
-            let light = u8::try_from(number).ok().filter(|&n| usize::from(n) < MOST_LIGHTS).ok_or_else(|| {
-                Error::usage(
-                    format!("shadows of {} lights in a drawing", lights.len()),
-                    format!("at most {MOST_LIGHTS} can be drawn"),
-                )
-            })?;
+            let light = u8::try_from(number)
+                .ok()
+                .filter(|&n| usize::from(n) < MOST_LIGHTS)
+                .ok_or_else(|| {
+                    Error::usage(
+                        format!("shadows of {} lights in a drawing", lights.len()),
+                        format!("at most {MOST_LIGHTS} can be drawn"),
+                    )
+                })?;
             lit.push(LitPolygons { light, place, of_facet: BTreeMap::new() });
         }
         if lit.is_empty() {
-            return Err(Error::usage("no light casts shadows", "choose a scene with a light that does"));
+            return Err(Error::usage(
+                "no light casts shadows",
+                "choose a scene with a light that does",
+            ));
         }
 
         // Collect their lit polygons.
@@ -221,19 +276,27 @@ impl Renderer {
         settings.transparency.model = Transparency::None;
         let mut bytes = 0;
         let (algorithm, session) = (registry::shadows(Shadows::OBJECT_PRECISION), self.session());
-        let drawn = shadow::draw(algorithm, session, &lights, &settings, self.execution(), &mut |polygon| {
-            let of_light = lit.iter_mut().find(|lit| usize::from(lit.light) == polygon.light);
-            if let (Some(facet), Some(of_light)) = (polygon.facet, of_light) {
-                bytes += size_of_val(polygon.corners) as u64 + BYTES_A_POLYGON;
-                of_light.of_facet.entry(facet).or_default().push(polygon.corners.to_vec());
-            }
-            bytes
-        });
+        let drawn = shadow::draw(
+            algorithm,
+            session,
+            &lights,
+            &settings,
+            self.execution(),
+            &mut |polygon| {
+                let of_light = lit.iter_mut().find(|lit| usize::from(lit.light) == polygon.light);
+                if let (Some(facet), Some(of_light)) = (polygon.facet, of_light) {
+                    bytes += size_of_val(polygon.corners) as u64 + BYTES_A_POLYGON;
+                    of_light.of_facet.entry(facet).or_default().push(polygon.corners.to_vec());
+                }
+                bytes
+            },
+        );
         drawn.map_err(vitral_render::Error::from)?;
         Ok(lit)
     }
 
-    /// The longer side of the window that a drawing shows, in units of the world; `None` in perspective, where nothing is to scale.
+    /// The longer side of the window that a drawing shows, in units of the world; `None` in
+    /// perspective, where nothing is to scale.
     pub fn drawing_window(&self) -> Option<f64> {
         match self.frame_camera().projection {
             Projection::Parallel { height } => Some(height * self.aspect().max(1.0)),
@@ -257,8 +320,12 @@ pub enum DrawingFormat {
 
 impl DrawingFormat {
     /// All formats with the extensions of their files.
-    pub const ALL: [(Self, &'static [&'static str]); 4] =
-        [(Self::Svg, &["svg"]), (Self::Pdf, &["pdf"]), (Self::Dxf, &["dxf"]), (Self::Hpgl, &["hpgl", "plt"])];
+    pub const ALL: [(Self, &'static [&'static str]); 4] = [
+        (Self::Svg, &["svg"]),
+        (Self::Pdf, &["pdf"]),
+        (Self::Dxf, &["dxf"]),
+        (Self::Hpgl, &["hpgl", "plt"]),
+    ];
 
     /// The format of files with this extension.
     pub fn from_extension(extension: &str) -> Option<Self> {
@@ -294,7 +361,9 @@ fn place_of(light: &Light) -> DVec4 {
 /// A light with a shape as a point in its middle.
 fn as_point(light: &Light) -> Light {
     match &light.kind {
-        LightKind::Area { shape } => Light { kind: LightKind::Point { position: shape.middle() }, ..light.clone() },
+        LightKind::Area { shape } => {
+            Light { kind: LightKind::Point { position: shape.middle() }, ..light.clone() }
+        }
         _ => light.clone(),
     }
 }

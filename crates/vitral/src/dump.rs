@@ -16,8 +16,8 @@
 //! | `9-opaque.png`, … | with `--transparency-order two-buffer` both buffers, and the list of transparent surfaces |
 //! | `index.md` | this list |
 //!
-//! Stages 4 to 8 and both buffers have one sample a pixel, at its centre. Pictures illuminate what is seen, after stage 8; stage 4
-//! shows what the same formulas make of corners.
+//! Stages 4 to 8 and both buffers have one sample a pixel, at its centre. Pictures illuminate what
+//! is seen, after stage 8; stage 4 shows what the same formulas make of corners.
 
 mod edge_table;
 mod facets;
@@ -51,7 +51,10 @@ pub fn dump(
 
     // Stage 8 of scan lines, as text.
     if renderer.settings.visibility.has_edge_table {
-        let (name, what) = ("8-edge-table.txt".to_owned(), "polygon table, edge table, active edges, spans".to_owned());
+        let (name, what) = (
+            "8-edge-table.txt".to_owned(),
+            "polygon table, edge table, active edges, spans".to_owned(),
+        );
         write(&name, edge_table::edge_tables(renderer, camera, viewport)?.as_bytes())?;
         of_samples.push(Listed { name, what });
     }
@@ -77,8 +80,8 @@ fn write_scene(renderer: &Renderer, write: &mut Write<'_>) -> Result<(), Error> 
     write_json(write, "2-world.json", &scene::world(renderer))
 }
 
-/// Stages 3 to 7: culling, illumination, view transform, clipping, projection; and the list of transparent surfaces of the
-/// two-buffer order. Gives the counters of culling.
+/// Stages 3 to 7: culling, illumination, view transform, clipping, projection; and the list of
+/// transparent surfaces of the two-buffer order. Gives the counters of culling.
 fn write_geometry(
     renderer: &Renderer,
     camera: &Camera,
@@ -87,8 +90,13 @@ fn write_geometry(
 ) -> Result<CullCounters, Error> {
     let lights = renderer.frame_lights(camera);
     let shot = renderer.shot(camera, &lights);
-    let corners =
-        illuminate_corners(renderer.session(), &shot, &renderer.picture_settings(), renderer.execution(), None)?;
+    let corners = illuminate_corners(
+        renderer.session(),
+        &shot,
+        &renderer.picture_settings(),
+        renderer.execution(),
+        None,
+    )?;
     let mut counters = CullCounters::default();
     let view = renderer.prepared(camera, &mut counters)?;
     write_json(write, "3-cull.json", &scene::culled(&view, &counters))?;
@@ -99,7 +107,8 @@ fn write_geometry(
     write("6-clip.csv", facets::clipped(&view).as_bytes())?;
     write("7-project.csv", facets::projected(&view).as_bytes())?;
     if has_list(&renderer.settings) {
-        let (name, what) = ("9-transparent.csv".to_owned(), "the list of transparent surfaces".to_owned());
+        let (name, what) =
+            ("9-transparent.csv".to_owned(), "the list of transparent surfaces".to_owned());
         write(&name, two_buffer::list(&view).as_bytes())?;
         listed.push(Listed { name, what });
     }
@@ -119,7 +128,11 @@ fn render_planes(renderer: &mut Renderer, camera: &Camera) -> Result<Picture, Er
 }
 
 /// Stages 8 and 9: the planes of a frame, and the picture after each pass.
-fn write_picture(rendered: &Picture, write: &mut Write<'_>, listed: &mut Vec<Listed>) -> Result<(), Error> {
+fn write_picture(
+    rendered: &Picture,
+    write: &mut Write<'_>,
+    listed: &mut Vec<Listed>,
+) -> Result<(), Error> {
     for (name, channel) in [
         ("8-surface.npy", Channel::Surface),
         ("8-surface.png", Channel::Surface),
@@ -129,8 +142,14 @@ fn write_picture(rendered: &Picture, write: &mut Write<'_>, listed: &mut Vec<Lis
         write(name, &rendered.encode_channel(channel, PictureFormat::from_path(name)?)?)?;
     }
     for (number, pass) in rendered.frame.passes.iter().enumerate() {
-        let frame = Frame { width: pass.width(), height: pass.height(), color: Some(pass.clone()), ..Frame::default() };
-        let png = Picture { color_space: rendered.color_space, ..frame.into() }.encode(PictureFormat::Png)?;
+        let frame = Frame {
+            width: pass.width(),
+            height: pass.height(),
+            color: Some(pass.clone()),
+            ..Frame::default()
+        };
+        let png = Picture { color_space: rendered.color_space, ..frame.into() }
+            .encode(PictureFormat::Png)?;
         let (name, what) = (format!("9-pass-{number:02}.png"), format!("after pass {number}"));
         write(&name, &png)?;
         listed.push(Listed { name, what });
@@ -154,15 +173,23 @@ fn has_passes(settings: &Settings) -> bool {
 ///
 /// # Errors
 /// As [`dump`]; [`Error::Write`].
-pub fn dump_to_folder(renderer: &mut Renderer, camera: &Camera, folder: impl AsRef<Path>) -> Result<(), Error> {
+pub fn dump_to_folder(
+    renderer: &mut Renderer,
+    camera: &Camera,
+    folder: impl AsRef<Path>,
+) -> Result<(), Error> {
     let folder = folder.as_ref();
-    std::fs::create_dir_all(folder).map_err(|source| Error::Write { path: folder.to_owned(), source })?;
+    std::fs::create_dir_all(folder)
+        .map_err(|source| Error::Write { path: folder.to_owned(), source })?;
     dump(renderer, camera, |name, bytes| picture::write(folder.join(name), bytes))
 }
 
 fn index(settings: &Settings, of_samples: &[Listed], of_picture: &[Listed]) -> String {
     let list = |files: &[Listed]| {
-        files.iter().map(|Listed { name, what }| format!("   - [{what}]({name})\n")).collect::<String>()
+        files
+            .iter()
+            .map(|Listed { name, what }| format!("   - [{what}]({name})\n"))
+            .collect::<String>()
     };
     format!(
         "# The pipeline, stage by stage\n\n\
@@ -212,8 +239,11 @@ mod tests {
 
     fn small(name: &str) -> Renderer {
         let mut renderer = Renderer::new(load_builtin(name).unwrap()).unwrap();
-        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
-            (64, 48, 1);
+        (
+            renderer.settings.picture.width,
+            renderer.settings.picture.height,
+            renderer.settings.picture.samples,
+        ) = (64, 48, 1);
         renderer
     }
 
@@ -240,7 +270,10 @@ mod tests {
         assert_eq!(json("4-lights.json")["view-space"].as_array().unwrap().len(), 2);
         assert_eq!(json("5-view.json")["clip-from-view"][3], json!([0.0, 0.0, -1.0, 0.0]));
         let facets = table(&files, "7-project.csv").len();
-        assert!((16..=48).contains(&facets), "back faces are gone, three faces of a cube are seen at most: {facets}");
+        assert!(
+            (16..=48).contains(&facets),
+            "back faces are gone, three faces of a cube are seen at most: {facets}"
+        );
     }
 
     #[test]
@@ -249,7 +282,11 @@ mod tests {
         for near in [false, true] {
             let mut renderer = small("cornell");
             let framed = renderer.frame_camera();
-            let position = if near { framed.focal_point + DVec3::new(0.01, 0.02, 0.0) } else { framed.position };
+            let position = if near {
+                framed.focal_point + DVec3::new(0.01, 0.02, 0.0)
+            } else {
+                framed.position
+            };
             let focal_point = if near { framed.focal_point - DVec3::Z } else { framed.focal_point };
             renderer.camera = Some(Camera { position, focal_point, ..framed });
             let files = dumped(&mut renderer);
@@ -264,9 +301,12 @@ mod tests {
             let left = facets_of(&clip);
             assert_eq!(left.len() as u64, kept - geometry.outside - geometry.not_finite);
             let cut: Vec<_> = clip.iter().filter(|row| row[2] == "1").cloned().collect();
-            assert!(facets_of(&cut).len() as u64 <= geometry.clipped && (geometry.clipped > 0) == near);
+            assert!(
+                facets_of(&cut).len() as u64 <= geometry.clipped && (geometry.clipped > 0) == near
+            );
             assert_eq!(cut.is_empty(), !near);
-            // What was cut begins before the division: every corner is before the eye and between near and far.
+            // What was cut begins before the division: every corner is before the eye and between
+            // near and far.
             let number = |row: &[String], at: usize| row[at].parse::<f64>().unwrap();
             assert!(cut.iter().all(|row| {
                 let [z, w] = [number(row, 6), number(row, 7)];
@@ -283,10 +323,12 @@ mod tests {
     fn p1_the_stages_follow_from_each_other() {
         let mut renderer = small("cubs");
         let files = dumped(&mut renderer);
-        let view = renderer.prepared(&renderer.frame_camera(), &mut CullCounters::default()).unwrap();
+        let view =
+            renderer.prepared(&renderer.frame_camera(), &mut CullCounters::default()).unwrap();
         let (world, seen) = (table(&files, "4-illuminated.csv"), table(&files, "5-view.csv"));
         let clip = table(&files, "6-clip.csv");
-        let numbers = |row: &[String], from: usize| [0, 1, 2].map(|k| row[from + k].parse::<f64>().unwrap());
+        let numbers =
+            |row: &[String], from: usize| [0, 1, 2].map(|k| row[from + k].parse::<f64>().unwrap());
         for (row, in_view) in world.iter().zip(&seen) {
             assert_eq!(row[..2], in_view[..2]);
             let (at, expected) = (DVec3::from(numbers(row, 2)), DVec3::from(numbers(in_view, 2)));
@@ -307,16 +349,20 @@ mod tests {
         renderer.settings.picture.color_space = ColorSpace::Raw;
         renderer.settings.shading.illumination = vitral_light::Illumination::Lambert;
         let material = vitral_light::Material::default();
-        let vitral_light::Reflectance::Phong { kd, .. } = material.reflectance else { panic!("{material:?}") };
+        let vitral_light::Reflectance::Phong { kd, .. } = material.reflectance else {
+            panic!("{material:?}")
+        };
         let mut scene = Scene::clone(renderer.scene());
         scene.materials.iter_mut().for_each(|m| *m = material.clone());
         renderer.set_scene(scene).unwrap();
         let direction = DVec3::new(-1.0, -2.0, -3.0).normalize();
         let kind = vitral_light::LightKind::Directional { direction };
-        renderer.lights = Some(vec![vitral_light::Light { kind, ..vitral_light::Light::default() }]);
+        renderer.lights =
+            Some(vec![vitral_light::Light { kind, ..vitral_light::Light::default() }]);
         let files = dumped(&mut renderer);
         let rows = table(&files, "4-illuminated.csv");
-        let numbers = |row: &[String], from: usize| [0, 1, 2].map(|k| row[from + k].parse::<f64>().unwrap());
+        let numbers =
+            |row: &[String], from: usize| [0, 1, 2].map(|k| row[from + k].parse::<f64>().unwrap());
         let mut lit = 0;
         for triangle in rows.chunks(3) {
             let [a, b, c] = [0, 1, 2].map(|i| DVec3::from(numbers(&triangle[i], 2)));
@@ -324,7 +370,10 @@ mod tests {
             lit += usize::from(cos > 0.0);
             for row in triangle {
                 let color = numbers(row, 5);
-                assert!((0..3).all(|k| (color[k] - f64::from(kd[k]) * cos).abs() < 1e-5), "{row:?}, cosine {cos}");
+                assert!(
+                    (0..3).all(|k| (color[k] - f64::from(kd[k]) * cos).abs() < 1e-5),
+                    "{row:?}, cosine {cos}"
+                );
             }
         }
         assert!(lit > 0);
@@ -342,10 +391,19 @@ mod tests {
             PictureFormat::Png,
             &EncodeOptions { srgb: true, ..EncodeOptions::default() },
         );
-        assert!(files["9-combined.png"] == encoded.unwrap() && files["9-combined.png"] == files["9-framebuffer.png"]);
+        assert!(
+            files["9-combined.png"] == encoded.unwrap()
+                && files["9-combined.png"] == files["9-framebuffer.png"]
+        );
         let list = table(&files, "9-transparent.csv");
         assert!(!list.is_empty() && list.iter().all(|row| row[2] == "\"glass\""));
-        for name in ["opaque.png", "opaque.npy", "opaque-depth.npy", "transparent-layers.npy", "transparent-k.png"] {
+        for name in [
+            "opaque.png",
+            "opaque.npy",
+            "opaque-depth.npy",
+            "transparent-layers.npy",
+            "transparent-k.png",
+        ] {
             assert!(files.contains_key(&format!("9-{name}")), "{name}");
         }
     }

@@ -7,8 +7,9 @@ use vitral_exec::Budget;
 use vitral_io::image::decode_radiance;
 use vitral_light::{EnvironmentMap, Panorama};
 
-/// Reads an image of all directions (equirectangular): HDR and EXR, whose numbers are linear light, PNG, JPEG and all other formats of
-/// textures, which are decoded from sRGB. Up to 4096 columns are kept.
+/// Reads an image of all directions (equirectangular): HDR and EXR, whose numbers are linear light,
+/// PNG, JPEG and all other formats of textures, which are decoded from sRGB. Up to 4096 columns are
+/// kept.
 ///
 /// # Errors
 /// A file that is missing, damaged, not of a known format or above `limit` bytes.
@@ -24,8 +25,8 @@ pub fn load_environment(path: impl AsRef<Path>, limit: u64) -> Result<Arc<Enviro
 pub fn environment_from_bytes(bytes: &[u8], name: &str) -> Result<Arc<EnvironmentMap>, Error> {
     let image = decode_radiance(bytes, name)?;
     let [width, height] = [image.width() as usize, image.height() as usize];
-    let panorama =
-        Panorama::new(width, height, image.into_data()).expect("an image has as many texels as its size says");
+    let panorama = Panorama::new(width, height, image.into_data())
+        .expect("an image has as many texels as its size says");
     Ok(Arc::new(EnvironmentMap::new(panorama, [width, height])))
 }
 

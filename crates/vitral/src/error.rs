@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use vitral_exec::Limit;
 
-/// Why something could not be done. Displays in one line as `FILE: WHERE: WHAT`, as far as these are known.
+/// Why something could not be done. Displays in one line as `FILE: WHERE: WHAT`, as far as these
+/// are known.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -63,15 +63,20 @@ pub const EXERCISES: [Exercise; 5] = [
 ];
 
 impl State {
-    /// Sets lights and settings to what an exercise starts from, and its model where the state has none.
+    /// Sets lights and settings to what an exercise starts from, and its model where the state has
+    /// none.
     ///
     /// # Errors
     /// [`Error::Usage`] for a number that is not among [`EXERCISES`].
     pub fn start_exercise(&mut self, number: &str) -> Result<(), Error> {
-        let found = EXERCISES.iter().find(|exercise| exercise.number == number).ok_or_else(|| {
-            let numbers = EXERCISES.map(|exercise| exercise.number).join(", ");
-            Error::usage(format!("there is no exercise {number}"), format!("there are {numbers}"))
-        })?;
+        let found =
+            EXERCISES.iter().find(|exercise| exercise.number == number).ok_or_else(|| {
+                let numbers = EXERCISES.map(|exercise| exercise.number).join(", ");
+                Error::usage(
+                    format!("there is no exercise {number}"),
+                    format!("there are {numbers}"),
+                )
+            })?;
         if self.models.is_empty() {
             self.models = vec![found.model.to_owned()];
         }
@@ -92,12 +97,17 @@ mod tests {
             state.load_scene().unwrap();
             state
         };
-        let lights = |state: &State| state.lights.as_ref().unwrap().iter().map(|l| l.name.clone()).collect::<Vec<_>>();
+        let lights = |state: &State| {
+            state.lights.as_ref().unwrap().iter().map(|l| l.name.clone()).collect::<Vec<_>>()
+        };
         assert_eq!(lights(&start("4.1")), ["LIGHT0", "LIGHT1"]);
         assert_eq!(lights(&start("4.2")), ["LIGHT0"]);
         assert!(!start("4.3").settings.shading.lighting);
         let added = start("5.1").lights.unwrap().pop().unwrap();
-        assert_eq!((added.name.as_str(), added.diffuse, added.ambient), ("LIGHT2", [0.0, 1.0, 0.0], [0.0, 1.0, 0.0]));
+        assert_eq!(
+            (added.name.as_str(), added.diffuse, added.ambient),
+            ("LIGHT2", [0.0, 1.0, 0.0], [0.0, 1.0, 0.0])
+        );
         assert_eq!(start("5.2").load.normals, Normals::None);
         let error = State::default().start_exercise("6.1").unwrap_err();
         assert_eq!(error.to_string(), "there is no exercise 6.1");

@@ -1,12 +1,14 @@
-//! One pixel explained: which facets lie over it and what became of each, how its light adds up to its bytes, and what
-//! algorithms decided and why.
+//! One pixel explained: which facets lie over it and what became of each, how its light adds up to
+//! its bytes, and what algorithms decided and why.
 //!
-//! Facets and light are those of the colour picture, with all its samples. Surfaces and decisions are those at the pixel's
-//! centre, as in the channels of data. These look straight on, through what is transparent; with ray tracing, the pixel's rays
-//! tell what is seen in mirrors and through what bends light.
+//! Facets and light are those of the colour picture, with all its samples. Surfaces and decisions
+//! are those at the pixel's centre, as in the channels of data. These look straight on, through
+//! what is transparent; with ray tracing, the pixel's rays tell what is seen in mirrors and through
+//! what bends light.
 //!
-//! Only the tile that holds the pixel is made, of the facets that may touch it; it is what it is in the whole picture. Whole
-//! pictures are made for algorithms that are asked for by name ([`Deciders::Named`]), and where translucent materials are in view.
+//! Only the tile that holds the pixel is made, of the facets that may touch it; it is what it is in
+//! the whole picture. Whole pictures are made for algorithms that are asked for by name
+//! ([`Deciders::Named`]), and where translucent materials are in view.
 
 mod spaces;
 mod text;
@@ -27,8 +29,8 @@ use vitral_render::trace::{Observer, Step, Way};
 use vitral_render::visible::NullSink;
 use vitral_render::visible::fates::{Candidate, facets_at};
 use vitral_render::{
-    Channels, ExaminedPixel, Execution, Global, PreparedView, Session, Settings, Shading, examine_pixel,
-    illuminate_corners,
+    Channels, ExaminedPixel, Execution, Global, PreparedView, Session, Settings, Shading,
+    examine_pixel, illuminate_corners,
 };
 use vitral_scene::Camera;
 
@@ -45,9 +47,11 @@ pub struct Explanation {
     pub pixel: [u32; 2],
     /// Its colour in the picture, display bytes with straight opacity.
     pub bytes: [u8; 4],
-    /// The facets whose outlines hold it, and what became of each: those that cover samples first, from near to far.
+    /// The facets whose outlines hold it, and what became of each: those that cover samples first,
+    /// from near to far.
     pub candidates: Vec<Overlying>,
-    /// How its colour comes about. In a picture with ray tracing, or of translucent materials, light from behind them comes on top.
+    /// How its colour comes about. In a picture with ray tracing, or of translucent materials,
+    /// light from behind them comes on top.
     pub light: PixelLight,
     /// The surfaces that cover its centre, the nearest first.
     pub surfaces: Vec<Surface>,
@@ -55,8 +59,8 @@ pub struct Explanation {
     pub gouraud: Option<Gouraud>,
     /// What algorithms decided.
     pub decisions: Vec<Decision>,
-    /// With ray tracing, the rays of the pixel, generation by generation, the eye's first; empty where the first surface is
-    /// neither a mirror nor transparent, and all there is to see.
+    /// With ray tracing, the rays of the pixel, generation by generation, the eye's first; empty
+    /// where the first surface is neither a mirror nor transparent, and all there is to see.
     pub rays: Vec<TracedRay>,
 }
 
@@ -137,8 +141,9 @@ pub struct Turn {
     pub weight: [f32; 3],
 }
 
-/// How scan conversion interpolates intensities by increments, on the screen (L9). The picture weighs the corners directly, in
-/// perspective unless interpolation is linear, and multiplies with textures at the pixel rather than at the corners.
+/// How scan conversion interpolates intensities by increments, on the screen (L9). The picture
+/// weighs the corners directly, in perspective unless interpolation is linear, and multiplies with
+/// textures at the pixel rather than at the corners.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Gouraud {
@@ -146,7 +151,8 @@ pub struct Gouraud {
     pub facet: u32,
     /// Its corners in pixels.
     pub corners: [[f64; 2]; 3],
-    /// Their intensities: premultiplied RGB, linear, or the course's numbers in the raw colour space.
+    /// Their intensities: premultiplied RGB, linear, or the course's numbers in the raw colour
+    /// space.
     pub intensities: [[f64; 3]; 3],
     /// The edges left and right of the pixel.
     pub edges: [GouraudEdge; 2],
@@ -224,7 +230,9 @@ struct RayOnlooker {
 
 impl Observer for RayOnlooker {
     fn step(&self, step: &Step) {
-        if matches!(step, Step::RayMeets { .. } | Step::RayGoesOn { .. }) && step.concerns(self.pixel) {
+        if matches!(step, Step::RayMeets { .. } | Step::RayGoesOn { .. })
+            && step.concerns(self.pixel)
+        {
             let mut rays = self.rays.lock().expect("no thread panics while it keeps a ray");
             if rays.len() < MOST_RAYS {
                 rays.push(step.clone());
@@ -249,7 +257,8 @@ impl Observer for Onlooker {
     }
 }
 
-/// Explains a pixel of the picture that `camera` sees. Each algorithm that is asked may take `time_limit` seconds.
+/// Explains a pixel of the picture that `camera` sees. Each algorithm that is asked may take
+/// `time_limit` seconds.
 ///
 /// # Errors
 /// A pixel outside the picture, settings that cannot be, or a cancellation.
@@ -262,13 +271,22 @@ pub fn explain(
 ) -> Result<Explanation, Error> {
     let settings = &renderer.picture_settings();
     if pixel[0] >= settings.picture.width || pixel[1] >= settings.picture.height {
-        let size =
-            format!("the picture has {} x {} pixels, counted from 0", settings.picture.width, settings.picture.height);
+        let size = format!(
+            "the picture has {} x {} pixels, counted from 0",
+            settings.picture.width, settings.picture.height
+        );
         return Err(Error::usage(format!("there is no pixel {},{}", pixel[0], pixel[1]), size));
     }
     // The limit is each algorithm's; what remains of the whole is that the user may cancel.
     let budget = renderer.execution().budget.renewed().with_time_limit(None);
-    let examined = examined(renderer, camera, pixel, settings, &budget.clone().with_time_limit(time_limit), None)?;
+    let examined = examined(
+        renderer,
+        camera,
+        pixel,
+        settings,
+        &budget.clone().with_time_limit(time_limit),
+        None,
+    )?;
     let surfaces = surfaces(renderer, camera, pixel)?;
     let nearest = surfaces.first().filter(|_| settings.shading.model == Shading::Gouraud);
     let gouraud = nearest.map_or(Ok(None), |s| gouraud(renderer, camera, pixel, s.facet))?;
@@ -316,19 +334,35 @@ fn examined(
 }
 
 /// Traces the rays through the centres of a tile's pixels, and looks on at one of them.
-fn rays(renderer: &Renderer, camera: &Camera, pixel: [u32; 2], budget: &Budget) -> Result<Vec<TracedRay>, Error> {
+fn rays(
+    renderer: &Renderer,
+    camera: &Camera,
+    pixel: [u32; 2],
+    budget: &Budget,
+) -> Result<Vec<TracedRay>, Error> {
     let settings = renderer.picture_settings().with_samples(1).with_channels(Channels::default());
     let onlooker = Arc::new(RayOnlooker { pixel, rays: Mutex::default() });
     let observer = Some(Arc::clone(&onlooker) as Arc<dyn Observer>);
     examined(renderer, camera, pixel, &settings, budget, observer)?;
 
-    let steps = std::mem::take(&mut *onlooker.rays.lock().expect("no thread panics while it keeps a ray"));
+    let steps =
+        std::mem::take(&mut *onlooker.rays.lock().expect("no thread panics while it keeps a ray"));
     let mut rays: Vec<TracedRay> = Vec::new();
     for step in steps {
         match step {
             Step::RayMeets { turns, facet, origin, direction, distance, weight, light, .. } => {
-                let meets = facet.zip(distance).map(|(facet, distance)| met(renderer.session(), facet, distance));
-                rays.push(TracedRay { turns, origin, direction, meets, weight, light, goes_on: Vec::new() });
+                let meets = facet
+                    .zip(distance)
+                    .map(|(facet, distance)| met(renderer.session(), facet, distance));
+                rays.push(TracedRay {
+                    turns,
+                    origin,
+                    direction,
+                    meets,
+                    weight,
+                    light,
+                    goes_on: Vec::new(),
+                });
             }
             Step::RayGoesOn { way, angles, indices, direction, weight, .. } => {
                 let turn = Turn { way, angles_degrees: angles, indices, direction, weight };
@@ -354,7 +388,8 @@ fn named(session: &Session, facet: u32) -> (u32, String, Option<String>) {
     (world.surface_of_facet(facet), instance.mesh.name.clone(), material.map(|m| m.name.clone()))
 }
 
-/// A facet over the centre of a pixel, and its depth there: 1 on the near plane, 0 on the far plane.
+/// A facet over the centre of a pixel, and its depth there: 1 on the near plane, 0 on the far
+/// plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetDepth {
     /// Id of the facet, counted over all instances.
@@ -363,8 +398,8 @@ pub struct FacetDepth {
     pub depth: f32,
 }
 
-/// The facets over the centres of a square of pixels, the nearest first, row by row: `size` by `size` pixels from `corner`, the
-/// top left one. Outside of the picture there are none.
+/// The facets over the centres of a square of pixels, the nearest first, row by row: `size` by
+/// `size` pixels from `corner`, the top left one. Outside of the picture there are none.
 ///
 /// # Errors
 /// Settings that cannot be.
@@ -375,14 +410,21 @@ pub fn facets_over(
     size: u32,
 ) -> Result<Vec<Vec<FacetDepth>>, Error> {
     let view = renderer.prepared(camera, &mut CullCounters::default())?;
-    let picture = [renderer.settings.picture.width, renderer.settings.picture.height].map(i64::from);
+    let picture =
+        [renderer.settings.picture.width, renderer.settings.picture.height].map(i64::from);
     let mut all = Vec::with_capacity((size * size) as usize);
     for row in 0..i64::from(size) {
         for column in 0..i64::from(size) {
             let place = [corner[0] + column, corner[1] + row];
             let is_inside = (0..2).all(|k| (0..picture[k]).contains(&place[k]));
-            let found = if is_inside { facets_at(&view, center(&view, place.map(|v| v as u32))) } else { Vec::new() };
-            all.push(found.into_iter().map(|(facet, depth, _)| FacetDepth { facet, depth }).collect());
+            let found = if is_inside {
+                facets_at(&view, center(&view, place.map(|v| v as u32)))
+            } else {
+                Vec::new()
+            };
+            all.push(
+                found.into_iter().map(|(facet, depth, _)| FacetDepth { facet, depth }).collect(),
+            );
         }
     }
     Ok(all)
@@ -399,14 +441,16 @@ fn surfaces(renderer: &Renderer, camera: &Camera, pixel: [u32; 2]) -> Result<Vec
     Ok(facets_at(&view, center(&view, pixel)).into_iter().map(surface).collect())
 }
 
-/// Scan converts a facet; `None` if a clipping plane cuts it, so that its corners are not all on the screen.
+/// Scan converts a facet; `None` if a clipping plane cuts it, so that its corners are not all on
+/// the screen.
 fn gouraud(
     renderer: &Renderer,
     camera: &Camera,
     [column, row]: [u32; 2],
     facet: u32,
 ) -> Result<Option<Gouraud>, Error> {
-    let (settings, session, execution) = (&renderer.picture_settings(), renderer.session(), renderer.execution());
+    let (settings, session, execution) =
+        (&renderer.picture_settings(), renderer.session(), renderer.execution());
     let view = renderer.prepared(camera, &mut CullCounters::default())?;
     let Some((clip, false)) = view.clipped(facet) else { return Ok(None) };
     let lights = renderer.frame_lights(camera);
@@ -425,9 +469,11 @@ fn gouraud(
             found = Some((*span, intensity));
         }
     });
-    // Edges and samples are decided in integers elsewhere: a pixel on an edge may belong to a neighbour here.
+    // Edges and samples are decided in integers elsewhere: a pixel on an edge may belong to a
+    // neighbour here.
     let Some((span, intensity)) = found else { return Ok(None) };
-    let edge = |e: EdgeStep| GouraudEdge { corners: e.ends, py: e.py, x: e.x, intensity: e.intensity };
+    let edge =
+        |e: EdgeStep| GouraudEdge { corners: e.ends, py: e.py, x: e.x, intensity: e.intensity };
     Ok(Some(Gouraud {
         facet,
         corners: corners.map(|c| c.at),
@@ -442,7 +488,9 @@ fn gouraud(
 
 /// The intensity at a place by the weights of the corners.
 fn weighted(corners: &[ScreenIntensity; 3], place: [f64; 2]) -> [f64; 3] {
-    let area = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+    let area = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
+        (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
+    };
     let [a, b, c] = corners.map(|c| c.at);
     let (whole, parts) = (area(a, b, c), [area(place, b, c), area(a, place, c), area(a, b, place)]);
     [0, 1, 2].map(|k| (0..3).map(|i| parts[i] / whole * corners[i].intensity[k]).sum())
@@ -468,19 +516,34 @@ fn decide(
     let onlooker = Arc::new(Onlooker { pixel, steps: Mutex::default() });
     let own = renderer.execution();
     let budget = own.budget.renewed().with_time_limit(time_limit);
-    let execution = Execution { budget, observer: Some(Arc::clone(&onlooker) as Arc<dyn Observer>), ..own.clone() };
+    let execution = Execution {
+        budget,
+        observer: Some(Arc::clone(&onlooker) as Arc<dyn Observer>),
+        ..own.clone()
+    };
     let session: &Session = renderer.session();
     let culled = &mut CullCounters::default();
-    let mut view = PreparedView::new(session, camera, &settings, viewport, SamplePattern::new(1), &execution, culled);
+    let mut view = PreparedView::new(
+        session,
+        camera,
+        &settings,
+        viewport,
+        SamplePattern::new(1),
+        &execution,
+        culled,
+    );
     if tile_only {
         let [column, row] = pixel.map(|v| v / TILE as u32);
         view.limit_to_tile((row * viewport.tiles_x() + column) as usize);
     }
     let mut grid = TileGrid::new(viewport, 1);
-    let resolved = entrant.algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &NullSink);
+    let resolved =
+        entrant.algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &NullSink);
     let (tile, at) = grid.locate(pixel[0], pixel[1]);
     let seen = resolved.is_ok() && tile.facet[at] != NO_FACET;
-    let steps = std::mem::take(&mut *onlooker.steps.lock().expect("no thread panics while it keeps a step"));
+    let steps = std::mem::take(
+        &mut *onlooker.steps.lock().expect("no thread panics while it keeps a step"),
+    );
     Ok(Decision {
         algorithm: entrant.name(),
         facet: seen.then(|| tile.facet[at]),
@@ -501,11 +564,16 @@ mod tests {
         (renderer.settings.picture.width, renderer.settings.picture.height) = (64, 48);
         renderer.settings.cull.back_face = false;
         let camera = renderer.frame_camera();
-        let told = explain(&renderer, &camera, [32, 20], &Deciders::Named(Entrant::all()), None).unwrap();
+        let told =
+            explain(&renderer, &camera, [32, 20], &Deciders::Named(Entrant::all()), None).unwrap();
         assert!(told.surfaces.len() >= 2, "front and back of a cube: {told}");
         assert!(told.surfaces.windows(2).all(|w| w[0].depth >= w[1].depth));
         for d in &told.decisions {
-            assert_eq!((d.facet, d.depth), (Some(told.surfaces[0].facet), Some(told.surfaces[0].depth)), "{told}");
+            assert_eq!(
+                (d.facet, d.depth),
+                (Some(told.surfaces[0].facet), Some(told.surfaces[0].depth)),
+                "{told}"
+            );
             assert!(!d.steps.is_empty(), "{} says why: {told}", d.algorithm);
         }
         let nothing = explain(&renderer, &camera, [0, 0], &Deciders::Chosen, None).unwrap();
@@ -534,15 +602,24 @@ mod tests {
                 assert!((g.intensity[k] - g.direct[k]).abs() < 1e-6, "{told}");
                 let px = (right.intensity[k] - left.intensity[k]) / (right.x - left.x);
                 assert!(
-                    (g.px[k] - px).abs() < 1e-9 && (left.intensity[k] + px * from_left - g.intensity[k]).abs() < 1e-9
+                    (g.px[k] - px).abs() < 1e-9
+                        && (left.intensity[k] + px * from_left - g.intensity[k]).abs() < 1e-9
                 );
                 let shown = f64::from(picture.at(pixel[0], pixel[1])[k]);
-                assert!((shown - 255.0 * g.intensity[k].clamp(0.0, 1.0)).abs() < 0.6, "{shown} of {told}");
+                assert!(
+                    (shown - 255.0 * g.intensity[k].clamp(0.0, 1.0)).abs() < 0.6,
+                    "{shown} of {told}"
+                );
             }
             assert!(told.to_string().contains(&format!("Gouraud shading of facet {}", g.facet)));
         }
         assert!(explained >= 3);
         renderer.settings.shading.model = Shading::Phong;
-        assert!(explain(&renderer, &camera, [32, 26], &Deciders::Chosen, None).unwrap().gouraud.is_none());
+        assert!(
+            explain(&renderer, &camera, [32, 26], &Deciders::Chosen, None)
+                .unwrap()
+                .gouraud
+                .is_none()
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! Files: read up to a limit, written whole or not at all, and a model's folder that the model cannot leave.
+//! Files: read up to a limit, written whole or not at all, and a model's folder that the model
+//! cannot leave.
 
 use crate::Error;
 use std::fs::{self, File};
@@ -8,8 +9,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use vitral_exec::Workers;
 use vitral_io::{ResolveError, Resolver};
 
-/// The files beside a model. Paths that are absolute, climb out of the folder with `..`, or pass through a link that
-/// leaves it are refused, unless external files were allowed; so are devices, pipes, and files above the limit.
+/// The files beside a model. Paths that are absolute, climb out of the folder with `..`, or pass
+/// through a link that leaves it are refused, unless external files were allowed; so are devices,
+/// pipes, and files above the limit.
 #[derive(Clone, Debug)]
 pub struct FolderResolver {
     folder: PathBuf,
@@ -33,7 +35,9 @@ impl FolderResolver {
             return Err(ResolveError::Outside);
         }
         match self.locate_below(Path::new(path)) {
-            Err(ResolveError::NotFound) => latin_1(path).map_or(Err(ResolveError::NotFound), |p| self.locate_below(&p)),
+            Err(ResolveError::NotFound) => {
+                latin_1(path).map_or(Err(ResolveError::NotFound), |p| self.locate_below(&p))
+            }
             found => found,
         }
     }
@@ -55,7 +59,8 @@ impl FolderResolver {
     }
 }
 
-/// `path` as a program that knew Latin-1 alone named its file; `None` where that is the same name, or none at all.
+/// `path` as a program that knew Latin-1 alone named its file; `None` where that is the same name,
+/// or none at all.
 #[cfg(unix)]
 fn latin_1(path: &str) -> Option<PathBuf> {
     use std::os::unix::ffi::OsStringExt;
@@ -69,7 +74,8 @@ fn latin_1(_: &str) -> Option<PathBuf> {
     None
 }
 
-/// `path` without `.` and `..`, folded by its words alone; `None` if it leaves the folder that it starts from.
+/// `path` without `.` and `..`, folded by its words alone; `None` if it leaves the folder that it
+/// starts from.
 fn folded(path: &Path) -> Option<PathBuf> {
     let mut folded = PathBuf::new();
     for component in path.components() {
@@ -100,19 +106,25 @@ impl Resolver for FolderResolver {
         let file = File::open(&found).map_err(|e| told(&e))?;
         match read_up_to(file, self.max_file_bytes, &Workers::single()) {
             Ok(Some(bytes)) => Ok(bytes),
-            Ok(None) => Err(ResolveError::Other(format!("it has more than {} bytes", self.max_file_bytes))),
+            Ok(None) => {
+                Err(ResolveError::Other(format!("it has more than {} bytes", self.max_file_bytes)))
+            }
             Err(e) => Err(told(&e)),
         }
     }
 
     fn in_other_case(&self, path: &str) -> Option<String> {
-        // Follow the path name by name: as it stands where that is there, else the first in order that differs in case alone.
+        // Follow the path name by name: as it stands where that is there, else the first in order
+        // that differs in case alone.
         let relative = folded(Path::new(path))?;
         let (mut folder, mut found) = (self.folder.clone(), Vec::new());
         for component in relative.components() {
             let wanted = component.as_os_str().to_str()?;
-            let name =
-                if folder.join(wanted).exists() { wanted.to_owned() } else { name_in_other_case(&folder, wanted)? };
+            let name = if folder.join(wanted).exists() {
+                wanted.to_owned()
+            } else {
+                name_in_other_case(&folder, wanted)?
+            };
             folder.push(&name);
             found.push(name);
         }
@@ -153,19 +165,23 @@ impl Resolver for ToldFiles<'_> {
 /// The first name in `folder`, in order, that differs from `wanted` in case alone.
 fn name_in_other_case(folder: &Path, wanted: &str) -> Option<String> {
     let lower = wanted.to_lowercase();
-    let names = fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let names =
+        fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     names.filter(|name| name.to_lowercase() == lower).min()
 }
 
 /// Everything that `file` holds; `None` if that is more than `limit` bytes.
 fn read_up_to(mut file: File, limit: u64, workers: &Workers) -> std::io::Result<Option<Vec<u8>>> {
-    // Devices claim a length of 0 and never end: the limit holds for what is read, not for what is claimed.
+    // Devices claim a length of 0 and never end: the limit holds for what is read, not for what is
+    // claimed.
     let claimed = file.metadata()?.len();
     if claimed > limit {
         return Ok(None);
     }
     let mut bytes = Vec::new();
-    bytes.try_reserve_exact(claimed as usize + 1).map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
+    bytes
+        .try_reserve_exact(claimed as usize + 1)
+        .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
     if claimed >= 2 * PIECE as u64 && workers.threads() > 1 {
         read_in_pieces(&mut file, claimed as usize, &mut bytes, workers)?;
     }
@@ -177,9 +193,14 @@ fn read_up_to(mut file: File, limit: u64, workers: &Workers) -> std::io::Result<
 /// Bytes that a thread reads in one go.
 const PIECE: usize = 1 << 20;
 
-/// Reads `length` bytes with all of `workers`: half of the time of reading goes into memory that is new. Reads nothing where
-/// they are not all there, or where files have no places.
-fn read_in_pieces(file: &mut File, length: usize, bytes: &mut Vec<u8>, workers: &Workers) -> std::io::Result<()> {
+/// Reads `length` bytes with all of `workers`: half of the time of reading goes into memory that is
+/// new. Reads nothing where they are not all there, or where files have no places.
+fn read_in_pieces(
+    file: &mut File,
+    length: usize,
+    bytes: &mut Vec<u8>,
+    workers: &Workers,
+) -> std::io::Result<()> {
     #[cfg(unix)]
     {
         use std::io::{Seek, SeekFrom};
@@ -221,7 +242,9 @@ pub(crate) fn read_with(path: &Path, limit: u64, workers: &Workers) -> Result<Ve
     if file.metadata().map_err(failed)?.is_dir() {
         return Err(failed(std::io::Error::from(ErrorKind::IsADirectory)));
     }
-    read_up_to(file, limit, workers).map_err(failed)?.ok_or_else(|| Error::TooLarge { path: path.to_owned(), limit })
+    read_up_to(file, limit, workers)
+        .map_err(failed)?
+        .ok_or_else(|| Error::TooLarge { path: path.to_owned(), limit })
 }
 
 /// Reads standard input to its end.
@@ -230,11 +253,16 @@ fn read_standard_input(limit: u64) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     let read = std::io::stdin().lock().take(limit.saturating_add(1)).read_to_end(&mut bytes);
     read.map_err(|source| Error::Read { path: path(), source })?;
-    if bytes.len() as u64 > limit { Err(Error::TooLarge { path: path(), limit }) } else { Ok(bytes) }
+    if bytes.len() as u64 > limit {
+        Err(Error::TooLarge { path: path(), limit })
+    } else {
+        Ok(bytes)
+    }
 }
 
-/// Writes a file so that it appears complete or not at all: into a new file beside it, which then takes its name.
-/// What is no regular file (a pipe, `/dev/stdout`) is written to directly. A link keeps pointing where it did.
+/// Writes a file so that it appears complete or not at all: into a new file beside it, which then
+/// takes its name. What is no regular file (a pipe, `/dev/stdout`) is written to directly. A link
+/// keeps pointing where it did.
 ///
 /// # Errors
 /// [`Error::Write`]; nothing is left behind then.
@@ -242,7 +270,9 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let failed = |source| not_written(path, source);
     let target = followed(path);
     match fs::metadata(&target) {
-        Ok(old) if old.is_dir() => return Err(failed(std::io::Error::from(ErrorKind::IsADirectory))),
+        Ok(old) if old.is_dir() => {
+            return Err(failed(std::io::Error::from(ErrorKind::IsADirectory)));
+        }
         Ok(old) if !old.is_file() => return fs::write(&target, bytes).map_err(failed),
         _ => {}
     }
@@ -272,9 +302,13 @@ fn followed(path: &Path) -> PathBuf {
 /// Why a file cannot be written, in words: a folder that is not there is called that.
 fn not_written(path: &Path, source: std::io::Error) -> Error {
     let place = followed(path);
-    let folder = place.parent().filter(|f| source.kind() == ErrorKind::NotFound && !f.as_os_str().is_empty());
+    let folder = place
+        .parent()
+        .filter(|f| source.kind() == ErrorKind::NotFound && !f.as_os_str().is_empty());
     let source = match folder.filter(|f| !f.exists()) {
-        Some(folder) => std::io::Error::new(source.kind(), format!("there is no folder `{}`", folder.display())),
+        Some(folder) => {
+            std::io::Error::new(source.kind(), format!("there is no folder `{}`", folder.display()))
+        }
         None => source,
     };
     Error::Write { path: path.to_owned(), source }
@@ -283,7 +317,8 @@ fn not_written(path: &Path, source: std::io::Error) -> Error {
 /// Whether there is a place for a file of this name.
 ///
 /// # Errors
-/// [`Error::Write`], as [`write`] would give it for want of a folder, or because the name is that of one.
+/// [`Error::Write`], as [`write`] would give it for want of a folder, or because the name is that
+/// of one.
 pub(crate) fn check_place(path: &Path) -> Result<(), Error> {
     let place = followed(path);
     let folder = place.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -299,10 +334,14 @@ pub(crate) fn check_place(path: &Path) -> Result<(), Error> {
 /// Makes a file in the same folder that nobody else has.
 fn new_file_beside(target: &Path) -> std::io::Result<(PathBuf, File)> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
-    let name = target.file_name().ok_or_else(|| std::io::Error::from(ErrorKind::InvalidInput))?.to_string_lossy();
+    let name = target
+        .file_name()
+        .ok_or_else(|| std::io::Error::from(ErrorKind::InvalidInput))?
+        .to_string_lossy();
     loop {
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let temporary = target.with_file_name(format!(".{name}.{}-{number}.part", std::process::id()));
+        let temporary =
+            target.with_file_name(format!(".{name}.{}-{number}.part", std::process::id()));
         match File::create_new(&temporary) {
             Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
             made => return made.map(|file| (temporary, file)),
@@ -316,7 +355,8 @@ mod tests {
 
     /// A new folder for one test.
     fn folder(name: &str) -> PathBuf {
-        let folder = std::env::temp_dir().join(format!("vitral-files-{name}-{}", std::process::id()));
+        let folder =
+            std::env::temp_dir().join(format!("vitral-files-{name}-{}", std::process::id()));
         fs::create_dir_all(folder.join("model/textures")).unwrap();
         folder
     }
@@ -331,7 +371,10 @@ mod tests {
         let other = |path: &str| resolver.in_other_case(path);
         assert_eq!(other("TEXTURES/wood.png").as_deref(), Some("textures/Wood.PNG"));
         assert_eq!(other("b.mtl").as_deref(), Some("B.mtl"), "the first in order");
-        assert_eq!([other("none.png"), other("../model/b.mtl"), other("textures/Wood.PNG")], [None, None, None]);
+        assert_eq!(
+            [other("none.png"), other("../model/b.mtl"), other("textures/Wood.PNG")],
+            [None, None, None]
+        );
         fs::remove_dir_all(folder).unwrap();
     }
 
@@ -341,7 +384,8 @@ mod tests {
         fs::write(folder.join("secret.png"), b"secret").unwrap();
         fs::write(folder.join("model/textures/a b.png"), b"texture").unwrap();
         #[cfg(unix)]
-        std::os::unix::fs::symlink(folder.join("secret.png"), folder.join("model/link.png")).unwrap();
+        std::os::unix::fs::symlink(folder.join("secret.png"), folder.join("model/link.png"))
+            .unwrap();
         let closed = FolderResolver::new(folder.join("model"), false, 100);
         assert_eq!(closed.read("textures/a b.png").unwrap(), b"texture");
         assert_eq!(closed.read("./textures/a b.png").unwrap(), b"texture");
@@ -371,7 +415,8 @@ mod tests {
     fn names_in_latin_1_are_found() {
         use std::os::unix::ffi::OsStrExt;
         let folder = folder("latin");
-        fs::write(folder.join("model").join(std::ffi::OsStr::from_bytes(b"T\xFCr.png")), b"bytes").unwrap();
+        fs::write(folder.join("model").join(std::ffi::OsStr::from_bytes(b"T\xFCr.png")), b"bytes")
+            .unwrap();
         fs::write(folder.join("model/\u{e9}.png"), b"utf8").unwrap();
         let closed = FolderResolver::new(folder.join("model"), false, 100);
         assert_eq!(closed.read("T\u{fc}r.png").unwrap(), b"bytes");
@@ -385,10 +430,14 @@ mod tests {
     fn threads_read_large_files_together() {
         let folder = folder("large");
         let path = folder.join("model/large");
-        let bytes: Vec<u8> = (0..3 * PIECE as u32 + 5).map(|i| (i.wrapping_mul(0x9e37_79b9) >> 24) as u8).collect();
+        let bytes: Vec<u8> =
+            (0..3 * PIECE as u32 + 5).map(|i| (i.wrapping_mul(0x9e37_79b9) >> 24) as u8).collect();
         fs::write(&path, &bytes).unwrap();
         for workers in [Workers::single(), Workers::new(3)] {
-            assert!(read_with(&path, bytes.len() as u64, &workers).unwrap() == bytes, "{workers:?}");
+            assert!(
+                read_with(&path, bytes.len() as u64, &workers).unwrap() == bytes,
+                "{workers:?}"
+            );
             let short = read_with(&path, bytes.len() as u64 - 1, &workers);
             assert!(matches!(short, Err(Error::TooLarge { .. })));
         }
@@ -431,9 +480,13 @@ mod tests {
             assert!(check_place(&folder.join(link)).is_ok(), "{link}");
             write(&folder.join(link), link.as_bytes()).unwrap();
             assert_eq!(fs::read(folder.join(target)).unwrap(), link.as_bytes());
-            assert!(fs::symlink_metadata(folder.join(link)).unwrap().is_symlink(), "{link} stays a link");
+            assert!(
+                fs::symlink_metadata(folder.join(link)).unwrap().is_symlink(),
+                "{link} stays a link"
+            );
         }
-        let told = [check_place(&folder.join("d")), write(&folder.join("d"), b"x")].map(|e| e.unwrap_err().to_string());
+        let told = [check_place(&folder.join("d")), write(&folder.join("d"), b"x")]
+            .map(|e| e.unwrap_err().to_string());
         assert!(told[0] == told[1] && told[0].contains("there is no folder `"), "{told:?}");
         fs::remove_dir_all(folder).unwrap();
     }
@@ -446,13 +499,21 @@ mod tests {
         write(&path, b"second").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"second");
         let lost = write(&folder.join("none/a.png"), b"x").unwrap_err();
-        assert!(matches!(lost, Error::Write { .. }) && lost.to_string().contains("there is no folder `"), "{lost}");
+        assert!(
+            matches!(lost, Error::Write { .. })
+                && lost.to_string().contains("there is no folder `"),
+            "{lost}"
+        );
         assert!(matches!(write(&folder, b"x"), Err(Error::Write { .. })));
         for path in [folder.join("none/a.png"), folder.clone(), path.join("b.png")] {
             let told = [check_place(&path), write(&path, b"x")].map(|e| e.unwrap_err().to_string());
             assert_eq!(told[0], told[1], "told beforehand as afterwards");
         }
-        assert!([folder.join("b.png"), path.clone(), PathBuf::from("b.png")].iter().all(|p| check_place(p).is_ok()));
+        assert!(
+            [folder.join("b.png"), path.clone(), PathBuf::from("b.png")]
+                .iter()
+                .all(|p| check_place(p).is_ok())
+        );
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "the folder `model` and the picture");
         fs::remove_dir_all(folder).unwrap();
     }

@@ -11,7 +11,8 @@ use vitral_scene::{Instance, LightMeter, Mesh, Node, Scene, Topology, World};
 
 pub use lights::{CameraInfo, LightInfo};
 
-/// A scene in numbers. Meshes are counted once, however many instances they have, except where it says otherwise.
+/// A scene in numbers. Meshes are counted once, however many instances they have, except where it
+/// says otherwise.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Info {
@@ -41,7 +42,8 @@ pub struct Info {
     pub textures: Vec<TextureInfo>,
     /// The lights, world space.
     pub lights: Vec<LightInfo>,
-    /// The factor of photometric lights in a picture without further ambient light; 1 without such lights.
+    /// The factor of photometric lights in a picture without further ambient light; 1 without such
+    /// lights.
     pub exposure: f32,
     /// The scene has no light at all: a picture is lit by default ones.
     pub default_lights: bool,
@@ -67,7 +69,8 @@ pub struct Bounds {
 
 impl Bounds {
     fn of(bounds: &Aabb) -> Option<Self> {
-        (!bounds.is_empty()).then(|| Self { min: bounds.min.to_array(), max: bounds.max.to_array() })
+        (!bounds.is_empty())
+            .then(|| Self { min: bounds.min.to_array(), max: bounds.max.to_array() })
     }
 }
 
@@ -149,7 +152,11 @@ impl MeshInfo {
             degenerate_triangles: topology.degenerate_triangles,
             duplicate_triangles: topology.duplicate_triangles,
             bodies: topology.components,
-            non_finite_vertices: mesh.positions.iter().filter(|p| p.iter().any(|c| !c.is_finite())).count(),
+            non_finite_vertices: mesh
+                .positions
+                .iter()
+                .filter(|p| p.iter().any(|c| !c.is_finite()))
+                .count(),
         }
     }
 }
@@ -231,8 +238,10 @@ pub fn info_on(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
     let sound = scene.meshes.iter().try_for_each(|mesh| mesh.check_with(workers));
     sound.map_err(vitral_render::Error::Scene)?;
     let world = World::with_workers(scene, workers).map_err(vitral_render::Error::from)?;
-    let shown = |index: usize| world.instances.iter().filter(|i| i.mesh_index as usize == index).count();
-    let mesh = |(index, mesh): (usize, &std::sync::Arc<Mesh>)| MeshInfo::of(mesh, shown(index), workers);
+    let shown =
+        |index: usize| world.instances.iter().filter(|i| i.mesh_index as usize == index).count();
+    let mesh =
+        |(index, mesh): (usize, &std::sync::Arc<Mesh>)| MeshInfo::of(mesh, shown(index), workers);
     let meshes: Vec<MeshInfo> = scene.meshes.iter().enumerate().map(mesh).collect();
     let solid = |m: &&MeshInfo| m.triangles > 0;
     let sum = |count: fn(&MeshInfo) -> usize| meshes.iter().map(|m| count(m) as u64).sum();
@@ -245,7 +254,8 @@ pub fn info_on(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
         lines: sum(|m| m.lines),
         points: sum(|m| m.points),
         bounds: Bounds::of(&bounds(&world)),
-        closed: meshes.iter().any(|m| m.triangles > 0) && meshes.iter().filter(solid).all(|m| m.closed),
+        closed: meshes.iter().any(|m| m.triangles > 0)
+            && meshes.iter().filter(solid).all(|m| m.closed),
         materials: scene.materials.iter().map(MaterialInfo::of).collect(),
         textures: scene.textures.iter().map(|t| texture_info(t)).collect(),
         lights: world.lights.iter().map(LightInfo::of).collect(),
@@ -259,20 +269,27 @@ pub fn info_on(scene: &Scene, workers: &Workers) -> Result<Info, crate::Error> {
     })
 }
 
-/// The box round all that is seen, world space. An instance's own box is a mesh's box as it lies in the world, which is larger
-/// where the mesh is turned: such meshes are gone through.
+/// The box round all that is seen, world space. An instance's own box is a mesh's box as it lies in
+/// the world, which is larger where the mesh is turned: such meshes are gone through.
 fn bounds(world: &World) -> Aabb {
     let seen = |instance: &Instance| {
         let matrix = &instance.world_from_model;
-        let is_turned =
-            (0..3).any(|k| [matrix.x_axis, matrix.y_axis, matrix.z_axis].iter().filter(|c| c[k] != 0.0).count() > 1);
+        let is_turned = (0..3).any(|k| {
+            [matrix.x_axis, matrix.y_axis, matrix.z_axis].iter().filter(|c| c[k] != 0.0).count() > 1
+        });
         if !is_turned {
             return instance.bounds;
         }
         let mesh = &instance.mesh;
-        let used = mesh.triangles.as_flattened().iter().chain(mesh.lines.as_flattened()).chain(&mesh.points);
+        let used = mesh
+            .triangles
+            .as_flattened()
+            .iter()
+            .chain(mesh.lines.as_flattened())
+            .chain(&mesh.points);
         let positions = used.filter_map(|&i| mesh.positions.get(i as usize));
-        let positions = positions.map(|p| DVec3::from_array(p.map(f64::from))).filter(|p| p.is_finite());
+        let positions =
+            positions.map(|p| DVec3::from_array(p.map(f64::from))).filter(|p| p.is_finite());
         Aabb::from_points(positions.map(|p| matrix.transform_point3(p)))
     };
     world.instances.iter().map(seen).fold(Aabb::EMPTY, |all, one| all.union(&one))
@@ -304,16 +321,25 @@ fn warnings(scene: &Scene, meshes: &[MeshInfo]) -> Vec<String> {
         };
         let (triangle, edge) = (("triangle", "triangles"), ("edge", "edges"));
         warn(mesh.degenerate_triangles, triangle, "without area");
-        warn(mesh.duplicate_triangles, ("triangle that repeats", "triangles that repeat"), "another one");
+        warn(
+            mesh.duplicate_triangles,
+            ("triangle that repeats", "triangles that repeat"),
+            "another one",
+        );
         warn(mesh.non_manifold_edges, edge, "with more than two triangles");
         warn(mesh.inconsistent_edges, edge, "at which neighbours disagree about the outside");
         let boundary = ("boundary edge:", "boundary edges:");
-        let backs =
-            if shows_backs(scene, index) { "it is open, so its back faces are drawn too" } else { "it is open" };
+        let backs = if shows_backs(scene, index) {
+            "it is open, so its back faces are drawn too"
+        } else {
+            "it is open"
+        };
         warn(mesh.boundary_edges, boundary, backs);
     }
     // Meshes of one name that are odd in the same way.
-    let told = |(warning, times)| if times > 1 { format!("{warning} ({times} such meshes)") } else { warning };
+    let told = |(warning, times)| {
+        if times > 1 { format!("{warning} ({times} such meshes)") } else { warning }
+    };
     warnings.extend(found.into_iter().map(told));
     warnings
 }
@@ -322,7 +348,10 @@ fn warnings(scene: &Scene, meshes: &[MeshInfo]) -> Vec<String> {
 fn shows_backs(scene: &Scene, mesh: usize) -> bool {
     let material = |m: Option<u32>| m.and_then(|m| scene.materials.get(m as usize));
     let parts = &scene.meshes[mesh].parts;
-    parts.is_empty() || parts.iter().any(|p| material(p.material).is_none_or(|m| m.double_sided || !m.front_only))
+    parts.is_empty()
+        || parts
+            .iter()
+            .any(|p| material(p.material).is_none_or(|m| m.double_sided || !m.front_only))
 }
 
 /// A mesh by its name, else by that of a node that shows it, else by its number.
@@ -346,17 +375,25 @@ impl fmt::Display for Info {
         // Write the counts.
         writeln!(f, "{}", surfaces(self.triangles, self.faces, self.vertices))?;
         if self.lines + self.points > 0 {
-            let (lines, points) = (counted(self.lines, "line", "lines"), counted(self.points, "point", "points"));
+            let (lines, points) =
+                (counted(self.lines, "line", "lines"), counted(self.points, "point", "points"));
             writeln!(f, "{lines}, {points}")?;
         }
         let instances = counted(self.instances, "instance", "instances");
-        let (meshes, nodes) = (counted(self.meshes.len(), "mesh", "meshes"), counted(self.nodes, "node", "nodes"));
+        let (meshes, nodes) =
+            (counted(self.meshes.len(), "mesh", "meshes"), counted(self.nodes, "node", "nodes"));
         writeln!(f, "{meshes}, {instances}, {nodes}")?;
 
         // Write the extent.
         if let Some(bounds) = &self.bounds {
             let size = [0, 1, 2].map(|k| bounds.max[k] - bounds.min[k]);
-            writeln!(f, "bounds {} to {}, size {}", triple(bounds.min), triple(bounds.max), triple(size))?;
+            writeln!(
+                f,
+                "bounds {} to {}, size {}",
+                triple(bounds.min),
+                triple(bounds.max),
+                triple(size)
+            )?;
         }
         writeln!(f, "{}", if self.closed { "closed" } else { "not closed" })?;
 
@@ -371,7 +408,11 @@ impl fmt::Display for Info {
                 write!(f, ", {} with opacity {}", m.alpha_mode, m.opacity)?;
             }
             let textures = counted(m.textures, "texture", "textures");
-            writeln!(f, "{}", if m.textures > 0 { format!(", {textures}") } else { String::new() })?;
+            writeln!(
+                f,
+                "{}",
+                if m.textures > 0 { format!(", {textures}") } else { String::new() }
+            )?;
         }
         for t in &self.textures {
             writeln!(f, "texture {}: {} x {}", quoted(&t.name), t.width, t.height)?;
@@ -418,7 +459,8 @@ fn write_mesh(f: &mut fmt::Formatter<'_>, m: &MeshInfo) -> fmt::Result {
 /// How many triangles in how many faces, with how many vertices.
 fn surfaces<T: TryInto<u64>>(triangles: T, faces: T, vertices: T) -> String {
     let triangles = counted(triangles, "triangle", "triangles");
-    let (faces, vertices) = (counted(faces, "face", "faces"), counted(vertices, "vertex", "vertices"));
+    let (faces, vertices) =
+        (counted(faces, "face", "faces"), counted(vertices, "vertex", "vertices"));
     format!("{triangles} in {faces}, {vertices}")
 }
 
@@ -454,10 +496,16 @@ mod tests {
         assert_eq!((info.meshes.len(), info.faces, info.triangles, info.closed), (8, 48, 96, true));
         assert_eq!((info.lights.len(), info.cameras.len(), info.materials.len()), (2, 1, 8));
         let cube = &info.meshes[0];
-        assert_eq!((cube.edges, cube.boundary_edges, cube.bodies, cube.consistent_winding), (18, 0, 1, true));
+        assert_eq!(
+            (cube.edges, cube.boundary_edges, cube.bodies, cube.consistent_winding),
+            (18, 0, 1, true)
+        );
         assert!(info.warnings.is_empty());
         let text = info.to_string();
-        assert!(text.starts_with("96 triangles in 48 faces") && text.contains("; closed, 1 body"), "{text}");
+        assert!(
+            text.starts_with("96 triangles in 48 faces") && text.contains("; closed, 1 body"),
+            "{text}"
+        );
         let json = serde_json::to_value(&info).unwrap();
         assert_eq!(json["meshes"][0]["boundary-edges"], 0);
         assert!((json["bounds"]["min"][0].as_f64().unwrap() + 1.2).abs() < 1e-6);
@@ -466,14 +514,27 @@ mod tests {
     #[test]
     fn bounds_are_those_of_what_is_seen_however_it_is_turned() {
         let mut scene = Scene::default();
-        let corners = vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [9.0, 9.0, 9.0], [0.0, f32::NAN, 0.0]];
+        let corners = vec![
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [-1.0, 0.0, 0.0],
+            [9.0, 9.0, 9.0],
+            [0.0, f32::NAN, 0.0],
+        ];
         let parts = vec![Part { name: String::new(), triangles: 0..2, material: None }];
-        let mesh = Mesh { positions: corners, triangles: vec![[0, 1, 2], [0, 2, 4]], parts, ..Mesh::default() };
+        let mesh = Mesh {
+            positions: corners,
+            triangles: vec![[0, 1, 2], [0, 2, 4]],
+            parts,
+            ..Mesh::default()
+        };
         // By 45 degrees: the box round the turned box would reach to 1.41 and -0.71.
         scene.add_mesh(mesh, DMat4::from_rotation_z(std::f64::consts::FRAC_PI_4));
         let bounds = info(&scene).unwrap().bounds.unwrap();
         let half = std::f64::consts::FRAC_1_SQRT_2;
-        for (seen, expected) in bounds.min.iter().chain(&bounds.max).zip([-half, -half, 0.0, half, half, 0.0]) {
+        for (seen, expected) in
+            bounds.min.iter().chain(&bounds.max).zip([-half, -half, 0.0, half, half, 0.0])
+        {
             assert!((seen - expected).abs() < 1e-9, "{bounds:?}");
         }
     }
@@ -484,7 +545,9 @@ mod tests {
         mesh.positions[0][1] = f32::NAN;
         let info = info(&Scene::from_mesh(mesh)).unwrap();
         assert!(!info.closed && info.meshes[0].non_finite_vertices == 1);
-        assert!(info.to_string().contains("1 vertex with a NaN") && info.warnings[0].contains("open"));
+        assert!(
+            info.to_string().contains("1 vertex with a NaN") && info.warnings[0].contains("open")
+        );
         assert!(super::info(&Scene::default()).unwrap().bounds.is_none());
     }
 
@@ -499,7 +562,8 @@ mod tests {
 
     #[test]
     fn meshes_without_names_are_told_apart_and_equal_warnings_once() {
-        let open = Mesh { name: String::new(), ..vitral_scene::builtin::solids::plane(1.0, 1.0, 1, 1) };
+        let open =
+            Mesh { name: String::new(), ..vitral_scene::builtin::solids::plane(1.0, 1.0, 1, 1) };
         let named = Mesh { name: "sheet".to_owned(), ..open.clone() };
         let mut scene = Scene::default();
         for mesh in [open.clone(), open, named.clone(), named] {

@@ -1,5 +1,6 @@
-//! The crates below this one, for those who study or extend the algorithms. **There is no promise of stability**: names in
-//! here change with any version. What programs need stands at the top of the crate.
+//! The crates below this one, for those who study or extend the algorithms. **There is no promise
+//! of stability**: names in here change with any version. What programs need stands at the top of
+//! the crate.
 
 pub use vitral_draw as draw;
 pub use vitral_exec as exec;

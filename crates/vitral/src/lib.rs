@@ -1,4 +1,5 @@
-//! A complete classical 3D renderer: a model file in, a picture out, without GPU, display or GL driver.
+//! A complete classical 3D renderer: a model file in, a picture out, without GPU, display or GL
+//! driver.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), vitral::Error> {
@@ -7,9 +8,10 @@
 //! # }
 //! ```
 //!
-//! [`open`] reads a model and [frames](View) it. [`Renderer`] holds what is to be decided about pictures: [`Settings`]
-//! (size, algorithms, background, channels), camera and lights. [`Renderer::render`] gives a [`Picture`], which can be saved,
-//! encoded, or read as bytes. A scene can also be built:
+//! [`open`] reads a model and [frames](View) it. [`Renderer`] holds what is to be decided about
+//! pictures: [`Settings`] (size, algorithms, background, channels), camera and lights.
+//! [`Renderer::render`] gives a [`Picture`], which can be saved, encoded, or read as bytes. A scene
+//! can also be built:
 //!
 //! ```
 //! use vitral::{Camera, DMat4, Light, Material, Mesh, PictureFormat, Renderer, Scene};
@@ -26,8 +28,9 @@
 //! # Ok::<(), vitral::Error>(())
 //! ```
 //!
-//! Angles are radians. Where an angle is in degrees, as on the command line and in its files, its name says so.
-//! Colours of lights and materials are linear RGB; colours of backgrounds are in the display's encoding.
+//! Angles are radians. Where an angle is in degrees, as on the command line and in its files, its
+//! name says so. Colours of lights and materials are linear RGB; colours of backgrounds are in the
+//! display's encoding.
 //!
 //! | also here | for |
 //! |---|---|
@@ -42,10 +45,10 @@
 //!
 //! # Features
 //!
-//! `threads`: pictures are computed on all processors. `obj`, `stl`, `ply`, `off`, `gltf`: the model formats. `images`:
-//! textures of other formats than PNG, and pictures as JPEG. These are on by default. Pictures do not depend on `threads`; a
-//! file of a format that is left out is refused with the name of its feature. `scalar` adds the plain scalar instruction
-//! set, for comparison.
+//! `threads`: pictures are computed on all processors. `obj`, `stl`, `ply`, `off`, `gltf`: the
+//! model formats. `images`: textures of other formats than PNG, and pictures as JPEG. These are on
+//! by default. Pictures do not depend on `threads`; a file of a format that is left out is refused
+//! with the name of its feature. `scalar` adds the plain scalar instruction set, for comparison.
 #![forbid(unsafe_code)]
 
 mod algorithms;
@@ -85,8 +88,8 @@ pub use files::{FolderResolver, ReadFile, read};
 pub use light_edit::{LightEdit, light_fields};
 pub use light_term::LightTerm;
 pub use load::{
-    FileColors, LoadOptions, Normals, builtin_names, builtin_parameters, load, load_builtin, load_bytes,
-    load_bytes_with, load_on, load_telling, load_with,
+    FileColors, LoadOptions, Normals, builtin_names, builtin_parameters, load, load_builtin,
+    load_bytes, load_bytes_with, load_on, load_telling, load_with,
 };
 pub use material_override::{MaterialOverride, material_properties, override_material};
 pub use panels::panels;
@@ -98,33 +101,40 @@ pub use state::{Objects, State};
 pub use system_clock::SystemClock;
 pub use viewpoint::Viewpoint;
 
-pub use vitral_draw::sheet::{Angle as SheetAngle, PlacedView, SYMBOL_SIZE, Sheet, SheetError, SheetLayout, symbol};
+pub use vitral_draw::sheet::{
+    Angle as SheetAngle, PlacedView, SYMBOL_SIZE, Sheet, SheetError, SheetLayout, symbol,
+};
 pub use vitral_draw::{
-    Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, Hatch, PageSize, Seams, VisibilityStats,
-    covered_area,
+    Classes as LineClasses, DrawingSettings, DrawingStats, Drawn, FaceLook, Hatch, PageSize, Seams,
+    VisibilityStats, covered_area,
 };
 pub use vitral_exec::{Budget, Clock, Limit, Progress, Workers};
 pub use vitral_frame::drawing::{Line, LineClass, Region};
-pub use vitral_frame::{Drawing, Encoding, Filter, Frame, MipFilter, Plane, Sampler, Texture, Wrap};
-pub use vitral_io::encode::{DrawingOptions, Figure, Pens, Polyline, TitleBlock, for_plotter, simplify};
+pub use vitral_frame::{
+    Drawing, Encoding, Filter, Frame, MipFilter, Plane, Sampler, Texture, Wrap,
+};
+pub use vitral_io::encode::{
+    DrawingOptions, Figure, Pens, Polyline, TitleBlock, for_plotter, simplify,
+};
 pub use vitral_io::{Error as InputError, Format, NoFiles, ResolveError, Resolver};
 pub use vitral_light::{
-    AlphaMode, AreaShape, Attenuation, EnvironmentMap, Illumination, Light, LightKind, Material, Reflectance, Rgb,
-    TextureRef, Transmission,
+    AlphaMode, AreaShape, Attenuation, EnvironmentMap, Illumination, Light, LightKind, Material,
+    Reflectance, Rgb, TextureRef, Transmission,
 };
 pub use vitral_math::{Aabb, DMat4, DQuat, DVec3};
 pub use vitral_render::catalogue::PolygonOrder;
 pub use vitral_render::stats::VisibilityCounters;
 pub use vitral_render::{
-    Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue, Environment,
-    Error as RenderError, Execution, Global, GlobalSettings, GroundShadow, Interpolation, Lines, PictureSettings,
-    Settings, SettingsError, Shading, ShadingSettings, ShadowSettings, Shadows, Stats, Terminator, Transparency,
-    TransparencyOrder, TransparencySettings, UnknownName, Visibility, VolumeCounting,
+    Acceleration, Background, Channels, Choice, Coherence, ColorSpace, Culling, DepthCue,
+    Environment, Error as RenderError, Execution, Global, GlobalSettings, GroundShadow,
+    Interpolation, Lines, PictureSettings, Settings, SettingsError, Shading, ShadingSettings,
+    ShadowSettings, Shadows, Stats, Terminator, Transparency, TransparencyOrder,
+    TransparencySettings, UnknownName, Visibility, VolumeCounting,
 };
 pub use vitral_scene::builtin::solids;
 pub use vitral_scene::{
-    Attribute, Axis, Camera, Faces, Lens, Mesh, Node, NodeTransform, Part, Projection, Scene, SectionPlane, View,
-    ViewTransform, World, lab, section, walkthrough,
+    Attribute, Axis, Camera, Faces, Lens, Mesh, Node, NodeTransform, Part, Projection, Scene,
+    SectionPlane, View, ViewTransform, World, lab, section, walkthrough,
 };
 
 /// The programs of `docs/library.md`, as tests.

@@ -1,7 +1,9 @@
 //! Changing one field of one light by name or number: `LIGHT0.diffuse=1,0,0`.
 
 use crate::Error;
-use crate::light_text::{attenuation, corners, direction, half_angle, intensity, not_negative, switch, vector};
+use crate::light_text::{
+    attenuation, corners, direction, half_angle, intensity, not_negative, switch, vector,
+};
 use crate::names::{self, list};
 use serde::{Deserialize, Serialize};
 use vitral_light::{AreaShape, Light, LightKind};
@@ -35,12 +37,23 @@ impl From<String> for Failure {
 /// Sets a field from its text.
 type Setter = fn(&mut Light, &str) -> Result<(), Failure>;
 
-/// Name, meaning, setter. Intensities are one number, three in linear light, or `#rrggbb` or a name in sRGB.
+/// Name, meaning, setter. Intensities are one number, three in linear light, or `#rrggbb` or a name
+/// in sRGB.
 const FIELDS: [(&str, &str, Setter); 15] = [
-    ("ambient", "intensity that the ambient coefficient reflects", |l, v| put(&mut l.ambient, intensity(v, false))),
-    ("diffuse", "intensity that the diffuse coefficient reflects", |l, v| put(&mut l.diffuse, intensity(v, false))),
-    ("specular", "intensity that the specular coefficient reflects", |l, v| put(&mut l.specular, intensity(v, false))),
-    ("attenuation", "none, inverse-square, c1,c2,c3, gl,constant,linear,quadratic or range,distance", set_attenuation),
+    ("ambient", "intensity that the ambient coefficient reflects", |l, v| {
+        put(&mut l.ambient, intensity(v, false))
+    }),
+    ("diffuse", "intensity that the diffuse coefficient reflects", |l, v| {
+        put(&mut l.diffuse, intensity(v, false))
+    }),
+    ("specular", "intensity that the specular coefficient reflects", |l, v| {
+        put(&mut l.specular, intensity(v, false))
+    }),
+    (
+        "attenuation",
+        "none, inverse-square, c1,c2,c3, gl,constant,linear,quadratic or range,distance",
+        set_attenuation,
+    ),
     ("shadow", "on, off: casts shadows", |l, v| put(&mut l.shadow, switch(v))),
     ("enabled", "on, off: shines", |l, v| put(&mut l.enabled, switch(v))),
     ("position", "x,y,z of a point or spot light", set_position),
@@ -49,7 +62,9 @@ const FIELDS: [(&str, &str, Setter); 15] = [
     ("inner", "half angle in degrees where a spot's fall-off begins", set_inner),
     ("exponent", "how a spot falls off inside its cone", set_exponent),
     ("center", "x,y,z of a disc", |l, v| disc(l, |center, _, _| put(center, vector(v)))),
-    ("normal", "x,y,z, the side to which a disc shines", |l, v| disc(l, |_, normal, _| put(normal, direction(v)))),
+    ("normal", "x,y,z, the side to which a disc shines", |l, v| {
+        disc(l, |_, normal, _| put(normal, direction(v)))
+    }),
     ("radius", "of a disc", |l, v| disc(l, |_, _, radius| put(radius, not_negative(v)))),
     ("corners", "x,y,z for each corner of a polygon", set_corners),
 ];
@@ -63,9 +78,11 @@ impl LightEdit {
     /// Takes `LIGHT.FIELD=VALUE` apart; the light's name may have dots.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a text without dot or equals sign, and for a field that lights do not have.
+    /// [`Error::Usage`] for a text without dot or equals sign, and for a field that lights do not
+    /// have.
     pub fn parse(text: &str) -> Result<Self, Error> {
-        let parts = text.split_once('=').and_then(|(left, value)| Some((left.rsplit_once('.')?, value)));
+        let parts =
+            text.split_once('=').and_then(|(left, value)| Some((left.rsplit_once('.')?, value)));
         let ((light, field), value) = parts.ok_or_else(|| {
             Error::usage(
                 format!("`{text}` changes no light"),
@@ -77,7 +94,8 @@ impl LightEdit {
         Ok(edit)
     }
 
-    /// The change for the raw colour space, in which a colour's name or `#rrggbb` stands for its bytes, not for light.
+    /// The change for the raw colour space, in which a colour's name or `#rrggbb` stands for its
+    /// bytes, not for light.
     #[must_use]
     pub fn raw(&self) -> Self {
         let value = names::color(&self.value).map(|[r, g, b]| format!("{r},{g},{b}"));
@@ -87,7 +105,8 @@ impl LightEdit {
     /// Changes the lights of this name or number; all others stay.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a light, field or value that is not there; the hint lists what there is.
+    /// [`Error::Usage`] for a light, field or value that is not there; the hint lists what there
+    /// is.
     pub fn apply(&self, lights: &mut [Light]) -> Result<(), Error> {
         let (meaning, set) = self.setter()?;
         let Self { light: name, field, value } = self;
@@ -113,14 +132,20 @@ impl LightEdit {
         if changed == 0 {
             let kind = &lights[found[0]].kind;
             let what = format!("light `{name}` has no `{field}`");
-            return Err(Error::usage(what, format!("a {} has {}", kind_name(kind), list(fields_of(kind)))));
+            return Err(Error::usage(
+                what,
+                format!("a {} has {}", kind_name(kind), list(fields_of(kind))),
+            ));
         }
         Ok(())
     }
 
     /// The meaning of the field and what sets it.
     fn setter(&self) -> Result<(&'static str, Setter), Error> {
-        let found = FIELDS.iter().find(|(name, ..)| *name == self.field).map(|(_, meaning, set)| (*meaning, *set));
+        let found = FIELDS
+            .iter()
+            .find(|(name, ..)| *name == self.field)
+            .map(|(_, meaning, set)| (*meaning, *set));
         found.ok_or_else(|| {
             let hint = format!("there are {}", list(FIELDS.iter().map(|(name, ..)| *name)));
             Error::usage(format!("lights have no field `{}`", self.field), hint)
@@ -130,7 +155,8 @@ impl LightEdit {
     /// The lights that are meant; at least one. A name goes before a number.
     fn find(&self, lights: &[Light]) -> Result<Vec<usize>, Error> {
         let name = self.light.as_str();
-        let named: Vec<usize> = (0..lights.len()).filter(|&i| name == "*" || lights[i].name == name).collect();
+        let named: Vec<usize> =
+            (0..lights.len()).filter(|&i| name == "*" || lights[i].name == name).collect();
         if !named.is_empty() {
             return Ok(named);
         }
@@ -170,8 +196,12 @@ fn fields_of(kind: &LightKind) -> Vec<&'static str> {
         LightKind::Ambient => &[],
         LightKind::Directional { .. } => &["direction"],
         LightKind::Point { .. } => &["attenuation", "position"],
-        LightKind::Spot { .. } => &["attenuation", "position", "direction", "cutoff", "inner", "exponent"],
-        LightKind::Area { shape: AreaShape::Disc { .. } } => &["attenuation", "center", "normal", "radius"],
+        LightKind::Spot { .. } => {
+            &["attenuation", "position", "direction", "cutoff", "inner", "exponent"]
+        }
+        LightKind::Area { shape: AreaShape::Disc { .. } } => {
+            &["attenuation", "center", "normal", "radius"]
+        }
         LightKind::Area { shape: AreaShape::Polygon { .. } } => &["attenuation", "corners"],
     };
     ["ambient", "diffuse", "specular", "shadow", "enabled"].iter().chain(own).copied().collect()
@@ -193,7 +223,9 @@ fn set_attenuation(light: &mut Light, text: &str) -> Result<(), Failure> {
 
 fn set_position(light: &mut Light, text: &str) -> Result<(), Failure> {
     match &mut light.kind {
-        LightKind::Point { position } | LightKind::Spot { position, .. } => put(position, vector(text)),
+        LightKind::Point { position } | LightKind::Spot { position, .. } => {
+            put(position, vector(text))
+        }
         _ => Err(Failure::Kind),
     }
 }
@@ -229,17 +261,25 @@ fn set_exponent(light: &mut Light, text: &str) -> Result<(), Failure> {
 /// Changes a field of a disc: its centre, its normal or its radius.
 fn disc(
     light: &mut Light,
-    change: impl FnOnce(&mut vitral_math::DVec3, &mut vitral_math::DVec3, &mut f64) -> Result<(), Failure>,
+    change: impl FnOnce(
+        &mut vitral_math::DVec3,
+        &mut vitral_math::DVec3,
+        &mut f64,
+    ) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     match &mut light.kind {
-        LightKind::Area { shape: AreaShape::Disc { center, normal, radius } } => change(center, normal, radius),
+        LightKind::Area { shape: AreaShape::Disc { center, normal, radius } } => {
+            change(center, normal, radius)
+        }
         _ => Err(Failure::Kind),
     }
 }
 
 fn set_corners(light: &mut Light, text: &str) -> Result<(), Failure> {
     match &mut light.kind {
-        LightKind::Area { shape: AreaShape::Polygon { corners: place } } => put(place, corners(text)),
+        LightKind::Area { shape: AreaShape::Polygon { corners: place } } => {
+            put(place, corners(text))
+        }
         _ => Err(Failure::Kind),
     }
 }
@@ -283,13 +323,21 @@ mod tests {
         assert!(!edited(&lights, "sun.1.shadow=off")[1].shadow);
         // A name goes before a number.
         let swapped = vec![Light::default(), Light { name: "0".to_owned(), ..Light::default() }];
-        assert_eq!(edited(&swapped, "0.shadow=off").iter().map(|l| l.shadow).collect::<Vec<_>>(), [true, false]);
+        assert_eq!(
+            edited(&swapped, "0.shadow=off").iter().map(|l| l.shadow).collect::<Vec<_>>(),
+            [true, false]
+        );
     }
 
     #[test]
     fn a_spots_cone_stays_a_cone() {
-        let spot =
-            |inner| LightKind::Spot { position: DVec3::ZERO, direction: DVec3::Z, cutoff: 1.0, inner, exponent: 0.0 };
+        let spot = |inner| LightKind::Spot {
+            position: DVec3::ZERO,
+            direction: DVec3::Z,
+            cutoff: 1.0,
+            inner,
+            exponent: 0.0,
+        };
         let cutoff = |inner| {
             let LightKind::Spot { cutoff, inner, .. } =
                 edited(&[Light { kind: spot(inner), ..Light::default() }], "0.cutoff=30")[0].kind
@@ -298,7 +346,10 @@ mod tests {
             };
             (cutoff.to_degrees().round(), inner.to_degrees().round())
         };
-        assert_eq!((cutoff(1.0), cutoff(0.1), cutoff(0.9)), ((30.0, 30.0), (30.0, 6.0), (30.0, 30.0)));
+        assert_eq!(
+            (cutoff(1.0), cutoff(0.1), cutoff(0.9)),
+            ((30.0, 30.0), (30.0, 6.0), (30.0, 30.0))
+        );
     }
 
     #[test]
@@ -314,11 +365,26 @@ mod tests {
         for (text, expected) in [
             ("LIGHT7.diffuse=1", "there is no light `LIGHT7`; there are LIGHT0, LIGHT1"),
             ("lamp.diffuse=1", "there is no light `lamp`; there are LIGHT0, LIGHT1"),
-            ("LIGHT0.color=1", "lights have no field `color`; there are ambient, diffuse, specular, "),
-            ("LIGHT1.position=1,2,3", "light `LIGHT1` has no `position`; a directional light has ambient, "),
-            ("LIGHT0.diffuse=-1", "`LIGHT0.diffuse=-1`: intensities of at least 0 are required; diffuse: "),
-            ("LIGHT0.position=1,2", "`LIGHT0.position=1,2`: 3 numbers are required, `1,2` has 2; position: "),
-            ("LIGHT1.direction=0,0,0", "`LIGHT1.direction=0,0,0`: a direction of some length is required; direction: "),
+            (
+                "LIGHT0.color=1",
+                "lights have no field `color`; there are ambient, diffuse, specular, ",
+            ),
+            (
+                "LIGHT1.position=1,2,3",
+                "light `LIGHT1` has no `position`; a directional light has ambient, ",
+            ),
+            (
+                "LIGHT0.diffuse=-1",
+                "`LIGHT0.diffuse=-1`: intensities of at least 0 are required; diffuse: ",
+            ),
+            (
+                "LIGHT0.position=1,2",
+                "`LIGHT0.position=1,2`: 3 numbers are required, `1,2` has 2; position: ",
+            ),
+            (
+                "LIGHT1.direction=0,0,0",
+                "`LIGHT1.direction=0,0,0`: a direction of some length is required; direction: ",
+            ),
             ("LIGHT0", "`LIGHT0` changes no light; LIGHT.FIELD=VALUE is required"),
         ] {
             assert!(tell(text).starts_with(expected), "{}", tell(text));
@@ -341,8 +407,10 @@ mod tests {
             LightKind::Area { shape: polygon },
         ] {
             for (name, _, set) in &FIELDS {
-                let taken =
-                    !matches!(set(&mut Light { kind: kind.clone(), ..Light::default() }, "x"), Err(Failure::Kind));
+                let taken = !matches!(
+                    set(&mut Light { kind: kind.clone(), ..Light::default() }, "x"),
+                    Err(Failure::Kind)
+                );
                 assert_eq!(taken, fields_of(&kind).contains(name), "{name} of {kind:?}");
             }
         }

@@ -1,11 +1,13 @@
-//! One term of the lights alone: what the ambient, the diffuse or the specular part of all lights adds to a picture.
+//! One term of the lights alone: what the ambient, the diffuse or the specular part of all lights
+//! adds to a picture.
 
 use serde::{Deserialize, Serialize};
 use vitral_light::Light;
 
 /// A part of every light.
 ///
-/// In raw colours without clamping the pictures of the three terms add up to the whole one, where no surface shines by itself.
+/// In raw colours without clamping the pictures of the three terms add up to the whole one, where
+/// no surface shines by itself.
 ///
 /// Source: the course, notes L, L5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,7 +33,10 @@ impl LightTerm {
             (Self::Diffuse, &mut light.diffuse),
             (Self::Specular, &mut light.specular),
         ];
-        parts.into_iter().filter(|(term, _)| *term != self).for_each(|(_, color)| *color = [0.0; 3]);
+        parts
+            .into_iter()
+            .filter(|(term, _)| *term != self)
+            .for_each(|(_, color)| *color = [0.0; 3]);
     }
 }
 

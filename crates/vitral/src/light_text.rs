@@ -1,4 +1,5 @@
-//! Values of lights as people type them: numbers, vectors, intensities, laws of attenuation. Each parser says what it requires.
+//! Values of lights as people type them: numbers, vectors, intensities, laws of attenuation. Each
+//! parser says what it requires.
 
 use crate::names;
 use vitral_light::Attenuation;
@@ -20,7 +21,8 @@ pub fn number(text: &str) -> Result<f64, String> {
 /// # Errors
 /// As [`number`].
 pub fn positive(text: &str) -> Result<f64, String> {
-    number(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err("a number above 0 is required".to_owned()) })
+    number(text)
+        .and_then(|v| if v > 0.0 { Ok(v) } else { Err("a number above 0 is required".to_owned()) })
 }
 
 /// A finite number of at least 0.
@@ -28,7 +30,9 @@ pub fn positive(text: &str) -> Result<f64, String> {
 /// # Errors
 /// As [`number`].
 pub fn not_negative(text: &str) -> Result<f64, String> {
-    number(text).and_then(|v| if v >= 0.0 { Ok(v) } else { Err("a number of at least 0 is required".to_owned()) })
+    number(text).and_then(|v| {
+        if v >= 0.0 { Ok(v) } else { Err("a number of at least 0 is required".to_owned()) }
+    })
 }
 
 /// `N` finite numbers, separated by commas.
@@ -55,7 +59,11 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
 /// As [`number`].
 pub fn direction(text: &str) -> Result<DVec3, String> {
     let v = vector(text)?;
-    if v.try_normalize().is_some() { Ok(v) } else { Err("a direction of some length is required".to_owned()) }
+    if v.try_normalize().is_some() {
+        Ok(v)
+    } else {
+        Err("a direction of some length is required".to_owned())
+    }
 }
 
 /// `on` or `off`.
@@ -70,8 +78,8 @@ pub fn switch(text: &str) -> Result<bool, String> {
     }
 }
 
-/// One number for grey light, red, green and blue, or a colour's name; `raw` is the colour space in which a name stands for its
-/// bytes, not for light.
+/// One number for grey light, red, green and blue, or a colour's name; `raw` is the colour space in
+/// which a name stands for its bytes, not for light.
 ///
 /// # Errors
 /// As [`number`].
@@ -84,7 +92,11 @@ pub fn intensity(text: &str, raw: bool) -> Result<[f32; 3], String> {
         return Err("intensities of at least 0 are required".to_owned());
     }
     let single = rgb.map(|c| c as f32);
-    if single.iter().all(|c| c.is_finite()) { Ok(single) } else { Err("finite intensities are required".to_owned()) }
+    if single.iter().all(|c| c.is_finite()) {
+        Ok(single)
+    } else {
+        Err("finite intensities are required".to_owned())
+    }
 }
 
 /// A half angle of a cone in degrees; gives radians.
@@ -107,13 +119,16 @@ pub fn corners(text: &str) -> Result<Vec<DVec3>, String> {
     let values = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
     let (corners, rest) = values.as_chunks::<3>();
     if corners.len() < 3 || !rest.is_empty() {
-        return Err(format!("three numbers for each of at least three corners are required, not {}", values.len()));
+        return Err(format!(
+            "three numbers for each of at least three corners are required, not {}",
+            values.len()
+        ));
     }
     Ok(corners.iter().map(|&c| DVec3::from_array(c)).collect())
 }
 
-/// A law of attenuation: `none`, `inverse-square`, `c1,c2,c3` for the course's `min(1 / (c1 + c2 d + c3 d²), 1)`,
-/// `gl,constant,linear,quadratic`, or `range,distance`.
+/// A law of attenuation: `none`, `inverse-square`, `c1,c2,c3` for the course's
+/// `min(1 / (c1 + c2 d + c3 d²), 1)`, `gl,constant,linear,quadratic`, or `range,distance`.
 ///
 /// # Errors
 /// As [`number`].
@@ -122,12 +137,20 @@ pub fn attenuation(text: &str) -> Result<Attenuation, String> {
     let terms = |text: &str| -> Result<[f64; 3], String> {
         let terms = numbers::<3>(text)?;
         let sound = terms.iter().all(|&t| t >= 0.0) && terms.iter().any(|&t| t > 0.0);
-        if sound { Ok(terms) } else { Err("three terms of at least 0, not all 0, are required".to_owned()) }
+        if sound {
+            Ok(terms)
+        } else {
+            Err("three terms of at least 0, not all 0, are required".to_owned())
+        }
     };
     match form {
         "none" if rest.is_empty() => Ok(Attenuation::None),
         "inverse-square" if rest.is_empty() => Ok(Attenuation::InverseSquare),
-        "gl" => terms(rest).map(|[constant, linear, quadratic]| Attenuation::Gl { constant, linear, quadratic }),
+        "gl" => terms(rest).map(|[constant, linear, quadratic]| Attenuation::Gl {
+            constant,
+            linear,
+            quadratic,
+        }),
         "range" => positive(rest).map(|range| Attenuation::Range { range }),
         _ => terms(text).map(|[c1, c2, c3]| Attenuation::Clamped { c1, c2, c3 }),
     }

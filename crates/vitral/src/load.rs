@@ -9,8 +9,8 @@ use vitral_io::{Moment, NoFiles, Resolver};
 use vitral_scene::builtin::{self, BuiltinError};
 use vitral_scene::{Mesh, lab, normals};
 
-/// Meshes with fewer triangles than this, and than a fair share of all, get their normals side by side; larger ones share the
-/// threads one after the other.
+/// Meshes with fewer triangles than this, and than a fair share of all, get their normals side by
+/// side; larger ones share the threads one after the other.
 const SMALL_MESH: usize = 1 << 16;
 /// Below this, sharing costs more than it saves.
 const TINY_MESH: usize = 1 << 11;
@@ -19,15 +19,15 @@ const TINY_MESH: usize = 1 << 11;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
 pub struct LoadOptions {
-    /// The animation that is shown, of glTF files: its number, from 0, or its name; `None`: the first where there is a time, else
-    /// models are at rest.
+    /// The animation that is shown, of glTF files: its number, from 0, or its name; `None`: the
+    /// first where there is a time, else models are at rest.
     pub animation: Option<String>,
     /// The moment of the animation, in seconds; `None`: its beginning.
     pub animation_time: Option<f64>,
     /// The model may name files outside its folder.
     pub allow_external: bool,
-    /// Where normals are made: faces that differ by more than this angle have an edge between them, radians, `0..=π`; `None`:
-    /// [`CREASE_ANGLE`](Self::CREASE_ANGLE).
+    /// Where normals are made: faces that differ by more than this angle have an edge between them,
+    /// radians, `0..=π`; `None`: [`CREASE_ANGLE`](Self::CREASE_ANGLE).
     pub crease_angle: Option<f64>,
     /// How colours of materials are meant whose format does not say.
     pub file_colors: FileColors,
@@ -56,7 +56,8 @@ impl Default for LoadOptions {
 }
 
 impl LoadOptions {
-    /// 40 degrees, which keep the rims of a 9-sided cylinder smooth and the edges of an octagonal prism sharp.
+    /// 40 degrees, which keep the rims of a 9-sided cylinder smooth and the edges of an octagonal
+    /// prism sharp.
     pub const CREASE_ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
     /// The moment at which models are shown, if not at rest.
@@ -89,12 +90,13 @@ pub enum Normals {
     File,
     /// Made anew by the crease angle alone, whatever the file has.
     Made,
-    /// None are given: `(0, 0, 1)` in model space for every vertex, as OpenGL does without glNormal (exercise 5.2).
+    /// None are given: `(0, 0, 1)` in model space for every vertex, as OpenGL does without glNormal
+    /// (exercise 5.2).
     None,
 }
 
-/// Reads a model: a file, `builtin:NAME`, or `-` for standard input. Files that it names are looked for beside it, those that a
-/// model from standard input names in the current folder.
+/// Reads a model: a file, `builtin:NAME`, or `-` for standard input. Files that it names are looked
+/// for beside it, those that a model from standard input names in the current folder.
 ///
 /// # Errors
 /// A file that is missing, malformed, not of a known format or above the limit.
@@ -114,11 +116,16 @@ pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene,
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_on(path: impl AsRef<Path>, options: &LoadOptions, workers: &Workers) -> Result<Scene, Error> {
+pub fn load_on(
+    path: impl AsRef<Path>,
+    options: &LoadOptions,
+    workers: &Workers,
+) -> Result<Scene, Error> {
     load_telling(path, options, workers, &|_| {})
 }
 
-/// [`load_on`] that tells of each file that is read, the model's own first; a file may be told more than once.
+/// [`load_on`] that tells of each file that is read, the model's own first; a file may be told more
+/// than once.
 ///
 /// # Errors
 /// As [`load`].
@@ -146,15 +153,16 @@ pub fn load_telling(
     let folder = path.parent().unwrap_or(Path::new(""));
     let folder = FolderResolver::new(folder, options.allow_external, options.max_file_bytes);
     let resolver = ToldFiles { folder, tell };
-    let mut scene = vitral_io::load_at(&bytes, &name, &resolver, workers, options.moment().as_ref())?;
+    let mut scene =
+        vitral_io::load_at(&bytes, &name, &resolver, workers, options.moment().as_ref())?;
     // Drop the file before normals take room.
     drop(bytes);
     finish(&mut scene, options, workers);
     Ok(scene)
 }
 
-/// Reads a model from memory that names no other files. `name` is for messages, and its extension decides where the content
-/// leaves a doubt.
+/// Reads a model from memory that names no other files. `name` is for messages, and its extension
+/// decides where the content leaves a doubt.
 ///
 /// # Errors
 /// Content that is malformed or not of a known format.
@@ -181,7 +189,8 @@ pub fn load_bytes_with(
 /// A scene that needs no file: `NAME` or `NAME?PARAMETER=NUMBER&...`.
 ///
 /// # Errors
-/// [`Error::Read`] for a name that is not among [`builtin_names`], [`Error::Usage`] for what is not among [`builtin_parameters`].
+/// [`Error::Read`] for a name that is not among [`builtin_names`], [`Error::Usage`] for what is not
+/// among [`builtin_parameters`].
 pub fn load_builtin(name: &str) -> Result<Scene, Error> {
     builtin::parse(name).map_err(|error| match error {
         BuiltinError::Name => {
@@ -217,7 +226,8 @@ fn finish(scene: &mut Scene, options: &LoadOptions, workers: &Workers) {
         Normals::Made => {
             for mesh in scene.meshes.iter_mut().filter(|m| !m.triangles.is_empty()) {
                 let mesh = Arc::make_mut(mesh);
-                (mesh.normals, mesh.normals_stay, mesh.tangents, mesh.smoothing_groups) = (None, false, None, None);
+                (mesh.normals, mesh.normals_stay, mesh.tangents, mesh.smoothing_groups) =
+                    (None, false, None, None);
             }
             make_normals(scene, options.crease_angle, workers);
         }
@@ -236,11 +246,14 @@ fn make_normals(scene: &mut Scene, crease_angle: Option<f64>, workers: &Workers)
     let all: usize = lacking.iter().map(|m| m.triangles.len()).sum();
     // A thread with more than half of its fair share in one piece may be the last to end.
     let large = (all / (2 * workers.threads())).clamp(TINY_MESH, SMALL_MESH);
-    let (large, small): (Vec<_>, Vec<_>) = lacking.into_iter().partition(|m| m.triangles.len() >= large);
+    let (large, small): (Vec<_>, Vec<_>) =
+        lacking.into_iter().partition(|m| m.triangles.len() >= large);
     for mesh in large {
         normals::generate(Arc::make_mut(mesh), crease_angle, workers);
     }
-    workers.for_each(small, |mesh| normals::generate(Arc::make_mut(mesh), crease_angle, &Workers::single()));
+    workers.for_each(small, |mesh| {
+        normals::generate(Arc::make_mut(mesh), crease_angle, &Workers::single())
+    });
 }
 
 /// Whether a normal is missing, so that sound meshes that are shared are not copied.
@@ -262,7 +275,9 @@ mod tests {
     #[test]
     fn missing_normals_are_made_if_wanted() {
         let made = square(&LoadOptions::default());
-        assert!(made.meshes[0].normals.as_ref().unwrap().values.iter().all(|n| *n == [0.0, 0.0, 1.0]));
+        assert!(
+            made.meshes[0].normals.as_ref().unwrap().values.iter().all(|n| *n == [0.0, 0.0, 1.0])
+        );
         let plain = square(&LoadOptions { make_normals: false, ..LoadOptions::default() });
         assert!(plain.meshes[0].normals.is_none());
     }
@@ -272,26 +287,37 @@ mod tests {
         // Two squares at a right angle, with normals of their own in the file.
         let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 -1\nv 0 1 -1\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\nf 1//1 4//1 6//1 5//1\n";
         let of = |normals, crease_angle: Option<f64>| {
-            let options =
-                LoadOptions { normals, crease_angle: crease_angle.map(f64::to_radians), ..LoadOptions::default() };
+            let options = LoadOptions {
+                normals,
+                crease_angle: crease_angle.map(f64::to_radians),
+                ..LoadOptions::default()
+            };
             let scene = load_bytes_with(text, "l.obj", &NoFiles, &options).unwrap();
             let mesh = &scene.meshes[0];
             (mesh.normals.as_ref().unwrap().at(0, &mesh.triangles)[0], scene.warnings.len())
         };
         assert_eq!(of(Normals::File, None), ([0.0, 0.0, 1.0], 0));
-        assert_eq!(of(Normals::File, Some(100.0)), ([0.0, 0.0, 1.0], 1), "nothing is made, and it says so");
+        assert_eq!(
+            of(Normals::File, Some(100.0)),
+            ([0.0, 0.0, 1.0], 1),
+            "nothing is made, and it says so"
+        );
         assert_eq!(of(Normals::Made, None), ([0.0, 0.0, 1.0], 0));
         let (smooth, warnings) = of(Normals::Made, Some(100.0));
         let half = std::f32::consts::FRAC_1_SQRT_2;
         assert!(
-            smooth.iter().zip([-half, 0.0, half]).all(|(a, b)| (a - b).abs() < 1e-6) && warnings == 0,
+            smooth.iter().zip([-half, 0.0, half]).all(|(a, b)| (a - b).abs() < 1e-6)
+                && warnings == 0,
             "{smooth:?}"
         );
     }
 
     #[test]
     fn l22_no_normals_means_the_current_normal() {
-        let mut cube = load_with("builtin:cubs", &LoadOptions { normals: Normals::None, ..LoadOptions::default() });
+        let mut cube = load_with(
+            "builtin:cubs",
+            &LoadOptions { normals: Normals::None, ..LoadOptions::default() },
+        );
         let mesh = cube.as_mut().unwrap().meshes.swap_remove(0);
         assert_eq!(mesh.normals.as_ref().unwrap().at(7, &mesh.triangles), [[0.0, 0.0, 1.0]; 3]);
     }
@@ -301,7 +327,10 @@ mod tests {
         let error = load("builtin:nothing").unwrap_err();
         assert_eq!(error.to_string(), "builtin:nothing: there is no such scene");
         let error = load("no/such/file.obj").unwrap_err();
-        assert!(error.to_string().starts_with("no/such/file.obj: ") && matches!(error, Error::Read { .. }));
+        assert!(
+            error.to_string().starts_with("no/such/file.obj: ")
+                && matches!(error, Error::Read { .. })
+        );
     }
 
     #[test]

@@ -26,14 +26,23 @@ impl MaterialOverride {
     /// # Errors
     /// [`Error::Usage`] for a text without dot or equals sign.
     pub fn parse(text: &str) -> Result<Self, Error> {
-        let parts = text.split_once('=').and_then(|(left, value)| Some((left.rsplit_once('.')?, value)));
+        let parts =
+            text.split_once('=').and_then(|(left, value)| Some((left.rsplit_once('.')?, value)));
         let ((material, property), value) = parts.ok_or_else(|| {
-            Error::usage(format!("`{text}` changes no material"), "NAME.PROPERTY=VALUE is required, like glass.ior=1.5")
+            Error::usage(
+                format!("`{text}` changes no material"),
+                "NAME.PROPERTY=VALUE is required, like glass.ior=1.5",
+            )
         })?;
-        Ok(Self { material: material.into(), property: property.into(), value: value.trim().into() })
+        Ok(Self {
+            material: material.into(),
+            property: property.into(),
+            value: value.trim().into(),
+        })
     }
 
-    /// The change for the raw colour space, in which a colour's name or `#rrggbb` stands for its bytes, not for light.
+    /// The change for the raw colour space, in which a colour's name or `#rrggbb` stands for its
+    /// bytes, not for light.
     #[must_use]
     pub fn raw(&self) -> Self {
         let value = names::color(&self.value).map(|[r, g, b]| format!("{r},{g},{b}"));
@@ -60,10 +69,13 @@ enum Failure {
     Form,
 }
 
-/// The property that takes away the holes which the alpha of a texture makes, and its meaning. It needs the scene's textures.
-const TEXTURE_ALPHA: (&str, &str) = ("texture-alpha", "ignore: the base texture's alpha counts for nothing");
+/// The property that takes away the holes which the alpha of a texture makes, and its meaning. It
+/// needs the scene's textures.
+const TEXTURE_ALPHA: (&str, &str) =
+    ("texture-alpha", "ignore: the base texture's alpha counts for nothing");
 
-/// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` or a name in sRGB.
+/// Name, meaning, setter. Colours are three numbers in linear light, or `#rrggbb` or a name in
+/// sRGB.
 const PROPERTIES: [(&str, &str, Setter); 24] = [
     ("color", "diffuse and ambient, or base colour", set_color),
     ("ka", "ambient coefficient", |m, v| phong(m, |ka, _, _, _| ka, v)),
@@ -76,15 +88,21 @@ const PROPERTIES: [(&str, &str, Setter); 24] = [
     ("emission", "light sent out", |m, v| put(&mut m.emission, color(v))),
     ("opacity", "1 opaque, 0 invisible", |m, v| set_opacity(m, unit(v)?)),
     ("kt", "1 - opacity", |m, v| set_opacity(m, 1.0 - unit(v)?)),
-    ("kt-min", "what passes at the silhouette (--transparency kay)", |m, v| put(&mut m.kt_min, unit(v))),
+    ("kt-min", "what passes at the silhouette (--transparency kay)", |m, v| {
+        put(&mut m.kt_min, unit(v))
+    }),
     ("alpha-mode", "opaque, mask, blend", set_alpha_mode),
     ("transmission", "transparent, translucent", set_transmission),
     ("glass", "true, false: highlights stay whole, and what is mirrored does not pass", |m, v| {
         put(&mut m.glass, boolean(v))
     }),
-    ("filter", "colour of light that passes (--transparency filtered)", |m, v| put(&mut m.filter, filter(v))),
+    ("filter", "colour of light that passes (--transparency filtered)", |m, v| {
+        put(&mut m.filter, filter(v))
+    }),
     ("ior", "index of refraction, above 0", set_ior),
-    ("mirror", "true, false: shows mirror images (--global ray-trace)", |m, v| put(&mut m.mirror, boolean(v))),
+    ("mirror", "true, false: shows mirror images (--global ray-trace)", |m, v| {
+        put(&mut m.mirror, boolean(v))
+    }),
     ("double-sided", "true, false: seen from the front alone", set_sides),
     ("unlit", "true, false", |m, v| put(&mut m.unlit, boolean(v))),
     ("occlusion-strength", "how much the occlusion texture counts, 0 to 1", |m, v| {
@@ -104,12 +122,17 @@ pub fn material_properties() -> impl Iterator<Item = (&'static str, &'static str
     PROPERTIES.iter().map(|(name, meaning, _)| (*name, *meaning)).chain([TEXTURE_ALPHA])
 }
 
-/// Sets `property` of the materials called `name` (all with `*`; `default` stands for surfaces without material) to
-/// what the text `value` says.
+/// Sets `property` of the materials called `name` (all with `*`; `default` stands for surfaces
+/// without material) to what the text `value` says.
 ///
 /// # Errors
 /// [`Error::Usage`] for a name, property or value that is not there; the hint lists what there is.
-pub fn override_material(scene: &mut Scene, name: &str, property: &str, value: &str) -> Result<(), Error> {
+pub fn override_material(
+    scene: &mut Scene,
+    name: &str,
+    property: &str,
+    value: &str,
+) -> Result<(), Error> {
     if property == TEXTURE_ALPHA.0 {
         return ignore_texture_alpha(scene, name, value);
     }
@@ -134,14 +157,17 @@ pub fn override_material(scene: &mut Scene, name: &str, property: &str, value: &
     if changed == 0 {
         let hint = match scene.materials[found[0]].reflectance {
             Reflectance::Phong { .. } => "it has color, ka, kd, ks, shininess",
-            Reflectance::MetallicRoughness { .. } => "it has color, base-color, metallic, roughness",
+            Reflectance::MetallicRoughness { .. } => {
+                "it has color, base-color, metallic, roughness"
+            }
         };
         return Err(Error::usage(format!("material `{name}` has no `{property}`"), hint));
     }
     Ok(())
 }
 
-/// Gives materials base textures without alpha. What is opaque apart from its texture is opaque then.
+/// Gives materials base textures without alpha. What is opaque apart from its texture is opaque
+/// then.
 fn ignore_texture_alpha(scene: &mut Scene, name: &str, value: &str) -> Result<(), Error> {
     if value != "ignore" {
         let what = format!("`{name}.texture-alpha={value}`: ignore is required");
@@ -153,7 +179,8 @@ fn ignore_texture_alpha(scene: &mut Scene, name: &str, value: &str) -> Result<()
             material.alpha_mode = AlphaMode::Opaque;
         }
         let Some(base) = &mut material.base_texture else { continue };
-        let Some(texture) = scene.textures.get(base.texture as usize).filter(|texture| !texture.levels.is_empty())
+        let Some(texture) =
+            scene.textures.get(base.texture as usize).filter(|texture| !texture.levels.is_empty())
         else {
             continue;
         };
@@ -167,22 +194,26 @@ fn ignore_texture_alpha(scene: &mut Scene, name: &str, value: &str) -> Result<()
 
 /// The materials of this name; at least one.
 fn find(scene: &mut Scene, name: &str) -> Result<Vec<usize>, Error> {
-    let found: Vec<usize> =
-        (0..scene.materials.len()).filter(|&i| name == "*" || scene.materials[i].name == name).collect();
+    let found: Vec<usize> = (0..scene.materials.len())
+        .filter(|&i| name == "*" || scene.materials[i].name == name)
+        .collect();
     if !found.is_empty() {
         return Ok(found);
     }
     let bare = scene.meshes.iter().any(|m| m.parts.iter().any(|p| p.material.is_none()));
     if bare && matches!(name, "default" | "*") {
         // Give surfaces without material one that can be changed.
-        let index = scene.add_material(Material { name: "default".to_owned(), ..Material::default() });
-        for mesh in scene.meshes.iter_mut().filter(|m| m.parts.iter().any(|p| p.material.is_none())) {
+        let index =
+            scene.add_material(Material { name: "default".to_owned(), ..Material::default() });
+        for mesh in scene.meshes.iter_mut().filter(|m| m.parts.iter().any(|p| p.material.is_none()))
+        {
             let mesh = Arc::make_mut(mesh);
             mesh.parts.iter_mut().for_each(|p| p.material = p.material.or(Some(index)));
         }
         return Ok(vec![index as usize]);
     }
-    let mut names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).filter(|n| !n.is_empty()).collect();
+    let mut names: Vec<&str> =
+        scene.materials.iter().map(|m| m.name.as_str()).filter(|n| !n.is_empty()).collect();
     names.extend(bare.then_some("default"));
     let hint = if names.is_empty() {
         "the scene has no named materials".to_owned()
@@ -209,7 +240,10 @@ fn number(text: &str) -> Result<f32, Failure> {
 }
 
 fn unit(text: &str) -> Result<f32, Failure> {
-    number(text).ok().filter(|n| (0.0..=1.0).contains(n)).ok_or(Failure::Value("a number from 0 to 1"))
+    number(text)
+        .ok()
+        .filter(|n| (0.0..=1.0).contains(n))
+        .ok_or(Failure::Value("a number from 0 to 1"))
 }
 
 fn boolean(text: &str) -> Result<bool, Failure> {
@@ -252,7 +286,9 @@ fn phong(
     value: &str,
 ) -> Result<(), Failure> {
     match &mut material.reflectance {
-        Reflectance::Phong { ka, kd, ks, shininess } => put(choose(ka, kd, ks, shininess), color(value)),
+        Reflectance::Phong { ka, kd, ks, shininess } => {
+            put(choose(ka, kd, ks, shininess), color(value))
+        }
         Reflectance::MetallicRoughness { .. } => Err(Failure::Form),
     }
 }
@@ -271,7 +307,9 @@ fn microfacet(
     value: &str,
 ) -> Result<(), Failure> {
     match &mut material.reflectance {
-        Reflectance::MetallicRoughness { metallic, roughness, .. } => put(choose(metallic, roughness), unit(value)),
+        Reflectance::MetallicRoughness { metallic, roughness, .. } => {
+            put(choose(metallic, roughness), unit(value))
+        }
         Reflectance::Phong { .. } => Err(Failure::Form),
     }
 }
@@ -368,7 +406,9 @@ mod tests {
         assert_eq!((ball.ior, ball.opacity, ball.alpha_mode), (1.7, 0.75, AlphaMode::Blend));
         assert_eq!(ball.filter, [0.0, 1.0, 0.5]);
         assert_eq!(ball.emission, [1.0, 0.0, 0.0]);
-        let Reflectance::Phong { kd, shininess, .. } = ball.reflectance else { panic!("the form stays") };
+        let Reflectance::Phong { kd, shininess, .. } = ball.reflectance else {
+            panic!("the form stays")
+        };
         assert_eq!((kd, shininess), ([0.1, 0.2, 0.3], 5.0));
     }
 
@@ -388,12 +428,22 @@ mod tests {
     #[test]
     fn holes_of_a_texture_can_be_closed() {
         let mut scene = load_builtin("sphere").unwrap();
-        let leaf = vitral_frame::Plane::from_rows(2, 1, vec![[9, 8, 7, 0], [1, 2, 3, 255]]).unwrap();
-        scene.textures.push(Arc::new(Texture::new("leaf".to_owned(), leaf, vitral_frame::Encoding::Srgb)));
+        let leaf =
+            vitral_frame::Plane::from_rows(2, 1, vec![[9, 8, 7, 0], [1, 2, 3, 255]]).unwrap();
+        scene.textures.push(Arc::new(Texture::new(
+            "leaf".to_owned(),
+            leaf,
+            vitral_frame::Encoding::Srgb,
+        )));
         let number = scene.textures.len() as u32 - 1;
         scene.materials[0].base_texture = Some(vitral_light::TextureRef::new(number));
         scene.materials[0].alpha_mode = AlphaMode::Mask { cutoff: 0.5 };
-        assert!(change(&mut scene, "ball.texture-alpha=cut").unwrap_err().to_string().contains("ignore is required"));
+        assert!(
+            change(&mut scene, "ball.texture-alpha=cut")
+                .unwrap_err()
+                .to_string()
+                .contains("ignore is required")
+        );
         change(&mut scene, "ball.texture-alpha=ignore").unwrap();
         let ball = &scene.materials[0];
         assert_eq!(ball.alpha_mode, AlphaMode::Opaque);
@@ -428,7 +478,8 @@ mod tests {
 
     #[test]
     fn surfaces_without_material_can_get_one() {
-        let mut scene = Scene::from_mesh(vitral_scene::builtin::solids::cuboid(vitral_math::DVec3::ONE));
+        let mut scene =
+            Scene::from_mesh(vitral_scene::builtin::solids::cuboid(vitral_math::DVec3::ONE));
         change(&mut scene, "default.color=#ffffff").unwrap();
         change(&mut scene, "default.shininess=9").unwrap();
         assert_eq!((scene.materials.len(), scene.meshes[0].parts[0].material), (1, Some(0)));

@@ -1,4 +1,5 @@
-//! Names of choices that have none below: standard views, axes and colours, as the command line and files spell them.
+//! Names of choices that have none below: standard views, axes and colours, as the command line and
+//! files spell them.
 
 use crate::Error;
 use vitral_math::color::linear_from_srgb;
@@ -28,7 +29,10 @@ pub fn view_name(view: View) -> &'static str {
 pub fn view(name: &str) -> Result<View, Error> {
     let found = VIEWS.iter().find(|(_, n)| *n == name).map(|(v, _)| *v);
     found.ok_or_else(|| {
-        Error::usage(format!("there is no view `{name}`"), format!("choose {}", list(VIEWS.map(|v| v.1))))
+        Error::usage(
+            format!("there is no view `{name}`"),
+            format!("choose {}", list(VIEWS.map(|v| v.1))),
+        )
     })
 }
 
@@ -70,7 +74,9 @@ pub fn color(name: &str) -> Option<[f32; 3]> {
             let value = u32::from_str_radix(hex, 16).ok()?;
             match hex.len() {
                 6 => value,
-                3 => (value >> 8 & 15) * 0x11_0000 + (value >> 4 & 15) * 0x1100 + (value & 15) * 0x11,
+                3 => {
+                    (value >> 8 & 15) * 0x11_0000 + (value >> 4 & 15) * 0x1100 + (value & 15) * 0x11
+                }
                 _ => return None,
             }
         }
@@ -95,17 +101,23 @@ pub(crate) mod serde_view {
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
     use vitral_scene::View;
 
-    pub(crate) fn serialize<S: Serializer>(view: &Option<View>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(
+        view: &Option<View>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
         match view {
             Some(view) => serializer.serialize_str(super::view_name(*view)),
             None => serializer.serialize_none(),
         }
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<View>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<View>, D::Error> {
         let named = |name: String| {
-            super::view(&name)
-                .map_err(|e| D::Error::custom(format!("{e}: choose {}", super::list(super::VIEWS.map(|v| v.1)))))
+            super::view(&name).map_err(|e| {
+                D::Error::custom(format!("{e}: choose {}", super::list(super::VIEWS.map(|v| v.1))))
+            })
         };
         Option::<String>::deserialize(deserializer)?.map(named).transpose()
     }
@@ -116,14 +128,19 @@ pub(crate) mod serde_axis {
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
     use vitral_scene::Axis;
 
-    pub(crate) fn serialize<S: Serializer>(axis: &Option<Axis>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(
+        axis: &Option<Axis>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
         match axis {
             Some(axis) => serializer.serialize_str(&axis.to_string()),
             None => serializer.serialize_none(),
         }
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Axis>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<Axis>, D::Error> {
         let name = Option::<String>::deserialize(deserializer)?;
         name.map(|n| super::axis(&n).map_err(D::Error::custom)).transpose()
     }

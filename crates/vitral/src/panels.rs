@@ -1,12 +1,14 @@
 //! The notes' figures of an algorithm for shadows: six pictures, three in a row, on one sheet.
 //!
-//! In image space (`--shadows map`), after the figure from Columbia University: the whole scene with light and viewer; the
-//! z-buffer from the light, in no more texels than a map has; the z-buffer from the viewer; the picture without shadows; the
-//! finished picture darkened where shadow falls, highlights and all; the picture whose illumination knows the shadows.
+//! In image space (`--shadows map`), after the figure from Columbia University: the whole scene
+//! with light and viewer; the z-buffer from the light, in no more texels than a map has; the
+//! z-buffer from the viewer; the picture without shadows; the finished picture darkened where
+//! shadow falls, highlights and all; the picture whose illumination knows the shadows.
 //!
-//! At object precision (`--shadows object-precision`), after the figure from Cornell University: the whole scene with light
-//! and viewer; what the light sees; the lit polygons as the light sees them, the same outlines; the lit polygons as the
-//! viewer sees them; the picture without shadows; the picture with them.
+//! At object precision (`--shadows object-precision`), after the figure from Cornell University:
+//! the whole scene with light and viewer; what the light sees; the lit polygons as the light sees
+//! them, the same outlines; the lit polygons as the viewer sees them; the picture without shadows;
+//! the picture with them.
 
 use crate::{Error, Picture, Renderer};
 use vitral_frame::{Frame, Plane};
@@ -24,8 +26,8 @@ const DARKENED: f32 = 0.5;
 
 type Colors = Plane<[u8; 4]>;
 
-/// The panels of `renderer`'s shadow algorithm, seen by `camera`; each has the size of a picture. Light and shadow are those
-/// of the first light that casts shadows.
+/// The panels of `renderer`'s shadow algorithm, seen by `camera`; each has the size of a picture.
+/// Light and shadow are those of the first light that casts shadows.
 ///
 /// # Errors
 /// Shadows without panels, a scene without such a light, and whatever ends a picture.
@@ -33,13 +35,17 @@ pub fn panels(renderer: &mut Renderer, camera: &Camera) -> Result<Picture, Error
     let settings = renderer.settings.clone();
     let shadows = settings.shadows.algorithm;
     let Some(sequence) = shadows.panels else {
-        let error = SettingsError::Panels { shadows, choices: Shadows::names(|row| row.panels.is_some()) };
+        let error =
+            SettingsError::Panels { shadows, choices: Shadows::names(|row| row.panels.is_some()) };
         return Err(vitral_render::Error::from(error).into());
     };
     let lights = renderer.frame_lights(camera);
     let number = lights.iter().position(|l| l.kind != LightKind::Ambient && l.shadow);
     let Some(number) = number else {
-        return Err(Error::usage("no light casts shadows", "add one: --light directional:direction=0,-1,-1"));
+        return Err(Error::usage(
+            "no light casts shadows",
+            "add one: --light directional:direction=0,-1,-1",
+        ));
     };
     let from_light = light_camera(renderer, &lights[number]);
     let overview = overview(renderer, camera, &lights, &from_light)?;
@@ -75,8 +81,10 @@ fn six(
                 let depth = Channels { depth: true, color: false, ..Channels::default() };
                 let depths = without.with_channels(depth);
                 let cast = Channels { cast_shadow: true, color: false, ..Channels::default() };
-                let mask = shot(&with.with_channels(cast), camera)?.frame.cast_shadow.unwrap_or_default();
-                let [light, viewer] = [shot(&texels(&depths), from_light)?, shot(&depths, camera)?].map(grey);
+                let mask =
+                    shot(&with.with_channels(cast), camera)?.frame.cast_shadow.unwrap_or_default();
+                let [light, viewer] =
+                    [shot(&texels(&depths), from_light)?, shot(&depths, camera)?].map(grey);
                 let light = enlarged(&light, [viewer.width(), viewer.height()]);
                 let darkened = darkened(&plain, &mask);
                 [light, viewer, plain, darkened]
@@ -86,7 +94,8 @@ fn six(
                 renderer.settings = with.clone();
                 let mut lit = lit_scene(renderer, number)?;
                 lit.settings = without;
-                let [light, viewer] = [color(lit.render_from(from_light)?), color(lit.render_from(camera)?)];
+                let [light, viewer] =
+                    [color(lit.render_from(from_light)?), color(lit.render_from(camera)?)];
                 [seen, light, viewer, plain]
             }
         };
@@ -112,28 +121,33 @@ fn color(rendered: Picture) -> Colors {
 fn grey(rendered: Picture) -> Colors {
     let depth = rendered.frame.depth.unwrap_or_default();
     let seen = depth.data().iter().copied().filter(|&z| z > 0.0);
-    let (low, high) = seen.fold((f32::INFINITY, 0.0f32), |(low, high), z| (low.min(z), high.max(z)));
+    let (low, high) =
+        seen.fold((f32::INFINITY, 0.0f32), |(low, high), z| (low.min(z), high.max(z)));
     let range = (high - low).max(f32::MIN_POSITIVE);
     let shade = |&z: &f32| {
         let v = if z > 0.0 { (40.5 + 215.0 * (z - low) / range) as u8 } else { 0 };
         [v, v, v, 255]
     };
-    Plane::from_rows(depth.width(), depth.height(), depth.data().iter().map(shade).collect()).unwrap_or_default()
+    Plane::from_rows(depth.width(), depth.height(), depth.data().iter().map(shade).collect())
+        .unwrap_or_default()
 }
 
 /// Settings for a picture with no more pixels along its longer side than a shadow map has texels.
 fn texels(settings: &Settings) -> Settings {
     let longer = u64::from(settings.picture.width.max(settings.picture.height));
     let most = longer.min(u64::from(settings.shadows.map_size));
-    let [width, height] =
-        [settings.picture.width, settings.picture.height].map(|s| (u64::from(s) * most / longer).max(1) as u32);
+    let [width, height] = [settings.picture.width, settings.picture.height]
+        .map(|s| (u64::from(s) * most / longer).max(1) as u32);
     settings.clone().with_size(width, height)
 }
 
 /// The picture in another size, each pixel as the nearest is.
 fn enlarged(picture: &Colors, [width, height]: [u32; 2]) -> Colors {
-    let from = |i: u32, size: u32, of: u32| (u64::from(i) * u64::from(of) / u64::from(size.max(1))) as u32;
-    let column = |x: u32, y: u32| *picture.at(from(x, width, picture.width()), from(y, height, picture.height()));
+    let from =
+        |i: u32, size: u32, of: u32| (u64::from(i) * u64::from(of) / u64::from(size.max(1))) as u32;
+    let column = |x: u32, y: u32| {
+        *picture.at(from(x, width, picture.width()), from(y, height, picture.height()))
+    };
     let all = (0..height).flat_map(|y| (0..width).map(move |x| column(x, y)));
     Plane::from_rows(width, height, all.collect()).unwrap_or_default()
 }
@@ -169,7 +183,11 @@ fn light_camera(renderer: &Renderer, light: &Light) -> Camera {
     let (center, radius) = (bounds.center(), (bounds.diagonal() * 0.5).max(f64::MIN_POSITIVE));
     let up_for = |way: DVec3| {
         let up = renderer.up.vector();
-        if way.normalize_or_zero().cross(up).length() > 0.1 { up } else { up.any_orthogonal_vector() }
+        if way.normalize_or_zero().cross(up).length() > 0.1 {
+            up
+        } else {
+            up.any_orthogonal_vector()
+        }
     };
     let at = |position: DVec3, way: DVec3, view_angle: f64| Camera {
         position,
@@ -181,27 +199,41 @@ fn light_camera(renderer: &Renderer, light: &Light) -> Camera {
     let around = |position: DVec3| {
         let way = center - position;
         let way = if way == DVec3::ZERO { -renderer.up.vector() } else { way };
-        at(position, way, (2.2 * vitral_math::func::asin((radius / way.length()).min(1.0))).min(2.6))
+        at(
+            position,
+            way,
+            (2.2 * vitral_math::func::asin((radius / way.length()).min(1.0))).min(2.6),
+        )
     };
     match &light.kind {
         LightKind::Directional { direction } => {
             let (eye, aspect) = (-*direction, renderer.aspect());
             framing::frame_from(&bounds, eye, up_for(eye), Lens::Parallel, aspect, framing::FILL)
         }
-        LightKind::Spot { position, direction, cutoff, .. } => at(*position, *direction, (2.0 * cutoff).min(2.6)),
+        LightKind::Spot { position, direction, cutoff, .. } => {
+            at(*position, *direction, (2.0 * cutoff).min(2.6))
+        }
         LightKind::Point { position } => around(*position),
         LightKind::Area { shape } => around(shape.middle()),
         LightKind::Ambient => around(center),
     }
 }
 
-/// The whole scene with a ball for the light and a cone for the viewer, its tip where the viewer is.
-fn overview(renderer: &Renderer, viewer: &Camera, lights: &[Light], light: &Camera) -> Result<Colors, Error> {
+/// The whole scene with a ball for the light and a cone for the viewer, its tip where the viewer
+/// is.
+fn overview(
+    renderer: &Renderer,
+    viewer: &Camera,
+    lights: &[Light],
+    light: &Camera,
+) -> Result<Colors, Error> {
     let mut scene = Scene::clone(renderer.scene());
     let size = renderer.world().bounds.diagonal().max(f64::MIN_POSITIVE) * 0.05;
     let mut mark = |mut mesh: Mesh, emission: [f32; 3], transform: DMat4| {
-        let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess: 1.0 };
-        let material = scene.add_material(Material { reflectance, emission, ..Material::default() });
+        let reflectance =
+            Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess: 1.0 };
+        let material =
+            scene.add_material(Material { reflectance, emission, ..Material::default() });
         mesh.parts.iter_mut().for_each(|part| part.material = Some(material));
         scene.add_mesh(mesh, transform);
     };
@@ -218,10 +250,18 @@ fn overview(renderer: &Renderer, viewer: &Camera, lights: &[Light], light: &Came
     whole.lights = Some(lights.to_vec());
     whole.ambient = renderer.ambient;
     // From beside the viewer, so that the cone hides nothing.
-    let (up, back) = (renderer.up.vector(), (viewer.position - viewer.focal_point).normalize_or(DVec3::Z));
+    let (up, back) =
+        (renderer.up.vector(), (viewer.position - viewer.focal_point).normalize_or(DVec3::Z));
     let side = up.cross(back).try_normalize().unwrap_or_else(|| up.any_orthonormal_vector());
     let eye = side + back * 0.3 + up * 0.4;
-    let seen = framing::frame_from(&whole.world().bounds, eye, up, Lens::default(), renderer.aspect(), framing::FILL);
+    let seen = framing::frame_from(
+        &whole.world().bounds,
+        eye,
+        up,
+        Lens::default(),
+        renderer.aspect(),
+        framing::FILL,
+    );
     Ok(color(whole.render_from(&seen)?))
 }
 
@@ -232,24 +272,28 @@ fn lit_scene(renderer: &Renderer, number: usize) -> Result<Renderer, Error> {
     let (mut starts, mut corners) = (vec![0], Vec::new());
     let (session, settings) = (renderer.session(), &renderer.settings);
     let algorithm = registry::shadows(settings.shadows.algorithm);
-    let drawn = shadow::draw(algorithm, session, &lights, settings, renderer.execution(), &mut |polygon| {
-        if polygon.light == number {
-            let first = mesh.positions.len() as u32;
-            mesh.positions.extend(polygon.corners.iter().map(|c| c.as_vec3().to_array()));
-            let count = polygon.corners.len() as u32;
-            mesh.triangles.extend((2..count).map(|i| [first, first + i - 1, first + i]));
-            corners.extend(first..first + count);
-            starts.push(corners.len() as u32);
-        }
-        let triples = mesh.positions.len() + mesh.triangles.len();
-        (12 * triples + 4 * (corners.len() + starts.len())) as u64
-    });
+    let drawn =
+        shadow::draw(algorithm, session, &lights, settings, renderer.execution(), &mut |polygon| {
+            if polygon.light == number {
+                let first = mesh.positions.len() as u32;
+                mesh.positions.extend(polygon.corners.iter().map(|c| c.as_vec3().to_array()));
+                let count = polygon.corners.len() as u32;
+                mesh.triangles.extend((2..count).map(|i| [first, first + i - 1, first + i]));
+                corners.extend(first..first + count);
+                starts.push(corners.len() as u32);
+            }
+            let triples = mesh.positions.len() + mesh.triangles.len();
+            (12 * triples + 4 * (corners.len() + starts.len())) as u64
+        });
     drawn.map_err(vitral_render::Error::from)?;
     mesh.faces = Faces::Polygons { starts, corners };
     let mut scene = Scene::default();
     let material = scene.add_material(Material { double_sided: true, ..Material::default() });
-    mesh.parts =
-        vec![Part { name: String::new(), triangles: 0..mesh.triangles.len() as u32, material: Some(material) }];
+    mesh.parts = vec![Part {
+        name: String::new(),
+        triangles: 0..mesh.triangles.len() as u32,
+        material: Some(material),
+    }];
     scene.add_mesh(mesh, DMat4::IDENTITY);
     let mut lit = Renderer::with_execution(scene, renderer.execution().clone())?;
     lit.lights = Some(lights);
@@ -268,19 +312,28 @@ mod tests {
         let gap = GAP as u32;
         let (x, y) = (number as u32 % 3 * (size[0] + gap), number as u32 / 3 * (size[1] + gap));
         let color = frame.color.as_ref().unwrap();
-        (0..size[1]).flat_map(|row| (0..size[0]).map(move |c| (x + c, y + row))).map(|(x, y)| *color.at(x, y)).collect()
+        (0..size[1])
+            .flat_map(|row| (0..size[0]).map(move |c| (x + c, y + row)))
+            .map(|(x, y)| *color.at(x, y))
+            .collect()
     }
 
     fn of(shadows: &str) -> (Frame, [u32; 2]) {
         let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
         let size = [96, 72];
-        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
-            (size[0], size[1], 1);
+        (
+            renderer.settings.picture.width,
+            renderer.settings.picture.height,
+            renderer.settings.picture.samples,
+        ) = (size[0], size[1], 1);
         renderer.settings.shadows.algorithm = shadows.parse().unwrap();
         let before = renderer.settings.clone();
         let camera = renderer.frame_camera();
         let frame = panels(&mut renderer, &camera).unwrap().frame;
-        assert!(renderer.settings == before && renderer.lights.is_none(), "nothing of the renderer changes");
+        assert!(
+            renderer.settings == before && renderer.lights.is_none(),
+            "nothing of the renderer changes"
+        );
         assert_eq!([frame.width, frame.height], [3 * size[0] + 8, 2 * size[1] + 4]);
         (frame, size)
     }
@@ -288,15 +341,25 @@ mod tests {
     #[test]
     fn f25_shadow_after_illumination_differs_from_shadow_in_it_only_where_shadow_falls() {
         let (frame, size) = of("map");
-        let [overview, light, viewer, plain, darkened, shadowed] = std::array::from_fn(|i| panel(&frame, i, size));
+        let [overview, light, viewer, plain, darkened, shadowed] =
+            std::array::from_fn(|i| panel(&frame, i, size));
         assert_ne!(overview, plain, "light and viewer are in it");
-        assert!(light.iter().any(|p| p[0] == 255) && viewer.iter().any(|p| p[0] == 255) && light != viewer);
+        assert!(
+            light.iter().any(|p| p[0] == 255)
+                && viewer.iter().any(|p| p[0] == 255)
+                && light != viewer
+        );
         let mut dark = 0;
         for i in 0..plain.len() {
             if darkened[i] == plain[i] {
                 // A trace of shadow may round to nothing.
                 let apart = (0..4).map(|k| shadowed[i][k].abs_diff(plain[i][k])).max();
-                assert!(apart <= Some(1), "lit places are the same: {:?} {:?}", shadowed[i], plain[i]);
+                assert!(
+                    apart <= Some(1),
+                    "lit places are the same: {:?} {:?}",
+                    shadowed[i],
+                    plain[i]
+                );
             } else {
                 dark += 1;
                 // Ambient light is left, and nothing gets lighter.
@@ -316,8 +379,11 @@ mod tests {
         let size = [96, 72];
         let fresh = |lights: &[Light], shadows: &str| {
             let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
-            (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
-                (size[0], size[1], 1);
+            (
+                renderer.settings.picture.width,
+                renderer.settings.picture.height,
+                renderer.settings.picture.samples,
+            ) = (size[0], size[1], 1);
             (renderer.settings.shadows.algorithm, renderer.settings.picture.color_space) =
                 (shadows.parse().unwrap(), ColorSpace::Raw);
             renderer.settings.shading.illumination = Illumination::Phong;
@@ -328,11 +394,13 @@ mod tests {
         let camera = fresh(&lights, "map").frame_camera();
         let sheet = panels(&mut fresh(&lights, "map"), &camera).unwrap().frame;
         let [a, b, c, d, e, f] = std::array::from_fn(|i| panel(&sheet, i, size));
-        let picture =
-            |lights: &[Light], shadows: &str| color(fresh(lights, shadows).render_from(&camera).unwrap()).into_data();
+        let picture = |lights: &[Light], shadows: &str| {
+            color(fresh(lights, shadows).render_from(&camera).unwrap()).into_data()
+        };
         let depths = |from: &Camera| {
             let mut renderer = fresh(&lights, "none");
-            renderer.settings.picture.channels = Channels { depth: true, color: false, ..Channels::default() };
+            renderer.settings.picture.channels =
+                Channels { depth: true, color: false, ..Channels::default() };
             renderer.render_from(from).unwrap().frame.depth.unwrap().into_data()
         };
 
@@ -342,11 +410,13 @@ mod tests {
         for marked in [a.iter().filter(yellow).count(), a.iter().filter(blue).count()] {
             assert!((4..a.len() / 5).contains(&marked), "{marked}");
         }
-        // b and c: the nearer the lighter, black where nothing is; from the light and from the viewer.
+        // b and c: the nearer the lighter, black where nothing is; from the light and from the
+        // viewer.
         let from_light = light_camera(&fresh(&lights, "none"), &lamp);
         for (greys, from) in [(&b, &from_light), (&c, &camera)] {
             let depths = depths(from);
-            let mut pairs: Vec<_> = depths.iter().zip(greys).map(|(depth, grey)| (*depth, grey[0])).collect();
+            let mut pairs: Vec<_> =
+                depths.iter().zip(greys).map(|(depth, grey)| (*depth, grey[0])).collect();
             pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
             assert!(pairs.windows(2).all(|w| w[0].1 <= w[1].1), "grey goes with depth");
             assert!(pairs.iter().all(|(depth, grey)| (*depth == 0.0) == (*grey == 0)));
@@ -355,11 +425,13 @@ mod tests {
         }
         // d and f: the picture without and with shadows.
         assert!(d == picture(&lights, "none") && f == picture(&lights, "map"));
-        // e: d, a share of it where shadow falls. f: there nothing but ambient light is left, no highlight; e keeps a part of it.
+        // e: d, a share of it where shadow falls. f: there nothing but ambient light is left, no
+        // highlight; e keeps a part of it.
         let ambient = Light { diffuse: [0.0; 3], specular: [0.0; 3], ..lamp };
         let ambient = picture(&[ambient], "none");
         let mut mask = fresh(&lights, "map");
-        mask.settings.picture.channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
+        mask.settings.picture.channels =
+            Channels { color: false, cast_shadow: true, ..Channels::default() };
         let mask = mask.render_from(&camera).unwrap().frame.cast_shadow.unwrap().into_data();
         let (mut shadow, mut brighter) = (0, 0);
         for i in 0..d.len() {
@@ -369,18 +441,29 @@ mod tests {
                 shadow += 1;
                 let share = [0, 1, 2].map(|k| (f32::from(d[i][k]) * DARKENED + 0.5) as u8);
                 assert_eq!([e[i][0], e[i][1], e[i][2]], share, "pixel {i} is darkened");
-                assert!((0..3).all(|k| f[i][k].abs_diff(ambient[i][k]) <= 1), "{:?} {:?}", f[i], ambient[i]);
+                assert!(
+                    (0..3).all(|k| f[i][k].abs_diff(ambient[i][k]) <= 1),
+                    "{:?} {:?}",
+                    f[i],
+                    ambient[i]
+                );
                 brighter += usize::from((0..3).any(|k| e[i][k] != f[i][k]));
             }
         }
-        assert!(shadow > d.len() / 100 && brighter * 2 > shadow, "{shadow} in shadow, {brighter} differ");
+        assert!(
+            shadow > d.len() / 100 && brighter * 2 > shadow,
+            "{shadow} in shadow, {brighter} differ"
+        );
     }
 
     #[test]
     fn f25_panels_show_the_size_of_the_map() {
         let mut renderer = Renderer::new(load_builtin("scene0").unwrap()).unwrap();
-        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
-            (96, 72, 1);
+        (
+            renderer.settings.picture.width,
+            renderer.settings.picture.height,
+            renderer.settings.picture.samples,
+        ) = (96, 72, 1);
         renderer.settings.shadows.algorithm = Shadows::MAP;
         renderer.settings.shadows.map_size = 16;
         let camera = renderer.frame_camera();
@@ -388,7 +471,10 @@ mod tests {
         let (fine, size) = of("map");
         // Sixteen texels in a row of 96: six pixels each.
         let row = panel(&coarse, 1, size);
-        assert!(row.chunks(96).all(|row| row.chunks(6).all(|texel| texel.iter().all(|p| *p == texel[0]))));
+        assert!(
+            row.chunks(96)
+                .all(|row| row.chunks(6).all(|texel| texel.iter().all(|p| *p == texel[0])))
+        );
         assert!(row != panel(&fine, 1, size) && panel(&coarse, 5, size) != panel(&fine, 5, size));
         assert!([2, 3].into_iter().all(|i| panel(&coarse, i, size) == panel(&fine, i, size)));
     }
@@ -396,9 +482,12 @@ mod tests {
     #[test]
     fn f24_lit_polygons_are_what_the_light_sees() {
         let (frame, size) = of("object-precision");
-        let [_, seen, lit, from_viewer, plain, shadowed] = std::array::from_fn(|i| panel(&frame, i, size));
-        // The background is where nothing is: the outlines are the same but for a few pixels of borders.
-        let background = |p: &[u8; 4], row: usize, other: &[[u8; 4]]| *p == other[row * size[0] as usize];
+        let [_, seen, lit, from_viewer, plain, shadowed] =
+            std::array::from_fn(|i| panel(&frame, i, size));
+        // The background is where nothing is: the outlines are the same but for a few pixels of
+        // borders.
+        let background =
+            |p: &[u8; 4], row: usize, other: &[[u8; 4]]| *p == other[row * size[0] as usize];
         let differing = (0..seen.len()).filter(|&i| {
             let row = i / size[0] as usize;
             background(&seen[i], row, &seen) != background(&lit[i], row, &lit)

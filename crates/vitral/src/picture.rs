@@ -1,7 +1,7 @@
 //! From a frame to a file: channels and picture formats.
 //!
-//! [`Picture`] is what a renderer gives; its methods encode and save it. The functions of this module do the same for a
-//! [`Frame`] alone, with [`EncodeOptions`].
+//! [`Picture`] is what a renderer gives; its methods encode and save it. The functions of this
+//! module do the same for a [`Frame`] alone, with [`EncodeOptions`].
 
 use crate::names::list;
 use crate::{Error, Frame, Stats, files};
@@ -29,15 +29,21 @@ pub struct Picture {
     pub warnings: Vec<String>,
     /// What the colour bytes mean.
     pub color_space: ColorSpace,
-    /// The factor of the scene's photometric lights ([`Renderer::exposure`](crate::Renderer::exposure)); PNG files name it
-    /// unless it is 1.
+    /// The factor of the scene's photometric lights
+    /// ([`Renderer::exposure`](crate::Renderer::exposure)); PNG files name it unless it is 1.
     pub exposure: f32,
 }
 
 impl From<Frame> for Picture {
     /// A frame that was put together by hand, in sRGB.
     fn from(frame: Frame) -> Self {
-        Self { frame, stats: Stats::default(), warnings: Vec::new(), color_space: ColorSpace::Srgb, exposure: 1.0 }
+        Self {
+            frame,
+            stats: Stats::default(),
+            warnings: Vec::new(),
+            color_space: ColorSpace::Srgb,
+            exposure: 1.0,
+        }
     }
 }
 
@@ -58,17 +64,18 @@ impl Picture {
         self.frame.height
     }
 
-    /// The colours as bytes: red, green, blue and straight alpha of each pixel, the top row first. Empty if the channel
-    /// [`Channel::Color`] was switched off.
+    /// The colours as bytes: red, green, blue and straight alpha of each pixel, the top row first.
+    /// Empty if the channel [`Channel::Color`] was switched off.
     pub fn rgba8(&self) -> &[u8] {
         self.frame.color.as_ref().map_or(&[], |plane| plane.data().as_flattened())
     }
 
-    /// Writes the colours in the format that the path's extension names, such as `.png`, `.jpg` or `.webp`. The file appears
-    /// complete or not at all.
+    /// Writes the colours in the format that the path's extension names, such as `.png`, `.jpg` or
+    /// `.webp`. The file appears complete or not at all.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] for another extension, [`Error::Write`] if the file cannot be written.
+    /// [`Error::Unsupported`] for another extension, [`Error::Write`] if the file cannot be
+    /// written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         self.save_channel(Channel::Color, path)
     }
@@ -76,8 +83,8 @@ impl Picture {
     /// Writes one channel, as [`save`](Self::save); `.npy` keeps its numbers without loss.
     ///
     /// # Errors
-    /// As [`save`](Self::save); [`Error::Unsupported`] for a channel that the format cannot hold; [`Error::Usage`] for one
-    /// that was not requested.
+    /// As [`save`](Self::save); [`Error::Unsupported`] for a channel that the format cannot hold;
+    /// [`Error::Usage`] for one that was not requested.
     pub fn save_channel(&self, channel: Channel, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
         write(path, &self.encode_channel(channel, PictureFormat::from_path(path)?)?)
@@ -94,8 +101,13 @@ impl Picture {
     /// One channel as the bytes of a file.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] for a channel that the format cannot hold; [`Error::Usage`] for one that was not requested.
-    pub fn encode_channel(&self, channel: Channel, format: PictureFormat) -> Result<Vec<u8>, Error> {
+    /// [`Error::Unsupported`] for a channel that the format cannot hold; [`Error::Usage`] for one
+    /// that was not requested.
+    pub fn encode_channel(
+        &self,
+        channel: Channel,
+        format: PictureFormat,
+    ) -> Result<Vec<u8>, Error> {
         encode_with(&self.frame, channel, format, &self.encode_options())
     }
 
@@ -112,9 +124,11 @@ pub enum Channel {
     /// The picture.
     #[default]
     Color,
-    /// 1 on the near plane, 0 on the far plane and behind everything. 16-bit grey in PNG, floats in NPY.
+    /// 1 on the near plane, 0 on the far plane and behind everything. 16-bit grey in PNG, floats in
+    /// NPY.
     Depth,
-    /// Surface ids: the faces as in the file. Colours in pictures, unsigned integers in NPY, 4294967295 where nothing is.
+    /// Surface ids: the faces as in the file. Colours in pictures, unsigned integers in NPY,
+    /// 4294967295 where nothing is.
     Surface,
     /// Instances, likewise.
     Object,
@@ -124,7 +138,8 @@ pub enum Channel {
     Normal,
     /// The steps of the visibility algorithm, drawn over the picture.
     Steps,
-    /// Attached shadows: the share of the lights that the surface faces away from. Grey, floats in NPY.
+    /// Attached shadows: the share of the lights that the surface faces away from. Grey, floats in
+    /// NPY.
     AttachedShadow,
     /// Cast shadows: the share of the lights that something hides, likewise.
     CastShadow,
@@ -142,7 +157,11 @@ impl Channel {
         ),
         (Self::Object, "object", "instances, likewise"),
         (Self::Material, "material", "materials, likewise"),
-        (Self::Normal, "normal", "world-space normals: float32 in NPY, -1..1 as 0..255 in pictures"),
+        (
+            Self::Normal,
+            "normal",
+            "world-space normals: float32 in NPY, -1..1 as 0..255 in pictures",
+        ),
         (
             Self::Steps,
             "steps",
@@ -229,10 +248,13 @@ impl PictureFormat {
     /// [`Error::Unsupported`] for any other extension, or none.
     pub fn from_path(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        let extension =
+            path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         Self::from_extension(&extension).ok_or_else(|| Error::Unsupported {
             what: match extension.as_str() {
-                "" => format!("{}: the name has no extension that tells the format", path.display()),
+                "" => {
+                    format!("{}: the name has no extension that tells the format", path.display())
+                }
                 _ => format!("{}: pictures are not written as `.{extension}`", path.display()),
             },
             hint: format!(
@@ -310,7 +332,8 @@ pub fn check(channel: Channel, format: PictureFormat) -> Result<(), Error> {
 /// One channel of a frame as a file.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for a channel that the format cannot hold; [`Error::Usage`] for one that the frame has not.
+/// [`Error::Unsupported`] for a channel that the format cannot hold; [`Error::Usage`] for one that
+/// the frame has not.
 pub fn encode_with(
     frame: &Frame,
     channel: Channel,
@@ -349,7 +372,9 @@ pub fn encode_with(
             let plane = frame.color.as_ref().ok_or_else(missing)?;
             picture(plane, format, PngOptions { srgb: options.srgb }, options)
         }
-        Channel::Steps => picture(frame.steps.as_ref().ok_or_else(missing)?, format, numbers, options),
+        Channel::Steps => {
+            picture(frame.steps.as_ref().ok_or_else(missing)?, format, numbers, options)
+        }
         Channel::Depth => {
             let plane = frame.depth.as_ref().ok_or_else(missing)?;
             match format {
@@ -426,8 +451,10 @@ pub fn shown(frame: &Frame, channel: Channel) -> Result<Plane<[u8; 4]>, Error> {
         let byte = vitral_math::color::byte_from_unit(share);
         [byte, byte, byte, 255]
     };
-    let ids = |plane: &Option<Plane<u32>>| plane.as_ref().map(|plane| plane.map(|&id| id_color(id)));
-    let shares = |plane: &Option<Plane<f32>>| plane.as_ref().map(|plane| plane.map(|&share| grey(share)));
+    let ids =
+        |plane: &Option<Plane<u32>>| plane.as_ref().map(|plane| plane.map(|&id| id_color(id)));
+    let shares =
+        |plane: &Option<Plane<f32>>| plane.as_ref().map(|plane| plane.map(|&share| grey(share)));
     let shown = match channel {
         Channel::Color => frame.color.clone(),
         Channel::Steps => frame.steps.clone(),
@@ -471,8 +498,8 @@ fn word_from_unit(value: f32) -> u16 {
     (value.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16
 }
 
-/// A colour that tells an id from its neighbours: three bytes of a multiplicative hash, none of them very dark.
-/// Background is transparent black.
+/// A colour that tells an id from its neighbours: three bytes of a multiplicative hash, none of
+/// them very dark. Background is transparent black.
 fn id_color(id: u32) -> [u8; 4] {
     if id == Frame::BACKGROUND {
         return [0; 4];
@@ -493,8 +520,8 @@ fn normal_color(normal: [f32; 3]) -> [u8; 4] {
     [r, g, b, 255]
 }
 
-/// Whether [`write()`] has a place to write to, as far as that can be told beforehand: the folder is there, and no folder has the
-/// file's name.
+/// Whether [`write()`] has a place to write to, as far as that can be told beforehand: the folder
+/// is there, and no folder has the file's name.
 ///
 /// # Errors
 /// [`Error::Write`], as writing would end.
@@ -566,7 +593,10 @@ mod tests {
     #[test]
     fn bytes_come_row_by_row() {
         let picture = Picture::from(frame());
-        assert_eq!((picture.width(), picture.height(), picture.rgba8()), (2, 1, &[1, 2, 3, 255, 0, 0, 0, 0][..]));
+        assert_eq!(
+            (picture.width(), picture.height(), picture.rgba8()),
+            (2, 1, &[1, 2, 3, 255, 0, 0, 0, 0][..])
+        );
         assert!(Picture::from(Frame { color: None, ..frame() }).rgba8().is_empty());
     }
 
@@ -590,7 +620,9 @@ mod tests {
         let Err(Error::Usage { hint, .. }) = "alpha".parse::<Channel>() else { panic!() };
         assert!(hint.contains("normal"));
         assert_eq!(PictureFormat::from_path("a/b.JPG").unwrap(), PictureFormat::Jpeg);
-        let Err(Error::Unsupported { hint, .. }) = PictureFormat::from_path("a.bmp") else { panic!() };
+        let Err(Error::Unsupported { hint, .. }) = PictureFormat::from_path("a.bmp") else {
+            panic!()
+        };
         assert!(hint.contains(".npy"));
         let bare = PictureFormat::from_path("/dev/null").unwrap_err().to_string();
         assert_eq!(bare, "/dev/null: the name has no extension that tells the format");
@@ -603,6 +635,9 @@ mod tests {
         assert!(colors.iter().collect::<std::collections::HashSet<_>>().len() > 990);
         assert_eq!(id_color(Frame::BACKGROUND), [0; 4]);
         assert_eq!(normal_color([0.0, -1.0, 1.0]), [128, 0, 255, 255]);
-        assert_eq!([word_from_unit(1.0), word_from_unit(0.5), word_from_unit(-3.0)], [65_535, 32_768, 0]);
+        assert_eq!(
+            [word_from_unit(1.0), word_from_unit(0.5), word_from_unit(-3.0)],
+            [65_535, 32_768, 0]
+        );
     }
 }

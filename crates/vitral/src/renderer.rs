@@ -1,6 +1,9 @@
 //! The short way from a model or scene to pictures.
 
-use crate::{Channel, Error, LightEdit, LightTerm, LoadOptions, Picture, SystemClock, Viewpoint, environment, load_on};
+use crate::{
+    Channel, Error, LightEdit, LightTerm, LoadOptions, Picture, SystemClock, Viewpoint,
+    environment, load_on,
+};
 use std::path::Path;
 use std::sync::Arc;
 use vitral_exec::{Budget, Workers};
@@ -10,15 +13,16 @@ use vitral_raster::SamplePattern;
 use vitral_render::stats::CullCounters;
 use vitral_render::trace::replay::WatchedSteps;
 use vitral_render::{
-    ColorSpace, Environment, Execution, Global, GroundShadow, PreparedView, Session, Settings, Shot, Surroundings,
-    radiosity, render, watch_steps,
+    ColorSpace, Environment, Execution, Global, GroundShadow, PreparedView, Session, Settings,
+    Shot, Surroundings, radiosity, render, watch_steps,
 };
 use vitral_scene::{
-    Axis, Camera, Lens, LightMeter, Projection, Scene, View, ViewTransform, World, default_lights, depth_range,
-    fill_light, framing, leaves_dark,
+    Axis, Camera, Lens, LightMeter, Projection, Scene, View, ViewTransform, World, default_lights,
+    depth_range, fill_light, framing, leaves_dark,
 };
 
-/// A scene, and all that is to be decided about its pictures. Change the fields, then [`render`](Self::render).
+/// A scene, and all that is to be decided about its pictures. Change the fields, then
+/// [`render`](Self::render).
 ///
 /// ```
 /// let mut renderer = vitral::open("builtin:teapot")?;
@@ -35,28 +39,32 @@ pub struct Renderer {
     pub camera: Option<Camera>,
     /// The side from which a framed model is seen.
     pub view: View,
-    /// Which way is up, for framing and turntables; at first as is usual for the format of the scene's first model.
+    /// Which way is up, for framing and turntables; at first as is usual for the format of the
+    /// scene's first model.
     pub up: Axis,
     /// Projection of a framed camera.
     pub lens: Lens,
     /// How a framed camera is moved.
     pub moves: Moves,
-    /// The lights, world space; `None`: the scene's, or pleasant ones fixed to the camera if it has neither
-    /// lights nor ambient light.
+    /// The lights, world space; `None`: the scene's, or pleasant ones fixed to the camera if it has
+    /// neither lights nor ambient light.
     pub lights: Option<Vec<Light>>,
-    /// Changes of single fields of these lights, in order. One that fits no light is an error of the picture.
+    /// Changes of single fields of these lights, in order. One that fits no light is an error of
+    /// the picture.
     pub light_edits: Vec<LightEdit>,
-    /// Multiplies all lights; `None`: 1, but for the scene's own photometric lights (candela and lux, as in glTF) the
-    /// [exposure](Self::exposure).
+    /// Multiplies all lights; `None`: 1, but for the scene's own photometric lights (candela and
+    /// lux, as in glTF) the [exposure](Self::exposure).
     pub light_intensity: Option<f32>,
     /// One term of all lights alone; `None`: all three.
     pub light_term: Option<LightTerm>,
-    /// Scenes whose own lights leave all that is seen black get a dim light from the viewer, with a warning.
+    /// Scenes whose own lights leave all that is seen black get a dim light from the viewer, with a
+    /// warning.
     pub fill_light: bool,
     /// Global ambient light, on top of the scene's own.
     pub ambient: Rgb,
-    /// An image of the surroundings, which takes the place of the soft sky ([`load_environment`](crate::load_environment)): it lights
-    /// metallic-roughness materials, and they mirror it. [`Self::light_intensity`] multiplies it. It stands upright where
+    /// An image of the surroundings, which takes the place of the soft sky
+    /// ([`load_environment`](crate::load_environment)): it lights metallic-roughness materials, and
+    /// they mirror it. [`Self::light_intensity`] multiplies it. It stands upright where
     /// [`Self::up`] says, and its middle lies behind the model, seen from the front.
     pub environment_image: Option<Arc<EnvironmentMap>>,
     /// The image that was read last, and its file.
@@ -67,14 +75,15 @@ pub struct Renderer {
     execution: Execution,
 }
 
-/// An execution with the machine's clock and best instruction set, without limits, and with `threads` threads (0: as many
-/// as the process may use).
+/// An execution with the machine's clock and best instruction set, without limits, and with
+/// `threads` threads (0: as many as the process may use).
 pub fn execution(threads: usize) -> Execution {
     let budget = Budget::new(Arc::new(SystemClock::default()));
     Execution { workers: Workers::new(threads), budget, ..Execution::default() }
 }
 
-/// A renderer for a model: a file, `builtin:NAME`, or `-` for standard input. As [`Renderer::open`].
+/// A renderer for a model: a file, `builtin:NAME`, or `-` for standard input. As
+/// [`Renderer::open`].
 ///
 /// # Errors
 /// A file that is missing, malformed, not of a known format or above the limit.
@@ -91,8 +100,8 @@ impl Renderer {
         Self::with_execution(scene, execution(0))
     }
 
-    /// Reads a model: a file, `builtin:NAME`, or `-` for standard input. The model is framed; scene files with
-    /// one camera and built-in figures are seen from their own ([`Scene::own_camera`]).
+    /// Reads a model: a file, `builtin:NAME`, or `-` for standard input. The model is framed; scene
+    /// files with one camera and built-in figures are seen from their own ([`Scene::own_camera`]).
     ///
     /// # Errors
     /// A file that is missing, malformed, not of a known format or above the limit.
@@ -106,7 +115,8 @@ impl Renderer {
     /// As [`open`](Self::open).
     pub fn open_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Self, Error> {
         let (path, execution) = (path.as_ref(), execution(0));
-        let mut renderer = Self::with_execution(load_on(path, options, &execution.workers)?, execution)?;
+        let mut renderer =
+            Self::with_execution(load_on(path, options, &execution.workers)?, execution)?;
         let usual_up = renderer.up;
         Viewpoint::default().or_own(renderer.world()).apply(&mut renderer, usual_up)?;
         Ok(renderer)
@@ -180,7 +190,8 @@ impl Renderer {
         self.session.world()
     }
 
-    /// What is known of the scene, for the algorithms of [`internals::render`](crate::internals::render).
+    /// What is known of the scene, for the algorithms of
+    /// [`internals::render`](crate::internals::render).
     pub fn session(&self) -> &Session {
         &self.session
     }
@@ -205,8 +216,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Moves nodes of the scene: each of `nodes` gets the transform to its parent that stands beside it. What is known of the meshes
-    /// stays, so that moving a few of many parts costs little; [`Scene::flatten`] makes nodes independent of each other.
+    /// Moves nodes of the scene: each of `nodes` gets the transform to its parent that stands
+    /// beside it. What is known of the meshes stays, so that moving a few of many parts costs
+    /// little; [`Scene::flatten`] makes nodes independent of each other.
     ///
     /// # Errors
     /// A node that is not there, and a transform that is not affine; nothing is moved then.
@@ -216,8 +228,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// A renderer with the same scene, settings and budget, for another thread, which does all of its work. What either finds out
-    /// about the meshes serves both.
+    /// A renderer with the same scene, settings and budget, for another thread, which does all of
+    /// its work. What either finds out about the meshes serves both.
     #[must_use]
     pub fn fork(&self) -> Self {
         Self {
@@ -232,14 +244,16 @@ impl Renderer {
         }
     }
 
-    /// From the world to the picture that `camera` sees, with clipping planes fitted to the scene where it has none.
+    /// From the world to the picture that `camera` sees, with clipping planes fitted to the scene
+    /// where it has none.
     pub fn view_transform(&self, camera: &Camera) -> ViewTransform {
         camera.transform(self.aspect(), depth_range(camera, &self.world().bounds))
     }
 
     /// Width by height of the picture.
     pub fn aspect(&self) -> f64 {
-        f64::from(self.settings.picture.width.max(1)) / f64::from(self.settings.picture.height.max(1))
+        f64::from(self.settings.picture.width.max(1))
+            / f64::from(self.settings.picture.height.max(1))
     }
 
     /// The viewer of the next picture: the chosen camera, or the framed one.
@@ -252,19 +266,30 @@ impl Renderer {
     }
 
     fn framed_camera(&self) -> Camera {
-        let boxed = framing::frame(&self.world().bounds, self.view, self.up, self.lens, self.aspect());
+        let boxed =
+            framing::frame(&self.world().bounds, self.view, self.up, self.lens, self.aspect());
         self.framed_from(boxed.position - boxed.focal_point, boxed.view_up)
     }
 
-    /// The camera that frames the model from the direction `eye` (towards the viewer, any length). It frames the vertices rather
-    /// than the box round them, which leaves room where the box's corners are empty.
+    /// The camera that frames the model from the direction `eye` (towards the viewer, any length).
+    /// It frames the vertices rather than the box round them, which leaves room where the box's
+    /// corners are empty.
     pub(crate) fn framed_from(&self, eye: DVec3, view_up: DVec3) -> Camera {
         let (lens, aspect) = (self.lens, self.aspect());
-        framing::frame_world(self.world(), eye, view_up, lens, aspect, framing::FILL, &self.execution.workers)
+        framing::frame_world(
+            self.world(),
+            eye,
+            view_up,
+            lens,
+            aspect,
+            framing::FILL,
+            &self.execution.workers,
+        )
     }
 
-    /// The lights of a picture from `camera`: the chosen ones, else the scene's, else, without ambient light, default ones; with
-    /// [`light_edits`](Self::light_edits) and [`light_intensity`](Self::light_intensity) applied. Edits that do not fit are left out.
+    /// The lights of a picture from `camera`: the chosen ones, else the scene's, else, without
+    /// ambient light, default ones; with [`light_edits`](Self::light_edits) and
+    /// [`light_intensity`](Self::light_intensity) applied. Edits that do not fit are left out.
     pub fn frame_lights(&self, camera: &Camera) -> Vec<Light> {
         let mut lights = self.unedited_lights(camera);
         for edit in &self.light_edits {
@@ -297,8 +322,12 @@ impl Renderer {
         match &self.lights {
             Some(lights) => lights.clone(),
             // A scene that has light from everywhere says what it is lit by.
-            None if self.world().lights.is_empty() && self.scene().ambient != [0.0; 3] => Vec::new(),
-            None if self.world().lights.is_empty() && self.settings.global.model == Global::Radiosity => {
+            None if self.world().lights.is_empty() && self.scene().ambient != [0.0; 3] => {
+                Vec::new()
+            }
+            None if self.world().lights.is_empty()
+                && self.settings.global.model == Global::Radiosity =>
+            {
                 self.fixed_lights()
             }
             None if self.world().lights.is_empty() => default_lights(camera),
@@ -310,45 +339,62 @@ impl Renderer {
         }
     }
 
-    /// Whether the scene's own lights leave all black that `camera` may see, and nobody has said that they should. Radiosity, whose
-    /// solution must not depend on the camera, and raw colours, which are made of the file's numbers, are left alone.
+    /// Whether the scene's own lights leave all black that `camera` may see, and nobody has said
+    /// that they should. Radiosity, whose solution must not depend on the camera, and raw colours,
+    /// which are made of the file's numbers, are left alone.
     fn needs_fill_light(&self, camera: &Camera) -> bool {
         let is_chosen = self.lights.is_some() || !self.light_edits.is_empty() || !self.fill_light;
-        let is_lit = self.settings.shading.lighting && self.settings.picture.color_space != ColorSpace::Raw;
-        let is_free = self.settings.global.model != Global::Radiosity && !self.world().lights.is_empty();
+        let is_lit =
+            self.settings.shading.lighting && self.settings.picture.color_space != ColorSpace::Raw;
+        let is_free =
+            self.settings.global.model != Global::Radiosity && !self.world().lights.is_empty();
         let (ambient, exposure) = (self.frame_ambient(), self.exposure());
         let materials = &self.scene().materials;
-        !is_chosen && is_lit && is_free && leaves_dark(self.world(), materials, camera, exposure, ambient)
+        !is_chosen
+            && is_lit
+            && is_free
+            && leaves_dark(self.world(), materials, camera, exposure, ambient)
     }
 
-    /// The factor that brings the scene's photometric lights to where pictures show them, for the ambient light of the next
-    /// picture ([`LightMeter`]). 1 for scenes without such lights, for chosen [`lights`](Self::lights) or a chosen
-    /// [`light_intensity`](Self::light_intensity), for unlit pictures, and for raw colours, which are made of the file's numbers.
+    /// The factor that brings the scene's photometric lights to where pictures show them, for the
+    /// ambient light of the next picture ([`LightMeter`]). 1 for scenes without such lights, for
+    /// chosen [`lights`](Self::lights) or a chosen [`light_intensity`](Self::light_intensity), for
+    /// unlit pictures, and for raw colours, which are made of the file's numbers.
     pub fn exposure(&self) -> f32 {
         let chosen = self.lights.is_some() || self.light_intensity.is_some();
         let raw = self.settings.picture.color_space == ColorSpace::Raw;
-        if chosen || raw || !self.settings.shading.lighting { 1.0 } else { self.meter.exposure(self.frame_ambient()) }
+        if chosen || raw || !self.settings.shading.lighting {
+            1.0
+        } else {
+            self.meter.exposure(self.frame_ambient())
+        }
     }
 
-    /// Default lights for radiosity, whose solution must not depend on the camera: none where surfaces shine, else those of the
-    /// usual view.
+    /// Default lights for radiosity, whose solution must not depend on the camera: none where
+    /// surfaces shine, else those of the usual view.
     fn fixed_lights(&self) -> Vec<Light> {
         if radiosity::shines(self.scene(), self.world()) {
             return Vec::new();
         }
         let (view, lens) = (View::default(), Lens::default());
-        let mut lights = default_lights(&framing::frame(&self.world().bounds, view, self.up, lens, 1.0));
+        let mut lights =
+            default_lights(&framing::frame(&self.world().bounds, view, self.up, lens, 1.0));
         // Light that went through walls would be reflected on behind them.
-        lights.iter_mut().filter(|light| light.kind != LightKind::Ambient).for_each(|light| light.shadow = true);
+        lights
+            .iter_mut()
+            .filter(|light| light.kind != LightKind::Ambient)
+            .for_each(|light| light.shadow = true);
         lights
     }
 
-    /// The settings of a picture, with the shadow on the ground that suits its lights, and with what is mirrored: an image if there is one; else by itself the sky belongs to the default
+    /// The settings of a picture, with the shadow on the ground that suits its lights, and with
+    /// what is mirrored: an image if there is one; else by itself the sky belongs to the default
     /// lights, and it is part of the specular [`light_term`](Self::light_term).
     pub(crate) fn picture_settings(&self) -> Settings {
         let mut settings = self.settings.clone();
         if settings.shadows.ground == GroundShadow::Auto {
-            settings.shadows.ground = if self.has_default_lights() { GroundShadow::Soft } else { GroundShadow::Lights };
+            settings.shadows.ground =
+                if self.has_default_lights() { GroundShadow::Soft } else { GroundShadow::Lights };
         }
         let environment = &mut settings.shading.environment;
         if *environment == Environment::Auto && self.environment_image.is_some() {
@@ -372,18 +418,20 @@ impl Renderer {
             Some(LightTerm::Diffuse) => [0.0; 2],
             Some(LightTerm::Specular) => [0.0, factor],
         };
-        let surroundings = Surroundings { up: self.up, image: self.environment_image.clone(), factors };
+        let surroundings =
+            Surroundings { up: self.up, image: self.environment_image.clone(), factors };
         Shot { camera: *camera, lights, ambient: self.frame_ambient(), surroundings }
     }
 
-    /// Whether the lights of a picture are those for models that bring none, in the display's colours.
+    /// Whether the lights of a picture are those for models that bring none, in the display's
+    /// colours.
     fn has_default_lights(&self) -> bool {
         let scene_says = !self.world().lights.is_empty() || self.scene().ambient != [0.0; 3];
         self.lights.is_none() && !scene_says && self.settings.picture.color_space != ColorSpace::Raw
     }
 
-    /// Global ambient light of a picture: the scene's own and [`ambient`](Self::ambient); none where another
-    /// [`light_term`](Self::light_term) is chosen.
+    /// Global ambient light of a picture: the scene's own and [`ambient`](Self::ambient); none
+    /// where another [`light_term`](Self::light_term) is chosen.
     pub fn frame_ambient(&self) -> Rgb {
         if self.light_term.is_some_and(|term| term != LightTerm::Ambient) {
             return [0.0; 3];
@@ -397,7 +445,8 @@ impl Renderer {
         self.picture_settings().shadows.ground
     }
 
-    /// Whether `camera` sees a ground at the lowest point of the scene's bounds from below, or not at all.
+    /// Whether `camera` sees a ground at the lowest point of the scene's bounds from below, or not
+    /// at all.
     pub fn is_below_ground(&self, camera: &Camera) -> bool {
         let (up, bounds) = (self.up.vector(), &self.world().bounds);
         let lowest = bounds.center().dot(up) - (bounds.size() * 0.5).dot(up.abs());
@@ -407,10 +456,12 @@ impl Renderer {
         }
     }
 
-    /// Whether light from everywhere lights the next picture from `camera`: ambient light, the sky or an image.
+    /// Whether light from everywhere lights the next picture from `camera`: ambient light, the sky
+    /// or an image.
     pub fn has_ambient_light(&self, camera: &Camera) -> bool {
         let lights = self.frame_lights(camera);
-        let is_ambient = self.frame_ambient() != [0.0; 3] || lights.iter().any(|light| light.ambient != [0.0; 3]);
+        let is_ambient = self.frame_ambient() != [0.0; 3]
+            || lights.iter().any(|light| light.ambient != [0.0; 3]);
         let environment = self.picture_settings().shading.environment;
         let has_image = environment == Environment::Auto && self.environment_image.is_some();
         is_ambient || has_image || environment == Environment::Sky
@@ -459,7 +510,11 @@ impl Renderer {
     pub(crate) fn read_environment(&mut self, path: Option<&str>, limit: u64) -> Result<(), Error> {
         self.environment_image = None;
         let Some(path) = path else { return Ok(()) };
-        let known = self.environment_file.as_ref().filter(|(file, _)| file == path).map(|(_, map)| Arc::clone(map));
+        let known = self
+            .environment_file
+            .as_ref()
+            .filter(|(file, _)| file == path)
+            .map(|(_, map)| Arc::clone(map));
         let map = match known {
             Some(map) => map,
             None => environment::load_environment(path, limit)?,
@@ -481,8 +536,9 @@ impl Renderer {
         })
     }
 
-    /// Renders the picture that `camera` sees, and keeps the steps of its visibility algorithm, with one sample a pixel:
-    /// [`Replay`](crate::internals::render::trace::replay::Replay) shows what it was like after each.
+    /// Renders the picture that `camera` sees, and keeps the steps of its visibility algorithm,
+    /// with one sample a pixel: [`Replay`](crate::internals::render::trace::replay::Replay) shows
+    /// what it was like after each.
     ///
     /// # Errors
     /// As [`render`](Self::render); the memory limit if there are too many steps.
@@ -492,24 +548,38 @@ impl Renderer {
         Ok(watch_steps(&mut self.session, &shot, &self.settings, &self.execution, None)?)
     }
 
-    /// The facets of the view from `camera`, culled and ready for the screen, with one sample a pixel, at its centre.
+    /// The facets of the view from `camera`, culled and ready for the screen, with one sample a
+    /// pixel, at its centre.
     ///
     /// # Errors
     /// Settings that cannot be.
-    pub(crate) fn prepared(&self, camera: &Camera, counters: &mut CullCounters) -> Result<PreparedView<'_>, Error> {
+    pub(crate) fn prepared(
+        &self,
+        camera: &Camera,
+        counters: &mut CullCounters,
+    ) -> Result<PreparedView<'_>, Error> {
         let viewport = self.settings.check().map_err(vitral_render::Error::from)?;
         let pattern = SamplePattern::new(1);
-        Ok(PreparedView::new(&self.session, camera, &self.settings, viewport, pattern, &self.execution, counters))
+        Ok(PreparedView::new(
+            &self.session,
+            camera,
+            &self.settings,
+            viewport,
+            pattern,
+            &self.execution,
+            counters,
+        ))
     }
 
-    /// Takes back a picture that the caller has done with: the next one of its size is made in the same memory. Without it every
-    /// picture has to get new pages from the system.
+    /// Takes back a picture that the caller has done with: the next one of its size is made in the
+    /// same memory. Without it every picture has to get new pages from the system.
     pub fn recycle(&mut self, picture: Picture) {
         self.session.recycle(picture.frame);
     }
 
-    /// The cameras of `count` views around the model, in equal steps about [`up`](Self::up), counter-clockwise seen
-    /// from above. A framed camera keeps its distance, just far enough for the whole turn before [`Moves::zoom`].
+    /// The cameras of `count` views around the model, in equal steps about [`up`](Self::up),
+    /// counter-clockwise seen from above. A framed camera keeps its distance, just far enough for
+    /// the whole turn before [`Moves::zoom`].
     pub fn turntable_cameras(&self, count: usize) -> Vec<Camera> {
         let (aspect, workers, axis) = (self.aspect(), &self.execution.workers, self.up.vector());
         let framed = || {
@@ -517,7 +587,15 @@ impl Renderer {
             let boxed = framing::frame(&self.world().bounds, self.view, self.up, self.lens, aspect);
             let moved = self.moved(boxed);
             let eye = moved.position - moved.focal_point;
-            let fitted = framing::frame_turning(self.world(), eye, moved.view_up, axis, self.lens, aspect, workers);
+            let fitted = framing::frame_turning(
+                self.world(),
+                eye,
+                moved.view_up,
+                axis,
+                self.lens,
+                aspect,
+                workers,
+            );
             fitted.zoomed(self.moves.zoom)
         };
         let first = self.camera.unwrap_or_else(framed);
@@ -598,14 +676,17 @@ mod tests {
         // Radiosity does not depend on the camera, and needs no lamps where surfaces shine.
         let mut fixed = small("teapot");
         fixed.settings.global.model = Global::Radiosity;
-        let (near, far) = (Camera { position: DVec3::ONE, ..camera }, Camera { position: -DVec3::ONE, ..camera });
+        let (near, far) =
+            (Camera { position: DVec3::ONE, ..camera }, Camera { position: -DVec3::ONE, ..camera });
         assert!(!fixed.frame_lights(&near).is_empty());
         assert_eq!(fixed.frame_lights(&near), fixed.frame_lights(&far));
         // None of them goes through walls; the usual fill light does.
-        let leak = |lights: &[Light]| lights.iter().any(|l| l.kind != LightKind::Ambient && !l.shadow);
+        let leak =
+            |lights: &[Light]| lights.iter().any(|l| l.kind != LightKind::Ambient && !l.shadow);
         assert!(!leak(&fixed.frame_lights(&near)) && leak(&renderer_lights));
         let mut scene = load_builtin("teapot").unwrap();
-        let lamp = scene.add_material(vitral_light::Material { emission: [1.0; 3], ..Default::default() });
+        let lamp =
+            scene.add_material(vitral_light::Material { emission: [1.0; 3], ..Default::default() });
         let with_lamp = |scene: &Scene| {
             let mut shining = Renderer::new(scene.clone()).unwrap();
             shining.settings.global.model = Global::Radiosity;

@@ -1,12 +1,13 @@
 //! Everything that makes a picture, as one JSON form for the command line and configuration files.
 //!
-//! All fields may be left out. `{"vitral": 1, "models": ["builtin:teapot"], "settings": {"shading": "flat"}}` is a
-//! state; so is `{}`. Unknown fields are errors, told with line and column.
+//! All fields may be left out.
+//! `{"vitral": 1, "models": ["builtin:teapot"], "settings": {"shading": "flat"}}` is a state; so is
+//! `{}`. Unknown fields are errors, told with line and column.
 
 use crate::load::load_on;
 use crate::{
-    Error, FileColors, Light, LightEdit, LightTerm, LoadOptions, MaterialOverride, Renderer, Scene, Settings,
-    Viewpoint, Workers,
+    Error, FileColors, Light, LightEdit, LightTerm, LoadOptions, MaterialOverride, Renderer, Scene,
+    Settings, Viewpoint, Workers,
 };
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -31,8 +32,8 @@ const COLOR: &str = "r,g,b from 0 to 1 are required";
 pub struct State {
     /// The form's version, [`VERSION`].
     pub vitral: u32,
-    /// The models, together one scene: paths, or `builtin:NAME`. In a file, relative paths begin in the file's folder
-    /// ([`State::enter`], [`State::leave_for`]).
+    /// The models, together one scene: paths, or `builtin:NAME`. In a file, relative paths begin in
+    /// the file's folder ([`State::enter`], [`State::leave_for`]).
     pub models: Vec<String>,
     /// How they are read.
     pub load: LoadOptions,
@@ -47,7 +48,8 @@ pub struct State {
     pub lights: Option<Vec<Light>>,
     /// Changes of single fields of these lights, in order.
     pub light_edits: Vec<LightEdit>,
-    /// Multiplies all lights; `null`: 1, and what brings the scene's own lights to where pictures show them.
+    /// Multiplies all lights; `null`: 1, and what brings the scene's own lights to where pictures
+    /// show them.
     pub light_intensity: Option<f32>,
     /// One term of all lights alone; `null`: all three.
     pub light_term: Option<LightTerm>,
@@ -55,7 +57,8 @@ pub struct State {
     pub fill_light: bool,
     /// Global ambient light on top of the scene's own.
     pub ambient: [f32; 3],
-    /// The file with an image of the surroundings, in the place of the soft sky; relative paths as those of [`Self::models`].
+    /// The file with an image of the surroundings, in the place of the soft sky; relative paths as
+    /// those of [`Self::models`].
     pub environment_image: Option<String>,
     /// How pictures are made.
     pub settings: Settings,
@@ -69,8 +72,8 @@ fn lights<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<Light
     Ok(forms.map(|forms| forms.into_iter().map(Light::from).collect()))
 }
 
-/// A move of all objects together, as in the course's program Lab3D: turned about x, then y, then z, then moved. Lights in
-/// nodes move along; the scene's own lights and cameras stay.
+/// A move of all objects together, as in the course's program Lab3D: turned about x, then y, then
+/// z, then moved. Lights in nodes move along; the scene's own lights and cameras stay.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Objects {
@@ -118,7 +121,11 @@ impl State {
         // A list would be taken for the fields in order.
         if text.trim_ascii_start().starts_with('[') {
             let what = format!("a state is an object, `{{ \"vitral\": {VERSION}, ... }}`");
-            return Err(Error::State { file: file.to_owned(), place: "line 1, column 1: ".to_owned(), what });
+            return Err(Error::State {
+                file: file.to_owned(),
+                place: "line 1, column 1: ".to_owned(),
+                what,
+            });
         }
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let read: Result<Self, _> = serde_path_to_error::deserialize(&mut deserializer);
@@ -140,14 +147,18 @@ impl State {
         Ok(state)
     }
 
-    /// Values that the options of the command line would refuse, too: the field, and what is required.
+    /// Values that the options of the command line would refuse, too: the field, and what is
+    /// required.
     fn check(&self) -> Result<(), (String, &'static str)> {
         const INTENSITIES: &str = "finite intensities of at least 0 are required";
-        let positive = |color: &[f32; 3]| color.iter().all(|&channel| channel.is_finite() && channel >= 0.0);
+        let positive =
+            |color: &[f32; 3]| color.iter().all(|&channel| channel.is_finite() && channel >= 0.0);
         for (i, light) in self.lights.iter().flatten().enumerate() {
             light.check().map_err(|what| (format!("lights[{i}]"), what))?;
         }
-        self.viewpoint.check_numbers().map_err(|(field, what)| (format!("viewpoint.{field}"), what))?;
+        self.viewpoint
+            .check_numbers()
+            .map_err(|(field, what)| (format!("viewpoint.{field}"), what))?;
         let (field, what) = match self.settings.picture.background {
             _ if self.turntable.is_some_and(|views| !(1..=MOST_VIEWS).contains(&views)) => {
                 ("turntable", "a whole number from 1 to 1000000 is required")
@@ -156,19 +167,31 @@ impl State {
                 ("light-intensity", "a finite number of at least 0 is required")
             }
             _ if !positive(&self.ambient) => ("ambient", INTENSITIES),
-            _ if self.environment_image.is_some() && self.settings.shading.environment != Environment::Auto => {
-                ("environment-image", "an image takes the place of the sky: settings.environment must be auto")
+            _ if self.environment_image.is_some()
+                && self.settings.shading.environment != Environment::Auto =>
+            {
+                (
+                    "environment-image",
+                    "an image takes the place of the sky: settings.environment must be auto",
+                )
             }
-            Background::Color { color } if !displayed(&color) => ("settings.picture.background.color", COLOR),
-            Background::Gradient { top, .. } if !displayed(&top) => ("settings.picture.background.top", COLOR),
-            Background::Gradient { bottom, .. } if !displayed(&bottom) => ("settings.picture.background.bottom", COLOR),
+            Background::Color { color } if !displayed(&color) => {
+                ("settings.picture.background.color", COLOR)
+            }
+            Background::Gradient { top, .. } if !displayed(&top) => {
+                ("settings.picture.background.top", COLOR)
+            }
+            Background::Gradient { bottom, .. } if !displayed(&bottom) => {
+                ("settings.picture.background.bottom", COLOR)
+            }
             _ => return Ok(()),
         };
         Err((field.to_owned(), what))
     }
 
-    /// Takes the fields that `text` has and keeps all others: how configuration files are laid over each other. Lists
-    /// are replaced as wholes, and so are choices that carry their own fields (the background, for one).
+    /// Takes the fields that `text` has and keeps all others: how configuration files are laid over
+    /// each other. Lists are replaced as wholes, and so are choices that carry their own fields
+    /// (the background, for one).
     ///
     /// # Errors
     /// [`Error::State`] with line and column; nothing is changed then.
@@ -187,15 +210,16 @@ impl State {
         self.models.iter_mut().chain(&mut self.environment_image).filter(|path| is_relative(path))
     }
 
-    /// Makes the relative paths that begin in `folder`, where the state was read, begin in the current folder.
+    /// Makes the relative paths that begin in `folder`, where the state was read, begin in the
+    /// current folder.
     pub fn enter(&mut self, folder: &Path) {
         for model in self.relative_paths() {
             *model = folder.join(&*model).to_string_lossy().into_owned();
         }
     }
 
-    /// Makes the relative paths that begin in the current folder begin in `folder`, where the state is to be
-    /// written. A path stays as it is where one of the folders is not there.
+    /// Makes the relative paths that begin in the current folder begin in `folder`, where the state
+    /// is to be written. A path stays as it is where one of the folders is not there.
     pub fn leave_for(&mut self, folder: &Path) {
         let whole = |folder: &Path| {
             let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -229,21 +253,27 @@ impl State {
         self.load_scene_by(|model| load_on(model, &self.load_options(), workers))
     }
 
-    /// How models are read for this picture: [`State::load`], but for raw colours, which are the numbers of the file.
+    /// How models are read for this picture: [`State::load`], but for raw colours, which are the
+    /// numbers of the file.
     pub fn load_options(&self) -> LoadOptions {
         let raw = self.settings.picture.color_space == ColorSpace::Raw;
         let file_colors = if raw { FileColors::Linear } else { self.load.file_colors };
         LoadOptions { file_colors, ..self.load.clone() }
     }
 
-    /// [`load_scene`](Self::load_scene) where models are no paths: `load` reads one by its name, as [`State::load`] says.
+    /// [`load_scene`](Self::load_scene) where models are no paths: `load` reads one by its name, as
+    /// [`State::load`] says.
     ///
     /// # Errors
     /// As [`load_scene`](Self::load_scene).
-    pub fn load_scene_by(&self, load: impl FnMut(&String) -> Result<Scene, Error>) -> Result<Scene, Error> {
+    pub fn load_scene_by(
+        &self,
+        load: impl FnMut(&String) -> Result<Scene, Error>,
+    ) -> Result<Scene, Error> {
         let mut scenes = self.models.iter().map(load);
-        let mut scene =
-            scenes.next().ok_or_else(|| Error::usage("there is no model", "name a file or builtin:teapot"))??;
+        let mut scene = scenes
+            .next()
+            .ok_or_else(|| Error::usage("there is no model", "name a file or builtin:teapot"))??;
         for other in scenes {
             scene.append(other?);
         }
@@ -252,21 +282,25 @@ impl State {
             if raw { change.raw().apply(&mut scene)? } else { change.apply(&mut scene)? }
         }
         if self.objects != Objects::default() {
-            let [all_u, all_t] = [self.objects.rotation, self.objects.translation].map(DVec3::from_array);
+            let [all_u, all_t] =
+                [self.objects.rotation, self.objects.translation].map(DVec3::from_array);
             LabView { all_u, all_t, ..LabView::default() }.move_objects(&mut scene);
         }
         if let ([up, other, ..], None) = (&scene.ups[..], self.viewpoint.up) {
-            let warning =
-                format!("{up} is up, as in the first model; others usually have {other} up (--up says which)");
+            let warning = format!(
+                "{up} is up, as in the first model; others usually have {other} up (--up says which)"
+            );
             scene.warnings.push(warning);
         }
         Ok(scene)
     }
 
-    /// Sets all that a renderer decides: settings, viewpoint, lights; reads the image of the surroundings.
+    /// Sets all that a renderer decides: settings, viewpoint, lights; reads the image of the
+    /// surroundings.
     ///
     /// # Errors
-    /// A viewpoint without sense; an edit that names a light, field or value that is not there; an image that cannot be read.
+    /// A viewpoint without sense; an edit that names a light, field or value that is not there; an
+    /// image that cannot be read.
     pub fn apply(&self, renderer: &mut Renderer) -> Result<(), Error> {
         renderer.settings = self.settings.clone();
         renderer.lights.clone_from(&self.lights);
@@ -311,7 +345,8 @@ fn way(from: &Path, to: &Path) -> Option<PathBuf> {
 /// An error with its place in the text; serde_json says the place at the end of its message.
 fn broken(file: &str, path: Option<String>, error: &serde_json::Error) -> Error {
     let message = error.to_string();
-    let what = message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what).to_owned();
+    let what =
+        message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what).to_owned();
     let line = match error.line() {
         0 => String::new(),
         line => format!("line {line}, column {}: ", error.column()),
@@ -324,7 +359,9 @@ fn broken(file: &str, path: Option<String>, error: &serde_json::Error) -> Error 
 fn merge(base: &mut Value, over: Value) {
     const KINDS: [&str; 4] = ["type", "form", "mode", "shape"];
     match (base, over) {
-        (Value::Object(base), Value::Object(over)) if !KINDS.iter().any(|k| over.contains_key(*k)) => {
+        (Value::Object(base), Value::Object(over))
+            if !KINDS.iter().any(|k| over.contains_key(*k)) =>
+        {
             for (key, value) in over {
                 merge(base.entry(key).or_insert(Value::Null), value);
             }
@@ -341,9 +378,14 @@ mod tests {
 
     #[test]
     fn a_state_comes_back_from_json() {
-        let mut state = State { models: vec!["a.obj".into()], turntable: Some(12), ..State::default() };
-        state.viewpoint =
-            Viewpoint { view: Some(View::Top), up: Some(Axis::MinusZ), zoom_factor: 2.0, ..Viewpoint::default() };
+        let mut state =
+            State { models: vec!["a.obj".into()], turntable: Some(12), ..State::default() };
+        state.viewpoint = Viewpoint {
+            view: Some(View::Top),
+            up: Some(Axis::MinusZ),
+            zoom_factor: 2.0,
+            ..Viewpoint::default()
+        };
         state.settings.picture.background = Background::Color { color: [0.25, 0.5, 1.0] };
         state.lights = Some(vitral_scene::lab::lights());
         state.materials.push(MaterialOverride::parse("glass.ior=1.5").unwrap());
@@ -357,7 +399,8 @@ mod tests {
         let text = r#"{"models": ["builtin:cubs"], "objects": {"rotation": [0, 90, 0], "translation": [10, 0, 0]}}"#;
         let moved = State::from_json(text, "s").unwrap();
         let plain = State { objects: Objects::default(), ..moved.clone() };
-        let [moved, plain] = [moved, plain].map(|s| vitral_scene::World::new(&s.load_scene().unwrap()).unwrap());
+        let [moved, plain] =
+            [moved, plain].map(|s| vitral_scene::World::new(&s.load_scene().unwrap()).unwrap());
         assert_eq!(moved.lights, plain.lights);
         let expected = vitral_math::DMat4::from_translation(DVec3::X * 10.0)
             * vitral_math::DMat4::from_rotation_y(std::f64::consts::FRAC_PI_2);
@@ -368,15 +411,27 @@ mod tests {
 
     #[test]
     fn paths_of_models_go_with_the_file() {
-        let way = |from: &str, to: &str| way(Path::new(from), Path::new(to)).unwrap().to_string_lossy().into_owned();
-        assert_eq!([way("/a/b", "/a/b"), way("/a/b", "/a/c/d"), way("/a", "/")], ["", "../c/d", ".."]);
+        let way = |from: &str, to: &str| {
+            way(Path::new(from), Path::new(to)).unwrap().to_string_lossy().into_owned()
+        };
+        assert_eq!(
+            [way("/a/b", "/a/b"), way("/a/b", "/a/c/d"), way("/a", "/")],
+            ["", "../c/d", ".."]
+        );
         let models = ["m.obj", "sub/m.obj", "../m.obj", "/abs/m.obj", "builtin:cubs", "-"];
         let mut state = State { models: models.map(str::to_owned).to_vec(), ..State::default() };
         state.enter(Path::new(""));
         assert_eq!(state.models, models);
         state.enter(Path::new("states"));
-        let entered = ["states/m.obj", "states/sub/m.obj", "states/../m.obj", "/abs/m.obj", "builtin:cubs", "-"]
-            .map(str::to_owned);
+        let entered = [
+            "states/m.obj",
+            "states/sub/m.obj",
+            "states/../m.obj",
+            "/abs/m.obj",
+            "builtin:cubs",
+            "-",
+        ]
+        .map(str::to_owned);
         assert_eq!(state.models, entered);
         state.leave_for(Path::new("no/such/folder"));
         assert_eq!(state.models, entered);
@@ -390,17 +445,36 @@ mod tests {
             error.to_string()
         };
         let error = tell("{\n  \"settings\": {\"widht\": 3}\n}");
-        assert!(error.starts_with("s.json: line 2, column ") && error.contains("unknown field `widht`"), "{error}");
-        assert!(tell("{\"viewpoint\": {\"view\": \"above\"}}").contains("viewpoint.view: there is no view `above`"));
+        assert!(
+            error.starts_with("s.json: line 2, column ") && error.contains("unknown field `widht`"),
+            "{error}"
+        );
+        assert!(
+            tell("{\"viewpoint\": {\"view\": \"above\"}}")
+                .contains("viewpoint.view: there is no view `above`")
+        );
         assert!(tell("{\"vitral\": 2}").contains("version 2"));
-        let dark = "{\"lights\": [{\"kind\": {\"type\": \"directional\", \"direction\": [0, 0, 0]}}]}";
+        let dark =
+            "{\"lights\": [{\"kind\": {\"type\": \"directional\", \"direction\": [0, 0, 0]}}]}";
         assert!(tell(dark).contains("lights[0]: direction: a direction of some length"));
         for (fields, expected) in [
-            (r#""viewpoint": {"direction": [0, 0, 0]}"#, "viewpoint.direction: a direction of some length is required"),
-            (r#""viewpoint": {"view-up": [0, 0, 0]}"#, "viewpoint.view-up: a direction of some length is required"),
-            (r#""viewpoint": {"zoom-factor": 0}"#, "viewpoint.zoom-factor: a number above 0 is required"),
+            (
+                r#""viewpoint": {"direction": [0, 0, 0]}"#,
+                "viewpoint.direction: a direction of some length is required",
+            ),
+            (
+                r#""viewpoint": {"view-up": [0, 0, 0]}"#,
+                "viewpoint.view-up: a direction of some length is required",
+            ),
+            (
+                r#""viewpoint": {"zoom-factor": 0}"#,
+                "viewpoint.zoom-factor: a number above 0 is required",
+            ),
             (r#""turntable": 0"#, "turntable: a whole number from 1 to 1000000 is required"),
-            (r#""light-intensity": -1"#, "light-intensity: a finite number of at least 0 is required"),
+            (
+                r#""light-intensity": -1"#,
+                "light-intensity: a finite number of at least 0 is required",
+            ),
             (r#""ambient": [0, -1, 0]"#, "ambient: finite intensities of at least 0 are required"),
             (
                 r#""lights": [{"diffuse": [0, -1, 0]}]"#,
@@ -423,11 +497,14 @@ mod tests {
     fn an_overlay_changes_only_what_it_names() {
         let mut state = State { models: vec!["a.obj".into()], ..State::default() };
         state.settings.shading.model = Shading::Flat;
-        let text =
-            r#"{"settings": {"width": 99, "background": {"type": "transparent"}}, "viewpoint": {"view": "left"}}"#;
+        let text = r#"{"settings": {"width": 99, "background": {"type": "transparent"}}, "viewpoint": {"view": "left"}}"#;
         state.overlay(text, "c").unwrap();
         assert_eq!(
-            (state.settings.picture.width, state.settings.picture.height, state.settings.shading.model),
+            (
+                state.settings.picture.width,
+                state.settings.picture.height,
+                state.settings.shading.model
+            ),
             (99, 768, Shading::Flat)
         );
         assert_eq!(
@@ -449,7 +526,10 @@ mod tests {
         std::fs::write(&path, format!("solid a\n{facet}\nendsolid a\n")).unwrap();
         let solid = path.to_string_lossy().into_owned();
         let up = |models: &[&str], up: Option<Axis>| {
-            let mut state = State { models: models.iter().map(|m| (*m).to_owned()).collect(), ..State::default() };
+            let mut state = State {
+                models: models.iter().map(|m| (*m).to_owned()).collect(),
+                ..State::default()
+            };
             state.viewpoint.up = up;
             let scene = state.load_scene().unwrap();
             let warnings = scene.warnings.clone();
@@ -460,7 +540,10 @@ mod tests {
         assert_eq!(up(&[&solid], None), (Axis::PlusZ, String::new()));
         let (axis, warnings) = up(&["builtin:cubs", &solid], None);
         assert_eq!(axis, Axis::PlusY);
-        assert!(warnings.contains("+Y is up, as in the first model; others usually have +Z up"), "{warnings}");
+        assert!(
+            warnings.contains("+Y is up, as in the first model; others usually have +Z up"),
+            "{warnings}"
+        );
         assert_eq!(up(&[&solid, "builtin:cubs"], Some(Axis::PlusX)), (Axis::PlusX, String::new()));
         std::fs::remove_dir_all(folder).unwrap();
     }
@@ -473,23 +556,41 @@ mod tests {
             state.apply(&mut renderer).map(|()| renderer.frame_lights(&renderer.frame_camera()))
         };
         // The scene's own, those of the state, those that follow the camera.
-        let edit =
-            |light: &str| format!(r#""light-edits": [{{"light": "{light}", "field": "diffuse", "value": "red"}}]"#);
-        let own = lights(&format!(r#"{{"models": ["builtin:sphere"], {}}}"#, edit("LIGHT1"))).unwrap();
-        assert_eq!(own[1], Light { diffuse: [1.0, 0.0, 0.0], ..vitral_scene::lab::lights()[1].clone() });
-        let named = r#""lights": [{"name": "LIGHT0", "specular": [0, 0, 0]}], "light-intensity": 0.5"#;
-        let named = lights(&format!(r#"{{"models": ["builtin:teapot"], {named}, {}}}"#, edit("0"))).unwrap();
-        let expected = Light { specular: [0.0; 3], diffuse: [0.5, 0.0, 0.0], ..vitral_scene::lab::lights()[0].clone() };
+        let edit = |light: &str| {
+            format!(
+                r#""light-edits": [{{"light": "{light}", "field": "diffuse", "value": "red"}}]"#
+            )
+        };
+        let own =
+            lights(&format!(r#"{{"models": ["builtin:sphere"], {}}}"#, edit("LIGHT1"))).unwrap();
+        assert_eq!(
+            own[1],
+            Light { diffuse: [1.0, 0.0, 0.0], ..vitral_scene::lab::lights()[1].clone() }
+        );
+        let named =
+            r#""lights": [{"name": "LIGHT0", "specular": [0, 0, 0]}], "light-intensity": 0.5"#;
+        let named = lights(&format!(r#"{{"models": ["builtin:teapot"], {named}, {}}}"#, edit("0")))
+            .unwrap();
+        let expected = Light {
+            specular: [0.0; 3],
+            diffuse: [0.5, 0.0, 0.0],
+            ..vitral_scene::lab::lights()[0].clone()
+        };
         assert_eq!(named, [Light { ambient: expected.ambient.map(|c| c * 0.5), ..expected }]);
-        let usual = lights(&format!(r#"{{"models": ["builtin:teapot"], {}}}"#, edit("key"))).unwrap();
+        let usual =
+            lights(&format!(r#"{{"models": ["builtin:teapot"], {}}}"#, edit("key"))).unwrap();
         assert_eq!((usual[0].name.as_str(), usual[0].diffuse), ("key", [1.0, 0.0, 0.0]));
-        let error = lights(&format!(r#"{{"models": ["builtin:teapot"], {}}}"#, edit("LIGHT9"))).unwrap_err();
+        let error = lights(&format!(r#"{{"models": ["builtin:teapot"], {}}}"#, edit("LIGHT9")))
+            .unwrap_err();
         assert_eq!(error.to_string(), "there is no light `LIGHT9`");
     }
 
     #[test]
     fn several_models_make_one_scene() {
-        let mut state = State { models: vec!["builtin:sphere".into(), "builtin:cubs".into()], ..State::default() };
+        let mut state = State {
+            models: vec!["builtin:sphere".into(), "builtin:cubs".into()],
+            ..State::default()
+        };
         state.materials.push(MaterialOverride::parse("cube 0.color=1").unwrap());
         let scene = state.load_scene().unwrap();
         assert_eq!((scene.meshes.len(), scene.lights.len()), (9, 4));

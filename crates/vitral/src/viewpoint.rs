@@ -1,4 +1,5 @@
-//! From where a scene is seen, as users say it: a standard side or a place, then moves round the model.
+//! From where a scene is seen, as users say it: a standard side or a place, then moves round the
+//! model.
 
 use crate::names::{serde_axis, serde_view};
 use crate::{Axis, Camera, Error, Lens, Moves, Projection, Renderer, View, World};
@@ -6,12 +7,13 @@ use serde::{Deserialize, Serialize};
 use vitral_math::{Aabb, DVec3};
 use vitral_scene::lab::LabView;
 
-/// The choices behind a camera. Without any, the model is framed from the default side. Angles are in degrees here,
-/// because people write this.
+/// The choices behind a camera. Without any, the model is framed from the default side. Angles are
+/// in degrees here, because people write this.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
 pub struct Viewpoint {
-    /// The side a framed model is seen from; `None`: [`View::ThreeQuarter`], or the scene's own camera where nothing else is said either.
+    /// The side a framed model is seen from; `None`: [`View::ThreeQuarter`], or the scene's own
+    /// camera where nothing else is said either.
     #[serde(with = "serde_view")]
     pub view: Option<View>,
     /// Which way is up; `None`: as is usual for the first model's format.
@@ -19,8 +21,9 @@ pub struct Viewpoint {
     pub up: Option<Axis>,
     /// Start with this camera of the scene, counted from 0, instead of framing.
     pub camera_index: Option<usize>,
-    /// The eye of the course's program Lab3D: turned about x, then y, then z, in degrees; unturned it looks along -z. Alone it frames
-    /// the model. Not beside `camera_index`, `position`, `focal_point` or `direction`.
+    /// The eye of the course's program Lab3D: turned about x, then y, then z, in degrees; unturned
+    /// it looks along -z. Alone it frames the model. Not beside `camera_index`, `position`,
+    /// `focal_point` or `direction`.
     pub eye_rotation: Option<[f64; 3]>,
     /// Where that eye is, world space.
     pub eye_translation: Option<[f64; 3]>,
@@ -30,8 +33,8 @@ pub struct Viewpoint {
     pub focal_point: Option<[f64; 3]>,
     /// Upwards in the picture.
     pub view_up: Option<[f64; 3]>,
-    /// The direction of view. Alone it frames the model from there; with a focal point or the scene's camera, the viewer keeps the
-    /// distance.
+    /// The direction of view. Alone it frames the model from there; with a focal point or the
+    /// scene's camera, the viewer keeps the distance.
     pub direction: Option<[f64; 3]>,
     /// Vertical angle of view, degrees between 0 and 180.
     #[serde(rename = "view-angle")]
@@ -73,7 +76,8 @@ impl Default for Viewpoint {
 }
 
 impl Viewpoint {
-    /// This viewpoint; where it says nothing, the scene's [own camera](vitral_scene::Scene::own_camera), if it has one.
+    /// This viewpoint; where it says nothing, the scene's [own
+    /// camera](vitral_scene::Scene::own_camera), if it has one.
     #[must_use]
     pub fn or_own(&self, world: &World) -> Self {
         match world.own_camera {
@@ -84,9 +88,9 @@ impl Viewpoint {
         }
     }
 
-    /// Sets view, axis, lens and camera of `renderer`. `usual_up` is the upward axis where none was chosen. A model
-    /// that is framed, and seen from elsewhere or enlarged at most, leaves the camera open, so that turntables can choose
-    /// their distance.
+    /// Sets view, axis, lens and camera of `renderer`. `usual_up` is the upward axis where none was
+    /// chosen. A model that is framed, and seen from elsewhere or enlarged at most, leaves the
+    /// camera open, so that turntables can choose their distance.
     ///
     /// # Errors
     /// [`Error::Usage`] for a camera that the scene has not, and for numbers without sense.
@@ -123,12 +127,16 @@ impl Viewpoint {
                 let what = format!("camera {index} of the scene stands at its focal point");
                 vitral_render::Error::Scene(what).into()
             }
-            None => Error::usage("the camera stands at its focal point", "a direction of view is required"),
+            None => Error::usage(
+                "the camera stands at its focal point",
+                "a direction of view is required",
+            ),
         }
     }
 
     fn moves(&self) -> Moves {
-        let [azimuth, elevation] = [self.azimuth_degrees, self.elevation_degrees].map(f64::to_radians);
+        let [azimuth, elevation] =
+            [self.azimuth_degrees, self.elevation_degrees].map(f64::to_radians);
         Moves { azimuth, elevation, zoom: self.zoom_factor }
     }
 
@@ -147,11 +155,13 @@ impl Viewpoint {
         *self == framed
     }
 
-    /// A number without sense, whatever the scene is, for those who read viewpoints and can say so: its field, and what is
-    /// required.
+    /// A number without sense, whatever the scene is, for those who read viewpoints and can say so:
+    /// its field, and what is required.
     pub(crate) fn check_numbers(&self) -> Result<(), (&'static str, &'static str)> {
         let directions = [("view-up", self.view_up), ("direction", self.direction)];
-        let pointless = |v: &Option<[f64; 3]>| v.is_some_and(|v| DVec3::from_array(v).try_normalize().is_none());
+        let pointless = |v: &Option<[f64; 3]>| {
+            v.is_some_and(|v| DVec3::from_array(v).try_normalize().is_none())
+        };
         if let Some((field, _)) = directions.iter().find(|(_, v)| pointless(v)) {
             return Err((field, "a direction of some length is required"));
         }
@@ -167,24 +177,31 @@ impl Viewpoint {
     fn check(&self, renderer: &Renderer) -> Result<(), Error> {
         let count = renderer.world().cameras.len();
         if let Some(index) = self.camera_index.filter(|&i| i >= count) {
-            let hint = if count == 0 { "it has none".to_owned() } else { format!("it has {count}, counted from 0") };
+            let hint = if count == 0 {
+                "it has none".to_owned()
+            } else {
+                format!("it has {count}, counted from 0")
+            };
             return Err(Error::usage(format!("the scene has no camera {index}"), hint));
         }
         let has_eye = self.eye_rotation.is_some() || self.eye_translation.is_some();
         let other = [self.position, self.focal_point, self.direction];
         if has_eye && (self.camera_index.is_some() || other.iter().any(Option::is_some)) {
-            let hint =
-                "leave out the eye's rotation and translation, or camera-index, position, focal-point and direction";
+            let hint = "leave out the eye's rotation and translation, or camera-index, position, focal-point and direction";
             return Err(Error::usage("the camera is given twice", hint));
         }
         let eye = [self.eye_rotation, self.eye_translation];
-        let points = [self.position, self.focal_point, self.view_up, self.direction, eye[0], eye[1]];
+        let points =
+            [self.position, self.focal_point, self.view_up, self.direction, eye[0], eye[1]];
         let clip = self.clip.map_or([0.0, 1.0], |(near, far)| [near, far]);
-        let numbers = [self.zoom_factor, self.azimuth_degrees, self.elevation_degrees, clip[0], clip[1]];
+        let numbers =
+            [self.zoom_factor, self.azimuth_degrees, self.elevation_degrees, clip[0], clip[1]];
         if !points.iter().flatten().flatten().chain(&numbers).all(|n| n.is_finite()) {
             return Err(Error::usage("the camera has a number that is not finite", ""));
         }
-        self.check_numbers().map_err(|(field, required)| Error::usage(format!("viewpoint.{field}: {required}"), ""))?;
+        self.check_numbers().map_err(|(field, required)| {
+            Error::usage(format!("viewpoint.{field}: {required}"), "")
+        })?;
         let parallel = self.orthographic;
         if clip[0] >= clip[1] || (self.clip.is_some() && !parallel && clip[0] <= 0.0) {
             return Err(Error::usage(
@@ -195,11 +212,13 @@ impl Viewpoint {
         Ok(())
     }
 
-    /// The camera of Lab3D's eye. Its focal point is the point on its axis that is nearest to the scene's middle.
+    /// The camera of Lab3D's eye. Its focal point is the point on its axis that is nearest to the
+    /// scene's middle.
     fn eye(&self, renderer: &Renderer) -> Camera {
-        let [eye_u, eye_t] =
-            [self.eye_rotation, self.eye_translation].map(|v| DVec3::from_array(v.unwrap_or_default()));
-        let eye = LabView { eye_u, eye_t, ..LabView::default() }.camera(renderer.frame_camera().projection);
+        let [eye_u, eye_t] = [self.eye_rotation, self.eye_translation]
+            .map(|v| DVec3::from_array(v.unwrap_or_default()));
+        let eye = LabView { eye_u, eye_t, ..LabView::default() }
+            .camera(renderer.frame_camera().projection);
         if self.eye_translation.is_none() {
             return renderer.framed_from(eye.position - eye.focal_point, eye.view_up);
         }
@@ -210,11 +229,16 @@ impl Viewpoint {
     fn camera(&self, renderer: &Renderer) -> Camera {
         let point = DVec3::from_array;
         let mut camera = match self.camera_index {
-            None if self.eye_rotation.is_some() || self.eye_translation.is_some() => self.eye(renderer),
+            None if self.eye_rotation.is_some() || self.eye_translation.is_some() => {
+                self.eye(renderer)
+            }
             Some(index) => aimed_at(&renderer.world().bounds, renderer.world().cameras[index]),
             None => match self.direction {
                 Some(direction) if self.position.is_none() && self.focal_point.is_none() => {
-                    renderer.framed_from(-point(direction), self.view_up.map_or(renderer.up.vector(), point))
+                    renderer.framed_from(
+                        -point(direction),
+                        self.view_up.map_or(renderer.up.vector(), point),
+                    )
                 }
                 _ => renderer.frame_camera(),
             },
@@ -226,10 +250,12 @@ impl Viewpoint {
         }
         if let Some(position) = self.position.map(point) {
             camera.position = position;
-            // A viewer that is placed looks at the middle of the model, wherever the framed view looks.
+            // A viewer that is placed looks at the middle of the model, wherever the framed view
+            // looks.
             let bounds = &renderer.world().bounds;
-            let is_framed =
-                self.camera_index.is_none() && self.eye_rotation.is_none() && self.eye_translation.is_none();
+            let is_framed = self.camera_index.is_none()
+                && self.eye_rotation.is_none()
+                && self.eye_translation.is_none();
             if is_framed && self.focal_point.is_none() && !bounds.is_empty() {
                 camera.focal_point = bounds.center();
             }
@@ -240,7 +266,9 @@ impl Viewpoint {
         if let Some(direction) = self.direction.map(point) {
             camera = camera.with_direction(direction);
         }
-        if let (Some(angle), Projection::Perspective { .. }) = (self.view_angle_degrees, camera.projection) {
+        if let (Some(angle), Projection::Perspective { .. }) =
+            (self.view_angle_degrees, camera.projection)
+        {
             camera.projection = Projection::Perspective { view_angle: angle.to_radians() };
         }
         if self.orthographic {
@@ -251,10 +279,13 @@ impl Viewpoint {
     }
 }
 
-/// A camera of the scene with a focal point to go round. Files tell where a camera looks, but not how far: if that is no
-/// place in the scene, the one on the axis of view that is nearest to the scene's middle.
+/// A camera of the scene with a focal point to go round. Files tell where a camera looks, but not
+/// how far: if that is no place in the scene, the one on the axis of view that is nearest to the
+/// scene's middle.
 fn aimed_at(bounds: &Aabb, camera: Camera) -> Camera {
-    let Some(forward) = (camera.focal_point - camera.position).try_normalize() else { return camera };
+    let Some(forward) = (camera.focal_point - camera.position).try_normalize() else {
+        return camera;
+    };
     let distance = (bounds.center() - camera.position).dot(forward);
     let is_place = bounds.is_empty() || bounds.contains(camera.focal_point);
     if is_place || distance <= 0.0 {
@@ -277,7 +308,11 @@ mod tests {
 
     #[test]
     fn a_place_and_moves_give_the_camera() {
-        let place = Viewpoint { position: Some([0.0, 0.0, 5.0]), focal_point: Some([0.0; 3]), ..Viewpoint::default() };
+        let place = Viewpoint {
+            position: Some([0.0, 0.0, 5.0]),
+            focal_point: Some([0.0; 3]),
+            ..Viewpoint::default()
+        };
         let plain = camera(place.clone()).unwrap();
         assert_eq!((plain.position, plain.focal_point), (DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO));
         let moved = camera(Viewpoint { azimuth_degrees: 90.0, zoom_factor: 2.0, ..place }).unwrap();
@@ -292,8 +327,11 @@ mod tests {
             eye_translation: Some([1.0, 2.0, 9.0]),
             ..Viewpoint::default()
         };
-        let lab =
-            LabView { eye_u: DVec3::new(10.0, -35.0, 7.0), eye_t: DVec3::new(1.0, 2.0, 9.0), ..LabView::default() };
+        let lab = LabView {
+            eye_u: DVec3::new(10.0, -35.0, 7.0),
+            eye_t: DVec3::new(1.0, 2.0, 9.0),
+            ..LabView::default()
+        };
         let found = camera(eye.clone()).unwrap();
         let axis = found.focal_point - found.position;
         let view = lab.view_from_world();
@@ -302,7 +340,9 @@ mod tests {
         assert!(view.transform_vector3(found.view_up).abs_diff_eq(DVec3::Y, 1e-12));
         // A rotation alone frames the model, and half a camera beside it is a mistake.
         let framed = camera(Viewpoint { eye_translation: None, ..eye.clone() }).unwrap();
-        assert!((framed.focal_point - framed.position).normalize().abs_diff_eq(axis.normalize(), 1e-9));
+        assert!(
+            (framed.focal_point - framed.position).normalize().abs_diff_eq(axis.normalize(), 1e-9)
+        );
         assert!(camera(Viewpoint { position: Some([0.0; 3]), ..eye.clone() }).is_err());
         assert!(camera(Viewpoint { camera_index: Some(0), ..eye }).is_err());
     }
@@ -326,17 +366,24 @@ mod tests {
         let mut renderer = Renderer::new(load_builtin("teapot").unwrap()).unwrap();
         let world = renderer.world();
         let points = world.instances.iter().flat_map(|i| {
-            i.mesh.positions.iter().map(|p| i.world_from_model.transform_point3(DVec3::from_array(p.map(f64::from))))
+            i.mesh
+                .positions
+                .iter()
+                .map(|p| i.world_from_model.transform_point3(DVec3::from_array(p.map(f64::from))))
         });
         let points: Vec<DVec3> = points.collect();
-        let moved = Viewpoint { azimuth_degrees: 30.0, elevation_degrees: 25.0, ..Viewpoint::default() };
+        let moved =
+            Viewpoint { azimuth_degrees: 30.0, elevation_degrees: 25.0, ..Viewpoint::default() };
         let mut whole = Vec::new();
         for zoom_factor in [1.0, 0.5, 2.0] {
             Viewpoint { zoom_factor, ..moved.clone() }.apply(&mut renderer, Axis::PlusY).unwrap();
             let single = renderer.frame_camera();
             let cameras = renderer.turntable_cameras(12);
             let away = |camera: &Camera| (camera.position - camera.focal_point).normalize();
-            assert!(away(&cameras[0]).abs_diff_eq(away(&single), 1e-12), "the first view is that of the picture");
+            assert!(
+                away(&cameras[0]).abs_diff_eq(away(&single), 1e-12),
+                "the first view is that of the picture"
+            );
             let reach = cameras.iter().map(|camera| {
                 let clip = camera.transform(renderer.aspect(), (0.1, 100.0)).clip_from_world();
                 let seen = points.iter().map(|point| clip * point.extend(1.0));
@@ -359,8 +406,12 @@ mod tests {
     fn the_scenes_own_camera_can_be_chosen() {
         let own = camera(Viewpoint { camera_index: Some(0), ..Viewpoint::default() }).unwrap();
         assert!((own.position.length() - 5.0).abs() < 1e-9);
-        let error = camera(Viewpoint { camera_index: Some(7), ..Viewpoint::default() }).unwrap_err();
-        assert!(matches!(error, Error::Usage { .. }) && error.to_string() == "the scene has no camera 7");
+        let error =
+            camera(Viewpoint { camera_index: Some(7), ..Viewpoint::default() }).unwrap_err();
+        assert!(
+            matches!(error, Error::Usage { .. })
+                && error.to_string() == "the scene has no camera 7"
+        );
     }
 
     #[test]
@@ -383,7 +434,10 @@ mod tests {
         let own = Viewpoint { camera_index: Some(0), ..Viewpoint::default() };
         let error = own.apply(&mut renderer, Axis::PlusY).unwrap_err();
         assert!(matches!(error, Error::Render(vitral_render::Error::Scene(_))), "{error}");
-        assert!(error.to_string().contains("camera 0 of the scene stands at its focal point"), "{error}");
+        assert!(
+            error.to_string().contains("camera 0 of the scene stands at its focal point"),
+            "{error}"
+        );
         let moved = Viewpoint { position: Some([9.0, 9.0, 9.0]), ..own };
         assert!(moved.apply(&mut renderer, Axis::PlusY).is_ok());
     }
@@ -397,7 +451,11 @@ mod tests {
             Viewpoint { clip: Some((2.0, 1.0)), ..Viewpoint::default() },
             Viewpoint { direction: Some([0.0; 3]), ..Viewpoint::default() },
             Viewpoint { view_up: Some([0.0; 3]), ..Viewpoint::default() },
-            Viewpoint { position: Some([1.0; 3]), focal_point: Some([1.0; 3]), ..Viewpoint::default() },
+            Viewpoint {
+                position: Some([1.0; 3]),
+                focal_point: Some([1.0; 3]),
+                ..Viewpoint::default()
+            },
         ] {
             assert!(matches!(camera(bad), Err(Error::Usage { .. })));
         }

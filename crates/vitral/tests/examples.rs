@@ -8,7 +8,8 @@ fn names() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let stems = files.filter_map(|file| Some(file.file_stem()?.to_string_lossy().into_owned()));
-    let mut names: Vec<String> = stems.filter(|name| name.starts_with(|c: char| c.is_ascii_digit())).collect();
+    let mut names: Vec<String> =
+        stems.filter(|name| name.starts_with(|c: char| c.is_ascii_digit())).collect();
     names.sort();
     names
 }
@@ -33,7 +34,9 @@ fn every_numbered_example_runs_to_its_end() {
     for name in names {
         let example = built.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
         if !example.exists() {
-            println!("skipped: the example {name} is not built (cargo test builds it, with --test add --examples)");
+            println!(
+                "skipped: the example {name} is not built (cargo test builds it, with --test add --examples)"
+            );
             continue;
         }
         let mut command = Command::new(example);

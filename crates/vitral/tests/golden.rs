@@ -1,8 +1,9 @@
-//! Golden pictures: small references in `tests/golden`, byte for byte, at every instruction set and thread count.
+//! Golden pictures: small references in `tests/golden`, byte for byte, at every instruction set and
+//! thread count.
 
 use vitral::{
-    Background, DMat4, DVec3, DepthCue, Execution, Global, Illumination, Light, Lines, Material, Renderer, Scene,
-    Shading, Shadows, Transparency, panels, solids,
+    Background, DMat4, DVec3, DepthCue, Execution, Global, Illumination, Light, Lines, Material,
+    Renderer, Scene, Shading, Shadows, Transparency, panels, solids,
 };
 use vitral_testkit::fixture::repository;
 use vitral_testkit::golden::{Tolerance, check_everywhere};
@@ -18,7 +19,11 @@ fn golden(name: &str, scene: Scene, change: impl Fn(&mut Renderer)) {
 }
 
 fn renderer(scene: &Scene, setting: &Setting, [width, height]: [u32; 2]) -> Renderer {
-    let execution = Execution { workers: setting.workers.clone(), level: setting.level, ..Execution::default() };
+    let execution = Execution {
+        workers: setting.workers.clone(),
+        level: setting.level,
+        ..Execution::default()
+    };
     let mut renderer = Renderer::with_execution(scene.clone(), execution).unwrap();
     (renderer.settings.picture.width, renderer.settings.picture.height) = (width, height);
     renderer
@@ -76,13 +81,17 @@ fn shading_models() {
 
 #[test]
 fn cook_torrance() {
-    golden("scene0-cook-torrance", builtin("scene0"), |r| r.settings.shading.illumination = Illumination::CookTorrance);
+    golden("scene0-cook-torrance", builtin("scene0"), |r| {
+        r.settings.shading.illumination = Illumination::CookTorrance
+    });
 }
 
 #[test]
 fn edges() {
     golden("scene1-edges", builtin("scene1"), |r| r.settings.picture.lines = Lines::Edges);
-    golden("cubs-hidden-line", builtin("cubs"), |r| r.settings.picture.lines = Lines::WireframeHiddenLine);
+    golden("cubs-hidden-line", builtin("cubs"), |r| {
+        r.settings.picture.lines = Lines::WireframeHiddenLine
+    });
 }
 
 #[test]
@@ -110,8 +119,11 @@ fn p42_everything_at_once() {
     figure("realism", "realism", |r| {
         traced(r);
         r.settings.transparency.model = Transparency::Filtered;
-        (r.settings.picture.samples, r.settings.shadows.light_samples, r.settings.transparency.scatter_samples) =
-            (2, 4, 8);
+        (
+            r.settings.picture.samples,
+            r.settings.shadows.light_samples,
+            r.settings.transparency.scatter_samples,
+        ) = (2, 4, 8);
     });
 }
 
@@ -175,7 +187,9 @@ fn depth_cueing() {
 #[test]
 fn other_shadows() {
     for shadows in ["ray", "scan-line", "object-precision"] {
-        room(&format!("scene0-shadows-{shadows}"), |r| r.settings.shadows.algorithm = shadows.parse().unwrap());
+        room(&format!("scene0-shadows-{shadows}"), |r| {
+            r.settings.shadows.algorithm = shadows.parse().unwrap()
+        });
     }
     room("scene0-shadows-cascades", |r| {
         r.settings.shadows.algorithm = Shadows::MAP;

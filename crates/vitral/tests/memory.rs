@@ -1,7 +1,8 @@
 //! How much memory a picture takes, from the file on: at most twice what has to be there.
 //!
-//! What has to be there are the scene's arrays, the facets that the z-buffer keeps, and the samples' planes. A counting
-//! allocator measures the rest, too: the file's bytes, indices of bins, the picture.
+//! What has to be there are the scene's arrays, the facets that the z-buffer keeps, and the
+//! samples' planes. A counting allocator measures the rest, too: the file's bytes, indices of bins,
+//! the picture.
 
 use peak_alloc::PeakAlloc;
 use std::path::Path;
@@ -58,12 +59,16 @@ fn arrays(mesh: &Mesh) -> usize {
 }
 
 fn scene_bytes(scene: &Scene) -> usize {
-    let texels =
-        scene.textures.iter().flat_map(|t| &t.levels).map(|level| 4 * (level.width() * level.height()) as usize);
+    let texels = scene
+        .textures
+        .iter()
+        .flat_map(|t| &t.levels)
+        .map(|level| 4 * (level.width() * level.height()) as usize);
     scene.meshes.iter().map(|m| arrays(m)).sum::<usize>() + texels.sum::<usize>()
 }
 
-/// Growth of allocated memory from before a file is read to after its picture, over what has to be there.
+/// Growth of allocated memory from before a file is read to after its picture, over what has to be
+/// there.
 fn growth(path: &Path, samples: u32) -> f64 {
     let execution = execution(2);
     MEMORY.reset_peak_usage();

@@ -3,7 +3,8 @@
 use std::sync::{Arc, Mutex};
 use vitral::{Execution, Global, Renderer, Workers};
 
-/// What the listener heard of `stage`, in a small picture of a built-in scene: how much was done, of how much.
+/// What the listener heard of `stage`, in a small picture of a built-in scene: how much was done,
+/// of how much.
 fn heard(name: &str, global: Global, shadows: &str, stage: &'static str) -> Vec<(u64, u64)> {
     let heard = Arc::new(Mutex::new(Vec::new()));
     let listener = Arc::clone(&heard);
@@ -13,10 +14,15 @@ fn heard(name: &str, global: Global, shadows: &str, stage: &'static str) -> Vec<
             listener.lock().unwrap().push((done, total));
         }
     }));
-    let mut renderer = Renderer::with_execution(vitral::load_builtin(name).unwrap(), execution).unwrap();
-    (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
-        (160, 120, 1);
-    (renderer.settings.global.model, renderer.settings.shadows.algorithm) = (global, shadows.parse().unwrap());
+    let mut renderer =
+        Renderer::with_execution(vitral::load_builtin(name).unwrap(), execution).unwrap();
+    (
+        renderer.settings.picture.width,
+        renderer.settings.picture.height,
+        renderer.settings.picture.samples,
+    ) = (160, 120, 1);
+    (renderer.settings.global.model, renderer.settings.shadows.algorithm) =
+        (global, shadows.parse().unwrap());
     renderer.settings.global.patch_size = (global == Global::Radiosity).then_some(200.0);
     renderer.render().unwrap();
     heard.lock().unwrap().clone()

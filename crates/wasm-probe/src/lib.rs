@@ -1,14 +1,16 @@
 //! One scene, for the test that native code and WebAssembly give the same bytes.
 //!
-//! `cargo xtask test` builds this library for `wasm32-unknown-unknown`, plain and with simd128, lets Node hash what
-//! [`render`] draws, and compares with the hash that this crate's program prints natively.
+//! `cargo xtask test` builds this library for `wasm32-unknown-unknown`, plain and with simd128,
+//! lets Node hash what [`render`] draws, and compares with the hash that this crate's program
+//! prints natively.
 //!
-//! What is drawn: Lab3D's scene 1 through its own camera, smooth with all data planes, then as faceted Cook-Torrance
-//! with edges. So culling, clipping, rasterising, three shading models, marks and both colour spaces take part. Then the same scene as
-//! a vector drawing: visible and hidden lines, intersections, and regions.
+//! What is drawn: Lab3D's scene 1 through its own camera, smooth with all data planes, then as
+//! faceted Cook-Torrance with edges. So culling, clipping, rasterising, three shading models, marks
+//! and both colour spaces take part. Then the same scene as a vector drawing: visible and hidden
+//! lines, intersections, and regions.
 
-// Exporting a function by its name is the only way out of a WebAssembly module, and the attribute for it is unsafe
-// because two functions of one name would collide. There is no unsafe block.
+// Exporting a function by its name is the only way out of a WebAssembly module, and the attribute
+// for it is unsafe because two functions of one name would collide. There is no unsafe block.
 #![allow(unsafe_code)]
 
 use std::sync::{Arc, OnceLock};
@@ -17,13 +19,16 @@ use vitral_exec::{Budget, Workers};
 use vitral_frame::Frame;
 use vitral_light::Illumination;
 use vitral_math::lanes::Level;
-use vitral_render::{Channels, ColorSpace, Execution, Lines, Session, Settings, Shading, Shot, Surroundings};
+use vitral_render::{
+    Channels, ColorSpace, Execution, Lines, Session, Settings, Shading, Shot, Surroundings,
+};
 use vitral_scene::{Camera, Projection, World, builtin};
 
 /// Width and height of the pictures in pixels; the last tiles are not full.
 const SIZE: (u32, u32) = (140, 100);
 
-/// The pictures: RGBA colours of all, then depths, surface ids and normals of the first, and the points of the drawing, little-endian.
+/// The pictures: RGBA colours of all, then depths, surface ids and normals of the first, and the
+/// points of the drawing, little-endian.
 pub fn picture() -> Vec<u8> {
     let mut bytes = draw(Level::new());
     bytes.extend(drawing(&Workers::single()));
@@ -32,12 +37,21 @@ pub fn picture() -> Vec<u8> {
 
 /// The corners of all lines and regions of a drawing, in millimetres.
 fn drawing(workers: &Workers) -> Vec<u8> {
-    let world = World::new(&builtin::scene("scene1").expect("scene1 is built in")).expect("built-in scenes are sound");
-    let settings = DrawingSettings { lines: Classes::ALL, hidden_layers: 2, ..DrawingSettings::default() };
+    let world = World::new(&builtin::scene("scene1").expect("scene1 is built in"))
+        .expect("built-in scenes are sound");
+    let settings =
+        DrawingSettings { lines: Classes::ALL, hidden_layers: 2, ..DrawingSettings::default() };
     let palette = |look: &FaceLook| look.normal.map(|c| if c > 0.5 { 200 } else { 100 });
     let surfaces = Surfaces::new(&palette);
-    let drawn =
-        vitral_draw::draw(&world, &world.cameras[0], 1.4, &settings, Some(&surfaces), workers, &Budget::default());
+    let drawn = vitral_draw::draw(
+        &world,
+        &world.cameras[0],
+        1.4,
+        &settings,
+        Some(&surfaces),
+        workers,
+        &Budget::default(),
+    );
     let drawing = drawn.expect("there are no limits").drawing;
     let outlines = drawing.regions.iter().flat_map(|region| &region.rings);
     let points = drawing.lines.iter().map(|line| &line.points).chain(outlines).flatten();
@@ -46,7 +60,9 @@ fn drawing(workers: &Workers) -> Vec<u8> {
 
 /// FNV-1a, 64 bits: the hash that `run.mjs` computes as well.
 pub fn fnv1a(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
 }
 
 static PICTURE: OnceLock<Vec<u8>> = OnceLock::new();
@@ -66,7 +82,8 @@ pub extern "C" fn length() -> usize {
 fn draw(level: Level) -> Vec<u8> {
     let scene = Arc::new(builtin::scene("scene1").expect("scene1 is built in"));
     let mut session = Session::new(scene).expect("built-in scenes are sound");
-    let execution = Execution { workers: Workers::single(), level, budget: Budget::default(), observer: None };
+    let execution =
+        Execution { workers: Workers::single(), level, budget: Budget::default(), observer: None };
     let camera = session.world().cameras[0];
     let smooth = Settings::default().with_size(SIZE.0, SIZE.1).with_channels(Channels {
         depth: true,
@@ -87,12 +104,22 @@ fn draw(level: Level) -> Vec<u8> {
         .with_samples(1)
         .with_channels(Channels::default());
     // From close by, so that facets are clipped, too.
-    let near =
-        Camera { position: camera.position * 0.35, projection: Projection::Perspective { view_angle: 1.3 }, ..camera };
+    let near = Camera {
+        position: camera.position * 0.35,
+        projection: Projection::Perspective { view_angle: 1.3 },
+        ..camera
+    };
     let mut frame = |settings: &Settings, camera: Camera| {
         let lights = session.world().lights.clone();
-        let shot = Shot { camera, lights: &lights, ambient: [0.05; 3], surroundings: Surroundings::default() };
-        vitral_render::render(&mut session, &shot, settings, &execution).expect("there are no limits").frame
+        let shot = Shot {
+            camera,
+            lights: &lights,
+            ambient: [0.05; 3],
+            surroundings: Surroundings::default(),
+        };
+        vitral_render::render(&mut session, &shot, settings, &execution)
+            .expect("there are no limits")
+            .frame
     };
     let frames = [frame(&smooth, camera), frame(&gouraud, near), frame(&faceted, camera)];
     bytes(&frames)
@@ -103,8 +130,12 @@ fn bytes(frames: &[Frame]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for frame in frames {
         bytes.extend(frame.color.iter().flat_map(|plane| plane.data().as_flattened()));
-        bytes.extend(frame.depth.iter().flat_map(|plane| plane.data()).flat_map(|z| z.to_le_bytes()));
-        bytes.extend(frame.surface.iter().flat_map(|plane| plane.data()).flat_map(|id| id.to_le_bytes()));
+        bytes.extend(
+            frame.depth.iter().flat_map(|plane| plane.data()).flat_map(|z| z.to_le_bytes()),
+        );
+        bytes.extend(
+            frame.surface.iter().flat_map(|plane| plane.data()).flat_map(|id| id.to_le_bytes()),
+        );
         let normals = frame.normal.iter().flat_map(|plane| plane.data().as_flattened());
         bytes.extend(normals.flat_map(|n| n.to_le_bytes()));
     }
@@ -125,13 +156,19 @@ mod tests {
         // Three colour planes, and 4 + 4 + 12 bytes of data for each pixel of the first.
         let pixels = (SIZE.0 * SIZE.1) as usize;
         assert_eq!(pictures.len(), pixels * (3 * 4 + 20));
-        assert_ne!(pictures[..4], pictures[pixels * 2..][..4], "the middle differs from the corner");
+        assert_ne!(
+            pictures[..4],
+            pictures[pixels * 2..][..4],
+            "the middle differs from the corner"
+        );
     }
 
     #[test]
     fn drawings_do_not_depend_on_threads() {
         let bytes = drawing(&Workers::single());
-        assert!(bytes.len() > 1000 && bytes == drawing(&Workers::new(3)) && picture().ends_with(&bytes));
+        assert!(
+            bytes.len() > 1000 && bytes == drawing(&Workers::new(3)) && picture().ends_with(&bytes)
+        );
     }
 
     #[test]

@@ -1,7 +1,8 @@
-//! `cargo xtask clients`: programs that others wrote draw with our libOSMesa and with Mesa's; the pictures are compared.
+//! `cargo xtask clients`: programs that others wrote draw with our libOSMesa and with Mesa's; the
+//! pictures are compared.
 //!
-//! Needs Debian's libosmesa6, libglu1-mesa, gfsview-batch and a C compiler, and PyPI once. Everything lies in `target/clients`; the
-//! clients are in `crates/osmesa/tests/clients`.
+//! Needs Debian's libosmesa6, libglu1-mesa, gfsview-batch and a C compiler, and PyPI once.
+//! Everything lies in `target/clients`; the clients are in `crates/osmesa/tests/clients`.
 
 use crate::prepare::debian_packages;
 use crate::shell::{Outcome, command, output, repository, run, target_folder};
@@ -9,20 +10,30 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the Python clients import, from PyPI.
-const PACKAGES: [&str; 8] = ["mujoco", "gymnasium", "PyOpenGL", "glfw", "numpy", "pillow", "imageio", "packaging"];
+const PACKAGES: [&str; 8] =
+    ["mujoco", "gymnasium", "PyOpenGL", "glfw", "numpy", "pillow", "imageio", "packaging"];
 
 /// Clients in Python, by the names of their files.
-const PYTHON: [&str; 4] = ["mujoco_models", "gymnasium_environments", "pyopengl_glu", "glfw_window"];
+const PYTHON: [&str; 4] =
+    ["mujoco_models", "gymnasium_environments", "pyopengl_glu", "glfw_window"];
 
 /// The client in C.
 const C: &str = "buffers";
 
-/// Debian's viewer of flow simulations, by the number of dimensions, and what it is shown: NAME.gfs as NAME.view says.
+/// Debian's viewer of flow simulations, by the number of dimensions, and what it is shown: NAME.gfs
+/// as NAME.view says.
 const GFSVIEW: [(&str, &str); 2] = [("gfsview-batch2D", "plane"), ("gfsview-batch3D", "box")];
 
 /// Builds the library, runs every client with both libraries, prints the table.
 pub(crate) fn run_all() -> Outcome {
-    debian_packages(&["libosmesa6", "libglu1-mesa", "libgl-dev", "python3-venv", "gcc", "libc6-dev"])?;
+    debian_packages(&[
+        "libosmesa6",
+        "libglu1-mesa",
+        "libgl-dev",
+        "python3-venv",
+        "gcc",
+        "libc6-dev",
+    ])?;
     // The viewer starts OpenMPI, which needs its programs.
     debian_packages(&["gfsview-batch", "openmpi-bin"])?;
     crate::osmesa::run_all()?;
@@ -59,7 +70,11 @@ pub(crate) fn run_all() -> Outcome {
         }
         for (program, scene) in GFSVIEW {
             println!("{program} with {name}");
-            let words = gfsview(program, &sources.join("gfsview").join(scene), &made(&out.join("gfsview"))?)?;
+            let words = gfsview(
+                program,
+                &sources.join("gfsview").join(scene),
+                &made(&out.join("gfsview"))?,
+            )?;
             draw(&mut { words }, library, true);
         }
     }
@@ -67,12 +82,16 @@ pub(crate) fn run_all() -> Outcome {
     run(command(&python).arg(compare).arg(pictures("vitral")).arg(pictures("mesa")))
 }
 
-/// Runs a client with a library; `first` puts the library before all others that have its functions.
+/// Runs a client with a library; `first` puts the library before all others that have its
+/// functions.
 fn draw(client: &mut Command, library: &Path, first: bool) {
     if first {
         client.env("LD_PRELOAD", library.join("libOSMesa.so.8"));
     }
-    client.env("LD_LIBRARY_PATH", library).env("MUJOCO_GL", "osmesa").env("PYOPENGL_PLATFORM", "osmesa");
+    client
+        .env("LD_LIBRARY_PATH", library)
+        .env("MUJOCO_GL", "osmesa")
+        .env("PYOPENGL_PLATFORM", "osmesa");
     if let Err(why) = output(client.env("PYTHONDONTWRITEBYTECODE", "1")) {
         println!("{why}");
     }
@@ -84,11 +103,14 @@ fn gfsview(program: &str, scene: &Path, out: &Path) -> Result<Command, String> {
     let view = scene.with_extension("view");
     let mut commands = std::fs::read_to_string(&view).map_err(|e| failed(&view, e))?;
     let picture = out.join(program).with_extension("ppm");
-    commands += &format!("Save {} {{ format = PPM width = 400 height = 300 }}\n", picture.display());
+    commands +=
+        &format!("Save {} {{ format = PPM width = 400 height = 300 }}\n", picture.display());
     let input = out.join(program).with_extension("commands");
     std::fs::write(&input, commands).map_err(|e| failed(&input, e))?;
     let mut words = command(program);
-    words.arg(scene.with_extension("gfs")).stdin(std::fs::File::open(&input).map_err(|e| failed(&input, e))?);
+    words
+        .arg(scene.with_extension("gfs"))
+        .stdin(std::fs::File::open(&input).map_err(|e| failed(&input, e))?);
     // OpenMPI asks before it runs as root.
     words.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
     Ok(words)
@@ -102,8 +124,10 @@ fn made(folder: &Path) -> Result<PathBuf, String> {
 
 /// The folder of Mesa's library.
 fn mesa() -> Result<PathBuf, String> {
-    let folders = ["/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu", "/usr/lib64", "/usr/lib"];
-    let found = folders.iter().map(PathBuf::from).find(|folder| folder.join("libOSMesa.so.8").exists());
+    let folders =
+        ["/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu", "/usr/lib64", "/usr/lib"];
+    let found =
+        folders.iter().map(PathBuf::from).find(|folder| folder.join("libOSMesa.so.8").exists());
     found.ok_or_else(|| "Mesa's libOSMesa.so.8 is not installed (Debian: libosmesa6)".to_owned())
 }
 

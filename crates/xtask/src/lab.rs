@@ -1,4 +1,5 @@
-//! `cargo xtask lab`: the Lab's engine as WebAssembly, its page by npm, and a `vitral` with both inside.
+//! `cargo xtask lab`: the Lab's engine as WebAssembly, its page by npm, and a `vitral` with both
+//! inside.
 
 use crate::checks::{Check, CheckResult};
 use crate::prepare::{self, WASM_TARGET};
@@ -65,30 +66,45 @@ fn place_engine(folder: &Path) -> Outcome {
     fs::copy(&module, &place).map(drop).map_err(|e| format!("{}: {e}", place.display()))
 }
 
-/// Tests the page's own functions under Node, then the page in a browser, with a module that is built quickly and runs slowly.
-/// `missing` says why there can be no module.
+/// Tests the page's own functions under Node, then the page in a browser, with a module that is
+/// built quickly and runs slowly. `missing` says why there can be no module.
 pub(crate) fn test_all(missing: Option<&str>) -> Vec<Check> {
     let missing = missing.map(str::to_owned).or_else(|| prepare::npm().err());
     if let Some(why) = missing {
         return vec![Check { name: "lab", result: CheckResult::Skipped(why) }];
     }
-    let tried = |outcome: Outcome| outcome.map_or_else(CheckResult::Failed, |()| CheckResult::Passed);
-    let page = build_page().and_then(|()| run(command("npm").args(["run", "unit"]).current_dir(sources())));
+    let tried =
+        |outcome: Outcome| outcome.map_or_else(CheckResult::Failed, |()| CheckResult::Passed);
+    let page = build_page()
+        .and_then(|()| run(command("npm").args(["run", "unit"]).current_dir(sources())));
     let is_built = page.is_ok();
     let browser = match prepare::browser() {
         Err(why) => CheckResult::Skipped(why),
         Ok(()) if !is_built => CheckResult::Skipped("the page was not built".to_owned()),
         Ok(()) => tried(test_page()),
     };
-    vec![Check { name: "lab::functions", result: tried(page) }, Check { name: "lab::page", result: browser }]
+    vec![
+        Check { name: "lab::functions", result: tried(page) },
+        Check { name: "lab::page", result: browser },
+    ]
 }
 
 /// Builds a `vitral` with the Lab inside, lets it serve, and tests the page that it serves.
 fn test_page() -> Outcome {
     place_engine(&wasm::build_with_vectors(PACKAGE)?)?;
-    let build = ["build", "--quiet", "--profile", test::PROFILE, "--package", "vitral-cli", "--features", "lab"];
+    let build = [
+        "build",
+        "--quiet",
+        "--profile",
+        test::PROFILE,
+        "--package",
+        "vitral-cli",
+        "--features",
+        "lab",
+    ];
     run(cargo().args(build))?;
-    let program = target_folder().join(test::PROFILE).join(format!("vitral{}", std::env::consts::EXE_SUFFIX));
+    let program =
+        target_folder().join(test::PROFILE).join(format!("vitral{}", std::env::consts::EXE_SUFFIX));
     let mut serve = command(&program);
     serve.args(["lab", "--no-open"]).stdout(Stdio::piped());
     let mut server = serve.spawn().map_err(|e| format!("{}: {e}", program.display()))?;
@@ -103,6 +119,10 @@ fn test_page() -> Outcome {
         }
         _ => Err("the server printed no address".to_owned()),
     };
-    let ended = server.kill().and_then(|()| server.wait()).map(drop).map_err(|e| format!("the server: {e}"));
+    let ended = server
+        .kill()
+        .and_then(|()| server.wait())
+        .map(drop)
+        .map_err(|e| format!("the server: {e}"));
     tested.and(ended)
 }

@@ -1,4 +1,5 @@
-//! Developer commands: `cargo xtask test | check | circles | bless | lab | osmesa | wheel | dist | clients | sanitize | vectors | compare | sheets`.
+//! Developer commands:
+//! `cargo xtask test | check | circles | bless | lab | osmesa | wheel | dist | clients | sanitize | vectors | compare | sheets`.
 #![forbid(unsafe_code)]
 
 mod bless;

@@ -1,4 +1,5 @@
-//! `cargo xtask osmesa`: builds libOSMesa and lays it out as a folder that programs can be pointed at.
+//! `cargo xtask osmesa`: builds libOSMesa and lays it out as a folder that programs can be pointed
+//! at.
 
 use crate::shell::{Outcome, cargo, profile_folder, relative, repository, run, target_folder};
 use std::path::{Path, PathBuf};
@@ -9,10 +10,12 @@ const SONAME: &str = "libOSMesa.so.8";
 /// Further names: what linkers look for, and what programs were linked with before Mesa 9.
 const LINKS: [&str; 2] = ["libOSMesa.so", "libOSMesa.so.6"];
 
-/// What the stripped library's file stays under, in bytes: it is copied into images of containers and packages.
+/// What the stripped library's file stays under, in bytes: it is copied into images of containers
+/// and packages.
 const BELOW: u64 = 5_000_000;
 
-/// pkg-config's file; `pcfiledir` is the folder that it lies in, so that the whole folder can be moved.
+/// pkg-config's file; `pcfiledir` is the folder that it lies in, so that the whole folder can be
+/// moved.
 const PKG_CONFIG: &str = "\
 prefix=${pcfiledir}/..
 libdir=${prefix}
@@ -32,13 +35,19 @@ pub(crate) fn run_all() -> Outcome {
 
     let shown = relative(&folder);
     println!("{shown}/{SONAME}: {:.2} MB", size()? as f64 / 1e6);
-    println!("{shown}/libOSMesa.so, {shown}/libOSMesa.so.6, {shown}/include/GL/osmesa.h, {shown}/pkgconfig/osmesa.pc");
+    println!(
+        "{shown}/libOSMesa.so, {shown}/libOSMesa.so.6, {shown}/include/GL/osmesa.h, {shown}/pkgconfig/osmesa.pc"
+    );
     println!();
     println!("Run a program with it:");
     println!("  eval \"$(cargo run --release --quiet -- osmesa-env --lib {shown})\"");
-    println!("  MUJOCO_GL=osmesa PYOPENGL_PLATFORM=osmesa LD_LIBRARY_PATH={shown} python3 PROGRAM.py");
+    println!(
+        "  MUJOCO_GL=osmesa PYOPENGL_PLATFORM=osmesa LD_LIBRARY_PATH={shown} python3 PROGRAM.py"
+    );
     println!("Build a program with it:");
-    println!("  cc PROGRAM.c $(PKG_CONFIG_PATH={shown}/pkgconfig pkg-config --cflags --libs osmesa)");
+    println!(
+        "  cc PROGRAM.c $(PKG_CONFIG_PATH={shown}/pkgconfig pkg-config --cflags --libs osmesa)"
+    );
     println!("docs/osmesa.md tells more.");
     Ok(())
 }
@@ -47,15 +56,25 @@ pub(crate) fn run_all() -> Outcome {
 pub(crate) fn build(profile: &str) -> Result<PathBuf, String> {
     let mut options = Vec::new();
     if profile == "release" {
-        // Names of its own functions are a sixth of the file, and of no use to programs. Entry points begin with a cache line: one
-        // that is called a million times a frame took up to 1.4 times as long where it did not.
+        // Names of its own functions are a sixth of the file, and of no use to programs. Entry
+        // points begin with a cache line: one that is called a million times a frame took up to 1.4
+        // times as long where it did not.
         options.extend(["--", "-C", "strip=symbols", "-C", "llvm-args=-align-all-functions=6"]);
         if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
             // There rustc brings a linker that can keep functions with the same code once.
             options.extend(["-C", "link-arg=-Wl,--icf=all"]);
         }
     }
-    let words = ["rustc", "--profile", profile, "--package", "vitral-osmesa", "--lib", "--crate-type", "cdylib"];
+    let words = [
+        "rustc",
+        "--profile",
+        profile,
+        "--package",
+        "vitral-osmesa",
+        "--lib",
+        "--crate-type",
+        "cdylib",
+    ];
     run(cargo().args(words).args(options))?;
     Ok(profile_folder(profile).join("libOSMesa.so"))
 }
@@ -78,7 +97,8 @@ fn lay_out(built: &Path, folder: &Path) -> std::io::Result<()> {
     for part in ["include/GL", "pkgconfig"] {
         std::fs::create_dir_all(folder.join(part))?;
     }
-    // A library that a process has loaded must not be written over: the new one takes the old one's place.
+    // A library that a process has loaded must not be written over: the new one takes the old one's
+    // place.
     let library = folder.join(SONAME);
     let fresh = folder.join(format!("{SONAME}.new"));
     std::fs::copy(built, &fresh)?;
@@ -91,7 +111,10 @@ fn lay_out(built: &Path, folder: &Path) -> std::io::Result<()> {
         #[cfg(not(unix))]
         std::fs::copy(&library, &link)?;
     }
-    std::fs::copy(repository().join("crates/osmesa/include/GL/osmesa.h"), folder.join("include/GL/osmesa.h"))?;
+    std::fs::copy(
+        repository().join("crates/osmesa/include/GL/osmesa.h"),
+        folder.join("include/GL/osmesa.h"),
+    )?;
     std::fs::write(folder.join("pkgconfig/osmesa.pc"), PKG_CONFIG)
 }
 
@@ -101,7 +124,8 @@ mod tests {
 
     #[test]
     fn the_folder_is_complete_and_can_be_made_again() {
-        let folder = std::env::temp_dir().join(format!("vitral-xtask-osmesa-{}", std::process::id()));
+        let folder =
+            std::env::temp_dir().join(format!("vitral-xtask-osmesa-{}", std::process::id()));
         let built = folder.join("built.so");
         std::fs::create_dir_all(&folder).unwrap();
         for content in ["one", "two"] {
@@ -111,7 +135,10 @@ mod tests {
                 assert_eq!(std::fs::read_to_string(folder.join(name)).unwrap(), content);
             }
         }
-        assert!(folder.join("include/GL/osmesa.h").exists() && folder.join("pkgconfig/osmesa.pc").exists());
+        assert!(
+            folder.join("include/GL/osmesa.h").exists()
+                && folder.join("pkgconfig/osmesa.pc").exists()
+        );
         assert!(!folder.join("libOSMesa.so.8.new").exists());
         std::fs::remove_dir_all(&folder).unwrap();
     }

@@ -1,4 +1,5 @@
-//! The Python package: `cargo xtask wheel` builds it, `cargo xtask test` tests it in a virtual environment of its own.
+//! The Python package: `cargo xtask wheel` builds it, `cargo xtask test` tests it in a virtual
+//! environment of its own.
 
 use crate::checks::{Check, CheckResult};
 use crate::prepare::debian_packages;
@@ -11,7 +12,8 @@ const BUILDERS: [&str; 2] = ["maturin>=1.9,<2", "numpy"];
 /// What tests it.
 const TESTERS: [&str; 3] = ["pytest", "mypy", "ruff"];
 
-/// Other people's programs that the tests use where they can be had; tests that miss one say so and are skipped.
+/// Other people's programs that the tests use where they can be had; tests that miss one say so and
+/// are skipped.
 const CLIENTS: [&str; 10] = [
     "trimesh",
     "mujoco",
@@ -41,17 +43,33 @@ pub(crate) fn wheel() -> Outcome {
     let wheel = build(&python, &folder, None, &[])?;
     let bytes = std::fs::metadata(&wheel).map_err(|e| format!("{}: {e}", wheel.display()))?.len();
     println!("{}: {:.2} MB", crate::shell::relative(&wheel), bytes as f64 / 1e6);
-    if bytes < BELOW { Ok(()) } else { Err(format!("the wheel has {bytes} bytes; it is to stay below {BELOW}")) }
+    if bytes < BELOW {
+        Ok(())
+    } else {
+        Err(format!("the wheel has {bytes} bytes; it is to stay below {BELOW}"))
+    }
 }
 
-/// Builds the wheel with this profile and a library that is there already, every file dated with this time; gives its path.
-pub(crate) fn wheel_of(folder: &Path, profile: &str, library: &Path, time: u64) -> Result<PathBuf, String> {
+/// Builds the wheel with this profile and a library that is there already, every file dated with
+/// this time; gives its path.
+pub(crate) fn wheel_of(
+    folder: &Path,
+    profile: &str,
+    library: &Path,
+    time: u64,
+) -> Result<PathBuf, String> {
     let python = environment("venv", &BUILDERS)?;
     let (library, time) = (library.display().to_string(), time.to_string());
-    build(&python, folder, Some(profile), &[("VITRAL_OSMESA", &library), ("SOURCE_DATE_EPOCH", &time)])
+    build(
+        &python,
+        folder,
+        Some(profile),
+        &[("VITRAL_OSMESA", &library), ("SOURCE_DATE_EPOCH", &time)],
+    )
 }
 
-/// Builds and installs the package with this profile, then runs its tests, types, examples and the style of its sources.
+/// Builds and installs the package with this profile, then runs its tests, types, examples and the
+/// style of its sources.
 pub(crate) fn test_all(profile: &str) -> Vec<Check> {
     let skipped = |why: String| vec![Check { name: "python", result: CheckResult::Skipped(why) }];
     let python = match environment("venv", &[&BUILDERS[..], &TESTERS].concat()) {
@@ -60,23 +78,30 @@ pub(crate) fn test_all(profile: &str) -> Vec<Check> {
     };
     for client in CLIENTS {
         if let Err(why) = install(&python, &[client]) {
-            println!("could not install: {client}: {}", why.lines().next_back().unwrap_or_default());
+            println!(
+                "could not install: {client}: {}",
+                why.lines().next_back().unwrap_or_default()
+            );
         }
     }
     let check = |name: &'static str, outcome: Outcome| {
         let result = outcome.map_or_else(CheckResult::Failed, |()| CheckResult::Passed);
         Check { name, result }
     };
-    let installed = build(&python, &target_folder().join("python/wheels"), Some(profile), &[]).and_then(|wheel| {
-        let wheel = wheel.display().to_string();
-        install(&python, &["--force-reinstall", "--no-deps", &wheel]).map(|()| wheel)
-    });
+    let installed = build(&python, &target_folder().join("python/wheels"), Some(profile), &[])
+        .and_then(|wheel| {
+            let wheel = wheel.display().to_string();
+            install(&python, &["--force-reinstall", "--no-deps", &wheel]).map(|()| wheel)
+        });
     let mut checks = vec![check("python::style", tool(&python, &["ruff", "check", SOURCES]))];
     let wheel = installed.as_ref().ok().cloned();
     checks.push(check("python::wheel", installed.map(drop)));
     if let Some(wheel) = wheel {
         let tests = format!("{SOURCES}/tests");
-        checks.push(check("python::tests", tool(&python, &["pytest", "-rs", "-p", "no:cacheprovider", &tests])));
+        checks.push(check(
+            "python::tests",
+            tool(&python, &["pytest", "-rs", "-p", "no:cacheprovider", &tests]),
+        ));
         checks.push(check("python::types", tool(&python, &["mypy"])));
         checks.push(check("python::stubs", tool(&python, &["mypy.stubtest", "vitral._vitral"])));
         checks.push(Check { name: "python::older_programs", result: test_older(&wheel) });
@@ -86,8 +111,9 @@ pub(crate) fn test_all(profile: &str) -> Vec<Check> {
 
 /// Tests OpenGL with programs that want an older MuJoCo, in an environment of their own.
 fn test_older(wheel: &str) -> CheckResult {
-    let python = environment("older", &OLDER)
-        .and_then(|python| install(&python, &["--force-reinstall", "--no-deps", wheel]).map(|()| python));
+    let python = environment("older", &OLDER).and_then(|python| {
+        install(&python, &["--force-reinstall", "--no-deps", wheel]).map(|()| python)
+    });
     let python = match python {
         Ok(python) => python,
         Err(why) => return CheckResult::Skipped(why),
@@ -104,7 +130,12 @@ fn tool(python: &Path, words: &[&str]) -> Outcome {
 }
 
 /// Builds a wheel into an empty folder, with these environment variables; gives its path.
-fn build(python: &Path, folder: &Path, profile: Option<&str>, variables: &[(&str, &str)]) -> Result<PathBuf, String> {
+fn build(
+    python: &Path,
+    folder: &Path,
+    profile: Option<&str>,
+    variables: &[(&str, &str)],
+) -> Result<PathBuf, String> {
     let shown = |e: std::io::Error| format!("{}: {e}", folder.display());
     let _ = std::fs::remove_dir_all(folder);
     std::fs::create_dir_all(folder).map_err(shown)?;
@@ -119,7 +150,8 @@ fn build(python: &Path, folder: &Path, profile: Option<&str>, variables: &[(&str
     let path = std::env::var_os("PATH").unwrap_or_default();
     let path = std::iter::once(scripts.to_path_buf()).chain(std::env::split_paths(&path));
     run(pip.env("PATH", std::env::join_paths(path).map_err(|e| e.to_string())?))?;
-    let files = std::fs::read_dir(folder).map_err(shown)?.filter_map(|entry| Some(entry.ok()?.path()));
+    let files =
+        std::fs::read_dir(folder).map_err(shown)?.filter_map(|entry| Some(entry.ok()?.path()));
     let mut wheels = files.filter(|file| file.extension().is_some_and(|e| e == "whl"));
     wheels.next().ok_or_else(|| format!("{}: pip made no wheel", folder.display()))
 }
@@ -136,7 +168,8 @@ fn environment(name: &str, packages: &[&str]) -> Result<PathBuf, String> {
         }
     }
     let is_new_enough = "import sys; sys.exit(sys.version_info < (3, 10))";
-    output(command(&python).args(["-c", is_new_enough])).map_err(|_| "Python 3.10 or newer is needed".to_owned())?;
+    output(command(&python).args(["-c", is_new_enough]))
+        .map_err(|_| "Python 3.10 or newer is needed".to_owned())?;
     install(&python, packages)?;
     Ok(python)
 }

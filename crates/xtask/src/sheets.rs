@@ -1,10 +1,12 @@
-//! `cargo xtask sheets draw DIR`: every model in every style of `vitral draw`, as contact sheets to look through.
+//! `cargo xtask sheets draw DIR`: every model in every style of `vitral draw`, as contact sheets to
+//! look through.
 //!
-//! A drawing is an SVG file and a PNG file of it in `DIR/STYLE`; `DIR/STYLE-N.png` shows 20 of them with their names. What
-//! fails is listed in `DIR/failures.txt`, with its command.
+//! A drawing is an SVG file and a PNG file of it in `DIR/STYLE`; `DIR/STYLE-N.png` shows 20 of them
+//! with their names. What fails is listed in `DIR/failures.txt`, with its command.
 
 use crate::shell::{
-    Outcome, cargo, command, output, relative, repository, run as run_command, succeeds, target_folder,
+    Outcome, cargo, command, output, relative, repository, run as run_command, succeeds,
+    target_folder,
 };
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -54,7 +56,11 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
             (folder, target_folder().join("release/vitral"))
         }
         [folder, "--vitral", path] => (folder, PathBuf::from(path)),
-        _ => return Err("sheets draw: one folder is required, and --vitral PATH may follow".to_owned()),
+        _ => {
+            return Err(
+                "sheets draw: one folder is required, and --vitral PATH may follow".to_owned()
+            );
+        }
     };
     let folder = std::env::current_dir().map_err(|e| e.to_string())?.join(folder);
     let converter = converter()?;
@@ -67,7 +73,10 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
         for (name, model) in &models {
             match draw(&vitral, model, words, &inside.join(name), converter) {
                 Ok(()) => drawn.push(name.clone()),
-                Err(why) => failures += &format!("vitral draw {} {words}: {}\n", relative(model), why.trim()),
+                Err(why) => {
+                    failures +=
+                        &format!("vitral draw {} {words}: {}\n", relative(model), why.trim())
+                }
             }
         }
 
@@ -75,7 +84,8 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
         for (number, names) in drawn.chunks(PAGE.0 * PAGE.1).enumerate() {
             let page = folder.join(format!("{style}-{}", number + 1));
             let svg = page.with_extension("svg");
-            std::fs::write(&svg, contact_sheet(style, names)).map_err(|e| format!("{}: {e}", svg.display()))?;
+            std::fs::write(&svg, contact_sheet(style, names))
+                .map_err(|e| format!("{}: {e}", svg.display()))?;
             output(&mut converter.command(&svg, &page.with_extension("png"), None))?;
         }
         println!("{style}: {} of {} models", drawn.len(), models.len());
@@ -87,7 +97,13 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
 }
 
 /// Makes one drawing, as SVG and PNG.
-fn draw(vitral: &Path, model: &Path, words: &str, path: &Path, converter: Converter) -> Result<(), String> {
+fn draw(
+    vitral: &Path,
+    model: &Path,
+    words: &str,
+    path: &Path,
+    converter: Converter,
+) -> Result<(), String> {
     let svg = path.with_added_extension("svg");
     let mut draw = command(vitral);
     draw.arg("draw").arg(model).arg("-o").arg(&svg).args(words.split_whitespace());
@@ -106,9 +122,19 @@ impl Converter {
         match self {
             Self::RsvgConvert => {
                 if let Some((width, height)) = size {
-                    words.args(["--keep-aspect-ratio", "-w", &width.to_string(), "-h", &height.to_string()]);
+                    words.args([
+                        "--keep-aspect-ratio",
+                        "-w",
+                        &width.to_string(),
+                        "-h",
+                        &height.to_string(),
+                    ]);
                 }
-                words.args(["--unlimited", "--background-color", "white"]).arg(svg).arg("-o").arg(png);
+                words
+                    .args(["--unlimited", "--background-color", "white"])
+                    .arg(svg)
+                    .arg("-o")
+                    .arg(png);
             }
             Self::Resvg => {
                 if let Some((width, height)) = size {
@@ -146,7 +172,11 @@ fn models() -> Result<Vec<(String, PathBuf)>, String> {
             if path.is_dir() && !path.ends_with("malformed") {
                 folders.push(path);
             } else if ENDINGS.contains(&&*ending) {
-                let name = path.strip_prefix(&root).unwrap_or(&path).to_string_lossy().replace(['/', ' '], "+");
+                let name = path
+                    .strip_prefix(&root)
+                    .unwrap_or(&path)
+                    .to_string_lossy()
+                    .replace(['/', ' '], "+");
                 models.push((name, path));
             }
         }
@@ -192,7 +222,9 @@ mod tests {
             "{page}"
         );
         assert!(
-            page.contains("<text x=\"4\" y=\"272\" font-family=\"sans-serif\" font-size=\"13\">5.obj</text>"),
+            page.contains(
+                "<text x=\"4\" y=\"272\" font-family=\"sans-serif\" font-size=\"13\">5.obj</text>"
+            ),
             "{page}"
         );
     }

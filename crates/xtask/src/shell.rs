@@ -8,13 +8,15 @@ pub(crate) type Outcome = Result<(), String>;
 
 /// The repository's top folder.
 pub(crate) fn repository() -> PathBuf {
-    let here = std::env::var_os("CARGO_MANIFEST_DIR").map_or(PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
+    let here = std::env::var_os("CARGO_MANIFEST_DIR")
+        .map_or(PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
     here.ancestors().nth(2).unwrap_or(&here).to_path_buf()
 }
 
 /// Cargo's folder for what it builds.
 pub(crate) fn target_folder() -> PathBuf {
-    let chosen = std::env::var_os("CARGO_TARGET_DIR").map_or(PathBuf::from("target"), PathBuf::from);
+    let chosen =
+        std::env::var_os("CARGO_TARGET_DIR").map_or(PathBuf::from("target"), PathBuf::from);
     repository().join(chosen)
 }
 
@@ -46,7 +48,8 @@ pub(crate) fn run(command: &mut Command) -> Outcome {
 
 /// Runs to the end and gives its standard output; fails unless the program exits with 0.
 pub(crate) fn output(command: &mut Command) -> Result<String, String> {
-    let output = command.stderr(Stdio::piped()).output().map_err(|e| format!("{}: {e}", shown(command)))?;
+    let output =
+        command.stderr(Stdio::piped()).output().map_err(|e| format!("{}: {e}", shown(command)))?;
     if output.status.success() {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
@@ -56,7 +59,8 @@ pub(crate) fn output(command: &mut Command) -> Result<String, String> {
 
 /// Whether the program runs and exits with 0; its output is dropped.
 pub(crate) fn succeeds(program: &str, arguments: &[&str]) -> bool {
-    let status = command(program).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let status =
+        command(program).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).status();
     status.is_ok_and(|status| status.success())
 }
 

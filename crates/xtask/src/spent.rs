@@ -46,7 +46,8 @@ fn cpu_time() -> Option<Duration> {
 fn parse_stat(stat: &str) -> Option<Duration> {
     // The second field is the program's name in brackets, which may hold blanks and brackets.
     let fields = stat.rsplit_once(')')?.1;
-    let ticks: Vec<u64> = fields.split_whitespace().skip(11).take(4).map_while(|field| field.parse().ok()).collect();
+    let ticks: Vec<u64> =
+        fields.split_whitespace().skip(11).take(4).map_while(|field| field.parse().ok()).collect();
     let sum = (ticks.len() == 4).then(|| ticks.iter().sum::<u64>())?;
     Some(Duration::from_millis(sum * 1000 / TICKS_PER_SECOND))
 }

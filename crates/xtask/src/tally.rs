@@ -1,8 +1,9 @@
 //! Adds up what test programs print.
 //!
-//! Input: the lines of `cargo test -- --show-output`, errors and output in one stream, so that cargo's headings stand before
-//! the lines of their programs. A passing test that printed a line starting with `skip` (`skipped:
-//! ../shared/models/x.obj is not there`) has tested nothing and counts as skipped, as an ignored one does.
+//! Input: the lines of `cargo test -- --show-output`, errors and output in one stream, so that
+//! cargo's headings stand before the lines of their programs. A passing test that printed a line
+//! starting with `skip` (`skipped: ../shared/models/x.obj is not there`) has tested nothing and
+//! counts as skipped, as an ignored one does.
 
 use std::time::Duration;
 
@@ -46,8 +47,8 @@ pub(crate) struct Reader {
 }
 
 impl Reader {
-    /// Takes one line, which was read at the time `now`; says whether a person should see it (the chatter of passing tests
-    /// is not shown).
+    /// Takes one line, which was read at the time `now`; says whether a person should see it (the
+    /// chatter of passing tests is not shown).
     pub(crate) fn line(&mut self, line: &str, now: Duration) -> bool {
         if let Some(program) = heading(line) {
             self.end_program(now);
@@ -66,9 +67,12 @@ impl Reader {
         if !self.successes {
             return true;
         }
-        if let Some(name) = line.strip_prefix("---- ").and_then(|rest| rest.strip_suffix(" stdout ----")) {
+        if let Some(name) =
+            line.strip_prefix("---- ").and_then(|rest| rest.strip_suffix(" stdout ----"))
+        {
             self.current = Some((name.to_owned(), false));
-        } else if line.trim_start().get(..4).is_some_and(|start| start.eq_ignore_ascii_case("skip")) {
+        } else if line.trim_start().get(..4).is_some_and(|start| start.eq_ignore_ascii_case("skip"))
+        {
             self.skip(line.trim());
         }
         false
@@ -101,7 +105,10 @@ impl Reader {
     fn close(&mut self, result: &str) {
         let count = |what: &str| {
             let before = result.split(what).next().filter(|before| before.len() < result.len());
-            before.and_then(|before| before.split_whitespace().last()).and_then(|n| n.parse().ok()).unwrap_or(0u64)
+            before
+                .and_then(|before| before.split_whitespace().last())
+                .and_then(|n| n.parse().ok())
+                .unwrap_or(0u64)
         };
         let skips = std::mem::take(&mut self.skips);
         self.tally.passed += count(" passed").saturating_sub(skips);
@@ -111,7 +118,8 @@ impl Reader {
     }
 }
 
-/// The program that cargo announces: `Running unittests src/lib.rs (target/debug/deps/vitral_gl-0123456789abcdef)`,
+/// The program that cargo announces:
+/// `Running unittests src/lib.rs (target/debug/deps/vitral_gl-0123456789abcdef)`,
 /// `Running tests/suite.rs (target/debug/deps/gl_suite-0123456789abcdef)` or `Doc-tests vitral_gl`.
 fn heading(line: &str) -> Option<String> {
     let line = line.trim_start();
@@ -121,7 +129,11 @@ fn heading(line: &str) -> Option<String> {
     let (source, path) = line.strip_prefix("Running ")?.strip_suffix(')')?.split_once(".rs (")?;
     let file = path.rsplit(['/', '\\']).next()?;
     let (name, _hash) = file.rsplit_once('-')?;
-    Some(if source.starts_with("unittests") { format!("{name}, unit tests") } else { name.to_owned() })
+    Some(if source.starts_with("unittests") {
+        format!("{name}, unit tests")
+    } else {
+        name.to_owned()
+    })
 }
 
 #[cfg(test)]
@@ -172,7 +184,10 @@ mod tests {
         let mut reader = Reader::default();
         let lines = [
             (1, "     Running unittests src/lib.rs (target/debug/deps/vitral_gl-0123456789abcdef)"),
-            (2, "test result: ok. 5 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s"),
+            (
+                2,
+                "test result: ok. 5 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s",
+            ),
             (4, "     Running tests/suite.rs (target/debug/deps/gl_suite-0123456789abcdef)"),
             (9, "   Doc-tests vitral_gl"),
             (10, "Running out of names (in a message)"),
@@ -181,8 +196,14 @@ mod tests {
             reader.line(line, Duration::from_secs(*now));
         });
         reader.end_program(Duration::from_secs(12));
-        let found: Vec<_> =
-            reader.programs.iter().map(|program| (program.name.as_str(), program.wall.as_secs())).collect();
-        assert_eq!(found, [("vitral_gl, unit tests", 3), ("gl_suite", 5), ("vitral_gl, documentation", 3)]);
+        let found: Vec<_> = reader
+            .programs
+            .iter()
+            .map(|program| (program.name.as_str(), program.wall.as_secs()))
+            .collect();
+        assert_eq!(
+            found,
+            [("vitral_gl, unit tests", 3), ("gl_suite", 5), ("vitral_gl, documentation", 3)]
+        );
     }
 }

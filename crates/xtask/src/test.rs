@@ -9,10 +9,12 @@ use std::io::{BufRead, BufReader};
 use std::process::Command;
 use std::time::Instant;
 
-/// The profile that everything here is built with, and the name of its folder: see the workspace's manifest.
+/// The profile that everything here is built with, and the name of its folder: see the workspace's
+/// manifest.
 pub(crate) const PROFILE: &str = "suite";
 
-/// Where property tests take the seed of their random cases from. `cargo test` by itself draws other cases each time.
+/// Where property tests take the seed of their random cases from. `cargo test` by itself draws
+/// other cases each time.
 const SEED: &str = "PROPTEST_RNG_SEED";
 
 /// How many of the slowest test programs are listed.
@@ -22,8 +24,8 @@ const LISTED_PROGRAMS: usize = 8;
 pub(crate) fn run() -> Outcome {
     let prepared = prepare::prepare();
 
-    // Build all test programs, and examples. The plain scalar level, which takes minutes and gigabytes to compile, is tested
-    // in WebAssembly and by `--features vitral/scalar`.
+    // Build all test programs, and examples. The plain scalar level, which takes minutes and
+    // gigabytes to compile, is tested in WebAssembly and by `--features vitral/scalar`.
     let build = Stopwatch::start();
     let built = shell::run(test_workspace().arg("--no-run"));
     let build = build.spent();
@@ -128,13 +130,15 @@ fn close(tally: Tally) -> Outcome {
     if tally.failed == 0 { Ok(()) } else { Err("some tests failed".to_owned()) }
 }
 
-/// Runs a test command, shows and counts its lines; says whether it exited with 0. Errors and output share a pipe, so that
-/// the headings that cargo writes to its errors keep their place among the output of the programs.
+/// Runs a test command, shows and counts its lines; says whether it exited with 0. Errors and
+/// output share a pipe, so that the headings that cargo writes to its errors keep their place among
+/// the output of the programs.
 fn stream(command: &mut Command, reader: &mut Reader) -> Result<bool, String> {
     let error = |e: std::io::Error| format!("cargo test: {e}");
     let start = Instant::now();
     let (output, input) = std::io::pipe().map_err(error)?;
-    let mut child = command.stdout(input.try_clone().map_err(error)?).stderr(input).spawn().map_err(error)?;
+    let mut child =
+        command.stdout(input.try_clone().map_err(error)?).stderr(input).spawn().map_err(error)?;
     // The command keeps its ends of the pipe open, and reading ends when all are closed.
     command.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null());
     for line in BufReader::new(output).split(b'\n') {
@@ -161,22 +165,28 @@ mod tests {
 
     /// Files and folders of modules in `folder`, and the modules that `suite` declares.
     fn modules(folder: &Path, suite: &str) -> (Vec<String>, Vec<String>) {
-        let is_module = |path: &Path| path.extension().is_some_and(|e| e == "rs") || path.join("mod.rs").exists();
+        let is_module = |path: &Path| {
+            path.extension().is_some_and(|e| e == "rs") || path.join("mod.rs").exists()
+        };
         let paths = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-        let stem = |path: std::path::PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
+        let stem =
+            |path: std::path::PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
         let mut found: Vec<String> = paths.filter(|path| is_module(path)).map(stem).collect();
         found.sort();
         let module = |line: &str| Some(line.strip_prefix("mod ")?.strip_suffix(';')?.to_owned());
         (found, suite.lines().filter_map(module).collect())
     }
 
-    /// A crate whose tests are one program finds its files by declarations alone: none may be forgotten.
+    /// A crate whose tests are one program finds its files by declarations alone: none may be
+    /// forgotten.
     #[test]
     fn every_test_file_belongs_to_a_program() {
         let crates = std::fs::read_dir(shell::repository().join("crates")).unwrap();
         let mut suites = 0;
         for folder in crates.map(|entry| entry.unwrap().path()) {
-            let Ok(suite) = std::fs::read_to_string(folder.join("tests/suite.rs")) else { continue };
+            let Ok(suite) = std::fs::read_to_string(folder.join("tests/suite.rs")) else {
+                continue;
+            };
             let manifest = std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
             let (found, declared) = modules(&folder.join("tests"), &suite);
             let alone = |name: &String| manifest.contains(&format!("path = \"tests/{name}.rs\""));

@@ -1,9 +1,11 @@
-//! `cargo xtask vectors`: looks for vector operations that became calls in what is built for release.
+//! `cargo xtask vectors`: looks for vector operations that became calls in what is built for
+//! release.
 //!
-//! A pass is compiled for each instruction set, with all that is inlined into it. A closure or function that takes lanes and
-//! is not inlined is compiled for the least of them: each of its vector operations is a call then, and such a pass may take
-//! ten times as long, with the same results. Which closures the compiler inlines may change with code far away, so
-//! that only the machine code tells.
+//! A pass is compiled for each instruction set, with all that is inlined into it. A closure or
+//! function that takes lanes and is not inlined is compiled for the least of them: each of its
+//! vector operations is a call then, and such a pass may take ten times as long, with the same
+//! results. Which closures the compiler inlines may change with code far away, so that only the
+//! machine code tells.
 
 use crate::shell::{Outcome, cargo, command, relative, run, target_folder};
 use std::collections::BTreeMap;
@@ -33,7 +35,11 @@ pub(crate) fn run_all() -> Outcome {
         }
         found += calls.len();
     }
-    if found == 0 { Ok(()) } else { Err(format!("{found} functions do without their instruction set")) }
+    if found == 0 {
+        Ok(())
+    } else {
+        Err(format!("{found} functions do without their instruction set"))
+    }
 }
 
 fn calls_in(path: &Path) -> Result<BTreeMap<String, usize>, String> {
@@ -41,7 +47,11 @@ fn calls_in(path: &Path) -> Result<BTreeMap<String, usize>, String> {
     let mut objdump = command("objdump");
     objdump.args(["-d", "-C", "--no-show-raw-insn"]).arg(path).stdout(Stdio::piped());
     let mut child = objdump.spawn().map_err(told)?;
-    let lines = child.stdout.take().into_iter().flat_map(|out| BufReader::new(out).lines().map_while(Result::ok));
+    let lines = child
+        .stdout
+        .take()
+        .into_iter()
+        .flat_map(|out| BufReader::new(out).lines().map_while(Result::ok));
     let calls = count_calls(lines)?;
     let status = child.wait().map_err(told)?;
     if status.success() { Ok(calls) } else { Err(format!("objdump: {status}")) }
@@ -59,7 +69,11 @@ fn count_calls(lines: impl Iterator<Item = String>) -> Result<BTreeMap<String, u
         }
     }
     // A file without names would look as if all were well.
-    if functions < 100 { Err("objdump found no functions: are the symbols stripped?".to_owned()) } else { Ok(calls) }
+    if functions < 100 {
+        Err("objdump found no functions: are the symbols stripped?".to_owned())
+    } else {
+        Ok(calls)
+    }
 }
 
 #[cfg(test)]

@@ -42,7 +42,9 @@ impl Task {
     /// The same for the same task done by the same version, in hexadecimal digits.
     pub(crate) fn hash(&self) -> String {
         let mut hash = Sha256::new();
-        for part in std::iter::once(env!("CARGO_PKG_VERSION")).chain(self.command.iter().map(String::as_str)) {
+        for part in std::iter::once(env!("CARGO_PKG_VERSION"))
+            .chain(self.command.iter().map(String::as_str))
+        {
             hash.update((part.len() as u64).to_le_bytes());
             hash.update(part);
         }
@@ -93,7 +95,8 @@ fn text_of(file: &Path) -> Result<String, Failure> {
     } else {
         bytes = vitral::read(file, MOST_BYTES)?;
     }
-    String::from_utf8(bytes).map_err(|_| Failure::with_code(3, format!("{}: it is not UTF-8", file.display())))
+    String::from_utf8(bytes)
+        .map_err(|_| Failure::with_code(3, format!("{}: it is not UTF-8", file.display())))
 }
 
 /// Jobs that are written line by line. What cannot be read is a job that fails.
@@ -125,7 +128,8 @@ fn matching(args: &BatchArgs, commands: &Commands) -> Result<Vec<Job>, Failure> 
     // Collect the files, each once.
     let mut files = Vec::new();
     for pattern in &args.glob {
-        let found = glob::glob(pattern).map_err(|e| Failure::usage(format!("--glob {pattern}: {e}")))?;
+        let found =
+            glob::glob(pattern).map_err(|e| Failure::usage(format!("--glob {pattern}: {e}")))?;
         let before = files.len();
         files.extend(found.filter_map(Result::ok).filter(|path| path.is_file()));
         if files.len() == before {
@@ -172,12 +176,16 @@ impl Commands {
         let mut rest = options.iter().map(|word| word.to_string_lossy().into_owned());
         while let Some(word) = rest.next() {
             // Find the option by its name.
-            let name = word.strip_prefix("--").map(|name| name.split_once('=').map_or(name, |(name, _)| name));
-            let name = name
-                .filter(|name| !name.is_empty())
-                .ok_or_else(|| Failure::usage(format!("{word}: an option for all jobs begins with --")))?;
-            let found = ["render", "draw"].iter().find_map(|verb| option(cli.find_subcommand(verb)?, name));
-            let found = found.ok_or_else(|| Failure::usage(format!("there is no option --{name}")))?;
+            let name = word
+                .strip_prefix("--")
+                .map(|name| name.split_once('=').map_or(name, |(name, _)| name));
+            let name = name.filter(|name| !name.is_empty()).ok_or_else(|| {
+                Failure::usage(format!("{word}: an option for all jobs begins with --"))
+            })?;
+            let found =
+                ["render", "draw"].iter().find_map(|verb| option(cli.find_subcommand(verb)?, name));
+            let found =
+                found.ok_or_else(|| Failure::usage(format!("there is no option --{name}")))?;
             if NOT_IN_A_BATCH.contains(&name) {
                 return Err(Failure::usage(format!("--{name} cannot be used in a batch")));
             }
@@ -193,7 +201,12 @@ impl Commands {
     }
 
     /// The command of a job.
-    fn task(&self, models: Vec<String>, output: String, options: &Map<String, Value>) -> Result<Task, String> {
+    fn task(
+        &self,
+        models: Vec<String>,
+        output: String,
+        options: &Map<String, Value>,
+    ) -> Result<Task, String> {
         let verb = if is_drawing(&output) { "draw" } else { "render" };
         let known = self.cli.find_subcommand(verb).expect("it is a verb");
         if models.is_empty() || models.iter().any(|model| model == "-") || output == "-" {
@@ -202,21 +215,32 @@ impl Commands {
 
         // Take the options for all that this verb has and the job does not give itself.
         let mut command = vec![verb.to_owned()];
-        let wanted =
-            self.defaults.iter().filter(|(name, _)| option(known, name).is_some() && !options.contains_key(name));
+        let wanted = self
+            .defaults
+            .iter()
+            .filter(|(name, _)| option(known, name).is_some() && !options.contains_key(name));
         command.extend(wanted.flat_map(|(_, typed)| typed.iter().cloned()));
 
         // Add the job's own, the output and the models.
         for (name, value) in options {
-            let found = option(known, name).ok_or_else(|| format!("vitral {verb} has no option `{name}`"))?;
+            let found = option(known, name)
+                .ok_or_else(|| format!("vitral {verb} has no option `{name}`"))?;
             if NOT_IN_A_BATCH.contains(&name.as_str()) {
                 return Err(format!("the option `{name}` cannot be used in a batch"));
             }
             if let Some(given) = given(name, value)? {
-                command.extend(option_words(found, name, &given).map_err(|why| format!("the option `{name}`: {why}"))?);
+                command.extend(
+                    option_words(found, name, &given)
+                        .map_err(|why| format!("the option `{name}`: {why}"))?,
+                );
             }
         }
-        command.extend(["--output".to_owned(), output.clone(), "--progress".to_owned(), "never".to_owned()]);
+        command.extend([
+            "--output".to_owned(),
+            output.clone(),
+            "--progress".to_owned(),
+            "never".to_owned(),
+        ]);
         command.push("--".to_owned());
         command.extend(models.iter().cloned());
         Ok(Task { models, output, command })
@@ -225,8 +249,11 @@ impl Commands {
 
 /// Whether a file of this name is a drawing.
 fn is_drawing(output: &str) -> bool {
-    let extension = Path::new(output).extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    ["svg", "pdf", "dxf", "hpgl", "plt"].iter().any(|drawing| extension.eq_ignore_ascii_case(drawing))
+    let extension =
+        Path::new(output).extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    ["svg", "pdf", "dxf", "hpgl", "plt"]
+        .iter()
+        .any(|drawing| extension.eq_ignore_ascii_case(drawing))
 }
 
 /// The value of an option; `None` for `null`.
@@ -242,7 +269,11 @@ fn given(name: &str, value: &Value) -> Result<Option<Given>, String> {
         Value::Array(values) => {
             let texts = values.iter().map(text).collect::<Result<Vec<_>, _>>()?;
             // A size is one value.
-            Some(if name == "resolution" { Given::Text(texts.join("x")) } else { Given::List(texts) })
+            Some(if name == "resolution" {
+                Given::Text(texts.join("x"))
+            } else {
+                Given::List(texts)
+            })
         }
         value => Some(Given::Text(text(value)?)),
     })
@@ -273,7 +304,8 @@ mod tests {
         for part in ["--resolution=64x48", "--samples=1", " --wireframe ", "--lighting=off"] {
             assert!(first.contains(part), "{first}");
         }
-        let second = "draw --threads=2 --style=filled --output b.svg --progress never -- a.obj b.stl";
+        let second =
+            "draw --threads=2 --style=filled --output b.svg --progress never -- a.obj b.stl";
         assert_eq!(command(&all[1]), second);
     }
 
@@ -282,20 +314,34 @@ mod tests {
         let why = |line: &str| jobs(line, &[])[0].task.clone().unwrap_err();
         assert!(why("{").contains("cannot be read"));
         assert!(why(r#"{"model": "a", "output": "a.png", "size": 3}"#).contains("size"));
-        assert!(why(r#"{"model": "a", "output": "a.png", "options": {"sampels": 3}}"#).contains("`sampels`"));
-        assert!(why(r#"{"model": "a", "output": "a.png", "options": {"json": true}}"#).contains("cannot be used"));
+        assert!(
+            why(r#"{"model": "a", "output": "a.png", "options": {"sampels": 3}}"#)
+                .contains("`sampels`")
+        );
+        assert!(
+            why(r#"{"model": "a", "output": "a.png", "options": {"json": true}}"#)
+                .contains("cannot be used")
+        );
         assert!(why(r#"{"model": "a", "output": "-"}"#).contains("writes a file"));
-        assert!(why(r#"{"model": "a", "output": "a.png", "options": {"samples": {}}}"#).contains("samples"));
-        let twice = jobs("{\"model\": \"a\", \"output\": \"x.png\"}\n{\"model\": \"b\", \"output\": \"x.png\"}", &[]);
+        assert!(
+            why(r#"{"model": "a", "output": "a.png", "options": {"samples": {}}}"#)
+                .contains("samples")
+        );
+        let twice = jobs(
+            "{\"model\": \"a\", \"output\": \"x.png\"}\n{\"model\": \"b\", \"output\": \"x.png\"}",
+            &[],
+        );
         assert!(check_outputs(&twice).is_err());
         assert!(Commands::new(&["--nonsense".into()]).is_err());
     }
 
     #[test]
     fn parts_hold_each_job_once() {
-        let text: String = (0..200).map(|i| format!("{{\"model\": \"a\", \"output\": \"{i}.png\"}}\n")).collect();
+        let text: String =
+            (0..200).map(|i| format!("{{\"model\": \"a\", \"output\": \"{i}.png\"}}\n")).collect();
         let all = jobs(&text, &[]);
-        let count = |part: u64| all.iter().filter(|job| job.task.as_ref().unwrap().part(4) == part).count();
+        let count =
+            |part: u64| all.iter().filter(|job| job.task.as_ref().unwrap().part(4) == part).count();
         let counts: Vec<_> = (0..4).map(count).collect();
         assert_eq!(counts.iter().sum::<usize>(), 200);
         assert!(counts.iter().all(|count| (25..75).contains(count)), "{counts:?}");

@@ -42,10 +42,13 @@ pub(crate) fn run(args: &BatchArgs) -> Result<u8, Failure> {
     let mut jobs = job::all(args)?;
     if let Some(shard) = args.shard {
         // What can be no job fails in the first part.
-        jobs.retain(|job| job.task.as_ref().map_or(shard.index == 0, |task| task.part(shard.count) == shard.index));
+        jobs.retain(|job| {
+            job.task.as_ref().map_or(shard.index == 0, |task| task.part(shard.count) == shard.index)
+        });
     }
     let path = record_of(args);
-    let mut record = Record::read(&path).map_err(|e| Failure::with_code(3, format!("{}: {e}", path.display())))?;
+    let mut record = Record::read(&path)
+        .map_err(|e| Failure::with_code(3, format!("{}: {e}", path.display())))?;
 
     // Report jobs that are finished or impossible, and collect the others.
     let mut told = Told { args, counts: Counts::default(), progress: None };
@@ -58,7 +61,8 @@ pub(crate) fn run(args: &BatchArgs) -> Result<u8, Failure> {
         }
     }
     if args.dry_run {
-        for (id, task) in waiting.iter().filter_map(|job| Some((&job.id, job.task.as_ref().ok()?))) {
+        for (id, task) in waiting.iter().filter_map(|job| Some((&job.id, job.task.as_ref().ok()?)))
+        {
             told.would_do(id, task)?;
         }
         return Ok(if told.counts.failed > 0 { SOME_FAILED } else { 0 });
@@ -79,14 +83,24 @@ fn record_of(args: &BatchArgs) -> PathBuf {
 }
 
 /// Does the jobs that wait.
-fn do_all(args: &BatchArgs, waiting: &[&Job], record: PathBuf, told: &mut Told<'_>) -> Result<(), Failure> {
+fn do_all(
+    args: &BatchArgs,
+    waiting: &[&Job],
+    record: PathBuf,
+    told: &mut Told<'_>,
+) -> Result<(), Failure> {
     interrupt::watch();
     let stop = AtomicBool::new(false);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let processes = if args.jobs == 0 { cores } else { args.jobs as usize };
     let threads = (cores / processes.min(waiting.len().max(1))).max(1);
     let pool = Pool { processes, threads, record, stop: &stop };
-    told.progress = Some(Progress::new(args.progress.unwrap_or_default(), args.quiet, waiting.len() as u64, "jobs"));
+    told.progress = Some(Progress::new(
+        args.progress.unwrap_or_default(),
+        args.quiet,
+        waiting.len() as u64,
+        "jobs",
+    ));
     let mut trouble = None;
     pool.run(waiting, |id, task, reply| {
         let reported = told.replied(id, task, reply);
@@ -153,7 +167,8 @@ impl Told<'_> {
 
     fn would_do(&self, id: &str, task: &Task) -> Result<(), Failure> {
         match self.args.json {
-            // Other programs than this one hand jobs out, too: they need the job's hash and its command.
+            // Other programs than this one hand jobs out, too: they need the job's hash and its
+            // command.
             true => self.line(&json!({
                 "id": id, "status": "waiting", "model": task.models, "outputs": [task.output], "job": task.hash(),
                 "command": task.command,
@@ -173,7 +188,8 @@ impl Told<'_> {
 
     /// What became of all; gives the exit code.
     fn summary(&self, jobs: usize, start: Instant) -> Result<u8, Failure> {
-        let (Counts { done, skipped, failed }, seconds) = (&self.counts, start.elapsed().as_secs_f64());
+        let (Counts { done, skipped, failed }, seconds) =
+            (&self.counts, start.elapsed().as_secs_f64());
         if !self.args.quiet {
             let rate = *done as f64 / seconds.max(1e-9);
             report::line(&format!(

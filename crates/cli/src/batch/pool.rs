@@ -1,5 +1,6 @@
-//! Processes that do jobs side by side, and who gets which job: those of one model go to one process, which reads the model once.
-//! A process that a job brings down is replaced, and the job counts as failed.
+//! Processes that do jobs side by side, and who gets which job: those of one model go to one
+//! process, which reads the model once. A process that a job brings down is replaced, and the job
+//! counts as failed.
 
 use super::job::{Job, Task};
 use super::worker::{Order, Reply};
@@ -49,7 +50,8 @@ impl<'j> Queue<'j> {
         Self { groups, taken }
     }
 
-    /// The next job for a process that is at a group: of the same, else of one that nobody is at, else of the longest.
+    /// The next job for a process that is at a group: of the same, else of one that nobody is at,
+    /// else of the longest.
     fn next(&mut self, at: &mut Option<usize>) -> Option<(&'j str, &'j Task)> {
         if let Some(job) = at.and_then(|at| self.groups[at].pop_front()) {
             return Some(job);
@@ -65,7 +67,11 @@ impl<'j> Queue<'j> {
 
 impl Pool<'_> {
     /// Does all jobs that can be done; `report` is told of each, in the order in which they end.
-    pub(crate) fn run(&self, jobs: &[&Job], mut report: impl FnMut(&str, &Task, &Reply)) -> Result<(), Failure> {
+    pub(crate) fn run(
+        &self,
+        jobs: &[&Job],
+        mut report: impl FnMut(&str, &Task, &Reply),
+    ) -> Result<(), Failure> {
         let queue = Mutex::new(Queue::new(jobs));
         let (send, replies) = mpsc::channel();
         std::thread::scope(|scope| {
@@ -83,7 +89,11 @@ impl Pool<'_> {
     }
 
     /// Feeds one process with jobs.
-    fn serve<'j>(&self, queue: &Mutex<Queue<'j>>, send: &mpsc::Sender<(&'j str, &'j Task, Result<Reply, Failure>)>) {
+    fn serve<'j>(
+        &self,
+        queue: &Mutex<Queue<'j>>,
+        send: &mpsc::Sender<(&'j str, &'j Task, Result<Reply, Failure>)>,
+    ) {
         let (mut at, mut process) = (None, None);
         while !self.stop.load(Ordering::Relaxed) {
             let next = queue.lock().expect("no thread panics while it takes a job").next(&mut at);
@@ -108,12 +118,17 @@ impl Pool<'_> {
             None => Process::start(self)?,
         };
         let started = process.insert(started);
-        let order =
-            Order { id: id.to_owned(), job: task.hash(), output: task.output.clone(), command: task.command.clone() };
+        let order = Order {
+            id: id.to_owned(),
+            job: task.hash(),
+            output: task.output.clone(),
+            command: task.command.clone(),
+        };
         match started.ask(&order) {
             Some(reply) => Ok(reply),
             None => {
-                let (code, ended) = process.take().map_or_else(Default::default, Process::how_it_ended);
+                let (code, ended) =
+                    process.take().map_or_else(Default::default, Process::how_it_ended);
                 Ok(Reply {
                     code: code.unwrap_or(BROUGHT_DOWN),
                     outputs: Vec::new(),
@@ -134,10 +149,16 @@ struct Process {
 
 impl Process {
     fn start(pool: &Pool<'_>) -> Result<Self, Failure> {
-        let failed = |e: std::io::Error| Failure::other(format!("no process can be started for jobs: {e}"));
+        let failed =
+            |e: std::io::Error| Failure::other(format!("no process can be started for jobs: {e}"));
         let mut command = program::command().map_err(failed)?;
-        command.arg("batch-worker").arg("--record").arg(&pool.record).arg(format!("--threads={}", pool.threads));
-        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
+        command
+            .arg("batch-worker")
+            .arg("--record")
+            .arg(&pool.record)
+            .arg(format!("--threads={}", pool.threads));
+        let mut child =
+            command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
         let orders = child.stdin.take().expect("it is a pipe");
         let replies = BufReader::new(child.stdout.take().expect("it is a pipe"));
         Ok(Self { child, orders, replies })
@@ -182,7 +203,11 @@ mod tests {
     fn jobs_of_a_model_go_to_one_process_while_there_are_others() {
         let job = |model: &str, n: usize| Job {
             id: format!("{model}{n}"),
-            task: Ok(Task { models: vec![model.to_owned()], output: format!("{model}{n}.png"), command: Vec::new() }),
+            task: Ok(Task {
+                models: vec![model.to_owned()],
+                output: format!("{model}{n}.png"),
+                command: Vec::new(),
+            }),
         };
         let all = [job("a", 0), job("b", 0), job("a", 1), job("a", 2), job("b", 1)];
         let mut queue = Queue::new(&all.iter().collect::<Vec<_>>());

@@ -1,5 +1,5 @@
-//! The record of finished jobs: a line of JSON for each, with the files that it read and wrote. A job counts as finished while all
-//! files of its last line have the contents that they had.
+//! The record of finished jobs: a line of JSON for each, with the files that it read and wrote. A
+//! job counts as finished while all files of its last line have the contents that they had.
 
 use super::job::Task;
 use crate::hashes::hash_of;
@@ -34,7 +34,8 @@ pub(crate) struct Record {
 }
 
 impl Record {
-    /// Reads a record; one that is not there is empty. Lines that were cut short by the end of a process count for nothing.
+    /// Reads a record; one that is not there is empty. Lines that were cut short by the end of a
+    /// process count for nothing.
     pub(crate) fn read(path: &Path) -> std::io::Result<Self> {
         let mut bytes = Vec::new();
         match File::open(path) {
@@ -44,7 +45,10 @@ impl Record {
         }
         let lines = bytes.split(|byte| *byte == b'\n');
         let entries = lines.filter_map(|line| serde_json::from_slice::<Entry>(line).ok());
-        Ok(Self { entries: entries.map(|entry| (entry.job.clone(), entry)).collect(), hashes: HashMap::new() })
+        Ok(Self {
+            entries: entries.map(|entry| (entry.job.clone(), entry)).collect(),
+            hashes: HashMap::new(),
+        })
     }
 
     /// Whether a task is done, and nothing that it read or wrote has changed.
@@ -52,7 +56,9 @@ impl Record {
         let Some(entry) = self.entries.get(&task.hash()) else { return false };
         let mut files = entry.outputs.iter().chain(&entry.inputs);
         let hashes = &mut self.hashes;
-        files.all(|(path, hash)| hashes.entry(path.clone()).or_insert_with(|| hash_of(path)).as_ref() == Some(hash))
+        files.all(|(path, hash)| {
+            hashes.entry(path.clone()).or_insert_with(|| hash_of(path)).as_ref() == Some(hash)
+        })
     }
 }
 
@@ -84,10 +90,15 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("vitral-record-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let name = |file: &str| folder.join(file).to_string_lossy().into_owned();
-        let (record, model, output) = (folder.join("jobs.done.jsonl"), name("a.obj"), name("a.png"));
+        let (record, model, output) =
+            (folder.join("jobs.done.jsonl"), name("a.obj"), name("a.png"));
         std::fs::write(&model, "model").unwrap();
         std::fs::write(&output, "picture").unwrap();
-        let task = Task { models: vec![model.clone()], output: output.clone(), command: vec!["render".to_owned()] };
+        let task = Task {
+            models: vec![model.clone()],
+            output: output.clone(),
+            command: vec!["render".to_owned()],
+        };
         assert!(!Record::read(&record).unwrap().has(&task));
 
         // A line that was cut short lies before ours.

@@ -1,7 +1,9 @@
-//! A process that does jobs one after the other, as `vitral batch` hands them in: a line of JSON each way.
+//! A process that does jobs one after the other, as `vitral batch` hands them in: a line of JSON
+//! each way.
 //!
-//! A job is a command of its own, whose output is kept back. Models stay in memory for the jobs that follow. A finished job goes onto
-//! the record before it is reported. The process ends when nobody is left to report to.
+//! A job is a command of its own, whose output is kept back. Models stay in memory for the jobs
+//! that follow. A finished job goes onto the record before it is reported. The process ends when
+//! nobody is left to report to.
 
 use super::record::{self, Entry};
 use crate::batch_args::BatchWorkerArgs;
@@ -82,7 +84,8 @@ fn done(order: Order, args: &BatchWorkerArgs, dispatch: Dispatch) -> Reply {
     }
 
     report::keep();
-    let result = make_folder(&order.output).and_then(|()| dispatch(typed.into_iter().map(Into::into).collect()));
+    let result = make_folder(&order.output)
+        .and_then(|()| dispatch(typed.into_iter().map(Into::into).collect()));
     let (mut code, failure) = match result {
         Ok(code) => (code, None),
         Err(failure) => (failure.code(), Some(failure)),
@@ -94,7 +97,9 @@ fn done(order: Order, args: &BatchWorkerArgs, dispatch: Dispatch) -> Reply {
 
     // Name what was written.
     let outputs = match serde_json::from_slice::<Value>(&printed) {
-        Ok(result) if is_picture => serde_json::from_value(result["outputs"].clone()).unwrap_or_default(),
+        Ok(result) if is_picture => {
+            serde_json::from_value(result["outputs"].clone()).unwrap_or_default()
+        }
         _ if code == 0 => vec![order.output.clone()],
         _ => Vec::new(),
     };
@@ -104,7 +109,10 @@ fn done(order: Order, args: &BatchWorkerArgs, dispatch: Dispatch) -> Reply {
             job: order.job,
             id: order.id,
             inputs: kept_models::files(),
-            outputs: outputs.iter().filter_map(|path| Some((path.clone(), hash_of(path)?))).collect(),
+            outputs: outputs
+                .iter()
+                .filter_map(|path| Some((path.clone(), hash_of(path)?)))
+                .collect(),
             seconds,
             vitral: env!("CARGO_PKG_VERSION").to_owned(),
         };
@@ -118,7 +126,9 @@ fn done(order: Order, args: &BatchWorkerArgs, dispatch: Dispatch) -> Reply {
 
 /// Makes the folder of a job's file.
 fn make_folder(output: &str) -> Result<(), Failure> {
-    let folder = std::path::Path::new(output).parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder =
+        std::path::Path::new(output).parent().filter(|folder| !folder.as_os_str().is_empty());
     let Some(folder) = folder else { return Ok(()) };
-    std::fs::create_dir_all(folder).map_err(|e| Failure::with_code(5, format!("{}: {e}", folder.display())))
+    std::fs::create_dir_all(folder)
+        .map_err(|e| Failure::with_code(5, format!("{}: {e}", folder.display())))
 }

@@ -33,8 +33,11 @@ impl Begin {
             let mut read = State::from_json(&text, &file.to_string_lossy())?;
             read.enter(file.parent().unwrap_or(Path::new("")));
             if read.environment_image.is_some() {
-                let what = format!("{}: the Lab shows no image of the surroundings", file.display());
-                return Err(Failure::usage(what).with_hint("take environment-image out of the state"));
+                let what =
+                    format!("{}: the Lab shows no image of the surroundings", file.display());
+                return Err(
+                    Failure::usage(what).with_hint("take environment-image out of the state")
+                );
             }
             if models.is_empty() {
                 models = read.models.iter().map(Into::into).collect();
@@ -51,7 +54,8 @@ impl Begin {
         Ok(begin)
     }
 
-    /// Adds a model and the files that it names. What cannot be read is refused before a page shows.
+    /// Adds a model and the files that it names. What cannot be read is refused before a page
+    /// shows.
     fn add(&mut self, model: &Path, options: &LoadOptions) -> Result<(), Failure> {
         let text = model.to_string_lossy();
         if text.starts_with("builtin:") {
@@ -77,10 +81,15 @@ impl Begin {
 
     /// What the page reads, where `address` gives the place of a file by its number, if it has one.
     pub(super) fn start(&self, address: impl Fn(usize) -> Option<String>) -> String {
-        let file = |(number, file): (usize, &GivenFile)| json!({"name": file.name, "url": address(number)?}).into();
+        let file = |(number, file): (usize, &GivenFile)| {
+            json!({"name": file.name, "url": address(number)?}).into()
+        };
         let files: Vec<Value> = self.files.iter().enumerate().filter_map(file).collect();
         let text = json!({"models": self.models, "files": files, "state": self.state}).to_string();
-        format!(r#"<script type="application/json" id="lab-start">{}</script>"#, text.replace("</", "<\\/"))
+        format!(
+            r#"<script type="application/json" id="lab-start">{}</script>"#,
+            text.replace("</", "<\\/")
+        )
     }
 }
 

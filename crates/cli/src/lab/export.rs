@@ -14,7 +14,9 @@ const LEVEL: u8 = 9;
 
 /// Writes the page to `path`: a file if it ends in `.html`, else a folder.
 pub(super) fn export(path: &Path, begin: &Begin) -> Result<(), Failure> {
-    let is_file = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("html") || e.eq_ignore_ascii_case("htm"));
+    let is_file = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("html") || e.eq_ignore_ascii_case("htm"));
     if is_file { report::write(path, single(begin).as_bytes()) } else { folder(path, begin) }
 }
 

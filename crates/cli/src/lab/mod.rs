@@ -25,7 +25,8 @@ pub(crate) fn run(args: &LabPageArgs) -> Result<u8, Failure> {
 /// Tells how to build it in.
 #[cfg(not(feature = "lab"))]
 pub(crate) fn run(args: &LabPageArgs) -> Result<u8, Failure> {
-    let LabPageArgs { models: _, load_state: _, port: _, no_open: _, export: _, allow_external: _ } = args;
+    let LabPageArgs { models: _, load_state: _, port: _, no_open: _, export: _, allow_external: _ } =
+        args;
     const NOT_SUPPORTED: u8 = 4;
     let what = "this build of vitral does not contain the Lab";
     Err(Failure::with_code(NOT_SUPPORTED, what)

@@ -1,4 +1,5 @@
-//! The page's server: for this machine alone, and for nothing but the page and the models that were named.
+//! The page's server: for this machine alone, and for nothing but the page and the models that were
+//! named.
 
 use super::begin::Begin;
 use super::site::{FILES, PAGE, START};
@@ -15,7 +16,8 @@ use std::net::Ipv4Addr;
 use std::sync::Arc;
 use tokio::net::TcpListener;
 
-/// The policy of the page: scripts and styles of this server, WebAssembly, no network besides. Pages may frame it.
+/// The policy of the page: scripts and styles of this server, WebAssembly, no network besides.
+/// Pages may frame it.
 const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; worker-src 'self'; \
     connect-src 'self'; img-src 'self' blob: data:; base-uri 'none'; form-action 'none'";
 
@@ -30,7 +32,8 @@ struct Site {
 /// Serves until Ctrl-C; gives the exit code.
 pub(super) fn serve(args: &LabPageArgs, begin: Begin) -> Result<u8, Failure> {
     let told = |e: std::io::Error| Failure::other(format!("port {}: {e}", args.port));
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_io().build().map_err(told)?;
+    let runtime =
+        tokio::runtime::Builder::new_current_thread().enable_io().build().map_err(told)?;
     runtime.block_on(async {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, args.port)).await.map_err(told)?;
         let port = listener.local_addr().map_err(told)?.port();
@@ -52,13 +55,17 @@ pub(super) fn serve(args: &LabPageArgs, begin: Begin) -> Result<u8, Failure> {
     })
 }
 
-/// Refuses requests that name another host, as pages of others could send; adds the headers of every answer.
+/// Refuses requests that name another host, as pages of others could send; adds the headers of
+/// every answer.
 async fn guard(State(site): State<Arc<Site>>, request: Request, next: Next) -> Response {
     let host = request.headers().get(header::HOST).and_then(|host| host.to_str().ok());
-    let is_known = host.is_some_and(|host| site.hosts.iter().any(|known| known.eq_ignore_ascii_case(host)));
+    let is_known =
+        host.is_some_and(|host| site.hosts.iter().any(|known| known.eq_ignore_ascii_case(host)));
     let mut response = match is_known {
         true => next.run(request).await,
-        false => (StatusCode::FORBIDDEN, "this server answers its own machine alone\n").into_response(),
+        false => {
+            (StatusCode::FORBIDDEN, "this server answers its own machine alone\n").into_response()
+        }
     };
     let headers = response.headers_mut();
     headers.insert(header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY));

@@ -14,10 +14,12 @@ macro_rules! built {
 }
 
 /// The page itself; [`START`] is replaced.
-pub(super) const PAGE: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../lab/dist/index.html"));
+pub(super) const PAGE: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../lab/dist/index.html"));
 
 /// The page in one file; [`START`] and [`MODULE`] are replaced.
-pub(super) const SINGLE: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../lab/dist/single.html"));
+pub(super) const SINGLE: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../lab/dist/single.html"));
 
 /// Where a page says what it begins with.
 pub(super) const START: &str = "<!--LAB-START-->";
@@ -26,13 +28,24 @@ pub(super) const START: &str = "<!--LAB-START-->";
 pub(super) const MODULE: &str = "<!--LAB-WASM-->";
 
 /// The engine.
-pub(super) const ENGINE: SiteFile =
-    SiteFile { name: "vitral_lab.wasm", media_type: "application/wasm", bytes: built!("vitral_lab.wasm") };
+pub(super) const ENGINE: SiteFile = SiteFile {
+    name: "vitral_lab.wasm",
+    media_type: "application/wasm",
+    bytes: built!("vitral_lab.wasm"),
+};
 
 /// All files beside the page.
 pub(super) const FILES: [SiteFile; 4] = [
-    SiteFile { name: "lab.js", media_type: "text/javascript; charset=utf-8", bytes: built!("lab.js") },
-    SiteFile { name: "worker.js", media_type: "text/javascript; charset=utf-8", bytes: built!("worker.js") },
+    SiteFile {
+        name: "lab.js",
+        media_type: "text/javascript; charset=utf-8",
+        bytes: built!("lab.js"),
+    },
+    SiteFile {
+        name: "worker.js",
+        media_type: "text/javascript; charset=utf-8",
+        bytes: built!("worker.js"),
+    },
     SiteFile { name: "lab.css", media_type: "text/css; charset=utf-8", bytes: built!("lab.css") },
     ENGINE,
 ];

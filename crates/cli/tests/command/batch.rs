@@ -47,24 +47,37 @@ fn a_batch_makes_what_the_command_makes_and_goes_on_where_it_was() {
     );
     folder.file("jobs.jsonl", jobs(&["builtin:cubs", "builtin:sphere"], 3) + others);
     let (exit, lines) = statuses(&folder, &["--jobs", "2", "--shading", "flat"]);
-    assert_eq!((exit, lines.len(), count(&lines, "done"), count(&lines, "failed")), (1, 10, 8, 2), "{lines:?}");
+    assert_eq!(
+        (exit, lines.len(), count(&lines, "done"), count(&lines, "failed")),
+        (1, 10, 8, 2),
+        "{lines:?}"
+    );
     let failed = |id: &str| lines.iter().find(|line| line["id"] == id).unwrap()["code"].clone();
     assert_eq!([failed("missing"), failed("odd")], [3, 2]);
 
     // Each is what the command writes by itself.
-    let alone = ["render", "builtin:cubs", "--shading", "flat", "--resolution", "40x30", "--samples", "1"];
-    let alone = folder.run(&[&alone[..], &["--camera-azimuth-angle", "20", "-o", "alone.png"]].concat());
+    let alone =
+        ["render", "builtin:cubs", "--shading", "flat", "--resolution", "40x30", "--samples", "1"];
+    let alone =
+        folder.run(&[&alone[..], &["--camera-azimuth-angle", "20", "-o", "alone.png"]].concat());
     assert_eq!(code(&alone), 0, "{}", errors(&alone));
     assert_eq!(folder.read("alone.png"), folder.read("out/cubs-1.png"));
-    assert!(folder.read("cubs.svg").starts_with(b"<?xml") || folder.read("cubs.svg").starts_with(b"<svg"));
+    assert!(
+        folder.read("cubs.svg").starts_with(b"<?xml")
+            || folder.read("cubs.svg").starts_with(b"<svg")
+    );
 
     // Nothing is done twice, but for what changes.
     let (_, lines) = statuses(&folder, &["--shading", "flat"]);
-    assert_eq!([count(&lines, "skipped"), count(&lines, "done"), count(&lines, "failed")], [8, 0, 2]);
+    assert_eq!(
+        [count(&lines, "skipped"), count(&lines, "done"), count(&lines, "failed")],
+        [8, 0, 2]
+    );
     std::fs::remove_file(folder.0.join("out/sphere-2.png")).unwrap();
     folder.file("a.obj", super::TRIANGLE.replace("0 1 0", "0 2 0"));
     let (_, lines) = statuses(&folder, &["--shading", "flat", "--dry-run"]);
-    let waiting: Vec<_> = lines.iter().filter(|line| line["status"] == "waiting").map(|line| &line["id"]).collect();
+    let waiting: Vec<_> =
+        lines.iter().filter(|line| line["status"] == "waiting").map(|line| &line["id"]).collect();
     assert_eq!(waiting, ["line 6", "own", "missing", "odd"]);
     let (_, lines) = statuses(&folder, &["--shading", "flat"]);
     assert_eq!(count(&lines, "done"), 2);
@@ -131,14 +144,21 @@ fn files_that_match_are_jobs_and_none_write_over_each_other() {
     for name in ["parts/a.obj", "parts/more/b.obj"] {
         folder.file(name, super::TRIANGLE);
     }
-    let arguments = ["batch", "--glob", "parts/**/*.obj", "-o", "thumbs/{model}.png", "--resolution", "40x30"];
+    let arguments =
+        ["batch", "--glob", "parts/**/*.obj", "-o", "thumbs/{model}.png", "--resolution", "40x30"];
     let output = folder.run(&arguments);
     assert_eq!(code(&output), 0, "{}", errors(&output));
-    assert!(folder.has("thumbs/a.png") && folder.has("thumbs/b.png") && folder.has("batch.done.jsonl"));
+    assert!(
+        folder.has("thumbs/a.png") && folder.has("thumbs/b.png") && folder.has("batch.done.jsonl")
+    );
     assert!(errors(&output).contains("2 jobs: 2 done, 0 skipped, 0 failed"), "{}", errors(&output));
     folder.file("parts/more/a.obj", super::TRIANGLE);
     let twice = folder.run(&arguments);
-    assert!(code(&twice) == 2 && errors(&twice).contains("both write thumbs/a.png"), "{}", errors(&twice));
+    assert!(
+        code(&twice) == 2 && errors(&twice).contains("both write thumbs/a.png"),
+        "{}",
+        errors(&twice)
+    );
     let none = folder.run(&["batch", "--glob", "*.stl", "-o", "{model}.png"]);
     assert!(code(&none) == 3 && errors(&none).contains("no file matches"), "{}", errors(&none));
 }
@@ -165,20 +185,27 @@ fn full_disks_odd_places_and_dead_processes_cost_one_job() {
         let worker = children(parent).into_iter().find(|pid| is_at_work(*pid));
         if let Some(pid) = worker {
             std::thread::sleep(Duration::from_millis(100));
-            let ended = std::process::Command::new("kill").args(["-9", &pid.to_string()]).status().unwrap();
+            let ended =
+                std::process::Command::new("kill").args(["-9", &pid.to_string()]).status().unwrap();
             killed = ended.success();
             break;
         }
     }
     let output = child.wait_with_output().unwrap();
     let text = String::from_utf8(output.stdout.clone()).unwrap();
-    let lines: Vec<serde_json::Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let lines: Vec<serde_json::Value> =
+        text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert!(killed, "{text}");
     assert_eq!(code(&output), 1);
-    let line = |id: &str| lines.iter().find(|line| line["id"] == id).unwrap_or_else(|| panic!("{id}: {text}"));
+    let line = |id: &str| {
+        lines.iter().find(|line| line["id"] == id).unwrap_or_else(|| panic!("{id}: {text}"))
+    };
     assert_eq!(line("place")["code"], 5);
     assert_eq!(line("full")["status"], "failed");
-    assert!(line("slow")["message"].as_str().unwrap().contains("brought its process down"), "{text}");
+    assert!(
+        line("slow")["message"].as_str().unwrap().contains("brought its process down"),
+        "{text}"
+    );
     assert_eq!(count(&lines, "done"), 3, "{text}");
 }
 
@@ -200,5 +227,9 @@ fn children(parent: u32) -> Vec<u32> {
 fn is_at_work(pid: u32) -> bool {
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
     let fields = stat.rsplit_once(") ").map_or("", |(_, fields)| fields);
-    fields.split(' ').nth(11).and_then(|ticks| ticks.parse::<u64>().ok()).is_some_and(|ticks| ticks >= 20)
+    fields
+        .split(' ')
+        .nth(11)
+        .and_then(|ticks| ticks.parse::<u64>().ok())
+        .is_some_and(|ticks| ticks >= 20)
 }

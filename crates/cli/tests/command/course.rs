@@ -31,7 +31,10 @@ fn every_command_of_the_course_runs() {
             "lab" => continue,
             // Sizes, and the pixels that are explained, are those of small pictures here.
             "render" => {
-                typed.iter_mut().filter(|word| *word == "512,384").for_each(|word| *word = "32,24".to_owned());
+                typed
+                    .iter_mut()
+                    .filter(|word| *word == "512,384")
+                    .for_each(|word| *word = "32,24".to_owned());
                 typed.extend(SMALL.map(str::to_owned));
             }
             _ => {}
@@ -53,13 +56,18 @@ fn every_item_of_the_course_has_a_row() {
         let items: Vec<&str> = items.split(' ').collect();
         let number = |item: &str| item.get(1..).and_then(|digits| digits.parse::<u32>().ok());
         for (at, item) in items.iter().enumerate().filter(|(_, item)| number(item).is_some()) {
-            let last = if items.get(at + 1) == Some(&"to") { number(items[at + 2]) } else { number(item) };
-            named.extend((number(item).unwrap()..=last.unwrap()).map(|n| format!("{}{n}", &item[..1])));
+            let last =
+                if items.get(at + 1) == Some(&"to") { number(items[at + 2]) } else { number(item) };
+            named.extend(
+                (number(item).unwrap()..=last.unwrap()).map(|n| format!("{}{n}", &item[..1])),
+            );
         }
     }
     for (letter, count) in [("T", 17), ("F", 27), ("L", 22), ("P", 42)] {
-        let missing: Vec<_> =
-            (1..=count).map(|n| format!("{letter}{n}")).filter(|item| !named.contains(item)).collect();
+        let missing: Vec<_> = (1..=count)
+            .map(|n| format!("{letter}{n}"))
+            .filter(|item| !named.contains(item))
+            .collect();
         assert!(missing.is_empty(), "{missing:?}");
     }
 }

@@ -38,7 +38,8 @@ impl CubeFolder {
 
     /// The output of another program in this folder; a line and `None` if it is not installed.
     fn ask(&self, program: &str, arguments: &[&str], package: &str) -> Option<String> {
-        let Ok(output) = Command::new(program).args(arguments).current_dir(&self.0.0).output() else {
+        let Ok(output) = Command::new(program).args(arguments).current_dir(&self.0.0).output()
+        else {
             println!("{SKIPPED}{program} is not installed (Debian: {package})");
             return None;
         };
@@ -57,10 +58,15 @@ fn svg_has_real_millimetres() {
     let text = folder.text("x.svg", &FRONT);
     assert!(text.contains("width=\"30mm\" height=\"30mm\" viewBox=\"0 0 30000 30000\""), "{text}");
     assert!(text.contains("20000") && text.matches("<path").count() == 1, "{text}");
-    let half = folder.text("x.svg", &["--view", "front", "--scale", "1:2", "--unit", "cm", "--margin", "0"]);
+    let half = folder
+        .text("x.svg", &["--view", "front", "--scale", "1:2", "--unit", "cm", "--margin", "0"]);
     assert!(half.contains("width=\"100mm\""), "{half}");
-    let coarse = folder.text("x.svg", &[&FRONT[..], &["--precision", ".1", "--stroke", "contour=1"]].concat());
-    assert!(coarse.contains("viewBox=\"0 0 300 300\"") && coarse.contains("stroke-width=\"10\""), "{coarse}");
+    let coarse = folder
+        .text("x.svg", &[&FRONT[..], &["--precision", ".1", "--stroke", "contour=1"]].concat());
+    assert!(
+        coarse.contains("viewBox=\"0 0 300 300\"") && coarse.contains("stroke-width=\"10\""),
+        "{coarse}"
+    );
     let filled = folder.text("x.svg", &["--style", "filled", "--svg-ids"]);
     assert!(filled.contains("data-face=\""), "{filled}");
 }
@@ -81,7 +87,9 @@ fn pdf_is_read_by_others() {
         let text = String::from_utf8(folder.0.read("x.svg")).unwrap();
         assert!(text.contains("<path"), "{text}");
     }
-    if let Some(told) = folder.ask("mutool", &["show", "y.pdf", "trailer/Root/OCProperties/OCGs"], "mupdf-tools") {
+    if let Some(told) =
+        folder.ask("mutool", &["show", "y.pdf", "trailer/Root/OCProperties/OCGs"], "mupdf-tools")
+    {
         assert_eq!(told.matches(" 0 R").count(), 3, "hidden, crease and contour: {told}");
     }
     folder.ask("mutool", &["draw", "-q", "-N", "-o", "x.png", "x.pdf"], "mupdf-tools");
@@ -101,7 +109,10 @@ fn dxf_stands_an_audit() {
         \x20   print(len(audit.errors), len(audit.fixes), sorted({e.dxf.layer for e in entities}), round(width, 3))\n\
         \x20   print([l.dxf.linetype for l in doc.layers if l.dxf.name == 'hidden'])\n";
     let python = ["/usr/bin/python3", "python3"].into_iter().find(|python| {
-        Command::new(python).args(["-c", "import ezdxf"]).output().is_ok_and(|output| output.status.success())
+        Command::new(python)
+            .args(["-c", "import ezdxf"])
+            .output()
+            .is_ok_and(|output| output.status.success())
     });
     let Some(python) = python else {
         println!("{SKIPPED}ezdxf is not installed (Debian: python3-ezdxf)");
@@ -117,18 +128,26 @@ fn dxf_stands_an_audit() {
 fn hpgl_draws_no_line_twice() {
     let folder = CubeFolder::new("hpgl");
     let text = folder.text("x.plt", &[&HIDDEN[..], &["--page", "A5"]].concat());
-    assert!(text.starts_with("IN;PS5920,8400;\nSP1;PW0.5;\nPU") && text.ends_with("PU;SP0;\n"), "{text}");
+    assert!(
+        text.starts_with("IN;PS5920,8400;\nSP1;PW0.5;\nPU") && text.ends_with("PU;SP0;\n"),
+        "{text}"
+    );
     assert!(text.contains("SP3;") && text.contains("SP8;PW0.18;"), "{text}");
     let (mut at, mut drawn) = ([0; 2], HashSet::new());
     for instruction in text.split(';').map(str::trim) {
-        let Some((pen, points)) = instruction.split_at_checked(2).filter(|(name, _)| ["PU", "PD"].contains(name))
+        let Some((pen, points)) =
+            instruction.split_at_checked(2).filter(|(name, _)| ["PU", "PD"].contains(name))
         else {
             continue;
         };
-        let numbers: Vec<i32> = points.split(',').filter(|n| !n.is_empty()).map(|n| n.parse().unwrap()).collect();
+        let numbers: Vec<i32> =
+            points.split(',').filter(|n| !n.is_empty()).map(|n| n.parse().unwrap()).collect();
         for point in numbers.chunks(2).map(|pair| [pair[0], pair[1]]) {
             assert!((0..=5920).contains(&point[0]) && (0..=8400).contains(&point[1]), "{point:?}");
-            assert!(pen == "PU" || drawn.insert([at.min(point), at.max(point)]), "{at:?} to {point:?}");
+            assert!(
+                pen == "PU" || drawn.insert([at.min(point), at.max(point)]),
+                "{at:?} to {point:?}"
+            );
             at = point;
         }
     }
@@ -142,8 +161,15 @@ fn hpgl_draws_no_line_twice() {
 fn plotters_get_numbered_layers_with_each_line_once() {
     let folder = CubeFolder::new("plotter");
     let text = folder.text("x.svg", &[&HIDDEN[..], &["--plotter"]].concat());
-    assert!(text.contains("inkscape:label=\"1 contour\"") && text.contains("inkscape:label=\"8 hidden\""), "{text}");
-    assert!(!text.contains("dasharray") && text.matches("<path").count() > 20, "dashes are lines: {text}");
+    assert!(
+        text.contains("inkscape:label=\"1 contour\"")
+            && text.contains("inkscape:label=\"8 hidden\""),
+        "{text}"
+    );
+    assert!(
+        !text.contains("dasharray") && text.matches("<path").count() > 20,
+        "dashes are lines: {text}"
+    );
     let simple = folder.text("x.svg", &["--view", "iso", "--plotter", "--simplify", "500"]);
     assert!(simple.len() < text.len());
 }
@@ -153,9 +179,16 @@ fn title_blocks_are_a_layer_below_the_drawing() {
     let folder = CubeFolder::new("title");
     let rows = ["--title-block", "Part=Cube", "--title-block", "Scale=1:1"];
     let text = folder.text("x.svg", &[&FRONT[..], &rows].concat());
-    assert!(text.contains("inkscape:label=\"9 title\"") && text.contains("viewBox=\"0 0 37833 45000\""), "{text}");
-    let sheet = folder.text("x.svg", &[&rows[..], &["--page", "A6", "--stroke", "title=.3"]].concat());
-    assert!(sheet.contains("viewBox=\"0 0 105000 148000\"") && sheet.contains("stroke-width=\"300\""), "{sheet}");
+    assert!(
+        text.contains("inkscape:label=\"9 title\"") && text.contains("viewBox=\"0 0 37833 45000\""),
+        "{text}"
+    );
+    let sheet =
+        folder.text("x.svg", &[&rows[..], &["--page", "A6", "--stroke", "title=.3"]].concat());
+    assert!(
+        sheet.contains("viewBox=\"0 0 105000 148000\"") && sheet.contains("stroke-width=\"300\""),
+        "{sheet}"
+    );
 }
 
 #[test]
@@ -176,14 +209,26 @@ fn options_that_do_not_suit_the_file_are_told() {
         (&["-o", "x.svg", "--stroke", "title=1"], 2, "add --title-block"),
         (&["-o", "x.svg", "--unit", "m"], 2, "--scale"),
         (&["-o", "x.svg", "--scale", "0:1"], 2, "is not a scale"),
-        (&["-o", "x.svg", "--scale", "1:1", "--camera-view-angle", "30"], 2, "add --camera-orthographic"),
+        (
+            &["-o", "x.svg", "--scale", "1:1", "--camera-view-angle", "30"],
+            2,
+            "add --camera-orthographic",
+        ),
         (
             &["-o", "x.svg", "--view", "front", "--scale", "15:1", "--page", "A4"],
             2,
             "has 300.0 x 300.0 mm, the sheet has room for 200.0 x 287.0 mm",
         ),
-        (&["-o", "x.svg", "--view", "front", "--scale", "1:1", "--unit", "m"], 2, "--scale 1:2 fits"),
-        (&["-o", "x.dxf", "--style", "filled-lines"], 0, "x.dxf: warning: filled regions are left out"),
+        (
+            &["-o", "x.svg", "--view", "front", "--scale", "1:1", "--unit", "m"],
+            2,
+            "--scale 1:2 fits",
+        ),
+        (
+            &["-o", "x.dxf", "--style", "filled-lines"],
+            0,
+            "x.dxf: warning: filled regions are left out",
+        ),
         (&["-o", "x.svg", "--view", "front", "--scale", "10:1", "--page", "A4"], 0, ""),
     ] {
         let output = folder.draw(arguments);
@@ -197,7 +242,15 @@ fn a_drawing_without_anything_in_it_is_told() {
     let folder = Folder::new("empty-drawing");
     folder.file("point.obj", "v 0 0 0\nv 1 1 0\np 1\np 2\n");
     let output = folder.run(&["draw", "point.obj", "--style", "filled", "-o", "x.svg"]);
-    assert!(output.status.success() && errors(&output).contains("the drawing is empty"), "{}", errors(&output));
+    assert!(
+        output.status.success() && errors(&output).contains("the drawing is empty"),
+        "{}",
+        errors(&output)
+    );
     let output = folder.run(&["draw", "point.obj", "-o", "x.svg"]);
-    assert!(output.status.success() && !errors(&output).contains("the drawing is empty"), "{}", errors(&output));
+    assert!(
+        output.status.success() && !errors(&output).contains("the drawing is empty"),
+        "{}",
+        errors(&output)
+    );
 }

@@ -23,9 +23,11 @@ fn animations_are_listed_and_shown() {
     // At rest the node has no extent; the animation gives it some.
     let rest = render(&folder, &[&model, "-o", "rest.png"]);
     assert!(errors(&rest).contains("nothing has any extent at rest"), "{}", errors(&rest));
-    let moments = [&["--animation-time", "1"][..], &["--animation", "0", "--animation-time", "0.5"]];
+    let moments =
+        [&["--animation-time", "1"][..], &["--animation", "0", "--animation-time", "0.5"]];
     for arguments in moments {
-        let shown = render(&folder, &[&[&model, "-o", "shown.png", "--no-background"], arguments].concat());
+        let shown =
+            render(&folder, &[&[&model, "-o", "shown.png", "--no-background"], arguments].concat());
         assert_eq!((code(&shown), errors(&shown)), (0, String::new()), "{arguments:?}");
     }
 
@@ -47,7 +49,11 @@ fn animations_that_are_not_there_are_told() {
         (&["a.obj", "--animation-time", "-1"], "a number of at least 0 is required"),
     ] {
         let output = render(&folder, &[arguments, &["-o", "x.png"]].concat());
-        assert!(code(&output) == 2 && errors(&output).contains(said), "{arguments:?}: {}", errors(&output));
+        assert!(
+            code(&output) == 2 && errors(&output).contains(said),
+            "{arguments:?}: {}",
+            errors(&output)
+        );
     }
 }
 
@@ -55,12 +61,15 @@ fn animations_that_are_not_there_are_told() {
 fn a_dark_file_gets_a_light_unless_it_is_decided_otherwise() {
     let (folder, model) = (Folder::new("dark"), fixture("sun-below.gltf"));
     let added = "a dim light from the viewer is added";
-    let told = |arguments: &[&str]| errors(&render(&folder, &[&[&model, "-o", "x.png"], arguments].concat()));
+    let told = |arguments: &[&str]| {
+        errors(&render(&folder, &[&[&model, "-o", "x.png"], arguments].concat()))
+    };
     assert!(told(&[]).contains(added));
     for arguments in [&["--fill-light", "none"][..], &["--light", "Directional:Direction=0,0,-1"]] {
         assert!(!told(arguments).contains(added), "{arguments:?}");
     }
-    let both = render(&folder, &[&model, "-o", "x.png", "--fill-light", "auto", "--light", "ambient"]);
+    let both =
+        render(&folder, &[&model, "-o", "x.png", "--fill-light", "auto", "--light", "ambient"]);
     assert_eq!(code(&both), 2);
 }
 
@@ -70,15 +79,27 @@ fn built_in_scenes_take_numbers() {
     assert_eq!(info(&folder, "builtin:sphere?slices=8&stacks=4")["faces"], 32);
     let refused = render(&folder, &["builtin:sphere?sides=8", "-o", "x.png"]);
     assert_eq!(code(&refused), 2);
-    assert!(errors(&refused).contains("hint: builtin:sphere takes slices=96"), "{}", errors(&refused));
+    assert!(
+        errors(&refused).contains("hint: builtin:sphere takes slices=96"),
+        "{}",
+        errors(&refused)
+    );
     let misspelt = render(&folder, &["builtin:spere?slices=8", "-o", "x.png"]);
     assert!(errors(&misspelt).contains("did you mean builtin:sphere?"), "{}", errors(&misspelt));
     let listed = folder.run(&["formats"]);
     let text = String::from_utf8_lossy(&listed.stdout);
     assert!(text.contains("builtin:teapot?divisions=N: divisions=12"), "{text}");
     let formats = json(&folder.run(&["formats", "--json"]));
-    let sphere = formats["builtin"].as_array().unwrap().iter().find(|row| row["name"] == "builtin:sphere").unwrap();
-    assert_eq!((&sphere["parameters"][1]["name"], &sphere["parameters"][1]["most"]), (&"stacks".into(), &4096.into()));
+    let sphere = formats["builtin"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|row| row["name"] == "builtin:sphere")
+        .unwrap();
+    assert_eq!(
+        (&sphere["parameters"][1]["name"], &sphere["parameters"][1]["most"]),
+        (&"stacks".into(), &4096.into())
+    );
 }
 
 #[test]
@@ -94,7 +115,11 @@ fn a_model_that_needs_too_much_memory_does_not_end_the_others() {
         let output = folder.run(&[verb, "large.stl", "a.obj", "-o", &out, "--max-memory", "40M"]);
         let told = errors(&output);
         assert_eq!(code(&output), 7, "{verb}: {told}");
-        assert!(told.contains("vitral: large.stl: loading needs ") && told.contains("1 of 2 models failed"), "{told}");
+        assert!(
+            told.contains("vitral: large.stl: loading needs ")
+                && told.contains("1 of 2 models failed"),
+            "{told}"
+        );
         assert!(folder.has(&format!("a.{end}")) && !folder.has(&format!("large.{end}")));
     }
 }
@@ -102,7 +127,15 @@ fn a_model_that_needs_too_much_memory_does_not_end_the_others() {
 #[test]
 fn edges_have_a_width_a_colour_and_classes() {
     let folder = Folder::new("edges");
-    let styled = ["--edges", "--line-width", "3", "--edge-color", "red", "--edge-classes", "Contour,boundary"];
+    let styled = [
+        "--edges",
+        "--line-width",
+        "3",
+        "--edge-color",
+        "red",
+        "--edge-classes",
+        "Contour,boundary",
+    ];
     let output = render(&folder, &[&["builtin:cubs", "-o", "x.png"], &styled[..]].concat());
     assert_eq!((code(&output), errors(&output)), (0, String::new()));
     for (arguments, said) in [
@@ -112,8 +145,15 @@ fn edges_have_a_width_a_colour_and_classes() {
         let refused = render(&folder, &[&["builtin:cubs", "-o", "x.png"], arguments].concat());
         assert!(code(&refused) == 2 && errors(&refused).contains(said), "{}", errors(&refused));
     }
-    let idle = render(&folder, &["builtin:cubs", "-o", "x.png", "--edge-classes", "crease", "--line-width", "2"]);
-    assert!(errors(&idle).contains("--edge-classes") && errors(&idle).contains("--line-width"), "{}", errors(&idle));
+    let idle = render(
+        &folder,
+        &["builtin:cubs", "-o", "x.png", "--edge-classes", "crease", "--line-width", "2"],
+    );
+    assert!(
+        errors(&idle).contains("--edge-classes") && errors(&idle).contains("--line-width"),
+        "{}",
+        errors(&idle)
+    );
 }
 
 #[test]
@@ -154,6 +194,12 @@ fn an_animation_gives_frames() {
     assert_eq!(code(&render(&folder, &[&model, "--animation-frames", "4", "-o", "a.gif"])), 0);
     assert!(folder.read("a.gif").starts_with(b"GIF"));
     for arguments in [&["-o", "one.png"][..], &["-o", "{frame}.png", "--turntable", "2"]] {
-        assert_eq!(code(&render(&folder, &[&[model.as_str(), "--animation-frames", "2"], arguments].concat())), 2);
+        assert_eq!(
+            code(&render(
+                &folder,
+                &[&[model.as_str(), "--animation-frames", "2"], arguments].concat()
+            )),
+            2
+        );
     }
 }

@@ -43,7 +43,10 @@ impl Folder {
     fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_vitral"));
         command.args(arguments).current_dir(&self.0).stdin(Stdio::null());
-        command.env("XDG_CONFIG_HOME", &self.0).env_remove("VITRAL_SIMD").env_remove("VITRAL_THREADS");
+        command
+            .env("XDG_CONFIG_HOME", &self.0)
+            .env_remove("VITRAL_SIMD")
+            .env_remove("VITRAL_THREADS");
         command
     }
 
@@ -91,14 +94,23 @@ fn p25_a_bench_has_a_row_for_every_algorithm_and_goes_on_after_a_limit() {
     let told = json(&folder.run(&[&arguments[..], &["--json"]].concat()));
     let rows = told["algorithms"].as_array().unwrap();
     assert!(rows.len() >= 8 && rows[0]["algorithm"] == "z-buffer", "{told}");
-    assert!(rows.iter().all(|r| r["differing"] == 0 && r["median-seconds"].as_f64().unwrap() > 0.0), "{told}");
+    assert!(
+        rows.iter().all(|r| r["differing"] == 0 && r["median-seconds"].as_f64().unwrap() > 0.0),
+        "{told}"
+    );
     let limited = folder.run(&[&arguments[..], &["--time-limit", "1e-9"]].concat());
     let table = String::from_utf8(limited.stdout.clone()).unwrap();
-    assert_eq!(table.matches("the time limit of 0.000000001 s was reached").count(), rows.len(), "{table}");
+    assert_eq!(
+        table.matches("the time limit of 0.000000001 s was reached").count(),
+        rows.len(),
+        "{table}"
+    );
     assert!(errors(&limited).contains("1 of "), "progress is on standard error");
     // The report begins with the command, and the camera is that of render's options.
     assert!(
-        table.starts_with("vitral bench builtin:cubs --resolution 64x48 --frames 1 --time-limit 1e-9\n"),
+        table.starts_with(
+            "vitral bench builtin:cubs --resolution 64x48 --frames 1 --time-limit 1e-9\n"
+        ),
         "{table}"
     );
     let z_buffer = ["--visibility", "z-buffer", "--json"];
@@ -110,7 +122,9 @@ fn p25_a_bench_has_a_row_for_every_algorithm_and_goes_on_after_a_limit() {
     };
     let framed = seen(&[]);
     assert_eq!(framed, seen(&["--view", "three-quarter"]));
-    for camera in [&["--camera-zoom-factor", "6"][..], &["--eye-rotation", "0,80,0"], &["--view", "top"]] {
+    for camera in
+        [&["--camera-zoom-factor", "6"][..], &["--eye-rotation", "0,80,0"], &["--view", "top"]]
+    {
         assert_ne!(framed, seen(camera), "{camera:?}");
     }
     assert_eq!(code(&folder.run(&[&arguments[..], &["--camera-index", "7"]].concat())), 2);
@@ -122,9 +136,16 @@ fn p25_a_bench_has_a_row_for_every_algorithm_and_goes_on_after_a_limit() {
 fn models_on_standard_input_name_files_in_the_current_folder() {
     let folder = Folder::new("beside");
     folder.file("m.mtl", "newmtl red\nKd 1 0 0\n");
-    for (text, warnings) in [("mtllib m.mtl\nusemtl red\n", ""), ("mtllib ../n.mtl\n", "outside the model's folder")] {
+    for (text, warnings) in
+        [("mtllib m.mtl\nusemtl red\n", ""), ("mtllib ../n.mtl\n", "outside the model's folder")]
+    {
         let mut child = folder.command(&["info", "-"]);
-        let mut child = child.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut child = child
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
         child.stdin.take().unwrap().write_all(format!("{text}{TRIANGLE}").as_bytes()).unwrap();
         let output = child.wait_with_output().unwrap();
         assert_eq!(code(&output), 0);
@@ -138,13 +159,19 @@ fn models_on_standard_input_name_files_in_the_current_folder() {
 fn coherence_is_a_choice_of_what_the_algorithm_has() {
     let folder = Folder::new("coherence");
     let with = |algorithm: &str, list: &str, name: &str| {
-        render(&folder, &["builtin:cubs", "-o", name, "--visibility", algorithm, "--coherence", list])
+        render(
+            &folder,
+            &["builtin:cubs", "-o", name, "--visibility", algorithm, "--coherence", list],
+        )
     };
-    for (list, name) in [("none", "a.png"), ("edge,scan-line", "b.png"), ("face,area,implied-edge", "c.png")] {
+    for (list, name) in
+        [("none", "a.png"), ("edge,scan-line", "b.png"), ("face,area,implied-edge", "c.png")]
+    {
         assert_eq!(code(&with("scan-line", list, name)), 0, "{list}");
         assert_eq!(folder.read("a.png"), folder.read(name), "{list}");
     }
-    for algorithm in json(&folder.run(&["algorithms", "--json"]))["visibility"].as_array().unwrap() {
+    for algorithm in json(&folder.run(&["algorithms", "--json"]))["visibility"].as_array().unwrap()
+    {
         let name = algorithm["name"].as_str().unwrap();
         let output = with(name, "all", "all.png");
         assert_eq!(code(&output), 0, "{name}: {}", errors(&output));
@@ -158,7 +185,8 @@ fn coherence_is_a_choice_of_what_the_algorithm_has() {
 fn a_model_becomes_a_picture() {
     let folder = Folder::new("picture");
     folder.file("a.obj", TRIANGLE);
-    for (name, magic) in [("a.png", &b"\x89PNG"[..]), ("a.jpg", b"\xff\xd8\xff"), ("a.ppm", b"P6")] {
+    for (name, magic) in [("a.png", &b"\x89PNG"[..]), ("a.jpg", b"\xff\xd8\xff"), ("a.ppm", b"P6")]
+    {
         let output = render(&folder, &["a.obj", "-o", name]);
         assert_eq!(code(&output), 0, "{}", errors(&output));
         assert!(folder.read(name).starts_with(magic), "{name}");
@@ -171,7 +199,9 @@ fn a_model_becomes_a_picture() {
 #[test]
 fn shadow_polygons_are_models_again() {
     let folder = Folder::new("shadow-polygons");
-    for (algorithm, groups) in [("object-precision", &["lit"][..]), ("volume", &["near-cap", "far-cap", "side"])] {
+    for (algorithm, groups) in
+        [("object-precision", &["lit"][..]), ("volume", &["near-cap", "far-cap", "side"])]
+    {
         let file = format!("{algorithm}.obj");
         let light = "point:position=3,6,2";
         let exported = folder.run(&[
@@ -203,15 +233,39 @@ fn exit_codes() {
     let cases: [(&[&str], i32, &str); 33] = [
         (&["a.obj", "-o", "x.png"], 0, ""),
         (&["a.obj", "-o", "x.png", "--no-background"], 0, ""),
-        (&["a.obj", "-o", "x.jpg", "--no-background"], 2, "--no-background: JPEG files cannot be transparent"),
+        (
+            &["a.obj", "-o", "x.jpg", "--no-background"],
+            2,
+            "--no-background: JPEG files cannot be transparent",
+        ),
         (&["a.obj", "-o", "x.png", "--no-such-option"], 2, "--no-such-option"),
-        (&["a.obj", "-o", "x.png", "--panels"], 2, "`none` has no figure of panels: choose map, object-precision"),
+        (
+            &["a.obj", "-o", "x.png", "--panels"],
+            2,
+            "`none` has no figure of panels: choose map, object-precision",
+        ),
         (&["a.obj", "-o", "x.png", "--shadows", "map", "--panels"], 0, ""),
-        (&["a.obj", "-o", "x.npy", "--channel", "depth", "--shadows", "map", "--panels"], 2, "not the channel depth"),
+        (
+            &["a.obj", "-o", "x.npy", "--channel", "depth", "--shadows", "map", "--panels"],
+            2,
+            "not the channel depth",
+        ),
         (&["a.obj", "-o", "x.png", "--max-depth", "3"], 2, "--max-depth: no rays are traced"),
-        (&["a.obj", "-o", "x.png", "--global", "ray-trace", "--patch-size", "1"], 2, "radiosity is not computed"),
-        (&["a.obj", "-o", "x.png", "--global", "radiosity", "--load-radiosity", "a.obj"], 3, "no stored solution"),
-        (&["a.obj", "--dump", "d", "--global", "radiosity", "--save-radiosity", "r"], 2, "no colour picture is made"),
+        (
+            &["a.obj", "-o", "x.png", "--global", "ray-trace", "--patch-size", "1"],
+            2,
+            "radiosity is not computed",
+        ),
+        (
+            &["a.obj", "-o", "x.png", "--global", "radiosity", "--load-radiosity", "a.obj"],
+            3,
+            "no stored solution",
+        ),
+        (
+            &["a.obj", "--dump", "d", "--global", "radiosity", "--save-radiosity", "r"],
+            2,
+            "no colour picture is made",
+        ),
         (&["a.obj", "-o", "x.png", "--global", "ray-trace", "--max-depth", "3"], 0, ""),
         (&["a.obj", "-o", "x.png", "--shadows", "umbra"], 2, "invalid value 'umbra'"),
         (
@@ -219,14 +273,52 @@ fn exit_codes() {
             2,
             "choose volume, scan-line, object-precision",
         ),
-        (&["a.obj", "--shadows", "volume", "--export-shadow-polygons", "s.stl"], 2, "only .obj files are written"),
-        (&["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"], 2, "is `ray`: choose volume"),
-        (&["a.obj", "-o", "x.png", "--terminator", "exact"], 2, "--terminator: no shadows are computed"),
-        (&["a.obj", "-o", "x.png", "--camera-clip", "3,2"], 2, "two distances are required, the nearer first"),
-        (&["a.obj", "-o", "x.png", "--shadows", "ray", "--shadow-map-size", "512"], 2, "no shadow maps are drawn"),
+        (
+            &["a.obj", "--shadows", "volume", "--export-shadow-polygons", "s.stl"],
+            2,
+            "only .obj files are written",
+        ),
+        (
+            &["a.obj", "-o", "x.png", "--shadows", "ray", "--volume-counting", "z-pass"],
+            2,
+            "is `ray`: choose volume",
+        ),
+        (
+            &["a.obj", "-o", "x.png", "--terminator", "exact"],
+            2,
+            "--terminator: no shadows are computed",
+        ),
+        (
+            &["a.obj", "-o", "x.png", "--camera-clip", "3,2"],
+            2,
+            "two distances are required, the nearer first",
+        ),
+        (
+            &["a.obj", "-o", "x.png", "--shadows", "ray", "--shadow-map-size", "512"],
+            2,
+            "no shadow maps are drawn",
+        ),
         (&["a.obj", "-o", "x.png", "--shadow-cascades", "4"], 2, "add --shadows map"),
-        (&["a.obj", "-o", "x.png", "--shadows", "map", "--shadow-map-size", "9000"], 2, "16 to 8192"),
-        (&["a.obj", "-o", "x.png", "--shadows", "map", "--shadow-map-size", "64", "--shadow-cascades", "4"], 0, ""),
+        (
+            &["a.obj", "-o", "x.png", "--shadows", "map", "--shadow-map-size", "9000"],
+            2,
+            "16 to 8192",
+        ),
+        (
+            &[
+                "a.obj",
+                "-o",
+                "x.png",
+                "--shadows",
+                "map",
+                "--shadow-map-size",
+                "64",
+                "--shadow-cascades",
+                "4",
+            ],
+            0,
+            "",
+        ),
         (&["a.obj", "-o", "x.png", "--visibility", "ray-cast", "--acceleration", "octree"], 0, ""),
         (
             &["a.obj", "-o", "x.png", "--acceleration", "grid"],
@@ -251,12 +343,19 @@ fn exit_codes() {
         assert!(first.is_empty() || first.starts_with("vitral: "), "{first}");
     }
     assert_eq!(code(&folder.run(&["render", "a.obj", "-o", "x.png", "--resolution", "0x4"])), 2);
-    assert_eq!(code(&folder.run(&["render", "a.obj", "-o", "x.png", "--resolution", "99999x4"])), 7);
+    assert_eq!(
+        code(&folder.run(&["render", "a.obj", "-o", "x.png", "--resolution", "99999x4"])),
+        7
+    );
     assert_eq!(code(&folder.run(&["batch"])), 2);
     assert_eq!(code(&folder.run(&["batch", "a.obj", "--dry-run"])), 1);
     if cfg!(not(feature = "lab")) {
         let output = folder.run(&["lab", "a.obj"]);
-        assert!(code(&output) == 4 && errors(&output).contains("cargo xtask lab"), "{}", errors(&output));
+        assert!(
+            code(&output) == 4 && errors(&output).contains("cargo xtask lab"),
+            "{}",
+            errors(&output)
+        );
     }
     assert_eq!(code(&folder.run(&[])), 2);
 }
@@ -268,18 +367,37 @@ fn p21_a_model_becomes_a_drawing() {
     let output = folder.run(&["draw", "a.obj", "-o", "{model}.svg", "--view", "front", "--stats"]);
     assert_eq!(code(&output), 0, "{}", errors(&output));
     let stats: serde_json::Value = serde_json::from_slice(&output.stderr).unwrap();
-    assert_eq!([&stats["triangles"], &stats["edges"], &stats["polylines"], &stats["points"]], [1, 3, 1, 4]);
+    assert_eq!(
+        [&stats["triangles"], &stats["edges"], &stats["polylines"], &stats["points"]],
+        [1, 3, 1, 4]
+    );
     // A right triangle with legs of 180 mm.
     let expected = 180.0 * (2.0 + 2f64.sqrt());
     assert!((stats["visible-millimetres"].as_f64().unwrap() - expected).abs() < 0.01, "{stats}");
     let file = String::from_utf8(folder.read("a.svg")).unwrap();
-    assert!(file.contains("viewBox=\"0 0 190000 190000\"") && file.contains("data-class=\"boundary\""), "{file}");
+    assert!(
+        file.contains("viewBox=\"0 0 190000 190000\"") && file.contains("data-class=\"boundary\""),
+        "{file}"
+    );
 
     // Standard output, filled, on a sheet.
-    let output = folder.run(&["draw", "a.obj", "-o", "-", "--style", "filled", "--page", "A4", "--landscape"]);
+    let output = folder.run(&[
+        "draw",
+        "a.obj",
+        "-o",
+        "-",
+        "--style",
+        "filled",
+        "--page",
+        "A4",
+        "--landscape",
+    ]);
     let filled = String::from_utf8_lossy(&output.stdout).into_owned();
     assert_eq!(code(&output), 0, "{}", errors(&output));
-    assert!(filled.contains("width=\"297mm\" height=\"210mm\"") && filled.matches("<path").count() == 1, "{filled}");
+    assert!(
+        filled.contains("width=\"297mm\" height=\"210mm\"") && filled.matches("<path").count() == 1,
+        "{filled}"
+    );
 }
 
 #[test]
@@ -291,9 +409,17 @@ fn mistakes_in_drawings_are_told() {
         (&["-o", "x.svg", "--explode", "-2"], 2, "--explode"),
         (&["-o", "x.svg", "--lines", "section"], 2, "add --section-plane"),
         (&["-o", "x.svg", "--shadows"], 2, "give --style filled"),
-        (&["-o", "x.svg", "--style", "filled", "--color-by", "part", "--shades", "4"], 2, "give --color-by shading"),
+        (
+            &["-o", "x.svg", "--style", "filled", "--color-by", "part", "--shades", "4"],
+            2,
+            "give --color-by shading",
+        ),
         (&["-o", "x.svg", "--style", "filled", "--flatten"], 2, "--transparency"),
-        (&["-o", "x.svg", "--style", "filled", "--shadows", "--lighting", "off"], 2, "the lights are off"),
+        (
+            &["-o", "x.svg", "--style", "filled", "--shadows", "--lighting", "off"],
+            2,
+            "the lights are off",
+        ),
         (&["-o", "x.svg", "--algorithm", "bsp", "--seams", "none"], 2, "choose --algorithm exact"),
         (&["-o", "x.svg", "--lines", "edges"], 2, "contour"),
         (&["-o", "x.svg", "--hidden-max-layers", "2"], 2, "--hidden dashed"),
@@ -328,7 +454,11 @@ fn mistakes_in_outputs_are_told_before_the_work() {
         (&["-o", "text.png/x.png"], 5, "text.png/x.png: "),
         (&["-o", "x.png", "--stats-file", "no/s.json"], 5, "there is no folder `no`"),
         (&["-o", "x.png", "--stats-file", "folder"], 5, "is a directory"),
-        (&["-o", "x.png", "--global", "radiosity", "--save-radiosity", "no/r"], 5, "there is no folder `no`"),
+        (
+            &["-o", "x.png", "--global", "radiosity", "--save-radiosity", "no/r"],
+            5,
+            "there is no folder `no`",
+        ),
         (&volumes, 5, "there is no folder `no`"),
         (&["-o", "x.png", "--reference", "no.png"], 3, "no.png: "),
         (&["-o", "x.png", "--reference", "text.png"], 4, "text.png: this image format is not read"),
@@ -351,7 +481,10 @@ fn mistakes_are_told_in_words_of_our_own() {
         (&["--resolution", "-5x5"], "`-5x5` is not a size".to_owned()),
         (&["--size", "5x5"], "hint: --resolution".to_owned()),
         (&["--light-samples", "4"], "hint: add --shadows ray".to_owned()),
-        (&["--camera-position", "1,1,1", "--camera-focal-point", "1,1,1"], "stands at its focal point".to_owned()),
+        (
+            &["--camera-position", "1,1,1", "--camera-focal-point", "1,1,1"],
+            "stands at its focal point".to_owned(),
+        ),
     ] {
         let output = folder.run(&[&["a.obj", "-o", "x.png"], arguments].concat());
         assert_eq!(code(&output), 2, "{arguments:?}: {}", errors(&output));
@@ -366,13 +499,20 @@ fn mistakes_are_told_in_words_of_our_own() {
     assert!(told(&["a.obj", "-o", "a"]).contains("a: the name has no extension"));
     assert!(told(&["a.obj", "-o", "no/a.png"]).contains("there is no folder `no`"));
     assert!(
-        told(&["a.obj", "-o", "x.jpg", "--no-background"]).contains("hint: write a .png, or give --background-color")
+        told(&["a.obj", "-o", "x.jpg", "--no-background"])
+            .contains("hint: write a .png, or give --background-color")
     );
-    let away = ["a.obj", "-o", "x.png", "--camera-position", "0,0,5", "--camera-focal-point", "0,0,9"];
+    let away =
+        ["a.obj", "-o", "x.png", "--camera-position", "0,0,5", "--camera-focal-point", "0,0,9"];
     assert!(told(&away).contains("warning: nothing is in view"));
     assert_eq!(told(&away[..3]), "");
-    let output = folder.command(&["a.obj", "-o", "x.png"]).env("VITRAL_THREADS", "two").output().unwrap();
-    assert!(code(&output) == 2 && errors(&output).contains("VITRAL_THREADS=two"), "{}", errors(&output));
+    let output =
+        folder.command(&["a.obj", "-o", "x.png"]).env("VITRAL_THREADS", "two").output().unwrap();
+    assert!(
+        code(&output) == 2 && errors(&output).contains("VITRAL_THREADS=two"),
+        "{}",
+        errors(&output)
+    );
 }
 
 #[test]
@@ -384,7 +524,12 @@ fn the_help_goes_into_pipes() {
     let help = String::from_utf8(output.stdout).unwrap();
     assert!(help.contains("--visibility") && help.contains("z-buffer"));
     let words = help.split_whitespace().collect::<Vec<_>>().join(" ");
-    for part in ["gl,constant,linear,quadratic", "inner (half angle", "occlusion-strength, normal-scale", "* for all"] {
+    for part in [
+        "gl,constant,linear,quadratic",
+        "inner (half angle",
+        "occlusion-strength, normal-scale",
+        "* for all",
+    ] {
         assert!(words.contains(part), "{part}");
     }
     assert!(!help.contains('\u{1b}'), "no colours in a pipe");
@@ -400,33 +545,57 @@ fn each_verb_has_help_in_two_sizes_and_by_groups() {
         String::from_utf8(output.stdout).unwrap()
     };
     let listed = help(&["--help"]);
-    let verbs = listed.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let verbs = listed
+        .lines()
+        .skip_while(|line| *line != "Commands:")
+        .skip(1)
+        .take_while(|line| !line.is_empty());
     let starts_verb = |line: &&str| line.starts_with("  ") && !line.starts_with("   ");
-    let verbs: Vec<&str> = verbs.filter(starts_verb).filter_map(|line| line.split_whitespace().next()).collect();
+    let verbs: Vec<&str> =
+        verbs.filter(starts_verb).filter_map(|line| line.split_whitespace().next()).collect();
     assert!(verbs.contains(&"render") && verbs.contains(&"thumbnail"), "{verbs:?}");
     for verb in verbs {
         // A summary of at most two screens, and a form that is no longer.
         let (long, short) = (help(&[verb, "--help"]), help(&[verb, "-h"]));
         assert!(long.lines().count() <= 100 && short.len() <= long.len(), "{verb}: {long}");
-        assert!(long.lines().chain(short.lines()).all(|line| line.chars().count() <= 100), "{verb}: {long}");
-        assert!(help(&[verb, "--help", "all"]).len() >= long.len() && help(&["help", verb]) == long);
+        assert!(
+            long.lines().chain(short.lines()).all(|line| line.chars().count() <= 100),
+            "{verb}: {long}"
+        );
+        assert!(
+            help(&[verb, "--help", "all"]).len() >= long.len() && help(&["help", verb]) == long
+        );
 
         // A group, in both forms; or a line that says there is none.
         let output = folder.run(&[verb, "--help", "camera"]);
         assert_eq!(folder.run(&[verb, "--help=camera"]).stdout, output.stdout);
         if ["render", "draw", "bench"].contains(&verb) {
             let text = String::from_utf8(output.stdout).unwrap();
-            assert!(text.contains("--camera-view-angle") && !text.contains("--threads"), "{verb}: {text}");
+            assert!(
+                text.contains("--camera-view-angle") && !text.contains("--threads"),
+                "{verb}: {text}"
+            );
         } else {
-            assert!(code(&output) == 2 && errors(&output).contains("have no groups"), "{}", errors(&output));
+            assert!(
+                code(&output) == 2 && errors(&output).contains("have no groups"),
+                "{}",
+                errors(&output)
+            );
         }
         let output = folder.run(&[verb, "--help", "alg"]);
-        assert!(code(&output) == 2 && errors(&output).contains("hint: "), "{verb}: {}", errors(&output));
+        assert!(
+            code(&output) == 2 && errors(&output).contains("hint: "),
+            "{verb}: {}",
+            errors(&output)
+        );
     }
     let told = errors(&folder.run(&["render", "--help", "alg"]));
     assert!(told.contains("hint: did you mean `vitral render --help algorithms`?"), "{told}");
     let algorithms = help(&["render", "--help", "algorithms"]);
-    assert!(algorithms.contains("--visibility") && !algorithms.contains("--camera"), "{algorithms}");
+    assert!(
+        algorithms.contains("--visibility") && !algorithms.contains("--camera"),
+        "{algorithms}"
+    );
     assert_eq!(help(&["a.obj", "--help=algorithms"]), algorithms);
     assert_eq!(help(&["render", "a.obj", "--help"]), help(&["render", "--help"]));
 }
@@ -451,7 +620,18 @@ fn channels_go_to_their_outputs() {
     let folder = Folder::new("channels");
     let output = render(
         &folder,
-        &["builtin:cubs", "--json", "--channel", "depth", "-o", "d.npy", "--channel", "id", "-o", "i.npy"],
+        &[
+            "builtin:cubs",
+            "--json",
+            "--channel",
+            "depth",
+            "-o",
+            "d.npy",
+            "--channel",
+            "id",
+            "-o",
+            "i.npy",
+        ],
     );
     assert_eq!(code(&output), 0, "{}", errors(&output));
     assert!(folder.read("d.npy").starts_with(b"\x93NUMPY"));
@@ -460,14 +640,22 @@ fn channels_go_to_their_outputs() {
     assert!(header.contains("'<u4'") && header.contains("(48, 64)"), "{header}");
     let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(said["outputs"], serde_json::json!(["d.npy", "i.npy"]));
-    assert_eq!(code(&render(&folder, &["builtin:cubs", "--channel", "depth", "-o", "a.png", "-o", "b.png"])), 2);
+    assert_eq!(
+        code(&render(
+            &folder,
+            &["builtin:cubs", "--channel", "depth", "-o", "a.png", "-o", "b.png"]
+        )),
+        2
+    );
 }
 
 #[test]
 fn a_turntable_names_its_frames() {
     let folder = Folder::new("turn");
-    let output =
-        render(&folder, &["builtin:cubs", "--turntable", "4", "-o", "{model}-{frame:3}.png", "--frames", "1-2"]);
+    let output = render(
+        &folder,
+        &["builtin:cubs", "--turntable", "4", "-o", "{model}-{frame:3}.png", "--frames", "1-2"],
+    );
     assert_eq!(code(&output), 0, "{}", errors(&output));
     assert!(folder.has("cubs-001.png") && folder.has("cubs-002.png"));
     assert!(!folder.has("cubs-000.png") && !folder.has("cubs-003.png"));
@@ -477,15 +665,27 @@ fn a_turntable_names_its_frames() {
 #[test]
 fn state_and_configuration() {
     let folder = Folder::new("state");
-    let first = ["builtin:scene0", "-o", "a.png", "--shading", "flat", "--view", "front", "--save-state", "s.json"];
+    let first = [
+        "builtin:scene0",
+        "-o",
+        "a.png",
+        "--shading",
+        "flat",
+        "--view",
+        "front",
+        "--save-state",
+        "s.json",
+    ];
     assert_eq!(code(&render(&folder, &first)), 0);
     assert_eq!(code(&folder.run(&["render", "--load-state", "s.json", "-o", "b.png"])), 0);
     assert_eq!(folder.read("a.png"), folder.read("b.png"), "a loaded state gives the same picture");
 
-    // The command line is above the state, the state above the configuration, and that above the defaults.
+    // The command line is above the state, the state above the configuration, and that above the
+    // defaults.
     folder.file("c.json", r#"{"settings": {"shading": "gouraud", "samples": 1}}"#);
     let saved = |arguments: &[&str]| {
-        let output = folder.run(&[&["render", "builtin:cubs", "--save-state", "t.json"], arguments].concat());
+        let output = folder
+            .run(&[&["render", "builtin:cubs", "--save-state", "t.json"], arguments].concat());
         assert_eq!(code(&output), 0, "{}", errors(&output));
         let state: serde_json::Value = serde_json::from_slice(&folder.read("t.json")).unwrap();
         (state["settings"]["shading"].clone(), state["settings"]["samples"].clone())
@@ -505,23 +705,34 @@ fn paths_in_a_state_file_begin_in_its_folder() {
         std::fs::create_dir_all(folder.0.join(name)).unwrap();
     }
     std::fs::write(folder.0.join("models/a.obj"), TRIANGLE).unwrap();
-    assert_eq!(code(&render(&folder, &["models/a.obj", "-o", "a.png", "--save-state", "states/s.json"])), 0);
+    assert_eq!(
+        code(&render(&folder, &["models/a.obj", "-o", "a.png", "--save-state", "states/s.json"])),
+        0
+    );
     let state: serde_json::Value = serde_json::from_slice(&folder.read("states/s.json")).unwrap();
     assert_eq!(state["models"], serde_json::json!(["../models/a.obj"]));
-    let mut elsewhere = folder.command(&["render", "--load-state", "../states/s.json", "-o", "b.png"]);
+    let mut elsewhere =
+        folder.command(&["render", "--load-state", "../states/s.json", "-o", "b.png"]);
     let output = elsewhere.current_dir(folder.0.join("other")).output().unwrap();
     assert_eq!(code(&output), 0, "{}", errors(&output));
     assert_eq!(folder.read("a.png"), folder.read("other/b.png"));
     // Paths of the command line begin where it runs, and standard output is in no folder.
-    let output =
-        render(&folder, &["models/a.obj", "--load-state", "states/s.json", "-o", "c.png", "--save-state", "-"]);
+    let output = render(
+        &folder,
+        &["models/a.obj", "--load-state", "states/s.json", "-o", "c.png", "--save-state", "-"],
+    );
     let state: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(state["models"], serde_json::json!(["models/a.obj"]));
     for option in ["--load-state", "--config"] {
         let output = render(&folder, &["builtin:cubs", "-o", "x.png", option, "none.json"]);
         let told = errors(&output);
         assert_eq!(code(&output), 3, "{told}");
-        assert!(told.contains("none.json: ") && told.contains("--save-state") && !told.contains("builtin:"), "{told}");
+        assert!(
+            told.contains("none.json: ")
+                && told.contains("--save-state")
+                && !told.contains("builtin:"),
+            "{told}"
+        );
     }
 }
 
@@ -529,7 +740,13 @@ fn paths_in_a_state_file_begin_in_its_folder() {
 fn comparing_pictures() {
     let folder = Folder::new("compare");
     assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "a.png"])), 0);
-    assert_eq!(code(&render(&folder, &["builtin:cubs", "-o", "b.png", "--shading", "flat", "--view", "top"])), 0);
+    assert_eq!(
+        code(&render(
+            &folder,
+            &["builtin:cubs", "-o", "b.png", "--shading", "flat", "--view", "top"]
+        )),
+        0
+    );
     assert_eq!(code(&folder.run(&["compare", "a.png", "a.png"])), 0);
     assert_eq!(code(&folder.run(&["compare", "a.png", "b.png", "--diff", "d.png"])), 6);
     assert!(folder.has("d.png"));
@@ -544,7 +761,8 @@ fn comparing_pictures() {
     let output = folder.run(&["compare", "a.ktx2", "a.png"]);
     assert_eq!(code(&output), 4);
     assert!(
-        errors(&output).contains("KTX is not read; PNG, JPEG, TGA, BMP, GIF, WebP, TIFF, DDS and PPM are"),
+        errors(&output)
+            .contains("KTX is not read; PNG, JPEG, TGA, BMP, GIF, WebP, TIFF, DDS and PPM are"),
         "{}",
         errors(&output)
     );
@@ -568,10 +786,12 @@ fn lists_and_pages() {
     assert!(json["formats"].as_array().unwrap().len() >= 7);
     // Built-in scenes are told wherever somebody may look for them.
     let (formats, page) = (text(&["formats"]), text(&["man"]).replace("\\-", "-"));
-    let helps = ["render", "info", "bench"]
-        .map(|verb| text(&[verb, "--help", "all"]).split_whitespace().collect::<Vec<_>>().join(" "));
+    let helps = ["render", "info", "bench"].map(|verb| {
+        text(&[verb, "--help", "all"]).split_whitespace().collect::<Vec<_>>().join(" ")
+    });
     for (i, (name, about)) in vitral::builtin_names().iter().enumerate() {
-        let line = formats.lines().find(|line| line.trim_start().starts_with(&format!("builtin:{name} ")));
+        let line =
+            formats.lines().find(|line| line.trim_start().starts_with(&format!("builtin:{name} ")));
         assert!(line.is_some_and(|line| line.ends_with(about)), "{name}");
         assert_eq!(json["builtin"][i]["name"], format!("builtin:{name}"));
         assert_eq!(json["builtin"][i]["description"], *about);
@@ -579,7 +799,8 @@ fn lists_and_pages() {
     }
     assert!(text(&["completions", "bash"]).contains("_vitral"));
     assert!(text(&["man"]).contains(".TH vitral"));
-    let info: serde_json::Value = serde_json::from_str(&text(&["info", "builtin:cubs", "--json"])).unwrap();
+    let info: serde_json::Value =
+        serde_json::from_str(&text(&["info", "builtin:cubs", "--json"])).unwrap();
     assert_eq!(info["models"][0]["file"], "builtin:cubs");
     assert!(text(&["info", "builtin:teapot"]).contains("triangles"));
 }
@@ -600,12 +821,21 @@ fn info_tells_warnings_once_or_not_at_all() {
 fn the_stages_can_be_dumped() {
     let folder = Folder::new("dump");
     assert_eq!(code(&render(&folder, &["builtin:cubs", "--dump", "stages"])), 0);
-    for file in ["1-scene.json", "2-world.json", "3-cull.json", "4-lights.json", "5-view.json", "9-framebuffer.png"] {
+    for file in [
+        "1-scene.json",
+        "2-world.json",
+        "3-cull.json",
+        "4-lights.json",
+        "5-view.json",
+        "9-framebuffer.png",
+    ] {
         assert!(folder.has(&format!("stages/{file}")), "{file}");
     }
     // Those of the turntable's first frame that is made.
-    let frame = ["builtin:scene0", "--turntable", "6", "--frames", "2-2", "--camera-azimuth-angle", "20"];
-    let output = render(&folder, &[&frame[..], &["-o", "f-{frame}.png", "--dump", "turn"]].concat());
+    let frame =
+        ["builtin:scene0", "--turntable", "6", "--frames", "2-2", "--camera-azimuth-angle", "20"];
+    let output =
+        render(&folder, &[&frame[..], &["-o", "f-{frame}.png", "--dump", "turn"]].concat());
     assert_eq!(code(&output), 0, "{}", errors(&output));
     assert_eq!(folder.read("turn/9-framebuffer.png"), folder.read("f-2.png"));
 }
@@ -614,21 +844,49 @@ fn the_stages_can_be_dumped() {
 fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
     let folder = Folder::new("transparency");
     for (arguments, what, hint) in [
-        (&["--transparency-order", "back-to-front"][..], "`z-buffer` does not", "--visibility bsp or painter"),
-        (&["--transparency-order", "sorted", "--global", "ray-trace"], "`sorted`", "leave out --transparency-order"),
+        (
+            &["--transparency-order", "back-to-front"][..],
+            "`z-buffer` does not",
+            "--visibility bsp or painter",
+        ),
+        (
+            &["--transparency-order", "sorted", "--global", "ray-trace"],
+            "`sorted`",
+            "leave out --transparency-order",
+        ),
         (
             &["--material", "glass.transmission=translucent", "--transparency-order", "two-buffer"],
             "`glass` is translucent",
             "glass.transmission=transparent",
         ),
         (&["--material", "glass.kt=1.5"], "a number from 0 to 1 is required", "kt: 1 - opacity"),
-        (&["--material", "glass.opacity=-1"], "a number from 0 to 1 is required", "opacity: 1 opaque"),
-        (&["--material", "glass.ior=0"], "a number above 0 is required", "ior: index of refraction"),
-        (&["--material", "glass.filter=1,2,1"], "from 0 to 1", "filter: colour of light that passes"),
+        (
+            &["--material", "glass.opacity=-1"],
+            "a number from 0 to 1 is required",
+            "opacity: 1 opaque",
+        ),
+        (
+            &["--material", "glass.ior=0"],
+            "a number above 0 is required",
+            "ior: index of refraction",
+        ),
+        (
+            &["--material", "glass.filter=1,2,1"],
+            "from 0 to 1",
+            "filter: colour of light that passes",
+        ),
         (&["--scatter-samples", "0"], "1 to 4096", ""),
-        (&["--kay-exponent", "2"], "it needs Kay's model of transparency", "add --transparency kay"),
+        (
+            &["--kay-exponent", "2"],
+            "it needs Kay's model of transparency",
+            "add --transparency kay",
+        ),
         (&["--transparency", "kay", "--kay-exponent", "0"], "above 0", ""),
-        (&["--material", "glass.kt-min=2"], "a number from 0 to 1 is required", "kt-min: what passes"),
+        (
+            &["--material", "glass.kt-min=2"],
+            "a number from 0 to 1 is required",
+            "kt-min: what passes",
+        ),
         (&["--depth-cue=near=2"], "no key `near`", "back-scale"),
         (&["--depth-cue=front=2,back=1"], "farther away", ""),
         (&["--depth-cue", "--no-background"], "colour to fade into", ""),
@@ -643,12 +901,25 @@ fn transparency_that_cannot_be_shown_is_refused_with_a_hint() {
         assert!(!folder.has("a.png"));
     }
     let translucent = ["render", "builtin:lens", "--material", "glass.transmission=translucent"];
-    let lists =
-        ["--visibility", "bsp", "--transparency-order", "back-to-front", "--scatter-samples", "8", "-o", "b.png"];
+    let lists = [
+        "--visibility",
+        "bsp",
+        "--transparency-order",
+        "back-to-front",
+        "--scatter-samples",
+        "8",
+        "-o",
+        "b.png",
+    ];
     let output = folder.run(&[&translucent[..], &SMALL, &lists].concat());
     assert_eq!(code(&output), 0, "{}", errors(&output));
-    let output = folder
-        .run(&[&["render", "builtin:lens", "--dump", "d", "--transparency-order", "multi-pass"], &SMALL[..]].concat());
+    let output = folder.run(
+        &[
+            &["render", "builtin:lens", "--dump", "d", "--transparency-order", "multi-pass"],
+            &SMALL[..],
+        ]
+        .concat(),
+    );
     assert_eq!(code(&output), 0, "{}", errors(&output));
     // A ball has two layers.
     assert!(folder.has("d/9-pass-00.png") && folder.has("d/9-pass-02.png"));
@@ -660,7 +931,11 @@ fn textures_outside_the_folder_need_permission() {
     let folder = Folder::new("external");
     std::fs::create_dir_all(folder.0.join("in")).unwrap();
     folder.file("secret.mtl", "newmtl m\nKd 1 0 0\n");
-    std::fs::write(folder.0.join("in/a.obj"), format!("mtllib ../secret.mtl\nusemtl m\n{TRIANGLE}")).unwrap();
+    std::fs::write(
+        folder.0.join("in/a.obj"),
+        format!("mtllib ../secret.mtl\nusemtl m\n{TRIANGLE}"),
+    )
+    .unwrap();
     let refused = render(&folder, &["in/a.obj", "-o", "a.png"]);
     assert_eq!(code(&refused), 0);
     assert!(errors(&refused).contains("--allow-external"), "{}", errors(&refused));

@@ -12,7 +12,10 @@ fn each_model_gives_a_picture_where_the_output_names_it() {
     let folder = Folder::new("apart");
     folder.file("a.obj", TRIANGLE);
     folder.file("b.obj", TRIANGLE.replace("0 1 0", "0 3 0"));
-    let output = bare(&folder, &["a.obj", "b.obj", "builtin:cubs", "-o", "{model}.png", "--progress", "always"]);
+    let output = bare(
+        &folder,
+        &["a.obj", "b.obj", "builtin:cubs", "-o", "{model}.png", "--progress", "always"],
+    );
     assert_eq!(code(&output), 0, "{}", errors(&output));
     assert!(errors(&output).contains("picture 3 of 3"), "{}", errors(&output));
 
@@ -23,7 +26,10 @@ fn each_model_gives_a_picture_where_the_output_names_it() {
     }
 
     // One scene, as without {model}.
-    assert_eq!(code(&bare(&folder, &["a.obj", "b.obj", "-o", "both-{model}.png", "--together"])), 0);
+    assert_eq!(
+        code(&bare(&folder, &["a.obj", "b.obj", "-o", "both-{model}.png", "--together"])),
+        0
+    );
     assert_eq!(code(&bare(&folder, &["a.obj", "b.obj", "-o", "scene.png"])), 0);
     assert_eq!(folder.read("both-a.png"), folder.read("scene.png"));
     assert!(!folder.has("both-b.png"));
@@ -47,8 +53,12 @@ fn a_bad_model_does_not_end_the_others() {
         let told = errors(&output);
         assert_eq!(code(&output), 3, "the first failure's: {told}");
         assert!(folder.has(&format!("a.{end}")) && !folder.has(&format!("bad.{end}")));
-        for part in ["vitral: bad.obj: line 2: ", "vitral: odd.dae: ", "vitral: missing.stl: ", "3 of 4 models failed"]
-        {
+        for part in [
+            "vitral: bad.obj: line 2: ",
+            "vitral: odd.dae: ",
+            "vitral: missing.stl: ",
+            "3 of 4 models failed",
+        ] {
             assert!(told.contains(part), "{part}: {told}");
         }
     }
@@ -56,14 +66,19 @@ fn a_bad_model_does_not_end_the_others() {
     let output = bare(&folder, &["a.obj", "bad.obj", "-o", "{model}.png", "--json"]);
     let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(code(&output), 3);
-    assert_eq!((&told["models"][1]["exit-code"], &told["models"][1]["model"]), (&3.into(), &"bad.obj".into()));
+    assert_eq!(
+        (&told["models"][1]["exit-code"], &told["models"][1]["model"]),
+        (&3.into(), &"bad.obj".into())
+    );
     assert_eq!(told["outputs"], serde_json::json!(["a.png"]));
 
     // A limit that one of them reaches names it.
-    let limited = bare(&folder, &["builtin:teapot", "a.obj", "-o", "{model}.png", "--time-limit", "1e-9"]);
+    let limited =
+        bare(&folder, &["builtin:teapot", "a.obj", "-o", "{model}.png", "--time-limit", "1e-9"]);
     assert_eq!(code(&limited), 7);
     for name in ["builtin:teapot", "a.obj"] {
-        let line = format!("vitral: {name}: the time limit of 0.000000001 s was reached during loading");
+        let line =
+            format!("vitral: {name}: the time limit of 0.000000001 s was reached during loading");
         assert!(errors(&limited).contains(&line), "{}", errors(&limited));
     }
 }
@@ -77,7 +92,11 @@ fn what_one_scene_gives_is_refused_for_several() {
     let models = ["a.obj", "other/a.stl", "-o", "{model}.png"];
     let output = bare(&folder, &models);
     assert_eq!(code(&output), 2);
-    assert!(errors(&output).contains("a.obj and other/a.stl would both be written to a.png"), "{}", errors(&output));
+    assert!(
+        errors(&output).contains("a.obj and other/a.stl would both be written to a.png"),
+        "{}",
+        errors(&output)
+    );
     assert_eq!(code(&folder.run(&["a.obj", "other/a.stl", "-o", "{model}.svg"])), 2);
 
     let two = ["a.obj", "builtin:cubs", "-o", "{model}.png"];
@@ -128,8 +147,28 @@ fn names_need_not_be_unicode() {
         (&[b"T\xfcr.obj", b"-o", b"{model}.svg"], b"T\xfcr.svg"),
         (&[b"T\xfcr.obj", b"-o", b"x.png", b"--stats-file", b"\xfe.json"], b"\xfe.json"),
         (&[b"T\xfcr.obj", b"--dump", b"d\xfc"], b"d\xfc"),
-        (&[b"builtin:scene0", b"--shadows", b"volume", b"--export-shadow-polygons", b"s\xfc.obj"], b"s\xfc.obj"),
-        (&[b"T\xfcr.obj", b"-o", b"y.png", b"--visibility", b"bsp", b"--structure", b"s\xfc.svg"], b"s\xfc.svg"),
+        (
+            &[
+                b"builtin:scene0",
+                b"--shadows",
+                b"volume",
+                b"--export-shadow-polygons",
+                b"s\xfc.obj",
+            ],
+            b"s\xfc.obj",
+        ),
+        (
+            &[
+                b"T\xfcr.obj",
+                b"-o",
+                b"y.png",
+                b"--visibility",
+                b"bsp",
+                b"--structure",
+                b"s\xfc.svg",
+            ],
+            b"s\xfc.svg",
+        ),
         (&[b"compare", b"\xff.png", b"T\xfcr.png", b"--diff", b"d\xfc.png"], b"d\xfc.png"),
     ] {
         let typed = words(arguments);
@@ -141,11 +180,13 @@ fn names_need_not_be_unicode() {
     // Told as given.
     let told = run(&[OsStr::new("info"), OsStr::from_bytes(b"T\xfcr.obj")]);
     assert!(told.stdout.starts_with(b"T\xfcr.obj\n"), "{told:?}");
-    let bench = ["bench", "--frames", "1", "--resolution", "32x24", "--visibility", "z-buffer"].map(OsStr::new);
+    let bench = ["bench", "--frames", "1", "--resolution", "32x24", "--visibility", "z-buffer"]
+        .map(OsStr::new);
     assert_eq!(code(&run(&[&bench[..], &[OsStr::from_bytes(b"T\xfcr.obj")]].concat())), 0);
 
     // JSON holds Unicode alone.
-    let saved = run(&[OsStr::from_bytes(b"T\xfcr.obj"), OsStr::new("--save-state"), OsStr::new("s.json")]);
+    let saved =
+        run(&[OsStr::from_bytes(b"T\xfcr.obj"), OsStr::new("--save-state"), OsStr::new("s.json")]);
     assert_eq!(code(&saved), 2);
     assert!(errors(&saved).contains("is not Unicode"), "{}", errors(&saved));
 }

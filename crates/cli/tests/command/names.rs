@@ -15,8 +15,16 @@ fn similar_names_are_told() {
         (&["render", "sphere", "-o", "x.png"], 3, "hint: did you mean builtin:sphere?"),
         (&["sphere", "-o", "x.png"], 2, "hint: did you mean builtin:sphere?"),
         (&["Teapot", "-o", "x.png"], 2, "hint: did you mean teapot.obj or builtin:teapot?"),
-        (&["builtin:teepot", "-o", "x.png"], 3, "hint: did you mean builtin:teapot? `vitral formats`"),
-        (&["builtin:nothing", "-o", "x.png"], 3, "hint: `vitral formats` lists the built-in scenes"),
+        (
+            &["builtin:teepot", "-o", "x.png"],
+            3,
+            "hint: did you mean builtin:teapot? `vitral formats`",
+        ),
+        (
+            &["builtin:nothing", "-o", "x.png"],
+            3,
+            "hint: `vitral formats` lists the built-in scenes",
+        ),
         (&["compare", "teapot.ob", "x.png"], 3, "hint: did you mean teapot.obj?"),
         (&["draw", "teapot.off", "-o", "x.svg"], 3, "hint: did you mean teapot.obj?"),
         (&["info", "nothing-like-it.obj"], 3, ""),
@@ -24,7 +32,10 @@ fn similar_names_are_told() {
         let output = folder.run(arguments);
         let told = errors(&output);
         assert_eq!(code(&output), expected, "{arguments:?}: {told}");
-        assert!(told.contains(hint) && told.contains("hint:") != hint.is_empty(), "{arguments:?}: {told}");
+        assert!(
+            told.contains(hint) && told.contains("hint:") != hint.is_empty(),
+            "{arguments:?}: {told}"
+        );
         assert!(!told.contains("defect-"), "scenes are not listed: {told}");
     }
     let listed = String::from_utf8(folder.run(&["formats"]).stdout).unwrap();
@@ -42,13 +53,25 @@ fn choices_are_the_same_in_upper_and_lower_case() {
     for (lower, upper) in [
         (&["--visibility", "bsp"][..], &["--visibility", "BSP"][..]),
         (&["--shadows", "map", "--view", "top"], &["--shadows", "Map", "--view", "TOP"]),
-        (&["--illumination", "blinn-phong", "--cull", "none"], &["--illumination", "Blinn-Phong", "--cull", "None"]),
+        (
+            &["--illumination", "blinn-phong", "--cull", "none"],
+            &["--illumination", "Blinn-Phong", "--cull", "None"],
+        ),
         (&["--coherence", "none", "--up", "-z"], &["--coherence", "NONE", "--up", "-Z"]),
     ] {
         assert_eq!(picture(lower), picture(upper), "{upper:?}");
     }
     assert_eq!(
-        code(&folder.run(&["draw", "builtin:cubs", "-o", "a.svg", "--lines", "Contour", "--style", "Filled-Lines"])),
+        code(&folder.run(&[
+            "draw",
+            "builtin:cubs",
+            "-o",
+            "a.svg",
+            "--lines",
+            "Contour",
+            "--style",
+            "Filled-Lines"
+        ])),
         0
     );
     for (arguments, said) in [

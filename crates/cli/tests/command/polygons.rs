@@ -25,7 +25,9 @@ struct SceneFolder(Folder);
 impl SceneFolder {
     fn new(name: &str) -> Self {
         let folder = Folder::new(&format!("polygons-{name}"));
-        for (file, text) in [("bars.json", BARS), ("squares.json", SQUARES), ("triangle.obj", TRIANGLE)] {
+        for (file, text) in
+            [("bars.json", BARS), ("squares.json", SQUARES), ("triangle.obj", TRIANGLE)]
+        {
             folder.file(file, text);
         }
         Self(folder)
@@ -75,26 +77,48 @@ fn hand_counts_of_cuts_and_pieces() {
 fn styles_of_lists_and_of_visible_polygons() {
     let folder = SceneFolder::new("styles");
     let svg = |algorithm: &str, more: &[&str]| {
-        folder.drawn(&[&["bars.json", "--camera-index", "0", "--algorithm", algorithm], more].concat()).0
+        folder
+            .drawn(
+                &[&["bars.json", "--camera-index", "0", "--algorithm", algorithm], more].concat(),
+            )
+            .0
     };
     // A list is outlined in its order, with white polygons for hidden lines.
     let usual = svg("painter", &[]);
-    assert!(usual.contains("stroke=\"#000\" stroke-width=\"180\"") && usual.matches("<g ").count() == 1, "{usual}");
+    assert!(
+        usual.contains("stroke=\"#000\" stroke-width=\"180\"") && usual.matches("<g ").count() == 1,
+        "{usual}"
+    );
     assert_eq!(usual, svg("painter", &["--style", "filled-lines"]));
     assert_eq!(svg("painter", &["--style", "hidden-line"]).matches("fill=\"#ffffff\"").count(), 4);
     assert!(!svg("bsp", &["--style", "filled"]).contains("stroke"));
     assert!(svg("bsp", &["--stroke", "smooth=0.5"]).contains("stroke-width=\"500\""));
     // Visible polygons have lines of their own, each part once.
     let lines = svg("weiler-atherton", &["--style", "hidden-line"]);
-    assert!(lines.contains("data-class=\"smooth\"") && !lines.contains("data-class=\"fill\""), "{lines}");
+    assert!(
+        lines.contains("data-class=\"smooth\"") && !lines.contains("data-class=\"fill\""),
+        "{lines}"
+    );
     assert_eq!(svg("weiler-atherton", &[]).matches("<g ").count(), 2);
     let exact = svg("exact", &["--style", "filled"]);
-    let page = |svg: &str| svg.split("viewBox").nth(1).unwrap().split('>').next().unwrap().to_owned();
+    let page =
+        |svg: &str| svg.split("viewBox").nth(1).unwrap().split('>').next().unwrap().to_owned();
     assert_eq!([page(&usual), page(&lines)], [page(&exact), page(&exact)], "the same page");
     // DXF and plotters get lines.
-    let dxf =
-        folder.0.run(&["draw", "bars.json", "--algorithm", "weiler-atherton", "--style", "hidden-line", "-o", "x.dxf"]);
-    assert!(dxf.status.success() && String::from_utf8(folder.0.read("x.dxf")).unwrap().contains("POLYLINE"));
+    let dxf = folder.0.run(&[
+        "draw",
+        "bars.json",
+        "--algorithm",
+        "weiler-atherton",
+        "--style",
+        "hidden-line",
+        "-o",
+        "x.dxf",
+    ]);
+    assert!(
+        dxf.status.success()
+            && String::from_utf8(folder.0.read("x.dxf")).unwrap().contains("POLYLINE")
+    );
 }
 
 #[test]
@@ -116,34 +140,46 @@ fn what_has_no_effect_is_refused() {
     let folder = SceneFolder::new("refused");
     let painter = ["--algorithm", "painter"];
     let svg = ["-o", "x.svg"];
-    for option in
-        [&["--lines", "all"][..], &["--hidden", "dashed"], &["--hidden-max-layers", "2"], &["--crease-angle", "9"]]
-    {
+    for option in [
+        &["--lines", "all"][..],
+        &["--hidden", "dashed"],
+        &["--hidden-max-layers", "2"],
+        &["--crease-angle", "9"],
+    ] {
         let said = folder.mistake(&[&painter[..], option, &svg].concat());
         assert!(said.contains(option[0]) && said.contains("--algorithm exact"), "{said}");
     }
     let said = folder.mistake(&[&painter[..], &["--stroke", "contour=1"], &svg].concat());
     assert!(said.contains("--stroke smooth=MM"), "{said}");
-    assert!(folder.mistake(&[&painter[..], &["--simplify", "1"], &svg].concat()).contains("--simplify"));
+    assert!(
+        folder.mistake(&[&painter[..], &["--simplify", "1"], &svg].concat()).contains("--simplify")
+    );
     assert!(folder.mistake(&["--shadows", "-o", "x.svg"]).contains("give --style filled"));
     for file in ["x.dxf", "x.plt"] {
         let said = folder.mistake(&[&painter[..], &["-o", file]].concat());
         assert!(said.contains("choose weiler-atherton or exact; or .svg or .pdf"), "{said}");
     }
-    assert!(folder.mistake(&["--algorithm", "z-buffer", "-o", "x.svg"]).contains("weiler-atherton"));
+    assert!(
+        folder.mistake(&["--algorithm", "z-buffer", "-o", "x.svg"]).contains("weiler-atherton")
+    );
 }
 
 #[test]
 fn the_report_compares_all_algorithms() {
     let folder = SceneFolder::new("report");
-    let bench = ["bench", "--drawings", "--report", ".", "triangle.obj", "--frames", "1", "--quiet"];
+    let bench =
+        ["bench", "--drawings", "--report", ".", "triangle.obj", "--frames", "1", "--quiet"];
     let output = folder.0.run(&bench);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(folder.0.read("drawing-report.md")).unwrap();
     for name in ["exact", "painter", "bsp", "weiler-atherton"] {
         assert_eq!(text.matches(&format!("\n| {name} |")).count(), 6, "{text}");
-        let picture = String::from_utf8(folder.0.read(&format!("drawing-bars-{name}.svg"))).unwrap();
-        assert!(text.contains(&format!("drawing-bars-{name}.svg")) && picture.len() < 4000, "{picture}");
+        let picture =
+            String::from_utf8(folder.0.read(&format!("drawing-bars-{name}.svg"))).unwrap();
+        assert!(
+            text.contains(&format!("drawing-bars-{name}.svg")) && picture.len() < 4000,
+            "{picture}"
+        );
     }
     let refused = folder.0.run(&["bench", "--report", ".", "triangle.obj"]);
     assert_eq!(refused.status.code(), Some(2));

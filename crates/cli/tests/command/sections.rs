@@ -15,8 +15,13 @@ fn a_cut_has_its_layers_in_all_formats() {
     // A square of 20 mm: seven lines on each side of the diagonal, 2 mm apart, and one outline.
     assert_eq!(svg.matches("<path").count(), 15 + 1, "{svg}");
     assert!(svg.contains("stroke-width=\"700\"") && svg.contains("stroke-width=\"180\""), "{svg}");
-    let wide = folder.text("x.svg", &[&HALF[..], &["--hatch", "0,4mm", "--stroke", "hatch=.25"]].concat());
-    assert_eq!((wide.matches("<path").count(), wide.contains("stroke-width=\"250\"")), (5 + 1, true), "{wide}");
+    let wide =
+        folder.text("x.svg", &[&HALF[..], &["--hatch", "0,4mm", "--stroke", "hatch=.25"]].concat());
+    assert_eq!(
+        (wide.matches("<path").count(), wide.contains("stroke-width=\"250\"")),
+        (5 + 1, true),
+        "{wide}"
+    );
     let none = folder.text("x.svg", &[&HALF[..], &["--hatch", "none"]].concat());
     assert_eq!(none.matches("<path").count(), 1, "{none}");
     let dxf = folder.text("x.dxf", &HALF);
@@ -28,8 +33,12 @@ fn a_cut_has_its_layers_in_all_formats() {
     assert!(plotter.contains("data-class=\"hatch\""), "{plotter}");
     let filled = folder.text("x.svg", &[&HALF[..], &["--style", "filled"]].concat());
     assert!(filled.contains("data-class=\"fill\"") && !filled.contains("hatch"), "{filled}");
-    let one = folder.text("x.svg", &[&HALF[..], &["--lines", "section", "--threads", "1"]].concat());
-    assert_eq!(one, folder.text("x.svg", &[&HALF[..], &["--lines", "section", "--threads", "3"]].concat()));
+    let one =
+        folder.text("x.svg", &[&HALF[..], &["--lines", "section", "--threads", "1"]].concat());
+    assert_eq!(
+        one,
+        folder.text("x.svg", &[&HALF[..], &["--lines", "section", "--threads", "3"]].concat())
+    );
 }
 
 #[test]
@@ -44,7 +53,8 @@ fn parts_move_apart_before_they_are_cut() {
     });
     folder.0.file("second.obj", second.collect::<String>());
     let width = |arguments: &[&str]| {
-        let file = [&["-o", "-", "--view", "front", "--scale", "1:1", "--margin", "0"], arguments].concat();
+        let file = [&["-o", "-", "--view", "front", "--scale", "1:1", "--margin", "0"], arguments]
+            .concat();
         let output = folder.draw(&[&["second.obj"], &file[..]].concat());
         assert!(output.status.success(), "{}", errors(&output));
         let text = String::from_utf8(output.stdout).unwrap();

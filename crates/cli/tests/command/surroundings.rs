@@ -1,4 +1,5 @@
-//! Options about what surrounds a model: the environment, ambient occlusion, the shadow on the ground.
+//! Options about what surrounds a model: the environment, ambient occlusion, the shadow on the
+//! ground.
 
 use super::{Folder, code, errors, render};
 use vitral::Plane;
@@ -24,11 +25,16 @@ fn an_environment_comes_from_a_file_and_goes_through_a_state() {
     folder.file("blue.png", png_of(16, 8, [0, 0, 255, 255]));
     let picture = |arguments: &[&str]| {
         let output = render(&folder, &[arguments, &SMALL, &["-o", "a.png"]].concat());
-        assert!(code(&output) == 0 && errors(&output).is_empty(), "{arguments:?}: {}", errors(&output));
+        assert!(
+            code(&output) == 0 && errors(&output).is_empty(),
+            "{arguments:?}: {}",
+            errors(&output)
+        );
         folder.read("a.png")
     };
     let plain = picture(&["builtin:teapot"]);
-    let green = picture(&["builtin:teapot", "--environment", "green.hdr", "--save-state", "states.json"]);
+    let green =
+        picture(&["builtin:teapot", "--environment", "green.hdr", "--save-state", "states.json"]);
     let blue = picture(&["builtin:teapot", "--environment", "blue.png"]);
     assert!(plain != green && green != blue);
     let text = String::from_utf8(folder.read("states.json")).unwrap();
@@ -47,8 +53,10 @@ fn images_that_cannot_be_used_are_told() {
     folder.file("broken.exr", b"\x76\x2f\x31\x01 and no more");
     folder.file("text.png", "no image");
     let run = |value: &str| {
-        let output =
-            render(&folder, &[&["builtin:teapot", "--environment", value, "-o", "a.png"], &SMALL[..]].concat());
+        let output = render(
+            &folder,
+            &[&["builtin:teapot", "--environment", value, "-o", "a.png"], &SMALL[..]].concat(),
+        );
         (code(&output), errors(&output))
     };
     for (value, exit, what) in [
@@ -64,9 +72,16 @@ fn images_that_cannot_be_used_are_told() {
     let (code, told) = run("square.png");
     assert!(code == 0 && told.contains("an image of 9 x 9"), "{told}");
     // A state says one of both.
-    folder.file("s.json", r#"{"environment-image": "square.png", "settings": {"environment": "sky"}}"#);
+    folder.file(
+        "s.json",
+        r#"{"environment-image": "square.png", "settings": {"environment": "sky"}}"#,
+    );
     let output = render(&folder, &["builtin:teapot", "--load-state", "s.json", "-o", "a.png"]);
-    assert!(code == 0 && errors(&output).contains("settings.environment must be auto"), "{}", errors(&output));
+    assert!(
+        code == 0 && errors(&output).contains("settings.environment must be auto"),
+        "{}",
+        errors(&output)
+    );
     assert_eq!(super::code(&output), 3);
 }
 
@@ -75,17 +90,34 @@ fn occlusion_and_the_ground_go_through_a_state() {
     let folder = Folder::new("occlusion");
     let picture = |arguments: &[&str]| {
         let output = render(&folder, &[arguments, &["-o", "a.png"]].concat());
-        assert!(code(&output) == 0 && errors(&output).is_empty(), "{arguments:?}: {}", errors(&output));
+        assert!(
+            code(&output) == 0 && errors(&output).is_empty(),
+            "{arguments:?}: {}",
+            errors(&output)
+        );
         folder.read("a.png")
     };
     let plain = picture(&["builtin:teapot"]);
-    let both = ["--ambient-occlusion=9", "--occlusion-radius", "0.8", "--ground-shadow=soft", "--save-state", "s.json"];
+    let both = [
+        "--ambient-occlusion=9",
+        "--occlusion-radius",
+        "0.8",
+        "--ground-shadow=soft",
+        "--save-state",
+        "s.json",
+    ];
     let shown = picture(&[&["builtin:teapot"], &both[..]].concat());
     assert!(plain != shown);
     assert!(picture(&["--load-state", "s.json"]) == shown);
     let one = |option: &str| picture(&["builtin:teapot", option]);
-    assert!(one("--ambient-occlusion") == one("--ambient-occlusion=32") && one("--ambient-occlusion") != plain);
-    assert!(one("--ground-shadow") == one("--ground-shadow=soft"), "in the default lights it is soft");
+    assert!(
+        one("--ambient-occlusion") == one("--ambient-occlusion=32")
+            && one("--ambient-occlusion") != plain
+    );
+    assert!(
+        one("--ground-shadow") == one("--ground-shadow=soft"),
+        "in the default lights it is soft"
+    );
     assert!(one("--ground-shadow=lights") != one("--ground-shadow=soft"));
     for (arguments, what) in [
         (&["--ambient-occlusion=0"][..], "1 to 4096"),
@@ -94,7 +126,11 @@ fn occlusion_and_the_ground_go_through_a_state() {
         (&["--ground-shadow=hard"], "soft"),
     ] {
         let output = render(&folder, &[&["builtin:teapot", "-o", "b.png"], arguments].concat());
-        assert!(code(&output) == 2 && errors(&output).contains(what), "{arguments:?}: {}", errors(&output));
+        assert!(
+            code(&output) == 2 && errors(&output).contains(what),
+            "{arguments:?}: {}",
+            errors(&output)
+        );
     }
     for option in ["--ambient-occlusion", "--ground-shadow", "--environment=a.hdr"] {
         let output = folder.run(&["draw", "builtin:teapot", "-o", "a.svg", option]);

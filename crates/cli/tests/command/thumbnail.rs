@@ -5,7 +5,8 @@ use vitral_testkit::fixture::{SKIPPED, shared_models};
 
 /// Width, height and pixels of a PNG with transparency.
 fn pixels(file: &std::path::Path) -> (u32, u32, Vec<u8>) {
-    let mut reader = png::Decoder::new(std::io::Cursor::new(std::fs::read(file).unwrap())).read_info().unwrap();
+    let mut reader =
+        png::Decoder::new(std::io::Cursor::new(std::fs::read(file).unwrap())).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
     assert_eq!(info.color_type, png::ColorType::Rgba, "{}", file.display());
@@ -23,7 +24,8 @@ fn a_thumbnail_is_a_square_on_nothing_whatever_it_is_called() {
     folder.file("flat.obj", "v 0 0 0\nv 4 0 0\nv 4 1 0\nv 0 1 0\nf 1 2 3 4\n");
     // The user's defaults are for pictures.
     std::fs::create_dir_all(folder.0.join("vitral")).unwrap();
-    folder.file("vitral/config.json", r#"{"settings": {"shading": "flat", "background": "black"}}"#);
+    folder
+        .file("vitral/config.json", r#"{"settings": {"shading": "flat", "background": "black"}}"#);
     let made = thumbnail(&folder, &["flat.obj", "flat.thumbnail", "128"]);
     assert_eq!((code(&made), errors(&made).as_str()), (0, ""));
 
@@ -34,7 +36,9 @@ fn a_thumbnail_is_a_square_on_nothing_whatever_it_is_called() {
     let columns = (0..128).filter(|&x| (0..128).any(|y| is_seen(x, y))).count();
     let rows = (0..128).filter(|&y| (0..128).any(|x| is_seen(x, y))).count();
     assert!(columns > rows && rows > 16, "{columns} columns, {rows} rows");
-    assert!((0..128).all(|i| !is_seen(i, 0) && !is_seen(0, i) && !is_seen(i, 127) && !is_seen(127, i)));
+    assert!(
+        (0..128).all(|i| !is_seen(i, 0) && !is_seen(0, i) && !is_seen(i, 127) && !is_seen(127, i))
+    );
 }
 
 #[test]
@@ -60,8 +64,9 @@ fn what_gives_no_thumbnail_leaves_no_file() {
     }
 }
 
-/// `vitral` with these arguments where there is nothing but `/usr`, the folder of the model, and that of the picture: no environment,
-/// no network, no `/proc`. `None` where no such place can be made.
+/// `vitral` with these arguments where there is nothing but `/usr`, the folder of the model, and
+/// that of the picture: no environment, no network, no `/proc`. `None` where no such place can be
+/// made.
 #[cfg(target_os = "linux")]
 fn jailed(models: &std::path::Path, folder: &Folder, arguments: &[&str]) -> Option<Output> {
     let mut command = Command::new("bwrap");
@@ -91,7 +96,9 @@ fn forty_models_have_thumbnails_in_a_jail() {
     }
 
     // The largest files first, then every so many of the rest.
-    found.sort_by_key(|path| std::cmp::Reverse(std::fs::metadata(path).map_or(0, |data| data.len())));
+    found.sort_by_key(|path| {
+        std::cmp::Reverse(std::fs::metadata(path).map_or(0, |data| data.len()))
+    });
     let rest = found.split_off(10);
     let step = (rest.len() / 30).max(1);
     found.extend(rest.into_iter().step_by(step).take(30));
@@ -110,7 +117,10 @@ fn forty_models_have_thumbnails_in_a_jail() {
                 seen += 1;
             }
             // A model without a surface has none; what a reader refuses, it refuses everywhere.
-            refused => assert!([3, 4].contains(&refused) && told.starts_with("vitral: "), "{inside}: {refused} {told}"),
+            refused => assert!(
+                [3, 4].contains(&refused) && told.starts_with("vitral: "),
+                "{inside}: {refused} {told}"
+            ),
         }
     }
     assert!(seen >= 36, "{seen} of 40 models have thumbnails");
@@ -119,7 +129,8 @@ fn forty_models_have_thumbnails_in_a_jail() {
 /// A ball of `rows` x `rows` quads, two triangles each, as a binary STL.
 fn ball(rows: u32) -> Vec<u8> {
     let point = |row: u32, column: u32| -> [f32; 3] {
-        let (height, turn) = (f64::from(row) / f64::from(rows), f64::from(column % rows) / f64::from(rows));
+        let (height, turn) =
+            (f64::from(row) / f64::from(rows), f64::from(column % rows) / f64::from(rows));
         // A double cone is round enough.
         let radius = 1.0 - (2.0 * height - 1.0).abs();
         let side = |turn: f64| 1.0 - 4.0 * ((turn % 1.0) - 0.5).abs();

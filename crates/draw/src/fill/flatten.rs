@@ -1,10 +1,11 @@
 //! Clear layers mixed with what is behind them.
 //!
-//! From the deepest layer on, each clear shape divides what has been painted: where it lies over a colour, the two are mixed as viewers
-//! mix them, in the display's encoding; where it lies over nothing, with the white of the paper. Every region is opaque then.
+//! From the deepest layer on, each clear shape divides what has been painted: where it lies over a
+//! colour, the two are mixed as viewers mix them, in the display's encoding; where it lies over
+//! nothing, with the white of the paper. Every region is opaque then.
 //!
-//! Opaque regions keep their shapes where seams are to be covered, and mixed ones are painted over them. Without that, each place
-//! is painted once.
+//! Opaque regions keep their shapes where seams are to be covered, and mixed ones are painted over
+//! them. Without that, each place is painted once.
 //!
 //! In:   the union of each look. Out: opaque regions.
 //! Cost: for each layer the pairs of shapes whose boxes overlap, `n log n` for the corners of each.
@@ -28,7 +29,8 @@ pub(super) fn flattened(
     seams: Seams,
     run: &Run<'_>,
 ) -> Result<Vec<PageRegion>, Limit> {
-    let (opaque, clear): (Vec<Joined>, Vec<Joined>) = joined.into_iter().partition(|group| group.look.over == 0);
+    let (opaque, clear): (Vec<Joined>, Vec<Joined>) =
+        joined.into_iter().partition(|group| group.look.over == 0);
     // What is opaque, without what it has beneath other regions.
     let mut painted = match seams {
         Seams::None => opaque.clone(),
@@ -53,8 +55,10 @@ pub(super) fn flattened(
 /// The painted groups after a layer of clear groups, which do not overlap each other.
 fn laid_over(painted: Vec<Joined>, layer: &[Joined], run: &Run<'_>) -> Result<Vec<Joined>, Limit> {
     // Divide each painted group: a shape of the layer lies over it or not.
-    let shapes: Vec<Over<'_>> =
-        layer.iter().flat_map(|group| group.shapes.iter().map(|shape| Over::new(group, shape))).collect();
+    let shapes: Vec<Over<'_>> = layer
+        .iter()
+        .flat_map(|group| group.shapes.iter().map(|shape| Over::new(group, shape)))
+        .collect();
     let mut mixed: BTreeMap<Look, (u32, Vec<Shapes>)> = BTreeMap::new();
     let mut left = Vec::new();
     let mut bare: Vec<Shapes> = shapes.iter().map(|over| vec![over.shape.clone()]).collect();
@@ -63,7 +67,8 @@ fn laid_over(painted: Vec<Joined>, layer: &[Joined], run: &Run<'_>) -> Result<Ve
         for shape in group.shapes {
             run.budget.check("clear layers")?;
             let own = bounds(&shape);
-            let near: Vec<usize> = (0..shapes.len()).filter(|&i| meet(own, shapes[i].bounds)).collect();
+            let near: Vec<usize> =
+                (0..shapes.len()).filter(|&i| meet(own, shapes[i].bounds)).collect();
             let whole = vec![shape];
             for &i in &near {
                 let common = without_hairs(within(&whole, shapes[i].shape));
@@ -105,7 +110,12 @@ impl<'g> Over<'g> {
 }
 
 /// Adds shapes where a clear group lies over a colour.
-fn add(mixed: &mut BTreeMap<Look, (u32, Vec<Shapes>)>, over: &Joined, behind: [u8; 3], shapes: Shapes) {
+fn add(
+    mixed: &mut BTreeMap<Look, (u32, Vec<Shapes>)>,
+    over: &Joined,
+    behind: [u8; 3],
+    shapes: Shapes,
+) {
     if !shapes.is_empty() {
         let look = Look { color: mix(over.look, behind), opacity: 1.0, ..over.look };
         let entry = mixed.entry(look).or_insert((over.surface, Vec::new()));
@@ -125,10 +135,9 @@ fn mix(over: Look, behind: [u8; 3]) -> [u8; 3] {
 /// The box round a shape.
 fn bounds(shape: &[Vec<Corner>]) -> [[i32; 2]; 2] {
     let empty = [[i32::MAX; 2], [i32::MIN; 2]];
-    shape
-        .iter()
-        .flatten()
-        .fold(empty, |[low, high], p| [[low[0].min(p.x), low[1].min(p.y)], [high[0].max(p.x), high[1].max(p.y)]])
+    shape.iter().flatten().fold(empty, |[low, high], p| {
+        [[low[0].min(p.x), low[1].min(p.y)], [high[0].max(p.x), high[1].max(p.y)]]
+    })
 }
 
 fn meet([low, high]: [[i32; 2]; 2], [other_low, other_high]: [[i32; 2]; 2]) -> bool {

@@ -1,6 +1,7 @@
 //! Parts that look alike, and the regions that they make.
 //!
-//! In:   visible parts. Out: one union for each look, in the order of painting: what is opaque, then clear layers from the deepest on.
+//! In:   visible parts. Out: one union for each look, in the order of painting: what is opaque,
+//!       then clear layers from the deepest on.
 //! Cost: `n log n` for the corners of each union.
 
 use super::parts::{Look, PageRegion, Part};
@@ -9,7 +10,8 @@ use crate::shapes::{FINER, Shapes, on_page, union};
 use std::collections::BTreeMap;
 use vitral_exec::Limit;
 
-/// Area in units of the page below which a region or a hole is a trace of rounding: a millionth of a square millimetre on a sheet.
+/// Area in units of the page below which a region or a hole is a trace of rounding: a millionth of
+/// a square millimetre on a sheet.
 pub(super) const LEAST_AREA: u64 = 1024;
 /// The same in steps of the finer grid, squared.
 pub(super) const LEAST_SHAPE: u64 = LEAST_AREA * (FINER as u64).pow(2);
@@ -55,7 +57,12 @@ impl Groups {
     }
 
     /// The union of each group, with other parts beneath it.
-    pub(super) fn joined(&self, parts: &[Part], beneath: &[Vec<u32>], run: &Run<'_>) -> Result<Vec<Joined>, Limit> {
+    pub(super) fn joined(
+        &self,
+        parts: &[Part],
+        beneath: &[Vec<u32>],
+        run: &Run<'_>,
+    ) -> Result<Vec<Joined>, Limit> {
         let joined = run.workers.map(self.groups.len(), |g| {
             run.budget.check("regions")?;
             let (look, members) = &self.groups[g];

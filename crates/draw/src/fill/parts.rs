@@ -6,7 +6,8 @@ use std::cmp::Ordering;
 /// How regions of different colours meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Seams {
-    /// Each region reaches under those that are painted later, so that no viewer shows the paper between them.
+    /// Each region reaches under those that are painted later, so that no viewer shows the paper
+    /// between them.
     #[default]
     Under,
     /// Regions only touch: no place is painted twice.
@@ -44,8 +45,8 @@ pub(super) struct VisibleParts {
     pub(super) contacts: Vec<[u32; 2]>,
 }
 
-/// The look of a part. The order is that of painting: equal colours after each other, so that nothing of another colour reaches between
-/// them.
+/// The look of a part. The order is that of painting: equal colours after each other, so that
+/// nothing of another colour reaches between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
     /// 0 for what is opaque; clear layers come over each other in this order.

@@ -1,15 +1,18 @@
 //! The parts that regions reach under, so that no seam shows.
 //!
-//! Viewers mix each region with what is painted already, in proportion to how much of a pixel it covers. Where two regions only touch,
-//! the paper shines through between them: half of it passes the first, and half of that the second. A region that reaches a little
-//! under its neighbour covers such pixels whole, and the neighbour mixes with it alone.
+//! Viewers mix each region with what is painted already, in proportion to how much of a pixel it
+//! covers. Where two regions only touch, the paper shines through between them: half of it passes
+//! the first, and half of that the second. A region that reaches a little under its neighbour
+//! covers such pixels whole, and the neighbour mixes with it alone.
 //!
-//! A part reaches under the visible parts of all triangles round its corners, and of those whose outlines cut it, or that it cuts.
-//! Clear parts reach nowhere: what is under a clear part shows. Where parts are smaller than pixels, or belong to bodies that only
-//! touch, that is not enough: beneath everything lies the outline of the whole in its mean colour, so that a pixel with a gap is not far
-//! from its neighbours.
+//! A part reaches under the visible parts of all triangles round its corners, and of those whose
+//! outlines cut it, or that it cuts. Clear parts reach nowhere: what is under a clear part shows.
+//! Where parts are smaller than pixels, or belong to bodies that only touch, that is not enough:
+//! beneath everything lies the outline of the whole in its mean colour, so that a pixel with a gap
+//! is not far from its neighbours.
 //!
-//! In:   parts with their groups in the order of painting. Out: for each group the parts beneath which it reaches.
+//! In:   parts with their groups in the order of painting. Out: for each group the parts beneath
+//!       which it reaches.
 //! Cost: linear in the pairs of neighbours.
 
 use super::groups::{Groups, Joined, LEAST_SHAPE};
@@ -31,10 +34,12 @@ pub(super) fn beneath(
     groups: &Groups,
     run: &Run<'_>,
 ) -> Result<Vec<Vec<u32>>, Limit> {
-    let mut neighbours = Neighbours { parts: &parts.all, groups, beneath: vec![Vec::new(); groups.len()] };
+    let mut neighbours =
+        Neighbours { parts: &parts.all, groups, beneath: vec![Vec::new(); groups.len()] };
 
     // Those round a vertex.
-    let (starts, at_vertex) = Dealt::new(&Corners { mesh, parts: &parts.all }, mesh.vertices.len()).into_parts();
+    let (starts, at_vertex) =
+        Dealt::new(&Corners { mesh, parts: &parts.all }, mesh.vertices.len()).into_parts();
     for (v, range) in starts.windows(2).enumerate() {
         let around = &at_vertex[range[0] as usize..range[1] as usize];
         neighbours.add_all(around);

@@ -7,7 +7,8 @@ use proptest::prelude::*;
 use vitral_math::exact::GridPoint;
 use vitral_math::{DMat4, DVec4};
 
-/// The regions of these triangles, of which those marked are clear; the same with any number of threads.
+/// The regions of these triangles, of which those marked are clear; the same with any number of
+/// threads.
 fn found(corners: &[[GridPoint; 3]], clear: &[usize], surfaces: &Surfaces<'_>) -> Vec<PageRegion> {
     let mut mesh = mesh_of([1 << 20; 2], corners);
     for (triangle, source) in mesh.triangles.iter_mut().zip(&mut mesh.sources) {
@@ -64,10 +65,14 @@ fn a_triangle_in_front_cuts_a_hole() {
 #[test]
 fn coplanar_triangles_give_way_to_the_first_and_crossing_ones_share() {
     assert_eq!(areas(&[BIG, [[0, 0, 0], [2000, 0, 0], [0, 2000, 0]]]), [8_000_000.0, 0.0]);
-    // The second rises from left to right through the first: each shows its half of what they cover together.
+    // The second rises from left to right through the first: each shows its half of what they cover
+    // together.
     let up = [[0, 0, -1000], [2000, 0, 1000], [0, 2000, -1000]];
     let shown = areas(&[BIG, up]);
-    assert!((shown[1] - 500_000.0).abs() < 1.0 && (shown[0] - 7_500_000.0).abs() < 1.0, "{shown:?}");
+    assert!(
+        (shown[1] - 500_000.0).abs() < 1.0 && (shown[0] - 7_500_000.0).abs() < 1.0,
+        "{shown:?}"
+    );
 }
 
 const SQUARE: [[GridPoint; 3]; 2] =
@@ -79,7 +84,10 @@ fn neighbours_of_one_colour_become_one_region_unless_each_face_is_one() {
     let regions = found(&SQUARE, &[], &grey);
     assert_eq!((regions.len(), regions[0].rings.len(), regions[0].rings[0].len()), (1, 1, 4));
     let faces = found(&SQUARE, &[], &Surfaces { by_face: true, seams: Seams::None, ..grey });
-    assert_eq!(faces.iter().map(|r| (r.surface, area(r))).collect::<Vec<_>>(), [(0, 500_000.0), (1, 500_000.0)]);
+    assert_eq!(
+        faces.iter().map(|r| (r.surface, area(r))).collect::<Vec<_>>(),
+        [(0, 500_000.0), (1, 500_000.0)]
+    );
 }
 
 #[test]
@@ -90,12 +98,16 @@ fn the_first_painted_reaches_under_its_neighbours_and_under_what_cuts_it() {
     };
     assert_eq!(areas(&SQUARE), [1_000_000.0, 1_000_000.0, 500_000.0]);
     assert_eq!(found(&SQUARE, &[], &touching(Seams::Under))[0].color, [3, 0, 0]);
-    // A triangle in front, painted later; painted first, it reaches under what is left of the other.
+    // A triangle in front, painted later; painted first, it reaches under what is left of the
+    // other.
     assert_eq!(areas(&[BIG, SMALL]), [8_000_000.0, 8_000_000.0, 500_000.0]);
     assert_eq!(areas(&[SMALL, BIG]), [8_000_000.0, 8_000_000.0, 7_500_000.0]);
     // Faces of their own have no ground.
     let faces = Surfaces { by_face: true, ..touching(Seams::Under) };
-    assert_eq!(found(&SQUARE, &[], &faces).iter().map(area).collect::<Vec<_>>(), [1_000_000.0, 500_000.0]);
+    assert_eq!(
+        found(&SQUARE, &[], &faces).iter().map(area).collect::<Vec<_>>(),
+        [1_000_000.0, 500_000.0]
+    );
 }
 
 #[test]
@@ -113,7 +125,8 @@ fn flattened_layers_are_opaque_mixtures() {
     let near = [[500, 500, 90], [1500, 500, 90], [500, 1000, 90]];
     let surfaces = Surfaces { flatten: true, ..touching(Seams::None) };
     let regions = found(&[BIG, SMALL, near], &[1, 2], &surfaces);
-    let told: Vec<_> = regions.iter().map(|r| (r.surface, r.opacity, r.color[0], area(r))).collect();
+    let told: Vec<_> =
+        regions.iter().map(|r| (r.surface, r.opacity, r.color[0], area(r))).collect();
     // Half of 10 and 0; half of 20 and that.
     assert_eq!(told, [(0, 1.0, 0, 7_500_000.0), (1, 1.0, 5, 250_000.0), (2, 1.0, 13, 250_000.0)]);
     // Over nothing it is mixed with the paper.
@@ -123,29 +136,51 @@ fn flattened_layers_are_opaque_mixtures() {
 
 #[test]
 fn shadows_divide_what_is_visible() {
-    // The facet has its corners at (1, 0), (0, 1) and (0, 0) in clip space, and so has the triangle on the page.
+    // The facet has its corners at (1, 0), (0, 1) and (0, 0) in clip space, and so has the triangle
+    // on the page.
     let triangle = [[4096, 2048, 0], [2048, 4096, 0], [2048, 2048, 0]];
     let facet = [DVec3::X, DVec3::Y, DVec3::ZERO];
     let half = vec![facet[0], facet[1].lerp(facet[2], 0.5), facet[2]];
     let of_facet = [(0, vec![half])].into_iter().collect();
     let lit = [LitPolygons { light: 2, place: DVec4::Z, of_facet }];
     let by_light = |look: &FaceLook| if look.lights & 0b100 != 0 { [200; 3] } else { [50; 3] };
-    let regions = found(&[triangle], &[], &Surfaces { lit: &lit, seams: Seams::None, ..Surfaces::new(&by_light) });
-    assert_eq!(regions.iter().map(|r| (r.color[0], r.unlit)).collect::<Vec<_>>(), [(50, 0b100), (200, 0)]);
+    let regions = found(
+        &[triangle],
+        &[],
+        &Surfaces { lit: &lit, seams: Seams::None, ..Surfaces::new(&by_light) },
+    );
+    assert_eq!(
+        regions.iter().map(|r| (r.color[0], r.unlit)).collect::<Vec<_>>(),
+        [(50, 0b100), (200, 0)]
+    );
     // Half of the triangle is lit, and a strip of two units beside it.
     let strip = 2.0 * (2048f64 * 2048.0 + 1024.0 * 1024.0).sqrt();
-    assert!((area(&regions[0]) - (1_048_576.0 - strip)).abs() < 20.0, "{} {strip}", area(&regions[0]));
-    assert!((area(&regions[1]) - (1_048_576.0 + strip)).abs() < 20.0, "{} {strip}", area(&regions[1]));
+    assert!(
+        (area(&regions[0]) - (1_048_576.0 - strip)).abs() < 20.0,
+        "{} {strip}",
+        area(&regions[0])
+    );
+    assert!(
+        (area(&regions[1]) - (1_048_576.0 + strip)).abs() < 20.0,
+        "{} {strip}",
+        area(&regions[1])
+    );
 }
 
 /// The area that triangles cover together.
 fn covered_area(corners: &[[GridPoint; 3]]) -> f64 {
     let shapes = |triangle: &[GridPoint; 3]| {
-        vec![vec![Triangle::new(*triangle, [0, 1, 2]).corners.map(|p| corner_between(p, 1.0, p)).to_vec()]]
+        vec![vec![
+            Triangle::new(*triangle, [0, 1, 2]).corners.map(|p| corner_between(p, 1.0, p)).to_vec(),
+        ]]
     };
     let all: Vec<Shapes> = corners.iter().map(shapes).collect();
     let rings = union(&all, 0).into_iter().flatten();
-    rings.map(|ring| vitral_frame::drawing::signed_area(&ring.iter().map(on_page).collect::<Vec<_>>())).sum()
+    rings
+        .map(|ring| {
+            vitral_frame::drawing::signed_area(&ring.iter().map(on_page).collect::<Vec<_>>())
+        })
+        .sum()
 }
 
 proptest! {

@@ -1,14 +1,17 @@
 //! The visible part of each triangle.
 //!
-//! From each triangle that faces the viewer, the triangles in front of it are subtracted; the rest is visible. Whether another
-//! triangle lies in front is decided by exact heights of corners over planes, once for each pair in the order of their numbers, so that
-//! both agree: where two triangles cross, each loses the part beyond the line in which their planes meet; coplanar ones give way to
-//! the lower rank, or else the lower number.
+//! From each triangle that faces the viewer, the triangles in front of it are subtracted; the rest
+//! is visible. Whether another triangle lies in front is decided by exact heights of corners over
+//! planes, once for each pair in the order of their numbers, so that both agree: where two
+//! triangles cross, each loses the part beyond the line in which their planes meet; coplanar ones
+//! give way to the lower rank, or else the lower number.
 //!
-//! Clear triangles are not subtracted: they lie in layers over each other. A place of a clear triangle is
-//! in layer `k` if `k` other clear triangles lie in front of it, as depth peeling finds it for pixels ([Everitt 2001]).
+//! Clear triangles are not subtracted: they lie in layers over each other. A place of a clear
+//! triangle is in layer `k` if `k` other clear triangles lie in front of it, as depth peeling finds
+//! it for pixels ([Everitt 2001]).
 //!
-//! In:   the page's mesh, grids of the triangles that hide and of the clear ones. Out: shapes of the finer grid.
+//! In:   the page's mesh, grids of the triangles that hide and of the clear ones. Out: shapes of
+//!       the finer grid.
 //! Cost: for each triangle `k log k` with `k` triangles in front of it.
 //! Source: the overlay of polygons is the crate `i_overlay`'s; what lies in front, see above.
 
@@ -58,7 +61,8 @@ struct InFront {
 /// The visible shapes of a triangle.
 #[derive(Default)]
 pub(super) struct VisibleShapes {
-    /// Its visible shapes: of an opaque triangle at most one entry, of a clear one the shapes of each layer.
+    /// Its visible shapes: of an opaque triangle at most one entry, of a clear one the shapes of
+    /// each layer.
     pub(super) layers: Vec<Shapes>,
     /// The triangles whose outlines cut it.
     pub(super) contacts: Vec<u32>,
@@ -124,8 +128,8 @@ impl Clipping {
         Ok(VisibleShapes { layers, contacts })
     }
 
-    /// Collects the polygons of a grid's triangles that lie in front of one triangle. With `hides`, stops and gives `false` at a polygon that
-    /// covers all of it.
+    /// Collects the polygons of a grid's triangles that lie in front of one triangle. With `hides`,
+    /// stops and gives `false` at a polygon that covers all of it.
     fn collect_in_front(
         &mut self,
         mesh: &PageMesh,
@@ -154,7 +158,8 @@ impl Clipping {
                 }
 
                 // Pass over triangles that do not overlap this one, or were met in another cell.
-                let apart = |k: usize| front.low[k] >= triangle.high[k] || front.high[k] <= triangle.low[k];
+                let apart =
+                    |k: usize| front.low[k] >= triangle.high[k] || front.high[k] <= triangle.low[k];
                 if other == number || apart(0) || apart(1) {
                     continue;
                 }
@@ -166,9 +171,14 @@ impl Clipping {
                 }
 
                 // Keep the part that lies in front.
-                let polygon = match front_part((mesh.order_of(number), triangle), (mesh.order_of(other), front)) {
+                let polygon = match front_part(
+                    (mesh.order_of(number), triangle),
+                    (mesh.order_of(other), front),
+                ) {
                     Front::Nothing => continue,
-                    Front::All if hides && triangle.corners.iter().all(|&p| is_inside(front, p)) => {
+                    Front::All
+                        if hides && triangle.corners.iter().all(|&p| is_inside(front, p)) =>
+                    {
                         return ControlFlow::Break(None);
                     }
                     Front::All => front.corners.map(|p| corner_between(p, 1.0, p)).to_vec(),
@@ -188,7 +198,8 @@ impl Clipping {
     /// The triangles in front whose outlines made corners of the visible shapes.
     fn contacts(&self, triangle: &Triangle, visible: &Shapes) -> Vec<u32> {
         let own = triangle.corners.map(|p| corner_between(p, 1.0, p));
-        let new: Vec<Corner> = visible.iter().flatten().flatten().filter(|p| !own.contains(p)).copied().collect();
+        let new: Vec<Corner> =
+            visible.iter().flatten().flatten().filter(|p| !own.contains(p)).copied().collect();
         let touches = |front: &&InFront| new.iter().any(|p| is_on_outline(&front.polygon, p));
         self.in_front.iter().filter(touches).map(|front| front.triangle).collect()
     }
@@ -196,18 +207,21 @@ impl Clipping {
 
 /// Whether a corner lies on the outline of a polygon, but for rounding.
 fn is_on_outline(polygon: &[Corner], p: &Corner) -> bool {
-    let step = |a: &Corner, b: &Corner| [f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y)];
+    let step =
+        |a: &Corner, b: &Corner| [f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y)];
     polygon.iter().zip(polygon.iter().cycle().skip(1)).any(|(a, b)| {
         let (side, way) = (step(a, b), step(a, p));
         let square = side[0] * side[0] + side[1] * side[1];
-        let (along, beside) = (side[0] * way[0] + side[1] * way[1], side[0] * way[1] - side[1] * way[0]);
+        let (along, beside) =
+            (side[0] * way[0] + side[1] * way[1], side[0] * way[1] - side[1] * way[0]);
         beside * beside <= BESIDE * BESIDE * square && along >= 0.0 && along <= square
     })
 }
 
 /// Whether a side of `a` has all of `b` on its outside: they overlap in no area.
 fn are_beside(a: &Triangle, b: &Triangle) -> bool {
-    (0..3).any(|k| b.corners.iter().all(|&p| orient2d(a.corners[k], a.corners[(k + 1) % 3], p) <= 0))
+    (0..3)
+        .any(|k| b.corners.iter().all(|&p| orient2d(a.corners[k], a.corners[(k + 1) % 3], p) <= 0))
 }
 
 /// Whether a point of the page lies in a triangle, its outline included.
@@ -215,8 +229,8 @@ fn is_inside(triangle: &Triangle, p: GridPoint) -> bool {
     (0..3).all(|k| orient2d(triangle.corners[k], triangle.corners[(k + 1) % 3], p) >= 0)
 }
 
-/// What of `other` lies in front of `own`, each with its place in the order of coplanar ones. The answer for the two the other way round
-/// is the opposite.
+/// What of `other` lies in front of `own`, each with its place in the order of coplanar ones. The
+/// answer for the two the other way round is the opposite.
 fn front_part(own: ((u32, u32), &Triangle), other: ((u32, u32), &Triangle)) -> Front {
     let ((_, first), (_, second)) = if own.0 < other.0 { (own, other) } else { (other, own) };
     // Whether the second is in front of the first.
@@ -232,11 +246,13 @@ fn front_part(own: ((u32, u32), &Triangle), other: ((u32, u32), &Triangle)) -> F
     if (order == Ordering::Greater) == other_is_second { Front::All } else { Front::Nothing }
 }
 
-/// On which side of a plane a triangle lies: in front (`Greater`), behind, in it but for snapping; `None` on both.
+/// On which side of a plane a triangle lies: in front (`Greater`), behind, in it but for snapping;
+/// `None` on both.
 fn over(plane: &GridPlane, triangle: &Triangle) -> Option<Ordering> {
     let snapping = plane.snapping();
     let heights = triangle.corners.map(|p| plane.rounded_height(p).0);
-    let (up, down) = (heights.iter().any(|&h| h > snapping), heights.iter().any(|&h| h < -snapping));
+    let (up, down) =
+        (heights.iter().any(|&h| h > snapping), heights.iter().any(|&h| h < -snapping));
     match (up, down) {
         (true, true) => None,
         (true, false) => Some(Ordering::Greater),

@@ -6,7 +6,8 @@ use vitral_scene::View;
 /// Columns from the left to the right, or rows upwards, of the orthographic views.
 #[derive(Debug)]
 pub(super) struct Row {
-    /// Number, and the reach of its views to either side of the middle, in units of the world; in order.
+    /// Number, and the reach of its views to either side of the middle, in units of the world; in
+    /// order.
     cells: Vec<(i32, [f64; 2])>,
 }
 
@@ -46,7 +47,9 @@ impl Row {
         for extent in extents.iter().filter(|extent| extent.view != View::Iso) {
             let number = cell(extent.view);
             match cells.iter_mut().find(|(other, _)| *other == number) {
-                Some((_, [low, high])) => (*low, *high) = (low.max(extent.low[k]), high.max(extent.high[k])),
+                Some((_, [low, high])) => {
+                    (*low, *high) = (low.max(extent.low[k]), high.max(extent.high[k]))
+                }
                 None => cells.push((number, [extent.low[k], extent.high[k]])),
             }
         }
@@ -81,10 +84,15 @@ impl Row {
         units * scale + gaps
     }
 
-    /// The length of all, with an axonometric view of `size` units; `scales` of the cells and of this view.
+    /// The length of all, with an axonometric view of `size` units; `scales` of the cells and of
+    /// this view.
     pub(super) fn length(&self, spot: Spot, scales: [f64; 2], size: f64) -> f64 {
         let (units, gaps) = self.before(spot);
-        self.full(scales[0]).max(if size > 0.0 { units * scales[0] + gaps + size * scales[1] } else { 0.0 })
+        self.full(scales[0]).max(if size > 0.0 {
+            units * scales[0] + gaps + size * scales[1]
+        } else {
+            0.0
+        })
     }
 
     /// The largest common scale at which all are no longer than `room`; at most 0 where gaps are.

@@ -1,18 +1,21 @@
 //! Several views on one sheet, placed as the rules of orthographic projection demand.
 //!
-//! The front view stands in the middle of a grid of columns and rows. Views from the sides share its row, those from above and below its
-//! column; columns and rows are [`GAP`] apart, and all are to one scale, so that a point of the model is at the same height in all views
-//! of the row and at the same place across in all of the column.
+//! The front view stands in the middle of a grid of columns and rows. Views from the sides share
+//! its row, those from above and below its column; columns and rows are [`GAP`] apart, and all are
+//! to one scale, so that a point of the model is at the same height in all views of the row and at
+//! the same place across in all of the column.
 //!
 //! | method | view from the right | from the left | from above | from below | from behind |
 //! |---|---|---|---|---|---|
 //! | first angle | left of the front | right of it | below it | above it | beside the left view, else the right one |
 //! | third angle | right of the front | left of it | above it | below it | beside the right view, else the left one |
 //!
-//! The axonometric view comes into a corner of the grid that is free, or beside or below all if there is none; of several such places it
-//! takes the one that leaves the largest scale. Where a scale is given at which it does not fit, it alone gets a smaller one.
+//! The axonometric view comes into a corner of the grid that is free, or beside or below all if
+//! there is none; of several such places it takes the one that leaves the largest scale. Where a
+//! scale is given at which it does not fit, it alone gets a smaller one.
 //!
-//! In:   a world, the views and the page. Out: a camera and a place for each view; drawings put together.
+//! In:   a world, the views and the page. Out: a camera and a place for each view; drawings put
+//!       together.
 //! Cost: constant, but for the extents of the world along the views' axes.
 //! Source: \[ISO 5456-2\] for the places of the views and the symbol.
 
@@ -31,7 +34,8 @@ use vitral_scene::{Axis, Camera, Lens, Projection, View, World, frame};
 
 /// Millimetres between views.
 pub const GAP: f64 = 15.0;
-/// The camera's window is larger than the model by this factor, so that nothing is cut at its border.
+/// The camera's window is larger than the model by this factor, so that nothing is cut at its
+/// border.
 const ROOM: f64 = 1.001;
 /// The longest side of a sheet that fits views to scale, in millimetres.
 const LONGEST: f64 = 10_000.0;
@@ -43,10 +47,12 @@ const ROUNDING: f64 = 1e-6;
 /// How views are placed round the front view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Angle {
-    /// First-angle projection, as is usual in Europe: what is seen from the right stands on the left.
+    /// First-angle projection, as is usual in Europe: what is seen from the right stands on the
+    /// left.
     #[default]
     First,
-    /// Third-angle projection, as is usual in America: what is seen from the right stands on the right.
+    /// Third-angle projection, as is usual in America: what is seen from the right stands on the
+    /// right.
     Third,
 }
 
@@ -93,7 +99,8 @@ pub struct PlacedView {
     pub camera: Camera,
     /// Millimetres along a side of the camera's window, which is a square.
     pub window: f64,
-    /// How far the window's drawing is moved on the sheet, in whole micrometres: the step of drawings.
+    /// How far the window's drawing is moved on the sheet, in whole micrometres: the step of
+    /// drawings.
     pub shift: [f64; 2],
 }
 
@@ -106,7 +113,8 @@ pub struct SheetLayout {
     pub views: Vec<PlacedView>,
 }
 
-/// A view and how far the model reaches from the middle of its box: to the left, down, to the right, up.
+/// A view and how far the model reaches from the middle of its box: to the left, down, to the
+/// right, up.
 #[derive(Clone, Copy, Debug)]
 struct Extent {
     view: View,
@@ -116,8 +124,8 @@ struct Extent {
 }
 
 impl Sheet {
-    /// Finds the scale and places the views. [`PageSize::Scaled`] and [`PageSize::Window`] belong to single views: of them the sheet
-    /// counts alone.
+    /// Finds the scale and places the views. [`PageSize::Scaled`] and [`PageSize::Window`] belong
+    /// to single views: of them the sheet counts alone.
     ///
     /// # Errors
     /// [`SheetError`].
@@ -133,15 +141,22 @@ impl Sheet {
         if self.views.is_empty() || twice {
             return Err(SheetError::Views);
         }
-        let extents: Vec<Extent> = self.views.iter().map(|&view| Extent::new(world, view, up, workers)).collect();
+        let extents: Vec<Extent> =
+            self.views.iter().map(|&view| Extent::new(world, view, up, workers)).collect();
         self.place(&extents, page, margin)
     }
 
     /// Places views of these extents.
-    fn place(&self, extents: &[Extent], page: PageSize, margin: f64) -> Result<SheetLayout, SheetError> {
+    fn place(
+        &self,
+        extents: &[Extent],
+        page: PageSize,
+        margin: f64,
+    ) -> Result<SheetLayout, SheetError> {
         // Find the room on the sheet.
         let (sheet, longest) = match page {
-            PageSize::Sheet { width, height } | PageSize::Scaled { sheet: Some([width, height]), .. } => {
+            PageSize::Sheet { width, height }
+            | PageSize::Scaled { sheet: Some([width, height]), .. } => {
                 (Some([width, height]), f64::INFINITY)
             }
             PageSize::Fit { longer } if self.scale.is_none() => (None, longer),
@@ -149,8 +164,12 @@ impl Sheet {
         };
         let room = sheet.map_or([longest; 2], |sheet| sheet.map(|side| side - 2.0 * margin));
 
-        // Sort the orthographic views into columns and rows, and find the best spot for the axonometric one.
-        let rows = [Row::new(extents, 0, |view| self.column(view)), Row::new(extents, 1, |view| self.row(view))];
+        // Sort the orthographic views into columns and rows, and find the best spot for the
+        // axonometric one.
+        let rows = [
+            Row::new(extents, 0, |view| self.column(view)),
+            Row::new(extents, 1, |view| self.row(view)),
+        ];
         let iso = extents.iter().find(|extent| extent.view == View::Iso);
         let size = iso.map_or([0.0; 2], |iso| [0, 1].map(|k| iso.low[k] + iso.high[k]));
         let spots = if iso.is_some() { self.spots(&rows) } else { vec![[Spot::Middle; 2]] };
@@ -167,7 +186,10 @@ impl Sheet {
         let lengths = [0, 1].map(|k| rows[k].length(spot[k], scales, size[k]));
         let whole = sheet.unwrap_or(lengths.map(|length| length + 2.0 * margin));
         let corner = [0, 1].map(|k| (whole[k] - lengths[k]) / 2.0);
-        let reach = extents.iter().flat_map(|e| [e.low[0], e.low[1], e.high[0], e.high[1]]).fold(0.0, f64::max);
+        let reach = extents
+            .iter()
+            .flat_map(|e| [e.low[0], e.low[1], e.high[0], e.high[1]])
+            .fold(0.0, f64::max);
         let window = if reach > 0.0 { 2.0 * reach * ROOM } else { 1.0 };
         let views = extents.iter().map(|extent| {
             let is_iso = extent.view == View::Iso;
@@ -177,12 +199,19 @@ impl Sheet {
                     let [from, to] = rows[k].rest(spot[k], scales, size[k]);
                     corner[k] + (from + to + (extent.low[k] - extent.high[k]) * scale) / 2.0
                 }
-                (false, 0) => corner[k] + rows[k].middle(self.column(extent.view), spot[k], scales, size[k]),
-                (false, _) => corner[k] + rows[k].middle(self.row(extent.view), spot[k], scales, size[k]),
+                (false, 0) => {
+                    corner[k] + rows[k].middle(self.column(extent.view), spot[k], scales, size[k])
+                }
+                (false, _) => {
+                    corner[k] + rows[k].middle(self.row(extent.view), spot[k], scales, size[k])
+                }
             });
-            let corners =
-                [[0, 1].map(|k| middle[k] - extent.low[k] * scale), [0, 1].map(|k| middle[k] + extent.high[k] * scale)];
-            let camera = Camera { projection: Projection::Parallel { height: window }, ..extent.camera };
+            let corners = [
+                [0, 1].map(|k| middle[k] - extent.low[k] * scale),
+                [0, 1].map(|k| middle[k] + extent.high[k] * scale),
+            ];
+            let camera =
+                Camera { projection: Projection::Parallel { height: window }, ..extent.camera };
             let window = window * scale;
             let shift = middle.map(|at| ((at - window / 2.0) * 1000.0).round() / 1000.0);
             PlacedView { view: extent.view, scale, corners, camera, window, shift }
@@ -191,7 +220,13 @@ impl Sheet {
     }
 
     /// The scale of the orthographic views and that of the axonometric one.
-    fn scales(&self, rows: &[Row; 2], spot: [Spot; 2], size: [f64; 2], room: [f64; 2]) -> Result<[f64; 2], SheetError> {
+    fn scales(
+        &self,
+        rows: &[Row; 2],
+        spot: [Spot; 2],
+        size: [f64; 2],
+        room: [f64; 2],
+    ) -> Result<[f64; 2], SheetError> {
         let largest = |k: usize| rows[k].largest(spot[k], size[k], room[k]);
         let common = largest(0).min(largest(1));
         let too_large = |needed: [f64; 2]| {
@@ -208,7 +243,9 @@ impl Sheet {
         };
 
         // At a given scale, the axonometric view takes the room that is left.
-        if rows.iter().all(Row::is_empty) || (0..2).any(|k| rows[k].full(scale) > room[k] + ROUNDING) {
+        if rows.iter().all(Row::is_empty)
+            || (0..2).any(|k| rows[k].full(scale) > room[k] + ROUNDING)
+        {
             let needed = lengths([scale; 2]);
             let fits = (0..2).all(|k| needed[k] <= room[k] + ROUNDING);
             return if fits { Ok([scale; 2]) } else { too_large(needed) };
@@ -229,7 +266,8 @@ impl Sheet {
             View::Left => -1,
             View::Right => 1,
             View::Back => {
-                let (near, far) = if self.angle == Angle::Third { (View::Right, 2) } else { (View::Left, -2) };
+                let (near, far) =
+                    if self.angle == Angle::Third { (View::Right, 2) } else { (View::Left, -2) };
                 let other = if self.angle == Angle::Third { View::Left } else { View::Right };
                 if has(other) && !has(near) { -far } else { far }
             }
@@ -253,12 +291,19 @@ impl Sheet {
         // The corner towards the right, and away from the front.
         let first = if self.angle == Angle::Third { 1 } else { -1 };
         let corners = [[1, first], [-1, first], [1, -first], [-1, -first]];
-        let is_corner = |corner: &[i32; 2]| zip(rows, corner).all(|(row, &side)| row.has_side(side));
-        let free: Vec<_> = corners.iter().filter(|corner| is_corner(corner)).map(|c| c.map(Spot::Corner)).collect();
+        let is_corner =
+            |corner: &[i32; 2]| zip(rows, corner).all(|(row, &side)| row.has_side(side));
+        let free: Vec<_> = corners
+            .iter()
+            .filter(|corner| is_corner(corner))
+            .map(|c| c.map(Spot::Corner))
+            .collect();
         match (free.is_empty(), rows.iter().all(Row::is_empty)) {
             (false, _) => free,
             (true, true) => vec![[Spot::Middle; 2]],
-            (true, false) => vec![[Spot::Beyond(1), Spot::Middle], [Spot::Middle, Spot::Beyond(-1)]],
+            (true, false) => {
+                vec![[Spot::Beyond(1), Spot::Middle], [Spot::Middle, Spot::Beyond(-1)]]
+            }
         }
     }
 }
@@ -268,13 +313,15 @@ impl Extent {
         let camera = frame(&world.bounds, view, up, Lens::Parallel, 1.0);
         let world_from_view = camera.view_from_world().inverse();
         let axes = [world_from_view.x_axis, world_from_view.y_axis].map(|axis| axis.truncate());
-        let along = |sign: f64| axes.map(|axis| reach(world, camera.focal_point, axis * sign, workers));
+        let along =
+            |sign: f64| axes.map(|axis| reach(world, camera.focal_point, axis * sign, workers));
         Self { view, low: along(-1.0), high: along(1.0), camera }
     }
 }
 
 impl SheetLayout {
-    /// The sheet of these drawings, one for each view, each of the whole window of its camera ([`PageSize::Window`]).
+    /// The sheet of these drawings, one for each view, each of the whole window of its camera
+    /// ([`PageSize::Window`]).
     pub fn compose(&self, drawings: Vec<Drawn>) -> Drawn {
         let mut whole = Drawn::default();
         let mut sheet = Drawing { width: self.size[0], height: self.size[1], ..Drawing::default() };

@@ -1,7 +1,8 @@
-//! The symbol of the projection method: a truncated cone that lies on its side, seen from the front and from the left.
+//! The symbol of the projection method: a truncated cone that lies on its side, seen from the front
+//! and from the left.
 //!
-//! Its narrow end is on the left, so both circles are visible from there. In first angle the view from the left stands on the right of the
-//! front view; in third angle it stands on the left.
+//! Its narrow end is on the left, so both circles are visible from there. In first angle the view
+//! from the left stands on the right of the front view; in third angle it stands on the left.
 //!
 //! Source: \[ISO 5456-2\]; the sizes are those for letters of 2.5 mm.
 

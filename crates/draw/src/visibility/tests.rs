@@ -10,7 +10,14 @@ fn found(mesh: &PageMesh, brute: bool, most_layers: u32, threads: usize) -> Vec<
     with_run(threads, |run| {
         let grid = Grid::new(mesh, |t| t.hides, run).unwrap();
         let search = if brute { Search::All } else { Search::Grid(&grid) };
-        fragments(mesh, search, Wanted { classes: Classes::ALL, most_layers, most_segments: None }, run).unwrap().0
+        fragments(
+            mesh,
+            search,
+            Wanted { classes: Classes::ALL, most_layers, most_segments: None },
+            run,
+        )
+        .unwrap()
+        .0
     })
 }
 
@@ -25,7 +32,8 @@ fn length(mesh: &PageMesh, fragments: &[Fragment], layers: u32) -> f64 {
     fragments.iter().filter(|f| f.layers == layers).map(of).sum()
 }
 
-/// The grid and brute force find the same, with any number of threads; visible parts are those of no layer.
+/// The grid and brute force find the same, with any number of threads; visible parts are those of
+/// no layer.
 fn check(mesh: &PageMesh) -> Result<(), TestCaseError> {
     for most_layers in [0, u32::MAX] {
         let fast = found(mesh, false, most_layers, 1);
@@ -36,7 +44,8 @@ fn check(mesh: &PageMesh) -> Result<(), TestCaseError> {
         prop_assert_eq!(fast.len(), slow.len(), "{:?}\n{:?}", fast, slow);
         for (a, b) in fast.iter().zip(&slow) {
             let segment = Segment { mesh, ends: mesh.ends(&mesh.edges[a.edge as usize]) };
-            let same = segment.compare(&a.from, &b.from).is_eq() && segment.compare(&a.to, &b.to).is_eq();
+            let same =
+                segment.compare(&a.from, &b.from).is_eq() && segment.compare(&a.to, &b.to).is_eq();
             prop_assert!(same && (a.edge, a.layers) == (b.edge, b.layers), "{:?} {:?}", a, b);
         }
     }
@@ -62,22 +71,27 @@ fn before_and_behind_walls() -> impl Strategy<Value = Vec<[GridPoint; 3]>> {
         let moved = |d: GridPoint| [0, 1, 2].map(|k| (at[k] + d[k]).min(SIZE));
         [at, moved(by[0]), moved(by[1])]
     });
-    let wall = prop::array::uniform3(0..SIZE).prop_map(|z| [[0, 0, z[0]], [SIZE, 0, z[1]], [0, SIZE, z[2]]]);
-    (prop::collection::vec(small, 1..120), prop::collection::vec(wall, 1..3)).prop_map(|(mut all, walls)| {
-        all.extend(walls);
-        all
-    })
+    let wall = prop::array::uniform3(0..SIZE)
+        .prop_map(|z| [[0, 0, z[0]], [SIZE, 0, z[1]], [0, SIZE, z[2]]]);
+    (prop::collection::vec(small, 1..120), prop::collection::vec(wall, 1..3)).prop_map(
+        |(mut all, walls)| {
+            all.extend(walls);
+            all
+        },
+    )
 }
 
-/// Triangles with everything that touches them: a copy, one turned over, halves that meet a side in its middle, one that stands on an edge
-/// in their plane, and one that lies in it.
+/// Triangles with everything that touches them: a copy, one turned over, halves that meet a side in
+/// its middle, one that stands on an edge in their plane, and one that lies in it.
 fn touching() -> impl Strategy<Value = Vec<[GridPoint; 3]>> {
     let one = (prop::array::uniform3(point(SIZE, 8)), point(SIZE, 8), 0u8..32);
     let triangles = |([a, b, c], p, kinds): ([GridPoint; 3], GridPoint, u8)| {
         // All corners are multiples of 8, so that these are places of the grid.
-        let mean =
-            |weights: [i32; 3]| [0, 1, 2].map(|k| (weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k]) / 4);
-        let (middle, inside) = (mean([2, 2, 0]), [mean([2, 1, 1]), mean([1, 2, 1]), mean([1, 1, 2])]);
+        let mean = |weights: [i32; 3]| {
+            [0, 1, 2].map(|k| (weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k]) / 4)
+        };
+        let (middle, inside) =
+            (mean([2, 2, 0]), [mean([2, 1, 1]), mean([1, 2, 1]), mean([1, 1, 2])]);
         let others = [
             vec![[a, b, c]],
             vec![[b, a, c]],
@@ -86,7 +100,9 @@ fn touching() -> impl Strategy<Value = Vec<[GridPoint; 3]>> {
             vec![inside],
         ];
         let wanted = others.into_iter().enumerate().filter(move |(kind, _)| kinds >> kind & 1 == 1);
-        std::iter::once([a, b, c]).chain(wanted.flat_map(|(_, triangles)| triangles)).collect::<Vec<_>>()
+        std::iter::once([a, b, c])
+            .chain(wanted.flat_map(|(_, triangles)| triangles))
+            .collect::<Vec<_>>()
     };
     prop::collection::vec(one.prop_map(triangles), 1..6).prop_map(|all| all.concat())
 }
@@ -99,7 +115,13 @@ fn check_turned(corners: &[[GridPoint; 3]]) -> Result<(), TestCaseError> {
     let most = all.iter().flatten().map(|fragment| fragment.layers).max().unwrap_or(0);
     for layers in 0..=most {
         let [before, after] = [0, 1].map(|i| length(&meshes[i], &all[i], layers));
-        prop_assert!((before - after).abs() < 1e-6 * (1.0 + before), "{} layers: {} {}", layers, before, after);
+        prop_assert!(
+            (before - after).abs() < 1e-6 * (1.0 + before),
+            "{} layers: {} {}",
+            layers,
+            before,
+            after
+        );
     }
     Ok(())
 }
@@ -115,7 +137,10 @@ fn a_square_before_another_hides_its_middle() {
     let all = found(&mesh, false, u32::MAX, 1);
     // The diagonal of the one behind runs under that of the one before: one layer, not two.
     let diagonal = 2f64.sqrt() * 2000.0;
-    assert!((length(&mesh, &all, 1) - diagonal).abs() < 1e-6 && length(&mesh, &all, 2) == 0.0, "{all:?}");
+    assert!(
+        (length(&mesh, &all, 1) - diagonal).abs() < 1e-6 && length(&mesh, &all, 2) == 0.0,
+        "{all:?}"
+    );
     let outlines = 4.0 * (2000.0 + 4000.0);
     assert!((length(&mesh, &all, 0) - outlines - 2.0 * diagonal).abs() < 1e-6);
 }
@@ -140,7 +165,8 @@ fn layers_are_counted_up_to_the_wanted_number() {
 fn a_face_over_the_same_corners_hides_nothing_more() {
     let triangle = [[0, 0, 900], [4000, 0, 900], [0, 4000, 900]];
     let turned = [triangle[1], triangle[0], triangle[2]];
-    let mesh = mesh_of([SIZE; 2], &[triangle, turned, [[100, 100, 0], [900, 100, 0], [100, 900, 0]]]);
+    let mesh =
+        mesh_of([SIZE; 2], &[triangle, turned, [[100, 100, 0], [900, 100, 0], [100, 900, 0]]]);
     assert_eq!((mesh.edges.len(), mesh.triangles.iter().filter(|t| t.hides).count()), (6, 2));
     let all = found(&mesh, false, u32::MAX, 1);
     assert!(all.iter().all(|f| f.layers < 2) && mesh.edges[0].classes.has(LineClass::Boundary));
@@ -155,7 +181,10 @@ fn limits_stop_a_walk() {
     let wanted = Wanted { classes: Classes::ALL, most_layers: 0, most_segments: None };
     assert!(matches!(fragments(&mesh, Search::All, wanted, &run), Err(Limit::Cancelled { .. })));
     let small = vitral_exec::Budget::default().with_memory_limit(Some(8));
-    assert!(matches!(Grid::new(&mesh, |_| true, &Run::new(&workers, &small)), Err(Limit::Memory { .. })));
+    assert!(matches!(
+        Grid::new(&mesh, |_| true, &Run::new(&workers, &small)),
+        Err(Limit::Memory { .. })
+    ));
 }
 
 proptest! {

@@ -1,7 +1,8 @@
 //! Textures: a pyramid of images (mipmaps), and the sampler that says how to look things up in it.
 //!
-//! `pyramid.rs` builds the levels, `sample.rs` looks them up. Texture coordinates: `(0, 0)` is the top
-//! left corner of the image and `(1, 1)` the bottom right one; texel `i` of `n` covers `i/n .. (i+1)/n`.
+//! `pyramid.rs` builds the levels, `sample.rs` looks them up. Texture coordinates: `(0, 0)` is the
+//! top left corner of the image and `(1, 1)` the bottom right one; texel `i` of `n` covers
+//! `i/n .. (i+1)/n`.
 
 mod pyramid;
 mod sample;
@@ -79,9 +80,9 @@ pub struct Sampler {
 pub struct Texture {
     /// Where it came from, for messages.
     pub name: String,
-    /// Level 0 is the image; each next level halves both sides (rounding down, at least 1), down to 1x1. RGBA,
-    /// straight alpha. Row 0 is the top of the image, at texture coordinate `v = 0` (glTF's convention; loaders of
-    /// formats with `v` upwards flip the coordinate).
+    /// Level 0 is the image; each next level halves both sides (rounding down, at least 1), down to
+    /// 1x1. RGBA, straight alpha. Row 0 is the top of the image, at texture coordinate `v = 0`
+    /// (glTF's convention; loaders of formats with `v` upwards flip the coordinate).
     pub levels: Vec<Plane<[u8; 4]>>,
     /// Meaning of the colour bytes.
     pub encoding: Encoding,

@@ -1,16 +1,19 @@
-//! Building a mipmap pyramid: each level is the one before at half the size, down to a single texel.
+//! Building a mipmap pyramid: each level is the one before at half the size, down to a single
+//! texel.
 //!
-//! A texel of the next level is the mean of the area that it covers (a box filter). A side of even length halves
-//! cleanly; of an odd side of `2n + 1` texels each new texel covers `2 + 1/n` old ones, so three of them count, the
-//! outer two in part. That way every old texel has the same share in the result, and the mean of the image survives.
+//! A texel of the next level is the mean of the area that it covers (a box filter). A side of even
+//! length halves cleanly; of an odd side of `2n + 1` texels each new texel covers `2 + 1/n` old
+//! ones, so three of them count, the outer two in part. That way every old texel has the same share
+//! in the result, and the mean of the image survives.
 //!
-//! Colours are averaged as light, that is decoded from sRGB first, and weighted with their alpha, so that a colour hidden
-//! under full transparency does not bleed into the visible ones. Where everything is transparent the plain mean is kept
-//! (a material may ignore alpha): every texel counts as if its alpha were 2^-20 higher, which has no visible effect
-//! anywhere else.
+//! Colours are averaged as light, that is decoded from sRGB first, and weighted with their alpha,
+//! so that a colour hidden under full transparency does not bleed into the visible ones. Where
+//! everything is transparent the plain mean is kept (a material may ignore alpha): every texel
+//! counts as if its alpha were 2^-20 higher, which has no visible effect anywhere else.
 //!
 //! In:   the base image, straight alpha, as bytes.
-//! Out:  all levels as bytes; each is computed from the unrounded level before, so rounding errors do not add up.
+//! Out:  all levels as bytes; each is computed from the unrounded level before, so rounding errors
+//!       do not add up.
 //! Cost: `O(texels)`; transient memory of 4 bytes for each byte of level 1.
 //! Source: \[Williams 1983\]; the weights of odd sizes are the exact areas.
 
@@ -25,8 +28,9 @@ const LEAST_WEIGHT: f32 = 1.0 / 1_048_576.0;
 type Weighted = [f32; 4];
 
 impl Texture {
-    /// A texture with all its levels. `base` is RGBA with straight alpha, its first row the top of the image; an empty
-    /// one counts as a single white texel, which changes nothing that it multiplies.
+    /// A texture with all its levels. `base` is RGBA with straight alpha, its first row the top of
+    /// the image; an empty one counts as a single white texel, which changes nothing that it
+    /// multiplies.
     #[must_use]
     pub fn new(name: String, base: Plane<[u8; 4]>, encoding: Encoding) -> Self {
         let base = if base.data().is_empty() { Plane::filled(1, 1, [255; 4]) } else { base };
@@ -50,7 +54,8 @@ impl Texture {
     }
 }
 
-/// The texels of one side that make up one texel of the halved side: from `first` on, with these shares (sum 1).
+/// The texels of one side that make up one texel of the halved side: from `first` on, with these
+/// shares (sum 1).
 struct Taps {
     first: usize,
     count: usize,
@@ -66,11 +71,20 @@ fn taps(size: usize, i: usize) -> Taps {
         return Taps { first: 2 * i, count: 2, shares: [0.5, 0.5, 0.0] };
     }
     let (n, whole) = ((size / 2) as f32, size as f32);
-    Taps { first: 2 * i, count: 3, shares: [(n - i as f32) / whole, n / whole, (i as f32 + 1.0) / whole] }
+    Taps {
+        first: 2 * i,
+        count: 3,
+        shares: [(n - i as f32) / whole, n / whole, (i as f32 + 1.0) / whole],
+    }
 }
 
 /// Halves an image of `width * height` texels, which `weigh` makes linear.
-fn halve<T>(width: usize, height: usize, texels: &[T], weigh: impl Fn(&T) -> Weighted) -> Vec<Weighted> {
+fn halve<T>(
+    width: usize,
+    height: usize,
+    texels: &[T],
+    weigh: impl Fn(&T) -> Weighted,
+) -> Vec<Weighted> {
     let (narrow, low) = ((width / 2).max(1), (height / 2).max(1));
     let columns: Vec<Taps> = (0..narrow).map(|i| taps(width, i)).collect();
     let mut half = Vec::with_capacity(narrow * low);
@@ -89,7 +103,8 @@ fn halve<T>(width: usize, height: usize, texels: &[T], weigh: impl Fn(&T) -> Wei
         // Mix the columns of that row.
         half.extend(columns.iter().map(|column| {
             let mut sum = [0.0; 4];
-            for (&texel, &share) in sums[column.first..][..column.count].iter().zip(&column.shares) {
+            for (&texel, &share) in sums[column.first..][..column.count].iter().zip(&column.shares)
+            {
                 add_share(&mut sum, texel, share);
             }
             sum
@@ -106,7 +121,8 @@ fn add_share(sum: &mut Weighted, texel: Weighted, share: f32) {
     }
 }
 
-/// Buckets of the search for the sRGB byte of a linear value: no byte's range is narrower than a bucket.
+/// Buckets of the search for the sRGB byte of a linear value: no byte's range is narrower than a
+/// bucket.
 const BUCKETS: usize = 4096;
 
 /// Bytes to weighted linear light and back.
@@ -115,14 +131,16 @@ struct Codec {
     linear: [f32; 256],
     /// Weight of each alpha byte.
     weight: [f32; 256],
-    /// For sRGB: the least linear value that rounds to the byte (index 0 is never used), and the byte at the start of each bucket.
+    /// For sRGB: the least linear value that rounds to the byte (index 0 is never used), and the
+    /// byte at the start of each bucket.
     search: Option<([f32; 256], Vec<u8>)>,
 }
 
 impl Codec {
     fn new(encoding: Encoding) -> Self {
         let search = (encoding == Encoding::Srgb).then(|| {
-            let least: [f32; 256] = std::array::from_fn(|byte| linear_from_srgb((byte as f32 - 0.5) / 255.0));
+            let least: [f32; 256] =
+                std::array::from_fn(|byte| linear_from_srgb((byte as f32 - 0.5) / 255.0));
             let start = |bucket: usize| {
                 let value = bucket as f32 / BUCKETS as f32;
                 least[1..].partition_point(|&limit| limit <= value) as u8
@@ -168,7 +186,12 @@ mod tests {
     use super::*;
     use vitral_math::color::srgb_from_linear;
 
-    fn texture(width: u32, height: u32, encoding: Encoding, texel: impl Fn(u32, u32) -> [u8; 4]) -> Texture {
+    fn texture(
+        width: u32,
+        height: u32,
+        encoding: Encoding,
+        texel: impl Fn(u32, u32) -> [u8; 4],
+    ) -> Texture {
         let data = (0..width * height).map(|i| texel(i % width, i / width)).collect();
         Texture::new("test".into(), Plane::from_rows(width, height, data).unwrap(), encoding)
     }
@@ -183,7 +206,10 @@ mod tests {
         let t = texture(5, 2, Encoding::Linear, |_, _| [9, 9, 9, 255]);
         let sizes: Vec<_> = t.levels.iter().map(|l| (l.width(), l.height())).collect();
         assert_eq!(sizes, [(5, 2), (2, 1), (1, 1)]);
-        assert!(t.levels.iter().flat_map(Plane::data).all(|&texel| texel == [9, 9, 9, 255]), "a flat colour stays");
+        assert!(
+            t.levels.iter().flat_map(Plane::data).all(|&texel| texel == [9, 9, 9, 255]),
+            "a flat colour stays"
+        );
         assert_eq!(texture(1, 1, Encoding::Srgb, |_, _| [1, 2, 3, 4]).levels.len(), 1);
     }
 
@@ -196,23 +222,38 @@ mod tests {
     #[test]
     fn a_checker_becomes_the_mean_of_its_light() {
         let checker = |x, y| if (x + y) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] };
-        assert_eq!(*texture(2, 2, Encoding::Srgb, checker).levels[1].at(0, 0), [188, 188, 188, 255]);
-        assert_eq!(*texture(2, 2, Encoding::Linear, checker).levels[1].at(0, 0), [128, 128, 128, 255]);
-        assert_eq!(*texture(64, 64, Encoding::Srgb, checker).levels[6].at(0, 0), [188, 188, 188, 255]);
+        assert_eq!(
+            *texture(2, 2, Encoding::Srgb, checker).levels[1].at(0, 0),
+            [188, 188, 188, 255]
+        );
+        assert_eq!(
+            *texture(2, 2, Encoding::Linear, checker).levels[1].at(0, 0),
+            [128, 128, 128, 255]
+        );
+        assert_eq!(
+            *texture(64, 64, Encoding::Srgb, checker).levels[6].at(0, 0),
+            [188, 188, 188, 255]
+        );
     }
 
     #[test]
     fn odd_sizes_conserve_the_mean() {
         for (width, height) in [(3, 1), (1, 7), (5, 5), (7, 12), (31, 9)] {
-            let t =
-                texture(width, height, Encoding::Linear, |x, y| [noise(x, y, 0), noise(x, y, 1), noise(x, y, 2), 255]);
+            let t = texture(width, height, Encoding::Linear, |x, y| {
+                [noise(x, y, 0), noise(x, y, 1), noise(x, y, 2), 255]
+            });
             for channel in 0..3 {
                 let mean = |level: &Plane<[u8; 4]>| {
-                    level.data().iter().map(|t| f64::from(t[channel])).sum::<f64>() / level.data().len() as f64
+                    level.data().iter().map(|t| f64::from(t[channel])).sum::<f64>()
+                        / level.data().len() as f64
                 };
                 for level in &t.levels {
                     let error = (mean(level) - mean(&t.levels[0])).abs();
-                    assert!(error <= 0.51, "{width}x{height}, level of width {}: {error}", level.width());
+                    assert!(
+                        error <= 0.51,
+                        "{width}x{height}, level of width {}: {error}",
+                        level.width()
+                    );
                 }
             }
         }
@@ -227,7 +268,9 @@ mod tests {
 
     #[test]
     fn transparent_colours_do_not_bleed_and_survive_alone() {
-        let t = texture(4, 1, Encoding::Linear, |x, _| if x == 0 { [200, 0, 0, 255] } else { [0, 255, 80, 0] });
+        let t = texture(4, 1, Encoding::Linear, |x, _| {
+            if x == 0 { [200, 0, 0, 255] } else { [0, 255, 80, 0] }
+        });
         assert_eq!(t.levels[1].data(), [[200, 0, 0, 128], [0, 255, 80, 0]]);
         assert_eq!(t.levels[2].data(), [[200, 0, 0, 64]]);
     }

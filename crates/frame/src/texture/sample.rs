@@ -1,21 +1,24 @@
 //! Looking a texture up at one point: wrap, choose levels, filter.
 //!
-//! The level of detail `lod` is the logarithm to base 2 of how many texels of level 0 fall on one pixel. At 0 or below
-//! a texel is larger than a pixel and the magnification filter reads level 0; above, the minification filter reads the
-//! level whose texels are about as large as a pixel, or mixes the two nearest.
+//! The level of detail `lod` is the logarithm to base 2 of how many texels of level 0 fall on one
+//! pixel. At 0 or below a texel is larger than a pixel and the magnification filter reads level 0;
+//! above, the minification filter reads the level whose texels are about as large as a pixel, or
+//! mixes the two nearest.
 //!
-//! In:   texture coordinates (origin at the top left, one texture wide), `lod`, and a table that makes colour bytes linear.
-//! Out:  RGBA with straight alpha. Texels are mixed in straight form, after decoding, as OpenGL and glTF define it.
+//! In:   texture coordinates (origin at the top left, one texture wide), `lod`, and a table that
+//!       makes colour bytes linear.
+//! Out:  RGBA with straight alpha. Texels are mixed in straight form, after decoding, as OpenGL and
+//!       glTF define it.
 //! Cost: one texel (nearest), four (bilinear) or eight (trilinear), read one by one.
-//! Source: \[Williams 1983\] for trilinear lookup; [OpenGL 2.1], section 3.8, for wrap modes and texel centres.
-//! Departs from it: magnification begins at `lod <= 0` whatever the filters are.
+//! Source: \[Williams 1983\] for trilinear lookup; [OpenGL 2.1], section 3.8, for wrap modes and
+//! texel centres. Departs from it: magnification begins at `lod <= 0` whatever the filters are.
 
 use super::{Encoding, Filter, MipFilter, Sampler, Texture, Wrap};
 use crate::Plane;
 use vitral_math::color::linear_from_srgb_table;
 
-/// The value of each colour byte, for [`Texture::sample`]: linear light, or with `raw` simply `byte / 255`, which is
-/// the course's arithmetic on encoded values.
+/// The value of each colour byte, for [`Texture::sample`]: linear light, or with `raw` simply
+/// `byte / 255`, which is the course's arithmetic on encoded values.
 pub fn decode_table(encoding: Encoding, raw: bool) -> [f32; 256] {
     match encoding {
         Encoding::Srgb if !raw => linear_from_srgb_table(),
@@ -24,12 +27,20 @@ pub fn decode_table(encoding: Encoding, raw: bool) -> [f32; 256] {
 }
 
 impl Texture {
-    /// The texture at `(u, v)`: RGBA, straight alpha. Colour bytes become values through `decode` (see
-    /// [`decode_table`]), alpha is `byte / 255`. `lod` is the logarithm to base 2 of the texels of level 0 per pixel;
-    /// NaN counts as 0. A coordinate that is not finite counts as 0. A texture without texels is white.
+    /// The texture at `(u, v)`: RGBA, straight alpha. Colour bytes become values through `decode`
+    /// (see [`decode_table`]), alpha is `byte / 255`. `lod` is the logarithm to base 2 of the
+    /// texels of level 0 per pixel; NaN counts as 0. A coordinate that is not finite counts as 0. A
+    /// texture without texels is white.
     #[inline]
     #[must_use]
-    pub fn sample(&self, sampler: &Sampler, u: f32, v: f32, lod: f32, decode: &[f32; 256]) -> [f32; 4] {
+    pub fn sample(
+        &self,
+        sampler: &Sampler,
+        u: f32,
+        v: f32,
+        lod: f32,
+        decode: &[f32; 256],
+    ) -> [f32; 4] {
         let Some(last) = self.levels.len().checked_sub(1) else { return [1.0; 4] };
         let point = Lookup {
             u: reduce(u, sampler.wrap_s),
@@ -50,14 +61,19 @@ impl Texture {
                 let fine = lod as usize;
                 let coarse = (fine + 1).min(last);
                 let t = lod - fine as f32;
-                mix(point.filtered(&self.levels[fine], filter), point.filtered(&self.levels[coarse], filter), t)
+                mix(
+                    point.filtered(&self.levels[fine], filter),
+                    point.filtered(&self.levels[coarse], filter),
+                    t,
+                )
             }
         };
         [rgba[0], rgba[1], rgba[2], rgba[3] / 255.0]
     }
 }
 
-/// Brings a texture coordinate into `0..=1`. What remains to be done at the edge is [`neighbour`]'s.
+/// Brings a texture coordinate into `0..=1`. What remains to be done at the edge is
+/// [`neighbour`]'s.
 #[inline(always)]
 fn reduce(coordinate: f32, wrap: Wrap) -> f32 {
     let x = if coordinate.is_finite() { coordinate } else { 0.0 };
@@ -71,7 +87,8 @@ fn reduce(coordinate: f32, wrap: Wrap) -> f32 {
     }
 }
 
-/// Largest whole number not above a finite `x`, without the library call that `f32::floor` is before SSE4.1.
+/// Largest whole number not above a finite `x`, without the library call that `f32::floor` is
+/// before SSE4.1.
 #[inline(always)]
 fn floor(x: f32) -> f32 {
     let towards_zero = (x as i32) as f32;
@@ -80,8 +97,8 @@ fn floor(x: f32) -> f32 {
     if x.abs() < 8_388_608.0 { below } else { x }
 }
 
-/// The texel for index `i` in `-1..=size`: round the corner if the texture repeats, else the edge texel (a mirrored
-/// texture has its own edge texel on the other side of the edge).
+/// The texel for index `i` in `-1..=size`: round the corner if the texture repeats, else the edge
+/// texel (a mirrored texture has its own edge texel on the other side of the edge).
 #[inline(always)]
 fn neighbour(i: i32, size: i32, repeat: bool) -> usize {
     let below = if repeat { size - 1 } else { 0 };
@@ -106,15 +123,20 @@ impl Lookup<'_> {
         let (width, height) = (level.width() as i32, level.height() as i32);
         let (x, y) = (self.u * width as f32, self.v * height as f32);
         if filter == Filter::Nearest {
-            let (i, j) = (neighbour(x as i32, width, self.repeat_s), neighbour(y as i32, height, self.repeat_t));
+            let (i, j) = (
+                neighbour(x as i32, width, self.repeat_s),
+                neighbour(y as i32, height, self.repeat_t),
+            );
             return self.texel(level, i, j);
         }
 
-        // Find the four texels whose centres surround the point, and how far it is from the upper left one.
+        // Find the four texels whose centres surround the point, and how far it is from the upper
+        // left one.
         let (x, y) = (x - 0.5, y - 0.5);
         let (i, j) = (x as i32 - i32::from(x < 0.0), y as i32 - i32::from(y < 0.0));
         let (i0, i1) = (neighbour(i, width, self.repeat_s), neighbour(i + 1, width, self.repeat_s));
-        let (j0, j1) = (neighbour(j, height, self.repeat_t), neighbour(j + 1, height, self.repeat_t));
+        let (j0, j1) =
+            (neighbour(j, height, self.repeat_t), neighbour(j + 1, height, self.repeat_t));
 
         // Mix along the two rows, then between them.
         let (s, t) = (x - i as f32, y - j as f32);
@@ -126,7 +148,8 @@ impl Lookup<'_> {
     /// One decoded texel, alpha as `0..=255`.
     #[inline(always)]
     fn texel(&self, level: &Plane<[u8; 4]>, i: usize, j: usize) -> [f32; 4] {
-        let [r, g, b, a] = level.data().get(j * level.width() as usize + i).copied().unwrap_or([255; 4]);
+        let [r, g, b, a] =
+            level.data().get(j * level.width() as usize + i).copied().unwrap_or([255; 4]);
         let colour = |byte: u8| self.decode[usize::from(byte)];
         [colour(r), colour(g), colour(b), f32::from(a)]
     }
@@ -157,7 +180,11 @@ mod tests {
     /// A texture with the given red bytes in one level, opaque.
     fn reds(width: u32, height: u32, reds: &[u8]) -> Texture {
         let data = reds.iter().map(|&r| [r, 0, 0, 255]).collect();
-        Texture::new("test".into(), Plane::from_rows(width, height, data).unwrap(), Encoding::Linear)
+        Texture::new(
+            "test".into(),
+            Plane::from_rows(width, height, data).unwrap(),
+            Encoding::Linear,
+        )
     }
 
     /// Red in bytes.
@@ -200,10 +227,14 @@ mod tests {
         assert_eq!(centres(Wrap::ClampToEdge), [10., 10., 10., 10., 20., 30., 30., 30., 30.]);
 
         // At the edge, bilinear mixes what the wrap mode puts there.
-        for (wrap, expected) in [(Wrap::Repeat, 20.0), (Wrap::MirroredRepeat, 10.0), (Wrap::ClampToEdge, 10.0)] {
+        for (wrap, expected) in
+            [(Wrap::Repeat, 20.0), (Wrap::MirroredRepeat, 10.0), (Wrap::ClampToEdge, 10.0)]
+        {
             assert!(close(red(&t, &linear(wrap), 0.0, 0.5, 0.0), expected), "{wrap:?} at 0");
         }
-        for (wrap, expected) in [(Wrap::Repeat, 20.0), (Wrap::MirroredRepeat, 30.0), (Wrap::ClampToEdge, 30.0)] {
+        for (wrap, expected) in
+            [(Wrap::Repeat, 20.0), (Wrap::MirroredRepeat, 30.0), (Wrap::ClampToEdge, 30.0)]
+        {
             assert!(close(red(&t, &linear(wrap), 1.0, 0.5, 0.0), expected), "{wrap:?} at 1");
         }
     }
@@ -216,28 +247,54 @@ mod tests {
         let fine = red(&t, &s, 0.75, 0.75, 0.0);
         assert!(close(fine, 120.0) && close(red(&t, &s, 0.75, 0.75, 1.0), 60.0));
         assert!(close(red(&t, &s, 0.75, 0.75, 0.5), 90.0));
-        assert!(close(red(&t, &s, 0.75, 0.75, 99.0), 60.0), "beyond the last level the last one is read");
+        assert!(
+            close(red(&t, &s, 0.75, 0.75, 99.0), 60.0),
+            "beyond the last level the last one is read"
+        );
     }
 
     #[test]
     fn filters_and_levels_follow_the_sampler() {
         let t = reds(2, 2, &[0, 40, 80, 120]);
-        let s = Sampler { minify: Filter::Nearest, mip: MipFilter::Nearest, ..linear(Wrap::ClampToEdge) };
+        let s = Sampler {
+            minify: Filter::Nearest,
+            mip: MipFilter::Nearest,
+            ..linear(Wrap::ClampToEdge)
+        };
         assert!(close(red(&t, &s, 0.5, 0.25, -1.0), 20.0), "magnified: bilinear");
         assert!(close(red(&t, &s, 0.6, 0.25, 0.4), 40.0), "minified a little: nearest of level 0");
         assert!(close(red(&t, &s, 0.6, 0.25, 0.6), 60.0), "level 1 is nearer");
-        assert!(close(red(&t, &Sampler { mip: MipFilter::None, ..s }, 0.6, 0.25, 5.0), 40.0), "no mipmaps");
+        assert!(
+            close(red(&t, &Sampler { mip: MipFilter::None, ..s }, 0.6, 0.25, 5.0), 40.0),
+            "no mipmaps"
+        );
     }
 
     #[test]
     fn any_coordinate_gives_a_finite_colour() {
         let t = reds(3, 2, &[1, 2, 3, 4, 5, 6]);
         let single = reds(1, 1, &[7]);
-        let odd =
-            [0.0, 1.0, -1e-9, 1e9, -3e38, f32::MAX, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MIN_POSITIVE];
+        let odd = [
+            0.0,
+            1.0,
+            -1e-9,
+            1e9,
+            -3e38,
+            f32::MAX,
+            f32::NAN,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::MIN_POSITIVE,
+        ];
         for wrap in [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge] {
             for filter in [Filter::Nearest, Filter::Linear] {
-                let s = Sampler { wrap_s: wrap, wrap_t: wrap, magnify: filter, minify: filter, mip: MipFilter::Linear };
+                let s = Sampler {
+                    wrap_s: wrap,
+                    wrap_t: wrap,
+                    magnify: filter,
+                    minify: filter,
+                    mip: MipFilter::Linear,
+                };
                 for (u, v, lod) in odd.iter().flat_map(|&u| odd.iter().map(move |&v| (u, v, u))) {
                     let r = red(&t, &s, u, v, lod);
                     assert!((0.999..6.001).contains(&r), "{s:?} ({u}, {v}), lod {lod}: {r}");
@@ -249,7 +306,13 @@ mod tests {
         assert_eq!(empty.sample(&NEAREST, 0.5, 0.5, 0.0, &[0.0; 256]), [1.0; 4]);
         let hollow = Texture { levels: vec![Plane::default()], ..empty };
         assert_eq!(
-            hollow.sample(&linear(Wrap::Repeat), 0.5, 0.5, 0.0, &decode_table(Encoding::Linear, false)),
+            hollow.sample(
+                &linear(Wrap::Repeat),
+                0.5,
+                0.5,
+                0.0,
+                &decode_table(Encoding::Linear, false)
+            ),
             [1.0; 4]
         );
     }

@@ -1,4 +1,5 @@
-//! Arguments from and results to the client's memory, and calls that differ in nothing but the type of a parameter.
+//! Arguments from and results to the client's memory, and calls that differ in nothing but the type
+//! of a parameter.
 
 use crate::{ClientMemory, Context, enums as gl};
 use bytemuck::{NoUninit, Pod};
@@ -77,14 +78,25 @@ pub(super) fn unit64(value: f64) -> f64 {
 }
 
 /// Reads `count` values; the rest of the array is 0. `None` if the memory cannot be read.
-pub(super) fn read<T: Pod, const N: usize>(memory: &dyn ClientMemory, address: usize, count: usize) -> Option<[T; N]> {
+pub(super) fn read<T: Pod, const N: usize>(
+    memory: &dyn ClientMemory,
+    address: usize,
+    count: usize,
+) -> Option<[T; N]> {
     let mut values = [T::zeroed(); N];
-    let readable = count == 0 || (address != 0 && memory.read(address, bytemuck::cast_slice_mut(&mut values[..count])));
+    let readable = count == 0
+        || (address != 0 && memory.read(address, bytemuck::cast_slice_mut(&mut values[..count])));
     readable.then_some(values)
 }
 
-/// A string of `length` bytes, or up to its NUL if `length` is negative; no longer than `limit` bytes.
-pub(super) fn read_string(memory: &dyn ClientMemory, address: usize, length: i32, limit: usize) -> Text {
+/// A string of `length` bytes, or up to its NUL if `length` is negative; no longer than `limit`
+/// bytes.
+pub(super) fn read_string(
+    memory: &dyn ClientMemory,
+    address: usize,
+    length: i32,
+    limit: usize,
+) -> Text {
     if address == 0 {
         return Text::Unreadable;
     }
@@ -95,7 +107,11 @@ pub(super) fn read_string(memory: &dyn ClientMemory, address: usize, length: i32
             return Text::TooLong;
         }
         let mut bytes = vec![0; length];
-        return if memory.read(address, &mut bytes) { Text::Bytes(bytes) } else { Text::Unreadable };
+        return if memory.read(address, &mut bytes) {
+            Text::Bytes(bytes)
+        } else {
+            Text::Unreadable
+        };
     }
 
     // Otherwise read byte by byte up to the NUL.
@@ -125,7 +141,8 @@ pub(super) enum Text {
 }
 
 impl Context {
-    /// Reads `count` arguments; the rest of the array is 0. Records an error if the memory cannot be read.
+    /// Reads `count` arguments; the rest of the array is 0. Records an error if the memory cannot
+    /// be read.
     pub(super) fn take_arguments<T: Pod, const N: usize>(
         &mut self,
         call: &str,
@@ -140,7 +157,12 @@ impl Context {
     }
 
     /// Writes results; `false` if the memory cannot be written, which is an error.
-    pub(super) fn give_results<T: NoUninit>(&mut self, call: &str, address: usize, values: &[T]) -> bool {
+    pub(super) fn give_results<T: NoUninit>(
+        &mut self,
+        call: &str,
+        address: usize,
+        values: &[T],
+    ) -> bool {
         let bytes: &[u8] = bytemuck::cast_slice(values);
         let written = bytes.is_empty() || (address != 0 && self.memory.write(address, bytes));
         if !written {
@@ -174,7 +196,13 @@ impl Context {
     }
 
     /// Whether `value` is one of `allowed`; else records INVALID_ENUM.
-    pub(super) fn check_enum(&mut self, call: &str, name: &str, value: u32, allowed: &[u32]) -> bool {
+    pub(super) fn check_enum(
+        &mut self,
+        call: &str,
+        name: &str,
+        value: u32,
+        allowed: &[u32],
+    ) -> bool {
         let good = allowed.contains(&value);
         if !good {
             self.refuse_enum(call, name, value);
@@ -183,8 +211,9 @@ impl Context {
     }
 }
 
-/// A setter of one number: `glFogf`. `form` is a function from parameter name to [`Form`]; `exec` checks and stores. The
-/// specification does not say what it does to a parameter that has several numbers; as in Mesa the others become 0.
+/// A setter of one number: `glFogf`. `form` is a function from parameter name to [`Form`]; `exec`
+/// checks and stores. The specification does not say what it does to a parameter that has several
+/// numbers; as in Mesa the others become 0.
 macro_rules! scalar_call {
     ($name:ident, $call:literal, $type:ty, $form:path, $exec:ident $(, $key:ident)*) => {
         #[doc = concat!("`", $call, "`.")]

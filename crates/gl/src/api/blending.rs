@@ -38,14 +38,19 @@ impl Context {
         source_alpha: u32,
         destination_alpha: u32,
     ) {
-        let (source, destination) = ([source_rgb, source_alpha], [destination_rgb, destination_alpha]);
+        let (source, destination) =
+            ([source_rgb, source_alpha], [destination_rgb, destination_alpha]);
         self.listable(move |c| c.exec_blend_func("glBlendFuncSeparate", source, destination));
     }
 
     fn exec_blend_func(&mut self, call: &str, source: [u32; 2], destination: [u32; 2]) {
         if self.may_set(call)
-            && source.into_iter().all(|factor| self.check_enum(call, "source factor", factor, &FACTORS))
-            && destination.into_iter().all(|factor| self.check_enum(call, "destination factor", factor, &FACTORS[1..]))
+            && source
+                .into_iter()
+                .all(|factor| self.check_enum(call, "source factor", factor, &FACTORS))
+            && destination
+                .into_iter()
+                .all(|factor| self.check_enum(call, "destination factor", factor, &FACTORS[1..]))
         {
             self.state.blend.source = source;
             self.state.blend.destination = destination;
@@ -55,7 +60,9 @@ impl Context {
     /// `glBlendEquation`.
     pub fn blend_equation(&mut self, mode: u32) {
         self.listable(move |c| {
-            if c.may_set("glBlendEquation") && c.check_enum("glBlendEquation", "mode", mode, &EQUATIONS) {
+            if c.may_set("glBlendEquation")
+                && c.check_enum("glBlendEquation", "mode", mode, &EQUATIONS)
+            {
                 c.state.blend.equation = [mode; 2];
             }
         });
@@ -111,7 +118,10 @@ mod tests {
                 let good = destination != gl::SRC_ALPHA_SATURATE;
                 assert_eq!(c.get_error(), if good { gl::NO_ERROR } else { gl::INVALID_ENUM });
                 if good {
-                    assert_eq!((c.state.blend.source, c.state.blend.destination), ([source; 2], [destination; 2]));
+                    assert_eq!(
+                        (c.state.blend.source, c.state.blend.destination),
+                        ([source; 2], [destination; 2])
+                    );
                 }
             }
         }

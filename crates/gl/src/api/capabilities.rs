@@ -54,7 +54,12 @@ pub(super) fn saved_capabilities() -> impl Iterator<Item = u32> {
     let planes = (0..MAX_CLIP_PLANES as u32).map(|i| gl::CLIP_PLANE0 + i);
     let lights = (0..MAX_LIGHTS as u32).map(|i| gl::LIGHT0 + i);
     let maps = (0..9).flat_map(|i| [gl::MAP1_COLOR_4 + i, gl::MAP2_COLOR_4 + i]);
-    SINGLE_CAPABILITIES[..SINGLE_CAPABILITIES.len() - 2].iter().copied().chain(planes).chain(lights).chain(maps)
+    SINGLE_CAPABILITIES[..SINGLE_CAPABILITIES.len() - 2]
+        .iter()
+        .copied()
+        .chain(planes)
+        .chain(lights)
+        .chain(maps)
 }
 
 /// Where the enables of a texture target are.
@@ -164,7 +169,8 @@ impl Context {
         Some(&mut array.enabled)
     }
 
-    /// Sets a server capability; `false` if there is none of that name. What waits is drawn before it changes.
+    /// Sets a server capability; `false` if there is none of that name. What waits is drawn before
+    /// it changes.
     pub(super) fn set_capability(&mut self, cap: u32, on: bool) -> bool {
         match self.capability(cap) {
             None => return false,
@@ -195,7 +201,8 @@ impl Context {
         }
     }
 
-    /// Arrays are client state: EXT_vertex_array enables them with Enable, which is then not compiled into lists.
+    /// Arrays are client state: EXT_vertex_array enables them with Enable, which is then not
+    /// compiled into lists.
     fn switch(&mut self, call: &'static str, cap: u32, on: bool) {
         if self.client_capability(cap).is_none() {
             self.listable_keeping(move |c| c.exec_capability(call, cap, on));
@@ -221,7 +228,10 @@ impl Context {
         if !self.may_set("glIsEnabled") {
             return 0;
         }
-        let switch = self.capability(cap).map(|on| *on).or_else(|| self.client_capability(cap).map(|on| *on));
+        let switch = self
+            .capability(cap)
+            .map(|on| *on)
+            .or_else(|| self.client_capability(cap).map(|on| *on));
         if switch.is_none() {
             self.refuse_enum("glIsEnabled", "cap", cap);
         }
@@ -237,8 +247,13 @@ mod tests {
     #[test]
     fn every_capability_switches_alone() {
         let mut c = context();
-        let textures =
-            [gl::TEXTURE_1D, gl::TEXTURE_2D, gl::TEXTURE_3D, gl::TEXTURE_CUBE_MAP, gl::TEXTURE_RECTANGLE_ARB];
+        let textures = [
+            gl::TEXTURE_1D,
+            gl::TEXTURE_2D,
+            gl::TEXTURE_3D,
+            gl::TEXTURE_CUBE_MAP,
+            gl::TEXTURE_RECTANGLE_ARB,
+        ];
         let generation = (0..4).map(|i| gl::TEXTURE_GEN_S + i);
         let all: Vec<u32> = saved_capabilities().chain(textures).chain(generation).collect();
         for cap in &all {

@@ -32,7 +32,12 @@ impl Context {
                 }
             }
             gl::FOG_COORD_SRC => {
-                if self.check_enum(call, "source", token(value), &[gl::FOG_COORD, gl::FRAGMENT_DEPTH]) {
+                if self.check_enum(
+                    call,
+                    "source",
+                    token(value),
+                    &[gl::FOG_COORD, gl::FRAGMENT_DEPTH],
+                ) {
                     self.state.fog.source = token(value);
                 }
             }

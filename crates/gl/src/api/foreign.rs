@@ -10,7 +10,9 @@ impl Context {
 
     /// Address, size and type of the feedback buffer.
     pub(crate) fn feedback_buffer_state(&self) -> (usize, i32, u32) {
-        self.feedback.buffer.map_or((0, 0, gl::_2D), |(address, size, kind)| (address, size as i32, kind))
+        self.feedback
+            .buffer
+            .map_or((0, 0, gl::_2D), |(address, size, kind)| (address, size as i32, kind))
     }
 
     /// Address and size of the selection buffer.
@@ -48,7 +50,8 @@ impl Context {
         }
     }
 
-    /// Binds a vertex array object: its arrays move to `client`, those of the one bound before move out.
+    /// Binds a vertex array object: its arrays move to `client`, those of the one bound before move
+    /// out.
     pub(crate) fn switch_vertex_array(&mut self, name: u32) {
         self.bind_vertex_array(name);
     }

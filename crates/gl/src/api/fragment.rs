@@ -46,7 +46,8 @@ impl Context {
 
 /// Stencil.
 impl Context {
-    /// The faces that the calls without `Separate` set: front and back, or the back of EXT_stencil_two_side.
+    /// The faces that the calls without `Separate` set: front and back, or the back of
+    /// EXT_stencil_two_side.
     fn change_stencil(&mut self, change: impl Fn(&mut StencilFace)) {
         let stencil = &mut self.state.stencil;
         if stencil.active_face == 0 {
@@ -59,8 +60,12 @@ impl Context {
     /// `glStencilFunc`.
     pub fn stencil_func(&mut self, func: u32, reference: i32, mask: u32) {
         self.listable(move |c| {
-            if c.may_set("glStencilFunc") && c.check_enum("glStencilFunc", "func", func, &COMPARISONS) {
-                c.change_stencil(|face| (face.func, face.reference, face.value_mask) = (func, reference, mask));
+            if c.may_set("glStencilFunc")
+                && c.check_enum("glStencilFunc", "func", func, &COMPARISONS)
+            {
+                c.change_stencil(|face| {
+                    (face.func, face.reference, face.value_mask) = (func, reference, mask)
+                });
             }
         });
     }
@@ -70,7 +75,11 @@ impl Context {
         self.listable(move |c| {
             let ops = [fail, depth_fail, pass];
             let call = "glStencilOp";
-            if c.may_set(call) && ops.into_iter().all(|op| c.check_enum(call, "operation", op, &STENCIL_OPERATIONS)) {
+            if c.may_set(call)
+                && ops
+                    .into_iter()
+                    .all(|op| c.check_enum(call, "operation", op, &STENCIL_OPERATIONS))
+            {
                 c.change_stencil(|face| face.ops = ops);
             }
         });
@@ -133,7 +142,8 @@ impl Context {
         });
     }
 
-    /// `OSMesaColorClamp`: whether colours of fragments are clamped even on their way to buffers of floats.
+    /// `OSMesaColorClamp`: whether colours of fragments are clamped even on their way to buffers of
+    /// floats.
     pub fn set_fragment_clamp(&mut self, on: bool) {
         self.state.color_buffer.clamps[1] = if on { gl::TRUE } else { gl::FIXED_ONLY };
     }
@@ -158,7 +168,9 @@ impl Context {
         self.listable(move |c| {
             let call = "glStencilFuncSeparateATI";
             let funcs = [front, back];
-            if c.may_set(call) && funcs.into_iter().all(|func| c.check_enum(call, "func", func, &COMPARISONS)) {
+            if c.may_set(call)
+                && funcs.into_iter().all(|func| c.check_enum(call, "func", func, &COMPARISONS))
+            {
                 for (face, func) in c.state.stencil.faces.iter_mut().zip(funcs) {
                     (face.func, face.reference, face.value_mask) = (func, reference, mask);
                 }
@@ -222,7 +234,10 @@ mod tests {
         let calls: [(Call, u32); 6] = [
             (|c| c.stencil_func(0x208, 1, 1), gl::INVALID_ENUM),
             (|c| c.stencil_op(gl::ZERO, gl::ZERO, gl::ONE), gl::INVALID_ENUM),
-            (|c| c.stencil_op_separate_ati(gl::LEFT, gl::ZERO, gl::ZERO, gl::ZERO), gl::INVALID_ENUM),
+            (
+                |c| c.stencil_op_separate_ati(gl::LEFT, gl::ZERO, gl::ZERO, gl::ZERO),
+                gl::INVALID_ENUM,
+            ),
             (|c| c.depth_func(0), gl::INVALID_ENUM),
             (|c| c.alpha_func(0, 0.5), gl::INVALID_ENUM),
             (|c| c.scissor(0, 0, 1, -1), gl::INVALID_VALUE),
@@ -241,21 +256,30 @@ mod tests {
         c.stencil_op(gl::KEEP, gl::KEEP, gl::INCR);
         assert_eq!(c.state.stencil.back().ops[2], gl::INCR);
         c.stencil_op_separate_ati(gl::BACK, gl::KEEP, gl::KEEP, gl::DECR);
-        assert_eq!((c.state.stencil.front().ops[2], c.state.stencil.back().ops[2]), (gl::INCR, gl::DECR));
+        assert_eq!(
+            (c.state.stencil.front().ops[2], c.state.stencil.back().ops[2]),
+            (gl::INCR, gl::DECR)
+        );
         c.active_stencil_face_ext(gl::BACK);
         c.stencil_op(gl::KEEP, gl::KEEP, gl::INVERT);
         c.active_stencil_face_ext(gl::FRONT);
         c.stencil_mask(0x0F);
         assert_eq!(c.state.stencil.back().ops[2], gl::DECR);
         c.enable(gl::STENCIL_TEST_TWO_SIDE_EXT);
-        assert_eq!((c.state.stencil.back().ops[2], c.state.stencil.back().write_mask), (gl::INVERT, u32::MAX));
+        assert_eq!(
+            (c.state.stencil.back().ops[2], c.state.stencil.back().write_mask),
+            (gl::INVERT, u32::MAX)
+        );
         c.stencil_func_separate(gl::BACK, gl::EQUAL, 9, 1);
         c.stencil_mask_separate(gl::FRONT, 3);
         let faces = c.state.stencil.faces;
         assert_eq!([faces[0].func, faces[1].func], [gl::ALWAYS, gl::EQUAL]);
         assert_eq!([faces[0].write_mask, faces[1].write_mask], [3, 0x0F]);
         c.stencil_func_separate_ati(gl::LESS, gl::GREATER, 3, 7);
-        assert_eq!((c.state.stencil.faces[0].func, c.state.stencil.faces[1].func), (gl::LESS, gl::GREATER));
+        assert_eq!(
+            (c.state.stencil.faces[0].func, c.state.stencil.faces[1].func),
+            (gl::LESS, gl::GREATER)
+        );
     }
 
     #[test]

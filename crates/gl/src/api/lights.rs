@@ -24,7 +24,9 @@ fn light_form(pname: u32) -> Option<Form> {
 fn model_form(pname: u32) -> Option<Form> {
     Some(match pname {
         gl::LIGHT_MODEL_AMBIENT => Form::Color,
-        gl::LIGHT_MODEL_LOCAL_VIEWER | gl::LIGHT_MODEL_TWO_SIDE | gl::LIGHT_MODEL_COLOR_CONTROL => Form::Scalar,
+        gl::LIGHT_MODEL_LOCAL_VIEWER | gl::LIGHT_MODEL_TWO_SIDE | gl::LIGHT_MODEL_COLOR_CONTROL => {
+            Form::Scalar
+        }
         _ => return None,
     })
 }
@@ -46,7 +48,9 @@ impl Context {
         let good = match pname {
             gl::SPOT_EXPONENT => (0.0..=128.0).contains(&value),
             gl::SPOT_CUTOFF => (0.0..=90.0).contains(&value) || value == 180.0,
-            gl::CONSTANT_ATTENUATION | gl::LINEAR_ATTENUATION | gl::QUADRATIC_ATTENUATION => value >= 0.0,
+            gl::CONSTANT_ATTENUATION | gl::LINEAR_ATTENUATION | gl::QUADRATIC_ATTENUATION => {
+                value >= 0.0
+            }
             _ => true,
         };
         if !good {
@@ -54,8 +58,10 @@ impl Context {
         }
 
         // Transform positions and directions to eye space.
-        let position = self.modelview64() * dvec4(value.into(), values[1].into(), values[2].into(), values[3].into());
-        let direction = DMat3::from_mat4(self.modelview64()) * dvec3(value.into(), values[1].into(), values[2].into());
+        let position = self.modelview64()
+            * dvec4(value.into(), values[1].into(), values[2].into(), values[3].into());
+        let direction = DMat3::from_mat4(self.modelview64())
+            * dvec3(value.into(), values[1].into(), values[2].into());
 
         // Store the value.
         let light = &mut self.state.lighting.lights[index];
@@ -131,7 +137,12 @@ impl Context {
             gl::LIGHT_MODEL_TWO_SIDE => model.two_side = values[0] != 0.0,
             gl::LIGHT_MODEL_COLOR_CONTROL => {
                 let control = token(values[0]);
-                if self.check_enum(call, "control", control, &[gl::SINGLE_COLOR, gl::SEPARATE_SPECULAR_COLOR]) {
+                if self.check_enum(
+                    call,
+                    "control",
+                    control,
+                    &[gl::SINGLE_COLOR, gl::SEPARATE_SPECULAR_COLOR],
+                ) {
                     self.state.lighting.model.color_control = control;
                 }
             }
@@ -143,7 +154,8 @@ impl Context {
     pub fn shade_model(&mut self, mode: u32) {
         self.listable_keeping(move |c| {
             let call = "glShadeModel";
-            let allowed = c.may_set(call) && c.check_enum(call, "mode", mode, &[gl::FLAT, gl::SMOOTH]);
+            let allowed =
+                c.may_set(call) && c.check_enum(call, "mode", mode, &[gl::FLAT, gl::SMOOTH]);
             if allowed && c.state.lighting.shade_model != mode {
                 c.flush_vertices();
                 c.state.lighting.shade_model = mode;

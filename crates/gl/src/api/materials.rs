@@ -7,7 +7,9 @@ use crate::{Context, enums as gl};
 
 fn material_form(pname: u32) -> Option<Form> {
     Some(match pname {
-        gl::AMBIENT | gl::DIFFUSE | gl::SPECULAR | gl::EMISSION | gl::AMBIENT_AND_DIFFUSE => Form::Color,
+        gl::AMBIENT | gl::DIFFUSE | gl::SPECULAR | gl::EMISSION | gl::AMBIENT_AND_DIFFUSE => {
+            Form::Color
+        }
         gl::SHININESS => Form::Scalar,
         gl::COLOR_INDEXES => Form::Vector(3),
         _ => return None,
@@ -56,9 +58,15 @@ macro_rules! material_call {
         #[doc = concat!("`", $call, "`.")]
         pub fn $name(&mut self, face: u32, pname: u32, params: usize) {
             let form = material_form(pname);
-            let Some(given) = self.take_arguments::<$type, 4>($call, params, Form::count(form)) else { return };
-            let values =
-                if form == Some(Form::Color) { given.map(Number::normalized) } else { given.map(Number::plain) };
+            let Some(given) = self.take_arguments::<$type, 4>($call, params, Form::count(form))
+            else {
+                return;
+            };
+            let values = if form == Some(Form::Color) {
+                given.map(Number::normalized)
+            } else {
+                given.map(Number::plain)
+            };
             self.listable_keeping(move |c| c.exec_material($call, face, pname, values));
         }
     };
@@ -110,7 +118,11 @@ impl Context {
         let tracked = self.state.lighting.color_material;
         let Some(chosen) = faces(tracked.face).filter(|_| tracked.enabled) else { return };
         for side in (0..2).filter(|side| chosen[*side]) {
-            set_colors(&mut self.state.lighting.material[side], tracked.mode, self.state.current.color);
+            set_colors(
+                &mut self.state.lighting.material[side],
+                tracked.mode,
+                self.state.current.color,
+            );
         }
     }
 
@@ -118,7 +130,8 @@ impl Context {
     pub fn color_material(&mut self, face: u32, mode: u32) {
         self.listable(move |c| {
             let call = "glColorMaterial";
-            let modes = [gl::EMISSION, gl::AMBIENT, gl::DIFFUSE, gl::SPECULAR, gl::AMBIENT_AND_DIFFUSE];
+            let modes =
+                [gl::EMISSION, gl::AMBIENT, gl::DIFFUSE, gl::SPECULAR, gl::AMBIENT_AND_DIFFUSE];
             if !c.may_set(call)
                 || !c.check_enum(call, "face", face, &[gl::FRONT, gl::BACK, gl::FRONT_AND_BACK])
                 || !c.check_enum(call, "mode", mode, &modes)

@@ -76,7 +76,8 @@ fn multiply(top: &mut Mat4, matrix: Mat4) {
 }
 
 impl Context {
-    /// The stack that `MatrixMode` chose, to be changed: what waits to be drawn keeps the matrices that it was given with.
+    /// The stack that `MatrixMode` chose, to be changed: what waits to be drawn keeps the matrices
+    /// that it was given with.
     fn current_stack(&mut self) -> &mut MatrixStack {
         if matches!(self.state.matrices.mode, gl::PROJECTION | gl::TEXTURE) {
             self.flush_vertices();
@@ -107,7 +108,9 @@ impl Context {
     pub fn matrix_mode(&mut self, mode: u32) {
         self.listable_keeping(move |c| {
             let call = "glMatrixMode";
-            if c.may_set(call) && c.check_enum(call, "mode", mode, &[gl::MODELVIEW, gl::PROJECTION, gl::TEXTURE]) {
+            if c.may_set(call)
+                && c.check_enum(call, "mode", mode, &[gl::MODELVIEW, gl::PROJECTION, gl::TEXTURE])
+            {
                 c.state.matrices.mode = mode;
             }
         });
@@ -137,7 +140,11 @@ impl Context {
             }
             let stack = c.current_stack();
             if stack.matrices.len() <= 1 {
-                c.record_error(gl::STACK_UNDERFLOW, "glPopMatrix", "the matrix stack has one matrix");
+                c.record_error(
+                    gl::STACK_UNDERFLOW,
+                    "glPopMatrix",
+                    "the matrix stack has one matrix",
+                );
             } else {
                 stack.matrices.pop();
             }
@@ -165,7 +172,10 @@ impl Context {
 
     /// `glRotatef`.
     pub fn rotatef(&mut self, angle: f32, x: f32, y: f32, z: f32) {
-        self.multiply_matrix("glRotatef", rotation(angle.into(), dvec3(x.into(), y.into(), z.into())));
+        self.multiply_matrix(
+            "glRotatef",
+            rotation(angle.into(), dvec3(x.into(), y.into(), z.into())),
+        );
     }
 
     /// `glScaled`.
@@ -185,7 +195,10 @@ impl Context {
 
     /// `glTranslatef`.
     pub fn translatef(&mut self, x: f32, y: f32, z: f32) {
-        self.multiply_matrix("glTranslatef", DMat4::from_translation(dvec3(x.into(), y.into(), z.into())));
+        self.multiply_matrix(
+            "glTranslatef",
+            DMat4::from_translation(dvec3(x.into(), y.into(), z.into())),
+        );
     }
 
     fn project(&mut self, call: &'static str, sides: Sides, perspective: bool) {
@@ -218,8 +231,8 @@ impl Context {
         self.state.matrices.modelview.top().as_dmat4()
     }
 
-    /// A plane of model space in eye space: times the inverse of the current modelview matrix. Where that has none,
-    /// the plane stays as it is.
+    /// A plane of model space in eye space: times the inverse of the current modelview matrix.
+    /// Where that has none, the plane stays as it is.
     pub(super) fn eye_plane(&self, plane: [f64; 4]) -> [f64; 4] {
         let modelview = self.modelview64();
         let determinant = modelview.determinant();
@@ -246,7 +259,8 @@ mod tests {
         c.rotatef(90.0, 0.0, 0.0, 2.0);
         c.scalef(2.0, 3.0, 4.0);
         // x axis: scaled by 2, turned to y; y axis: scaled by 3, turned to -x.
-        let expected = [0.0, 2.0, 0.0, 0.0, -3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0, 0.0, 1.0, 2.0, 3.0, 1.0];
+        let expected =
+            [0.0, 2.0, 0.0, 0.0, -3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0, 0.0, 1.0, 2.0, 3.0, 1.0];
         assert_eq!(top(&c), expected);
     }
 

@@ -49,13 +49,16 @@ fn error_name(error: u32) -> &'static str {
 }
 
 /// Tokens in the client's memory.
-pub(crate) fn read_tokens<const N: usize>(memory: &dyn crate::ClientMemory, address: usize) -> Option<[u32; N]> {
+pub(crate) fn read_tokens<const N: usize>(
+    memory: &dyn crate::ClientMemory,
+    address: usize,
+) -> Option<[u32; N]> {
     arguments::read(memory, address, N)
 }
 
 impl Context {
-    /// Records `error` if none is pending, and tells the debug output: `call` is the entry point (`glEnable`), `why` a
-    /// sentence.
+    /// Records `error` if none is pending, and tells the debug output: `call` is the entry point
+    /// (`glEnable`), `why` a sentence.
     pub fn record_error(&mut self, error: u32, call: &str, why: &str) {
         if self.error == gl::NO_ERROR {
             self.error = error;

@@ -7,7 +7,8 @@ use crate::{ClientMemory, Context, enums as gl};
 use bytemuck::Pod;
 use std::sync::Arc;
 
-/// An entry of a pixel map as the client has it. Maps I to I and S to S hold indices, all others colours.
+/// An entry of a pixel map as the client has it. Maps I to I and S to S hold indices, all others
+/// colours.
 trait MapEntry: Pod {
     fn index(self) -> f32;
     fn color(self) -> f32;
@@ -61,7 +62,8 @@ impl Context {
         // Check the map's name and size; these errors belong to the command in a display list.
         let index = index_in(map, gl::PIXEL_MAP_I_TO_I, 10);
         let length = usize::try_from(size).ok().filter(|n| (1..=MAX_PIXEL_MAP_TABLE).contains(n));
-        // Maps that an index looks up have a power of two of entries: I to I, S to S, I to R, G, B, A.
+        // Maps that an index looks up have a power of two of entries: I to I, S to S, I to R, G, B,
+        // A.
         let length = length.filter(|n| n.is_power_of_two() || index.is_none_or(|i| i >= 6));
         let Some(index) = index else {
             return self.listable(move |c| {
@@ -104,14 +106,18 @@ impl Context {
         if !self.may_set(call) {
             return;
         }
-        let Some(index) = index_in(map, gl::PIXEL_MAP_I_TO_I, 10) else { return self.refuse_enum(call, "map", map) };
-        let entry = |v: &f32| if holds_indices(index) { T::from_index(*v) } else { T::from_color(*v) };
+        let Some(index) = index_in(map, gl::PIXEL_MAP_I_TO_I, 10) else {
+            return self.refuse_enum(call, "map", map);
+        };
+        let entry =
+            |v: &f32| if holds_indices(index) { T::from_index(*v) } else { T::from_color(*v) };
         let entries: Vec<T> = self.state.pixel.maps[index].values.iter().map(entry).collect();
         if self.client.pack.buffer.is_none() {
             self.give_results(call, values, &entries);
             return;
         }
-        let write = |memory: &dyn ClientMemory, at: usize| memory.write(at, bytemuck::cast_slice(&entries));
+        let write =
+            |memory: &dyn ClientMemory, at: usize| memory.write(at, bytemuck::cast_slice(&entries));
         if let Err((error, why)) = self.pack_into(values, size_of::<T>(), write) {
             self.record_error(error, call, why);
         }

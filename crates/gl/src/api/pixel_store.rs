@@ -51,7 +51,10 @@ impl Context {
             _ => return self.refuse_enum(call, "pname", pname),
         };
         if !stored {
-            self.refuse_value(call, "the value is negative, or an alignment that is not 1, 2, 4 or 8");
+            self.refuse_value(
+                call,
+                "the value is negative, or an alignment that is not 1, 2, 4 or 8",
+            );
         }
     }
 }
@@ -80,12 +83,16 @@ fn store_alignment(store: &mut PixelStore, value: i32) -> bool {
 impl Context {
     /// `glPixelTransferf`.
     pub fn pixel_transferf(&mut self, pname: u32, param: f32) {
-        self.listable(move |c| c.exec_pixel_transfer("glPixelTransferf", pname, param, param.round() as i32));
+        self.listable(move |c| {
+            c.exec_pixel_transfer("glPixelTransferf", pname, param, param.round() as i32)
+        });
     }
 
     /// `glPixelTransferi`.
     pub fn pixel_transferi(&mut self, pname: u32, param: i32) {
-        self.listable(move |c| c.exec_pixel_transfer("glPixelTransferi", pname, param as f32, param));
+        self.listable(move |c| {
+            c.exec_pixel_transfer("glPixelTransferi", pname, param as f32, param)
+        });
     }
 
     fn exec_pixel_transfer(&mut self, call: &str, pname: u32, value: f32, whole: i32) {

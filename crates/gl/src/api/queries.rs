@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// `SAMPLES_PASSED` counts, `ANY_SAMPLES_PASSED` tells whether there are any (ARB_occlusion_query2).
+/// `SAMPLES_PASSED` counts, `ANY_SAMPLES_PASSED` tells whether there are any
+/// (ARB_occlusion_query2).
 const TARGETS: [u32; 2] = [gl::SAMPLES_PASSED, gl::ANY_SAMPLES_PASSED];
 
 /// What a query asks, and what pending draws count into.
@@ -80,7 +81,9 @@ impl Context {
         }
         for i in 0..n as usize {
             let name = ids.checked_add(i * 4).and_then(|at| read::<u32, 1>(&*self.memory, at, 1));
-            let Some([name]) = name else { return self.refuse_value(call, "the names are not in readable memory") };
+            let Some([name]) = name else {
+                return self.refuse_value(call, "the names are not in readable memory");
+            };
             if name != 0 && self.queries.active_name() == name {
                 self.queries.active = None;
             }
@@ -133,7 +136,8 @@ impl Context {
         }
         let value = match pname {
             gl::CURRENT_QUERY => {
-                let of_target = self.queries.active.as_ref().filter(|(_, query)| query.target == target);
+                let of_target =
+                    self.queries.active.as_ref().filter(|(_, query)| query.target == target);
                 of_target.map_or(0, |(name, _)| *name)
             }
             gl::QUERY_COUNTER_BITS if target == gl::ANY_SAMPLES_PASSED => 1,
@@ -143,7 +147,8 @@ impl Context {
         self.give_results(call, params, &[value]);
     }
 
-    /// The result, as far as `limit` reaches, or 1 for its availability: asking finishes what is pending.
+    /// The result, as far as `limit` reaches, or 1 for its availability: asking finishes what is
+    /// pending.
     fn query_value(&mut self, call: &str, id: u32, pname: u32, limit: u32) -> Option<u32> {
         if !self.may_set(call) {
             return None;

@@ -34,7 +34,9 @@ impl Context {
     fn exec_point_parameter(&mut self, call: &str, pname: u32, values: [f32; 4]) {
         let points = &mut self.state.points;
         match pname {
-            gl::POINT_DISTANCE_ATTENUATION => points.attenuation = [values[0], values[1], values[2]],
+            gl::POINT_DISTANCE_ATTENUATION => {
+                points.attenuation = [values[0], values[1], values[2]]
+            }
             gl::POINT_SIZE_MIN | gl::POINT_SIZE_MAX | gl::POINT_FADE_THRESHOLD_SIZE
                 if values[0].is_nan() || values[0] < 0.0 =>
             {
@@ -75,7 +77,9 @@ impl Context {
     pub fn cull_face(&mut self, mode: u32) {
         self.listable(move |c| {
             let call = "glCullFace";
-            if c.may_set(call) && c.check_enum(call, "mode", mode, &[gl::FRONT, gl::BACK, gl::FRONT_AND_BACK]) {
+            if c.may_set(call)
+                && c.check_enum(call, "mode", mode, &[gl::FRONT, gl::BACK, gl::FRONT_AND_BACK])
+            {
                 c.state.polygons.cull_mode = mode;
             }
         });
@@ -84,7 +88,9 @@ impl Context {
     /// `glFrontFace`.
     pub fn front_face(&mut self, mode: u32) {
         self.listable(move |c| {
-            if c.may_set("glFrontFace") && c.check_enum("glFrontFace", "mode", mode, &[gl::CW, gl::CCW]) {
+            if c.may_set("glFrontFace")
+                && c.check_enum("glFrontFace", "mode", mode, &[gl::CW, gl::CCW])
+            {
                 c.state.polygons.front_face = mode;
             }
         });
@@ -94,7 +100,9 @@ impl Context {
     pub fn polygon_mode(&mut self, face: u32, mode: u32) {
         self.listable(move |c| {
             let call = "glPolygonMode";
-            if !c.may_set(call) || !c.check_enum(call, "mode", mode, &[gl::POINT, gl::LINE, gl::FILL]) {
+            if !c.may_set(call)
+                || !c.check_enum(call, "mode", mode, &[gl::POINT, gl::LINE, gl::FILL])
+            {
                 return;
             }
             let Some(chosen) = faces(face) else { return c.refuse_enum(call, "face", face) };
@@ -134,7 +142,9 @@ impl Context {
     pub fn hint(&mut self, target: u32, mode: u32) {
         self.listable(move |c| {
             let call = "glHint";
-            if !c.may_set(call) || !c.check_enum(call, "mode", mode, &[gl::FASTEST, gl::NICEST, gl::DONT_CARE]) {
+            if !c.may_set(call)
+                || !c.check_enum(call, "mode", mode, &[gl::FASTEST, gl::NICEST, gl::DONT_CARE])
+            {
                 return;
             }
             match c.state.hints.iter_mut().find(|hint| hint.0 == target) {

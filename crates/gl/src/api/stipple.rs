@@ -4,7 +4,8 @@ use crate::state::PixelStore;
 use crate::{ClientMemory, Context};
 use std::sync::Arc;
 
-/// Where row `row` of a 32x32 bitmap at `address` begins: the address of its first byte that matters, and the bit in it.
+/// Where row `row` of a 32x32 bitmap at `address` begins: the address of its first byte that
+/// matters, and the bit in it.
 fn row_start(store: &PixelStore, address: usize, row: usize) -> Option<(usize, usize)> {
     let whole = |value: i32| usize::try_from(value).unwrap_or(0);
     let length = if store.row_length > 0 { whole(store.row_length) } else { 32 };
@@ -26,7 +27,11 @@ fn locate(at: usize, lsb_first: bool) -> (usize, u8) {
 }
 
 /// Reads the 32x32 bits at `address`.
-fn read_stipple(store: &PixelStore, memory: &dyn ClientMemory, address: usize) -> Option<[u32; 32]> {
+fn read_stipple(
+    store: &PixelStore,
+    memory: &dyn ClientMemory,
+    address: usize,
+) -> Option<[u32; 32]> {
     let mut pattern = [0; 32];
     for (row, bits) in pattern.iter_mut().enumerate() {
         let (start, first) = row_start(store, address, row)?;

@@ -1,6 +1,7 @@
 //! ARB_sync: fences.
 //!
-//! Placing a fence runs what is recorded, so that each fence is passed when the call returns: nobody ever waits.
+//! Placing a fence runs what is recorded, so that each fence is passed when the call returns:
+//! nobody ever waits.
 //!
 //! Source: the ARB_sync specification.
 
@@ -47,7 +48,9 @@ impl Context {
     /// `glFenceSync`: a handle, or 0.
     pub fn fence_sync(&mut self, condition: u32, flags: u32) -> usize {
         let call = "glFenceSync";
-        if !self.may_set(call) || !self.check_enum(call, "condition", condition, &[gl::SYNC_GPU_COMMANDS_COMPLETE]) {
+        if !self.may_set(call)
+            || !self.check_enum(call, "condition", condition, &[gl::SYNC_GPU_COMMANDS_COMPLETE])
+        {
             return 0;
         }
         if flags != 0 {
@@ -102,7 +105,14 @@ impl Context {
     }
 
     /// `glGetSynciv`.
-    pub fn get_synciv(&mut self, sync: usize, pname: u32, count: i32, length: usize, values: usize) {
+    pub fn get_synciv(
+        &mut self,
+        sync: usize,
+        pname: u32,
+        count: i32,
+        length: usize,
+        values: usize,
+    ) {
         let call = "glGetSynciv";
         if !self.knows_fence(call, sync) {
             return;
@@ -136,7 +146,10 @@ mod tests {
     fn a_fence_is_passed_until_it_is_deleted() {
         let mut c = context();
         assert_eq!((c.fence_sync(gl::FOG, 0), c.get_error()), (0, gl::INVALID_ENUM));
-        assert_eq!((c.fence_sync(gl::SYNC_GPU_COMMANDS_COMPLETE, 1), c.get_error()), (0, gl::INVALID_VALUE));
+        assert_eq!(
+            (c.fence_sync(gl::SYNC_GPU_COMMANDS_COMPLETE, 1), c.get_error()),
+            (0, gl::INVALID_VALUE)
+        );
         let fence = c.fence_sync(gl::SYNC_GPU_COMMANDS_COMPLETE, 0);
         assert_ne!(fence, 0);
         assert_eq!(c.is_sync(fence), 1);

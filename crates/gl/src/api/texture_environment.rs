@@ -23,9 +23,11 @@ const FUNCTIONS: [u32; 13] = [
     gl::DOT3_RGB_EXT,
     gl::DOT3_RGBA_EXT,
 ];
-const SOURCES: [u32; 6] = [gl::TEXTURE, gl::CONSTANT, gl::PRIMARY_COLOR, gl::PREVIOUS, gl::ZERO, gl::ONE];
+const SOURCES: [u32; 6] =
+    [gl::TEXTURE, gl::CONSTANT, gl::PRIMARY_COLOR, gl::PREVIOUS, gl::ZERO, gl::ONE];
 /// Of RGB; alpha has the first two.
-const OPERANDS: [u32; 4] = [gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA, gl::SRC_COLOR, gl::ONE_MINUS_SRC_COLOR];
+const OPERANDS: [u32; 4] =
+    [gl::SRC_ALPHA, gl::ONE_MINUS_SRC_ALPHA, gl::SRC_COLOR, gl::ONE_MINUS_SRC_COLOR];
 
 fn form(pname: u32) -> Option<Form> {
     Some(match pname {
@@ -81,7 +83,9 @@ fn accepts(slot: Slot, value: u32) -> bool {
 /// Whether `pname` is a parameter of `target`; `None` if there is no such target.
 fn belongs(target: u32, pname: u32) -> Option<bool> {
     Some(match target {
-        gl::TEXTURE_ENV => form(pname).is_some() && !matches!(pname, gl::TEXTURE_LOD_BIAS | gl::COORD_REPLACE_ARB),
+        gl::TEXTURE_ENV => {
+            form(pname).is_some() && !matches!(pname, gl::TEXTURE_LOD_BIAS | gl::COORD_REPLACE_ARB)
+        }
         gl::TEXTURE_FILTER_CONTROL => pname == gl::TEXTURE_LOD_BIAS,
         gl::POINT_SPRITE_ARB => pname == gl::COORD_REPLACE_ARB,
         _ => return None,
@@ -113,12 +117,18 @@ impl Context {
         match pname {
             gl::TEXTURE_ENV_COLOR => environment.color = values.map(unit),
             gl::TEXTURE_LOD_BIAS => environment.lod_bias = value,
-            gl::COORD_REPLACE_ARB if value == 0.0 || value == 1.0 => environment.coord_replace = value == 1.0,
-            gl::COORD_REPLACE_ARB => self.refuse_value(call, "the value is neither GL_TRUE nor GL_FALSE"),
+            gl::COORD_REPLACE_ARB if value == 0.0 || value == 1.0 => {
+                environment.coord_replace = value == 1.0
+            }
+            gl::COORD_REPLACE_ARB => {
+                self.refuse_value(call, "the value is neither GL_TRUE nor GL_FALSE")
+            }
             gl::RGB_SCALE | gl::ALPHA_SCALE if [1.0, 2.0, 4.0].contains(&value) => {
                 environment.combine.scale[usize::from(pname == gl::ALPHA_SCALE)] = value;
             }
-            gl::RGB_SCALE | gl::ALPHA_SCALE => self.refuse_value(call, "the scale is not 1, 2 or 4"),
+            gl::RGB_SCALE | gl::ALPHA_SCALE => {
+                self.refuse_value(call, "the scale is not 1, 2 or 4")
+            }
             _ => self.set_environment_token(call, pname, token(value)),
         }
     }
@@ -127,8 +137,12 @@ impl Context {
         let environment = &mut self.state.units[self.state.active_unit].environment;
         let (good, field) = match (pname, combine_slot(pname)) {
             (_, Some(slot)) => (accepts(slot, value), slot_of(&mut environment.combine, slot)),
-            (gl::COMBINE_RGB, _) => (FUNCTIONS.contains(&value), &mut environment.combine.functions[0]),
-            (gl::COMBINE_ALPHA, _) => (FUNCTIONS[..9].contains(&value), &mut environment.combine.functions[1]),
+            (gl::COMBINE_RGB, _) => {
+                (FUNCTIONS.contains(&value), &mut environment.combine.functions[0])
+            }
+            (gl::COMBINE_ALPHA, _) => {
+                (FUNCTIONS[..9].contains(&value), &mut environment.combine.functions[1])
+            }
             _ => (MODES.contains(&value), &mut environment.mode),
         };
         if good {

@@ -32,7 +32,9 @@ impl Context {
     vector_call!(tex_geniv, "glTexGeniv", i32, form, exec_tex_gen, coord);
 
     fn exec_tex_gen(&mut self, call: &str, coord: u32, pname: u32, values: [f32; 4]) {
-        let Some(index) = index_in(coord, gl::S, 4) else { return self.refuse_enum(call, "coord", coord) };
+        let Some(index) = index_in(coord, gl::S, 4) else {
+            return self.refuse_enum(call, "coord", coord);
+        };
         let unit = self.state.active_unit;
         match pname {
             gl::TEXTURE_GEN_MODE => {

@@ -1,4 +1,5 @@
-//! Tokens of extensions that OpenGL 2.0 and later took in, by the names they have there, without a suffix; by value.
+//! Tokens of extensions that OpenGL 2.0 and later took in, by the names they have there, without a
+//! suffix; by value.
 
 pub const MAP_READ_BIT: u32 = 0x0001;
 pub const SYNC_FLUSH_COMMANDS_BIT: u32 = 0x0001;

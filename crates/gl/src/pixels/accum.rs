@@ -1,4 +1,5 @@
-//! The accumulation buffer. It belongs to framebuffer 0 and is touched by these calls alone, at once.
+//! The accumulation buffer. It belongs to framebuffer 0 and is touched by these calls alone, at
+//! once.
 
 use super::image::lock;
 use super::texels::{color_from_word, word_from_color};
@@ -97,7 +98,9 @@ impl Context {
     fn accumulate(&mut self, value: f32, load: bool, clip: [i32; 4]) {
         let Some(surfaces) = self.read_surfaces("glAccum", true, None) else { return };
         let source = surfaces.color.and_then(|s| s.color).filter(|_| self.framebuffers.read == 0);
-        let (Some(source), Some(plane)) = (source, self.default_framebuffer.accum()) else { return };
+        let (Some(source), Some(plane)) = (source, self.default_framebuffer.accum()) else {
+            return;
+        };
         let source = lock(&source);
         let mut colors = vec![[0.0; 4]; (clip[2] - clip[0]) as usize];
         for_rows(plane, clip, |y, row| {

@@ -77,7 +77,8 @@ impl Context {
         self.restore_buffer(token, false);
     }
 
-    /// Another framebuffer may be bound than the one that had the value: then it does not fit, and is left out.
+    /// Another framebuffer may be bound than the one that had the value: then it does not fit, and
+    /// is left out.
     fn restore_buffer(&mut self, token: u32, draw: bool) {
         let name = if draw { self.framebuffers.draw } else { self.framebuffers.read };
         if self.buffer_choice(token, name != 0, draw).is_ok() {
@@ -93,7 +94,8 @@ impl Context {
         let unsigned = i32::cast_unsigned;
         let object = self.framebuffers.object(self.framebuffers.draw).is_some();
         // Framebuffer 0 has its colours even while nothing is drawn to them.
-        let surfaces = if object { self.draw_surfaces() } else { self.default_framebuffer.surfaces(FRONT) };
+        let surfaces =
+            if object { self.draw_surfaces() } else { self.default_framebuffer.surfaces(FRONT) };
         let accum = if object { 0 } else { unsigned(self.default_framebuffer.accum_bits()) };
         FramebufferBits {
             color: bits(&surfaces.color).rgba.map(unsigned),
@@ -136,8 +138,9 @@ impl Context {
         SavedTextures { bound: std::array::from_fn(name), textures }
     }
 
-    /// Binds textures again, and gives those that were bound then their parameters back. Ones deleted since are replaced by
-    /// the default one, as in the binding when they were deleted; so is a name that has become another target's texture.
+    /// Binds textures again, and gives those that were bound then their parameters back. Ones
+    /// deleted since are replaced by the default one, as in the binding when they were deleted; so
+    /// is a name that has become another target's texture.
     pub(crate) fn restore_bound_textures(&mut self, saved: SavedTextures) {
         for (names, bound) in saved.bound.iter().zip(&mut self.textures.bound) {
             for (slot, (name, bound)) in names.iter().zip(bound).enumerate() {

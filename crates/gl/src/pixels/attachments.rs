@@ -1,4 +1,5 @@
-//! Framebuffer objects: what is attached to them, the planes behind that, and whether they are complete.
+//! Framebuffer objects: what is attached to them, the planes behind that, and whether they are
+//! complete.
 
 use super::image::{Shared, lock};
 use super::internal_format::InternalFormat;
@@ -73,7 +74,8 @@ pub(crate) struct Surface {
 }
 
 impl Attached {
-    /// The image, with the plane that point `point` needs. `None` if the attachment is not complete.
+    /// The image, with the plane that point `point` needs. `None` if the attachment is not
+    /// complete.
     pub(crate) fn surface(&self, point: usize) -> Option<Surface> {
         let surface = match self {
             Self::Renderbuffer(renderbuffer) => {
@@ -155,26 +157,33 @@ impl FramebufferObject {
         if out.status != FRAMEBUFFER_COMPLETE {
             return out;
         }
-        // ARB_framebuffer_object has drawing and reading of attachments that are not there make a framebuffer incomplete.
-        // OpenGL 4.1 dropped the rule, Mesa does not have it, and programs rely on that: here it is for buffers that were
-        // named, not for the first, which is the initial value.
+        // ARB_framebuffer_object has drawing and reading of attachments that are not there make a
+        // framebuffer incomplete. OpenGL 4.1 dropped the rule, Mesa does not have it, and programs
+        // rely on that: here it is for buffers that were named, not for the first, which is the
+        // initial value.
         let missing = |buffer: u32| {
-            buffer != COLOR_ATTACHMENT0 && color_point(buffer).is_some_and(|p| self.attachments[p].is_none())
+            buffer != COLOR_ATTACHMENT0
+                && color_point(buffer).is_some_and(|p| self.attachments[p].is_none())
         };
         out.status = match found.first().map(|f| f.1.samples) {
             None => FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT,
             _ if missing(self.draw_buffer) => FRAMEBUFFER_INCOMPLETE_DRAW_BUFFER,
             _ if missing(self.read_buffer) => FRAMEBUFFER_INCOMPLETE_READ_BUFFER,
-            Some(samples) if found.iter().any(|f| f.1.samples != samples) => FRAMEBUFFER_INCOMPLETE_MULTISAMPLE,
+            Some(samples) if found.iter().any(|f| f.1.samples != samples) => {
+                FRAMEBUFFER_INCOMPLETE_MULTISAMPLE
+            }
             Some(samples) => {
                 // The area that all images have.
-                let least = |size: fn(&Viewport) -> u32| found.iter().map(|f| size(&f.1.viewport)).min().unwrap_or(0);
+                let least = |size: fn(&Viewport) -> u32| {
+                    found.iter().map(|f| size(&f.1.viewport)).min().unwrap_or(0)
+                };
                 out.size = Viewport::new(least(|v| v.width), least(|v| v.height));
                 out.samples = samples;
                 FRAMEBUFFER_COMPLETE
             }
         };
-        let mut take = |point| found.iter().position(|f| f.0 == point).map(|i| found.swap_remove(i).1);
+        let mut take =
+            |point| found.iter().position(|f| f.0 == point).map(|i| found.swap_remove(i).1);
         out.color = color_point(buffer).and_then(&mut take);
         out.depth = take(DEPTH_POINT);
         out.stencil = take(STENCIL_POINT);

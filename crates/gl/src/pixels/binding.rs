@@ -55,13 +55,15 @@ impl Context {
         Some(self.bound_texture(unit, slot))
     }
 
-    /// The texture that unit `unit` samples: the enabled target of highest priority, if its texture is complete.
+    /// The texture that unit `unit` samples: the enabled target of highest priority, if its texture
+    /// is complete.
     pub(crate) fn sampled_texture(&mut self, unit: usize) -> Option<Arc<Texture>> {
         let object = self.sampled_object(unit)?;
         if lock(&object).is_stale() {
             self.flush_recorded();
         }
-        let sampler = self.textures.samplers[unit].as_ref().map(|sampler| lock(sampler).parameters.clone());
+        let sampler =
+            self.textures.samplers[unit].as_ref().map(|sampler| lock(sampler).parameters.clone());
         lock(&object).sampled(self.state.cube_map_seamless, sampler.as_ref())
     }
 
@@ -112,7 +114,9 @@ impl Context {
         }
         match usize::try_from(count) {
             Err(_) => self.record_error(INVALID_VALUE, call, "n is negative"),
-            Ok(count) if count > MAX_NAMES => self.record_error(OUT_OF_MEMORY, call, "n is too large"),
+            Ok(count) if count > MAX_NAMES => {
+                self.record_error(OUT_OF_MEMORY, call, "n is too large")
+            }
             Ok(count) => return Some(count),
         }
         None
@@ -183,14 +187,21 @@ impl Context {
             return;
         };
         let new = || Arc::new(Mutex::new(TextureObject::new(name, slot)));
-        let texture =
-            (name != 0).then(|| lock(&self.shared.textures).entry(name).or_default().get_or_insert_with(new).clone());
+        let texture = (name != 0).then(|| {
+            lock(&self.shared.textures).entry(name).or_default().get_or_insert_with(new).clone()
+        });
         if texture.as_ref().is_some_and(|texture| lock(texture).slot != slot) {
-            self.record_error(INVALID_OPERATION, CALL, "the texture was bound to another target before");
+            self.record_error(
+                INVALID_OPERATION,
+                CALL,
+                "the texture was bound to another target before",
+            );
             return;
         }
         let unit = self.state.active_unit;
-        if self.textures.bound[unit][slot].as_ref().map(Arc::as_ptr) != texture.as_ref().map(Arc::as_ptr) {
+        if self.textures.bound[unit][slot].as_ref().map(Arc::as_ptr)
+            != texture.as_ref().map(Arc::as_ptr)
+        {
             self.flush_vertices();
             self.textures.bound[unit][slot] = texture;
         }
@@ -201,7 +212,8 @@ impl Context {
         const CALL: &str = "glPrioritizeTextures";
         let names = self.read_names(CALL, n, textures);
         let mut values = vec![0.0f32; names.len()];
-        let there = priorities != 0 && self.memory.read(priorities, bytemuck::cast_slice_mut(&mut values));
+        let there =
+            priorities != 0 && self.memory.read(priorities, bytemuck::cast_slice_mut(&mut values));
         // Between Begin and End even a call without names is an error.
         if !names.is_empty() && !there {
             return;
@@ -250,7 +262,12 @@ impl Context {
     /// Whether `name` is bound anywhere here.
     #[cfg(test)]
     pub(crate) fn is_bound(&self, name: u32) -> bool {
-        self.textures.bound.as_flattened().iter().flatten().any(|texture| lock(texture).name == name)
+        self.textures
+            .bound
+            .as_flattened()
+            .iter()
+            .flatten()
+            .any(|texture| lock(texture).name == name)
     }
 }
 
@@ -284,7 +301,17 @@ mod tests {
         let mut c = context();
         let mut other = Context::new(c.memory.clone(), c.shared.clone());
         c.bind_texture(TEXTURE_CUBE_MAP, 5);
-        c.tex_image_2d(TEXTURE_CUBE_MAP_NEGATIVE_Z, 0, RGBA as i32, 2, 2, 0, RGBA, UNSIGNED_BYTE, 0);
+        c.tex_image_2d(
+            TEXTURE_CUBE_MAP_NEGATIVE_Z,
+            0,
+            RGBA as i32,
+            2,
+            2,
+            0,
+            RGBA,
+            UNSIGNED_BYTE,
+            0,
+        );
         c.bind_renderbuffer_ext(RENDERBUFFER, 5);
         c.renderbuffer_storage(RENDERBUFFER, RGBA8, 7, 7);
         c.bind_buffer(ARRAY_BUFFER, 5);
@@ -299,7 +326,17 @@ mod tests {
         other.bind_buffer(ARRAY_BUFFER, 5);
         c.get_tex_level_parameteriv(TEXTURE_CUBE_MAP_NEGATIVE_Z, 0, TEXTURE_WIDTH, BASE);
         assert_eq!(read_u32(&c, BASE), 2);
-        c.tex_image_2d(TEXTURE_CUBE_MAP_NEGATIVE_Z, 0, RGBA as i32, 4, 4, 0, RGBA, UNSIGNED_BYTE, 0);
+        c.tex_image_2d(
+            TEXTURE_CUBE_MAP_NEGATIVE_Z,
+            0,
+            RGBA as i32,
+            4,
+            4,
+            0,
+            RGBA,
+            UNSIGNED_BYTE,
+            0,
+        );
         c.get_renderbuffer_parameteriv(RENDERBUFFER, RENDERBUFFER_WIDTH, BASE);
         assert_eq!(read_u32(&c, BASE), 7);
         c.get_buffer_parameteriv(ARRAY_BUFFER, BUFFER_SIZE, BASE);
@@ -312,7 +349,10 @@ mod tests {
         assert_eq!(std::mem::take(&mut c.error), INVALID_OPERATION);
         c.bind_texture(TEXTURE_CUBE_MAP, 0);
         c.bind_texture(TEXTURE_2D, 5);
-        assert!(Arc::ptr_eq(&c.bound_texture(0, target::TWO), &other.bound_texture(0, target::TWO)));
+        assert!(Arc::ptr_eq(
+            &c.bound_texture(0, target::TWO),
+            &other.bound_texture(0, target::TWO)
+        ));
         assert_eq!(c.error, NO_ERROR);
     }
 

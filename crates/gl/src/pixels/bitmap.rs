@@ -1,5 +1,5 @@
-//! `Bitmap`: pixels of one colour at the raster position, which then moves on. Bits are taken from the client when the
-//! call is made, so that a display list of glyphs has them ready.
+//! `Bitmap`: pixels of one colour at the raster position, which then moves on. Bits are taken from
+//! the client when the call is made, so that a display list of glyphs has them ready.
 
 use super::format::PixelFormat;
 use super::store::drawable;
@@ -22,15 +22,28 @@ struct Glyph {
 
 impl Context {
     /// `glBitmap`.
-    pub fn bitmap(&mut self, width: i32, height: i32, xorig: f32, yorig: f32, xmove: f32, ymove: f32, bitmap: usize) {
+    pub fn bitmap(
+        &mut self,
+        width: i32,
+        height: i32,
+        xorig: f32,
+        yorig: f32,
+        xmove: f32,
+        ymove: f32,
+        bitmap: usize,
+    ) {
         let format = PixelFormat { format: COLOR_INDEX, kind: BITMAP };
-        let image = drawable([width, height]).map_or(Ok(None), |size| self.read_image(format, size, false, bitmap));
+        let image = drawable([width, height])
+            .map_or(Ok(None), |size| self.read_image(format, size, false, bitmap));
         let image = match image {
             Ok(image) => image,
             Err((error, why)) => return self.record_error(error, "glBitmap", why),
         };
-        let bits = image.filter(|i| !i.bytes.is_empty()).map(|i| i.bytes.iter().map(|&b| b != 0).collect());
-        let glyph = Glyph { size: [width, height], origin: [xorig, yorig], step: [xmove, ymove], bits };
+        let bits = image
+            .filter(|i| !i.bytes.is_empty())
+            .map(|i| i.bytes.iter().map(|&b| b != 0).collect());
+        let glyph =
+            Glyph { size: [width, height], origin: [xorig, yorig], step: [xmove, ymove], bits };
         let glyph = Arc::new(glyph);
         self.listable(move |c| c.exec_bitmap(&glyph));
     }

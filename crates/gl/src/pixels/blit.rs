@@ -3,8 +3,8 @@
 use super::Failure;
 use super::attachments::Surfaces;
 use super::copy_plane::{
-    Axis, Job, average_colors, average_words, converted, copy, first_sample, kept, resolved, scale_linear,
-    scale_nearest,
+    Axis, Job, average_colors, average_words, converted, copy, first_sample, kept, resolved,
+    scale_linear, scale_nearest,
 };
 use super::image::{Shared, lock};
 use super::texels::{color_from_word, word_from_color};
@@ -37,14 +37,18 @@ struct Plan {
 
 impl Blit {
     fn check(&self, read: &Surfaces, draw: &Surfaces) -> Result<(), Failure> {
-        let size = |r: [i32; 4]| [i64::from(r[2]) - i64::from(r[0]), i64::from(r[3]) - i64::from(r[1])].map(i64::abs);
+        let size = |r: [i32; 4]| {
+            [i64::from(r[2]) - i64::from(r[0]), i64::from(r[3]) - i64::from(r[1])].map(i64::abs)
+        };
         if (read.samples > 0 || draw.samples > 0) && size(self.from) != size(self.to) {
             return Err((INVALID_OPERATION, "multisampled rectangles must have the same size"));
         }
-        // Stencil values are alike, but where depths lie with them on both sides these count as part of the format.
-        for (bit, from, to) in
-            [(DEPTH_BUFFER_BIT, &read.depth, &draw.depth), (STENCIL_BUFFER_BIT, &read.stencil, &draw.stencil)]
-        {
+        // Stencil values are alike, but where depths lie with them on both sides these count as
+        // part of the format.
+        for (bit, from, to) in [
+            (DEPTH_BUFFER_BIT, &read.depth, &draw.depth),
+            (STENCIL_BUFFER_BIT, &read.stencil, &draw.stencil),
+        ] {
             if let (Some(from), Some(to)) = (from, to)
                 && self.mask & bit != 0
                 && from.format.has_depth()
@@ -62,38 +66,53 @@ impl Blit {
         [self.from, self.to].iter().any(|r| r[0] == r[2] || r[1] == r[3])
     }
 
-    /// The plan for a source and a destination; `clip` is the part of the destination that may change.
+    /// The plan for a source and a destination; `clip` is the part of the destination that may
+    /// change.
     fn plan(&self, from: Viewport, clip: [i32; 4], workers: Workers) -> Plan {
         // Find the extents of both rectangles.
         let axis = |i: usize, size| {
-            Axis::new([self.from[i], self.from[i + 2]], [self.to[i], self.to[i + 2]], [clip[i], clip[i + 2]], size)
+            Axis::new(
+                [self.from[i], self.from[i + 2]],
+                [self.to[i], self.to[i + 2]],
+                [clip[i], clip[i + 2]],
+                size,
+            )
         };
         let extent = |r: [i32; 4], i: usize| i64::from(r[i + 2]) - i64::from(r[i]);
         let same = (0..2).all(|i| extent(self.from, i) == extent(self.to, i));
 
-        // Copy without scaling if the extents agree, both mirrored included: clip the destination to both surfaces.
+        // Copy without scaling if the extents agree, both mirrored included: clip the destination
+        // to both surfaces.
         let corner = |r: [i32; 4], i: usize| i64::from(r[i].min(r[i + 2]));
         let job = same.then(|| {
             let limit = [from.width, from.height].map(i64::from);
             let mut rect = [0u32; 4];
             let mut shift = [0i32; 2];
             for i in 0..2 {
-                let (source, target, length) = (corner(self.from, i), corner(self.to, i), extent(self.to, i).abs());
+                let (source, target, length) =
+                    (corner(self.from, i), corner(self.to, i), extent(self.to, i).abs());
                 let by = source - target;
                 let low = target.max(i64::from(clip[i])).max(-by).max(0);
-                let high = (target + length).min(i64::from(clip[i + 2])).min(limit[i] - by).max(low);
+                let high =
+                    (target + length).min(i64::from(clip[i + 2])).min(limit[i] - by).max(low);
                 rect[i] = low.min(i64::from(u32::MAX)) as u32;
                 rect[i + 2] = high.min(i64::from(u32::MAX)) as u32;
                 shift[i] = by.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32;
             }
             Job { clip: rect, shift }
         });
-        Plan { job, x: axis(0, from.width), y: axis(1, from.height), linear: self.filter == LINEAR, workers }
+        Plan {
+            job,
+            x: axis(0, from.width),
+            y: axis(1, from.height),
+            linear: self.filter == LINEAR,
+            workers,
+        }
     }
 }
 
-/// Locks two planes, of which the first is copied if they are one. Two threads may copy between the same two in opposite
-/// directions: both lock them in the order of their addresses.
+/// Locks two planes, of which the first is copied if they are one. Two threads may copy between the
+/// same two in opposite directions: both lock them in the order of their addresses.
 fn with_both<T: Clone>(from: &Shared<T>, into: &Shared<T>, f: impl FnOnce(&T, &mut T)) {
     if Arc::ptr_eq(from, into) {
         let copy = lock(from).clone();
@@ -217,7 +236,9 @@ impl Context {
         {
             // Of equal formats nothing needs to change.
             let other = to.format.missing() != from.format.missing();
-            with_both(a, b, |a, b| if other { plan.colors(&kept(a, &to.format), b) } else { plan.colors(a, b) });
+            with_both(a, b, |a, b| {
+                if other { plan.colors(&kept(a, &to.format), b) } else { plan.colors(a, b) }
+            });
         }
 
         // Copy depths and stencil values.
@@ -227,7 +248,8 @@ impl Context {
             lock(a).resolved();
             with_both(a, b, |a, b| plan.plain(a.plane(), b.resolved()));
         }
-        if let (true, Some(from), Some(to)) = (wants(STENCIL_BUFFER_BIT), &read.stencil, &draw.stencil)
+        if let (true, Some(from), Some(to)) =
+            (wants(STENCIL_BUFFER_BIT), &read.stencil, &draw.stencil)
             && let (Some(a), Some(b)) = (&from.stencil, &to.stencil)
         {
             with_both(a, b, |a: &Plane<u8>, b| plan.plain(a, b));
@@ -246,7 +268,9 @@ mod tests {
         c.gen_framebuffers(1, BASE);
         let name = read_u32(c, BASE);
         c.bind_framebuffer(FRAMEBUFFER, name);
-        for (format, point) in [(RGBA8, COLOR_ATTACHMENT0), (DEPTH32F_STENCIL8, DEPTH_STENCIL_ATTACHMENT)] {
+        for (format, point) in
+            [(RGBA8, COLOR_ATTACHMENT0), (DEPTH32F_STENCIL8, DEPTH_STENCIL_ATTACHMENT)]
+        {
             c.gen_renderbuffers(1, BASE);
             let renderbuffer = read_u32(c, BASE);
             c.bind_renderbuffer(RENDERBUFFER, renderbuffer);
@@ -275,7 +299,18 @@ mod tests {
         draw(&mut c, 65, 66, &[4, 8, 12, 16]);
         let one = framebuffer(&mut c, 0, 70, 70);
         c.bind_framebuffer(READ_FRAMEBUFFER, many);
-        c.blit_framebuffer(0, 0, 70, 70, 0, 0, 70, 70, COLOR_BUFFER_BIT | DEPTH_BUFFER_BIT, NEAREST);
+        c.blit_framebuffer(
+            0,
+            0,
+            70,
+            70,
+            0,
+            0,
+            70,
+            70,
+            COLOR_BUFFER_BIT | DEPTH_BUFFER_BIT,
+            NEAREST,
+        );
         assert_eq!(c.error, NO_ERROR);
         c.blit_framebuffer(0, 0, 70, 70, 0, 0, 35, 35, COLOR_BUFFER_BIT, NEAREST);
         assert_eq!(c.error, INVALID_OPERATION);
@@ -310,7 +345,9 @@ mod tests {
         let mut c = context_with(4, 4);
         let source = framebuffer(&mut c, 0, 2, 2);
         draw(&mut c, 0, 0, &[0x4030_2010]);
-        for (format, kept) in [(RGB8, 0xff30_2010), (R8, 0xff00_0010), (LUMINANCE8_ALPHA8, 0x4000_0010)] {
+        for (format, kept) in
+            [(RGB8, 0xff30_2010), (R8, 0xff00_0010), (LUMINANCE8_ALPHA8, 0x4000_0010)]
+        {
             framebuffer(&mut c, 0, 2, 2);
             c.gen_renderbuffers(1, BASE);
             let renderbuffer = read_u32(&c, BASE);
@@ -352,7 +389,18 @@ mod tests {
         c.blit_framebuffer(0, 0, 1, 1, 2, 2, 3, 3, COLOR_BUFFER_BIT, NEAREST);
         assert_eq!(pixel(&mut c, 2, 2), 9);
         let size = i32::MAX;
-        c.blit_framebuffer(i32::MIN, 0, size, size, size, 0, i32::MIN, 5, COLOR_BUFFER_BIT, NEAREST);
+        c.blit_framebuffer(
+            i32::MIN,
+            0,
+            size,
+            size,
+            size,
+            0,
+            i32::MIN,
+            5,
+            COLOR_BUFFER_BIT,
+            NEAREST,
+        );
         assert_eq!(c.error, NO_ERROR);
     }
 }

@@ -1,7 +1,7 @@
 //! ARB_pixel_buffer_object: images that lie in buffer objects instead of the client's memory.
 //!
-//! What reads or writes images asks for a memory and an address. With a buffer bound the memory is that buffer's data store,
-//! as it is at the call, and the address is an offset.
+//! What reads or writes images asks for a memory and an address. With a buffer bound the memory is
+//! that buffer's data store, as it is at the call, and the address is an offset.
 
 use super::Failure;
 use crate::Context;
@@ -27,14 +27,19 @@ impl ClientMemory for Store {
     fn read(&self, address: usize, out: &mut [u8]) -> bool {
         let bytes = self.bytes();
         let start = address.checked_sub(START);
-        let Some(part) = start.and_then(|start| bytes.get(start..start.checked_add(out.len())?)) else { return false };
+        let Some(part) = start.and_then(|start| bytes.get(start..start.checked_add(out.len())?))
+        else {
+            return false;
+        };
         out.copy_from_slice(part);
         true
     }
 
     fn write(&self, address: usize, from: &[u8]) -> bool {
         let mut bytes = self.bytes();
-        let range = address.checked_sub(START).and_then(|start| Some(start..start.checked_add(from.len())?));
+        let range = address
+            .checked_sub(START)
+            .and_then(|start| Some(start..start.checked_add(from.len())?));
         let Some(range) = range.filter(|range| range.end <= bytes.len()) else { return false };
         Arc::make_mut(&mut bytes)[range].copy_from_slice(from);
         true
@@ -65,7 +70,11 @@ fn place(offset: usize, unit: usize) -> Result<usize, Failure> {
 
 impl Context {
     /// Where pixels of elements of `unit` bytes are unpacked from: a memory, and the address there.
-    pub(crate) fn unpack_memory(&self, address: usize, unit: usize) -> Result<(Arc<dyn ClientMemory>, usize), Failure> {
+    pub(crate) fn unpack_memory(
+        &self,
+        address: usize,
+        unit: usize,
+    ) -> Result<(Arc<dyn ClientMemory>, usize), Failure> {
         let buffer = &self.client.unpack.buffer;
         if buffer.is_none() {
             return Ok((self.memory.clone(), address));
@@ -73,8 +82,8 @@ impl Context {
         Ok((Arc::new(store_of(buffer)?), place(address, unit)?))
     }
 
-    /// Runs `write` with the memory that pixels of elements of `unit` bytes are packed into and the address there. `false`
-    /// of `write` is an error with a buffer, which then keeps what it had.
+    /// Runs `write` with the memory that pixels of elements of `unit` bytes are packed into and the
+    /// address there. `false` of `write` is an error with a buffer, which then keeps what it had.
     pub(crate) fn pack_into(
         &self,
         address: usize,
@@ -112,7 +121,10 @@ mod tests {
         c.buffer_data(PIXEL_PACK_BUFFER, 20, 0, STREAM_READ);
         c.read_pixels(0, 0, 2, 2, RGBA, UNSIGNED_BYTE, 4);
         c.get_buffer_sub_data(PIXEL_PACK_BUFFER, 0, 8, BASE);
-        assert_eq!((c.error, read_u32(&c, BASE), read_u32(&c, BASE + 4)), (NO_ERROR, 0, 0xff00_00ff));
+        assert_eq!(
+            (c.error, read_u32(&c, BASE), read_u32(&c, BASE + 4)),
+            (NO_ERROR, 0, 0xff00_00ff)
+        );
         // One byte too far: nothing is written.
         c.read_pixels(0, 0, 2, 2, RGBA, UNSIGNED_BYTE, 8);
         assert_eq!(std::mem::take(&mut c.error), INVALID_OPERATION);
@@ -145,7 +157,9 @@ mod tests {
             error(&|c| c.bind_buffer(target, 1));
         }
         error(&|c| c.buffer_data(PIXEL_PACK_BUFFER, 64, 0, STREAM_READ));
-        for (kind, good, bad) in [(FLOAT, 4, 2), (UNSIGNED_SHORT, 2, 1), (UNSIGNED_SHORT_5_6_5, 2, 3)] {
+        for (kind, good, bad) in
+            [(FLOAT, 4, 2), (UNSIGNED_SHORT, 2, 1), (UNSIGNED_SHORT_5_6_5, 2, 3)]
+        {
             assert_eq!(error(&|c| c.read_pixels(0, 0, 1, 1, RGB, kind, good)), NO_ERROR);
             assert_eq!(error(&|c| c.read_pixels(0, 0, 1, 1, RGB, kind, bad)), INVALID_OPERATION);
         }

@@ -33,7 +33,9 @@ impl Context {
         }
 
         // Check the mask and the framebuffer.
-        if mask & !(COLOR_BUFFER_BIT | DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT | ACCUM_BUFFER_BIT) != 0 {
+        if mask & !(COLOR_BUFFER_BIT | DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT | ACCUM_BUFFER_BIT)
+            != 0
+        {
             return self.record_error(INVALID_VALUE, CALL, "mask has bits that name no buffer");
         }
         if !self.draw_framebuffer_complete(CALL) || !self.renders() {
@@ -56,10 +58,12 @@ impl Context {
         let srgb = self.encodes_srgb();
         let written = self.state.color_buffer.mask;
         let masked: [bool; 4] = std::array::from_fn(|i| !written[i] || missing[i]);
-        let color = surfaces.color.as_ref().filter(|_| mask & COLOR_BUFFER_BIT != 0 && masked != [true; 4]);
+        let color =
+            surfaces.color.as_ref().filter(|_| mask & COLOR_BUFFER_BIT != 0 && masked != [true; 4]);
         let color = color.map(|s| {
             let clear = self.state.color_buffer.clear;
-            // What the format does not store keeps its constant value: a whole clear is then a whole tile's.
+            // What the format does not store keeps its constant value: a whole clear is then a
+            // whole tile's.
             let constant = [0.0, 0.0, 0.0, if missing[3] { 1.0 } else { 0.0 }];
             let clear = std::array::from_fn(|i| if missing[i] { constant[i] } else { clear[i] });
             let unmasked = std::array::from_fn(|i| !written[i] && !missing[i]);
@@ -71,8 +75,9 @@ impl Context {
         });
 
         // Choose the values of depth and stencil.
-        let depth = (mask & DEPTH_BUFFER_BIT != 0 && self.state.depth.write && surfaces.depth.is_some())
-            .then_some(self.state.depth.clear as f32);
+        let depth =
+            (mask & DEPTH_BUFFER_BIT != 0 && self.state.depth.write && surfaces.depth.is_some())
+                .then_some(self.state.depth.clear as f32);
         let stencil = (mask & STENCIL_BUFFER_BIT != 0 && surfaces.stencil.is_some()).then(|| {
             let face = self.state.stencil.faces[0];
             ((self.state.stencil.clear & 255) as u8, (face.write_mask & 255) as u8)
@@ -92,15 +97,23 @@ impl Context {
     }
 
     /// Which buffers `DrawBuffer` and `ReadBuffer` may name.
-    pub(crate) fn buffer_choice(&self, buffer: u32, object: bool, draw: bool) -> Result<(), Failure> {
+    pub(crate) fn buffer_choice(
+        &self,
+        buffer: u32,
+        object: bool,
+        draw: bool,
+    ) -> Result<(), Failure> {
         let colors = COLOR_ATTACHMENT0..=COLOR_ATTACHMENT15;
         let exists = match buffer {
             NONE => true,
             FRONT_AND_BACK if !draw => return Err((INVALID_ENUM, "FRONT_AND_BACK cannot be read")),
-            // There is one buffer. Programs made for windows call it the back one, and Mesa's library takes that.
+            // There is one buffer. Programs made for windows call it the back one, and Mesa's
+            // library takes that.
             FRONT | FRONT_LEFT | LEFT | FRONT_AND_BACK | BACK | BACK_LEFT => !object,
             BACK_RIGHT | FRONT_RIGHT | RIGHT | AUX0..=AUX3 => false,
-            _ if colors.contains(&buffer) => object && buffer < COLOR_ATTACHMENT0 + MAX_COLOR_ATTACHMENTS as u32,
+            _ if colors.contains(&buffer) => {
+                object && buffer < COLOR_ATTACHMENT0 + MAX_COLOR_ATTACHMENTS as u32
+            }
             _ => return Err((INVALID_ENUM, "the token names no colour buffer")),
         };
         if exists { Ok(()) } else { Err((INVALID_OPERATION, "the framebuffer has no such buffer")) }
@@ -129,7 +142,11 @@ impl Context {
                 c.record_error(INVALID_ENUM, CALL, "the token may name several buffers");
             }
             Some([buffer]) => c.set_buffer(CALL, buffer, true),
-            None => c.record_error(INVALID_VALUE, CALL, "there is one draw buffer, which must be in readable memory"),
+            None => c.record_error(
+                INVALID_VALUE,
+                CALL,
+                "there is one draw buffer, which must be in readable memory",
+            ),
         });
     }
 

@@ -1,7 +1,8 @@
-//! The client's buffer: where its pixels lie, and how tiles of the colour plane are loaded from there and stored there.
+//! The client's buffer: where its pixels lie, and how tiles of the colour plane are loaded from
+//! there and stored there.
 //!
-//! Tiles that draws may change are loaded first, and those that have changed are stored: a program that draws little and
-//! looks often pays for what it draws.
+//! Tiles that draws may change are loaded first, and those that have changed are stored: a program
+//! that draws little and looks often pays for what it draws.
 
 use super::decode;
 use super::encode;
@@ -51,7 +52,8 @@ impl ClientBuffer {
     }
 
     fn stride(&self) -> usize {
-        let length = if self.row_length == 0 { self.viewport.width as usize } else { self.row_length };
+        let length =
+            if self.row_length == 0 { self.viewport.width as usize } else { self.row_length };
         length * self.pixel_bytes()
     }
 
@@ -69,7 +71,8 @@ impl ClientBuffer {
             for y in [part.y.start, part.y.end - 1] {
                 let ends = (self.pixel(part.x.start, y), self.pixel(part.x.end - 1, y));
                 let (Some(start), Some(last)) = ends else { return false };
-                (first, behind) = (first.min(start), behind.max(last.saturating_add(self.pixel_bytes())));
+                (first, behind) =
+                    (first.min(start), behind.max(last.saturating_add(self.pixel_bytes())));
             }
         }
         memory.is_there(first, behind.saturating_sub(first))
@@ -103,14 +106,17 @@ impl ClientBuffer {
 
     /// Whether its pixels are the plane's words.
     fn holds_words(&self) -> bool {
-        cfg!(target_endian = "little") && self.kind == UNSIGNED_BYTE && *self.places() == [0, 1, 2, 3]
+        cfg!(target_endian = "little")
+            && self.kind == UNSIGNED_BYTE
+            && *self.places() == [0, 1, 2, 3]
     }
 
     /// The colour of one of the client's pixels; alpha is 1 where there is none.
     fn unpack(&self, pixel: &[u8]) -> [f32; 4] {
         if self.kind == UNSIGNED_SHORT_5_6_5 {
             let v = u16::from_ne_bytes([pixel[0], pixel[1]]);
-            let part = |shift: u32, largest: u16| f32::from((v >> shift) & largest) / f32::from(largest);
+            let part =
+                |shift: u32, largest: u16| f32::from((v >> shift) & largest) / f32::from(largest);
             return [part(11, 31), part(5, 63), part(0, 31), 1.0];
         }
         let mut numbers = Vec::with_capacity(4);
@@ -192,8 +198,14 @@ fn parts(
     parts
 }
 
-/// Takes the client's pixels of a part into the plane where they are not what the plane would store.
-fn load(buffer: &ClientBuffer, memory: &dyn ClientMemory, plane: &mut ColorPlane, part: &Part) -> Option<()> {
+/// Takes the client's pixels of a part into the plane where they are not what the plane would
+/// store.
+fn load(
+    buffer: &ClientBuffer,
+    memory: &dyn ClientMemory,
+    plane: &mut ColorPlane,
+    part: &Part,
+) -> Option<()> {
     // Reserve rows.
     let width = part.x.len();
     let bytes = buffer.pixel_bytes();
@@ -237,7 +249,12 @@ fn load(buffer: &ClientBuffer, memory: &dyn ClientMemory, plane: &mut ColorPlane
 }
 
 /// Writes the plane's colours of a part to the client's buffer.
-fn store(buffer: &ClientBuffer, memory: &dyn ClientMemory, plane: &ColorPlane, part: &Part) -> Option<()> {
+fn store(
+    buffer: &ClientBuffer,
+    memory: &dyn ClientMemory,
+    plane: &ColorPlane,
+    part: &Part,
+) -> Option<()> {
     let width = part.x.len();
     let (mut words, mut colors) = (Vec::new(), Vec::new());
     let mut bytes = Vec::with_capacity(width * buffer.pixel_bytes());
@@ -283,16 +300,21 @@ fn changed_tiles(plane: &mut ColorPlane) -> Vec<bool> {
 fn take_as_stored(plane: &mut ColorPlane, viewport: Viewport, part: &Part) {
     let side = TILE as u32;
     let first = part.y.start / side * viewport.tiles_x();
-    let tiles = (first + part.x.start / side) as usize..(first + part.x.end.div_ceil(side)) as usize;
+    let tiles =
+        (first + part.x.start / side) as usize..(first + part.x.end.div_ceil(side)) as usize;
     match plane {
-        ColorPlane::Rgba8(plane) => plane.tiles[tiles].iter_mut().for_each(|tile| _ = tile.take_changed()),
-        ColorPlane::RgbaF32(plane) => plane.tiles[tiles].iter_mut().for_each(|tile| _ = tile.take_changed()),
+        ColorPlane::Rgba8(plane) => {
+            plane.tiles[tiles].iter_mut().for_each(|tile| _ = tile.take_changed())
+        }
+        ColorPlane::RgbaF32(plane) => {
+            plane.tiles[tiles].iter_mut().for_each(|tile| _ = tile.take_changed())
+        }
     }
 }
 
 impl Context {
-    /// Takes the client's pixels into the tiles of the plane that meet `area` (x0, y0, x1, y1, the last two exclusive): only once
-    /// until the next [`Self::store_default_framebuffer`].
+    /// Takes the client's pixels into the tiles of the plane that meet `area` (x0, y0, x1, y1, the
+    /// last two exclusive): only once until the next [`Self::store_default_framebuffer`].
     pub(crate) fn load_default_framebuffer(&mut self, area: [i32; 4]) {
         let fb = &mut self.default_framebuffer;
         if fb.loaded.all {
@@ -323,8 +345,8 @@ impl Context {
         }
     }
 
-    /// Runs what is recorded and writes the colours that have changed to the client's buffer. To be called by `Flush`, `Finish`
-    /// and whatever lets the client look.
+    /// Runs what is recorded and writes the colours that have changed to the client's buffer. To be
+    /// called by `Flush`, `Finish` and whatever lets the client look.
     pub fn store_default_framebuffer(&mut self) {
         self.store_colors(true);
     }

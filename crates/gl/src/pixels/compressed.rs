@@ -53,7 +53,8 @@ impl Context {
             return;
         }
         let known = if s3tc::is_compressed(format) { Ok(()) } else { Err(NOT_COMPRESSED) };
-        // What a list holds is checked when it is executed; nothing is read for a call that is an error.
+        // What a list holds is checked when it is executed; nothing is read for a call that is an
+        // error.
         let checked = if self.lists.recording { known } else { known.and_then(|()| check(self)) };
         let blocks = match checked.and_then(|()| self.read_blocks(bytes, data)) {
             Ok(blocks) => blocks,
@@ -68,8 +69,13 @@ impl Context {
         });
     }
 
-    fn check_compressed_image(&mut self, arguments: &ImageArguments, bytes: i32) -> Result<(), Failure> {
-        let checked = ImageArguments { internal: s3tc::base(arguments.internal), ..*arguments }.check()?;
+    fn check_compressed_image(
+        &mut self,
+        arguments: &ImageArguments,
+        bytes: i32,
+    ) -> Result<(), Failure> {
+        let checked =
+            ImageArguments { internal: s3tc::base(arguments.internal), ..*arguments }.check()?;
         if arguments.border != 0 {
             return Err((INVALID_OPERATION, "compressed images have no borders"));
         }
@@ -94,12 +100,23 @@ impl Context {
         let data = blocks.map(|blocks| TexelData::Words(s3tc::decode(token, size, blocks)));
         self.store_image(arguments.call, &checked, data);
         let zero = || vec![0; s3tc::image_bytes(token, size)];
-        self.keep_blocks(&checked.target, checked.level, token, blocks.map_or_else(zero, <[u8]>::to_vec));
+        self.keep_blocks(
+            &checked.target,
+            checked.level,
+            token,
+            blocks.map_or_else(zero, <[u8]>::to_vec),
+        );
         Ok(())
     }
 
     /// Keeps an image's blocks beside its texels.
-    fn keep_blocks(&mut self, target: &super::texture::ImageTarget, level: usize, token: u32, bytes: Vec<u8>) {
+    fn keep_blocks(
+        &mut self,
+        target: &super::texture::ImageTarget,
+        level: usize,
+        token: u32,
+        bytes: Vec<u8>,
+    ) {
         let texture = self.target_texture(*target);
         if let Some(image) = lock(&texture).image(target.face, level) {
             image.blocks = Some(Blocks { token, bytes: Arc::new(bytes) });
@@ -116,7 +133,8 @@ impl Context {
         let texture = self.target_texture(checked.target);
         let mut texture = lock(&texture);
         let image = texture.image(checked.target.face, checked.level);
-        let (size, blocks) = image.map_or(([0; 3], None), |image| (image.full(), image.blocks.clone()));
+        let (size, blocks) =
+            image.map_or(([0; 3], None), |image| (image.full(), image.blocks.clone()));
         let blocks = blocks
             .filter(|blocks| blocks.token == format)
             .ok_or((INVALID_OPERATION, "the image is not compressed in this format"))?;
@@ -141,7 +159,9 @@ impl Context {
         let (checked, mut blocks) = self.check_compressed_box(arguments, format, bytes)?;
         let Some(new) = new.filter(|_| !checked.size.contains(&0)) else { return Ok(()) };
         let texture = self.target_texture(checked.target);
-        let width = lock(&texture).image(checked.target.face, checked.level).map_or(0, |image| image.full()[0]);
+        let width = lock(&texture)
+            .image(checked.target.face, checked.level)
+            .map_or(0, |image| image.full()[0]);
 
         // Put the texels into the image and the blocks among its blocks.
         let data = TexelData::Words(s3tc::decode(format, [checked.size[0], checked.size[1]], new));
@@ -165,7 +185,8 @@ impl Context {
             if !c.outside_begin(call) {
                 return;
             }
-            let (error, why) = if size < 0 { (INVALID_VALUE, "imageSize is negative") } else { NOT_COMPRESSED };
+            let (error, why) =
+                if size < 0 { (INVALID_VALUE, "imageSize is negative") } else { NOT_COMPRESSED };
             c.record_error(error, call, why);
         });
     }
@@ -198,7 +219,15 @@ impl Context {
     ) {
         let call = "glCompressedTexImage2D";
         let size = [width, height, 1];
-        let arguments = ImageArguments { call, dimensions: 2, target, level, internal: internalformat, size, border };
+        let arguments = ImageArguments {
+            call,
+            dimensions: 2,
+            target,
+            level,
+            internal: internalformat,
+            size,
+            border,
+        };
         self.compressed(
             call,
             (internalformat, image_size, data),
@@ -287,7 +316,8 @@ impl Context {
         }
         let result = self.query_target(target, level, false).and_then(|(target, level)| {
             let texture = self.target_texture(target);
-            let blocks = lock(&texture).image(target.face, level).and_then(|image| image.blocks.clone());
+            let blocks =
+                lock(&texture).image(target.face, level).and_then(|image| image.blocks.clone());
             let blocks = blocks.ok_or((INVALID_OPERATION, "the image is not compressed"))?;
             if img == 0 && self.client.pack.buffer.is_none() {
                 return Ok(());
@@ -339,7 +369,10 @@ mod tests {
         c.compressed_tex_sub_image_2d(TEXTURE_2D, 0, 0, 4, 4, 2, format, 8, BASE + 24);
         assert_eq!(texel(&mut c, 40), [255; 4]);
         c.get_compressed_tex_image(TEXTURE_2D, 0, BASE + 64);
-        assert_eq!(get::<32>(&c, BASE + 64), *[BLOCKS[0], BLOCKS[1], BLOCKS[3], BLOCKS[3]].concat());
+        assert_eq!(
+            get::<32>(&c, BASE + 64),
+            *[BLOCKS[0], BLOCKS[1], BLOCKS[3], BLOCKS[3]].concat()
+        );
         assert_eq!(c.error, NO_ERROR);
 
         // Other texels end the compression.
@@ -387,7 +420,17 @@ mod tests {
         c.call_list(1);
         assert_eq!((texel(&mut c, 0), c.error), ([0, 0, 255, 255], NO_ERROR));
         // Whoever gives texels gets them uncompressed.
-        c.tex_image_2d(TEXTURE_2D, 0, COMPRESSED_RGBA_S3TC_DXT5_EXT as i32, 1, 1, 0, RGBA, UNSIGNED_BYTE, BASE);
+        c.tex_image_2d(
+            TEXTURE_2D,
+            0,
+            COMPRESSED_RGBA_S3TC_DXT5_EXT as i32,
+            1,
+            1,
+            0,
+            RGBA,
+            UNSIGNED_BYTE,
+            BASE,
+        );
         c.get_tex_level_parameteriv(TEXTURE_2D, 0, TEXTURE_COMPRESSED, BASE + 512);
         assert_eq!((read_u32(&c, BASE + 512), c.error), (0, NO_ERROR));
     }

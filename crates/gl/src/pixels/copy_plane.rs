@@ -1,4 +1,5 @@
-//! Copies of plane to plane: equal rectangles tile by tile, with the resolve of samples, and scaled ones.
+//! Copies of plane to plane: equal rectangles tile by tile, with the resolve of samples, and scaled
+//! ones.
 
 use super::internal_format::InternalFormat;
 use super::mipmap::average4;
@@ -27,8 +28,8 @@ pub(crate) fn average_colors([a, b, c, d]: [&[[f32; 4]]; 4], out: &mut [[f32; 4]
     }
 }
 
-/// A copy without scaling. `clip` (x0, y0, x1, y1) lies inside the destination, and shifted by `shift` inside the
-/// source.
+/// A copy without scaling. `clip` (x0, y0, x1, y1) lies inside the destination, and shifted by
+/// `shift` inside the source.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Job {
     pub clip: [u32; 4],
@@ -67,11 +68,15 @@ fn copy_tiles<T: Copy + Send + Sync>(
     let viewport = into.viewport();
     let (source_samples, samples) = (from.samples(), into.samples());
     let row = viewport.tiles_x();
-    // What of a tile is copied, and whether that is all of it; pixels outside the plane do not count.
+    // What of a tile is copied, and whether that is all of it; pixels outside the plane do not
+    // count.
     let part = |index: usize| {
         let (left, low) = (index as u32 % row * side, index as u32 / row * side);
         let clip = [x0.max(left), y0.max(low), x1.min(left + side), y1.min(low + side)];
-        (clip, clip == [left, low, viewport.width.min(left + side), viewport.height.min(low + side)])
+        (
+            clip,
+            clip == [left, low, viewport.width.min(left + side), viewport.height.min(low + side)],
+        )
     };
 
     // Copy whole tiles in parallel.
@@ -157,12 +162,14 @@ pub(crate) fn converted(plane: &ColorPlane, bytes: bool) -> ColorPlane {
 pub(crate) struct Axis {
     /// First pixel of the destination.
     pub first: u32,
-    /// For each pixel of the destination: the place in the source, in pixels; `None` if it is outside.
+    /// For each pixel of the destination: the place in the source, in pixels; `None` if it is
+    /// outside.
     pub places: Vec<Option<f64>>,
 }
 
 impl Axis {
-    /// Maps `to` (clipped to `clip`) onto `from`, either of which may run backwards; `size` is the source's.
+    /// Maps `to` (clipped to `clip`) onto `from`, either of which may run backwards; `size` is the
+    /// source's.
     pub(crate) fn new(from: [i32; 2], to: [i32; 2], clip: [i32; 2], size: u32) -> Self {
         let [s0, s1] = from.map(f64::from);
         let [d0, d1] = to.map(f64::from);
@@ -213,7 +220,8 @@ pub(crate) fn scale_linear<T: Copy, U: Copy>(
         for (i, u) in x.places.iter().enumerate() {
             let Some(u) = u else { continue };
             let (x0, x1, tx) = pair(*u, viewport.width);
-            let corners = [(x0, y0), (x1, y0), (x0, y1), (x1, y1)].map(|(x, y)| color(from.get(x, y, 0)));
+            let corners =
+                [(x0, y0), (x1, y0), (x0, y1), (x1, y1)].map(|(x, y)| color(from.get(x, y, 0)));
 
             // Mix the four pixels around the place.
             let mixed = std::array::from_fn(|c| {
@@ -229,10 +237,20 @@ pub(crate) fn scale_linear<T: Copy, U: Copy>(
 }
 
 /// A plane of one sample with the resolved pixels of another.
-pub(crate) fn resolved<T: Copy + Send + Sync>(workers: &Workers, from: &Plane<T>, resolve: Resolve<T>) -> Plane<T> {
+pub(crate) fn resolved<T: Copy + Send + Sync>(
+    workers: &Workers,
+    from: &Plane<T>,
+    resolve: Resolve<T>,
+) -> Plane<T> {
     let viewport = from.viewport();
     let mut out = Plane::new(viewport, 1, from.get(0, 0, 0));
-    copy(workers, from, &mut out, Job { clip: [0, 0, viewport.width, viewport.height], shift: [0, 0] }, resolve);
+    copy(
+        workers,
+        from,
+        &mut out,
+        Job { clip: [0, 0, viewport.width, viewport.height], shift: [0, 0] },
+        resolve,
+    );
     out
 }
 
@@ -251,14 +269,29 @@ mod tests {
         (0..4).for_each(|s| from.set(70, 3, s, [0, 4, 8, 12][s]));
         let mut into = plane(100, 70, 1);
         into.clear(1);
-        copy(&Workers::new(2), &from, &mut into, Job { clip: [0, 0, 100, 70], shift: [0, 0] }, average_words);
+        copy(
+            &Workers::new(2),
+            &from,
+            &mut into,
+            Job { clip: [0, 0, 100, 70], shift: [0, 0] },
+            average_words,
+        );
         assert_eq!(into.tiles[0].uniform(), Some(7));
         assert_eq!(into.tiles[3].uniform(), Some(7));
         assert_eq!((into.get(70, 3, 0), into.get(71, 3, 0)), (6, 7));
         // A part of a cleared tile.
         into.clear(1);
-        copy(&Workers::new(2), &from, &mut into, Job { clip: [2, 2, 5, 4], shift: [0, 0] }, average_words);
-        assert_eq!([into.get(1, 2, 0), into.get(2, 2, 0), into.get(4, 3, 0), into.get(5, 3, 0)], [1, 7, 7, 1]);
+        copy(
+            &Workers::new(2),
+            &from,
+            &mut into,
+            Job { clip: [2, 2, 5, 4], shift: [0, 0] },
+            average_words,
+        );
+        assert_eq!(
+            [into.get(1, 2, 0), into.get(2, 2, 0), into.get(4, 3, 0), into.get(5, 3, 0)],
+            [1, 7, 7, 1]
+        );
     }
 
     #[test]
@@ -268,11 +301,23 @@ mod tests {
             from.set(x, 5, s, x + s as u32);
         }
         let mut into = plane(80, 10, 1);
-        copy(&Workers::new(2), &from, &mut into, Job { clip: [0, 4, 78, 5], shift: [2, 1] }, average_words);
+        copy(
+            &Workers::new(2),
+            &from,
+            &mut into,
+            Job { clip: [0, 4, 78, 5], shift: [2, 1] },
+            average_words,
+        );
         assert_eq!(into.get(0, 4, 0), 4);
         assert_eq!(into.get(77, 4, 0), 81);
         let mut all = plane(80, 10, 4);
-        copy(&Workers::new(2), &from, &mut all, Job { clip: [0, 4, 78, 5], shift: [2, 1] }, average_words);
+        copy(
+            &Workers::new(2),
+            &from,
+            &mut all,
+            Job { clip: [0, 4, 78, 5], shift: [2, 1] },
+            average_words,
+        );
         assert_eq!(all.get(0, 4, 3), 5);
     }
 

@@ -23,18 +23,32 @@ fn has_source(surfaces: &Surfaces, format: &InternalFormat) -> bool {
 
 impl Context {
     /// Texels of a rectangle of the framebuffer that lies inside it.
-    fn copy_texels(&self, surfaces: &Surfaces, format: &InternalFormat, r: &Rectangle) -> Option<TexelData> {
+    fn copy_texels(
+        &self,
+        surfaces: &Surfaces,
+        format: &InternalFormat,
+        r: &Rectangle,
+    ) -> Option<TexelData> {
         let transfer = Transfer::new(&self.state.pixel);
 
         // Read depths, and stencil values if the format has them.
         if format.has_depth() {
-            let mut depths = read_depths(&self.workers(), &mut lock(surfaces.depth.as_ref()?.depth.as_ref()?), r);
+            let mut depths = read_depths(
+                &self.workers(),
+                &mut lock(surfaces.depth.as_ref()?.depth.as_ref()?),
+                r,
+            );
             transfer.depths(&mut depths);
             texels::round_depths(&mut depths, format);
             let stencils = match &surfaces.stencil {
                 Some(s) if format.has_stencil() => {
                     let values = read_stencils(&lock(s.stencil.as_ref()?), r);
-                    Some(values.into_iter().map(|v| (transfer.stencil(i64::from(v)) & 255) as u8).collect())
+                    Some(
+                        values
+                            .into_iter()
+                            .map(|v| (transfer.stencil(i64::from(v)) & 255) as u8)
+                            .collect(),
+                    )
                 }
                 _ => None,
             };
@@ -69,9 +83,16 @@ impl Context {
         });
     }
 
-    fn exec_copy_tex_image(&mut self, arguments: &ImageArguments, x: i32, y: i32) -> Result<(), Failure> {
+    fn exec_copy_tex_image(
+        &mut self,
+        arguments: &ImageArguments,
+        x: i32,
+        y: i32,
+    ) -> Result<(), Failure> {
         // Check the arguments.
-        if InternalFormat::of_texture(arguments.internal).is_none() || (1..=4).contains(&arguments.internal) {
+        if InternalFormat::of_texture(arguments.internal).is_none()
+            || (1..=4).contains(&arguments.internal)
+        {
             return Err((INVALID_ENUM, "internalformat is not an internal format of this call"));
         }
         let checked = arguments.check()?;
@@ -121,7 +142,12 @@ impl Context {
         });
     }
 
-    fn exec_copy_tex_sub_image(&mut self, arguments: &BoxArguments, x: i32, y: i32) -> Result<(), Failure> {
+    fn exec_copy_tex_sub_image(
+        &mut self,
+        arguments: &BoxArguments,
+        x: i32,
+        y: i32,
+    ) -> Result<(), Failure> {
         let mut checked = self.check_box(arguments)?;
         let area = Some([x, y, checked.size[0] as i32, checked.size[1] as i32]);
         let Some(surfaces) = self.read_surfaces(arguments.call, true, area) else { return Ok(()) };
@@ -151,7 +177,11 @@ impl Context {
         border: i32,
     ) {
         let (call, internal, size) = ("glCopyTexImage1D", internalformat, [width, 1, 1]);
-        self.copy_tex_image(ImageArguments { call, dimensions: 1, target, level, internal, size, border }, x, y);
+        self.copy_tex_image(
+            ImageArguments { call, dimensions: 1, target, level, internal, size, border },
+            x,
+            y,
+        );
     }
 
     /// `glCopyTexImage2D`.
@@ -167,13 +197,29 @@ impl Context {
         border: i32,
     ) {
         let (call, internal, size) = ("glCopyTexImage2D", internalformat, [width, height, 1]);
-        self.copy_tex_image(ImageArguments { call, dimensions: 2, target, level, internal, size, border }, x, y);
+        self.copy_tex_image(
+            ImageArguments { call, dimensions: 2, target, level, internal, size, border },
+            x,
+            y,
+        );
     }
 
     /// `glCopyTexSubImage1D`.
-    pub fn copy_tex_sub_image_1d(&mut self, target: u32, level: i32, xoffset: i32, x: i32, y: i32, width: i32) {
+    pub fn copy_tex_sub_image_1d(
+        &mut self,
+        target: u32,
+        level: i32,
+        xoffset: i32,
+        x: i32,
+        y: i32,
+        width: i32,
+    ) {
         let (call, offset, size) = ("glCopyTexSubImage1D", [xoffset, 0, 0], [width, 1, 1]);
-        self.copy_tex_sub_image(BoxArguments { call, dimensions: 1, target, level, offset, size }, x, y);
+        self.copy_tex_sub_image(
+            BoxArguments { call, dimensions: 1, target, level, offset, size },
+            x,
+            y,
+        );
     }
 
     /// `glCopyTexSubImage2D`.
@@ -188,8 +234,13 @@ impl Context {
         width: i32,
         height: i32,
     ) {
-        let (call, offset, size) = ("glCopyTexSubImage2D", [xoffset, yoffset, 0], [width, height, 1]);
-        self.copy_tex_sub_image(BoxArguments { call, dimensions: 2, target, level, offset, size }, x, y);
+        let (call, offset, size) =
+            ("glCopyTexSubImage2D", [xoffset, yoffset, 0], [width, height, 1]);
+        self.copy_tex_sub_image(
+            BoxArguments { call, dimensions: 2, target, level, offset, size },
+            x,
+            y,
+        );
     }
 
     /// `glCopyTexSubImage3D`.
@@ -205,8 +256,13 @@ impl Context {
         width: i32,
         height: i32,
     ) {
-        let (call, offset, size) = ("glCopyTexSubImage3D", [xoffset, yoffset, zoffset], [width, height, 1]);
-        self.copy_tex_sub_image(BoxArguments { call, dimensions: 3, target, level, offset, size }, x, y);
+        let (call, offset, size) =
+            ("glCopyTexSubImage3D", [xoffset, yoffset, zoffset], [width, height, 1]);
+        self.copy_tex_sub_image(
+            BoxArguments { call, dimensions: 3, target, level, offset, size },
+            x,
+            y,
+        );
     }
 }
 

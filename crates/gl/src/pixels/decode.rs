@@ -19,19 +19,24 @@ pub(crate) fn numbers(bytes: &[u8], kind: u32, out: &mut Vec<f32>) {
     match kind {
         UNSIGNED_BYTE | BITMAP => out.extend(bytes.iter().map(|&b| f32::from(b) / 255.0)),
         BYTE => out.extend(bytes.iter().map(|&b| (2.0 * f32::from(b as i8) + 1.0) / 255.0)),
-        UNSIGNED_SHORT => out.extend(bytes.chunks_exact(2).map(|b| f32::from(u16::from_ne_bytes(two(b))) / 65535.0)),
-        SHORT => {
-            out.extend(bytes.chunks_exact(2).map(|b| (2.0 * f32::from(i16::from_ne_bytes(two(b))) + 1.0) / 65535.0))
-        }
-        HALF_FLOAT_ARB => out.extend(bytes.chunks_exact(2).map(|b| float_from_half(u16::from_ne_bytes(two(b))))),
-        UNSIGNED_INT => out.extend(
-            bytes.chunks_exact(4).map(|b| (f64::from(u32::from_ne_bytes(four(b))) / f64::from(u32::MAX)) as f32),
+        UNSIGNED_SHORT => out
+            .extend(bytes.chunks_exact(2).map(|b| f32::from(u16::from_ne_bytes(two(b))) / 65535.0)),
+        SHORT => out.extend(
+            bytes
+                .chunks_exact(2)
+                .map(|b| (2.0 * f32::from(i16::from_ne_bytes(two(b))) + 1.0) / 65535.0),
         ),
-        INT => out.extend(
+        HALF_FLOAT_ARB => {
+            out.extend(bytes.chunks_exact(2).map(|b| float_from_half(u16::from_ne_bytes(two(b)))))
+        }
+        UNSIGNED_INT => out.extend(
             bytes
                 .chunks_exact(4)
-                .map(|b| ((2.0 * f64::from(i32::from_ne_bytes(four(b))) + 1.0) / f64::from(u32::MAX)) as f32),
+                .map(|b| (f64::from(u32::from_ne_bytes(four(b))) / f64::from(u32::MAX)) as f32),
         ),
+        INT => out.extend(bytes.chunks_exact(4).map(|b| {
+            ((2.0 * f64::from(i32::from_ne_bytes(four(b))) + 1.0) / f64::from(u32::MAX)) as f32
+        })),
         _ => out.extend(bytes.chunks_exact(4).map(|b| f32::from_ne_bytes(four(b)))),
     }
 }
@@ -47,7 +52,12 @@ fn element(bytes: &[u8]) -> u32 {
 }
 
 /// Colours of pixels of a colour format, before transfer.
-fn chunk_colors(bytes: &[u8], format: PixelFormat, scratch: &mut Vec<f32>, out: &mut Vec<[f32; 4]>) {
+fn chunk_colors(
+    bytes: &[u8],
+    format: PixelFormat,
+    scratch: &mut Vec<f32>,
+    out: &mut Vec<[f32; 4]>,
+) {
     scratch.clear();
 
     // Copy four floats a pixel as they are.
@@ -72,7 +82,9 @@ fn chunk_colors(bytes: &[u8], format: PixelFormat, scratch: &mut Vec<f32>, out: 
     // The usual ones by themselves: components whose places are known are moved together.
     match *format.places() {
         _ if format.format == LUMINANCE => out.extend(scratch.iter().map(|&l| [l, l, l, 1.0])),
-        _ if format.format == LUMINANCE_ALPHA => out.extend(pixels::<2>(scratch).map(|[l, a]| [l, l, l, a])),
+        _ if format.format == LUMINANCE_ALPHA => {
+            out.extend(pixels::<2>(scratch).map(|[l, a]| [l, l, l, a]))
+        }
         [0, 1, 2, 3] => out.extend(pixels::<4>(scratch)),
         [2, 1, 0, 3] => out.extend(pixels::<4>(scratch).map(|[b, g, r, a]| [r, g, b, a])),
         [0, 1, 2] => out.extend(pixels::<3>(scratch).map(|[r, g, b]| [r, g, b, 1.0])),
@@ -102,18 +114,24 @@ fn indices(bytes: &[u8], kind: u32) -> Vec<i64> {
     match kind {
         UNSIGNED_BYTE | BITMAP => bytes.iter().map(|&b| i64::from(b)).collect(),
         BYTE => bytes.iter().map(|&b| i64::from(b as i8)).collect(),
-        UNSIGNED_SHORT => bytes.chunks_exact(2).map(|b| i64::from(u16::from_ne_bytes(two(b)))).collect(),
-        SHORT => bytes.chunks_exact(2).map(|b| i64::from(i16::from_ne_bytes(two(b)))).collect(),
-        UNSIGNED_INT => bytes.chunks_exact(4).map(|b| i64::from(u32::from_ne_bytes(four(b)))).collect(),
-        INT => bytes.chunks_exact(4).map(|b| i64::from(i32::from_ne_bytes(four(b)))).collect(),
-        HALF_FLOAT_ARB => {
-            bytes.chunks_exact(2).map(|b| float_from_half(u16::from_ne_bytes(two(b))).floor() as i64).collect()
+        UNSIGNED_SHORT => {
+            bytes.chunks_exact(2).map(|b| i64::from(u16::from_ne_bytes(two(b)))).collect()
         }
+        SHORT => bytes.chunks_exact(2).map(|b| i64::from(i16::from_ne_bytes(two(b)))).collect(),
+        UNSIGNED_INT => {
+            bytes.chunks_exact(4).map(|b| i64::from(u32::from_ne_bytes(four(b)))).collect()
+        }
+        INT => bytes.chunks_exact(4).map(|b| i64::from(i32::from_ne_bytes(four(b)))).collect(),
+        HALF_FLOAT_ARB => bytes
+            .chunks_exact(2)
+            .map(|b| float_from_half(u16::from_ne_bytes(two(b))).floor() as i64)
+            .collect(),
         _ => bytes.chunks_exact(4).map(|b| f32::from_ne_bytes(four(b)).floor() as i64).collect(),
     }
 }
 
-/// What `make` makes of the RGBA colours of pixels after transfer, not clamped, some at a time. Indices go through the maps.
+/// What `make` makes of the RGBA colours of pixels after transfer, not clamped, some at a time.
+/// Indices go through the maps.
 pub(crate) fn from_colors<T: Copy + Default + Send>(
     workers: &Workers,
     image: &ClientImage,
@@ -123,23 +141,35 @@ pub(crate) fn from_colors<T: Copy + Default + Send>(
     let mut out = vec![T::default(); image.bytes.len() / image.format.pixel_bytes()];
     workers.for_each_chunk(&mut out, PIXELS_A_JOB, |job, out| {
         let mut rest = out;
-        each_colors(image, transfer, job * PIXELS_A_JOB..job * PIXELS_A_JOB + rest.len(), &mut |colors| {
-            let (mine, behind) = std::mem::take(&mut rest).split_at_mut(colors.len());
-            make(colors, mine);
-            rest = behind;
-        });
+        each_colors(
+            image,
+            transfer,
+            job * PIXELS_A_JOB..job * PIXELS_A_JOB + rest.len(),
+            &mut |colors| {
+                let (mine, behind) = std::mem::take(&mut rest).split_at_mut(colors.len());
+                make(colors, mine);
+                rest = behind;
+            },
+        );
     });
     out
 }
 
 /// Hands the colours of pixels to `take`, some at a time.
-fn each_colors(image: &ClientImage, transfer: &Transfer<'_>, pixels: Range<usize>, take: &mut dyn FnMut(&[[f32; 4]])) {
+fn each_colors(
+    image: &ClientImage,
+    transfer: &Transfer<'_>,
+    pixels: Range<usize>,
+    take: &mut dyn FnMut(&[[f32; 4]]),
+) {
     let pixel = image.format.pixel_bytes();
     let (mut scratch, mut colors) = (Vec::new(), Vec::new());
     for chunk in image.bytes[pixels.start * pixel..pixels.end * pixel].chunks(CHUNK * pixel) {
         colors.clear();
         if image.format.content() == Content::Index {
-            colors.extend(indices(chunk, image.format.kind).into_iter().map(|i| transfer.color_of_index(i)));
+            colors.extend(
+                indices(chunk, image.format.kind).into_iter().map(|i| transfer.color_of_index(i)),
+            );
         } else {
             chunk_colors(chunk, image.format, &mut scratch, &mut colors);
             transfer.colors(&mut colors);
@@ -149,7 +179,11 @@ fn each_colors(image: &ClientImage, transfer: &Transfer<'_>, pixels: Range<usize
 }
 
 /// The colours of [`from_colors`] themselves.
-pub(crate) fn colors(workers: &Workers, image: &ClientImage, transfer: &Transfer<'_>) -> Vec<[f32; 4]> {
+pub(crate) fn colors(
+    workers: &Workers,
+    image: &ClientImage,
+    transfer: &Transfer<'_>,
+) -> Vec<[f32; 4]> {
     from_colors(workers, image, transfer, |colors, out| out.copy_from_slice(colors))
 }
 
@@ -159,7 +193,10 @@ pub(crate) fn depths(image: &ClientImage, transfer: &Transfer<'_>, clamp: bool) 
     let mut out = Vec::new();
     match image.format.kind {
         UNSIGNED_INT_24_8 => out.extend(
-            image.bytes.chunks_exact(4).map(|b| (u32::from_ne_bytes(four(b)) >> 8) as f32 / ((1 << 24) - 1) as f32),
+            image
+                .bytes
+                .chunks_exact(4)
+                .map(|b| (u32::from_ne_bytes(four(b)) >> 8) as f32 / ((1 << 24) - 1) as f32),
         ),
         FLOAT_32_UNSIGNED_INT_24_8_REV => {
             out.extend(image.bytes.chunks_exact(8).map(|b| f32::from_ne_bytes(four(b))));
@@ -180,18 +217,23 @@ pub(crate) fn stencils(image: &ClientImage, transfer: &Transfer<'_>) -> Vec<u8> 
     let four = |b: &[u8]| [b[0], b[1], b[2], b[3]];
     let masked = |index: i64| (transfer.stencil(index) & 255) as u8;
     match image.format.kind {
-        UNSIGNED_INT_24_8 => {
-            image.bytes.chunks_exact(4).map(|b| masked(i64::from(u32::from_ne_bytes(four(b)) & 255))).collect()
-        }
-        FLOAT_32_UNSIGNED_INT_24_8_REV => {
-            image.bytes.chunks_exact(8).map(|b| masked(i64::from(u32::from_ne_bytes(four(&b[4..])) & 255))).collect()
-        }
+        UNSIGNED_INT_24_8 => image
+            .bytes
+            .chunks_exact(4)
+            .map(|b| masked(i64::from(u32::from_ne_bytes(four(b)) & 255)))
+            .collect(),
+        FLOAT_32_UNSIGNED_INT_24_8_REV => image
+            .bytes
+            .chunks_exact(8)
+            .map(|b| masked(i64::from(u32::from_ne_bytes(four(&b[4..])) & 255)))
+            .collect(),
         kind => indices(&image.bytes, kind).into_iter().map(masked).collect(),
     }
 }
 
-/// Colours as RGBA words (red lowest), without transfer, of the usual formats; the image is given back if it is of another.
-/// Pixels that are such words but for the order of red and blue stay in the image's own memory.
+/// Colours as RGBA words (red lowest), without transfer, of the usual formats; the image is given
+/// back if it is of another. Pixels that are such words but for the order of red and blue stay in
+/// the image's own memory.
 pub(crate) fn words(image: Cow<'_, ClientImage>) -> Result<Vec<u32>, Cow<'_, ClientImage>> {
     let PixelFormat { format, kind } = image.format;
     let whole = matches!(kind, UNSIGNED_INT_8_8_8_8 | UNSIGNED_INT_8_8_8_8_REV);
@@ -203,7 +245,9 @@ pub(crate) fn words(image: Cow<'_, ClientImage>) -> Result<Vec<u32>, Cow<'_, Cli
             words.iter_mut().for_each(|w| *w = w.swap_bytes());
         }
         if format == BGRA {
-            words.iter_mut().for_each(|w| *w = *w & 0xff00_ff00 | *w >> 16 & 255 | (*w & 255) << 16);
+            words
+                .iter_mut()
+                .for_each(|w| *w = *w & 0xff00_ff00 | *w >> 16 & 255 | (*w & 255) << 16);
         }
         return Ok(words);
     }
@@ -212,7 +256,8 @@ pub(crate) fn words(image: Cow<'_, ClientImage>) -> Result<Vec<u32>, Cow<'_, Cli
 
     // Expand five and six bits by tables.
     if (format, kind) == (RGB, UNSIGNED_SHORT_5_6_5) {
-        let byte = |bits: u16, largest: u16| ((f32::from(bits) / f32::from(largest)) * 255.0 + 0.5) as u8;
+        let byte =
+            |bits: u16, largest: u16| ((f32::from(bits) / f32::from(largest)) * 255.0 + 0.5) as u8;
         let fives: [u8; 32] = std::array::from_fn(|bits| byte(bits as u16, 31));
         let sixes: [u8; 64] = std::array::from_fn(|bits| byte(bits as u16, 63));
         let pixel = |[a, b]: &[u8; 2]| {
@@ -244,11 +289,19 @@ mod tests {
 
     fn image(format: u32, kind: u32, bytes: &[u8]) -> ClientImage {
         let format = PixelFormat::new(format, kind).unwrap();
-        ClientImage { size: [bytes.len() / format.pixel_bytes(), 1, 1], bytes: bytes.into(), format }
+        ClientImage {
+            size: [bytes.len() / format.pixel_bytes(), 1, 1],
+            bytes: bytes.into(),
+            format,
+        }
     }
 
     fn decoded(format: u32, kind: u32, bytes: &[u8]) -> Vec<[f32; 4]> {
-        colors(&Workers::single(), &image(format, kind, bytes), &Transfer::new(&PixelTransfer::default()))
+        colors(
+            &Workers::single(),
+            &image(format, kind, bytes),
+            &Transfer::new(&PixelTransfer::default()),
+        )
     }
 
     #[test]
@@ -290,8 +343,8 @@ mod tests {
 
     #[test]
     fn the_fast_way_agrees_with_the_general_one() {
-        let bytes =
-            [RGBA, BGRA, RGB, BGR, LUMINANCE, LUMINANCE_ALPHA, ALPHA, RED].map(|format| (format, UNSIGNED_BYTE));
+        let bytes = [RGBA, BGRA, RGB, BGR, LUMINANCE, LUMINANCE_ALPHA, ALPHA, RED]
+            .map(|format| (format, UNSIGNED_BYTE));
         let packed = [UNSIGNED_INT_8_8_8_8, UNSIGNED_INT_8_8_8_8_REV].iter();
         let packed = packed.flat_map(|&kind| [(RGBA, kind), (BGRA, kind)]);
         for (format, kind) in bytes.into_iter().chain(packed).chain([(RGB, UNSIGNED_SHORT_5_6_5)]) {

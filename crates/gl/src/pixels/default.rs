@@ -1,7 +1,9 @@
-//! Framebuffer 0: planes of our own, whose colours are stored in the client's buffer when it may look, and loaded from
-//! there before the first draw that does not clear them all, since programs draw into their buffer too.
+//! Framebuffer 0: planes of our own, whose colours are stored in the client's buffer when it may
+//! look, and loaded from there before the first draw that does not clear them all, since programs
+//! draw into their buffer too.
 //!
-//! The client's buffer is touched in the calls alone that are documented to do so; it may be gone at any other time.
+//! The client's buffer is touched in the calls alone that are documented to do so; it may be gone
+//! at any other time.
 
 use super::attachments::{Surface, Surfaces};
 use super::client_buffer::{ClientBuffer, LoadedTiles};
@@ -76,7 +78,8 @@ impl DefaultFramebuffer {
 
     /// The accumulation plane, if there is one.
     pub(crate) fn accum(&mut self) -> Option<&mut Plane<[f32; 4]>> {
-        let (viewport, _) = self.made_for.filter(|_| self.accum_bits > 0 && self.buffer.is_some())?;
+        let (viewport, _) =
+            self.made_for.filter(|_| self.accum_bits > 0 && self.buffer.is_some())?;
         Some(self.accum.get_or_insert_with(|| Plane::new(viewport, 1, [0.0; 4])))
     }
 
@@ -97,19 +100,25 @@ impl DefaultFramebuffer {
         }
     }
 
-    /// Notes that nothing is loaded, and that no colours differ from the buffer's where nothing will be.
+    /// Notes that nothing is loaded, and that no colours differ from the buffer's where nothing
+    /// will be.
     pub(super) fn forget_loaded(&mut self) {
         self.loaded.clear();
         let Some(plane) = self.color_plane() else { return };
         match &mut *lock(&plane) {
-            ColorPlane::Rgba8(plane) => plane.tiles.iter_mut().for_each(|tile| _ = tile.take_changed()),
-            ColorPlane::RgbaF32(plane) => plane.tiles.iter_mut().for_each(|tile| _ = tile.take_changed()),
+            ColorPlane::Rgba8(plane) => {
+                plane.tiles.iter_mut().for_each(|tile| _ = tile.take_changed())
+            }
+            ColorPlane::RgbaF32(plane) => {
+                plane.tiles.iter_mut().for_each(|tile| _ = tile.take_changed())
+            }
         }
     }
 
     fn make_planes(&mut self, viewport: Viewport, kind: u32) {
         // Make the colour plane.
-        let base = if matches!(self.format, RGB | OSMESA_BGR | OSMESA_RGB_565) { RGB } else { RGBA };
+        let base =
+            if matches!(self.format, RGB | OSMESA_BGR | OSMESA_RGB_565) { RGB } else { RGBA };
         let (token, storage) = match kind {
             UNSIGNED_SHORT => (if base == RGB { RGB16 } else { RGBA16 }, Storage::Unorm16),
             FLOAT => (if base == RGB { RGB32F_ARB } else { RGBA32F_ARB }, Storage::Float),
@@ -127,13 +136,18 @@ impl DefaultFramebuffer {
                 17..=24 => (DEPTH_COMPONENT24, 24),
                 _ => (DEPTH_COMPONENT32, 32),
             };
-            let format = InternalFormat { token, base: DEPTH_COMPONENT, storage: Storage::Depth(bits) };
+            let format =
+                InternalFormat { token, base: DEPTH_COMPONENT, storage: Storage::Depth(bits) };
             let scale = format.depth_scale();
             let plane = DepthBuffer::new(Plane::new(viewport, 1, scale), scale);
             Surface { depth: Some(Arc::new(Mutex::new(plane))), ..surface(format, viewport) }
         });
         self.stencil = (self.stencil_bits > 0).then(|| {
-            let format = InternalFormat { token: STENCIL_INDEX8, base: STENCIL_INDEX, storage: Storage::Stencil };
+            let format = InternalFormat {
+                token: STENCIL_INDEX8,
+                base: STENCIL_INDEX,
+                storage: Storage::Stencil,
+            };
             let plane: Shared<StencilPlane> = Arc::new(Mutex::new(Plane::new(viewport, 1, 0)));
             Surface { stencil: Some(plane), ..surface(format, viewport) }
         });
@@ -182,8 +196,8 @@ pub struct BufferInfo {
 }
 
 impl Context {
-    /// Says once what framebuffer 0 is: `format` is `RGBA`, `RGB` or one of the `OSMESA_` formats; bits of 0 mean none.
-    /// `false` if the format is unknown.
+    /// Says once what framebuffer 0 is: `format` is `RGBA`, `RGB` or one of the `OSMESA_` formats;
+    /// bits of 0 mean none. `false` if the format is unknown.
     pub fn configure_default_framebuffer(
         &mut self,
         format: u32,
@@ -191,29 +205,43 @@ impl Context {
         stencil_bits: i32,
         accum_bits: i32,
     ) -> bool {
-        let known = matches!(format, RGBA | RGB | OSMESA_BGRA | OSMESA_ARGB | OSMESA_BGR | OSMESA_RGB_565);
+        let known =
+            matches!(format, RGBA | RGB | OSMESA_BGRA | OSMESA_ARGB | OSMESA_BGR | OSMESA_RGB_565);
         if known {
             let version = self.default_framebuffer.version + 1;
-            let new =
-                DefaultFramebuffer { format, depth_bits, stencil_bits, accum_bits, version, ..Default::default() };
+            let new = DefaultFramebuffer {
+                format,
+                depth_bits,
+                stencil_bits,
+                accum_bits,
+                version,
+                ..Default::default()
+            };
             self.default_framebuffer = new;
         }
         known
     }
 
-    /// Draws to the client's buffer at `buffer` from now on. `kind` is `UNSIGNED_BYTE`, `UNSIGNED_SHORT`,
-    /// `UNSIGNED_SHORT_5_6_5` or `FLOAT`. `false` if the format does not go with it or a size is out of range. With the
-    /// buffer it has already nothing happens.
+    /// Draws to the client's buffer at `buffer` from now on. `kind` is `UNSIGNED_BYTE`,
+    /// `UNSIGNED_SHORT`, `UNSIGNED_SHORT_5_6_5` or `FLOAT`. `false` if the format does not go with
+    /// it or a size is out of range. With the buffer it has already nothing happens.
     pub fn make_current(&mut self, buffer: usize, kind: u32, width: i32, height: i32) -> bool {
-        let Some(viewport) = Viewport::new(width.max(0) as u32, height.max(0) as u32) else { return false };
+        let Some(viewport) = Viewport::new(width.max(0) as u32, height.max(0) as u32) else {
+            return false;
+        };
 
         // Check that the type fits the context's format.
         let fits = match kind {
             UNSIGNED_SHORT_5_6_5 => self.default_framebuffer.format == OSMESA_RGB_565,
-            UNSIGNED_BYTE | UNSIGNED_SHORT | FLOAT => self.default_framebuffer.format != OSMESA_RGB_565,
+            UNSIGNED_BYTE | UNSIGNED_SHORT | FLOAT => {
+                self.default_framebuffer.format != OSMESA_RGB_565
+            }
             _ => false,
         };
-        if !fits || buffer == 0 || viewport.width as usize * viewport.height as usize * 4 > MAX_IMAGE_BYTES {
+        if !fits
+            || buffer == 0
+            || viewport.width as usize * viewport.height as usize * 4 > MAX_IMAGE_BYTES
+        {
             return false;
         }
 
@@ -224,7 +252,8 @@ impl Context {
         if fb.buffer == Some(new) {
             return true;
         }
-        // The buffer before may be gone: what was drawn to it since the last store is not stored, and nothing is loaded.
+        // The buffer before may be gone: what was drawn to it since the last store is not stored,
+        // and nothing is loaded.
         self.default_framebuffer.loaded.set_all();
         self.flush_recorded();
 
@@ -247,7 +276,8 @@ impl Context {
         true
     }
 
-    /// Lets go of the client's buffer, after storing what was drawn. Call it before another context becomes current.
+    /// Lets go of the client's buffer, after storing what was drawn. Call it before another context
+    /// becomes current.
     pub fn release(&mut self) {
         self.store_unasked();
         // Contexts with the same objects must see what was drawn to them.
@@ -385,7 +415,10 @@ mod tests {
             c.clear(COLOR_BUFFER_BIT);
             c.read_pixels(0, 0, 1, 1, RGBA, UNSIGNED_BYTE, BASE + 512);
             c.finish();
-            assert_eq!((get::<4>(&c, BASE + 512), get::<4>(&c, BASE)), ([255, 0, 255, 255], [255, 0, 255, 255]));
+            assert_eq!(
+                (get::<4>(&c, BASE + 512), get::<4>(&c, BASE)),
+                ([255, 0, 255, 255], [255, 0, 255, 255])
+            );
             assert_eq!(c.get_error(), NO_ERROR);
         }
     }

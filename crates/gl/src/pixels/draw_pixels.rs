@@ -11,7 +11,9 @@ use crate::Context;
 use crate::enums::*;
 use std::borrow::Cow;
 use std::sync::Arc;
-use vitral_raster::forward::{Clamping, Command, Compare, DepthTest, FragmentState, ImageColors, ImageFragments};
+use vitral_raster::forward::{
+    Clamping, Command, Compare, DepthTest, FragmentState, ImageColors, ImageFragments,
+};
 
 /// What a pixel rectangle brings.
 #[derive(Default)]
@@ -23,7 +25,12 @@ struct Pixels {
 
 impl Context {
     /// Fragments of `size` source pixels at `origin` that take everything from the raster position.
-    pub(crate) fn raster_fragments(&self, origin: [f32; 2], zoom: [f32; 2], size: [usize; 2]) -> ImageFragments {
+    pub(crate) fn raster_fragments(
+        &self,
+        origin: [f32; 2],
+        zoom: [f32; 2],
+        size: [usize; 2],
+    ) -> ImageFragments {
         let raster = &self.state.raster_position;
         ImageFragments {
             origin,
@@ -63,7 +70,8 @@ impl Context {
             let state = self.fragment_state(true);
             let image = ImageFragments { stencils: Some(stencils), ..fragments.clone() };
             self.record(Command::Image(Arc::new(image), state));
-            // Depths that come with stencil values are written through the depth mask and nothing else.
+            // Depths that come with stencil values are written through the depth mask and nothing
+            // else.
             if let Some(depths) = pixels.depths.filter(|_| self.state.depth.write) {
                 let state = self.fragment_state(true);
                 let plain = FragmentState {
@@ -84,7 +92,8 @@ impl Context {
         self.record(Command::Image(Arc::new(image), state));
     }
 
-    /// Whether something is drawn at the raster position; in feedback and selection mode, notes `token` instead.
+    /// Whether something is drawn at the raster position; in feedback and selection mode, notes
+    /// `token` instead.
     pub(crate) fn raster_draws(&mut self, token: u32) -> bool {
         if !self.state.raster_position.valid {
             return false;
@@ -100,7 +109,8 @@ impl Context {
     pub fn draw_pixels(&mut self, width: i32, height: i32, format: u32, type_: u32, pixels: usize) {
         let pair = PixelFormat::new(format, type_);
         let image = match pair {
-            Ok(pair) => drawable([width, height]).map_or(Ok(None), |size| self.read_image(pair, size, false, pixels)),
+            Ok(pair) => drawable([width, height])
+                .map_or(Ok(None), |size| self.read_image(pair, size, false, pixels)),
             Err(_) => Ok(None),
         };
         let image = match image {
@@ -110,7 +120,12 @@ impl Context {
         self.listable(move |c| c.exec_draw_pixels([width, height], pair, image.as_deref()));
     }
 
-    fn exec_draw_pixels(&mut self, size: [i32; 2], format: Result<PixelFormat, Failure>, image: Option<&ClientImage>) {
+    fn exec_draw_pixels(
+        &mut self,
+        size: [i32; 2],
+        format: Result<PixelFormat, Failure>,
+        image: Option<&ClientImage>,
+    ) {
         const CALL: &str = "glDrawPixels";
         if !self.outside_begin(CALL) {
             return;
@@ -133,8 +148,14 @@ impl Context {
             return;
         }
         let content = format.content();
-        if !matches!(content, Content::Color | Content::Index) && !has_content(&self.draw_surfaces(), content) {
-            return self.record_error(INVALID_OPERATION, CALL, "the draw framebuffer has no such buffer");
+        if !matches!(content, Content::Color | Content::Index)
+            && !has_content(&self.draw_surfaces(), content)
+        {
+            return self.record_error(
+                INVALID_OPERATION,
+                CALL,
+                "the draw framebuffer has no such buffer",
+            );
         }
         if !self.raster_draws(DRAW_PIXEL_TOKEN) {
             return;
@@ -149,7 +170,8 @@ impl Context {
                 // Five and six bits are more than bytes hold of them.
                 let bytes = transfer.keeps_colors() && image.format.kind != UNSIGNED_SHORT_5_6_5;
                 let words = bytes.then(|| decode::words(Cow::Borrowed(image)).ok()).flatten();
-                let floats = || ImageColors::Floats(decode::colors(&self.workers(), image, &transfer));
+                let floats =
+                    || ImageColors::Floats(decode::colors(&self.workers(), image, &transfer));
                 pixels.colors = Some(words.map_or_else(floats, ImageColors::Words));
             }
             Content::Depth => pixels.depths = Some(decode::depths(image, &transfer, true)),
@@ -184,7 +206,13 @@ impl Context {
             DEPTH => Content::Depth,
             STENCIL => Content::Stencil,
             DEPTH_STENCIL => Content::DepthStencil,
-            _ => return self.record_error(INVALID_ENUM, CALL, "type is not COLOR, DEPTH, STENCIL or DEPTH_STENCIL"),
+            _ => {
+                return self.record_error(
+                    INVALID_ENUM,
+                    CALL,
+                    "type is not COLOR, DEPTH, STENCIL or DEPTH_STENCIL",
+                );
+            }
         };
 
         // Check both framebuffers.
@@ -205,7 +233,9 @@ impl Context {
         }
 
         // Read the rectangle's part inside the framebuffer.
-        let Some(from) = self.read_surfaces(CALL, true, Some([x, y, width, height])) else { return };
+        let Some(from) = self.read_surfaces(CALL, true, Some([x, y, width, height])) else {
+            return;
+        };
         let r = inside(&from, x, y, width, height);
         if !self.raster_draws(COPY_PIXEL_TOKEN) || r.size.contains(&0) {
             return;
@@ -233,7 +263,9 @@ impl Context {
             && let Some(plane) = &s.stencil
         {
             let values = read_stencils(&lock(plane), &r);
-            pixels.stencils = Some(values.into_iter().map(|v| (transfer.stencil(i64::from(v)) & 255) as u8).collect());
+            pixels.stencils = Some(
+                values.into_iter().map(|v| (transfer.stencil(i64::from(v)) & 255) as u8).collect(),
+            );
         }
 
         // Record them.

@@ -19,7 +19,8 @@ fn signed(value: f64, largest: f64) -> i64 {
     ((largest * c - 1.0) / 2.0 + 0.5).floor() as i64
 }
 
-/// The quotient that a number may have been, of 8 or 16 bits and their largest: integers of 32 bits show how it was rounded.
+/// The quotient that a number may have been, of 8 or 16 bits and their largest: integers of 32 bits
+/// show how it was rounded.
 fn quotient(value: f32) -> f64 {
     let quotient = (f64::from(value) * 65535.0).round() / 65535.0;
     if quotient as f32 == value { quotient } else { f64::from(value) }
@@ -27,7 +28,12 @@ fn quotient(value: f32) -> f64 {
 
 /// The components at `places` of each colour, as `f` makes them bytes.
 #[inline]
-fn spread<const BYTES: usize>(colors: &[[f32; 4]], places: &[usize], out: &mut [u8], f: impl Fn(f32) -> [u8; BYTES]) {
+fn spread<const BYTES: usize>(
+    colors: &[[f32; 4]],
+    places: &[usize],
+    out: &mut [u8],
+    f: impl Fn(f32) -> [u8; BYTES],
+) {
     // Places that the compiler knows need no look at each component.
     match *places {
         [0, 1, 2, 3] => place(colors, [0, 1, 2, 3], out, f),
@@ -64,7 +70,9 @@ pub(crate) fn components(colors: &[[f32; 4]], places: &[usize], kind: u32, out: 
     match kind {
         UNSIGNED_BYTE => spread(colors, places, out, |v| [(clamp_unit(v) * 255.0 + 0.5) as u8]),
         BYTE => spread(colors, places, out, |v| [signed(v.into(), 255.0) as i8 as u8]),
-        UNSIGNED_SHORT => spread(colors, places, out, |v| (unsigned(v.into(), 65535.0) as u16).to_ne_bytes()),
+        UNSIGNED_SHORT => {
+            spread(colors, places, out, |v| (unsigned(v.into(), 65535.0) as u16).to_ne_bytes())
+        }
         SHORT => spread(colors, places, out, |v| (signed(v.into(), 65535.0) as i16).to_ne_bytes()),
         UNSIGNED_INT => spread(colors, places, out, |v| unsigned(quotient(v), WHOLE).to_ne_bytes()),
         INT => spread(colors, places, out, |v| (signed(quotient(v), WHOLE) as i32).to_ne_bytes()),
@@ -77,13 +85,15 @@ pub(crate) fn components(colors: &[[f32; 4]], places: &[usize], kind: u32, out: 
 /// Pixels whose luminance is summed up at a time.
 const SUMS: usize = 64;
 
-/// Colours in a colour format. Luminance is the sum of red, green and blue; where these are clamped, so is the sum.
+/// Colours in a colour format. Luminance is the sum of red, green and blue; where these are
+/// clamped, so is the sum.
 pub(crate) fn colors(colors: &[[f32; 4]], format: PixelFormat, out: &mut [u8]) {
     // Sum up luminance, some pixels at a time.
     let places = format.places();
     if matches!(format.format, LUMINANCE | LUMINANCE_ALPHA) {
         let sum = |c: &[f32; 4]| {
-            let (sum, clamped) = (c[0] + c[1] + c[2], c[..3].iter().all(|v| (0.0..=1.0).contains(v)));
+            let (sum, clamped) =
+                (c[0] + c[1] + c[2], c[..3].iter().all(|v| (0.0..=1.0).contains(v)));
             [if clamped { sum.min(1.0) } else { sum }, 0.0, 0.0, c[3]]
         };
         let mut sums = [[0.0; 4]; SUMS];
@@ -122,11 +132,15 @@ pub(crate) fn depths(depths: &[f32], format: PixelFormat, out: &mut [u8]) {
         FLOAT => out.copy_from_slice(bytemuck::cast_slice(depths)),
         UNSIGNED_INT => {
             let numbers = out.as_chunks_mut().0.iter_mut().zip(depths);
-            numbers.for_each(|(number, &depth)| *number = unsigned(quotient(depth), WHOLE).to_ne_bytes());
+            numbers.for_each(|(number, &depth)| {
+                *number = unsigned(quotient(depth), WHOLE).to_ne_bytes()
+            });
         }
         kind => {
             let numbers = out.chunks_exact_mut(format.pixel_bytes()).zip(depths);
-            numbers.for_each(|(number, &depth)| components(&[[depth, 0.0, 0.0, 0.0]], &[0], kind, number));
+            numbers.for_each(|(number, &depth)| {
+                components(&[[depth, 0.0, 0.0, 0.0]], &[0], kind, number)
+            });
         }
     }
 }
@@ -156,7 +170,9 @@ pub(crate) fn depth_stencils(depths: &[f32], stencils: &[u8], kind: u32, out: &m
             *pixel = ((whole << 8) | u32::from(stencil)).to_ne_bytes();
         }
     } else {
-        for ([first, second], (&depth, &stencil)) in out.as_chunks_mut().0.as_chunks_mut().0.iter_mut().zip(values) {
+        for ([first, second], (&depth, &stencil)) in
+            out.as_chunks_mut().0.as_chunks_mut().0.iter_mut().zip(values)
+        {
             (*first, *second) = (depth.to_ne_bytes(), u32::from(stencil).to_ne_bytes());
         }
     }
@@ -165,7 +181,9 @@ pub(crate) fn depth_stencils(depths: &[f32], stencils: &[u8], kind: u32, out: &m
 /// Whether [`words`] makes pixels of a format.
 pub(crate) fn takes_words(format: PixelFormat) -> bool {
     match format.kind {
-        UNSIGNED_BYTE => matches!(format.format, RGBA | BGRA | ABGR_EXT | RGB | BGR | RED | GREEN | BLUE | ALPHA),
+        UNSIGNED_BYTE => {
+            matches!(format.format, RGBA | BGRA | ABGR_EXT | RGB | BGR | RED | GREEN | BLUE | ALPHA)
+        }
         UNSIGNED_INT_8_8_8_8 | UNSIGNED_INT_8_8_8_8_REV => matches!(format.format, RGBA | BGRA),
         _ => false,
     }
@@ -228,7 +246,8 @@ fn threes(words: &[u32], format: PixelFormat, out: &mut [u8]) {
     }
 }
 
-/// Three bytes of each word, the lowest first, or last if `swapped`: of the first so many pixels, which it says.
+/// Three bytes of each word, the lowest first, or last if `swapped`: of the first so many pixels,
+/// which it says.
 #[inline(always)]
 fn triples<S: Simd>(simd: S, words: &[u32], swapped: bool, out: &mut [u8]) -> usize {
     let order = if swapped {
@@ -240,7 +259,9 @@ fn triples<S: Simd>(simd: S, words: &[u32], swapped: bool, out: &mut [u8]) -> us
     let words: &[u8] = bytemuck::cast_slice(words);
     let mut done = 0;
     // Each time four bytes more are written, over which the next ones are.
-    while let (Some(four), Some(bytes)) = (words.get(4 * done..4 * done + 16), out.get_mut(3 * done..3 * done + 16)) {
+    while let (Some(four), Some(bytes)) =
+        (words.get(4 * done..4 * done + 16), out.get_mut(3 * done..3 * done + 16))
+    {
         U8x16::from_slice(simd, four).swizzle_dyn(order).store_slice(bytes);
         done += 4;
     }
@@ -269,7 +290,10 @@ mod tests {
         assert_eq!(encoded([-1.0; 4], RED, INT), i32::MIN.to_ne_bytes());
         assert_eq!(encoded([2.0; 4], RED, UNSIGNED_INT), u32::MAX.to_ne_bytes());
         assert_eq!(encoded([0.25, 0.5, 0.125, 1.0], LUMINANCE, FLOAT), 0.875f32.to_ne_bytes());
-        assert_eq!(encoded([1.0, 0.0, 0.0, 0.0], RGB, UNSIGNED_SHORT_5_6_5), 0xf800u16.to_ne_bytes());
+        assert_eq!(
+            encoded([1.0, 0.0, 0.0, 0.0], RGB, UNSIGNED_SHORT_5_6_5),
+            0xf800u16.to_ne_bytes()
+        );
     }
 
     #[test]
@@ -287,7 +311,8 @@ mod tests {
 
     #[test]
     fn words_become_what_colors_become() {
-        let bytes = [RGBA, BGRA, ABGR_EXT, RGB, BGR, RED, GREEN, BLUE, ALPHA].map(|token| (token, UNSIGNED_BYTE));
+        let bytes = [RGBA, BGRA, ABGR_EXT, RGB, BGR, RED, GREEN, BLUE, ALPHA]
+            .map(|token| (token, UNSIGNED_BYTE));
         let kinds = [UNSIGNED_INT_8_8_8_8, UNSIGNED_INT_8_8_8_8_REV];
         let wholes = kinds.iter().flat_map(|&kind| [(RGBA, kind), (BGRA, kind)]);
         let source = [0x0403_0201u32, 0xf3f2_f1f0, 0x00ff_8001];
@@ -306,8 +331,10 @@ mod tests {
     #[test]
     fn runs_of_rgb_are_tight() {
         for count in 0..40u8 {
-            let source: Vec<u32> = (0..u32::from(count)).map(|i| 0xff00_0000 | (i * 0x0003_0201)).collect();
-            let (mut forward, mut backward) = (vec![0; 3 * source.len()], vec![0; 3 * source.len()]);
+            let source: Vec<u32> =
+                (0..u32::from(count)).map(|i| 0xff00_0000 | (i * 0x0003_0201)).collect();
+            let (mut forward, mut backward) =
+                (vec![0; 3 * source.len()], vec![0; 3 * source.len()]);
             words(&source, format(RGB, UNSIGNED_BYTE), &mut forward);
             words(&source, format(BGR, UNSIGNED_BYTE), &mut backward);
             assert_eq!(forward, (0..count).flat_map(|i| [i, 2 * i, 3 * i]).collect::<Vec<_>>());

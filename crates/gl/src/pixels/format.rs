@@ -92,11 +92,14 @@ impl PixelFormat {
         match kind {
             BITMAP if matches!(format, COLOR_INDEX | STENCIL_INDEX) => Ok(pair),
             BITMAP => Err((INVALID_ENUM, "type BITMAP needs an index format")),
-            UNSIGNED_INT_24_8 | FLOAT_32_UNSIGNED_INT_24_8_REV if format == DEPTH_STENCIL => Ok(pair),
+            UNSIGNED_INT_24_8 | FLOAT_32_UNSIGNED_INT_24_8_REV if format == DEPTH_STENCIL => {
+                Ok(pair)
+            }
             UNSIGNED_INT_24_8 | FLOAT_32_UNSIGNED_INT_24_8_REV => {
                 Err((INVALID_OPERATION, "a type of depth and stencil needs format DEPTH_STENCIL"))
             }
-            UNSIGNED_BYTE | BYTE | UNSIGNED_SHORT | SHORT | UNSIGNED_INT | INT | FLOAT | HALF_FLOAT_ARB => {
+            UNSIGNED_BYTE | BYTE | UNSIGNED_SHORT | SHORT | UNSIGNED_INT | INT | FLOAT
+            | HALF_FLOAT_ARB => {
                 if format == DEPTH_STENCIL {
                     Err((INVALID_ENUM, "DEPTH_STENCIL needs a type of depth and stencil"))
                 } else {

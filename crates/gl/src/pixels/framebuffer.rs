@@ -181,7 +181,9 @@ impl Context {
 
     /// Detaches a deleted texture from the bound framebuffers.
     pub(crate) fn detach_texture(&mut self, deleted: &TextureHandle) {
-        self.detach(|a| matches!(a, Attached::Texture { texture, .. } if Arc::ptr_eq(texture, deleted)));
+        self.detach(
+            |a| matches!(a, Attached::Texture { texture, .. } if Arc::ptr_eq(texture, deleted)),
+        );
     }
 
     /// Detaches a deleted renderbuffer from the bound framebuffers.
@@ -243,34 +245,72 @@ impl Context {
         let face = match textarget {
             None if kind == slot::THREE => 0,
             None => return self.record_error(INVALID_OPERATION, call, "the texture has no layers"),
-            Some((textarget, dimensions)) => match ImageTarget::new(textarget, None).filter(|t| !t.proxy) {
-                None => return self.record_error(INVALID_ENUM, call, "textarget is not an image target"),
-                Some(t) if t.slot != kind || ImageTarget::new(textarget, Some(dimensions)).is_none() => {
-                    return self.record_error(INVALID_OPERATION, call, "textarget does not fit the texture");
+            Some((textarget, dimensions)) => {
+                match ImageTarget::new(textarget, None).filter(|t| !t.proxy) {
+                    None => {
+                        return self.record_error(
+                            INVALID_ENUM,
+                            call,
+                            "textarget is not an image target",
+                        );
+                    }
+                    Some(t)
+                        if t.slot != kind
+                            || ImageTarget::new(textarget, Some(dimensions)).is_none() =>
+                    {
+                        return self.record_error(
+                            INVALID_OPERATION,
+                            call,
+                            "textarget does not fit the texture",
+                        );
+                    }
+                    Some(t) => t.face,
                 }
-                Some(t) => t.face,
-            },
+            }
         };
 
         // Check the level and the layer.
         let levels = ImageTarget { slot: kind, face, proxy: false }.max_levels();
         let Some(level) = usize::try_from(level).ok().filter(|&l| l < levels) else {
-            return self.record_error(INVALID_VALUE, call, "level is negative or larger than the target allows");
+            return self.record_error(
+                INVALID_VALUE,
+                call,
+                "level is negative or larger than the target allows",
+            );
         };
         let Some(layer) = usize::try_from(layer).ok().filter(|&l| l < MAX_3D_TEXTURE_SIZE) else {
             return self.record_error(INVALID_VALUE, call, "the layer is negative or too large");
         };
-        self.attach(call, target, attachment, Some(Attached::Texture { texture, face, level, layer }));
+        self.attach(
+            call,
+            target,
+            attachment,
+            Some(Attached::Texture { texture, face, level, layer }),
+        );
     }
 
     /// `glFramebufferTexture1D`.
-    pub fn framebuffer_texture_1d(&mut self, target: u32, attachment: u32, textarget: u32, texture: u32, level: i32) {
+    pub fn framebuffer_texture_1d(
+        &mut self,
+        target: u32,
+        attachment: u32,
+        textarget: u32,
+        texture: u32,
+        level: i32,
+    ) {
         let call = "glFramebufferTexture1D";
         self.attach_texture(call, target, attachment, Some((textarget, 1)), texture, level, 0);
     }
 
     /// `glFramebufferTexture2D`.
-    pub fn framebuffer_texture_2d(&mut self, target: u32, attachment: u32, textarget: u32, texture: u32, level: i32) {
+    pub fn framebuffer_texture_2d(
+        &mut self,
+        target: u32,
+        attachment: u32,
+        textarget: u32,
+        texture: u32,
+        level: i32,
+    ) {
         let call = "glFramebufferTexture2D";
         self.attach_texture(call, target, attachment, Some((textarget, 2)), texture, level, 0);
     }
@@ -286,12 +326,35 @@ impl Context {
         zoffset: i32,
     ) {
         let call = "glFramebufferTexture3D";
-        self.attach_texture(call, target, attachment, Some((textarget, 3)), texture, level, zoffset);
+        self.attach_texture(
+            call,
+            target,
+            attachment,
+            Some((textarget, 3)),
+            texture,
+            level,
+            zoffset,
+        );
     }
 
     /// `glFramebufferTextureLayer`.
-    pub fn framebuffer_texture_layer(&mut self, target: u32, attachment: u32, texture: u32, level: i32, layer: i32) {
-        self.attach_texture("glFramebufferTextureLayer", target, attachment, None, texture, level, layer);
+    pub fn framebuffer_texture_layer(
+        &mut self,
+        target: u32,
+        attachment: u32,
+        texture: u32,
+        level: i32,
+        layer: i32,
+    ) {
+        self.attach_texture(
+            "glFramebufferTextureLayer",
+            target,
+            attachment,
+            None,
+            texture,
+            level,
+            layer,
+        );
     }
 
     /// The draw or read buffer of a bound framebuffer object changed.

@@ -11,7 +11,13 @@ use crate::state::MAX_COLOR_ATTACHMENTS;
 
 impl Context {
     /// `glGetFramebufferAttachmentParameteriv`.
-    pub fn get_framebuffer_attachment_parameteriv(&mut self, target: u32, attachment: u32, pname: u32, params: usize) {
+    pub fn get_framebuffer_attachment_parameteriv(
+        &mut self,
+        target: u32,
+        attachment: u32,
+        pname: u32,
+        params: usize,
+    ) {
         const CALL: &str = "glGetFramebufferAttachmentParameteriv";
         if !self.outside_begin(CALL) {
             return;
@@ -34,7 +40,8 @@ impl Context {
     fn default_attachment(&self, attachment: u32, pname: u32) -> Result<i32, Failure> {
         let surfaces = self.default_framebuffer.surfaces(FRONT);
         let surface = match attachment {
-            // There is one colour buffer. Programs ask for the back buffer of windows that were meant to have two.
+            // There is one colour buffer. Programs ask for the back buffer of windows that were
+            // meant to have two.
             FRONT | FRONT_LEFT | BACK | BACK_LEFT | COLOR => surfaces.color,
             DEPTH => surfaces.depth,
             STENCIL => surfaces.stencil,
@@ -55,7 +62,10 @@ impl Context {
     }
 
     fn object_attachment(&self, name: u32, attachment: u32, pname: u32) -> Result<i32, Failure> {
-        let object = self.framebuffers.object(name).ok_or((INVALID_OPERATION, "there is no such framebuffer"))?;
+        let object = self
+            .framebuffers
+            .object(name)
+            .ok_or((INVALID_OPERATION, "there is no such framebuffer"))?;
 
         // Find the attachment point.
         let colors = COLOR_ATTACHMENT0..COLOR_ATTACHMENT0 + MAX_COLOR_ATTACHMENTS as u32;
@@ -63,11 +73,12 @@ impl Context {
             DEPTH_ATTACHMENT => DEPTH_POINT,
             STENCIL_ATTACHMENT => STENCIL_POINT,
             DEPTH_STENCIL_ATTACHMENT => {
-                let same = match (&object.attachments[DEPTH_POINT], &object.attachments[STENCIL_POINT]) {
-                    (Some(depth), Some(stencil)) => depth.same(stencil),
-                    (None, None) => true,
-                    _ => false,
-                };
+                let same =
+                    match (&object.attachments[DEPTH_POINT], &object.attachments[STENCIL_POINT]) {
+                        (Some(depth), Some(stencil)) => depth.same(stencil),
+                        (None, None) => true,
+                        _ => false,
+                    };
                 if !same {
                     return Err((INVALID_OPERATION, "depth and stencil attachments differ"));
                 }
@@ -76,19 +87,26 @@ impl Context {
             _ if colors.contains(&attachment) => (attachment - COLOR_ATTACHMENT0) as usize,
             _ => return Err((INVALID_ENUM, "attachment is not an attachment point")),
         };
-        if attachment == DEPTH_STENCIL_ATTACHMENT && pname == FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE {
+        if attachment == DEPTH_STENCIL_ATTACHMENT && pname == FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE
+        {
             return Err((INVALID_OPERATION, "depth and stencil have types of their own"));
         }
 
         // Report the parameters of nothing attached.
         let Some(attached) = &object.attachments[point] else {
-            return if pname == FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE { Ok(NONE as i32) } else { no_object(pname) };
+            return if pname == FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE {
+                Ok(NONE as i32)
+            } else {
+                no_object(pname)
+            };
         };
 
         // Report the object's parameters, or those of its format.
         object_parameter(attached, pname)
             .or_else(|| match attached.surface(point).map(|surface| surface.format) {
-                Some(format) => format_parameter(pname, format.bits(), format.component_type(), format.storage),
+                Some(format) => {
+                    format_parameter(pname, format.bits(), format.component_type(), format.storage)
+                }
                 // An attachment that is not complete has no components.
                 None => format_parameter(pname, Bits::default(), NONE, Storage::Unorm8),
             })
@@ -105,19 +123,31 @@ fn no_object(pname: u32) -> Result<i32, Failure> {
         | FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER
         | FRAMEBUFFER_ATTACHMENT_RED_SIZE..=FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE
         | FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE
-        | FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING => Err((INVALID_OPERATION, "nothing is attached there")),
+        | FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING => {
+            Err((INVALID_OPERATION, "nothing is attached there"))
+        }
         _ => Err((INVALID_ENUM, "pname is not a parameter of an attachment")),
     }
 }
 
 fn object_parameter(attached: &Attached, pname: u32) -> Option<i32> {
     match (pname, attached) {
-        (FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, Attached::Renderbuffer(_)) => Some(RENDERBUFFER as i32),
+        (FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, Attached::Renderbuffer(_)) => {
+            Some(RENDERBUFFER as i32)
+        }
         (FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, Attached::Texture { .. }) => Some(TEXTURE as i32),
-        (FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, Attached::Renderbuffer(r)) => Some(lock(r).name as i32),
-        (FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, Attached::Texture { texture, .. }) => Some(lock(texture).name as i32),
-        (FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL, Attached::Texture { level, .. }) => Some(*level as i32),
-        (FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER, Attached::Texture { layer, .. }) => Some(*layer as i32),
+        (FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, Attached::Renderbuffer(r)) => {
+            Some(lock(r).name as i32)
+        }
+        (FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, Attached::Texture { texture, .. }) => {
+            Some(lock(texture).name as i32)
+        }
+        (FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL, Attached::Texture { level, .. }) => {
+            Some(*level as i32)
+        }
+        (FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER, Attached::Texture { layer, .. }) => {
+            Some(*layer as i32)
+        }
         (FRAMEBUFFER_ATTACHMENT_TEXTURE_CUBE_MAP_FACE, Attached::Texture { texture, face, .. }) => {
             let cube = lock(texture).slot == slot::CUBE;
             Some(if cube { (TEXTURE_CUBE_MAP_POSITIVE_X + *face as u32) as i32 } else { 0 })
@@ -135,7 +165,9 @@ fn format_parameter(pname: u32, bits: Bits, kind: u32, storage: Storage) -> Opti
         FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE => bits.depth,
         FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE => bits.stencil,
         FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE => kind as i32,
-        FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING => (if storage == Storage::Srgb8 { SRGB_EXT } else { LINEAR }) as i32,
+        FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING => {
+            (if storage == Storage::Srgb8 { SRGB_EXT } else { LINEAR }) as i32
+        }
         _ => return None,
     })
 }
@@ -178,7 +210,10 @@ mod tests {
         c.tex_image_2d(TEXTURE_2D, 0, internal, 64, 64, 0, DEPTH_STENCIL, UNSIGNED_INT_24_8, 0);
         c.state.units[0].enabled[slot::TWO] = true;
         bind_new(&mut c);
-        assert_eq!(c.check_framebuffer_status(FRAMEBUFFER), FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT);
+        assert_eq!(
+            c.check_framebuffer_status(FRAMEBUFFER),
+            FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT
+        );
         c.framebuffer_texture_2d(FRAMEBUFFER, DEPTH_ATTACHMENT, TEXTURE_2D, texture, 0);
         assert_eq!(c.check_framebuffer_status(FRAMEBUFFER), FRAMEBUFFER_COMPLETE);
         c.read_pixels(0, 0, 1, 1, RGBA, UNSIGNED_BYTE, BASE);

@@ -1,8 +1,10 @@
-//! One image of a texture: its texels, and the planes that it turns into when a framebuffer object draws to it.
+//! One image of a texture: its texels, and the planes that it turns into when a framebuffer object
+//! draws to it.
 //!
-//! Texels are an immutable [`Level`] that textures in pending draws share; they are copied when they change. Once a
-//! layer is attached its colours live in a [`ColorPlane`]; texels are made from it again when someone looks after a
-//! draw. Depths of an attached level stay in their plane: the sampler reads it.
+//! Texels are an immutable [`Level`] that textures in pending draws share; they are copied when
+//! they change. Once a layer is attached its colours live in a [`ColorPlane`]; texels are made from
+//! it again when someone looks after a draw. Depths of an attached level stay in their plane: the
+//! sampler reads it.
 
 use super::internal_format::{InternalFormat, Storage};
 use super::s3tc::Blocks;
@@ -23,9 +25,15 @@ pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// A new plane for colours of `format`, as a framebuffer stores them.
-pub(crate) fn new_color_plane(format: &InternalFormat, viewport: Viewport, samples: usize) -> ColorPlane {
+pub(crate) fn new_color_plane(
+    format: &InternalFormat,
+    viewport: Viewport,
+    samples: usize,
+) -> ColorPlane {
     match format.storage {
-        Storage::Unorm8 | Storage::Srgb8 => ColorPlane::Rgba8(Plane::new(viewport, samples, format.kept_word(0))),
+        Storage::Unorm8 | Storage::Srgb8 => {
+            ColorPlane::Rgba8(Plane::new(viewport, samples, format.kept_word(0)))
+        }
         _ => ColorPlane::RgbaF32(Plane::new(viewport, samples, format.kept([0.0; 4]))),
     }
 }
@@ -84,8 +92,8 @@ impl TextureImage {
         bytes.is_some_and(|n| n <= MAX_IMAGE_BYTES)
     }
 
-    /// Takes the memory of a large image's texels, which are all 0; whether it could be had. That of small ones, and of what
-    /// framebuffers draw depths to, comes when it is needed.
+    /// Takes the memory of a large image's texels, which are all 0; whether it could be had. That
+    /// of small ones, and of what framebuffers draw depths to, comes when it is needed.
     pub(crate) fn allocate(&mut self) -> bool {
         if self.bytes() < LARGE || !self.format.is_color() {
             return true;
@@ -117,15 +125,18 @@ impl TextureImage {
         self.writes.clone()
     }
 
-    /// Whether colours may have been drawn since the texels were made: recorded commands must run before
-    /// [`Self::level`].
+    /// Whether colours may have been drawn since the texels were made: recorded commands must run
+    /// before [`Self::level`].
     pub(crate) fn is_stale(&self) -> bool {
         self.writes.load(Ordering::Relaxed) != self.synced
     }
 
     /// Whether a framebuffer draws, or drew, to planes of this image.
     pub(crate) fn has_planes(&self) -> bool {
-        let depth = self.level.as_ref().is_some_and(|level| matches!(level.texels(), Texels::DepthBuffer(_)));
+        let depth = self
+            .level
+            .as_ref()
+            .is_some_and(|level| matches!(level.texels(), Texels::DepthBuffer(_)));
         depth || self.stencil.is_some() || !self.colors.is_empty()
     }
 
@@ -157,9 +168,13 @@ impl TextureImage {
     }
 
     fn blank_level(&self) -> Arc<Level> {
-        let texels = match (self.viewport(), self.format.has_depth() && self.border == 0 && self.size[2] == 1) {
+        let texels = match (
+            self.viewport(),
+            self.format.has_depth() && self.border == 0 && self.size[2] == 1,
+        ) {
             (Some(viewport), true) => {
-                let mut plane = DepthBuffer::new(Plane::new(viewport, 1, 0.0), self.format.depth_scale());
+                let mut plane =
+                    DepthBuffer::new(Plane::new(viewport, 1, 0.0), self.format.depth_scale());
                 plane.sampled = true;
                 Texels::DepthBuffer(Arc::new(Mutex::new(plane)))
             }
@@ -191,7 +206,9 @@ impl TextureImage {
                     (ColorPlane::Rgba8(plane), Texels::Rgba8(texels) | Texels::Srgb8(texels)) => {
                         plane.read_row(0, y as u32, 0, &mut words);
                         let row = &mut texels[first..first + width];
-                        row.iter_mut().zip(&words).for_each(|(t, &w)| *t = self.format.expand_word(w));
+                        row.iter_mut()
+                            .zip(&words)
+                            .for_each(|(t, &w)| *t = self.format.expand_word(w));
                     }
                     (ColorPlane::RgbaF32(plane), Texels::RgbaF32(texels)) => {
                         plane.read_row(0, y as u32, 0, &mut floats);
@@ -299,7 +316,9 @@ impl TextureImage {
             return;
         }
         let texels = match data {
-            TexelData::Words(words) if self.format.storage == Storage::Srgb8 => Texels::Srgb8(words),
+            TexelData::Words(words) if self.format.storage == Storage::Srgb8 => {
+                Texels::Srgb8(words)
+            }
             TexelData::Words(words) => Texels::Rgba8(words),
             TexelData::Floats(colors) => Texels::RgbaF32(colors),
             TexelData::Depths(depths, _) => Texels::Depth(depths),
@@ -316,7 +335,8 @@ impl TextureImage {
         }
     }
 
-    /// Lends words (red lowest) as `GetTexImage` returns them, if they are stored so. Everything recorded must have run.
+    /// Lends words (red lowest) as `GetTexImage` returns them, if they are stored so. Everything
+    /// recorded must have run.
     pub(crate) fn with_words<T>(&mut self, take: impl FnOnce(&[u32]) -> T) -> Option<T> {
         let kept = matches!(self.format.base, crate::enums::RGB | crate::enums::RGBA);
         match self.level().texels() {
@@ -325,11 +345,14 @@ impl TextureImage {
         }
     }
 
-    /// Colours as `GetTexImage` returns them: luminance and intensity in red alone. Everything recorded must have run.
+    /// Colours as `GetTexImage` returns them: luminance and intensity in red alone. Everything
+    /// recorded must have run.
     pub(crate) fn colors(&mut self) -> Vec<[f32; 4]> {
         let level = self.level();
         let mut colors: Vec<[f32; 4]> = match level.texels() {
-            Texels::Rgba8(words) | Texels::Srgb8(words) => words.iter().map(|&w| color_from_word(w)).collect(),
+            Texels::Rgba8(words) | Texels::Srgb8(words) => {
+                words.iter().map(|&w| color_from_word(w)).collect()
+            }
             Texels::RgbaF32(colors) => colors.clone(),
             Texels::Depth(_) | Texels::DepthBuffer(_) => Vec::new(),
         };
@@ -356,7 +379,8 @@ impl TextureImage {
                 let mut depths = vec![0.0; (viewport.width * viewport.height) as usize];
                 for (y, row) in depths.chunks_exact_mut(viewport.width as usize).enumerate() {
                     plane.resolved().read_row(0, y as u32, 0, row);
-                    row.iter_mut().for_each(|d| *d = (f64::from(*d) / f64::from(plane.scale)) as f32);
+                    row.iter_mut()
+                        .for_each(|d| *d = (f64::from(*d) / f64::from(plane.scale)) as f32);
                 }
                 depths
             }
@@ -377,18 +401,21 @@ impl TextureImage {
     }
 }
 
-/// Copies layer `layer` of a level into a plane: texels are expanded, a framebuffer keeps what its format stores.
+/// Copies layer `layer` of a level into a plane: texels are expanded, a framebuffer keeps what its
+/// format stores.
 fn fill_color_plane(plane: &mut ColorPlane, format: &InternalFormat, level: &Level, layer: usize) {
     let [width, height] = [level.size[0] as usize, level.size[1] as usize];
     for y in 0..height {
         let first = (layer * height + y) * width;
         match (&mut *plane, level.texels()) {
             (ColorPlane::Rgba8(plane), Texels::Rgba8(texels) | Texels::Srgb8(texels)) => {
-                let row: Vec<_> = texels[first..first + width].iter().map(|&w| format.kept_word(w)).collect();
+                let row: Vec<_> =
+                    texels[first..first + width].iter().map(|&w| format.kept_word(w)).collect();
                 plane.write_row(0, y as u32, &row);
             }
             (ColorPlane::RgbaF32(plane), Texels::RgbaF32(texels)) => {
-                let row: Vec<_> = texels[first..first + width].iter().map(|&c| format.kept(c)).collect();
+                let row: Vec<_> =
+                    texels[first..first + width].iter().map(|&c| format.kept(c)).collect();
                 plane.write_row(0, y as u32, &row);
             }
             _ => {}
@@ -397,7 +424,12 @@ fn fill_color_plane(plane: &mut ColorPlane, format: &InternalFormat, level: &Lev
 }
 
 /// Writes depths of 0..=1 into a plane.
-pub(crate) fn write_depths(plane: &mut DepthBuffer, origin: [usize; 3], size: [usize; 3], depths: &[f32]) {
+pub(crate) fn write_depths(
+    plane: &mut DepthBuffer,
+    origin: [usize; 3],
+    size: [usize; 3],
+    depths: &[f32],
+) {
     let mut stored = vec![0.0; size[0]];
     for (y, row) in depths.chunks_exact(size[0].max(1)).enumerate() {
         stored.iter_mut().zip(row).for_each(|(s, &d)| *s = stored_depth(d, plane.scale));
@@ -453,7 +485,9 @@ mod tests {
 
     #[test]
     fn planes_keep_what_their_format_stores() {
-        for (token, kept) in [(INTENSITY, 0xff00_0010), (LUMINANCE_ALPHA, 0x1000_0010), (ALPHA, 0x1000_0000)] {
+        for (token, kept) in
+            [(INTENSITY, 0xff00_0010), (LUMINANCE_ALPHA, 0x1000_0010), (ALPHA, 0x1000_0000)]
+        {
             let mut image = image(token, [1, 1, 1]);
             image.replace(TexelData::Words(vec![0x1010_1010]));
             let plane = image.color_plane(0).unwrap();

@@ -27,8 +27,8 @@ pub(crate) enum Storage {
 pub(crate) struct InternalFormat {
     /// The token to report.
     pub token: u32,
-    /// `ALPHA`, `LUMINANCE`, `LUMINANCE_ALPHA`, `INTENSITY`, `RED`, `RG`, `RGB`, `RGBA`, `DEPTH_COMPONENT`, `DEPTH_STENCIL`,
-    /// `STENCIL_INDEX`.
+    /// `ALPHA`, `LUMINANCE`, `LUMINANCE_ALPHA`, `INTENSITY`, `RED`, `RG`, `RGB`, `RGBA`,
+    /// `DEPTH_COMPONENT`, `DEPTH_STENCIL`, `STENCIL_INDEX`.
     pub base: u32,
     /// What is stored.
     pub storage: Storage,
@@ -76,7 +76,10 @@ impl InternalFormat {
 
     /// The format of a renderbuffer: colours, depths or stencil values.
     pub(crate) fn of_renderbuffer(token: u32) -> Option<Self> {
-        if matches!(token, STENCIL_INDEX | STENCIL_INDEX1 | STENCIL_INDEX4 | STENCIL_INDEX8 | STENCIL_INDEX16) {
+        if matches!(
+            token,
+            STENCIL_INDEX | STENCIL_INDEX1 | STENCIL_INDEX4 | STENCIL_INDEX8 | STENCIL_INDEX16
+        ) {
             return Some(Self { token, base: STENCIL_INDEX, storage: Storage::Stencil });
         }
         if matches!(token, 1..=4) {
@@ -166,7 +169,8 @@ impl InternalFormat {
         }
     }
 
-    /// A colour as a framebuffer of this format keeps it: what is not stored is 0, alpha 1, for blending reads it.
+    /// A colour as a framebuffer of this format keeps it: what is not stored is 0, alpha 1, for
+    /// blending reads it.
     pub(crate) fn kept(&self, color: [f32; 4]) -> [f32; 4] {
         let missing = self.missing();
         std::array::from_fn(|c| if missing[c] { f32::from(u8::from(c == 3)) } else { color[c] })
@@ -175,7 +179,8 @@ impl InternalFormat {
     /// As [`Self::kept`], of a word with red in the lowest byte.
     pub(crate) fn kept_word(&self, word: u32) -> u32 {
         let missing = self.missing();
-        let byte = |c: usize, byte: u8| if missing[c] { if c == 3 { 255 } else { 0 } } else { byte };
+        let byte =
+            |c: usize, byte: u8| if missing[c] { if c == 3 { 255 } else { 0 } } else { byte };
         let bytes = word.to_le_bytes();
         u32::from_le_bytes(std::array::from_fn(|c| byte(c, bytes[c])))
     }
@@ -259,7 +264,9 @@ fn color(token: u32) -> Option<(u32, Storage)> {
         | LUMINANCE6_ALPHA2
         | LUMINANCE8_ALPHA8
         | COMPRESSED_LUMINANCE_ALPHA => (LUMINANCE_ALPHA, Unorm8),
-        LUMINANCE12_ALPHA4 | LUMINANCE12_ALPHA12 | LUMINANCE16_ALPHA16 => (LUMINANCE_ALPHA, Unorm16),
+        LUMINANCE12_ALPHA4 | LUMINANCE12_ALPHA12 | LUMINANCE16_ALPHA16 => {
+            (LUMINANCE_ALPHA, Unorm16)
+        }
         INTENSITY | INTENSITY4 | INTENSITY8 | COMPRESSED_INTENSITY => (INTENSITY, Unorm8),
         INTENSITY12 | INTENSITY16 => (INTENSITY, Unorm16),
         RED | R8 | COMPRESSED_RED => (RED, Unorm8),
@@ -273,7 +280,9 @@ fn color(token: u32) -> Option<(u32, Storage)> {
         SRGB_EXT | SRGB8_EXT | COMPRESSED_SRGB_EXT => (RGB, Srgb8),
         SRGB_ALPHA_EXT | SRGB8_ALPHA8_EXT | COMPRESSED_SRGB_ALPHA_EXT => (RGBA, Srgb8),
         SLUMINANCE_EXT | SLUMINANCE8_EXT | COMPRESSED_SLUMINANCE_EXT => (LUMINANCE, Srgb8),
-        SLUMINANCE_ALPHA_EXT | SLUMINANCE8_ALPHA8_EXT | COMPRESSED_SLUMINANCE_ALPHA_EXT => (LUMINANCE_ALPHA, Srgb8),
+        SLUMINANCE_ALPHA_EXT | SLUMINANCE8_ALPHA8_EXT | COMPRESSED_SLUMINANCE_ALPHA_EXT => {
+            (LUMINANCE_ALPHA, Srgb8)
+        }
         R32F => (RED, Float),
         RG32F => (RG, Float),
         R16F => (RED, Half),
@@ -298,7 +307,9 @@ fn depth(token: u32) -> Option<(u32, Storage)> {
     Some(match token {
         DEPTH_COMPONENT16 => (DEPTH_COMPONENT, Storage::Depth(16)),
         // A float holds 24-bit integers exactly, no wider ones.
-        DEPTH_COMPONENT | DEPTH_COMPONENT24 | DEPTH_COMPONENT32 => (DEPTH_COMPONENT, Storage::Depth(24)),
+        DEPTH_COMPONENT | DEPTH_COMPONENT24 | DEPTH_COMPONENT32 => {
+            (DEPTH_COMPONENT, Storage::Depth(24))
+        }
         DEPTH_COMPONENT32F => (DEPTH_COMPONENT, Storage::Depth(32)),
         DEPTH_STENCIL | DEPTH24_STENCIL8 => (DEPTH_STENCIL, Storage::Depth(24)),
         DEPTH32F_STENCIL8 => (DEPTH_STENCIL, Storage::Depth(32)),
@@ -319,11 +330,17 @@ mod tests {
         assert_eq!(bits(DEPTH32F_STENCIL8), Bits { depth: 32, stencil: 8, ..Bits::default() });
         assert_eq!(InternalFormat::of_texture(COMPRESSED_RGB).unwrap().token, RGB);
         assert_eq!(InternalFormat::of_texture(COMPRESSED_RGB_S3TC_DXT1_EXT).unwrap().token, RGB);
-        assert_eq!(InternalFormat::of_texture(COMPRESSED_SRGB_EXT).unwrap().storage, Storage::Srgb8);
+        assert_eq!(
+            InternalFormat::of_texture(COMPRESSED_SRGB_EXT).unwrap().storage,
+            Storage::Srgb8
+        );
         assert_eq!(InternalFormat::of_renderbuffer(LUMINANCE8).unwrap().bits().luminance, 8);
         assert!(InternalFormat::of_renderbuffer(COMPRESSED_RGB).is_none());
         assert_eq!(InternalFormat::of_renderbuffer(RGBA16).unwrap().bits().rgba, [16; 4]);
-        assert_eq!(InternalFormat::of_renderbuffer(RGB16F_ARB).unwrap().bits().rgba, [16, 16, 16, 0]);
+        assert_eq!(
+            InternalFormat::of_renderbuffer(RGB16F_ARB).unwrap().bits().rgba,
+            [16, 16, 16, 0]
+        );
     }
 
     #[test]

@@ -1,7 +1,9 @@
-//! Mipmaps: each level is the one before it, looked up with a linear filter at its own texels' centres.
+//! Mipmaps: each level is the one before it, looked up with a linear filter at its own texels'
+//! centres.
 //!
-//! For a side of even length that is the average of two texels; for an odd one, of the two nearest, as hardware does it
-//! when it draws a level from the one before. sRGB colours are averaged as light. Borders are filtered along their edge.
+//! For a side of even length that is the average of two texels; for an odd one, of the two nearest,
+//! as hardware does it when it draws a level from the one before. sRGB colours are averaged as
+//! light. Borders are filtered along their edge.
 
 use super::image::{TextureImage, lock};
 use super::internal_format::{InternalFormat, Storage};
@@ -17,7 +19,8 @@ use vitral_raster::forward::{Level, Texels};
 /// Source texels with weights, for each texel along one axis.
 type Taps = Vec<Vec<(usize, f32)>>;
 
-/// The taps from `from` to `to` texels inside borders of `border`: the two source texels round each new centre.
+/// The taps from `from` to `to` texels inside borders of `border`: the two source texels round each
+/// new centre.
 fn taps(from: usize, to: usize, border: usize) -> Taps {
     let mut out: Taps = Vec::with_capacity(to + 2 * border);
     for i in 0..to {
@@ -72,7 +75,11 @@ fn halve_words(source: &[u32], width: usize) -> Vec<u32> {
     let mut out = Vec::with_capacity(source.len() / 4);
     for rows in source.chunks_exact(2 * width) {
         let (low, high) = rows.split_at(width);
-        out.extend(low.chunks_exact(2).zip(high.chunks_exact(2)).map(|(a, b)| average4([a[0], a[1], b[0], b[1]])));
+        out.extend(
+            low.chunks_exact(2)
+                .zip(high.chunks_exact(2))
+                .map(|(a, b)| average4([a[0], a[1], b[0], b[1]])),
+        );
     }
     out
 }
@@ -91,7 +98,11 @@ fn halve_srgb(source: &[u32], width: usize) -> Vec<u32> {
     let mut out = Vec::with_capacity(source.len() / 4);
     for rows in source.chunks_exact(2 * width) {
         let (low, high) = rows.split_at(width);
-        out.extend(low.chunks_exact(2).zip(high.chunks_exact(2)).map(|(a, b)| mix([a[0], a[1], b[0], b[1]])));
+        out.extend(
+            low.chunks_exact(2)
+                .zip(high.chunks_exact(2))
+                .map(|(a, b)| mix([a[0], a[1], b[0], b[1]])),
+        );
     }
     out
 }
@@ -140,7 +151,12 @@ fn word_from_light([r, g, b, a]: [f32; 4]) -> u32 {
 }
 
 /// The level after `level`.
-fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u32; 3]) -> TexelData {
+fn next_level(
+    level: &Level,
+    format: &InternalFormat,
+    inner: [u32; 3],
+    next: [u32; 3],
+) -> TexelData {
     let border = level.border as usize;
     let halved = inner[2] == next[2] && inner[0] == 2 * next[0] && inner[1] == 2 * next[1];
 
@@ -196,7 +212,8 @@ fn next_level(level: &Level, format: &InternalFormat, inner: [u32; 3], next: [u3
     }
 }
 
-/// Makes the levels after the base level of some faces. What is recorded must have run if the texture is stale.
+/// Makes the levels after the base level of some faces. What is recorded must have run if the
+/// texture is stale.
 pub(crate) fn generate(texture: &mut TextureObject, faces: Range<usize>) {
     let Some(base) = texture.base_level() else { return };
     let used = texture.dimensions();
@@ -261,7 +278,11 @@ impl Context {
             self.record_error(INVALID_OPERATION, CALL, "the cube map's base level is not complete");
             return;
         }
-        if texture.base_level().and_then(|level| texture.image(0, level)).is_some_and(|i| i.format.has_stencil()) {
+        if texture
+            .base_level()
+            .and_then(|level| texture.image(0, level))
+            .is_some_and(|i| i.format.has_stencil())
+        {
             drop(texture);
             self.record_error(INVALID_OPERATION, CALL, "depths and stencil values have no mipmaps");
             return;

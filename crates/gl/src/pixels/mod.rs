@@ -1,9 +1,9 @@
 //! Pixels: formats, textures, framebuffers, clears, copies.
 //!
-//! The way of an image: [`store`] takes it from the client's memory as tight rows, [`decode`] makes colours, depths or
-//! stencil values of it with [`transfer`], [`texels`] what an [`internal_format`] stores of them. [`encode`] and
-//! [`store`] lead back. [`texture`], [`renderbuffer`] and [`default`] own what framebuffers draw to; [`target`] finds
-//! it.
+//! The way of an image: [`store`] takes it from the client's memory as tight rows, [`decode`] makes
+//! colours, depths or stencil values of it with [`transfer`], [`texels`] what an
+//! [`internal_format`] stores of them. [`encode`] and [`store`] lead back. [`texture`],
+//! [`renderbuffer`] and [`default`] own what framebuffers draw to; [`target`] finds it.
 
 mod accum;
 mod answers;

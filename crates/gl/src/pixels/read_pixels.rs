@@ -58,7 +58,12 @@ pub(crate) fn read_colors(
 }
 
 /// Up to [`TILE`] colours of a row.
-fn read_color_row(plane: &ColorPlane, format: &InternalFormat, [x, y]: [u32; 2], out: &mut [[f32; 4]]) {
+fn read_color_row(
+    plane: &ColorPlane,
+    format: &InternalFormat,
+    [x, y]: [u32; 2],
+    out: &mut [[f32; 4]],
+) {
     match plane {
         ColorPlane::Rgba8(plane) => {
             let words = &mut [0; TILE][..out.len()];
@@ -73,7 +78,11 @@ fn read_color_row(plane: &ColorPlane, format: &InternalFormat, [x, y]: [u32; 2],
 }
 
 /// Words of a rectangle of a plane of bytes.
-pub(crate) fn read_words(plane: &ColorPlane, format: &InternalFormat, r: &Rectangle) -> Option<Vec<u32>> {
+pub(crate) fn read_words(
+    plane: &ColorPlane,
+    format: &InternalFormat,
+    r: &Rectangle,
+) -> Option<Vec<u32>> {
     let ColorPlane::Rgba8(plane) = plane else { return None };
     if !matches!(format.base, RGB | RGBA) {
         return None;
@@ -89,7 +98,12 @@ pub(crate) fn read_words(plane: &ColorPlane, format: &InternalFormat, r: &Rectan
 }
 
 /// Calls `read` with each row's place in the window and its part of `out`.
-fn each_row<T: Send>(workers: &Workers, r: &Rectangle, out: &mut [T], read: impl Fn(u32, &mut [T]) + Sync + Send) {
+fn each_row<T: Send>(
+    workers: &Workers,
+    r: &Rectangle,
+    out: &mut [T],
+    read: impl Fn(u32, &mut [T]) + Sync + Send,
+) {
     let length = (out.len() / r.size[1].max(1)).max(1);
     let rows_a_job = (PIXELS_A_JOB / r.size[0].max(1)).max(1);
     workers.for_each_chunk(out, length * rows_a_job, |job, rows| {
@@ -123,8 +137,8 @@ pub(crate) fn read_stencils(plane: &StencilPlane, r: &Rectangle) -> Vec<u8> {
     values
 }
 
-/// Calls `encode` with places in the window and their part of the bytes of a rectangle: pieces of rows, so that what is between planes
-/// and bytes stays in the cache.
+/// Calls `encode` with places in the window and their part of the bytes of a rectangle: pieces of
+/// rows, so that what is between planes and bytes stays in the cache.
 fn encoded(
     workers: &Workers,
     format: PixelFormat,
@@ -169,7 +183,9 @@ fn encode_colors(
     }
 
     // Otherwise convert through floats.
-    let clamps = clamps || stored.component_type() != FLOAT || !matches!(format.kind, FLOAT | HALF_FLOAT_ARB);
+    let clamps = clamps
+        || stored.component_type() != FLOAT
+        || !matches!(format.kind, FLOAT | HALF_FLOAT_ARB);
     encoded(workers, format, r, |[x, y], bytes| {
         let colors = &mut [[0.0; 4]; TILE][..bytes.len() / pixel];
         read_color_row(plane, stored, [x, y], colors);
@@ -264,7 +280,16 @@ pub(crate) fn has_content(surfaces: &Surfaces, content: Content) -> bool {
 
 impl Context {
     /// `glReadPixels`.
-    pub fn read_pixels(&mut self, x: i32, y: i32, width: i32, height: i32, format: u32, type_: u32, pixels: usize) {
+    pub fn read_pixels(
+        &mut self,
+        x: i32,
+        y: i32,
+        width: i32,
+        height: i32,
+        format: u32,
+        type_: u32,
+        pixels: usize,
+    ) {
         const CALL: &str = "glReadPixels";
         if !self.outside_begin(CALL) {
             return;
@@ -280,9 +305,15 @@ impl Context {
         };
 
         // Check the framebuffer.
-        let Some(surfaces) = self.read_surfaces(CALL, true, Some([x, y, width, height])) else { return };
+        let Some(surfaces) = self.read_surfaces(CALL, true, Some([x, y, width, height])) else {
+            return;
+        };
         if !has_content(&surfaces, format.content()) {
-            return self.record_error(INVALID_OPERATION, CALL, "the read framebuffer has no such buffer");
+            return self.record_error(
+                INVALID_OPERATION,
+                CALL,
+                "the read framebuffer has no such buffer",
+            );
         }
 
         // Read the part inside the framebuffer; what lies outside leaves the client's memory
@@ -297,13 +328,24 @@ impl Context {
 
         // Encode the pixels.
         let clamps = self.state.color_buffer.clamps[2] == TRUE;
-        let mut bytes =
-            encode_rectangle(&self.workers(), &surfaces, format, &r, &Transfer::new(&self.state.pixel), clamps);
+        let mut bytes = encode_rectangle(
+            &self.workers(),
+            &surfaces,
+            format,
+            &r,
+            &Transfer::new(&self.state.pixel),
+            clamps,
+        );
         let mut skip = r.skip;
         if self.client.pack.invert {
             // MESA_pack_invert: the first row is the highest.
             skip[1] = height as usize - r.size[1] - r.skip[1];
-            bytes = bytes.chunks_exact(r.size[0] * format.pixel_bytes()).rev().flatten().copied().collect();
+            bytes = bytes
+                .chunks_exact(r.size[0] * format.pixel_bytes())
+                .rev()
+                .flatten()
+                .copied()
+                .collect();
         }
 
         // Write them to the client's memory or the bound buffer.

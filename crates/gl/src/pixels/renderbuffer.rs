@@ -38,12 +38,16 @@ impl RenderbufferStorage {
             format,
             viewport,
             samples,
-            color: format.is_color().then(|| Arc::new(Mutex::new(new_color_plane(&format, viewport, planes)))),
+            color: format
+                .is_color()
+                .then(|| Arc::new(Mutex::new(new_color_plane(&format, viewport, planes)))),
             depth: format.has_depth().then(|| {
                 let plane = Plane::new(viewport, planes, 0.0);
                 Arc::new(Mutex::new(DepthBuffer::new(plane, format.depth_scale())))
             }),
-            stencil: format.has_stencil().then(|| Arc::new(Mutex::new(Plane::new(viewport, planes, 0)))),
+            stencil: format
+                .has_stencil()
+                .then(|| Arc::new(Mutex::new(Plane::new(viewport, planes, 0)))),
         }
     }
 }
@@ -74,7 +78,8 @@ impl Context {
             return;
         }
         for name in self.read_names("glDeleteRenderbuffers", n, renderbuffers) {
-            let removed = if name == 0 { None } else { lock(&self.shared.renderbuffers).remove(&name) };
+            let removed =
+                if name == 0 { None } else { lock(&self.shared.renderbuffers).remove(&name) };
             let Some(removed) = removed else { continue };
             self.forget_label(RENDERBUFFER, name);
             if let Some(renderbuffer) = removed {
@@ -140,8 +145,21 @@ impl Context {
     }
 
     /// `glRenderbufferStorage`.
-    pub fn renderbuffer_storage(&mut self, target: u32, internalformat: u32, width: i32, height: i32) {
-        self.set_renderbuffer_storage("glRenderbufferStorage", target, 0, internalformat, width, height);
+    pub fn renderbuffer_storage(
+        &mut self,
+        target: u32,
+        internalformat: u32,
+        width: i32,
+        height: i32,
+    ) {
+        self.set_renderbuffer_storage(
+            "glRenderbufferStorage",
+            target,
+            0,
+            internalformat,
+            width,
+            height,
+        );
     }
 
     /// `glRenderbufferStorageMultisample`.
@@ -177,11 +195,19 @@ impl Context {
         };
         let side = 0..=MAX_TEXTURE_SIZE as i32;
         if !side.contains(&width) || !side.contains(&height) {
-            self.record_error(INVALID_VALUE, call, "a size is negative or larger than MAX_RENDERBUFFER_SIZE");
+            self.record_error(
+                INVALID_VALUE,
+                call,
+                "a size is negative or larger than MAX_RENDERBUFFER_SIZE",
+            );
             return;
         }
         if !(0..=MAX_SAMPLES as i32).contains(&samples) {
-            self.record_error(INVALID_VALUE, call, "samples is negative or larger than MAX_SAMPLES");
+            self.record_error(
+                INVALID_VALUE,
+                call,
+                "samples is negative or larger than MAX_SAMPLES",
+            );
             return;
         }
 
@@ -191,7 +217,11 @@ impl Context {
         let viewport = Viewport::new(width as u32, height as u32);
         let pixels = width as usize * height as usize * samples.max(1);
         if !can_have(pixels * format.texel_bytes()) {
-            return self.record_error(OUT_OF_MEMORY, call, "there is no memory for so many samples");
+            return self.record_error(
+                OUT_OF_MEMORY,
+                call,
+                "there is no memory for so many samples",
+            );
         }
 
         // Replace the storage.
@@ -211,8 +241,10 @@ impl Context {
 
         // Find the storage that was asked for.
         let asked = lock(&renderbuffer).asked;
-        let (token, bits) = asked.map_or((RGBA, Bits::default()), |(format, ..)| (format.token, format.bits()));
-        let ([width, height], samples) = asked.map_or(([0; 2], 0), |(_, size, samples)| (size, samples));
+        let (token, bits) =
+            asked.map_or((RGBA, Bits::default()), |(format, ..)| (format.token, format.bits()));
+        let ([width, height], samples) =
+            asked.map_or(([0; 2], 0), |(_, size, samples)| (size, samples));
 
         // Report the parameter.
         let value = match pname {
@@ -266,7 +298,10 @@ mod tests {
             c.get_renderbuffer_parameteriv(RENDERBUFFER, pname, BASE);
             read_u32(&c, BASE)
         };
-        assert_eq!([RENDERBUFFER_WIDTH, RENDERBUFFER_HEIGHT, RENDERBUFFER_DEPTH_SIZE].map(&mut get), [0, 5, 24]);
+        assert_eq!(
+            [RENDERBUFFER_WIDTH, RENDERBUFFER_HEIGHT, RENDERBUFFER_DEPTH_SIZE].map(&mut get),
+            [0, 5, 24]
+        );
         assert_eq!(get(RENDERBUFFER_INTERNAL_FORMAT), DEPTH_COMPONENT24);
         let mut error = |samples, format, width| {
             c.error = NO_ERROR;

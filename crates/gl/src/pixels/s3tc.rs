@@ -1,5 +1,5 @@
-//! S3TC: blocks of 4x4 texels in 8 or 16 bytes. Textures hold the texels that they decode to, and keep the blocks for whoever asks
-//! for them.
+//! S3TC: blocks of 4x4 texels in 8 or 16 bytes. Textures hold the texels that they decode to, and
+//! keep the blocks for whoever asks for them.
 //!
 //! Source: the EXT_texture_compression_s3tc specification.
 
@@ -108,7 +108,8 @@ fn decode_block(alpha: Alpha, block: &[u8]) -> [u32; SIDE * SIDE] {
 /// A block's four colours: two of 5, 6 and 5 bits, and two between them, or one and black.
 fn palette(ends: [u16; 2], alpha: Alpha) -> [u32; 4] {
     let widened = |value: u16, bits: u32| u32::from(value << (8 - bits) | value >> (2 * bits - 8));
-    let [first, second] = ends.map(|v| [widened(v >> 11, 5), widened(v >> 5 & 63, 6), widened(v & 31, 5)]);
+    let [first, second] =
+        ends.map(|v| [widened(v >> 11, 5), widened(v >> 5 & 63, 6), widened(v & 31, 5)]);
     let mixed = |a: u32, b: u32| std::array::from_fn(|k| (a * first[k] + b * second[k]) / (a + b));
     let opaque = |[r, g, b]: [u32; 3]| r | g << 8 | b << 16 | 0xff00_0000;
     let (third, fourth) = if ends[0] > ends[1] || matches!(alpha, Alpha::Plain | Alpha::Between) {
@@ -145,8 +146,13 @@ mod tests {
         assert_eq!(texels[..5], [0xffff_ffff, 0xff00_0000, 0xffaa_aaaa, 0xff55_5555, 0xffff_ffff]);
         // The ends the other way round: the middle, and black or nothing.
         let swapped = [0, 0, 0xff, 0xff, 0b1110_0100, 0, 0, 0];
-        for (token, last) in [(COMPRESSED_RGB_S3TC_DXT1_EXT, 0xff00_0000), (COMPRESSED_RGBA_S3TC_DXT1_EXT, 0)] {
-            assert_eq!(decode(token, [4, 4], &swapped)[..4], [0xff00_0000, 0xffff_ffff, 0xff7f_7f7f, last]);
+        for (token, last) in
+            [(COMPRESSED_RGB_S3TC_DXT1_EXT, 0xff00_0000), (COMPRESSED_RGBA_S3TC_DXT1_EXT, 0)]
+        {
+            assert_eq!(
+                decode(token, [4, 4], &swapped)[..4],
+                [0xff00_0000, 0xffff_ffff, 0xff7f_7f7f, last]
+            );
         }
         // Red of 5 bits, green of 6, blue of 5.
         let ends = [0b0001_0000u16 << 8, 0, 0, 0].map(|v| v.to_le_bytes()).concat();

@@ -1,5 +1,5 @@
-//! ARB_sampler_objects: how textures are looked up, apart from the textures. What is bound to a unit replaces the
-//! parameters of whatever texture the unit samples.
+//! ARB_sampler_objects: how textures are looked up, apart from the textures. What is bound to a
+//! unit replaces the parameters of whatever texture the unit samples.
 //!
 //! Source: the ARB_sampler_objects specification.
 
@@ -79,7 +79,9 @@ impl Context {
 
     /// `glIsSampler`.
     pub fn is_sampler(&mut self, sampler: u32) -> u8 {
-        u8::from(self.outside_begin("glIsSampler") && lock(&self.shared.samplers).contains_key(&sampler))
+        u8::from(
+            self.outside_begin("glIsSampler") && lock(&self.shared.samplers).contains_key(&sampler),
+        )
     }
 
     /// `glBindSampler`.
@@ -96,7 +98,11 @@ impl Context {
         if unit as usize >= MAX_TEXTURE_UNITS {
             self.record_error(INVALID_VALUE, CALL, "there is no such unit");
         } else if sampler != 0 && found.is_none() {
-            self.record_error(INVALID_OPERATION, CALL, "sampler is not a name that glGenSamplers gave");
+            self.record_error(
+                INVALID_OPERATION,
+                CALL,
+                "sampler is not a name that glGenSamplers gave",
+            );
         } else {
             self.textures.samplers[unit as usize] = found;
         }
@@ -121,7 +127,13 @@ impl Context {
         found
     }
 
-    fn sampler_parameter(&mut self, call: &'static str, name: u32, pname: u32, value: Option<Value>) {
+    fn sampler_parameter(
+        &mut self,
+        call: &'static str,
+        name: u32,
+        pname: u32,
+        value: Option<Value>,
+    ) {
         self.listable(move |c| c.exec_sampler_parameter(call, name, pname, value));
     }
 
@@ -155,7 +167,8 @@ impl Context {
         self.sampler_parameter("glSamplerParameterfv", sampler, pname, value);
     }
 
-    /// As `glSamplerParameteriv`, but a border colour is of integers that no format here has: they are converted.
+    /// As `glSamplerParameteriv`, but a border colour is of integers that no format here has: they
+    /// are converted.
     pub fn sampler_parameter_iiv(&mut self, sampler: u32, pname: u32, param: usize) {
         let value = read_vector(&*self.memory, pname, param).map(|v: [i32; 4]| match pname {
             TEXTURE_BORDER_COLOR => Value::Floats(v.map(|v| v as f32)),
@@ -181,26 +194,35 @@ impl Context {
 
     /// `glGetSamplerParameterfv`.
     pub fn get_sampler_parameterfv(&mut self, sampler: u32, pname: u32, params: usize) {
-        let Some((values, _)) = self.get_sampler("glGetSamplerParameterfv", sampler, pname) else { return };
+        let Some((values, _)) = self.get_sampler("glGetSamplerParameterfv", sampler, pname) else {
+            return;
+        };
         let values: Vec<f32> = values.iter().map(|&v| v as f32).collect();
         self.give_numbers(params, &values);
     }
 
     /// `glGetSamplerParameteriv`.
     pub fn get_sampler_parameteriv(&mut self, sampler: u32, pname: u32, params: usize) {
-        let Some(found) = self.get_sampler("glGetSamplerParameteriv", sampler, pname) else { return };
+        let Some(found) = self.get_sampler("glGetSamplerParameteriv", sampler, pname) else {
+            return;
+        };
         self.give_numbers(params, &integers(found));
     }
 
     /// As `glGetSamplerParameteriv`, without converting a border colour.
     pub fn get_sampler_parameter_iiv(&mut self, sampler: u32, pname: u32, params: usize) {
-        let Some((values, _)) = self.get_sampler("glGetSamplerParameterIiv", sampler, pname) else { return };
+        let Some((values, _)) = self.get_sampler("glGetSamplerParameterIiv", sampler, pname) else {
+            return;
+        };
         self.give_numbers(params, &integers((values, false)));
     }
 
     /// As [`Self::get_sampler_parameter_iiv`], unsigned.
     pub fn get_sampler_parameter_iuiv(&mut self, sampler: u32, pname: u32, params: usize) {
-        let Some((values, _)) = self.get_sampler("glGetSamplerParameterIuiv", sampler, pname) else { return };
+        let Some((values, _)) = self.get_sampler("glGetSamplerParameterIuiv", sampler, pname)
+        else {
+            return;
+        };
         let values: Vec<u32> = values.into_iter().map(|v| v.round() as u32).collect();
         self.give_numbers(params, &values);
     }
@@ -254,7 +276,10 @@ mod tests {
         };
         assert_eq!((c.error, c.sampler_name(2), wrap(&mut c)), (NO_ERROR, 0, REPEAT));
         c.call_list(1);
-        assert_eq!((c.error, c.sampler_name(2), wrap(&mut c)), (INVALID_ENUM, sampler, CLAMP_TO_EDGE));
+        assert_eq!(
+            (c.error, c.sampler_name(2), wrap(&mut c)),
+            (INVALID_ENUM, sampler, CLAMP_TO_EDGE)
+        );
         assert_eq!(c.texture_lod_bias(2), 2.0);
     }
 

@@ -11,7 +11,8 @@ use std::ops::{Deref, DerefMut};
 /// No image, in memory or in a texture, may be larger.
 pub(crate) const MAX_IMAGE_BYTES: usize = 1 << 30;
 
-/// An image taken from the client: tight rows, native byte order; a bitmap has one byte (0 or 1) a pixel.
+/// An image taken from the client: tight rows, native byte order; a bitmap has one byte (0 or 1) a
+/// pixel.
 #[derive(Clone, Debug)]
 pub(crate) struct ClientImage {
     /// What the pixels are.
@@ -22,7 +23,8 @@ pub(crate) struct ClientImage {
     pub bytes: Bytes,
 }
 
-/// Bytes that lie in words, so that pixels of four bytes can become texels without being copied once more.
+/// Bytes that lie in words, so that pixels of four bytes can become texels without being copied
+/// once more.
 #[derive(Clone, Debug)]
 pub(crate) struct Bytes {
     words: Vec<u32>,
@@ -107,12 +109,18 @@ fn layout(store: &PixelStore, format: PixelFormat, region: &Region) -> Option<La
     let x = number(store.skip_pixels)?.checked_add(region.origin[0])?;
     let y = number(store.skip_rows)?.checked_add(region.origin[1])?;
     let z = skip_images.checked_add(region.origin[2])?;
-    let (first, bit) = if bitmap { (x / 8, x % 8) } else { (x.checked_mul(format.pixel_bytes())?, 0) };
+    let (first, bit) =
+        if bitmap { (x / 8, x % 8) } else { (x.checked_mul(format.pixel_bytes())?, 0) };
     let start = first.checked_add(y.checked_mul(row)?)?.checked_add(z.checked_mul(image)?)?;
-    let row_bytes =
-        if bitmap { (bit + region.size[0]).div_ceil(8) } else { region.size[0].checked_mul(format.pixel_bytes())? };
+    let row_bytes = if bitmap {
+        (bit + region.size[0]).div_ceil(8)
+    } else {
+        region.size[0].checked_mul(format.pixel_bytes())?
+    };
     // The last byte must be addressable too.
-    start.checked_add(image.checked_mul(region.size[2])?)?.checked_add(row.checked_mul(region.size[1])?)?;
+    start
+        .checked_add(image.checked_mul(region.size[2])?)?
+        .checked_add(row.checked_mul(region.size[1])?)?;
     Some(Layout { start, bit, row, image, row_bytes })
 }
 
@@ -133,7 +141,9 @@ fn rows(
     let tight = layout.row_bytes;
     let [_, height, depth] = region.size;
     if layout.row == tight && (depth == 1 || layout.image == tight * height) {
-        return address.checked_add(layout.start).is_some_and(|at| f(at, 0..tight * height * depth));
+        return address
+            .checked_add(layout.start)
+            .is_some_and(|at| f(at, 0..tight * height * depth));
     }
     for z in 0..depth {
         for y in 0..height {
@@ -182,7 +192,9 @@ pub(crate) fn read_region(
     if format.kind == BITMAP {
         let mut spread = Vec::with_capacity(pixels);
         for row in bytes.chunks_exact(layout.row_bytes) {
-            let bit = |x: usize| u8::from(row[(layout.bit + x) / 8] & mask(layout.bit + x, store.lsb_first) != 0);
+            let bit = |x: usize| {
+                u8::from(row[(layout.bit + x) / 8] & mask(layout.bit + x, store.lsb_first) != 0)
+            };
             spread.extend((0..width).map(bit));
         }
         return Some(Bytes::from(&*spread));
@@ -195,8 +207,8 @@ pub(crate) fn read_region(
     Some(bytes)
 }
 
-/// Writes a region of an image from tight rows (of a bitmap: one byte a pixel). `false` if that is not the client's
-/// memory.
+/// Writes a region of an image from tight rows (of a bitmap: one byte a pixel). `false` if that is
+/// not the client's memory.
 pub(crate) fn write_region(
     memory: &dyn ClientMemory,
     store: &PixelStore,
@@ -217,7 +229,9 @@ pub(crate) fn write_region(
         if !rows(&layout, region, address, |at, range| memory.read(at, &mut packed[range])) {
             return false;
         }
-        for (row, source) in packed.chunks_exact_mut(layout.row_bytes).zip(bytes.chunks_exact(width)) {
+        for (row, source) in
+            packed.chunks_exact_mut(layout.row_bytes).zip(bytes.chunks_exact(width))
+        {
             for (x, value) in source.iter().enumerate() {
                 let mask = mask(layout.bit + x, store.lsb_first);
                 let byte = &mut row[(layout.bit + x) / 8];
@@ -243,8 +257,9 @@ pub(crate) fn drawable([width, height]: [i32; 2]) -> Option<[usize; 3]> {
 }
 
 impl Context {
-    /// Reads an image with the unpacking state. `None` without an address, between Begin and End, where no image belongs, or if
-    /// the memory is not the client's. What a bound buffer does not hold is an error.
+    /// Reads an image with the unpacking state. `None` without an address, between Begin and End,
+    /// where no image belongs, or if the memory is not the client's. What a bound buffer does not
+    /// hold is an error.
     pub(crate) fn read_image(
         &self,
         format: PixelFormat,
@@ -305,7 +320,8 @@ mod tests {
             ..PixelStore::default()
         };
         let format = PixelFormat::new(RED, UNSIGNED_SHORT).unwrap();
-        let read = read_region(&arena, &store, format, &Region::whole([2, 1, 1], false), 4096).unwrap();
+        let read =
+            read_region(&arena, &store, format, &Region::whole([2, 1, 1], false), 4096).unwrap();
         assert_eq!(*read, [9, 8, 11, 10]);
     }
 
@@ -331,7 +347,8 @@ mod tests {
     fn wild_sizes_are_refused() {
         let arena = arena(&[]);
         let format = PixelFormat::new(RGBA, FLOAT).unwrap();
-        let store = PixelStore { skip_rows: i32::MAX, row_length: i32::MAX, ..PixelStore::default() };
+        let store =
+            PixelStore { skip_rows: i32::MAX, row_length: i32::MAX, ..PixelStore::default() };
         let region = Region::whole([1 << 31, 1 << 31, 1 << 31], true);
         assert!(read_region(&arena, &store, format, &region, 4096).is_none());
     }

@@ -50,22 +50,29 @@ impl Context {
     /// The planes of a framebuffer with its draw (or read) buffer.
     pub(crate) fn surfaces_of(&self, name: u32, draw: bool) -> Surfaces {
         match self.framebuffers.object(name) {
-            Some(object) => object.surfaces(if draw { object.draw_buffer } else { object.read_buffer }),
+            Some(object) => {
+                object.surfaces(if draw { object.draw_buffer } else { object.read_buffer })
+            }
             None => {
-                let buffer = if draw { self.state.color_buffer.draw_buffer } else { self.state.pixel_mode.read_buffer };
+                let buffer = if draw {
+                    self.state.color_buffer.draw_buffer
+                } else {
+                    self.state.pixel_mode.read_buffer
+                };
                 self.default_framebuffer.surfaces(buffer)
             }
         }
     }
 
-    /// The planes that draws go to: of the bound framebuffer object or framebuffer 0. `None` if it is incomplete (see
-    /// [`Self::draw_framebuffer_complete`]), has no size, or draws nowhere.
+    /// The planes that draws go to: of the bound framebuffer object or framebuffer 0. `None` if it
+    /// is incomplete (see [`Self::draw_framebuffer_complete`]), has no size, or draws nowhere.
     pub(crate) fn target(&mut self) -> Option<Target> {
         self.resolve().target.clone()
     }
 
-    /// The same for a command that changes pixels of `area` (x0, y0, x1, y1, the last two exclusive) or, without it, any. To be
-    /// called for each recorded command: the target counts as drawn to from then on.
+    /// The same for a command that changes pixels of `area` (x0, y0, x1, y1, the last two
+    /// exclusive) or, without it, any. To be called for each recorded command: the target counts as
+    /// drawn to from then on.
     pub(crate) fn draw_target(&mut self, area: Option<[i32; 4]>) -> Option<Target> {
         let resolved = self.resolve();
         let target = resolved.target.clone();
@@ -84,17 +91,23 @@ impl Context {
     pub(crate) fn draw_framebuffer_complete(&mut self, call: &str) -> bool {
         let complete = self.resolve().surfaces.status == FRAMEBUFFER_COMPLETE;
         if !complete {
-            self.record_error(INVALID_FRAMEBUFFER_OPERATION, call, "the draw framebuffer is not complete");
+            self.record_error(
+                INVALID_FRAMEBUFFER_OPERATION,
+                call,
+                "the draw framebuffer is not complete",
+            );
         }
         complete
     }
 
-    /// Whether an incomplete framebuffer object stands against a call that draws nothing itself; then the error is recorded.
+    /// Whether an incomplete framebuffer object stands against a call that draws nothing itself;
+    /// then the error is recorded.
     pub(crate) fn refused_by_framebuffer(&mut self, call: &str) -> bool {
         self.framebuffers.draw != 0 && !self.draw_framebuffer_complete(call)
     }
 
-    /// Which of red, green, blue, alpha the draw buffer does not store: writes to them must be masked.
+    /// Which of red, green, blue, alpha the draw buffer does not store: writes to them must be
+    /// masked.
     pub(crate) fn missing_components(&mut self) -> [bool; 4] {
         self.resolve().surfaces.color.as_ref().map_or([false; 4], |c| c.format.missing())
     }
@@ -113,7 +126,12 @@ impl Context {
     pub(crate) fn clamps_vertices(&mut self) -> bool {
         match self.state.color_buffer.clamps[0] {
             TRUE => true,
-            FIXED_ONLY => self.resolve().surfaces.color.as_ref().is_none_or(|c| c.format.component_type() != FLOAT),
+            FIXED_ONLY => self
+                .resolve()
+                .surfaces
+                .color
+                .as_ref()
+                .is_none_or(|c| c.format.component_type() != FLOAT),
             _ => false,
         }
     }
@@ -130,7 +148,13 @@ impl Context {
     /// Whether colours are sRGB-encoded on their way to the draw buffer.
     pub(crate) fn encodes_srgb(&mut self) -> bool {
         let enabled = self.state.framebuffer_srgb;
-        enabled && self.resolve().surfaces.color.as_ref().is_some_and(|c| c.format.storage == Storage::Srgb8)
+        enabled
+            && self
+                .resolve()
+                .surfaces
+                .color
+                .as_ref()
+                .is_some_and(|c| c.format.storage == Storage::Srgb8)
     }
 
     /// The planes that draws go to at present.
@@ -138,12 +162,21 @@ impl Context {
         self.resolve().surfaces.clone()
     }
 
-    /// The planes that reads of `area` (x, y, width, height) come from, when everything recorded has run. Records errors: an
-    /// incomplete framebuffer, or, if `single`, a multisampled one.
-    pub(crate) fn read_surfaces(&mut self, call: &str, single: bool, area: Option<[i32; 4]>) -> Option<Surfaces> {
+    /// The planes that reads of `area` (x, y, width, height) come from, when everything recorded
+    /// has run. Records errors: an incomplete framebuffer, or, if `single`, a multisampled one.
+    pub(crate) fn read_surfaces(
+        &mut self,
+        call: &str,
+        single: bool,
+        area: Option<[i32; 4]>,
+    ) -> Option<Surfaces> {
         let surfaces = self.surfaces_of(self.framebuffers.read, false);
         if surfaces.status != FRAMEBUFFER_COMPLETE {
-            self.record_error(INVALID_FRAMEBUFFER_OPERATION, call, "the read framebuffer is not complete");
+            self.record_error(
+                INVALID_FRAMEBUFFER_OPERATION,
+                call,
+                "the read framebuffer is not complete",
+            );
             return None;
         }
         if single && surfaces.samples > 0 {
@@ -152,7 +185,9 @@ impl Context {
         }
         self.flush_recorded();
         if self.framebuffers.read == 0 && surfaces.color.is_some() {
-            let ends = |[x, y, width, height]: [i32; 4]| [x, y, x.saturating_add(width), y.saturating_add(height)];
+            let ends = |[x, y, width, height]: [i32; 4]| {
+                [x, y, x.saturating_add(width), y.saturating_add(height)]
+            };
             self.load_default_framebuffer(area.map_or(EVERYWHERE, ends));
             if !self.default_framebuffer.drawn {
                 // Nothing waits: the client may draw into its buffer before the next command.

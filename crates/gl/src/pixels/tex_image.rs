@@ -89,9 +89,13 @@ pub(super) fn is_skewed(target: ImageTarget, size: [u32; 3]) -> bool {
     target.slot == slot::CUBE && size[0] != size[1]
 }
 
-/// Whether a target takes images of this format and shape. A proxy takes faces that are not square, as it does images that
-/// are too large.
-pub(super) fn check_shape(target: ImageTarget, format: &InternalFormat, size: [u32; 3]) -> Result<(), Failure> {
+/// Whether a target takes images of this format and shape. A proxy takes faces that are not square,
+/// as it does images that are too large.
+pub(super) fn check_shape(
+    target: ImageTarget,
+    format: &InternalFormat,
+    size: [u32; 3],
+) -> Result<(), Failure> {
     if !target.proxy && is_skewed(target, size) {
         return Err((INVALID_VALUE, "a cube map's face is not square"));
     }
@@ -111,12 +115,21 @@ pub(crate) fn formats_agree(format: PixelFormat, internal: &InternalFormat) -> R
         Content::Depth => internal.base == DEPTH_COMPONENT || internal.base == DEPTH_STENCIL,
         Content::DepthStencil => internal.base == DEPTH_STENCIL || internal.base == DEPTH_COMPONENT,
     };
-    if fits { Ok(()) } else { Err((INVALID_OPERATION, "format and internal format are not both of depth")) }
+    if fits {
+        Ok(())
+    } else {
+        Err((INVALID_OPERATION, "format and internal format are not both of depth"))
+    }
 }
 
 impl Context {
     /// Stores a checked image; without texels they are undefined.
-    pub(crate) fn store_image(&mut self, call: &str, checked: &CheckedImage, data: Option<texels::TexelData>) {
+    pub(crate) fn store_image(
+        &mut self,
+        call: &str,
+        checked: &CheckedImage,
+        data: Option<texels::TexelData>,
+    ) {
         let mut image = TextureImage::new(checked.format, checked.size, checked.border);
         if data.is_none() && !image.allocate() {
             return self.record_error(OUT_OF_MEMORY, call, "there is no memory for the image");
@@ -161,7 +174,9 @@ impl Context {
                 if formats_agree(*pair, &checked.format).is_ok()
                     && (self.lists.recording || self.may_get_image(checked.target).is_ok()) =>
             {
-                plausible(size).map_or(Ok(None), |s| self.read_image(*pair, s, arguments.dimensions == 3, pixels))
+                plausible(size).map_or(Ok(None), |s| {
+                    self.read_image(*pair, s, arguments.dimensions == 3, pixels)
+                })
             }
             _ => Ok(None),
         };
@@ -174,7 +189,9 @@ impl Context {
         if !self.lists.recording {
             return self.exec_tex_image(&arguments, pair, image.map(Cow::Owned));
         }
-        self.listable(move |c| c.exec_tex_image(&arguments, pair, image.as_ref().map(Cow::Borrowed)));
+        self.listable(move |c| {
+            c.exec_tex_image(&arguments, pair, image.as_ref().map(Cow::Borrowed))
+        });
     }
 
     fn exec_tex_image(
@@ -191,7 +208,9 @@ impl Context {
             Err((error, why)) => self.record_error(error, arguments.call, why),
             Ok(checked) => {
                 let transfer = Transfer::new(&self.state.pixel);
-                let data = image.map(|image| texels::from_client(&self.workers(), image, &checked.format, &transfer));
+                let data = image.map(|image| {
+                    texels::from_client(&self.workers(), image, &checked.format, &transfer)
+                });
                 self.store_image(arguments.call, &checked, data);
             }
         }
@@ -208,7 +227,8 @@ impl Context {
 
     /// Gives a proxy what a checked image would be.
     pub(crate) fn set_proxy_image(&mut self, checked: &CheckedImage) {
-        let image = (!checked.too_large).then(|| TextureImage::new(checked.format, checked.size, checked.border));
+        let image = (!checked.too_large)
+            .then(|| TextureImage::new(checked.format, checked.size, checked.border));
         self.textures.proxies[checked.target.slot].set_image(0, checked.level, image);
     }
 
@@ -227,7 +247,8 @@ impl Context {
         let call = "glTexImage1D";
         let internal = internalformat as u32;
         let size = [width, 1, 1];
-        let arguments = ImageArguments { call, dimensions: 1, target, level, internal, size, border };
+        let arguments =
+            ImageArguments { call, dimensions: 1, target, level, internal, size, border };
         self.tex_image(arguments, format, type_, pixels);
     }
 
@@ -247,7 +268,8 @@ impl Context {
         let call = "glTexImage2D";
         let internal = internalformat as u32;
         let size = [width, height, 1];
-        let arguments = ImageArguments { call, dimensions: 2, target, level, internal, size, border };
+        let arguments =
+            ImageArguments { call, dimensions: 2, target, level, internal, size, border };
         self.tex_image(arguments, format, type_, pixels);
     }
 
@@ -268,7 +290,8 @@ impl Context {
         let call = "glTexImage3D";
         let internal = internalformat as u32;
         let size = [width, height, depth];
-        let arguments = ImageArguments { call, dimensions: 3, target, level, internal, size, border };
+        let arguments =
+            ImageArguments { call, dimensions: 3, target, level, internal, size, border };
         self.tex_image(arguments, format, type_, pixels);
     }
 }
@@ -335,7 +358,8 @@ mod tests {
         for _ in 0..3 {
             let drawn = draw(&mut c);
             assert!(drawn.strong_count() > 0);
-            // No copy of so large a level is made for one texel: the draw that waits is run with the old texels.
+            // No copy of so large a level is made for one texel: the draw that waits is run with
+            // the old texels.
             c.tex_sub_image_2d(TEXTURE_2D, 0, 0, 0, 1, 1, RGBA, UNSIGNED_BYTE, BASE);
             assert_eq!(drawn.strong_count(), 0);
         }
@@ -393,7 +417,10 @@ mod tests {
         c.tex_image_2d(TEXTURE_2D, 0, RGB as i32, 2, 2, 0, RGB, UNSIGNED_BYTE, BASE);
         c.tex_sub_image_2d(TEXTURE_2D, 0, 1, 0, 1, 1, BGR, UNSIGNED_BYTE, BASE);
         c.get_tex_image(TEXTURE_2D, 0, RGB, UNSIGNED_BYTE, BASE + 512);
-        assert_eq!(super::super::testing::get(&c, BASE + 512), [1, 2, 3, 3, 2, 1, 7, 8, 9, 10, 11, 12]);
+        assert_eq!(
+            super::super::testing::get(&c, BASE + 512),
+            [1, 2, 3, 3, 2, 1, 7, 8, 9, 10, 11, 12]
+        );
         assert_eq!(c.error, NO_ERROR);
     }
 }

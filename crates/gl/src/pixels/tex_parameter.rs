@@ -67,7 +67,10 @@ impl Value {
 
 fn token_of(value: Value, allowed: &[u32]) -> Result<u32, Failure> {
     let token = value.token();
-    allowed.contains(&token).then_some(token).ok_or((INVALID_ENUM, "the value is none that the parameter can have"))
+    allowed
+        .contains(&token)
+        .then_some(token)
+        .ok_or((INVALID_ENUM, "the value is none that the parameter can have"))
 }
 
 fn level_of(value: Value) -> Result<i32, Failure> {
@@ -79,12 +82,20 @@ fn level_of(value: Value) -> Result<i32, Failure> {
 const SWIZZLES: [u32; 6] = [RED, GREEN, BLUE, ALPHA, ZERO, ONE];
 
 /// Sets a parameter of a texture of `slot`.
-pub(super) fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Value) -> Result<(), Failure> {
+pub(super) fn set(
+    p: &mut TextureParameters,
+    slot: usize,
+    pname: u32,
+    value: Value,
+) -> Result<(), Failure> {
     let rectangle = slot == slot::RECTANGLE;
     match pname {
         // Wrap modes and filters; rectangles allow some of them.
         TEXTURE_WRAP_S | TEXTURE_WRAP_T | TEXTURE_WRAP_R => {
-            let axis = [TEXTURE_WRAP_S, TEXTURE_WRAP_T, TEXTURE_WRAP_R].iter().position(|&t| t == pname).unwrap_or(0);
+            let axis = [TEXTURE_WRAP_S, TEXTURE_WRAP_T, TEXTURE_WRAP_R]
+                .iter()
+                .position(|&t| t == pname)
+                .unwrap_or(0);
             let all = [
                 CLAMP,
                 CLAMP_TO_EDGE,
@@ -110,7 +121,8 @@ pub(super) fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Val
         }
         TEXTURE_MAG_FILTER => p.mag = token_of(value, &[NEAREST, LINEAR])?,
         TEXTURE_BORDER_COLOR => {
-            p.border = value.color().ok_or((INVALID_ENUM, "TEXTURE_BORDER_COLOR needs a vector"))?;
+            p.border =
+                value.color().ok_or((INVALID_ENUM, "TEXTURE_BORDER_COLOR needs a vector"))?;
         }
 
         // Levels of detail.
@@ -131,7 +143,8 @@ pub(super) fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Val
         DEPTH_TEXTURE_MODE => p.depth_mode = token_of(value, &[LUMINANCE, INTENSITY, ALPHA, RED])?,
         TEXTURE_COMPARE_MODE => p.compare_mode = token_of(value, &[NONE, COMPARE_R_TO_TEXTURE])?,
         TEXTURE_COMPARE_FUNC => {
-            p.compare_func = token_of(value, &[LEQUAL, GEQUAL, LESS, GREATER, EQUAL, NOTEQUAL, ALWAYS, NEVER])?;
+            p.compare_func =
+                token_of(value, &[LEQUAL, GEQUAL, LESS, GREATER, EQUAL, NOTEQUAL, ALWAYS, NEVER])?;
         }
 
         // Mipmaps and anisotropy.
@@ -152,7 +165,8 @@ pub(super) fn set(p: &mut TextureParameters, slot: usize, pname: u32, value: Val
             p.swizzle[(pname - TEXTURE_SWIZZLE_R) as usize] = token_of(value, &SWIZZLES)?;
         }
         TEXTURE_SWIZZLE_RGBA => {
-            let all = value.tokens().ok_or((INVALID_ENUM, "TEXTURE_SWIZZLE_RGBA needs a vector"))?;
+            let all =
+                value.tokens().ok_or((INVALID_ENUM, "TEXTURE_SWIZZLE_RGBA needs a vector"))?;
             for token in all {
                 token_of(Value::Int(token as i32), &SWIZZLES)?;
             }
@@ -172,7 +186,9 @@ pub(super) fn get(p: &TextureParameters, pname: u32) -> Option<(Vec<f64>, bool)>
         TEXTURE_WRAP_R => one(p.wrap[2].into()),
         TEXTURE_MIN_FILTER => one(p.min.into()),
         TEXTURE_MAG_FILTER => one(p.mag.into()),
-        TEXTURE_BORDER_COLOR => Some((p.border.map(|v| f64::from(v.clamp(0.0, 1.0))).to_vec(), true)),
+        TEXTURE_BORDER_COLOR => {
+            Some((p.border.map(|v| f64::from(v.clamp(0.0, 1.0))).to_vec(), true))
+        }
         TEXTURE_PRIORITY => Some((vec![p.priority.into()], true)),
         TEXTURE_RESIDENT => one(1.0),
         TEXTURE_MIN_LOD => one(p.lod[0].into()),
@@ -185,7 +201,9 @@ pub(super) fn get(p: &TextureParameters, pname: u32) -> Option<(Vec<f64>, bool)>
         TEXTURE_COMPARE_FUNC => one(p.compare_func.into()),
         GENERATE_MIPMAP => one(f64::from(u8::from(p.generate_mipmap))),
         TEXTURE_MAX_ANISOTROPY_EXT => one(p.anisotropy.into()),
-        TEXTURE_SWIZZLE_R..=TEXTURE_SWIZZLE_A => one(p.swizzle[(pname - TEXTURE_SWIZZLE_R) as usize].into()),
+        TEXTURE_SWIZZLE_R..=TEXTURE_SWIZZLE_A => {
+            one(p.swizzle[(pname - TEXTURE_SWIZZLE_R) as usize].into())
+        }
         TEXTURE_SWIZZLE_RGBA => Some((p.swizzle.map(f64::from).to_vec(), false)),
         _ => None,
     }
@@ -199,7 +217,8 @@ pub(super) fn read_vector<T: bytemuck::Pod + Default>(
 ) -> Option<[T; 4]> {
     let mut values = [T::default(); 4];
     let count = if matches!(pname, TEXTURE_BORDER_COLOR | TEXTURE_SWIZZLE_RGBA) { 4 } else { 1 };
-    (address != 0 && memory.read(address, bytemuck::cast_slice_mut(&mut values[..count]))).then_some(values)
+    (address != 0 && memory.read(address, bytemuck::cast_slice_mut(&mut values[..count])))
+        .then_some(values)
 }
 
 impl Context {
@@ -237,19 +256,29 @@ impl Context {
         });
     }
 
-    fn read_parameter<T: bytemuck::Pod + Default>(&self, pname: u32, address: usize) -> Option<[T; 4]> {
+    fn read_parameter<T: bytemuck::Pod + Default>(
+        &self,
+        pname: u32,
+        address: usize,
+    ) -> Option<[T; 4]> {
         read_vector(&*self.memory, pname, address)
     }
 
-    /// `glTexParameterf`. A list keeps it, as Mesa's does, as a call with `v`: a border colour is no error there.
+    /// `glTexParameterf`. A list keeps it, as Mesa's does, as a call with `v`: a border colour is
+    /// no error there.
     pub fn tex_parameterf(&mut self, target: u32, pname: u32, param: f32) {
-        let value = if self.lists.recording { Value::Floats([param, 0.0, 0.0, 0.0]) } else { Value::Float(param) };
+        let value = if self.lists.recording {
+            Value::Floats([param, 0.0, 0.0, 0.0])
+        } else {
+            Value::Float(param)
+        };
         self.tex_parameter("glTexParameterf", target, pname, value);
     }
 
     /// `glTexParameteri`.
     pub fn tex_parameteri(&mut self, target: u32, pname: u32, param: i32) {
-        let value = if self.lists.recording { Value::Ints([param, 0, 0, 0]) } else { Value::Int(param) };
+        let value =
+            if self.lists.recording { Value::Ints([param, 0, 0, 0]) } else { Value::Int(param) };
         self.tex_parameter("glTexParameteri", target, pname, value);
     }
 
@@ -267,7 +296,12 @@ impl Context {
         }
     }
 
-    fn parameter_values(&mut self, call: &str, target: u32, pname: u32) -> Option<(Vec<f64>, bool)> {
+    fn parameter_values(
+        &mut self,
+        call: &str,
+        target: u32,
+        pname: u32,
+    ) -> Option<(Vec<f64>, bool)> {
         if !self.outside_begin(call) {
             return None;
         }
@@ -277,7 +311,9 @@ impl Context {
         };
         let texture = self.target_texture(ImageTarget { slot, face: 0, proxy: false });
         let values = match pname {
-            TEXTURE_IMMUTABLE_FORMAT => Some((vec![f64::from(u8::from(lock(&texture).immutable))], false)),
+            TEXTURE_IMMUTABLE_FORMAT => {
+                Some((vec![f64::from(u8::from(lock(&texture).immutable))], false))
+            }
             _ => get(&lock(&texture).parameters, pname),
         };
         if values.is_none() {
@@ -346,6 +382,9 @@ mod tests {
         put(&c, BASE, bytemuck::cast_slice(&[0.0f32, 1.0, 0.5, 0.0]));
         c.tex_parameterfv(TEXTURE_3D, TEXTURE_BORDER_COLOR, BASE);
         c.get_tex_parameteriv(TEXTURE_3D, TEXTURE_BORDER_COLOR, BASE + 64);
-        assert_eq!([0, 4, 8, 12].map(|i| read_u32(&c, BASE + 64 + i) as i32), [0, i32::MAX, i32::MAX / 2, 0]);
+        assert_eq!(
+            [0, 4, 8, 12].map(|i| read_u32(&c, BASE + 64 + i) as i32),
+            [0, i32::MAX, i32::MAX / 2, 0]
+        );
     }
 }

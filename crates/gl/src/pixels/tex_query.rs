@@ -12,7 +12,12 @@ use crate::Context;
 use crate::enums::*;
 
 /// A level's parameter. Levels without an image have the initial values.
-fn level_parameter(texture: &mut TextureObject, face: usize, level: usize, pname: u32) -> Result<i32, Failure> {
+fn level_parameter(
+    texture: &mut TextureObject,
+    face: usize,
+    level: usize,
+    pname: u32,
+) -> Result<i32, Failure> {
     // Take the values of the image, or the initial ones.
     let image = texture.image(face, level);
     let blocks = image.as_ref().and_then(|i| i.blocks.clone());
@@ -46,14 +51,23 @@ fn level_parameter(texture: &mut TextureObject, face: usize, level: usize, pname
         TEXTURE_INTENSITY_TYPE_ARB => of(bits.intensity),
         TEXTURE_DEPTH_TYPE_ARB => of(bits.depth),
         TEXTURE_COMPRESSED => i32::from(blocks.is_some()),
-        TEXTURE_COMPRESSED_IMAGE_SIZE if blocks.is_some() => blocks.map_or(0, |blocks| blocks.bytes.len() as i32),
-        TEXTURE_COMPRESSED_IMAGE_SIZE => return Err((INVALID_OPERATION, "the image is not compressed")),
+        TEXTURE_COMPRESSED_IMAGE_SIZE if blocks.is_some() => {
+            blocks.map_or(0, |blocks| blocks.bytes.len() as i32)
+        }
+        TEXTURE_COMPRESSED_IMAGE_SIZE => {
+            return Err((INVALID_OPERATION, "the image is not compressed"));
+        }
         _ => return Err((INVALID_ENUM, "pname is not a parameter of a level")),
     })
 }
 
 impl Context {
-    pub(crate) fn query_target(&self, target: u32, level: i32, proxies: bool) -> Result<(ImageTarget, usize), Failure> {
+    pub(crate) fn query_target(
+        &self,
+        target: u32,
+        level: i32,
+        proxies: bool,
+    ) -> Result<(ImageTarget, usize), Failure> {
         let target = ImageTarget::new(target, None)
             .filter(|t| proxies || !t.proxy)
             .ok_or((INVALID_ENUM, "target is not an image target of this call"))?;
@@ -64,13 +78,24 @@ impl Context {
         Ok((target, level))
     }
 
-    fn tex_level_parameter(&mut self, call: &str, target: u32, level: i32, pname: u32) -> Option<i32> {
+    fn tex_level_parameter(
+        &mut self,
+        call: &str,
+        target: u32,
+        level: i32,
+        pname: u32,
+    ) -> Option<i32> {
         if !self.outside_begin(call) {
             return None;
         }
         let value = self.query_target(target, level, true).and_then(|(target, level)| {
             if target.proxy {
-                return level_parameter(&mut self.textures.proxies[target.slot], target.face, level, pname);
+                return level_parameter(
+                    &mut self.textures.proxies[target.slot],
+                    target.face,
+                    level,
+                    pname,
+                );
             }
             let texture = self.target_texture(target);
             let mut texture = lock(&texture);
@@ -80,8 +105,15 @@ impl Context {
     }
 
     /// `glGetTexLevelParameterfv`.
-    pub fn get_tex_level_parameterfv(&mut self, target: u32, level: i32, pname: u32, params: usize) {
-        if let Some(value) = self.tex_level_parameter("glGetTexLevelParameterfv", target, level, pname)
+    pub fn get_tex_level_parameterfv(
+        &mut self,
+        target: u32,
+        level: i32,
+        pname: u32,
+        params: usize,
+    ) {
+        if let Some(value) =
+            self.tex_level_parameter("glGetTexLevelParameterfv", target, level, pname)
             && params != 0
         {
             self.memory.write(params, &(value as f32).to_ne_bytes());
@@ -89,8 +121,15 @@ impl Context {
     }
 
     /// `glGetTexLevelParameteriv`.
-    pub fn get_tex_level_parameteriv(&mut self, target: u32, level: i32, pname: u32, params: usize) {
-        if let Some(value) = self.tex_level_parameter("glGetTexLevelParameteriv", target, level, pname)
+    pub fn get_tex_level_parameteriv(
+        &mut self,
+        target: u32,
+        level: i32,
+        pname: u32,
+        params: usize,
+    ) {
+        if let Some(value) =
+            self.tex_level_parameter("glGetTexLevelParameteriv", target, level, pname)
             && params != 0
         {
             self.memory.write(params, &value.to_ne_bytes());
@@ -98,7 +137,14 @@ impl Context {
     }
 
     /// `glGetTexImage`.
-    pub fn get_tex_image(&mut self, target: u32, level: i32, format: u32, type_: u32, pixels: usize) {
+    pub fn get_tex_image(
+        &mut self,
+        target: u32,
+        level: i32,
+        format: u32,
+        type_: u32,
+        pixels: usize,
+    ) {
         const CALL: &str = "glGetTexImage";
         if !self.outside_begin(CALL) {
             return;
@@ -108,7 +154,14 @@ impl Context {
         }
     }
 
-    fn read_texture(&mut self, target: u32, level: i32, format: u32, kind: u32, pixels: usize) -> Result<(), Failure> {
+    fn read_texture(
+        &mut self,
+        target: u32,
+        level: i32,
+        format: u32,
+        kind: u32,
+        pixels: usize,
+    ) -> Result<(), Failure> {
         // Check the arguments.
         let (target, level) = self.query_target(target, level, false)?;
         let format = PixelFormat::new(format, kind)?;
@@ -188,7 +241,16 @@ mod tests {
     fn luminance_is_read_as_red() {
         let mut c = context();
         put(&c, BASE, &[100, 200]);
-        c.tex_image_1d(TEXTURE_1D, 0, LUMINANCE_ALPHA as i32, 1, 0, LUMINANCE_ALPHA, UNSIGNED_BYTE, BASE);
+        c.tex_image_1d(
+            TEXTURE_1D,
+            0,
+            LUMINANCE_ALPHA as i32,
+            1,
+            0,
+            LUMINANCE_ALPHA,
+            UNSIGNED_BYTE,
+            BASE,
+        );
         c.get_tex_image(TEXTURE_1D, 0, RGBA, UNSIGNED_BYTE, BASE);
         assert_eq!(get(&c, BASE), [100, 0, 0, 200]);
         c.get_tex_image(TEXTURE_1D, 0, LUMINANCE, UNSIGNED_BYTE, BASE);
@@ -221,7 +283,16 @@ mod tests {
         c.get_tex_image(TEXTURE_1D, 0, RGBA, UNSIGNED_BYTE, BASE + 64);
         assert_eq!(get(&c, BASE + 64), [10, 20, 30, 40]);
         put(&c, BASE, &0x1234_5678u32.to_ne_bytes());
-        c.tex_image_1d(TEXTURE_1D, 0, DEPTH24_STENCIL8 as i32, 1, 0, DEPTH_STENCIL, UNSIGNED_INT_24_8, BASE);
+        c.tex_image_1d(
+            TEXTURE_1D,
+            0,
+            DEPTH24_STENCIL8 as i32,
+            1,
+            0,
+            DEPTH_STENCIL,
+            UNSIGNED_INT_24_8,
+            BASE,
+        );
         c.pixel_transferf(DEPTH_SCALE, 0.5);
         c.pixel_transferi(INDEX_OFFSET, 1);
         c.get_tex_image(TEXTURE_1D, 0, DEPTH_STENCIL, UNSIGNED_INT_24_8, BASE + 64);
@@ -233,7 +304,16 @@ mod tests {
     fn depth_and_stencil_come_back() {
         let mut c = context();
         put(&c, BASE, &0x1234_5678u32.to_ne_bytes());
-        c.tex_image_1d(TEXTURE_1D, 0, DEPTH24_STENCIL8 as i32, 1, 0, DEPTH_STENCIL, UNSIGNED_INT_24_8, BASE);
+        c.tex_image_1d(
+            TEXTURE_1D,
+            0,
+            DEPTH24_STENCIL8 as i32,
+            1,
+            0,
+            DEPTH_STENCIL,
+            UNSIGNED_INT_24_8,
+            BASE,
+        );
         c.get_tex_image(TEXTURE_1D, 0, DEPTH_STENCIL, UNSIGNED_INT_24_8, BASE + 64);
         assert_eq!(get(&c, BASE + 64), 0x1234_5678u32.to_ne_bytes());
         assert_eq!(c.error, NO_ERROR);

@@ -11,7 +11,11 @@ use crate::Context;
 use crate::enums::*;
 
 /// A target that was found valid, and the most levels that an image of `size` has.
-fn check_target(target: u32, dimensions: usize, size: [u32; 3]) -> Result<(ImageTarget, usize), Failure> {
+fn check_target(
+    target: u32,
+    dimensions: usize,
+    size: [u32; 3],
+) -> Result<(ImageTarget, usize), Failure> {
     const NOT_ONE: Failure = (INVALID_ENUM, "target is not a texture target of this call");
     let target = match slot_of(target) {
         Some(slot) => ImageTarget { slot, face: 0, proxy: false },
@@ -25,7 +29,11 @@ fn check_target(target: u32, dimensions: usize, size: [u32; 3]) -> Result<(Image
     if used != dimensions {
         return Err(NOT_ONE);
     }
-    let most = if target.slot == slot::RECTANGLE { 0 } else { size.into_iter().max().unwrap_or(1).ilog2() };
+    let most = if target.slot == slot::RECTANGLE {
+        0
+    } else {
+        size.into_iter().max().unwrap_or(1).ilog2()
+    };
     Ok((target, most as usize + 1))
 }
 
@@ -40,7 +48,8 @@ impl Context {
         size: [i32; 3],
     ) {
         if self.outside_begin(call)
-            && let Err((error, why)) = self.exec_tex_storage(dimensions, target, levels, token, size)
+            && let Err((error, why)) =
+                self.exec_tex_storage(dimensions, target, levels, token, size)
         {
             self.record_error(error, call, why);
         }
@@ -55,8 +64,10 @@ impl Context {
         size: [i32; 3],
     ) -> Result<(), Failure> {
         // Check the format, the sizes and the levels.
-        let format = InternalFormat::of_texture(token).filter(|f| f.token == token && is_sized(token));
-        let format = format.ok_or((INVALID_ENUM, "internalformat is not a sized internal format"))?;
+        let format =
+            InternalFormat::of_texture(token).filter(|f| f.token == token && is_sized(token));
+        let format =
+            format.ok_or((INVALID_ENUM, "internalformat is not a sized internal format"))?;
         if levels < 1 || size.iter().any(|&s| s < 1) {
             return Err((INVALID_VALUE, "the number of levels, or a size, is less than 1"));
         }
@@ -86,7 +97,10 @@ impl Context {
             return Err((INVALID_OPERATION, "the texture is immutable"));
         }
         if !fits {
-            return Err((if beyond { INVALID_VALUE } else { OUT_OF_MEMORY }, "the images are too large"));
+            return Err((
+                if beyond { INVALID_VALUE } else { OUT_OF_MEMORY },
+                "the images are too large",
+            ));
         }
 
         // Allocate all levels and fix them.
@@ -106,7 +120,14 @@ impl Context {
     }
 
     /// `glTexStorage2D`.
-    pub fn tex_storage_2d(&mut self, target: u32, levels: i32, internalformat: u32, width: i32, height: i32) {
+    pub fn tex_storage_2d(
+        &mut self,
+        target: u32,
+        levels: i32,
+        internalformat: u32,
+        width: i32,
+        height: i32,
+    ) {
         self.tex_storage("glTexStorage2D", 2, target, levels, internalformat, [width, height, 1]);
     }
 
@@ -120,7 +141,14 @@ impl Context {
         height: i32,
         depth: i32,
     ) {
-        self.tex_storage("glTexStorage3D", 3, target, levels, internalformat, [width, height, depth]);
+        self.tex_storage(
+            "glTexStorage3D",
+            3,
+            target,
+            levels,
+            internalformat,
+            [width, height, depth],
+        );
     }
 
     /// Whether the texture that an image call names may get a new image.
@@ -145,8 +173,14 @@ mod tests {
             c.get_tex_level_parameteriv(TEXTURE_2D, level, pname, BASE);
             read_u32(&c, BASE)
         };
-        assert_eq!([level(0, TEXTURE_WIDTH), level(1, TEXTURE_WIDTH), level(2, TEXTURE_WIDTH)], [8, 4, 2]);
-        assert_eq!([level(1, TEXTURE_HEIGHT), level(2, TEXTURE_HEIGHT), level(3, TEXTURE_WIDTH)], [1, 1, 0]);
+        assert_eq!(
+            [level(0, TEXTURE_WIDTH), level(1, TEXTURE_WIDTH), level(2, TEXTURE_WIDTH)],
+            [8, 4, 2]
+        );
+        assert_eq!(
+            [level(1, TEXTURE_HEIGHT), level(2, TEXTURE_HEIGHT), level(3, TEXTURE_WIDTH)],
+            [1, 1, 0]
+        );
         // Mipmapping ends with the last level that there is.
         c.enable(TEXTURE_2D);
         assert_eq!(c.sampled_texture(0).unwrap().faces[0].len(), 3);

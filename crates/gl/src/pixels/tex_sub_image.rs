@@ -13,8 +13,9 @@ use crate::enums::*;
 use crate::memory::can_have;
 use std::borrow::Cow;
 
-/// Most bytes of texels that are copied for a change of a few of them, since draws that wait need the old ones: to copy more takes
-/// longer than to run a small pass. Measured: benches/results/2026-11-29-gl-updates.md.
+/// Most bytes of texels that are copied for a change of a few of them, since draws that wait need
+/// the old ones: to copy more takes longer than to run a small pass. Measured:
+/// benches/results/2026-11-29-gl-updates.md.
 const MOST_COPIED: usize = 64 << 10;
 
 /// The arguments that all forms of `TexSubImage` share. Offsets count from the border.
@@ -56,7 +57,9 @@ impl Context {
         // Check that the box lies inside the image.
         let texture = self.target_texture(target);
         let mut texture = lock(&texture);
-        let image = texture.image(target.face, level).ok_or((INVALID_OPERATION, "the level has no image"))?;
+        let image = texture
+            .image(target.face, level)
+            .ok_or((INVALID_OPERATION, "the level has no image"))?;
         let mut origin = [0; 3];
         let mut size = [1; 3];
         for i in 0..arguments.dimensions {
@@ -94,7 +97,9 @@ impl Context {
             let mut texture = lock(&texture);
             // Without the snapshot, texels that no draw waits for change in place.
             texture.touch();
-            texture.image(checked.target.face, checked.level).map_or(0, |image| image.copied_bytes())
+            texture
+                .image(checked.target.face, checked.level)
+                .map_or(0, |image| image.copied_bytes())
         };
         if copied.saturating_sub(changed) > MOST_COPIED {
             // What waits has the old texels. To draw it costs less than to copy them all.
@@ -103,10 +108,16 @@ impl Context {
             self.image_came(copied);
         }
         if copied > 0 && !can_have(copied) {
-            return self.record_error(OUT_OF_MEMORY, "glTexSubImage", "there is no memory for a copy of the texture");
+            return self.record_error(
+                OUT_OF_MEMORY,
+                "glTexSubImage",
+                "there is no memory for a copy of the texture",
+            );
         }
         // A plane must not change under recorded draws.
-        let in_plane = lock(&texture).image(checked.target.face, checked.level).is_some_and(|image| image.has_planes());
+        let in_plane = lock(&texture)
+            .image(checked.target.face, checked.level)
+            .is_some_and(|image| image.has_planes());
         if in_plane {
             self.flush_recorded();
         }
@@ -124,10 +135,13 @@ impl Context {
 
     fn tex_sub_image(&mut self, arguments: BoxArguments, format: u32, kind: u32, pixels: usize) {
         let pair = PixelFormat::new(format, kind);
-        // What a list holds is checked when it is executed; nothing else is read for a call that is an error.
+        // What a list holds is checked when it is executed; nothing else is read for a call that is
+        // an error.
         let good = self.lists.recording || self.check_sub_image(&arguments, pair).is_ok();
         let image = match (pair, plausible(arguments.size)) {
-            (Ok(pair), Some(size)) if good => self.read_image(pair, size, arguments.dimensions == 3, pixels),
+            (Ok(pair), Some(size)) if good => {
+                self.read_image(pair, size, arguments.dimensions == 3, pixels)
+            }
             _ => Ok(None),
         };
         let image = match image {
@@ -137,7 +151,9 @@ impl Context {
         if !self.lists.recording {
             return self.exec_tex_sub_image(&arguments, pair, image.map(Cow::Owned));
         }
-        self.listable(move |c| c.exec_tex_sub_image(&arguments, pair, image.as_ref().map(Cow::Borrowed)));
+        self.listable(move |c| {
+            c.exec_tex_sub_image(&arguments, pair, image.as_ref().map(Cow::Borrowed))
+        });
     }
 
     fn exec_tex_sub_image(
@@ -153,8 +169,12 @@ impl Context {
             (Err((error, why)), _) => self.record_error(error, arguments.call, why),
             (Ok(_), None) => {}
             (Ok(checked), Some(image)) => {
-                let data =
-                    texels::from_client(&self.workers(), image, &checked.format, &Transfer::new(&self.state.pixel));
+                let data = texels::from_client(
+                    &self.workers(),
+                    image,
+                    &checked.format,
+                    &Transfer::new(&self.state.pixel),
+                );
                 self.write_box(&checked, &data);
             }
         }
@@ -173,7 +193,12 @@ impl Context {
     ) {
         let call = "glTexSubImage1D";
         let (offset, size) = ([xoffset, 0, 0], [width, 1, 1]);
-        self.tex_sub_image(BoxArguments { call, dimensions: 1, target, level, offset, size }, format, type_, pixels);
+        self.tex_sub_image(
+            BoxArguments { call, dimensions: 1, target, level, offset, size },
+            format,
+            type_,
+            pixels,
+        );
     }
 
     /// `glTexSubImage2D`.
@@ -191,7 +216,12 @@ impl Context {
     ) {
         let call = "glTexSubImage2D";
         let (offset, size) = ([xoffset, yoffset, 0], [width, height, 1]);
-        self.tex_sub_image(BoxArguments { call, dimensions: 2, target, level, offset, size }, format, type_, pixels);
+        self.tex_sub_image(
+            BoxArguments { call, dimensions: 2, target, level, offset, size },
+            format,
+            type_,
+            pixels,
+        );
     }
 
     /// `glTexSubImage3D`.
@@ -211,7 +241,12 @@ impl Context {
     ) {
         let call = "glTexSubImage3D";
         let (offset, size) = ([xoffset, yoffset, zoffset], [width, height, depth]);
-        self.tex_sub_image(BoxArguments { call, dimensions: 3, target, level, offset, size }, format, type_, pixels);
+        self.tex_sub_image(
+            BoxArguments { call, dimensions: 3, target, level, offset, size },
+            format,
+            type_,
+            pixels,
+        );
     }
 }
 

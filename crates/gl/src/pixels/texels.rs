@@ -36,7 +36,11 @@ pub(crate) fn color_from_word(word: u32) -> [f32; 4] {
 /// `depth` as a depth plane of `scale` stores it.
 #[inline]
 pub(crate) fn stored_depth(depth: f32, scale: f32) -> f32 {
-    if scale == 1.0 { depth } else { (f64::from(clamp_unit(depth)) * f64::from(scale) + 0.5).floor() as f32 }
+    if scale == 1.0 {
+        depth
+    } else {
+        (f64::from(clamp_unit(depth)) * f64::from(scale) + 0.5).floor() as f32
+    }
 }
 
 /// The client's pixels as texels of `format`.
@@ -62,7 +66,8 @@ pub(crate) fn from_client(
         Ok(words) => return from_words(words, format),
         Err(image) => image,
     };
-    let word = |(word, &color): (&mut u32, &[f32; 4])| *word = format.expand_word(word_from_color(color));
+    let word =
+        |(word, &color): (&mut u32, &[f32; 4])| *word = format.expand_word(word_from_color(color));
     TexelData::Words(decode::from_colors(workers, &image, transfer, |colors, words| {
         words.iter_mut().zip(colors).for_each(word);
     }))
@@ -71,7 +76,9 @@ pub(crate) fn from_client(
 /// Colours (after transfer) as texels of a colour format.
 pub(crate) fn from_colors(mut colors: Vec<[f32; 4]>, format: &InternalFormat) -> TexelData {
     if matches!(format.storage, Storage::Unorm8 | Storage::Srgb8) {
-        return TexelData::Words(colors.into_iter().map(|c| format.expand_word(word_from_color(c))).collect());
+        return TexelData::Words(
+            colors.into_iter().map(|c| format.expand_word(word_from_color(c))).collect(),
+        );
     }
     for color in &mut colors {
         let rounded = match format.storage {
@@ -110,13 +117,21 @@ pub(crate) fn blank(format: &InternalFormat, count: usize) -> Texels {
     match format.storage {
         Storage::Unorm8 => Texels::Rgba8(vec![format.expand_word(0); count]),
         Storage::Srgb8 => Texels::Srgb8(vec![format.expand_word(0); count]),
-        Storage::Unorm16 | Storage::Half | Storage::Float => Texels::RgbaF32(vec![format.expand([0.0; 4]); count]),
+        Storage::Unorm16 | Storage::Half | Storage::Float => {
+            Texels::RgbaF32(vec![format.expand([0.0; 4]); count])
+        }
         Storage::Depth(_) | Storage::Stencil => Texels::Depth(vec![0.0; count]),
     }
 }
 
 /// Copies the runs (rows) of a box: source row, first texel of the destination row.
-fn copy_rows<T: Copy>(from: &[T], into: &mut [T], full: [usize; 3], origin: [usize; 3], size: [usize; 3]) {
+fn copy_rows<T: Copy>(
+    from: &[T],
+    into: &mut [T],
+    full: [usize; 3],
+    origin: [usize; 3],
+    size: [usize; 3],
+) {
     let [width, height, depth] = size;
     if width == 0 {
         return;
@@ -130,15 +145,25 @@ fn copy_rows<T: Copy>(from: &[T], into: &mut [T], full: [usize; 3], origin: [usi
     }
 }
 
-/// Puts a box of texels into an image of size `full`. Both are of one format. Depths that are in a plane are not
-/// touched here.
-pub(crate) fn put(into: &mut Texels, full: [usize; 3], origin: [usize; 3], size: [usize; 3], data: &TexelData) {
+/// Puts a box of texels into an image of size `full`. Both are of one format. Depths that are in a
+/// plane are not touched here.
+pub(crate) fn put(
+    into: &mut Texels,
+    full: [usize; 3],
+    origin: [usize; 3],
+    size: [usize; 3],
+    data: &TexelData,
+) {
     match (into, data) {
         (Texels::Rgba8(into) | Texels::Srgb8(into), TexelData::Words(from)) => {
             copy_rows(from, into, full, origin, size);
         }
-        (Texels::RgbaF32(into), TexelData::Floats(from)) => copy_rows(from, into, full, origin, size),
-        (Texels::Depth(into), TexelData::Depths(from, _)) => copy_rows(from, into, full, origin, size),
+        (Texels::RgbaF32(into), TexelData::Floats(from)) => {
+            copy_rows(from, into, full, origin, size)
+        }
+        (Texels::Depth(into), TexelData::Depths(from, _)) => {
+            copy_rows(from, into, full, origin, size)
+        }
         _ => {}
     }
 }

@@ -5,7 +5,9 @@ use super::internal_format::InternalFormat;
 use crate::enums::*;
 use crate::state::{MAX_3D_TEXTURE_SIZE, MAX_TEXTURE_SIZE};
 use std::sync::{Arc, Mutex};
-use vitral_raster::forward::{BaseFormat, Compare, Filter, Level, Sampler, Swizzle, Texture, TextureKind, Wrap};
+use vitral_raster::forward::{
+    BaseFormat, Compare, Filter, Level, Sampler, Swizzle, Texture, TextureKind, Wrap,
+};
 
 pub(crate) use crate::state::target as slot;
 
@@ -132,7 +134,8 @@ pub(crate) struct TextureObject {
     pub immutable: bool,
     /// Faces of levels.
     faces: Vec<Vec<Option<TextureImage>>>,
-    /// What was last sampled, whether cube maps were seamless then, and with which sampler's parameters.
+    /// What was last sampled, whether cube maps were seamless then, and with which sampler's
+    /// parameters.
     snapshot: Option<(Option<Arc<Texture>>, bool, Option<TextureParameters>)>,
 }
 
@@ -174,8 +177,14 @@ impl TextureObject {
         levels[level] = image;
     }
 
-    /// Gives every face `levels` images, the first of `size`, each of half the size before. Whether there was memory.
-    pub(crate) fn allocate(&mut self, format: InternalFormat, levels: usize, size: [u32; 3]) -> bool {
+    /// Gives every face `levels` images, the first of `size`, each of half the size before. Whether
+    /// there was memory.
+    pub(crate) fn allocate(
+        &mut self,
+        format: InternalFormat,
+        levels: usize,
+        size: [u32; 3],
+    ) -> bool {
         self.set_images(format, levels, size);
         let there = self.faces.iter_mut().flatten().flatten().all(TextureImage::allocate);
         if !there {
@@ -187,8 +196,9 @@ impl TextureObject {
     /// The same without texels.
     pub(crate) fn set_images(&mut self, format: InternalFormat, levels: usize, size: [u32; 3]) {
         self.touch();
-        let sizes: Vec<_> =
-            std::iter::successors(Some(size), |&size| Some(self.next_size(size))).take(levels).collect();
+        let sizes: Vec<_> = std::iter::successors(Some(size), |&size| Some(self.next_size(size)))
+            .take(levels)
+            .collect();
         for face in &mut self.faces {
             *face = sizes.iter().map(|&size| Some(TextureImage::new(format, size, 0))).collect();
         }
@@ -204,7 +214,8 @@ impl TextureObject {
         usize::try_from(self.parameters.levels[0]).ok().filter(|&l| l < MAX_LEVELS)
     }
 
-    /// The last level that a mipmapped lookup needs: of the base level's size and `TEXTURE_MAX_LEVEL`.
+    /// The last level that a mipmapped lookup needs: of the base level's size and
+    /// `TEXTURE_MAX_LEVEL`.
     pub(crate) fn last_level(&self, base: usize) -> Option<usize> {
         let image = self.peek(0, base)?;
         let largest = self.inner_size(image).into_iter().max().unwrap_or(1);
@@ -262,8 +273,9 @@ impl TextureObject {
         let Some(first) = self.peek(0, base) else { return false };
         let size = first.size;
         let equal = |face| {
-            self.peek(face, base)
-                .is_some_and(|i| i.size == size && i.format == first.format && i.border == first.border)
+            self.peek(face, base).is_some_and(|i| {
+                i.size == size && i.format == first.format && i.border == first.border
+            })
         };
         size[0] == size[1] && size[0] > 0 && (0..self.faces.len()).all(equal)
     }
@@ -277,13 +289,19 @@ impl TextureObject {
     pub(crate) fn is_stale(&self) -> bool {
         // Cube maps are sampled from copies of their depths.
         let cube = self.slot == slot::CUBE;
-        let stale = |image: &TextureImage| image.is_stale() || (cube && image.format.has_depth() && image.has_planes());
+        let stale = |image: &TextureImage| {
+            image.is_stale() || (cube && image.format.has_depth() && image.has_planes())
+        };
         self.faces.iter().flatten().flatten().any(stale)
     }
 
-    /// The texture as draws sample it, with the parameters of a sampler object if there is one; `None` if it is not
-    /// complete. Everything recorded must have run if [`Self::is_stale`].
-    pub(crate) fn sampled(&mut self, seamless: bool, sampler: Option<&TextureParameters>) -> Option<Arc<Texture>> {
+    /// The texture as draws sample it, with the parameters of a sampler object if there is one;
+    /// `None` if it is not complete. Everything recorded must have run if [`Self::is_stale`].
+    pub(crate) fn sampled(
+        &mut self,
+        seamless: bool,
+        sampler: Option<&TextureParameters>,
+    ) -> Option<Arc<Texture>> {
         if let Some((texture, was, by)) = &self.snapshot
             && *was == seamless
             && by.as_ref() == sampler
@@ -335,7 +353,8 @@ impl TextureObject {
         sampler.border = if depth { [sampler.border[0]; 4] } else { format.expand(sampler.border) };
 
         // Build the texture.
-        let swizzle = Some(self.parameters.swizzle).filter(|s| *s != IDENTITY).map(|s| s.map(swizzle));
+        let swizzle =
+            Some(self.parameters.swizzle).filter(|s| *s != IDENTITY).map(|s| s.map(swizzle));
         let mut texture = Texture::new(kind, format.base_format(), faces, sampler);
         (texture.depth_mode, texture.swizzle) = (depth_mode, swizzle);
         texture.float_depth = depth && format.component_type() == FLOAT;
@@ -416,7 +435,8 @@ mod tests {
     use super::*;
 
     fn image(token: u32, side: u32) -> TextureImage {
-        let mut image = TextureImage::new(InternalFormat::of_texture(token).unwrap(), [side, side, 1], 0);
+        let mut image =
+            TextureImage::new(InternalFormat::of_texture(token).unwrap(), [side, side, 1], 0);
         image.replace(TexelData::Words(vec![u32::MAX; (side * side) as usize]));
         image
     }

@@ -51,7 +51,8 @@ impl<'a> Transfer<'a> {
             }
         }
         if self.state.map_color {
-            let maps = [PIXEL_MAP_R_TO_R, PIXEL_MAP_G_TO_G, PIXEL_MAP_B_TO_B, PIXEL_MAP_A_TO_A].map(|m| self.map(m));
+            let maps = [PIXEL_MAP_R_TO_R, PIXEL_MAP_G_TO_G, PIXEL_MAP_B_TO_B, PIXEL_MAP_A_TO_A]
+                .map(|m| self.map(m));
             for color in colors {
                 for c in 0..4 {
                     color[c] = look_up(maps[c], color[c]);
@@ -122,7 +123,11 @@ mod tests {
 
     #[test]
     fn scale_bias_then_map() {
-        let mut state = PixelTransfer { scale: [2.0, 1.0, 1.0, 1.0], map_color: true, ..PixelTransfer::default() };
+        let mut state = PixelTransfer {
+            scale: [2.0, 1.0, 1.0, 1.0],
+            map_color: true,
+            ..PixelTransfer::default()
+        };
         state.bias[3] = -0.5;
         let map = PixelMap { values: Arc::new(vec![1.0, 0.5, 0.25]) };
         state.maps[(PIXEL_MAP_R_TO_R - PIXEL_MAP_I_TO_I) as usize] = map;

@@ -25,7 +25,15 @@ pub struct ArrayPointer {
 
 impl ArrayPointer {
     const fn new(size: i32) -> Self {
-        Self { enabled: false, size, kind: enums::FLOAT, stride: 0, pointer: 0, buffer: BufferHandle::NONE, count: 0 }
+        Self {
+            enabled: false,
+            size,
+            kind: enums::FLOAT,
+            stride: 0,
+            pointer: 0,
+            buffer: BufferHandle::NONE,
+            count: 0,
+        }
     }
 }
 
@@ -58,7 +66,8 @@ pub struct PixelStore {
     pub alignment: i32,
     /// `PACK_INVERT_MESA`: rows of what is read begin with the highest.
     pub invert: bool,
-    /// `PIXEL_PACK_BUFFER_BINDING` or `PIXEL_UNPACK_BUFFER_BINDING`: addresses are offsets in it, if there is one.
+    /// `PIXEL_PACK_BUFFER_BINDING` or `PIXEL_UNPACK_BUFFER_BINDING`: addresses are offsets in it,
+    /// if there is one.
     pub buffer: BufferHandle,
 }
 

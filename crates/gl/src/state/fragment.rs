@@ -65,7 +65,8 @@ pub struct StencilState {
     pub two_side: bool,
     /// `ACTIVE_STENCIL_FACE_EXT`: 0 front, 1 back.
     pub active_face: usize,
-    /// Front; back (which differs from the front only through ATI_separate_stencil); back of EXT_stencil_two_side.
+    /// Front; back (which differs from the front only through ATI_separate_stencil); back of
+    /// EXT_stencil_two_side.
     pub faces: [StencilFace; 3],
     /// `STENCIL_CLEAR_VALUE`.
     pub clear: i32,
@@ -126,7 +127,8 @@ pub struct Blend {
     pub destination: [u32; 2],
     /// Equations of colour and of alpha.
     pub equation: [u32; 2],
-    /// `BLEND_COLOR` as it was given; clamped where it meets colours that are not floating-point, and in queries.
+    /// `BLEND_COLOR` as it was given; clamped where it meets colours that are not floating-point,
+    /// and in queries.
     pub color: [f32; 4],
 }
 

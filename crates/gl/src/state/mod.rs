@@ -1,4 +1,5 @@
-//! The state tables of the specification as plain structs, one file per group; `Default` is the initial value.
+//! The state tables of the specification as plain structs, one file per group; `Default` is the
+//! initial value.
 
 mod client;
 mod fragment;
@@ -14,9 +15,10 @@ pub use client::{ArrayPointer, ClientState, PixelStore};
 pub use fragment::{Blend, ColorBuffer, DepthState, Fog, StencilFace, StencilState};
 pub use lighting::{ColorMaterial, Light, LightModel, Lighting, MaterialFace};
 pub use limits::{
-    MAX_3D_TEXTURE_SIZE, MAX_ANISOTROPY, MAX_ATTRIB_STACK_DEPTH, MAX_CLIP_PLANES, MAX_COLOR_ATTACHMENTS,
-    MAX_EVAL_ORDER, MAX_LIGHTS, MAX_LIST_NESTING, MAX_MATRIX_STACK_DEPTH, MAX_NAME_STACK_DEPTH, MAX_PIXEL_MAP_TABLE,
-    MAX_POINT_SIZE, MAX_SAMPLES, MAX_TEXTURE_LOD_BIAS, MAX_TEXTURE_SIZE, MAX_TEXTURE_STACK_DEPTH, MAX_TEXTURE_UNITS,
+    MAX_3D_TEXTURE_SIZE, MAX_ANISOTROPY, MAX_ATTRIB_STACK_DEPTH, MAX_CLIP_PLANES,
+    MAX_COLOR_ATTACHMENTS, MAX_EVAL_ORDER, MAX_LIGHTS, MAX_LIST_NESTING, MAX_MATRIX_STACK_DEPTH,
+    MAX_NAME_STACK_DEPTH, MAX_PIXEL_MAP_TABLE, MAX_POINT_SIZE, MAX_SAMPLES, MAX_TEXTURE_LOD_BIAS,
+    MAX_TEXTURE_SIZE, MAX_TEXTURE_STACK_DEPTH, MAX_TEXTURE_UNITS,
 };
 pub use matrix::{Matrices, MatrixStack};
 pub use pixel::{PixelMap, PixelMode, PixelTransfer};
@@ -97,8 +99,8 @@ pub struct State {
     pub pixel_mode: PixelMode,
     /// Evaluators.
     pub eval: Eval,
-    /// Hints by token: perspective correction, point smooth, line smooth, polygon smooth, fog, generate mipmap,
-    /// texture compression.
+    /// Hints by token: perspective correction, point smooth, line smooth, polygon smooth, fog,
+    /// generate mipmap, texture compression.
     pub hints: [(u32, u32); 7],
     /// `LIST_BASE`.
     pub list_base: u32,

@@ -31,7 +31,8 @@ pub struct PixelTransfer {
     pub bias: [f32; 4],
     /// `DEPTH_SCALE`, `DEPTH_BIAS`.
     pub depth: (f32, f32),
-    /// Maps by `map - PIXEL_MAP_I_TO_I`: I to I, S to S, I to R, G, B, A, R to R, G to G, B to B, A to A.
+    /// Maps by `map - PIXEL_MAP_I_TO_I`: I to I, S to S, I to R, G, B, A, R to R, G to G, B to B, A
+    /// to A.
     pub maps: [PixelMap; 10],
 }
 

@@ -90,8 +90,8 @@ pub struct Map2 {
     pub points: Vec<f32>,
 }
 
-/// Evaluators; maps are indexed by `target - MAP1_COLOR_4` and `target - MAP2_COLOR_4`: colour 4, index, normal,
-/// texture coordinates 1-4, vertex 3, vertex 4.
+/// Evaluators; maps are indexed by `target - MAP1_COLOR_4` and `target - MAP2_COLOR_4`: colour 4,
+/// index, normal, texture coordinates 1-4, vertex 3, vertex 4.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Eval {
     /// One-dimensional maps.
@@ -129,7 +129,12 @@ impl Default for Eval {
         let unit = [0.0, 1.0];
         Self {
             map1: std::array::from_fn(|i| Map1 { order: 1, u: unit, points: initial_point(i) }),
-            map2: std::array::from_fn(|i| Map2 { order: [1, 1], u: unit, v: unit, points: initial_point(i) }),
+            map2: std::array::from_fn(|i| Map2 {
+                order: [1, 1],
+                u: unit,
+                v: unit,
+                points: initial_point(i),
+            }),
             map1_enabled: [false; 9],
             map2_enabled: [false; 9],
             auto_normal: false,

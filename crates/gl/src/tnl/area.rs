@@ -1,4 +1,5 @@
-//! Which pixels a small draw may change, found before it is recorded: no more of the client's picture is loaded.
+//! Which pixels a small draw may change, found before it is recorded: no more of the client's
+//! picture is loaded.
 
 use crate::Context;
 use crate::state::MAX_POINT_SIZE;
@@ -12,7 +13,8 @@ const MOST_VERTICES: usize = 64;
 const MARGIN: f32 = 2.0;
 
 impl Context {
-    /// Pixels x0, y0, x1, y1, the last two exclusive, outside of which `batch` changes nothing; `None` if that is not known.
+    /// Pixels x0, y0, x1, y1, the last two exclusive, outside of which `batch` changes nothing;
+    /// `None` if that is not known.
     pub(super) fn drawn_area(&self, batch: &VertexBatch, given: &CurrentState) -> Option<[i32; 4]> {
         let s = &self.state;
         let (origin, _) = s.clip_control;

@@ -6,9 +6,9 @@ use crate::state::{self, State};
 use std::sync::Arc;
 use vitral_raster::forward as raster;
 use vitral_raster::forward::{
-    AlphaTest, Blend, BlendEquation, BlendFactor, Combine, CombineFunction, CombineOperand, CombineSource, Compare,
-    DepthTest, EnvironmentMode, Fog, FogMode, FragmentState, LogicOp, SampleCoverage, Stencil, StencilFace, StencilOp,
-    Target, Unit,
+    AlphaTest, Blend, BlendEquation, BlendFactor, Combine, CombineFunction, CombineOperand,
+    CombineSource, Compare, DepthTest, EnvironmentMode, Fog, FogMode, FragmentState, LogicOp,
+    SampleCoverage, Stencil, StencilFace, StencilOp, Target, Unit,
 };
 
 /// A comparison's token.
@@ -176,7 +176,8 @@ fn environment_mode(e: &state::TextureEnvironment) -> EnvironmentMode {
             EnvironmentMode::Combine(Combine {
                 functions: c.functions.map(function),
                 rgb: [0, 1, 2].map(|k| (source(c.rgb_sources[k]), operand(c.rgb_operands[k]))),
-                alpha: [0, 1, 2].map(|k| (source(c.alpha_sources[k]), operand(c.alpha_operands[k]))),
+                alpha: [0, 1, 2]
+                    .map(|k| (source(c.alpha_sources[k]), operand(c.alpha_operands[k]))),
                 scale,
             })
         }
@@ -195,15 +196,21 @@ fn clip(state: &State, target: &Target) -> [i32; 4] {
 }
 
 impl Context {
-    /// The current per-fragment state. `images` leaves out what does not apply to pixel rectangles (polygon stipple).
-    pub(crate) fn fragment_state_for(&mut self, target: Option<&Target>, images: bool) -> Arc<FragmentState> {
+    /// The current per-fragment state. `images` leaves out what does not apply to pixel rectangles
+    /// (polygon stipple).
+    pub(crate) fn fragment_state_for(
+        &mut self,
+        target: Option<&Target>,
+        images: bool,
+    ) -> Arc<FragmentState> {
         // Derive what needs more than the state.
         let units = self.sampled_units(target);
         let missing = self.missing_components();
         let (clamping, srgb, one) = (self.clamping(), self.encodes_srgb(), self.stored_one());
         let unclamped_vertices = !self.clamps_vertices();
         let s = &self.state;
-        let lit_apart = s.lighting.enabled && s.lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR;
+        let lit_apart =
+            s.lighting.enabled && s.lighting.model.color_control == gl::SEPARATE_SPECULAR_COLOR;
 
         // Translate the state.
         let logic = s.logic_op.0 || s.blend.is_logic_op();
@@ -214,24 +221,31 @@ impl Context {
             alpha_test: s
                 .alpha_test
                 .0
-                .then(|| AlphaTest::new(compare(s.alpha_test.1), s.alpha_test.2.clamp(0.0, 1.0), one))
+                .then(|| {
+                    AlphaTest::new(compare(s.alpha_test.1), s.alpha_test.2.clamp(0.0, 1.0), one)
+                })
                 .flatten(),
-            stencil: s
-                .stencil
+            stencil: s.stencil.enabled.then(|| Stencil {
+                front: stencil_face(s.stencil.front()),
+                back: stencil_face(s.stencil.back()),
+            }),
+            depth: s
+                .depth
                 .enabled
-                .then(|| Stencil { front: stencil_face(s.stencil.front()), back: stencil_face(s.stencil.back()) }),
-            depth: s.depth.enabled.then(|| DepthTest { func: compare(s.depth.func), write: s.depth.write }),
+                .then(|| DepthTest { func: compare(s.depth.func), write: s.depth.write }),
             blend: (s.blend.enabled && !logic).then(|| blend(&s.blend)),
             logic_op: logic.then(|| logic_op(s.logic_op.1)),
             masked: [0, 1, 2, 3].map(|k| !s.color_buffer.mask[k] || missing[k]),
             clip: target.map_or([0; 4], |t| clip(s, t)),
-            polygon_stipple: (s.polygons.stipple && !images).then(|| s.polygons.stipple_pattern.clone()),
+            polygon_stipple: (s.polygons.stipple && !images)
+                .then(|| s.polygons.stipple_pattern.clone()),
             multisample: s.multisample,
             alpha_to_coverage: s.sample_alpha_to_coverage,
             alpha_to_one: s.sample_alpha_to_one,
-            sample_coverage: s
-                .sample_coverage
-                .then_some(SampleCoverage { value: s.sample_coverage_value.0, invert: s.sample_coverage_value.1 }),
+            sample_coverage: s.sample_coverage.then_some(SampleCoverage {
+                value: s.sample_coverage_value.0,
+                invert: s.sample_coverage_value.1,
+            }),
             flat: s.lighting.shade_model == gl::FLAT,
             depth_clamp: s.depth_clamp,
             clamping,
@@ -266,5 +280,7 @@ impl Context {
 fn draws_to(target: &Target, texture: &raster::Texture) -> bool {
     let Some(depth) = &target.depth else { return false };
     let levels = texture.faces.iter().flatten();
-    levels.into_iter().any(|level| matches!(level.texels(), raster::Texels::DepthBuffer(p) if Arc::ptr_eq(p, depth)))
+    levels.into_iter().any(
+        |level| matches!(level.texels(), raster::Texels::DepthBuffer(p) if Arc::ptr_eq(p, depth)),
+    )
 }

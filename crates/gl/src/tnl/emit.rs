@@ -57,24 +57,37 @@ impl Geometry for DrawGeometry {
     fn has_strokes(&self) -> bool {
         let stroke = |primitive: &Primitive| primitive.mode < gl::TRIANGLES;
         let others = || self.batch.primitives.iter().any(stroke);
-        self.primitive.polygon_mode != [2, 2] || self.triangulation.as_ref().map_or_else(others, |all| all.others)
+        self.primitive.polygon_mode != [2, 2]
+            || self.triangulation.as_ref().map_or_else(others, |all| all.others)
     }
 
-    fn emit(&self, level: Level, piece: usize, draw: u32, screen: &ForwardScreen, out: &mut Primitives) {
+    fn emit(
+        &self,
+        level: Level,
+        piece: usize,
+        draw: u32,
+        screen: &ForwardScreen,
+        out: &mut Primitives,
+    ) {
         let mut state = self.primitive.clone();
         state.draw = draw;
 
         // Leave whatever is not a piece of filled triangles to others.
         let triangulation = match self.cut() {
             Cut::Grid(grid) => return self.emit_grid(level, grid, state, screen, out),
-            Cut::Small(primitives) => return self.emit_ordered(level, primitives, &state, screen, out),
-            Cut::Ordered(parts) => return self.emit_ordered(level, &parts[piece], &state, screen, out),
+            Cut::Small(primitives) => {
+                return self.emit_ordered(level, primitives, &state, screen, out);
+            }
+            Cut::Ordered(parts) => {
+                return self.emit_ordered(level, &parts[piece], &state, screen, out);
+            }
             Cut::Filled(triangulation) => triangulation,
         };
         let whole = triangulation.piece(level, &self.batch, piece);
         let Piece { triangles, vertices, .. } = whole;
 
-        // Drop a piece that lies outside the view. With depth clamping near and far do not bound it.
+        // Drop a piece that lies outside the view. With depth clamping near and far do not bound
+        // it.
         let bounded = !state.depth_clamp && self.batch.modelviews.is_empty();
         if bounded && self.is_outside(whole, &state) {
             return;
@@ -87,7 +100,9 @@ impl Geometry for DrawGeometry {
         });
         let turned = turned.flatten();
         let triangles = turned.as_deref().unwrap_or(triangles);
-        self.emit_vertices(level, vertices, &state, screen, out, &|assembler| assembler.triangles(level, triangles));
+        self.emit_vertices(level, vertices, &state, screen, out, &|assembler| {
+            assembler.triangles(level, triangles)
+        });
     }
 
     fn grid_colors(&self, level: Level, row: u32, eight: u32) -> [[f32; 4]; LANES] {
@@ -111,7 +126,9 @@ impl Geometry for DrawGeometry {
 impl DrawGeometry {
     /// How the draw is cut into pieces.
     fn cut(&self) -> Cut<'_> {
-        let Some(triangulation) = &self.triangulation else { return Cut::Small(&self.batch.primitives) };
+        let Some(triangulation) = &self.triangulation else {
+            return Cut::Small(&self.batch.primitives);
+        };
         match self.grid() {
             Some(grid) => Cut::Grid(grid),
             None if triangulation.others || !self.filled() => {
@@ -138,7 +155,9 @@ impl DrawGeometry {
             state.grid = out.grids.len() as u32;
             out.grids.push(out.grid_colors.add(grid.cells.map(|cells| cells + 1), grid.rising));
         }
-        self.emit_vertices(level, vertices, &state, screen, out, &|assembler| assembler.triangles(level, triangles));
+        self.emit_vertices(level, vertices, &state, screen, out, &|assembler| {
+            assembler.triangles(level, triangles)
+        });
     }
 
     /// Whether a piece lies outside one plane of the view volume or of the user.

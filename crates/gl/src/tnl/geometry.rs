@@ -1,4 +1,5 @@
-//! A recorded draw: its vertices and state, and how the vertices of a piece are transformed and shaded.
+//! A recorded draw: its vertices and state, and how the vertices of a piece are transformed and
+//! shaded.
 
 use super::grid::Grid;
 use super::parts::TransformRanges;
@@ -13,7 +14,8 @@ use crate::vertex::VertexBatch;
 use std::sync::Arc;
 use vitral_math::lanes::{LANES, Level, dispatch};
 use vitral_raster::forward::{
-    Assembler, ForwardScreen, Layout, PrimitiveState, Primitives, Vertices, flag_user_planes, project,
+    Assembler, ForwardScreen, Layout, PrimitiveState, Primitives, Vertices, flag_user_planes,
+    project,
 };
 
 /// Point parameters.
@@ -34,8 +36,9 @@ pub(crate) struct DrawGeometry {
     pub triangulation: Option<Arc<Triangulation>>,
     /// The batch is a flat grid, and drawn as one.
     pub grid: bool,
-    /// Quads are cut from their first corner to the third, not from the second to the fourth. The specification leaves
-    /// open which; Mesa does so with what is neither indexed nor comes from a list, and where colours vary all see it.
+    /// Quads are cut from their first corner to the third, not from the second to the fourth. The
+    /// specification leaves open which; Mesa does so with what is neither indexed nor comes from a
+    /// list, and where colours vary all see it.
     pub first_diagonal: bool,
     pub snapshot: VertexSnapshot,
     pub primitive: PrimitiveState,
@@ -57,7 +60,8 @@ impl DrawGeometry {
 
 /// Adds the distances of each position to the planes of the user.
 fn add_user_distances(planes: &[[f32; 4]], positions: &[[f32; 4]], distances: &mut Vec<f32>) {
-    let distance = |p: &[f32; 4], q: &[f32; 4]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
+    let distance =
+        |p: &[f32; 4], q: &[f32; 4]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
     if !planes.is_empty() {
         for p in positions {
             distances.extend(planes.iter().map(|plane| distance(plane, p)));
@@ -80,7 +84,9 @@ impl DrawGeometry {
         let count = vertices.len();
         let gathered: Vec<[f32; 4]>;
         let positions = match vertices {
-            PieceVertices::Range(start, end) => &self.batch.positions[*start as usize..*end as usize],
+            PieceVertices::Range(start, end) => {
+                &self.batch.positions[*start as usize..*end as usize]
+            }
             PieceVertices::List(list) => {
                 gathered = list.iter().map(|&v| self.batch.positions[v as usize]).collect();
                 &gathered
@@ -91,7 +97,8 @@ impl DrawGeometry {
         let (mut clip_memory, mut window_memory) = out.scratch.take(count);
         let (clip, window) = (&mut clip_memory[..count], &mut window_memory[..count]);
         let (mut user, mut sizes) = (Vec::new(), Vec::new());
-        let (parts, sized) = (TransformRanges::new(&self.snapshot, &self.batch, vertices), self.needs_sizes());
+        let (parts, sized) =
+            (TransformRanges::new(&self.snapshot, &self.batch, vertices), self.needs_sizes());
         for (part, transform) in parts.each(count) {
             let positions = &positions[part.clone()];
             let (clip, window) = (&mut clip[part.clone()], &mut window[part.clone()]);
@@ -105,7 +112,8 @@ impl DrawGeometry {
 
         // Assemble primitives, then shade the vertices that they use.
         let in_piece = Vertices { clip, screen: window, user: &user, sizes: &sizes };
-        let mut assembler = Assembler::new(state, screen.screen(state.multisample), out, &self.layout, &in_piece);
+        let mut assembler =
+            Assembler::new(state, screen.screen(state.multisample), out, &self.layout, &in_piece);
         assemble(&mut assembler);
         assembler.shade(|eight, records| {
             self.shade_eight(level, vertices, &parts, clip, eight, records);
@@ -145,8 +153,9 @@ impl DrawGeometry {
 
         // Replace vertices that clipping made, and lanes beyond the last, by some other vertex.
         let Some(some) = eight.iter().copied().find(|&v| Assembler::is_own(v)) else { return };
-        let own: [u32; LANES] =
-            std::array::from_fn(|lane| eight.get(lane).copied().filter(|&v| Assembler::is_own(v)).unwrap_or(some));
+        let own: [u32; LANES] = std::array::from_fn(|lane| {
+            eight.get(lane).copied().filter(|&v| Assembler::is_own(v)).unwrap_or(some)
+        });
         let numbers = own.map(|v| vertices.get(v));
 
         // Shade runs of vertices that share the modelview matrix.
@@ -159,7 +168,13 @@ impl DrawGeometry {
             let inverse_w = std::array::from_fn(|i| 1.0 / clip[own[used(i)] as usize][3]);
             let some = std::array::from_fn(|i| numbers[used(i)]);
             let faces = &*parts.faces(&some);
-            let some = VertexBatch8 { vertices: some, count: end - lane, batch: &self.batch, transform, faces };
+            let some = VertexBatch8 {
+                vertices: some,
+                count: end - lane,
+                batch: &self.batch,
+                transform,
+                faces,
+            };
             let records = &mut records[lane * stride..];
             dispatch!(level, simd => shade(simd, &self.snapshot, &self.layout, &some, &inverse_w, records));
             lane = end;
@@ -170,7 +185,10 @@ impl DrawGeometry {
     fn needs_sizes(&self) -> bool {
         let points = |primitive: &Primitive| primitive.mode == gl::POINTS;
         self.primitive.polygon_mode.contains(&0)
-            || self.triangulation.as_ref().map_or_else(|| self.batch.primitives.iter().any(points), |all| all.points)
+            || self
+                .triangulation
+                .as_ref()
+                .map_or_else(|| self.batch.primitives.iter().any(points), |all| all.points)
     }
 
     /// Point sizes and fade factors.

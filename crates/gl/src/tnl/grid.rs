@@ -1,11 +1,13 @@
-//! What a batch that is a flat grid is drawn as: a rectangle, and the grid of vertices that colours it.
+//! What a batch that is a flat grid is drawn as: a rectangle, and the grid of vertices that colours
+//! it.
 
 use super::piece::Piece;
 
 /// A batch that is a flat grid.
 #[derive(Debug)]
 pub(crate) struct Grid {
-    /// The rectangle: its vertices are those of the corners `(0, 0)`, `(columns, 0)`, `(columns, rows)`, `(0, rows)`.
+    /// The rectangle: its vertices are those of the corners `(0, 0)`, `(columns, 0)`,
+    /// `(columns, rows)`, `(0, rows)`.
     pub rectangle: Piece,
     /// Cells along the two axes.
     pub cells: [u32; 2],

@@ -1,12 +1,15 @@
-//! Flat grids: programs tessellate large planes so that lighting by vertex shows, and send them again and again.
+//! Flat grids: programs tessellate large planes so that lighting by vertex shows, and send them
+//! again and again.
 //!
-//! All triangles of such a grid lie in one plane, and everything but their lit colours is linear on it. So the rasteriser gets the
-//! rectangle alone, two triangles instead of tens of thousands, and takes colours from the grid of shaded vertices
-//! ([`ColorGrid`](vitral_raster::forward::ColorGrid)): the colour at a point is that of the small triangle it lies in, as
-//! if that had been drawn.
+//! All triangles of such a grid lie in one plane, and everything but their lit colours is linear on
+//! it. So the rasteriser gets the rectangle alone, two triangles instead of tens of thousands, and
+//! takes colours from the grid of shaded vertices
+//! ([`ColorGrid`](vitral_raster::forward::ColorGrid)): the colour at a point is that of the small
+//! triangle it lies in, as if that had been drawn.
 //!
-//! A batch is a grid if one coordinate of its positions is constant, the other two form evenly spaced rows and columns, each cell is
-//! cut into two triangles along the same diagonal, all normals are equal, and texture coordinates are linear.
+//! A batch is a grid if one coordinate of its positions is constant, the other two form evenly
+//! spaced rows and columns, each cell is cut into two triangles along the same diagonal, all
+//! normals are equal, and texture coordinates are linear.
 //!
 //! In:   a batch and its triangles. Out: the rectangle and the numbers of its vertices.
 //! Cost: linear, once a batch.
@@ -19,8 +22,13 @@ use vitral_math::lanes::Level;
 /// Fewer cells are drawn as they are.
 const LEAST_CELLS: usize = 16;
 
-/// The grid that a batch of `count` triangles is, if it is one; `triangles` gives them as numbers of vertices.
-pub(super) fn find_grid(batch: &VertexBatch, count: usize, triangles: impl FnOnce() -> Vec<[u32; 3]>) -> Option<Grid> {
+/// The grid that a batch of `count` triangles is, if it is one; `triangles` gives them as numbers
+/// of vertices.
+pub(super) fn find_grid(
+    batch: &VertexBatch,
+    count: usize,
+    triangles: impl FnOnce() -> Vec<[u32; 3]>,
+) -> Option<Grid> {
     if count < 2 * LEAST_CELLS || !is_flat(batch) || !is_plain(batch) {
         return None;
     }
@@ -33,10 +41,15 @@ pub(super) fn find_grid(batch: &VertexBatch, count: usize, triangles: impl FnOnc
         return None;
     }
 
-    // Enter the triangles in the cells. Some programs send a border of triangles without area, which are skipped.
-    let mut found = FoundCells::new([columns, rows], batch.tex.iter().any(Option::is_some).then_some(triangles.len()));
+    // Enter the triangles in the cells. Some programs send a border of triangles without area,
+    // which are skipped.
+    let mut found = FoundCells::new(
+        [columns, rows],
+        batch.tex.iter().any(Option::is_some).then_some(triangles.len()),
+    );
     for triangle in triangles {
-        let nodes = [lattice.node(triangle[0])?, lattice.node(triangle[1])?, lattice.node(triangle[2])?];
+        let nodes =
+            [lattice.node(triangle[0])?, lattice.node(triangle[1])?, lattice.node(triangle[2])?];
         if nodes[0] != nodes[1] && nodes[1] != nodes[2] && nodes[2] != nodes[0] {
             found.add(*triangle, nodes)?;
         }
@@ -56,7 +69,8 @@ impl<'a> Lattice<'a> {
     /// The lattice of the vertices of some triangles.
     fn new(batch: &'a VertexBatch, triangles: &[[u32; 3]]) -> Option<Self> {
         let axes = axes(batch, triangles)?;
-        let lines = [Lines::new(batch, triangles, axes[0])?, Lines::new(batch, triangles, axes[1])?];
+        let lines =
+            [Lines::new(batch, triangles, axes[0])?, Lines::new(batch, triangles, axes[1])?];
         Some(Self { batch, axes, lines })
     }
 
@@ -100,7 +114,8 @@ impl FoundCells {
         }
     }
 
-    /// Adds a triangle with an area, given the nodes of its corners. `None` if it does not fit a grid.
+    /// Adds a triangle with an area, given the nodes of its corners. `None` if it does not fit a
+    /// grid.
     #[inline]
     fn add(&mut self, triangle: [u32; 3], nodes: [[usize; 2]; 3]) -> Option<()> {
         // Note the vertices.
@@ -119,11 +134,13 @@ impl FoundCells {
         (is_first && *self.turns[turn.missing].get_or_insert(turn) == turn).then_some(())
     }
 
-    /// The grid, if each cell has both triangles, all are cut along the same diagonal, and texture coordinates are linear.
+    /// The grid, if each cell has both triangles, all are cut along the same diagonal, and texture
+    /// coordinates are linear.
     fn into_grid(self, batch: &VertexBatch) -> Option<Grid> {
         // Triangles that leave out corners 0 and 2, or 1 and 3, lie on both sides of one diagonal.
         let pair = self.missing[0];
-        let is_whole = matches!(pair, 0b0101 | 0b1010) && self.missing.iter().all(|missing| *missing == pair);
+        let is_whole =
+            matches!(pair, 0b0101 | 0b1010) && self.missing.iter().all(|missing| *missing == pair);
         if !is_whole || self.vertices.contains(&u32::MAX) {
             return None;
         }
@@ -137,10 +154,13 @@ impl FoundCells {
         }
 
         // Make the rectangle: its triangles are cut as the cells are.
-        let triangles: Vec<[u32; 3]> = self.turns.into_iter().flatten().map(|turn| turn.corners).collect();
-        let positions: Vec<[f32; 4]> = corners.iter().map(|&v| batch.positions[v as usize]).collect();
+        let triangles: Vec<[u32; 3]> =
+            self.turns.into_iter().flatten().map(|turn| turn.corners).collect();
+        let positions: Vec<[f32; 4]> =
+            corners.iter().map(|&v| batch.positions[v as usize]).collect();
         let bounds = bounds(Level::new(), &positions);
-        let rectangle = Piece { triangles: triangles.into(), vertices: PieceVertices::List(corners), bounds };
+        let rectangle =
+            Piece { triangles: triangles.into(), vertices: PieceVertices::List(corners), bounds };
 
         // A triangle without corner (1, 0) or (0, 1) has the rising diagonal.
         let (cells, rising) = ([columns as u32, rows as u32], pair == 0b1010);
@@ -148,7 +168,8 @@ impl FoundCells {
     }
 }
 
-/// One of the two triangles of a cell, its corners numbered round the cell as [`Grid::rectangle`]'s are.
+/// One of the two triangles of a cell, its corners numbered round the cell as [`Grid::rectangle`]'s
+/// are.
 #[derive(Clone, Copy, PartialEq)]
 struct Turn {
     corners: [u32; 3],
@@ -172,11 +193,13 @@ fn turn(nodes: [[usize; 2]; 3]) -> Option<([usize; 2], Turn)> {
         };
         missing -= *corner as i32;
     }
-    let all_differ = corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
+    let all_differ =
+        corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
     all_differ.then_some((cell, Turn { corners, missing: missing.clamp(0, 3) as usize }))
 }
 
-/// Whether one coordinate is the same at all vertices that primitives name. Few batches are, and others show it soon.
+/// Whether one coordinate is the same at all vertices that primitives name. Few batches are, and
+/// others show it soon.
 fn is_flat(batch: &VertexBatch) -> bool {
     (0..3).any(|axis| {
         let mut named = batch.primitives.iter().flat_map(|p| p.first..p.first + p.count);
@@ -235,11 +258,15 @@ struct Lines {
 impl Lines {
     /// Those of the vertices along an axis. Values that differ by rounding alone are one line.
     fn new(batch: &VertexBatch, triangles: &[[u32; 3]], axis: usize) -> Option<Self> {
-        let mut values: Vec<f32> = triangles.iter().flatten().map(|&v| batch.positions[v as usize][axis]).collect();
+        let mut values: Vec<f32> =
+            triangles.iter().flatten().map(|&v| batch.positions[v as usize][axis]).collect();
         values.sort_unstable_by(f32::total_cmp);
         let (first, last) = (f64::from(*values.first()?), f64::from(*values.last()?));
         let rounding = (last - first) * 1e-5;
-        let count = 1 + values.windows(2).filter(|pair| f64::from(pair[1]) - f64::from(pair[0]) > rounding).count();
+        let count = 1 + values
+            .windows(2)
+            .filter(|pair| f64::from(pair[1]) - f64::from(pair[0]) > rounding)
+            .count();
         (count > 1).then_some(Self { first, step: (last - first) / (count - 1) as f64, count })
     }
 
@@ -251,8 +278,14 @@ impl Lines {
     }
 }
 
-/// Whether the texture coordinates of vertices at given nodes are linear; `corners` are the rectangle's.
-fn is_linear(batch: &VertexBatch, corners: &[u32], nodes: &[(u32, [usize; 2])], cells: [usize; 2]) -> bool {
+/// Whether the texture coordinates of vertices at given nodes are linear; `corners` are the
+/// rectangle's.
+fn is_linear(
+    batch: &VertexBatch,
+    corners: &[u32],
+    nodes: &[(u32, [usize; 2])],
+    cells: [usize; 2],
+) -> bool {
     batch.tex.iter().flatten().all(|tex| {
         let [a, b, d] = [corners[0], corners[1], corners[3]].map(|v| tex[v as usize]);
         (0..4).all(|k| {
@@ -305,9 +338,16 @@ mod tests {
         let mut triangles = grid.rectangle.triangles.to_vec();
         triangles.sort_unstable();
         assert_eq!(triangles, [[0, 1, 3], [1, 2, 3]]);
-        let positions = [0, 1, 2, 3].map(|k| batch.positions[grid.rectangle.vertices.get(k) as usize]);
-        assert_eq!(positions.map(|p| [p[0], p[1]]), [[-1.0, 0.0], [1.5, 0.0], [1.5, 1.0], [-1.0, 1.0]]);
-        assert_eq!([0, 1, 2, 3].map(|k| grid.corner(k)), [[0.0, 0.0], [5.0, 0.0], [5.0, 4.0], [0.0, 4.0]]);
+        let positions =
+            [0, 1, 2, 3].map(|k| batch.positions[grid.rectangle.vertices.get(k) as usize]);
+        assert_eq!(
+            positions.map(|p| [p[0], p[1]]),
+            [[-1.0, 0.0], [1.5, 0.0], [1.5, 1.0], [-1.0, 1.0]]
+        );
+        assert_eq!(
+            [0, 1, 2, 3].map(|k| grid.corner(k)),
+            [[0.0, 0.0], [5.0, 0.0], [5.0, 4.0], [0.0, 4.0]]
+        );
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! Points, lines and outlined polygons, and filled ones mixed with them, emitted in the order of their primitives.
+//! Points, lines and outlined polygons, and filled ones mixed with them, emitted in the order of
+//! their primitives.
 
 use super::geometry::DrawGeometry;
 use super::piece::PieceVertices;
@@ -19,8 +20,10 @@ impl DrawGeometry {
         out: &mut Primitives,
     ) {
         let indices = || primitives.iter().flat_map(|p| p.first..p.first + p.count);
-        let own =
-            PieceVertices::from_numbers(|| indices().map(|i| self.batch.vertex(i) as u32), 4 * indices().count() + 64);
+        let own = PieceVertices::from_numbers(
+            || indices().map(|i| self.batch.vertex(i) as u32),
+            4 * indices().count() + 64,
+        );
         self.emit_vertices(level, &own, state, screen, out, &|assembler| {
             self.emit_primitives(level, primitives, &own, assembler);
         });
@@ -80,7 +83,12 @@ impl DrawGeometry {
     }
 
     /// Polygons with their edges.
-    fn emit_outlined(&self, assembler: &mut Assembler<'_>, primitive: &Primitive, own: &PieceVertices) {
+    fn emit_outlined(
+        &self,
+        assembler: &mut Assembler<'_>,
+        primitive: &Primitive,
+        own: &PieceVertices,
+    ) {
         // Find the corners and their edge flags.
         let vertex = |i: u32| own.number(self.batch.vertex(primitive.first + i) as u32);
         let flag = |v: u32| match &self.batch.edges {

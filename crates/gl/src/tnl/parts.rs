@@ -1,4 +1,5 @@
-//! What a piece's vertices were given with besides their attributes: parts of them with one modelview matrix, and materials.
+//! What a piece's vertices were given with besides their attributes: parts of them with one
+//! modelview matrix, and materials.
 
 use super::piece::PieceVertices;
 use super::snapshot::{Transform, VertexSnapshot};
@@ -14,13 +15,17 @@ pub(crate) struct TransformRanges<'a> {
     batch: &'a VertexBatch,
     /// The materials, if all vertices of the batch have the same.
     faces: Option<LaneFaces>,
-    /// How many vertices of the piece there are up to the end of each part, and its transform. None if all vertices of the
-    /// batch have the matrix of the snapshot.
+    /// How many vertices of the piece there are up to the end of each part, and its transform. None
+    /// if all vertices of the batch have the matrix of the snapshot.
     parts: Vec<(usize, Transform)>,
 }
 
 impl<'a> TransformRanges<'a> {
-    pub(crate) fn new(snapshot: &'a VertexSnapshot, batch: &'a VertexBatch, vertices: &PieceVertices) -> Self {
+    pub(crate) fn new(
+        snapshot: &'a VertexSnapshot,
+        batch: &'a VertexBatch,
+        vertices: &PieceVertices,
+    ) -> Self {
         let (mut parts, mut start) = (Vec::new(), 0);
         while start < vertices.len() {
             let vertex = vertices.get(start as u32);
@@ -28,7 +33,8 @@ impl<'a> TransformRanges<'a> {
             start += vertices.below(start, vertex.saturating_add(more));
             parts.push((start, snapshot.transform_by(modelview)));
         }
-        let faces = batch.materials.is_empty().then(|| LaneFaces::new(snapshot, batch, &[0; LANES]));
+        let faces =
+            batch.materials.is_empty().then(|| LaneFaces::new(snapshot, batch, &[0; LANES]));
         Self { snapshot, batch, faces, parts }
     }
 
@@ -56,6 +62,8 @@ impl<'a> TransformRanges<'a> {
     /// The transform of a vertex of the piece, and up to which one it holds.
     pub(crate) fn at(&self, vertex: u32) -> (&Transform, u32) {
         let part = self.parts.partition_point(|(end, _)| *end <= vertex as usize);
-        self.parts.get(part).map_or((&self.snapshot.transform, u32::MAX), |(end, transform)| (transform, *end as u32))
+        self.parts.get(part).map_or((&self.snapshot.transform, u32::MAX), |(end, transform)| {
+            (transform, *end as u32)
+        })
     }
 }

@@ -29,10 +29,14 @@ pub(crate) enum PieceVertices {
 }
 
 impl PieceVertices {
-    /// The vertices that `numbers` gives, in any order and more than once. Everything between the lowest and the highest is
-    /// taken if that is no more than `most` vertices.
-    pub(super) fn from_numbers<I: Iterator<Item = u32>>(numbers: impl Fn() -> I, most: usize) -> Self {
-        let (low, high) = numbers().fold((u32::MAX, 0), |(low, high), v| (low.min(v), high.max(v + 1)));
+    /// The vertices that `numbers` gives, in any order and more than once. Everything between the
+    /// lowest and the highest is taken if that is no more than `most` vertices.
+    pub(super) fn from_numbers<I: Iterator<Item = u32>>(
+        numbers: impl Fn() -> I,
+        most: usize,
+    ) -> Self {
+        let (low, high) =
+            numbers().fold((u32::MAX, 0), |(low, high), v| (low.min(v), high.max(v + 1)));
         let low = low.min(high);
         if (high - low) as usize <= most {
             return Self::Range(low, high);
@@ -61,7 +65,8 @@ impl PieceVertices {
         }
     }
 
-    /// How many of its vertices from `start` on come before `vertex` in the batch, up to the first that does not.
+    /// How many of its vertices from `start` on come before `vertex` in the batch, up to the first
+    /// that does not.
     pub(crate) fn below(&self, start: usize, vertex: u32) -> usize {
         match self {
             Self::Range(first, end) => (vertex.min(*end) - first) as usize - start,
@@ -90,7 +95,8 @@ static UNSHARED: [[u32; 3]; PIECE_TRIANGLES] = {
 };
 
 impl Piece {
-    /// The piece of triangles with three vertices of their own each, one triangle's after the other's.
+    /// The piece of triangles with three vertices of their own each, one triangle's after the
+    /// other's.
     pub(super) fn unshared(level: Level, vertices: Range<u32>, positions: &[[f32; 4]]) -> Self {
         let bounds = bounds(level, &positions[vertices.start as usize..vertices.end as usize]);
         let triangles = Cow::Borrowed(&UNSHARED[..vertices.len() / 3]);
@@ -99,11 +105,17 @@ impl Piece {
 
     /// The piece of triangles given as numbers of vertices of the batch.
     pub(super) fn new(level: Level, mut triangles: Vec<[u32; 3]>, positions: &[[f32; 4]]) -> Self {
-        let vertices = PieceVertices::from_numbers(|| triangles.iter().flatten().copied(), 4 * triangles.len() + 64);
+        let vertices = PieceVertices::from_numbers(
+            || triangles.iter().flatten().copied(),
+            4 * triangles.len() + 64,
+        );
         triangles.iter_mut().flatten().for_each(|corner| *corner = vertices.number(*corner));
         let bounds = match &vertices {
-            // Vertices between that no triangle uses may widen the bounds: they only ever save work.
-            PieceVertices::Range(low, high) => bounds(level, &positions[*low as usize..*high as usize]),
+            // Vertices between that no triangle uses may widen the bounds: they only ever save
+            // work.
+            PieceVertices::Range(low, high) => {
+                bounds(level, &positions[*low as usize..*high as usize])
+            }
             PieceVertices::List(list) => {
                 bounds(level, &list.iter().map(|&v| positions[v as usize]).collect::<Vec<_>>())
             }
@@ -112,17 +124,29 @@ impl Piece {
     }
 
     /// Whether the whole piece lies outside one plane of the view volume, or of the user.
-    pub(crate) fn is_outside(&self, clip_from_model: &[f32; 16], planes: &[[f32; 4]], near: f32) -> bool {
+    pub(crate) fn is_outside(
+        &self,
+        clip_from_model: &[f32; 16],
+        planes: &[[f32; 4]],
+        near: f32,
+    ) -> bool {
         let Some([low, high]) = self.bounds else { return false };
         // Express the planes in model space.
         let m = clip_from_model;
         let row = |r: usize| [m[r], m[4 + r], m[8 + r], m[12 + r]];
         let [x, y, z, w] = [row(0), row(1), row(2), row(3)];
         let sum = |a: [f32; 4], s: f32, b: [f32; 4]| [0, 1, 2, 3].map(|k| a[k] + s * b[k]);
-        let sides =
-            [sum(w, 1.0, x), sum(w, -1.0, x), sum(w, 1.0, y), sum(w, -1.0, y), sum(w, -1.0, z), sum(z, -near, w)];
+        let sides = [
+            sum(w, 1.0, x),
+            sum(w, -1.0, x),
+            sum(w, 1.0, y),
+            sum(w, -1.0, y),
+            sum(w, -1.0, z),
+            sum(z, -near, w),
+        ];
 
-        // Test the corner of the bounds that lies farthest inside each plane, with room for rounding.
+        // Test the corner of the bounds that lies farthest inside each plane, with room for
+        // rounding.
         sides.iter().chain(planes).any(|p| {
             let (mut most, mut size) = (p[3], p[3].abs());
             for k in 0..3 {
@@ -150,7 +174,8 @@ pub(super) fn bounds(level: Level, positions: &[[f32; 4]]) -> Option<[[f32; 3]; 
 #[inline(always)]
 fn extremes<'a, S: Simd>(simd: S, pairs: impl Iterator<Item = &'a [[f32; 4]; 2]>) -> [[f32; 8]; 3] {
     let splat = |v| <F32x8<S> as SimdBase<S>>::splat(simd, v);
-    let (mut low, mut high, mut finite) = (splat(f32::INFINITY), splat(f32::NEG_INFINITY), splat(0.0));
+    let (mut low, mut high, mut finite) =
+        (splat(f32::INFINITY), splat(f32::NEG_INFINITY), splat(0.0));
     for pair in pairs {
         let v = F32x8::from_slice(simd, pair.as_flattened());
         // 0 x is 0 for finite numbers only.
@@ -179,7 +204,9 @@ mod tests {
         let level = Level::new();
         assert_eq!(bounds(level, &positions), Some([[-4.0, -2.0, 0.5], [1.0, 5.0, 9.0]]));
         assert_eq!(bounds(level, &positions[..2]), Some([[-4.0, -2.0, 0.5], [1.0, 5.0, 3.0]]));
-        for wrong in [[f32::NAN, 0.0, 0.0, 1.0], [0.0, f32::INFINITY, 0.0, 1.0], [0.0, 0.0, 0.0, 2.0]] {
+        for wrong in
+            [[f32::NAN, 0.0, 0.0, 1.0], [0.0, f32::INFINITY, 0.0, 1.0], [0.0, 0.0, 0.0, 2.0]]
+        {
             assert_eq!(bounds(level, &[positions[0], wrong]), None);
             assert_eq!(bounds(level, &[wrong, positions[0], positions[1]]), None);
         }

@@ -74,7 +74,8 @@ impl Context {
             &mut LightCache::default(),
         );
         let mut planes = snapshot.transform.clip_planes.iter();
-        let planes = self.state.clip_plane_enabled.map(|enabled| if enabled { planes.next() } else { None });
+        let planes =
+            self.state.clip_plane_enabled.map(|enabled| if enabled { planes.next() } else { None });
 
         // Shade eight vertices at a time.
         let level = Level::new();
@@ -84,7 +85,8 @@ impl Context {
             let count = LANES.min(batch.positions.len() - first);
             let vertices = std::array::from_fn(|lane| (first + lane.min(count - 1)) as u32);
             let faces = &LaneFaces::new(&snapshot, batch, &vertices);
-            let eight = VertexBatch8 { vertices, count, batch, transform: &snapshot.transform, faces };
+            let eight =
+                VertexBatch8 { vertices, count, batch, transform: &snapshot.transform, faces };
             dispatch!(level, simd => {
                 // Transpose the results to vertices.
                 let (_, shaded, tex) = process(simd, &snapshot, &eight);
@@ -107,16 +109,18 @@ impl Context {
         // Transform all positions and measure their distances from the user's planes.
         let m = &snapshot.transform.clip_from_model;
         for (i, (vertex, p)) in out.iter_mut().zip(&batch.positions).enumerate() {
-            vertex.clip = [0, 1, 2, 3].map(|r| p[0] * m[r] + p[1] * m[4 + r] + p[2] * m[8 + r] + p[3] * m[12 + r]);
-            vertex.user =
-                planes.map(|plane| plane.map_or(0.0, |q| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3]));
+            vertex.clip = [0, 1, 2, 3]
+                .map(|r| p[0] * m[r] + p[1] * m[4 + r] + p[2] * m[8 + r] + p[3] * m[12 + r]);
+            vertex.user = planes.map(|plane| {
+                plane.map_or(0.0, |q| p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
+            });
             vertex.edge = batch.edges.as_ref().map_or(self.state.current.edge, |edges| edges[i]);
         }
         out
     }
 
-    /// What `RasterPos` of a model-space position gives: with the current attributes, lit, clipped against the view
-    /// volume and user planes.
+    /// What `RasterPos` of a model-space position gives: with the current attributes, lit, clipped
+    /// against the view volume and user planes.
     pub(crate) fn raster_position(&mut self, position: [f32; 4]) -> RasterPosition {
         // Process the position as a vertex.
         let batch = VertexBatch { positions: vec![position], ..VertexBatch::default() };

@@ -1,8 +1,9 @@
-//! Recording: draws and other commands gather in a pass, which runs when the target changes or someone looks. Of a long stream of
-//! vertices, what is there already runs while the calling thread takes in more.
+//! Recording: draws and other commands gather in a pass, which runs when the target changes or
+//! someone looks. Of a long stream of vertices, what is there already runs while the calling thread
+//! takes in more.
 //!
-//! A picture that is left for a shadow map and gone on with is one pass: tiles are visited once, and what they drew without the
-//! light is still at hand when they add it.
+//! A picture that is left for a shadow map and gone on with is one pass: tiles are visited once,
+//! and what they drew without the light is still at hand when they add it.
 
 use super::geometry::{DrawGeometry, PointSizes};
 use super::snapshot::{FogSource, Generation, LightCache, VertexSnapshot};
@@ -25,14 +26,16 @@ pub type RunnerSource = fn() -> Arc<Runner>;
 #[derive(Default)]
 pub(crate) struct Recorder {
     pass: Option<Pass>,
-    /// A pass that was left for a shadow map, to be gone on with: so far, neither needs what the other draws.
+    /// A pass that was left for a shadow map, to be gone on with: so far, neither needs what the
+    /// other draws.
     aside: Option<Pass>,
     source: Option<RunnerSource>,
     own: Option<Arc<Runner>>,
     lights: LightCache,
     /// Vertices that wait.
     waiting: usize,
-    /// Bytes of images that came while something waits: what waits may be all that needs those before.
+    /// Bytes of images that came while something waits: what waits may be all that needs those
+    /// before.
     images: usize,
     /// What runs while more is recorded: all that was recorded before.
     ahead: Option<Started>,
@@ -50,15 +53,18 @@ const MOST_WAITING: usize = 8 << 20;
 /// Most commands that wait before they are drawn: each keeps some 2 KiB of state.
 const MOST_COMMANDS: usize = 1 << 14;
 
-/// Most bytes of images that come before what waits is drawn. A program that gives a texture new images draw by draw would
-/// else fill the memory with those that it had.
+/// Most bytes of images that come before what waits is drawn. A program that gives a texture new
+/// images draw by draw would else fill the memory with those that it had.
 const MOST_IMAGES: usize = 64 << 20;
 
 impl Recorder {
     fn runner(&mut self) -> Arc<Runner> {
         match self.source {
             Some(source) => source(),
-            None => self.own.get_or_insert_with(|| Arc::new(Runner::new(Workers::single(), Level::new()))).clone(),
+            None => self
+                .own
+                .get_or_insert_with(|| Arc::new(Runner::new(Workers::single(), Level::new())))
+                .clone(),
         }
     }
 
@@ -80,7 +86,8 @@ impl Recorder {
     /// Makes way for commands on another target.
     fn turn_to(&mut self, target: &Target) {
         if let Some(aside) = self.aside.as_ref().filter(|aside| aside.target.same(target)) {
-            let asks = |map: &Pass| aside.target.depth.as_ref().is_some_and(|depth| map.samples(depth));
+            let asks =
+                |map: &Pass| aside.target.depth.as_ref().is_some_and(|depth| map.samples(depth));
             if self.pass.as_ref().is_some_and(asks) {
                 // The map is to show what the picture draws.
                 return self.run();
@@ -101,8 +108,8 @@ impl Recorder {
         self.run();
     }
 
-    /// Has what is recorded run while more comes, unless what was recorded before is still running. Depths alone are left to be
-    /// drawn where they are looked at.
+    /// Has what is recorded run while more comes, unless what was recorded before is still running.
+    /// Depths alone are left to be drawn where they are looked at.
     fn start(&mut self) {
         // Wait for nothing: skip if the last part still runs, or if there are no colours to draw.
         if self.ahead.as_ref().is_some_and(|ahead| !ahead.is_done()) {
@@ -139,7 +146,12 @@ impl Context {
     }
 
     /// Records the drawing of `batch` with a snapshot of the state.
-    pub(crate) fn record_draw(&mut self, batch: Arc<VertexBatch>, sent: Submission, given: &CurrentState) {
+    pub(crate) fn record_draw(
+        &mut self,
+        batch: Arc<VertexBatch>,
+        sent: Submission,
+        given: &CurrentState,
+    ) {
         if !self.draw_framebuffer_complete("draw") {
             return;
         }
@@ -147,7 +159,9 @@ impl Context {
         let Some(target) = self.draw_target(area) else { return };
         let fragment = self.fragment_state_for(Some(&target), false);
         let count = batch.positions.len();
-        let Some(geometry) = self.draw_geometry(batch, sent, given, &fragment, &target) else { return };
+        let Some(geometry) = self.draw_geometry(batch, sent, given, &fragment, &target) else {
+            return;
+        };
         self.record_on(target, Command::Draw(Arc::new(geometry), fragment));
         self.recorder.waiting += count;
     }
@@ -196,7 +210,8 @@ impl Context {
         self.recorder.run();
     }
 
-    /// The current per-fragment state. `images` leaves out what does not apply to pixel rectangles (polygon stipple).
+    /// The current per-fragment state. `images` leaves out what does not apply to pixel rectangles
+    /// (polygon stipple).
     pub(crate) fn fragment_state(&mut self, images: bool) -> Arc<FragmentState> {
         let target = self.target();
         self.fragment_state_for(target.as_ref(), images)
@@ -214,14 +229,18 @@ impl Context {
         // Decide what the fragments need.
         let colored = target.color.is_some() && fragment.masked != [true; 4];
         let samples = target.samples > 1;
-        let shaded = colored || fragment.alpha_test.is_some() || (fragment.alpha_to_coverage && samples);
-        let units: Vec<usize> = if shaded { fragment.units.iter().map(|u| u.index).collect() } else { Vec::new() };
+        let shaded =
+            colored || fragment.alpha_test.is_some() || (fragment.alpha_to_coverage && samples);
+        let units: Vec<usize> =
+            if shaded { fragment.units.iter().map(|u| u.index).collect() } else { Vec::new() };
         let fog = shaded && fragment.fog.is_some();
 
         // Take the snapshot of the vertex stages and lay vertex records out.
-        let mut snapshot = VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
+        let mut snapshot =
+            VertexSnapshot::new(&self.state, given, &units, fog, &mut self.recorder.lights);
         snapshot.clamps = !fragment.unclamped_vertices;
-        let mut layout = if shaded { self.layout(fragment, &units, samples) } else { Layout::default() };
+        let mut layout =
+            if shaded { self.layout(fragment, &units, samples) } else { Layout::default() };
 
         // Triangulate batches that are drawn repeatedly.
         let primitive = self.primitive_state(fragment, target)?;
@@ -252,11 +271,25 @@ impl Context {
             fade: multisample.then_some(s.points.fade_threshold),
         };
         let first_diagonal = sent == Submission::Now && batch.indices.is_none() && !fragment.flat;
-        Some(DrawGeometry { triangulation, batch, grid, first_diagonal, snapshot, primitive, layout, points })
+        Some(DrawGeometry {
+            triangulation,
+            batch,
+            grid,
+            first_diagonal,
+            snapshot,
+            primitive,
+            layout,
+            points,
+        })
     }
 
     /// Whether everything that varies on a flat grid is linear, but the colours of one side.
-    fn draws_grids(&self, snapshot: &VertexSnapshot, primitive: &PrimitiveState, fragment: &FragmentState) -> bool {
+    fn draws_grids(
+        &self,
+        snapshot: &VertexSnapshot,
+        primitive: &PrimitiveState,
+        fragment: &FragmentState,
+    ) -> bool {
         let lit = snapshot.lighting.as_ref();
         // What a perspective projection shows lies ahead.
         let ahead = self.state.matrices.projection.top().row(3) == Vec4::NEG_Z;
@@ -293,8 +326,11 @@ impl Context {
         // Decide which primitives are smooth.
         layout.stride = next;
         let sharp = s.multisample && samples;
-        layout.smooth =
-            [s.points.smooth && !sharp && !s.points.sprite, s.lines.smooth && !sharp, s.polygons.smooth && !sharp];
+        layout.smooth = [
+            s.points.smooth && !sharp && !s.points.sprite,
+            s.lines.smooth && !sharp,
+            s.polygons.smooth && !sharp,
+        ];
         layout.line_stipple = s.lines.stipple.then_some(s.lines.pattern);
         layout
     }
@@ -310,11 +346,14 @@ impl Context {
         let (origin, depth_mode) = s.clip_control;
         let flipped = origin == gl::UPPER_LEFT;
         let range = [s.viewport.depth_range.near, s.viewport.depth_range.far];
-        let window = WindowTransform::new([x, y, w, h], range, depth_mode == gl::ZERO_TO_ONE, flipped);
+        let window =
+            WindowTransform::new([x, y, w, h], range, depth_mode == gl::ZERO_TO_ONE, flipped);
 
         // Translate culling and polygon modes.
-        let culled =
-            |face: u32| s.polygons.cull && (s.polygons.cull_mode == face || s.polygons.cull_mode == gl::FRONT_AND_BACK);
+        let culled = |face: u32| {
+            s.polygons.cull
+                && (s.polygons.cull_mode == face || s.polygons.cull_mode == gl::FRONT_AND_BACK)
+        };
         let mode = |token: u32| match token {
             gl::POINT => 0,
             gl::LINE => 1,
@@ -323,9 +362,15 @@ impl Context {
 
         // Limit the pixels to scissor and viewport.
         let multisample = s.multisample && target.samples > 1;
-        let offset = |k: usize| if s.polygons.offset_enabled[k] { s.polygons.offset } else { [0.0; 2] };
+        let offset =
+            |k: usize| if s.polygons.offset_enabled[k] { s.polygons.offset } else { [0.0; 2] };
         let c = fragment.clip;
-        let clip = [c[0].max(x), c[1].max(y), c[2].min(x.saturating_add(w)), c[3].min(y.saturating_add(h))];
+        let clip = [
+            c[0].max(x),
+            c[1].max(y),
+            c[2].min(x.saturating_add(w)),
+            c[3].min(y.saturating_add(h)),
+        ];
         Some(PrimitiveState {
             window,
             user_planes: s.clip_plane_enabled.iter().filter(|e| **e).count(),
@@ -350,7 +395,8 @@ impl Context {
     }
 }
 
-/// Whether a pass can wait while `target`, a shadow map, is drawn: it is a picture that does not need the target's present contents.
+/// Whether a pass can wait while `target`, a shadow map, is drawn: it is a picture that does not
+/// need the target's present contents.
 fn may_wait_for(pass: &Pass, target: &Target) -> bool {
     let Some(map) = target.depth.as_ref().filter(|_| target.color.is_none()) else { return false };
     let same = pass.target.depth.as_ref().is_some_and(|depth| Arc::ptr_eq(depth, map));
@@ -360,8 +406,8 @@ fn may_wait_for(pass: &Pass, target: &Target) -> bool {
     pass.target.color.is_some() && sampled && !same && apart && !pass.samples(map)
 }
 
-/// The unit of polygon offset in a fixed-point depth plane: two of its steps, since rounding may swallow part of one. 0 for
-/// floating point.
+/// The unit of polygon offset in a fixed-point depth plane: two of its steps, since rounding may
+/// swallow part of one. 0 for floating point.
 fn depth_step(target: &Target) -> f32 {
     if target.depth_scale == 1.0 { 0.0 } else { 2.0 / (target.depth_scale + 1.0) }
 }

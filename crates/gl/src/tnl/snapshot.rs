@@ -121,7 +121,8 @@ pub(crate) struct Transform {
 
 impl Transform {
     fn new(modelview: &Mat4, projection: &Mat4, rescale_normal: bool, planes: &[[f32; 4]]) -> Self {
-        let model_plane = |plane: &[f32; 4]| (modelview.transpose() * Vec4::from_array(*plane)).to_array();
+        let model_plane =
+            |plane: &[f32; 4]| (modelview.transpose() * Vec4::from_array(*plane)).to_array();
         Self {
             modelview: modelview.to_cols_array(),
             clip_from_model: (*projection * *modelview).to_cols_array(),
@@ -134,7 +135,8 @@ impl Transform {
 impl VertexSnapshot {
     /// Whether vertices get nothing but linear functions of what they are given.
     pub(crate) fn is_linear(&self) -> bool {
-        self.lighting.is_none() && self.units.iter().flat_map(|unit| &unit.generation).all(Generation::is_linear)
+        self.lighting.is_none()
+            && self.units.iter().flat_map(|unit| &unit.generation).all(Generation::is_linear)
     }
 
     /// What another modelview matrix makes of it.
@@ -142,7 +144,8 @@ impl VertexSnapshot {
         Transform::new(modelview, &self.projection, self.rescale_normal, &self.clip_planes)
     }
 
-    /// Takes what is needed; `units` are the sampled units, `fog` whether fog is on, `lights` a cache.
+    /// Takes what is needed; `units` are the sampled units, `fog` whether fog is on, `lights` a
+    /// cache.
     pub(crate) fn new(
         state: &State,
         given: &CurrentState,
@@ -152,7 +155,11 @@ impl VertexSnapshot {
     ) -> Self {
         // Collect the enabled clip planes and the source of fog.
         let matrices = &state.matrices;
-        let planes = state.clip_planes.iter().zip(&state.clip_plane_enabled).filter(|(_, enabled)| **enabled);
+        let planes = state
+            .clip_planes
+            .iter()
+            .zip(&state.clip_plane_enabled)
+            .filter(|(_, enabled)| **enabled);
         let clip_planes: Vec<_> = planes.map(|(plane, _)| plane.map(|v| v as f32)).collect();
         let projection = matrices.projection.top();
         let rescale_normal = matrices.rescale_normal && !matrices.normalize;
@@ -178,9 +185,14 @@ impl VertexSnapshot {
 fn normal_map(modelview: &Mat4, rescale: bool) -> [[f32; 3]; 3] {
     let upper = Mat3::from_mat4(*modelview);
     let determinant = upper.determinant();
-    let inverse = if determinant != 0.0 && determinant.is_finite() { upper.inverse() } else { Mat3::IDENTITY };
+    let inverse = if determinant != 0.0 && determinant.is_finite() {
+        upper.inverse()
+    } else {
+        Mat3::IDENTITY
+    };
     // n_eye = (M^-1)^T n: its rows are the columns of the inverse.
-    let mut rows = [inverse.x_axis.to_array(), inverse.y_axis.to_array(), inverse.z_axis.to_array()];
+    let mut rows =
+        [inverse.x_axis.to_array(), inverse.y_axis.to_array(), inverse.z_axis.to_array()];
     if rescale {
         let third = inverse.row(2);
         let length = third.length();
@@ -201,7 +213,11 @@ fn unit(state: &State, index: usize) -> UnitSnapshot {
         _ => Generation::Normal,
     });
     let matrix = state.matrices.texture[index].top();
-    UnitSnapshot { index, generation, matrix: (matrix != Mat4::IDENTITY).then(|| matrix.to_cols_array()) }
+    UnitSnapshot {
+        index,
+        generation,
+        matrix: (matrix != Mat4::IDENTITY).then(|| matrix.to_cols_array()),
+    }
 }
 
 impl LightingSnapshot {
@@ -255,7 +271,8 @@ impl LightCache {
             }
         }
         if changed {
-            self.on = self.lights.iter().flatten().filter_map(|(_, prepared)| prepared.clone()).collect();
+            self.on =
+                self.lights.iter().flatten().filter_map(|(_, prepared)| prepared.clone()).collect();
         }
         self.on.clone()
     }
@@ -294,7 +311,8 @@ fn prepare(light: &crate::state::Light) -> Option<PreparedLight> {
     PreparedLight::new(&light, &DMat4::IDENTITY)
 }
 
-/// How much of a light at infinity its cone lets through: all of its rays make the same angle with the axis.
+/// How much of a light at infinity its cone lets through: all of its rays make the same angle with
+/// the axis.
 fn cone_at_infinity(light: &crate::state::Light) -> f32 {
     if light.spot_cutoff == 180.0 {
         return 1.0;

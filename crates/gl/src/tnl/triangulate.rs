@@ -1,4 +1,5 @@
-//! How the triangles of a batch are found: piece by piece, from primitives, with quads cut along one diagonal or the other.
+//! How the triangles of a batch are found: piece by piece, from primitives, with quads cut along
+//! one diagonal or the other.
 
 use super::grid_search::find_grid;
 use super::piece::{PIECE_TRIANGLES, Piece};
@@ -28,7 +29,14 @@ impl Triangulation {
         }
         let others = batch.primitives.iter().any(|primitive| primitive.mode < TRIANGLES);
         let points = batch.primitives.iter().any(|primitive| primitive.mode == POINTS);
-        let mut all = Self { points, pieces: Vec::new(), starts, others, grid: None, ordered: Default::default() };
+        let mut all = Self {
+            points,
+            pieces: Vec::new(),
+            starts,
+            others,
+            grid: None,
+            ordered: Default::default(),
+        };
         if !others {
             all.grid = find_grid(batch, count as usize, || all.triangles(batch, 0..count));
         }
@@ -36,9 +44,11 @@ impl Triangulation {
         all
     }
 
-    /// All primitives in parts, for what is not only filled triangles; whether a stipple runs along lines.
+    /// All primitives in parts, for what is not only filled triangles; whether a stipple runs along
+    /// lines.
     pub(crate) fn ordered(&self, batch: &VertexBatch, stippled: bool) -> &[Vec<Primitive>] {
-        self.ordered[usize::from(stippled)].get_or_init(|| cut_into_parts(&batch.primitives, stippled))
+        self.ordered[usize::from(stippled)]
+            .get_or_init(|| cut_into_parts(&batch.primitives, stippled))
     }
 
     /// Piece number `piece` of the batch that this was made of.
@@ -49,7 +59,8 @@ impl Triangulation {
         })
     }
 
-    /// The vertices of some triangles, if each has three of its own, one triangle's after the other's.
+    /// The vertices of some triangles, if each has three of its own, one triangle's after the
+    /// other's.
     fn unshared(&self, batch: &VertexBatch, range: Range<u32>) -> Option<Range<u32>> {
         if batch.indices.is_some() {
             return None;
@@ -57,12 +68,15 @@ impl Triangulation {
         let at = self.starts.partition_point(|start| *start <= range.start).checked_sub(1)?;
         let (primitive, start) = (batch.primitives.get(at)?, self.starts[at]);
         let alone = primitive.mode == TRIANGLES && range.end <= start + triangle_count(primitive);
-        alone.then(|| primitive.first + 3 * (range.start - start)..primitive.first + 3 * (range.end - start))
+        alone.then(|| {
+            primitive.first + 3 * (range.start - start)..primitive.first + 3 * (range.end - start)
+        })
     }
 
-    /// The triangles of a piece with its quads cut along the other diagonal, from the first corner to the third; `None` if
-    /// no quad changes. The batch has no indices. Unless `all`, quads on which everything is linear stay as they are. A
-    /// quad whose halves are in two pieces always does. The provoking corner is in one half of a turned quad only.
+    /// The triangles of a piece with its quads cut along the other diagonal, from the first corner
+    /// to the third; `None` if no quad changes. The batch has no indices. Unless `all`, quads on
+    /// which everything is linear stay as they are. A quad whose halves are in two pieces always
+    /// does. The provoking corner is in one half of a turned quad only.
     pub(crate) fn turned(
         &self,
         batch: &VertexBatch,
@@ -115,9 +129,14 @@ impl Triangulation {
     }
 }
 
-/// The filled triangles of one primitive, as numbers of vertices of the batch. With `turned`, quads are cut as
-/// [`Triangulation::turned`] cuts them; `turned` says whether all of them are.
-pub(super) fn add_filled(batch: &VertexBatch, primitive: &Primitive, turned: Option<bool>, out: &mut Vec<[u32; 3]>) {
+/// The filled triangles of one primitive, as numbers of vertices of the batch. With `turned`, quads
+/// are cut as [`Triangulation::turned`] cuts them; `turned` says whether all of them are.
+pub(super) fn add_filled(
+    batch: &VertexBatch,
+    primitive: &Primitive,
+    turned: Option<bool>,
+    out: &mut Vec<[u32; 3]>,
+) {
     let start = out.len();
     add_triangles(primitive, 0..triangle_count(primitive), out);
 
@@ -144,7 +163,8 @@ fn turn(halves: &mut [[u32; 3]]) {
     (halves[0], halves[1]) = ([a, b, c], [a, c, d]);
 }
 
-/// Whether something is not linear on the quad of four vertices from `first` on: it looks different along each diagonal.
+/// Whether something is not linear on the quad of four vertices from `first` on: it looks different
+/// along each diagonal.
 fn is_bent(batch: &VertexBatch, first: usize) -> bool {
     fn bent<const N: usize>(values: &[[f32; N]], first: usize) -> bool {
         let [a, b, c, d] = [0, 1, 2, 3].map(|k| values[first + k]);
@@ -168,7 +188,14 @@ mod tests {
 
     #[test]
     fn pieces_are_cut_from_any_primitives() {
-        let modes = [(TRIANGLES, 9), (QUADS, 8), (TRIANGLE_STRIP, 3000), (POINTS, 5), (POLYGON, 5), (QUAD_STRIP, 8)];
+        let modes = [
+            (TRIANGLES, 9),
+            (QUADS, 8),
+            (TRIANGLE_STRIP, 3000),
+            (POINTS, 5),
+            (POLYGON, 5),
+            (QUAD_STRIP, 8),
+        ];
         let modes = modes.into_iter().chain([(TRIANGLES, 9_000), (QUADS, 4)]);
         let mut primitives = Vec::new();
         let (mut first, mut all) = (0, Vec::new());
@@ -178,7 +205,11 @@ mod tests {
             primitives.push(primitive);
             first += count;
         }
-        let batch = VertexBatch { positions: vec![[0.0; 4]; first as usize], primitives, ..VertexBatch::default() };
+        let batch = VertexBatch {
+            positions: vec![[0.0; 4]; first as usize],
+            primitives,
+            ..VertexBatch::default()
+        };
         let made = Triangulation::new(&batch);
         assert_eq!((made.len(), made.others), (all.len().div_ceil(PIECE_TRIANGLES), true));
         let mut found = Vec::new();
@@ -189,7 +220,8 @@ mod tests {
         }
         assert_eq!(found, all);
         // Triangles 3,014 to 6,013 have vertices of their own: all of pieces 3 and 4.
-        let shared = |i: usize| matches!(made.piece(Level::new(), &batch, i).triangles, Cow::Borrowed(_));
+        let shared =
+            |i: usize| matches!(made.piece(Level::new(), &batch, i).triangles, Cow::Borrowed(_));
         assert_eq!((0..made.len()).filter(|&i| shared(i)).collect::<Vec<_>>(), [3, 4]);
     }
 }

@@ -1,4 +1,5 @@
-//! What a batch draws when polygons are filled: triangles in pieces. Each is made when it is first drawn, and kept with the batch.
+//! What a batch draws when polygons are filled: triangles in pieces. Each is made when it is first
+//! drawn, and kept with the batch.
 
 use super::grid::Grid;
 use super::piece::{PIECE_TRIANGLES, Piece};
@@ -19,7 +20,8 @@ pub(crate) struct Triangulation {
     pub points: bool,
     /// The flat grid that all triangles form, if they do.
     pub grid: Option<Grid>,
-    /// All primitives in parts, for what is not only filled triangles: without a stipple along lines, with one.
+    /// All primitives in parts, for what is not only filled triangles: without a stipple along
+    /// lines, with one.
     pub(super) ordered: [OnceLock<Vec<Vec<Primitive>>>; 2],
 }
 

@@ -1,9 +1,13 @@
-//! The vertex stages, eight vertices at a time: eye coordinates, normal, lighting, texture coordinates, fog.
+//! The vertex stages, eight vertices at a time: eye coordinates, normal, lighting, texture
+//! coordinates, fog.
 //!
-//! In:   attributes of a batch, the snapshot of the state. Out: a record for each vertex, see [`Layout`].
+//! In:   attributes of a batch, the snapshot of the state. Out: a record for each vertex, see
+//!       [`Layout`].
 //! Source: OpenGL 1.5 specification, sections 2.11 to 2.14 and 3.10.
 
-use super::snapshot::{FogSource, Generation, LightingSnapshot, Tracked, Transform, UnitSnapshot, VertexSnapshot};
+use super::snapshot::{
+    FogSource, Generation, LightingSnapshot, Tracked, Transform, UnitSnapshot, VertexSnapshot,
+};
 use crate::state::MaterialFace;
 use crate::vertex::VertexBatch;
 use vitral_light::{Illumination, Phong, Reflected, Surface, phong};
@@ -72,7 +76,11 @@ pub(crate) struct LaneFaces {
 
 impl LaneFaces {
     /// Those that were given with some vertices, or those of the snapshot.
-    pub(crate) fn new(snapshot: &VertexSnapshot, batch: &VertexBatch, vertices: &[u32; LANES]) -> Self {
+    pub(crate) fn new(
+        snapshot: &VertexSnapshot,
+        batch: &VertexBatch,
+        vertices: &[u32; LANES],
+    ) -> Self {
         let (current, two_side) = match &snapshot.lighting {
             Some(lighting) => (&lighting.material, lighting.two_side),
             None => (&[MaterialFace::default(); 2], false),
@@ -166,7 +174,8 @@ pub(crate) struct Shaded<S: Simd> {
     pub fog: F<S>,
 }
 
-/// Shades up to eight vertices into `records`; record `i` begins at `i * layout.stride`. `inverse_w` is theirs.
+/// Shades up to eight vertices into `records`; record `i` begins at `i * layout.stride`.
+/// `inverse_w` is theirs.
 pub(crate) fn shade<S: Simd>(
     simd: S,
     snapshot: &VertexSnapshot,
@@ -237,7 +246,11 @@ pub(crate) fn shade<S: Simd>(
 }
 
 /// The front colours of up to eight vertices alone.
-pub(crate) fn front_colors<S: Simd>(simd: S, snapshot: &VertexSnapshot, eight: &VertexBatch8<'_>) -> [[f32; LANES]; 4] {
+pub(crate) fn front_colors<S: Simd>(
+    simd: S,
+    snapshot: &VertexSnapshot,
+    eight: &VertexBatch8<'_>,
+) -> [[f32; LANES]; 4] {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -301,7 +314,12 @@ pub(crate) fn colors<S: Simd>(
     // Without lighting, clamp the given colours.
     let Some(lighting) = &snapshot.lighting else {
         let secondary = if snapshot.color_sum {
-            let [r, g, b] = attribute(simd, &eight.batch.secondary, snapshot.current.secondary, &eight.vertices);
+            let [r, g, b] = attribute(
+                simd,
+                &eight.batch.secondary,
+                snapshot.current.secondary,
+                &eight.vertices,
+            );
             let c = limited(snapshot.clamps, [r, g, b, r]);
             Some(V3::new(c[0], c[1], c[2]))
         } else {
@@ -315,8 +333,16 @@ pub(crate) fn colors<S: Simd>(
     let inverse = one / eye[3];
     let position = V3::new(eye[0] * inverse, eye[1] * inverse, eye[2] * inverse);
     let clamps = snapshot.clamps;
-    let (front, secondary) =
-        lit(simd, lighting, &eight.faces.front, &lighting.tracked[0], &color, position, normal, clamps);
+    let (front, secondary) = lit(
+        simd,
+        lighting,
+        &eight.faces.front,
+        &lighting.tracked[0],
+        &color,
+        position,
+        normal,
+        clamps,
+    );
     let back = eight.faces.back.as_ref().map(
         #[inline(always)]
         |face| lit(simd, lighting, face, &lighting.tracked[1], &color, position, -normal, clamps),
@@ -360,7 +386,11 @@ fn lit<S: Simd>(
             };
 
             // Find the direction to the viewer.
-            let v = if lighting.local_viewer { (-position).normalize() } else { V3::splat(one, [0.0, 0.0, 1.0]) };
+            let v = if lighting.local_viewer {
+                (-position).normalize()
+            } else {
+                V3::splat(one, [0.0, 0.0, 1.0])
+            };
             let surface = Surface { position, n, v };
             let visible = lanes::inlined(
                 #[inline(always)]
@@ -379,7 +409,10 @@ fn lit<S: Simd>(
             let alpha = if tracked.diffuse { color[3] } else { row(&m.diffuse[3]) };
             if lighting.separate_specular {
                 let s = limited(clamps, [specular.x, specular.y, specular.z, one]);
-                return (limited(clamps, [primary.x, primary.y, primary.z, alpha]), Some(V3::new(s[0], s[1], s[2])));
+                return (
+                    limited(clamps, [primary.x, primary.y, primary.z, alpha]),
+                    Some(V3::new(s[0], s[1], s[2])),
+                );
             }
             let sum = primary + specular;
             (limited(clamps, [sum.x, sum.y, sum.z, alpha]), None)
@@ -399,7 +432,8 @@ fn texture<S: Simd>(
     n: V3<F<S>>,
 ) -> F4<S> {
     let u = unit.index;
-    let mut coords: F4<S> = attribute(simd, &eight.batch.tex[u], snapshot.current.tex[u], &eight.vertices);
+    let mut coords: F4<S> =
+        attribute(simd, &eight.batch.tex[u], snapshot.current.tex[u], &eight.vertices);
     if unit.generation != [Generation::None; 4] {
         generate(simd, unit, position, eye, n, &mut coords);
     }
@@ -410,7 +444,14 @@ fn texture<S: Simd>(
 }
 
 #[inline(always)]
-fn generate<S: Simd>(simd: S, unit: &UnitSnapshot, position: &F4<S>, eye: &F4<S>, n: V3<F<S>>, coords: &mut F4<S>) {
+fn generate<S: Simd>(
+    simd: S,
+    unit: &UnitSnapshot,
+    position: &F4<S>,
+    eye: &F4<S>,
+    n: V3<F<S>>,
+    coords: &mut F4<S>,
+) {
     // Reflect the vector to the vertex at the normal.
     let inverse = splat(simd, 1.0) / eye[3];
     let u = V3::new(eye[0] * inverse, eye[1] * inverse, eye[2] * inverse).normalize();

@@ -113,7 +113,8 @@ impl VertexBatch {
         }
     }
 
-    /// Appends vertices of another batch, by their place in its order; attributes that it does not have come from `current`.
+    /// Appends vertices of another batch, by their place in its order; attributes that it does not
+    /// have come from `current`.
     pub(crate) fn append(&mut self, other: &Self, vertices: Range<u32>, current: &Current) {
         let numbers = vertices.map(|i| other.vertex(i));
         fn add<T: Copy>(
@@ -141,11 +142,16 @@ impl VertexBatch {
         }
     }
 
-    /// Makes an array for attribute `which`, in the memory of `spare`'s if there is any: all vertices so far have the value
-    /// in `current`.
+    /// Makes an array for attribute `which`, in the memory of `spare`'s if there is any: all
+    /// vertices so far have the value in `current`.
     #[inline(never)]
     pub(crate) fn back_fill(&mut self, which: usize, current: &Current, spare: &mut Self) {
-        fn fill<T: Clone>(values: &mut Option<Vec<T>>, spare: &mut Option<Vec<T>>, value: T, n: usize) {
+        fn fill<T: Clone>(
+            values: &mut Option<Vec<T>>,
+            spare: &mut Option<Vec<T>>,
+            value: T,
+            n: usize,
+        ) {
             let mut all = spare.take().unwrap_or_default();
             all.resize(n, value);
             *values = Some(all);

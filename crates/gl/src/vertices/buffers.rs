@@ -1,7 +1,8 @@
 //! Buffer objects.
 //!
-//! The bytes are shared and copied on write. Each change gives the buffer a version that no buffer ever had, so that what
-//! was built from it is known to be stale. While a buffer is mapped its bytes are with the client.
+//! The bytes are shared and copied on write. Each change gives the buffer a version that no buffer
+//! ever had, so that what was built from it is known to be stale. While a buffer is mapped its
+//! bytes are with the client.
 
 use super::client;
 use crate::memory::{ClientMemory, can_have};
@@ -41,7 +42,8 @@ struct Mapping {
 /// The largest data store. More is out of memory, so that a wild size does no harm.
 const MAX_SIZE: usize = 1 << 31;
 
-/// A buffer object as its name, bindings and arrays have it. Whatever has it keeps the object, even without the name.
+/// A buffer object as its name, bindings and arrays have it. Whatever has it keeps the object, even
+/// without the name.
 #[derive(Clone, Debug)]
 pub struct BufferHandle {
     /// Its name; 0 is no buffer.
@@ -127,7 +129,13 @@ impl Buffer {
         Ok(start..end)
     }
 
-    fn set_data(&mut self, memory: &dyn ClientMemory, size: isize, data: usize, usage: u32) -> Result<(), Refusal> {
+    fn set_data(
+        &mut self,
+        memory: &dyn ClientMemory,
+        size: isize,
+        data: usize,
+        usage: u32,
+    ) -> Result<(), Refusal> {
         const TOO_LARGE: Refusal = (enums::OUT_OF_MEMORY, "the data store is too large");
         if !matches!(usage, enums::STREAM_DRAW..=enums::STREAM_COPY
             | enums::STATIC_DRAW..=enums::STATIC_COPY
@@ -139,13 +147,23 @@ impl Buffer {
         if size > MAX_SIZE || !can_have(size) {
             return Err(TOO_LARGE);
         }
-        let bytes = if data == 0 { vec![0; size] } else { client::bytes(memory, data, size).ok_or(NOT_THERE)? };
+        let bytes = if data == 0 {
+            vec![0; size]
+        } else {
+            client::bytes(memory, data, size).ok_or(NOT_THERE)?
+        };
         self.release(memory);
         *self = Self { bytes: Arc::new(bytes), usage, ..Self::default() };
         Ok(())
     }
 
-    fn set_part(&mut self, memory: &dyn ClientMemory, offset: isize, size: isize, data: usize) -> Result<(), Refusal> {
+    fn set_part(
+        &mut self,
+        memory: &dyn ClientMemory,
+        offset: isize,
+        size: isize,
+        data: usize,
+    ) -> Result<(), Refusal> {
         let range = self.range(offset, size)?;
         if self.is_mapped() {
             return Err(MAPPED);
@@ -154,14 +172,23 @@ impl Buffer {
             return Ok(());
         }
         if Arc::strong_count(&self.bytes) > 1 && !can_have(self.bytes.len()) {
-            return Err((enums::OUT_OF_MEMORY, "draws that wait need the data, and there is no memory for a copy"));
+            return Err((
+                enums::OUT_OF_MEMORY,
+                "draws that wait need the data, and there is no memory for a copy",
+            ));
         }
         self.version = new_version();
         let there = data != 0 && memory.read(data, &mut Arc::make_mut(&mut self.bytes)[range]);
         if there { Ok(()) } else { Err(NOT_THERE) }
     }
 
-    fn get_part(&mut self, memory: &dyn ClientMemory, offset: isize, size: isize, data: usize) -> Result<(), Refusal> {
+    fn get_part(
+        &mut self,
+        memory: &dyn ClientMemory,
+        offset: isize,
+        size: isize,
+        data: usize,
+    ) -> Result<(), Refusal> {
         let range = self.range(offset, size)?;
         if self.is_mapped() {
             return Err(MAPPED);
@@ -170,7 +197,13 @@ impl Buffer {
         if there { Ok(()) } else { Err(NOT_THERE) }
     }
 
-    fn map(&mut self, memory: &dyn ClientMemory, offset: usize, length: usize, flags: u32) -> Result<usize, Refusal> {
+    fn map(
+        &mut self,
+        memory: &dyn ClientMemory,
+        offset: usize,
+        length: usize,
+        flags: u32,
+    ) -> Result<usize, Refusal> {
         if self.is_mapped() {
             return Err(MAPPED);
         }
@@ -194,10 +227,11 @@ impl Buffer {
         flags: u32,
     ) -> Result<usize, Refusal> {
         use enums::{
-            MAP_FLUSH_EXPLICIT_BIT, MAP_INVALIDATE_BUFFER_BIT, MAP_INVALIDATE_RANGE_BIT, MAP_READ_BIT,
-            MAP_UNSYNCHRONIZED_BIT, MAP_WRITE_BIT,
+            MAP_FLUSH_EXPLICIT_BIT, MAP_INVALIDATE_BUFFER_BIT, MAP_INVALIDATE_RANGE_BIT,
+            MAP_READ_BIT, MAP_UNSYNCHRONIZED_BIT, MAP_WRITE_BIT,
         };
-        let careless = MAP_INVALIDATE_RANGE_BIT | MAP_INVALIDATE_BUFFER_BIT | MAP_UNSYNCHRONIZED_BIT;
+        let careless =
+            MAP_INVALIDATE_RANGE_BIT | MAP_INVALIDATE_BUFFER_BIT | MAP_UNSYNCHRONIZED_BIT;
 
         // Check the range and the access bits.
         let range = self.range(offset, length)?;
@@ -236,8 +270,13 @@ impl Buffer {
     }
 
     fn flush(&self, offset: isize, length: isize) -> Result<(), Refusal> {
-        let Some(mapping) = self.mapping.as_ref().filter(|m| m.flags & enums::MAP_FLUSH_EXPLICIT_BIT != 0) else {
-            return Err((enums::INVALID_OPERATION, "the buffer is not mapped for explicit flushes"));
+        let Some(mapping) =
+            self.mapping.as_ref().filter(|m| m.flags & enums::MAP_FLUSH_EXPLICIT_BIT != 0)
+        else {
+            return Err((
+                enums::INVALID_OPERATION,
+                "the buffer is not mapped for explicit flushes",
+            ));
         };
         let range = self.range(offset, length)?;
         if range.end > mapping.length { Err(OUT_OF_RANGE) } else { Ok(()) }
@@ -290,7 +329,11 @@ impl Context {
             enums::PIXEL_PACK_BUFFER => Some(&mut self.client.pack.buffer),
             enums::PIXEL_UNPACK_BUFFER => Some(&mut self.client.unpack.buffer),
             _ => {
-                self.record_error(enums::INVALID_ENUM, call, &format!("target {target:#x} has no buffers"));
+                self.record_error(
+                    enums::INVALID_ENUM,
+                    call,
+                    &format!("target {target:#x} has no buffers"),
+                );
                 None
             }
         }
@@ -335,7 +378,9 @@ impl Context {
 
     /// `glGenBuffers`.
     pub fn gen_buffers(&mut self, n: i32, buffers: usize) {
-        self.give_names("glGenBuffers", n, buffers, |c, n| c.shared.names.generate(&mut c.buffers(), n));
+        self.give_names("glGenBuffers", n, buffers, |c, n| {
+            c.shared.names.generate(&mut c.buffers(), n)
+        });
     }
 
     /// `glDeleteBuffers`.
@@ -362,17 +407,23 @@ impl Context {
 
     /// `glBufferData`.
     pub fn buffer_data(&mut self, target: u32, size: isize, data: usize, usage: u32) {
-        self.with_buffer("glBufferData", target, |buffer, memory| buffer.set_data(memory, size, data, usage));
+        self.with_buffer("glBufferData", target, |buffer, memory| {
+            buffer.set_data(memory, size, data, usage)
+        });
     }
 
     /// `glBufferSubData`.
     pub fn buffer_sub_data(&mut self, target: u32, offset: isize, size: isize, data: usize) {
-        self.with_buffer("glBufferSubData", target, |buffer, memory| buffer.set_part(memory, offset, size, data));
+        self.with_buffer("glBufferSubData", target, |buffer, memory| {
+            buffer.set_part(memory, offset, size, data)
+        });
     }
 
     /// `glGetBufferSubData`.
     pub fn get_buffer_sub_data(&mut self, target: u32, offset: isize, size: isize, data: usize) {
-        self.with_buffer("glGetBufferSubData", target, |buffer, memory| buffer.get_part(memory, offset, size, data));
+        self.with_buffer("glGetBufferSubData", target, |buffer, memory| {
+            buffer.get_part(memory, offset, size, data)
+        });
     }
 
     /// `glCopyBufferSubData`.
@@ -431,24 +482,38 @@ impl Context {
             enums::READ_WRITE => Ok(enums::MAP_READ_BIT | enums::MAP_WRITE_BIT),
             _ => Err((enums::INVALID_ENUM, "access is not one of buffers")),
         };
-        let map = |buffer: &mut Buffer, memory: &dyn ClientMemory| buffer.map(memory, 0, buffer.size(), flags?);
+        let map = |buffer: &mut Buffer, memory: &dyn ClientMemory| {
+            buffer.map(memory, 0, buffer.size(), flags?)
+        };
         self.with_buffer("glMapBuffer", target, map).unwrap_or(0)
     }
 
     /// `glMapBufferRange`: the address, or 0.
-    pub fn map_buffer_range(&mut self, target: u32, offset: isize, length: isize, access: u32) -> usize {
-        let map = |buffer: &mut Buffer, memory: &dyn ClientMemory| buffer.map_range(memory, offset, length, access);
+    pub fn map_buffer_range(
+        &mut self,
+        target: u32,
+        offset: isize,
+        length: isize,
+        access: u32,
+    ) -> usize {
+        let map = |buffer: &mut Buffer, memory: &dyn ClientMemory| {
+            buffer.map_range(memory, offset, length, access)
+        };
         self.with_buffer("glMapBufferRange", target, map).unwrap_or(0)
     }
 
     /// `glFlushMappedBufferRange`.
     pub fn flush_mapped_buffer_range(&mut self, target: u32, offset: isize, length: isize) {
-        self.with_buffer("glFlushMappedBufferRange", target, |buffer, _| buffer.flush(offset, length));
+        self.with_buffer("glFlushMappedBufferRange", target, |buffer, _| {
+            buffer.flush(offset, length)
+        });
     }
 
     /// `glUnmapBuffer`: whether the data are still good.
     pub fn unmap_buffer(&mut self, target: u32) -> u8 {
-        self.with_buffer("glUnmapBuffer", target, |buffer, memory| buffer.unmap(memory)).is_some_and(|good| good).into()
+        self.with_buffer("glUnmapBuffer", target, |buffer, memory| buffer.unmap(memory))
+            .is_some_and(|good| good)
+            .into()
     }
 
     /// `glGetBufferParameteriv`.
@@ -466,7 +531,8 @@ impl Context {
             if pname != enums::BUFFER_MAP_POINTER {
                 return Err((enums::INVALID_ENUM, "pname is not a pointer of buffers"));
             }
-            let address = buffer.mapping.as_ref().map_or(0, |mapping| mapping.address + mapping.offset);
+            let address =
+                buffer.mapping.as_ref().map_or(0, |mapping| mapping.address + mapping.offset);
             let there = params != 0 && memory.write(params, &address.to_ne_bytes());
             if there { Ok(()) } else { Err(NOT_THERE) }
         });
@@ -535,10 +601,12 @@ mod tests {
         c.bind_buffer(TARGET, 9);
         c.buffer_data(TARGET, 8, 0, enums::STREAM_DRAW);
         let ask = |c: &mut Context| {
-            [enums::BUFFER_MAP_OFFSET, enums::BUFFER_MAP_LENGTH, enums::BUFFER_ACCESS_FLAGS].map(|pname| {
-                c.get_buffer_parameteriv(TARGET, pname, BASE);
-                u32::from(read(c, BASE, 4)[0])
-            })
+            [enums::BUFFER_MAP_OFFSET, enums::BUFFER_MAP_LENGTH, enums::BUFFER_ACCESS_FLAGS].map(
+                |pname| {
+                    c.get_buffer_parameteriv(TARGET, pname, BASE);
+                    u32::from(read(c, BASE, 4)[0])
+                },
+            )
         };
         assert_eq!(ask(&mut c), [0; 3]);
         let flags = enums::MAP_WRITE_BIT | enums::MAP_UNSYNCHRONIZED_BIT;

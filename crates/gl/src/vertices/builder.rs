@@ -1,13 +1,15 @@
 //! Begin/End: gathers vertices as they are given.
 //!
-//! An attribute gets an array once it has been given since Begin; if that is after the first vertex, the earlier ones are
-//! filled with the value that was current until then. What was never given stays `None`: the current value holds for
-//! all. So a vertex costs one push for each attribute in use.
+//! An attribute gets an array once it has been given since Begin; if that is after the first
+//! vertex, the earlier ones are filled with the value that was current until then. What was never
+//! given stays `None`: the current value holds for all. So a vertex costs one push for each
+//! attribute in use.
 //!
-//! If the caller promises to announce every call that changes what primitives are drawn with ([`Context::set_merging`]),
-//! Begin/End pairs gather in one batch until then. Modelview matrices and materials may change in between: they are kept
-//! with the vertices. Small batches from lists and arrays gather with them; one that stays alone is drawn as it is. What has become
-//! long is drawn while more is given; for that, long primitives whose elements share no vertices are cut.
+//! If the caller promises to announce every call that changes what primitives are drawn with
+//! ([`Context::set_merging`]), Begin/End pairs gather in one batch until then. Modelview matrices
+//! and materials may change in between: they are kept with the vertices. Small batches from lists
+//! and arrays gather with them; one that stays alone is drawn as it is. What has become long is
+//! drawn while more is given; for that, long primitives whose elements share no vertices are cut.
 
 use super::attribute::{CARRIED, COLOR};
 use crate::primitive::is_independent;
@@ -23,7 +25,8 @@ const LONG_ENOUGH: usize = 12 * 2730;
 /// How many batches are kept for their memory.
 const MOST_KEPT: usize = 16;
 
-/// Vertices of a batch whose memory is reused: fewer cost nothing to allocate, more are too much to keep.
+/// Vertices of a batch whose memory is reused: fewer cost nothing to allocate, more are too much to
+/// keep.
 const REUSED: std::ops::Range<usize> = 1 << 10..1 << 21;
 
 /// The primitive that is being given, and complete ones before it.
@@ -111,7 +114,10 @@ impl Builder {
     /// Begins a batch, in the memory of a drawn one if nobody else holds that.
     fn start(&mut self) {
         let free = self.drawn.iter().position(|drawn| Arc::strong_count(drawn) == 1);
-        let Some(drawn) = free.and_then(|free| Arc::into_inner(self.drawn.swap_remove(free))) else { return };
+        let Some(drawn) = free.and_then(|free| Arc::into_inner(self.drawn.swap_remove(free)))
+        else {
+            return;
+        };
         let (spare, batch) = (&mut self.spare, &mut self.batch);
         *spare = drawn;
         spare.truncate_vertices(0);
@@ -130,7 +136,9 @@ impl Builder {
             return;
         }
         self.drawn.push(Arc::clone(batch));
-        let size = |drawn: &[Arc<VertexBatch>]| drawn.iter().map(|kept| kept.positions.len()).sum::<usize>();
+        let size = |drawn: &[Arc<VertexBatch>]| {
+            drawn.iter().map(|kept| kept.positions.len()).sum::<usize>()
+        };
         while self.drawn.len() > MOST_KEPT || size(&self.drawn) > REUSED.end {
             self.drawn.remove(0);
         }
@@ -178,7 +186,8 @@ impl Builder {
         self.batch.push_attributes(self.seen, current);
     }
 
-    /// Whether attribute `which` may change as it is: it has an array, or nothing is being gathered.
+    /// Whether attribute `which` may change as it is: it has an array, or nothing is being
+    /// gathered.
     #[inline(always)]
     pub(super) fn holds(&self, which: usize) -> bool {
         !self.gathering || self.seen >> which & 1 == 1
@@ -205,7 +214,11 @@ impl Context {
     pub(crate) fn refused_inside_begin(&mut self, call: &str) -> bool {
         let inside = self.inside_begin();
         if inside {
-            self.record_error(enums::INVALID_OPERATION, call, "not allowed between glBegin and glEnd");
+            self.record_error(
+                enums::INVALID_OPERATION,
+                call,
+                "not allowed between glBegin and glEnd",
+            );
         }
         inside
     }
@@ -214,7 +227,11 @@ impl Context {
         if self.inside_begin() {
             self.record_error(enums::INVALID_OPERATION, "glBegin", "a glBegin is open already");
         } else if mode > enums::POLYGON {
-            self.record_error(enums::INVALID_ENUM, "glBegin", &format!("mode {mode:#x} is not a primitive"));
+            self.record_error(
+                enums::INVALID_ENUM,
+                "glBegin",
+                &format!("mode {mode:#x} is not a primitive"),
+            );
         } else if !self.refused_by_framebuffer("glBegin") {
             self.gather(Submission::Now);
             self.builder.open(mode);
@@ -291,10 +308,12 @@ impl Context {
         }
     }
 
-    /// Whether Begin/End pairs may wait for more. The caller then has to call [`Self::flush_vertices`] before every call but
-    /// those that leave them waiting, or draw them where they must be: `begin`, `end`, `array_element`, all that give a vertex
-    /// or set one of its attributes, matrices and materials, client arrays and draws from them, lists that are called,
-    /// `enable`, `disable`, `bind_texture`, `shade_model`, names for selection, `get_...v` and `is_enabled`.
+    /// Whether Begin/End pairs may wait for more. The caller then has to call
+    /// [`Self::flush_vertices`] before every call but those that leave them waiting, or draw them
+    /// where they must be: `begin`, `end`, `array_element`, all that give a vertex or set one of
+    /// its attributes, matrices and materials, client arrays and draws from them, lists that are
+    /// called, `enable`, `disable`, `bind_texture`, `shade_model`, names for selection, `get_...v`
+    /// and `is_enabled`.
     pub fn set_merging(&mut self, merging: bool) {
         self.flush_vertices();
         self.builder.merging = merging;
@@ -348,13 +367,15 @@ impl Context {
         self.start_recorded();
     }
 
-    /// Draws what there is of a long primitive whose elements share no vertices, and goes on with it.
+    /// Draws what there is of a long primitive whose elements share no vertices, and goes on with
+    /// it.
     #[cold]
     #[inline(never)]
     fn cut(&mut self) {
         let builder = &mut self.builder;
         builder.most += LONG_ENOUGH;
-        if !builder.merging || self.feedback.mode != enums::RENDER || !is_independent(builder.mode) {
+        if !builder.merging || self.feedback.mode != enums::RENDER || !is_independent(builder.mode)
+        {
             return;
         }
         let (mode, sent) = (builder.mode, builder.sent);
@@ -407,7 +428,8 @@ impl Context {
         }
     }
 
-    /// To be called when `Material` has changed the materials: between vertices they are kept with the batch.
+    /// To be called when `Material` has changed the materials: between vertices they are kept with
+    /// the batch.
     pub(crate) fn material_changed(&mut self) {
         if !self.builder.gathering || self.builder.lone.is_some() {
             return;

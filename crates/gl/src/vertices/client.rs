@@ -38,7 +38,8 @@ component! {
     f64: c => c as f32;
 }
 
-/// How much is read at once where the client says how much there is: a wild length fails before it is allocated.
+/// How much is read at once where the client says how much there is: a wild length fails before it
+/// is allocated.
 const PIECE: usize = 1 << 20;
 
 /// `len` bytes at `address`.
@@ -60,7 +61,11 @@ pub(crate) fn bytes(memory: &dyn ClientMemory, address: usize, len: usize) -> Op
 }
 
 /// `count` numbers at `address`.
-pub(crate) fn values<T: Pod>(memory: &dyn ClientMemory, address: usize, count: usize) -> Option<Vec<T>> {
+pub(crate) fn values<T: Pod>(
+    memory: &dyn ClientMemory,
+    address: usize,
+    count: usize,
+) -> Option<Vec<T>> {
     let bytes = bytes(memory, address, count.checked_mul(size_of::<T>())?)?;
     Some(bytes.chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned).collect())
 }

@@ -1,9 +1,10 @@
 //! Compiling a display list.
 //!
-//! Begin..End pairs with nothing but attributes between them gather in one batch. The compiler knows the attributes that
-//! were set earlier in the same list; all others are those that are current when the list is executed, and have no array.
-//! Where such an attribute is first set, what came before cannot share its batch: complete primitives become a batch of
-//! their own; a primitive that is open with vertices is written out call by call, as is one with other calls inside, or
+//! Begin..End pairs with nothing but attributes between them gather in one batch. The compiler
+//! knows the attributes that were set earlier in the same list; all others are those that are
+//! current when the list is executed, and have no array. Where such an attribute is first set, what
+//! came before cannot share its batch: complete primitives become a batch of their own; a primitive
+//! that is open with vertices is written out call by call, as is one with other calls inside, or
 //! without its End.
 
 use super::attribute::{CARRIED, each};
@@ -72,7 +73,8 @@ pub(crate) struct Compiler {
 /// Vertices or items from which on memory for more is asked for before it is taken.
 const LONG: usize = 1 << 16;
 
-/// What is left of a draw of nothing: called between Begin and End, or with an incomplete framebuffer, even that is an error.
+/// What is left of a draw of nothing: called between Begin and End, or with an incomplete
+/// framebuffer, even that is an error.
 pub(super) fn drawing_nothing(call: &'static str) -> Call {
     Box::new(move |c| {
         let _ = c.refused_inside_begin(call) || c.refused_by_framebuffer(call);
@@ -85,8 +87,8 @@ impl Compiler {
         self.out_of_memory
     }
 
-    /// Whether there is memory for one more vertex or item. Arrays that are full double, and what they hold is copied once more
-    /// where equal vertices are merged.
+    /// Whether there is memory for one more vertex or item. Arrays that are full double, and what
+    /// they hold is copied once more where equal vertices are merged.
     fn has_room(&mut self) -> bool {
         let batch = &self.builder.batch;
         let grows = |len: usize, capacity: usize| len >= LONG && len == capacity;
@@ -95,7 +97,8 @@ impl Compiler {
             return !self.out_of_memory;
         }
         let attributes = 1 + (self.builder.seen.count_ones() as usize);
-        let bytes = if vertices { batch.positions.len() * attributes * size_of::<[f32; 4]>() } else { 0 };
+        let bytes =
+            if vertices { batch.positions.len() * attributes * size_of::<[f32; 4]>() } else { 0 };
         if !can_have(4 * bytes + 3 * self.items.len() * size_of::<Item>()) {
             *self = Self { out_of_memory: true, ..Self::default() };
         }
@@ -240,7 +243,8 @@ impl Compiler {
         }
     }
 
-    /// An attribute comes up that the vertices so far took from what will be current: they cannot share its batch.
+    /// An attribute comes up that the vertices so far took from what will be current: they cannot
+    /// share its batch.
     fn separate(&mut self) {
         if !self.builder.is_open() {
             self.flush();

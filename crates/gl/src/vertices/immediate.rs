@@ -15,7 +15,11 @@ pub(super) fn filled<const N: usize>(given: [f32; N]) -> [f32; 4] {
 impl Context {
     /// What a call points at; records the error if it points nowhere.
     #[inline(always)]
-    pub(super) fn pointed<T, const N: usize>(&mut self, call: &str, values: Option<[T; N]>) -> Option<[T; N]> {
+    pub(super) fn pointed<T, const N: usize>(
+        &mut self,
+        call: &str,
+        values: Option<[T; N]>,
+    ) -> Option<[T; N]> {
         if values.is_none() {
             self.points_nowhere(call);
         }
@@ -46,7 +50,8 @@ impl Context {
         self.exec_vertex(position);
     }
 
-    /// Takes numbers, not an array: that would lie in memory, and be waited for by who gives a vertex without a list.
+    /// Takes numbers, not an array: that would lie in memory, and be waited for by who gives a
+    /// vertex without a list.
     #[inline(never)]
     fn recorded_vertex(&mut self, x: f32, y: f32, z: f32, w: f32) {
         let position = [x, y, z, w];
@@ -90,7 +95,11 @@ impl Context {
 
     fn restart_primitive(&mut self) {
         if !self.inside_begin() {
-            return self.record_error(enums::INVALID_OPERATION, "glPrimitiveRestartNV", "no glBegin is open");
+            return self.record_error(
+                enums::INVALID_OPERATION,
+                "glPrimitiveRestartNV",
+                "no glBegin is open",
+            );
         }
         let mode = self.builder.mode();
         self.exec_end();
@@ -110,7 +119,8 @@ impl Context {
     }
 }
 
-/// Calls that set attribute `$which`, by value and by pointer; `$as` is how whole numbers are taken.
+/// Calls that set attribute `$which`, by value and by pointer; `$as` is how whole numbers are
+/// taken.
 macro_rules! attributes {
     ($which:expr, $as:ident: $($name:ident $vector:ident $gl:literal $kind:ty [$($x:ident)+];)+) => {
         impl Context {
@@ -274,7 +284,11 @@ impl Context {
         if unit < MAX_TEXTURE_UNITS {
             return Some(TEX + unit);
         }
-        self.record_error(enums::INVALID_ENUM, call, &format!("target {target:#x} is not a texture unit"));
+        self.record_error(
+            enums::INVALID_ENUM,
+            call,
+            &format!("target {target:#x} is not a texture unit"),
+        );
         None
     }
 }
@@ -342,7 +356,10 @@ mod tests {
         let (white, black, red) = ([1.0; 4], [0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]);
         assert_eq!(c.builder.log.len(), 1);
         assert_eq!(c.builder.log[0].colors, Some(vec![white, black, red]));
-        assert_eq!(c.builder.log[0].primitives, [Primitive { mode: enums::POINTS, first: 0, count: 3 }]);
+        assert_eq!(
+            c.builder.log[0].primitives,
+            [Primitive { mode: enums::POINTS, first: 0, count: 3 }]
+        );
     }
 
     #[test]

@@ -41,12 +41,14 @@ const CALLS: u32 = 1 << 22;
 const MAX_RANGE: u32 = 1 << 22;
 
 impl Context {
-    /// Runs `call` at once, or keeps it in the list that is being compiled, or both (`COMPILE_AND_EXECUTE`).
+    /// Runs `call` at once, or keeps it in the list that is being compiled, or both
+    /// (`COMPILE_AND_EXECUTE`).
     pub(crate) fn listable(&mut self, call: impl Fn(&mut Self) + Send + Sync + 'static) {
         self.listed(call, Item::Call);
     }
 
-    /// [`Self::listable`] for a call that leaves waiting what waits to be drawn, or draws it itself.
+    /// [`Self::listable`] for a call that leaves waiting what waits to be drawn, or draws it
+    /// itself.
     pub(crate) fn listable_keeping(&mut self, call: impl Fn(&mut Self) + Send + Sync + 'static) {
         self.listed(call, Item::Keeping);
     }
@@ -97,7 +99,11 @@ impl Context {
         } else if list == 0 {
             self.record_error(enums::INVALID_VALUE, "glNewList", "0 is not the name of a list");
         } else if !matches!(mode, enums::COMPILE | enums::COMPILE_AND_EXECUTE) {
-            self.record_error(enums::INVALID_ENUM, "glNewList", &format!("{mode:#x} is not a mode"));
+            self.record_error(
+                enums::INVALID_ENUM,
+                "glNewList",
+                &format!("{mode:#x} is not a mode"),
+            );
         } else if self.lists.name != 0 {
             let open = format!("list {} is still being compiled", self.lists.name);
             self.record_error(enums::INVALID_OPERATION, "glNewList", &open);
@@ -120,7 +126,11 @@ impl Context {
         let name = self.lists.name;
         (self.lists.name, self.lists.mode, self.lists.recording) = (0, 0, false);
         if compiler.is_out_of_memory() {
-            return self.record_error(enums::OUT_OF_MEMORY, "glEndList", "there is no memory for so long a list");
+            return self.record_error(
+                enums::OUT_OF_MEMORY,
+                "glEndList",
+                "there is no memory for so long a list",
+            );
         }
         let list = Arc::new(List { items: compiler.finish() });
         let old = self.list_names().insert(name, list);
@@ -172,7 +182,11 @@ impl Context {
             let list = self.list_names().get(name).cloned();
             let Some(list) = list.filter(|list| !list.items.is_empty()) else { continue };
             if self.lists.budget == 0 {
-                self.record_error(enums::OUT_OF_MEMORY, "glCallList", "lists that call each other have no end");
+                self.record_error(
+                    enums::OUT_OF_MEMORY,
+                    "glCallList",
+                    "lists that call each other have no end",
+                );
                 break;
             }
             self.lists.budget -= 1;
@@ -189,9 +203,14 @@ impl Context {
             }
             Item::Keeping(call) => call(self),
             Item::Batch(batch) => {
-                if !self.refused_inside_begin("glBegin") && !self.gathers(batch, Submission::Listed) {
+                if !self.refused_inside_begin("glBegin") && !self.gathers(batch, Submission::Listed)
+                {
                     self.flush_vertices();
-                    self.draw_batch(batch.clone(), Submission::Listed, &CurrentState::current(&self.state));
+                    self.draw_batch(
+                        batch.clone(),
+                        Submission::Listed,
+                        &CurrentState::current(&self.state),
+                    );
                 }
             }
             Item::Attribute(which, value) => self.exec_attribute(*which, *value),
@@ -209,7 +228,11 @@ impl Context {
 
         // Check the range.
         let Ok(range) = u32::try_from(range) else {
-            self.record_error(enums::INVALID_VALUE, "glGenLists", &format!("range {range} is negative"));
+            self.record_error(
+                enums::INVALID_VALUE,
+                "glGenLists",
+                &format!("range {range} is negative"),
+            );
             return 0;
         };
         if range == 0 {
@@ -217,9 +240,17 @@ impl Context {
         }
 
         // Reserve names in a row.
-        let first = if range <= MAX_RANGE { free_run(&self.list_names(), self.shared.names, range) } else { None };
+        let first = if range <= MAX_RANGE {
+            free_run(&self.list_names(), self.shared.names, range)
+        } else {
+            None
+        };
         let Some(first) = first else {
-            self.record_error(enums::OUT_OF_MEMORY, "glGenLists", &format!("no {range} names in a row are free"));
+            self.record_error(
+                enums::OUT_OF_MEMORY,
+                "glGenLists",
+                &format!("no {range} names in a row are free"),
+            );
             return 0;
         };
         let empty = Arc::new(List::default());
@@ -233,14 +264,19 @@ impl Context {
             return;
         }
         let Ok(range) = u32::try_from(range) else {
-            self.record_error(enums::INVALID_VALUE, "glDeleteLists", &format!("range {range} is negative"));
+            self.record_error(
+                enums::INVALID_VALUE,
+                "glDeleteLists",
+                &format!("range {range} is negative"),
+            );
             return;
         };
         if range == 0 {
             return;
         }
         let mut names = self.list_names();
-        let doomed: Vec<u32> = names.range(list..=list.saturating_add(range - 1)).map(|(name, _)| *name).collect();
+        let doomed: Vec<u32> =
+            names.range(list..=list.saturating_add(range - 1)).map(|(name, _)| *name).collect();
         let lists: Vec<_> = doomed.iter().filter_map(|name| names.remove(name)).collect();
         drop(names);
         drop(lists);
@@ -259,7 +295,10 @@ impl Context {
 /// The first of `count` free names in a row, in the range `own` if there is room.
 fn free_run(names: &ListNames, own: NameRange, count: u32) -> Option<u32> {
     // Above all others of the range.
-    let highest = names.range(own.first()..=own.last()).next_back().map_or(own.first() - 1, |(name, _)| *name);
+    let highest = names
+        .range(own.first()..=own.last())
+        .next_back()
+        .map_or(own.first() - 1, |(name, _)| *name);
     if own.last() - highest >= count {
         return Some(highest + 1);
     }
@@ -286,18 +325,23 @@ fn offsets(c: &Context, n: i32, kind: u32, lists: usize) -> Result<Vec<u32>, (u3
     };
 
     // Read the names by their type.
-    let offsets = match kind {
-        enums::BYTE => client::values::<i8>(memory, lists, n).map(|v| v.iter().map(|&x| x as u32).collect()),
-        enums::SHORT => client::values::<i16>(memory, lists, n).map(|v| v.iter().map(|&x| x as u32).collect()),
-        enums::UNSIGNED_SHORT => client::values::<u16>(memory, lists, n).map(|v| v.iter().map(|&x| x.into()).collect()),
-        enums::INT | enums::UNSIGNED_INT => client::values::<u32>(memory, lists, n),
-        enums::FLOAT => client::values::<f32>(memory, lists, n).map(|v| v.iter().map(|&x| x as i64 as u32).collect()),
-        enums::UNSIGNED_BYTE => joined(1),
-        enums::_2_BYTES => joined(2),
-        enums::_3_BYTES => joined(3),
-        enums::_4_BYTES => joined(4),
-        _ => return Err((enums::INVALID_ENUM, "type is not one of list names")),
-    };
+    let offsets =
+        match kind {
+            enums::BYTE => client::values::<i8>(memory, lists, n)
+                .map(|v| v.iter().map(|&x| x as u32).collect()),
+            enums::SHORT => client::values::<i16>(memory, lists, n)
+                .map(|v| v.iter().map(|&x| x as u32).collect()),
+            enums::UNSIGNED_SHORT => client::values::<u16>(memory, lists, n)
+                .map(|v| v.iter().map(|&x| x.into()).collect()),
+            enums::INT | enums::UNSIGNED_INT => client::values::<u32>(memory, lists, n),
+            enums::FLOAT => client::values::<f32>(memory, lists, n)
+                .map(|v| v.iter().map(|&x| x as i64 as u32).collect()),
+            enums::UNSIGNED_BYTE => joined(1),
+            enums::_2_BYTES => joined(2),
+            enums::_3_BYTES => joined(3),
+            enums::_4_BYTES => joined(4),
+            _ => return Err((enums::INVALID_ENUM, "type is not one of list names")),
+        };
     offsets.ok_or((enums::INVALID_VALUE, "the names are not in the client's memory"))
 }
 
@@ -324,7 +368,8 @@ mod tests {
     }
 
     fn batches(list: &List) -> Vec<Arc<VertexBatch>> {
-        let batch = |item: &Item| if let Item::Batch(batch) = item { Some(batch.clone()) } else { None };
+        let batch =
+            |item: &Item| if let Item::Batch(batch) = item { Some(batch.clone()) } else { None };
         list.items.iter().filter_map(batch).collect()
     }
 

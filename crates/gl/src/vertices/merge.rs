@@ -1,14 +1,14 @@
 //! Merging of equal vertices, so that each is transformed once.
 //!
-//! Vertices go one by one into an open-addressing table of those already kept; two are equal if all bits of all
-//! attributes are. Linear in the number of vertices.
+//! Vertices go one by one into an open-addressing table of those already kept; two are equal if all
+//! bits of all attributes are. Linear in the number of vertices.
 
 use crate::vertex::VertexBatch;
 
 const FREE: u32 = u32::MAX;
 
-/// Replaces equal vertices of a batch without indices by one, named by indices. Batches that would gain nothing, and
-/// those with materials (which hold from vertex to vertex), stay as they are.
+/// Replaces equal vertices of a batch without indices by one, named by indices. Batches that would
+/// gain nothing, and those with materials (which hold from vertex to vertex), stay as they are.
 pub(crate) fn merge_equal(batch: &mut VertexBatch) {
     let n = batch.positions.len();
     if n < 2 || n >= FREE as usize / 2 || batch.indices.is_some() || !batch.materials.is_empty() {
@@ -56,7 +56,8 @@ fn hashes(batch: &VertexBatch) -> Vec<u64> {
     fn mix<const N: usize>(hashes: &mut [u64], values: &[[f32; N]]) {
         for (hash, value) in hashes.iter_mut().zip(values) {
             for x in value {
-                *hash = (hash.rotate_left(5) ^ u64::from(x.to_bits())).wrapping_mul(0x517c_c1b7_2722_0a95);
+                *hash = (hash.rotate_left(5) ^ u64::from(x.to_bits()))
+                    .wrapping_mul(0x517c_c1b7_2722_0a95);
             }
         }
     }

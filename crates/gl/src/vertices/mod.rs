@@ -1,5 +1,5 @@
-//! Where vertices come from: Begin/End, arrays, display lists, evaluators; and where they go besides the screen:
-//! feedback and selection.
+//! Where vertices come from: Begin/End, arrays, display lists, evaluators; and where they go
+//! besides the screen: feedback and selection.
 
 mod arrays;
 mod attribute;
@@ -32,7 +32,12 @@ use std::sync::Arc;
 
 impl Context {
     /// Draws a batch: to the screen, or to the feedback or selection buffer.
-    pub(crate) fn draw_batch(&mut self, batch: Arc<VertexBatch>, sent: Submission, given: &CurrentState) {
+    pub(crate) fn draw_batch(
+        &mut self,
+        batch: Arc<VertexBatch>,
+        sent: Submission,
+        given: &CurrentState,
+    ) {
         if batch.primitives.is_empty() {
             return;
         }
@@ -68,17 +73,28 @@ mod tests {
 
     impl Dice {
         fn next(&mut self) -> u64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             self.0 >> 33
         }
 
         fn small(&mut self) -> i32 {
             const WILD: [i32; 4] = [i32::MAX, i32::MIN, -1, 1 << 12];
-            if self.next().is_multiple_of(16) { WILD[self.next() as usize % 4] } else { (self.next() % 12) as i32 }
+            if self.next().is_multiple_of(16) {
+                WILD[self.next() as usize % 4]
+            } else {
+                (self.next() % 12) as i32
+            }
         }
 
         fn address(&mut self) -> usize {
-            if self.next().is_multiple_of(8) { self.small() as usize } else { BASE + self.next() as usize % 64 }
+            if self.next().is_multiple_of(8) {
+                self.small() as usize
+            } else {
+                BASE + self.next() as usize % 64
+            }
         }
 
         fn one_of(&mut self, tokens: &[u32]) -> u32 {
@@ -88,8 +104,14 @@ mod tests {
 
     /// Makes one call, whatever it is.
     fn call(c: &mut Context, d: &mut Dice) {
-        let kinds = [enums::FLOAT, enums::SHORT, enums::UNSIGNED_BYTE, enums::INT, enums::DOUBLE, 7];
-        let arrays = [enums::VERTEX_ARRAY, enums::COLOR_ARRAY, enums::EDGE_FLAG_ARRAY, enums::TEXTURE_COORD_ARRAY];
+        let kinds =
+            [enums::FLOAT, enums::SHORT, enums::UNSIGNED_BYTE, enums::INT, enums::DOUBLE, 7];
+        let arrays = [
+            enums::VERTEX_ARRAY,
+            enums::COLOR_ARRAY,
+            enums::EDGE_FLAG_ARRAY,
+            enums::TEXTURE_COORD_ARRAY,
+        ];
         let targets = [enums::ARRAY_BUFFER, enums::ELEMENT_ARRAY_BUFFER];
         let target = d.one_of(&targets);
         match d.next() % 34 {
@@ -99,7 +121,10 @@ mod tests {
             12 => c.color_4fv((d.small() > 0).then_some([0.25, 0.5, 0.75, f32::NAN])),
             13 => c.multi_tex_coord_1s(enums::TEXTURE0 + d.small() as u32 % 9, 1),
             14 => c.edge_flag(d.next() as u8 & 1),
-            15 => c.new_list(d.small() as u32, d.one_of(&[enums::COMPILE, enums::COMPILE_AND_EXECUTE])),
+            15 => c.new_list(
+                d.small() as u32,
+                d.one_of(&[enums::COMPILE, enums::COMPILE_AND_EXECUTE]),
+            ),
             16..18 => c.end_list(),
             18 => c.call_lists(d.small(), d.one_of(&kinds), d.address()),
             19 => c.delete_lists(d.small() as u32, d.small()),
@@ -112,7 +137,14 @@ mod tests {
             26 => c.bind_buffer(target, d.small() as u32),
             27 => c.buffer_data(target, d.small() as isize, d.address(), enums::STATIC_DRAW),
             28 => c.buffer_sub_data(target, d.small() as isize, d.small() as isize, d.address()),
-            29 => _ = c.map_buffer_range(target, d.small() as isize, d.small() as isize, d.small() as u32),
+            29 => {
+                _ = c.map_buffer_range(
+                    target,
+                    d.small() as isize,
+                    d.small() as isize,
+                    d.small() as u32,
+                )
+            }
             30 => _ = c.unmap_buffer(target),
             31 => c.bind_vertex_array(d.small() as u32 % 3),
             32 => c.eval_mesh_2(enums::FILL, d.small(), d.small(), d.small(), d.small()),

@@ -19,7 +19,9 @@ impl Context {
         match usize::try_from(n) {
             Err(_) => self.record_error(enums::INVALID_VALUE, call, &format!("n {n} is negative")),
             Ok(0) => {}
-            Ok(n) if n > MAX_NAMES => self.record_error(enums::OUT_OF_MEMORY, call, &format!("{n} names are too many")),
+            Ok(n) if n > MAX_NAMES => {
+                self.record_error(enums::OUT_OF_MEMORY, call, &format!("{n} names are too many"))
+            }
             Ok(n) => {
                 let names = take(self, n);
                 if to == 0 || !self.memory.write(to, bytemuck::cast_slice(&names)) {
@@ -40,7 +42,11 @@ impl Context {
         };
         let names = client::values(&*self.memory, from, n);
         if names.is_none() {
-            self.record_error(enums::INVALID_VALUE, call, "its names are not in the client's memory");
+            self.record_error(
+                enums::INVALID_VALUE,
+                call,
+                "its names are not in the client's memory",
+            );
         }
         names.unwrap_or_default()
     }

@@ -25,7 +25,8 @@ impl Context {
             }
 
             // Map depth to the depth range.
-            let (near, far) = (c.state.viewport.depth_range.near as f32, c.state.viewport.depth_range.far as f32);
+            let (near, far) =
+                (c.state.viewport.depth_range.near as f32, c.state.viewport.depth_range.far as f32);
             let depth = if z <= 0.0 {
                 near
             } else if z >= 1.0 {

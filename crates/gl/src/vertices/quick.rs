@@ -1,6 +1,7 @@
-//! What calls of Begin/End do most of the time, and nothing else: no list is compiled, the arrays have room. It is little enough
-//! for an entry point to keep no register and to need no guard against panics; whatever else must be done is left to the
-//! method of the call ([`super::immediate`]), with the same results.
+//! What calls of Begin/End do most of the time, and nothing else: no list is compiled, the arrays
+//! have room. It is little enough for an entry point to keep no register and to need no guard
+//! against panics; whatever else must be done is left to the method of the call
+//! ([`super::immediate`]), with the same results.
 
 use super::attribute::{COLOR, NORMAL, TEX};
 use super::immediate::filled;
@@ -60,10 +61,13 @@ mod tests {
     use super::super::tests::context;
     use crate::{Context, enums};
 
-    /// Three triangles: attributes come before and after vertices, some of them late; `quick` asks the quick way first.
+    /// Three triangles: attributes come before and after vertices, some of them late; `quick` asks
+    /// the quick way first.
     fn draw(c: &mut Context, quick: bool) -> usize {
         let mut done = 0;
-        let mut unless = |c: &mut Context, quickly: &dyn Fn(&mut Context) -> bool, call: &dyn Fn(&mut Context)| {
+        let mut unless = |c: &mut Context,
+                          quickly: &dyn Fn(&mut Context) -> bool,
+                          call: &dyn Fn(&mut Context)| {
             let did = quick && quickly(c);
             done += usize::from(did);
             if !did {

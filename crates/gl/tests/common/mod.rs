@@ -132,7 +132,17 @@ impl Stage {
         for (level, (size, texels)) in levels.iter().enumerate() {
             let at = self.put(texels);
             let (level, rgba) = (level as i32, gl::RGBA);
-            self.c.tex_image_2d(gl::TEXTURE_2D, level, rgba as i32, *size, *size, 0, rgba, gl::UNSIGNED_BYTE, at);
+            self.c.tex_image_2d(
+                gl::TEXTURE_2D,
+                level,
+                rgba as i32,
+                *size,
+                *size,
+                0,
+                rgba,
+                gl::UNSIGNED_BYTE,
+                at,
+            );
         }
         for filter in [gl::TEXTURE_MIN_FILTER, gl::TEXTURE_MAG_FILTER] {
             self.c.tex_parameteri(gl::TEXTURE_2D, filter, gl::NEAREST as i32);
@@ -152,7 +162,8 @@ pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
     pub(crate) fn below(&mut self, n: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as u32 % n
     }
 

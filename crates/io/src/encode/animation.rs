@@ -67,12 +67,14 @@ impl Animation {
     /// Adds a picture; straight alpha, the top row first.
     ///
     /// # Errors
-    /// [`Error::Encode`] for a picture of another size than the first one, or of a size that the format cannot say, or where
-    /// the feature `images` is left out.
+    /// [`Error::Encode`] for a picture of another size than the first one, or of a size that the
+    /// format cannot say, or where the feature `images` is left out.
     pub fn add(&mut self, picture: &Plane<[u8; 4]>) -> Result<(), Error> {
         let size = [picture.width(), picture.height()];
         if self.file.as_ref().is_some_and(|(first, _)| *first != size) {
-            return Err(Error::Encode { what: "the pictures of an animation have one size".to_owned() });
+            return Err(Error::Encode {
+                what: "the pictures of an animation have one size".to_owned(),
+            });
         }
         let (hundredths, milliseconds) = (self.shown(100.0), self.shown(1000.0));
         let file = match &mut self.file {
@@ -88,7 +90,8 @@ impl Animation {
         Ok(())
     }
 
-    /// How long the next picture is shown, in parts of a second. Rounding does not add up: the k-th picture ends at k / rate.
+    /// How long the next picture is shown, in parts of a second. Rounding does not add up: the k-th
+    /// picture ends at k / rate.
     fn shown(&self, parts: f64) -> u32 {
         let end = |number: u32| (f64::from(number) * parts / self.rate).round();
         (end(self.added + 1) - end(self.added)) as u32
@@ -100,7 +103,8 @@ impl Animation {
     /// [`Error::Encode`] unless all pictures have been added.
     pub fn finish(self) -> Result<Vec<u8>, Error> {
         let Some((_, file)) = self.file.filter(|_| self.added == self.count) else {
-            let what = format!("{} of {} pictures of the animation are there", self.added, self.count);
+            let what =
+                format!("{} of {} pictures of the animation are there", self.added, self.count);
             return Err(Error::Encode { what });
         };
         match file {
@@ -133,7 +137,8 @@ fn open(format: AnimationFormat, size: [u32; 2], count: u32, srgb: bool) -> Resu
 /// Writes one picture as GIF: at most 256 colours, pixels opaque or transparent.
 ///
 /// # Errors
-/// [`Error::Encode`] if the picture has no pixels or more than 65535 a side, or if the feature `images` is left out.
+/// [`Error::Encode`] if the picture has no pixels or more than 65535 a side, or if the feature
+/// `images` is left out.
 pub fn gif(picture: &Plane<[u8; 4]>) -> Result<Vec<u8>, Error> {
     let size = [picture.width(), picture.height()];
     check_sides(size[0], size[1], gif::LONGEST, "GIF")?;
@@ -145,7 +150,8 @@ pub fn gif(picture: &Plane<[u8; 4]>) -> Result<Vec<u8>, Error> {
 /// Writes one picture as lossless WebP.
 ///
 /// # Errors
-/// [`Error::Encode`] if the picture has no pixels or more than 16384 a side, or if the feature `images` is left out.
+/// [`Error::Encode`] if the picture has no pixels or more than 16384 a side, or if the feature
+/// `images` is left out.
 pub fn webp(picture: &Plane<[u8; 4]>) -> Result<Vec<u8>, Error> {
     check_sides(picture.width(), picture.height(), webp::LONGEST, "WebP")?;
     webp::still(picture)
@@ -174,7 +180,10 @@ mod tests {
     /// The pictures that a decoder gives, with their milliseconds.
     fn decoded<'d>(decoder: impl AnimationDecoder<'d>) -> Vec<(Vec<u8>, u32)> {
         let frames = decoder.into_frames().collect_frames().unwrap();
-        frames.into_iter().map(|f| (f.buffer().as_raw().clone(), f.delay().numer_denom_ms().0)).collect()
+        frames
+            .into_iter()
+            .map(|f| (f.buffer().as_raw().clone(), f.delay().numer_denom_ms().0))
+            .collect()
     }
 
     #[test]
@@ -185,10 +194,16 @@ mod tests {
         };
         // 30 a second: the ends are at 33.3 and 66.7 ms, which GIF tells in hundredths.
         let gif = animation(AnimationFormat::Gif, 30.0);
-        assert_eq!(decoded(image::codecs::gif::GifDecoder::new(Cursor::new(&gif)).unwrap()), expected([30, 40]));
+        assert_eq!(
+            decoded(image::codecs::gif::GifDecoder::new(Cursor::new(&gif)).unwrap()),
+            expected([30, 40])
+        );
         assert!(gif.windows(11).any(|w| w == b"NETSCAPE2.0"));
         let webp = animation(AnimationFormat::WebP, 30.0);
-        assert_eq!(decoded(image::codecs::webp::WebPDecoder::new(Cursor::new(&webp)).unwrap()), expected([33, 34]));
+        assert_eq!(
+            decoded(image::codecs::webp::WebPDecoder::new(Cursor::new(&webp)).unwrap()),
+            expected([33, 34])
+        );
         assert_eq!(webp.len(), 8 + u32::from_le_bytes(webp[4..8].try_into().unwrap()) as usize);
     }
 
@@ -219,12 +234,18 @@ mod tests {
 
     #[test]
     fn more_colours_than_256_are_near() {
-        let picture =
-            Plane::from_rows(32, 32, (0..1024u32).map(|i| [(i / 4) as u8, (i % 256) as u8, 128, 255]).collect());
+        let picture = Plane::from_rows(
+            32,
+            32,
+            (0..1024u32).map(|i| [(i / 4) as u8, (i % 256) as u8, 128, 255]).collect(),
+        );
         let picture = picture.unwrap();
         let back = crate::image::decode(&gif(&picture).unwrap(), "a.gif").unwrap();
-        let far =
-            back.data().iter().zip(picture.data()).map(|(a, b)| (0..3).map(|k| a[k].abs_diff(b[k])).max().unwrap());
+        let far = back
+            .data()
+            .iter()
+            .zip(picture.data())
+            .map(|(a, b)| (0..3).map(|k| a[k].abs_diff(b[k])).max().unwrap());
         assert!(far.max().unwrap() < 40 && back.data().iter().all(|pixel| pixel[3] == 255));
     }
 
@@ -232,7 +253,13 @@ mod tests {
     fn what_does_not_fit_is_refused() {
         let mut animation = Animation::new(AnimationFormat::Gif, 2, 25.0, true);
         animation.add(&Plane::filled(4, 4, [0; 4])).unwrap();
-        assert!(animation.add(&Plane::filled(4, 5, [0; 4])).unwrap_err().to_string().contains("one size"));
+        assert!(
+            animation
+                .add(&Plane::filled(4, 5, [0; 4]))
+                .unwrap_err()
+                .to_string()
+                .contains("one size")
+        );
         assert!(animation.finish().unwrap_err().to_string().contains("1 of 2"));
     }
 }

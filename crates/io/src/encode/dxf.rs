@@ -1,7 +1,8 @@
 //! DXF: a drawing for CAD programs, in the format of AutoCAD release 12, which everything reads.
 //!
-//! Layers have the names of classes, their colours and line types; entities take both from their layer, and none is on layer 0. The unit
-//! is the millimetre, y is upwards. The release knows neither line widths nor filled areas: regions are left out.
+//! Layers have the names of classes, their colours and line types; entities take both from their
+//! layer, and none is on layer 0. The unit is the millimetre, y is upwards. The release knows
+//! neither line widths nor filled areas: regions are left out.
 //!
 //! Source: \[DXF\].
 
@@ -32,7 +33,11 @@ pub fn dxf(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
     file.table("LAYER", layers.len() + 1);
     file.layer("0", COLORS[0], SOLID);
     for layer in &layers {
-        file.layer(layer.name, COLORS[layer.number], if layer.dashes.is_some() { DASHED } else { SOLID });
+        file.layer(
+            layer.name,
+            COLORS[layer.number],
+            if layer.dashes.is_some() { DASHED } else { SOLID },
+        );
     }
     file.group(0, "ENDTAB");
     file.group(0, "ENDSEC");
@@ -95,7 +100,9 @@ impl Groups {
         self.group(1, "AC1009");
         self.group(9, "$INSUNITS");
         self.group(70, MILLIMETRES);
-        for (name, at) in [("$EXTMIN", [0, 0]), ("$EXTMAX", size), ("$LIMMIN", [0, 0]), ("$LIMMAX", size)] {
+        for (name, at) in
+            [("$EXTMIN", [0, 0]), ("$EXTMAX", size), ("$LIMMIN", [0, 0]), ("$LIMMAX", size)]
+        {
             self.group(9, name);
             self.point(10, at);
             if name.starts_with("$EXT") {
@@ -124,7 +131,10 @@ impl Groups {
         self.group(3, description);
         self.group(72, 65);
         self.group(73, pattern.len());
-        self.group(40, format_args!("{:?}", pattern.iter().fold(0.0, |sum, length| sum + length.abs())));
+        self.group(
+            40,
+            format_args!("{:?}", pattern.iter().fold(0.0, |sum, length| sum + length.abs())),
+        );
         pattern.iter().for_each(|length| self.group(49, format_args!("{length:?}")));
     }
 
@@ -166,12 +176,19 @@ mod tests {
 
     #[test]
     fn layers_line_types_and_entities_are_written() {
-        let line = |class, layers, points: &[[f64; 2]]| Line { class, layers, points: points.to_vec() };
+        let line =
+            |class, layers, points: &[[f64; 2]]| Line { class, layers, points: points.to_vec() };
         let lines = vec![
             line(LineClass::Contour, 0, &[[1.0, 1.0], [2.5, 1.0], [2.0, 2.0], [1.0, 1.0]]),
             line(LineClass::Crease, 1, &[[0.0, 0.0], [1.5, 0.25]]),
         ];
-        let drawing = Drawing { width: 3.0, height: 2.0, lines, points: vec![[0.5, 1.0]], ..Drawing::default() };
+        let drawing = Drawing {
+            width: 3.0,
+            height: 2.0,
+            lines,
+            points: vec![[0.5, 1.0]],
+            ..Drawing::default()
+        };
         let text = String::from_utf8(dxf(&drawing, &DrawingOptions::default())).unwrap();
         for part in [
             "9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n4\n9\n$EXTMIN\n10\n0.0\n20\n0.0\n30\n0.0\n9\n$EXTMAX\n10\n3.0\n20\n2.0\n",
@@ -185,7 +202,8 @@ mod tests {
             assert!(text.contains(part), "{part}\nis not in\n{text}");
         }
         assert!(!text.contains("8\n0\n"), "nothing is on layer 0");
-        let empty = String::from_utf8(dxf(&Drawing::default(), &DrawingOptions::default())).unwrap();
+        let empty =
+            String::from_utf8(dxf(&Drawing::default(), &DrawingOptions::default())).unwrap();
         assert!(!empty.contains("HIDDEN") && empty.ends_with("ENTITIES\n0\nENDSEC\n0\nEOF\n"));
     }
 }

@@ -1,6 +1,8 @@
-//! GIF out: 256 colours a picture, each pixel opaque or transparent; pictures one after the other make an animation.
+//! GIF out: 256 colours a picture, each pixel opaque or transparent; pictures one after the other
+//! make an animation.
 //!
-//! A picture of more colours gets those that a neural network finds (NeuQuant, in the `gif` crate), without dithering.
+//! A picture of more colours gets those that a neural network finds (NeuQuant, in the `gif` crate),
+//! without dithering.
 //!
 //! Source: \[GIF89a\].
 
@@ -28,7 +30,8 @@ impl Gif {
     /// An empty file; `repeats` for one that plays for ever.
     pub(super) fn new([width, height]: [u32; 2], repeats: bool) -> Result<Self, Error> {
         // The sides have been checked.
-        let mut encoder = gif::Encoder::new(Vec::new(), width as u16, height as u16, &[]).map_err(failed)?;
+        let mut encoder =
+            gif::Encoder::new(Vec::new(), width as u16, height as u16, &[]).map_err(failed)?;
         if repeats {
             encoder.set_repeat(gif::Repeat::Infinite).map_err(failed)?;
         }

@@ -1,8 +1,8 @@
 //! HP-GL: a drawing for pen plotters and cutters, a pen for each layer.
 //!
-//! The unit is that of plotters, 1/40 mm, y is upwards. `PS` and `PW`, which tell the size of the sheet and widths of pens, are of HP-GL/2;
-//! older plotters skip them. Lines are ordered for a plotter, and dashes are drawn one by one, since devices differ in what they
-//! make of line types.
+//! The unit is that of plotters, 1/40 mm, y is upwards. `PS` and `PW`, which tell the size of the
+//! sheet and widths of pens, are of HP-GL/2; older plotters skip them. Lines are ordered for a
+//! plotter, and dashes are drawn one by one, since devices differ in what they make of line types.
 //!
 //! Source: \[HP-GL\].
 
@@ -49,13 +49,20 @@ mod tests {
 
     #[test]
     fn pens_are_chosen_and_lines_are_drawn_once() {
-        let line = |class, layers, points: &[[f64; 2]]| Line { class, layers, points: points.to_vec() };
+        let line =
+            |class, layers, points: &[[f64; 2]]| Line { class, layers, points: points.to_vec() };
         let lines = vec![
             line(LineClass::Contour, 0, &[[1.0, 1.0], [2.5, 1.0]]),
             line(LineClass::Crease, 0, &[[2.5, 1.0], [1.0, 1.0], [0.0, 0.0]]),
             line(LineClass::Crease, 1, &[[0.0, 2.0], [4.0, 2.0]]),
         ];
-        let drawing = Drawing { width: 4.0, height: 2.0, lines, points: vec![[0.5, 1.0]], ..Drawing::default() };
+        let drawing = Drawing {
+            width: 4.0,
+            height: 2.0,
+            lines,
+            points: vec![[0.5, 1.0]],
+            ..Drawing::default()
+        };
         let text = String::from_utf8(hpgl(&drawing, &DrawingOptions::default())).unwrap();
         let expected = "IN;PS160,80;\nSP11;PW0.5;\nPU20,40;PD;\nSP1;PW0.5;\nPU40,40;PD100,40;\nSP3;PW0.35;\nPU0,0;PD40,40;\n\
                         SP8;PW0.18;\nPU0,80;PD80,80;\nPU120,80;PD160,80;\nPU;SP0;\n";

@@ -6,16 +6,18 @@ use super::pixels::check_sides;
 use crate::Error;
 use vitral_frame::Plane;
 
-/// Writes an sRGB picture. `quality` is 1 (small) to 100 (good); 90 is a usual choice. JPEG knows no transparency:
-/// what is transparent lets a white page through.
+/// Writes an sRGB picture. `quality` is 1 (small) to 100 (good); 90 is a usual choice. JPEG knows
+/// no transparency: what is transparent lets a white page through.
 ///
 /// # Errors
-/// [`Error::Encode`] if the picture has no pixels or more than 65535 a side, if `quality` is out of range, or if the feature
-/// `images` is left out.
+/// [`Error::Encode`] if the picture has no pixels or more than 65535 a side, if `quality` is out of
+/// range, or if the feature `images` is left out.
 pub fn jpeg(picture: &Plane<[u8; 4]>, quality: u8) -> Result<Vec<u8>, Error> {
     check_sides(picture.width(), picture.height(), 65_535, "JPEG")?;
     if !(1..=100).contains(&quality) {
-        return Err(Error::Encode { what: format!("JPEG quality {quality}, 1 to 100 are possible") });
+        return Err(Error::Encode {
+            what: format!("JPEG quality {quality}, 1 to 100 are possible"),
+        });
     }
     code(picture, quality)
 }

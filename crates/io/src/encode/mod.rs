@@ -15,8 +15,8 @@
 //! | [`dxf()`] | drawings for CAD programs |
 //! | [`hpgl()`] | drawings for plotters |
 //!
-//! Those of pictures take planes with the top row first and straight alpha; all give the whole file. [`simplify()`], [`for_plotter`]
-//! and [`TitleBlock`] change a drawing before it is written.
+//! Those of pictures take planes with the top row first and straight alpha; all give the whole
+//! file. [`simplify()`], [`for_plotter`] and [`TitleBlock`] change a drawing before it is written.
 
 mod animation;
 mod dxf;
@@ -53,8 +53,11 @@ use crate::Error;
 use vitral_frame::Plane;
 
 /// What is read, for messages about other formats.
-const READ: &str =
-    if cfg!(feature = "images") { "PNG, JPEG, TGA, BMP, GIF, WebP, TIFF, DDS and PPM are" } else { "PNG and PPM are" };
+const READ: &str = if cfg!(feature = "images") {
+    "PNG, JPEG, TGA, BMP, GIF, WebP, TIFF, DDS and PPM are"
+} else {
+    "PNG and PPM are"
+};
 
 /// Reads a picture: PPM (also PGM), or a format that textures come in, known by content.
 ///

@@ -1,4 +1,5 @@
-//! NPY out: arrays for numpy, version 1.0, little-endian, C order, shape `(height, width)` or `(height, width, 3)`.
+//! NPY out: arrays for numpy, version 1.0, little-endian, C order, shape `(height, width)` or
+//! `(height, width, 3)`.
 //!
 //! Source: \[NPY\].
 
@@ -25,10 +26,12 @@ pub fn npy_u32(plane: &Plane<u32>) -> Vec<u8> {
     out
 }
 
-/// Magic, version, and a dictionary padded with spaces so that the data starts at a multiple of 64 bytes.
+/// Magic, version, and a dictionary padded with spaces so that the data starts at a multiple of 64
+/// bytes.
 fn header(kind: &str, shape: &[u32]) -> Vec<u8> {
     let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
-    let dictionary = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}), }}", shape.join(", "));
+    let dictionary =
+        format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}), }}", shape.join(", "));
     let length = (10 + dictionary.len() + 1).next_multiple_of(64) - 10;
     let mut out = b"\x93NUMPY\x01\x00".to_vec();
     out.extend((length as u16).to_le_bytes());
@@ -46,7 +49,8 @@ mod tests {
         assert_eq!(&file[..10], b"\x93NUMPY\x01\x00\x76\x00");
         let text = std::str::from_utf8(&file[10..128]).unwrap();
         assert!(
-            text.starts_with("{'descr': '<u4', 'fortran_order': False, 'shape': (1, 2), }  ") && text.ends_with(" \n")
+            text.starts_with("{'descr': '<u4', 'fortran_order': False, 'shape': (1, 2), }  ")
+                && text.ends_with(" \n")
         );
         assert_eq!(&file[128..], [1, 0, 0, 0, 4, 3, 2, 1]);
         let normals = npy_f32x3(&Plane::from_rows(1, 1, vec![[1.0, 0.0, -1.0]]).unwrap());

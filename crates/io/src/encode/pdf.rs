@@ -1,9 +1,11 @@
 //! PDF: a drawing with a layer for each class of lines, as a page of real size.
 //!
-//! Layers are optional content groups, which viewers list and switch. The content has millimetres for its unit and the
-//! numbers of the other formats. There is no date and no identifier in the file: equal drawings give equal bytes.
+//! Layers are optional content groups, which viewers list and switch. The content has millimetres
+//! for its unit and the numbers of the other formats. There is no date and no identifier in the
+//! file: equal drawings give equal bytes.
 //!
-//! Source: \[PDF\], 8.11 for optional content, 8.5 for paths; the objects are written by `pdf-writer`.
+//! Source: \[PDF\], 8.11 for optional content, 8.5 for paths; the objects are written by
+//!         `pdf-writer`.
 
 use super::pens::{DrawingOptions, FILL, Precision, layers, thousandths};
 use pdf_writer::writers::ExtGraphicsState;
@@ -53,7 +55,9 @@ pub fn pdf(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
     // Describe the page and the opacities that it uses.
     let mut page = pdf.page(Ref::new(PAGE));
     let [width, height] = [drawing.width, drawing.height].map(|side| (side * POINTS / unit) as f32);
-    page.parent(Ref::new(PAGES)).media_box(Rect::new(0.0, 0.0, width, height)).contents(Ref::new(CONTENT));
+    page.parent(Ref::new(PAGES))
+        .media_box(Rect::new(0.0, 0.0, width, height))
+        .contents(Ref::new(CONTENT));
     if unit > 1.0 {
         page.user_unit(unit as f32);
     }
@@ -83,7 +87,10 @@ pub fn pdf(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
     pdf.stream(Ref::new(CONTENT), &compressed).filter(Filter::FlateDecode);
     for (i, (number, name)) in groups.iter().enumerate() {
         let label = format!("{number} {name}");
-        pdf.indirect(group(i)).dict().pair(Name(b"Type"), Name(b"OCG")).pair(Name(b"Name"), TextStr(&label));
+        pdf.indirect(group(i))
+            .dict()
+            .pair(Name(b"Type"), Name(b"OCG"))
+            .pair(Name(b"Name"), TextStr(&label));
     }
     pdf.finish()
 }
@@ -93,7 +100,8 @@ const OPAQUE: u32 = 1000;
 
 /// The opacities of a drawing that has clear regions, in thousandths; none, if all are opaque.
 fn opacities(drawing: &Drawing) -> BTreeSet<u32> {
-    let all: BTreeSet<u32> = drawing.regions.iter().map(|region| thousandths(region.opacity)).collect();
+    let all: BTreeSet<u32> =
+        drawing.regions.iter().map(|region| thousandths(region.opacity)).collect();
     if all.iter().all(|&opacity| opacity == OPAQUE) { BTreeSet::new() } else { all }
 }
 
@@ -102,8 +110,13 @@ fn state_name(thousandths: u32) -> String {
     format!("opacity{thousandths}")
 }
 
-/// The operators that paint the page, with `scale` points for a millimetre; and the layers' numbers and names, the lowest first.
-fn content(drawing: &Drawing, options: &DrawingOptions, scale: f64) -> (String, Vec<(usize, &'static str)>) {
+/// The operators that paint the page, with `scale` points for a millimetre; and the layers' numbers
+/// and names, the lowest first.
+fn content(
+    drawing: &Drawing,
+    options: &DrawingOptions,
+    scale: f64,
+) -> (String, Vec<(usize, &'static str)>) {
     let precision = options.precision();
     let (mut out, mut groups) = (String::new(), Vec::new());
     let _ = writeln!(out, "{scale:.9} 0 0 {scale:.9} 0 0 cm\n1 J 1 j");
@@ -119,7 +132,8 @@ fn content(drawing: &Drawing, options: &DrawingOptions, scale: f64) -> (String, 
         }
         for region in &drawing.regions {
             // Three decimals tell all levels of eight bits apart.
-            let [red, green, blue] = region.color.map(|level| (f64::from(level) / 0.255).round() / 1000.0);
+            let [red, green, blue] =
+                region.color.map(|level| (f64::from(level) / 0.255).round() / 1000.0);
             let _ = writeln!(out, "{red} {green} {blue} rg");
             let opacity = thousandths(region.opacity);
             if std::mem::replace(&mut painted, opacity) != opacity {
@@ -173,14 +187,21 @@ mod tests {
     use vitral_frame::drawing::{Line, LineClass, Region};
 
     fn sheet(width: f64, height: f64) -> Drawing {
-        let line = |class, layers, points: &[[f64; 2]]| Line { class, layers, points: points.to_vec() };
+        let line =
+            |class, layers, points: &[[f64; 2]]| Line { class, layers, points: points.to_vec() };
         let lines = vec![
             line(LineClass::Contour, 0, &[[1.0, 1.0], [2.5, 1.0], [2.0, 2.0], [1.0, 1.0]]),
             line(LineClass::Crease, 1, &[[0.0, 0.0], [1.5, 0.25]]),
         ];
         let ring = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
-        let region =
-            Region { surface: 3, material: None, color: [255, 0, 16], opacity: 1.0, unlit: 0, rings: vec![ring] };
+        let region = Region {
+            surface: 3,
+            material: None,
+            color: [255, 0, 16],
+            opacity: 1.0,
+            unlit: 0,
+            rings: vec![ring],
+        };
         Drawing { width, height, lines, regions: vec![region], points: vec![[0.5, 1.0]] }
     }
 
@@ -213,26 +234,41 @@ mod tests {
 
     #[test]
     fn outlined_regions_are_closed_and_stroked() {
-        let options = DrawingOptions { region_outlines: Some(LineClass::Smooth), ..DrawingOptions::default() };
+        let options = DrawingOptions {
+            region_outlines: Some(LineClass::Smooth),
+            ..DrawingOptions::default()
+        };
         let (text, _) = content(&sheet(9.0, 9.0), &options, POINTS);
-        assert!(text.contains("/fill BDC\n0.18 w\n[] 0 d\n1 0 0.063 rg\n0 0 m\n1 0 l\n1 1 l\nh\nB*\nEMC\n"), "{text}");
+        assert!(
+            text.contains(
+                "/fill BDC\n0.18 w\n[] 0 d\n1 0 0.063 rg\n0 0 m\n1 0 l\n1 1 l\nh\nB*\nEMC\n"
+            ),
+            "{text}"
+        );
     }
 
     #[test]
     fn files_have_real_sizes_and_nothing_of_the_day() {
         let file = |width, height| pdf(&sheet(width, height), &DrawingOptions::default());
-        let has = |file: &[u8], text: &str| file.windows(text.len()).any(|part| part == text.as_bytes());
+        let has =
+            |file: &[u8], text: &str| file.windows(text.len()).any(|part| part == text.as_bytes());
         let a4 = file(210.0, 297.0);
         assert!(
             a4.starts_with(b"%PDF-1.5") && has(&a4, "/MediaBox [0 0 595.2756 841.8898]"),
             "{}",
             String::from_utf8_lossy(&a4)
         );
-        assert!(has(&a4, "/Name (8 hidden)") && has(&a4, "/Order [8 0 R 7 0 R 6 0 R 5 0 R]") && !has(&a4, "Date"));
+        assert!(
+            has(&a4, "/Name (8 hidden)")
+                && has(&a4, "/Order [8 0 R 7 0 R 6 0 R 5 0 R]")
+                && !has(&a4, "Date")
+        );
         assert_eq!(a4, file(210.0, 297.0));
         // Pages of more than 5 m have a larger unit.
         let banner = file(10_000.0, 25.4);
-        assert!(banner.starts_with(b"%PDF-1.6") && has(&banner, "/UserUnit 2") && has(&banner, "36]"));
+        assert!(
+            banner.starts_with(b"%PDF-1.6") && has(&banner, "/UserUnit 2") && has(&banner, "36]")
+        );
         assert!(!has(&pdf(&Drawing::default(), &DrawingOptions::default()), "OCProperties"));
     }
 }

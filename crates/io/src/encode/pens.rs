@@ -1,8 +1,9 @@
-//! What a drawing looks like on paper, for all writers: layers with their pens, and corners in steps of the precision.
+//! What a drawing looks like on paper, for all writers: layers with their pens, and corners in
+//! steps of the precision.
 //!
-//! A layer is a class of visible lines, or all hidden lines, the strokes of the title block, the hatching of cuts, or the free points of
-//! the model. Names and numbers of layers are the same
-//! in all formats.
+//! A layer is a class of visible lines, or all hidden lines, the strokes of the title block, the
+//! hatching of cuts, or the free points of the model. Names and numbers of layers are the same in
+//! all formats.
 
 use std::fmt::Write;
 use vitral_frame::Drawing;
@@ -40,7 +41,8 @@ pub struct Pens {
 }
 
 impl Default for Pens {
-    /// The widths of ISO 128: wide lines for outlines, narrow ones inside, thin dashes where lines are hidden.
+    /// The widths of ISO 128: wide lines for outlines, narrow ones inside, thin dashes where lines
+    /// are hidden.
     fn default() -> Self {
         let widths = LineClass::ALL.map(|(class, ..)| match class {
             LineClass::Contour | LineClass::Boundary => 0.5,
@@ -86,7 +88,8 @@ pub struct DrawingOptions {
     pub decimals: u8,
     /// Whether regions of SVG files tell the surface that they show.
     pub surface_ids: bool,
-    /// Whether regions of SVG and PDF files are outlined, each above what is painted before, and by the pen of which class.
+    /// Whether regions of SVG and PDF files are outlined, each above what is painted before, and by
+    /// the pen of which class.
     pub region_outlines: Option<LineClass>,
     /// Strokes of the title block.
     pub title: Vec<Polyline>,
@@ -94,7 +97,13 @@ pub struct DrawingOptions {
 
 impl Default for DrawingOptions {
     fn default() -> Self {
-        Self { pens: Pens::default(), decimals: 3, surface_ids: false, region_outlines: None, title: Vec::new() }
+        Self {
+            pens: Pens::default(),
+            decimals: 3,
+            surface_ids: false,
+            region_outlines: None,
+            title: Vec::new(),
+        }
     }
 }
 
@@ -131,7 +140,8 @@ impl Precision {
 
     /// Corners in steps, without repeated ones.
     pub(super) fn corners(self, points: &[[f64; 2]]) -> Vec<[i32; 2]> {
-        let mut corners: Vec<_> = points.iter().map(|point| point.map(|at| self.steps(at))).collect();
+        let mut corners: Vec<_> =
+            points.iter().map(|point| point.map(|at| self.steps(at))).collect();
         corners.dedup();
         corners
     }
@@ -145,8 +155,8 @@ impl Precision {
         corners
     }
 
-    /// The corners of a line and whether it is closed; the last corner of a closed one is not its first. `None`: a line shorter than a
-    /// step.
+    /// The corners of a line and whether it is closed; the last corner of a closed one is not its
+    /// first. `None`: a line shorter than a step.
     pub(super) fn line(self, points: &[[f64; 2]]) -> Option<(Vec<[i32; 2]>, bool)> {
         let mut corners = self.corners(points);
         let closed = corners.len() > 3 && corners.first() == corners.last();
@@ -182,32 +192,58 @@ pub(super) struct Layer<'d> {
     pub(super) points: &'d [[f64; 2]],
 }
 
-/// The layers of a drawing that are not empty, as they are painted: hatching, hidden lines, then visible ones, the most important last,
-/// then the title block and the free points.
+/// The layers of a drawing that are not empty, as they are painted: hatching, hidden lines, then
+/// visible ones, the most important last, then the title block and the free points.
 pub(super) fn layers<'d>(drawing: &'d Drawing, options: &'d DrawingOptions) -> Vec<Layer<'d>> {
     let pens = &options.pens;
     let count = LineClass::ALL.len();
     let visible = |class: LineClass| {
-        let of_class = drawing.lines.iter().filter(move |line| line.layers == 0 && line.class == class);
+        let of_class =
+            drawing.lines.iter().filter(move |line| line.layers == 0 && line.class == class);
         of_class.map(|line| &line.points[..]).collect()
     };
     let lines = visible(LineClass::Hatch);
-    let mut layers =
-        vec![Layer { number: count + 3, name: HATCH, width: pens.hatch_width, dashes: None, lines, points: &[] }];
+    let mut layers = vec![Layer {
+        number: count + 3,
+        name: HATCH,
+        width: pens.hatch_width,
+        dashes: None,
+        lines,
+        points: &[],
+    }];
     layers.push(Layer {
         number: count + 1,
         name: HIDDEN,
         width: pens.hidden_width,
         dashes: pens.hidden_dashes,
-        lines: drawing.lines.iter().filter(|line| line.layers > 0).map(|line| &line.points[..]).collect(),
+        lines: drawing
+            .lines
+            .iter()
+            .filter(|line| line.layers > 0)
+            .map(|line| &line.points[..])
+            .collect(),
         points: &[],
     });
     for (i, (class, name, _)) in LineClass::ALL.into_iter().enumerate().rev() {
         let lines = visible(class);
-        layers.push(Layer { number: i + 1, name, width: pens.widths[i], dashes: None, lines, points: &[] });
+        layers.push(Layer {
+            number: i + 1,
+            name,
+            width: pens.widths[i],
+            dashes: None,
+            lines,
+            points: &[],
+        });
     }
     let lines = options.title.iter().map(|stroke| &stroke[..]).collect();
-    layers.push(Layer { number: count + 2, name: TITLE, width: pens.title_width, dashes: None, lines, points: &[] });
+    layers.push(Layer {
+        number: count + 2,
+        name: TITLE,
+        width: pens.title_width,
+        dashes: None,
+        lines,
+        points: &[],
+    });
     let width = pens.point_width.unwrap_or(pens.widths[LineClass::Contour as usize]);
     let (number, points) = (count + 4, &drawing.points[..]);
     layers.push(Layer { number, name: POINT, width, dashes: None, lines: Vec::new(), points });
@@ -223,10 +259,15 @@ mod tests {
     fn steps_are_written_as_millimetres() {
         let text = |decimals, steps| {
             let mut out = String::new();
-            DrawingOptions { decimals, ..DrawingOptions::default() }.precision().write(&mut out, steps);
+            DrawingOptions { decimals, ..DrawingOptions::default() }
+                .precision()
+                .write(&mut out, steps);
             out
         };
-        assert_eq!([text(3, 0), text(3, -5), text(3, 12_340), text(1, 25)], ["0", "-0.005", "12.34", "2.5"]);
+        assert_eq!(
+            [text(3, 0), text(3, -5), text(3, 12_340), text(1, 25)],
+            ["0", "-0.005", "12.34", "2.5"]
+        );
         assert_eq!([text(0, -7), text(3, i32::MIN)], ["-7", "-2147483.648"]);
     }
 
@@ -234,10 +275,16 @@ mod tests {
     fn lines_below_the_precision_vanish_and_closed_ones_are_told() {
         let precision = DrawingOptions { decimals: 1, ..DrawingOptions::default() }.precision();
         assert_eq!(precision.line(&[[0.0, 0.0], [0.04, 0.0]]), None);
-        assert_eq!(precision.line(&[[0.0, 0.0], [0.04, 0.0], [1.0, 0.0]]), Some((vec![[0, 0], [10, 0]], false)));
+        assert_eq!(
+            precision.line(&[[0.0, 0.0], [0.04, 0.0], [1.0, 0.0]]),
+            Some((vec![[0, 0], [10, 0]], false))
+        );
         let triangle = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
         assert_eq!(precision.line(&triangle), Some((vec![[0, 0], [10, 0], [0, 10]], true)));
-        assert_eq!(precision.line(&triangle.map(|p| [p[0], 0.0])), Some((vec![[0, 0], [10, 0], [0, 0]], false)));
+        assert_eq!(
+            precision.line(&triangle.map(|p| [p[0], 0.0])),
+            Some((vec![[0, 0], [10, 0], [0, 0]], false))
+        );
         assert_eq!(precision.ring(&triangle).len(), 3);
     }
 

@@ -1,9 +1,12 @@
-//! Lines in the order in which a plotter draws them: no segment twice, joined, with short ways in the air.
+//! Lines in the order in which a plotter draws them: no segment twice, joined, with short ways in
+//! the air.
 //!
-//! Pens come one after another. Segments that a more important pen has drawn are left out, the rest is walked from nearest end to nearest
-//! end, either way round; where an end is where the pen is, the line goes on. Dashes become lines of their own.
+//! Pens come one after another. Segments that a more important pen has drawn are left out, the rest
+//! is walked from nearest end to nearest end, either way round; where an end is where the pen is,
+//! the line goes on. Dashes become lines of their own.
 //!
-//! In:   a drawing. Out: the same, lines and points ordered, without fills and with at most one number of layers for hidden lines.
+//! In:   a drawing. Out: the same, lines and points ordered, without fills and with at most one
+//!       number of layers for hidden lines.
 //! Cost: about linear: ends are found on a grid, which is made anew when half of them are gone.
 //! Source: \[HP-GL\] for what plotters do; the tour is that of the nearest neighbour.
 
@@ -17,7 +20,8 @@ type Step = [i32; 2];
 /// Lines for which a grid is made anew at least.
 const SMALLEST_GRID: usize = 16;
 
-/// The drawing for a plotter with steps of the options' precision, and the options to write it with.
+/// The drawing for a plotter with steps of the options' precision, and the options to write it
+/// with.
 pub fn for_plotter(drawing: &Drawing, options: &DrawingOptions) -> (Drawing, DrawingOptions) {
     in_steps(drawing, options, options.precision().steps_a_millimetre)
 }
@@ -51,7 +55,9 @@ pub(super) fn in_steps(
     let dots = drawing.points.iter().map(|point| steps(&[*point, *point])).collect();
     let points = ordered(dots).into_iter().map(|dot| millimetres(dot)[0]).collect();
     let title = route(options.title.iter().map(|stroke| &stroke[..]).collect());
-    let hidden = route(drawing.lines.iter().filter(|line| line.layers > 0).map(|line| &line.points[..]).collect());
+    let hidden = route(
+        drawing.lines.iter().filter(|line| line.layers > 0).map(|line| &line.points[..]).collect(),
+    );
 
     // Hidden lines are one pen's, whatever their classes.
     for line in hidden {
@@ -59,10 +65,17 @@ pub(super) fn in_steps(
             Some(dashes) => dashed(&line, dashes),
             None => vec![line],
         };
-        lines.extend(pieces.into_iter().map(|points| Line { class: LineClass::Smooth, layers: 1, points }));
+        lines.extend(pieces.into_iter().map(|points| Line {
+            class: LineClass::Smooth,
+            layers: 1,
+            points,
+        }));
     }
     let pens = Pens { hidden_dashes: None, ..options.pens };
-    (Drawing { lines, points, regions: Vec::new(), ..*drawing }, DrawingOptions { pens, title, ..options.clone() })
+    (
+        Drawing { lines, points, regions: Vec::new(), ..*drawing },
+        DrawingOptions { pens, title, ..options.clone() },
+    )
 }
 
 /// Adds the parts of a line that have not been drawn.
@@ -124,7 +137,11 @@ struct Ends {
 impl Ends {
     fn new(lines: &[Vec<Step>]) -> Self {
         let left = || lines.iter().enumerate().filter(|(_, line)| !line.is_empty());
-        let ends = || left().flat_map(|(i, line)| [(line[0], 2 * i as u32), (line[line.len() - 1], 2 * i as u32 + 1)]);
+        let ends = || {
+            left().flat_map(|(i, line)| {
+                [(line[0], 2 * i as u32), (line[line.len() - 1], 2 * i as u32 + 1)]
+            })
+        };
         let (mut low, mut high) = ([i32::MAX; 2], [i32::MIN; 2]);
         for (point, _) in ends() {
             for k in 0..2 {
@@ -136,8 +153,14 @@ impl Ends {
         let size = [0, 1].map(|k| (i64::from(high[k]) - i64::from(low[k])).max(0));
         let side = size[0].max(size[1]) / along + 1;
         let [columns, rows] = size.map(|length| length / side + 1);
-        let mut grid =
-            Self { lines: count, low, side, columns, rows, cells: vec![Vec::new(); (columns * rows) as usize] };
+        let mut grid = Self {
+            lines: count,
+            low,
+            side,
+            columns,
+            rows,
+            cells: vec![Vec::new(); (columns * rows) as usize],
+        };
         for (point, end) in ends() {
             let [x, y] = grid.cell(point);
             grid.cells[(y * columns + x) as usize].push((point, end));
@@ -156,7 +179,11 @@ impl Ends {
         let far = |at: i64, count: i64| at.abs().max((count - 1 - at).abs());
         let mut best: Option<(i64, u32)> = None;
         // Ring by ring, from the first that touches the grid.
-        let first = [x, y].iter().zip([self.columns, self.rows]).map(|(&at, n)| (-at).max(at - n + 1).max(0)).max();
+        let first = [x, y]
+            .iter()
+            .zip([self.columns, self.rows])
+            .map(|(&at, n)| (-at).max(at - n + 1).max(0))
+            .max();
         for ring in first.unwrap_or(0)..=far(x, self.columns).max(far(y, self.rows)) {
             let reached = (ring - 1).max(0) * self.side;
             if best.is_some_and(|(distance, _)| distance <= reached * reached) {
@@ -226,8 +253,17 @@ mod tests {
     use super::*;
 
     fn drawing(lines: &[&[[f64; 2]]]) -> Drawing {
-        let line = |points: &&[[f64; 2]]| Line { class: LineClass::Crease, layers: 0, points: points.to_vec() };
-        Drawing { width: 100.0, height: 100.0, lines: lines.iter().map(line).collect(), ..Drawing::default() }
+        let line = |points: &&[[f64; 2]]| Line {
+            class: LineClass::Crease,
+            layers: 0,
+            points: points.to_vec(),
+        };
+        Drawing {
+            width: 100.0,
+            height: 100.0,
+            lines: lines.iter().map(line).collect(),
+            ..Drawing::default()
+        }
     }
 
     fn route(lines: &[&[[f64; 2]]]) -> Vec<Polyline> {
@@ -242,7 +278,11 @@ mod tests {
         let next: &[[f64; 2]] = &[[9.0, 30.0], [9.0, 9.0], [1.0, 1.0], [0.0, 50.0]];
         assert_eq!(
             route(&[far, near, next]),
-            [&[[1.0, 1.0], [9.0, 9.0], [9.0, 30.0]][..], &[[0.0, 50.0], [1.0, 1.0]], &[[50.0, 50.0], [60.0, 50.0]]]
+            [
+                &[[1.0, 1.0], [9.0, 9.0], [9.0, 30.0]][..],
+                &[[0.0, 50.0], [1.0, 1.0]],
+                &[[50.0, 50.0], [60.0, 50.0]]
+            ]
         );
     }
 
@@ -253,7 +293,8 @@ mod tests {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (seed >> 16) as i32 % 5000
         };
-        let lines: Vec<Vec<Step>> = (0..300).map(|_| vec![[random(), random()], [random(), random() / 50]]).collect();
+        let lines: Vec<Vec<Step>> =
+            (0..300).map(|_| vec![[random(), random()], [random(), random() / 50]]).collect();
         let route = ordered(lines.clone());
         let (mut left, mut at) = (lines, [0, 0]);
         for line in &route {
@@ -271,7 +312,8 @@ mod tests {
     #[test]
     fn points_are_walked_from_nearest_to_nearest() {
         let points = vec![[50.0, 1.0], [10.0, 1.0], [30.0, 1.0], [0.0, 0.0]];
-        let (drawing, _) = for_plotter(&Drawing { points, ..Drawing::default() }, &DrawingOptions::default());
+        let (drawing, _) =
+            for_plotter(&Drawing { points, ..Drawing::default() }, &DrawingOptions::default());
         assert_eq!(drawing.points, [[0.0, 0.0], [10.0, 1.0], [30.0, 1.0], [50.0, 1.0]]);
     }
 

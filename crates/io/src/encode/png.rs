@@ -1,9 +1,9 @@
 //! PNG out, tuned for speed.
 //!
-//! The Paeth filter with `fdeflate` writes a rendered 1024x768 picture in 2.6 ms at 228 kB on one core of the machine
-//! where this was chosen. Sub takes 2.3 ms at 249 kB, choosing a filter for each row 3.3 ms at 222 kB. Splitting the
-//! rows between threads needs another deflate coder (4.5 ms and more at the same size), so it would not pay on two
-//! cores.
+//! The Paeth filter with `fdeflate` writes a rendered 1024x768 picture in 2.6 ms at 228 kB on one
+//! core of the machine where this was chosen. Sub takes 2.3 ms at 249 kB, choosing a filter for
+//! each row 3.3 ms at 222 kB. Splitting the rows between threads needs another deflate coder (4.5
+//! ms and more at the same size), so it would not pay on two cores.
 //!
 //! Source: \[PNG\].
 
@@ -39,7 +39,11 @@ pub fn png(picture: &Plane<[u8; 4]>, options: PngOptions) -> Result<Vec<u8>, Err
 ///
 /// # Errors
 /// As [`png()`]; [`Error::Encode`] for a text that PNG cannot hold.
-pub fn png_with_text(picture: &Plane<[u8; 4]>, options: PngOptions, texts: &[(&str, &str)]) -> Result<Vec<u8>, Error> {
+pub fn png_with_text(
+    picture: &Plane<[u8; 4]>,
+    options: PngOptions,
+    texts: &[(&str, &str)],
+) -> Result<Vec<u8>, Error> {
     let size = [picture.width(), picture.height()];
     if let Some(rgb) = without_alpha(picture.data()) {
         return write(size, (ColorType::Rgb, BitDepth::Eight), &rgb, options, texts);
@@ -99,7 +103,11 @@ impl Write for Shared {
 
 impl Animated {
     /// A file for so many pictures with transparency.
-    pub(super) fn new([width, height]: [u32; 2], count: u32, options: PngOptions) -> Result<Self, Error> {
+    pub(super) fn new(
+        [width, height]: [u32; 2],
+        count: u32,
+        options: PngOptions,
+    ) -> Result<Self, Error> {
         let file = Shared::default();
         let mut encoder = Encoder::new(file.clone(), width, height);
         encoder.set_animated(count, 0).map_err(failed)?;
@@ -177,14 +185,20 @@ mod tests {
             let raw = png(&picture, PngOptions { srgb: false }).unwrap();
             assert!(!raw.windows(4).any(|w| w == b"sRGB"));
         }
-        assert!(png(&Plane::default(), PngOptions::default()).unwrap_err().to_string().contains("0 x 0"));
+        assert!(
+            png(&Plane::default(), PngOptions::default())
+                .unwrap_err()
+                .to_string()
+                .contains("0 x 0")
+        );
     }
 
     #[test]
     fn opaque_pixels_lose_their_alpha() {
         let pixels: Vec<[u8; 4]> = (0..11u8).map(|i| [i, 100 + i, 200 + i, 255]).collect();
         for count in 0..pixels.len() {
-            let expected: Vec<u8> = pixels[..count].iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
+            let expected: Vec<u8> =
+                pixels[..count].iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
             assert_eq!(without_alpha(&pixels[..count]), Some(expected));
             let mut clear = pixels.clone();
             clear[count][3] = 254;

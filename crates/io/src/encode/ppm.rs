@@ -1,7 +1,7 @@
 //! PPM (P6) out; PPM and PGM (P5) in.
 //!
-//! A header of words (format, width, height, largest value), one white space, then the samples row by row, one byte
-//! each or two (the high one first) where the largest value is above 255.
+//! A header of words (format, width, height, largest value), one white space, then the samples row
+//! by row, one byte each or two (the high one first) where the largest value is above 255.
 //!
 //! Source: \[PPM\].
 
@@ -25,8 +25,10 @@ pub fn ppm(picture: &Plane<[u8; 4]>) -> Result<Vec<u8>, Error> {
 pub(crate) fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> {
     let bad = |at: usize, what: &str| Error::malformed(file, Place::Byte(at as u64), what);
     let mut at = 2;
-    let mut number =
-        || read_number(bytes, &mut at).ok_or_else(|| bad(at, "the header needs width, height and largest value"));
+    let mut number = || {
+        read_number(bytes, &mut at)
+            .ok_or_else(|| bad(at, "the header needs width, height and largest value"))
+    };
     let (width, height, largest) = (number()?, number()?, number()?);
     check_size(width, height, file)?;
     if !(1..=65_535).contains(&largest) {
@@ -49,7 +51,8 @@ pub(crate) fn decode(bytes: &[u8], file: &str) -> Result<Plane<[u8; 4]>, Error> 
         let value = |k: usize| scaled(&p[(k % channels) * sample..][..sample]);
         [value(0), value(1), value(2), 255]
     });
-    Plane::from_rows(width, height, pixels.collect()).ok_or_else(|| bad(at, "the file ends before the last row"))
+    Plane::from_rows(width, height, pixels.collect())
+        .ok_or_else(|| bad(at, "the file ends before the last row"))
 }
 
 /// The next decimal number of the header, behind white space and comments.

@@ -1,10 +1,12 @@
 //! Polylines with fewer corners.
 //!
-//! The corner farthest from the line between the ends stays if it is farther than the tolerance, and both parts are simplified in turn. A
-//! closed line is cut at its first corner and the one farthest from it.
+//! The corner farthest from the line between the ends stays if it is farther than the tolerance,
+//! and both parts are simplified in turn. A closed line is cut at its first corner and the one
+//! farthest from it.
 //!
 //! In:   polylines and a tolerance in millimetres. Out: polylines whose corners are some of them.
-//! Cost: `n log n` for usual lines. Long ones are simplified in runs of [`RUN`] corners, which bounds the worst case.
+//! Cost: `n log n` for usual lines. Long ones are simplified in runs of [`RUN`] corners, which
+//!       bounds the worst case.
 //! Source: [Douglas & Peucker 1973].
 
 use vitral_frame::Drawing;
@@ -12,7 +14,8 @@ use vitral_frame::Drawing;
 /// Corners that are looked at together at most.
 const RUN: usize = 4096;
 
-/// Simplifies the lines of a drawing. Regions stay: their outlines have to fit those of their neighbours.
+/// Simplifies the lines of a drawing. Regions stay: their outlines have to fit those of their
+/// neighbours.
 pub fn simplify(drawing: &mut Drawing, tolerance: f64) {
     drawing.lines.iter_mut().for_each(|line| line.points = simplified(&line.points, tolerance));
 }
@@ -29,7 +32,8 @@ fn simplified(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     cuts.push(last);
     if points[0] == points[last] {
         let distance = |i: usize| square(points[0], points[i]);
-        let farthest = (1..last).max_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(b.cmp(&a)));
+        let farthest =
+            (1..last).max_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(b.cmp(&a)));
         cuts.extend(farthest);
         cuts.sort_unstable();
         cuts.dedup();
@@ -91,7 +95,9 @@ mod tests {
         points.push(points[0]);
         let left = simplified(&points, 0.01);
         assert!(left.len() < 100 && left.first() == left.last(), "{}", left.len());
-        let distance = |p: &[f64; 2]| left.windows(2).map(|s| to_segment(*p, s[0], s[1])).fold(f64::INFINITY, f64::min);
+        let distance = |p: &[f64; 2]| {
+            left.windows(2).map(|s| to_segment(*p, s[0], s[1])).fold(f64::INFINITY, f64::min)
+        };
         assert!(points.iter().all(|p| distance(p) <= 0.01 * 0.01 + 1e-12));
         let there_and_back = [[0.0, 0.0], [4.0, 0.0], [0.0, 0.0]];
         assert_eq!(simplified(&there_and_back, 9.0), there_and_back);

@@ -1,8 +1,10 @@
 //! SVG: a drawing with one group for each class of lines.
 //!
-//! The unit of the file is the step of the precision, usually a micrometre: the page is a view box of whole numbers, and paths go from
-//! corner to corner in relative steps, which are short and whole. Groups are layers for Inkscape, and `data-class` tells the class to whoever reads the file. They
-//! come in the order in which they are painted: fills, hidden lines, then visible lines, the most important last.
+//! The unit of the file is the step of the precision, usually a micrometre: the page is a view box
+//! of whole numbers, and paths go from corner to corner in relative steps, which are short and
+//! whole. Groups are layers for Inkscape, and `data-class` tells the class to whoever reads the
+//! file. They come in the order in which they are painted: fills, hidden lines, then visible lines,
+//! the most important last.
 //!
 //! Source: \[SVG\].
 
@@ -83,7 +85,8 @@ impl Page {
         );
         if let Some(width) = options.outline_width() {
             let width = self.length(width);
-            let _ = write!(out, " stroke=\"#000\" stroke-width=\"{width}\" stroke-linejoin=\"round\"");
+            let _ =
+                write!(out, " stroke=\"#000\" stroke-width=\"{width}\" stroke-linejoin=\"round\"");
         }
         out.push_str(">\n");
         for region in regions {
@@ -99,7 +102,11 @@ impl Page {
             }
             let _ = write!(out, " fill=\"#{red:02x}{green:02x}{blue:02x}\"");
             if thousandths(region.opacity) < 1000 {
-                let _ = write!(out, " fill-opacity=\"{}\"", f64::from(thousandths(region.opacity)) / 1000.0);
+                let _ = write!(
+                    out,
+                    " fill-opacity=\"{}\"",
+                    f64::from(thousandths(region.opacity)) / 1000.0
+                );
             }
             out.push_str(" d=\"");
             region.rings.iter().for_each(|ring| self.path(out, &self.precision.ring(ring), true));
@@ -108,7 +115,8 @@ impl Page {
         out.push_str("</g>\n");
     }
 
-    /// A path through corners of the page, which begin with the lower left one; files begin with the upper left one.
+    /// A path through corners of the page, which begin with the lower left one; files begin with
+    /// the upper left one.
     fn path(&self, out: &mut String, corners: &[[i32; 2]], closed: bool) {
         let mut at = [0, 0];
         for (i, corner) in corners.iter().enumerate() {
@@ -151,8 +159,14 @@ mod tests {
             line(LineClass::Crease, 2, &[[0.0, 0.0], [3.0, 2.0]]),
         ];
         let ring = square[..4].to_vec();
-        let region =
-            Region { surface: 3, material: None, color: [255, 0, 16], opacity: 1.0, unlit: 0, rings: vec![ring] };
+        let region = Region {
+            surface: 3,
+            material: None,
+            color: [255, 0, 16],
+            opacity: 1.0,
+            unlit: 0,
+            rings: vec![ring],
+        };
         let points = vec![[0.5, 1.5]];
         let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region], points };
         let text = String::from_utf8(svg(&drawing, &DrawingOptions::default())).unwrap();
@@ -184,10 +198,18 @@ mod tests {
             line(LineClass::Section, 0, &[[0.0, 0.0], [1.0, 0.0]]),
             line(LineClass::Hatch, 0, &[[0.0, 0.0], [1.0, 1.0]]),
         ];
-        let text =
-            String::from_utf8(svg(&Drawing { lines, ..Drawing::default() }, &DrawingOptions::default())).unwrap();
-        let (hatch, section) = (text.find("label=\"10 hatch\"").unwrap(), text.find("label=\"6 section\"").unwrap());
-        assert!(hatch < section && text.contains("stroke-width=\"180\"") && text.contains("stroke-width=\"700\""));
+        let text = String::from_utf8(svg(
+            &Drawing { lines, ..Drawing::default() },
+            &DrawingOptions::default(),
+        ))
+        .unwrap();
+        let (hatch, section) =
+            (text.find("label=\"10 hatch\"").unwrap(), text.find("label=\"6 section\"").unwrap());
+        assert!(
+            hatch < section
+                && text.contains("stroke-width=\"180\"")
+                && text.contains("stroke-width=\"700\"")
+        );
     }
 
     #[test]
@@ -195,7 +217,8 @@ mod tests {
         let lines = vec![line(LineClass::Smooth, 1, &[[0.0, 0.0], [1.0, 0.0]])];
         let pens = Pens { hidden_dashes: None, ..Pens::default() };
         let options = DrawingOptions { pens, ..DrawingOptions::default() };
-        let text = String::from_utf8(svg(&Drawing { lines, ..Drawing::default() }, &options)).unwrap();
+        let text =
+            String::from_utf8(svg(&Drawing { lines, ..Drawing::default() }, &options)).unwrap();
         assert!(text.contains("data-class=\"hidden\"") && !text.contains("dash"));
         let empty = String::from_utf8(svg(&Drawing::default(), &options)).unwrap();
         assert!(!empty.contains("<g"));
@@ -213,10 +236,21 @@ mod tests {
             rings: vec![ring(x)],
         };
         let drawing = Drawing { regions: vec![region(0.0), region(0.5)], ..Drawing::default() };
-        let options = DrawingOptions { region_outlines: Some(LineClass::Smooth), ..DrawingOptions::default() };
+        let options = DrawingOptions {
+            region_outlines: Some(LineClass::Smooth),
+            ..DrawingOptions::default()
+        };
         let text = String::from_utf8(svg(&drawing, &options)).unwrap();
-        assert!(text.contains("fill-rule=\"evenodd\" stroke=\"#000\" stroke-width=\"180\" stroke-linejoin"), "{text}");
-        assert_eq!((text.matches("<g").count(), text.matches("<path data-shadow=\"0 2\" fill").count()), (1, 2));
+        assert!(
+            text.contains(
+                "fill-rule=\"evenodd\" stroke=\"#000\" stroke-width=\"180\" stroke-linejoin"
+            ),
+            "{text}"
+        );
+        assert_eq!(
+            (text.matches("<g").count(), text.matches("<path data-shadow=\"0 2\" fill").count()),
+            (1, 2)
+        );
     }
 
     #[test]
@@ -230,11 +264,16 @@ mod tests {
             unlit: 0,
             rings: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]],
         };
-        let drawing = Drawing { width: 3.0, height: 2.0, lines, regions: vec![region], ..Drawing::default() };
-        let options = DrawingOptions { decimals: 1, surface_ids: true, ..DrawingOptions::default() };
+        let drawing =
+            Drawing { width: 3.0, height: 2.0, lines, regions: vec![region], ..Drawing::default() };
+        let options =
+            DrawingOptions { decimals: 1, surface_ids: true, ..DrawingOptions::default() };
         let text = String::from_utf8(svg(&drawing, &options)).unwrap();
         assert!(text.contains("width=\"3mm\" height=\"2mm\" viewBox=\"0 0 30 20\""), "{text}");
-        assert!(text.contains("stroke-width=\"5\"") && text.contains("<path d=\"M0 20l13 0\"/>"), "{text}");
+        assert!(
+            text.contains("stroke-width=\"5\"") && text.contains("<path d=\"M0 20l13 0\"/>"),
+            "{text}"
+        );
         assert!(
             text.contains("<path data-face=\"3\" fill=\"#000000\" fill-opacity=\"0.25\" d=\"M0 20l10 0 0-10z\"/>"),
             "{text}"

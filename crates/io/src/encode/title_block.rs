@@ -1,7 +1,8 @@
-//! A title block below a drawing: a table of keys and values in strokes, and beside it a figure, such as the symbol of the projection.
+//! A title block below a drawing: a table of keys and values in strokes, and beside it a figure,
+//! such as the symbol of the projection.
 //!
-//! Letters are polylines on a grid of 4 x 8 units, all of one width: capitals are six units high, two are left below the base line. A
-//! plotter draws them as they are.
+//! Letters are polylines on a grid of 4 x 8 units, all of one width: capitals are six units high,
+//! two are left below the base line. A plotter draws them as they are.
 
 use super::pens::Polyline;
 use vitral_frame::Drawing;
@@ -92,7 +93,9 @@ impl TitleBlock {
         block.strokes.iter_mut().flatten().for_each(|point| point[0] += wide);
         let [_, top] = block.size;
         let low = (top - figure.size[1]) / 2.0;
-        let place = |stroke: &Polyline| stroke.iter().map(|p| [p[0] + PADDING, p[1] + low]).collect::<Polyline>();
+        let place = |stroke: &Polyline| {
+            stroke.iter().map(|p| [p[0] + PADDING, p[1] + low]).collect::<Polyline>()
+        };
         let mut border = vec![[wide, 0.0], [0.0, 0.0], [0.0, top], [wide, top]];
         border.extend(rows.is_empty().then_some([wide, 0.0]));
         block.strokes.push(border);
@@ -112,7 +115,8 @@ impl TitleBlock {
         let [right, top] = size;
 
         // Rule the table, then fill it in.
-        let mut strokes = vec![vec![[0.0, 0.0], [right, 0.0], [right, top], [0.0, top], [0.0, 0.0]]];
+        let mut strokes =
+            vec![vec![[0.0, 0.0], [right, 0.0], [right, top], [0.0, top], [0.0, 0.0]]];
         strokes.push(vec![[keys, 0.0], [keys, top]]);
         for (i, (key, value)) in rows.iter().enumerate() {
             let low = top - (i + 1) as f64 * row_height;
@@ -131,7 +135,8 @@ impl TitleBlock {
         self.size[1] + GAP
     }
 
-    /// Makes room below a drawing, and beside one that is narrower; gives the strokes in the lower right corner of the sheet.
+    /// Makes room below a drawing, and beside one that is narrower; gives the strokes in the lower
+    /// right corner of the sheet.
     pub fn place(&self, drawing: &mut Drawing, margin: f64) -> Vec<Polyline> {
         let wider = (self.size[0] + 2.0 * margin - drawing.width).max(0.0);
         let shift = [wider / 2.0, self.room()];
@@ -139,7 +144,9 @@ impl TitleBlock {
         drawing.height += shift[1];
         drawing.shift(shift);
         let corner = [drawing.width - margin - self.size[0], margin];
-        let place = |stroke: &Polyline| stroke.iter().map(|p| [p[0] + corner[0], p[1] + corner[1]]).collect();
+        let place = |stroke: &Polyline| {
+            stroke.iter().map(|p| [p[0] + corner[0], p[1] + corner[1]]).collect()
+        };
         self.strokes.iter().map(place).collect()
     }
 }
@@ -150,8 +157,13 @@ fn write(strokes: &mut Vec<Polyline>, text: &str, at: [f64; 2]) -> Result<(), ch
         let (_, glyph) = GLYPHS.iter().find(|(known, _)| *known == letter).ok_or(letter)?;
         let left = at[0] + i as f64 * ADVANCE * UNIT;
         let digit = |byte: u8| f64::from(byte - b'0');
-        let corner = |pair: &[u8]| [left + digit(pair[0]) * UNIT, at[1] + (digit(pair[1]) - BASE) * UNIT];
-        strokes.extend(glyph.split_whitespace().map(|stroke| stroke.as_bytes().chunks_exact(2).map(corner).collect()));
+        let corner =
+            |pair: &[u8]| [left + digit(pair[0]) * UNIT, at[1] + (digit(pair[1]) - BASE) * UNIT];
+        strokes.extend(
+            glyph
+                .split_whitespace()
+                .map(|stroke| stroke.as_bytes().chunks_exact(2).map(corner).collect()),
+        );
     }
     Ok(())
 }
@@ -166,12 +178,17 @@ mod tests {
             assert!(GLYPHS[..i].iter().all(|(other, _)| other != letter), "{letter}");
             for stroke in glyph.split_whitespace() {
                 assert!(stroke.len() >= 4 && stroke.len() % 2 == 0, "{letter}");
-                let on_grid = |pair: &[u8]| (b'0'..=b'4').contains(&pair[0]) && (b'0'..=b'8').contains(&pair[1]);
+                let on_grid = |pair: &[u8]| {
+                    (b'0'..=b'4').contains(&pair[0]) && (b'0'..=b'8').contains(&pair[1])
+                };
                 assert!(stroke.as_bytes().chunks(2).all(on_grid), "{letter}");
             }
         }
-        let needed = ('A'..='Z').chain('a'..='z').chain('0'..='9').chain(" .,:;-_/()+='\"!?%#*<>".chars());
-        needed.for_each(|letter| assert!(GLYPHS.iter().any(|(known, _)| *known == letter), "{letter}"));
+        let needed =
+            ('A'..='Z').chain('a'..='z').chain('0'..='9').chain(" .,:;-_/()+='\"!?%#*<>".chars());
+        needed.for_each(|letter| {
+            assert!(GLYPHS.iter().any(|(known, _)| *known == letter), "{letter}")
+        });
     }
 
     #[test]
@@ -195,11 +212,24 @@ mod tests {
     fn a_figure_stands_in_a_cell_beside_the_table() {
         let figure = Figure { size: [4.0, 7.0], strokes: vec![vec![[0.0, 0.0], [4.0, 7.0]]] };
         let rows = vec![("Title".to_owned(), "Cube".to_owned())];
-        let (plain, both) = (TitleBlock::new(&rows).unwrap(), TitleBlock::with_figure(&rows, Some(&figure)).unwrap());
+        let (plain, both) = (
+            TitleBlock::new(&rows).unwrap(),
+            TitleBlock::with_figure(&rows, Some(&figure)).unwrap(),
+        );
         let wide = 4.0 + 2.0 * PADDING;
-        assert_eq!(both.size, [plain.size[0] + wide, 7.0 + 2.0 * PADDING], "the row is as high as the figure");
-        assert_eq!(both.strokes.last().unwrap()[..], [[PADDING, PADDING], [4.0 + PADDING, 7.0 + PADDING]]);
+        assert_eq!(
+            both.size,
+            [plain.size[0] + wide, 7.0 + 2.0 * PADDING],
+            "the row is as high as the figure"
+        );
+        assert_eq!(
+            both.strokes.last().unwrap()[..],
+            [[PADDING, PADDING], [4.0 + PADDING, 7.0 + PADDING]]
+        );
         let alone = TitleBlock::with_figure(&[], Some(&figure)).unwrap();
-        assert_eq!((alone.size, alone.strokes.len(), alone.strokes[0].len()), ([wide, both.size[1]], 2, 5));
+        assert_eq!(
+            (alone.size, alone.strokes.len(), alone.strokes[0].len()),
+            ([wide, both.size[1]], 2, 5)
+        );
     }
 }

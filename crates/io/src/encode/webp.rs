@@ -1,4 +1,5 @@
-//! Lossless WebP out. The `image-webp` crate codes each picture; an animation is a container of such pictures.
+//! Lossless WebP out. The `image-webp` crate codes each picture; an animation is a container of
+//! such pictures.
 //!
 //! Source: \[WebP\].
 
@@ -16,7 +17,12 @@ const HEADER_BYTES: usize = 12;
 pub(super) fn still(picture: &Plane<[u8; 4]>) -> Result<Vec<u8>, Error> {
     let mut out = Vec::new();
     image_webp::WebPEncoder::new(&mut out)
-        .encode(picture.data().as_flattened(), picture.width(), picture.height(), image_webp::ColorType::Rgba8)
+        .encode(
+            picture.data().as_flattened(),
+            picture.width(),
+            picture.height(),
+            image_webp::ColorType::Rgba8,
+        )
         .map_err(|e| Error::Encode { what: format!("WebP: {e}") })?;
     Ok(out)
 }
@@ -63,7 +69,8 @@ impl Animated {
 
     /// The whole file.
     pub(super) fn finish(mut self) -> Result<Vec<u8>, Error> {
-        let too_long = |_| Error::Encode { what: "WebP: the animation has more than 4 GiB".to_owned() };
+        let too_long =
+            |_| Error::Encode { what: "WebP: the animation has more than 4 GiB".to_owned() };
         let size = u32::try_from(self.file.len() - 8).map_err(too_long)?;
         self.file[4..8].copy_from_slice(&size.to_le_bytes());
         Ok(self.file)

@@ -19,9 +19,16 @@ impl Header {
         if !name.eq_ignore_ascii_case(b"OFF") {
             return None;
         }
-        // `N` says that there are normals, `n` how many dimensions: only in lower case throughout they cannot be told apart.
+        // `N` says that there are normals, `n` how many dimensions: only in lower case throughout
+        // they cannot be told apart.
         let is_lower = name == b"off";
-        let mut header = Self { texture: false, color: false, normal: false, homogeneous: false, dimensions: false };
+        let mut header = Self {
+            texture: false,
+            color: false,
+            normal: false,
+            homogeneous: false,
+            dimensions: false,
+        };
         let mut rest = prefixes;
         while !rest.is_empty() {
             let (flag, length) = match rest {
@@ -41,7 +48,8 @@ impl Header {
         Some(header)
     }
 
-    /// The header with which `word` begins, and its length. Behind it may be a count, without a blank between.
+    /// The header with which `word` begins, and its length. Behind it may be a count, without a
+    /// blank between.
     pub(crate) fn begin(word: &[u8]) -> Option<(Self, usize)> {
         let digits = word.iter().rev().take_while(|b| b.is_ascii_digit()).count();
         let length = word.len() - digits;
@@ -49,10 +57,14 @@ impl Header {
     }
 }
 
-/// Whether the text reads like an OFF file without its first word: a line of three counts, then a vertex.
+/// Whether the text reads like an OFF file without its first word: a line of three counts, then a
+/// vertex.
 pub(crate) fn begins_bare(mut cursor: Cursor) -> bool {
-    let has_counts =
-        cursor.next_content() && (0..3).all(|_| matches!(cursor.integer(), Some(0..))) && cursor.at_line_end();
+    let has_counts = cursor.next_content()
+        && (0..3).all(|_| matches!(cursor.integer(), Some(0..)))
+        && cursor.at_line_end();
     cursor.next_line();
-    has_counts && cursor.next_content() && (0..3).all(|_| cursor.float().is_some() && !cursor.take_ill_formed())
+    has_counts
+        && cursor.next_content()
+        && (0..3).all(|_| cursor.float().is_some() && !cursor.take_ill_formed())
 }

@@ -1,11 +1,13 @@
 //! Typed arrays out of buffers, with every bound checked before a byte is read or an array is made.
 //!
-//! An accessor says where its elements lie (a view, an offset, a stride), what they are (components of 1 to 4 bytes,
-//! perhaps normalised integers) and which of them a sparse list replaces. Without a view all elements are zero.
+//! An accessor says where its elements lie (a view, an offset, a stride), what they are (components
+//! of 1 to 4 bytes, perhaps normalised integers) and which of them a sparse list replaces. Without
+//! a view all elements are zero.
 //!
-//! In:   an accessor's index and the range of elements that is wanted. Out: the elements as `f32` or `u32`.
-//! Cost: linear in the range. Memory: at most 4 bytes for each component that the file holds; an accessor without
-//! bytes may claim no more elements than the buffers have bytes (or 65536).
+//! In:   an accessor's index and the range of elements that is wanted. Out: the elements as `f32`
+//!       or `u32`.
+//! Cost: linear in the range. Memory: at most 4 bytes for each component that the file holds; an
+//! accessor without bytes may claim no more elements than the buffers have bytes (or 65536).
 //! Source: [glTF 2.0], section 3.6.2.
 
 use super::buffers::Buffers;
@@ -69,7 +71,11 @@ impl<'a> Source<'a> {
         let accessor = &self.root.accessors[index];
         let limit = self.buffers.total().max(FREE_ZEROS);
         if accessor.count.0 > limit {
-            let what = format!("count {}, the buffers have {} bytes in all", accessor.count.0, self.buffers.total());
+            let what = format!(
+                "count {}, the buffers have {} bytes in all",
+                accessor.count.0,
+                self.buffers.total()
+            );
             return Err(self.error(format!("accessors[{index}]"), what));
         }
         Ok(accessor.count.0 as usize)
@@ -83,7 +89,8 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Elements `range` as vectors of `N` floats. `user` is the JSON path that names the accessor, for messages.
+    /// Elements `range` as vectors of `N` floats. `user` is the JSON path that names the accessor,
+    /// for messages.
     pub(crate) fn floats<const N: usize>(
         &self,
         index: usize,
@@ -96,16 +103,27 @@ impl<'a> Source<'a> {
         let read = |elements: Elements<'_>, range: Range<usize>| -> Vec<[f32; N]> {
             match (layout.component, normalized) {
                 (ComponentType::F32, _) => elements.convert(range, f32::from_le_bytes),
-                (ComponentType::U32, _) => elements.convert(range, |b| u32::from_le_bytes(b) as f32),
-                (ComponentType::U16, false) => elements.convert(range, |b| f32::from(u16::from_le_bytes(b))),
-                (ComponentType::U16, true) => elements.convert(range, |b| f32::from(u16::from_le_bytes(b)) / 65535.0),
-                (ComponentType::I16, false) => elements.convert(range, |b| f32::from(i16::from_le_bytes(b))),
-                (ComponentType::I16, true) => {
-                    elements.convert(range, |b| (f32::from(i16::from_le_bytes(b)) / 32767.0).max(-1.0))
+                (ComponentType::U32, _) => {
+                    elements.convert(range, |b| u32::from_le_bytes(b) as f32)
                 }
+                (ComponentType::U16, false) => {
+                    elements.convert(range, |b| f32::from(u16::from_le_bytes(b)))
+                }
+                (ComponentType::U16, true) => {
+                    elements.convert(range, |b| f32::from(u16::from_le_bytes(b)) / 65535.0)
+                }
+                (ComponentType::I16, false) => {
+                    elements.convert(range, |b| f32::from(i16::from_le_bytes(b)))
+                }
+                (ComponentType::I16, true) => elements
+                    .convert(range, |b| (f32::from(i16::from_le_bytes(b)) / 32767.0).max(-1.0)),
                 (ComponentType::U8, false) => elements.convert(range, |b: [u8; 1]| f32::from(b[0])),
-                (ComponentType::U8, true) => elements.convert(range, |b: [u8; 1]| f32::from(b[0]) / 255.0),
-                (ComponentType::I8, false) => elements.convert(range, |b| f32::from(i8::from_le_bytes(b))),
+                (ComponentType::U8, true) => {
+                    elements.convert(range, |b: [u8; 1]| f32::from(b[0]) / 255.0)
+                }
+                (ComponentType::I8, false) => {
+                    elements.convert(range, |b| f32::from(i8::from_le_bytes(b)))
+                }
                 (ComponentType::I8, true) => {
                     elements.convert(range, |b| (f32::from(i8::from_le_bytes(b)) / 127.0).max(-1.0))
                 }
@@ -124,10 +142,16 @@ impl<'a> Source<'a> {
         user: &str,
     ) -> Result<Vec<[u32; N]>, Error> {
         let layout = self.layout(index, N, user)?;
-        if !matches!(layout.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
-            return Err(self.error(user, format!("accessor {index} has components that are not unsigned integers")));
+        if !matches!(layout.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
+        {
+            return Err(self.error(
+                user,
+                format!("accessor {index} has components that are not unsigned integers"),
+            ));
         }
-        let read = |elements: Elements<'_>, range: Range<usize>| elements.unsigned::<N>(range, layout.component);
+        let read = |elements: Elements<'_>, range: Range<usize>| {
+            elements.unsigned::<N>(range, layout.component)
+        };
         let base = layout.elements.map(|e| read(e, range.clone()));
         let out = base.unwrap_or_else(|| vec![[0; N]; range.len()]);
         self.with_sparse(index, &layout, range, out, read)
@@ -149,7 +173,9 @@ impl<'a> Source<'a> {
         for (&[place], value) in places.iter().zip(values) {
             if u64::from(place) >= count {
                 let path = format!("accessors[{index}].sparse.indices");
-                return Err(self.error(path, format!("index {place}, the accessor has {count} elements")));
+                return Err(
+                    self.error(path, format!("index {place}, the accessor has {count} elements"))
+                );
             }
             if range.contains(&(place as usize)) {
                 out[place as usize - range.start] = value;
@@ -163,14 +189,17 @@ impl<'a> Source<'a> {
         // Check the type of the elements.
         let accessor = &self.root.accessors[index];
         let path = format!("accessors[{index}]");
-        let (Checked::Valid(shape), Checked::Valid(component)) = (accessor.type_, accessor.component_type.as_ref())
+        let (Checked::Valid(shape), Checked::Valid(component)) =
+            (accessor.type_, accessor.component_type.as_ref())
         else {
             return Err(self.error(path, "unknown type or componentType"));
         };
         let component = component.0;
         if shape.multiplicity() != components {
-            let what =
-                format!("accessor {index} has {} components an element, {components} are needed", shape.multiplicity());
+            let what = format!(
+                "accessor {index} has {} components an element, {components} are needed",
+                shape.multiplicity()
+            );
             return Err(self.error(user, what));
         }
 
@@ -192,12 +221,21 @@ impl<'a> Source<'a> {
                     return Err(self.error(path, "unknown componentType of the indices"));
                 };
                 if s.count.0 > count as u64 {
-                    return Err(self.error(path, format!("count {}, the accessor has {count} elements", s.count.0)));
+                    return Err(self.error(
+                        path,
+                        format!("count {}, the accessor has {count} elements", s.count.0),
+                    ));
                 }
                 let (n, index_size) = (s.count.0 as usize, index_type.0.size());
-                let at = |view: usize, offset: u64, size| self.elements(&path, view, offset, n, size, false);
+                let at = |view: usize, offset: u64, size| {
+                    self.elements(&path, view, offset, n, size, false)
+                };
                 Some(Sparse {
-                    indices: at(s.indices.buffer_view.value(), s.indices.byte_offset.0, index_size)?,
+                    indices: at(
+                        s.indices.buffer_view.value(),
+                        s.indices.byte_offset.0,
+                        index_size,
+                    )?,
                     index_type: index_type.0,
                     values: at(s.values.buffer_view.value(), s.values.byte_offset.0, size)?,
                     count: n,
@@ -218,9 +256,11 @@ impl<'a> Source<'a> {
         strided: bool,
     ) -> Result<Elements<'a>, Error> {
         let bytes = self.buffers.view(self.root, view, self.file)?;
-        let stride = self.root.buffer_views[view].byte_stride.filter(|_| strided).map_or(size, |s| s.0);
+        let stride =
+            self.root.buffer_views[view].byte_stride.filter(|_| strided).map_or(size, |s| s.0);
         if stride < size {
-            return Err(self.error(path, format!("elements of {size} bytes, the view's stride is {stride}")));
+            return Err(self
+                .error(path, format!("elements of {size} bytes, the view's stride is {stride}")));
         }
         let needed = match count {
             0 => Some(0),
@@ -266,10 +306,18 @@ impl Elements<'_> {
         range.map(|i| one(&self.bytes[i * self.stride..][..N * S])).collect()
     }
 
-    fn unsigned<const N: usize>(self, range: Range<usize>, component: ComponentType) -> Vec<[u32; N]> {
+    fn unsigned<const N: usize>(
+        self,
+        range: Range<usize>,
+        component: ComponentType,
+    ) -> Vec<[u32; N]> {
         match component {
-            ComponentType::U8 | ComponentType::I8 => self.convert(range, |b: [u8; 1]| u32::from(b[0])),
-            ComponentType::U16 | ComponentType::I16 => self.convert(range, |b| u32::from(u16::from_le_bytes(b))),
+            ComponentType::U8 | ComponentType::I8 => {
+                self.convert(range, |b: [u8; 1]| u32::from(b[0]))
+            }
+            ComponentType::U16 | ComponentType::I16 => {
+                self.convert(range, |b| u32::from(u16::from_le_bytes(b)))
+            }
             ComponentType::U32 | ComponentType::F32 => self.convert(range, u32::from_le_bytes),
         }
     }
@@ -296,8 +344,7 @@ mod tests {
 
     #[test]
     fn strided_and_normalised() {
-        let accessor =
-            r#"{"bufferView":0,"byteOffset":1,"componentType":5121,"count":3,"type":"VEC2","normalized":true}"#;
+        let accessor = r#"{"bufferView":0,"byteOffset":1,"componentType":5121,"count":3,"type":"VEC2","normalized":true}"#;
         let view = r#"{"buffer":0,"byteLength":12,"byteStride":4}"#;
         with(accessor, view, |s| {
             let read = s.floats::<2>(0, 1..3, Integers::AsDeclared, "x").unwrap();
@@ -317,13 +364,17 @@ mod tests {
     #[test]
     fn nothing_is_read_beyond_the_view() {
         let count = |n: u64, offset: u64| {
-            let accessor =
-                format!(r#"{{"bufferView":0,"byteOffset":{offset},"componentType":5125,"count":{n},"type":"SCALAR"}}"#);
+            let accessor = format!(
+                r#"{{"bufferView":0,"byteOffset":{offset},"componentType":5125,"count":{n},"type":"SCALAR"}}"#
+            );
             with(&accessor, WHOLE, |s| s.unsigned::<1>(0, 0..0, "x").map_err(|e| e.to_string()))
         };
         assert!(count(3, 0).is_ok() && count(0, 12).is_ok());
         for (n, offset) in [(4, 0), (3, 1), (0, 13), (1, u64::MAX), (u64::MAX, 0), (4000, 0)] {
-            assert!(count(n, offset).unwrap_err().starts_with("a.gltf: accessors[0]"), "{n} from {offset}");
+            assert!(
+                count(n, offset).unwrap_err().starts_with("a.gltf: accessors[0]"),
+                "{n} from {offset}"
+            );
         }
         let zeros = r#"{"componentType":5126,"count":4294967295,"type":"VEC4"}"#;
         with(zeros, WHOLE, |s| assert!(s.count(0).unwrap_err().to_string().contains("4294967295")));

@@ -1,26 +1,31 @@
 //! Animations: the nodes and morph weights at one moment.
 //!
-//! A channel moves one property of one node along keyframes: by steps, straight lines (rotations along the shorter arc) or cubic
-//! splines. Before the first keyframe it has that one's value, after the last one that one's.
+//! A channel moves one property of one node along keyframes: by steps, straight lines (rotations
+//! along the shorter arc) or cubic splines. Before the first keyframe it has that one's value,
+//! after the last one that one's.
 //!
-//! Files are shown at rest unless a moment is asked for. Files whose nodes are without extent at rest, scales of 0 that an
-//! animation lets grow, are shown as the first animation begins.
+//! Files are shown at rest unless a moment is asked for. Files whose nodes are without extent at
+//! rest, scales of 0 that an animation lets grow, are shown as the first animation begins.
 //!
-//! In:   a document, the number of an animation, seconds. Out: placements and morph weights of nodes.
-//! Cost: linear in the nodes and the channels of one animation, logarithmic in the keyframes. Source: [glTF 2.0], section 3.11 and
-//! appendix C.
+//! In:   a document, the number of an animation, seconds. Out: placements and morph weights of
+//!       nodes.
+//! Cost: linear in the nodes and the channels of one animation, logarithmic in the keyframes.
+//! Source: [glTF 2.0], section 3.11 and appendix C.
 
 use super::accessor::{Integers, Source};
 use super::document::name_or;
 use crate::Error;
 use crate::moment::Moment;
 use gltf::json::accessor::Type;
-use gltf::json::animation::{Animation as JsonAnimation, Channel, Interpolation, Property, Sampler};
+use gltf::json::animation::{
+    Animation as JsonAnimation, Channel, Interpolation, Property, Sampler,
+};
 use gltf::json::validation::Checked;
 use vitral_math::{DMat4, DQuat, DVec3, DVec4, func};
 use vitral_scene::{Animation, NodeTransform};
 
-/// Cosine of the angle between rotations that are so close that a straight line takes the place of the arc.
+/// Cosine of the angle between rotations that are so close that a straight line takes the place of
+/// the arc.
 const CLOSE: f64 = 0.9995;
 
 /// Placements and morph weights of all nodes.
@@ -35,29 +40,44 @@ pub(crate) struct NodePoses {
 /// The names and lengths of a document's animations.
 pub(crate) fn list(source: &Source<'_>) -> Vec<Animation> {
     let animations = source.root.animations.iter().enumerate();
-    animations.map(|(i, a)| Animation { name: name_or(&a.name, "animation", i), seconds: seconds(source, a) }).collect()
+    animations
+        .map(|(i, a)| Animation {
+            name: name_or(&a.name, "animation", i),
+            seconds: seconds(source, a),
+        })
+        .collect()
 }
 
 /// The last keyframe of all channels.
 fn seconds(source: &Source<'_>, animation: &JsonAnimation) -> f64 {
     let last_key = |channel: &Channel| {
         let input = animation.samplers.get(channel.sampler.value())?.input.value();
-        let last = source.root.accessors.get(input).and_then(|_| source.count(input).ok())?.checked_sub(1)?;
-        let keys = source.floats::<1>(input, last..last + 1, Integers::AsDeclared, "animations").ok()?;
+        let last = source
+            .root
+            .accessors
+            .get(input)
+            .and_then(|_| source.count(input).ok())?
+            .checked_sub(1)?;
+        let keys =
+            source.floats::<1>(input, last..last + 1, Integers::AsDeclared, "animations").ok()?;
         Some(f64::from(keys[0][0])).filter(|seconds| seconds.is_finite())
     };
     animation.channels.iter().filter_map(last_key).fold(0.0, f64::max)
 }
 
-/// The number of the animation that a moment names: by number, else by name, else by a name of other case.
+/// The number of the animation that a moment names: by number, else by name, else by a name of
+/// other case.
 pub(crate) fn find(source: &Source<'_>, moment: &Moment) -> Result<usize, Error> {
     let (wanted, known) = (moment.animation.as_str(), list(source));
     let numbered = wanted.parse().ok().filter(|number| *number < known.len());
     let named = || known.iter().position(|a| a.name == wanted);
-    let in_other_case = || known.iter().position(|a| a.name.to_lowercase() == wanted.to_lowercase());
+    let in_other_case =
+        || known.iter().position(|a| a.name.to_lowercase() == wanted.to_lowercase());
     numbered.or_else(named).or_else(in_other_case).ok_or_else(|| {
-        let names: Vec<_> = known.iter().enumerate().map(|(i, a)| format!("{i} `{}`", a.name)).collect();
-        let there_are = if names.is_empty() { "the file has none".to_owned() } else { names.join(", ") };
+        let names: Vec<_> =
+            known.iter().enumerate().map(|(i, a)| format!("{i} `{}`", a.name)).collect();
+        let there_are =
+            if names.is_empty() { "the file has none".to_owned() } else { names.join(", ") };
         Error::Absent { what: format!("{}: no animation `{wanted}`", source.file), hint: there_are }
     })
 }
@@ -66,7 +86,12 @@ pub(crate) fn find(source: &Source<'_>, moment: &Moment) -> Result<usize, Error>
 ///
 /// # Errors
 /// A channel that points at nothing, or whose keyframes make no sense.
-pub(crate) fn apply(source: &Source<'_>, number: usize, time: f64, poses: &mut NodePoses) -> Result<(), Error> {
+pub(crate) fn apply(
+    source: &Source<'_>,
+    number: usize,
+    time: f64,
+    poses: &mut NodePoses,
+) -> Result<(), Error> {
     let animation = &source.root.animations[number];
     for (c, channel) in animation.channels.iter().enumerate() {
         let path = format!("animations[{number}].channels[{c}]");
@@ -75,14 +100,17 @@ pub(crate) fn apply(source: &Source<'_>, number: usize, time: f64, poses: &mut N
             return Err(source.error(path, "a sampler that is not there"));
         };
         if node >= poses.transforms.len() {
-            return Err(source.error(path, format!("node {node}, there are {}", poses.transforms.len())));
+            return Err(
+                source.error(path, format!("node {node}, there are {}", poses.transforms.len()))
+            );
         }
 
         // Morph weights, one for each target.
         if channel.target.path == Checked::Valid(Property::MorphTargetWeights) {
             let keyframes = Keyframes::new(source, sampler, time, &path)?;
             let targets = keyframes.values() / keyframes.keys;
-            let weights = keyframes.vector(|k| keyframes.numbers(k * targets..(k + 1) * targets))?;
+            let weights =
+                keyframes.vector(|k| keyframes.numbers(k * targets..(k + 1) * targets))?;
             poses.weights[node] = Some(weights.iter().map(|w| *w as f32).collect());
             continue;
         }
@@ -108,7 +136,9 @@ pub(crate) fn apply(source: &Source<'_>, number: usize, time: f64, poses: &mut N
 fn parts(transform: &NodeTransform) -> (DVec3, DQuat, DVec3) {
     match *transform {
         NodeTransform::Parts { translation, rotation, scale } => (scale, rotation, translation),
-        NodeTransform::Matrix(matrix) if matrix == DMat4::IDENTITY => (DVec3::ONE, DQuat::IDENTITY, DVec3::ZERO),
+        NodeTransform::Matrix(matrix) if matrix == DMat4::IDENTITY => {
+            (DVec3::ONE, DQuat::IDENTITY, DVec3::ZERO)
+        }
         NodeTransform::Matrix(matrix) => matrix.to_scale_rotation_translation(),
     }
 }
@@ -140,11 +170,18 @@ struct Keyframes<'a> {
 }
 
 impl<'a> Keyframes<'a> {
-    fn new(source: &'a Source<'a>, sampler: &Sampler, time: f64, path: &'a str) -> Result<Self, Error> {
+    fn new(
+        source: &'a Source<'a>,
+        sampler: &Sampler,
+        time: f64,
+        path: &'a str,
+    ) -> Result<Self, Error> {
         let (input, output) = (sampler.input.value(), sampler.output.value());
         let accessors = source.root.accessors.len();
         if input >= accessors || output >= accessors {
-            return Err(source.error(path, format!("an accessor that is not there, there are {accessors}")));
+            return Err(
+                source.error(path, format!("an accessor that is not there, there are {accessors}"))
+            );
         }
         let Checked::Valid(interpolation) = sampler.interpolation else {
             return Err(source.error(path, "an interpolation that is not known"));
@@ -155,7 +192,10 @@ impl<'a> Keyframes<'a> {
         let times = source.floats::<1>(input, 0..keys, Integers::AsDeclared, path)?;
         let at = |k: usize| f64::from(times[k][0]);
         let spline = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-        if keys == 0 || source.count(output)? < keys * spline || !times.iter().all(|t| t[0].is_finite()) {
+        if keys == 0
+            || source.count(output)? < keys * spline
+            || !times.iter().all(|t| t[0].is_finite())
+        {
             return Err(source.error(path, "keyframes without values"));
         }
         let after = times.partition_point(|t| f64::from(t[0]) <= time);
@@ -177,7 +217,8 @@ impl<'a> Keyframes<'a> {
 
     /// Numbers of the output.
     fn numbers(&self, range: std::ops::Range<usize>) -> Result<Vec<f64>, Error> {
-        let numbers = self.source.floats::<1>(self.output, range, Integers::AsDeclared, self.path)?;
+        let numbers =
+            self.source.floats::<1>(self.output, range, Integers::AsDeclared, self.path)?;
         Ok(numbers.iter().map(|n| f64::from(n[0])).collect())
     }
 
@@ -185,14 +226,20 @@ impl<'a> Keyframes<'a> {
     fn element<const N: usize>(&self, k: usize) -> Result<Vec<f64>, Error> {
         let shape = if N == 3 { Type::Vec3 } else { Type::Vec4 };
         if self.source.shape(self.output) != Some(shape) {
-            return Err(self.source.error(self.path, format!("vectors of {N} numbers are required")));
+            return Err(self
+                .source
+                .error(self.path, format!("vectors of {N} numbers are required")));
         }
-        let vectors = self.source.floats::<N>(self.output, k..k + 1, Integers::AsDeclared, self.path)?;
+        let vectors =
+            self.source.floats::<N>(self.output, k..k + 1, Integers::AsDeclared, self.path)?;
         Ok(vectors[0].iter().map(|n| f64::from(*n)).collect())
     }
 
     /// The value, each number by itself. `element` gives vectors of the output by number.
-    fn vector(&self, element: impl Fn(usize) -> Result<Vec<f64>, Error>) -> Result<Vec<f64>, Error> {
+    fn vector(
+        &self,
+        element: impl Fn(usize) -> Result<Vec<f64>, Error>,
+    ) -> Result<Vec<f64>, Error> {
         let ([before, after], t) = (self.around, self.fraction);
         let combine = |weighted: &[(f64, Vec<f64>)]| {
             let sum = |i: usize| weighted.iter().map(|(weight, vector)| weight * vector[i]).sum();
@@ -201,7 +248,9 @@ impl<'a> Keyframes<'a> {
         match self.interpolation {
             Interpolation::Step => element(before),
             Interpolation::Linear if before == after => element(before),
-            Interpolation::Linear => Ok(combine(&[(1.0 - t, element(before)?), (t, element(after)?)])),
+            Interpolation::Linear => {
+                Ok(combine(&[(1.0 - t, element(before)?), (t, element(after)?)]))
+            }
             // Each keyframe is an in-tangent, a value, an out-tangent.
             Interpolation::CubicSpline if before == after => element(3 * before + 1),
             Interpolation::CubicSpline => {
@@ -225,7 +274,11 @@ impl<'a> Keyframes<'a> {
     fn rotation(&self) -> Result<DQuat, Error> {
         let quaternion = |k: usize| Ok(unit(DVec4::from_slice(&self.element::<4>(k)?)));
         if self.interpolation == Interpolation::Linear {
-            return Ok(arc(quaternion(self.around[0])?, quaternion(self.around[1])?, self.fraction));
+            return Ok(arc(
+                quaternion(self.around[0])?,
+                quaternion(self.around[1])?,
+                self.fraction,
+            ));
         }
         Ok(DQuat::from_vec4(unit(DVec4::from_slice(&self.vector(|k| self.element::<4>(k))?))))
     }
@@ -258,7 +311,10 @@ mod tests {
         let eighth = arc(none, quarter, 0.5);
         let expected = DQuat::from_xyzw(0.0, 0.0, func::sin(std::f64::consts::PI / 8.0), 0.0).z;
         assert!((eighth.z - expected).abs() < 1e-15);
-        assert!((arc(none, -quarter, 0.5).z - expected).abs() < 1e-15, "the same rotation by the other sign");
+        assert!(
+            (arc(none, -quarter, 0.5).z - expected).abs() < 1e-15,
+            "the same rotation by the other sign"
+        );
         assert_eq!(arc(none, none, 0.3), DQuat::IDENTITY);
     }
 }

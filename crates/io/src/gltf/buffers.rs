@@ -1,4 +1,5 @@
-//! The bytes behind a document: buffers from files, data URIs or the GLB chunk, and views into them.
+//! The bytes behind a document: buffers from files, data URIs or the GLB chunk, and views into
+//! them.
 //!
 //! Cost: one read of each buffer that is there; nothing is copied out of a GLB.
 
@@ -10,8 +11,8 @@ use gltf::json::Root;
 use gltf::json::buffer::View;
 use std::borrow::Cow;
 
-/// All buffers of a document, each at least as long as it claims. `None` for one without bytes, which is an error where it is
-/// used: only extensions that are not read have any for it.
+/// All buffers of a document, each at least as long as it claims. `None` for one without bytes,
+/// which is an error where it is used: only extensions that are not read have any for it.
 pub(crate) struct Buffers<'a> {
     data: Vec<Option<Cow<'a, [u8]>>>,
     /// What is odd about the names of their files.
@@ -20,14 +21,19 @@ pub(crate) struct Buffers<'a> {
 
 impl<'a> Buffers<'a> {
     /// Fetches every buffer.
-    pub(crate) fn fetch(document: &Document<'a>, file: &str, resolver: &dyn Resolver) -> Result<Self, Error> {
+    pub(crate) fn fetch(
+        document: &Document<'a>,
+        file: &str,
+        resolver: &dyn Resolver,
+    ) -> Result<Self, Error> {
         let mut data = Vec::with_capacity(document.root.buffers.len());
         let mut warnings = Vec::new();
         for (i, buffer) in document.root.buffers.iter().enumerate() {
             let place = Place::Json(format!("buffers[{i}]"));
             let bytes = match (&buffer.uri, document.binary) {
                 (Some(uri), _) => {
-                    let target = uri::resolve(uri).map_err(|what| Error::malformed(file, place.clone(), what))?;
+                    let target = uri::resolve(uri)
+                        .map_err(|what| Error::malformed(file, place.clone(), what))?;
                     let (bytes, oddity) = read_target(target, file, resolver)?;
                     warnings.extend(oddity);
                     Cow::Owned(bytes)
@@ -39,7 +45,8 @@ impl<'a> Buffers<'a> {
                 }
             };
             if (bytes.len() as u64) < buffer.byte_length.0 {
-                let what = format!("byteLength {}, there are {} bytes", buffer.byte_length.0, bytes.len());
+                let what =
+                    format!("byteLength {}, there are {} bytes", buffer.byte_length.0, bytes.len());
                 return Err(Error::malformed(file, place, what));
             }
             data.push(Some(bytes));
@@ -57,32 +64,46 @@ impl<'a> Buffers<'a> {
         let entry = &root.buffer_views[view];
         let Some(buffer) = &self.data[entry.buffer.value()] else {
             if let Some(name) = compression(entry) {
-                let what = format!("bufferViews[{view}] is compressed with {name}, which is not supported");
+                let what = format!(
+                    "bufferViews[{view}] is compressed with {name}, which is not supported"
+                );
                 return Err(Error::Unsupported { file: file.to_owned(), what });
             }
             let place = Place::Json(format!("buffers[{}]", entry.buffer));
-            return Err(Error::malformed(file, place, "neither a uri nor the binary chunk of a GLB"));
+            return Err(Error::malformed(
+                file,
+                place,
+                "neither a uri nor the binary chunk of a GLB",
+            ));
         };
         let (start, length) = (entry.byte_offset.map_or(0, |o| o.0), entry.byte_length.0);
         let end = start.checked_add(length).filter(|&end| end <= buffer.len() as u64);
         match end {
             Some(end) => Ok(&buffer[start as usize..end as usize]),
             None => {
-                let what = format!("bytes {start} + {length}, buffer {} has {}", entry.buffer, buffer.len());
+                let what = format!(
+                    "bytes {start} + {length}, buffer {} has {}",
+                    entry.buffer,
+                    buffer.len()
+                );
                 Err(Error::malformed(file, Place::Json(format!("bufferViews[{view}]")), what))
             }
         }
     }
 }
 
-/// The extension by which a view's bytes are packed in another buffer; the buffer that it names may lack bytes then.
+/// The extension by which a view's bytes are packed in another buffer; the buffer that it names may
+/// lack bytes then.
 fn compression(view: &View) -> Option<&'static str> {
     let others = &view.extensions.as_ref()?.others;
-    ["EXT_meshopt_compression", "KHR_meshopt_compression"].into_iter().find(|name| others.contains_key(*name))
+    ["EXT_meshopt_compression", "KHR_meshopt_compression"]
+        .into_iter()
+        .find(|name| others.contains_key(*name))
 }
 
-/// The bytes that a URI of a model stands for, and what is odd about the name of the file that has them. A name that is not there
-/// is looked for with `/` between folders, as MTL names are, and then by its last part beside the model.
+/// The bytes that a URI of a model stands for, and what is odd about the name of the file that has
+/// them. A name that is not there is looked for with `/` between folders, as MTL names are, and
+/// then by its last part beside the model.
 pub(crate) fn read_target(
     target: Target,
     file: &str,
@@ -102,7 +123,9 @@ pub(crate) fn read_target(
             let oddity = found.oddity.or_else(|| (found.name != path).then(moved));
             Ok((found.bytes, oddity.map(|what| format!("{file}: {what}"))))
         }
-        Err(why) => Err(Error::Missing { file: file.to_owned(), needed: path, why: why.to_string() }),
+        Err(why) => {
+            Err(Error::Missing { file: file.to_owned(), needed: path, why: why.to_string() })
+        }
     }
 }
 
@@ -122,7 +145,8 @@ mod tests {
                 "accessors":[{{"componentType":5126,"count":3,"type":"VEC3"{rest}}}]}}"#
             );
             parse(text.as_bytes(), "a.gltf").unwrap();
-            gltf::load(text.as_bytes(), "a.gltf", &NoFiles, &Workers::single()).map_err(|e| e.to_string())
+            gltf::load(text.as_bytes(), "a.gltf", &NoFiles, &Workers::single())
+                .map_err(|e| e.to_string())
         };
         assert_eq!(load("").unwrap().meshes[0].triangles.len(), 1);
         let told = "a.gltf: buffers[0]: neither a uri nor the binary chunk of a GLB";

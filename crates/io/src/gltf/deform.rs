@@ -1,10 +1,13 @@
-//! The default pose: morph targets at their default weights, skins at the joints' places in the node tree.
+//! The default pose: morph targets at their default weights, skins at the joints' places in the
+//! node tree.
 //!
-//! Morphing adds weighted displacements. Skinning moves each vertex by the weighted mean of its joints' matrices
-//! `world_from_joint * joint_from_mesh`, so that the result is in world space and the node's own place is not used.
+//! Morphing adds weighted displacements. Skinning moves each vertex by the weighted mean of its
+//! joints' matrices `world_from_joint * joint_from_mesh`, so that the result is in world space and
+//! the node's own place is not used.
 //!
-//! Cost: vertices times targets, vertices times influences. Source: [glTF 2.0], sections 3.7.2.2 and 3.7.3.
-//! Departs from it: weights are scaled to a sum of 1; a vertex without weights stays where it is.
+//! Cost: vertices times targets, vertices times influences. Source: [glTF 2.0], sections 3.7.2.2
+//! and 3.7.3. Departs from it: weights are scaled to a sum of 1; a vertex without weights stays
+//! where it is.
 
 use super::accessor::{Integers, Source};
 use super::geometry::Attributes;
@@ -27,17 +30,19 @@ pub(crate) fn morph(
         if weight == 0.0 {
             continue;
         }
-        let displaced = |to: &mut [[f32; 3]], accessor: Option<usize>, name: &str| -> Result<(), Error> {
-            let Some(accessor) = accessor else { return Ok(()) };
-            let path = format!("{path}.targets[{t}].{name}");
-            let by = source.floats::<3>(accessor, range.clone(), Integers::AsDeclared, &path)?;
-            for (p, d) in to.iter_mut().zip(by) {
-                for k in 0..3 {
-                    p[k] += weight * d[k];
+        let displaced =
+            |to: &mut [[f32; 3]], accessor: Option<usize>, name: &str| -> Result<(), Error> {
+                let Some(accessor) = accessor else { return Ok(()) };
+                let path = format!("{path}.targets[{t}].{name}");
+                let by =
+                    source.floats::<3>(accessor, range.clone(), Integers::AsDeclared, &path)?;
+                for (p, d) in to.iter_mut().zip(by) {
+                    for k in 0..3 {
+                        p[k] += weight * d[k];
+                    }
                 }
-            }
-            Ok(())
-        };
+                Ok(())
+            };
         displaced(positions, moves, "POSITION")?;
         if let Some(normals) = normals.as_deref_mut() {
             displaced(normals, turns, "NORMAL")?;
@@ -62,11 +67,17 @@ pub(crate) fn joint_matrices(
             if count < joints {
                 return Err(source.error(path, format!("{count} matrices for {joints} joints")));
             }
-            let matrices = source.floats::<16>(accessor.value(), 0..joints, Integers::AsDeclared, &path)?;
+            let matrices =
+                source.floats::<16>(accessor.value(), 0..joints, Integers::AsDeclared, &path)?;
             matrices.iter().map(|m| DMat4::from_cols_array(&m.map(f64::from))).collect()
         }
     };
-    Ok(skin.joints.iter().zip(inverse_bind).map(|(joint, bind)| worlds[joint.value()] * bind).collect())
+    Ok(skin
+        .joints
+        .iter()
+        .zip(inverse_bind)
+        .map(|(joint, bind)| worlds[joint.value()] * bind)
+        .collect())
 }
 
 /// Moves vertices with their joints.
@@ -94,10 +105,15 @@ fn widened(v: [f32; 3]) -> DVec3 {
     DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]))
 }
 
-/// A normal goes with the cofactors of the matrix, which are its inverse transpose up to a factor and exist always.
+/// A normal goes with the cofactors of the matrix, which are its inverse transpose up to a factor
+/// and exist always.
 fn turned_normal(matrix: &DMat4, normal: DVec3) -> DVec3 {
     let m = DMat3::from_mat4(*matrix);
-    let cofactors = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+    let cofactors = DMat3::from_cols(
+        m.y_axis.cross(m.z_axis),
+        m.z_axis.cross(m.x_axis),
+        m.x_axis.cross(m.y_axis),
+    );
     let turned = cofactors * normal;
     let turned = if m.determinant() < 0.0 { -turned } else { turned };
     turned.try_normalize().unwrap_or(normal)
@@ -116,14 +132,21 @@ fn blended_matrices(
         let joints_path = format!("{path}.attributes.JOINTS_{set}");
         let joints = source.unsigned::<4>(joints, range.clone(), &joints_path)?;
         let weights_path = format!("{path}.attributes.WEIGHTS_{set}");
-        let weights = source.floats::<4>(weights, range.clone(), Integers::Normalized, &weights_path)?;
-        for (v, ((matrix, sum), (joints, weights))) in sums.iter_mut().zip(joints.iter().zip(weights)).enumerate() {
+        let weights =
+            source.floats::<4>(weights, range.clone(), Integers::Normalized, &weights_path)?;
+        for (v, ((matrix, sum), (joints, weights))) in
+            sums.iter_mut().zip(joints.iter().zip(weights)).enumerate()
+        {
             for (&joint, weight) in joints.iter().zip(weights) {
                 if weight == 0.0 {
                     continue;
                 }
                 let Some(by) = matrices.get(joint as usize) else {
-                    let what = format!("vertex {} has joint {joint}, the skin has {}", range.start + v, matrices.len());
+                    let what = format!(
+                        "vertex {} has joint {joint}, the skin has {}",
+                        range.start + v,
+                        matrices.len()
+                    );
                     return Err(source.error(joints_path, what));
                 };
                 *matrix += *by * f64::from(weight);
@@ -146,6 +169,10 @@ mod tests {
         let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
         assert_eq!(turned_normal(&mirror, DVec3::X), DVec3::NEG_X);
         let flat = DMat4::from_scale(DVec3::new(1.0, 1.0, 0.0));
-        assert_eq!(turned_normal(&flat, DVec3::X), DVec3::X, "a singular matrix keeps what it cannot turn");
+        assert_eq!(
+            turned_normal(&flat, DVec3::X),
+            DVec3::X,
+            "a singular matrix keeps what it cannot turn"
+        );
     }
 }

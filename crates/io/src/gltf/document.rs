@@ -1,9 +1,11 @@
-//! From bytes to a checked document: the GLB container, the JSON in it, and the rules that its indices must keep.
+//! From bytes to a checked document: the GLB container, the JSON in it, and the rules that its
+//! indices must keep.
 //!
-//! The JSON is read into the types of the `gltf` crate. Its own loader is stricter than viewers are (it refuses a
-//! `POSITION` without bounds, a scene without nodes, any required extension that it does not know) and indexes
-//! unchecked in one place, so the container is taken apart here and its validation is run with the harmless reports
-//! left out. Afterwards every index in the document points at something.
+//! The JSON is read into the types of the `gltf` crate. Its own loader is stricter than viewers are
+//! (it refuses a `POSITION` without bounds, a scene without nodes, any required extension that it
+//! does not know) and indexes unchecked in one place, so the container is taken apart here and its
+//! validation is run with the harmless reports left out. Afterwards every index in the document
+//! points at something.
 //!
 //! In:   the file's bytes. Out: the document and the binary chunk of a GLB.
 //! Cost: linear. Source: [glTF 2.0], sections 3 and 4.
@@ -12,7 +14,9 @@ use super::untidy;
 use crate::file_name::extension;
 use crate::json_message::plain_message;
 use crate::{Error, Place};
-use gltf::json::{self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate};
+use gltf::json::{
+    self, Path, Root, mesh::Semantic, validation, validation::Checked, validation::Validate,
+};
 use serde_json::{Map, Value};
 
 /// WebP pictures, which a texture names beside those that any reader knows.
@@ -41,8 +45,8 @@ const SUPPORTED: [&str; 12] = [
 /// The extension that hides nodes.
 pub(crate) const VISIBILITY: &str = "KHR_node_visibility";
 
-/// Extensions that only change how a surface looks: without them it is seen all the same, so a file that requires one is
-/// shown, with a warning.
+/// Extensions that only change how a surface looks: without them it is seen all the same, so a file
+/// that requires one is shown, with a warning.
 const LOOKS: [&str; 8] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -54,7 +58,8 @@ const LOOKS: [&str; 8] = [
     "KHR_materials_volume",
 ];
 
-/// Extensions that pack meshes and textures, and the command of glTF Transform that writes the file without them.
+/// Extensions that pack meshes and textures, and the command of glTF Transform that writes the file
+/// without them.
 const COMPRESSED: [(&str, &str); 4] = [
     ("KHR_draco_mesh_compression", "cp"),
     ("EXT_meshopt_compression", "cp"),
@@ -62,7 +67,8 @@ const COMPRESSED: [(&str, &str); 4] = [
     ("KHR_texture_basisu", "ktxdecompress"),
 ];
 
-/// A document whose indices are all in range, except those of `scene` and of image sources, which may be absent.
+/// A document whose indices are all in range, except those of `scene` and of image sources, which
+/// may be absent.
 #[derive(Debug)]
 pub(crate) struct Document<'a> {
     pub(crate) root: Root,
@@ -91,7 +97,8 @@ struct NodePlace {
     matrix: Option<Vec<f64>>,
 }
 
-/// The nodes that are so far from the origin that it matters; the text is read once more if there are any.
+/// The nodes that are so far from the origin that it matters; the text is read once more if there
+/// are any.
 fn far_nodes(root: &Root, text: &[u8]) -> Vec<(usize, [f64; 3])> {
     let is_far = |node: &json::Node| {
         let of_matrix = node.matrix.map(|m| [m[12], m[13], m[14]]);
@@ -112,8 +119,12 @@ fn far_nodes(root: &Root, text: &[u8]) -> Vec<(usize, [f64; 3])> {
 
 /// Reads and checks glTF JSON or a GLB container.
 pub(crate) fn parse<'a>(bytes: &'a [u8], file: &str) -> Result<Document<'a>, Error> {
-    let (text, binary) = if bytes.starts_with(b"glTF") { split_container(bytes, file)? } else { (bytes, None) };
-    if extension(file) == "glb" && !bytes.starts_with(b"glTF") && !text.trim_ascii_start().starts_with(b"{") {
+    let (text, binary) =
+        if bytes.starts_with(b"glTF") { split_container(bytes, file)? } else { (bytes, None) };
+    if extension(file) == "glb"
+        && !bytes.starts_with(b"glTF")
+        && !text.trim_ascii_start().starts_with(b"{")
+    {
         return Err(Error::malformed(file, Place::Byte(0), "a GLB begins with `glTF`"));
     }
     let root = parse_json(text, file)?;
@@ -137,38 +148,57 @@ fn check_version(version: &str, file: &str) -> Result<(), Error> {
     Err(Error::Unsupported { file: file.to_owned(), what })
 }
 
-/// The version of a document that the types do not take. Version 1.0 has objects where 2.0 has lists, and need not name itself.
+/// The version of a document that the types do not take. Version 1.0 has objects where 2.0 has
+/// lists, and need not name itself.
 fn version_of(document: &Map<String, Value>) -> Option<&str> {
     let named = document.get("asset").and_then(|a| a.get("version")).and_then(Value::as_str);
-    let is_first = || ["accessors", "meshes", "nodes"].iter().any(|l| document.get(*l).is_some_and(Value::is_object));
+    let is_first = || {
+        ["accessors", "meshes", "nodes"]
+            .iter()
+            .any(|l| document.get(*l).is_some_and(Value::is_object))
+    };
     named.or_else(|| is_first().then_some("1.0"))
 }
 
 /// Whether a version `MAJOR.MINOR` is above 2.0, or none at all.
 fn is_above_2_0(version: &str) -> bool {
-    let numbers = version.split_once('.').and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
+    let numbers = version
+        .split_once('.')
+        .and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
     numbers.is_none_or(|numbers: (u32, u32)| numbers > (2, 0))
 }
 
-/// Takes a GLB apart into its JSON and binary chunks. Chunks of other kinds are passed over, as the format demands.
+/// Takes a GLB apart into its JSON and binary chunks. Chunks of other kinds are passed over, as the
+/// format demands.
 fn split_container<'a>(bytes: &'a [u8], file: &str) -> Result<(&'a [u8], Option<&'a [u8]>), Error> {
     let bad = |at: usize, what: String| Error::malformed(file, Place::Byte(at as u64), what);
-    let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
+    let word = |at: usize| {
+        bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize)
+    };
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return Err(bad(bytes.len(), format!("a GLB header has 12 bytes, the file has {}", bytes.len())));
+        return Err(bad(
+            bytes.len(),
+            format!("a GLB header has 12 bytes, the file has {}", bytes.len()),
+        ));
     };
     if version != 2 {
         let what = format!("GLB version {version}; version 2 is read");
         return Err(Error::Unsupported { file: file.to_owned(), what });
     }
     if length > bytes.len() {
-        return Err(bad(8, format!("the header says {length} bytes, the file has {}", bytes.len())));
+        return Err(bad(
+            8,
+            format!("the header says {length} bytes, the file has {}", bytes.len()),
+        ));
     }
     let (mut json, mut binary, mut at) = (None, None, 12);
     while let (Some(size), Some(kind)) = (word(at), bytes.get(at + 4..at + 8)) {
         let start = at + 8;
         let Some(chunk) = size.checked_add(start).and_then(|end| bytes.get(start..end)) else {
-            return Err(bad(at, format!("a chunk of {size} bytes, {} are left", bytes.len() - start)));
+            return Err(bad(
+                at,
+                format!("a chunk of {size} bytes, {} are left", bytes.len() - start),
+            ));
         };
         match kind {
             b"JSON" if json.is_none() => json = Some(chunk),
@@ -186,7 +216,8 @@ fn split_container<'a>(bytes: &'a [u8], file: &str) -> Result<(&'a [u8], Option<
     Ok((&json[..length], binary))
 }
 
-/// Reads the JSON. What is only untidy is mended; a value of the wrong type is reported with its path.
+/// Reads the JSON. What is only untidy is mended; a value of the wrong type is reported with its
+/// path.
 fn parse_json(text: &[u8], file: &str) -> Result<Root, Error> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     if let Ok(root) = serde_json::from_slice(text) {
@@ -215,24 +246,35 @@ fn check_extensions(root: &Root, file: &str) -> Result<Vec<String>, Error> {
     let unknown = |names: &[String]| -> Vec<String> {
         names.iter().filter(|n| !SUPPORTED.contains(&n.as_str())).cloned().collect()
     };
-    let (looks, required): (Vec<_>, Vec<_>) =
-        unknown(&root.extensions_required).into_iter().partition(|name| LOOKS.contains(&name.as_str()));
+    let (looks, required): (Vec<_>, Vec<_>) = unknown(&root.extensions_required)
+        .into_iter()
+        .partition(|name| LOOKS.contains(&name.as_str()));
     if !required.is_empty() {
-        let unpacked =
-            |name: &String| COMPRESSED.iter().find(|(packed, _)| packed == name).map(|(_, command)| *command);
-        let commands: std::collections::BTreeSet<&str> = required.iter().filter_map(unpacked).collect();
-        let unpack: Vec<String> =
-            commands.iter().map(|c| format!("; `gltf-transform {c} IN.glb OUT.glb` unpacks it")).collect();
-        let what = format!("requires {}, which is not supported{}", required.join(", "), unpack.concat());
+        let unpacked = |name: &String| {
+            COMPRESSED.iter().find(|(packed, _)| packed == name).map(|(_, command)| *command)
+        };
+        let commands: std::collections::BTreeSet<&str> =
+            required.iter().filter_map(unpacked).collect();
+        let unpack: Vec<String> = commands
+            .iter()
+            .map(|c| format!("; `gltf-transform {c} IN.glb OUT.glb` unpacks it"))
+            .collect();
+        let what =
+            format!("requires {}, which is not supported{}", required.join(", "), unpack.concat());
         return Err(Error::Unsupported { file: file.to_owned(), what });
     }
     let mut used = unknown(&root.extensions_used);
     let unlisted: Vec<String> = looks.into_iter().filter(|name| !used.contains(name)).collect();
     used.extend(unlisted);
-    Ok(if used.is_empty() { used } else { vec![format!("{file}: extensions not read: {}", used.join(", "))] })
+    Ok(if used.is_empty() {
+        used
+    } else {
+        vec![format!("{file}: extensions not read: {}", used.join(", "))]
+    })
 }
 
-/// Runs the crate's validation, keeping the reports that would leave an index dangling or a value without meaning.
+/// Runs the crate's validation, keeping the reports that would leave an index dangling or a value
+/// without meaning.
 fn check_indices(root: &Root, file: &str) -> Result<(), Error> {
     // The crate looks POSITION up before it checks the index: do that first.
     let accessors = root.accessors.len();
@@ -260,7 +302,8 @@ fn check_indices(root: &Root, file: &str) -> Result<(), Error> {
         validation::Error::Missing => "needed, but not there".to_owned(),
         other => other.to_string().to_lowercase(),
     };
-    let more = if found.len() > 1 { format!(" (and {} more)", found.len() - 1) } else { String::new() };
+    let more =
+        if found.len() > 1 { format!(" (and {} more)", found.len() - 1) } else { String::new() };
     Err(Error::malformed(file, Place::Json(dotted(path)), what + &more))
 }
 
@@ -276,12 +319,19 @@ fn is_harmless(root: &Root, path: &str, error: validation::Error) -> bool {
             let zeros = path.starts_with("accessors[") && path.ends_with("].bufferView");
             let other_image = path.starts_with("textures[") && path.ends_with("].source");
             let nothing_drawn = path.ends_with("].attributes[\"POSITION\"]");
-            zeros || other_image || nothing_drawn || path.ends_with("\"].min") || path.ends_with("\"].max")
+            zeros
+                || other_image
+                || nothing_drawn
+                || path.ends_with("\"].min")
+                || path.ends_with("\"].max")
         }
         validation::Error::Invalid => {
             // A type of accessor, or of light, that is not known matters where it is used.
-            let kind = path.starts_with("accessors[") || path.starts_with("extensions.khrLightsPunctual.lights[");
-            kind || path.contains("<invalid semantic name>") || path.ends_with("\"].min") || path.ends_with("\"].max")
+            let kind = path.starts_with("accessors[")
+                || path.starts_with("extensions.khrLightsPunctual.lights[");
+            kind || path.contains("<invalid semantic name>")
+                || path.ends_with("\"].min")
+                || path.ends_with("\"].max")
         }
         validation::Error::Oversize => false,
     }
@@ -301,12 +351,14 @@ const EXTENSION_FIELDS: [(&str, &str); 10] = [
     ("volume", "KHR_materials_volume"),
 ];
 
-/// The path as in the file: `attributes["POSITION"]` as `attributes.POSITION`, extensions by their names.
+/// The path as in the file: `attributes["POSITION"]` as `attributes.POSITION`, extensions by their
+/// names.
 fn dotted(path: &str) -> String {
     let path = path.replace("[\"", ".").replace("\"]", "");
     let mut before = "";
     let parts = path.split('.').map(|part| {
-        let known = EXTENSION_FIELDS.iter().find(|(field, _)| before == "extensions" && *field == part);
+        let known =
+            EXTENSION_FIELDS.iter().find(|(field, _)| before == "extensions" && *field == part);
         before = part;
         known.map_or(part, |(_, name)| name)
     });
@@ -346,7 +398,9 @@ mod tests {
         );
         assert!(parse(br#"{"asset":{"version":"2.1","minVersion":"2.0"}}"#, "a.gltf").is_ok());
         assert_eq!(
-            error(&format!("{head},\"nodes\":[{{\"extensions\":{{\"KHR_lights_punctual\":{{\"light\":0}}}}}}]}}")),
+            error(&format!(
+                "{head},\"nodes\":[{{\"extensions\":{{\"KHR_lights_punctual\":{{\"light\":0}}}}}}]}}"
+            )),
             "a.gltf: nodes[0].extensions.KHR_lights_punctual.light: the index points at nothing"
         );
         assert_eq!(
@@ -363,11 +417,11 @@ mod tests {
             error(&format!("{head}{draco}")),
             "a.gltf: requires KHR_draco_mesh_compression, which is not supported; `gltf-transform cp IN.glb OUT.glb` unpacks it"
         );
-        let both =
-            r#","extensionsRequired":["EXT_meshopt_compression","KHR_draco_mesh_compression","KHR_texture_basisu"]}"#;
+        let both = r#","extensionsRequired":["EXT_meshopt_compression","KHR_draco_mesh_compression","KHR_texture_basisu"]}"#;
         let told = error(&format!("{head}{both}"));
         assert!(
-            told.matches(" cp ").count() == 1 && told.contains("`gltf-transform ktxdecompress IN.glb OUT.glb`"),
+            told.matches(" cp ").count() == 1
+                && told.contains("`gltf-transform ktxdecompress IN.glb OUT.glb`"),
             "{told}"
         );
     }
@@ -377,7 +431,9 @@ mod tests {
         let warnings = |required: &str, used: &str| {
             let lists = format!(r#""extensionsRequired":[{required}],"extensionsUsed":[{used}]"#);
             let text = format!(r#"{{"asset":{{"version":"2.0"}},{lists}}}"#);
-            parse(text.as_bytes(), "a.gltf").map(|document| document.warnings).map_err(|e| e.to_string())
+            parse(text.as_bytes(), "a.gltf")
+                .map(|document| document.warnings)
+                .map_err(|e| e.to_string())
         };
         let variants = r#""KHR_materials_variants""#;
         assert_eq!(warnings(variants, variants).unwrap(), Vec::<String>::new());
@@ -403,8 +459,15 @@ mod tests {
     fn what_the_format_allows_and_what_is_not_read_is_no_error() {
         let blank = "a.gltf: the file holds nothing to show";
         let sound = |rest: &str| {
-            let text = format!(r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{}}],{rest}}}"#);
-            let loaded = crate::gltf::load(text.as_bytes(), "a.gltf", &crate::NoFiles, &vitral_exec::Workers::single());
+            let text = format!(
+                r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{}}],{rest}}}"#
+            );
+            let loaded = crate::gltf::load(
+                text.as_bytes(),
+                "a.gltf",
+                &crate::NoFiles,
+                &vitral_exec::Workers::single(),
+            );
             let scene = loaded.unwrap_or_else(|e| panic!("{e}"));
             assert_eq!(scene.nodes.len(), 1, "{rest}");
             let mut warnings = scene.warnings;
@@ -415,26 +478,38 @@ mod tests {
         assert_eq!(sound(r#""scene":0.0"#), none);
         assert_eq!(sound(r#""cameras":[],"extras":42,"extensionsUsed":[]"#), none);
         assert_eq!(
-            sound(r#""animations":[{"channels":[{"sampler":7,"target":{"path":"weights"}}],"samplers":[]}]"#),
+            sound(
+                r#""animations":[{"channels":[{"sampler":7,"target":{"path":"weights"}}],"samplers":[]}]"#
+            ),
             none
         );
         assert_eq!(
-            sound(r#""animations":[{"channels":[{"sampler":7,"target":{"node":3,"path":"x"}}],"samplers":[]}]"#),
+            sound(
+                r#""animations":[{"channels":[{"sampler":7,"target":{"node":3,"path":"x"}}],"samplers":[]}]"#
+            ),
             none
         );
         assert_eq!(sound(r#""accessors":[{"componentType":1,"count":1,"type":"VEC5"}]"#), none);
         let mesh = r#""meshes":[{"primitives":[{"attributes":{"NORMAL":0}}]}],"scene":0,
             "accessors":[{"componentType":5126,"count":3,"type":"VEC3"}]"#;
         assert_eq!(sound(mesh), none);
-        let shown =
-            format!(r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],{mesh}}}"#);
+        let shown = format!(
+            r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],{mesh}}}"#
+        );
         let workers = vitral_exec::Workers::single();
-        let scene = crate::gltf::load(shown.as_bytes(), "a.gltf", &crate::NoFiles, &workers).unwrap();
-        assert_eq!(scene.warnings, ["a.gltf: meshes[0].primitives[0]: no POSITION, nothing is drawn", blank]);
+        let scene =
+            crate::gltf::load(shown.as_bytes(), "a.gltf", &crate::NoFiles, &workers).unwrap();
+        assert_eq!(
+            scene.warnings,
+            ["a.gltf: meshes[0].primitives[0]: no POSITION, nothing is drawn", blank]
+        );
         let light = r#""extensionsUsed":["KHR_lights_punctual"],
             "extensions":{"KHR_lights_punctual":{"lights":[{"type":"sky"},{"type":"point"}]}}"#;
         let place = "a.gltf: extensions.KHR_lights_punctual.lights[0]";
-        assert_eq!(sound(light), [format!("{place}: a light of a type that is not known, left out")]);
+        assert_eq!(
+            sound(light),
+            [format!("{place}: a light of a type that is not known, left out")]
+        );
     }
 
     #[test]

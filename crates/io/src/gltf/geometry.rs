@@ -39,8 +39,8 @@ pub(crate) struct Outline {
 }
 
 impl Attributes {
-    /// Finds the accessors of a primitive and checks that they have equally many elements. `None`: there are no
-    /// positions, so there is nothing to draw. Adds to `warnings` what is passed over.
+    /// Finds the accessors of a primitive and checks that they have equally many elements. `None`:
+    /// there are no positions, so there is nothing to draw. Adds to `warnings` what is passed over.
     pub(crate) fn find(
         source: &Source<'_>,
         primitive: &Primitive,
@@ -53,7 +53,10 @@ impl Attributes {
         check_compression(source, primitive, positions, path)?;
         let uvs = [get(Semantic::TexCoords(0)), get(Semantic::TexCoords(1))];
         if uvs[0].is_none() && uvs[1].is_some() {
-            warnings.push(format!("{}: {path}: TEXCOORD_1 without TEXCOORD_0, which is taken as 0", source.file));
+            warnings.push(format!(
+                "{}: {path}: TEXCOORD_1 without TEXCOORD_0, which is taken as 0",
+                source.file
+            ));
         }
 
         // Warn of attributes that are not read.
@@ -63,7 +66,9 @@ impl Attributes {
             .filter(|key| match key {
                 Checked::Valid(Semantic::TexCoords(set)) => *set > 1,
                 Checked::Valid(Semantic::Colors(set)) => *set > 0,
-                Checked::Valid(Semantic::Joints(set) | Semantic::Weights(set)) => *set >= JOINT_SETS,
+                Checked::Valid(Semantic::Joints(set) | Semantic::Weights(set)) => {
+                    *set >= JOINT_SETS
+                }
                 _ => false,
             })
             .map(ToString::to_string)
@@ -74,10 +79,13 @@ impl Attributes {
         }
 
         // Find the influences of joints and the morph targets.
-        let influences =
-            (0..JOINT_SETS).filter_map(|set| get(Semantic::Joints(set)).zip(get(Semantic::Weights(set)))).collect();
+        let influences = (0..JOINT_SETS)
+            .filter_map(|set| get(Semantic::Joints(set)).zip(get(Semantic::Weights(set))))
+            .collect();
         let targets = primitive.targets.iter().flatten();
-        let targets = targets.map(|t| (t.positions.map(|a| a.value()), t.normals.map(|a| a.value()))).collect();
+        let targets = targets
+            .map(|t| (t.positions.map(|a| a.value()), t.normals.map(|a| a.value())))
+            .collect();
         let found = Self {
             positions,
             normals: get(Semantic::Normals),
@@ -93,12 +101,19 @@ impl Attributes {
 
     /// All accessors with the names that messages give them.
     fn named(&self) -> impl Iterator<Item = (String, usize)> + '_ {
-        let attribute = |name: &str, index: Option<usize>| index.map(|i| (format!("attributes.{name}"), i));
-        let influences = self.influences.iter().enumerate().flat_map(|(set, &(joints, weights))| {
-            [(format!("attributes.JOINTS_{set}"), joints), (format!("attributes.WEIGHTS_{set}"), weights)]
-        });
+        let attribute =
+            |name: &str, index: Option<usize>| index.map(|i| (format!("attributes.{name}"), i));
+        let influences =
+            self.influences.iter().enumerate().flat_map(|(set, &(joints, weights))| {
+                [
+                    (format!("attributes.JOINTS_{set}"), joints),
+                    (format!("attributes.WEIGHTS_{set}"), weights),
+                ]
+            });
         let targets = self.targets.iter().enumerate().flat_map(|(t, &(positions, normals))| {
-            let named = |name: &str, index: Option<usize>| index.map(|i| (format!("targets[{t}].{name}"), i));
+            let named = |name: &str, index: Option<usize>| {
+                index.map(|i| (format!("targets[{t}].{name}"), i))
+            };
             [named("POSITION", positions), named("NORMAL", normals)].into_iter().flatten()
         });
         [
@@ -119,7 +134,8 @@ impl Attributes {
         for (name, accessor) in self.named() {
             let count = source.root.accessors[accessor].count.0;
             if count != vertices as u64 {
-                let what = format!("accessor {accessor} has {count} elements, POSITION has {vertices}");
+                let what =
+                    format!("accessor {accessor} has {count} elements, POSITION has {vertices}");
                 return Err(source.error(format!("{path}.{name}"), what));
             }
         }
@@ -137,7 +153,8 @@ impl Attributes {
 }
 
 impl Outline {
-    /// Reads the indices of a primitive and finds the vertices that it uses. Adds to `warnings` what is left out.
+    /// Reads the indices of a primitive and finds the vertices that it uses. Adds to `warnings`
+    /// what is left out.
     pub(crate) fn read(
         source: &Source<'_>,
         primitive: &Primitive,
@@ -152,7 +169,8 @@ impl Outline {
         let Some(accessor) = primitive.indices else {
             // A list of vertices that ends within a triangle has lost some.
             if let Some((of, name)) = group(mode).filter(|(of, _)| !vertices.is_multiple_of(*of)) {
-                return Err(source.error(path, format!("{vertices} vertices, {name} need a multiple of {of}")));
+                return Err(source
+                    .error(path, format!("{vertices} vertices, {name} need a multiple of {of}")));
             }
             return Ok(Self { attributes, mode, indices: None, used: 0..vertices });
         };
@@ -161,14 +179,17 @@ impl Outline {
         if source.shape(accessor) != Some(Type::Scalar) {
             return Err(source.error(path, format!("accessor {accessor} is not SCALAR")));
         }
-        let mut indices = source.unsigned::<1>(accessor, 0..source.count(accessor)?, &path)?.into_flattened();
+        let mut indices =
+            source.unsigned::<1>(accessor, 0..source.count(accessor)?, &path)?.into_flattened();
         leave_out_rest(&mut indices, mode, source, &path, warnings);
 
         // Find the range and check it at once; look for the culprit only if there is one.
-        let (low, high) = indices.iter().fold((u32::MAX, 0), |(low, high), &i| (low.min(i), high.max(i)));
+        let (low, high) =
+            indices.iter().fold((u32::MAX, 0), |(low, high), &i| (low.min(i), high.max(i)));
         if high as usize >= vertices && !indices.is_empty() {
             let at = indices.iter().position(|&i| i as usize >= vertices).unwrap_or(0);
-            let what = format!("index {at} is {}, the primitive has {vertices} vertices", indices[at]);
+            let what =
+                format!("index {at} is {}, the primitive has {vertices} vertices", indices[at]);
             return Err(source.error(path, what));
         }
         let used = if indices.is_empty() { 0..0 } else { low as usize..high as usize + 1 };
@@ -193,13 +214,18 @@ impl Outline {
             Mode::LineStrip => mesh.lines.extend((1..n).map(|i| [at(i - 1), at(i)])),
             Mode::LineLoop if n >= 2 => mesh.lines.extend((0..n).map(|i| [at(i), at((i + 1) % n)])),
             Mode::LineLoop => {}
-            Mode::Triangles => mesh.triangles.extend((0..n / 3).map(|i| [at(3 * i), at(3 * i + 1), at(3 * i + 2)])),
-            // Every other triangle of a strip turns the other way round; two corners change places to undo that.
+            Mode::Triangles => {
+                mesh.triangles.extend((0..n / 3).map(|i| [at(3 * i), at(3 * i + 1), at(3 * i + 2)]))
+            }
+            // Every other triangle of a strip turns the other way round; two corners change places
+            // to undo that.
             Mode::TriangleStrip => mesh.triangles.extend((2..n).map(|i| {
                 let odd = i % 2;
                 [at(i - 2), at(i - 1 + odd), at(i - odd)]
             })),
-            Mode::TriangleFan => mesh.triangles.extend((2..n).map(|i| -> Corners { [at(i - 1), at(i), at(0)] })),
+            Mode::TriangleFan => {
+                mesh.triangles.extend((2..n).map(|i| -> Corners { [at(i - 1), at(i), at(0)] }))
+            }
         }
     }
 
@@ -214,8 +240,14 @@ impl Outline {
     }
 }
 
-/// Refuses a primitive whose only vertices are compressed. Some files have them a second time for readers like this one.
-fn check_compression(source: &Source<'_>, primitive: &Primitive, positions: usize, path: &str) -> Result<(), Error> {
+/// Refuses a primitive whose only vertices are compressed. Some files have them a second time for
+/// readers like this one.
+fn check_compression(
+    source: &Source<'_>,
+    primitive: &Primitive,
+    positions: usize,
+    path: &str,
+) -> Result<(), Error> {
     const DRACO: &str = "KHR_draco_mesh_compression";
     let accessor = &source.root.accessors[positions];
     let has_bytes = accessor.buffer_view.is_some() || accessor.sparse.is_some();
@@ -226,7 +258,8 @@ fn check_compression(source: &Source<'_>, primitive: &Primitive, positions: usiz
     Err(Error::Unsupported { file: source.file.to_owned(), what })
 }
 
-/// Of how many vertices a mode makes one line or triangle, and its name; `None` where vertices are shared.
+/// Of how many vertices a mode makes one line or triangle, and its name; `None` where vertices are
+/// shared.
 fn group(mode: Mode) -> Option<(usize, &'static str)> {
     match mode {
         Mode::Lines => Some((2, "LINES")),
@@ -236,7 +269,13 @@ fn group(mode: Mode) -> Option<(usize, &'static str)> {
 }
 
 /// Leaves out the indices behind the last whole line or triangle, as OpenGL does.
-fn leave_out_rest(indices: &mut Vec<u32>, mode: Mode, source: &Source<'_>, path: &str, warnings: &mut Vec<String>) {
+fn leave_out_rest(
+    indices: &mut Vec<u32>,
+    mode: Mode,
+    source: &Source<'_>,
+    path: &str,
+    warnings: &mut Vec<String>,
+) {
     let Some((of, name)) = group(mode) else { return };
     let count = indices.len();
     if !count.is_multiple_of(of) {
@@ -274,11 +313,20 @@ mod tests {
         assert_eq!(drawn(Mode::Points, None).points, [10, 11, 12, 13, 14]);
         assert_eq!(drawn(Mode::Lines, Some(vec![0, 1, 2, 3])).lines, [[10, 11], [12, 13]]);
         assert_eq!(drawn(Mode::LineStrip, Some(vec![4, 0, 2])).lines, [[14, 10], [10, 12]]);
-        assert_eq!(drawn(Mode::LineLoop, Some(vec![4, 0, 2])).lines, [[14, 10], [10, 12], [12, 14]]);
+        assert_eq!(
+            drawn(Mode::LineLoop, Some(vec![4, 0, 2])).lines,
+            [[14, 10], [10, 12], [12, 14]]
+        );
         assert_eq!(drawn(Mode::LineLoop, Some(vec![4])).lines, [[0; 2]; 0]);
         assert_eq!(drawn(Mode::Triangles, Some(vec![4, 0, 2])).triangles, [[14, 10, 12]]);
-        assert_eq!(drawn(Mode::TriangleStrip, None).triangles, [[10, 11, 12], [11, 13, 12], [12, 13, 14]]);
-        assert_eq!(drawn(Mode::TriangleFan, None).triangles, [[11, 12, 10], [12, 13, 10], [13, 14, 10]]);
+        assert_eq!(
+            drawn(Mode::TriangleStrip, None).triangles,
+            [[10, 11, 12], [11, 13, 12], [12, 13, 14]]
+        );
+        assert_eq!(
+            drawn(Mode::TriangleFan, None).triangles,
+            [[11, 12, 10], [12, 13, 10], [13, 14, 10]]
+        );
         assert_eq!(drawn(Mode::TriangleFan, Some(vec![])).triangles, [[0; 3]; 0]);
     }
 }

@@ -1,6 +1,8 @@
-//! Many copies of one mesh in a node (`EXT_mesh_gpu_instancing`): the node gets a child for each, all with the same mesh.
+//! Many copies of one mesh in a node (`EXT_mesh_gpu_instancing`): the node gets a child for each,
+//! all with the same mesh.
 //!
-//! Cost: linear in the copies. Memory: a node for each; refused where a small file would unfold into very many.
+//! Cost: linear in the copies. Memory: a node for each; refused where a small file would unfold
+//!       into very many.
 //! Source: EXT_mesh_gpu_instancing.
 
 use super::accessor::{Integers, Source};
@@ -20,7 +22,8 @@ const ATTRIBUTES: [&str; 3] = ["TRANSLATION", "ROTATION", "SCALE"];
 /// The accessors of [`ATTRIBUTES`].
 type Accessors = [Option<usize>; 3];
 
-/// Spreads the meshes of the scene's nodes, which begins with those of `tree.shown`, over their copies.
+/// Spreads the meshes of the scene's nodes, which begins with those of `tree.shown`, over their
+/// copies.
 pub(crate) fn spread(
     source: &Source<'_>,
     tree: &Tree,
@@ -53,7 +56,8 @@ pub(crate) fn spread(
 /// The accessors that place a node's copies, and how many these are. `None`: there are no copies.
 fn find(source: &Source<'_>, node: usize, path: &str) -> Result<Option<(Accessors, usize)>, Error> {
     let extensions = source.root.nodes[node].extensions.as_ref();
-    let Some(attributes) = extensions.and_then(|e| e.others.get(INSTANCING)?.get("attributes")) else {
+    let Some(attributes) = extensions.and_then(|e| e.others.get(INSTANCING)?.get("attributes"))
+    else {
         return Ok(None);
     };
     let mut accessors = [None; 3];
@@ -76,21 +80,29 @@ fn find(source: &Source<'_>, node: usize, path: &str) -> Result<Option<(Accessor
 }
 
 /// An accessor of floats or, for rotations, normalised integers.
-fn accessor_index(source: &Source<'_>, value: &Value, name: &str, path: &str) -> Result<usize, Error> {
+fn accessor_index(
+    source: &Source<'_>,
+    value: &Value,
+    name: &str,
+    path: &str,
+) -> Result<usize, Error> {
     let index = value.as_u64().and_then(|index| usize::try_from(index).ok());
-    let Some((index, accessor)) = index.and_then(|i| Some((i, source.root.accessors.get(i)?))) else {
+    let Some((index, accessor)) = index.and_then(|i| Some((i, source.root.accessors.get(i)?)))
+    else {
         let what = format!("{value} is no accessor, there are {}", source.root.accessors.len());
         return Err(source.error(path, what));
     };
     match &accessor.component_type {
         Checked::Valid(component) if component.0 == ComponentType::F32 => Ok(index),
         Checked::Valid(component)
-            if name == "ROTATION" && matches!(component.0, ComponentType::I8 | ComponentType::I16) =>
+            if name == "ROTATION"
+                && matches!(component.0, ComponentType::I8 | ComponentType::I16) =>
         {
             Ok(index)
         }
         _ => {
-            let needed = if name == "ROTATION" { "floats or normalised signed integers" } else { "floats" };
+            let needed =
+                if name == "ROTATION" { "floats or normalised signed integers" } else { "floats" };
             Err(source.error(path, format!("accessor {index} has other components than {needed}")))
         }
     }
@@ -104,10 +116,22 @@ fn transforms(
     path: &str,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<NodeTransform>, Error> {
-    let translations = vectors::<3>(source, translations, count, [0.0; 3], &format!("{path}.attributes.TRANSLATION"))?;
-    let rotations =
-        vectors::<4>(source, rotations, count, [0.0, 0.0, 0.0, 1.0], &format!("{path}.attributes.ROTATION"))?;
-    let scales = vectors::<3>(source, scales, count, [1.0; 3], &format!("{path}.attributes.SCALE"))?;
+    let translations = vectors::<3>(
+        source,
+        translations,
+        count,
+        [0.0; 3],
+        &format!("{path}.attributes.TRANSLATION"),
+    )?;
+    let rotations = vectors::<4>(
+        source,
+        rotations,
+        count,
+        [0.0, 0.0, 0.0, 1.0],
+        &format!("{path}.attributes.ROTATION"),
+    )?;
+    let scales =
+        vectors::<3>(source, scales, count, [1.0; 3], &format!("{path}.attributes.SCALE"))?;
     let mut zeros = 0;
     let transforms = translations.into_iter().zip(rotations).zip(scales).map(|((t, r), s)| {
         let unit = DVec4::from_array(r.map(f64::from)).try_normalize().unwrap_or_else(|| {
@@ -122,7 +146,10 @@ fn transforms(
     });
     let transforms = transforms.collect();
     if zeros > 0 {
-        warnings.push(format!("{}: {path}: {zeros} of {count} rotations are zero, none is used there", source.file));
+        warnings.push(format!(
+            "{}: {path}: {zeros} of {count} rotations are zero, none is used there",
+            source.file
+        ));
     }
     Ok(transforms)
 }
@@ -138,7 +165,9 @@ fn vectors<const N: usize>(
     let Some(accessor) = accessor else { return Ok(vec![default; count]) };
     let values = source.floats::<N>(accessor, 0..count, Integers::Normalized, path)?;
     match values.iter().position(|v| !v.iter().all(|c| c.is_finite())) {
-        Some(k) => Err(source.error(path, format!("element {k} of accessor {accessor} is not finite"))),
+        Some(k) => {
+            Err(source.error(path, format!("element {k} of accessor {accessor} is not finite")))
+        }
         None => Ok(values),
     }
 }

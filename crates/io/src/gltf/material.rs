@@ -1,9 +1,9 @@
 //! Materials: metallic-roughness with the extensions that change what is seen.
 //!
-//! Source: [glTF 2.0], section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit; for _pbrSpecularGlossiness see
-//! `specular_glossiness.rs`.
-//! Departs from it: a transmissive surface becomes glass, a blended one whose opacity is what transmission leaves, with the
-//! base colour as the colour of what passes; a base texture does not colour what passes.
+//! Source: [glTF 2.0], section 3.9; KHR_materials_emissive_strength, _ior, _transmission, _unlit;
+//! for _pbrSpecularGlossiness see `specular_glossiness.rs`. Departs from it: a transmissive surface
+//! becomes glass, a blended one whose opacity is what transmission leaves, with the base colour as
+//! the colour of what passes; a base texture does not colour what passes.
 
 use super::accessor::Source;
 use super::specular_glossiness::SpecularGlossiness;
@@ -24,7 +24,8 @@ pub(crate) fn read(
     warnings: &mut Vec<String>,
 ) -> Result<Material, Error> {
     let json = &source.root.materials[index];
-    let mut reader = Reader { source: *source, json, path: format!("materials[{index}]"), wanted, warnings };
+    let mut reader =
+        Reader { source: *source, json, path: format!("materials[{index}]"), wanted, warnings };
     let older = reader.find_older_form()?;
 
     // Colour, reflection and opacity.
@@ -94,22 +95,30 @@ impl Reader<'_> {
         }
         let pbr = &self.json.pbr_metallic_roughness;
         let newer = pbr.base_color_texture.is_some() || pbr.metallic_roughness_texture.is_some();
-        let instead = if newer { "its metallic-roughness form is" } else { "a usual reflection is" };
+        let instead =
+            if newer { "its metallic-roughness form is" } else { "a usual reflection is" };
         self.warn(&format!("the specularGlossinessTexture is not used, {instead} shown instead"));
         Ok(older.filter(|_| !newer))
     }
 
     /// Asks for the textures. Colours are sRGB in their images, all other quantities linear.
-    fn ask_textures(&mut self, older: Option<&SpecularGlossiness>, material: &mut Material) -> Result<(), Error> {
+    fn ask_textures(
+        &mut self,
+        older: Option<&SpecularGlossiness>,
+        material: &mut Material,
+    ) -> Result<(), Error> {
         let json = self.json;
         let pbr = &json.pbr_metallic_roughness;
         // Transmission blends what alpha leaves opaque.
-        let alpha_counts = !matches!(json.alpha_mode, Checked::Valid(JsonAlphaMode::Opaque) | Checked::Invalid);
-        let base = if material.glass && !alpha_counts { Meaning::OpaqueColor } else { Meaning::Color };
+        let alpha_counts =
+            !matches!(json.alpha_mode, Checked::Valid(JsonAlphaMode::Opaque) | Checked::Invalid);
+        let base =
+            if material.glass && !alpha_counts { Meaning::OpaqueColor } else { Meaning::Color };
         match older {
             // The older form takes the place of the other.
             Some(older) => {
-                material.base_texture = self.ask(older.diffuse_texture.as_ref(), base, "diffuseTexture");
+                material.base_texture =
+                    self.ask(older.diffuse_texture.as_ref(), base, "diffuseTexture");
             }
             None => {
                 let name = "pbrMetallicRoughness.baseColorTexture";
@@ -119,16 +128,22 @@ impl Reader<'_> {
                 material.metallic_roughness_texture = self.ask(texture, Meaning::Data, name);
             }
         }
-        material.emission_texture = self.ask(json.emissive_texture.as_ref(), Meaning::Color, "emissiveTexture");
+        material.emission_texture =
+            self.ask(json.emissive_texture.as_ref(), Meaning::Color, "emissiveTexture");
         if let Some(normal) = &json.normal_texture {
             let others = normal.extensions.as_ref().map(|e| &e.others);
-            material.normal_texture = self.ask_data("normalTexture", normal.index.value(), normal.tex_coord, others)?;
+            material.normal_texture =
+                self.ask_data("normalTexture", normal.index.value(), normal.tex_coord, others)?;
             material.normal_scale = finite(normal.scale, 1.0);
         }
         if let Some(occlusion) = &json.occlusion_texture {
             let others = occlusion.extensions.as_ref().map(|e| &e.others);
-            material.occlusion_texture =
-                self.ask_data("occlusionTexture", occlusion.index.value(), occlusion.tex_coord, others)?;
+            material.occlusion_texture = self.ask_data(
+                "occlusionTexture",
+                occlusion.index.value(),
+                occlusion.tex_coord,
+                others,
+            )?;
             material.occlusion_strength = unit(occlusion.strength.0, 1.0);
         }
         Ok(())
@@ -139,7 +154,12 @@ impl Reader<'_> {
         let info = info?;
         let path = format!("{}.{name}", self.path);
         let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
-        let reference = Reference { texture: info.index.value(), uv_set: info.tex_coord, transform, path: &path };
+        let reference = Reference {
+            texture: info.index.value(),
+            uv_set: info.tex_coord,
+            transform,
+            path: &path,
+        };
         self.wanted.ask(&self.source, &reference, meaning, self.warnings)
     }
 
@@ -163,26 +183,39 @@ impl Reader<'_> {
     /// Emission, index of refraction, unlit.
     fn apply_extensions(&mut self, material: &mut Material) {
         let extensions = self.json.extensions.clone().unwrap_or_default();
-        let strength = extensions.emissive_strength.map_or(1.0, |e| finite(e.emissive_strength.0, 1.0).max(0.0));
-        material.emission = self.json.emissive_factor.0.map(|v| finite(finite(v, 0.0).max(0.0) * strength, 0.0));
+        let strength = extensions
+            .emissive_strength
+            .map_or(1.0, |e| finite(e.emissive_strength.0, 1.0).max(0.0));
+        material.emission =
+            self.json.emissive_factor.0.map(|v| finite(finite(v, 0.0).max(0.0) * strength, 0.0));
         material.unlit = extensions.unlit.is_some();
         if let Some(ior) = extensions.ior {
             match ior.ior.0 {
                 n if n >= 1.0 && n.is_finite() => material.ior = n,
-                0.0 => self.warn("an index of refraction of 0 (no light enters) is not shown, 1.5 is used"),
-                n => self.warn(&format!("an index of refraction of {n}, 1 or more is required; 1.5 is used")),
+                0.0 => self.warn(
+                    "an index of refraction of 0 (no light enters) is not shown, 1.5 is used",
+                ),
+                n => self.warn(&format!(
+                    "an index of refraction of {n}, 1 or more is required; 1.5 is used"
+                )),
             }
         }
     }
 
-    /// Makes a transmissive surface glass. Where a texture says how much passes, the rest becomes the texture of the opacity.
+    /// Makes a transmissive surface glass. Where a texture says how much passes, the rest becomes
+    /// the texture of the opacity.
     fn apply_transmission(&mut self, material: &mut Material) {
         let json = self.json;
-        let Some(transmission) = json.extensions.as_ref().and_then(|e| e.transmission.as_ref()) else { return };
+        let Some(transmission) = json.extensions.as_ref().and_then(|e| e.transmission.as_ref())
+        else {
+            return;
+        };
         let factor = unit(transmission.transmission_factor.0, 0.0);
         // Of glass that is partly metal, or in places, shading knows how much passes.
         let textured = json.pbr_metallic_roughness.metallic_roughness_texture.is_some();
-        let metal = matches!(material.reflectance, Reflectance::MetallicRoughness { metallic: 1.0, .. }) && !textured;
+        let metal =
+            matches!(material.reflectance, Reflectance::MetallicRoughness { metallic: 1.0, .. })
+                && !textured;
         if factor == 0.0 || metal {
             return;
         }
@@ -195,7 +228,8 @@ impl Reader<'_> {
             None => material.opacity *= 1.0 - factor,
             Some(info) => {
                 let name = "extensions.KHR_materials_transmission.transmissionTexture";
-                material.opacity_texture = self.ask(Some(info), Meaning::Transmission(factor), name);
+                material.opacity_texture =
+                    self.ask(Some(info), Meaning::Transmission(factor), name);
             }
         }
         material.alpha_mode = AlphaMode::Blend;
@@ -204,12 +238,19 @@ impl Reader<'_> {
     }
 }
 
-/// The colour of all light that passes a material of which the part `factor` is transmissive: what goes through the surface
-/// takes its base colour, what goes past it, where alpha is below 1, stays white.
+/// The colour of all light that passes a material of which the part `factor` is transmissive: what
+/// goes through the surface takes its base colour, what goes past it, where alpha is below 1, stays
+/// white.
 fn filter(material: &Material, factor: f32) -> [f32; 3] {
-    let Reflectance::MetallicRoughness { base_color, .. } = material.reflectance else { return material.filter };
+    let Reflectance::MetallicRoughness { base_color, .. } = material.reflectance else {
+        return material.filter;
+    };
     let (past, through) = (1.0 - material.opacity, material.opacity * factor);
-    if through > 0.0 { base_color.map(|c| (past + through * c) / (past + through)) } else { [1.0; 3] }
+    if through > 0.0 {
+        base_color.map(|c| (past + through * c) / (past + through))
+    } else {
+        [1.0; 3]
+    }
 }
 
 /// `value`, or `or` if it is not finite.

@@ -1,14 +1,16 @@
 //! From a glTF mesh to ours: its primitives become parts of one mesh, one after the other.
 //!
-//! Primitives with the same attribute accessors share their vertices, and only the range of vertices that indices
-//! use is read: files that keep all vertices in one accessor are not multiplied. A mesh shown in several poses (other
-//! morph weights, a skin) is built once a pose; all other nodes share one.
+//! Primitives with the same attribute accessors share their vertices, and only the range of
+//! vertices that indices use is read: files that keep all vertices in one accessor are not
+//! multiplied. A mesh shown in several poses (other morph weights, a skin) is built once a pose;
+//! all other nodes share one.
 //!
-//! In:   primitives and their accessors. Out: a sound [`Mesh`] in model space (skinned: world space).
-//! Cost: linear in vertices and indices. Memory is estimated before anything large is made, and refused when a small
-//! file would unfold into a huge scene.
-//! Source: [glTF 2.0], section 3.7.2.
-//! Departs from it: a mesh wholly without normals keeps none (the renderer makes them with a crease angle, not flat).
+//! In:   primitives and their accessors. Out: a sound [`Mesh`] in model space (skinned: world
+//!       space).
+//! Cost: linear in vertices and indices. Memory is estimated before anything large is made, and
+//! refused when a small file would unfold into a huge scene.
+//! Source: [glTF 2.0], section 3.7.2. Departs from it: a mesh wholly without normals keeps none
+//! (the renderer makes them with a crease angle, not flat).
 
 use super::accessor::{Integers, Source};
 use super::block::Block;
@@ -43,26 +45,41 @@ impl Plan {
     pub(crate) fn new(source: &Source<'_>, m: usize) -> Result<Self, Error> {
         let mesh = &source.root.meshes[m];
         let name = mesh.name.clone().unwrap_or_default();
-        let mut plan = Self { name, outlines: Vec::new(), blocks: Vec::new(), warnings: Vec::new() };
+        let mut plan =
+            Self { name, outlines: Vec::new(), blocks: Vec::new(), warnings: Vec::new() };
         for (p, primitive) in mesh.primitives.iter().enumerate() {
             let path = format!("meshes[{m}].primitives[{p}]");
-            let Some(attributes) = Attributes::find(source, primitive, &path, &mut plan.warnings)? else {
-                plan.warnings.push(format!("{}: {path}: no POSITION, nothing is drawn", source.file));
+            let Some(attributes) = Attributes::find(source, primitive, &path, &mut plan.warnings)?
+            else {
+                plan.warnings
+                    .push(format!("{}: {path}: no POSITION, nothing is drawn", source.file));
                 continue;
             };
             let outline = Outline::read(source, primitive, attributes, &path, &mut plan.warnings)?;
-            let block = plan.blocks.iter().position(|b| b.attributes == outline.attributes).unwrap_or_else(|| {
-                let attributes = outline.attributes.clone();
-                let range = outline.used.clone();
-                plan.blocks.push(Block { attributes, range, base: 0, path, has_surface: false });
-                plan.blocks.len() - 1
-            });
+            let block =
+                plan.blocks.iter().position(|b| b.attributes == outline.attributes).unwrap_or_else(
+                    || {
+                        let attributes = outline.attributes.clone();
+                        let range = outline.used.clone();
+                        plan.blocks.push(Block {
+                            attributes,
+                            range,
+                            base: 0,
+                            path,
+                            has_surface: false,
+                        });
+                        plan.blocks.len() - 1
+                    },
+                );
             let shared = &mut plan.blocks[block];
             shared.has_surface |= outline.is_surface();
             if shared.range.is_empty() {
                 shared.range = outline.used.clone();
             } else if !outline.used.is_empty() {
-                let (start, end) = (shared.range.start.min(outline.used.start), shared.range.end.max(outline.used.end));
+                let (start, end) = (
+                    shared.range.start.min(outline.used.start),
+                    shared.range.end.max(outline.used.end),
+                );
                 shared.range = start..end;
             }
             plan.outlines.push((outline, block, material_index(primitive)));
@@ -73,14 +90,18 @@ impl Plan {
             next += block.range.len();
         }
         if u32::try_from(next).is_err() {
-            return Err(source.error(format!("meshes[{m}]"), format!("{next} vertices, at most 4294967295 are read")));
+            return Err(source.error(
+                format!("meshes[{m}]"),
+                format!("{next} vertices, at most 4294967295 are read"),
+            ));
         }
         Ok(plan)
     }
 
     /// Bytes that the mesh will take.
     pub(crate) fn bytes(&self) -> u64 {
-        let vertices: u64 = self.blocks.iter().map(|b| b.range.len() as u64 * b.attributes.vertex_bytes()).sum();
+        let vertices: u64 =
+            self.blocks.iter().map(|b| b.range.len() as u64 * b.attributes.vertex_bytes()).sum();
         vertices + self.outlines.iter().map(|(outline, ..)| outline.bytes()).sum::<u64>()
     }
 
@@ -132,7 +153,8 @@ impl Plan {
         }
     }
 
-    /// The file's tangents, if all surfaces have some. Who changes the pose gets made ones, as where there are none.
+    /// The file's tangents, if all surfaces have some. Who changes the pose gets made ones, as
+    /// where there are none.
     fn tangents(&self, source: &Source<'_>) -> Result<Option<Attribute<[f32; 4]>>, Error> {
         let mut surfaces = self.blocks.iter().filter(|b| b.has_surface).peekable();
         if surfaces.peek().is_none() || surfaces.any(|b| b.attributes.tangents.is_none()) {
@@ -144,12 +166,20 @@ impl Plan {
             match block.attributes.tangents {
                 Some(accessor) => {
                     let path = format!("{}.attributes.TANGENT", block.path);
-                    values.extend(source.floats::<4>(accessor, block.range.clone(), Integers::AsDeclared, &path)?);
+                    values.extend(source.floats::<4>(
+                        accessor,
+                        block.range.clone(),
+                        Integers::AsDeclared,
+                        &path,
+                    )?);
                 }
                 None => values.resize(first + block.range.len(), [0.0; 4]),
             }
             // What is no direction is made from the texture coordinates of the triangle.
-            values[first..].iter_mut().filter(|t| !t.iter().all(|c| c.is_finite())).for_each(|t| *t = [0.0; 4]);
+            values[first..]
+                .iter_mut()
+                .filter(|t| !t.iter().all(|c| c.is_finite()))
+                .for_each(|t| *t = [0.0; 4]);
         }
         Ok(Some(Attribute::per_vertex(values)))
     }
@@ -178,15 +208,19 @@ impl Plan {
             // Join each set of texture coordinates.
             mesh.colors = Some(Attribute::per_vertex(values));
         }
-        let sets = (0..2).rev().find(|&set| any(&|a| a.uvs[set].is_some())).map_or(0, |last| last + 1);
+        let sets =
+            (0..2).rev().find(|&set| any(&|a| a.uvs[set].is_some())).map_or(0, |last| last + 1);
         for set in 0..sets {
             let mut values = Vec::with_capacity(mesh.positions.len());
             for block in &self.blocks {
                 let path = format!("{}.attributes.TEXCOORD_{set}", block.path);
                 match block.attributes.uvs[set] {
-                    Some(a) => {
-                        values.extend(source.floats::<2>(a, block.range.clone(), Integers::AsDeclared, &path)?)
-                    }
+                    Some(a) => values.extend(source.floats::<2>(
+                        a,
+                        block.range.clone(),
+                        Integers::AsDeclared,
+                        &path,
+                    )?),
                     None => values.resize(values.len() + block.range.len(), [0.0; 2]),
                 }
             }
@@ -229,14 +263,30 @@ fn read_posed(
 ) -> Result<(Vectors, Option<Vectors>), Error> {
     let (attributes, range, path) = (&block.attributes, &block.range, &block.path);
     let read = |accessor, name: &str| {
-        source.floats::<3>(accessor, range.clone(), Integers::AsDeclared, &format!("{path}.attributes.{name}"))
+        source.floats::<3>(
+            accessor,
+            range.clone(),
+            Integers::AsDeclared,
+            &format!("{path}.attributes.{name}"),
+        )
     };
     let mut positions = read(attributes.positions, "POSITION")?;
     let mut normals = attributes.normals.map(|accessor| read(accessor, "NORMAL")).transpose()?;
-    deform::morph(source, attributes, range, &pose.weights, &mut positions, normals.as_mut(), path)?;
+    deform::morph(
+        source,
+        attributes,
+        range,
+        &pose.weights,
+        &mut positions,
+        normals.as_mut(),
+        path,
+    )?;
     if let Some(joints) = joints {
         if attributes.influences.is_empty() {
-            warnings.push(format!("{}: {path}: a skin, but no JOINTS_0 and WEIGHTS_0; not moved", source.file));
+            warnings.push(format!(
+                "{}: {path}: a skin, but no JOINTS_0 and WEIGHTS_0; not moved",
+                source.file
+            ));
         }
         deform::skin(source, attributes, range, joints, &mut positions, normals.as_mut(), path)?;
     }
@@ -244,7 +294,11 @@ fn read_posed(
 }
 
 /// Linear RGBA; three components get an alpha of 1.
-fn read_colors(source: &Source<'_>, block: &Block, accessor: usize) -> Result<Vec<[f32; 4]>, Error> {
+fn read_colors(
+    source: &Source<'_>,
+    block: &Block,
+    accessor: usize,
+) -> Result<Vec<[f32; 4]>, Error> {
     let path = format!("{}.attributes.COLOR_0", block.path);
     if source.shape(accessor).is_some_and(|s| s.multiplicity() == 3) {
         let rgb = source.floats::<3>(accessor, block.range.clone(), Integers::Normalized, &path)?;

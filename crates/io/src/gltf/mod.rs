@@ -1,8 +1,9 @@
 //! glTF 2.0, as JSON with files beside it or as one GLB.
 //!
-//! The way of the data: `document.rs` takes the container apart and checks every index (`untidy.rs` helps it); `buffers.rs` fetches bytes;
-//! `accessor.rs` makes typed arrays of them; `geometry.rs`, `mesh.rs`, `normals.rs` and `deform.rs` make meshes;
-//! `texture.rs` and `material.rs` say what they look like; `node.rs`, `animation.rs` and `instances.rs` say where they are.
+//! The way of the data: `document.rs` takes the container apart and checks every index (`untidy.rs`
+//! helps it); `buffers.rs` fetches bytes; `accessor.rs` makes typed arrays of them; `geometry.rs`,
+//! `mesh.rs`, `normals.rs` and `deform.rs` make meshes; `texture.rs` and `material.rs` say what
+//! they look like; `node.rs`, `animation.rs` and `instances.rs` say where they are.
 //!
 //! In:   the file's bytes and a resolver for the files that it names. Out: a [`Scene`].
 //! Cost: linear in the bytes; meshes and images are made on all workers.
@@ -41,9 +42,14 @@ use vitral_scene::{Node, Scene};
 ///
 /// # Errors
 /// What breaks the format is [`Error::Malformed`] at a JSON path, a buffer that cannot be had
-/// [`Error::Missing`], a required extension that is not read [`Error::Unsupported`]. Everything else that is odd (a
-/// missing image, bad normals, an empty scene) is a warning in the scene.
-pub fn load(bytes: &[u8], file: &str, resolver: &dyn Resolver, workers: &Workers) -> Result<Scene, Error> {
+/// [`Error::Missing`], a required extension that is not read [`Error::Unsupported`]. Everything
+/// else that is odd (a missing image, bad normals, an empty scene) is a warning in the scene.
+pub fn load(
+    bytes: &[u8],
+    file: &str,
+    resolver: &dyn Resolver,
+    workers: &Workers,
+) -> Result<Scene, Error> {
     load_at(bytes, file, resolver, workers, None)
 }
 
@@ -71,14 +77,16 @@ pub fn load_at(
     // Materials first: they know which images are wanted.
     let mut wanted = texture::Wanted::default();
     let count = source.root.materials.len();
-    let mut materials =
-        (0..count).map(|i| material::read(&source, i, &mut wanted, &mut warnings)).collect::<Result<Vec<_>, _>>()?;
-    let (meshes, images) =
-        workers.join(|| build_meshes(&source, &tree, workers), || wanted.load(&source, resolver, workers));
+    let mut materials = (0..count)
+        .map(|i| material::read(&source, i, &mut wanted, &mut warnings))
+        .collect::<Result<Vec<_>, _>>()?;
+    let (meshes, images) = workers
+        .join(|| build_meshes(&source, &tree, workers), || wanted.load(&source, resolver, workers));
     let (poses, meshes) = meshes?;
     let textures = texture::settle(&mut materials, images, &mut warnings);
 
-    let mut scene = Scene { materials, textures, animations: animation::list(&source), ..Scene::default() };
+    let mut scene =
+        Scene { materials, textures, animations: animation::list(&source), ..Scene::default() };
     for (mesh, told) in meshes {
         scene.meshes.push(Arc::new(mesh));
         warnings.extend(told);
@@ -98,7 +106,11 @@ pub fn load_at(
 type Built = (vitral_scene::Mesh, Vec<String>);
 
 /// Builds every mesh that is shown, once a pose, in the order in which nodes first show them.
-fn build_meshes(source: &Source<'_>, tree: &Tree, workers: &Workers) -> Result<(Vec<Pose>, Vec<Built>), Error> {
+fn build_meshes(
+    source: &Source<'_>,
+    tree: &Tree,
+    workers: &Workers,
+) -> Result<(Vec<Pose>, Vec<Built>), Error> {
     let mut poses: Vec<Pose> = Vec::new();
     let mut used: Vec<usize> = Vec::new();
     let mut seen = std::collections::BTreeMap::new();
@@ -112,14 +124,18 @@ fn build_meshes(source: &Source<'_>, tree: &Tree, workers: &Workers) -> Result<(
     used.sort_unstable();
     used.dedup();
 
-    // Refuse what would unfold beyond measure: first by the indices, then by the vertices that they use.
+    // Refuse what would unfold beyond measure: first by the indices, then by the vertices that they
+    // use.
     let limit = budget::unfolded_bytes(source);
     let check = |bytes: u64| {
         let what = format!("the meshes unfold into more than {limit} bytes");
         if bytes > limit { Err(Error::malformed(source.file, Place::File, what)) } else { Ok(()) }
     };
     check(used.iter().map(|&m| index_bytes(source, m)).sum())?;
-    let plans = workers.map(used.len(), |i| Plan::new(source, used[i])).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let plans = workers
+        .map(used.len(), |i| Plan::new(source, used[i]))
+        .into_iter()
+        .collect::<Result<Vec<_>, _>>()?;
     let plan_of = |pose: &Pose| used.binary_search(&pose.mesh).map(|i| &plans[i]);
     check(poses.iter().filter_map(|p| plan_of(p).ok()).map(Plan::bytes).sum())?;
 
@@ -140,12 +156,20 @@ fn build_meshes(source: &Source<'_>, tree: &Tree, workers: &Workers) -> Result<(
 }
 
 /// The joint matrices of every skin that is used.
-fn skin_matrices(source: &Source<'_>, tree: &Tree, poses: &[Pose]) -> Result<Vec<Vec<DMat4>>, Error> {
+fn skin_matrices(
+    source: &Source<'_>,
+    tree: &Tree,
+    poses: &[Pose],
+) -> Result<Vec<Vec<DMat4>>, Error> {
     let skins = source.root.skins.iter().enumerate();
     skins
         .map(|(s, skin)| {
             let used = poses.iter().any(|p| p.skin == Some(s));
-            if used { deform::joint_matrices(source, skin, s, &tree.worlds) } else { Ok(Vec::new()) }
+            if used {
+                deform::joint_matrices(source, skin, s, &tree.worlds)
+            } else {
+                Ok(Vec::new())
+            }
         })
         .collect()
 }
@@ -172,15 +196,29 @@ fn index_bytes(source: &Source<'_>, mesh: usize) -> u64 {
 }
 
 /// Adds the nodes that are shown, with their meshes, lights and cameras.
-fn add_nodes(source: &Source<'_>, tree: &Tree, poses: &[Pose], scene: &mut Scene, warnings: &mut Vec<String>) {
+fn add_nodes(
+    source: &Source<'_>,
+    tree: &Tree,
+    poses: &[Pose],
+    scene: &mut Scene,
+    warnings: &mut Vec<String>,
+) {
     let root = source.root;
     let mut numbers = vec![0u32; root.nodes.len()];
     for (number, &n) in tree.shown.iter().enumerate() {
         numbers[n] = number as u32;
     }
-    let mesh_numbers: std::collections::BTreeMap<_, _> =
-        poses.iter().enumerate().map(|(i, p)| ((p.mesh, p.skin, weight_bits(p)), i as u32)).collect();
-    let cameras: Vec<_> = root.cameras.iter().enumerate().map(|(i, c)| node::camera(source, c, i, warnings)).collect();
+    let mesh_numbers: std::collections::BTreeMap<_, _> = poses
+        .iter()
+        .enumerate()
+        .map(|(i, p)| ((p.mesh, p.skin, weight_bits(p)), i as u32))
+        .collect();
+    let cameras: Vec<_> = root
+        .cameras
+        .iter()
+        .enumerate()
+        .map(|(i, c)| node::camera(source, c, i, warnings))
+        .collect();
     let lights = AsRef::<[_]>::as_ref(root).iter().enumerate();
     let lights: Vec<_> = lights.map(|(i, l)| node::light(source, l, i, warnings)).collect();
 
@@ -195,7 +233,11 @@ fn add_nodes(source: &Source<'_>, tree: &Tree, poses: &[Pose], scene: &mut Scene
         };
         if let Some(pose) = pose_of(source, tree, n) {
             let mesh = mesh_numbers.get(&(pose.mesh, pose.skin, weight_bits(&pose))).copied();
-            if pose.skin.is_some() { skinned.push((node.name.clone(), mesh)) } else { node.mesh = mesh }
+            if pose.skin.is_some() {
+                skinned.push((node.name.clone(), mesh))
+            } else {
+                node.mesh = mesh
+            }
         }
         if let Some(camera) = json.camera.and_then(|c| cameras[c.value()]) {
             scene.cameras.push(camera);

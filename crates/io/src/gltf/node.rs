@@ -32,9 +32,9 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
-    /// Checks that the nodes form trees and finds what the scene shows.
-    /// Nodes that `KHR_node_visibility` hides are left out with all that is below them. `far_nodes` are places in double
-    /// precision. Nodes are at rest, or where they are at a `moment`.
+    /// Checks that the nodes form trees and finds what the scene shows. Nodes that
+    /// `KHR_node_visibility` hides are left out with all that is below them. `far_nodes` are places
+    /// in double precision. Nodes are at rest, or where they are at a `moment`.
     pub(crate) fn read(
         source: &Source<'_>,
         far_nodes: &[(usize, [f64; 3])],
@@ -42,8 +42,10 @@ impl Tree {
         warnings: &mut Vec<String>,
     ) -> Result<Self, Error> {
         let nodes = &source.root.nodes;
-        let mut children: Vec<Vec<usize>> =
-            nodes.iter().map(|n| n.children.iter().flatten().map(|c| c.value()).collect()).collect();
+        let mut children: Vec<Vec<usize>> = nodes
+            .iter()
+            .map(|n| n.children.iter().flatten().map(|c| c.value()).collect())
+            .collect();
         let parents = parents(source, &children)?;
         let mut transforms = nodes
             .iter()
@@ -52,12 +54,15 @@ impl Tree {
             .collect::<Result<Vec<_>, _>>()?;
         for &(n, place) in far_nodes {
             match &mut transforms[n] {
-                NodeTransform::Matrix(matrix) => matrix.w_axis = DVec3::from_array(place).extend(1.0),
+                NodeTransform::Matrix(matrix) => {
+                    matrix.w_axis = DVec3::from_array(place).extend(1.0)
+                }
                 NodeTransform::Parts { translation, .. } => *translation = DVec3::from_array(place),
             }
         }
 
-        // Place every node, parents first; whoever is not reached from a node without parent lies on a cycle.
+        // Place every node, parents first; whoever is not reached from a node without parent lies
+        // on a cycle.
         let order = depth_first(&children, (0..nodes.len()).filter(|&n| parents[n].is_none()));
         let mut reached = vec![false; nodes.len()];
         order.iter().for_each(|&n| reached[n] = true);
@@ -67,7 +72,8 @@ impl Tree {
         let mut poses = NodePoses { weights: vec![None; transforms.len()], transforms };
         let mut worlds = worlds(&order, &parents, &poses.transforms);
 
-        // Move the nodes to where they are at the moment. Where nothing can be seen at rest, show the first animation.
+        // Move the nodes to where they are at the moment. Where nothing can be seen at rest, show
+        // the first animation.
         if let Some(moment) = moment {
             let number = animation::find(source, moment)?;
             animation::apply(source, number, moment.seconds, &mut poses)?;
@@ -106,7 +112,8 @@ fn worlds(order: &[usize], parents: &[Option<usize>], transforms: &[NodeTransfor
 
 /// Whether the node is not hidden by itself.
 fn is_visible(node: &JsonNode) -> bool {
-    let visible = node.extensions.as_ref().and_then(|e| e.others.get(VISIBILITY)?.get("visible")?.as_bool());
+    let visible =
+        node.extensions.as_ref().and_then(|e| e.others.get(VISIBILITY)?.get("visible")?.as_bool());
     visible.unwrap_or(true)
 }
 
@@ -125,7 +132,10 @@ fn parents(source: &Source<'_>, children: &[Vec<usize>]) -> Result<Vec<Option<us
 }
 
 /// All nodes below `roots`, parents before children, children in order.
-fn depth_first(children: &[Vec<usize>], roots: impl DoubleEndedIterator<Item = usize>) -> Vec<usize> {
+fn depth_first(
+    children: &[Vec<usize>],
+    roots: impl DoubleEndedIterator<Item = usize>,
+) -> Vec<usize> {
     let mut stack: Vec<usize> = roots.rev().collect();
     let mut order = Vec::new();
     while let Some(n) = stack.pop() {
@@ -135,7 +145,8 @@ fn depth_first(children: &[Vec<usize>], roots: impl DoubleEndedIterator<Item = u
     order
 }
 
-/// The roots of the default scene, or of the first. A root that another root shows already is passed over.
+/// The roots of the default scene, or of the first. A root that another root shows already is
+/// passed over.
 fn roots(source: &Source<'_>, parents: &[Option<usize>], warnings: &mut Vec<String>) -> Vec<usize> {
     let root = source.root;
     let Some(scene) = root.scenes.get(root.scene.map_or(0, |s| s.value())) else {
@@ -146,13 +157,20 @@ fn roots(source: &Source<'_>, parents: &[Option<usize>], warnings: &mut Vec<Stri
         warnings.push(format!("{}: the scene has no nodes, nothing is shown", source.file));
     }
     let mut listed = vec![false; parents.len()];
-    let unique: Vec<usize> =
-        scene.nodes.iter().map(|n| n.value()).filter(|&n| !std::mem::replace(&mut listed[n], true)).collect();
+    let unique: Vec<usize> = scene
+        .nodes
+        .iter()
+        .map(|n| n.value())
+        .filter(|&n| !std::mem::replace(&mut listed[n], true))
+        .collect();
     let mut roots = Vec::with_capacity(unique.len());
     let mut covered = vec![None; parents.len()];
     for n in unique {
         if has_listed_ancestor(n, parents, &listed, &mut covered) {
-            warnings.push(format!("{}: scene root {n} lies below another root and is shown once", source.file));
+            warnings.push(format!(
+                "{}: scene root {n} lies below another root and is shown once",
+                source.file
+            ));
         } else {
             roots.push(n);
         }
@@ -160,8 +178,14 @@ fn roots(source: &Source<'_>, parents: &[Option<usize>], warnings: &mut Vec<Stri
     roots
 }
 
-/// Whether a proper ancestor of `n` is listed. `known` keeps answers, so that all calls together are linear.
-fn has_listed_ancestor(n: usize, parents: &[Option<usize>], listed: &[bool], known: &mut [Option<bool>]) -> bool {
+/// Whether a proper ancestor of `n` is listed. `known` keeps answers, so that all calls together
+/// are linear.
+fn has_listed_ancestor(
+    n: usize,
+    parents: &[Option<usize>],
+    listed: &[bool],
+    known: &mut [Option<bool>],
+) -> bool {
     let mut path = Vec::new();
     let mut at = n;
     let answer = loop {
@@ -188,7 +212,8 @@ fn transform(
     index: usize,
     warnings: &mut Vec<String>,
 ) -> Result<NodeTransform, Error> {
-    let not_finite = |name: &str| source.error(format!("nodes[{index}].{name}"), "a number is not finite");
+    let not_finite =
+        |name: &str| source.error(format!("nodes[{index}].{name}"), "a number is not finite");
     let mut warn = |what: &str| warnings.push(format!("{}: nodes[{index}]: {what}", source.file));
     if let Some(columns) = node.matrix {
         let mut matrix = DMat4::from_cols_array(&columns.map(f64::from));
@@ -223,7 +248,8 @@ fn transform(
     Ok(NodeTransform::Parts { translation, rotation: DQuat::from_vec4(unit), scale })
 }
 
-/// A camera in its node's space, looking along -z. `None` with a warning if its numbers make no picture.
+/// A camera in its node's space, looking along -z. `None` with a warning if its numbers make no
+/// picture.
 pub(crate) fn camera(
     source: &Source<'_>,
     json: &JsonCamera,
@@ -238,30 +264,51 @@ pub(crate) fn camera(
         }
         (Checked::Valid(CameraType::Orthographic), _, Some(o)) => {
             let height = 2.0 * f64::from(o.ymag).abs();
-            ((height > 0.0 && height.is_finite()).then_some(Projection::Parallel { height }), o.znear, Some(o.zfar))
+            (
+                (height > 0.0 && height.is_finite()).then_some(Projection::Parallel { height }),
+                o.znear,
+                Some(o.zfar),
+            )
         }
         _ => (None, 0.0, None),
     };
     let Some(projection) = projection else {
-        warnings.push(format!("{}: cameras[{index}]: its angle or size is not positive, left out", source.file));
+        warnings.push(format!(
+            "{}: cameras[{index}]: its angle or size is not positive, left out",
+            source.file
+        ));
         return None;
     };
     // Without a far plane both are fitted to the scene.
-    let clip = far.map(|far| (f64::from(near), f64::from(far))).filter(|&(n, f)| n < f && f.is_finite() && n >= 0.0);
+    let clip = far
+        .map(|far| (f64::from(near), f64::from(far)))
+        .filter(|&(n, f)| n < f && f.is_finite() && n >= 0.0);
     let (position, focal_point, view_up) = (DVec3::ZERO, DVec3::NEG_Z, DVec3::Y);
     Some(Camera { position, focal_point, view_up, projection, clip })
 }
 
-/// A light in its node's space, shining along -z. Candela and lux are divided by pi: that is in the specification's diffuse
-/// reflection, not in ours. `None` with a warning for a type that is not known.
-pub(crate) fn light(source: &Source<'_>, json: &JsonLight, index: usize, warnings: &mut Vec<String>) -> Option<Light> {
+/// A light in its node's space, shining along -z. Candela and lux are divided by pi: that is in the
+/// specification's diffuse reflection, not in ours. `None` with a warning for a type that is not
+/// known.
+pub(crate) fn light(
+    source: &Source<'_>,
+    json: &JsonLight,
+    index: usize,
+    warnings: &mut Vec<String>,
+) -> Option<Light> {
     let Checked::Valid(kind) = json.type_ else {
         let path = format!("extensions.KHR_lights_punctual.lights[{index}]");
-        warnings.push(format!("{}: {path}: a light of a type that is not known, left out", source.file));
+        warnings.push(format!(
+            "{}: {path}: a light of a type that is not known, left out",
+            source.file
+        ));
         return None;
     };
-    let intensity = if json.intensity.is_finite() { json.intensity.max(0.0) * FRAC_1_PI } else { 0.0 };
-    let color = json.color.map(|c| if c.is_finite() { (c.max(0.0) * intensity).min(f32::MAX) } else { 0.0 });
+    let intensity =
+        if json.intensity.is_finite() { json.intensity.max(0.0) * FRAC_1_PI } else { 0.0 };
+    let color = json
+        .color
+        .map(|c| if c.is_finite() { (c.max(0.0) * intensity).min(f32::MAX) } else { 0.0 });
     let (position, direction) = (DVec3::ZERO, DVec3::NEG_Z);
     let kind = match (kind, &json.spot) {
         (LightType::Spot, Some(spot)) => {
@@ -275,11 +322,21 @@ pub(crate) fn light(source: &Source<'_>, json: &JsonLight, index: usize, warning
     };
     let attenuation = match (&kind, json.range) {
         (LightKind::Directional { .. }, _) => Attenuation::None,
-        (_, Some(range)) if range > 0.0 && range.is_finite() => Attenuation::Range { range: f64::from(range) },
+        (_, Some(range)) if range > 0.0 && range.is_finite() => {
+            Attenuation::Range { range: f64::from(range) }
+        }
         _ => Attenuation::InverseSquare,
     };
     let name = json.name.clone().unwrap_or_default();
-    Some(Light { name, kind, diffuse: color, specular: color, attenuation, photometric: true, ..Light::default() })
+    Some(Light {
+        name,
+        kind,
+        diffuse: color,
+        specular: color,
+        attenuation,
+        photometric: true,
+        ..Light::default()
+    })
 }
 
 #[cfg(test)]
@@ -295,6 +352,9 @@ mod tests {
         assert!(has_listed_ancestor(2, &parents, &listed, &mut known));
         assert!(!has_listed_ancestor(0, &parents, &listed, &mut known));
         assert!(!has_listed_ancestor(3, &parents, &listed, &mut known));
-        assert_eq!(depth_first(&[vec![2, 1], vec![], vec![3], vec![]], [0].into_iter()), [0, 2, 3, 1]);
+        assert_eq!(
+            depth_first(&[vec![2, 1], vec![], vec![3], vec![]], [0].into_iter()),
+            [0, 2, 3, 1]
+        );
     }
 }

@@ -1,8 +1,8 @@
 //! Shading normals of a mesh put together from blocks, some of which may have none, or bad ones.
 //!
-//! No block has normals: the mesh has none. Some have: the others get flat ones, as the specification asks. A few
-//! bad ones (zero, not finite) among good ones: the mean of the faces round the vertex. Mostly bad ones: as if the
-//! block had none.
+//! No block has normals: the mesh has none. Some have: the others get flat ones, as the
+//! specification asks. A few bad ones (zero, not finite) among good ones: the mean of the faces
+//! round the vertex. Mostly bad ones: as if the block had none.
 //!
 //! Cost: linear in vertices and triangles. Source: [glTF 2.0], section 3.7.2.1.
 
@@ -10,7 +10,8 @@ use super::block::Block;
 use vitral_math::Vec3;
 use vitral_scene::{Attribute, Corners, Mesh};
 
-/// Makes the normals of `mesh`, which already has its positions and triangles, from those of its blocks.
+/// Makes the normals of `mesh`, which already has its positions and triangles, from those of its
+/// blocks.
 pub(crate) fn assemble(
     blocks: &[Block],
     mut normals: Vec<Option<Vec<[f32; 3]>>>,
@@ -26,8 +27,10 @@ pub(crate) fn assemble(
         return None;
     }
 
-    // Put the blocks one behind the other; a block of lines or points only needs something in its place.
-    let missing = |(block, values): (&Block, &Option<Vec<[f32; 3]>>)| block.has_surface && values.is_none();
+    // Put the blocks one behind the other; a block of lines or points only needs something in its
+    // place.
+    let missing =
+        |(block, values): (&Block, &Option<Vec<[f32; 3]>>)| block.has_surface && values.is_none();
     let flat: Vec<(u32, u32)> = blocks
         .iter()
         .zip(&normals)
@@ -94,7 +97,8 @@ fn repair(values: &mut [[f32; 3]], base: u32, mesh: &Mesh) {
     }
 }
 
-/// Corners that take the vertices' normals, except triangles of the blocks in `flat`, which get a normal each.
+/// Corners that take the vertices' normals, except triangles of the blocks in `flat`, which get a
+/// normal each.
 fn with_flat(flat: &[(u32, u32)], mesh: &Mesh, values: &mut Vec<[f32; 3]>) -> Vec<Corners> {
     let mut corners = Vec::with_capacity(mesh.triangles.len());
     for &triangle in &mesh.triangles {

@@ -1,15 +1,19 @@
-//! The older form of materials, diffuse and specular colour with a glossiness, as metallic-roughness.
+//! The older form of materials, diffuse and specular colour with a glossiness, as
+//! metallic-roughness.
 //!
-//! A specular-glossiness surface reflects `c = diffuse (1 - max specular)` diffusely and `f = specular` head on; a
-//! metallic-roughness one `b (1 - m)` and `0.04 (1 - m) + b m`. For brightnesses, the sum of the second two without the `0.04`
-//! is `b`, so `b² - (c + f) b + 0.04 c = 0`; the greater root and `m = 1 - c / b` are the only ones with `0 <= m <= 1`. Then
-//! `b = c + f - 0.04 (1 - m)`, channel by channel. `roughness = 1 - glossiness`.
+//! A specular-glossiness surface reflects `c = diffuse (1 - max specular)` diffusely and
+//! `f = specular` head on; a metallic-roughness one `b (1 - m)` and `0.04 (1 - m) + b m`. For
+//! brightnesses, the sum of the second two without the `0.04` is `b`, so
+//! `b² - (c + f) b + 0.04 c = 0`; the greater root and `m = 1 - c / b` are the only ones with
+//! `0 <= m <= 1`. Then `b = c + f - 0.04 (1 - m)`, channel by channel.
+//! `roughness = 1 - glossiness`.
 //!
 //! In:   the JSON of `KHR_materials_pbrSpecularGlossiness`. Out: factors and the diffuse texture.
-//! Cost: constant. Source: KHR_materials_pbrSpecularGlossiness, \[glTF 2.0\], appendix B.
-//! Departs from it: the texture of specular colour and glossiness is left out, as it would need a new image. A material that
-//! has one is shown as its metallic-roughness form says, if it has that, too, else with [`USUAL_SPECULAR`]. The diffuse texture varies
-//! the specular colour as well, if there is anything diffuse.
+//! Cost: constant. Source: KHR_materials_pbrSpecularGlossiness, \[glTF 2.0\], appendix B. Departs
+//! from it: the texture of specular colour and glossiness is left out, as it would need a new
+//! image. A material that has one is shown as its metallic-roughness form says, if it has that,
+//! too, else with [`USUAL_SPECULAR`]. The diffuse texture varies the specular colour as well, if
+//! there is anything diffuse.
 
 use super::accessor::Source;
 use crate::Error;
@@ -21,7 +25,8 @@ use vitral_light::{DIELECTRIC_F0, Reflectance};
 /// The name in files.
 pub(crate) const NAME: &str = "KHR_materials_pbrSpecularGlossiness";
 
-/// Specular colour where the texture that would give it is left out: that of most things but metals.
+/// Specular colour where the texture that would give it is left out: that of most things but
+/// metals.
 const USUAL_SPECULAR: f32 = DIELECTRIC_F0;
 /// Glossiness likewise.
 const USUAL_GLOSSINESS: f32 = 0.5;
@@ -60,11 +65,14 @@ impl SpecularGlossiness {
         let value = material.extensions.as_ref().and_then(|e| e.others.get(NAME));
         let Some(value) = value else { return Ok(None) };
         let path = format!("{path}.extensions.{NAME}");
-        let read: Self = serde_json::from_value(value.clone()).map_err(|e| source.error(&*path, plain_message(&e)))?;
+        let read: Self = serde_json::from_value(value.clone())
+            .map_err(|e| source.error(&*path, plain_message(&e)))?;
         if let Some(texture) = &read.diffuse_texture
             && texture.index.value() >= source.root.textures.len()
         {
-            return Err(source.error(format!("{path}.diffuseTexture.index"), "the index points at nothing"));
+            return Err(
+                source.error(format!("{path}.diffuseTexture.index"), "the index points at nothing")
+            );
         }
         Ok(Some(read))
     }
@@ -118,7 +126,9 @@ mod tests {
                 glossiness_factor: 0.25,
                 ..SpecularGlossiness::default()
             };
-            let Reflectance::MetallicRoughness { base_color, metallic, roughness } = material.reflectance() else {
+            let Reflectance::MetallicRoughness { base_color, metallic, roughness } =
+                material.reflectance()
+            else {
                 panic!("metallic-roughness");
             };
             assert_eq!(roughness, 0.75);
@@ -127,9 +137,15 @@ mod tests {
             let brightness = |c: [f32; 3]| 0.299 * c[0] + 0.587 * c[1] + 0.114 * c[2];
             let base = brightness(base_color);
             let expected = brightness(diffuse) * (1.0 - strongest);
-            assert!((base * (1.0 - metallic) - expected).abs() < 1e-3, "{diffuse:?} {specular:?}: {base} {metallic}");
+            assert!(
+                (base * (1.0 - metallic) - expected).abs() < 1e-3,
+                "{diffuse:?} {specular:?}: {base} {metallic}"
+            );
             let head_on = DIELECTRIC_F0 * (1.0 - metallic) + base * metallic;
-            assert!((head_on - brightness(specular)).abs() < 1e-3, "{diffuse:?} {specular:?}: {head_on}");
+            assert!(
+                (head_on - brightness(specular)).abs() < 1e-3,
+                "{diffuse:?} {specular:?}: {head_on}"
+            );
         }
     }
 
@@ -141,18 +157,23 @@ mod tests {
             {{"extensions":{{"{NAME}":{{"diffuseTexture":{{"index":0}},"specularFactor":[1,0.5,0.5]}}}}}},
             {{"extensions":{{"{NAME}":{{"diffuseTexture":{{"index":0}},"specularFactor":[0.1,0.1,0.1]}}}}}}]}}"#
         );
-        let scene = crate::gltf::load(materials.as_bytes(), "a.gltf", &crate::NoFiles, &vitral_exec::Workers::single());
+        let scene = crate::gltf::load(
+            materials.as_bytes(),
+            "a.gltf",
+            &crate::NoFiles,
+            &vitral_exec::Workers::single(),
+        );
         let scene = scene.unwrap();
         let [both, mirror, diffuse] = &scene.materials[..] else { panic!() };
-        let newer = Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 1.0, roughness: 0.25 };
+        let newer =
+            Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 1.0, roughness: 0.25 };
         assert_eq!(both.reflectance, newer, "the one whose textures are read");
         assert!(both.base_texture.is_some() && diffuse.base_texture.is_some());
         assert_eq!(mirror.base_texture, None, "nothing diffuse is left that it could colour");
     }
 
     /// A white pixel.
-    const PIXEL: &str =
-        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8/5+hHgAHggJ/PchI7wAAAABJRU5ErkJggg==";
+    const PIXEL: &str = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8/5+hHgAHggJ/PchI7wAAAABJRU5ErkJggg==";
 
     #[test]
     fn the_older_form_takes_the_place_of_the_other() {
@@ -161,28 +182,38 @@ mod tests {
                 r#"{{"asset":{{"version":"2.0"}},"extensionsUsed":["{NAME}"],"extensionsRequired":["{NAME}"],
                 "materials":[{{"alphaMode":"BLEND","extensions":{{"{NAME}":{extension}}}}}]}}"#
             );
-            crate::gltf::load(text.as_bytes(), "a.gltf", &crate::NoFiles, &vitral_exec::Workers::single())
+            crate::gltf::load(
+                text.as_bytes(),
+                "a.gltf",
+                &crate::NoFiles,
+                &vitral_exec::Workers::single(),
+            )
         };
-        let factors =
-            r#""diffuseFactor":[0.5,0.25,0.125,0.75],"specularFactor":[0.04,0.04,0.04],"glossinessFactor":0.5"#;
+        let factors = r#""diffuseFactor":[0.5,0.25,0.125,0.75],"specularFactor":[0.04,0.04,0.04],"glossinessFactor":0.5"#;
         let scene = material(&format!("{{{factors}}}")).unwrap();
         assert!(!scene.warnings.iter().any(|w| w.contains("Texture")), "{:?}", scene.warnings);
         let seen = &scene.materials[0];
-        let Reflectance::MetallicRoughness { base_color, metallic, roughness } = seen.reflectance else {
+        let Reflectance::MetallicRoughness { base_color, metallic, roughness } = seen.reflectance
+        else {
             panic!("{seen:?}");
         };
         assert!(metallic < 1e-4 && (roughness, seen.opacity) == (0.5, 0.75), "{seen:?}");
-        assert!((base_color[0] - 0.48).abs() < 1e-3 && (base_color[2] - 0.12).abs() < 1e-3, "{base_color:?}");
+        assert!(
+            (base_color[0] - 0.48).abs() < 1e-3 && (base_color[2] - 0.12).abs() < 1e-3,
+            "{base_color:?}"
+        );
         // Without the texture that they multiply, factors of 1 would make mirrors of all things.
         let scene = material(r#"{"specularGlossinessTexture":{"index":0}}"#).unwrap();
-        let told =
-            "a.gltf: materials[0]: the specularGlossinessTexture is not used, a usual reflection is shown instead";
+        let told = "a.gltf: materials[0]: the specularGlossinessTexture is not used, a usual reflection is shown instead";
         assert!(scene.warnings.iter().any(|w| w == told), "{:?}", scene.warnings);
         let seen = &scene.materials[0];
         let dull = matches!(seen.reflectance, Reflectance::MetallicRoughness { metallic, roughness, .. } if metallic < 1e-4 && roughness == 0.5);
         assert!(dull, "{seen:?}");
         for (extension, place) in [
-            (r#"{"diffuseTexture":{"index":3}}"#, "diffuseTexture.index: the index points at nothing"),
+            (
+                r#"{"diffuseTexture":{"index":3}}"#,
+                "diffuseTexture.index: the index points at nothing",
+            ),
             (r#"{"glossinessFactor":"x"}"#, "KHR_materials_pbrSpecularGlossiness: invalid type"),
         ] {
             let told = material(extension).unwrap_err().to_string();

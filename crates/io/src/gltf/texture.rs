@@ -1,7 +1,8 @@
 //! Images and samplers.
 //!
-//! Each image is read, decoded and made into a pyramid once for each meaning of its bytes (colour, data, opacity), on all
-//! workers. A picture that cannot be had is a warning, and materials do without it.
+//! Each image is read, decoded and made into a pyramid once for each meaning of its bytes (colour,
+//! data, opacity), on all workers. A picture that cannot be had is a warning, and materials do
+//! without it.
 //!
 //! Source: [glTF 2.0], sections 3.8 and 5.26; KHR_texture_transform, EXT_texture_webp.
 
@@ -28,7 +29,8 @@ pub(crate) enum Meaning {
     OpaqueColor,
     /// Linear values.
     Data,
-    /// Red is how much a surface transmits, times this factor; the texture gets what is left, as opacity.
+    /// Red is how much a surface transmits, times this factor; the texture gets what is left, as
+    /// opacity.
     Transmission(f32),
 }
 
@@ -51,8 +53,8 @@ pub(crate) struct Reference<'a> {
 }
 
 impl Wanted {
-    /// A texture reference whose `texture` is a number in this list, to be made final by [`settle`]. `None` with a
-    /// warning if the texture has no image that is read.
+    /// A texture reference whose `texture` is a number in this list, to be made final by
+    /// [`settle`]. `None` with a warning if the texture has no image that is read.
     pub(crate) fn ask(
         &mut self,
         source: &Source<'_>,
@@ -61,10 +63,16 @@ impl Wanted {
         warnings: &mut Vec<String>,
     ) -> Option<TextureRef> {
         let texture = &source.root.textures[reference.texture];
-        let webp = texture.extensions.as_ref().and_then(|e| e.others.get(WEBP)?.get("source")?.as_u64());
+        let webp =
+            texture.extensions.as_ref().and_then(|e| e.others.get(WEBP)?.get("source")?.as_u64());
         let candidates = [webp.map(|image| image as usize), Some(texture.source.value())];
-        let Some(image) = candidates.into_iter().flatten().find(|image| *image < source.root.images.len()) else {
-            warnings.push(format!("{}: textures[{}]: no image that is read, left out", source.file, reference.texture));
+        let Some(image) =
+            candidates.into_iter().flatten().find(|image| *image < source.root.images.len())
+        else {
+            warnings.push(format!(
+                "{}: textures[{}]: no image that is read, left out",
+                source.file, reference.texture
+            ));
             return None;
         };
         let key = (image, meaning);
@@ -72,12 +80,18 @@ impl Wanted {
             self.images.push(key);
             self.images.len() - 1
         });
-        let mut uv_set = reference.transform.as_ref().and_then(|t| t.tex_coord).unwrap_or(reference.uv_set);
+        let mut uv_set =
+            reference.transform.as_ref().and_then(|t| t.tex_coord).unwrap_or(reference.uv_set);
         if uv_set > 1 {
-            warnings.push(format!("{}: {}: texCoord {uv_set} is not read, 0 is used", source.file, reference.path));
+            warnings.push(format!(
+                "{}: {}: texCoord {uv_set} is not read, 0 is used",
+                source.file, reference.path
+            ));
             uv_set = 0;
         }
-        let sampler = texture.sampler.map_or_else(Sampler::default, |s| sampler(&source.root.samplers[s.value()]));
+        let sampler = texture
+            .sampler
+            .map_or_else(Sampler::default, |s| sampler(&source.root.samplers[s.value()]));
         let mut out = TextureRef::new(number as u32);
         (out.sampler, out.uv_set) = (sampler, uv_set);
         if let Some(transform) = &reference.transform {
@@ -86,7 +100,8 @@ impl Wanted {
         Some(out)
     }
 
-    /// Reads and decodes everything that was asked for. Gives, for each number, the texture or a warning.
+    /// Reads and decodes everything that was asked for. Gives, for each number, the texture or a
+    /// warning.
     pub(crate) fn load(
         &self,
         source: &Source<'_>,
@@ -95,7 +110,8 @@ impl Wanted {
     ) -> Vec<Result<Loaded, String>> {
         workers.map(self.images.len(), |i| {
             let (image, meaning) = self.images[i];
-            load_image(source, image, meaning, resolver).map_err(|e| format!("{e}; the texture is left out"))
+            load_image(source, image, meaning, resolver)
+                .map_err(|e| format!("{e}; the texture is left out"))
         })
     }
 }
@@ -123,13 +139,19 @@ pub(crate) fn settle(
         .collect();
     for m in materials {
         for slot in m.texture_slots_mut() {
-            *slot = slot.and_then(|r| Some(TextureRef { texture: places[r.texture as usize]?, ..r }));
+            *slot =
+                slot.and_then(|r| Some(TextureRef { texture: places[r.texture as usize]?, ..r }));
         }
     }
     textures
 }
 
-fn load_image(source: &Source<'_>, index: usize, meaning: Meaning, resolver: &dyn Resolver) -> Result<Loaded, Error> {
+fn load_image(
+    source: &Source<'_>,
+    index: usize,
+    meaning: Meaning,
+    resolver: &dyn Resolver,
+) -> Result<Loaded, Error> {
     let entry = &source.root.images[index];
     let path = format!("images[{index}]");
     let mut name = name_or(&entry.name, "image", index);
@@ -154,7 +176,9 @@ fn load_image(source: &Source<'_>, index: usize, meaning: Meaning, resolver: &dy
         Meaning::Color => (plane, Encoding::Srgb),
         Meaning::OpaqueColor => (plane.map(|&[r, g, b, _]| [r, g, b, 255]), Encoding::Srgb),
         Meaning::Data => (plane, Encoding::Linear),
-        Meaning::Transmission(factor) => (plane.map(|&[r, ..]| opaque_part(r, factor)), Encoding::Linear),
+        Meaning::Transmission(factor) => {
+            (plane.map(|&[r, ..]| opaque_part(r, factor)), Encoding::Linear)
+        }
     };
     Ok((Texture::new(name, plane, encoding), odd_name.into_iter().chain(odd).collect()))
 }
@@ -179,9 +203,15 @@ fn sampler(s: &JsonSampler) -> Sampler {
     let (minify, mip) = match s.min_filter {
         Some(Checked::Valid(MinFilter::Nearest)) => (Filter::Nearest, MipFilter::None),
         Some(Checked::Valid(MinFilter::Linear)) => (Filter::Linear, MipFilter::None),
-        Some(Checked::Valid(MinFilter::NearestMipmapNearest)) => (Filter::Nearest, MipFilter::Nearest),
-        Some(Checked::Valid(MinFilter::LinearMipmapNearest)) => (Filter::Linear, MipFilter::Nearest),
-        Some(Checked::Valid(MinFilter::NearestMipmapLinear)) => (Filter::Nearest, MipFilter::Linear),
+        Some(Checked::Valid(MinFilter::NearestMipmapNearest)) => {
+            (Filter::Nearest, MipFilter::Nearest)
+        }
+        Some(Checked::Valid(MinFilter::LinearMipmapNearest)) => {
+            (Filter::Linear, MipFilter::Nearest)
+        }
+        Some(Checked::Valid(MinFilter::NearestMipmapLinear)) => {
+            (Filter::Nearest, MipFilter::Linear)
+        }
         Some(Checked::Valid(MinFilter::LinearMipmapLinear) | Checked::Invalid) | None => {
             (Filter::Linear, MipFilter::Linear)
         }
@@ -208,14 +238,18 @@ pub(crate) fn transform_in(
     let Some(value) = others.get("KHR_texture_transform") else { return Ok(None) };
     match serde_json::from_value(value.clone()) {
         Ok(transform) => Ok(Some(transform)),
-        Err(e) => Err(source.error(format!("{path}.extensions.KHR_texture_transform"), e.to_string())),
+        Err(e) => {
+            Err(source.error(format!("{path}.extensions.KHR_texture_transform"), e.to_string()))
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gltf::json::extensions::texture::{TextureTransformOffset, TextureTransformRotation, TextureTransformScale};
+    use gltf::json::extensions::texture::{
+        TextureTransformOffset, TextureTransformRotation, TextureTransformScale,
+    };
 
     #[test]
     fn scale_comes_before_rotation_and_offset_last() {
@@ -227,9 +261,14 @@ mod tests {
         };
         let m = matrix(&t);
         let at = |u: f32, v: f32| m.map(|row| row[0] * u + row[1] * v + row[2]);
-        let near = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).abs() < 1e-6 && (a[1] - b[1]).abs() < 1e-6;
+        let near =
+            |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).abs() < 1e-6 && (a[1] - b[1]).abs() < 1e-6;
         assert!(near(at(0.0, 0.0), [0.25, 0.5]));
-        assert!(near(at(1.0, 0.0), [0.25, -1.5]), "u turns towards the top of the image: {:?}", at(1.0, 0.0));
+        assert!(
+            near(at(1.0, 0.0), [0.25, -1.5]),
+            "u turns towards the top of the image: {:?}",
+            at(1.0, 0.0)
+        );
         assert!(near(at(0.0, 1.0), [3.25, 0.5]));
     }
 }

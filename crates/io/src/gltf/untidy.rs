@@ -1,6 +1,8 @@
-//! JSON that glTF allows, or that is only untidy, and that the `gltf` crate's types refuse: it is changed so that they take it.
+//! JSON that glTF allows, or that is only untidy, and that the `gltf` crate's types refuse: it is
+//! changed so that they take it.
 //!
-//! Cost: linear in the document. Source: [glTF 2.0], sections 1.4 and 3.11 (`extras` may be anything, animations are not read).
+//! Cost: linear in the document. Source: [glTF 2.0], sections 1.4 and 3.11 (`extras` may be
+//!       anything, animations are not read).
 
 use serde_json::{Map, Number, Value};
 
@@ -44,7 +46,8 @@ fn mend_value(value: &mut Value) {
 fn whole(number: &Number) -> Option<Number> {
     const EXACT: f64 = (1u64 << 53) as f64;
     let value = number.as_f64().filter(|_| number.is_f64())?;
-    (value.is_sign_positive() && value.fract() == 0.0 && value < EXACT).then(|| Number::from(value as u64))
+    (value.is_sign_positive() && value.fract() == 0.0 && value < EXACT)
+        .then(|| Number::from(value as u64))
 }
 
 #[cfg(test)]

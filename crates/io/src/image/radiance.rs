@@ -1,4 +1,5 @@
-//! Images of light: Radiance's HDR and OpenEXR, whose numbers are linear, and all pictures of bytes, which are decoded from sRGB.
+//! Images of light: Radiance's HDR and OpenEXR, whose numbers are linear, and all pictures of
+//! bytes, which are decoded from sRGB.
 //!
 //! In:   the bytes of a file. Out: linear RGB, the top row first. Alpha is left out.
 //! Cost: that of the decoder. The header's size is checked before anything is allocated.
@@ -14,7 +15,8 @@ const READ: &str = "HDR, EXR, PNG, JPEG, TGA, BMP, GIF, WebP, TIFF and DDS are";
 /// Decodes an image of light. `file` is its name, for messages.
 ///
 /// # Errors
-/// Formats that are known but not read are [`Error::Unsupported`], damaged files [`Error::Malformed`].
+/// Formats that are known but not read are [`Error::Unsupported`], damaged files
+/// [`Error::Malformed`].
 pub fn decode_radiance(bytes: &[u8], file: &str) -> Result<Plane<[f32; 3]>, Error> {
     match bytes {
         [b'#', b'?', ..] => decode_floats(Floats::Hdr, bytes, file),
@@ -58,20 +60,31 @@ mod decoders {
     use std::io::Cursor;
     use vitral_frame::Plane;
 
-    /// So many pixels are read however short a file is; beyond them, most that a byte of a file may stand for.
+    /// So many pixels are read however short a file is; beyond them, most that a byte of a file may
+    /// stand for.
     const SURE_PIXELS: u64 = 1 << 22;
     const PIXELS_A_BYTE: u64 = 64;
 
-    pub(super) fn decode_floats(format: Floats, bytes: &[u8], file: &str) -> Result<Plane<[f32; 3]>, Error> {
+    pub(super) fn decode_floats(
+        format: Floats,
+        bytes: &[u8],
+        file: &str,
+    ) -> Result<Plane<[f32; 3]>, Error> {
         match format {
-            Floats::Hdr => decode_by(HdrDecoder::new(Cursor::new(bytes)), "Radiance HDR", (bytes, file)),
+            Floats::Hdr => {
+                decode_by(HdrDecoder::new(Cursor::new(bytes)), "Radiance HDR", (bytes, file))
+            }
             Floats::Exr => decode_exr(bytes, file),
         }
     }
 
     #[cfg(feature = "exr")]
     fn decode_exr(bytes: &[u8], file: &str) -> Result<Plane<[f32; 3]>, Error> {
-        decode_by(image::codecs::openexr::OpenExrDecoder::new(Cursor::new(bytes)), "OpenEXR", (bytes, file))
+        decode_by(
+            image::codecs::openexr::OpenExrDecoder::new(Cursor::new(bytes)),
+            "OpenEXR",
+            (bytes, file),
+        )
     }
 
     #[cfg(not(feature = "exr"))]
@@ -85,18 +98,25 @@ mod decoders {
         format: &str,
         (bytes, file): (&[u8], &str),
     ) -> Result<Plane<[f32; 3]>, Error> {
-        let bad = |e: image::ImageError| Error::malformed(file, Place::File, format!("{format}: {e}"));
+        let bad =
+            |e: image::ImageError| Error::malformed(file, Place::File, format!("{format}: {e}"));
         let decoder = decoder.map_err(bad)?;
         let (width, height) = decoder.dimensions();
         check_size(width, height, file)?;
-        if u64::from(width) * u64::from(height) > SURE_PIXELS.max(PIXELS_A_BYTE * bytes.len() as u64) {
-            let what = format!("{format}: {width} x {height} pixels are announced, the file has {} bytes", bytes.len());
+        if u64::from(width) * u64::from(height)
+            > SURE_PIXELS.max(PIXELS_A_BYTE * bytes.len() as u64)
+        {
+            let what = format!(
+                "{format}: {width} x {height} pixels are announced, the file has {} bytes",
+                bytes.len()
+            );
             return Err(Error::malformed(file, Place::File, what));
         }
         let texels = DynamicImage::from_decoder(decoder).map_err(bad)?.into_rgb32f().into_raw();
         let texels = texels.as_chunks().0.to_vec();
-        Plane::from_rows(width, height, texels)
-            .ok_or_else(|| Error::malformed(file, Place::File, "the image ends before its last row"))
+        Plane::from_rows(width, height, texels).ok_or_else(|| {
+            Error::malformed(file, Place::File, "the image ends before its last row")
+        })
     }
 }
 
@@ -105,8 +125,14 @@ mod tests {
     use super::*;
     use image::{ExtendedColorType, ImageEncoder};
 
-    const LIGHT: [[f32; 3]; 6] =
-        [[0.5, 1.0, 2.0], [0.0; 3], [64.0, 32.0, 16.0], [0.25; 3], [1.0, 0.0, 0.0], [0.125, 0.5, 8.0]];
+    const LIGHT: [[f32; 3]; 6] = [
+        [0.5, 1.0, 2.0],
+        [0.0; 3],
+        [64.0, 32.0, 16.0],
+        [0.25; 3],
+        [1.0, 0.0, 0.0],
+        [0.125, 0.5, 8.0],
+    ];
 
     fn exr() -> Vec<u8> {
         let mut bytes = std::io::Cursor::new(Vec::new());
@@ -131,7 +157,10 @@ mod tests {
         let read = decode_radiance(&hdr(), "a.hdr").unwrap();
         for (read, wanted) in read.data().iter().zip(LIGHT) {
             let most = wanted.into_iter().fold(0.0, f32::max);
-            assert!((0..3).all(|k| (read[k] - wanted[k]).abs() <= most / 128.0), "{read:?} {wanted:?}");
+            assert!(
+                (0..3).all(|k| (read[k] - wanted[k]).abs() <= most / 128.0),
+                "{read:?} {wanted:?}"
+            );
         }
     }
 
@@ -140,7 +169,11 @@ mod tests {
         let picture = Plane::from_rows(2, 1, vec![[0, 255, 188, 255], [0, 0, 0, 0]]).unwrap();
         let png = crate::encode::png(&picture, crate::encode::PngOptions::default()).unwrap();
         let read = decode_radiance(&png, "a.png").unwrap();
-        assert!(read.data()[0][0] == 0.0 && read.data()[0][1] == 1.0 && (read.data()[0][2] - 0.503).abs() < 1e-3);
+        assert!(
+            read.data()[0][0] == 0.0
+                && read.data()[0][1] == 1.0
+                && (read.data()[0][2] - 0.503).abs() < 1e-3
+        );
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! One piece of an OBJ file: its lines, read without knowing the lines before.
 //!
-//! ZBrush writes colours of vertices as comments, `#MRGB` and eight hexadecimal digits for each vertex in order: a mask, red,
-//! green, blue.
+//! ZBrush writes colours of vertices as comments, `#MRGB` and eight hexadecimal digits for each
+//! vertex in order: a mask, red, green, blue.
 
 use crate::Place;
 use crate::far;
@@ -10,15 +10,17 @@ use crate::text::{Cursor, is_blank};
 use crate::warnings::Warnings;
 use std::ops::Range;
 
-/// A corner without a texture coordinate or normal, or with the index of a vertex that no file can have.
+/// A corner without a texture coordinate or normal, or with the index of a vertex that no file can
+/// have.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Set in an index that counts from the piece's beginning (`index - RELATIVE - ORIGIN`), clear in an absolute one.
+/// Set in an index that counts from the piece's beginning (`index - RELATIVE - ORIGIN`), clear in
+/// an absolute one.
 const RELATIVE: u32 = 1 << 31;
 const ORIGIN: i64 = 1 << 30;
 
-/// Packs an index of the file (`1..`, or `-1..` downwards from the `count` values that the piece has so far). `None`
-/// for 0 and for indices that no file can have.
+/// Packs an index of the file (`1..`, or `-1..` downwards from the `count` values that the piece
+/// has so far). `None` for 0 and for indices that no file can have.
 fn pack(index: i64, count: usize) -> Option<u32> {
     if index > 0 {
         return u32::try_from(index - 1).ok().filter(|&i| i < RELATIVE);
@@ -28,11 +30,15 @@ fn pack(index: i64, count: usize) -> Option<u32> {
     is_possible.then_some(RELATIVE | relative as u32)
 }
 
-/// The absolute index that `packed` stands for, in a piece before which `base` values were read. It may be out of
-/// range on both sides.
+/// The absolute index that `packed` stands for, in a piece before which `base` values were read. It
+/// may be out of range on both sides.
 #[inline(always)]
 pub(super) fn unpack(packed: u32, base: u32) -> i64 {
-    if packed & RELATIVE == 0 { i64::from(packed) } else { i64::from(base) + i64::from(packed ^ RELATIVE) - ORIGIN }
+    if packed & RELATIVE == 0 {
+        i64::from(packed)
+    } else {
+        i64::from(base) + i64::from(packed ^ RELATIVE) - ORIGIN
+    }
 }
 
 /// A change of state between faces.
@@ -64,7 +70,8 @@ pub(super) enum Change {
     Library(Range<usize>),
 }
 
-/// The corners of faces, one index list a kind. Empty lists of texture coordinates and normals: no corner has any.
+/// The corners of faces, one index list a kind. Empty lists of texture coordinates and normals: no
+/// corner has any.
 #[derive(Debug, Default)]
 pub(super) struct FaceList {
     /// Corners of each face; empty while all are triangles.
@@ -85,7 +92,8 @@ impl FaceList {
         self.v.len() - 2 * self.count
     }
 
-    /// Takes away the faces with a vertex that is `bad`. Gives for each face whether it stays; `None` if all do.
+    /// Takes away the faces with a vertex that is `bad`. Gives for each face whether it stays;
+    /// `None` if all do.
     pub(super) fn leave_out_faces(&mut self, bad: impl Fn(u32) -> bool) -> Option<Vec<bool>> {
         if !self.v.iter().any(|&v| bad(v)) {
             return None;
@@ -207,10 +215,12 @@ impl Chunk {
         chunk
     }
 
-    /// Takes away faces, free line segments and free points with a vertex that is `bad`; tells of how many.
+    /// Takes away faces, free line segments and free points with a vertex that is `bad`; tells of
+    /// how many.
     pub(super) fn leave_out(&mut self, bad: impl Fn(u32) -> bool) -> [usize; 3] {
         let faces = self.faces.leave_out_faces(&bad).unwrap_or_default();
-        let lines: Vec<bool> = self.lines.iter().map(|(ends, _)| !ends.iter().any(|&end| bad(end))).collect();
+        let lines: Vec<bool> =
+            self.lines.iter().map(|(ends, _)| !ends.iter().any(|&end| bad(end))).collect();
         let points: Vec<bool> = self.points.iter().map(|&(point, _)| !bad(point)).collect();
         let mut keep = lines.iter();
         self.lines.retain(|_| keep.next() == Some(&true));
@@ -241,7 +251,8 @@ impl Chunk {
         Self::default().read_until(text, corner)
     }
 
-    /// Reads the positions once more, in double precision, less an offset. They were found sound before.
+    /// Reads the positions once more, in double precision, less an offset. They were found sound
+    /// before.
     pub(super) fn read_positions(&mut self, text: &[u8], offset: [f64; 3]) {
         let mut cursor = Cursor::new(text);
         self.positions.clear();
@@ -268,8 +279,9 @@ impl Chunk {
                 _ => self.statement(text, &mut cursor),
             }
             if cursor.take_ill_formed() {
-                self.warnings
-                    .note("number", Place::Line(line), || "ill-formed number; only its beginning counts".to_owned());
+                self.warnings.note("number", Place::Line(line), || {
+                    "ill-formed number; only its beginning counts".to_owned()
+                });
             }
             if self.faces.v.len() > corners {
                 return line;
@@ -288,7 +300,8 @@ impl Chunk {
         }
         let (digits, _) = ahead.word().as_chunks::<8>();
         let channel = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok();
-        let color = |d: &[u8; 8]| Some([channel(&d[2..4])?, channel(&d[4..6])?, channel(&d[6..8])?]);
+        let color =
+            |d: &[u8; 8]| Some([channel(&d[2..4])?, channel(&d[4..6])?, channel(&d[6..8])?]);
         self.zbrush_colors.extend(digits.iter().map_while(color));
     }
 
@@ -308,17 +321,21 @@ impl Chunk {
             Statement::Library => self.event(cursor, text, Change::Library),
             Statement::Smoothing => self.smoothing(cursor),
             Statement::FreeForm => {
-                self.warnings
-                    .note("free form", Place::Line(line), || "free-form curves and surfaces are not read".to_owned());
+                self.warnings.note("free form", Place::Line(line), || {
+                    "free-form curves and surfaces are not read".to_owned()
+                });
                 Ok(())
             }
             Statement::Unused => {
-                self.warnings.note("unused", Place::Line(line), || format!("`{}` is not used", show(word)));
+                self.warnings
+                    .note("unused", Place::Line(line), || format!("`{}` is not used", show(word)));
                 Ok(())
             }
             Statement::Unknown => {
                 self.first_unknown = self.first_unknown.or(Some(line));
-                self.warnings.note("unknown", Place::Line(line), || format!("unknown statement `{}`", show(word)));
+                self.warnings.note("unknown", Place::Line(line), || {
+                    format!("unknown statement `{}`", show(word))
+                });
                 Ok(())
             }
         };
@@ -451,7 +468,9 @@ impl Chunk {
     /// An index as it stands in the file.
     #[inline]
     fn written_index(&mut self, cursor: &mut Cursor, what: &str) -> Result<i64, String> {
-        let index = cursor.integer().ok_or_else(|| format!("`{}` is not a {what} index", show(cursor.word())))?;
+        let index = cursor
+            .integer()
+            .ok_or_else(|| format!("`{}` is not a {what} index", show(cursor.word())))?;
         self.has_relative |= index < 0;
         Ok(index)
     }
@@ -468,9 +487,15 @@ impl Chunk {
         }))
     }
 
-    /// An index of what a corner can do without: [`NONE`] with a warning for one that no file can have.
+    /// An index of what a corner can do without: [`NONE`] with a warning for one that no file can
+    /// have.
     #[inline]
-    fn attribute_index(&mut self, cursor: &mut Cursor, count: usize, what: &str) -> Result<u32, String> {
+    fn attribute_index(
+        &mut self,
+        cursor: &mut Cursor,
+        count: usize,
+        what: &str,
+    ) -> Result<u32, String> {
         let start = cursor.offset();
         let index = self.written_index(cursor, what)?;
         Ok(pack(index, count).unwrap_or_else(|| {
@@ -490,8 +515,9 @@ impl Chunk {
             previous = Some(end);
         }
         if self.lines.len() == before {
-            self.warnings
-                .note("short line", Place::Line(line), || "a line with fewer than two ends; it is left out".to_owned());
+            self.warnings.note("short line", Place::Line(line), || {
+                "a line with fewer than two ends; it is left out".to_owned()
+            });
         }
         Ok(())
     }
@@ -523,7 +549,12 @@ impl Chunk {
         Ok(())
     }
 
-    fn event(&mut self, cursor: &mut Cursor, text: &[u8], change: fn(Range<usize>) -> Change) -> Result<(), String> {
+    fn event(
+        &mut self,
+        cursor: &mut Cursor,
+        text: &[u8],
+        change: fn(Range<usize>) -> Change,
+    ) -> Result<(), String> {
         let line = cursor.line();
         cursor.skip_blanks();
         let start = cursor.offset();

@@ -66,11 +66,16 @@ impl<'a> Events<'a> {
                             events.used.len() - 1
                         });
                         material = Some(chosen);
-                        let first = [free[0] + event.free_line as usize, free[1] + event.free_point as usize];
+                        let first = [
+                            free[0] + event.free_line as usize,
+                            free[1] + event.free_point as usize,
+                        ];
                         events.free.push((first, chosen));
                     }
                     Change::Smoothing(group) => events.smoothing.push((faces + event.face, *group)),
-                    Change::Library(range) => events.libraries.push((line, text::name(&text[range.clone()]))),
+                    Change::Library(range) => {
+                        events.libraries.push((line, text::name(&text[range.clone()])))
+                    }
                 }
                 events.start_run(name.clone(), material, triangles + event.triangle);
             }
@@ -117,7 +122,13 @@ impl<'a> Events<'a> {
         // Each group reaches to the next statement.
         if !self.smoothing.is_empty() {
             let mut groups = vec![0; mesh.face_count()];
-            let ends = self.smoothing.iter().skip(1).map(|s| s.0 as usize).chain([groups.len()]).collect::<Vec<_>>();
+            let ends = self
+                .smoothing
+                .iter()
+                .skip(1)
+                .map(|s| s.0 as usize)
+                .chain([groups.len()])
+                .collect::<Vec<_>>();
             for (&(first, group), end) in self.smoothing.iter().zip(ends) {
                 groups[first as usize..end].fill(group);
             }
@@ -160,17 +171,24 @@ impl Known {
         self.materials.push((library.to_owned(), material));
     }
 
-    /// The number of the material `name`, and its name: as it stands, for a name may hold a `#`, else without comments.
+    /// The number of the material `name`, and its name: as it stands, for a name may hold a `#`,
+    /// else without comments.
     fn find<'a>(&self, name: &'a str) -> Option<(&'a str, usize)> {
         let plain = without_comment(name);
-        let names = [(name, &self.whole), (name, &self.plain), (plain, &self.whole), (plain, &self.plain)];
+        let names =
+            [(name, &self.whole), (name, &self.plain), (plain, &self.whole), (plain, &self.plain)];
         names.into_iter().find_map(|(name, numbers)| Some((name, *numbers.get(name)?)))
     }
 }
 
-/// Reads the libraries and makes the materials that are used, with their textures. Materials that no face asks for are
-/// left in their library.
-pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers: &Workers) -> Library {
+/// Reads the libraries and makes the materials that are used, with their textures. Materials that
+/// no face asks for are left in their library.
+pub(super) fn load(
+    events: &Events,
+    file: &str,
+    resolver: &dyn Resolver,
+    workers: &Workers,
+) -> Library {
     let mut library = Library::default();
     let mut warnings = Warnings::default();
     let mut known = Known::default();
@@ -191,13 +209,17 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
         library.index.push(known.find(name).map(|(called, number)| {
             *built.entry(number).or_insert_with(|| {
                 let (source, material) = &known.materials[number];
-                library.materials.push(Material { name: called.to_owned(), ..material.build(source, &mut requests) });
+                library.materials.push(Material {
+                    name: called.to_owned(),
+                    ..material.build(source, &mut requests)
+                });
                 library.materials.len() as u32 - 1
             })
         }));
         if library.index.last() == Some(&None) {
-            warnings
-                .note("material", Place::Line(*line), || format!("unknown material `{name}`; the default one is used"));
+            warnings.note("material", Place::Line(*line), || {
+                format!("unknown material `{name}`; the default one is used")
+            });
         }
     }
 
@@ -205,7 +227,10 @@ pub(super) fn load(events: &Events, file: &str, resolver: &dyn Resolver, workers
     if events.used.is_empty()
         && let [(source, material)] = known.materials.as_slice()
     {
-        library.materials.push(Material { name: material.name.clone(), ..material.build(source, &mut requests) });
+        library.materials.push(Material {
+            name: material.name.clone(),
+            ..material.build(source, &mut requests)
+        });
         library.single = Some(0);
     }
 
@@ -247,10 +272,15 @@ fn take_textures(material: &mut Material, loaded: &Loaded) {
     }
 }
 
-/// The libraries of one `mtllib` line: the whole rest of the line as one name, else this without a comment, else each of its
-/// words, else what is called as the last part of the path, which may be that of another machine. What is in other case
-/// comes last.
-fn read_libraries(line: u64, names: &str, resolver: &dyn Resolver, warnings: &mut Warnings) -> Vec<(String, Vec<u8>)> {
+/// The libraries of one `mtllib` line: the whole rest of the line as one name, else this without a
+/// comment, else each of its words, else what is called as the last part of the path, which may be
+/// that of another machine. What is in other case comes last.
+fn read_libraries(
+    line: u64,
+    names: &str,
+    resolver: &dyn Resolver,
+    warnings: &mut Warnings,
+) -> Vec<(String, Vec<u8>)> {
     let plain = without_comment(names);
     let whole = &mtl::file_name(plain);
     let mut wholes = vec![mtl::file_name(names), whole.clone()];
@@ -285,9 +315,12 @@ fn read_libraries(line: u64, names: &str, resolver: &dyn Resolver, warnings: &mu
         }
     }
 
-    // Tell what is missing: the words, where some of them were found or quotes part them, else the whole.
+    // Tell what is missing: the words, where some of them were found or quotes part them, else the
+    // whole.
     let mut missing = |name: &str, why: &crate::ResolveError| {
-        warnings.note("", Place::Line(line), || format!("material library `{name}` is left out: {why}"));
+        warnings.note("", Place::Line(line), || {
+            format!("material library `{name}` is left out: {why}")
+        });
     };
     match &why {
         Some(why) if !whole.contains('"') => missing(whole, why),

@@ -1,4 +1,5 @@
-//! Puts the pieces of an OBJ file together: bases for the indices, one array of each kind, triangles.
+//! Puts the pieces of an OBJ file together: bases for the indices, one array of each kind,
+//! triangles.
 
 use super::chunk::{Chunk, FaceList, NONE, unpack};
 use crate::color_range::ColorRange;
@@ -51,7 +52,11 @@ impl Totals {
             bases.push(sum);
         }
         if [sum.v, sum.vt, sum.vn, sum.corners].iter().any(|&n| n > 1 << 31) {
-            return Err(Error::malformed(file, Place::File, "more than 2147483648 vertices or corners"));
+            return Err(Error::malformed(
+                file,
+                Place::File,
+                "more than 2147483648 vertices or corners",
+            ));
         }
         let all = |f: fn(&Chunk) -> bool| chunks.iter().all(f);
         let same_base = |vt: fn(&Counts) -> usize| {
@@ -75,7 +80,8 @@ impl Totals {
     }
 }
 
-/// Whether an index of a piece before which `base` values were read leads nowhere, of `total` in the file.
+/// Whether an index of a piece before which `base` values were read leads nowhere, of `total` in
+/// the file.
 fn is_bad(packed: u32, base: usize, total: usize) -> bool {
     packed == NONE || !(0..total as i64).contains(&unpack(packed, base as u32))
 }
@@ -89,8 +95,8 @@ fn nowhere(index: i64, total: usize, what: &str) -> String {
     }
 }
 
-/// Takes away faces, free lines and free points with a vertex that leads nowhere, with a warning; true if there were any, so
-/// that the totals change.
+/// Takes away faces, free lines and free points with a vertex that leads nowhere, with a warning;
+/// true if there were any, so that the totals change.
 ///
 /// # Errors
 /// The first of them, if no face, line or point of the file stays.
@@ -102,7 +108,8 @@ pub(super) fn leave_out_bad_elements(
     (warnings, workers): (&mut Warnings, &Workers),
 ) -> Result<bool, Error> {
     let total = totals.sum().v;
-    let first = workers.map(chunks.len(), |i| first_bad_vertex(&chunks[i], totals.bases[i].v, total, pieces[i]));
+    let first = workers
+        .map(chunks.len(), |i| first_bad_vertex(&chunks[i], totals.bases[i].v, total, pieces[i]));
     let Some((line, what)) = first.iter().zip(first_lines).find_map(|(first, before)| {
         let (line, what) = first.as_ref()?;
         Some((line + before, what.clone()))
@@ -111,7 +118,12 @@ pub(super) fn leave_out_bad_elements(
     };
 
     // Take away what is bad, piece by piece.
-    let jobs: Vec<_> = chunks.iter_mut().zip(&totals.bases).zip(&first).filter(|(_, first)| first.is_some()).collect();
+    let jobs: Vec<_> = chunks
+        .iter_mut()
+        .zip(&totals.bases)
+        .zip(&first)
+        .filter(|(_, first)| first.is_some())
+        .collect();
     let counts = std::sync::Mutex::new([0usize; 3]);
     workers.for_each(jobs, |((chunk, base), _)| {
         let gone = chunk.leave_out(|packed| is_bad(packed, base.v, total));
@@ -127,19 +139,34 @@ pub(super) fn leave_out_bad_elements(
         return Err(Error::malformed(file, place, what));
     }
     let kinds = ["face", "line", "point"].iter().zip(counts).filter(|(_, count)| *count > 0);
-    let list = kinds.map(|(kind, n)| format!("{n} {kind}{}", if n == 1 { "" } else { "s" })).collect::<Vec<_>>();
+    let list = kinds
+        .map(|(kind, n)| format!("{n} {kind}{}", if n == 1 { "" } else { "s" }))
+        .collect::<Vec<_>>();
     let verb = if counts.iter().sum::<usize>() == 1 { "is" } else { "are" };
-    warnings
-        .note("", place, || format!("{what}; {} with vertices that are not there {verb} left out", list.join(", ")));
+    warnings.note("", place, || {
+        format!("{what}; {} with vertices that are not there {verb} left out", list.join(", "))
+    });
     Ok(true)
 }
 
-/// The first index of a vertex in a piece that leads nowhere: its line within the piece, and what is wrong with it.
-fn first_bad_vertex(chunk: &Chunk, base: usize, total: usize, text: &[u8]) -> Option<(u64, String)> {
+/// The first index of a vertex in a piece that leads nowhere: its line within the piece, and what
+/// is wrong with it.
+fn first_bad_vertex(
+    chunk: &Chunk,
+    base: usize,
+    total: usize,
+    text: &[u8],
+) -> Option<(u64, String)> {
     let in_faces = chunk.faces.v.iter().position(|&p| is_bad(p, base, total));
     let in_faces = in_faces.map(|c| (Chunk::line_of_corner(text, c), chunk.faces.v[c]));
-    let ends = chunk.lines.iter().flat_map(|(ends, line)| ends.map(|e| (e, *line))).chain(chunk.points.iter().copied());
-    let in_free = ends.filter(|(packed, _)| is_bad(*packed, base, total)).map(|(packed, line)| (line, packed));
+    let ends = chunk
+        .lines
+        .iter()
+        .flat_map(|(ends, line)| ends.map(|e| (e, *line)))
+        .chain(chunk.points.iter().copied());
+    let in_free = ends
+        .filter(|(packed, _)| is_bad(*packed, base, total))
+        .map(|(packed, line)| (line, packed));
     let (line, packed) = in_faces.into_iter().chain(in_free).min_by_key(|found| found.0)?;
     match &chunk.impossible {
         Some((_, what)) if packed == NONE => Some((line, what.clone())),
@@ -147,8 +174,8 @@ fn first_bad_vertex(chunk: &Chunk, base: usize, total: usize, text: &[u8]) -> Op
     }
 }
 
-/// Takes texture coordinates and normals that lead nowhere away from their corners, with a warning; true if there were any, so
-/// that the totals change.
+/// Takes texture coordinates and normals that lead nowhere away from their corners, with a warning;
+/// true if there were any, so that the totals change.
 pub(super) fn leave_out_bad_attributes(
     chunks: &mut [Chunk],
     totals: &Totals,
@@ -160,22 +187,31 @@ pub(super) fn leave_out_bad_attributes(
     let first = workers.map(chunks.len(), |i| {
         let (faces, base) = (&chunks[i].faces, totals.bases[i]);
         let kinds = [(&faces.vt, base.vt, sum.vt), (&faces.vn, base.vn, sum.vn)];
-        kinds.map(|(list, base, total)| list.iter().position(|&p| p != NONE && is_bad(p, base, total)))
+        kinds.map(|(list, base, total)| {
+            list.iter().position(|&p| p != NONE && is_bad(p, base, total))
+        })
     });
-    let mut note = |i: usize, corner: usize, index: i64, count: usize, total: usize, kind: &'static str| {
-        let place = Place::Line(Chunk::line_of_corner(pieces[i], corner) + first_lines[i]);
-        let told = || format!("{}; left out", nowhere(index, total, kind));
-        (0..count).for_each(|_| warnings.note(kind, place.clone(), told));
-    };
+    let mut note =
+        |i: usize, corner: usize, index: i64, count: usize, total: usize, kind: &'static str| {
+            let place = Place::Line(Chunk::line_of_corner(pieces[i], corner) + first_lines[i]);
+            let told = || format!("{}; left out", nowhere(index, total, kind));
+            (0..count).for_each(|_| warnings.note(kind, place.clone(), told));
+        };
     // One kind after the other, so that the order of the warnings does not tell the pieces.
     for (i, [corner, _]) in first.iter().enumerate() {
-        let (Some(corner), base, faces) = (*corner, totals.bases[i].vt, &mut chunks[i].faces) else { continue };
+        let (Some(corner), base, faces) = (*corner, totals.bases[i].vt, &mut chunks[i].faces)
+        else {
+            continue;
+        };
         let index = unpack(faces.vt[corner], base as u32);
         let count = faces.leave_out_uvs(|p| is_bad(p, base, sum.vt));
         note(i, corner, index, count, sum.vt, "texture coordinates");
     }
     for (i, [_, corner]) in first.iter().enumerate() {
-        let (Some(corner), base, faces) = (*corner, totals.bases[i].vn, &mut chunks[i].faces) else { continue };
+        let (Some(corner), base, faces) = (*corner, totals.bases[i].vn, &mut chunks[i].faces)
+        else {
+            continue;
+        };
         let index = unpack(faces.vn[corner], base as u32);
         let count = faces.leave_out_normals(|p| is_bad(p, base, sum.vn));
         note(i, corner, index, count, sum.vn, "normals");
@@ -206,13 +242,22 @@ struct FaceArrays {
 }
 
 /// Makes the mesh. All indices must have been checked.
-pub(super) fn stitch(mut chunks: Vec<Chunk>, totals: &Totals, warnings: &mut Warnings, workers: &Workers) -> Mesh {
+pub(super) fn stitch(
+    mut chunks: Vec<Chunk>,
+    totals: &Totals,
+    warnings: &mut Warnings,
+    workers: &Workers,
+) -> Mesh {
     let sum = totals.sum();
     let zbrush = zbrush_colors(&chunks, totals, warnings);
-    let colors = totals.has_colors.then(|| linear_colors(&mut chunks, totals, warnings, workers)).or(zbrush);
-    let positions = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.positions)), sum.v, workers);
-    let mut uvs = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.uvs)), sum.vt, workers);
-    let mut normals = concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.normals)), sum.vn, workers);
+    let colors =
+        totals.has_colors.then(|| linear_colors(&mut chunks, totals, warnings, workers)).or(zbrush);
+    let positions =
+        concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.positions)), sum.v, workers);
+    let mut uvs =
+        concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.uvs)), sum.vt, workers);
+    let mut normals =
+        concatenate(chunks.iter_mut().map(|c| std::mem::take(&mut c.normals)), sum.vn, workers);
     let (lines, points) = free_elements(&chunks, totals);
     let FaceArrays { triangles, faces, uv_corners, normal_corners, flat_normals } =
         fill_faces(chunks, totals, &positions, workers);
@@ -229,7 +274,11 @@ pub(super) fn stitch(mut chunks: Vec<Chunk>, totals: &Totals, warnings: &mut War
     Mesh {
         triangles,
         faces,
-        uvs: if totals.has_uvs { vec![Attribute { values: uvs, corners: uv_corners }] } else { Vec::new() },
+        uvs: if totals.has_uvs {
+            vec![Attribute { values: uvs, corners: uv_corners }]
+        } else {
+            Vec::new()
+        },
         normals: (totals.has_normals || cloud_normals)
             .then_some(Attribute { values: normals, corners: normal_corners }),
         colors_from_srgb: colors.is_some(),
@@ -253,7 +302,12 @@ fn free_elements(chunks: &[Chunk], totals: &Totals) -> (Vec<[u32; 2]>, Vec<u32>)
 }
 
 /// Cuts the faces of all pieces into triangles, each piece into its own part of the arrays.
-fn fill_faces(chunks: Vec<Chunk>, totals: &Totals, positions: &[[f32; 3]], workers: &Workers) -> FaceArrays {
+fn fill_faces(
+    chunks: Vec<Chunk>,
+    totals: &Totals,
+    positions: &[[f32; 3]],
+    workers: &Workers,
+) -> FaceArrays {
     let sum = totals.sum();
     let has_uv_corners = totals.has_uvs && !totals.uvs_like_positions;
     let has_normal_corners = totals.has_normals && !totals.normals_like_positions;
@@ -280,7 +334,9 @@ fn fill_faces(chunks: Vec<Chunk>, totals: &Totals, positions: &[[f32; 3]], worke
                 uv_corners: uv_corners.as_mut().map(|c| front(c, count)),
                 normal_corners: normal_corners.as_mut().map(|c| front(c, count)),
                 flat_normals: front(&mut flat_normals, bare),
-                outline: outline.as_mut().map(|(s, c)| (front(s, chunk.faces.count), front(c, chunk.faces.v.len()))),
+                outline: outline
+                    .as_mut()
+                    .map(|(s, c)| (front(s, chunk.faces.count), front(c, chunk.faces.v.len()))),
                 chunk,
                 base,
             }
@@ -299,7 +355,11 @@ fn front<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
 }
 
 /// One array from many; each is given back to the allocator as soon as it is copied.
-fn concatenate<T: Copy + Default + Send>(parts: impl Iterator<Item = Vec<T>>, total: usize, workers: &Workers) -> Vec<T>
+fn concatenate<T: Copy + Default + Send>(
+    parts: impl Iterator<Item = Vec<T>>,
+    total: usize,
+    workers: &Workers,
+) -> Vec<T>
 where
     Vec<T>: Send,
 {
@@ -315,8 +375,14 @@ where
 }
 
 /// Vertex colours as linear RGBA; vertices without a colour are white.
-fn linear_colors(chunks: &mut [Chunk], totals: &Totals, warnings: &mut Warnings, workers: &Workers) -> Vec<[f32; 4]> {
-    let of_chunks = workers.map(chunks.len(), |i| ColorRange::of(chunks[i].colors.as_flattened().iter().copied()));
+fn linear_colors(
+    chunks: &mut [Chunk],
+    totals: &Totals,
+    warnings: &mut Warnings,
+    workers: &Workers,
+) -> Vec<[f32; 4]> {
+    let of_chunks = workers
+        .map(chunks.len(), |i| ColorRange::of(chunks[i].colors.as_flattened().iter().copied()));
     let range = of_chunks.into_iter().fold(ColorRange::default(), ColorRange::union);
     let scale = range.scale();
     if let Some(what) = range.oddity("vertex colours") {
@@ -324,12 +390,15 @@ fn linear_colors(chunks: &mut [Chunk], totals: &Totals, warnings: &mut Warnings,
     }
     let mut colors = vec![[1.0f32; 4]; totals.sum().v];
     let mut rest = colors.as_mut_slice();
-    let jobs: Vec<_> =
-        chunks.iter_mut().map(|c| (front(&mut rest, c.positions.len()), std::mem::take(&mut c.colors))).collect();
+    let jobs: Vec<_> = chunks
+        .iter_mut()
+        .map(|c| (front(&mut rest, c.positions.len()), std::mem::take(&mut c.colors)))
+        .collect();
     workers.for_each(jobs, |(slice, encoded)| {
         for (out, rgb) in slice.iter_mut().zip(encoded) {
-            let [r, g, b] =
-                rgb.map(|c| if c.is_finite() { linear_from_srgb((c / scale).clamp(0.0, 1.0)) } else { 1.0 });
+            let [r, g, b] = rgb.map(|c| {
+                if c.is_finite() { linear_from_srgb((c / scale).clamp(0.0, 1.0)) } else { 1.0 }
+            });
             *out = [r, g, b, 1.0];
         }
     });
@@ -337,13 +406,18 @@ fn linear_colors(chunks: &mut [Chunk], totals: &Totals, warnings: &mut Warnings,
 }
 
 /// The vertex colours that ZBrush writes as comments, if there is one for each vertex.
-fn zbrush_colors(chunks: &[Chunk], totals: &Totals, warnings: &mut Warnings) -> Option<Vec<[f32; 4]>> {
+fn zbrush_colors(
+    chunks: &[Chunk],
+    totals: &Totals,
+    warnings: &mut Warnings,
+) -> Option<Vec<[f32; 4]>> {
     let count: usize = chunks.iter().map(|c| c.zbrush_colors.len()).sum();
     if count == 0 {
         return None;
     }
     if count != totals.sum().v || totals.has_colors {
-        let what = || format!("{count} colours (#MRGB) for {} vertices are not used", totals.sum().v);
+        let what =
+            || format!("{count} colours (#MRGB) for {} vertices are not used", totals.sum().v);
         warnings.note("", Place::File, what);
         return None;
     }
@@ -407,12 +481,15 @@ impl Job<'_> {
             for local in &cut {
                 self.triangles[triangle] = local.map(|k| polygon[k as usize]);
                 if let Some(out) = &mut self.uv_corners {
-                    out[triangle] = local.map(|k| texture(&faces.vt, corner + k as usize, self.base.vt, sum.vt));
+                    out[triangle] = local
+                        .map(|k| texture(&faces.vt, corner + k as usize, self.base.vt, sum.vt));
                 }
                 if let Some(out) = &mut self.normal_corners {
                     let own = (sum.vn + self.base.bare + bare) as u32;
                     out[triangle] = local.map(|k| match faces.vn.get(corner + k as usize) {
-                        Some(&packed) if packed != NONE => unpack(packed, self.base.vn as u32) as u32,
+                        Some(&packed) if packed != NONE => {
+                            unpack(packed, self.base.vn as u32) as u32
+                        }
                         _ => own,
                     });
                 }

@@ -1,5 +1,6 @@
-//! The data of a text PLY file: one line an element. An element whose line ends too early goes on on the next, with a
-//! warning. If the file cannot be read so, it may be wrapped: then all values are one sequence, whatever the lines.
+//! The data of a text PLY file: one line an element. An element whose line ends too early goes on
+//! on the next, with a warning. If the file cannot be read so, it may be wrapped: then all values
+//! are one sequence, whatever the lines.
 
 use super::content::{Content, Reading, Row};
 use super::header::{Element, Kind, Property, Type};
@@ -33,20 +34,35 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading) -> Result<Content, Error
 }
 
 /// Reads all elements, and takes an offset from each position.
-fn read_with(text: &[u8], reading: &mut Reading, offset: Option<[f64; 3]>) -> Result<Content, Error> {
+fn read_with(
+    text: &[u8],
+    reading: &mut Reading,
+    offset: Option<[f64; 3]>,
+) -> Result<Content, Error> {
     let before = reading.warnings.clone();
-    let mut content = Content { offset, ..Content::new(reading.header, reading.layouts, reading.file)? };
-    let Err(error) = read_elements(text, reading, &mut content, Lines::Elements) else { return Ok(content) };
+    let mut content =
+        Content { offset, ..Content::new(reading.header, reading.layouts, reading.file)? };
+    let Err(error) = read_elements(text, reading, &mut content, Lines::Elements) else {
+        return Ok(content);
+    };
 
     // Read it as wrapped; what is wrong with it is told of the usual form.
     *reading.warnings = before;
     let place = Place::Line(reading.header.data_line);
-    reading.warnings.note("", place, || "values run over line ends; they are read one after the other".to_owned());
-    let mut content = Content { offset, ..Content::new(reading.header, reading.layouts, reading.file)? };
+    reading.warnings.note("", place, || {
+        "values run over line ends; they are read one after the other".to_owned()
+    });
+    let mut content =
+        Content { offset, ..Content::new(reading.header, reading.layouts, reading.file)? };
     read_elements(text, reading, &mut content, Lines::Wrapped).map_or(Err(error), |()| Ok(content))
 }
 
-fn read_elements(text: &[u8], reading: &mut Reading, content: &mut Content, lines: Lines) -> Result<(), Error> {
+fn read_elements(
+    text: &[u8],
+    reading: &mut Reading,
+    content: &mut Content,
+    lines: Lines,
+) -> Result<(), Error> {
     let mut cursor = Cursor::at_line(text, reading.header.data_line);
     let mut row = Row::default();
     for (element, layout) in reading.header.elements.iter().zip(reading.layouts) {
@@ -55,7 +71,8 @@ fn read_elements(text: &[u8], reading: &mut Reading, content: &mut Content, line
             continue;
         }
 
-        // Refuse a count that the file cannot hold: an element takes at least a digit and a line end.
+        // Refuse a count that the file cannot hold: an element takes at least a digit and a line
+        // end.
         let room = cursor.remaining() as u64 / 2 + 1;
         if element.count > room {
             let what = format!(
@@ -77,13 +94,18 @@ fn read_elements(text: &[u8], reading: &mut Reading, content: &mut Content, line
                 return Err(Error::malformed(reading.file, Place::Line(cursor.line()), what));
             }
             let place = Place::Line(cursor.line());
-            let result = read_row(&mut cursor, (element, layout), &mut row, lines, reading.warnings)
-                .and_then(|()| content.push(layout.role, &row, || place.clone(), reading.warnings));
+            let result =
+                read_row(&mut cursor, (element, layout), &mut row, lines, reading.warnings)
+                    .and_then(|()| {
+                        content.push(layout.role, &row, || place.clone(), reading.warnings)
+                    });
             if let Err(what) = result {
                 return Err(Error::malformed(reading.file, place, what));
             }
             if cursor.take_ill_formed() {
-                reading.warnings.note("number", place, || "ill-formed number; only its beginning counts".to_owned());
+                reading.warnings.note("number", place, || {
+                    "ill-formed number; only its beginning counts".to_owned()
+                });
             }
             if lines == Lines::Elements {
                 cursor.next_line();
@@ -165,14 +187,21 @@ fn read_row(
     cursor.skip_blanks();
     if !is_wrapped && cursor.peek() != b'\n' && layout.role != Role::Unknown {
         let line = cursor.line();
-        warnings.note("row tail", Place::Line(line), || "more values than the element has; left out".to_owned());
+        warnings.note("row tail", Place::Line(line), || {
+            "more values than the element has; left out".to_owned()
+        });
     }
     Ok(())
 }
 
 /// A number of the wanted type, on this line or, if it is at its end, on the next.
 #[inline]
-fn next_number(cursor: &mut Cursor, kind: Type, property: &Property, warnings: &mut Warnings) -> Result<f64, String> {
+fn next_number(
+    cursor: &mut Cursor,
+    kind: Type,
+    property: &Property,
+    warnings: &mut Warnings,
+) -> Result<f64, String> {
     match number(cursor, kind) {
         Some(value) => Ok(value),
         None => number_on_next_line(cursor, kind, property, warnings),

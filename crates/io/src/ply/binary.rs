@@ -1,9 +1,10 @@
 //! The data of a binary PLY file.
 //!
-//! Elements of a fixed size (vertices) are cut into blocks of rows, which are decoded on all threads, one attribute
-//! after the other. Faces have lists, so that their size varies; but nearly every file has polygons of one kind. So the
-//! rows are read as if all had the first one's length: if each row, at its place, has that length, the guess was right.
-//! Else, and for everything unusual, rows are read one after the other.
+//! Elements of a fixed size (vertices) are cut into blocks of rows, which are decoded on all
+//! threads, one attribute after the other. Faces have lists, so that their size varies; but nearly
+//! every file has polygons of one kind. So the rows are read as if all had the first one's length:
+//! if each row, at its place, has that length, the guess was right. Else, and for everything
+//! unusual, rows are read one after the other.
 
 use super::content::{Content, Reading, Row};
 use super::header::{Element, Encoding, Kind, Type};
@@ -18,7 +19,12 @@ use vitral_math::color::linear_from_srgb_table;
 const BLOCK: usize = 1 << 13;
 
 /// Reads all elements.
-pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content, workers: &Workers) -> Result<(), Error> {
+pub(super) fn read(
+    bytes: &[u8],
+    reading: &mut Reading,
+    content: &mut Content,
+    workers: &Workers,
+) -> Result<(), Error> {
     let big = reading.header.encoding == Encoding::BigEndian;
     let mut at = reading.header.data;
     for (element, layout) in reading.header.elements.iter().zip(reading.layouts) {
@@ -30,7 +36,8 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content, w
                 let end = end_of_rows(bytes, at, element, stride, reading.file)?;
                 match layout.role {
                     Role::Vertex => {
-                        FixedRows { bytes: &bytes[at..end], stride, element, layout, big }.vertices(content, workers)
+                        FixedRows { bytes: &bytes[at..end], stride, element, layout, big }
+                            .vertices(content, workers)
                     }
                     Role::Edge => _ = rows.read(reading, content)?,
                     Role::Face | Role::Strips | Role::Incomplete | Role::Unknown => {}
@@ -46,13 +53,21 @@ pub(super) fn read(bytes: &[u8], reading: &mut Reading, content: &mut Content, w
     if at < bytes.len() {
         let rest = bytes.len() - at;
         let place = Place::Byte(at as u64);
-        reading.warnings.note("", place, || format!("{rest} bytes after the last element are left out"));
+        reading
+            .warnings
+            .note("", place, || format!("{rest} bytes after the last element are left out"));
     }
     Ok(())
 }
 
 /// Where `element.count` rows end, if the file is long enough.
-fn end_of_rows(bytes: &[u8], at: usize, element: &Element, stride: usize, file: &str) -> Result<usize, Error> {
+fn end_of_rows(
+    bytes: &[u8],
+    at: usize,
+    element: &Element,
+    stride: usize,
+    file: &str,
+) -> Result<usize, Error> {
     let room = (bytes.len() - at) as u64;
     match element.count.checked_mul(stride as u64) {
         Some(size) if size <= room => Ok(at + size as usize),
@@ -135,7 +150,8 @@ impl FixedRows<'_> {
             *normals = self.column(self.fields(slot::NORMAL), count, workers, |v| v);
         }
         if let Some(uvs) = &mut content.uvs {
-            *uvs = self.column(self.fields(slot::UV), count, workers, |[u, v]: [f32; 2]| [u, 1.0 - v]);
+            *uvs =
+                self.column(self.fields(slot::UV), count, workers, |[u, v]: [f32; 2]| [u, 1.0 - v]);
         }
         if let Some(colors) = &mut content.colors {
             (*colors, content.has_linear_colors) = self.colors(count, workers);
@@ -154,7 +170,9 @@ impl FixedRows<'_> {
         workers.for_each_chunk(&mut out, BLOCK, |block, out| {
             let rows = self.bytes[block * BLOCK * self.stride..].chunks_exact(self.stride);
             for (out, row) in out.iter_mut().zip(rows) {
-                let value = |f: Option<Field>| f.map_or(0.0, |(at, kind)| scalar(&row[at..], kind, self.big));
+                let value = |f: Option<Field>| {
+                    f.map_or(0.0, |(at, kind)| scalar(&row[at..], kind, self.big))
+                };
                 *out = far::moved(fields.map(value), offset);
             }
         });
@@ -182,8 +200,9 @@ impl FixedRows<'_> {
                 }
             } else {
                 for (out, row) in out.iter_mut().zip(rows) {
-                    let value =
-                        |f: Option<Field>| f.map_or(1.0, |(at, kind)| scalar(&row[at..], kind, self.big) as f32);
+                    let value = |f: Option<Field>| {
+                        f.map_or(1.0, |(at, kind)| scalar(&row[at..], kind, self.big) as f32)
+                    };
                     *out = map(fields.map(value));
                 }
             }
@@ -205,7 +224,12 @@ impl FixedRows<'_> {
             return (colors, true);
         }
         let scale = fields.map(|f| f.map_or(1.0, |f| f.1.full_scale() as f32));
-        (self.column(fields, count, workers, |c: [f32; 4]| std::array::from_fn(|k| c[k] / scale[k])), false)
+        (
+            self.column(fields, count, workers, |c: [f32; 4]| {
+                std::array::from_fn(|k| c[k] / scale[k])
+            }),
+            false,
+        )
     }
 }
 
@@ -220,13 +244,15 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// Reads faces as if all had as many corners as the first, and gives where they end. `None`: they have not, or the
-    /// element is of another kind.
+    /// Reads faces as if all had as many corners as the first, and gives where they end. `None`:
+    /// they have not, or the element is of another kind.
     fn read_uniform(&self, content: &mut Content, workers: &Workers) -> Option<usize> {
         let shape = Shape::of(self)?;
         let size = self.element.count.checked_mul(shape.stride as u64)?;
         let is_new = content.triangles.is_empty() && content.sizes.is_empty();
-        let is_plain = content.face_colors.is_none() && content.corner_uvs.is_none() && content.images.is_none();
+        let is_plain = content.face_colors.is_none()
+            && content.corner_uvs.is_none()
+            && content.images.is_none();
         if size > (self.bytes.len() - self.at) as u64 || !is_new || !is_plain {
             return None;
         }
@@ -246,7 +272,9 @@ impl Rows<'_> {
         let (mut triangles, mut corners) = (Vec::new(), Vec::new());
         if shape.corners == 3 {
             triangles = vec![[0u32; 3]; count];
-            workers.for_each_chunk(&mut triangles, BLOCK, |block, out| decode(block, out.as_flattened_mut()));
+            workers.for_each_chunk(&mut triangles, BLOCK, |block, out| {
+                decode(block, out.as_flattened_mut())
+            });
         } else {
             corners = vec![0u32; count * shape.corners];
             workers.for_each_chunk(&mut corners, BLOCK * shape.corners, decode);
@@ -272,8 +300,11 @@ impl Rows<'_> {
         for n in 0..self.element.count {
             let start = at;
             let place = || Place::Byte(start as u64);
-            let malformed = |place: Place, what: String| Error::malformed(reading.file, place, what);
-            let wrong = |what: String| malformed(place(), format!("element {n} of `{}`: {what}", self.element.name));
+            let malformed =
+                |place: Place, what: String| Error::malformed(reading.file, place, what);
+            let wrong = |what: String| {
+                malformed(place(), format!("element {n} of `{}`: {what}", self.element.name))
+            };
             self.read_row(&mut at, &mut row).map_err(|flaw| match flaw {
                 Flaw::Wrong(what) => wrong(what),
                 Flaw::Truncated => {
@@ -347,7 +378,8 @@ struct Shape {
 }
 
 impl Shape {
-    /// The shape of the first row: scalars and one list, of corners with 32-bit indices, at least three of them.
+    /// The shape of the first row: scalars and one list, of corners with 32-bit indices, at least
+    /// three of them.
     fn of(rows: &Rows) -> Option<Self> {
         let Rows { bytes, at, element, layout, big } = *rows;
         let bytes = &bytes[at..];
@@ -366,7 +398,13 @@ impl Shape {
                         return None;
                     }
                     let corners = corners as usize;
-                    shape = Some(Self { stride: 0, count_at: offset, count_type: count, item_type: item, corners });
+                    shape = Some(Self {
+                        stride: 0,
+                        count_at: offset,
+                        count_type: count,
+                        item_type: item,
+                        corners,
+                    });
                     offset += count.size() + corners * item.size();
                 }
                 Kind::List { .. } => return None,
@@ -375,13 +413,20 @@ impl Shape {
         shape.map(|s| Self { stride: offset, ..s })
     }
 
-    /// Reads rows into `out`; tells whether all lists have the right length, and the largest index (negative ones are
-    /// larger than any).
-    fn decode<'a>(&self, rows: impl Iterator<Item = &'a [u8]>, out: &mut [u32], big: bool) -> (bool, u32) {
+    /// Reads rows into `out`; tells whether all lists have the right length, and the largest index
+    /// (negative ones are larger than any).
+    fn decode<'a>(
+        &self,
+        rows: impl Iterator<Item = &'a [u8]>,
+        out: &mut [u32],
+        big: bool,
+    ) -> (bool, u32) {
         debug_assert_eq!(self.item_type.size(), 4);
         let list_at = self.count_at + self.count_type.size();
         let (mut uniform, mut largest) = (true, 0);
-        let word = |bytes: [u8; 4]| if big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) };
+        let word = |bytes: [u8; 4]| {
+            if big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
+        };
         if self.corners == 3 && self.count_type == Type::U8 {
             for (out, row) in out.as_chunks_mut::<3>().0.iter_mut().zip(rows) {
                 uniform &= row[self.count_at] == 3;
@@ -391,7 +436,8 @@ impl Shape {
             }
         } else {
             for (out, row) in out.chunks_exact_mut(self.corners).zip(rows) {
-                uniform &= scalar(&row[self.count_at..], self.count_type, big) == self.corners as f64;
+                uniform &=
+                    scalar(&row[self.count_at..], self.count_type, big) == self.corners as f64;
                 for (out, bytes) in out.iter_mut().zip(row[list_at..].as_chunks::<4>().0) {
                     *out = word(*bytes);
                     largest = largest.max(*out);

@@ -23,7 +23,8 @@ pub(super) struct Reading<'a> {
     pub(super) warnings: &'a mut Warnings,
 }
 
-/// One element as read: numbers in their slots, colours scaled to `0..=1`, and the corners of a face or strip.
+/// One element as read: numbers in their slots, colours scaled to `0..=1`, and the corners of a
+/// face or strip.
 #[derive(Debug, Default)]
 pub(super) struct Row {
     pub(super) slots: [f64; slot::COUNT],
@@ -107,19 +108,31 @@ impl Content {
         let place = Place::Line(element.line);
         if let Some(again) = layouts.iter().skip(v + 1).position(|l| l.role == Role::Vertex) {
             let place = Place::Line(header.elements[v + 1 + again].line);
-            return Err(Error::malformed(file, place, "a second element `vertex`, one is required"));
+            return Err(Error::malformed(
+                file,
+                place,
+                "a second element `vertex`, one is required",
+            ));
         }
         if !layout.has_slots(slot::POSITION, 3) {
-            return Err(Error::malformed(file, place, "`vertex` must have the properties `x`, `y` and `z`"));
+            return Err(Error::malformed(
+                file,
+                place,
+                "`vertex` must have the properties `x`, `y` and `z`",
+            ));
         }
-        let Some(vertex_count) = usize::try_from(element.count).ok().filter(|&n| n <= u32::MAX as usize) else {
+        let Some(vertex_count) =
+            usize::try_from(element.count).ok().filter(|&n| n <= u32::MAX as usize)
+        else {
             let what = format!("{} vertices, at most {} can be read", element.count, u32::MAX);
             return Err(Error::malformed(file, place, what));
         };
 
         // Colours and texture coordinates of faces count where vertices have none.
-        let face_colors = layouts.iter().any(|l| l.role == Role::Face && l.has_colors) && !layout.has_colors;
-        let colored = layouts.iter().position(|l| l.has_colors && (l.role == Role::Vertex || face_colors));
+        let face_colors =
+            layouts.iter().any(|l| l.role == Role::Face && l.has_colors) && !layout.has_colors;
+        let colored =
+            layouts.iter().position(|l| l.has_colors && (l.role == Role::Vertex || face_colors));
         let color_types = [slot::COLOR, slot::COLOR + 3]
             .map(|slot| colored.and_then(|e| layouts[e].type_of(&header.elements[e], slot)));
         let corner_uvs = layouts.iter().any(|l| l.has_corner_uvs);
@@ -150,7 +163,10 @@ impl Content {
             Role::Face => {
                 if row.corners.len() < 3 {
                     warnings.note("few corners", place(), || {
-                        format!("a face with {} corners, three are required; it is left out", row.corners.len())
+                        format!(
+                            "a face with {} corners, three are required; it is left out",
+                            row.corners.len()
+                        )
                     });
                     return Ok(());
                 }
@@ -215,13 +231,17 @@ impl Content {
         if !row.corner_uvs.is_empty() {
             let (seen, corners) = (row.corner_uvs.len(), row.corners.len());
             warnings.note("texcoord", place(), || {
-                format!("{seen} texture coordinates, a face with {corners} corners needs {}; left out", 2 * corners)
+                format!(
+                    "{seen} texture coordinates, a face with {corners} corners needs {}; left out",
+                    2 * corners
+                )
             });
         }
         uvs.resize(self.corners.len(), [0.0; 2]);
     }
 
-    /// Cuts strips into triangles; every second one is turned, so that all have the strip's orientation.
+    /// Cuts strips into triangles; every second one is turned, so that all have the strip's
+    /// orientation.
     fn push_strips(&mut self, indices: &[i64]) -> Result<(), String> {
         for strip in indices.split(|&i| i < 0) {
             for (k, w) in strip.windows(3).enumerate() {
@@ -262,7 +282,8 @@ impl Content {
         let ranges = of_blocks.into_iter().fold([ColorRange::default(); 2], union);
 
         // Find what a full channel is.
-        let scale = [0, 1].map(|k| self.color_types[k].map_or(1.0, |kind| full_channel(kind, ranges[k])));
+        let scale =
+            [0, 1].map(|k| self.color_types[k].map_or(1.0, |kind| full_channel(kind, ranges[k])));
         if let Some(what) = self.color_types[0].and_then(|kind| oddity(kind, ranges[0])) {
             warnings.note("", Place::File, || what);
         }
@@ -298,10 +319,14 @@ impl Content {
             return Err(Error::malformed(file, Place::File, "more than 4294967295 face corners"));
         }
 
-        // Cut the polygons into triangles. Triangles that came in blocks need no cut, unless there are polygons, too.
+        // Cut the polygons into triangles. Triangles that came in blocks need no cut, unless there
+        // are polygons, too.
         let mut corner_uvs = None;
         let (triangles, faces, face_corners) = if self.sizes.is_empty() {
-            let corners = self.face_colors.as_ref().map(|_| (0..self.triangles.len() as u32).map(|t| [t; 3]).collect());
+            let corners = self
+                .face_colors
+                .as_ref()
+                .map(|_| (0..self.triangles.len() as u32).map(|t| [t; 3]).collect());
             (self.triangles, Faces::Triangles, corners)
         } else {
             self.add_block_triangles();
@@ -309,7 +334,8 @@ impl Content {
                 // Those that came in blocks have none.
                 uvs.splice(0..0, std::iter::repeat_n([0.0; 2], self.corners.len() - uvs.len()));
                 let corners = polygons::places(&self.positions, &self.sizes, &self.corners);
-                corner_uvs = Some(Attribute { values: std::mem::take(uvs), corners: Some(corners) });
+                corner_uvs =
+                    Some(Attribute { values: std::mem::take(uvs), corners: Some(corners) });
             }
             let built = polygons::build(&self.positions, &self.sizes, self.corners, workers);
             let corners = self.face_colors.as_ref().map(|_| built.per_face(&self.sizes));
@@ -324,7 +350,11 @@ impl Content {
         let is_cloud = triangles.is_empty() && self.lines.is_empty();
         Ok(Mesh {
             name: stem(file),
-            parts: vec![Part { name: String::new(), triangles: 0..triangles.len() as u32, material: None }],
+            parts: vec![Part {
+                name: String::new(),
+                triangles: 0..triangles.len() as u32,
+                material: None,
+            }],
             triangles,
             faces,
             normals: self.normals.map(Attribute::per_vertex),
@@ -349,8 +379,9 @@ impl Content {
     }
 }
 
-/// What a full channel is, in terms of the type's usual full channel. Values above that are taken as 0 to the type's wide
-/// range, floats where they look like bytes; 16 bits that hold nothing above 255 are bytes.
+/// What a full channel is, in terms of the type's usual full channel. Values above that are taken
+/// as 0 to the type's wide range, floats where they look like bytes; 16 bits that hold nothing
+/// above 255 are bytes.
 fn full_channel(kind: Type, range: ColorRange) -> f32 {
     let (full, wide) = (kind.full_scale() as f32, kind.wide_scale() as f32);
     match kind {
@@ -375,7 +406,9 @@ fn oddity(kind: Type, range: ColorRange) -> Option<String> {
         _ if holds_bytes(kind, range) => {
             Some("colours of 16 bits do not exceed 255 and are read as 0 to 255".to_owned())
         }
-        _ if range.largest > 1.0 && wide > full => Some(format!("colours exceed {full} and are read as 0 to {wide}")),
+        _ if range.largest > 1.0 && wide > full => {
+            Some(format!("colours exceed {full} and are read as 0 to {wide}"))
+        }
         _ => None,
     }
 }

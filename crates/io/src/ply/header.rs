@@ -65,8 +65,9 @@ impl Type {
         }
     }
 
-    /// What a full channel is in files that exceed [`Self::full_scale`]: floats that are bytes, text that takes signed for
-    /// unsigned types. The same for types that nothing exceeds but a slip.
+    /// What a full channel is in files that exceed [`Self::full_scale`]: floats that are bytes,
+    /// text that takes signed for unsigned types. The same for types that nothing exceeds but a
+    /// slip.
     pub(super) fn wide_scale(self) -> f64 {
         match self {
             Self::F32 | Self::F64 | Self::I8 => 255.0,
@@ -132,8 +133,10 @@ impl Header {
     /// Reads the header.
     pub(super) fn parse(bytes: &[u8], file: &str, warnings: &mut Warnings) -> Result<Self, Error> {
         // Lines end as the first one does.
-        let first_end = bytes.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(bytes.len());
-        let old_mac = bytes[first_end..].first() == Some(&b'\r') && bytes.get(first_end + 1) != Some(&b'\n');
+        let first_end =
+            bytes.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(bytes.len());
+        let old_mac =
+            bytes[first_end..].first() == Some(&b'\r') && bytes.get(first_end + 1) != Some(&b'\n');
         let end = if old_mac { b'\r' } else { b'\n' };
 
         let (mut encoding, mut elements, mut textures) = (None, Vec::new(), Vec::new());
@@ -157,7 +160,12 @@ impl Header {
                     let Ok(count) = count.parse() else {
                         return Err(error(format!("`{count}` is not a number of elements")));
                     };
-                    elements.push(Element { name: (*name).to_owned(), count, properties: Vec::new(), line });
+                    elements.push(Element {
+                        name: (*name).to_owned(),
+                        count,
+                        properties: Vec::new(),
+                        line,
+                    });
                 }
                 ["property", rest @ ..] => {
                     let property = parse_property(rest).map_err(error)?;
@@ -167,17 +175,26 @@ impl Header {
                     element.properties.push(property);
                 }
                 ["end_header", ..] => break,
-                ["comment", ..] => textures.extend(texture_file(&text).map(|name| (line, name.replace('\\', "/")))),
+                ["comment", ..] => {
+                    textures.extend(texture_file(&text).map(|name| (line, name.replace('\\', "/"))))
+                }
                 ["obj_info", ..] | [] => {}
                 _ => warnings.note("ply header", Place::Line(line), || {
-                    format!("header line `{}` is not understood", text.trim().chars().take(40).collect::<String>())
+                    format!(
+                        "header line `{}` is not understood",
+                        text.trim().chars().take(40).collect::<String>()
+                    )
                 }),
             }
         }
 
         // Check that the encoding is known.
         let Some(encoding) = encoding else {
-            return Err(Error::malformed(file, Place::Line(line), "the header has no `format` line"));
+            return Err(Error::malformed(
+                file,
+                Place::Line(line),
+                "the header has no `format` line",
+            ));
         };
         Ok(Self { encoding, elements, data: at, data_line: line + 1, textures })
     }
@@ -188,7 +205,9 @@ fn parse_encoding(name: &str) -> Result<Encoding, String> {
         "ascii" => Ok(Encoding::Ascii),
         "binary_little_endian" => Ok(Encoding::LittleEndian),
         "binary_big_endian" => Ok(Encoding::BigEndian),
-        _ => Err(format!("format `{name}`; `ascii`, `binary_little_endian` or `binary_big_endian` is required")),
+        _ => Err(format!(
+            "format `{name}`; `ascii`, `binary_little_endian` or `binary_big_endian` is required"
+        )),
     }
 }
 
@@ -204,7 +223,9 @@ fn parse_property(words: &[&str]) -> Result<Property, String> {
                 _ => Ok(Property { name: (*name).to_owned(), kind }),
             }
         }
-        [kind, name, ..] => Ok(Property { name: (*name).to_owned(), kind: Kind::Scalar(scalar(kind)?) }),
+        [kind, name, ..] => {
+            Ok(Property { name: (*name).to_owned(), kind: Kind::Scalar(scalar(kind)?) })
+        }
         _ => Err("`property` needs a type and a name".to_owned()),
     }
 }

@@ -68,7 +68,9 @@ impl Layout {
         } else {
             role
         };
-        let has = |slots: std::ops::Range<usize>| slots.into_iter().all(|s| targets.contains(&Target::Slot(s)));
+        let has = |slots: std::ops::Range<usize>| {
+            slots.into_iter().all(|s| targets.contains(&Target::Slot(s)))
+        };
         Self {
             has_normals: has(slot::NORMAL..slot::NORMAL + 3),
             has_colors: has(slot::COLOR..slot::COLOR + 3),
@@ -97,7 +99,9 @@ impl Layout {
 fn is_complete(role: Role, targets: &[Target]) -> bool {
     match role {
         Role::Face | Role::Strips => targets.contains(&Target::Corners),
-        Role::Edge => [slot::ENDS, slot::ENDS + 1].into_iter().all(|s| targets.contains(&Target::Slot(s))),
+        Role::Edge => {
+            [slot::ENDS, slot::ENDS + 1].into_iter().all(|s| targets.contains(&Target::Slot(s)))
+        }
         // That vertices have positions is asked where they are counted.
         Role::Vertex | Role::Incomplete | Role::Unknown => true,
     }
@@ -107,7 +111,9 @@ fn is_complete(role: Role, targets: &[Target]) -> bool {
 fn target(role: Role, property: &Property) -> Target {
     let is_list = matches!(property.kind, Kind::List { .. });
     match (role, property.name.as_str()) {
-        (Role::Face | Role::Strips, "vertex_indices" | "vertex_index") if is_list => Target::Corners,
+        (Role::Face | Role::Strips, "vertex_indices" | "vertex_index") if is_list => {
+            Target::Corners
+        }
         (Role::Face, "texcoord") if is_list => Target::CornerUvs,
         (Role::Unknown, _) | (_, _) if is_list => Target::Nothing,
         (Role::Face, "texnumber") => Target::Slot(slot::IMAGE),
@@ -118,9 +124,13 @@ fn target(role: Role, property: &Property) -> Target {
         (Role::Vertex, "ny") => Target::Slot(slot::NORMAL + 1),
         (Role::Vertex, "nz") => Target::Slot(slot::NORMAL + 2),
         (Role::Vertex | Role::Face, "red" | "diffuse_red" | "r") => Target::Slot(slot::COLOR),
-        (Role::Vertex | Role::Face, "green" | "diffuse_green" | "g") => Target::Slot(slot::COLOR + 1),
+        (Role::Vertex | Role::Face, "green" | "diffuse_green" | "g") => {
+            Target::Slot(slot::COLOR + 1)
+        }
         (Role::Vertex | Role::Face, "blue" | "diffuse_blue" | "b") => Target::Slot(slot::COLOR + 2),
-        (Role::Vertex | Role::Face, "alpha" | "diffuse_alpha" | "a") => Target::Slot(slot::COLOR + 3),
+        (Role::Vertex | Role::Face, "alpha" | "diffuse_alpha" | "a") => {
+            Target::Slot(slot::COLOR + 3)
+        }
         (Role::Vertex, "s" | "u" | "texture_u" | "texture_s") => Target::Slot(slot::UV),
         (Role::Vertex, "t" | "v" | "texture_v" | "texture_t") => Target::Slot(slot::UV + 1),
         (Role::Edge, "vertex1") => Target::Slot(slot::ENDS),

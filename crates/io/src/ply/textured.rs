@@ -7,8 +7,9 @@ use vitral_exec::Workers;
 use vitral_light::{Material, Reflectance, TextureRef};
 use vitral_scene::{Mesh, Part, Scene};
 
-/// Gives the mesh materials with the images. `runs` are the ends of runs of triangles, each with the number of its image;
-/// without any, all triangles show the first. An image that cannot be had is a warning.
+/// Gives the mesh materials with the images. `runs` are the ends of runs of triangles, each with
+/// the number of its image; without any, all triangles show the first. An image that cannot be had
+/// is a warning.
 pub(super) fn add(
     mesh: &mut Mesh,
     scene: &mut Scene,
@@ -24,11 +25,14 @@ pub(super) fn add(
     // Images lie beside the file, whose own folder the resolver knows.
     let label = file.rsplit('/').next().unwrap_or(file);
     let mut requests = Requests::default();
-    let asked: Vec<u32> = images.iter().map(|(line, name)| requests.add(label, *line, name, Usage::Color)).collect();
+    let asked: Vec<u32> =
+        images.iter().map(|(line, name)| requests.add(label, *line, name, Usage::Color)).collect();
     let loaded = requests.load(resolver, workers);
     scene.textures.extend(loaded.textures);
-    let told =
-        loaded.warnings.iter().map(|w| w.strip_prefix(label).map_or_else(|| w.clone(), |w| format!("{file}{w}")));
+    let told = loaded
+        .warnings
+        .iter()
+        .map(|w| w.strip_prefix(label).map_or_else(|| w.clone(), |w| format!("{file}{w}")));
     scene.warnings.extend(told);
 
     // Make a material of each image that was loaded.
@@ -37,7 +41,8 @@ pub(super) fn add(
         .zip(asked)
         .map(|((_, name), number)| {
             let texture = loaded.index[number as usize]?;
-            let white = Reflectance::Phong { ka: [1.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+            let white =
+                Reflectance::Phong { ka: [1.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
             let base_texture = Some(TextureRef::new(texture));
             Some(scene.add_material(Material {
                 name: stem(name),
@@ -53,6 +58,10 @@ pub(super) fn add(
     let runs = if runs.is_empty() { &whole } else { runs };
     let starts = std::iter::once(0).chain(runs.iter().map(|r| r.0));
     let material = |image: i64| usize::try_from(image).ok().and_then(|i| *materials.get(i)?);
-    let part = |(start, &(end, image))| Part { name: String::new(), triangles: start..end, material: material(image) };
+    let part = |(start, &(end, image))| Part {
+        name: String::new(),
+        triangles: start..end,
+        material: material(image),
+    };
     mesh.parts = starts.zip(runs).map(part).collect();
 }

@@ -1,5 +1,6 @@
-//! The types of the scene file, field by field as in `docs/scene-format.md`. Numbers that do not fit their type are
-//! refused by the parser, so whatever is read is finite, but for coordinates given as `null`.
+//! The types of the scene file, field by field as in `docs/scene-format.md`. Numbers that do not
+//! fit their type are refused by the parser, so whatever is read is finite, but for coordinates
+//! given as `null`.
 
 use crate::json_message::plain_message;
 use crate::{Error, Place};
@@ -36,7 +37,8 @@ pub(super) struct SceneForm {
     pub(super) ambient: [f32; 3],
 }
 
-/// What is written as an object. A list would be taken for its fields in order, and an empty one for all of them left out.
+/// What is written as an object. A list would be taken for its fields in order, and an empty one
+/// for all of them left out.
 struct Object<T>(T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
@@ -58,7 +60,9 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
 }
 
 /// A list of objects.
-fn objects<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+fn objects<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<T>, D::Error> {
     Ok(Vec::<Object<T>>::deserialize(deserializer)?.into_iter().map(|object| object.0).collect())
 }
 
@@ -103,7 +107,10 @@ struct Watched<'a, A> {
 impl<'de, A: MapAccess<'de>> MapAccess<'de> for Watched<'_, A> {
     type Error = A::Error;
 
-    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, A::Error> {
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, A::Error> {
         let Some(key) = self.fields.next_key::<String>()? else { return Ok(None) };
         *self.says_mode |= key == "alpha-mode";
         seed.deserialize(key.into_deserializer()).map(Some)
@@ -120,7 +127,9 @@ fn light_if_any<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Lig
 }
 
 /// A list of objects, or null for none.
-fn objects_if_any<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<T>>, D::Error> {
+fn objects_if_any<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Vec<T>>, D::Error> {
     let list = Option::<Vec<Object<T>>>::deserialize(deserializer)?;
     Ok(list.map(|list| list.into_iter().map(|object| object.0).collect()))
 }
@@ -267,7 +276,10 @@ pub(super) fn parse(bytes: &[u8], file: &str) -> Result<SceneForm, Error> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     // A list would be taken for the fields in order.
     if text.trim_ascii_start().first() == Some(&b'[') {
-        let what = format!("column 1: a scene file is an object, `{{ \"vitral-scene\": {}, ... }}`", VERSION);
+        let what = format!(
+            "column 1: a scene file is an object, `{{ \"vitral-scene\": {}, ... }}`",
+            VERSION
+        );
         return Err(Error::malformed(file, Place::Line(1), what));
     }
     let form: SceneForm = match serde_json::from_slice(text) {
@@ -292,7 +304,8 @@ pub(super) fn parse(bytes: &[u8], file: &str) -> Result<SceneForm, Error> {
         }
     };
     if form.vitral_scene != VERSION {
-        let what = format!("version {} of the scene file; version {} is read", form.vitral_scene, VERSION);
+        let what =
+            format!("version {} of the scene file; version {} is read", form.vitral_scene, VERSION);
         return Err(Error::Unsupported { file: file.to_owned(), what });
     }
     Ok(form)

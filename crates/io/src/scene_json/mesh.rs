@@ -1,7 +1,7 @@
 //! Meshes between the scene file's form and ours.
 //!
-//! `triangles` alone are triangular faces. `faces` alone are polygons, cut as everywhere else. Both together say how
-//! the polygons are cut, so that any mesh can be written down and read back equal.
+//! `triangles` alone are triangular faces. `faces` alone are polygons, cut as everywhere else. Both
+//! together say how the polygons are cut, so that any mesh can be written down and read back equal.
 
 use super::form::{AttributeForm, Coordinate, FreePartForm, MeshForm, PartForm};
 use crate::polygons;
@@ -32,7 +32,11 @@ pub(super) fn from_form(form: MeshForm, workers: &Workers) -> Result<Mesh, Strin
         Some(_) if form.material.is_some() => return Err("either `parts` or `material`".to_owned()),
         Some(parts) => parts_of(&mesh, parts)?,
         None if mesh.triangles.is_empty() => Vec::new(),
-        None => vec![Part { name: String::new(), triangles: 0..mesh.triangles.len() as u32, material: form.material }],
+        None => vec![Part {
+            name: String::new(),
+            triangles: 0..mesh.triangles.len() as u32,
+            material: form.material,
+        }],
     };
     if form.line_material.is_some() && (form.line_parts.is_some() || form.point_parts.is_some()) {
         return Err("either `line-material` or `line-parts` and `point-parts`".to_owned());
@@ -42,7 +46,10 @@ pub(super) fn from_form(form: MeshForm, workers: &Workers) -> Result<Mesh, Strin
     free_parts(&mut mesh.line_parts, form.line_parts);
     free_parts(&mut mesh.point_parts, form.point_parts);
     if mesh.uvs.len() > 2 {
-        return Err(format!("{} sets of texture coordinates, at most 2 are possible", mesh.uvs.len()));
+        return Err(format!(
+            "{} sets of texture coordinates, at most 2 are possible",
+            mesh.uvs.len()
+        ));
     }
     mesh.check()?;
     Ok(mesh)
@@ -55,7 +62,9 @@ fn surfaces(
     triangles: Option<Vec<Corners>>,
     workers: &Workers,
 ) -> Result<(Faces, Vec<Corners>), String> {
-    let Some(polygons) = faces else { return Ok((Faces::Triangles, triangles.unwrap_or_default())) };
+    let Some(polygons) = faces else {
+        return Ok((Faces::Triangles, triangles.unwrap_or_default()));
+    };
     if let Some(f) = polygons.iter().position(|p| p.len() < 3) {
         return Err(format!("face {f} has {} corners, at least 3 are needed", polygons[f].len()));
     }
@@ -101,9 +110,16 @@ fn parts_of(mesh: &Mesh, forms: Vec<PartForm>) -> Result<Vec<Part>, String> {
             _ => return Err(format!("part {i} needs either `faces` or `triangles`, a number")),
         }
         if triangle > mesh.triangles.len() as u64 || triangle < start {
-            return Err(format!("part {i} ends at triangle {triangle} of {}", mesh.triangles.len()));
+            return Err(format!(
+                "part {i} ends at triangle {triangle} of {}",
+                mesh.triangles.len()
+            ));
         }
-        parts.push(Part { name: form.name, triangles: start as u32..triangle as u32, material: form.material });
+        parts.push(Part {
+            name: form.name,
+            triangles: start as u32..triangle as u32,
+            material: form.material,
+        });
     }
     Ok(parts)
 }
@@ -127,7 +143,9 @@ fn attribute<T>(form: AttributeForm<T>) -> Attribute<T> {
 pub(super) fn to_form(mesh: &Mesh) -> MeshForm {
     let faces = match &mesh.faces {
         Faces::Triangles => None,
-        Faces::Polygons { .. } => Some((0..mesh.face_count()).map(|f| mesh.face_corners(f).to_vec()).collect()),
+        Faces::Polygons { .. } => {
+            Some((0..mesh.face_count()).map(|f| mesh.face_corners(f).to_vec()).collect())
+        }
     };
     let part = |p: &Part| PartForm {
         name: p.name.clone(),
@@ -157,7 +175,10 @@ pub(super) fn to_form(mesh: &Mesh) -> MeshForm {
 }
 
 fn free_part_forms(parts: &[FreePart]) -> Option<Vec<FreePartForm>> {
-    let form = |p: &FreePart| FreePartForm { count: p.elements.end - p.elements.start, material: p.material };
+    let form = |p: &FreePart| FreePartForm {
+        count: p.elements.end - p.elements.start,
+        material: p.material,
+    };
     (!parts.is_empty()).then(|| parts.iter().map(form).collect())
 }
 
@@ -195,14 +216,26 @@ mod tests {
             (r#""faces":[[0,1,9]]"#, "corner 9, there are 4"),
             (r#""triangles":[[0,1,4]]"#, "index 4, there are 4"),
             (r#""faces":[[0,1,2,3]],"triangles":[[0,1,2]]"#, "do not fit"),
-            (r#""triangles":[[0,1,2]],"parts":[{"triangles":2}]"#, "part 0 ends at triangle 2 of 1"),
-            (r#""triangles":[[0,1,2]],"parts":[{"faces":1,"triangles":1}]"#, "either `faces` or `triangles`"),
+            (
+                r#""triangles":[[0,1,2]],"parts":[{"triangles":2}]"#,
+                "part 0 ends at triangle 2 of 1",
+            ),
+            (
+                r#""triangles":[[0,1,2]],"parts":[{"faces":1,"triangles":1}]"#,
+                "either `faces` or `triangles`",
+            ),
             (r#""triangles":[[0,1,2]],"parts":[]"#, "parts end at 0 of 1"),
             (r#""normals":{"values":[[1e39,0,0]]}"#, "number out of range"),
             (r#""normals":{"values":[[0,0,1]]}"#, "1 normals for 4 vertices"),
             (r#""points":[7]"#, "point 0: index 7"),
-            (r#""lines":[[0,1]],"line-parts":[{"count":2,"material":0}]"#, "line parts end at 2 of 1"),
-            (r#""points":[0],"line-material":0,"point-parts":[{"count":1}]"#, "either `line-material` or"),
+            (
+                r#""lines":[[0,1]],"line-parts":[{"count":2,"material":0}]"#,
+                "line parts end at 2 of 1",
+            ),
+            (
+                r#""points":[0],"line-material":0,"point-parts":[{"count":1}]"#,
+                "either `line-material` or",
+            ),
         ] {
             let message = read(&format!("{{{positions},{rest}}}")).unwrap_err();
             assert!(message.contains(part), "{rest}: {message}");

@@ -1,7 +1,8 @@
 //! From the scene file's form to a scene.
 //!
-//! Meshes, materials and textures come first. Then the nodes; a node whose mesh is a reference gets the nodes of that
-//! model as children, each time it is used a copy of the nodes, never of the meshes.
+//! Meshes, materials and textures come first. Then the nodes; a node whose mesh is a reference gets
+//! the nodes of that model as children, each time it is used a copy of the nodes, never of the
+//! meshes.
 
 use super::form::{self, MeshForm, NodeForm, TextureForm};
 use super::mesh;
@@ -45,8 +46,18 @@ impl Report<'_> {
     }
 
     /// An index into `count` things.
-    fn index(&self, path: impl Into<String>, what: &str, index: u32, count: usize) -> Result<(), Error> {
-        if (index as usize) < count { Ok(()) } else { Err(self.at(path, format!("{what} {index}, there are {count}"))) }
+    fn index(
+        &self,
+        path: impl Into<String>,
+        what: &str,
+        index: u32,
+        count: usize,
+    ) -> Result<(), Error> {
+        if (index as usize) < count {
+            Ok(())
+        } else {
+            Err(self.at(path, format!("{what} {index}, there are {count}")))
+        }
     }
 }
 
@@ -55,7 +66,8 @@ pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scen
     let form = form::parse(bytes, file)?;
     let report = Report { file };
     let lights = form.lights.into_iter().map(Into::into).collect();
-    let mut scene = Scene { lights, cameras: form.cameras, ambient: form.ambient, ..Scene::default() };
+    let mut scene =
+        Scene { lights, cameras: form.cameras, ambient: form.ambient, ..Scene::default() };
     for (i, light) in scene.lights.iter().enumerate() {
         light.check().map_err(|what| report.at(format!("lights[{i}]"), what))?;
     }
@@ -73,7 +85,9 @@ pub(super) fn read(bytes: &[u8], file: &str, origin: &Origin<'_>) -> Result<Scen
 
     // Without a list of nodes every mesh is shown once, where it is.
     let nodes = form.nodes.unwrap_or_else(|| {
-        (0..entries.len() as u32).map(|m| NodeForm { mesh: Some(m), ..NodeForm::default() }).collect()
+        (0..entries.len() as u32)
+            .map(|m| NodeForm { mesh: Some(m), ..NodeForm::default() })
+            .collect()
     });
     let used = add_nodes(nodes, form.roots, &mut scene, &entries, &report)?;
     place_free_cameras(&mut scene);
@@ -108,9 +122,8 @@ fn check_camera(camera: &Camera, path: &str, report: &Report<'_>) -> Result<(), 
     }
     let perspective = !matches!(camera.projection, Projection::Parallel { .. });
     match camera.clip {
-        Some((near, far)) if near >= far || (perspective && near <= 0.0) => {
-            Err(report.at(format!("{path}.clip"), "near < far is needed, and 0 < near for a perspective"))
-        }
+        Some((near, far)) if near >= far || (perspective && near <= 0.0) => Err(report
+            .at(format!("{path}.clip"), "near < far is needed, and 0 < near for a perspective")),
         _ => Ok(()),
     }
 }
@@ -119,19 +132,27 @@ fn check_camera(camera: &Camera, path: &str, report: &Report<'_>) -> Result<(), 
 type ImageFile = (String, Result<Vec<u8>, String>);
 
 /// The image file of texture `i`.
-fn image_file(i: usize, form: &TextureForm, report: &Report<'_>, origin: &Origin<'_>) -> Result<ImageFile, Error> {
+fn image_file(
+    i: usize,
+    form: &TextureForm,
+    report: &Report<'_>,
+    origin: &Origin<'_>,
+) -> Result<ImageFile, Error> {
     match (&form.file, &form.data) {
         (Some(file), None) => Ok((file.clone(), origin.read(file).map_err(|e| e.to_string()))),
         (None, Some(data)) => match uri::resolve(data) {
             Ok(Target::Inline(bytes)) => Ok((format!("texture {i}"), Ok(bytes))),
-            Ok(Target::File(_)) => Err(report.at(format!("textures[{i}].data"), "this is no data URI")),
+            Ok(Target::File(_)) => {
+                Err(report.at(format!("textures[{i}].data"), "this is no data URI"))
+            }
             Err(what) => Err(report.at(format!("textures[{i}].data"), what)),
         },
         _ => Err(report.at(format!("textures[{i}]"), "either `file` or `data` is needed")),
     }
 }
 
-/// Reads all textures at once. Gives each entry's index in the scene; an image that cannot be had is a warning.
+/// Reads all textures at once. Gives each entry's index in the scene; an image that cannot be had
+/// is a warning.
 fn add_textures(
     forms: Vec<TextureForm>,
     scene: &mut Scene,
@@ -151,14 +172,18 @@ fn add_textures(
     for (i, texture) in loaded.into_iter().enumerate() {
         match texture {
             Ok((texture, odd)) => {
-                scene.warnings.extend(odd.map(|what| format!("{}: textures[{i}]: {what}", report.file)));
+                scene
+                    .warnings
+                    .extend(odd.map(|what| format!("{}: textures[{i}]: {what}", report.file)));
                 places.push(Some(scene.textures.len() as u32));
                 scene.textures.push(Arc::new(texture));
             }
             Err(why) => {
                 places.push(None);
                 let name = &sources[i].0;
-                scene.warnings.push(format!("{}: textures[{i}]: `{name}` is left out: {why}", report.file));
+                scene
+                    .warnings
+                    .push(format!("{}: textures[{i}]: `{name}` is left out: {why}", report.file));
             }
         }
     }
@@ -166,14 +191,22 @@ fn add_textures(
 }
 
 /// Checks the materials and gives their textures the final numbers.
-fn settle_materials(scene: &mut Scene, places: &[Option<u32>], report: &Report<'_>) -> Result<(), Error> {
+fn settle_materials(
+    scene: &mut Scene,
+    places: &[Option<u32>],
+    report: &Report<'_>,
+) -> Result<(), Error> {
     for (i, material) in scene.materials.iter_mut().enumerate() {
         let path = format!("materials[{i}]");
-        material.check().map_err(|what| report.at(path.as_str(), format!("`{}`: {what}", material.name)))?;
+        material
+            .check()
+            .map_err(|what| report.at(path.as_str(), format!("`{}`: {what}", material.name)))?;
         for texture in material.textures_mut() {
             report.index(path.as_str(), "texture", texture.texture, places.len())?;
             if texture.uv_set > 1 {
-                return Err(report.at(path, format!("uv-set {}, there are 0 and 1", texture.uv_set)));
+                return Err(
+                    report.at(path, format!("uv-set {}, there are 0 and 1", texture.uv_set))
+                );
             }
         }
         for slot in material.texture_slots_mut() {
@@ -198,12 +231,18 @@ fn add_meshes(
         let path = format!("meshes[{i}]");
         let materials = scene.materials.len();
         let parts = form.parts.iter().flatten().filter_map(|p| p.material);
-        let free = [&form.line_parts, &form.point_parts].into_iter().flatten().flatten().filter_map(|p| p.material);
+        let free = [&form.line_parts, &form.point_parts]
+            .into_iter()
+            .flatten()
+            .flatten()
+            .filter_map(|p| p.material);
         for material in parts.chain(free).chain(form.material).chain(form.line_material) {
             report.index(path.as_str(), "material", material, materials)?;
         }
-        let inline =
-            !form.positions.is_empty() || form.faces.is_some() || form.triangles.is_some() || form.parts.is_some();
+        let inline = !form.positions.is_empty()
+            || form.faces.is_some()
+            || form.triangles.is_some()
+            || form.parts.is_some();
         let model = match (&form.file, &form.builtin) {
             (Some(_), Some(_)) => return Err(report.at(path, "either `file` or `builtin`")),
             (Some(_), None) | (None, Some(_)) if inline => {
@@ -212,7 +251,8 @@ fn add_meshes(
             (Some(file), None) => referenced(origin, file, report.file, &Place::Json(path))?,
             (None, Some(name)) => origin.builtin(name, report.file, Place::Json(path))?,
             (None, None) => {
-                let mesh = mesh::from_form(form, origin.workers).map_err(|what| report.at(path, what))?;
+                let mesh =
+                    mesh::from_form(form, origin.workers).map_err(|what| report.at(path, what))?;
                 scene.meshes.push(Arc::new(mesh));
                 entries.push(Entry::Mesh(scene.meshes.len() as u32 - 1));
                 continue;
@@ -224,7 +264,12 @@ fn add_meshes(
 }
 
 /// The scene of the model or scene file `path`, which `file` names at `place`.
-fn referenced(origin: &Origin<'_>, path: &str, file: &str, place: &Place) -> Result<Arc<Scene>, Error> {
+fn referenced(
+    origin: &Origin<'_>,
+    path: &str,
+    file: &str,
+    place: &Place,
+) -> Result<Arc<Scene>, Error> {
     match origin.model(path, file, place)? {
         Reference::Scene(scene) => Ok(scene),
         Reference::SceneFile { bytes, path, origin } => {
@@ -243,10 +288,13 @@ fn add_nodes(
     report: &Report<'_>,
 ) -> Result<Vec<(usize, usize)>, Error> {
     if forms.len() > MAX_ENTRIES {
-        return Err(report.at("nodes", format!("{} nodes, at most {MAX_ENTRIES} are read", forms.len())));
+        return Err(
+            report.at("nodes", format!("{} nodes, at most {MAX_ENTRIES} are read", forms.len()))
+        );
     }
     let has_parent = check_tree(&forms, report)?;
-    let roots = roots.unwrap_or_else(|| (0..forms.len() as u32).filter(|&n| !has_parent[n as usize]).collect());
+    let roots = roots
+        .unwrap_or_else(|| (0..forms.len() as u32).filter(|&n| !has_parent[n as usize]).collect());
     check_roots(&roots, has_parent, report)?;
     scene.roots = roots;
 
@@ -257,8 +305,13 @@ fn add_nodes(
         let transform = transform(&form).map_err(|what| report.at(path.as_str(), what))?;
         let unlit = form.light.as_ref().and_then(|light| light.check().err());
         unlit.map_or(Ok(()), |what| Err(report.at(format!("{path}.light"), what)))?;
-        let mut node =
-            Node { name: form.name, transform, children: form.children, light: form.light, ..Node::default() };
+        let mut node = Node {
+            name: form.name,
+            transform,
+            children: form.children,
+            light: form.light,
+            ..Node::default()
+        };
         if let Some(camera) = form.camera {
             report.index(format!("{path}.camera"), "camera", camera, scene.cameras.len())?;
             node.camera = Some(camera);
@@ -341,7 +394,9 @@ fn transform(form: &NodeForm) -> Result<NodeTransform, String> {
             let rotation = if unit { Some(rotation) } else { rotation.try_normalize() };
             Ok(NodeTransform::Parts {
                 translation: DVec3::from_array(form.translation.unwrap_or_default()),
-                rotation: DQuat::from_vec4(rotation.ok_or("the rotation, a quaternion x y z w, is zero")?),
+                rotation: DQuat::from_vec4(
+                    rotation.ok_or("the rotation, a quaternion x y z w, is zero")?,
+                ),
                 scale: DVec3::from_array(form.scale.unwrap_or([1.0; 3])),
             })
         }
@@ -349,7 +404,8 @@ fn transform(form: &NodeForm) -> Result<NodeTransform, String> {
     }
 }
 
-/// Brings a model in, the first time with all it has, later as copies of its nodes. Gives the roots of this copy.
+/// Brings a model in, the first time with all it has, later as copies of its nodes. Gives the roots
+/// of this copy.
 fn place(model: &mut Model, scene: &mut Scene, report: &Report<'_>) -> Result<Vec<u32>, Error> {
     let (was, more) = (sizes(scene), sizes(&model.scene));
     let total = |k: usize| was[k] + more[k];
@@ -374,7 +430,8 @@ fn place(model: &mut Model, scene: &mut Scene, report: &Report<'_>) -> Result<Ve
     for light in std::mem::take(&mut incoming.lights) {
         incoming.add_root(Node { name: light.name.clone(), light: Some(light), ..Node::default() });
     }
-    let (first_node, first_root, first_mesh) = (scene.nodes.len(), scene.roots.len(), scene.meshes.len());
+    let (first_node, first_root, first_mesh) =
+        (scene.nodes.len(), scene.roots.len(), scene.meshes.len());
     scene.append(incoming);
     if let Some(material) = model.material {
         for mesh in &mut scene.meshes[first_mesh..] {

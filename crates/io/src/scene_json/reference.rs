@@ -1,7 +1,7 @@
 //! Models that a scene file names: other files, read by their own readers, and built-in scenes.
 //!
-//! A file is read once, however often it is named. Paths are relative to the folder of the file that names them. A
-//! scene file may name scene files, 8 deep, but none that is being read already.
+//! A file is read once, however often it is named. Paths are relative to the folder of the file
+//! that names them. A scene file may name scene files, 8 deep, but none that is being read already.
 
 use crate::{Error, Format, Place, ResolveError, Resolver, models};
 use std::cell::RefCell;
@@ -58,8 +58,14 @@ impl<'a> Origin<'a> {
         self.resolver.read(&self.locate(path))
     }
 
-    /// The model file `path`, which `file` names at `place`: its scene, or the scene file in it, which is still to be read.
-    pub(super) fn model(&self, path: &str, file: &str, place: &Place) -> Result<Reference<'a>, Error> {
+    /// The model file `path`, which `file` names at `place`: its scene, or the scene file in it,
+    /// which is still to be read.
+    pub(super) fn model(
+        &self,
+        path: &str,
+        file: &str,
+        place: &Place,
+    ) -> Result<Reference<'a>, Error> {
         let full = self.locate(path);
         if let Some(scene) = self.known.borrow().get(&full) {
             return Ok(Reference::Scene(Arc::clone(scene)));
@@ -75,13 +81,27 @@ impl<'a> Origin<'a> {
         let bytes = self.resolver.read(&full).map_err(|e| missing(e.to_string()))?;
         let folder = full.rfind('/').map_or("", |slash| &full[..slash]);
         let below = Below { inner: self.resolver, folder };
-        match models::load(Format::detect(&bytes, &full)?, &bytes, &full, &below, self.workers, None) {
+        match models::load(
+            Format::detect(&bytes, &full)?,
+            &bytes,
+            &full,
+            &below,
+            self.workers,
+            None,
+        ) {
             Some(scene) => Ok(Reference::Scene(self.keep(full, scene?))),
-            None if self.chain.len() >= MAX_DEPTH => Err(missing(format!("scene files are read {MAX_DEPTH} deep"))),
+            None if self.chain.len() >= MAX_DEPTH => {
+                Err(missing(format!("scene files are read {MAX_DEPTH} deep")))
+            }
             None => {
                 let chain = self.chain.iter().chain([&full]).cloned().collect();
-                let (resolver, workers, known) = (self.resolver, self.workers, Rc::clone(&self.known));
-                Ok(Reference::SceneFile { bytes, origin: Self { resolver, workers, known, chain }, path: full })
+                let (resolver, workers, known) =
+                    (self.resolver, self.workers, Rc::clone(&self.known));
+                Ok(Reference::SceneFile {
+                    bytes,
+                    origin: Self { resolver, workers, known, chain },
+                    path: full,
+                })
             }
         }
     }
@@ -94,7 +114,12 @@ impl<'a> Origin<'a> {
     }
 
     /// A built-in scene.
-    pub(super) fn builtin(&self, name: &str, file: &str, place: Place) -> Result<Arc<Scene>, Error> {
+    pub(super) fn builtin(
+        &self,
+        name: &str,
+        file: &str,
+        place: Place,
+    ) -> Result<Arc<Scene>, Error> {
         let key = format!("builtin:{name}");
         if let Some(scene) = self.known.borrow().get(&key) {
             return Ok(Arc::clone(scene));
@@ -124,13 +149,17 @@ impl Resolver for Below<'_> {
 
     fn in_other_case(&self, path: &str) -> Option<String> {
         let found = self.inner.in_other_case(&join(self.folder, path))?;
-        let below = if self.folder.is_empty() { Some(found.as_str()) } else { found.strip_prefix(self.folder) };
+        let below = if self.folder.is_empty() {
+            Some(found.as_str())
+        } else {
+            found.strip_prefix(self.folder)
+        };
         Some(below?.trim_start_matches('/').to_owned())
     }
 }
 
-/// `path` as seen from where `folder` is seen from, without `.` and without `..` behind a name. Absolute paths stay as
-/// they are; whether they may be read is the resolver's decision.
+/// `path` as seen from where `folder` is seen from, without `.` and without `..` behind a name.
+/// Absolute paths stay as they are; whether they may be read is the resolver's decision.
 fn join(folder: &str, path: &str) -> String {
     if path.starts_with(['/', '\\']) || path.get(1..2) == Some(":") {
         return path.to_owned();

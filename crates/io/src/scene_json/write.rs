@@ -13,17 +13,19 @@ use vitral_frame::{Encoding, Plane, Texture};
 use vitral_math::{DMat4, DVec4};
 use vitral_scene::{Node, NodeTransform, Scene};
 
-/// Writes a scene as a scene file that holds all of it: meshes with their arrays, textures as PNG data.
+/// Writes a scene as a scene file that holds all of it: meshes with their arrays, textures as PNG
+/// data.
 ///
-/// Reading it back gives an equal scene, but for its warnings and usual upward axes, for nodes that place cameras that none did, for coordinates that are not finite (they come back as
-/// NaN), and for other numbers that are not finite (normals and the like become 0).
+/// Reading it back gives an equal scene, but for its warnings and usual upward axes, for nodes that
+/// place cameras that none did, for coordinates that are not finite (they come back as NaN), and
+/// for other numbers that are not finite (normals and the like become 0).
 ///
-/// Models may bring what scene files must not have, such as a roughness above 1; so what was written is read back before it is
-/// handed out, which takes as long again as reading it.
+/// Models may bring what scene files must not have, such as a roughness above 1; so what was
+/// written is read back before it is handed out, which takes as long again as reading it.
 ///
 /// # Errors
-/// [`Error::Encode`] if a texture has no pixels, or if the file would be refused when it is read: for a number that must be
-/// finite and is not, or for values out of their range.
+/// [`Error::Encode`] if a texture has no pixels, or if the file would be refused when it is read:
+/// for a number that must be finite and is not, or for values out of their range.
 pub fn write(scene: &Scene) -> Result<String, Error> {
     let textures = scene.textures.iter().map(|t| texture(t)).collect::<Result<Vec<_>, _>>()?;
     let mut out = format!("{{\n\"vitral-scene\": {}", VERSION);
@@ -33,15 +35,24 @@ pub fn write(scene: &Scene) -> Result<String, Error> {
     section(&mut out, "nodes", scene.nodes.iter().map(node))?;
     section(&mut out, "lights", scene.lights.iter())?;
     section(&mut out, "cameras", scene.cameras.iter())?;
-    out += &format!(",\n\"roots\": {},\n\"ambient\": {}\n}}\n", json(&scene.roots)?, json(&scene.ambient)?);
+    out += &format!(
+        ",\n\"roots\": {},\n\"ambient\": {}\n}}\n",
+        json(&scene.roots)?,
+        json(&scene.ambient)?
+    );
     let (name, workers) = ("scene file", Workers::single());
     read(out.as_bytes(), name, &Origin::root(name, &NoFiles, &workers))
         .map_err(|e| Error::Encode { what: e.to_string() })?;
     Ok(out)
 }
 
-/// A list, one entry a line. `nodes` is written even if it is empty: a file without it shows every mesh.
-fn section<T: Serialize>(out: &mut String, name: &str, entries: impl ExactSizeIterator<Item = T>) -> Result<(), Error> {
+/// A list, one entry a line. `nodes` is written even if it is empty: a file without it shows every
+/// mesh.
+fn section<T: Serialize>(
+    out: &mut String,
+    name: &str,
+    entries: impl ExactSizeIterator<Item = T>,
+) -> Result<(), Error> {
     if entries.len() == 0 && name != "nodes" {
         return Ok(());
     }
@@ -63,7 +74,12 @@ fn texture(texture: &Texture) -> Result<TextureForm, Error> {
     let base = texture.levels.first().unwrap_or(&nothing);
     let file = png(base, PngOptions { srgb: texture.encoding == Encoding::Srgb })?;
     let data = Some(format!("data:image/png;base64,{}", to_base64(&file)));
-    Ok(TextureForm { name: Some(texture.name.clone()), file: None, data, encoding: texture.encoding })
+    Ok(TextureForm {
+        name: Some(texture.name.clone()),
+        file: None,
+        data,
+        encoding: texture.encoding,
+    })
 }
 
 fn node(node: &Node) -> NodeForm {

@@ -1,9 +1,10 @@
-//! ASCII STL, word by word: line breaks mean nothing but the end of a solid's name, and not even that where a facet
-//! follows on the line.
+//! ASCII STL, word by word: line breaks mean nothing but the end of a solid's name, and not even
+//! that where a facet follows on the line.
 //!
-//! Files in the wild vary. All of these are read, with one warning a kind: keywords in two words (`end loop`), missing ones
-//! where the meaning is plain, comments (`# …`), loops of more than three corners, which are cut into triangles, and a last
-//! facet that the file ends in, which is left out.
+//! Files in the wild vary. All of these are read, with one warning a kind: keywords in two words
+//! (`end loop`), missing ones where the meaning is plain, comments (`# …`), loops of more than
+//! three corners, which are cut into triangles, and a last facet that the file ends in, which is
+//! left out.
 
 use super::check_count;
 use crate::far;
@@ -35,10 +36,19 @@ pub(super) fn read(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene,
     let (positions, triangles) = weld(soup.len(), |t| soup[t], workers);
     let ends = solids.iter().skip(1).map(|s| s.1).chain([soup.len() as u32]);
     let parts = solids.iter().zip(ends);
-    let parts = parts.map(|((name, first), end)| Part { name: name.clone(), triangles: *first..end, material: None });
+    let parts = parts.map(|((name, first), end)| Part {
+        name: name.clone(),
+        triangles: *first..end,
+        material: None,
+    });
     let parts = parts.filter(|p| !p.triangles.is_empty()).collect();
     let mesh = Mesh { name: stem(file), positions, triangles, parts, ..Mesh::default() };
-    Ok(with_mesh_at(Scene { warnings: warnings.into_messages(file), ..Scene::default() }, mesh, offset, file))
+    Ok(with_mesh_at(
+        Scene { warnings: warnings.into_messages(file), ..Scene::default() },
+        mesh,
+        offset,
+        file,
+    ))
 }
 
 /// Where in the grammar the reader is.
@@ -137,7 +147,9 @@ impl<'a> Reader<'a> {
             let word = self.cursor.word();
             if word.first() == Some(&b'#') {
                 let place = Place::Line(self.cursor.line());
-                self.warnings.note("comment", place, || "comments are no part of the format; passed over".to_owned());
+                self.warnings.note("comment", place, || {
+                    "comments are no part of the format; passed over".to_owned()
+                });
             } else if !word.is_empty() || self.cursor.at_end() {
                 return word;
             }
@@ -169,7 +181,8 @@ impl<'a> Reader<'a> {
         }
         let due = due(self.stage);
         let place = Place::Line(self.cursor.line());
-        self.warnings.note("missing", place, || format!("`{keyword}` where {due} is due; taken as missing"));
+        self.warnings
+            .note("missing", place, || format!("`{keyword}` where {due} is due; taken as missing"));
     }
 
     fn begin_solid(&mut self) {
@@ -192,7 +205,8 @@ impl<'a> Reader<'a> {
         for _ in 0..4 {
             let start = self.cursor;
             let word = self.word();
-            if word.is_empty() || keywords.iter().any(|keyword| word.eq_ignore_ascii_case(keyword)) {
+            if word.is_empty() || keywords.iter().any(|keyword| word.eq_ignore_ascii_case(keyword))
+            {
                 self.cursor = start;
                 return;
             }
@@ -247,7 +261,9 @@ impl<'a> Reader<'a> {
             [_, _, _, ..] => {
                 let count = corners.len();
                 self.warnings.note("polygon", place, || {
-                    format!("a facet with {count} corners, three are required; it is cut into triangles")
+                    format!(
+                        "a facet with {count} corners, three are required; it is cut into triangles"
+                    )
                 });
                 let outline: Vec<u32> = (0..count as u32).collect();
                 let mut cut = Vec::new();
@@ -269,16 +285,21 @@ impl<'a> Reader<'a> {
         let place = Place::Line(self.cursor.line());
         match self.stage {
             Stage::Outside => {}
-            Stage::Solid => self.warnings.note("", place, || "the file ends without `endsolid`".to_owned()),
+            Stage::Solid => {
+                self.warnings.note("", place, || "the file ends without `endsolid`".to_owned())
+            }
             Stage::Facet | Stage::Loop | Stage::AfterLoop => {
                 // A facet without its end may lack digits of its last number.
                 self.corners.clear();
                 if self.soup.is_empty() {
-                    return Err(self.error(format!("the file ends here, {} is required", due(self.stage))));
+                    return Err(
+                        self.error(format!("the file ends here, {} is required", due(self.stage)))
+                    );
                 }
                 let whole = self.stage == Stage::AfterLoop;
                 let fate = if whole { "" } else { "; it is left out" };
-                self.warnings.note("", place, || format!("the file ends within its last facet{fate}"));
+                self.warnings
+                    .note("", place, || format!("the file ends within its last facet{fate}"));
             }
         }
         if self.solids.is_empty() {

@@ -1,13 +1,15 @@
-//! Binary STL: an 80-byte header, a 32-bit count `n` and `n` records of 50 bytes: normal, three corners (12
-//! little-endian `f32`), 16 attribute bits.
+//! Binary STL: an 80-byte header, a 32-bit count `n` and `n` records of 50 bytes: normal, three
+//! corners (12 little-endian `f32`), 16 attribute bits.
 //!
-//! The count is wrong in many files: programs that write into a pipe cannot go back to fill it in. Where it does not
-//! fit, the size decides, and all coordinates must be finite, or the data are no STL at all. Some files have as many bytes
-//! behind each record as its attribute says; these are skipped, if the file ends with the last of them.
+//! The count is wrong in many files: programs that write into a pipe cannot go back to fill it in.
+//! Where it does not fit, the size decides, and all coordinates must be finite, or the data are no
+//! STL at all. Some files have as many bytes behind each record as its attribute says; these are
+//! skipped, if the file ends with the last of them.
 //!
-//! The attribute bits are colours in two ways. Magics writes `COLOR=` and the colour of the object, four bytes, into the
-//! header; a facet whose bit 15 is clear has a colour of its own, five bits each of red, green and blue, red lowest.
-//! VisCAM and SolidView have no mark in the header; a facet whose bit 15 is set has a colour, blue lowest. Colours are sRGB.
+//! The attribute bits are colours in two ways. Magics writes `COLOR=` and the colour of the object,
+//! four bytes, into the header; a facet whose bit 15 is clear has a colour of its own, five bits
+//! each of red, green and blue, red lowest. VisCAM and SolidView have no mark in the header; a
+//! facet whose bit 15 is set has a colour, blue lowest. Colours are sRGB.
 
 use super::check_count;
 use crate::file_name::stem;
@@ -31,11 +33,22 @@ pub(super) fn read(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene,
     // Weld the corners, and take the attribute bits for colours where they are.
     let (positions, triangles) = weld(records.count, |t| records.corners(t), workers);
     let colors = facet_colors(bytes, &records, &mut warnings);
-    let colors =
-        colors.map(|values| Attribute { corners: Some((0..values.len() as u32).map(|t| [t; 3]).collect()), values });
-    let parts = vec![Part { name: String::new(), triangles: 0..triangles.len() as u32, material: None }];
+    let colors = colors.map(|values| Attribute {
+        corners: Some((0..values.len() as u32).map(|t| [t; 3]).collect()),
+        values,
+    });
+    let parts =
+        vec![Part { name: String::new(), triangles: 0..triangles.len() as u32, material: None }];
     let colors_from_srgb = colors.is_some();
-    let mesh = Mesh { name: stem(file), positions, triangles, parts, colors, colors_from_srgb, ..Mesh::default() };
+    let mesh = Mesh {
+        name: stem(file),
+        positions,
+        triangles,
+        parts,
+        colors,
+        colors_from_srgb,
+        ..Mesh::default()
+    };
     Ok(with_mesh(Scene { warnings: warnings.into_messages(file), ..Scene::default() }, mesh, file))
 }
 
@@ -43,7 +56,8 @@ pub(super) fn read(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene,
 struct Records<'a> {
     bytes: &'a [u8],
     count: usize,
-    /// The byte at which each begins, where bytes between them are skipped; otherwise they follow each other.
+    /// The byte at which each begins, where bytes between them are skipped; otherwise they follow
+    /// each other.
     starts: Option<Vec<usize>>,
 }
 
@@ -63,7 +77,9 @@ impl<'a> Records<'a> {
 
         // Take records with bytes behind them, if these lead to the very end of the file.
         if let Some(starts) = starts_over_attributes(bytes, announced) {
-            warnings.note("", Place::File, || "attribute bytes behind the facets are skipped".to_owned());
+            warnings.note("", Place::File, || {
+                "attribute bytes behind the facets are skipped".to_owned()
+            });
             return Ok(Self { bytes, count: announced, starts: Some(starts) });
         }
 
@@ -75,19 +91,27 @@ impl<'a> Records<'a> {
             return Ok(in_a_row(announced));
         }
         if announced > room && (rest != 0 || room == 0) {
-            let what = format!("the file ends here: {announced} triangles are announced, {room} are there");
+            let what = format!(
+                "the file ends here: {announced} triangles are announced, {room} are there"
+            );
             return Err(Error::malformed(file, Place::Byte(size as u64), what));
         }
 
         // Let the size decide, if what is there makes sense.
         let records = in_a_row(room);
-        if let Some(bad) = (0..room).find(|&t| records.corners(t).as_flattened().iter().any(|c| !c.is_finite())) {
+        if let Some(bad) =
+            (0..room).find(|&t| records.corners(t).as_flattened().iter().any(|c| !c.is_finite()))
+        {
             let what = format!(
                 "{announced} triangles are announced, the file has room for {room}, and here is no triangle of numbers"
             );
             return Err(Error::malformed(file, Place::Byte((HEADER + RECORD * bad) as u64), what));
         }
-        let what = || format!("{announced} triangles are announced, the {room} are read that the file has room for");
+        let what = || {
+            format!(
+                "{announced} triangles are announced, the {room} are read that the file has room for"
+            )
+        };
         warnings.note("", Place::Byte(HEADER as u64 - 4), what);
         if rest != 0 {
             let end = HEADER + RECORD * room;
@@ -117,8 +141,8 @@ impl<'a> Records<'a> {
     }
 }
 
-/// Where `count` records begin, each followed by as many bytes as its attribute says; `None` unless the last of them ends
-/// the file.
+/// Where `count` records begin, each followed by as many bytes as its attribute says; `None` unless
+/// the last of them ends the file.
 fn starts_over_attributes(bytes: &[u8], count: usize) -> Option<Vec<usize>> {
     let mut starts = Vec::new();
     let mut at = HEADER;
@@ -133,27 +157,35 @@ fn starts_over_attributes(bytes: &[u8], count: usize) -> Option<Vec<usize>> {
 /// The colours of all facets, linear; `None` if the file has none.
 fn facet_colors(bytes: &[u8], records: &Records, warnings: &mut Warnings) -> Option<Vec<[f32; 4]>> {
     let object = object_color(&bytes[..HEADER - 4]);
-    let has_bits = records.starts.is_none() && (0..records.count).any(|t| records.attribute(t) != 0);
+    let has_bits =
+        records.starts.is_none() && (0..records.count).any(|t| records.attribute(t) != 0);
     if !has_bits {
         return object.map(|color| vec![color; records.count]);
     }
 
     // Magics, by its mark.
     if let Some(object) = object {
-        let color = |bits: u16| if bits & FLAG == 0 { five_bits([bits, bits >> 5, bits >> 10]) } else { object };
+        let color = |bits: u16| {
+            if bits & FLAG == 0 { five_bits([bits, bits >> 5, bits >> 10]) } else { object }
+        };
         return Some((0..records.count).map(|t| color(records.attribute(t))).collect());
     }
 
     // VisCAM, if any facet is marked; facets without a colour are white.
     if !(0..records.count).any(|t| records.attribute(t) & FLAG != 0) {
-        warnings.note("", Place::File, || "attribute bits of the facets are no colours; they are not used".to_owned());
+        warnings.note("", Place::File, || {
+            "attribute bits of the facets are no colours; they are not used".to_owned()
+        });
         return None;
     }
-    let color = |bits: u16| if bits & FLAG != 0 { five_bits([bits >> 10, bits >> 5, bits]) } else { [1.0; 4] };
+    let color = |bits: u16| {
+        if bits & FLAG != 0 { five_bits([bits >> 10, bits >> 5, bits]) } else { [1.0; 4] }
+    };
     Some((0..records.count).map(|t| color(records.attribute(t))).collect())
 }
 
-/// The colour behind `COLOR=` in a header. Its alpha does not count: programs disagree about which end is opaque.
+/// The colour behind `COLOR=` in a header. Its alpha does not count: programs disagree about which
+/// end is opaque.
 fn object_color(header: &[u8]) -> Option<[f32; 4]> {
     const MARK: &[u8] = b"COLOR=";
     let at = header.windows(MARK.len()).position(|window| window == MARK)? + MARK.len();

@@ -35,12 +35,19 @@ pub(crate) fn floats(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-/// A document with one buffer, and one view and accessor for each array: bytes, component type, type, count, more.
+/// A document with one buffer, and one view and accessor for each array: bytes, component type,
+/// type, count, more.
 pub(crate) fn document(arrays: &[(Vec<u8>, u32, &str, usize, &str)], rest: &str) -> String {
     let (mut data, mut views, mut accessors) = (Vec::new(), Vec::new(), Vec::new());
     for (i, (bytes, component, shape, count, more)) in arrays.iter().enumerate() {
-        views.push(format!(r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#, data.len(), bytes.len()));
-        let head = format!(r#"{{"bufferView":{i},"componentType":{component},"type":"{shape}","count":{count}"#);
+        views.push(format!(
+            r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#,
+            data.len(),
+            bytes.len()
+        ));
+        let head = format!(
+            r#"{{"bufferView":{i},"componentType":{component},"type":"{shape}","count":{count}"#
+        );
         accessors.push(format!("{head}{more}}}"));
         data.extend(bytes);
         data.resize(data.len().next_multiple_of(4), 0);

@@ -17,7 +17,9 @@ impl Resolver for Folder {
     }
 
     fn in_other_case(&self, path: &str) -> Option<String> {
-        let names = std::fs::read_dir(&self.0).ok()?.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let names = std::fs::read_dir(&self.0)
+            .ok()?
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap());
         names.filter(|name| name != path && name.eq_ignore_ascii_case(path)).min()
     }
 }

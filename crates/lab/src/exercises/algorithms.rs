@@ -24,8 +24,14 @@ pub(super) const EXERCISES: [Exercise; 6] = [
         notes: None,
         check: |solution| {
             let used = solution.renderer.settings.coherence();
-            let off: Vec<_> =
-                solution.renderer.settings.visibility.coherence.iter().filter(|kind| !used.has(**kind)).collect();
+            let off: Vec<_> = solution
+                .renderer
+                .settings
+                .visibility
+                .coherence
+                .iter()
+                .filter(|kind| !used.has(**kind))
+                .collect();
             if off.is_empty() {
                 return Ok(wants(false, "every kind of coherence is used"));
             }
@@ -33,7 +39,9 @@ pub(super) const EXERCISES: [Exercise; 6] = [
             // See what the kinds that are switched off would have saved.
             solution.renderer.settings.coherence = None;
             let saved = serde_json::to_value(solution.stats()?.visibility).unwrap_or_default();
-            let saves = |name: &str| saved[format!("saved-by-{name}")].as_u64().is_some_and(|count| count > 0);
+            let saves = |name: &str| {
+                saved[format!("saved-by-{name}")].as_u64().is_some_and(|count| count > 0)
+            };
             let saves_some = off.iter().any(|kind| saves(kind.name()));
             Ok(wants(saves_some, "what is switched off saves nothing in this scene"))
         },
@@ -47,8 +55,10 @@ pub(super) const EXERCISES: [Exercise; 6] = [
         start: r#"{"models": ["builtin:scene1"], "settings": {"visibility": "z-buffer"}}"#,
         notes: None,
         check: |solution| {
-            let mut open =
-                wants(solution.state.settings.visibility == Visibility::Z_BUFFER, "the algorithm is not the z-buffer");
+            let mut open = wants(
+                solution.state.settings.visibility == Visibility::Z_BUFFER,
+                "the algorithm is not the z-buffer",
+            );
             if open.is_empty() {
                 let few = solution.surfaces()?;
                 solution.renderer.settings.depth_bits = None;
@@ -69,7 +79,8 @@ pub(super) const EXERCISES: [Exercise; 6] = [
         notes: None,
         check: |solution| {
             let Some([_, y]) = solution.pixel else { return Ok(wants(false, NO_PIXEL)) };
-            let mut open = wants_algorithm(solution, Visibility::SCAN_LINE, "the algorithm is not scan-line");
+            let mut open =
+                wants_algorithm(solution, Visibility::SCAN_LINE, "the algorithm is not scan-line");
             if open.is_empty() {
                 let is_busy = |step: &Step| matches!(step, Step::Line { row, sample: 0, active_edges, .. } if *row == y && active_edges.len() >= MANY_EDGES);
                 let is_found = solution.steps()?.iter().any(is_busy);
@@ -89,12 +100,15 @@ pub(super) const EXERCISES: [Exercise; 6] = [
         notes: None,
         check: |solution| {
             let Some(pixel) = solution.pixel else { return Ok(wants(false, NO_PIXEL)) };
-            let mut open = wants_algorithm(solution, Visibility::WARNOCK, "the algorithm is not Warnock's");
+            let mut open =
+                wants_algorithm(solution, Visibility::WARNOCK, "the algorithm is not Warnock's");
             if open.is_empty() {
                 let is_large = |step: &Step| match step {
-                    Step::Window { pixels: [_, _, width, height], verdict: WindowVerdict::Surrounded, .. } => {
-                        *width >= LARGE_WINDOW && *height >= LARGE_WINDOW && step.concerns(pixel)
-                    }
+                    Step::Window {
+                        pixels: [_, _, width, height],
+                        verdict: WindowVerdict::Surrounded,
+                        ..
+                    } => *width >= LARGE_WINDOW && *height >= LARGE_WINDOW && step.concerns(pixel),
                     _ => false,
                 };
                 let is_found = solution.steps()?.iter().any(is_large);
@@ -113,7 +127,11 @@ pub(super) const EXERCISES: [Exercise; 6] = [
         start: r#"{"models": ["builtin:cubs"], "settings": {"visibility": "painter"}}"#,
         notes: None,
         check: |solution| {
-            let mut open = wants_algorithm(solution, Visibility::PAINTER, "the algorithm is not the painter's");
+            let mut open = wants_algorithm(
+                solution,
+                Visibility::PAINTER,
+                "the algorithm is not the painter's",
+            );
             if open.is_empty() {
                 open.extend(wants(solution.stats()?.visibility.splits > 0, "no polygon is cut"));
             }

@@ -40,7 +40,10 @@ pub(super) struct Solution<'a> {
 
 impl Solution<'_> {
     pub(super) fn wants_model(&self, model: &str) -> Vec<String> {
-        wants(self.state.models == [model], &format!("the model is not {}", model.trim_start_matches("builtin:")))
+        wants(
+            self.state.models == [model],
+            &format!("the model is not {}", model.trim_start_matches("builtin:")),
+        )
     }
 
     /// The lights in force, with the changes of single fields.
@@ -77,7 +80,8 @@ impl Solution<'_> {
     /// The inspected pixel, taken apart; `None` if there is none.
     pub(super) fn explained(&self) -> Result<Option<Explanation>, Error> {
         let Some(pixel) = self.pixel else { return Ok(None) };
-        explain(self.renderer, &self.renderer.frame_camera(), pixel, &Deciders::Chosen, None).map(Some)
+        explain(self.renderer, &self.renderer.frame_camera(), pixel, &Deciders::Chosen, None)
+            .map(Some)
     }
 
     /// The steps of the algorithm, with one sample a pixel.

@@ -25,15 +25,20 @@ pub(super) const EXERCISES: [Exercise; 5] = [
         notes: None,
         check: |solution| {
             let mut open = solution.wants_model("builtin:cubs");
-            open.extend(wants(solution.state.settings.shading.model == Shading::Gouraud, "shading is not Gouraud's"));
+            open.extend(wants(
+                solution.state.settings.shading.model == Shading::Gouraud,
+                "shading is not Gouraud's",
+            ));
             let scene = solution.renderer.scene();
             let is_shared = scene.meshes.iter().all(|mesh| {
                 let Some(normals) = &mesh.normals else { return false };
                 let mut known: BTreeMap<[u32; 3], [u32; 3]> = BTreeMap::new();
                 (0..mesh.triangles.len()).all(|triangle| {
-                    let places =
-                        mesh.triangles[triangle].map(|vertex| mesh.positions[vertex as usize].map(f32::to_bits));
-                    let normals = normals.at(triangle, &mesh.triangles).map(|normal| normal.map(f32::to_bits));
+                    let places = mesh.triangles[triangle]
+                        .map(|vertex| mesh.positions[vertex as usize].map(f32::to_bits));
+                    let normals = normals
+                        .at(triangle, &mesh.triangles)
+                        .map(|normal| normal.map(f32::to_bits));
                     places
                         .into_iter()
                         .zip(normals)
@@ -54,7 +59,10 @@ pub(super) const EXERCISES: [Exercise; 5] = [
         start: r#"{"models": ["builtin:sphere"]}"#,
         notes: Some("4.1"),
         check: |solution| {
-            let mut open = wants(solution.state.settings.shading.model == Shading::Gouraud, "shading is not Gouraud's");
+            let mut open = wants(
+                solution.state.settings.shading.model == Shading::Gouraud,
+                "shading is not Gouraud's",
+            );
             if open.is_empty() {
                 let Some(told) = solution.explained()? else { return Ok(wants(false, NO_PIXEL)) };
                 let grows = told.gouraud.is_some_and(|line| line.px.iter().sum::<f64>() > 1e-6);
@@ -76,9 +84,15 @@ pub(super) const EXERCISES: [Exercise; 5] = [
             let mut open = solution.wants_model("builtin:sphere");
             let Some(told) = solution.explained()? else { return Ok(wants(false, NO_PIXEL)) };
             let lights = solution.lights();
-            let of_light = |number: usize| lights.get(number).is_some_and(|light| light.name == "LIGHT0");
+            let of_light =
+                |number: usize| lights.get(number).is_some_and(|light| light.name == "LIGHT0");
             let cosine = told.light.points.first().and_then(|point| {
-                let terms = point.evaluations.first()?.lights.iter().find(|numbered| of_light(numbered.light))?;
+                let terms = point
+                    .evaluations
+                    .first()?
+                    .lights
+                    .iter()
+                    .find(|numbered| of_light(numbered.light))?;
                 Some(terms.terms.highlight?.cosine)
             });
             open.extend(wants(
@@ -106,7 +120,8 @@ pub(super) const EXERCISES: [Exercise; 5] = [
                 _ => 90.0,
             };
             let mut open = solution.wants_model("builtin:sphere");
-            let is_right = scene.materials.iter().map(half_width).any(|degrees| HALF_WIDTH.contains(&degrees));
+            let is_right =
+                scene.materials.iter().map(half_width).any(|degrees| HALF_WIDTH.contains(&degrees));
             open.extend(wants(is_right, "half its brightness is not at 10 degrees"));
             Ok(open)
         },

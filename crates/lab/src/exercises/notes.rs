@@ -34,7 +34,8 @@ pub(super) const EXERCISES: [Exercise; 5] = [
         check: |solution| {
             let lights = solution.lights();
             let mut open = solution.wants_model("builtin:sphere");
-            let Some(light) = lights.iter().find(|light| light.name == "LIGHT0" && light.enabled) else {
+            let Some(light) = lights.iter().find(|light| light.name == "LIGHT0" && light.enabled)
+            else {
                 open.push("LIGHT0 does not shine".to_owned());
                 return Ok(open);
             };
@@ -79,7 +80,9 @@ pub(super) const EXERCISES: [Exercise; 5] = [
             };
             let is_green = |rgb: [f32; 3]| rgb[0] == 0.0 && rgb[1] > 0.0 && rgb[2] == 0.0;
             let on_axis = match light.kind {
-                LightKind::Directional { direction } => direction.x < 0.0 && direction.y == 0.0 && direction.z == 0.0,
+                LightKind::Directional { direction } => {
+                    direction.x < 0.0 && direction.y == 0.0 && direction.z == 0.0
+                }
                 _ => false,
             };
             let mut open = wants(light.enabled, "LIGHT2 is not enabled");
@@ -99,12 +102,16 @@ pub(super) const EXERCISES: [Exercise; 5] = [
         hint: "View, Normals.",
         start: r#"{"models": ["builtin:cubs"]}"#,
         notes: Some("4.1"),
-        check: |solution| Ok(wants(solution.state.load.normals == Normals::None, "normals are still given")),
+        check: |solution| {
+            Ok(wants(solution.state.load.normals == Normals::None, "normals are still given"))
+        },
     },
 ];
 
 /// Whether a light of this name is there and has an effect.
 fn shines(lights: &[Light], name: &str) -> bool {
-    let dark = |light: &Light| [light.ambient, light.diffuse, light.specular].as_flattened().iter().all(|c| *c == 0.0);
+    let dark = |light: &Light| {
+        [light.ambient, light.diffuse, light.specular].as_flattened().iter().all(|c| *c == 0.0)
+    };
     lights.iter().any(|light| light.name == name && light.enabled && !dark(light))
 }

@@ -32,7 +32,10 @@ pub(super) const EXERCISES: [Exercise; 3] = [
         start: r#"{"models": ["builtin:scene0"]}"#,
         notes: None,
         check: |solution| {
-            let mut open = wants(solution.state.settings.cull.frustum, "culling of what is out of view is off");
+            let mut open = wants(
+                solution.state.settings.cull.frustum,
+                "culling of what is out of view is off",
+            );
             let stats = solution.stats()?;
             open.extend(wants(stats.cull.instances_culled > 0, "no object is culled with its box"));
             open.extend(wants(stats.geometry.set_up > 0, "nothing is seen"));
@@ -49,7 +52,8 @@ pub(super) const EXERCISES: [Exercise; 3] = [
         start: r#"{"models": ["builtin:cubs"], "settings": {"cull": {"frustum": true, "back-face": false}}}"#,
         notes: None,
         check: |solution| {
-            let mut open = wants(solution.state.settings.cull.back_face, "culling of back faces is off");
+            let mut open =
+                wants(solution.state.settings.cull.back_face, "culling of back faces is off");
             if open.is_empty() {
                 let culled = solution.picture()?;
                 solution.renderer.settings.cull.back_face = false;

@@ -1,4 +1,5 @@
-//! Eight rows of four numbers, as they lie in memory, and four columns of eight, as formulas take them.
+//! Eight rows of four numbers, as they lie in memory, and four columns of eight, as formulas take
+//! them.
 
 use super::{F32x8, F64x8, I32x4, I32x8, Simd, inlined};
 use fearless_simd::prelude::*;
@@ -10,7 +11,8 @@ pub fn columns_of_rows<S: Simd>(simd: S, row: impl Fn(usize) -> [i32; 4]) -> [I3
         #[inline(always)]
         |lane: usize| I32x4::from_slice(simd, &row(lane)),
     );
-    let (low, high) = (transposed([at(0), at(1), at(2), at(3)]), transposed([at(4), at(5), at(6), at(7)]));
+    let (low, high) =
+        (transposed([at(0), at(1), at(2), at(3)]), transposed([at(4), at(5), at(6), at(7)]));
     let both = inlined(
         #[inline(always)]
         |k: usize| simd.combine_i32x4(low[k], high[k]),
@@ -20,13 +22,19 @@ pub fn columns_of_rows<S: Simd>(simd: S, row: impl Fn(usize) -> [i32; 4]) -> [I3
 
 /// Hands out the eight rows of four columns: the way back from [`columns_of_rows`].
 #[inline(always)]
-pub fn rows_of_columns<S: Simd>(simd: S, columns: [I32x8<S>; 4], mut row: impl FnMut(usize, [i32; 4])) {
+pub fn rows_of_columns<S: Simd>(
+    simd: S,
+    columns: [I32x8<S>; 4],
+    mut row: impl FnMut(usize, [i32; 4]),
+) {
     let halves = inlined(
         #[inline(always)]
         |k: usize| simd.split_i32x8(columns[k]),
     );
     let (a, b, c, d) = (halves(0), halves(1), halves(2), halves(3));
-    for (first, half) in [(0, transposed([a.0, b.0, c.0, d.0])), (4, transposed([a.1, b.1, c.1, d.1]))] {
+    for (first, half) in
+        [(0, transposed([a.0, b.0, c.0, d.0])), (4, transposed([a.1, b.1, c.1, d.1]))]
+    {
         for k in 0..4 {
             row(first + k, half[k].to_array());
         }
@@ -44,7 +52,11 @@ pub fn wide_points<S: Simd>(simd: S, point: impl Fn(usize) -> [f32; 3]) -> [F64x
             bytemuck::cast([x, y, z, 0.0])
         },
     );
-    [widened(simd, columns[0].bitcast()), widened(simd, columns[1].bitcast()), widened(simd, columns[2].bitcast())]
+    [
+        widened(simd, columns[0].bitcast()),
+        widened(simd, columns[1].bitcast()),
+        widened(simd, columns[2].bitcast()),
+    ]
 }
 
 /// Singles as doubles.

@@ -1,7 +1,8 @@
-//! An OSMesa library, loaded at run time, and the functions that scenes call; types are from the Khronos registry (`gl.xml`).
+//! An OSMesa library, loaded at run time, and the functions that scenes call; types are from the
+//! Khronos registry (`gl.xml`).
 //!
-//! Pointers to numbers are slices here, pointers to anything are addresses (see [`at`]). Slices must be as long as the
-//! call needs; scenes are written so.
+//! Pointers to numbers are slices here, pointers to anything are addresses (see [`at`]). Slices
+//! must be as long as the call needs; scenes are written so.
 #![allow(non_snake_case)]
 
 use std::ffi::{CString, c_char, c_int, c_void};
@@ -96,7 +97,8 @@ macro_rules! functions {
             pub(crate) fn load(path: &str) -> Result<Self, String> {
                 let text = CString::new(path).map_err(|e| e.to_string())?;
                 let flags: c_int = libc::RTLD_NOW | libc::RTLD_LOCAL;
-                // SAFETY: opening an OSMesa library runs nothing that could harm us; the path is terminated.
+                // SAFETY: opening an OSMesa library runs nothing that could harm us; the path is
+                // terminated.
                 let library = unsafe { libc::dlopen(text.as_ptr(), flags) };
                 if library.is_null() {
                     // SAFETY: dlerror gives null or a terminated text.
@@ -130,7 +132,8 @@ macro_rules! functions {
             $(
                 /// The function of this name.
                 pub(crate) fn $name(&self, $($argument: $kind),*) -> $result {
-                    // SAFETY: the library is never closed; slices and addresses are as long as the call needs.
+                    // SAFETY: the library is never closed; slices and addresses are as long as the
+                    // call needs.
                     unsafe { (self.$name)($($argument.pass()),*) }
                 }
             )+

@@ -1,5 +1,5 @@
-//! Contexts in threads and processes, the functions of OSMesa itself, wild calls. Each mode is run in a process of its
-//! own; a mode that does not come back has failed.
+//! Contexts in threads and processes, the functions of OSMesa itself, wild calls. Each mode is run
+//! in a process of its own; a mode that does not come back has failed.
 
 use crate::gl::{Gl, OsmesaContext, at, at_mut, fetch};
 use crate::situations;
@@ -27,7 +27,8 @@ pub(crate) fn run(mode: &str, library: &str) -> Result<(), String> {
         "functions" => functions(&gl),
         "attributes" => attributes(&gl),
         "wild" => wild(&gl),
-        _ => situations::run(mode, Box::leak(Box::new(gl))).unwrap_or_else(|| Err("there is no such mode".to_owned())),
+        _ => situations::run(mode, Box::leak(Box::new(gl)))
+            .unwrap_or_else(|| Err("there is no such mode".to_owned())),
     }
 }
 
@@ -41,8 +42,10 @@ pub(crate) struct Window {
 
 impl Window {
     pub(crate) fn new(gl: &Gl) -> Self {
-        let mut window =
-            Self { context: gl.OSMesaCreateContextExt(RGBA, 24, 8, 0, 0), buffer: vec![0; (SIDE * SIDE) as usize] };
+        let mut window = Self {
+            context: gl.OSMesaCreateContextExt(RGBA, 24, 8, 0, 0),
+            buffer: vec![0; (SIDE * SIDE) as usize],
+        };
         window.make_current(gl);
         window
     }
@@ -51,7 +54,8 @@ impl Window {
         gl.OSMesaMakeCurrent(self.context, at_mut(&mut self.buffer), UNSIGNED_BYTE, SIDE, SIDE);
     }
 
-    /// Gives this many quads, each over all of the picture, in one primitive: they are drawn while more are given.
+    /// Gives this many quads, each over all of the picture, in one primitive: they are drawn while
+    /// more are given.
     pub(crate) fn give_many(&mut self, gl: &Gl, count: usize) {
         gl.glColor3f(0.0, 1.0, 0.0);
         gl.glBegin(QUADS);
@@ -66,7 +70,8 @@ impl Window {
     /// Finishes such a picture, and checks that it came out.
     pub(crate) fn finish_many(&mut self, gl: &Gl) -> Result<(), String> {
         gl.glFinish();
-        let wrong = self.buffer.iter().filter(|pixel| pixel.to_ne_bytes() != [0, 255, 0, 255]).count();
+        let wrong =
+            self.buffer.iter().filter(|pixel| pixel.to_ne_bytes() != [0, 255, 0, 255]).count();
         if wrong == 0 { Ok(()) } else { Err(format!("{wrong} pixels are not green")) }
     }
 
@@ -85,7 +90,8 @@ impl Window {
     }
 }
 
-/// A frame in the parent, one in the child, another in the parent. With many threads, so that there is a pool.
+/// A frame in the parent, one in the child, another in the parent. With many threads, so that there
+/// is a pool.
 fn fork(gl: &Gl) -> Result<(), String> {
     let mut window = Window::new(gl);
     window.frame(gl)?;
@@ -109,7 +115,8 @@ fn fork(gl: &Gl) -> Result<(), String> {
     Ok(())
 }
 
-/// A fork amid a frame, of which a part is being drawn while more is given: parent and child finish it, each for itself.
+/// A fork amid a frame, of which a part is being drawn while more is given: parent and child finish
+/// it, each for itself.
 fn fork_while_drawing(gl: &Gl) -> Result<(), String> {
     let mut window = Window::new(gl);
     for round in 0..10 {
@@ -152,18 +159,30 @@ fn threads(gl: &Gl) -> Result<(), String> {
             Ok(())
         };
         let all: Vec<_> = (0..4).map(|_| scope.spawn(work)).collect();
-        all.into_iter().try_for_each(|thread| thread.join().map_err(|_| "a thread failed".to_owned())?)
+        all.into_iter()
+            .try_for_each(|thread| thread.join().map_err(|_| "a thread failed".to_owned())?)
     })
 }
 
-/// Two threads look the same depth texture up, which was drawn, while more is given. Neither pass may wait for the other.
+/// Two threads look the same depth texture up, which was drawn, while more is given. Neither pass
+/// may wait for the other.
 fn shared_map(gl: &Gl) -> Result<(), String> {
     let first = Window::new(gl);
     let (mut names, mut buffers) = ([0], [0]);
     gl.glGenTextures(1, &mut names);
     gl.glBindTexture(TEXTURE_2D, names[0]);
     gl.glTexParameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, NEAREST as i32);
-    gl.glTexImage2D(TEXTURE_2D, 0, DEPTH_COMPONENT24 as i32, SIDE, SIDE, 0, DEPTH_COMPONENT, FLOAT, 0);
+    gl.glTexImage2D(
+        TEXTURE_2D,
+        0,
+        DEPTH_COMPONENT24 as i32,
+        SIDE,
+        SIDE,
+        0,
+        DEPTH_COMPONENT,
+        FLOAT,
+        0,
+    );
     gl.glGenFramebuffers(1, &mut buffers);
     gl.glBindFramebuffer(FRAMEBUFFER, buffers[0]);
     gl.glFramebufferTexture2D(FRAMEBUFFER, DEPTH_ATTACHMENT, TEXTURE_2D, names[0], 0);
@@ -191,7 +210,8 @@ fn shared_map(gl: &Gl) -> Result<(), String> {
             Ok(())
         };
         let all = [first, second].map(|window| scope.spawn(move || work(window)));
-        all.into_iter().try_for_each(|thread| thread.join().map_err(|_| "a thread failed".to_owned())?)
+        all.into_iter()
+            .try_for_each(|thread| thread.join().map_err(|_| "a thread failed".to_owned())?)
     })
 }
 
@@ -226,7 +246,17 @@ fn growth(gl: &Gl) -> Result<(), String> {
             let (mut names, size) = ([0], 256);
             gl.glGenTextures(1, &mut names);
             gl.glBindTexture(TEXTURE_2D, names[0]);
-            gl.glTexImage2D(TEXTURE_2D, 0, RGBA as i32, size, size, 0, RGBA, UNSIGNED_BYTE, at(&texels));
+            gl.glTexImage2D(
+                TEXTURE_2D,
+                0,
+                RGBA as i32,
+                size,
+                size,
+                0,
+                RGBA,
+                UNSIGNED_BYTE,
+                at(&texels),
+            );
             gl.glNewList(7, COMPILE);
             gl.glRectf(-0.1, -0.1, 0.1, 0.1);
             gl.glEndList();
@@ -252,7 +282,8 @@ fn growth(gl: &Gl) -> Result<(), String> {
 pub(crate) fn resident() -> Result<usize, String> {
     let status = std::fs::read_to_string("/proc/self/status").map_err(|e| e.to_string())?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).ok_or("no VmRSS")?;
-    let kilobytes: usize = line.trim_end_matches("kB").trim().parse().map_err(|e| format!("{line}: {e}"))?;
+    let kilobytes: usize =
+        line.trim_end_matches("kB").trim().parse().map_err(|e| format!("{line}: {e}"))?;
     Ok(kilobytes << 10)
 }
 
@@ -267,11 +298,13 @@ fn destroyed_elsewhere(gl: &Gl) -> Result<(), String> {
     Ok(())
 }
 
-/// A context gets another buffer after the one before was freed, with work pending; then it is destroyed, likewise.
+/// A context gets another buffer after the one before was freed, with work pending; then it is
+/// destroyed, likewise.
 fn buffer_gone(gl: &Gl) -> Result<(), String> {
     let bytes = 4 * (SIDE * SIDE) as usize;
     let pages = || {
-        let (access, kind) = (libc::PROT_READ | libc::PROT_WRITE, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS);
+        let (access, kind) =
+            (libc::PROT_READ | libc::PROT_WRITE, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS);
         // SAFETY: new pages.
         unsafe { libc::mmap(std::ptr::null_mut(), bytes, access, kind, -1, 0) }
     };
@@ -323,8 +356,8 @@ fn close(library: &str) -> Result<(), String> {
         let mut window = Window::new(&gl);
         window.frame(&gl)?;
         gl.OSMesaDestroyContext(window.context);
-        // SAFETY: the path is terminated; both handles, ours and that of `load`, are given back, and this is the last
-        // use of `gl`.
+        // SAFETY: the path is terminated; both handles, ours and that of `load`, are given back,
+        // and this is the last use of `gl`.
         unsafe {
             let handle = libc::dlopen(path.as_ptr(), libc::RTLD_NOW);
             libc::dlclose(handle);
@@ -338,7 +371,8 @@ fn close(library: &str) -> Result<(), String> {
 static TOLD: std::sync::Mutex<Vec<(u32, String)>> = std::sync::Mutex::new(Vec::new());
 
 extern "C" fn tell(_: u32, _: u32, id: u32, _: u32, length: i32, text: *const u8, user: *const Gl) {
-    // SAFETY: KHR_debug gives a text of this length, and the pointer that was given with the callback.
+    // SAFETY: KHR_debug gives a text of this length, and the pointer that was given with the
+    // callback.
     let (text, gl) = unsafe { (std::slice::from_raw_parts(text, length as usize), &*user) };
     // The callback may call OpenGL.
     let inside = gl.glIsEnabled(LIGHTING);
@@ -358,7 +392,8 @@ fn callback(gl: &Gl) -> Result<(), String> {
     gl.glMatrixMode(0x99);
     let told = TOLD.lock().map_err(|e| e.to_string())?;
     let texts: Vec<&str> = told.iter().map(|(_, text)| text.as_str()).collect();
-    let fine = texts.len() == 2 && texts[0].contains("glEnable") && texts[1].contains("glMatrixMode");
+    let fine =
+        texts.len() == 2 && texts[0].contains("glEnable") && texts[1].contains("glMatrixMode");
     if fine && texts.iter().all(|text| text.ends_with('1')) && gl.glGetError() == INVALID_ENUM {
         return Ok(());
     }
@@ -366,8 +401,16 @@ fn callback(gl: &Gl) -> Result<(), String> {
 }
 
 /// Fails with `what` unless `found` is `expected`.
-pub(crate) fn same<T: PartialEq + std::fmt::Debug>(what: &str, found: T, expected: T) -> Result<(), String> {
-    if found == expected { Ok(()) } else { Err(format!("{what}: {found:?} instead of {expected:?}")) }
+pub(crate) fn same<T: PartialEq + std::fmt::Debug>(
+    what: &str,
+    found: T,
+    expected: T,
+) -> Result<(), String> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(format!("{what}: {found:?} instead of {expected:?}"))
+    }
 }
 
 const OSMESA_ROW_LENGTH: i32 = 0x10;
@@ -385,9 +428,14 @@ fn functions(gl: &Gl) -> Result<(), String> {
     same("release without a context", gl.OSMesaMakeCurrent(0, 0, 0, 0, 0), 1)?;
     let mut window = Window::new(gl);
     same("current context", gl.OSMesaGetCurrentContext(), window.context)?;
-    let sizes = [0x20, 0x21, 0x22, 0x23, OSMESA_ROW_LENGTH, OSMESA_Y_UP].map(|name| integer(gl, name));
+    let sizes =
+        [0x20, 0x21, 0x22, 0x23, OSMESA_ROW_LENGTH, OSMESA_Y_UP].map(|name| integer(gl, name));
     same("OSMesaGetIntegerv", sizes, [SIDE, SIDE, RGBA as i32, UNSIGNED_BYTE as i32, 0, 1])?;
-    same("the largest size is useful", integer(gl, 0x24) >= 4096 && integer(gl, 0x25) >= 4096, true)?;
+    same(
+        "the largest size is useful",
+        integer(gl, 0x24) >= 4096 && integer(gl, 0x25) >= 4096,
+        true,
+    )?;
     same("an unknown name changes nothing", integer(gl, 0x77), -7)?;
 
     // What cannot be made current leaves everything as it was.
@@ -402,23 +450,33 @@ fn functions(gl: &Gl) -> Result<(), String> {
     ] {
         same("refused", gl.OSMesaMakeCurrent(window.context, address, kind, width, height), 0)?;
     }
-    same("no context with a buffer", gl.OSMesaMakeCurrent(0, buffer, UNSIGNED_BYTE, SIDE, SIDE), 0)?;
+    same(
+        "no context with a buffer",
+        gl.OSMesaMakeCurrent(0, buffer, UNSIGNED_BYTE, SIDE, SIDE),
+        0,
+    )?;
     window.frame(gl)?;
 
     // The buffers.
     let (mut width, mut height, mut other, mut address) = ([-1], [-1], [-1], [1]);
-    let found = gl.OSMesaGetColorBuffer(window.context, &mut width, &mut height, &mut other, &mut address);
+    let found =
+        gl.OSMesaGetColorBuffer(window.context, &mut width, &mut height, &mut other, &mut address);
     let found = (found, width[0], height[0], other[0], address[0]);
     same("OSMesaGetColorBuffer", found, (1, SIDE, SIDE, RGBA as i32, buffer))?;
     gl.glEnable(DEPTH_TEST);
     gl.glRectf(-1.0, -1.0, 1.0, 0.0);
-    let found = gl.OSMesaGetDepthBuffer(window.context, &mut width, &mut height, &mut other, &mut address);
+    let found =
+        gl.OSMesaGetDepthBuffer(window.context, &mut width, &mut height, &mut other, &mut address);
     same("OSMesaGetDepthBuffer", (found, width[0], height[0], other[0]), (1, SIDE, SIDE, 4))?;
     let depths: [u32; (SIDE * SIDE) as usize] = fetch(address[0]);
     same("lower and upper depth", [depths[0] >> 20, depths[depths.len() - 1]], [8, 0xff_ffff])?;
     let flat = gl.OSMesaCreateContextExt(RGBA, 0, 0, 0, 0);
     gl.OSMesaMakeCurrent(flat, buffer, UNSIGNED_BYTE, SIDE, SIDE);
-    same("no depth", gl.OSMesaGetDepthBuffer(flat, &mut width, &mut height, &mut other, &mut address), 0)?;
+    same(
+        "no depth",
+        gl.OSMesaGetDepthBuffer(flat, &mut width, &mut height, &mut other, &mut address),
+        0,
+    )?;
     same("nothing", (width[0], height[0], other[0], address[0]), (0, 0, 0, 0))?;
     gl.OSMesaDestroyContext(flat);
     same("the current context is gone", gl.OSMesaGetCurrentContext(), 0)?;
@@ -466,11 +524,25 @@ fn attributes(gl: &Gl) -> Result<(), String> {
     Ok(())
 }
 
-/// Every function, called with zeros, inside and outside of Begin and End: none takes the process down.
+/// Every function, called with zeros, inside and outside of Begin and End: none takes the process
+/// down.
 fn wild(gl: &Gl) -> Result<(), String> {
-    type Any =
-        extern "C" fn(usize, usize, usize, usize, usize, usize, usize, usize, usize, usize, usize, usize) -> usize;
-    let names_in = |text: &'static str| text.split_whitespace().filter(|word| word.starts_with("gl"));
+    type Any = extern "C" fn(
+        usize,
+        usize,
+        usize,
+        usize,
+        usize,
+        usize,
+        usize,
+        usize,
+        usize,
+        usize,
+        usize,
+        usize,
+    ) -> usize;
+    let names_in =
+        |text: &'static str| text.split_whitespace().filter(|word| word.starts_with("gl"));
     let there = names_in(include_str!("../../src/entry_points.rs")).map(|name| (name, true));
     let refused = names_in(include_str!("../../src/unsupported.rs")).map(|name| (name, false));
     let names: Vec<(&str, bool)> = there.chain(refused).collect();
@@ -487,7 +559,8 @@ fn wild(gl: &Gl) -> Result<(), String> {
                 gl.glBegin(TRIANGLES);
             }
             let function = std::ptr::with_exposed_provenance::<()>(address);
-            // SAFETY: the function takes up to twelve arguments of this size, or floats, which come from other registers.
+            // SAFETY: the function takes up to twelve arguments of this size, or floats, which come
+            // from other registers.
             let function = unsafe { std::mem::transmute::<*const (), Any>(function) };
             function(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
             gl.glEnd();

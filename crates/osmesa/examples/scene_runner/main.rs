@@ -1,15 +1,17 @@
-//! Draws small scenes with an OSMesa library and writes what came out, for comparison with another library.
+//! Draws small scenes with an OSMesa library and writes what came out, for comparison with another
+//! library.
 //!
-//! `scene_runner --list` prints each scene's group, its name and how exactly two libraries must agree on it.
-//! `scene_runner LIBRARY FOLDER [SCENE...]` draws those scenes, or all; it prints the name of each before drawing it, and
-//! writes `FOLDER/SCENE.rgba` (width and height as little-endian 32-bit numbers, then the colour buffer as RGBA bytes,
-//! lowest row first), `FOLDER/SCENE.depth` (32-bit floats) and `FOLDER/SCENE.numbers` (32-bit floats: what the scene noted,
-//! the error last). With `SCENE_PICTURES` set it writes `FOLDER/SCENE.ppm` as well.
+//! `scene_runner --list` prints each scene's group, its name and how exactly two libraries must
+//! agree on it. `scene_runner LIBRARY FOLDER [SCENE...]` draws those scenes, or all; it prints the
+//! name of each before drawing it, and writes `FOLDER/SCENE.rgba` (width and height as
+//! little-endian 32-bit numbers, then the colour buffer as RGBA bytes, lowest row first),
+//! `FOLDER/SCENE.depth` (32-bit floats) and `FOLDER/SCENE.numbers` (32-bit floats: what the scene
+//! noted, the error last). With `SCENE_PICTURES` set it writes `FOLDER/SCENE.ppm` as well.
 //!
 //! `scene_runner --lifecycle MODE LIBRARY` tries what is not in pictures: see `lifecycle.rs`.
 //!
-//! Each scene has a context of its own. A library is loaded once: two of them cannot be in one process, since they export the
-//! same names.
+//! Each scene has a context of its own. A library is loaded once: two of them cannot be in one
+//! process, since they export the same names.
 #![allow(unsafe_code, clippy::disallowed_methods)]
 
 mod gl;
@@ -29,7 +31,9 @@ fn main() -> ExitCode {
     match arguments.as_slice() {
         [list] if list == "--list" => {
             for (group, scenes) in scenes::GROUPS {
-                scenes.iter().for_each(|scene| println!("{group} {} {:?}", scene.name, scene.agreement));
+                scenes
+                    .iter()
+                    .for_each(|scene| println!("{group} {} {:?}", scene.name, scene.agreement));
             }
             ExitCode::SUCCESS
         }
@@ -48,7 +52,9 @@ fn main() -> ExitCode {
             }
         },
         _ => {
-            eprintln!("usage: scene_runner --list | --lifecycle MODE LIBRARY | LIBRARY FOLDER [SCENE...]");
+            eprintln!(
+                "usage: scene_runner --list | --lifecycle MODE LIBRARY | LIBRARY FOLDER [SCENE...]"
+            );
             ExitCode::FAILURE
         }
     }
@@ -57,7 +63,9 @@ fn main() -> ExitCode {
 fn run(library: &str, folder: &Path, wanted: &[String]) -> Result<(), String> {
     let gl = gl::Gl::load(library)?;
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    for scene in scenes::all().filter(|scene| wanted.is_empty() || wanted.iter().any(|name| name == scene.name)) {
+    for scene in scenes::all()
+        .filter(|scene| wanted.is_empty() || wanted.iter().any(|name| name == scene.name))
+    {
         println!("{}", scene.name);
         std::io::stdout().flush().map_err(|e| e.to_string())?;
         draw(&gl, scene, folder)?;
@@ -67,7 +75,8 @@ fn run(library: &str, folder: &Path, wanted: &[String]) -> Result<(), String> {
 
 /// Draws a scene and writes its files.
 fn draw(gl: &gl::Gl, scene: &Scene, folder: &Path) -> Result<(), String> {
-    let mut stage = Stage::new(gl, scene.surface).map_err(|why| format!("{}: {why}", scene.name))?;
+    let mut stage =
+        Stage::new(gl, scene.surface).map_err(|why| format!("{}: {why}", scene.name))?;
     (scene.draw)(&mut stage);
     let result = stage.finish();
     let write = |kind: &str, bytes: &[u8]| {

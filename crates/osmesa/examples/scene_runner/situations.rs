@@ -1,5 +1,5 @@
-//! What programs do to a library besides drawing: signals, traps, rounding modes, freed buffers, little memory, names of other
-//! contexts. Each mode is run in a process of its own.
+//! What programs do to a library besides drawing: signals, traps, rounding modes, freed buffers,
+//! little memory, names of other contexts. Each mode is run in a process of its own.
 
 use crate::gl::{Gl, at, at_mut, store};
 use crate::lifecycle::{SIDE, Window, same};
@@ -24,7 +24,8 @@ pub(crate) fn run(mode: &str, gl: &'static Gl) -> Option<Result<(), String>> {
     })
 }
 
-/// A program frees its objects while a context of other objects is current: that context loses nothing.
+/// A program frees its objects while a context of other objects is current: that context loses
+/// nothing.
 fn names(gl: &Gl) -> Result<(), String> {
     let make = |window: &mut Window| {
         window.make_current(gl);
@@ -88,7 +89,8 @@ unsafe extern "C" {
     fn feenableexcept(exceptions: i32) -> i32;
 }
 
-/// Pictures do not depend on the caller's rounding mode, traps do not go off, and both are the caller's afterwards.
+/// Pictures do not depend on the caller's rounding mode, traps do not go off, and both are the
+/// caller's afterwards.
 fn floating_point(gl: &Gl) -> Result<(), String> {
     let mut window = Window::new(gl);
     let draw = |mode: i32| {
@@ -120,7 +122,8 @@ fn floating_point(gl: &Gl) -> Result<(), String> {
         same("the picture", picture == first, true)?;
     }
     draw(0);
-    // SAFETY: a division by zero, an overflow or an invalid operation of this thread ends the process.
+    // SAFETY: a division by zero, an overflow or an invalid operation of this thread ends the
+    // process.
     unsafe { feenableexcept(0x0d) };
     gl.glLoadIdentity();
     gl.glScalef(0.0, 0.0, 0.0);
@@ -140,7 +143,8 @@ fn buffer_freed(gl: &Gl) -> Result<(), String> {
     let (mut first, mut second) = (Window::new(gl), Window::new(gl));
     second.frame(gl)?;
     for draws_after in [false, true] {
-        let (access, kind) = (libc::PROT_READ | libc::PROT_WRITE, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS);
+        let (access, kind) =
+            (libc::PROT_READ | libc::PROT_WRITE, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS);
         // SAFETY: new pages.
         let buffer = unsafe { libc::mmap(std::ptr::null_mut(), bytes, access, kind, -1, 0) };
         gl.OSMesaMakeCurrent(first.context, buffer.expose_provenance(), UNSIGNED_BYTE, SIDE, SIDE);
@@ -149,7 +153,9 @@ fn buffer_freed(gl: &Gl) -> Result<(), String> {
         unsafe { libc::munmap(buffer, bytes) };
         if draws_after {
             gl.glBegin(TRIANGLES);
-            [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].into_iter().for_each(|[x, y]| gl.glVertex2f(x, y));
+            [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]]
+                .into_iter()
+                .for_each(|[x, y]| gl.glVertex2f(x, y));
             gl.glEnd();
         }
         second.make_current(gl);
@@ -162,7 +168,8 @@ fn buffer_freed(gl: &Gl) -> Result<(), String> {
 /// Limits the address space to what it is and so many bytes more.
 fn limit_memory(more: usize) -> Result<(), String> {
     let pages = std::fs::read_to_string("/proc/self/statm").map_err(|e| e.to_string())?;
-    let pages: usize = pages.split_whitespace().next().and_then(|n| n.parse().ok()).ok_or("no size")?;
+    let pages: usize =
+        pages.split_whitespace().next().and_then(|n| n.parse().ok()).ok_or("no size")?;
     let limit = (pages * 4096 + more) as u64;
     let limit = libc::rlimit { rlim_cur: limit, rlim_max: limit };
     // SAFETY: gives the limit by its address.
@@ -252,9 +259,18 @@ fn nobody_waits(gl: &Gl) -> Result<(), String> {
 /// What is beyond OpenGL 1.5 is not handed out by name.
 fn procedures(gl: &Gl) -> Result<(), String> {
     let asked = |name: &CStr| gl.OSMesaGetProcAddress(name.to_bytes_with_nul()) != 0;
-    same("shaders", [c"glCreateShader", c"glUseProgram", c"glVertexAttrib4fv"].map(asked), [false; 3])?;
-    let there =
-        [c"glVertex3f", c"glGenFramebuffers", c"glStencilFuncSeparate", c"glDrawBuffersARB", c"glClampColorARB"];
+    same(
+        "shaders",
+        [c"glCreateShader", c"glUseProgram", c"glVertexAttrib4fv"].map(asked),
+        [false; 3],
+    )?;
+    let there = [
+        c"glVertex3f",
+        c"glGenFramebuffers",
+        c"glStencilFuncSeparate",
+        c"glDrawBuffersARB",
+        c"glClampColorARB",
+    ];
     same("what there is", there.map(asked), [true; 5])?;
     same("it is exported", gl.exported(c"glCreateShader") != 0, true)
 }

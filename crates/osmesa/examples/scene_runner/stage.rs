@@ -101,7 +101,13 @@ impl<'a> Stage<'a> {
     /// Makes this stage's context current again.
     pub(crate) fn back(&mut self) {
         let [width, height] = self.surface.size;
-        self.gl.OSMesaMakeCurrent(self.context, at_mut(&mut self.buffer), self.surface.kind, width, height);
+        self.gl.OSMesaMakeCurrent(
+            self.context,
+            at_mut(&mut self.buffer),
+            self.surface.kind,
+            width,
+            height,
+        );
     }
 
     /// Ends the scene.
@@ -141,11 +147,12 @@ impl<'a> Stage<'a> {
         Outcome { width: width as u32, height: height as u32, rgba, depth, numbers: self.numbers }
     }
 
-    /// The picture part of the buffer as RGBA bytes in the order of the buffer's rows. Pixels that are not four bytes are
-    /// given as RGBA with 8 bits.
+    /// The picture part of the buffer as RGBA bytes in the order of the buffer's rows. Pixels that
+    /// are not four bytes are given as RGBA with 8 bits.
     fn rgba(&self, raw: &[u8]) -> Vec<u8> {
         let [width, height] = self.surface.size.map(|side| side as usize);
-        let row = if self.surface.row_length > 0 { self.surface.row_length as usize } else { width };
+        let row =
+            if self.surface.row_length > 0 { self.surface.row_length as usize } else { width };
         let bytes = match self.surface.kind {
             UNSIGNED_BYTE if self.surface.format == RGB || self.surface.format == 4 => 3,
             UNSIGNED_BYTE => 4,
@@ -158,9 +165,12 @@ impl<'a> Stage<'a> {
             for x in 0..width {
                 let pixel = &raw[(y * row + x) * bytes..][..bytes];
                 let short = |at: usize| u16::from_le_bytes([pixel[2 * at], pixel[2 * at + 1]]);
-                let float = |at: usize| f32::from_le_bytes(std::array::from_fn(|i| pixel[4 * at + i]));
+                let float =
+                    |at: usize| f32::from_le_bytes(std::array::from_fn(|i| pixel[4 * at + i]));
                 match self.surface.kind {
-                    UNSIGNED_BYTE if bytes == 3 => out.extend_from_slice(&[pixel[0], pixel[1], pixel[2], 255]),
+                    UNSIGNED_BYTE if bytes == 3 => {
+                        out.extend_from_slice(&[pixel[0], pixel[1], pixel[2], 255])
+                    }
                     UNSIGNED_BYTE => out.extend_from_slice(pixel),
                     UNSIGNED_SHORT_5_6_5 => {
                         let v = short(0);
@@ -168,7 +178,9 @@ impl<'a> Stage<'a> {
                         out.push(255);
                     }
                     UNSIGNED_SHORT => out.extend((0..4).map(|i| (short(i) >> 8) as u8)),
-                    _ => out.extend((0..4).map(|i| (float(i).clamp(0.0, 1.0) * 255.0).round() as u8)),
+                    _ => {
+                        out.extend((0..4).map(|i| (float(i).clamp(0.0, 1.0) * 255.0).round() as u8))
+                    }
                 }
             }
         }

@@ -23,7 +23,8 @@ pub(crate) fn ours() -> PathBuf {
 
 /// Mesa's library, as Debian installs it.
 pub(crate) fn mesa() -> Option<PathBuf> {
-    let folders = ["/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu", "/usr/lib64", "/usr/lib"];
+    let folders =
+        ["/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu", "/usr/lib64", "/usr/lib"];
     folders.iter().map(|folder| Path::new(folder).join("libOSMesa.so.8")).find(|path| path.exists())
 }
 
@@ -53,7 +54,8 @@ pub(crate) struct Ending {
 
 /// Runs a process to its end, at most [`LONGEST`].
 pub(crate) fn run(command: &mut Command) -> Ending {
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the runner starts");
+    let mut child =
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the runner starts");
     let output = read(child.stdout.take());
     let errors = read(child.stderr.take());
     let ended = wait(&mut child);
@@ -77,7 +79,9 @@ fn wait(child: &mut Child) -> Result<std::process::ExitStatus, String> {
             other => {
                 let _ = child.kill();
                 let _ = child.wait();
-                return Err(other.map_or_else(|e| e.to_string(), |_| format!("no end after {LONGEST:?}")));
+                return Err(
+                    other.map_or_else(|e| e.to_string(), |_| format!("no end after {LONGEST:?}"))
+                );
             }
         }
     }

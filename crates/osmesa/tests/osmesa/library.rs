@@ -1,4 +1,5 @@
-//! The library as a file and as a part of a process: what it exports and needs, threads, forks, endings, wild calls.
+//! The library as a file and as a part of a process: what it exports and needs, threads, forks,
+//! endings, wild calls.
 
 use crate::common::{ours, run, runner};
 use std::process::Command;
@@ -166,7 +167,12 @@ fn draws_that_wait_keep_the_texels_they_saw() {
 
 /// Runs a tool of the binutils on the library.
 fn tool(name: &str, options: &[&str]) -> Option<String> {
-    let output = Command::new(name).args(options).arg(ours()).output().ok().filter(|output| output.status.success());
+    let output = Command::new(name)
+        .args(options)
+        .arg(ours())
+        .output()
+        .ok()
+        .filter(|output| output.status.success());
     if output.is_none() {
         println!("skipped: {name} is not installed (Debian: binutils)");
     }
@@ -176,19 +182,30 @@ fn tool(name: &str, options: &[&str]) -> Option<String> {
 #[test]
 fn exactly_the_functions_are_exported() {
     let Some(symbols) = tool("nm", &["-D", "--defined-only"]) else { return };
-    let names: Vec<&str> = symbols.lines().filter_map(|line| line.split_whitespace().last()).collect();
-    let others: Vec<_> = names.iter().filter(|name| !name.starts_with("gl") && !name.starts_with("OSMesa")).collect();
+    let names: Vec<&str> =
+        symbols.lines().filter_map(|line| line.split_whitespace().last()).collect();
+    let others: Vec<_> = names
+        .iter()
+        .filter(|name| !name.starts_with("gl") && !name.starts_with("OSMesa"))
+        .collect();
     assert!(others.is_empty(), "{others:?}");
     assert_eq!(names.iter().filter(|name| name.starts_with("OSMesa")).count(), 13);
     // The words of the tables that the functions are made of.
-    let tables = [include_str!("../../src/entry_points.rs"), include_str!("../../src/unsupported.rs")];
-    let api = include_str!("../../src/api.rs").split_once("procedures! {\n").and_then(|(_, rest)| rest.split_once('}'));
-    let functions = tables.into_iter().flat_map(str::split_whitespace).filter(|word| word.starts_with("gl"));
-    let logs =
-        include_str!("../../src/shader_logs.rs").lines().filter(|line| line.ends_with(" }") && line.contains("! { gl"));
+    let tables =
+        [include_str!("../../src/entry_points.rs"), include_str!("../../src/unsupported.rs")];
+    let api = include_str!("../../src/api.rs")
+        .split_once("procedures! {\n")
+        .and_then(|(_, rest)| rest.split_once('}'));
+    let functions =
+        tables.into_iter().flat_map(str::split_whitespace).filter(|word| word.starts_with("gl"));
+    let logs = include_str!("../../src/shader_logs.rs")
+        .lines()
+        .filter(|line| line.ends_with(" }") && line.contains("! { gl"));
     let logs = logs.flat_map(str::split_whitespace).filter(|word| word.starts_with("gl"));
     let by_name = "OSMesaGetProcAddress";
-    assert!(include_str!("../../src/procedures.rs").contains(&format!("procedures! {{ {by_name} }}")));
+    assert!(
+        include_str!("../../src/procedures.rs").contains(&format!("procedures! {{ {by_name} }}"))
+    );
     let mut expected: Vec<&str> =
         functions.chain(api.unwrap().0.split_whitespace()).chain([by_name]).chain(logs).collect();
     let mut found = names;

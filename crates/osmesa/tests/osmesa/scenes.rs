@@ -1,4 +1,5 @@
-//! The same calls with our library and with Mesa's, compared. Skipped, with a line, where Mesa's library is not installed.
+//! The same calls with our library and with Mesa's, compared. Skipped, with a line, where Mesa's
+//! library is not installed.
 
 use crate::common::{mesa, ours, run, runner};
 use std::collections::BTreeMap;
@@ -34,7 +35,11 @@ fn scenes() -> Vec<Scene> {
         };
         Some(Scene { group, name, agreement })
     };
-    listed.output.lines().map(|line| scene(line).unwrap_or_else(|| panic!("not understood: {line}"))).collect()
+    listed
+        .output
+        .lines()
+        .map(|line| scene(line).unwrap_or_else(|| panic!("not understood: {line}")))
+        .collect()
 }
 
 /// What a library made of a scene.
@@ -89,8 +94,10 @@ fn compare(agreement: Agreement, ours: &Result, mesa: &Result) -> std::result::R
     let mut problems = Vec::new();
 
     // Colours.
-    let apart = |(a, b): (&[u8], &[u8])| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
-    let apart: Vec<u8> = ours.rgba.chunks_exact(4).zip(mesa.rgba.chunks_exact(4)).map(apart).collect();
+    let apart =
+        |(a, b): (&[u8], &[u8])| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+    let apart: Vec<u8> =
+        ours.rgba.chunks_exact(4).zip(mesa.rgba.chunks_exact(4)).map(apart).collect();
     let worst = apart.iter().copied().max().unwrap_or(0);
     let share = |count: usize| count as f64 / apart.len() as f64;
     let far = share(apart.iter().filter(|d| **d > TOLERANCE).count());
@@ -100,11 +107,15 @@ fn compare(agreement: Agreement, ours: &Result, mesa: &Result) -> std::result::R
         Agreement::Close => far > 0.01,
     };
     if wrong {
-        problems.push(format!("{:.2} % of pixels differ by more than {TOLERANCE} (worst {worst})", 100.0 * far));
+        problems.push(format!(
+            "{:.2} % of pixels differ by more than {TOLERANCE} (worst {worst})",
+            100.0 * far
+        ));
     }
 
     // Depths.
-    let depths = ours.depth.iter().zip(&mesa.depth).filter(|(a, b)| (**a - **b).abs() > 1e-3).count();
+    let depths =
+        ours.depth.iter().zip(&mesa.depth).filter(|(a, b)| (**a - **b).abs() > 1e-3).count();
     if share(depths) > 0.01 || ours.depth.len() != mesa.depth.len() {
         problems.push(format!("{:.2} % of depths differ", 100.0 * share(depths)));
     }
@@ -120,7 +131,10 @@ fn compare(agreement: Agreement, ours: &Result, mesa: &Result) -> std::result::R
     } else if let Some(at) = ours.numbers.iter().zip(&mesa.numbers).position(|pair| !equal(&pair)) {
         let count = ours.numbers.iter().zip(&mesa.numbers).filter(|pair| !equal(pair)).count();
         let (a, b) = (ours.numbers[at], mesa.numbers[at]);
-        problems.push(format!("{count} of {} numbers differ, number {at} is {a} instead of {b}", ours.numbers.len()));
+        problems.push(format!(
+            "{count} of {} numbers differ, number {at} is {a} instead of {b}",
+            ours.numbers.len()
+        ));
     }
     if problems.is_empty() { Ok(()) } else { Err(problems.join("; ")) }
 }
@@ -135,7 +149,8 @@ fn group(wanted: &str) {
     assert!(!scenes.is_empty(), "there is no group {wanted}");
     let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("scenes").join(wanted);
-    let (our_folder, mesa_folder): (PathBuf, PathBuf) = (folder.join("vitral"), folder.join("mesa"));
+    let (our_folder, mesa_folder): (PathBuf, PathBuf) =
+        (folder.join("vitral"), folder.join("mesa"));
     let refused = draw(&mesa, &mesa_folder, &names);
     assert!(refused.is_empty(), "Mesa: {refused:?}");
     let failed = draw(&ours(), &our_folder, &names);

@@ -1,8 +1,9 @@
-//! From vertices in clip space to primitives in tile lists, with OpenGL's culling, clipping, polygon modes, offset,
-//! lines and points.
+//! From vertices in clip space to primitives in tile lists, with OpenGL's culling, clipping,
+//! polygon modes, offset, lines and points.
 //!
-//! Vertices are shaded after this, and only those that a primitive uses: an assembler hands out a *slot* for each, the
-//! place of the vertex's record in [`Primitives::records`]. A vertex made by clipping is a weighted sum of three others.
+//! Vertices are shaded after this, and only those that a primitive uses: an assembler hands out a
+//! *slot* for each, the place of the vertex's record in [`Primitives::records`]. A vertex made by
+//! clipping is a weighted sum of three others.
 //!
 //! In:   clip-space vertices, projected ones, corners of primitives.
 //! Out:  [`Primitives`]: setups, tile lists, facets, and which vertices to shade.
@@ -34,7 +35,8 @@ pub enum FacetKind {
     Line,
     /// A point that is soft, a sprite, or fades.
     Point,
-    /// A line or a point that is nothing of this: its fragments are those of a polygon without stipple.
+    /// A line or a point that is nothing of this: its fragments are those of a polygon without
+    /// stipple.
     Plain,
 }
 
@@ -115,7 +117,8 @@ pub enum Shape {
         to: [f32; 2],
         /// Width in pixels.
         width: f32,
-        /// Along the longer axis, the centre of the pixel where an aliased line starts; others are rectangles.
+        /// Along the longer axis, the centre of the pixel where an aliased line starts; others are
+        /// rectangles.
         first: Option<f32>,
         /// Stipple count at the start.
         stipple: u32,
@@ -139,7 +142,8 @@ pub enum Shape {
         size: f32,
         /// Factor for alpha.
         fade: f32,
-        /// All that is drawn of the facet, if not all that it covers: first column and row, last column and row.
+        /// All that is drawn of the facet, if not all that it covers: first column and row, last
+        /// column and row.
         pixels: Option<[u32; 4]>,
     },
 }
@@ -179,7 +183,8 @@ pub struct PrimitiveState {
     pub polygon_smooth: bool,
     /// Allowed pixels x0, y0, x1, y1 for filled polygons: scissor, target and viewport.
     pub clip: [i32; 4],
-    /// The same for lines and points: scissor and target. Of them the viewport bounds the centres alone.
+    /// The same for lines and points: scissor and target. Of them the viewport bounds the centres
+    /// alone.
     pub stroke_clip: [i32; 4],
     /// The draw's number in its job.
     pub draw: u32,
@@ -210,8 +215,8 @@ pub struct Primitives {
     pub scratch: PieceScratch,
 }
 
-/// What is known of a piece's vertices while it is assembled; kept, so that memory need not be asked for and cleared. The
-/// vectors may be longer than the piece.
+/// What is known of a piece's vertices while it is assembled; kept, so that memory need not be
+/// asked for and cleared. The vectors may be longer than the piece.
 #[derive(Debug, Default)]
 pub struct PieceScratch {
     /// In clip space.
@@ -269,7 +274,8 @@ pub struct Assembler<'a> {
     sprites: [Option<usize>; UNITS],
 }
 
-/// A piece's vertices. All slices have the same length but `user`, which has `planes` numbers a vertex.
+/// A piece's vertices. All slices have the same length but `user`, which has `planes` numbers a
+/// vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct Vertices<'a> {
     /// Clip space.
@@ -307,9 +313,24 @@ impl<'a> Assembler<'a> {
         used.extend((layout.uniform && !out.pending && !vertices.clip.is_empty()).then_some(0));
         let stride = layout.stride as u32;
         let plain = [!layout.smooth[0], !layout.smooth[1] && layout.line_stipple.is_none()];
-        let sprites = std::array::from_fn(|unit| layout.tex[unit].filter(|_| layout.sprites >> unit & 1 == 1));
+        let sprites = std::array::from_fn(|unit| {
+            layout.tex[unit].filter(|_| layout.sprites >> unit & 1 == 1)
+        });
         let derived = Vec::new();
-        Self { state, screen, out, stride, vertices, slots, used, derived, first_slot, one_slot, plain, sprites }
+        Self {
+            state,
+            screen,
+            out,
+            stride,
+            vertices,
+            slots,
+            used,
+            derived,
+            first_slot,
+            one_slot,
+            plain,
+            sprites,
+        }
     }
 
     /// The slot of a vertex: where its record begins.
@@ -361,7 +382,14 @@ impl<'a> Assembler<'a> {
         let plane = self.plane([a, b, c], area);
         let slots = [self.slot(corners[0]), self.slot(corners[1]), self.slot(corners[2])];
         let provoking = self.slot(provoking);
-        self.push(positions, area, &plane, pixels, slots, FacetAttributes::polygon(provoking, back));
+        self.push(
+            positions,
+            area,
+            &plane,
+            pixels,
+            slots,
+            FacetAttributes::polygon(provoking, back),
+        );
     }
 
     /// The flags any of which puts a primitive out of view if all its vertices have it.
@@ -447,9 +475,15 @@ impl<'a> Assembler<'a> {
         self.out.facets.len() as u32 - 1
     }
 
-    /// A piece of a smooth polygon. It knows its own edges alone: where a diagonal meets a corner, the pixel shows the
-    /// coverage of one edge. Edges that clipping makes are hard.
-    fn smooth_triangle(&mut self, corners: [u32; 3], boundary: [bool; 3], provoking: u32, back: bool) {
+    /// A piece of a smooth polygon. It knows its own edges alone: where a diagonal meets a corner,
+    /// the pixel shows the coverage of one edge. Edges that clipping makes are hard.
+    fn smooth_triangle(
+        &mut self,
+        corners: [u32; 3],
+        boundary: [bool; 3],
+        provoking: u32,
+        back: bool,
+    ) {
         // Reject triangles outside the user's planes, and clip those that cross a plane.
         let v = corners.map(|v| self.vertices.screen[v as usize]);
         if v[0].flags & v[1].flags & v[2].flags & flag::USERS != 0 {
@@ -471,7 +505,8 @@ impl<'a> Assembler<'a> {
         self.push_smooth(own, area, &plane, boundary, slots, provoking, back);
     }
 
-    /// A triangle that also reaches the pixels which it covers but in part along its boundary edges.
+    /// A triangle that also reaches the pixels which it covers but in part along its boundary
+    /// edges.
     fn push_smooth(
         &mut self,
         own: [CornerPosition; 3],
@@ -485,23 +520,29 @@ impl<'a> Assembler<'a> {
         let Some(wide) = widened(own, boundary, area) else { return };
         let Some(pixels) = self.pixels(&wide) else { return };
         let shape = self.out.shapes.len() as u32;
-        let (order, boundary) =
-            if area > 0 { ([0, 1, 2], boundary) } else { ([0, 2, 1], [boundary[2], boundary[1], boundary[0]]) };
+        let (order, boundary) = if area > 0 {
+            ([0, 1, 2], boundary)
+        } else {
+            ([0, 2, 1], [boundary[2], boundary[1], boundary[0]])
+        };
         let (x, y) = (order.map(|k| own[k].x), order.map(|k| own[k].y));
         self.out.shapes.push(Shape::Polygon { x, y, boundary });
         let attributes = FacetAttributes { shape, ..FacetAttributes::polygon(provoking, back) };
         self.push(wide, area, plane, pixels, slots, attributes);
     }
 
-    /// Makes records for the vertices that primitives use. `shade` gets up to eight of them, and their records to fill; those
-    /// that clipping made ([`Self::is_own`] tells) are filled afterwards, from their parents'.
+    /// Makes records for the vertices that primitives use. `shade` gets up to eight of them, and
+    /// their records to fill; those that clipping made ([`Self::is_own`] tells) are filled
+    /// afterwards, from their parents'.
     pub fn shade(&mut self, mut shade: impl FnMut(&[u32], &mut [f32])) {
         let (start, stride) = (self.out.records.len(), self.stride as usize);
         if stride == 0 {
             return;
         }
         self.out.records.resize(start + self.used.len() * stride, 0.0);
-        for (eight, records) in self.used.chunks(LANES).zip(self.out.records[start..].chunks_mut(LANES * stride)) {
+        for (eight, records) in
+            self.used.chunks(LANES).zip(self.out.records[start..].chunks_mut(LANES * stride))
+        {
             shade(eight, records);
         }
         self.derive();
@@ -513,9 +554,12 @@ impl<'a> Assembler<'a> {
     }
 }
 
-/// Flags the vertices beyond the user's planes, of whose distances each has as many as there are planes.
+/// Flags the vertices beyond the user's planes, of whose distances each has as many as there are
+/// planes.
 pub fn flag_user_planes(user: &[f32], screen: &mut [ScreenVertex]) {
-    let Some(planes) = user.len().checked_div(screen.len()).filter(|planes| *planes > 0) else { return };
+    let Some(planes) = user.len().checked_div(screen.len()).filter(|planes| *planes > 0) else {
+        return;
+    };
     for (vertex, distances) in screen.iter_mut().zip(user.chunks_exact(planes)) {
         for (plane, distance) in distances.iter().enumerate() {
             // NaN is beyond.
@@ -524,8 +568,13 @@ pub fn flag_user_planes(user: &[f32], screen: &mut [ScreenVertex]) {
     }
 }
 
-/// A triangle of doubled area `area` with its boundary edges moved outwards; `None` if it has no area.
-fn widened(corners: [CornerPosition; 3], boundary: [bool; 3], area: i64) -> Option<[CornerPosition; 3]> {
+/// A triangle of doubled area `area` with its boundary edges moved outwards; `None` if it has no
+/// area.
+fn widened(
+    corners: [CornerPosition; 3],
+    boundary: [bool; 3],
+    area: i64,
+) -> Option<[CornerPosition; 3]> {
     if area == 0 {
         return None;
     }

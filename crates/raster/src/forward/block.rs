@@ -1,10 +1,14 @@
-//! The common kinds of fragments, a block of 8x8 pixels at a time: depth test, colours, writing, one after the other.
+//! The common kinds of fragments, a block of 8x8 pixels at a time: depth test, colours, writing,
+//! one after the other.
 //!
-//! Coverage by alpha, soft borders, sRGB and floating-point colours go row by row through [`super::fragment`]; what is left is
-//! done here in short loops, each over all samples of a block, with the same operations and the same results.
+//! Coverage by alpha, soft borders, sRGB and floating-point colours go row by row through
+//! [`super::fragment`]; what is left is done here in short loops, each over all samples of a block,
+//! with the same operations and the same results.
 
 use super::depth_ranges::{Verdict, verdict};
-use super::fragment::{BlendPath, ColorTile, FragmentOps, SAMPLES, TilePlanes, stored, stored_depth};
+use super::fragment::{
+    BlendPath, ColorTile, FragmentOps, SAMPLES, TilePlanes, stored, stored_depth,
+};
 use super::fragment_ops::blend::blend_packed;
 use super::fragment_ops::compare::holds;
 use super::fragment_ops::logic::{logic_op, write_unprotected};
@@ -58,7 +62,8 @@ pub(crate) fn rectangle(x: i32, y: i32, [x0, y0, x1, y1]: [i32; 4]) -> u64 {
     (first..last).fold(0, |mask, row| mask | columns << (8 * row))
 }
 
-/// Which of the eight pixels from `(left, y)` on, `left` a multiple of eight, a polygon stipple lets pass.
+/// Which of the eight pixels from `(left, y)` on, `left` a multiple of eight, a polygon stipple
+/// lets pass.
 pub(crate) fn stippled_row(pattern: &[u32; 32], (left, y): (usize, usize)) -> u8 {
     // The leftmost pixel is the highest bit.
     ((pattern[y % 32] >> (24 - left % 32)) as u8).reverse_bits()
@@ -83,7 +88,8 @@ pub(super) struct Slope<S: Simd> {
 }
 
 impl<S: Simd> Slope<S> {
-    /// For the block at pixel `(left, bottom)` of the target, and the sample at `[x, y]` of its pixels, in 1/256 pixel.
+    /// For the block at pixel `(left, bottom)` of the target, and the sample at `[x, y]` of its
+    /// pixels, in 1/256 pixel.
     #[inline(always)]
     fn new(simd: S, plane: &DepthPlane, (left, bottom): (usize, usize), [x, y]: [i32; 2]) -> Self {
         let mut rows = [0.0; BLOCK];
@@ -94,17 +100,20 @@ impl<S: Simd> Slope<S> {
     /// The depths of rows `row` and `row + 1` as stored.
     #[inline(always)]
     fn two_rows(&self, simd: S, row: usize, [low, high]: [f32; 2], scale: f32) -> F32x16<S> {
-        let [first, second] = [splat(simd, self.rows[row % BLOCK]), splat(simd, self.rows[(row + 1) % BLOCK])];
+        let [first, second] =
+            [splat(simd, self.rows[row % BLOCK]), splat(simd, self.rows[(row + 1) % BLOCK])];
         let depths = self.across.combine(self.across) + first.combine(second);
         stored_depth(simd, min(max(depths, every(simd, low)), every(simd, high)), scale)
     }
 
-    /// The least and the largest depth of the block: sums are ordered as their terms are, however they are rounded.
+    /// The least and the largest depth of the block: sums are ordered as their terms are, however
+    /// they are rounded.
     #[inline(always)]
     fn bounds(&self) -> [f32; 2] {
         let across = self.across.to_array();
         let sorted = |a: f32, b: f32| if a < b { [a, b] } else { [b, a] };
-        let (x, y) = (sorted(across[0], across[LANES - 1]), sorted(self.rows[0], self.rows[BLOCK - 1]));
+        let (x, y) =
+            (sorted(across[0], across[LANES - 1]), sorted(self.rows[0], self.rows[BLOCK - 1]));
         [x[0] + y[0], x[1] + y[1]]
     }
 }
@@ -123,7 +132,12 @@ struct Test<'a, S: Simd> {
 impl<'a, S: Simd> Test<'a, S> {
     #[inline(always)]
     fn new(surface: &Surface, slopes: &'a [Slope<S>; SAMPLES], write: bool) -> Self {
-        Self { slopes, limits: [surface.plane.z_min, surface.plane.z_max], scale: surface.scale, write }
+        Self {
+            slopes,
+            limits: [surface.plane.z_min, surface.plane.z_max],
+            scale: surface.scale,
+            write,
+        }
     }
 }
 
@@ -145,9 +159,9 @@ fn rows_from<T>(plane: &mut [T], at: usize) -> [&mut [T]; ROWS_AT_ONCE] {
     [&mut first[..LANES], second]
 }
 
-/// Leaves in `masks` the samples that pass the depth test, and writes their depths if the rule says so. With one
-/// place in the pattern all samples have the depth there. Gives whether depths of samples that passed may differ from what
-/// was stored.
+/// Leaves in `masks` the samples that pass the depth test, and writes their depths if the rule says
+/// so. With one place in the pattern all samples have the depth there. Gives whether depths of
+/// samples that passed may differ from what was stored.
 pub(crate) fn depths<S: Simd>(
     simd: S,
     setup: &Setup,
@@ -200,7 +214,8 @@ pub(crate) fn depths<S: Simd>(
                 return true;
             }
 
-            // Store a block that is covered and passes as a whole: as its plane, if it is one of the tile's blocks.
+            // Store a block that is covered and passes as a whole: as its plane, if it is one of
+            // the tile's blocks.
             if verdict == Verdict::AllPass && full {
                 ranges.set(index, new);
                 if block.is_aligned() {
@@ -214,19 +229,27 @@ pub(crate) fn depths<S: Simd>(
             // Test sample by sample what is stored, or was stored as a plane.
             if let Some(before) = before {
                 let slopes = before.slopes(simd);
-                write_out(simd, tile, block, (before.places == 1, samples), &Test::new(&before, &slopes, true));
+                write_out(
+                    simd,
+                    tile,
+                    block,
+                    (before.places == 1, samples),
+                    &Test::new(&before, &slopes, true),
+                );
             }
             if rule.write {
                 ranges.set(block.index(), [old[0].min(new[0]), old[1].max(new[1])]);
             }
             let opened = tile.open(touched, together, samples);
-            let passing = Passing::new(if verdict == Verdict::AllPass { Compare::Always } else { rule.func });
+            let passing =
+                Passing::new(if verdict == Verdict::AllPass { Compare::Always } else { rule.func });
             pass_samples(simd, block, opened, &test, passing, masks, samples)
         },
     )
 }
 
-/// Writes the depths of a surface to all samples of a block; `together`: they are the same at all samples of a pixel.
+/// Writes the depths of a surface to all samples of a block; `together`: they are the same at all
+/// samples of a pixel.
 #[inline(always)]
 fn write_out<S: Simd>(
     simd: S,
@@ -246,7 +269,8 @@ fn whole_passes(setup: &Setup, scale: f32, func: Compare, empty: f32) -> bool {
     verdict(func, all, [empty; 2]) == Verdict::AllPass
 }
 
-/// Tests the samples of the first `count` planes, which stand for all `samples`; gives whether depths may have changed.
+/// Tests the samples of the first `count` planes, which stand for all `samples`; gives whether
+/// depths may have changed.
 #[inline(always)]
 fn pass_samples<S: Simd>(
     simd: S,
@@ -284,7 +308,8 @@ impl Surface {
     /// The triangle's depths in the block, for each place.
     #[inline(always)]
     fn slopes<S: Simd>(&self, simd: S) -> [Slope<S>; SAMPLES] {
-        let (place, places) = ((self.place[0] as usize, self.place[1] as usize), places(self.places));
+        let (place, places) =
+            ((self.place[0] as usize, self.place[1] as usize), places(self.places));
         let mut slopes = [Slope::new(simd, &self.plane, place, places[0]); SAMPLES];
         for s in 1..places.len().min(SAMPLES) {
             slopes[s] = Slope::new(simd, &self.plane, place, places[s]);
@@ -300,7 +325,8 @@ impl Surface {
             let [low, high] = slope.bounds();
             all = [all[0].min(low), all[1].max(high)];
         }
-        let limited = |depth: f32| stored(depth.max(self.plane.z_min).min(self.plane.z_max), self.scale);
+        let limited =
+            |depth: f32| stored(depth.max(self.plane.z_min).min(self.plane.z_max), self.scale);
         [limited(all[0]), limited(all[1])]
     }
 
@@ -326,8 +352,9 @@ fn fill<S: Simd>(simd: S, block: &Block, values: &mut [f32], count: usize, test:
     }
 }
 
-/// A depth function as bits of two rows: what passes is `((at_least ^ flip[0] | any[0]) & (at_most ^ flip[1] | any[1])) ^ other`. So all
-/// functions are one piece of code without branches.
+/// A depth function as bits of two rows: what passes is
+/// `((at_least ^ flip[0] | any[0]) & (at_most ^ flip[1] | any[1])) ^ other`. So all functions are
+/// one piece of code without branches.
 #[derive(Clone, Copy)]
 pub(super) struct Passing {
     /// Bits that exchange passing and failing of each of the two comparisons.
@@ -354,15 +381,17 @@ impl Passing {
         Self { flip, any, other }
     }
 
-    /// Those that pass, of sixteen new depths of which these are at least, and at most, the old ones.
+    /// Those that pass, of sixteen new depths of which these are at least, and at most, the old
+    /// ones.
     #[inline(always)]
     pub(super) fn of(&self, at_least: u32, at_most: u32) -> u32 {
-        ((at_least ^ self.flip[0] | self.any[0]) & (at_most ^ self.flip[1] | self.any[1])) ^ self.other
+        ((at_least ^ self.flip[0] | self.any[0]) & (at_most ^ self.flip[1] | self.any[1]))
+            ^ self.other
     }
 }
 
-/// Leaves in `mask` the samples whose new depths pass, and writes these if the test does. Not 0 if one of them differs from what
-/// was stored.
+/// Leaves in `mask` the samples whose new depths pass, and writes these if the test does. Not 0 if
+/// one of them differs from what was stored.
 #[inline(always)]
 fn pass_rows<S: Simd>(
     simd: S,
@@ -454,7 +483,8 @@ fn upwards<S: Simd>(simd: S, plane: &DepthPlane, y: i32) -> F32x8<S> {
     dy * (1.0 / SUBPIXEL as f32) * plane.dz_dy + plane.z
 }
 
-/// What a stencil test leaves behind: `covered` samples, those of them that passed it, and those that passed the depth test too.
+/// What a stencil test leaves behind: `covered` samples, those of them that passed it, and those
+/// that passed the depth test too.
 pub(crate) fn update_stencil<S: Simd>(
     simd: S,
     block: &Block,
@@ -495,7 +525,10 @@ pub(crate) fn update_stencil<S: Simd>(
                     // Apply the operations of the outcomes.
                     let masks = [covered, reached, passed].map(|bits| mask_of(simd, bits));
                     let old = load_stencil(simd, stored);
-                    store_stencil(stencil_update(simd, face, old, masks[0], masks[1], masks[2]), stored);
+                    store_stencil(
+                        stencil_update(simd, face, old, masks[0], masks[1], masks[2]),
+                        stored,
+                    );
                 }
             }
         },
@@ -509,8 +542,11 @@ fn replace_bytes(row: &mut [u8], bits: u32, value: u8) {
     if let Some(row) = row.first_chunk_mut::<8>() {
         // Bit i of byte i, then all bits of the bytes that are not 0.
         let single = (u64::from(bits) * LOW_BITS) & 0x8040_2010_0804_0201;
-        let mask = (((single | ((single & !(LOW_BITS << 7)) + (!(LOW_BITS << 7)))) >> 7) & LOW_BITS) * 0xff;
-        *row = ((u64::from_le_bytes(*row) & !mask) | ((u64::from(value) * LOW_BITS) & mask)).to_le_bytes();
+        let mask = (((single | ((single & !(LOW_BITS << 7)) + (!(LOW_BITS << 7)))) >> 7)
+            & LOW_BITS)
+            * 0xff;
+        *row = ((u64::from_le_bytes(*row) & !mask) | ((u64::from(value) * LOW_BITS) & mask))
+            .to_le_bytes();
     }
 }
 
@@ -524,7 +560,9 @@ pub(crate) fn colors<S: Simd>(
     masks: &[u64; SAMPLES],
 ) {
     let samples = planes.samples;
-    let Some(ColorTile::Rgba8(tile)) = planes.color.as_mut().filter(|_| !ops.all_protected) else { return };
+    let Some(ColorTile::Rgba8(tile)) = planes.color.as_mut().filter(|_| !ops.all_protected) else {
+        return;
+    };
     let together = all_alike(masks, samples);
     simd.vectorize(
         #[inline(always)]
@@ -536,7 +574,8 @@ pub(crate) fn colors<S: Simd>(
                 return;
             }
 
-            // Move a block that would reach beyond the tile up, so that its words become the last rows.
+            // Move a block that would reach beyond the tile up, so that its words become the last
+            // rows.
             let (count, values) = tile.open(block.touched(), together, samples);
             let below = block.y.saturating_sub(TILE - BLOCK);
             let mut copy;
@@ -587,7 +626,8 @@ fn replace_block<S: Simd>(simd: S, block: &Block, values: &mut [u32], words: &Wo
     }
 }
 
-/// Writes colours to the pixels of `mask` with all that a draw's state may have: seldom factors, logical operations, masks.
+/// Writes colours to the pixels of `mask` with all that a draw's state may have: seldom factors,
+/// logical operations, masks.
 #[inline(never)]
 fn write_seldom_rows<S: Simd>(
     simd: S,
@@ -608,7 +648,9 @@ fn write_seldom_rows<S: Simd>(
                 |new, old| {
                     let mixed = match (ops.blend_path, &state.blend) {
                         (BlendPath::Logic(op), _) => logic_op(op, new, old),
-                        (BlendPath::General, Some(blend)) => blend_packed::<S, F32x16<S>>(simd, blend, new, old),
+                        (BlendPath::General, Some(blend)) => {
+                            blend_packed::<S, F32x16<S>>(simd, blend, new, old)
+                        }
                         (blend_path, _) => blend_path.blend_fast(new, old),
                     };
                     write_unprotected(mixed, old, ops.protected)
@@ -618,7 +660,8 @@ fn write_seldom_rows<S: Simd>(
     );
 }
 
-/// Brings what `mix` makes of new and stored colours to the pixels of `mask`; `stored` begins with the block's first.
+/// Brings what `mix` makes of new and stored colours to the pixels of `mask`; `stored` begins with
+/// the block's first.
 #[inline(always)]
 fn each_two_rows<S: Simd>(
     simd: S,
@@ -632,7 +675,8 @@ fn each_two_rows<S: Simd>(
         let [first, second] = rows_from(stored, row * TILE);
         let old = U32x8::from_slice(simd, first).combine(U32x8::from_slice(simd, second));
         let new = mix(new, old);
-        let (low, high) = Mask16::from_bitmask(simd, (mask >> (8 * row)) & 0xffff).select(new, old).split();
+        let (low, high) =
+            Mask16::from_bitmask(simd, (mask >> (8 * row)) & 0xffff).select(new, old).split();
         low.store_slice(first);
         high.store_slice(second);
     }

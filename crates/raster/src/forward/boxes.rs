@@ -1,10 +1,12 @@
-//! Boxes of a tile's triangles, in the order of its list: what finds those that may matter at a pixel, eight a step, without a
-//! look at the triangles themselves, which lie all over the memory.
+//! Boxes of a tile's triangles, in the order of its list: what finds those that may matter at a
+//! pixel, eight a step, without a look at the triangles themselves, which lie all over the memory.
 //!
-//! A box is four bytes: how far its columns and rows begin behind the tile's first and end before its last ones. A pixel is four
-//! bytes likewise, and lies within if none of them is below the box's.
+//! A box is four bytes: how far its columns and rows begin behind the tile's first and end before
+//! its last ones. A pixel is four bytes likewise, and lies within if none of them is below the
+//! box's.
 //!
-//! In:   a job's triangles, sorted by tile. Out: entries whose box holds a pixel's middle and whose bound beats a depth.
+//! In:   a job's triangles, sorted by tile. Out: entries whose box holds a pixel's middle and whose
+//!       bound beats a depth.
 //! Cost: some ten operations for eight entries.
 
 use super::wide::max;
@@ -33,7 +35,8 @@ impl Boxes {
         self.bounds.resize(entries + LANES, f32::NEG_INFINITY);
     }
 
-    /// Sets an entry: the [`packed_box`] of a triangle in the tile, and the depth that none of its pixels exceeds.
+    /// Sets an entry: the [`packed_box`] of a triangle in the tile, and the depth that none of its
+    /// pixels exceeds.
     #[inline(always)]
     pub(crate) fn set(&mut self, at: usize, packed: i32, bound: f32) {
         self.boxes[at] = packed;
@@ -53,15 +56,18 @@ impl Boxes {
         most.to_array().into_iter().fold(f32::NEG_INFINITY, f32::max)
     }
 
-    /// First and last column and row of an entry's box, and its bound; none if the box holds no pixel.
+    /// First and last column and row of an entry's box, and its bound; none if the box holds no
+    /// pixel.
     pub(crate) fn get(&self, at: usize) -> Option<([[u8; 2]; 2], f32)> {
         let [x0, x1, y0, y1] = self.boxes[at].to_le_bytes();
-        let side = |first: u8, before: u8| (first + before < TILE as u8).then(|| [first, TILE as u8 - 1 - before]);
+        let side = |first: u8, before: u8| {
+            (first + before < TILE as u8).then(|| [first, TILE as u8 - 1 - before])
+        };
         Some(([side(x0, x1)?, side(y0, y1)?], self.bounds[at]))
     }
 
-    /// Hands out those of some entries whose box holds pixel `(x, y)` of the tile and whose bound is above `floor`; what is
-    /// returned is the next floor.
+    /// Hands out those of some entries whose box holds pixel `(x, y)` of the tile and whose bound
+    /// is above `floor`; what is returned is the next floor.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &self,
@@ -111,7 +117,9 @@ mod tests {
         };
         for (name, level) in available_levels() {
             let ranges = [0..setups.len(), 3..8, 9..9, 11..setups.len() - 5];
-            for (range, [x, y]) in ranges.iter().flat_map(|r| [[0, 0], [63, 63], [5, 40], [31, 7]].map(|at| (r, at))) {
+            for (range, [x, y]) in
+                ranges.iter().flat_map(|r| [[0, 0], [63, 63], [5, 40], [31, 7]].map(|at| (r, at)))
+            {
                 for floor in [f32::NEG_INFINITY, 0.9] {
                     let mut found = Vec::new();
                     let mut find = |at| {
@@ -120,17 +128,21 @@ mod tests {
                     };
                     dispatch!(level, simd => boxes.find(simd, range.clone(), [x, y], floor, &mut find));
                     let holds = |s: &Setup| within(s.x, x) && within(s.y, y) && s.z_max > floor;
-                    let expected: Vec<usize> = range.clone().filter(|&at| holds(&setups[at])).collect();
+                    let expected: Vec<usize> =
+                        range.clone().filter(|&at| holds(&setups[at])).collect();
                     assert_eq!(found, expected, "{name} {range:?} {x} {y} {floor}");
                 }
                 let largest = dispatch!(level, simd => boxes.largest(simd, range.clone()));
-                let expected = setups[range.clone()].iter().fold(f32::NEG_INFINITY, |most, s| most.max(s.z_max));
+                let expected = setups[range.clone()]
+                    .iter()
+                    .fold(f32::NEG_INFINITY, |most, s| most.max(s.z_max));
                 assert_eq!(largest, expected, "{name} {range:?}");
             }
         }
     }
 
-    /// What a batch enters for each tile of a triangle is the box of the pixels whose middles it may cover there.
+    /// What a batch enters for each tile of a triangle is the box of the pixels whose middles it
+    /// may cover there.
     #[test]
     fn a_batch_keeps_the_boxes_of_its_entries() {
         let viewport = Viewport::new(4 * TILE as u32, 3 * TILE as u32).unwrap();
@@ -141,10 +153,19 @@ mod tests {
         triangles.extend(triangles_at(&triangles, 90 * SUBPIXEL));
         for t in &triangles {
             let corner = |k: usize| CornerPosition { x: t.x[k], y: t.y[k], z: t.z };
-            batch.add_corners([corner(0), corner(1), corner(2)], false, false, None, t.facet, &screen);
+            batch.add_corners(
+                [corner(0), corner(1), corner(2)],
+                false,
+                false,
+                None,
+                t.facet,
+                &screen,
+            );
         }
         let mut entries = Vec::new();
-        batch.finish_with_boxes(&screen, |place, packed, setup| entries.push((place, packed, *setup)));
+        batch.finish_with_boxes(&screen, |place, packed, setup| {
+            entries.push((place, packed, *setup))
+        });
         entries.sort_by_key(|e| e.0);
         let mut seen = 0;
         for tile in 0..12 {
@@ -159,7 +180,8 @@ mod tests {
 
     /// The same triangles elsewhere.
     fn triangles_at(triangles: &[Setup], shift: i32) -> Vec<Setup> {
-        let moved = |t: &Setup| Setup { x: t.x.map(|x| x + shift), y: t.y.map(|y| y + shift / 2), ..*t };
+        let moved =
+            |t: &Setup| Setup { x: t.x.map(|x| x + shift), y: t.y.map(|y| y + shift / 2), ..*t };
         triangles.iter().map(moved).collect()
     }
 }

@@ -1,10 +1,13 @@
-//! Colours of a flat grid of vertices, for a rectangle that is drawn in place of the grid's many small triangles.
+//! Colours of a flat grid of vertices, for a rectangle that is drawn in place of the grid's many
+//! small triangles.
 //!
-//! Each cell of the grid is two triangles. The colour at a point is that of the triangle it lies in, interpolated between
-//! that triangle's three vertices, as if it had been drawn alone (Gouraud). Vertices are shaded where pixels ask for them, eight
-//! of a row at a time: of the far part of a plane, and of what lies beside the picture, most are never asked for.
+//! Each cell of the grid is two triangles. The colour at a point is that of the triangle it lies
+//! in, interpolated between that triangle's three vertices, as if it had been drawn alone
+//! (Gouraud). Vertices are shaded where pixels ask for them, eight of a row at a time: of the far
+//! part of a plane, and of what lies beside the picture, most are never asked for.
 //!
-//! In:   places in cells, for groups of eight points or sixteen; who shades vertices. Out: their colours.
+//! In:   places in cells, for groups of eight points or sixteen; who shades vertices. Out: their
+//!       colours.
 
 use super::wide::{bits_of, clamp, every, every_rgba, floor, max, min, select_rgba};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -22,14 +25,15 @@ pub struct ColorGrid {
     rising: bool,
 }
 
-/// Cells that a group of places is interpolated in cell by cell; places in further cells are interpolated one by one.
+/// Cells that a group of places is interpolated in cell by cell; places in further cells are
+/// interpolated one by one.
 const MAX_CELLS: usize = 3;
 
 /// Colours of eight vertices of a row: two words each, red and green, blue and alpha.
 type EightColors = [AtomicU64; 2 * LANES];
 
-/// Colours of the vertices of grids, as far as they were asked for. Threads may shade the same vertices at the same time: they
-/// come to the same colours.
+/// Colours of the vertices of grids, as far as they were asked for. Threads may shade the same
+/// vertices at the same time: they come to the same colours.
 #[derive(Debug, Default)]
 pub struct GridColors {
     /// Whether an eight is shaded.
@@ -38,7 +42,8 @@ pub struct GridColors {
     colors: Vec<EightColors>,
 }
 
-/// Shades the eight vertices of row `row` from column `8 * eight` on, RGBA; some may be beyond the row's end.
+/// Shades the eight vertices of row `row` from column `8 * eight` on, RGBA; some may be beyond the
+/// row's end.
 pub(crate) type ShadeEight<'a> = dyn Fn(u32, u32) -> [[f32; 4]; LANES] + 'a;
 
 impl GridColors {
@@ -58,13 +63,22 @@ impl GridColors {
         grid
     }
 
-    /// The two words of a vertex of an eight, which is shaded at the first call; black where there is none.
+    /// The two words of a vertex of an eight, which is shaded at the first call; black where there
+    /// is none.
     #[inline(always)]
-    fn words(&self, eight: usize, lane: usize, shade: impl FnOnce() -> [[f32; 4]; LANES]) -> [u64; 2] {
-        let (Some(known), Some(colors)) = (self.known.get(eight), self.colors.get(eight)) else { return [0; 2] };
+    fn words(
+        &self,
+        eight: usize,
+        lane: usize,
+        shade: impl FnOnce() -> [[f32; 4]; LANES],
+    ) -> [u64; 2] {
+        let (Some(known), Some(colors)) = (self.known.get(eight), self.colors.get(eight)) else {
+            return [0; 2];
+        };
         // Whoever sees `known` sees the colours that were stored before it.
         if !known.load(Ordering::Acquire) {
-            let pair = |low: f32, high: f32| u64::from(low.to_bits()) | u64::from(high.to_bits()) << 32;
+            let pair =
+                |low: f32, high: f32| u64::from(low.to_bits()) | u64::from(high.to_bits()) << 32;
             for (words, [r, g, b, a]) in colors.chunks_exact(2).zip(shade()) {
                 words[0].store(pair(r, g), Ordering::Relaxed);
                 words[1].store(pair(b, a), Ordering::Relaxed);
@@ -105,7 +119,8 @@ impl ColorGrid {
                 let (column, row) = (i as u32, j as u32);
                 let eight = (row as usize).wrapping_mul(self.across()) + column as usize / LANES;
                 let vertex = column as usize % LANES;
-                let words = colors.words(self.first + eight, vertex, || shade(row, column / LANES as u32));
+                let words =
+                    colors.words(self.first + eight, vertex, || shade(row, column / LANES as u32));
                 bytemuck::cast::<[u64; 2], [f32; 4]>(words)
             },
         );
@@ -170,12 +185,19 @@ impl ColorGrid {
         let [columns, rows] = self.size.map(|n| (n - 1) as f32);
         let x = clamp(place[0], 0.0, columns);
         let y = clamp(place[1], 0.0, rows);
-        let (i, j) = (min(floor(x), every(simd, columns - 1.0)), min(floor(y), every(simd, rows - 1.0)));
+        let (i, j) =
+            (min(floor(x), every(simd, columns - 1.0)), min(floor(y), every(simd, rows - 1.0)));
         let (mut fx, fy) = (x - i, y - j);
         if !self.rising {
             fx = -fx + 1.0;
         }
-        Cell { i: i.to_int(), j: j.to_int(), across: fx.simd_ge(fy), a: max(fx, fy), b: min(fx, fy) }
+        Cell {
+            i: i.to_int(),
+            j: j.to_int(),
+            across: fx.simd_ge(fy),
+            a: max(fx, fy),
+            b: min(fx, fy),
+        }
     }
 
     /// The colours of places in different cells.
@@ -202,7 +224,12 @@ impl ColorGrid {
                             #[inline(always)]
                             |lane| bytemuck::cast(words(vertex(first + lane))),
                         );
-                        [columns[0].bitcast(), columns[1].bitcast(), columns[2].bitcast(), columns[3].bitcast()]
+                        [
+                            columns[0].bitcast(),
+                            columns[1].bitcast(),
+                            columns[2].bitcast(),
+                            columns[3].bitcast(),
+                        ]
                     },
                 )
             },
@@ -210,15 +237,19 @@ impl ColorGrid {
 
         // Interpolate between the corners of each place's half of the cell.
         let middle = |lane: usize| {
-            if across >> lane & 1 == 1 { [i[lane] + end, j[lane]] } else { [i[lane] + start, j[lane] + 1] }
+            if across >> lane & 1 == 1 {
+                [i[lane] + end, j[lane]]
+            } else {
+                [i[lane] + start, j[lane] + 1]
+            }
         };
         let begin = fetch(&|lane| [i[lane] + start, j[lane]]);
         cell.along(&begin, &fetch(&middle), &fetch(&|lane| [i[lane] + end, j[lane] + 1]))
     }
 }
 
-/// Cells that places lie in, and where in them: from the corner where the diagonal begins, `a` along the longer way to a middle
-/// corner, then `b` to the diagonal's end.
+/// Cells that places lie in, and where in them: from the corner where the diagonal begins, `a`
+/// along the longer way to a middle corner, then `b` to the diagonal's end.
 #[derive(Clone, Copy)]
 struct Cell<S: Simd, V: Floats<S>> {
     i: V::Ints,
@@ -242,7 +273,8 @@ impl<S: Simd, V: Floats<S>> Cell<S, V> {
         self.i.simd_eq(i) & self.j.simd_eq(j)
     }
 
-    /// The colours in a cell of which these are the corners: where the diagonal begins, those beside and above it, where it ends.
+    /// The colours in a cell of which these are the corners: where the diagonal begins, those
+    /// beside and above it, where it ends.
     #[inline(always)]
     fn between(&self, [start, beside, above, end]: &[[V; 4]; 4]) -> [V; 4] {
         self.along(start, &select_rgba(self.across, *beside, *above), end)
@@ -287,10 +319,20 @@ mod tests {
 
     #[test]
     fn colours_are_those_of_the_small_triangles_and_shaded_once() {
-        let interpolate_each =
-            [[0.0, 0.0], [0.3, 0.2], [7.3, 0.9], [8.5, 0.5], [2.9, 1.8], [19.0, 2.0], [7.9, 1.1], [1.0, 1.0]];
+        let interpolate_each = [
+            [0.0, 0.0],
+            [0.3, 0.2],
+            [7.3, 0.9],
+            [8.5, 0.5],
+            [2.9, 1.8],
+            [19.0, 2.0],
+            [7.9, 1.1],
+            [1.0, 1.0],
+        ];
         let within = [0.0, 0.2, 0.4, 0.5, 0.7, 0.9, 0.1, 0.3].map(|x| [7.0 + x, 1.0 + x * x]);
-        for (rising, places) in [(false, interpolate_each), (true, interpolate_each), (false, within), (true, within)] {
+        for (rising, places) in
+            [(false, interpolate_each), (true, interpolate_each), (false, within), (true, within)]
+        {
             for (name, level) in available_levels() {
                 let mut colors = GridColors::default();
                 colors.add([9, 9], true);

@@ -1,5 +1,5 @@
-//! Between which depths a tile's blocks lie, found where it is asked for: what lies wholly before or behind all of a block
-//! need not be compared sample by sample.
+//! Between which depths a tile's blocks lie, found where it is asked for: what lies wholly before
+//! or behind all of a block need not be compared sample by sample.
 //!
 //! Source: [Greene et al. 1993], with one level and both bounds.
 
@@ -47,7 +47,13 @@ impl DepthRanges {
 
     /// The bounds of a block.
     #[inline(always)]
-    pub(crate) fn of<S: Simd>(&mut self, simd: S, tile: &mut PlaneTile<f32>, block: usize, samples: usize) -> [f32; 2] {
+    pub(crate) fn of<S: Simd>(
+        &mut self,
+        simd: S,
+        tile: &mut PlaneTile<f32>,
+        block: usize,
+        samples: usize,
+    ) -> [f32; 2] {
         let (bit, block) = (1 << (block % COUNT), block % COUNT);
         if self.known & bit == 0 {
             let [least, largest] = match (tile.cleared(bit), tile.surface(block)) {
@@ -114,7 +120,8 @@ mod tests {
     #[test]
     fn verdicts_are_those_of_all_pairs() {
         use Compare::{Always, Equal, Greater, GreaterOrEqual, Less, LessOrEqual, Never, NotEqual};
-        let ranges: Vec<[f32; 2]> = (0..4).flat_map(|a| (a..4).map(move |b| [a as f32, b as f32])).collect();
+        let ranges: Vec<[f32; 2]> =
+            (0..4).flat_map(|a| (a..4).map(move |b| [a as f32, b as f32])).collect();
         for func in [Always, Equal, Greater, GreaterOrEqual, Less, LessOrEqual, Never, NotEqual] {
             let mut decided = 0;
             for [new, old] in ranges.iter().flat_map(|a| ranges.iter().map(move |b| [*a, *b])) {
@@ -123,7 +130,10 @@ mod tests {
                 for n in new {
                     for o in old {
                         let pass = holds(func, n, o);
-                        assert!(verdict == Verdict::Differs || pass == (verdict == Verdict::AllPass), "{func:?}");
+                        assert!(
+                            verdict == Verdict::Differs || pass == (verdict == Verdict::AllPass),
+                            "{func:?}"
+                        );
                     }
                 }
             }

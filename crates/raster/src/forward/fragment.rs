@@ -1,19 +1,24 @@
-//! What happens to the fragments of a row of eight pixels: the specification's per-fragment operations, in their order.
+//! What happens to the fragments of a row of eight pixels: the specification's per-fragment
+//! operations, in their order.
 //!
-//! Scissor (the clip rectangle), alpha test, stencil test, depth test, blending, logic operation, masks. Depth is looked at
-//! once before colours are computed, without writing, so that hidden fragments are not shaded; nothing can tell, because
-//! a fragment that fails the depth test changes at most the stencil.
+//! Scissor (the clip rectangle), alpha test, stencil test, depth test, blending, logic operation,
+//! masks. Depth is looked at once before colours are computed, without writing, so that hidden
+//! fragments are not shaded; nothing can tell, because a fragment that fails the depth test changes
+//! at most the stencil.
 
 use super::depth_ranges::DepthRanges;
 use super::fragment_ops::blend::{Components, blend, blend_packed};
 use super::fragment_ops::compare::{alpha_test, depth_test};
 use super::fragment_ops::coverage::{alpha_coverage, sample_coverage_bits};
-use super::fragment_ops::logic::{logic_op, logic_op_of_16_bits, protected_bits, write_unprotected};
+use super::fragment_ops::logic::{
+    logic_op, logic_op_of_16_bits, protected_bits, write_unprotected,
+};
 use super::fragment_ops::packed::{add_packed, add_scaled_packed, mix_packed, pack, unpack};
 use super::fragment_ops::stencil::{load_stencil, stencil_test, stencil_update, store_stencil};
 use super::plane::PlaneTile;
 use super::state::{
-    Blend, BlendEquation, BlendFactor, Clamping, Compare, FragmentState, LogicOp, StencilFace, StencilOp,
+    Blend, BlendEquation, BlendFactor, Clamping, Compare, FragmentState, LogicOp, StencilFace,
+    StencilOp,
 };
 use super::wide::{Rgba, bits_of, every, floor, mask_of, saturate_rgba, select, splat};
 use crate::{TILE, TILE_PIXELS};
@@ -89,7 +94,11 @@ pub(crate) fn stored_depth<S: Simd, V: Floats<S>>(simd: S, depth: V, scale: f32)
     }
     let scaled = depth * scale;
     // From 2^23 on every number is whole, and adding a half would round again.
-    let half = select(scaled.simd_lt(every::<S, V>(simd, 8_388_608.0)), every(simd, 0.5), every::<S, V>(simd, 0.0));
+    let half = select(
+        scaled.simd_lt(every::<S, V>(simd, 8_388_608.0)),
+        every(simd, 0.5),
+        every::<S, V>(simd, 0.0),
+    );
     floor(scaled + half)
 }
 
@@ -164,10 +173,20 @@ impl FragmentOps {
         let blend_path = blend_path(state);
         let writes_stencil = !state.stencil.is_none_or(|s| keeps(&s.front) && keeps(&s.back));
         // The alpha test comes before a stencil that changes.
-        let by_rows = (writes_stencil && state.alpha_test.is_some()) || state.srgb || state.sample_coverage.is_some();
+        let by_rows = (writes_stencil && state.alpha_test.is_some())
+            || state.srgb
+            || state.sample_coverage.is_some();
         let common = !(by_rows || state.alpha_to_coverage || state.alpha_to_one);
-        let direct = common && !writes_stencil && state.query.is_none() && state.polygon_stipple.is_none();
-        Self { blend_path, protected, common, direct, all_protected: state.masked == [true; 4], coverage }
+        let direct =
+            common && !writes_stencil && state.query.is_none() && state.polygon_stipple.is_none();
+        Self {
+            blend_path,
+            protected,
+            common,
+            direct,
+            all_protected: state.masked == [true; 4],
+            coverage,
+        }
     }
 }
 
@@ -185,7 +204,9 @@ fn blend_path(state: &FragmentState) -> BlendPath {
     }
 
     // Recognise the common factors; everything else is general.
-    let Some(Blend { source, destination, equation, .. }) = state.blend else { return BlendPath::Replace };
+    let Some(Blend { source, destination, equation, .. }) = state.blend else {
+        return BlendPath::Replace;
+    };
     if equation != [BlendEquation::Add; 2] {
         return BlendPath::General;
     }
@@ -216,7 +237,8 @@ pub(crate) struct RowFragments<'a, S: Simd> {
     pub color: Rgba<S>,
 }
 
-/// Leaves out of `bits` the pixels that fail the alpha test, and the samples that multisampling does not cover.
+/// Leaves out of `bits` the pixels that fail the alpha test, and the samples that multisampling
+/// does not cover.
 #[inline(always)]
 fn mask_coverage<S: Simd>(
     simd: S,
@@ -251,7 +273,8 @@ fn mask_coverage<S: Simd>(
 }
 
 impl TilePlanes<'_> {
-    /// Which of the covered samples would pass the depth test, if that can be told before stencil and alpha test.
+    /// Which of the covered samples would pass the depth test, if that can be told before stencil
+    /// and alpha test.
     #[inline(always)]
     pub(crate) fn visible<S: Simd>(
         &mut self,
@@ -264,7 +287,8 @@ impl TilePlanes<'_> {
         let mut visible = *bits;
 
         // Leave what the stencil test may change, and what always passes.
-        let (Some(test), None, Some((tile, _))) = (state.depth, &state.stencil, &mut self.depth) else {
+        let (Some(test), None, Some((tile, _))) = (state.depth, &state.stencil, &mut self.depth)
+        else {
             return visible;
         };
         if test.func == Compare::Always {
@@ -286,8 +310,9 @@ impl TilePlanes<'_> {
         visible
     }
 
-    /// Alpha test, coverage by alpha, stencil and depth test with their writes, and the colour of what passes. `settled`:
-    /// [`Self::visible`] has left the samples that pass stencil and depth test.
+    /// Alpha test, coverage by alpha, stencil and depth test with their writes, and the colour of
+    /// what passes. `settled`: [`Self::visible`] has left the samples that pass stencil and depth
+    /// test.
     #[inline(always)]
     pub(crate) fn fragments<S: Simd>(
         &mut self,
@@ -493,7 +518,12 @@ fn general_packed<S: Simd>(simd: S, state: &Blend, color: U32x8<S>, stored: U32x
 
 /// Colours that are stored sRGB-encoded: decoded, blended, encoded.
 #[inline(never)]
-fn srgb_packed<S: Simd>(simd: S, state: &FragmentState, color: &Rgba<S>, stored: U32x8<S>) -> U32x8<S> {
+fn srgb_packed<S: Simd>(
+    simd: S,
+    state: &FragmentState,
+    color: &Rgba<S>,
+    stored: U32x8<S>,
+) -> U32x8<S> {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -517,7 +547,13 @@ fn srgb_packed<S: Simd>(simd: S, state: &FragmentState, color: &Rgba<S>, stored:
 }
 
 #[inline(never)]
-fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba<S>, values: &mut [[f32; 4]]) {
+fn write_floats<S: Simd>(
+    simd: S,
+    state: &FragmentState,
+    bits: u32,
+    color: &Rgba<S>,
+    values: &mut [[f32; 4]],
+) {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -541,9 +577,16 @@ fn write_floats<S: Simd>(simd: S, state: &FragmentState, bits: u32, color: &Rgba
                     F32x8::from_slice(simd, &soa[3]),
                 ];
                 let results = state.clamping == Clamping::Results;
-                new = blend(simd, b, color, stored, if results { Components::Unit } else { Components::Unclamped });
+                new = blend(
+                    simd,
+                    b,
+                    color,
+                    stored,
+                    if results { Components::Unit } else { Components::Unclamped },
+                );
             }
-            let mut new = [new[0].to_array(), new[1].to_array(), new[2].to_array(), new[3].to_array()];
+            let mut new =
+                [new[0].to_array(), new[1].to_array(), new[2].to_array(), new[3].to_array()];
             // Floating-point colours have no bits to combine.
             if let (Some(op), Clamping::Results) = (state.logic_op, state.clamping) {
                 let both = new.as_flattened_mut().iter_mut().zip(soa.as_flattened());
@@ -570,4 +613,5 @@ pub(crate) fn columns(first: i32, x0: i32, x1: i32) -> u32 {
     if high <= low { 0 } else { ((1u32 << high) - 1) & !((1u32 << low) - 1) }
 }
 
-const _: () = assert!(TILE.is_multiple_of(LANES), "rows of a tile are cut into whole rows of eight");
+const _: () =
+    assert!(TILE.is_multiple_of(LANES), "rows of a tile are cut into whole rows of eight");

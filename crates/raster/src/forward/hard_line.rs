@@ -1,9 +1,10 @@
 //! Lines with hard borders, pixel by pixel along their longer axis.
 //!
-//! An aliased line is a parallelogram: its ends moved apart by whole pixels along the shorter axis. So it covers as many
-//! pixels of every column (row) between its ends, and where these begin is a quotient of whole numbers that grows by equal
-//! steps. The pixels are those of the parallelogram's two triangles by the top-left rule, which as long thin triangles
-//! would be looked for in many blocks.
+//! An aliased line is a parallelogram: its ends moved apart by whole pixels along the shorter axis.
+//! So it covers as many pixels of every column (row) between its ends, and where these begin is a
+//! quotient of whole numbers that grows by equal steps. The pixels are those of the parallelogram's
+//! two triangles by the top-left rule, which as long thin triangles would be looked for in many
+//! blocks.
 //!
 //! In:   a line on the grid of 1/256 pixel. Out: boxes of 8x8 pixels with the covered ones.
 //! Cost: linear in its length.
@@ -42,7 +43,8 @@ impl HardLine {
         if start > end {
             return false;
         }
-        let slope = f64::from(to[across] - from[across]) / f64::from((to[along] - from[along]).max(1));
+        let slope =
+            f64::from(to[across] - from[across]) / f64::from((to[along] - from[along]).max(1));
         let at = |v: i32| f64::from(from[across]) + f64::from(v - from[along]) * slope;
         let (a, b) = (at(start), at(end));
         // A pixel more on both sides than what rounding may do.
@@ -52,30 +54,42 @@ impl HardLine {
         high >= f64::from(tile[across] * side) && low <= f64::from((tile[across] + 1) * side)
     }
 
-    /// Calls `box_of` with the first column and row in the tile of boxes of 8x8 pixels, and the pixels that are covered (bit
-    /// `8 * row + column`), from one end to the other. `tile` is the tile's first pixel; `part` what may be covered of
-    /// it: x0, y0, x1, y1, the last two exclusive.
+    /// Calls `box_of` with the first column and row in the tile of boxes of 8x8 pixels, and the
+    /// pixels that are covered (bit `8 * row + column`), from one end to the other. `tile` is the
+    /// tile's first pixel; `part` what may be covered of it: x0, y0, x1, y1, the last two
+    /// exclusive.
     #[inline(always)]
-    pub(super) fn boxes(&self, tile: [u32; 2], part: [i32; 4], mut box_of: impl FnMut([usize; 2], u64)) {
+    pub(super) fn boxes(
+        &self,
+        tile: [u32; 2],
+        part: [i32; 4],
+        mut box_of: impl FnMut([usize; 2], u64),
+    ) {
         const HALF: i32 = SUBPIXEL / 2;
         let (along, across) = (self.axis, 1 - self.axis);
-        let [from, to] = self.ordered().map(|end| [0, 1].map(|k| end[k] - tile[k] as i32 * SUBPIXEL));
+        let [from, to] =
+            self.ordered().map(|end| [0, 1].map(|k| end[k] - tile[k] as i32 * SUBPIXEL));
         // The lowest pixel whose centre is not below.
         let above = |v: i32| (v + HALF - 1).div_euclid(SUBPIXEL);
-        let (start, end) = (above(from[along]).max(part[along]), above(to[along]).min(part[along + 2]));
+        let (start, end) =
+            (above(from[along]).max(part[along]), above(to[along]).min(part[along + 2]));
         if start >= end {
             return;
         }
-        let (length, rise) = (i64::from(to[along] - from[along]), i64::from(to[across] - from[across]));
+        let (length, rise) =
+            (i64::from(to[along] - from[along]), i64::from(to[across] - from[across]));
 
-        // Follow the edge in whole numbers: pixel j's centre is not below it where j >= (distance * rise) / whole.
+        // Follow the edge in whole numbers: pixel j's centre is not below it where j >= (distance *
+        // rise) / whole.
         let whole = length * i64::from(SUBPIXEL);
         let distance = i64::from(start * SUBPIXEL + HALF - from[along]);
         let edge = distance * rise + i64::from(from[across] - HALF) * length;
-        // A centre on the edge belongs to it on the left, and on the lower side of what does not rise to the right.
+        // A centre on the edge belongs to it on the left, and on the lower side of what does not
+        // rise to the right.
         let belongs = along == 1 || rise <= 0;
         let numerator = edge + whole - i64::from(belongs);
-        let (mut first, mut rest) = (numerator.div_euclid(whole) as i32, numerator.rem_euclid(whole));
+        let (mut first, mut rest) =
+            (numerator.div_euclid(whole) as i32, numerator.rem_euclid(whole));
         let step = rise * i64::from(SUBPIXEL);
         let (step, step_rest) = (step.div_euclid(whole) as i32, step.rem_euclid(whole));
 
@@ -94,7 +108,9 @@ impl HardLine {
             let span = [first.max(low), (first + self.width).min(high)];
             if span[0] < span[1] {
                 let wider = [reach[0].min(span[0]), reach[1].max(span[1])];
-                let fits = count == (at - begin) as usize && count < BLOCK && wider[1] - wider[0] <= BLOCK as i32;
+                let fits = count == (at - begin) as usize
+                    && count < BLOCK
+                    && wider[1] - wider[0] <= BLOCK as i32;
                 if count > 0 && !fits {
                     hand_out(&spans[..count], begin, reach[0]);
                     count = 0;
@@ -120,8 +136,8 @@ impl HardLine {
     }
 }
 
-/// The pixels of some steps along an axis, from `begin` on, in the box of 8x8 pixels at `corner`; each step has a span of pixels
-/// along the other axis.
+/// The pixels of some steps along an axis, from `begin` on, in the box of 8x8 pixels at `corner`;
+/// each step has a span of pixels along the other axis.
 #[inline(always)]
 fn box_mask(spans: &[[i32; 2]], begin: i32, corner: [i32; 2], along: usize) -> u64 {
     let mut mask = 0u64;
@@ -152,8 +168,9 @@ mod tests {
         let [a, b] = line.edge;
         let mut moved = [0; 2];
         moved[1 - line.axis] = line.width * SUBPIXEL;
-        let corners = [a, b, [b[0] + moved[0], b[1] + moved[1]], [a[0] + moved[0], a[1] + moved[1]]]
-            .map(|[x, y]| CornerPosition { x, y, z: 0.0 });
+        let corners =
+            [a, b, [b[0] + moved[0], b[1] + moved[1]], [a[0] + moved[0], a[1] + moved[1]]]
+                .map(|[x, y]| CornerPosition { x, y, z: 0.0 });
         [[0, 1, 2], [0, 2, 3]].iter().any(|&[i, j, k]| {
             let triangle = [corners[i], corners[j], corners[k]];
             let area = Setup::doubled_area(triangle[0], triangle[1], triangle[2]);
@@ -175,9 +192,11 @@ mod tests {
         for number in 0..3000 {
             // Many ends lie on centres or borders of pixels.
             let grid = [1, 64, 128][number % 3];
-            let mut end = || [dice(200 * SUBPIXEL / grid) * grid, dice(240 * SUBPIXEL / grid) * grid];
+            let mut end =
+                || [dice(200 * SUBPIXEL / grid) * grid, dice(240 * SUBPIXEL / grid) * grid];
             let edge = [end(), end()];
-            let axis = usize::from((edge[0][0] - edge[1][0]).abs() < (edge[0][1] - edge[1][1]).abs());
+            let axis =
+                usize::from((edge[0][0] - edge[1][0]).abs() < (edge[0][1] - edge[1][1]).abs());
             let line = HardLine { edge, axis, width: 1 + dice(WIDEST) };
             let part = if number % 2 == 0 { [0, 0, side, side] } else { [3, 10, 50, side - 1] };
             let mut found = vec![false; TILE * TILE];

@@ -1,7 +1,7 @@
 //! Recorded commands on one target, and how they run.
 //!
-//! Draws are cut into jobs of about equal size, which turn vertices into facets in parallel; then every tile, in parallel,
-//! walks clears, images and the jobs' facets in the order of the commands.
+//! Draws are cut into jobs of about equal size, which turn vertices into facets in parallel; then
+//! every tile, in parallel, walks clears, images and the jobs' facets in the order of the commands.
 
 use super::assemble::{Facet, Primitives, screen};
 use super::environment::UNITS;
@@ -95,8 +95,8 @@ pub enum ImageColors {
     Words(Vec<u32>),
 }
 
-/// Fragments of a pixel rectangle or bitmap. The fragment of source pixel `(i, j)` covers the pixels whose centres lie
-/// in `[x + zoom_x * i, x + zoom_x * (i + 1)) x [y + zoom_y * j, ...)`.
+/// Fragments of a pixel rectangle or bitmap. The fragment of source pixel `(i, j)` covers the
+/// pixels whose centres lie in `[x + zoom_x * i, x + zoom_x * (i + 1)) x [y + zoom_y * j, ...)`.
 #[derive(Clone, Debug)]
 pub struct ImageFragments {
     /// Window position of the first pixel's corner.
@@ -142,9 +142,16 @@ pub trait Geometry: Send + Sync + std::fmt::Debug {
     /// What tells whether another draw of the pass has the same vertices, as they were given.
     fn vertex_source(&self) -> usize;
     /// Adds a piece's primitives as draw number `draw` of the job.
-    fn emit(&self, level: Level, piece: usize, draw: u32, screen: &ForwardScreen, out: &mut Primitives);
-    /// Colours, RGBA, of the vertices of its [`ColorGrid`](super::ColorGrid) from column `8 * eight` of row `row` on; beyond the row's
-    /// end, any.
+    fn emit(
+        &self,
+        level: Level,
+        piece: usize,
+        draw: u32,
+        screen: &ForwardScreen,
+        out: &mut Primitives,
+    );
+    /// Colours, RGBA, of the vertices of its [`ColorGrid`](super::ColorGrid) from column
+    /// `8 * eight` of row `row` on; beyond the row's end, any.
     fn grid_colors(&self, level: Level, row: u32, eight: u32) -> [[f32; 4]; LANES];
 }
 
@@ -190,9 +197,10 @@ impl Pass {
     /// Whether a command looks a plane up as a texture.
     pub fn samples(&self, plane: &Arc<Mutex<DepthBuffer>>) -> bool {
         self.commands.iter().any(|command| match command {
-            Command::Draw(_, state) | Command::Image(_, state) => {
-                state.units.iter().any(|unit| unit.texture.planes().any(|other| Arc::ptr_eq(other, plane)))
-            }
+            Command::Draw(_, state) | Command::Image(_, state) => state
+                .units
+                .iter()
+                .any(|unit| unit.texture.planes().any(|other| Arc::ptr_eq(other, plane))),
             Command::Clear(_) => false,
         })
     }
@@ -214,7 +222,8 @@ pub struct Runner {
 /// Triangles of a job.
 const JOB: usize = 4096;
 
-/// Jobs whose primitives wait in memory at a time: so many that caches hold them until tiles have walked them.
+/// Jobs whose primitives wait in memory at a time: so many that caches hold them until tiles have
+/// walked them.
 const JOBS_A_ROUND: usize = 16;
 
 /// Tiles of which a runner keeps the memory for what is seen there.
@@ -308,7 +317,10 @@ impl Runner {
             seen = std::mem::take(&mut *lock(&self.seen));
             seen.iter_mut().for_each(TexelCache::clear);
             let viewport = pass.target.viewport;
-            seen.resize_with((viewport.tiles_x() * viewport.tiles_y()) as usize, TexelCache::default);
+            seen.resize_with(
+                (viewport.tiles_x() * viewport.tiles_y()) as usize,
+                TexelCache::default,
+            );
         }
 
         // Assemble the primitives of each round, then walk the tiles.
@@ -320,8 +332,10 @@ impl Runner {
             let first = numbers.clone().next().unwrap_or(0);
             let numbers = first..first + numbers.count();
             let jobs = self.emit_all(&plans, numbers, pass, &forward, None);
-            let items: Vec<Item<'_>> =
-                round.iter().map(|item| self.item(item, pass, &plans, (first, &jobs), (&sampled, &again))).collect();
+            let items: Vec<Item<'_>> = round
+                .iter()
+                .map(|item| self.item(item, pass, &plans, (first, &jobs), (&sampled, &again)))
+                .collect();
             self.tiles(&pass.target, &mut depth, &items, &mut seen);
             drop(items);
             self.spare.give(jobs);
@@ -389,8 +403,9 @@ impl Runner {
         lock(&self.assemblies).push(assembly);
     }
 
-    /// How a pass can be left as it is that draws depths into a texture, if it can: [`pendable`]. What is pending there is
-    /// dropped, since the pass clears all of it; its memory serves this pass.
+    /// How a pass can be left as it is that draws depths into a texture, if it can: [`pendable`].
+    /// What is pending there is dropped, since the pass clears all of it; its memory serves this
+    /// pass.
     fn pendable(&self, pass: &Pass) -> Option<PendingKind> {
         let mut target = lock(pass.target.depth.as_ref()?);
         if !target.sampled || target.viewport() != pass.target.viewport {
@@ -408,7 +423,9 @@ impl Runner {
         let Some(target) = &pass.target.depth else { return };
         let draws = |plan: &Plan| {
             let draw = |(command, _): &(usize, Range<usize>)| match &pass.commands[*command] {
-                Command::Draw(geometry, state) => Some((state.clone(), intersection(geometry.clip(), state.clip))),
+                Command::Draw(geometry, state) => {
+                    Some((state.clone(), intersection(geometry.clip(), state.clip)))
+                }
                 _ => None,
             };
             plan.pieces.iter().filter_map(draw).collect()
@@ -433,13 +450,19 @@ impl Runner {
         match item {
             PlanItem::Command(c) => match &pass.commands[*c] {
                 Command::Clear(clear) => Item::Clear(clear),
-                Command::Image(image, state) => Item::Image(image, state, FragmentOps::new(state, samples)),
+                Command::Image(image, state) => {
+                    Item::Image(image, state, FragmentOps::new(state, samples))
+                }
                 Command::Draw(..) => unreachable!("draws are in jobs"),
             },
             PlanItem::Job(j) => {
-                let draws = plans[*j].pieces.iter().filter_map(|(command, _)| match &pass.commands[*command] {
-                    Command::Draw(geometry, state) => Some(draw_context(&**geometry, state, pass, (sampled, again))),
-                    _ => None,
+                let draws = plans[*j].pieces.iter().filter_map(|(command, _)| {
+                    match &pass.commands[*command] {
+                        Command::Draw(geometry, state) => {
+                            Some(draw_context(&**geometry, state, pass, (sampled, again)))
+                        }
+                        _ => None,
+                    }
                 });
                 let draws = draws.collect();
                 Item::Job { primitives: &jobs[*j - first], draws }
@@ -447,7 +470,8 @@ impl Runner {
         }
     }
 
-    /// Walks all tiles. `depth` is the target's depth plane; `seen` is what was seen in each tile before, or empty.
+    /// Walks all tiles. `depth` is the target's depth plane; `seen` is what was seen in each tile
+    /// before, or empty.
     fn tiles(
         &self,
         target: &Target,
@@ -470,21 +494,27 @@ impl Runner {
         for index in 0..count {
             let (color, depth, stencil) = (colors.next(), depths.next(), stencils.next());
             if items.iter().any(|item| item.touches(index, across)) {
-                let mut planes = TilePlanes::new(color, depth.map(|d| (d, scale)), stencil, target.samples);
+                let mut planes =
+                    TilePlanes::new(color, depth.map(|d| (d, scale)), stencil, target.samples);
                 planes.set_changed();
                 tiles.push((index, planes));
             }
         }
 
         // The first strip of a tile that is cut is drawn in the tile, the others in copies.
-        let (strips, cut) = cut(self.workers.threads(), tiles.iter().map(|(index, _)| *index), items);
-        let others: Vec<(usize, Range<usize>)> =
-            cut.iter().flat_map(|&at| (1..strips).map(move |strip| (at, rows(strip, strips)))).collect();
-        let mut copies: Vec<TileCopy> = others.iter().map(|(at, _)| TileCopy::of(&tiles[*at].1)).collect();
+        let (strips, cut) =
+            cut(self.workers.threads(), tiles.iter().map(|(index, _)| *index), items);
+        let others: Vec<(usize, Range<usize>)> = cut
+            .iter()
+            .flat_map(|&at| (1..strips).map(move |strip| (at, rows(strip, strips))))
+            .collect();
+        let mut copies: Vec<TileCopy> =
+            others.iter().map(|(at, _)| TileCopy::of(&tiles[*at].1)).collect();
         let numbers: Vec<usize> = others.iter().map(|(at, _)| tiles[*at].0).collect();
 
         // Run all strips in parallel.
-        let run = |index, rows, planes, seen| TileRun::new(index, rows, target.viewport, planes, seen);
+        let run =
+            |index, rows, planes, seen| TileRun::new(index, rows, target.viewport, planes, seen);
         let mut runs = Vec::with_capacity(tiles.len() + copies.len());
         let mut seen = seen.iter_mut().enumerate();
         for (at, (index, tile)) in tiles.iter_mut().enumerate() {
@@ -530,14 +560,16 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Locks the depth planes that a pass samples, and the one that it draws to, in the order of their addresses: passes of other
-/// threads, which may draw to what this one samples, do the same.
+/// Locks the depth planes that a pass samples, and the one that it draws to, in the order of their
+/// addresses: passes of other threads, which may draw to what this one samples, do the same.
 fn hold<'a>(
     sampled: &'a [Arc<Mutex<DepthBuffer>>],
     drawn: Option<&'a Arc<Mutex<DepthBuffer>>>,
 ) -> (Held<'a>, Option<MutexGuard<'a, DepthBuffer>>) {
     let held = |plane: &'a Arc<Mutex<DepthBuffer>>| (Arc::as_ptr(plane), lock(plane));
-    let before = |plane: &Arc<Mutex<DepthBuffer>>| drawn.is_some_and(|drawn| Arc::as_ptr(plane) < Arc::as_ptr(drawn));
+    let before = |plane: &Arc<Mutex<DepthBuffer>>| {
+        drawn.is_some_and(|drawn| Arc::as_ptr(plane) < Arc::as_ptr(drawn))
+    };
     let (before, behind) = sampled.split_at(sampled.partition_point(before));
     let mut all: Held<'a> = before.iter().map(held).collect();
     let depth = drawn.map(|plane| lock(plane));
@@ -553,12 +585,17 @@ fn color_tiles<'a>(
     match plane.as_deref_mut() {
         None => Box::new(std::iter::empty()),
         Some(ColorPlane::Rgba8(p)) => Box::new(plane_tiles(Some(p), target).map(ColorTile::Rgba8)),
-        Some(ColorPlane::RgbaF32(p)) => Box::new(plane_tiles(Some(p), target).map(ColorTile::RgbaF32)),
+        Some(ColorPlane::RgbaF32(p)) => {
+            Box::new(plane_tiles(Some(p), target).map(ColorTile::RgbaF32))
+        }
     }
 }
 
 /// The tiles of a plane that lie in a target, which may be smaller.
-fn plane_tiles<T: Copy>(plane: Option<&mut Plane<T>>, target: Viewport) -> impl Iterator<Item = &mut PlaneTile<T>> {
+fn plane_tiles<T: Copy>(
+    plane: Option<&mut Plane<T>>,
+    target: Viewport,
+) -> impl Iterator<Item = &mut PlaneTile<T>> {
     let across = plane.as_ref().map_or(1, |p| p.viewport().tiles_x() as usize);
     let (x, y) = (target.tiles_x() as usize, target.tiles_y() as usize);
     let tiles = plane.map_or([].iter_mut(), |p| p.tiles.iter_mut());
@@ -583,10 +620,14 @@ fn draw_context<'a>(
     // Pack the textures that eight or sixteen lanes can sample at once.
     let plain = state.units.iter().filter(|unit| unit.texture.sampler.anisotropy <= 1.0);
     let plain: Vec<(usize, PackedTexture<'_>)> = plain
-        .filter_map(|unit| Some((unit.index, PackedTexture::new(&unit.texture, planes[unit.index % UNITS])?)))
+        .filter_map(|unit| {
+            Some((unit.index, PackedTexture::new(&unit.texture, planes[unit.index % UNITS])?))
+        })
         .collect();
     let is_flat = |shown: &Shown| {
-        plain.iter().any(|(unit, common)| *unit == shown.unit && matches!(common, PackedTexture::Flat(_)))
+        plain
+            .iter()
+            .any(|(unit, common)| *unit == shown.unit && matches!(common, PackedTexture::Flat(_)))
     };
 
     // Find the texture whose colours are kept for repeated draws.
@@ -624,7 +665,8 @@ struct Shown {
     unit: usize,
 }
 
-/// What [`shown_again`] counts of a draw: nothing where textures are not only multiplied with each other.
+/// What [`shown_again`] counts of a draw: nothing where textures are not only multiplied with each
+/// other.
 fn textures_of(geometry: &dyn Geometry, state: &FragmentState) -> impl Iterator<Item = Shown> {
     let vertices = geometry.vertex_source();
     let multiplied = state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate);
@@ -646,13 +688,15 @@ fn shown_again(commands: &[Command]) -> Vec<Shown> {
         }
     }
     all.sort_unstable();
-    let mut again: Vec<Shown> = all.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();
+    let mut again: Vec<Shown> =
+        all.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();
     again.dedup();
     again
 }
 
-/// The depth planes that are held for the whole pass, each once, in the order of their addresses: those that draws sample
-/// as textures of one level. Others are locked at each lookup, and must not be held besides.
+/// The depth planes that are held for the whole pass, each once, in the order of their addresses:
+/// those that draws sample as textures of one level. Others are locked at each lookup, and must not
+/// be held besides.
 fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthBuffer>>> {
     // Collect the planes that draws sample, those of one level apart.
     let (mut sole, mut others): (Vec<_>, Vec<_>) = (Vec::new(), Vec::new());

@@ -1,16 +1,19 @@
-//! Shadow maps that are drawn where they are looked at: a depth plane may keep the triangles of a pass in place of its texels.
+//! Shadow maps that are drawn where they are looked at: a depth plane may keep the triangles of a
+//! pass in place of its texels.
 //!
-//! A picture asks a shadow map of 16 million texels for some thousands, so it pays to compute those alone. A pass that
-//! clears a texture's depth plane and draws nothing but depths into it, all kept by the same comparison, leaves its tile lists
-//! behind. The first lookups in a tile go through the boxes of its triangles. Then those of a tile of few are sorted by blocks of
-//! texels, and it is never drawn: a texel's value is the nearest (or farthest) of them there, by the same coverage and depth that
-//! drawing uses, and a bound of each triangle's depths decides most. A tile of many is drawn. Either way the bits are the same,
-//! and for a lookup that compares, a bound of all the tile's triangles often decides alone. Whoever needs all texels draws
-//! them: [`PendingDepth::resolve`].
+//! A picture asks a shadow map of 16 million texels for some thousands, so it pays to compute those
+//! alone. A pass that clears a texture's depth plane and draws nothing but depths into it, all kept
+//! by the same comparison, leaves its tile lists behind. The first lookups in a tile go through the
+//! boxes of its triangles. Then those of a tile of few are sorted by blocks of texels, and it is
+//! never drawn: a texel's value is the nearest (or farthest) of them there, by the same coverage
+//! and depth that drawing uses, and a bound of each triangle's depths decides most. A tile of many
+//! is drawn. Either way the bits are the same, and for a lookup that compares, a bound of all the
+//! tile's triangles often decides alone. Whoever needs all texels draws them:
+//! [`PendingDepth::resolve`].
 //!
 //! In:   a pass's primitives. Out: depths of single texels, or a drawn plane.
-//! Cost: a lookup is linear in the triangles of a block of texels in a tile of few, shared by the texels of a tile that are
-//! looked up together; constant in others.
+//! Cost: a lookup is linear in the triangles of a block of texels in a tile of few, shared by the
+//! texels of a tile that are looked up together; constant in others.
 
 use super::assemble::Primitives;
 use super::fragment::{stored, stored_depth};
@@ -61,14 +64,16 @@ enum Known {
     Drawn(Box<[f32; TILE_PIXELS]>),
 }
 
-/// Lookups in a tile of many triangles after which it is drawn; before, each searches the boxes. Small pictures need no more.
+/// Lookups in a tile of many triangles after which it is drawn; before, each searches the boxes.
+/// Small pictures need no more.
 const DRAW_THRESHOLD: u32 = 48;
 
-/// Lookups in a tile of few triangles after which it gets an index; before, each searches the boxes.
-/// Measured: benches/results/2026-11-23-eights.md.
+/// Lookups in a tile of few triangles after which it gets an index; before, each searches the
+/// boxes. Measured: benches/results/2026-11-23-eights.md.
 const INDEX_THRESHOLD: u32 = 24;
 
-/// Number of drawn or indexed tiles that only a large picture reaches. From there on, every tile is prepared at its first lookup.
+/// Number of drawn or indexed tiles that only a large picture reaches. From there on, every tile is
+/// prepared at its first lookup.
 const LARGE_PICTURE_TILES: u32 = 32;
 
 /// Tiles that a thread looks at in one go when a pass is left.
@@ -119,8 +124,8 @@ impl PendingKind {
     }
 }
 
-/// How much larger a depth may be as read than as computed: half a step for rounding when stored, and what two roundings may be
-/// off.
+/// How much larger a depth may be as read than as computed: half a step for rounding when stored,
+/// and what two roundings may be off.
 fn margin(scale: f32) -> f32 {
     if scale == 1.0 { 0.0 } else { 0.5 / scale + 3e-7 }
 }
@@ -139,7 +144,11 @@ pub(crate) fn pendable(pass: &Pass, scale: f32) -> Option<PendingKind> {
     let (first, rest) = pass.commands.split_first()?;
     let Command::Clear(clear) = first else { return None };
     let whole = [0, 0, pass.target.viewport.width as i32, pass.target.viewport.height as i32];
-    if pass.target.samples != 1 || clear.clip != whole || clear.color.is_some() || clear.stencil.is_some() {
+    if pass.target.samples != 1
+        || clear.clip != whole
+        || clear.color.is_some()
+        || clear.stencil.is_some()
+    {
         return None;
     }
 
@@ -171,7 +180,8 @@ pub(crate) fn pendable(pass: &Pass, scale: f32) -> Option<PendingKind> {
 }
 
 impl PendingDepth {
-    /// Keeps a pass's primitives, each job after [`PendingKind::finish`]. `jobs` are with their draws' states and allowed pixels.
+    /// Keeps a pass's primitives, each job after [`PendingKind::finish`]. `jobs` are with their
+    /// draws' states and allowed pixels.
     pub(crate) fn new(
         kind: PendingKind,
         viewport: Viewport,
@@ -190,7 +200,8 @@ impl PendingDepth {
         });
 
         // Join the lists of all tasks.
-        let (mut tiles, mut bounds, mut touching) = (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
+        let (mut tiles, mut bounds, mut touching) =
+            (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
         for (piece_tiles, piece_bounds, piece_touching) in pieces {
             let first = touching.len();
             bounds.extend(piece_bounds);
@@ -202,7 +213,8 @@ impl PendingDepth {
         }
 
         // Round the clear value as it is stored.
-        let clear = if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
+        let clear =
+            if scale == 1.0 { clear } else { (f64::from(clear * scale) + 0.5).floor() as f32 };
         Self {
             sign,
             clear,
@@ -222,8 +234,9 @@ impl PendingDepth {
         self.jobs.into_iter().map(|job| job.primitives)
     }
 
-    /// Whether no triangle can be above `floors`, depths in `0..=1` times the sign, or above the clear value at texels `(x, y)`, as
-    /// far as bounds of tiles tell; lanes without their bit in `active` do not count.
+    /// Whether no triangle can be above `floors`, depths in `0..=1` times the sign, or above the
+    /// clear value at texels `(x, y)`, as far as bounds of tiles tell; lanes without their bit in
+    /// `active` do not count.
     #[inline(always)]
     pub(crate) fn is_clear<S: Simd, V: Floats<S>>(
         &self,
@@ -251,9 +264,10 @@ impl PendingDepth {
         self.clear / self.scale * self.sign
     }
 
-    /// The depths of texels in `0..=1` as they would be read, from the farther of `known` and the clear value on:
-    /// triangles that cannot beat `known` are not looked at, and one that does is enough. Pass `None` for the exact depths.
-    /// Lanes without their bit in `active` yield the clear value.
+    /// The depths of texels in `0..=1` as they would be read, from the farther of `known` and the
+    /// clear value on: triangles that cannot beat `known` are not looked at, and one that does is
+    /// enough. Pass `None` for the exact depths. Lanes without their bit in `active` yield the
+    /// clear value.
     #[inline(always)]
     pub(crate) fn texels<S: Simd, V: Floats<S>>(
         &self,
@@ -281,14 +295,16 @@ impl PendingDepth {
         };
         let settled = known.is_some();
         let bounds = V::from_slice(simd, &bounds[..V::LEN]);
-        let mut open = bits_of(bounds.simd_gt(floors) & bounds.simd_gt(every::<S, V>(simd, best))) & active;
+        let mut open =
+            bits_of(bounds.simd_gt(floors) & bounds.simd_gt(every::<S, V>(simd, best))) & active;
 
         // Visit the tiles of the open lanes.
         let mut depths = every(simd, best);
         while open != 0 {
             // All texels of a tile go together.
             let number = tiles[open.trailing_zeros() as usize % V::LEN];
-            let together = bits_of(tile.simd_eq(<V::Ints as SimdBase<S>>::splat(simd, number))) & open;
+            let together =
+                bits_of(tile.simd_eq(<V::Ints as SimdBase<S>>::splat(simd, number))) & open;
             open &= !together;
             let active = MaskOf::<S, V>::from_bitmask(simd, u64::from(together));
             let texels = TileTexels { x, y, active };
@@ -309,8 +325,8 @@ impl PendingDepth {
         depths * self.sign
     }
 
-    /// The best of a few triangles at texels, if better than `floors` and `best`, or one that is if that settles it; times the
-    /// sign.
+    /// The best of a few triangles at texels, if better than `floors` and `best`, or one that is if
+    /// that settles it; times the sign.
     #[inline(never)]
     fn search<S: Simd, V: Floats<S>>(
         &self,
@@ -330,7 +346,11 @@ impl PendingDepth {
                     #[inline(always)]
                     |best: V| {
                         let higher = max(best, floors);
-                        if settled { select(best.simd_gt(floors), every(simd, f32::INFINITY), higher) } else { higher }
+                        if settled {
+                            select(best.simd_gt(floors), every(simd, f32::INFINITY), higher)
+                        } else {
+                            higher
+                        }
                     },
                 );
 
@@ -346,7 +366,8 @@ impl PendingDepth {
                         // Rounding as stored takes a division: most need none.
                         let near = covered & (depth * self.sign + self.margin).simd_gt(above);
                         if near.any_true() {
-                            let depth = stored_depth(simd, depth, self.scale) / self.scale * self.sign;
+                            let depth =
+                                stored_depth(simd, depth, self.scale) / self.scale * self.sign;
                             best = select(near & depth.simd_gt(above), depth, best);
                             above = next(best);
                         }
@@ -377,7 +398,8 @@ impl PendingDepth {
                 while rest != 0 {
                     let lane = rest.trailing_zeros() as usize % V::LEN;
                     rest &= rest - 1;
-                    depths[lane] = self.scan(simd, [x[lane], y[lane]], tile, settled, floors[lane], best);
+                    depths[lane] =
+                        self.scan(simd, [x[lane], y[lane]], tile, settled, floors[lane], best);
                 }
                 V::from_slice(simd, &depths[..V::LEN])
             },
@@ -386,7 +408,15 @@ impl PendingDepth {
 
     /// The same among those triangles of a tile whose box holds the texel.
     #[inline(always)]
-    fn scan<S: Simd>(&self, simd: S, at: [i32; 2], tile: usize, settled: bool, floor: f32, mut best: f32) -> f32 {
+    fn scan<S: Simd>(
+        &self,
+        simd: S,
+        at: [i32; 2],
+        tile: usize,
+        settled: bool,
+        floor: f32,
+        mut best: f32,
+    ) -> f32 {
         // Search the boxes of every job that touches the tile.
         let place = at.map(|v| v % TILE as i32);
         for &job in &self.touching[self.tiles[tile].jobs.clone()] {
@@ -405,9 +435,17 @@ impl PendingDepth {
         best
     }
 
-    /// A triangle's depth at a texel if it is better than `floor` and `best`, else `best`; times the sign.
+    /// A triangle's depth at a texel if it is better than `floor` and `best`, else `best`; times
+    /// the sign.
     #[inline(always)]
-    fn better(&self, job: &PendingJob, setup: &Setup, [x, y]: [i32; 2], floor: f32, best: f32) -> f32 {
+    fn better(
+        &self,
+        job: &PendingJob,
+        setup: &Setup,
+        [x, y]: [i32; 2],
+        floor: f32,
+        best: f32,
+    ) -> f32 {
         let (px, py) = (x * SUBPIXEL + SUBPIXEL / 2, y * SUBPIXEL + SUBPIXEL / 2);
         let (depth, above) = (setup.depth(px, py), best.max(floor));
         // Rounding as stored takes a division: most need none.
@@ -418,7 +456,8 @@ impl PendingDepth {
         if depth > above && job.allows(setup, x, y) { depth } else { best }
     }
 
-    /// How the texels of a tile are found, of which this call looks up `count`; none if it is looked up too seldom.
+    /// How the texels of a tile are found, of which this call looks up `count`; none if it is
+    /// looked up too seldom.
     #[inline(always)]
     fn known(&self, tile: usize, count: u32) -> Option<&Known> {
         let pending = &self.tiles[tile];
@@ -449,7 +488,8 @@ impl PendingDepth {
         // Gather the candidates of all jobs.
         let mut candidates = Vec::with_capacity(pending.count as usize);
         for &job in &self.touching[pending.jobs.clone()] {
-            let PendingJob { primitives: Primitives { batch, boxes, .. }, draws, .. } = &self.jobs[job as usize];
+            let PendingJob { primitives: Primitives { batch, boxes, .. }, draws, .. } =
+                &self.jobs[job as usize];
             candidates.extend(batch.tile_range(tile).filter_map(|at| {
                 let ((within, bound), setup) = (boxes.get(at)?, batch.item(at));
                 Some(Candidate { within, bound, setup, clip: draws[setup.facet as usize].1 })
@@ -468,7 +508,10 @@ impl PendingDepth {
         let mut nearest = NearestDepths::with_sign((x, y), self.sign);
         for &job in &self.touching[self.tiles[tile].jobs.clone()] {
             let job = &self.jobs[job as usize];
-            nearest.draw_within(level, job.primitives.batch.tile(tile).map(|s| (s, job.window(s.facet, [x, y]))));
+            nearest.draw_within(
+                level,
+                job.primitives.batch.tile(tile).map(|s| (s, job.window(s.facet, [x, y]))),
+            );
         }
         let depths = nearest.into_depths();
         let mut drawn = Box::new([self.clear; TILE_PIXELS]);
@@ -476,8 +519,8 @@ impl PendingDepth {
         drawn
     }
 
-    /// Brings depths, times the sign, into a tile that is clear. Rounding keeps their order: the nearest is the nearest as
-    /// stored.
+    /// Brings depths, times the sign, into a tile that is clear. Rounding keeps their order: the
+    /// nearest is the nearest as stored.
     #[inline(always)]
     fn store<S: Simd>(&self, simd: S, depths: &[f32], tile: &mut [f32; TILE_PIXELS]) {
         let clear = F32x8::splat(simd, self.clear);
@@ -510,16 +553,23 @@ impl PendingDepth {
 
 /// What may decide the texels of some tiles: their jobs lie in the vector that comes with them.
 #[inline(always)]
-fn tiles<S: Simd>(simd: S, jobs: &[PendingJob], range: Range<usize>) -> (Vec<PendingTile>, Vec<f32>, Vec<u32>) {
+fn tiles<S: Simd>(
+    simd: S,
+    jobs: &[PendingJob],
+    range: Range<usize>,
+) -> (Vec<PendingTile>, Vec<f32>, Vec<u32>) {
     // Most jobs touch few tiles: those without triangles are passed over eight at a time.
     let mut touched = Vec::new();
     for (number, job) in (0..).zip(jobs) {
-        job.primitives.batch.touched_tiles(simd, range.clone(), |tile| touched.push([tile, number]));
+        job.primitives
+            .batch
+            .touched_tiles(simd, range.clone(), |tile| touched.push([tile, number]));
     }
     // Jobs come in their order; this brings them together by tile.
     touched.sort_by_key(|t| t[0]);
 
-    let (mut tiles, mut touching) = (Vec::with_capacity(range.len()), Vec::with_capacity(touched.len()));
+    let (mut tiles, mut touching) =
+        (Vec::with_capacity(range.len()), Vec::with_capacity(touched.len()));
     let mut bounds = Vec::with_capacity(range.len());
     let mut rest = touched.as_slice();
 
@@ -563,7 +613,9 @@ fn depths_at<S: Simd, V: Floats<S>>(simd: S, setup: &Setup, texels: &TileTexels<
     let away = lanes::inlined(
         #[inline(always)]
         |texel: V::Ints, axis: usize| -> V {
-            let distance: V = ((texel << SUBPIXEL.trailing_zeros()) + (SUBPIXEL / 2 - setup.origin[axis])).to_float();
+            let distance: V = ((texel << SUBPIXEL.trailing_zeros())
+                + (SUBPIXEL / 2 - setup.origin[axis]))
+                .to_float();
             distance * (1.0 / SUBPIXEL as f32)
         },
     );
@@ -571,7 +623,8 @@ fn depths_at<S: Simd, V: Floats<S>>(simd: S, setup: &Setup, texels: &TileTexels<
     min(max(z, every(simd, setup.z_min)), every(simd, setup.z_max))
 }
 
-/// What later triangles must be above. Nothing is above infinity: what is better than the floor may settle it.
+/// What later triangles must be above. Nothing is above infinity: what is better than the floor may
+/// settle it.
 #[inline(always)]
 fn next_floor(settled: bool, floor: f32, best: f32) -> f32 {
     if settled && best > floor { f32::INFINITY } else { best.max(floor) }

@@ -6,11 +6,13 @@ use super::pending::PendingDepth;
 use super::surface::Surface;
 use crate::{BLOCK, TILE, TILE_PIXELS, Viewport};
 
-/// A tile's samples, 64x64 pixels. Its blocks of 8x8 pixels can be cleared without being written, and can hold one value for
-/// all samples of a pixel: most blocks lie inside one surface, where a colour is written, blended and read once.
+/// A tile's samples, 64x64 pixels. Its blocks of 8x8 pixels can be cleared without being written,
+/// and can hold one value for all samples of a pixel: most blocks lie inside one surface, where a
+/// colour is written, blended and read once.
 #[derive(Clone, Debug)]
 pub struct PlaneTile<T> {
-    /// Index: `sample * TILE_PIXELS + (y % 64) * TILE + x % 64`. Empty until the first sample is written.
+    /// Index: `sample * TILE_PIXELS + (y % 64) * TILE + x % 64`. Empty until the first sample is
+    /// written.
     values: Vec<T>,
     /// What the cleared blocks hold.
     clear: T,
@@ -18,7 +20,8 @@ pub struct PlaneTile<T> {
     cleared: u64,
     /// Bits of blocks whose pixels have one value, stored as sample 0, for all samples.
     single: u64,
-    /// Bits of blocks that are not stored: all of their samples are a surface's. They are not cleared.
+    /// Bits of blocks that are not stored: all of their samples are a surface's. They are not
+    /// cleared.
     surfaced: u64,
     /// The surfaces, by block. Empty until there is one.
     surfaces: Vec<Option<Surface>>,
@@ -199,8 +202,11 @@ impl<T: Copy> PlaneTile<T> {
     /// Copies a sample of the pixels of a row from place `at` on.
     pub fn read(&self, sample: usize, at: usize, out: &mut [T]) {
         let Some(last) = out.len().checked_sub(1) else { return };
-        let blocks = u64::MAX << block_of(at) & u64::MAX >> (u64::BITS as usize - 1 - block_of(at + last));
-        if (self.cleared | self.surfaced) & blocks == 0 && (sample == 0 || self.single & blocks == 0) {
+        let blocks =
+            u64::MAX << block_of(at) & u64::MAX >> (u64::BITS as usize - 1 - block_of(at + last));
+        if (self.cleared | self.surfaced) & blocks == 0
+            && (sample == 0 || self.single & blocks == 0)
+        {
             // The row as it lies in memory.
             let first = sample * TILE_PIXELS + at;
             return out.copy_from_slice(&self.values[first..=first + last]);
@@ -220,9 +226,12 @@ impl<T: Copy> PlaneTile<T> {
             if self.cleared >> block & 1 == 1 {
                 out.fill(self.clear);
             } else if self.surfaced >> block & 1 == 1 {
-                out.copy_from_slice(&self.row(block, sample, here / TILE % BLOCK)[here % BLOCK..][..run]);
+                out.copy_from_slice(
+                    &self.row(block, sample, here / TILE % BLOCK)[here % BLOCK..][..run],
+                );
             } else {
-                let first = if self.single >> block & 1 == 1 { 0 } else { sample * TILE_PIXELS } + here;
+                let first =
+                    if self.single >> block & 1 == 1 { 0 } else { sample * TILE_PIXELS } + here;
                 out.copy_from_slice(&self.values[first..first + run]);
             }
             done += run;
@@ -235,9 +244,9 @@ impl<T: Copy> PlaneTile<T> {
         self.open(u64::MAX, false, samples).1
     }
 
-    /// Makes the blocks of `bits` ready to be changed: cleared ones are filled. Gives how many samples of a pixel must be
-    /// written, and all samples of the tile. That is one sample if what is written is the same for all (`together`), and all
-    /// these blocks hold one value a pixel.
+    /// Makes the blocks of `bits` ready to be changed: cleared ones are filled. Gives how many
+    /// samples of a pixel must be written, and all samples of the tile. That is one sample if what
+    /// is written is the same for all (`together`), and all these blocks hold one value a pixel.
     #[inline(always)]
     pub(crate) fn open(&mut self, bits: u64, together: bool, samples: usize) -> (usize, &mut [T]) {
         // Bring all blocks to the form of stored values.
@@ -261,7 +270,8 @@ impl<T: Copy> PlaneTile<T> {
         (samples, &mut self.values)
     }
 
-    /// Makes a block ready to be overwritten, whatever it holds: with one value for all samples of a pixel, or each.
+    /// Makes a block ready to be overwritten, whatever it holds: with one value for all samples of
+    /// a pixel, or each.
     #[inline(always)]
     pub(crate) fn replace(&mut self, bit: u64, together: bool, samples: usize) -> &mut [T] {
         if self.values.is_empty() {
@@ -291,7 +301,9 @@ impl<T: Copy> PlaneTile<T> {
     #[inline(never)]
     fn fill(&mut self, bits: u64) {
         each_row(bits, |row| {
-            if let Some(eight) = self.values.get_mut(row..).and_then(|rest| rest.first_chunk_mut::<BLOCK>()) {
+            if let Some(eight) =
+                self.values.get_mut(row..).and_then(|rest| rest.first_chunk_mut::<BLOCK>())
+            {
                 *eight = [self.clear; BLOCK];
             }
         });
@@ -318,8 +330,11 @@ impl<T: Copy> PlaneTile<T> {
             }
 
             // Note how many samples are stored.
-            self.single =
-                if stored < samples || samples == 1 { self.single | 1 << block } else { self.single & !(1 << block) };
+            self.single = if stored < samples || samples == 1 {
+                self.single | 1 << block
+            } else {
+                self.single & !(1 << block)
+            };
         }
         self.surfaced &= !bits;
     }
@@ -358,7 +373,8 @@ impl<T: Copy> PlaneTile<T> {
         if surfaces != 0 {
             self.reading = from.reading;
             self.surfaces.resize(BLOCKS * BLOCKS, None);
-            for (block, (into, surface)) in self.surfaces.iter_mut().zip(&from.surfaces).enumerate() {
+            for (block, (into, surface)) in self.surfaces.iter_mut().zip(&from.surfaces).enumerate()
+            {
                 if surfaces >> block & 1 == 1 {
                     *into = *surface;
                 }
@@ -372,7 +388,8 @@ impl<T: Copy> PlaneTile<T> {
                 self.values = vec![self.clear; samples * TILE_PIXELS];
             }
             for s in 0..samples {
-                let (into, from_sample) = (&mut self.values[s * TILE_PIXELS..], &from.values[s * TILE_PIXELS..]);
+                let (into, from_sample) =
+                    (&mut self.values[s * TILE_PIXELS..], &from.values[s * TILE_PIXELS..]);
                 each_row(if s == 0 { written } else { written & !from.single }, |row| {
                     into[row..row + BLOCK].copy_from_slice(&from_sample[row..row + BLOCK]);
                 });
@@ -385,8 +402,15 @@ impl<T: Copy> PlaneTile<T> {
         self.single = self.single & !blocks | from.single & blocks;
     }
 
-    /// Copies everything to a tile of as many samples, or of one, for which `resolve` makes one value of a pixel's samples.
-    pub fn copy_to(&self, samples: usize, target: &mut Self, target_samples: usize, resolve: Resolve<T>) {
+    /// Copies everything to a tile of as many samples, or of one, for which `resolve` makes one
+    /// value of a pixel's samples.
+    pub fn copy_to(
+        &self,
+        samples: usize,
+        target: &mut Self,
+        target_samples: usize,
+        resolve: Resolve<T>,
+    ) {
         target.changed = true;
 
         // Copy everything as it is for the same number of samples.
@@ -413,7 +437,9 @@ impl<T: Copy> PlaneTile<T> {
             values[..TILE_PIXELS].copy_from_slice(&self.values[..TILE_PIXELS]);
             return;
         }
-        each_row(plain, |row| values[row..row + BLOCK].copy_from_slice(&self.values[row..row + BLOCK]));
+        each_row(plain, |row| {
+            values[row..row + BLOCK].copy_from_slice(&self.values[row..row + BLOCK])
+        });
 
         // Evaluate blocks that are stored as planes.
         for block in (0..BLOCKS * BLOCKS).filter(|block| self.surfaced >> block & 1 == 1) {
@@ -423,7 +449,8 @@ impl<T: Copy> PlaneTile<T> {
 
         // Resolve the samples of the other blocks.
         each_row(stored & !plain, |row| {
-            let sources = std::array::from_fn(|s| &self.values[s % samples * TILE_PIXELS + row..][..BLOCK]);
+            let sources =
+                std::array::from_fn(|s| &self.values[s % samples * TILE_PIXELS + row..][..BLOCK]);
             resolve(sources, &mut values[row..row + BLOCK]);
         });
     }
@@ -440,7 +467,10 @@ impl<T: Copy> PlaneTile<T> {
         }
         let [second, third, fourth] = [1, 2, 3].map(|s| self.rows(block, s % samples));
         each_row(1 << block, |at| {
-            resolve([&first[row], &second[row], &third[row], &fourth[row]], &mut target[at..at + BLOCK]);
+            resolve(
+                [&first[row], &second[row], &third[row], &fourth[row]],
+                &mut target[at..at + BLOCK],
+            );
             row += 1;
         });
     }
@@ -449,7 +479,12 @@ impl<T: Copy> PlaneTile<T> {
     pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> PlaneTile<U> {
         debug_assert!(self.reading.is_none(), "the values of a surface are not stored");
         let values = self.values.iter().map(|&v| f(v)).collect();
-        PlaneTile { values, cleared: self.cleared, single: self.single, ..PlaneTile::new(f(self.clear)) }
+        PlaneTile {
+            values,
+            cleared: self.cleared,
+            single: self.single,
+            ..PlaneTile::new(f(self.clear))
+        }
     }
 }
 
@@ -501,14 +536,16 @@ pub enum ColorPlane {
     RgbaF32(Plane<[f32; 4]>),
 }
 
-/// Depth samples: `scale` times the depth in 0..=1, whole numbers unless `scale` is 1 (floating-point depth).
+/// Depth samples: `scale` times the depth in 0..=1, whole numbers unless `scale` is 1
+/// (floating-point depth).
 #[derive(Debug)]
 pub struct DepthBuffer {
     /// The samples, before what is pending.
     pub(crate) plane: Plane<f32>,
     /// 1 for floating point, else `2^bits - 1`.
     pub scale: f32,
-    /// It is a texture's: passes that draw depth alone may leave it pending, since few of its texels may ever be read.
+    /// It is a texture's: passes that draw depth alone may leave it pending, since few of its
+    /// texels may ever be read.
     pub sampled: bool,
     pub(crate) pending: Option<Box<PendingDepth>>,
 }
@@ -576,7 +613,8 @@ mod tests {
             if clears {
                 copy.clear(7);
             }
-            // In the upper half: a block with a value for all samples, and one with values of their own.
+            // In the upper half: a block with a value for all samples, and one with values of their
+            // own.
             let at = |block: usize| block / 8 * BLOCK * TILE + block % 8 * BLOCK;
             copy.open(1 << 40, true, samples).1[at(40)] = 11;
             let own = copy.open(1 << 41, false, samples).1;
@@ -585,8 +623,13 @@ mod tests {
             tile.take(copy, !FIRST, samples);
             let clear = if clears { 7 } else { 3 };
             for s in 0..samples {
-                let found = [5, 6, at(9), at(40), at(40) + 1, at(41), at(41) + 1, at(63)].map(|at| tile.get(s, at));
-                assert_eq!(found, [50, 3, 3, 11, clear, 20 + s as u32, clear, clear], "{clears} {samples} {s}");
+                let found = [5, 6, at(9), at(40), at(40) + 1, at(41), at(41) + 1, at(63)]
+                    .map(|at| tile.get(s, at));
+                assert_eq!(
+                    found,
+                    [50, 3, 3, 11, clear, 20 + s as u32, clear, clear],
+                    "{clears} {samples} {s}"
+                );
             }
         }
     }
@@ -628,7 +671,8 @@ mod tests {
                 12..18 => {
                     let (count, values) = tile.open(1 << block, false, SAMPLES);
                     assert_eq!(count, SAMPLES);
-                    let at = random(SAMPLES) * TILE_PIXELS + place(block, random(BLOCK), random(BLOCK));
+                    let at =
+                        random(SAMPLES) * TILE_PIXELS + place(block, random(BLOCK), random(BLOCK));
                     (values[at], model[at]) = (step, step);
                 }
                 _ => {
@@ -657,7 +701,10 @@ mod tests {
         }
         let mut spread = PlaneTile::new(0);
         resolved.copy_to(1, &mut spread, SAMPLES, largest);
-        assert!((0..TILE_PIXELS).all(|at| (0..SAMPLES).all(|s| spread.get(s, at) == resolved.get(0, at))));
+        assert!(
+            (0..TILE_PIXELS)
+                .all(|at| (0..SAMPLES).all(|s| spread.get(s, at) == resolved.get(0, at)))
+        );
     }
 
     #[test]
@@ -665,7 +712,10 @@ mod tests {
         let mut tile = PlaneTile::new(1.0f32);
         assert_eq!((tile.uniform(), tile.values.len()), (Some(1.0), 0));
         tile.open(1, true, SAMPLES).1[3] = 0.5;
-        assert_eq!((tile.uniform(), tile.get(2, 3), tile.get(2, 4), tile.get(0, 8)), (None, 0.5, 1.0, 1.0));
+        assert_eq!(
+            (tile.uniform(), tile.get(2, 3), tile.get(2, 4), tile.get(0, 8)),
+            (None, 0.5, 1.0, 1.0)
+        );
         tile.clear(0.0);
         assert_eq!((tile.uniform(), tile.get(0, 3)), (Some(0.0), 0.0));
     }

@@ -20,15 +20,20 @@ pub struct WindowTransform {
     pub z_center: f32,
     /// Depth of the near plane in normalised device coordinates: -1, or 0 with `ZERO_TO_ONE`.
     pub near: f32,
-    /// Where the guard band ends: lowest and highest x, y in normalised device coordinates. The band holds the target, not
-    /// always the viewport.
+    /// Where the guard band ends: lowest and highest x, y in normalised device coordinates. The
+    /// band holds the target, not always the viewport.
     pub guard: [[f32; 2]; 2],
 }
 
 impl WindowTransform {
-    /// For a viewport `x, y, width, height`, depth range `near, far`, and whether clip depth runs from 0 to 1, and
-    /// whether y points down (`UPPER_LEFT`).
-    pub fn new([x, y, w, h]: [i32; 4], [near, far]: [f64; 2], zero_to_one: bool, upper_left: bool) -> Self {
+    /// For a viewport `x, y, width, height`, depth range `near, far`, and whether clip depth runs
+    /// from 0 to 1, and whether y points down (`UPPER_LEFT`).
+    pub fn new(
+        [x, y, w, h]: [i32; 4],
+        [near, far]: [f64; 2],
+        zero_to_one: bool,
+        upper_left: bool,
+    ) -> Self {
         let half = [w as f32 * 0.5, h as f32 * 0.5];
         let scale = [half[0], if upper_left { -half[1] } else { half[1] }];
         let (z_scale, z_center, ndc_near) = if zero_to_one {
@@ -44,10 +49,12 @@ impl WindowTransform {
         Self { scale, center, z_scale, z_center, near: ndc_near, guard: [band(0), band(1)] }
     }
 
-    /// Projects and snaps a clipped point. Rounding of very large numbers may have left it outside the guard band.
+    /// Projects and snaps a clipped point. Rounding of very large numbers may have left it outside
+    /// the guard band.
     pub fn project(&self, clip: [f32; 4]) -> CornerPosition {
         let [x, y, z] = self.project_exact(clip);
-        let snapped = |v: f32| (v.clamp(-GUARD_BAND, GUARD_BAND) * SUBPIXEL as f32 + 0.5).floor() as i32;
+        let snapped =
+            |v: f32| (v.clamp(-GUARD_BAND, GUARD_BAND) * SUBPIXEL as f32 + 0.5).floor() as i32;
         CornerPosition { x: snapped(x), y: snapped(y), z }
     }
 
@@ -57,7 +64,8 @@ impl WindowTransform {
         [x, y, z.clamp(0.0, 1.0)]
     }
 
-    /// The same for a point before the near or behind the far plane, whose depth lies beyond the depth range.
+    /// The same for a point before the near or behind the far plane, whose depth lies beyond the
+    /// depth range.
     pub(crate) fn project_beyond(&self, clip: [f32; 4]) -> [f32; 3] {
         let w = clip[3];
         [
@@ -73,25 +81,33 @@ impl WindowTransform {
         [ends[0].min(ends[1]).clamp(0.0, 1.0), ends[0].max(ends[1]).clamp(0.0, 1.0)]
     }
 
-    /// The depth plane of the triangle with these corners in clip space, wherever they are: depth is `a x + b y + c w` for
-    /// all three, before any of them is divided. `origin` is in 1/256 pixel. `None` if the triangle is seen edge on.
-    pub(crate) fn homogeneous_plane(&self, corners: [[f32; 4]; 3], origin: [i32; 2]) -> Option<DepthPlane> {
+    /// The depth plane of the triangle with these corners in clip space, wherever they are: depth
+    /// is `a x + b y + c w` for all three, before any of them is divided. `origin` is in 1/256
+    /// pixel. `None` if the triangle is seen edge on.
+    pub(crate) fn homogeneous_plane(
+        &self,
+        corners: [[f32; 4]; 3],
+        origin: [i32; 2],
+    ) -> Option<DepthPlane> {
         // Solve for the plane's coefficients by Cramer's rule.
         let [p, q, r] = corners.map(|c| c.map(f64::from));
         let column = |k: usize| [p[k], q[k], r[k]];
         let determinant = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
-            a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+            a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+                + a[2] * (b[0] * c[1] - b[1] * c[0])
         };
         let [x, y, z, w] = [column(0), column(1), column(2), column(3)];
         let all = determinant(x, y, w);
-        let factors = [determinant(z, y, w) / all, determinant(x, z, w) / all, determinant(x, y, z) / all];
+        let factors =
+            [determinant(z, y, w) / all, determinant(x, z, w) / all, determinant(x, y, z) / all];
         if !factors.iter().all(|f| f.is_finite()) {
             return None;
         }
 
         // Transform the plane to the window.
         let slope = |k: usize| factors[k] * f64::from(self.z_scale) / f64::from(self.scale[k]);
-        let from_center = |k: usize| f64::from(origin[k]) / f64::from(SUBPIXEL) - f64::from(self.center[k]);
+        let from_center =
+            |k: usize| f64::from(origin[k]) / f64::from(SUBPIXEL) - f64::from(self.center[k]);
         let depth = slope(0) * from_center(0)
             + slope(1) * from_center(1)
             + factors[2] * f64::from(self.z_scale)
@@ -99,7 +115,14 @@ impl WindowTransform {
         // Far beyond the range one number is as good as another, and these do not overflow.
         let held = |v: f64| v.clamp(-1e20, 1e20) as f32;
         let [z_min, z_max] = self.depth_range();
-        Some(DepthPlane { z: held(depth), dz_dx: held(slope(0)), dz_dy: held(slope(1)), origin, z_min, z_max })
+        Some(DepthPlane {
+            z: held(depth),
+            dz_dx: held(slope(0)),
+            dz_dy: held(slope(1)),
+            origin,
+            z_min,
+            z_max,
+        })
     }
 }
 
@@ -115,7 +138,10 @@ pub fn project(
     clip: &mut [[f32; 4]],
     screen: &mut [ScreenVertex],
 ) {
-    assert!(positions.len() == clip.len() && positions.len() == screen.len(), "one result for each position");
+    assert!(
+        positions.len() == clip.len() && positions.len() == screen.len(),
+        "one result for each position"
+    );
     dispatch!(level, simd => project_all(simd, positions, matrix, window, clip, screen));
 }
 
@@ -210,7 +236,8 @@ fn to_window<S: Simd>(
     let finite = (x * 0.0 + y * 0.0 + z * 0.0 + w * 0.0).simd_eq(zero);
     let flags = outside | bit(simd, !in_band, flag::CLIP) | bit(simd, !finite, flag::NOT_FINITE);
 
-    // Divide and snap; lanes that will be clipped get harmless numbers. The order of operations is `project_exact`'s.
+    // Divide and snap; lanes that will be clipped get harmless numbers. The order of operations is
+    // `project_exact`'s.
     let safe_w = in_band.select(w, one);
     let sx = x / safe_w * window.scale[0] + window.center[0];
     let sy = y / safe_w * window.scale[1] + window.center[1];
@@ -220,7 +247,8 @@ fn to_window<S: Simd>(
     (whole(in_band, gx), whole(in_band, gy), sz, flags | residues(in_band, gx, gy))
 }
 
-/// What is left of places on the grid, half a step to the right and below, when they are snapped: as the bits of flags.
+/// What is left of places on the grid, half a step to the right and below, when they are snapped:
+/// as the bits of flags.
 #[inline(always)]
 fn residues<S: Simd>(in_band: Mask8<S>, x: F32x8<S>, y: F32x8<S>) -> U32x8<S> {
     let kept = lanes::inlined(
@@ -233,7 +261,8 @@ fn residues<S: Simd>(in_band: Mask8<S>, x: F32x8<S>, y: F32x8<S>) -> U32x8<S> {
         },
     );
     // Half a step is in them: to take it off is to turn the highest bit over.
-    let halves = in_band.select(U32x8::splat(in_band.token(), HALVES), U32x8::splat(in_band.token(), 0));
+    let halves =
+        in_band.select(U32x8::splat(in_band.token(), HALVES), U32x8::splat(in_band.token(), 0));
     (kept(x) << flag::RESIDUE_X | kept(y) << flag::RESIDUE_Y) ^ halves
 }
 

@@ -1,4 +1,5 @@
-//! From a facet to the colours of a row of eight pixels: interpolation, textures (`textures.rs`), fog.
+//! From a facet to the colours of a row of eight pixels: interpolation, textures (`textures.rs`),
+//! fog.
 
 mod eight_facets;
 mod texel_cache;
@@ -46,11 +47,13 @@ pub struct Layout {
     pub line_stipple: Option<(i32, u16)>,
     /// Coverage of lines, points, polygons is computed and multiplies alpha.
     pub smooth: [bool; 3],
-    /// Records hold nothing but colours, the same in all: one serves a whole piece, with 1 in place of `1 / w`.
+    /// Records hold nothing but colours, the same in all: one serves a whole piece, with 1 in place
+    /// of `1 / w`.
     pub uniform: bool,
 }
 
-/// Most numbers in a record: `1 / w`, primary and secondary colours of both sides, fog, eight units' coordinates, the grid's.
+/// Most numbers in a record: `1 / w`, primary and secondary colours of both sides, fog, eight
+/// units' coordinates, the grid's.
 const MAX_NUMBERS: usize = 64;
 
 /// A facet's records as they are interpolated: number `k` is `base[k] + b1 * d1[k] + b2 * d2[k]`.
@@ -79,7 +82,8 @@ impl Differences {
         let mut from = 0;
         while from < stride.min(MAX_NUMBERS) {
             let a = eight(simd, records, corners[0] + from);
-            let (b, c) = (eight(simd, records, corners[1] + from), eight(simd, records, corners[2] + from));
+            let (b, c) =
+                (eight(simd, records, corners[1] + from), eight(simd, records, corners[2] + from));
             let (d1, d2) = (b - a, c - a);
             let zero = splat(simd, 0.0);
             let same = bits_of(d1.simd_eq(zero) & d2.simd_eq(zero));
@@ -117,10 +121,11 @@ pub(crate) struct Scratch {
 /// `1 / w` of a facet's corners differs much if it differs by more than this factor.
 const MOST_W: f32 = 8.0;
 
-/// A facet made ready to be interpolated. With `l` a corner's screen-space barycentric coordinate, `l1 / w1`, `l2 / w2` and
-/// `Σ l / w` are planes over the pixels: their value at `origin`, their change with x, with y. The origin is corner 0, so that
-/// what lies on a grid of pixels stays exact. But where `1 / w` differs much, corners lie far away or near the eye: then
-/// it is the tile's, and the planes' values there are found in double precision.
+/// A facet made ready to be interpolated. With `l` a corner's screen-space barycentric coordinate,
+/// `l1 / w1`, `l2 / w2` and `Σ l / w` are planes over the pixels: their value at `origin`, their
+/// change with x, with y. The origin is corner 0, so that what lies on a grid of pixels stays
+/// exact. But where `1 / w` differs much, corners lie far away or near the eye: then it is the
+/// tile's, and the planes' values there are found in double precision.
 #[derive(Default)]
 struct Interpolation {
     /// Pixel position of the planes' values, in the target.
@@ -133,13 +138,15 @@ struct Interpolation {
     sum: [f32; 3],
     /// `w` of all corners, if it is the same.
     flat_w: Option<f32>,
-    /// Unit edge normals and offsets of the triangle, for smooth polygons: distance = a x + b y + c.
+    /// Unit edge normals and offsets of the triangle, for smooth polygons: distance = a x + b y +
+    /// c.
     edges: [[f32; 3]; 3],
 }
 
 impl Interpolation {
-    /// Makes it ready for a setup, with corner records by `facet.corners`; places are in pixels of the target. Fields are set one
-    /// by one: a whole that was put together elsewhere would be read again before its parts are in the cache.
+    /// Makes it ready for a setup, with corner records by `facet.corners`; places are in pixels of
+    /// the target. Fields are set one by one: a whole that was put together elsewhere would be read
+    /// again before its parts are in the cache.
     #[inline(always)]
     fn prepare(&mut self, setup: &Setup, facet: &Facet, records: &[f32], tile: [f32; 2]) {
         let inverse_w = facet.corners.map(|slot| records[slot as usize]);
@@ -152,8 +159,8 @@ impl Interpolation {
         }
     }
 
-    /// For facets whose corners lie so near each other that twice the area is a number of 32 bits. Planes are rounded but once:
-    /// what programs lay on a grid of pixels shall stay there.
+    /// For facets whose corners lie so near each other that twice the area is a number of 32 bits.
+    /// Planes are rounded but once: what programs lay on a grid of pixels shall stay there.
     #[inline(always)]
     fn near(&mut self, setup: &Setup, inverse_w: [f32; 3]) {
         let (dx1, dy1) = (setup.x[1] - setup.x[0], setup.y[1] - setup.y[0]);
@@ -175,15 +182,21 @@ impl Interpolation {
     #[inline(never)]
     fn far(&mut self, setup: &Setup, inverse_w: [f32; 3], steep: bool, tile: [f32; 2]) {
         let scale = 1.0 / f64::from(SUBPIXEL);
-        let origin = if steep { tile } else { [setup.x[0] as f32, setup.y[0] as f32].map(|v| v / SUBPIXEL as f32) };
+        let origin = if steep {
+            tile
+        } else {
+            [setup.x[0] as f32, setup.y[0] as f32].map(|v| v / SUBPIXEL as f32)
+        };
         let x = |k: usize| f64::from(setup.x[k]) * scale - f64::from(origin[0]);
         let y = |k: usize| f64::from(setup.y[k]) * scale - f64::from(origin[1]);
-        let ((x0, y0), (dx1, dy1), (dx2, dy2)) = ((x(0), y(0)), (x(1) - x(0), y(1) - y(0)), (x(2) - x(0), y(2) - y(0)));
+        let ((x0, y0), (dx1, dy1), (dx2, dy2)) =
+            ((x(0), y(0)), (x(1) - x(0), y(1) - y(0)), (x(2) - x(0), y(2) - y(0)));
         let inverse = 1.0 / (dx1 * dy2 - dx2 * dy1);
         let flat = inverse_w[0] == inverse_w[1] && inverse_w[1] == inverse_w[2];
         // With one w for all corners the weights themselves are planes.
         let [w0, w1, w2] = if flat { [1.0; 3] } else { inverse_w.map(f64::from) };
-        let plane = |dx: f64, dy: f64, at: f64, w: f64| [(at - x0 * dx - y0 * dy) * w, dx * w, dy * w];
+        let plane =
+            |dx: f64, dy: f64, at: f64, w: f64| [(at - x0 * dx - y0 * dy) * w, dx * w, dy * w];
         let (a, b) = ((dy2 * inverse, -dx2 * inverse), (-dy1 * inverse, dx1 * inverse));
         let (first, second) = (plane(a.0, a.1, 0.0, w1), plane(b.0, b.1, 0.0, w2));
         let rest = plane(-a.0 - b.0, -a.1 - b.1, 1.0, w0);
@@ -196,8 +209,14 @@ impl Interpolation {
 
     /// How the weights of corners 1 and 2 change with one pixel to the right (axis 0), or one up.
     #[inline(always)]
-    fn weight_steps<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, axis: usize) -> [V; 2] {
-        let (q1, q2): (V, V) = (every(simd, self.first[axis + 1]), every(simd, self.second[axis + 1]));
+    fn weight_steps<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        weights: &Weights<V>,
+        axis: usize,
+    ) -> [V; 2] {
+        let (q1, q2): (V, V) =
+            (every(simd, self.first[axis + 1]), every(simd, self.second[axis + 1]));
         if self.flat_w.is_some() {
             return [q1, q2];
         }
@@ -210,7 +229,10 @@ impl Interpolation {
         let scale = 1.0 / SUBPIXEL as f32;
         for i in 0..3 {
             let j = (i + 1) % 3;
-            let (dx, dy) = ((setup.x[j] - setup.x[i]) as f32 * scale, (setup.y[j] - setup.y[i]) as f32 * scale);
+            let (dx, dy) = (
+                (setup.x[j] - setup.x[i]) as f32 * scale,
+                (setup.y[j] - setup.y[i]) as f32 * scale,
+            );
             let length = (dx * dx + dy * dy).sqrt();
             let (a, b) = (-dy / length, dx / length);
             let (x, y) = (setup.x[i] as f32 * scale, setup.y[i] as f32 * scale);
@@ -219,7 +241,8 @@ impl Interpolation {
     }
 }
 
-/// Blocks with more covered pixels are shaded whole, without compaction, which is cheaper per pixel.
+/// Blocks with more covered pixels are shaded whole, without compaction, which is cheaper per
+/// pixel.
 const WHOLE_BLOCK_THRESHOLD: u32 = 24;
 
 pub(super) const CENTERS: [f32; 8] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5];
@@ -298,13 +321,28 @@ impl<'a> Shader<'a> {
             self.ready = true;
             self.scratch.seen.turn();
             let corners = self.facet.corners.map(|slot| slot as usize);
-            self.scratch.differences.prepare(simd, &self.primitives.records, corners, self.draw.layout.stride);
+            self.scratch.differences.prepare(
+                simd,
+                &self.primitives.records,
+                corners,
+                self.draw.layout.stride,
+            );
             if let Some(Shape::Polygon { x, y, .. }) = self.shape() {
                 let own = Setup { x, y, ..*setup };
-                self.scratch.interpolation.prepare(&own, self.facet, &self.primitives.records, self.tile);
+                self.scratch.interpolation.prepare(
+                    &own,
+                    self.facet,
+                    &self.primitives.records,
+                    self.tile,
+                );
                 self.scratch.interpolation.prepare_edges(&own);
             } else {
-                self.scratch.interpolation.prepare(setup, self.facet, &self.primitives.records, self.tile);
+                self.scratch.interpolation.prepare(
+                    setup,
+                    self.facet,
+                    &self.primitives.records,
+                    self.tile,
+                );
             }
         }
     }
@@ -348,18 +386,26 @@ impl<'a> Shader<'a> {
 
     /// Primary colours, before textures.
     #[inline(always)]
-    fn primary<S: Simd, V: Floats<S>, const N: usize>(&self, simd: S, weights: &[Weights<V>; N]) -> [[V; 4]; N] {
+    fn primary<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        weights: &[Weights<V>; N],
+    ) -> [[V; 4]; N] {
         if self.draw.state.flat {
             return [every_rgba(simd, self.provoking_color()); N];
         }
-        if let (Some(at), Some(grid)) = (self.draw.layout.grid, self.primitives.grids.get(self.facet.grid as usize)) {
+        if let (Some(at), Some(grid)) =
+            (self.draw.layout.grid, self.primitives.grids.get(self.facet.grid as usize))
+        {
             return self.grid_colors(simd, weights, grid, at);
         }
         let mut colors = [every_rgba(simd, [0.0; 4]); N];
         for i in 0..N {
-            // Beyond the facet's border (a pixel's centre may be) colours are extrapolated: keep them in range.
+            // Beyond the facet's border (a pixel's centre may be) colours are extrapolated: keep
+            // them in range.
             let color = self.four(simd, &weights[i], self.color_at());
-            colors[i] = if self.draw.state.unclamped_vertices { color } else { saturate_rgba(color) };
+            colors[i] =
+                if self.draw.state.unclamped_vertices { color } else { saturate_rgba(color) };
         }
         colors
     }
@@ -377,9 +423,11 @@ impl<'a> Shader<'a> {
             || {
                 let mut places = [[every(simd, 0.0); 2]; N];
                 for i in 0..N {
-                    places[i] = [self.value(simd, &weights[i], at), self.value(simd, &weights[i], at + 1)];
+                    places[i] =
+                        [self.value(simd, &weights[i], at), self.value(simd, &weights[i], at + 1)];
                 }
-                let shade = |row: u32, eight: u32| self.draw.geometry.grid_colors(simd.level(), row, eight);
+                let shade =
+                    |row: u32, eight: u32| self.draw.geometry.grid_colors(simd.level(), row, eight);
                 grid.at(simd, &self.primitives.grid_colors, &places, &shade)
             },
         )
@@ -388,7 +436,8 @@ impl<'a> Shader<'a> {
     #[inline(always)]
     fn secondary<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>) -> Option<[V; 3]> {
         let front = self.draw.layout.secondary?;
-        let at = if self.facet.back { self.draw.layout.back_secondary.unwrap_or(front) } else { front };
+        let at =
+            if self.facet.back { self.draw.layout.back_secondary.unwrap_or(front) } else { front };
         if self.draw.state.flat {
             let r = &self.primitives.records[self.facet.provoking as usize + at..][..3];
             return Some([every(simd, r[0]), every(simd, r[1]), every(simd, r[2])]);
@@ -400,19 +449,29 @@ impl<'a> Shader<'a> {
         ])
     }
 
-    /// The colours of eight pixels whose centres are `x`, `y`; `active` says which matter. Gives also which of them
-    /// stipples let pass.
+    /// The colours of eight pixels whose centres are `x`, `y`; `active` says which matter. Gives
+    /// also which of them stipples let pass.
     #[inline(always)]
-    pub(crate) fn row<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, active: u32) -> (Rgba<S>, u32) {
+    pub(crate) fn row<S: Simd>(
+        &self,
+        simd: S,
+        x: F32x8<S>,
+        y: F32x8<S>,
+        active: u32,
+    ) -> (Rgba<S>, u32) {
         let groups = Groups { weights: [self.weights(simd, x, y)], active, seen: None };
         let [color] = self.colors(simd, &groups);
         self.covered(simd, x, y, color)
     }
 
-    /// The colours of groups of pixels, before soft borders. Groups go through each step together, since what a step
-    /// needs of the facet is the same for all.
+    /// The colours of groups of pixels, before soft borders. Groups go through each step together,
+    /// since what a step needs of the facet is the same for all.
     #[inline(always)]
-    fn colors<S: Simd, V: Floats<S>, const N: usize>(&self, simd: S, groups: &Groups<'_, V, N>) -> [[V; 4]; N] {
+    fn colors<S: Simd, V: Floats<S>, const N: usize>(
+        &self,
+        simd: S,
+        groups: &Groups<'_, V, N>,
+    ) -> [[V; 4]; N] {
         let mut colors = self.primary(simd, &groups.weights);
         if !self.draw.state.units.is_empty() {
             self.textured(simd, groups, &mut colors);
@@ -427,7 +486,12 @@ impl<'a> Shader<'a> {
 
     /// Adds the secondary colour, and mixes with fog.
     #[inline(always)]
-    fn summed<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, mut color: [V; 4]) -> [V; 4] {
+    fn summed<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        weights: &Weights<V>,
+        mut color: [V; 4],
+    ) -> [V; 4] {
         if self.draw.state.color_sum
             && let Some(secondary) = self.secondary(simd, weights)
         {
@@ -439,8 +503,9 @@ impl<'a> Shader<'a> {
         color
     }
 
-    /// The packed colour of a block's pixels in `any` (bit `8 * row + column`), and which pass the alpha test. `None` if each
-    /// has its own: these are in `words` then, where those of other pixels have no meaning.
+    /// The packed colour of a block's pixels in `any` (bit `8 * row + column`), and which pass the
+    /// alpha test. `None` if each has its own: these are in `words` then, where those of other
+    /// pixels have no meaning.
     #[inline(always)]
     pub(crate) fn block<S: Simd>(
         &mut self,
@@ -512,7 +577,12 @@ impl<'a> Shader<'a> {
 
     /// The packed colours of all pixels of a block, and which pass the alpha test.
     #[inline(never)]
-    fn whole<S: Simd>(&mut self, simd: S, (left, bottom): (usize, usize), words: &mut BlockWords) -> u64 {
+    fn whole<S: Simd>(
+        &mut self,
+        simd: S,
+        (left, bottom): (usize, usize),
+        words: &mut BlockWords,
+    ) -> u64 {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -542,8 +612,8 @@ impl<'a> Shader<'a> {
         )
     }
 
-    /// The packed colours of eight pixels of a block, each at `8 * row + column`, and which pass the alpha test. `active` says
-    /// which matter.
+    /// The packed colours of eight pixels of a block, each at `8 * row + column`, and which pass
+    /// the alpha test. `active` says which matter.
     #[inline(never)]
     fn eight<S: Simd>(
         &self,
@@ -557,7 +627,8 @@ impl<'a> Shader<'a> {
             #[inline(always)]
             || {
                 let places: I32x8<S> = U32x8::from_slice(simd, places).bitcast();
-                let (column, row): (F32x8<S>, F32x8<S>) = ((places & 7).to_float(), (places >> 3).to_float());
+                let (column, row): (F32x8<S>, F32x8<S>) =
+                    ((places & 7).to_float(), (places >> 3).to_float());
                 let (x, y) = (column + (left as f32 + 0.5), row + (bottom as f32 + 0.5));
                 let groups = Groups { weights: [self.weights(simd, x, y)], active, seen: None };
                 self.packed(simd, &groups, words) as u32
@@ -587,17 +658,27 @@ impl<'a> Shader<'a> {
         passed
     }
 
-    /// The packed colour of all pixels of a facet whose draw is [`DrawContext::constant`], and whether it passes the alpha test.
+    /// The packed colour of all pixels of a facet whose draw is [`DrawContext::constant`], and
+    /// whether it passes the alpha test.
     #[inline(always)]
     fn constant(&mut self) -> (u32, bool) {
-        *self.constant.get_or_insert_with(|| Self::constant_of(self.draw, self.facet, self.primitives))
+        *self
+            .constant
+            .get_or_insert_with(|| Self::constant_of(self.draw, self.facet, self.primitives))
     }
 
-    /// The packed colour of a facet whose draw is [`DrawContext::constant`], and whether it passes the alpha test.
+    /// The packed colour of a facet whose draw is [`DrawContext::constant`], and whether it passes
+    /// the alpha test.
     #[inline(always)]
-    pub(crate) fn constant_of(draw: &DrawContext<'_>, facet: &Facet, primitives: &Primitives) -> (u32, bool) {
+    pub(crate) fn constant_of(
+        draw: &DrawContext<'_>,
+        facet: &Facet,
+        primitives: &Primitives,
+    ) -> (u32, bool) {
         let from = facet.provoking as usize + Self::color_of(draw, facet);
-        let color = primitives.records[from..].first_chunk::<4>().map_or([0.0; 4], |c| c.map(|c| c.clamp(0.0, 1.0)));
+        let color = primitives.records[from..]
+            .first_chunk::<4>()
+            .map_or([0.0; 4], |c| c.map(|c| c.clamp(0.0, 1.0)));
         let passes = draw.state.alpha_test.is_none_or(|test| test.passes(color[3]));
         let word = (0..4).fold(0, |word, k| word | (((color[k] * 255.0 + 0.5) as u32) << (8 * k)));
         (word, passes)
@@ -611,7 +692,11 @@ impl<'a> Shader<'a> {
 
     #[inline(always)]
     fn color_of(draw: &DrawContext<'_>, facet: &Facet) -> usize {
-        if facet.back { draw.layout.back_color.unwrap_or(draw.layout.color) } else { draw.layout.color }
+        if facet.back {
+            draw.layout.back_color.unwrap_or(draw.layout.color)
+        } else {
+            draw.layout.color
+        }
     }
 
     #[inline(always)]
@@ -622,12 +707,24 @@ impl<'a> Shader<'a> {
 
     /// Stipples and the soft borders of smooth primitives.
     #[inline(always)]
-    fn covered<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, color: Rgba<S>) -> (Rgba<S>, u32) {
+    fn covered<S: Simd>(
+        &self,
+        simd: S,
+        x: F32x8<S>,
+        y: F32x8<S>,
+        color: Rgba<S>,
+    ) -> (Rgba<S>, u32) {
         if self.is_shaped() { self.soft(simd, x, y, color) } else { (color, 0xff) }
     }
 
     #[inline(never)]
-    fn soft<S: Simd>(&self, simd: S, x: F32x8<S>, y: F32x8<S>, mut color: Rgba<S>) -> (Rgba<S>, u32) {
+    fn soft<S: Simd>(
+        &self,
+        simd: S,
+        x: F32x8<S>,
+        y: F32x8<S>,
+        mut color: Rgba<S>,
+    ) -> (Rgba<S>, u32) {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -636,7 +733,13 @@ impl<'a> Shader<'a> {
                 match self.shape() {
                     None => {}
                     Some(Shape::Polygon { boundary, .. }) => {
-                        let coverage = polygon_coverage(simd, x, y, &self.scratch.interpolation.edges, boundary);
+                        let coverage = polygon_coverage(
+                            simd,
+                            x,
+                            y,
+                            &self.scratch.interpolation.edges,
+                            boundary,
+                        );
                         color[3] *= coverage;
                         pass = bits_of(coverage.simd_gt(splat(simd, 0.0)));
                     }
@@ -659,17 +762,24 @@ impl<'a> Shader<'a> {
                         // otherwise.
                         match self.draw.layout.line_stipple {
                             Some(stippling) if smooth => {
-                                let pieces = along.to_array().map(|at| pieces(at, length, stipple, stippling));
+                                let pieces = along
+                                    .to_array()
+                                    .map(|at| pieces(at, length, stipple, stippling));
                                 color[3] *= F32x8::from_slice(simd, &pieces);
                             }
                             Some(stippling) => {
                                 let steps = match first {
                                     None => along,
-                                    Some(first) if dx.abs() >= dy.abs() => (x - first) * dx.signum(),
+                                    Some(first) if dx.abs() >= dy.abs() => {
+                                        (x - first) * dx.signum()
+                                    }
                                     Some(first) => (y - first) * dy.signum(),
                                 };
                                 for (lane, step) in steps.to_array().into_iter().enumerate() {
-                                    let on = stipples(stippling, stipple.wrapping_add(step.max(0.0) as u32));
+                                    let on = stipples(
+                                        stippling,
+                                        stipple.wrapping_add(step.max(0.0) as u32),
+                                    );
                                     pass &= !(u32::from(!on) << lane);
                                 }
                             }
@@ -679,7 +789,8 @@ impl<'a> Shader<'a> {
                     }
                     Some(Shape::Point { center, size, fade, .. }) => {
                         if self.draw.layout.smooth[0] {
-                            let coverage = disc_coverage(simd, x - center[0], y - center[1], size * 0.5);
+                            let coverage =
+                                disc_coverage(simd, x - center[0], y - center[1], size * 0.5);
                             color[3] *= coverage;
                             pass = bits_of(coverage.simd_gt(splat(simd, 0.0)));
                         }

@@ -11,7 +11,8 @@ pub(super) fn overlap<S: Simd>(at: F32x8<S>, low: f32, high: f32) -> F32x8<S> {
     clamp(min(at + 0.5, splat(simd, high)) - max(at - 0.5, splat(simd, low)), 0.0, 1.0)
 }
 
-/// The part of the pixel round `(x, y)` that a disc round the origin covers: the mean of its chords' overlaps.
+/// The part of the pixel round `(x, y)` that a disc round the origin covers: the mean of its
+/// chords' overlaps.
 #[inline(always)]
 pub(super) fn disc_coverage<S: Simd>(simd: S, x: F32x8<S>, y: F32x8<S>, radius: f32) -> F32x8<S> {
     const CHORDS: u32 = 16;
@@ -24,7 +25,8 @@ pub(super) fn disc_coverage<S: Simd>(simd: S, x: F32x8<S>, y: F32x8<S>, radius: 
     sum * (1.0 / CHORDS as f32)
 }
 
-/// The part of the pixel round `(x, y)` inside those of the edges that are the polygon's: the mean of its chords' parts.
+/// The part of the pixel round `(x, y)` inside those of the edges that are the polygon's: the mean
+/// of its chords' parts.
 #[inline(always)]
 pub(super) fn polygon_coverage<S: Simd>(
     simd: S,
@@ -39,7 +41,8 @@ pub(super) fn polygon_coverage<S: Simd>(
         let at = x + ((i as f32 + 0.5) / CHORDS as f32 - 0.5);
         let (mut low, mut high) = (y - 0.5, y + 0.5);
         for ([a, b, c], _) in edges.iter().zip(boundary).filter(|(_, boundary)| *boundary) {
-            // Inside is b y >= -(a x + c). Nearly upright edges cut the chord far away, or all of it.
+            // Inside is b y >= -(a x + c). Nearly upright edges cut the chord far away, or all of
+            // it.
             let steep = if b.abs() < 1e-6 { 1e-6f32.copysign(*b) } else { *b };
             let cut = (at * *a + *c) * (-1.0 / steep);
             if steep > 0.0 {
@@ -58,7 +61,8 @@ pub(super) fn stipples((factor, pattern): (i32, u16), count: u32) -> bool {
     pattern >> (count / factor.max(1) as u32 % 16) & 1 == 1
 }
 
-/// How much of a pixel, `at` its centre along a smooth line, lies in those pieces of the line that its stipple lets pass.
+/// How much of a pixel, `at` its centre along a smooth line, lies in those pieces of the line that
+/// its stipple lets pass.
 pub(super) fn pieces(at: f32, length: f32, count: u32, stippling: (i32, u16)) -> f32 {
     let (low, high) = ((at - 0.5).max(0.0), (at + 0.5).min(length));
     let mut sum = 0.0;

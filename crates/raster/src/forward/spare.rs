@@ -1,8 +1,9 @@
 //! Memory that passes reuse.
 //!
-//! What programs draw is much alike from frame to frame, so a job gets the memory of the job that had its place before: each
-//! grows to what its own place needs, not to what the largest does. Passes that stay pending have places of their own, since
-//! they stay while others run, and need long tile lists but no vertices.
+//! What programs draw is much alike from frame to frame, so a job gets the memory of the job that
+//! had its place before: each grows to what its own place needs, not to what the largest does.
+//! Passes that stay pending have places of their own, since they stay while others run, and need
+//! long tile lists but no vertices.
 
 use super::assemble::{PieceScratch, Primitives};
 use crate::Unsorted;
@@ -36,7 +37,8 @@ pub(crate) struct Assembly {
 }
 
 impl Assembly {
-    /// Exchanges its memory with that of a job: once before the job's primitives are assembled, once afterwards.
+    /// Exchanges its memory with that of a job: once before the job's primitives are assembled,
+    /// once afterwards.
     pub(crate) fn exchange(&mut self, job: &mut Primitives) {
         std::mem::swap(&mut self.scratch, &mut job.scratch);
         job.batch.exchange(&mut self.unsorted);
@@ -50,7 +52,10 @@ mod tests {
     #[test]
     fn a_job_gets_the_memory_of_its_place() {
         let places = SparePrimitives::default();
-        let job = |capacity| Primitives { records: Vec::with_capacity(capacity), ..Primitives::default() };
+        let job = |capacity| Primitives {
+            records: Vec::with_capacity(capacity),
+            ..Primitives::default()
+        };
         let capacities = |jobs: &[Mutex<Primitives>]| -> Vec<usize> {
             jobs.iter().map(|job| job.lock().unwrap().records.capacity()).collect()
         };

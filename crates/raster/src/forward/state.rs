@@ -79,8 +79,8 @@ pub struct AlphaTest {
 }
 
 impl AlphaTest {
-    /// `alpha func reference`, or `None` if all pass. Where the buffer stores an alpha of 1 as the whole number `one`, both are
-    /// rounded to what it would store.
+    /// `alpha func reference`, or `None` if all pass. Where the buffer stores an alpha of 1 as the
+    /// whole number `one`, both are rounded to what it would store.
     pub fn new(func: Compare, reference: f32, one: Option<f32>) -> Option<Self> {
         let [low, high] = one.map_or([reference; 2], |one| stored_alike(reference, one));
         let (range, inside) = match func {
@@ -103,10 +103,12 @@ impl AlphaTest {
     }
 }
 
-/// The lowest and the highest number that are stored as `value` is, as whole numbers of which `one` means 1.
+/// The lowest and the highest number that are stored as `value` is, as whole numbers of which `one`
+/// means 1.
 fn stored_alike(value: f32, one: f32) -> [f32; 2] {
     let stored = |value: f32| (value.clamp(0.0, 1.0) * one + 0.5).floor();
-    // The lowest number that is stored as `whole`, 1 or more: next to the half below, where rounding puts it.
+    // The lowest number that is stored as `whole`, 1 or more: next to the half below, where
+    // rounding puts it.
     let first = |whole: f32| {
         let mut first = (whole - 0.5) / one;
         while stored(first) < whole {
@@ -336,7 +338,8 @@ pub struct FragmentState {
     pub clip: [i32; 4],
     /// 32 rows from the bottom, leftmost pixel in the highest bit; polygons only.
     pub polygon_stipple: Option<Arc<[u32; 32]>>,
-    /// Multisample rasterisation: off means that a fragment covers all samples of its pixel or none.
+    /// Multisample rasterisation: off means that a fragment covers all samples of its pixel or
+    /// none.
     pub multisample: bool,
     /// Alpha becomes coverage.
     pub alpha_to_coverage: bool,
@@ -348,7 +351,8 @@ pub struct FragmentState {
     pub flat: bool,
     /// Depth is clamped to the range instead of clipped.
     pub depth_clamp: bool,
-    /// Bytes of red, green and blue are sRGB-encoded: blending decodes what is stored, and results are encoded.
+    /// Bytes of red, green and blue are sRGB-encoded: blending decodes what is stored, and results
+    /// are encoded.
     pub srgb: bool,
     /// Where colours in floating-point storage are clamped.
     pub clamping: Clamping,

@@ -1,8 +1,8 @@
-//! A picture of few tiles, drawn by several threads: each draws a strip of rows of a tile, in a copy of its own, and the strips are
-//! put together afterwards.
+//! A picture of few tiles, drawn by several threads: each draws a strip of rows of a tile, in a
+//! copy of its own, and the strips are put together afterwards.
 //!
-//! What does not reach into a strip is passed over before anything else, so that a triangle costs little more than once. The
-//! first strip is drawn in the tile itself.
+//! What does not reach into a strip is passed over before anything else, so that a triangle costs
+//! little more than once. The first strip is drawn in the tile itself.
 
 use super::fragment::{ColorTile, TilePlanes};
 use super::pass::Item;
@@ -10,13 +10,18 @@ use super::plane::PlaneTile;
 use crate::{BLOCK, TILE};
 use std::ops::Range;
 
-/// Entries in its list that make a tile worth cutting: with fewer, copying costs more than it saves.
-/// Measured: benches/results/2026-11-22-opengl-tiny.md.
+/// Entries in its list that make a tile worth cutting: with fewer, copying costs more than it
+/// saves. Measured: benches/results/2026-11-22-opengl-tiny.md.
 const MIN_ENTRIES: usize = 512;
 
-/// Into how many strips which of the tiles are cut for `threads` threads: a power of two, at most a strip for each row of blocks. Two
-/// for each thread, since one may have more in it than another. Tiles are told by their place among `tiles`.
-pub(crate) fn cut(threads: usize, tiles: impl Iterator<Item = usize>, items: &[Item<'_>]) -> (usize, Vec<usize>) {
+/// Into how many strips which of the tiles are cut for `threads` threads: a power of two, at most a
+/// strip for each row of blocks. Two for each thread, since one may have more in it than another.
+/// Tiles are told by their place among `tiles`.
+pub(crate) fn cut(
+    threads: usize,
+    tiles: impl Iterator<Item = usize>,
+    items: &[Item<'_>],
+) -> (usize, Vec<usize>) {
     let entries = |tile: usize| {
         let of_item = |item: &Item<'_>| match item {
             Item::Job { primitives, .. } => primitives.batch.tile_range(tile).len(),
@@ -27,8 +32,11 @@ pub(crate) fn cut(threads: usize, tiles: impl Iterator<Item = usize>, items: &[I
     if threads < 2 {
         return (1, Vec::new());
     }
-    let full: Vec<usize> =
-        tiles.enumerate().filter(|&(_, tile)| entries(tile) >= MIN_ENTRIES).map(|(at, _)| at).collect();
+    let full: Vec<usize> = tiles
+        .enumerate()
+        .filter(|&(_, tile)| entries(tile) >= MIN_ENTRIES)
+        .map(|(at, _)| at)
+        .collect();
     let share = 2 * threads / full.len().max(1);
     if share < 2 { (1, Vec::new()) } else { (1 << share.min(TILE / BLOCK).ilog2(), full) }
 }
@@ -68,16 +76,26 @@ impl TileCopy {
             ColorCopy::Rgba8(tile) => ColorTile::Rgba8(tile),
             ColorCopy::RgbaF32(tile) => ColorTile::RgbaF32(tile),
         });
-        TilePlanes::new(color, self.depth.as_mut().map(|tile| (tile, scale)), self.stencil.as_mut(), samples)
+        TilePlanes::new(
+            color,
+            self.depth.as_mut().map(|tile| (tile, scale)),
+            self.stencil.as_mut(),
+            samples,
+        )
     }
 
     /// Brings the rows of a strip into the tile that this is a copy of.
     pub(crate) fn give_back(self, rows: &Range<usize>, planes: &mut TilePlanes<'_>) {
-        let blocks = (rows.start / BLOCK..rows.end / BLOCK).fold(0u64, |blocks, row| blocks | 0xff << (8 * row));
+        let blocks = (rows.start / BLOCK..rows.end / BLOCK)
+            .fold(0u64, |blocks, row| blocks | 0xff << (8 * row));
         let samples = planes.samples;
         match (self.color, &mut planes.color) {
-            (Some(ColorCopy::Rgba8(from)), Some(ColorTile::Rgba8(into))) => into.take(from, blocks, samples),
-            (Some(ColorCopy::RgbaF32(from)), Some(ColorTile::RgbaF32(into))) => into.take(from, blocks, samples),
+            (Some(ColorCopy::Rgba8(from)), Some(ColorTile::Rgba8(into))) => {
+                into.take(from, blocks, samples)
+            }
+            (Some(ColorCopy::RgbaF32(from)), Some(ColorTile::RgbaF32(into))) => {
+                into.take(from, blocks, samples)
+            }
             _ => {}
         }
         if let (Some(from), Some((into, _))) = (self.depth, &mut planes.depth) {

@@ -1,9 +1,11 @@
 //! Depths of a block of 8x8 pixels that one triangle covers wholly, kept as the triangle's plane.
 //!
-//! Most blocks lie inside one triangle. Their depths are written only where something else meets them there; a later pass that
-//! draws the same triangle again finds its own plane, and need not compare.
+//! Most blocks lie inside one triangle. Their depths are written only where something else meets
+//! them there; a later pass that draws the same triangle again finds its own plane, and need not
+//! compare.
 //!
-//! In:   a triangle and a block. Out: its depths there as stored, the same bits as [`super::block`] writes.
+//! In:   a triangle and a block. Out: its depths there as stored, the same bits as [`super::block`]
+//!       writes.
 //! Source: the idea of depth planes from graphics hardware, [Morein 2000].
 
 use super::fragment::stored;
@@ -31,7 +33,8 @@ impl Surface {
         Self { plane: setup.plane(), place: [x as u32, y as u32], places, scale }
     }
 
-    /// The depths of the block as stored, at the place of a sample: the rows of [`super::block::Slope`].
+    /// The depths of the block as stored, at the place of a sample: the rows of
+    /// [`super::block::Slope`].
     pub(super) fn rows(&self, sample: usize) -> [[f32; BLOCK]; BLOCK] {
         let (across, upwards) = self.slope(sample);
         let mut rows = [[0.0; BLOCK]; BLOCK];
@@ -52,7 +55,9 @@ impl Surface {
     fn slope(&self, sample: usize) -> ([f32; BLOCK], [f32; BLOCK]) {
         let places = places(self.places);
         let place = places[sample % places.len()];
-        let away = |axis: usize| self.place[axis] as i32 * SUBPIXEL + place[axis] - self.plane.origin[axis];
+        let away = |axis: usize| {
+            self.place[axis] as i32 * SUBPIXEL + place[axis] - self.plane.origin[axis]
+        };
         let (dx, dy) = (away(0) as f32 / SUBPIXEL as f32, away(1));
         let across = std::array::from_fn(|column| (column as f32 + dx) * self.plane.dz_dx);
         let upwards = std::array::from_fn(|row| {

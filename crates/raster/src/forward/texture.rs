@@ -32,8 +32,9 @@ pub enum BaseFormat {
     Depth,
 }
 
-/// Texels of one level of one face. Row by row from the bottom, then layer by layer; all values are expanded to RGBA as
-/// sampling returns them (luminance repeated, missing alpha 1, alpha textures black).
+/// Texels of one level of one face. Row by row from the bottom, then layer by layer; all values are
+/// expanded to RGBA as sampling returns them (luminance repeated, missing alpha 1, alpha textures
+/// black).
 #[derive(Clone, Debug)]
 pub enum Texels {
     /// 8 bits; red in the lowest byte.
@@ -62,8 +63,8 @@ pub struct Level {
 /// Texels of the largest images with [`Level::columns`]: 2048x2048.
 const MOST_COLUMNS: u64 = 1 << 22;
 
-/// What linear filtering reads of an image with 8 bits a component, once it is worth while: see [`Level::columns`]. A copy makes
-/// its own.
+/// What linear filtering reads of an image with 8 bits a component, once it is worth while: see
+/// [`Level::columns`]. A copy makes its own.
 #[derive(Debug, Default)]
 pub(super) struct Columns(pub(super) OnceLock<Box<[[u32; 2]]>>, AtomicU32);
 
@@ -90,11 +91,12 @@ impl Level {
         &mut self.texels
     }
 
-    /// Texels of 8 bits in two dimensions, each with the one above, so that the four round a place lie side by side: texel
-    /// `(x, y)` is the first of number `y * (width + 1) + x`. Beyond the right and the upper edge the image begins anew. They
-    /// take twice the memory of the texels: large images do without. They are made once enough places are asked about, of which
-    /// these are `asked`: programs may change a few texels, draw with them, and change others. Without them lookups take longer, and
-    /// give the same.
+    /// Texels of 8 bits in two dimensions, each with the one above, so that the four round a place
+    /// lie side by side: texel `(x, y)` is the first of number `y * (width + 1) + x`. Beyond the
+    /// right and the upper edge the image begins anew. They take twice the memory of the texels:
+    /// large images do without. They are made once enough places are asked about, of which these
+    /// are `asked`: programs may change a few texels, draw with them, and change others. Without
+    /// them lookups take longer, and give the same.
     #[inline(always)]
     pub(crate) fn columns(&self, asked: usize) -> Option<&[[u32; 2]]> {
         match self.columns.0.get() {
@@ -107,8 +109,10 @@ impl Level {
     #[inline(never)]
     fn columns_for(&self, asked: usize) -> Option<&[[u32; 2]]> {
         let texels = u64::from(self.size[0]) * u64::from(self.size[1]);
-        let all = u64::from(self.columns.1.fetch_add(asked as u32, Ordering::Relaxed)) + asked as u64;
-        (self.has_columns() && all >= texels / 2).then(|| &**self.columns.0.get_or_init(|| self.make_columns()))
+        let all =
+            u64::from(self.columns.1.fetch_add(asked as u32, Ordering::Relaxed)) + asked as u64;
+        (self.has_columns() && all >= texels / 2)
+            .then(|| &**self.columns.0.get_or_init(|| self.make_columns()))
     }
 
     /// Whether it is small enough for [`Self::columns`].
@@ -238,8 +242,8 @@ pub struct Texture {
     pub depth_mode: BaseFormat,
     /// Depths are floating-point numbers: what they are compared with is not clamped.
     pub float_depth: bool,
-    /// Faces (one, or six in the order +x -x +y -y +z -z) of levels; level 0 here is `TEXTURE_BASE_LEVEL`. Without
-    /// mipmapping only the first is there.
+    /// Faces (one, or six in the order +x -x +y -y +z -z) of levels; level 0 here is
+    /// `TEXTURE_BASE_LEVEL`. Without mipmapping only the first is there.
     pub faces: Vec<Vec<Arc<Level>>>,
     /// How to look it up.
     pub sampler: Sampler,
@@ -250,10 +254,25 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// A texture of one face or six of levels, looked up as `sampler` says. Depth textures yield depths as luminance.
-    pub fn new(kind: TextureKind, format: BaseFormat, faces: Vec<Vec<Arc<Level>>>, sampler: Sampler) -> Self {
+    /// A texture of one face or six of levels, looked up as `sampler` says. Depth textures yield
+    /// depths as luminance.
+    pub fn new(
+        kind: TextureKind,
+        format: BaseFormat,
+        faces: Vec<Vec<Arc<Level>>>,
+        sampler: Sampler,
+    ) -> Self {
         let depth_mode = BaseFormat::Luminance;
-        Self { kind, format, depth_mode, float_depth: false, faces, sampler, swizzle: None, cube: CubeFaces::default() }
+        Self {
+            kind,
+            format,
+            depth_mode,
+            float_depth: false,
+            faces,
+            sampler,
+            swizzle: None,
+            cube: CubeFaces::default(),
+        }
     }
 
     /// Whether its texels may be any numbers.

@@ -5,7 +5,8 @@ use super::block::{self, BlockWords, DepthRule, Words};
 use super::environment::fog::{color_sum, fog};
 use super::environment::{UNITS, environment};
 use super::fragment::{
-    ColorTile, Depths, FragmentOps, PlaneRow, RowFragments, SAMPLES, TilePlanes, columns, keeps, stored_depth,
+    ColorTile, Depths, FragmentOps, PlaneRow, RowFragments, SAMPLES, TilePlanes, columns, keeps,
+    stored_depth,
 };
 use super::fragment_ops::packed::unpack;
 use super::hard_line::HardLine;
@@ -54,24 +55,40 @@ impl<'a> TileRun<'a> {
         Self { index, x, y, width, rows: rows.start.min(end)..end, planes, seen }
     }
 
-    /// Everything that happens in this tile. A function of its own: whoever shares tiles among threads calls it at several places.
+    /// Everything that happens in this tile. A function of its own: whoever shares tiles among
+    /// threads calls it at several places.
     #[inline(never)]
-    pub(crate) fn run(&mut self, level: Level, items: &[Item<'_>], many: &SamplePattern, one: &SamplePattern) {
+    pub(crate) fn run(
+        &mut self,
+        level: Level,
+        items: &[Item<'_>],
+        many: &SamplePattern,
+        one: &SamplePattern,
+    ) {
         dispatch!(level, simd => self.walk(simd, items, many, one));
     }
 
     #[inline(always)]
-    fn walk<S: Simd>(&mut self, simd: S, items: &[Item<'_>], many: &SamplePattern, one: &SamplePattern) {
+    fn walk<S: Simd>(
+        &mut self,
+        simd: S,
+        items: &[Item<'_>],
+        many: &SamplePattern,
+        one: &SamplePattern,
+    ) {
         // Run clears, images and jobs in the order of commands.
         let mut memory: Option<Box<FacetMemory>> = None;
         for item in items {
             match item {
                 Item::Clear(clear) => self.clear(clear),
                 Item::Image(image, state, ops) => self.image(simd, image, state, ops),
-                Item::Job { primitives, draws } if !primitives.batch.tile_range(self.index).is_empty() => {
+                Item::Job { primitives, draws }
+                    if !primitives.batch.tile_range(self.index).is_empty() =>
+                {
                     let memory = memory.get_or_insert_with(|| {
                         let mut memory = Box::<FacetMemory>::default();
-                        memory.scratch.seen = self.seen.as_deref_mut().map(std::mem::take).unwrap_or_default();
+                        memory.scratch.seen =
+                            self.seen.as_deref_mut().map(std::mem::take).unwrap_or_default();
                         memory
                     });
                     self.job(simd, &JobContext { primitives, draws, many, one }, memory);
@@ -109,12 +126,15 @@ impl<'a> TileRun<'a> {
         }
         if let (Some(depth), Some((tile, scale))) = (clear.depth, &mut self.planes.depth) {
             let scaled = depth.clamp(0.0, 1.0) * *scale;
-            let value = if *scale == 1.0 { scaled } else { (f64::from(scaled) + 0.5).floor() as f32 };
+            let value =
+                if *scale == 1.0 { scaled } else { (f64::from(scaled) + 0.5).floor() as f32 };
             self.planes.ranges.forget(u64::MAX);
             fill(tile, value, whole, area, samples, |_, new| new);
         }
         if let (Some((value, mask)), Some(tile)) = (clear.stencil, &mut self.planes.stencil) {
-            fill(tile, value, whole && mask == 0xff, area, samples, |old, new| old & !mask | new & mask);
+            fill(tile, value, whole && mask == 0xff, area, samples, |old, new| {
+                old & !mask | new & mask
+            });
         }
     }
 
@@ -125,7 +145,8 @@ impl<'a> TileRun<'a> {
             || {
                 // Walk the job's triangles that touch this tile.
                 let (x, y) = (self.x, self.y);
-                let (mut clips, mut windows, mut tiny) = ([[0; 4]; 2], [[0..0, 0..0], [0..0, 0..0]], false);
+                let (mut clips, mut windows, mut tiny) =
+                    ([[0; 4]; 2], [[0..0, 0..0], [0..0, 0..0]], false);
                 let mut known = u32::MAX;
                 let batch = &job.primitives.batch;
                 for entry in batch.tile_range(self.index) {
@@ -161,7 +182,10 @@ impl<'a> TileRun<'a> {
 
                     // Gather tiny facets by eights.
                     let Some(place) = Placed::new(setup, (x, y), window, pattern) else { continue };
-                    if tiny && place.is_tiny() && matches!(facet.kind, FacetKind::Polygon | FacetKind::Plain) {
+                    if tiny
+                        && place.is_tiny()
+                        && matches!(facet.kind, FacetKind::Polygon | FacetKind::Plain)
+                    {
                         if !memory.waiting.takes(facet.draw) {
                             self.tiny_facets(simd, job, memory);
                         }
@@ -171,8 +195,21 @@ impl<'a> TileRun<'a> {
 
                     // Draw any other facet after those that wait.
                     self.tiny_facets(simd, job, memory);
-                    let shader = Shader::new(facet, draw, job.primitives, [x as f32, y as f32], &mut memory.scratch);
-                    let mut sink = ForwardSink { run: self, draw, shader, clip, pattern, words: &mut memory.words };
+                    let shader = Shader::new(
+                        facet,
+                        draw,
+                        job.primitives,
+                        [x as f32, y as f32],
+                        &mut memory.scratch,
+                    );
+                    let mut sink = ForwardSink {
+                        run: self,
+                        draw,
+                        shader,
+                        clip,
+                        pattern,
+                        words: &mut memory.words,
+                    };
                     traverse_window(simd, setup, (x, y), window, pattern, &mut sink);
                 }
                 self.tiny_facets(simd, job, memory);
@@ -207,14 +244,24 @@ impl<'a> TileRun<'a> {
         // Draw any other line box by box.
         self.tiny_facets(simd, job, memory);
         let draw = &job.draws[facet.draw as usize];
-        let shader = Shader::new(facet, draw, job.primitives, tile.map(|v| v as f32), &mut memory.scratch);
+        let shader =
+            Shader::new(facet, draw, job.primitives, tile.map(|v| v as f32), &mut memory.scratch);
         let words = &mut memory.words;
-        let mut sink = ForwardSink { run: self, draw, shader, clip, pattern: job.pattern(draw), words };
-        line.boxes(tile, clip, |corner, mask| sink.cover(simd, setup, &Block::of(corner, mask), &[mask]));
+        let mut sink =
+            ForwardSink { run: self, draw, shader, clip, pattern: job.pattern(draw), words };
+        line.boxes(tile, clip, |corner, mask| {
+            sink.cover(simd, setup, &Block::of(corner, mask), &[mask])
+        });
     }
 
     /// The fragments of an image.
-    fn image<S: Simd>(&mut self, simd: S, image: &ImageFragments, state: &FragmentState, ops: &FragmentOps) {
+    fn image<S: Simd>(
+        &mut self,
+        simd: S,
+        image: &ImageFragments,
+        state: &FragmentState,
+        ops: &FragmentOps,
+    ) {
         simd.vectorize(
             #[inline(always)]
             || self.image_inlined(simd, image, state, ops),
@@ -222,7 +269,13 @@ impl<'a> TileRun<'a> {
     }
 
     #[inline(always)]
-    fn image_inlined<S: Simd>(&mut self, simd: S, image: &ImageFragments, state: &FragmentState, ops: &FragmentOps) {
+    fn image_inlined<S: Simd>(
+        &mut self,
+        simd: S,
+        image: &ImageFragments,
+        state: &FragmentState,
+        ops: &FragmentOps,
+    ) {
         // Limit the image to this run's rows.
         let [x0, y0, x1, y1] = self.part(image.bounds(state.clip));
         if x0 >= x1 || y0 >= y1 {
@@ -257,7 +310,15 @@ impl<'a> TileRun<'a> {
                     }
                 }
                 if bits != 0 {
-                    self.image_row(simd, image, state, ops, PlaneRow { at: y as usize * TILE + x }, bits, &at);
+                    self.image_row(
+                        simd,
+                        image,
+                        state,
+                        ops,
+                        PlaneRow { at: y as usize * TILE + x },
+                        bits,
+                        &at,
+                    );
                 }
             }
         }
@@ -325,7 +386,8 @@ impl ImageFragments {
     /// Which source column (row) the pixel in window column (row) `at` shows.
     fn source(&self, axis: usize, at: i32) -> Option<usize> {
         let place = (at as f32 + 0.5 - self.origin[axis]) / self.zoom[axis];
-        // The left and the lower boundary belong to a pixel's rectangle, whichever way the image runs.
+        // The left and the lower boundary belong to a pixel's rectangle, whichever way the image
+        // runs.
         let index = if self.zoom[axis] < 0.0 { place.ceil() - 1.0 } else { place.floor() };
         (index >= 0.0 && index < self.size[axis] as f32).then_some(index as usize)
     }
@@ -371,7 +433,14 @@ fn image_color<S: Simd>(
             textures[unit.index % UNITS] = sample(simd, &unit.texture, None, coords, lod, bits);
         }
         for unit in &state.units {
-            color = environment(simd, unit, &textures, &primary, color, state.clamping != Clamping::None);
+            color = environment(
+                simd,
+                unit,
+                &textures,
+                &primary,
+                color,
+                state.clamping != Clamping::None,
+            );
         }
     }
 
@@ -447,7 +516,8 @@ impl ForwardSink<'_, '_, '_> {
         self.draw.ops.common && packed && !self.shader.is_shaped()
     }
 
-    /// The common kinds of fragments, see [`super::block`]. One function, since traversals come in several kinds.
+    /// The common kinds of fragments, see [`super::block`]. One function, since traversals come in
+    /// several kinds.
     #[inline(never)]
     fn block<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]) {
         simd.vectorize(
@@ -462,7 +532,9 @@ impl ForwardSink<'_, '_, '_> {
         let (state, samples) = (self.draw.state, self.run.planes.samples);
         let place = (self.run.x as usize + block.x, self.run.y as usize + block.y);
         let mut allowed = block::rectangle(block.x as i32, block.y as i32, self.clip);
-        if let (Some(pattern), FacetKind::Polygon) = (&state.polygon_stipple, self.shader.facet.kind) {
+        if let (Some(pattern), FacetKind::Polygon) =
+            (&state.polygon_stipple, self.shader.facet.kind)
+        {
             allowed &= block::stippled(pattern, place);
         }
 
@@ -471,8 +543,8 @@ impl ForwardSink<'_, '_, '_> {
         for s in 0..samples {
             bits[s] = masks[if masks.len() == samples { s } else { 0 }] & allowed;
         }
-        // What the stencil is updated by: copied only where it is needed, since a whole that is read before its parts are in
-        // the cache takes long.
+        // What the stencil is updated by: copied only where it is needed, since a whole that is
+        // read before its parts are in the cache takes long.
         let mut writes_stencil = None;
         if let Some(test) = &state.stencil {
             let face = if self.shader.facet.back { &test.back } else { &test.front };
@@ -497,13 +569,27 @@ impl ForwardSink<'_, '_, '_> {
 
         // Update the stencil values by the outcomes.
         if let Some((face, covered, reached)) = &writes_stencil {
-            block::update_stencil(simd, block, &mut self.run.planes, face, [covered, reached, &bits]);
+            block::update_stencil(
+                simd,
+                block,
+                &mut self.run.planes,
+                face,
+                [covered, reached, &bits],
+            );
         }
 
         // Shade the visible pixels and write colours.
         let any = bits[0] | bits[1] | bits[2] | bits[3];
         if any != 0 && self.draw.shaded {
-            self.block_colors(simd, setup, place, block, rule.filter(|rule| rule.write && changes), any, &mut bits);
+            self.block_colors(
+                simd,
+                setup,
+                place,
+                block,
+                rule.filter(|rule| rule.write && changes),
+                any,
+                &mut bits,
+            );
         }
 
         // Count the samples that passed.
@@ -513,8 +599,8 @@ impl ForwardSink<'_, '_, '_> {
         }
     }
 
-    /// The colours of a block's pixels in `any`, and the alpha test, which leaves in `bits` what passes; then `write` says how its
-    /// depths are written.
+    /// The colours of a block's pixels in `any`, and the alpha test, which leaves in `bits` what
+    /// passes; then `write` says how its depths are written.
     #[inline(always)]
     fn block_colors<S: Simd>(
         &mut self,
@@ -557,7 +643,14 @@ impl ForwardSink<'_, '_, '_> {
 
     /// A row of eight pixels, with all operations that there are.
     #[inline(never)]
-    fn row<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, row: usize, bits: [u32; SAMPLES]) {
+    fn row<S: Simd>(
+        &mut self,
+        simd: S,
+        setup: &Setup,
+        block: &Block,
+        row: usize,
+        bits: [u32; SAMPLES],
+    ) {
         simd.vectorize(
             #[inline(always)]
             || self.row_inlined(simd, setup, block, row, bits),
@@ -565,7 +658,14 @@ impl ForwardSink<'_, '_, '_> {
     }
 
     #[inline(always)]
-    fn row_inlined<S: Simd>(&mut self, simd: S, setup: &Setup, block: &Block, row: usize, mut bits: [u32; SAMPLES]) {
+    fn row_inlined<S: Simd>(
+        &mut self,
+        simd: S,
+        setup: &Setup,
+        block: &Block,
+        row: usize,
+        mut bits: [u32; SAMPLES],
+    ) {
         // Drop pixels that the stipple pattern leaves out.
         let (state, samples) = (self.draw.state, self.run.planes.samples);
         let y = block.y + row;
@@ -620,8 +720,20 @@ impl ForwardSink<'_, '_, '_> {
 
         // Run the remaining operations.
         if active != 0 {
-            let fragments = RowFragments { row: at, back: self.shader.facet.back, bits, depths: &depths, color };
-            self.run.planes.fragments(simd, state, &self.draw.ops, fragments, state.stencil.is_none());
+            let fragments = RowFragments {
+                row: at,
+                back: self.shader.facet.back,
+                bits,
+                depths: &depths,
+                color,
+            };
+            self.run.planes.fragments(
+                simd,
+                state,
+                &self.draw.ops,
+                fragments,
+                state.stencil.is_none(),
+            );
         }
     }
 }
@@ -637,10 +749,13 @@ fn clear_color(
     let unmasked = masked == [false; 4];
     match tile {
         ColorTile::Rgba8(tile) => {
-            let byte = |k: usize| u32::from((color[k].clamp(0.0, 1.0) * 255.0 + 0.5) as u8) << (8 * k);
+            let byte =
+                |k: usize| u32::from((color[k].clamp(0.0, 1.0) * 255.0 + 0.5) as u8) << (8 * k);
             let value = byte(0) | byte(1) | byte(2) | byte(3);
             let protected = super::fragment_ops::logic::protected_bits(masked);
-            fill(tile, value, whole && unmasked, area, samples, |old, new| old & protected | new & !protected);
+            fill(tile, value, whole && unmasked, area, samples, |old, new| {
+                old & protected | new & !protected
+            });
         }
         ColorTile::RgbaF32(tile) => {
             fill(tile, color, whole && unmasked, area, samples, |old, new| {

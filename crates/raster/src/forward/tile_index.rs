@@ -1,11 +1,14 @@
-//! A tile's triangles by blocks of its texels: which of them may matter at some texels, without a look at the others.
+//! A tile's triangles by blocks of its texels: which of them may matter at some texels, without a
+//! look at the others.
 //!
-//! Each block of 8×8 texels has a bit for each triangle whose box reaches it. The triangles stand in falling order of their
-//! bounds: the first that covers a texel is mostly the one that is kept there, and what comes after the first bound that is too
-//! low needs no look. Eight texels or sixteen go through the triangles of all their blocks together.
+//! Each block of 8×8 texels has a bit for each triangle whose box reaches it. The triangles stand
+//! in falling order of their bounds: the first that covers a texel is mostly the one that is kept
+//! there, and what comes after the first bound that is too low needs no look. Eight texels or
+//! sixteen go through the triangles of all their blocks together.
 //!
 //! In:   a tile's entries with their boxes and bounds. Out: triangles that may matter at texels.
-//! Cost: an operation a row of blocks for each triangle; a lookup is linear in the triangles of its blocks.
+//! Cost: an operation a row of blocks for each triangle; a lookup is linear in the triangles of its
+//!       blocks.
 
 use super::wide::every;
 use crate::kernel::traverse::{Edge, center_edges};
@@ -78,7 +81,8 @@ impl TileIndex {
         // Enter each in the blocks that its box touches.
         let mut blocks = [0; BLOCKS * BLOCKS];
         for (number, candidate) in candidates.iter().enumerate() {
-            let [[left, right], [top, bottom]] = candidate.within.map(|side| side.map(|p| usize::from(p) / BLOCK));
+            let [[left, right], [top, bottom]] =
+                candidate.within.map(|side| side.map(|p| usize::from(p) / BLOCK));
             for row in blocks[top * BLOCKS..(bottom + 1) * BLOCKS].chunks_exact_mut(BLOCKS) {
                 row[left..=right].iter_mut().for_each(|block| *block |= 1 << number);
             }
@@ -94,8 +98,8 @@ impl TileIndex {
         Self { origin, triangles: candidates.into_iter().map(indexed).collect(), blocks }
     }
 
-    /// Hands out the triangles that cover some of the texels and may lie above `floors` there, with which texels; what is
-    /// returned are the next floors.
+    /// Hands out the triangles that cover some of the texels and may lie above `floors` there, with
+    /// which texels; what is returned are the next floors.
     #[inline(always)]
     pub(crate) fn find<S: Simd, V: Floats<S>>(
         &self,
@@ -107,11 +111,13 @@ impl TileIndex {
         // Gather the triangles that touch the blocks of the texels.
         let TileTexels { x, y, active } = *texels;
         let (column, row) = (x - self.origin[0], y - self.origin[1]);
-        let block = (row >> BLOCK.trailing_zeros()) * BLOCKS as i32 + (column >> BLOCK.trailing_zeros());
+        let block =
+            (row >> BLOCK.trailing_zeros()) * BLOCKS as i32 + (column >> BLOCK.trailing_zeros());
         let block = block.as_slice();
         let (mut bits, mut rest) = (0, active.to_bitmask());
         while rest != 0 {
-            bits |= self.blocks[block[rest.trailing_zeros() as usize % V::LEN] as usize % self.blocks.len()];
+            bits |= self.blocks
+                [block[rest.trailing_zeros() as usize % V::LEN] as usize % self.blocks.len()];
             rest &= rest - 1;
         }
 
@@ -141,7 +147,10 @@ impl TileIndex {
                 continue;
             }
             let [x0, y0, x1, y1] = triangle.clip;
-            covered &= x.simd_ge(whole(x0)) & x.simd_lt(whole(x1)) & y.simd_ge(whole(y0)) & y.simd_lt(whole(y1));
+            covered &= x.simd_ge(whole(x0))
+                & x.simd_lt(whole(x1))
+                & y.simd_ge(whole(y0))
+                & y.simd_lt(whole(y1));
             floors = found(&triangle.setup, covered);
         }
     }
@@ -162,21 +171,36 @@ mod tests {
         let setups = triangles(MAX_TRIANGLES as u32, 64);
         let mut boxes = Boxes::default();
         boxes.resize(setups.len());
-        setups.iter().enumerate().for_each(|(at, setup)| boxes.set(at, box_of(setup, [64, 64]), setup.z_max));
+        setups
+            .iter()
+            .enumerate()
+            .for_each(|(at, setup)| boxes.set(at, box_of(setup, [64, 64]), setup.z_max));
         let candidate = |at: usize| {
             let (within, bound) = boxes.get(at)?;
-            Some(Candidate { within, bound, setup: &setups[at], clip: [0, 0, 80 + at as i32 % 40, 1000] })
+            Some(Candidate {
+                within,
+                bound,
+                setup: &setups[at],
+                clip: [0, 0, 80 + at as i32 % 40, 1000],
+            })
         };
         let candidates: Vec<_> = (0..setups.len()).filter_map(candidate).collect();
-        assert!(candidates.len() > 10 && candidates.len() < setups.len(), "some lie elsewhere: {}", candidates.len());
+        assert!(
+            candidates.len() > 10 && candidates.len() < setups.len(),
+            "some lie elsewhere: {}",
+            candidates.len()
+        );
         let index = TileIndex::new([64; 2], candidates.clone());
         for (name, level) in available_levels() {
             let (mut found_once, mut clipped) = (0, 0);
             for eight in 0..TILE * TILE / LANES {
-                // Texels of all blocks, those of a lane far from those of the next; the last is not asked for.
-                let at: [i32; LANES] =
-                    std::array::from_fn(|lane| ((eight * LANES + lane) * 1237 % (TILE * TILE)) as i32);
-                let (x, y) = (at.map(|at| 64 + at % TILE as i32), at.map(|at| 64 + at / TILE as i32));
+                // Texels of all blocks, those of a lane far from those of the next; the last is not
+                // asked for.
+                let at: [i32; LANES] = std::array::from_fn(|lane| {
+                    ((eight * LANES + lane) * 1237 % (TILE * TILE)) as i32
+                });
+                let (x, y) =
+                    (at.map(|at| 64 + at % TILE as i32), at.map(|at| 64 + at / TILE as i32));
                 for floor in FLOORS {
                     let mut found = Vec::new();
                     dispatch!(level, simd => {
@@ -196,13 +220,16 @@ mod tests {
                             setup.z_max > floor && setup.covers(place[0], place[1])
                         };
                         let inside = |lane: &usize| x[*lane] < candidate.clip[2];
-                        let bits =
-                            |lanes: &mut dyn Iterator<Item = usize>| lanes.fold(0, |bits, lane| bits | 1u64 << lane);
+                        let bits = |lanes: &mut dyn Iterator<Item = usize>| {
+                            lanes.fold(0, |bits, lane| bits | 1u64 << lane)
+                        };
                         let expected = bits(&mut (0..LANES - 1).filter(covers).filter(inside));
-                        let given = found.iter().find(|(s, _)| s == setup).map_or(0, |(_, bits)| *bits);
+                        let given =
+                            found.iter().find(|(s, _)| s == setup).map_or(0, |(_, bits)| *bits);
                         assert_eq!(given, expected, "{name}, floor {floor}");
                         found_once += expected.count_ones();
-                        clipped += (bits(&mut (0..LANES - 1).filter(covers)) ^ expected).count_ones();
+                        clipped +=
+                            (bits(&mut (0..LANES - 1).filter(covers)) ^ expected).count_ones();
                     }
                 }
             }

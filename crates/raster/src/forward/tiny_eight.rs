@@ -1,9 +1,10 @@
-//! Facets of at most 8x8 pixels, of which a fine mesh is made, eight of one draw at a time, where nothing but depths and colours is
-//! written.
+//! Facets of at most 8x8 pixels, of which a fine mesh is made, eight of one draw at a time, where
+//! nothing but depths and colours is written.
 //!
-//! Coverage and depths of all eight are computed together, then each facet's pixels meet the stored depths, one after the other,
-//! since two facets may lie in one pixel. Where colours come from corners and common textures they are found together again
-//! ([`super::shade::EightFacets`]); else each facet colours its own pixels. The results are those of [`super::block`].
+//! Coverage and depths of all eight are computed together, then each facet's pixels meet the stored
+//! depths, one after the other, since two facets may lie in one pixel. Where colours come from
+//! corners and common textures they are found together again ([`super::shade::EightFacets`]); else
+//! each facet colours its own pixels. The results are those of [`super::block`].
 
 use super::assemble::{Facet, Primitives};
 use super::block::{self, BlockWords, Passing, Words};
@@ -28,8 +29,9 @@ pub(super) struct TinyFacets {
     draw: u32,
 }
 
-/// What a tile's facets are drawn with, kept so that it need not be cleared. Colours lie on whole lines of the cache: a row that
-/// is read as soon as it is written would be waited for long if it lay on two.
+/// What a tile's facets are drawn with, kept so that it need not be cleared. Colours lie on whole
+/// lines of the cache: a row that is read as soon as it is written would be waited for long if it
+/// lay on two.
 #[repr(C, align(64))]
 pub(super) struct FacetMemory {
     /// A block's colours.
@@ -104,7 +106,12 @@ pub(super) fn by_eights(draw: &DrawContext<'_>, run: &TileRun<'_>) -> bool {
 impl TileRun<'_> {
     /// Draws those that wait.
     #[inline(always)]
-    pub(super) fn tiny_facets<S: Simd>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory) {
+    pub(super) fn tiny_facets<S: Simd>(
+        &mut self,
+        simd: S,
+        job: &JobContext<'_>,
+        memory: &mut FacetMemory,
+    ) {
         if memory.waiting.eight.len() != 0 {
             if job.pattern(&job.draws[memory.waiting.draw as usize]).len() == 1 {
                 self.tiny_facets_apart::<S, 1>(simd, job, memory);
@@ -116,7 +123,12 @@ impl TileRun<'_> {
     }
 
     #[inline(never)]
-    fn tiny_facets_apart<S: Simd, const N: usize>(&mut self, simd: S, job: &JobContext<'_>, memory: &mut FacetMemory) {
+    fn tiny_facets_apart<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        job: &JobContext<'_>,
+        memory: &mut FacetMemory,
+    ) {
         simd.vectorize(
             #[inline(always)]
             || self.tiny_facets_inlined::<S, N>(simd, job, memory),
@@ -130,7 +142,9 @@ impl TileRun<'_> {
         job: &JobContext<'_>,
         memory: &mut FacetMemory,
     ) {
-        let Some(covered) = self.tiny_covered::<S, N>(simd, job, &mut memory.waiting) else { return };
+        let Some(covered) = self.tiny_covered::<S, N>(simd, job, &mut memory.waiting) else {
+            return;
+        };
         let draw = &job.draws[memory.waiting.draw as usize];
         let mut seen = covered;
         if draw.state.alpha_test.is_none() {
@@ -138,7 +152,8 @@ impl TileRun<'_> {
             self.tiny_colored(simd, job, memory, &mut seen);
             return;
         }
-        // Before the alpha test depths may be looked at, but not written. Mostly they are there already, from a draw before.
+        // Before the alpha test depths may be looked at, but not written. Mostly they are there
+        // already, from a draw before.
         if !self.tiny_tested::<S, N>(simd, draw, &memory.waiting.eight, &mut seen, false) {
             self.tiny_colored(simd, job, memory, &mut seen);
             return;
@@ -175,7 +190,8 @@ impl TileRun<'_> {
             #[inline(always)]
             |depth| stored_depth(simd, depth, scale),
         );
-        // A draw without multisampling covers all samples of a pixel alike; where all have one value, one stands for all.
+        // A draw without multisampling covers all samples of a pixel alike; where all have one
+        // value, one stands for all.
         let mut seen = LiveSamples { masks, any: [0; LANES], touched: 0, alike: N == 1 };
         seen.settle(eight)?;
         if draw.state.stencil.is_some() {
@@ -186,13 +202,24 @@ impl TileRun<'_> {
     }
 
     /// Stencil test, which changes nothing.
-    fn tiny_stencilled(&mut self, job: &JobContext<'_>, waiting: &TinyFacets, seen: &mut LiveSamples) {
+    fn tiny_stencilled(
+        &mut self,
+        job: &JobContext<'_>,
+        waiting: &TinyFacets,
+        seen: &mut LiveSamples,
+    ) {
         // Decide a tile that was only cleared with one test per facet.
         let draw = &job.draws[waiting.draw as usize];
-        let (Some(test), Some(tile)) = (&draw.state.stencil, &mut self.planes.stencil) else { return };
-        let face = |facet: usize| if waiting.facet(job.primitives, facet).back { &test.back } else { &test.front };
+        let (Some(test), Some(tile)) = (&draw.state.stencil, &mut self.planes.stencil) else {
+            return;
+        };
+        let face = |facet: usize| {
+            if waiting.facet(job.primitives, facet).back { &test.back } else { &test.front }
+        };
         if let Some(value) = tile.uniform() {
-            for facet in (0..waiting.eight.len()).filter(|&facet| !stencil_holds(face(facet), value)) {
+            for facet in
+                (0..waiting.eight.len()).filter(|&facet| !stencil_holds(face(facet), value))
+            {
                 seen.masks.iter_mut().for_each(|masks| masks[facet] = 0);
             }
             return;
@@ -201,7 +228,9 @@ impl TileRun<'_> {
         // Test the stored value of each covered sample.
         let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
         seen.alike &= count == 1;
-        for (stored, masks) in stored.as_chunks::<TILE_PIXELS>().0.iter().zip(&mut seen.masks).take(count) {
+        for (stored, masks) in
+            stored.as_chunks::<TILE_PIXELS>().0.iter().zip(&mut seen.masks).take(count)
+        {
             for facet in 0..waiting.eight.len() {
                 let (face, first) = (face(facet), waiting.eight.first(facet));
                 for place in set_bits(masks[facet]) {
@@ -212,7 +241,8 @@ impl TileRun<'_> {
         }
     }
 
-    /// Depth test, with its writes if `write` is set and the draw writes depths. Otherwise, whether they would change anything.
+    /// Depth test, with its writes if `write` is set and the draw writes depths. Otherwise, whether
+    /// they would change anything.
     #[inline(always)]
     fn tiny_tested<S: Simd, const N: usize>(
         &mut self,
@@ -223,7 +253,9 @@ impl TileRun<'_> {
         write: bool,
     ) -> bool {
         // Decide whether depths are written.
-        let (Some(mut rule), Some((tile, _))) = (draw.state.depth, &mut self.planes.depth) else { return false };
+        let (Some(mut rule), Some((tile, _))) = (draw.state.depth, &mut self.planes.depth) else {
+            return false;
+        };
         let wanted = rule.write;
         rule.write &= write;
         if rule.write {
@@ -252,11 +284,14 @@ impl TileRun<'_> {
         let Some((tile, _)) = &mut self.planes.depth else { return };
         self.planes.ranges.forget(seen.touched);
         let (count, stored) = tile.open(seen.touched, seen.alike, self.planes.samples);
-        for (sample, stored) in stored.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().enumerate().take(count) {
+        for (sample, stored) in
+            stored.as_chunks_mut::<TILE_PIXELS>().0.iter_mut().enumerate().take(count)
+        {
             for (facet, &mask) in seen.masks[sample].iter().enumerate().take(eight.len()) {
                 let first = eight.first(facet);
                 for place in set_bits(mask) {
-                    stored[pixel(first, place) % TILE_PIXELS] = eight.depth(facet, place, sample % N);
+                    stored[pixel(first, place) % TILE_PIXELS] =
+                        eight.depth(facet, place, sample % N);
                 }
             }
         }
@@ -303,18 +338,26 @@ impl TileRun<'_> {
                 continue;
             }
             let setup = job.primitives.batch.item(waiting.entries[facet]);
-            let (own, tile) = (facet_of(job.primitives, setup.facet), [self.x as f32, self.y as f32]);
+            let (own, tile) =
+                (facet_of(job.primitives, setup.facet), [self.x as f32, self.y as f32]);
             let mut shader = Shader::new(own, draw, job.primitives, tile, scratch);
             let block = eight.block(facet, seen.any[facet]);
             let corner = (self.x as usize + block.x, self.y as usize + block.y);
             let (one, visible) = shader.block(simd, setup, corner, seen.any[facet], words);
             let masks = seen.limit(facet, visible);
-            block::colors(simd, &block, &mut self.planes, (&draw.ops, draw.state), &Words::of(one, words), &masks);
+            block::colors(
+                simd,
+                &block,
+                &mut self.planes,
+                (&draw.ops, draw.state),
+                &Words::of(one, words),
+                &masks,
+            );
         }
     }
 
-    /// The colours at the places of all facets that are seen, and the alpha test, if that can be found for all together; whether it
-    /// can.
+    /// The colours at the places of all facets that are seen, and the alpha test, if that can be
+    /// found for all together; whether it can.
     #[inline(always)]
     fn tiny_shaded<S: Simd>(
         &mut self,
@@ -341,10 +384,12 @@ impl TileRun<'_> {
                 words[lane] = word;
                 shown[lane] = if passes { shown[lane] } else { 0 };
             }
-            set_bits(shown.iter().fold(0, |all, mask| all | mask)).for_each(|place| each[place] = words);
+            set_bits(shown.iter().fold(0, |all, mask| all | mask))
+                .for_each(|place| each[place] = words);
         } else if can_batch_facets(draw) {
             let tile = [self.x, self.y];
-            let Some(colors) = EightFacets::new(simd, eight, &facets, (draw, job.primitives), tile) else {
+            let Some(colors) = EightFacets::new(simd, eight, &facets, (draw, job.primitives), tile)
+            else {
                 return false;
             };
             colors.colors(simd, eight, tile, &mut shown, pixels, each);
@@ -388,9 +433,18 @@ impl TileRun<'_> {
 
         // Blend other colours facet by facet.
         for facet in (0..eight.len()).filter(|&facet| seen.any[facet] != 0) {
-            set_bits(seen.any[facet]).for_each(|place| words[place % PLACES] = each[place % PLACES][facet]);
-            let (block, masks) = (eight.block(facet, seen.any[facet]), seen.masks.map(|masks| masks[facet]));
-            block::colors(simd, &block, &mut self.planes, (&draw.ops, draw.state), &Words::Each(words), &masks);
+            set_bits(seen.any[facet])
+                .for_each(|place| words[place % PLACES] = each[place % PLACES][facet]);
+            let (block, masks) =
+                (eight.block(facet, seen.any[facet]), seen.masks.map(|masks| masks[facet]));
+            block::colors(
+                simd,
+                &block,
+                &mut self.planes,
+                (&draw.ops, draw.state),
+                &Words::Each(words),
+                &masks,
+            );
         }
     }
 }
@@ -444,8 +498,13 @@ impl LiveSamples {
 
     /// One facet's.
     fn of(&self, facet: usize) -> Self {
-        let alone = |masks: &[u64; LANES]| std::array::from_fn(|f| if f == facet { masks[f] } else { 0 });
-        Self { masks: std::array::from_fn(|s| alone(&self.masks[s])), any: alone(&self.any), ..*self }
+        let alone =
+            |masks: &[u64; LANES]| std::array::from_fn(|f| if f == facet { masks[f] } else { 0 });
+        Self {
+            masks: std::array::from_fn(|s| alone(&self.masks[s])),
+            any: alone(&self.any),
+            ..*self
+        }
     }
 
     /// Leaves of a facet's pixels those that are `visible`.
@@ -459,8 +518,9 @@ impl LiveSamples {
     }
 }
 
-/// Brings colours of places to the samples that are seen, facet by facet, in `M` planes of samples. All planes for one facet, then
-/// the next: plane by plane for all facets costs crowds of small bodies 5 % of a frame, here and in the depth test.
+/// Brings colours of places to the samples that are seen, facet by facet, in `M` planes of samples.
+/// All planes for one facet, then the next: plane by plane for all facets costs crowds of small
+/// bodies 5 % of a frame, here and in the depth test.
 #[inline(never)]
 fn bring<S: Simd, const M: usize>(
     simd: S,
@@ -487,8 +547,9 @@ fn bring<S: Simd, const M: usize>(
     );
 }
 
-/// Depth tests of what is seen, facet by facet, with their writes: what passes remains. Gives whether something of that is not the
-/// depth that was stored. A plane of samples meets the facets' depths of the sample that `depths` says.
+/// Depth tests of what is seen, facet by facet, with their writes: what passes remains. Gives
+/// whether something of that is not the depth that was stored. A plane of samples meets the facets'
+/// depths of the sample that `depths` says.
 #[inline(never)]
 fn test<S: Simd, const M: usize>(
     simd: S,
@@ -501,14 +562,25 @@ fn test<S: Simd, const M: usize>(
     simd.vectorize(
         #[inline(always)]
         || match (rule.func, rule.write) {
-            (Compare::LessOrEqual, true) => test_by(eight, seen, true, stored, depths, |new, old| new <= old),
-            (Compare::LessOrEqual, false) => test_by(eight, seen, false, stored, depths, |new, old| new <= old),
-            (Compare::GreaterOrEqual, true) => test_by(eight, seen, true, stored, depths, |new, old| new >= old),
-            (Compare::GreaterOrEqual, false) => test_by(eight, seen, false, stored, depths, |new, old| new >= old),
-            (Compare::Less, true) => test_by(eight, seen, true, stored, depths, |new, old| new < old),
+            (Compare::LessOrEqual, true) => {
+                test_by(eight, seen, true, stored, depths, |new, old| new <= old)
+            }
+            (Compare::LessOrEqual, false) => {
+                test_by(eight, seen, false, stored, depths, |new, old| new <= old)
+            }
+            (Compare::GreaterOrEqual, true) => {
+                test_by(eight, seen, true, stored, depths, |new, old| new >= old)
+            }
+            (Compare::GreaterOrEqual, false) => {
+                test_by(eight, seen, false, stored, depths, |new, old| new >= old)
+            }
+            (Compare::Less, true) => {
+                test_by(eight, seen, true, stored, depths, |new, old| new < old)
+            }
             (func, write) => {
                 let passing = Passing::new(func);
-                let passes = |new, old| passing.of(u32::from(new >= old), u32::from(new <= old)) & 1 == 1;
+                let passes =
+                    |new, old| passing.of(u32::from(new >= old), u32::from(new <= old)) & 1 == 1;
                 test_by(eight, seen, write, stored, depths, passes)
             }
         },

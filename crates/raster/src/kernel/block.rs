@@ -26,7 +26,8 @@ impl Block {
 
 #[cfg(any(test, feature = "forward"))]
 impl Block {
-    /// From this column and row on, with the rows down to the last of these pixels (bit `8 * row + column`).
+    /// From this column and row on, with the rows down to the last of these pixels (bit
+    /// `8 * row + column`).
     #[inline(always)]
     pub(crate) fn of([x, y]: [usize; 2], pixels: u64) -> Self {
         Self { x, y, rows: 0..BLOCK - pixels.leading_zeros() as usize / BLOCK }
@@ -42,7 +43,8 @@ impl Block {
     #[inline(always)]
     pub(crate) fn touched(&self) -> u64 {
         let columns = 1u64 << (self.x / BLOCK) | 1 << self.x.div_ceil(BLOCK);
-        let (first, last) = ((self.y + self.rows.start) / BLOCK, (self.y + self.rows.end - 1) / BLOCK);
+        let (first, last) =
+            ((self.y + self.rows.start) / BLOCK, (self.y + self.rows.end - 1) / BLOCK);
         columns << (8 * first) | columns << (8 * last)
     }
 }
@@ -52,12 +54,14 @@ pub trait BlockSink<S: Simd> {
     /// Whether nothing of `setup` can matter in this block, so that coverage need not be computed.
     fn rejects(&self, setup: &Setup, block: &Block) -> bool;
 
-    /// `masks[s]` has bit `8 * row + column` set where sample `s` of the block's pixel is covered; not all are 0.
+    /// `masks[s]` has bit `8 * row + column` set where sample `s` of the block's pixel is covered;
+    /// not all are 0.
     fn cover(&mut self, simd: S, setup: &Setup, block: &Block, masks: &[u64]);
 }
 
-/// A sink that takes covered samples row by row, wherever in the tile a row of eight pixels begins: what small triangles
-/// want, which are most of a fine mesh. [`InBlocks`] makes a [`BlockSink`] of it.
+/// A sink that takes covered samples row by row, wherever in the tile a row of eight pixels begins:
+/// what small triangles want, which are most of a fine mesh. [`InBlocks`] makes a [`BlockSink`] of
+/// it.
 pub trait RowSink<S: Simd> {
     /// The tile whose far depths hide what cannot matter; none if everything does.
     fn hiding(&self) -> Option<&Tile>;
@@ -65,11 +69,19 @@ pub trait RowSink<S: Simd> {
     /// Where sample `sample` of the pixel in column `x` of the tile's row 0 is, in 1/256 pixel.
     fn first(&self, sample: usize, x: usize) -> [i32; 2];
 
-    /// Sample `sample` of the eight pixels from column `x` of row `y` is covered where `covered` is set; with the facet
-    /// come its depths in rows from this column on.
-    fn cover_row(&mut self, simd: S, facet: (&Setup, &RowPlane<S>), sample: usize, at: [usize; 2], covered: Mask8<S>);
+    /// Sample `sample` of the eight pixels from column `x` of row `y` is covered where `covered` is
+    /// set; with the facet come its depths in rows from this column on.
+    fn cover_row(
+        &mut self,
+        simd: S,
+        facet: (&Setup, &RowPlane<S>),
+        sample: usize,
+        at: [usize; 2],
+        covered: Mask8<S>,
+    );
 
-    /// The last row of a triangle, or of its part in a block, whose box begins at pixel `at` was given.
+    /// The last row of a triangle, or of its part in a block, whose box begins at pixel `at` was
+    /// given.
     #[inline(always)]
     fn end(&mut self, _simd: S, _at: [usize; 2]) {}
 }

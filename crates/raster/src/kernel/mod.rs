@@ -1,4 +1,5 @@
-//! The hot loops, generic over the instruction set. Each is entered through one dispatch a batch or tile.
+//! The hot loops, generic over the instruction set. Each is entered through one dispatch a batch or
+//! tile.
 
 pub(crate) mod block;
 pub(crate) mod nearest;

@@ -1,9 +1,10 @@
-//! The nearest depths in a tile, one sample in the middle of each pixel: what a shadow map is made of.
+//! The nearest depths in a tile, one sample in the middle of each pixel: what a shadow map is made
+//! of.
 //!
-//! The z-buffer without facets: of equal depths it does not matter whose they are. Coverage and depth are those of
-//! [`super::traverse`] and of [`Setup::depth`]. Triangles that are at most eight pixels wide are walked row by row, others
-//! by the blocks of 8x8 pixels that they touch. A block that is full remembers how far its farthest pixel is, so that what
-//! lies behind is rejected.
+//! The z-buffer without facets: of equal depths it does not matter whose they are. Coverage and
+//! depth are those of [`super::traverse`] and of [`Setup::depth`]. Triangles that are at most eight
+//! pixels wide are walked row by row, others by the blocks of 8x8 pixels that they touch. A block
+//! that is full remembers how far its farthest pixel is, so that what lies behind is rejected.
 //!
 //! In:   facets set up, in any order. Out: depths.
 //! Cost: linear in the rows of eight pixels that facets touch.
@@ -28,7 +29,8 @@ const WHOLE: Window = [0..TILE, 0..TILE];
 pub struct NearestDepths {
     tile: (u32, u32),
     pattern: SamplePattern,
-    /// 1 where larger depths are nearer, -1 where smaller ones are. All depths within are times this.
+    /// 1 where larger depths are nearer, -1 where smaller ones are. All depths within are times
+    /// this.
     sign: f32,
     /// The nearest depth of each pixel, row by row.
     depths: Vec<f32>,
@@ -44,10 +46,18 @@ impl NearestDepths {
         Self::with_sign(tile, 1.0)
     }
 
-    /// The same with a sign: for -1 the smaller depth is the nearer one, and depths are handed out negated.
+    /// The same with a sign: for -1 the smaller depth is the nearer one, and depths are handed out
+    /// negated.
     pub(crate) fn with_sign(tile: (u32, u32), sign: f32) -> Self {
         let (far, walked) = ([f32::NEG_INFINITY; BLOCKS * BLOCKS], [0; BLOCKS * BLOCKS]);
-        Self { tile, pattern: SamplePattern::new(1), sign, depths: vec![f32::NEG_INFINITY; TILE_PIXELS], far, walked }
+        Self {
+            tile,
+            pattern: SamplePattern::new(1),
+            sign,
+            depths: vec![f32::NEG_INFINITY; TILE_PIXELS],
+            far,
+            walked,
+        }
     }
 
     /// Draws facets: the nearer depth stays.
@@ -61,7 +71,11 @@ impl NearestDepths {
 
     /// Draws of each facet what lies in its window of the tile.
     #[cfg(any(test, feature = "forward"))]
-    pub(crate) fn draw_within<'s>(&mut self, level: Level, setups: impl Iterator<Item = (&'s Setup, Window)>) {
+    pub(crate) fn draw_within<'s>(
+        &mut self,
+        level: Level,
+        setups: impl Iterator<Item = (&'s Setup, Window)>,
+    ) {
         dispatch!(level, simd => {
             for (setup, window) in setups {
                 if window == WHOLE {
@@ -122,13 +136,24 @@ impl NearestDepths {
 
     /// A facet that is at most eight pixels wide and whose edge functions fit into 32 bits.
     #[inline(always)]
-    fn narrow<S: Simd, const CLIPPED: bool>(&mut self, simd: S, setup: &Setup, place: &Placed, columns: &Range<usize>) {
+    fn narrow<S: Simd, const CLIPPED: bool>(
+        &mut self,
+        simd: S,
+        setup: &Setup,
+        place: &Placed,
+        columns: &Range<usize>,
+    ) {
         // Skip the facet if every block under its box holds nearer depths everywhere.
         let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
         let block = |x: usize, y: usize| y / BLOCK * BLOCKS + x / BLOCK;
         let own = block(x0, y0);
         if y1 - y0 < BLOCK {
-            let far = [self.far[own], self.far[block(x1, y0)], self.far[block(x0, y1)], self.far[block(x1, y1)]];
+            let far = [
+                self.far[own],
+                self.far[block(x1, y0)],
+                self.far[block(x0, y1)],
+                self.far[block(x1, y1)],
+            ];
             if self.nearest_of(setup) < far[0].min(far[1]).min(far[2].min(far[3])) {
                 return;
             }
@@ -167,7 +192,13 @@ impl NearestDepths {
 
     /// A facet of any size.
     #[inline(always)]
-    fn wide<S: Simd, const CLIPPED: bool>(&mut self, simd: S, setup: &Setup, place: &Placed, window: &Range<usize>) {
+    fn wide<S: Simd, const CLIPPED: bool>(
+        &mut self,
+        simd: S,
+        setup: &Setup,
+        place: &Placed,
+        window: &Range<usize>,
+    ) {
         let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
 
         // Find the blocks that the facet is not behind.
@@ -241,12 +272,19 @@ impl NearestDepths {
 
     /// A facet that is thin.
     #[inline(always)]
-    fn slender<S: Simd>(&mut self, simd: S, setup: &Setup, place: &Placed, edges: (&[Edge; 3], &[i32; 3])) {
+    fn slender<S: Simd>(
+        &mut self,
+        simd: S,
+        setup: &Setup,
+        place: &Placed,
+        edges: (&[Edge; 3], &[i32; 3]),
+    ) {
         // Evaluate depths at the covered pixels and keep the nearer ones.
         let plane = self.plane(simd, setup, 0);
         let upright = place.is_upright();
         let nothing = F32x8::splat(simd, f32::NEG_INFINITY);
-        let depths: &mut [f32; TILE_PIXELS] = self.depths.as_mut_slice().try_into().expect("a tile");
+        let depths: &mut [f32; TILE_PIXELS] =
+            self.depths.as_mut_slice().try_into().expect("a tile");
         slender::each_eight(
             simd,
             place,
@@ -265,7 +303,8 @@ impl NearestDepths {
         );
     }
 
-    /// Brings `far` up to date once enough rows were walked in a block. When does not matter to depths.
+    /// Brings `far` up to date once enough rows were walked in a block. When does not matter to
+    /// depths.
     #[inline(always)]
     fn note<S: Simd>(&mut self, simd: S, block: usize, rows: u32) {
         self.walked[block] += rows;
@@ -287,7 +326,8 @@ impl NearestDepths {
 #[inline(always)]
 fn beside<S: Simd>(simd: S, left: usize, range: &Range<usize>) -> Mask8<S> {
     let column = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]) + left as i32;
-    column.simd_lt(I32x8::splat(simd, range.start as i32)) | column.simd_ge(I32x8::splat(simd, range.end as i32))
+    column.simd_lt(I32x8::splat(simd, range.start as i32))
+        | column.simd_ge(I32x8::splat(simd, range.end as i32))
 }
 
 /// The constants of edge functions for pixels counted from column `left`.
@@ -297,8 +337,8 @@ fn constants_at(edges: &[Edge; 3], constants: &[i32; 3], left: usize) -> [i32; 3
     [at(0), at(1), at(2)]
 }
 
-/// Which of a block's rows, the first of them at `top`, have no edge with all eight pixels on its outer side: from the first such
-/// row to the last. `constants` are for the block's first column.
+/// Which of a block's rows, the first of them at `top`, have no edge with all eight pixels on its
+/// outer side: from the first such row to the last. `constants` are for the block's first column.
 #[inline(always)]
 fn reached_rows<S: Simd>(
     simd: S,
@@ -332,8 +372,16 @@ mod tests {
         let mut setups = triangles(3000, 64);
         // With rows and columns exchanged slivers stand upright.
         let exchanged = |s: &Setup| {
-            let corners = [0, 1, 2].map(|i| CornerPosition { x: s.y[i], y: s.x[i], z: s.depth(s.x[i], s.y[i]) });
-            Setup::new(corners, Setup::doubled_area(corners[0], corners[1], corners[2]), s.facet + 3000)
+            let corners = [0, 1, 2].map(|i| CornerPosition {
+                x: s.y[i],
+                y: s.x[i],
+                z: s.depth(s.x[i], s.y[i]),
+            });
+            Setup::new(
+                corners,
+                Setup::doubled_area(corners[0], corners[1], corners[2]),
+                s.facet + 3000,
+            )
         };
         let upright: Vec<_> = setups.iter().map(exchanged).collect();
         for (direction, setups) in [(false, &setups), (true, &upright)] {
@@ -344,7 +392,8 @@ mod tests {
         }
         setups.extend(upright);
         let ways = [(1.0, WHOLE), (-1.0, WHOLE), (1.0, [5..50, 17..61]), (-1.0, [0..64, 3..4])];
-        for ((sign, window), count) in ways.iter().flat_map(|way| [(way, 40), (way, setups.len())]) {
+        for ((sign, window), count) in ways.iter().flat_map(|way| [(way, 40), (way, setups.len())])
+        {
             let setups = &setups[..count];
             let mut expected = vec![f32::NEG_INFINITY; TILE_PIXELS];
             for (x, y) in window[0].clone().flat_map(|x| window[1].clone().map(move |y| (x, y))) {
@@ -360,7 +409,9 @@ mod tests {
                 let far = nearest.far();
                 let depths = nearest.into_depths();
                 assert!(depths == expected, "{name}, {count} facets in {window:?}, sign {sign}");
-                let above = |(at, &depth): (usize, &f32)| depth >= far[at / TILE / BLOCK * BLOCKS + at % TILE / BLOCK];
+                let above = |(at, &depth): (usize, &f32)| {
+                    depth >= far[at / TILE / BLOCK * BLOCKS + at % TILE / BLOCK]
+                };
                 assert!(depths.iter().enumerate().all(above), "{name}, {count} facets");
             }
         }

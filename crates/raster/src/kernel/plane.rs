@@ -35,7 +35,8 @@ impl<S: Simd> RowPlane<S> {
     pub(crate) fn with_sign(simd: S, setup: &Setup, sign: f32, first: [i32; 2]) -> Self {
         let lane = F32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         let first = [first[0] - setup.origin[0], first[1] - setup.origin[1]];
-        let (low, high) = if sign > 0.0 { (setup.z_min, setup.z_max) } else { (-setup.z_max, -setup.z_min) };
+        let (low, high) =
+            if sign > 0.0 { (setup.z_min, setup.z_max) } else { (-setup.z_max, -setup.z_min) };
         Self {
             // Whole pixels and 1/256 pixels below 2^15 pixels: the sum is exact.
             across: (lane + first[0] as f32 / SUBPIXEL as f32) * (setup.dz_dx * sign),
@@ -65,7 +66,9 @@ impl<S: Simd> RowPlane<S> {
                 distance * (1.0 / SUBPIXEL as f32)
             },
         );
-        self.within(away(x, self.first[0]) * self.dz_dx + (away(y, self.first[1]) * self.dz_dy + self.z))
+        self.within(
+            away(x, self.first[0]) * self.dz_dx + (away(y, self.first[1]) * self.dz_dy + self.z),
+        )
     }
 
     /// The same at these eight pixels alone, whose depths are `z`.

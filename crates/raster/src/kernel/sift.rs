@@ -1,11 +1,14 @@
 //! Culling before setup, eight triangles at a time: which of them are seen, and their depth planes.
 //!
-//! Dropped are those outside the view volume, those that face away, and those that cover no sample. Of small boxes the samples
-//! are tested themselves: many triangles of a fine mesh lie between them, and one that is dropped here is neither set up nor sorted
-//! into a tile nor walked. Triangles that clipping must cut and those that extend over more than a tile are left to the caller.
+//! Dropped are those outside the view volume, those that face away, and those that cover no sample.
+//! Of small boxes the samples are tested themselves: many triangles of a fine mesh lie between
+//! them, and one that is dropped here is neither set up nor sorted into a tile nor walked.
+//! Triangles that clipping must cut and those that extend over more than a tile are left to the
+//! caller.
 //!
-//! In:   corners on the screen. Out: [`CullResult8`], the same bits as [`DepthPlane::new`], or as [`DepthPlane::unsnapped`] if vertices
-//!       keep what snapping took from them, and [`Setup::covers`](crate::Setup::covers).
+//! In:   corners on the screen. Out: [`CullResult8`], the same bits as [`DepthPlane::new`], or as
+//!       [`DepthPlane::unsnapped`] if vertices keep what snapping took from them, and
+//!       [`Setup::covers`](crate::Setup::covers).
 //! Cost: constant for eight triangles; a few operations for each sample of a small box.
 
 use super::traverse::{SMALL, biases};
@@ -25,7 +28,8 @@ pub(crate) struct Sieve {
     pub outside: u32,
     /// Those with a corner of one of these bits must be cut, and are left to the caller.
     pub cut: u32,
-    /// Of the eight those whose doubled area is negative, positive: a bit for each that is dropped then.
+    /// Of the eight those whose doubled area is negative, positive: a bit for each that is dropped
+    /// then.
     pub culls: [u32; 2],
     /// Those without pixels in `[x0, y0, x1, y1]`, the upper ends excluded.
     pub clip: [i32; 4],
@@ -83,8 +87,9 @@ impl CullResult8 {
     }
 }
 
-/// Looks at eight triangles of `vertices`. A function of its own: all in one would be a function over which compilers take
-/// minutes, where they must do without vectors. `UNSNAPPED`: depth planes go through the corners' own places.
+/// Looks at eight triangles of `vertices`. A function of its own: all in one would be a function
+/// over which compilers take minutes, where they must do without vectors. `UNSNAPPED`: depth planes
+/// go through the corners' own places.
 #[inline(never)]
 pub(crate) fn sift<S: Simd, const UNSNAPPED: bool>(
     simd: S,
@@ -156,7 +161,12 @@ fn sift_inlined<S: Simd, const UNSNAPPED: bool>(
     );
     CullResult8 {
         area: edges.area.to_array(),
-        pixels: [pixels[0].to_array(), pixels[1].to_array(), pixels[2].to_array(), pixels[3].to_array()],
+        pixels: [
+            pixels[0].to_array(),
+            pixels[1].to_array(),
+            pixels[2].to_array(),
+            pixels[3].to_array(),
+        ],
         z: z.to_array(),
         dz_dx: dz_dx.to_array(),
         dz_dy: dz_dy.to_array(),
@@ -171,8 +181,8 @@ fn sift_inlined<S: Simd, const UNSNAPPED: bool>(
     }
 }
 
-/// Which triangles have finite corners, which of these are not outside one of the sieve's planes, and which have no corner
-/// where they must be cut.
+/// Which triangles have finite corners, which of these are not outside one of the sieve's planes,
+/// and which have no corner where they must be cut.
 #[inline(always)]
 fn classify<S: Simd>(simd: S, sieve: &Sieve, [a, b, c]: &[Corner8<S>; 3]) -> [Mask8<S>; 3] {
     let zero = I32x8::splat(simd, 0);
@@ -237,8 +247,8 @@ fn shown<S: Simd>(simd: S, culls: [u32; 2], area: I32x8<S>) -> Mask8<S> {
     shown
 }
 
-/// The depth planes' depths at the first corners, slopes along x and y, least and greatest depths: the operations of
-/// [`DepthPlane::new`] or [`DepthPlane::unsnapped`], in their order.
+/// The depth planes' depths at the first corners, slopes along x and y, least and greatest depths:
+/// the operations of [`DepthPlane::new`] or [`DepthPlane::unsnapped`], in their order.
 #[inline(always)]
 fn depth_planes<S: Simd, const UNSNAPPED: bool>(
     simd: S,
@@ -246,13 +256,15 @@ fn depth_planes<S: Simd, const UNSNAPPED: bool>(
     edges: &Edges8<S>,
 ) -> [F32x8<S>; 5] {
     // Span depths and edges from the first corner.
-    let (z0, z1, z2): (F32x8<S>, F32x8<S>, F32x8<S>) = (a[2].bitcast(), b[2].bitcast(), c[2].bitcast());
+    let (z0, z1, z2): (F32x8<S>, F32x8<S>, F32x8<S>) =
+        (a[2].bitcast(), b[2].bitcast(), c[2].bitcast());
     let (dz1, dz2) = (z1 - z0, z2 - z0);
     let real = lanes::inlined(
         #[inline(always)]
         |v: I32x8<S>| -> F32x8<S> { v.to_float() },
     );
-    let mut spanned = [real(edges.dx1), real(edges.dy1), real(edges.dx2), real(edges.dy2), real(edges.area)];
+    let mut spanned =
+        [real(edges.dx1), real(edges.dy1), real(edges.dx2), real(edges.dy2), real(edges.area)];
 
     // Replace snapped edges by those before snapping.
     let mut moved = None;
@@ -290,8 +302,9 @@ fn depth_planes<S: Simd, const UNSNAPPED: bool>(
     [z0, dz_dx, dz_dy, z_min, z_max]
 }
 
-/// The edges from the first corner, x and y of one and the other, and twice the area that they span, before the corners were
-/// snapped, of those after; and by how many pixels each corner was moved. Slivers keep to their snapped corners.
+/// The edges from the first corner, x and y of one and the other, and twice the area that they
+/// span, before the corners were snapped, of those after; and by how many pixels each corner was
+/// moved. Slivers keep to their snapped corners.
 #[inline(always)]
 fn unsnapped<S: Simd>(
     simd: S,
@@ -301,7 +314,9 @@ fn unsnapped<S: Simd>(
     // Unpack the remainders of snapping, which are stored in the flags.
     let residue = lanes::inlined(
         #[inline(always)]
-        |flags: I32x8<S>| [flags << flag::RESIDUE_BITS >> flag::RESIDUE_Y, flags >> flag::RESIDUE_Y],
+        |flags: I32x8<S>| {
+            [flags << flag::RESIDUE_BITS >> flag::RESIDUE_Y, flags >> flag::RESIDUE_Y]
+        },
     );
     let real = lanes::inlined(
         #[inline(always)]
@@ -322,7 +337,13 @@ fn unsnapped<S: Simd>(
         |[own, snapped]: [F32x8<S>; 2]| kept.select(own, snapped),
     );
     let spanned = [[x1, dx1], [y1, dy1], [x2, dx2], [y2, dy2], [area + rest, area]];
-    let spanned = [select(spanned[0]), select(spanned[1]), select(spanned[2]), select(spanned[3]), select(spanned[4])];
+    let spanned = [
+        select(spanned[0]),
+        select(spanned[1]),
+        select(spanned[2]),
+        select(spanned[3]),
+        select(spanned[4]),
+    ];
     let (zero, unit) = (F32x8::splat(simd, 0.0), RESIDUE / SUBPIXEL as f32);
     let moved = lanes::inlined(
         #[inline(always)]
@@ -337,8 +358,8 @@ fn tested_side(samples: usize) -> Option<usize> {
     (1..=4).rev().find(|side| side * side * samples <= TESTED)
 }
 
-/// The pixels that eight boxes may cover within `clip`, x0, y0, x1, y1 inclusive, and which of them hold any; as
-/// [`crate::screen::covered_pixels`].
+/// The pixels that eight boxes may cover within `clip`, x0, y0, x1, y1 inclusive, and which of them
+/// hold any; as [`crate::screen::covered_pixels`].
 #[inline(always)]
 fn pixels<S: Simd>(
     simd: S,
@@ -365,7 +386,8 @@ fn pixels<S: Simd>(
     (pixels, holds)
 }
 
-/// Which of eight triangles cover a sample of the `side` by `side` pixels at `first` (1/256 pixel), which they touch.
+/// Which of eight triangles cover a sample of the `side` by `side` pixels at `first` (1/256 pixel),
+/// which they touch.
 #[inline(always)]
 fn cover<S: Simd>(
     simd: S,
@@ -384,7 +406,8 @@ fn cover<S: Simd>(
     );
     let ([bx, cx], [by, cy]) = (select(0), select(1));
 
-    // Set up edge functions, with corners as seen from the first pixel, so that products stay below 2^29.
+    // Set up edge functions, with corners as seen from the first pixel, so that products stay below
+    // 2^29.
     let x = [a[0] - first[0], bx - first[0], cx - first[0]];
     let y = [a[1] - first[1], by - first[1], cy - first[1]];
     let (mut right, mut down, mut at_pixel) = ([zero; 3], [zero; 3], [zero; 3]);
@@ -395,7 +418,8 @@ fn cover<S: Simd>(
         (right[i], down[i]) = (dy, dx);
     }
 
-    // Step through the pixels for each sample; a triangle that is outside of some edge everywhere covers nothing.
+    // Step through the pixels for each sample; a triangle that is outside of some edge everywhere
+    // covers nothing.
     let [xs, ys] = screen.pattern().axes();
     let mut outside = I32x8::splat(simd, -1);
     for s in 0..screen.pattern().len() {
@@ -438,25 +462,36 @@ mod tests {
         let mut vertices = Vec::new();
         for triangle in 0..triangles {
             let size = [90, 300, 700, 1500, 9000, 30_000][triangle % 6];
-            let middle = [random(110 * SUBPIXEL) - 5 * SUBPIXEL, random(80 * SUBPIXEL) - 5 * SUBPIXEL];
+            let middle =
+                [random(110 * SUBPIXEL) - 5 * SUBPIXEL, random(80 * SUBPIXEL) - 5 * SUBPIXEL];
             for _ in 0..3 {
                 let [x, y] = middle.map(|m| m + random(size) - size / 2);
                 // Corners on samples and on lines between pixels are the hardest.
                 let coarse = |v: i32| if triangle % 5 == 0 { v & !31 } else { v };
-                let flags = [0, flag::LEFT, flag::NOT_FINITE, flag::LEFT | flag::TOP][random(40).max(36) as usize - 36];
-                vertices.push(ScreenVertex { x: coarse(x), y: coarse(y), z: random(1000) as f32 / 1000.0, flags });
+                let flags = [0, flag::LEFT, flag::NOT_FINITE, flag::LEFT | flag::TOP]
+                    [random(40).max(36) as usize - 36];
+                vertices.push(ScreenVertex {
+                    x: coarse(x),
+                    y: coarse(y),
+                    z: random(1000) as f32 / 1000.0,
+                    flags,
+                });
             }
         }
         vertices
     }
 
     fn samples_of(setup: &Setup, pattern: &SamplePattern) -> bool {
-        let mut pixels = (0..VIEWPORT.height as i32).flat_map(|y| (0..VIEWPORT.width as i32).map(move |x| [x, y]));
+        let mut pixels = (0..VIEWPORT.height as i32)
+            .flat_map(|y| (0..VIEWPORT.width as i32).map(move |x| [x, y]));
         pixels.any(|[x, y]| {
             (0..pattern.len()).map(|s| pattern.position(s)).any(|[sx, sy]| {
                 let place = [x * SUBPIXEL + sx, y * SUBPIXEL + sy];
-                let near = |v: [i32; 3], at: i32| v.iter().any(|&v| v <= at) && v.iter().any(|&v| v >= at);
-                near(setup.x, place[0]) && near(setup.y, place[1]) && setup.covers(place[0], place[1])
+                let near =
+                    |v: [i32; 3], at: i32| v.iter().any(|&v| v <= at) && v.iter().any(|&v| v >= at);
+                near(setup.x, place[0])
+                    && near(setup.y, place[1])
+                    && setup.covers(place[0], place[1])
             })
         })
     }
@@ -473,16 +508,19 @@ mod tests {
         let sieve = Sieve { outside: flag::FRUSTUM, cut: flag::CLIP, culls: [0; 2], clip };
         let (mut compared, mut moved) = (0, 0);
         for first in (0..COUNT as u32).step_by(LANES) {
-            let corners = std::array::from_fn(|lane| [0, 1, 2].map(|k| 3 * (first + lane as u32) + k));
+            let corners =
+                std::array::from_fn(|lane| [0, 1, 2].map(|k| 3 * (first + lane as u32) + k));
             for (name, level) in available_levels() {
                 let eight = dispatch!(level, simd => sift::<_, true>(simd, &screen, &sieve, &vertices, &corners));
                 for lane in (0..LANES).filter(|lane| eight.seen >> lane & 1 == 1) {
                     let own = corners[lane].map(|i: u32| vertices[i as usize]);
-                    let (places, area) = (own.map(ScreenVertex::corner), i64::from(eight.area[lane]));
+                    let (places, area) =
+                        (own.map(ScreenVertex::corner), i64::from(eight.area[lane]));
                     let one = DepthPlane::unsnapped(places, own.map(ScreenVertex::residue), area);
                     assert_eq!(eight.plane(lane, places[0]), one, "{name}: {own:?}");
                     compared += 1;
-                    moved += usize::from(one != DepthPlane::new(places[0], places[1], places[2], area));
+                    moved +=
+                        usize::from(one != DepthPlane::new(places[0], places[1], places[2], area));
                 }
             }
         }
@@ -493,9 +531,11 @@ mod tests {
     fn eight_at_a_time_drops_what_covers_no_sample_and_keeps_all_else_as_one_by_one() {
         const COUNT: usize = 301;
         let vertices = vertices(COUNT);
-        let triangles: Vec<[u32; 3]> = (0..COUNT as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let triangles: Vec<[u32; 3]> =
+            (0..COUNT as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         // Some are solid, in no regular order.
-        let solid: Vec<u32> = (1..=COUNT.div_ceil(32) as u32).map(|word| word.wrapping_mul(0x9e37_79b9)).collect();
+        let solid: Vec<u32> =
+            (1..=COUNT.div_ceil(32) as u32).map(|word| word.wrapping_mul(0x9e37_79b9)).collect();
         for (samples, (back_faces, mirrored)) in [
             (1, (BackFaces::Kept, false)),
             (4, (BackFaces::Dropped, false)),
@@ -517,7 +557,14 @@ mod tests {
                 } else {
                     let corners = [a, b, c].map(|v| CornerPosition { x: v.x, y: v.y, z: v.z });
                     let cull_back = back_faces.drops(facet as u32);
-                    reference.add_corners(corners, cull_back, mirrored, None, facet as u32, &screen);
+                    reference.add_corners(
+                        corners,
+                        cull_back,
+                        mirrored,
+                        None,
+                        facet as u32,
+                        &screen,
+                    );
                 }
             }
             let draw = Draw {
@@ -538,11 +585,18 @@ mod tests {
                 let mut dropped = 0;
                 for setup in reference.setups() {
                     if kept.next_if_eq(&setup).is_none() {
-                        assert!(!samples_of(setup, &pattern), "{name}, {samples} samples: {setup:?}");
+                        assert!(
+                            !samples_of(setup, &pattern),
+                            "{name}, {samples} samples: {setup:?}"
+                        );
                         dropped += 1;
                     }
                 }
-                assert_eq!(kept.next(), None, "{name}: only those of the reference, in their order");
+                assert_eq!(
+                    kept.next(),
+                    None,
+                    "{name}: only those of the reference, in their order"
+                );
                 assert!(dropped > 20, "{name}, {samples} samples: {dropped}");
                 let mut expected = reference.counters;
                 expected.triangles = COUNT as u64;

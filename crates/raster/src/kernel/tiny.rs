@@ -1,10 +1,12 @@
 //! Tiny triangles eight at a time: which pixels they cover, and how deep these are.
 //!
-//! A fine mesh is made of triangles of some pixels. Walked one by one, eight pixels of a row are computed where one or two are
-//! covered; here eight triangles, each in a lane, go together through the pixels of their boxes. Coverage and depth are those
-//! of [`super::traverse`] and of [`Setup::depth`].
+//! A fine mesh is made of triangles of some pixels. Walked one by one, eight pixels of a row are
+//! computed where one or two are covered; here eight triangles, each in a lane, go together through
+//! the pixels of their boxes. Coverage and depth are those of [`super::traverse`] and of
+//! [`Setup::depth`].
 //!
-//! In:   triangles of a tile whose boxes hold at most 8x8 pixels. Out: masks of covered pixels, and depths.
+//! In:   triangles of a tile whose boxes hold at most 8x8 pixels. Out: masks of covered pixels, and
+//!       depths.
 //! Cost: some operations for each pixel of the largest box, shared by eight triangles.
 
 use super::block::Block;
@@ -19,8 +21,8 @@ pub(crate) const SAMPLES: usize = 4;
 /// Pixels of a box.
 pub(crate) const PLACES: usize = BLOCK * BLOCK;
 
-/// Up to eight tiny triangles. The pixels of a triangle's box are bits of a word, or places in a list: `8 * row + column` from
-/// [`TinyEight::corner`] on.
+/// Up to eight tiny triangles. The pixels of a triangle's box are bits of a word, or places in a
+/// list: `8 * row + column` from [`TinyEight::corner`] on.
 #[derive(Debug)]
 pub(crate) struct TinyEight {
     /// Corners in 1/256 pixel of the tile.
@@ -70,7 +72,8 @@ pub(crate) fn set_bits(mut bits: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Where a place of a box lies in the tile, row by row: `first` is where the box's first pixel does.
+/// Where a place of a box lies in the tile, row by row: `first` is where the box's first pixel
+/// does.
 #[inline(always)]
 pub(crate) fn pixel(first: usize, place: usize) -> usize {
     first + place + place / BLOCK * (TILE - BLOCK)
@@ -105,11 +108,17 @@ impl TinyEight {
         self.count = at + 1;
     }
 
-    /// One more whose covered pixels are given, as are the first column and row of their box in the tile, which begins at pixel
-    /// `tile`. Not for more than eight.
+    /// One more whose covered pixels are given, as are the first column and row of their box in the
+    /// tile, which begins at pixel `tile`. Not for more than eight.
     #[cfg(any(test, feature = "forward"))]
     #[inline(always)]
-    pub(crate) fn push_pixels(&mut self, setup: &Setup, tile: [u32; 2], corner: [usize; 2], pixels: u64) {
+    pub(crate) fn push_pixels(
+        &mut self,
+        setup: &Setup,
+        tile: [u32; 2],
+        corner: [usize; 2],
+        pixels: u64,
+    ) {
         let at = self.count % LANES;
         let [x, y] = tile.map(|v| v as i32 * SUBPIXEL);
         self.set(setup, (setup.x.map(|v| v - x), setup.y.map(|v| v - y)), corner);
@@ -123,7 +132,10 @@ impl TinyEight {
     fn set(&mut self, setup: &Setup, (x, y): ([i32; 3], [i32; 3]), [left, top]: [usize; 2]) {
         let at = self.count % LANES;
         let words: [i32; size_of::<Setup>() / 4] = bytemuck::cast(*setup);
-        self.planes[at] = [[words[6], words[7], words[8], words[9]], [words[10], words[11], words[12], words[13]]];
+        self.planes[at] = [
+            [words[6], words[7], words[8], words[9]],
+            [words[10], words[11], words[12], words[13]],
+        ];
         for k in 0..3 {
             (self.x[k][at], self.y[k][at]) = (x[k], y[k]);
         }
@@ -161,7 +173,11 @@ impl TinyEight {
         let load = lanes::inlined(
             #[inline(always)]
             |v: &[[i32; LANES]; 3]| {
-                [I32x8::from_slice(simd, &v[0]), I32x8::from_slice(simd, &v[1]), I32x8::from_slice(simd, &v[2])]
+                [
+                    I32x8::from_slice(simd, &v[0]),
+                    I32x8::from_slice(simd, &v[1]),
+                    I32x8::from_slice(simd, &v[2]),
+                ]
             },
         );
         [load(&self.x), load(&self.y)]
@@ -174,8 +190,9 @@ impl TinyEight {
         [left + (place % BLOCK) as i32, top + (place / BLOCK) as i32]
     }
 
-    /// The pixels of each triangle that are covered, sample by sample: those at `positions` of a pixel in 1/256 pixel, one or four.
-    /// `stored` says how depths are stored; `tile` is the tile's first pixel.
+    /// The pixels of each triangle that are covered, sample by sample: those at `positions` of a
+    /// pixel in 1/256 pixel, one or four. `stored` says how depths are stored; `tile` is the tile's
+    /// first pixel.
     #[inline(always)]
     pub(crate) fn cover<S: Simd, const N: usize>(
         &mut self,
@@ -195,7 +212,8 @@ impl TinyEight {
             (dx[i], dy[i]) = (x[j] - x[i], y[j] - y[i]);
             corner[i] = dy[i] * x[i] - dx[i] * y[i] + biases(simd, dx[i], dy[i]);
         }
-        // Depths by the operations of `Setup::depth`, in their order; distances from the origin are exact.
+        // Depths by the operations of `Setup::depth`, in their order; distances from the origin are
+        // exact.
         let words = lanes::inlined(
             #[inline(always)]
             |half: usize| {
@@ -215,7 +233,8 @@ impl TinyEight {
         let away = lanes::inlined(
             #[inline(always)]
             |pixel: I32x8<S>, first: i32, origin: I32x8<S>| -> F32x8<S> {
-                let distance: F32x8<S> = ((pixel << SUBPIXEL.trailing_zeros()) + first - origin).to_float();
+                let distance: F32x8<S> =
+                    ((pixel << SUBPIXEL.trailing_zeros()) + first - origin).to_float();
                 distance * (1.0 / SUBPIXEL as f32)
             },
         );
@@ -228,7 +247,8 @@ impl TinyEight {
                 let (mut a, mut row) = ([zero; 3], [zero; 3]);
                 for i in 0..3 {
                     a[i] = zero - dy[i];
-                    row[i] = ((corner[i] + (dx[i] * sy - dy[i] * sx)) >> 8) + a[i] * left + dx[i] * top;
+                    row[i] =
+                        ((corner[i] + (dx[i] * sy - dy[i] * sx)) >> 8) + a[i] * left + dx[i] * top;
                 }
                 let distance = [
                     away(left, tile.0 as i32 * SUBPIXEL + sx, origin_x),
@@ -250,7 +270,8 @@ impl TinyEight {
         covered
     }
 
-    /// Goes through the places of the boxes with one or two samples, from number `first` on; leaves in `covered` what is.
+    /// Goes through the places of the boxes with one or two samples, from number `first` on; leaves
+    /// in `covered` what is.
     #[inline(always)]
     fn walk<S: Simd, V: Floats<S>>(
         &mut self,
@@ -261,7 +282,13 @@ impl TinyEight {
         covered: &mut [[u64; LANES]; SAMPLES],
     ) {
         // Start at the first pixel with an empty mask, whose two halves hold four rows each.
-        let Walk { a, b, mut row, plane: [z, dz_dx, dz_dy, z_min, z_max], distance: [left, mut dy] } = walk;
+        let Walk {
+            a,
+            b,
+            mut row,
+            plane: [z, dz_dx, dz_dy, z_min, z_max],
+            distance: [left, mut dy],
+        } = walk;
         let [columns, rows] = self.size;
         let every = lanes::inlined(
             #[inline(always)]
@@ -307,14 +334,16 @@ impl TinyEight {
         // Intersect the masks with the boxes.
         let (low, high) = (halves[0].as_slice(), halves[1].as_slice());
         for lane in 0..V::LEN {
-            let inside = u64::from(low[lane].cast_unsigned()) | u64::from(high[lane].cast_unsigned()) << 32;
-            covered[(first + lane / LANES) % SAMPLES][lane % LANES] &= inside | self.given[lane % LANES];
+            let inside =
+                u64::from(low[lane].cast_unsigned()) | u64::from(high[lane].cast_unsigned()) << 32;
+            covered[(first + lane / LANES) % SAMPLES][lane % LANES] &=
+                inside | self.given[lane % LANES];
         }
     }
 }
 
-/// What eight triangles' edge functions and depths begin with at one sample of their boxes' first pixels, or at two: those of the
-/// second sample in the upper lanes.
+/// What eight triangles' edge functions and depths begin with at one sample of their boxes' first
+/// pixels, or at two: those of the second sample in the upper lanes.
 #[derive(Clone, Copy)]
 struct Walk<S: Simd, V: Floats<S>> {
     /// What edge functions change by with a column, with a row.
@@ -353,7 +382,10 @@ impl<S: Simd> Walk<S, F32x8<S>> {
             b: ints(low.b, high.b),
             row: ints(low.row, high.row),
             plane: [twice(z), twice(dz_dx), twice(dz_dy), twice(z_min), twice(z_max)],
-            distance: [low.distance[0].combine(high.distance[0]), low.distance[1].combine(high.distance[1])],
+            distance: [
+                low.distance[0].combine(high.distance[0]),
+                low.distance[1].combine(high.distance[1]),
+            ],
         }
     }
 }
@@ -371,8 +403,10 @@ mod tests {
         let window = [0..50, 3..TILE];
         for samples in [1, 4] {
             let pattern = SamplePattern::new(samples);
-            let place = |setup: &Setup| Placed::new(setup, tile, &window, &pattern).filter(Placed::is_tiny);
-            let tiny: Vec<_> = triangles(4000, 64).into_iter().filter(|s| place(s).is_some()).collect();
+            let place =
+                |setup: &Setup| Placed::new(setup, tile, &window, &pattern).filter(Placed::is_tiny);
+            let tiny: Vec<_> =
+                triangles(4000, 64).into_iter().filter(|s| place(s).is_some()).collect();
             assert!(tiny.len() > 500, "{}", tiny.len());
             for (name, level) in available_levels() {
                 let (mut eight, mut covered, mut clipped) = (TinyEight::default(), 0, 0);
@@ -407,8 +441,14 @@ mod tests {
                                 let [x, y] = [at % TILE, at / TILE].map(|v| v as i32);
                                 let place = [(64 + x) * SUBPIXEL + sx, (64 + y) * SUBPIXEL + sy];
                                 if setup.covers(place[0], place[1]) {
-                                    if columns.contains(&(x as usize)) && rows.contains(&(y as usize)) {
-                                        expected.push((triangle, at, setup.depth(place[0], place[1])));
+                                    if columns.contains(&(x as usize))
+                                        && rows.contains(&(y as usize))
+                                    {
+                                        expected.push((
+                                            triangle,
+                                            at,
+                                            setup.depth(place[0], place[1]),
+                                        ));
                                     } else {
                                         clipped += 1;
                                     }

@@ -41,7 +41,8 @@ fn transform_all<S: Simd>(
         let p = [load(simd, &soa[0]), load(simd, &soa[1]), load(simd, &soa[2])];
         let clip = [row(p, &m, 0), row(p, &m, 1), row(p, &m, 2), row(p, &m, 3)];
         let (sx, sy, depth, flags) = project(simd, clip, viewport);
-        let (sx, sy, depth, flags) = (sx.to_array(), sy.to_array(), depth.to_array(), flags.to_array());
+        let (sx, sy, depth, flags) =
+            (sx.to_array(), sy.to_array(), depth.to_array(), flags.to_array());
         for lane in 0..o.len() {
             o[lane] = ScreenVertex { x: sx[lane], y: sy[lane], z: depth[lane], flags: flags[lane] };
         }
@@ -88,7 +89,12 @@ fn project<S: Simd>(
         | bit(simd, !z.simd_ge(zero), flag::FAR)
         | bit(simd, !z.simd_le(w), flag::NEAR);
     let (gx, gy) = (w * viewport.guard.x, w * viewport.guard.y);
-    let in_band = x.simd_ge(-gx) & x.simd_le(gx) & y.simd_ge(-gy) & y.simd_le(gy) & z.simd_ge(zero) & z.simd_le(w);
+    let in_band = x.simd_ge(-gx)
+        & x.simd_le(gx)
+        & y.simd_ge(-gy)
+        & y.simd_le(gy)
+        & z.simd_ge(zero)
+        & z.simd_le(w);
     let in_band = in_band & w.simd_gt(zero);
     // 0 x is 0 for finite numbers only.
     let finite = (x * 0.0 + y * 0.0 + z * 0.0 + w * 0.0).simd_eq(zero);

@@ -1,8 +1,9 @@
 //! Walking a triangle through a tile, in blocks of 8x8 pixels.
 //!
-//! Each edge function is linear; inside a tile it is `a x + b y + c` for pixel `(x, y)` with one constant a sample,
-//! exactly, in 32-bit integers: positions are multiples of 1/256 pixel, so with a fixed sample position the sign of
-//! the edge function is that of its value divided by 256 and rounded down.
+//! Each edge function is linear; inside a tile it is `a x + b y + c` for pixel `(x, y)` with one
+//! constant a sample, exactly, in 32-bit integers: positions are multiples of 1/256 pixel, so with
+//! a fixed sample position the sign of the edge function is that of its value divided by 256 and
+//! rounded down.
 //!
 //! Source: [Pineda 1988]; hierarchical traversal after [Greene 1996].
 
@@ -14,11 +15,16 @@ use std::ops::Range;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{I32x8, I32x16, LANES, Mask8, Simd};
 
-/// Whether the blocks of a box of at most 8x8 pixels, from `low` to `high`, hold nothing but what is nearer than `setup`.
+/// Whether the blocks of a box of at most 8x8 pixels, from `low` to `high`, hold nothing but what
+/// is nearer than `setup`.
 #[inline(always)]
 fn hides_box(tile: &Tile, setup: &Setup, low: [usize; 2], high: [usize; 2]) -> bool {
     let far = |x: usize, y: usize| tile.block_far[y / BLOCK * (TILE / BLOCK) + x / BLOCK];
-    setup.z_max < far(low[0], low[1]).min(far(high[0], low[1])).min(far(low[0], high[1])).min(far(high[0], high[1]))
+    setup.z_max
+        < far(low[0], low[1])
+            .min(far(high[0], low[1]))
+            .min(far(low[0], high[1]))
+            .min(far(high[0], high[1]))
 }
 
 /// An edge function within one tile: `a * x + b * y + c[s] >= 0` on covered samples.
@@ -31,14 +37,16 @@ pub(crate) struct Edge {
 }
 
 impl Edge {
-    /// The constant of a sample at `(x, y)` in its pixel: `corner` is the edge function's value at the tile's origin.
+    /// The constant of a sample at `(x, y)` in its pixel: `corner` is the edge function's value at
+    /// the tile's origin.
     #[inline(always)]
     pub(crate) fn constant(self, corner: i32, [x, y]: [i32; 2]) -> i32 {
         (corner + (self.b * y + self.a * x)) >> 8
     }
 }
 
-/// An edge of a triangle of any size, with corners in the tile's coordinates, and the function that gives [`Edge::constant`].
+/// An edge of a triangle of any size, with corners in the tile's coordinates, and the function that
+/// gives [`Edge::constant`].
 #[inline(always)]
 fn far_edge(x: &[i32; 3], y: &[i32; 3], i: usize) -> (Edge, impl Fn([i32; 2]) -> i32) {
     let j = (i + 1) % 3;
@@ -52,7 +60,8 @@ fn far_edge(x: &[i32; 3], y: &[i32; 3], i: usize) -> (Edge, impl Fn([i32; 2]) ->
     (Edge { a: -dy, b: dx }, constant)
 }
 
-/// What is added to the edge functions of eight edges `(dx, dy)`, so that 0 counts as inside on top and left edges alone.
+/// What is added to the edge functions of eight edges `(dx, dy)`, so that 0 counts as inside on top
+/// and left edges alone.
 #[inline(always)]
 pub(crate) fn biases<S: Simd>(simd: S, dx: I32x8<S>, dy: I32x8<S>) -> I32x8<S> {
     let zero = I32x8::splat(simd, 0);
@@ -63,8 +72,8 @@ pub(crate) fn biases<S: Simd>(simd: S, dx: I32x8<S>, dy: I32x8<S>) -> I32x8<S> {
 /// Larger constants decide the sign by themselves: `|a x + b y| < 2^30` inside a tile.
 const FAR_AWAY: i64 = 1 << 30;
 
-/// Triangles that extend over fewer 1/256 pixel than this, a tile's side, have edge functions of 32 bits in a tile that
-/// they touch: the products are below 2^29.
+/// Triangles that extend over fewer 1/256 pixel than this, a tile's side, have edge functions of 32
+/// bits in a tile that they touch: the products are below 2^29.
 pub(crate) const SMALL: i32 = TILE as i32 * SUBPIXEL;
 
 /// What is at most so many 1/256 pixel thick is walked along its length.
@@ -83,7 +92,8 @@ fn is_small(x: &[i32; 3], y: &[i32; 3]) -> bool {
 
 #[cfg(any(test, feature = "forward"))]
 impl Setup {
-    /// Whether it extends over less than a tile's side, so that twice its area has fewer than 32 bits.
+    /// Whether it extends over less than a tile's side, so that twice its area has fewer than 32
+    /// bits.
     #[inline(always)]
     pub(crate) fn is_small(&self) -> bool {
         is_small(&self.x, &self.y)
@@ -133,7 +143,8 @@ pub fn traverse_by_rows<S: Simd, K: RowSink<S>>(
     }
 }
 
-/// [`walk_rows`] as a function of its own: all in one would be a function over which WebAssembly's compiler takes minutes.
+/// [`walk_rows`] as a function of its own: all in one would be a function over which WebAssembly's
+/// compiler takes minutes.
 #[inline(never)]
 fn rows_outlined<S: Simd, K: RowSink<S>, const MAX: usize>(
     simd: S,
@@ -182,7 +193,8 @@ fn walk_blocks<S: Simd, K: RowSink<S>, const MAX: usize>(
         #[inline(always)]
         |block, full| {
             // Skip a block whose samples all hide the facet.
-            let hidden = sink.hiding().is_some_and(|tile| setup.z_max < tile.block_far[block.index()]);
+            let hidden =
+                sink.hiding().is_some_and(|tile| setup.z_max < tile.block_far[block.index()]);
             if hidden {
                 return;
             }
@@ -232,7 +244,8 @@ fn walk_blocks<S: Simd, K: RowSink<S>, const MAX: usize>(
     );
 }
 
-/// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit into 32 bits.
+/// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit into
+/// 32 bits.
 #[inline(always)]
 fn walk_rows<S: Simd, K: RowSink<S>, const MAX: usize>(
     simd: S,
@@ -243,7 +256,9 @@ fn walk_rows<S: Simd, K: RowSink<S>, const MAX: usize>(
 ) {
     // Skip the facet if the blocks under its box hide it.
     let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
-    if y1 - y0 < BLOCK && sink.hiding().is_some_and(|tile| hides_box(tile, setup, [x0, y0], [x1, y1])) {
+    if y1 - y0 < BLOCK
+        && sink.hiding().is_some_and(|tile| hides_box(tile, setup, [x0, y0], [x1, y1]))
+    {
         return;
     }
 
@@ -262,7 +277,9 @@ fn walk_rows<S: Simd, K: RowSink<S>, const MAX: usize>(
         #[inline(always)]
         |sample| (sample, RowPlane::new(simd, setup, firsts[sample])),
         #[inline(always)]
-        |(sample, plane), y, covered| sink.cover_row(simd, (setup, plane), *sample, [left, y], covered),
+        |(sample, plane), y, covered| {
+            sink.cover_row(simd, (setup, plane), *sample, [left, y], covered)
+        },
     );
     sink.end(simd, [x0, y0]);
 }
@@ -290,10 +307,15 @@ impl Placed {
         let x = setup.x.map(|x| x - origin_x);
         let y = setup.y.map(|y| y - origin_y);
         let [extent_x, extent_y] = pattern.extent();
-        let first = |v: [i32; 3], e: [i32; 2]| (v[0].min(v[1]).min(v[2]) - e[1] + SUBPIXEL - 1) >> 8;
+        let first =
+            |v: [i32; 3], e: [i32; 2]| (v[0].min(v[1]).min(v[2]) - e[1] + SUBPIXEL - 1) >> 8;
         let last = |v: [i32; 3], e: [i32; 2]| (v[0].max(v[1]).max(v[2]) - e[0]) >> 8;
-        let (x0, x1) = (first(x, extent_x).max(columns.start as i32), last(x, extent_x).min(columns.end as i32 - 1));
-        let (y0, y1) = (first(y, extent_y).max(rows.start as i32), last(y, extent_y).min(rows.end as i32 - 1));
+        let (x0, x1) = (
+            first(x, extent_x).max(columns.start as i32),
+            last(x, extent_x).min(columns.end as i32 - 1),
+        );
+        let (y0, y1) =
+            (first(y, extent_y).max(rows.start as i32), last(y, extent_y).min(rows.end as i32 - 1));
         let [columns, rows] = [[x0, x1], [y0, y1]].map(|range| range.map(|v| v as usize));
         (x0 <= x1 && y0 <= y1).then_some(Self { x, y, columns, rows })
     }
@@ -310,7 +332,8 @@ impl Placed {
         spread(&self.y) > spread(&self.x)
     }
 
-    /// Whether it is at most [`SLENDER`] pixels thick, measured across its longer side, so that walking along that pays.
+    /// Whether it is at most [`SLENDER`] pixels thick, measured across its longer side, so that
+    /// walking along that pays.
     #[inline(always)]
     pub(crate) fn is_slender(&self) -> bool {
         let (x, y) = (&self.x, &self.y);
@@ -340,9 +363,10 @@ impl Placed {
         self.columns[0].min(TILE - LANES)
     }
 
-    /// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit into 32 bits, sample by
-    /// sample. `begin` is called for each sample; `row` with what that gave, the row of the tile and which of the eight
-    /// pixels from [`Self::left`] on are covered, if any are.
+    /// Walks the rows of a triangle that is at most eight pixels wide and whose edge functions fit
+    /// into 32 bits, sample by sample. `begin` is called for each sample; `row` with what that
+    /// gave, the row of the tile and which of the eight pixels from [`Self::left`] on are covered,
+    /// if any are.
     #[inline(always)]
     fn each_row<S: Simd, T, const MAX: usize>(
         &self,
@@ -389,7 +413,8 @@ impl Placed {
         center_edges(&self.x, &self.y)
     }
 
-    /// The edges, and the edge functions' values at the tile's origin in 1/65536 square pixels; for [`Self::is_small`].
+    /// The edges, and the edge functions' values at the tile's origin in 1/65536 square pixels; for
+    /// [`Self::is_small`].
     #[inline(always)]
     pub(crate) fn edges(&self) -> ([Edge; 3], [i32; 3]) {
         let mut edges = [Edge { a: 0, b: 0 }; 3];
@@ -404,7 +429,8 @@ impl Placed {
     }
 }
 
-/// The edges of a triangle of any size with corners in a tile's coordinates, and [`Edge::constant`] of the middles of pixels.
+/// The edges of a triangle of any size with corners in a tile's coordinates, and [`Edge::constant`]
+/// of the middles of pixels.
 #[inline(always)]
 pub(crate) fn center_edges(x: &[i32; 3], y: &[i32; 3]) -> ([Edge; 3], [i32; 3]) {
     let mut edges = [Edge { a: 0, b: 0 }; 3];
@@ -430,8 +456,8 @@ pub fn traverse_block<S: Simd, K: BlockSink<S>>(
     traverse_window(simd, setup, tile, &[x..x + BLOCK, y..y + BLOCK], pattern, sink);
 }
 
-/// [`traverse`] for the blocks that hold pixels of `window`, columns and rows of the tile; above and below it no rows
-/// are covered.
+/// [`traverse`] for the blocks that hold pixels of `window`, columns and rows of the tile; above
+/// and below it no rows are covered.
 #[inline(always)]
 pub fn traverse_window<S: Simd, K: BlockSink<S>>(
     simd: S,
@@ -480,7 +506,13 @@ fn traverse_samples<S: Simd, K: BlockSink<S>, const MAX: usize>(
             } else {
                 any = 0;
                 for (s, mask) in masks[..edges.samples].iter_mut().enumerate() {
-                    *mask = mask_rows(simd, &edges.edges, &edges.across, edges.at_block(s, block), block.rows.clone());
+                    *mask = mask_rows(
+                        simd,
+                        &edges.edges,
+                        &edges.across,
+                        edges.at_block(s, block),
+                        block.rows.clone(),
+                    );
                     any |= *mask;
                 }
             }
@@ -532,7 +564,12 @@ impl<S: Simd, const MAX: usize> SampleEdges<S, MAX> {
             }
         }
         let lane = I32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-        Self { samples, edges, constants, across: [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a] }
+        Self {
+            samples,
+            edges,
+            constants,
+            across: [lane * edges[0].a, lane * edges[1].a, lane * edges[2].a],
+        }
     }
 
     /// The values at a sample of a block's first pixel.
@@ -546,7 +583,8 @@ impl<S: Simd, const MAX: usize> SampleEdges<S, MAX> {
         values
     }
 
-    /// Visits the blocks that may hold covered samples, in rows, and tells of each whether all its samples are covered.
+    /// Visits the blocks that may hold covered samples, in rows, and tells of each whether all its
+    /// samples are covered.
     #[inline(always)]
     fn each_block(&self, simd: S, place: &Placed, mut visit: impl FnMut(&Block, bool)) {
         let ([x0, x1], [y0, y1]) = (place.columns, place.rows);
@@ -566,7 +604,8 @@ impl<S: Simd, const MAX: usize> SampleEdges<S, MAX> {
     }
 }
 
-/// The least and the largest values that the edge functions take on the samples of the eight blocks of a tile's top row.
+/// The least and the largest values that the edge functions take on the samples of the eight blocks
+/// of a tile's top row.
 pub(crate) struct Extremes<S: Simd> {
     /// Least values, by edge; one lane for each block.
     least: [I32x8<S>; 3],
@@ -599,8 +638,8 @@ impl<S: Simd> Extremes<S> {
         Self { least, largest }
     }
 
-    /// A bit for each block of the row of blocks at pixel row `y`: those that may hold covered samples, and those whose
-    /// samples all are.
+    /// A bit for each block of the row of blocks at pixel row `y`: those that may hold covered
+    /// samples, and those whose samples all are.
     #[inline(always)]
     pub(crate) fn row(&self, simd: S, edges: &[Edge; 3], y: usize) -> [u32; 2] {
         let zero = I32x8::splat(simd, 0);

@@ -1,12 +1,13 @@
 //! Back-face culling: faces of closed objects that are turned away are hidden by the ones in front.
 //!
-//! A face is a back face when the vector from the centre of projection to it makes a positive inner product with its
-//! outward normal, `V · N > 0`; at 0 it is seen edge-on and has no area. After projection the same is the sign of its
-//! area on the screen, which is what the rasteriser tests. (The notes say "not negative" in the text and `> 0` in the
-//! list: the list is right.)
+//! A face is a back face when the vector from the centre of projection to it makes a positive inner
+//! product with its outward normal, `V · N > 0`; at 0 it is seen edge-on and has no area. After
+//! projection the same is the sign of its area on the screen, which is what the rasteriser tests.
+//! (The notes say "not negative" in the text and `> 0` in the list: the list is right.)
 //!
-//! It may be used only for bodies that are closed, consistently wound and wound outwards, whatever else their mesh has, and
-//! where the material is not double-sided: an open surface shows its inside.
+//! It may be used only for bodies that are closed, consistently wound and wound outwards, whatever
+//! else their mesh has, and where the material is not double-sided: an open surface shows its
+//! inside.
 //! Source: [Foley et al. 1990], 15.2.4.
 
 use vitral_math::DVec3;
@@ -28,8 +29,8 @@ pub fn facing(n: DVec3, point: DVec3, eye: DVec3) -> Facing {
     facing_along(n, point - eye)
 }
 
-/// Classifies a face with normal `n`, seen along `v` (from the viewer to the face). For a parallel projection along -z
-/// in view space this is the sign of `n.z`: back facing if `C < 0`.
+/// Classifies a face with normal `n`, seen along `v` (from the viewer to the face). For a parallel
+/// projection along -z in view space this is the sign of `n.z`: back facing if `C < 0`.
 pub fn facing_along(n: DVec3, v: DVec3) -> Facing {
     let d = v.dot(n);
     if d < 0.0 {

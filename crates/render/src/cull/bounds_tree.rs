@@ -1,7 +1,8 @@
 //! A tree of boxes over things in their given order: one test rejects any number of them.
 //!
-//! Leaves are boxes round single things, or round runs of consecutive triangles; each inner node holds the box round
-//! two nodes below. Order is kept, so that numbering is, and files usually list neighbours together.
+//! Leaves are boxes round single things, or round runs of consecutive triangles; each inner node
+//! holds the box round two nodes below. Order is kept, so that numbering is, and files usually list
+//! neighbours together.
 //!
 //! Cost: building is linear; a query visits the nodes whose parents cross the view volume.
 //! Source: [Clark 1976].
@@ -27,7 +28,8 @@ pub struct BoxTest {
 /// Is told each test of a box.
 pub type BoxTested<'f> = dyn FnMut(&BoxTest) + 'f;
 
-/// A complete binary tree: node `i` has the children `2 i + 1` and `2 i + 2`; leaves fill the last places.
+/// A complete binary tree: node `i` has the children `2 i + 1` and `2 i + 2`; leaves fill the last
+/// places.
 #[derive(Clone, Debug)]
 pub struct BoundsTree {
     nodes: Vec<Aabb>,
@@ -43,7 +45,8 @@ impl BoundsTree {
         Self::build(boxes, boxes.len(), 1)
     }
 
-    /// A tree over a mesh's triangles in order, [`TRIANGLES_A_RUN`] a leaf, from the boxes round them.
+    /// A tree over a mesh's triangles in order, [`TRIANGLES_A_RUN`] a leaf, from the boxes round
+    /// them.
     pub fn over_runs(run_bounds: &[Aabb], triangles: usize) -> Self {
         Self::build(run_bounds, triangles, TRIANGLES_A_RUN)
     }
@@ -59,8 +62,8 @@ impl BoundsTree {
         Self { nodes, leaves, first_leaf, items, items_a_leaf }
     }
 
-    /// The runs of items whose boxes reach into the frustum, in order and joined where they meet; tells `tested` each box that is
-    /// tested, with the items in it.
+    /// The runs of items whose boxes reach into the frustum, in order and joined where they meet;
+    /// tells `tested` each box that is tested, with the items in it.
     pub fn visible(&self, frustum: &Frustum, tested: &mut BoxTested<'_>) -> Vec<Range<u32>> {
         let mut runs = Vec::new();
         self.visit(0, 0, self.leaves, frustum, tested, &mut runs);
@@ -111,7 +114,8 @@ mod tests {
     #[test]
     fn p10_one_test_rejects_everything() {
         let frustum = Frustum::from_matrix(&DMat4::IDENTITY);
-        let tree = BoundsTree::new(&(0..1000).map(|i| unit(5.0 + f64::from(i))).collect::<Vec<_>>());
+        let tree =
+            BoundsTree::new(&(0..1000).map(|i| unit(5.0 + f64::from(i))).collect::<Vec<_>>());
         let mut tests = 0;
         assert!(tree.visible(&frustum, &mut |_| tests += 1).is_empty());
         assert_eq!(tests, 1);
@@ -125,7 +129,10 @@ mod tests {
         let mut told = Vec::new();
         let runs = tree.visible(&frustum, &mut |test| told.push(test.clone()));
         assert_eq!((told[0].items.clone(), told[0].containment), (0..37, Containment::Crossing));
-        assert!(told.iter().all(|test| (test.containment == Containment::Outside) == test.beyond.is_some()));
+        assert!(
+            told.iter()
+                .all(|test| (test.containment == Containment::Outside) == test.beyond.is_some())
+        );
         for (i, b) in boxes.iter().enumerate() {
             let inside = runs.iter().any(|r| r.contains(&(i as u32)));
             assert_eq!(inside, frustum.test_box(b) != Containment::Outside, "box {i}");

@@ -1,8 +1,10 @@
-//! View-frustum culling by hierarchy: the scene, then objects, then runs of triangles of objects that cross its border.
+//! View-frustum culling by hierarchy: the scene, then objects, then runs of triangles of objects
+//! that cross its border.
 //!
 //! In:   the world's instances, the view volume.
 //! Out:  for each instance that may be visible, the runs of its triangles that may be.
-//! Cost: one box test for whatever is wholly outside or inside; the tests in between go with the border.
+//! Cost: one box test for whatever is wholly outside or inside; the tests in between go with the
+//!       border.
 //! Source: [Clark 1976].
 
 use super::bounds_tree::{BoundsTree, BoxTest};
@@ -38,7 +40,9 @@ pub fn cull(
 
     // Keep everything if culling is off.
     if !enabled {
-        return (0..instances.len()).map(|i| VisibleInstance { instance: i, ranges: vec![all(i)] }).collect();
+        return (0..instances.len())
+            .map(|i| VisibleInstance { instance: i, ranges: vec![all(i)] })
+            .collect();
     }
 
     // Reject whole objects through a tree over their boxes.
@@ -83,14 +87,16 @@ pub fn cull(
                 }
             }
         };
-        if !ranges.is_empty() || !instance.mesh.lines.is_empty() || !instance.mesh.points.is_empty() {
+        if !ranges.is_empty() || !instance.mesh.lines.is_empty() || !instance.mesh.points.is_empty()
+        {
             visible.push(VisibleInstance { instance: i, ranges });
         }
     }
 
     // Count what was culled.
     counters.instances_culled = (instances.len() - visible.len()) as u64;
-    let kept: u64 = visible.iter().flat_map(|v| &v.ranges).map(|r| u64::from(r.end - r.start)).sum();
+    let kept: u64 =
+        visible.iter().flat_map(|v| &v.ranges).map(|r| u64::from(r.end - r.start)).sum();
     counters.triangles_culled = counters.triangles - kept;
     visible
 }

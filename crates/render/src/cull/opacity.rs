@@ -1,4 +1,5 @@
-//! Which surfaces hide what is behind them: others are layers, and close no solid whose back faces could be dropped.
+//! Which surfaces hide what is behind them: others are layers, and close no solid whose back faces
+//! could be dropped.
 
 use crate::Transparency;
 use vitral_light::{AlphaMode, Material};

@@ -1,12 +1,13 @@
-//! Which triangles a square window of the picture may show: those whose outline on the screen reaches into it, whether they lie
-//! between near and far plane or not.
+//! Which triangles a square window of the picture may show: those whose outline on the screen
+//! reaches into it, whether they lie between near and far plane or not.
 //!
-//! The projectors through a window fill a pyramid with its tip in the eye (in a parallel view, a prism). A triangle is seen in
-//! the window if clipping by the pyramid's sides and the plane of the eye leaves something of it. Runs of triangles are
-//! rejected by their boxes first.
+//! The projectors through a window fill a pyramid with its tip in the eye (in a parallel view, a
+//! prism). A triangle is seen in the window if clipping by the pyramid's sides and the plane of the
+//! eye leaves something of it. Runs of triangles are rejected by their boxes first.
 //!
 //! In:   a mesh with the boxes of its runs, model space. Out: runs of triangles.
-//! Cost: a box test for each run of triangles; for each triangle of the runs that are kept, its corners' distances from the sides.
+//! Cost: a box test for each run of triangles; for each triangle of the runs that are kept, its
+//!       corners' distances from the sides.
 //! Source: [Clark 1976]; clipping after [Sutherland & Hodgman 1974].
 
 use std::ops::Range;
@@ -26,8 +27,15 @@ pub(crate) struct PixelWindow {
 }
 
 impl PixelWindow {
-    /// The window of `side` pixels from `corner`, the upper left one, and `margin` pixels around it.
-    pub(crate) fn new(view: &ViewTransform, viewport: Viewport, corner: [u32; 2], side: u32, margin: f64) -> Self {
+    /// The window of `side` pixels from `corner`, the upper left one, and `margin` pixels around
+    /// it.
+    pub(crate) fn new(
+        view: &ViewTransform,
+        viewport: Viewport,
+        corner: [u32; 2],
+        side: u32,
+        margin: f64,
+    ) -> Self {
         let half = [viewport.width, viewport.height].map(|size| f64::from(size) * 0.5);
         let low = corner.map(|c| f64::from(c) - margin);
         let high = corner.map(|c| f64::from(c + side) + margin);
@@ -55,8 +63,14 @@ pub(crate) struct WindowPyramid {
 }
 
 impl WindowPyramid {
-    /// The triangles of `ranges` that reach into it, as runs; `run_bounds` are the boxes of the mesh's runs.
-    pub(crate) fn triangles(&self, mesh: &Mesh, run_bounds: &[Aabb], ranges: &[Range<u32>]) -> Vec<Range<u32>> {
+    /// The triangles of `ranges` that reach into it, as runs; `run_bounds` are the boxes of the
+    /// mesh's runs.
+    pub(crate) fn triangles(
+        &self,
+        mesh: &Mesh,
+        run_bounds: &[Aabb],
+        ranges: &[Range<u32>],
+    ) -> Vec<Range<u32>> {
         let mut found: Vec<Range<u32>> = Vec::new();
         let size = TRIANGLES_A_RUN as u32;
         for range in ranges {
@@ -82,7 +96,8 @@ impl WindowPyramid {
     fn may_meet_box(&self, bounds: &Aabb) -> bool {
         let (center, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
         let beyond = |side: &DVec4| {
-            let (distance, reach) = (side.truncate().dot(center) + side.w, side.truncate().abs().dot(half));
+            let (distance, reach) =
+                (side.truncate().dot(center) + side.w, side.truncate().abs().dot(half));
             distance + reach < -1e-9 * (distance.abs() + reach)
         };
         !bounds.is_empty() && !self.sides.iter().any(beyond)
@@ -143,7 +158,9 @@ mod tests {
         let view = camera.transform(1.0, (4.0, 6.0));
         let viewport = Viewport::new(100, 100).unwrap();
         let window = PixelWindow::new(&view, viewport, [50, 50], 1, 0.0);
-        let pyramid = WindowPyramid { sides: window.planes.map(|plane| view.clip_from_world().transpose() * plane) };
+        let pyramid = WindowPyramid {
+            sides: window.planes.map(|plane| view.clip_from_world().transpose() * plane),
+        };
         let triangle = |x: f64, z: f64, size: f64| {
             [DVec3::new(x, -size, z), DVec3::new(x + size, -size, z), DVec3::new(x, size, z)]
         };
@@ -153,8 +170,16 @@ mod tests {
             assert!(!pyramid.meets(&triangle(40.0, z, 1.0)), "beside it, {z}");
         }
         assert!(!pyramid.meets(&triangle(-0.5, 5.5, 1.0)), "behind the eye");
-        assert!(pyramid.meets(&[DVec3::new(0.0, -1.0, 9.0), DVec3::new(0.2, -0.1, 0.0), DVec3::new(-0.2, 0.1, 0.0)]));
-        let edge_on = [DVec3::new(0.003, -0.003, 0.0), DVec3::new(0.003, -0.003, 1.0), DVec3::new(0.003, -0.003, 2.0)];
+        assert!(pyramid.meets(&[
+            DVec3::new(0.0, -1.0, 9.0),
+            DVec3::new(0.2, -0.1, 0.0),
+            DVec3::new(-0.2, 0.1, 0.0)
+        ]));
+        let edge_on = [
+            DVec3::new(0.003, -0.003, 0.0),
+            DVec3::new(0.003, -0.003, 1.0),
+            DVec3::new(0.003, -0.003, 2.0),
+        ];
         assert!(pyramid.meets(&edge_on), "one without area");
     }
 }

@@ -5,7 +5,8 @@ use crate::{Background, Cached, Reuse};
 use vitral_math::color::byte_from_unit;
 use vitral_math::lanes::Lanes;
 
-/// What the rows of the background depend on: what it is, the picture's height, whether the colour space is raw.
+/// What the rows of the background depend on: what it is, the picture's height, whether the colour
+/// space is raw.
 pub(crate) type BackgroundKey = (Background, u32, bool);
 
 /// The background of each row of a picture.
@@ -44,8 +45,9 @@ impl BackgroundRows {
         Self { bytes: colors.iter().map(bytes).collect(), colors, raw: *raw }
     }
 
-    /// The colour of a row, or of the last one, of which a shadow takes the part `dark`. On nothing it is a black veil: viewers lay
-    /// pictures over what they show in the display's encoding, so its alpha is what darkens that as light is darkened here.
+    /// The colour of a row, or of the last one, of which a shadow takes the part `dark`. On nothing
+    /// it is a black veil: viewers lay pictures over what they show in the display's encoding, so
+    /// its alpha is what darkens that as light is darkened here.
     pub(crate) fn shaded(&self, row: u32, dark: f32) -> [f32; 4] {
         let [r, g, b, a] = self.color(row);
         let kept = 1.0 - dark;

@@ -16,7 +16,10 @@ pub(crate) struct DecodeTables {
 impl DecodeTables {
     pub(crate) fn new(color_space: ColorSpace) -> Self {
         let raw = color_space == ColorSpace::Raw;
-        Self { srgb: decode_table(Encoding::Srgb, raw), linear: decode_table(Encoding::Linear, raw) }
+        Self {
+            srgb: decode_table(Encoding::Srgb, raw),
+            linear: decode_table(Encoding::Linear, raw),
+        }
     }
 
     /// The table for textures of an encoding.
@@ -34,7 +37,13 @@ pub(crate) fn composed(color: [f32; 3], raw: bool) -> [f32; 3] {
 }
 
 /// Encodes premultiplied colours as display bytes with straight alpha, each at its pixel of `out`.
-pub(crate) fn encode(level: Level, pixels: &[u32], colors: &[[f32; 4]], raw: bool, out: &mut [[u8; 4]]) {
+pub(crate) fn encode(
+    level: Level,
+    pixels: &[u32],
+    colors: &[[f32; 4]],
+    raw: bool,
+    out: &mut [[u8; 4]],
+) {
     if raw {
         return pixels.iter().zip(colors).for_each(|(&pixel, color)| {
             let [r, g, b, alpha] = straight(color);
@@ -61,7 +70,8 @@ fn encode_srgb<S: Simd>(simd: S, pixels: &[u32], colors: &[[f32; 4]], out: &mut 
         }
         for (&pixel, color) in pixels.iter().zip(colors) {
             let [r, g, b, alpha] = straight(color);
-            out[pixel as usize] = [table.byte(r), table.byte(g), table.byte(b), byte_from_unit(alpha)];
+            out[pixel as usize] =
+                [table.byte(r), table.byte(g), table.byte(b), byte_from_unit(alpha)];
         }
     }
 }
@@ -84,7 +94,13 @@ mod tests {
     #[test]
     fn colors_encode_with_straight_alpha() {
         let (level, mut out) = (Level::new(), [[9; 4]; 3]);
-        encode(level, &[0, 1, 2], &[[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]], true, &mut out);
+        encode(
+            level,
+            &[0, 1, 2],
+            &[[0.25, 0.0, 0.5, 0.5], [0.0; 4], [2.0, f32::NAN, 1.0, 1.0]],
+            true,
+            &mut out,
+        );
         assert_eq!(out, [[128, 0, 255, 128], [0; 4], [255, 0, 255, 255]]);
         let colors = [[0.25, 0.0, 0.5, 1.0], [2.0, f32::NAN, 1.0, 1.0], [0.125, 0.5, 0.25, 0.5]];
         encode(level, &[2, 0, 1], &colors, false, &mut out);

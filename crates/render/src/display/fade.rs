@@ -1,13 +1,15 @@
 //! Depth cueing: what is farther away fades into the background, as through haze.
 //!
-//! `I' = s I + (1 - s) Idc`. The share `s` goes linearly from its value at the front plane to that at the back plane, and stays
-//! as it is in front of the one and behind the other. Every surface that is seen on a straight way fades by its own
-//! depth; what a mirror shows, or bent light, is light of the surface that mirrors or bends it.
+//! `I' = s I + (1 - s) Idc`. The share `s` goes linearly from its value at the front plane to that
+//! at the back plane, and stays as it is in front of the one and behind the other. Every surface
+//! that is seen on a straight way fades by its own depth; what a mirror shows, or bent light, is
+//! light of the surface that mirrors or bends it.
 //!
 //! In:   a depth along the direction of sight, a colour, premultiplied. Out: the faded colour.
 //! Cost: a multiplication and a few additions a point.
-//! Source: \[Foley et al. 1990\], 16.1.3. Departs from it: depths are distances in view space, not those after the
-//! perspective transformation; `Idc` is the background of the pixel's row unless a colour is given.
+//! Source: \[Foley et al. 1990\], 16.1.3. Departs from it: depths are distances in view space, not
+//! those after the perspective transformation; `Idc` is the background of the pixel's row unless a
+//! colour is given.
 
 use super::composed;
 use crate::DepthCue;
@@ -28,13 +30,15 @@ pub(crate) struct Fade {
 }
 
 impl Fade {
-    /// For a scene whose bounding sphere has its centre at the depth `middle`: planes that the settings leave open touch the
-    /// sphere. In the raw colour space, colours are composed as they are.
+    /// For a scene whose bounding sphere has its centre at the depth `middle`: planes that the
+    /// settings leave open touch the sphere. In the raw colour space, colours are composed as they
+    /// are.
     pub(crate) fn new(cue: &DepthCue, middle: f64, radius: f64, raw: bool) -> Self {
         let front = cue.front.unwrap_or((middle - radius).max(0.0));
         let back = cue.back.unwrap_or(middle + radius);
         // Where the planes coincide, as round a single point, everything is in front or behind.
-        let per_depth = (1.0 / (back - front).max(f64::from(f32::MIN_POSITIVE))).min(f64::from(f32::MAX));
+        let per_depth =
+            (1.0 / (back - front).max(f64::from(f32::MIN_POSITIVE))).min(f64::from(f32::MAX));
         Self {
             front: front as f32,
             per_depth: per_depth as f32,
@@ -69,12 +73,21 @@ mod tests {
 
     #[test]
     fn p41_light_fades_between_the_planes() {
-        let fade = Fade { front: 2.0, per_depth: 0.25, front_scale: 1.0, more: -0.75, color: Some([0.0, 0.5, 1.0]) };
+        let fade = Fade {
+            front: 2.0,
+            per_depth: 0.25,
+            front_scale: 1.0,
+            more: -0.75,
+            color: Some([0.0, 0.5, 1.0]),
+        };
         let kept = [1.0f32, 2.0, 4.0, 6.0, 100.0].map(|depth| fade.kept(depth));
         assert_eq!(kept, [1.0, 1.0, 0.625, 0.25, 0.25]);
         // Half transparent red, faded to a quarter.
         assert_eq!(fade.faded([0.5, 0.0, 0.0, 0.5], 7.0, [0.0; 4]), [0.125, 0.1875, 0.375, 0.5]);
         let fade = Fade { color: None, ..fade };
-        assert_eq!(fade.faded([1.0, 0.0, 0.0, 1.0], 4.0, [0.0, 0.0, 1.0, 1.0]), [0.625, 0.0, 0.375, 1.0]);
+        assert_eq!(
+            fade.faded([1.0, 0.0, 0.0, 1.0], 4.0, [0.0, 0.0, 1.0, 1.0]),
+            [0.625, 0.0, 0.375, 1.0]
+        );
     }
 }

@@ -25,8 +25,9 @@ pub(super) struct RayHit<'a> {
 /// How steep the sRGB encoding is in the dark, and from this linear value on.
 const STEEPEST: (f32, f64) = (12.92, 0.003_130_8);
 
-/// By how much more a branch must count than in the dark to be seen where a point already has this colour: sRGB encodes the same
-/// light in smaller steps there. It is the darkest channel that decides.
+/// By how much more a branch must count than in the dark to be seen where a point already has this
+/// colour: sRGB encodes the same light in smaller steps there. It is the darkest channel that
+/// decides.
 fn ease([r, g, b, _]: [f32; 4], raw: bool) -> f32 {
     let darkest = f64::from(r.min(g).min(b).min(1.0));
     if raw || darkest <= STEEPEST.1 {
@@ -37,8 +38,9 @@ fn ease([r, g, b, _]: [f32; 4], raw: bool) -> f32 {
     (STEEPEST.0 / slope as f32).max(1.0)
 }
 
-/// The shares of light that a surface mirrors and lets pass, together at most 1. A clear surface that bends light mirrors as
-/// much as `fresnel` says, in the hue of its specular colour; of all others too much is scaled down.
+/// The shares of light that a surface mirrors and lets pass, together at most 1. A clear surface
+/// that bends light mirrors as much as `fresnel` says, in the hue of its specular colour; of all
+/// others too much is scaled down.
 fn shares(mirror: [f32; 3], passes: [f32; 3], fresnel: Option<f64>) -> ([f32; 3], [f32; 3]) {
     let most = mirror[0].max(mirror[1]).max(mirror[2]);
     if let (Some(share), true) = (fresnel, most > 0.0) {
@@ -92,7 +94,11 @@ impl Branching<'_> {
         let (mirror, passes) = shares(mirror, passes, fresnel);
         let weight = |part: [f32; 4]| [0, 1, 2, 3].map(|k| ray.weight[k] * part[k]);
         let passing = weight([passes[0], passes[1], passes[2], 1.0 - alpha]);
-        let haze = Haze::new(self.scene.constants, ray.row, place.position + self.scene.structure.triangles().center);
+        let haze = Haze::new(
+            self.scene.constants,
+            ray.row,
+            place.position + self.scene.structure.triangles().center,
+        );
         // The colour that it fades into was added with the surface's own light.
         let mut mirrored = weight([mirror[0], mirror[1], mirror[2], 0.0].map(|m| m * haze.kept));
         let go_on = Branch { own: place.facet, travelled, seed: place.seed, pile: None, ..*ray };
@@ -127,7 +133,14 @@ impl Branching<'_> {
                 counters.mirrored += 1;
                 let (origin, depth) = (next(surface.facet), ray.depth + 1);
                 let direction = surface.mirrored(ray.direction);
-                rays.free.push(Branch { weight: mirrored, origin, direction, depth, row: None, ..go_on });
+                rays.free.push(Branch {
+                    weight: mirrored,
+                    origin,
+                    direction,
+                    depth,
+                    row: None,
+                    ..go_on
+                });
             } else {
                 counters.stopped_by_depth += 1;
                 rays.end(ray.target, mirrored);
@@ -138,8 +151,8 @@ impl Branching<'_> {
         }
     }
 
-    /// The rays that go on as `branch` behind a surface, or all of a pile, that `ray` meets. None do if all light is reflected:
-    /// says so.
+    /// The rays that go on as `branch` behind a surface, or all of a pile, that `ray` meets. None
+    /// do if all light is reflected: says so.
     fn pass(
         &self,
         ray: &Branch,
@@ -208,7 +221,8 @@ impl Branching<'_> {
         }
     }
 
-    /// The rays that go on where a translucent surface scatters `branch`, which clear glass would send to `axis`.
+    /// The rays that go on where a translucent surface scatters `branch`, which clear glass would
+    /// send to `axis`.
     fn scatter(
         &self,
         branch: &Branch,
@@ -225,21 +239,43 @@ impl Branching<'_> {
         for i in 0..strata.count() {
             let direction = surface.behind(strata.direction(i, branch.seed, exponent, axis));
             let (depth, seed) = (branch.depth + 1, hash(branch.seed ^ hash(i)));
-            rays.push(Branch { weight, least, direction, depth, seed, scattered: true, row: None, ..*branch });
+            rays.push(Branch {
+                weight,
+                least,
+                direction,
+                depth,
+                seed,
+                scattered: true,
+                row: None,
+                ..*branch
+            });
         }
     }
 
     /// How the ray goes on behind the surface, or behind all those of a pile.
-    fn through(&self, ray: &Branch, surface: &HitSurface, (number, from_behind): (u32, bool), pile: &[u32]) -> Way {
+    fn through(
+        &self,
+        ray: &Branch,
+        surface: &HitSurface,
+        (number, from_behind): (u32, bool),
+        pile: &[u32],
+    ) -> Way {
         let border = if pile.is_empty() {
-            self.scene.crossing(number, from_behind).map(|(material, entering)| ray.media.cross(material, entering))
+            self.scene
+                .crossing(number, from_behind)
+                .map(|(material, entering)| ray.media.cross(material, entering))
         } else {
             let facet = |&place: &u32| self.scene.structure.triangles().facets[place as usize];
-            let crossings = pile.iter().map(facet).map(|f| self.scene.crossing(f, self.scene.seen(ray.direction, f).1));
+            let crossings = pile
+                .iter()
+                .map(facet)
+                .map(|f| self.scene.crossing(f, self.scene.seen(ray.direction, f).1));
             ray.media.cross_all(crossings.flatten())
         };
         let Some(Border { before, behind, then }) = border else { return Way::Straight(ray.media) };
-        let index = |m: Option<u32>| m.map_or(1.0, |m| f64::from(self.scene.constants.material(Some(m)).material.ior));
+        let index = |m: Option<u32>| {
+            m.map_or(1.0, |m| f64::from(self.scene.constants.material(Some(m)).material.ior))
+        };
         let eta = index(before) / index(behind);
         if (eta - 1.0).abs() < 1e-6 {
             return Way::Straight(then);
@@ -267,10 +303,17 @@ mod tests {
 
     #[test]
     fn what_is_mirrored_and_what_passes_are_one_at_most() {
-        assert_eq!(shares([0.5; 3], [0.8, 0.5, 0.3], None), ([0.5 / 1.3, 0.5, 0.5], [0.8 / 1.3, 0.5, 0.3]));
+        assert_eq!(
+            shares([0.5; 3], [0.8, 0.5, 0.3], None),
+            ([0.5 / 1.3, 0.5, 0.5], [0.8 / 1.3, 0.5, 0.3])
+        );
         let (mirror, passes) = shares([0.5, 0.25, 0.0], [0.8; 3], Some(0.04));
         assert_eq!((mirror, passes), ([0.04, 0.02, 0.0], [0.8 * 0.96; 3]));
-        assert_eq!(shares([0.0; 3], [0.9; 3], Some(0.04)), ([0.0; 3], [0.9; 3]), "glass that shows no images");
+        assert_eq!(
+            shares([0.0; 3], [0.9; 3], Some(0.04)),
+            ([0.0; 3], [0.9; 3]),
+            "glass that shows no images"
+        );
     }
 
     #[test]

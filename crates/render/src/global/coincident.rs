@@ -1,14 +1,16 @@
 //! Faces that lie on one another: a glass box on a floor, a liquid that touches its glass.
 //!
-//! A ray that passes a surface starts anew so far behind it that rounding cannot let it meet that surface again, and what
-//! coincides with the surface is left behind with it. So faces that coincide are looked up: where a ray hits something else
-//! at about the same parameter, a probe along the facet's normal finds all that touch there. They are met one after the other
-//! at that place, the lower facet first, whatever rounding says about their order.
+//! A ray that passes a surface starts anew so far behind it that rounding cannot let it meet that
+//! surface again, and what coincides with the surface is left behind with it. So faces that
+//! coincide are looked up: where a ray hits something else at about the same parameter, a probe
+//! along the facet's normal finds all that touch there. They are met one after the other at that
+//! place, the lower facet first, whatever rounding says about their order.
 //!
-//! Each surface counts once: the probe stands a little within the facet, off the edges at which a neighbour goes on, and
-//! close surfaces go together only if they are about parallel.
+//! Each surface counts once: the probe stands a little within the facet, off the edges at which a
+//! neighbour goes on, and close surfaces go together only if they are about parallel.
 //!
-//! In:   places on facets, world space less the scene's middle. Out: the triangles that touch there, in the order of facets.
+//! In:   places on facets, world space less the scene's middle. Out: the triangles that touch
+//!       there, in the order of facets.
 //! Cost: a short ray for each such place.
 
 use crate::raytrace::Visitor;
@@ -23,7 +25,8 @@ use vitral_math::DVec3;
 /// Cosine of the largest angle between surfaces that go together.
 const PARALLEL: f64 = 0.99;
 
-/// Weights of the corners at a point within a triangle, on none of its lines of symmetry, where others' edges might be.
+/// Weights of the corners at a point within a triangle, on none of its lines of symmetry, where
+/// others' edges might be.
 const WITHIN: [f64; 3] = [0.47, 0.31, 0.22];
 
 /// Triangles that touch at a place.
@@ -48,8 +51,9 @@ impl CoincidentGroups {
         self.places.clear();
     }
 
-    /// Adds the pile at a position on the facet with these corners, seen from the side of `normal`; this facet comes first if
-    /// it `is_first`, else where its number says. Returns the pile's number if more than one triangle is in it.
+    /// Adds the pile at a position on the facet with these corners, seen from the side of `normal`;
+    /// this facet comes first if it `is_first`, else where its number says. Returns the pile's
+    /// number if more than one triangle is in it.
     pub(super) fn add(
         &mut self,
         structure: &AnyStructure,
@@ -89,7 +93,8 @@ impl CoincidentGroups {
             found[..=own].rotate_right(1);
         }
         self.places.extend(found);
-        self.piles.push(CoincidentGroup { position, range: first as u32..self.places.len() as u32 });
+        self.piles
+            .push(CoincidentGroup { position, range: first as u32..self.places.len() as u32 });
         Some(self.piles.len() as u32 - 1)
     }
 

@@ -1,12 +1,14 @@
 //! What a ray is in: the stack of media that it entered and has not left.
 //!
-//! A ray that enters a body pushes the body's material; one that leaves it takes the material away, wherever it is in the
-//! stack. The innermost is what light runs through, air where there is none. So a bubble in a glass of water in air has
-//! the right neighbours on each of its surfaces, and bodies that overlap instead of touching do no harm.
+//! A ray that enters a body pushes the body's material; one that leaves it takes the material away,
+//! wherever it is in the stack. The innermost is what light runs through, air where there is none.
+//! So a bubble in a glass of water in air has the right neighbours on each of its surfaces, and
+//! bodies that overlap instead of touching do no harm.
 //!
 //! In:   material, entering or leaving. Out: the materials before and behind the surface.
 //! Cost: constant.
-//! Source: \[Glassner 1989\]. Departs from it: beyond [`MAX_MEDIA`] media the outermost is forgotten.
+//! Source: \[Glassner 1989\]. Departs from it: beyond [`MAX_MEDIA`] media the outermost is
+//!         forgotten.
 
 /// Most media that are remembered.
 pub const MAX_MEDIA: usize = 8;
@@ -52,8 +54,9 @@ impl Media {
         if entering { self.enter(material) } else { self.leave(material) }
     }
 
-    /// The ray enters and leaves several bodies at one place, in any order; `None` if there are none. It enters first: so a body
-    /// without thickness, or another of the same material behind, leaves nothing.
+    /// The ray enters and leaves several bodies at one place, in any order; `None` if there are
+    /// none. It enters first: so a body without thickness, or another of the same material behind,
+    /// leaves nothing.
     pub fn cross_all(self, crossings: impl Iterator<Item = (u32, bool)> + Clone) -> Option<Border> {
         let entered = crossings.clone().filter(|(_, entering)| *entering);
         let left = crossings.filter(|(_, entering)| !entering);
@@ -64,15 +67,18 @@ impl Media {
         })
     }
 
-    /// The media round a place, to which a ray from outside of everything came through these crossings. Where rounding has put
-    /// what leaves a body before what enters it, they cancel each other.
+    /// The media round a place, to which a ray from outside of everything came through these
+    /// crossings. Where rounding has put what leaves a body before what enters it, they cancel each
+    /// other.
     pub fn around(crossings: impl Iterator<Item = (u32, bool)>) -> Self {
         let (mut media, mut owed) = (Self::default(), Vec::new());
         for (material, entering) in crossings {
             let debt = owed.iter().position(|&m| m == material);
             match (entering, debt) {
                 (true, Some(debt)) => _ = owed.swap_remove(debt),
-                (false, _) if !media.stack[..usize::from(media.count)].contains(&material) => owed.push(material),
+                (false, _) if !media.stack[..usize::from(media.count)].contains(&material) => {
+                    owed.push(material)
+                }
                 _ => media = media.cross(material, entering).then,
             }
         }
@@ -108,7 +114,10 @@ mod tests {
         let border = border.then.leave(water);
         assert_eq!((border.before, border.behind), (Some(water), Some(glass)));
         let border = border.then.leave(glass);
-        assert_eq!((border.before, border.behind, border.then.innermost()), (Some(glass), air, air));
+        assert_eq!(
+            (border.before, border.behind, border.then.innermost()),
+            (Some(glass), air, air)
+        );
     }
 
     #[test]
@@ -117,7 +126,10 @@ mod tests {
         let border = Media::default().enter(1).then.enter(2).then.leave(1);
         assert_eq!((border.before, border.behind), (Some(2), Some(2)));
         assert_eq!(border.then.leave(2).behind, None);
-        assert_eq!(Media::default().leave(3), Border { before: Some(3), behind: None, then: Media::default() });
+        assert_eq!(
+            Media::default().leave(3),
+            Border { before: Some(3), behind: None, then: Media::default() }
+        );
         let deep = (0..20).fold(Media::default(), |media, m| media.enter(m).then);
         assert_eq!((deep.innermost(), deep.leave(19).behind), (Some(19), Some(18)));
     }
@@ -132,7 +144,10 @@ mod tests {
             assert_eq!(border.then, Media::default().enter(2).then);
         }
         // A body without thickness, and another block of the same glass.
-        assert_eq!(Media::default().cross_all([(1, false), (1, true)].into_iter()).unwrap().then, Media::default());
+        assert_eq!(
+            Media::default().cross_all([(1, false), (1, true)].into_iter()).unwrap().then,
+            Media::default()
+        );
         let border = glass.cross_all([(1, false), (1, true)].into_iter()).unwrap();
         assert_eq!((border.before, border.behind, border.then), (Some(1), Some(1), glass));
         assert_eq!(glass.cross_all(std::iter::empty()), None);

@@ -1,4 +1,5 @@
-//! The scene as rays see it: what they meet, from which side, in which medium they are, and what they see beyond.
+//! The scene as rays see it: what they meet, from which side, in which medium they are, and what
+//! they see beyond.
 //!
 //! Places are in world space less the scene's middle.
 
@@ -36,20 +37,29 @@ pub(super) struct RayScene<'a> {
 }
 
 impl<'a> RayScene<'a> {
-    pub(super) fn new(constants: &'a FrameConstants<'a>, structure: AnyStructure, workers: &'a Workers) -> Self {
+    pub(super) fn new(
+        constants: &'a FrameConstants<'a>,
+        structure: AnyStructure,
+        workers: &'a Workers,
+    ) -> Self {
         let view = constants.view;
         let stretch = view.view.clip_from_view.col(1).y;
         Self {
             constants,
             structure,
             workers,
-            sky: Sky { stretch, middle: -view.view.clip_from_view.z_axis.y, perspective: view.view.perspective },
+            sky: Sky {
+                stretch,
+                middle: -view.view.clip_from_view.z_axis.y,
+                perspective: view.view.perspective,
+            },
             view_from_world: DMat3::from_mat4(view.view.view_from_world),
             pixel: 2.0 / (stretch * f64::from(view.viewport.height)),
         }
     }
 
-    /// What the eye is in: what a ray to it from afar enters and does not leave. In a parallel view it is far away.
+    /// What the eye is in: what a ray to it from afar enters and does not leave. In a parallel view
+    /// it is far away.
     pub(super) fn surroundings(&self) -> Media {
         let (eye, perspective) = self.constants.view.eye();
         let eye = (eye - self.structure.triangles().center).as_vec3();
@@ -78,18 +88,20 @@ impl<'a> RayScene<'a> {
         (way / distance, distance)
     }
 
-    /// The corners of a facet, and whether a ray in this direction comes from the side from which they run clockwise, in the
-    /// world.
+    /// The corners of a facet, and whether a ray in this direction comes from the side from which
+    /// they run clockwise, in the world.
     #[inline]
     pub(super) fn seen(&self, direction: DVec3, number: u32) -> ([DVec3; 3], bool) {
         let world = &self.constants.view.session.world;
         let instance = &world.instances[world.instance_of_facet(number)];
-        let (corners, outward) = facet(instance, number - instance.first_facet, self.structure.triangles().center);
+        let (corners, outward) =
+            facet(instance, number - instance.first_facet, self.structure.triangles().center);
         let from_behind = (outward.dot(direction) > 0.0) != mirrors(&instance.world_from_model);
         (corners, from_behind)
     }
 
-    /// The pile that a ray in this direction meets at a position on a facet, see [`CoincidentGroups::add`].
+    /// The pile that a ray in this direction meets at a position on a facet, see
+    /// [`CoincidentGroups::add`].
     #[cold]
     pub(super) fn pile_at(
         &self,
@@ -104,13 +116,15 @@ impl<'a> RayScene<'a> {
         piles.add(&self.structure, (number, corners), (position, normal), is_first)
     }
 
-    /// A ray that meets the triangle at this place of the structure's triangles, at `position`, and whether it comes from behind.
+    /// A ray that meets the triangle at this place of the structure's triangles, at `position`, and
+    /// whether it comes from behind.
     #[inline]
     pub(super) fn meet(&self, branch: &Branch, place: usize, position: DVec3) -> (Hit, bool) {
         let triangles = self.structure.triangles();
         let (corners, facet) = (&triangles.corners[place], triangles.facets[place]);
 
-        // The weights of the corners where the ray meets the facet; then the place anew, which lies in its plane.
+        // The weights of the corners where the ray meets the facet; then the place anew, which lies
+        // in its plane.
         let weights = weights(corners, position).map(|w| w.clamp(0.0, 1.0));
         let sum: f32 = weights.iter().sum();
         let weights = weights.map(|w| w / sum);
@@ -123,9 +137,12 @@ impl<'a> RayScene<'a> {
 
         // The footprint of the pixel: round the ray, stretched by the slant of the facet.
         let perspective = self.constants.view.view.perspective;
-        let distance = if perspective { branch.travelled + branch.origin.distance(position) } else { 1.0 };
+        let distance =
+            if perspective { branch.travelled + branch.origin.distance(position) } else { 1.0 };
         let cos = -normal.dot(branch.direction);
-        let along = (branch.direction + normal * cos).try_normalize().unwrap_or(normal.any_orthonormal_vector());
+        let along = (branch.direction + normal * cos)
+            .try_normalize()
+            .unwrap_or(normal.any_orthonormal_vector());
         let width = self.pixel * distance;
         let ways = [normal.cross(along) * width, along * (width / cos.max(0.05))];
         let whole = across.length_squared();
@@ -135,17 +152,28 @@ impl<'a> RayScene<'a> {
         };
         let along_edges = |k: usize| [weights[k], slope(k, ways[0]), slope(k, ways[1])];
         let weights = [along_edges(0), along_edges(1), along_edges(2)];
-        let origin = self.constants.view.view.view_from_world.transform_point3(branch.origin + triangles.center);
+        let origin = self
+            .constants
+            .view
+            .view
+            .view_from_world
+            .transform_point3(branch.origin + triangles.center);
         let seed = branch.seed.wrapping_mul(0x2c92_77b5).wrapping_add(0xac56_4b05);
         let place = SurfacePoint { position, normal, facet, seed, pixel: None };
         (Hit { weights, origin: origin.as_vec3().to_array(), place, row: branch.row }, from_behind)
     }
 
     /// The surface on the ray's side.
-    pub(super) fn surface(&self, ray: &Branch, normal: [f32; 3], place: &SurfacePoint) -> HitSurface {
+    pub(super) fn surface(
+        &self,
+        ray: &Branch,
+        normal: [f32; 3],
+        place: &SurfacePoint,
+    ) -> HitSurface {
         let [x, y, z] = normal.map(f64::from);
         let shading = (self.view_from_world.transpose() * dvec3(x, y, z)).normalize_or_zero();
-        let facet = if place.normal.dot(ray.direction) > 0.0 { -place.normal } else { place.normal };
+        let facet =
+            if place.normal.dot(ray.direction) > 0.0 { -place.normal } else { place.normal };
         // A shading normal that the ray cannot see is of no use.
         let usable = |n: DVec3| n.dot(ray.direction) < -1e-4;
         let n = [shading, -shading].into_iter().find(|n| usable(*n)).unwrap_or(facet);
@@ -168,7 +196,8 @@ impl<'a> RayScene<'a> {
         clearance(position, f64::from(self.structure.triangles().extent))
     }
 
-    /// The material of the body that a ray enters (or leaves) where it meets a facet, if it is the skin of one.
+    /// The material of the body that a ray enters (or leaves) where it meets a facet, if it is the
+    /// skin of one.
     #[inline]
     pub(super) fn crossing(&self, number: u32, from_behind: bool) -> Option<(u32, bool)> {
         let session = self.constants.view.session;
@@ -183,15 +212,17 @@ impl<'a> RayScene<'a> {
         Some((material, from_outside == (side == Side::Behind)))
     }
 
-    /// What a ray sees that meets nothing: the background of its pixel, or after a turn the image of the surroundings, if there is
-    /// one.
+    /// What a ray sees that meets nothing: the background of its pixel, or after a turn the image
+    /// of the surroundings, if there is one.
     pub(super) fn background(&self, ray: &Branch) -> [f32; 4] {
         if let (Some(environment), None) = (&self.constants.environment, ray.row) {
-            let [r, g, b] = environment.seen((self.view_from_world * ray.direction).as_vec3().to_array());
+            let [r, g, b] =
+                environment.seen((self.view_from_world * ray.direction).as_vec3().to_array());
             return [r, g, b, 1.0];
         }
         let background = &self.constants.background;
-        let beyond = || self.sky.row(self.view_from_world * ray.direction, background.colors.len()) as u32;
+        let beyond =
+            || self.sky.row(self.view_from_world * ray.direction, background.colors.len()) as u32;
         match ray.row {
             Some(row) if ray.ground > 0.0 => background.shaded(row, ray.ground),
             Some(row) => background.color(row),

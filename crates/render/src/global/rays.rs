@@ -18,7 +18,8 @@ pub(super) struct Branch {
     /// The facet that it leaves.
     pub(super) own: u32,
     pub(super) media: Media,
-    /// The pile in which it is, and the next of its triangles: the ray meets that without looking for it.
+    /// The pile in which it is, and the next of its triangles: the ray meets that without looking
+    /// for it.
     pub(super) pile: Option<u32>,
     pub(super) layer: u32,
     /// Turns that it took.
@@ -36,8 +37,8 @@ pub(super) struct Branch {
     pub(super) seed: u32,
 }
 
-/// Depth cueing at a surface that the eye sees on a straight way: what is kept of its light, and what that fades into. Light that turns
-/// there is its light.
+/// Depth cueing at a surface that the eye sees on a straight way: what is kept of its light, and
+/// what that fades into. Light that turns there is its light.
 pub(super) struct Haze {
     /// The part of the light that is left.
     pub(super) kept: f32,
@@ -46,9 +47,12 @@ pub(super) struct Haze {
 }
 
 impl Haze {
-    /// At a point of the world, for a ray that sees the background of this row; after a turn there is none.
+    /// At a point of the world, for a ray that sees the background of this row; after a turn there
+    /// is none.
     pub(super) fn new(constants: &FrameConstants<'_>, row: Option<u32>, point: DVec3) -> Self {
-        let (Some(fade), Some(row)) = (&constants.fade, row) else { return Self { kept: 1.0, color: [0.0; 3] } };
+        let (Some(fade), Some(row)) = (&constants.fade, row) else {
+            return Self { kept: 1.0, color: [0.0; 3] };
+        };
         let depth = -constants.view.view.view_from_world.transform_point3(point).z;
         Self { kept: fade.kept(depth as f32), color: fade.into(constants.background.color(row)) }
     }
@@ -61,7 +65,8 @@ pub(super) struct Rays {
     pub(super) free: Vec<Branch>,
     /// Those within a pile.
     pub(super) piled: Vec<Branch>,
-    /// Points, and what is added to them where branches end (black, not a hole) and where light fades.
+    /// Points, and what is added to them where branches end (black, not a hole) and where light
+    /// fades.
     pub(super) ended: Vec<(u32, [f32; 4])>,
 }
 
@@ -87,7 +92,8 @@ impl Rays {
         }
     }
 
-    /// What is left of a branch with this weight where light fades that turns here; the rest is of the colour that it fades into.
+    /// What is left of a branch with this weight where light fades that turns here; the rest is of
+    /// the colour that it fades into.
     pub(super) fn fade(&mut self, target: u32, weight: [f32; 4], haze: &Haze) -> [f32; 4] {
         if haze.kept < 1.0 {
             let [r, g, b] = haze.color;
@@ -99,7 +105,9 @@ impl Rays {
 
     /// Adds what ended to the points' colours.
     pub(super) fn settle(&mut self, colors: &mut [[f32; 4]]) {
-        self.ended.drain(..).for_each(|(target, color)| add(&mut colors[target as usize], [1.0; 4], color));
+        self.ended
+            .drain(..)
+            .for_each(|(target, color)| add(&mut colors[target as usize], [1.0; 4], color));
     }
 }
 

@@ -2,7 +2,8 @@
 
 use vitral_math::DVec3;
 
-/// The background all round the scene: what the picture shows in each row, and the first and last row beyond it.
+/// The background all round the scene: what the picture shows in each row, and the first and last
+/// row beyond it.
 pub(super) struct Sky {
     /// Half of the picture's height, at the distance 1, times this is 1.
     pub(super) stretch: f64,

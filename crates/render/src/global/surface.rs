@@ -11,17 +11,23 @@ pub(super) struct HitSurface {
 }
 
 impl HitSurface {
-    /// The direction, on the side to which light goes that passes: the other half of the lobe is folded over.
+    /// The direction, on the side to which light goes that passes: the other half of the lobe is
+    /// folded over.
     pub(super) fn behind(&self, direction: DVec3) -> DVec3 {
         let towards = self.facet.dot(direction);
         if towards < 0.0 { direction } else { direction - self.facet * (2.0 * towards) }
     }
 
-    /// The direction in which a mirror sends a ray: it leaves at the angle at which it came, and not into the facet.
+    /// The direction in which a mirror sends a ray: it leaves at the angle at which it came, and
+    /// not into the facet.
     pub(super) fn mirrored(&self, direction: DVec3) -> DVec3 {
         let about = |n: DVec3| direction - n * (2.0 * n.dot(direction));
         let mirrored = about(self.n);
-        if mirrored.dot(self.facet) > 0.0 { mirrored.normalize() } else { about(self.facet).normalize() }
+        if mirrored.dot(self.facet) > 0.0 {
+            mirrored.normalize()
+        } else {
+            about(self.facet).normalize()
+        }
     }
 }
 

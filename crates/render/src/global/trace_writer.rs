@@ -22,7 +22,8 @@ impl TraceWriter<'_> {
         self.pixels[ray.target as usize].map(|v| v as u32)
     }
 
-    /// The ray meets a facet at some distance, or nothing; `own` is the light that comes from there, premultiplied.
+    /// The ray meets a facet at some distance, or nothing; `own` is the light that comes from
+    /// there, premultiplied.
     pub(super) fn meets(&self, ray: &Branch, met: Option<(u32, f64)>, own: [f32; 4]) {
         self.observer.step(&Step::RayMeets {
             pixel: self.pixel(ray),
@@ -36,8 +37,8 @@ impl TraceWriter<'_> {
         });
     }
 
-    /// From `surface`, of `facet`, the ray goes on as those of `rays` that there were not `before`, when so many rays had been
-    /// totally reflected.
+    /// From `surface`, of `facet`, the ray goes on as those of `rays` that there were not `before`,
+    /// when so many rays had been totally reflected.
     pub(super) fn goes_on(
         &self,
         ray: &Branch,
@@ -47,8 +48,9 @@ impl TraceWriter<'_> {
         (before, reflections): ([usize; 2], u64),
         counters: &TracingCounters,
     ) {
-        let index =
-            |branch: &Branch| branch.media.innermost().map_or(1.0, |m| self.constants.material(Some(m)).material.ior);
+        let index = |branch: &Branch| {
+            branch.media.innermost().map_or(1.0, |m| self.constants.material(Some(m)).material.ior)
+        };
         let degrees = |cos: f64| func::acos(cos.abs().min(1.0)).to_degrees();
         // Name the way by which the ray leaves the surface.
         for branch in rays.free[before[0]..].iter().chain(&rays.piled[before[1]..]) {
@@ -57,7 +59,9 @@ impl TraceWriter<'_> {
                 false if counters.total_reflections > reflections => Way::TotallyReflected,
                 false => Way::Mirrored,
                 true if branch.scattered && branch.depth > ray.depth => Way::Scattered,
-                true if branch.direction == ray.direction && index(branch) == index(ray) => Way::Straight,
+                true if branch.direction == ray.direction && index(branch) == index(ray) => {
+                    Way::Straight
+                }
                 true => Way::Refracted,
             };
             self.observer.step(&Step::RayGoesOn {

@@ -1,33 +1,37 @@
 //! Whitted's ray tracing: mirror images, refraction, and shadows that know both.
 //!
-//! A ray that meets a mirror goes on in the direction in which the mirror reflects it; one that meets glass goes on behind
-//! it, bent as the two media ask; each of them may meet a mirror or glass again. What a pixel shows is a tree of such rays:
-//! `I = I_local + ks I_mirrored + kt I_transmitted`, where `I_local` is what the local model says about each surface, with
-//! shadow rays. Where no light gets through a surface at that angle (total internal reflection), all of it is mirrored. What is
-//! mirrored and what passes are never more than what came: mirrors that bend light share it as Fresnel says, and where `ks` and
-//! `kt` are together more than 1, both are scaled.
+//! A ray that meets a mirror goes on in the direction in which the mirror reflects it; one that
+//! meets glass goes on behind it, bent as the two media ask; each of them may meet a mirror or
+//! glass again. What a pixel shows is a tree of such rays:
+//! `I = I_local + ks I_mirrored + kt I_transmitted`, where `I_local` is what the local model says
+//! about each surface, with shadow rays. Where no light gets through a surface at that angle (total
+//! internal reflection), all of it is mirrored. What is mirrored and what passes are never more
+//! than what came: mirrors that bend light share it as Fresnel says, and where `ks` and `kt` are
+//! together more than 1, both are scaled.
 //!
-//! A tree's rays are followed generation by generation, those of many samples together: what a generation hits is sorted by
-//! object and material, and goes eight at a time through the very formulas, textures and shadows of surfaces that the eye
-//! sees. Each ray carries the weight with which its light counts; a branch ends where that is less than can be seen beside the
-//! light that the point already has, or after `max-depth` turns. Straight ways, through sheets or through glass whose index is that of its surroundings,
-//! are no turns.
+//! A tree's rays are followed generation by generation, those of many samples together: what a
+//! generation hits is sorted by object and material, and goes eight at a time through the very
+//! formulas, textures and shadows of surfaces that the eye sees. Each ray carries the weight with
+//! which its light counts; a branch ends where that is less than can be seen beside the light that
+//! the point already has, or after `max-depth` turns. Straight ways, through sheets or through
+//! glass whose index is that of its surroundings, are no turns.
 //!
-//! A translucent surface scatters what passes it: the ray goes on as many, in directions round that of clear glass; those
-//! are scattered in one direction each where they meet another such surface.
+//! A translucent surface scatters what passes it: the ray goes on as many, in directions round that
+//! of clear glass; those are scattered in one direction each where they meet another such surface.
 //!
-//! Faces that coincide are met one after the other (see `coincident`), and are one border between media: light bends behind the
-//! last of them.
+//! Faces that coincide are met one after the other (see `coincident`), and are one border between
+//! media: light bends behind the last of them.
 //!
-//! The first generation comes from the visibility algorithm: it knows what each sample sees first. Only samples on mirrors
-//! and on transparent surfaces are followed, each with a ray of its own (stratified, as samples are); all others are shaded
-//! as without ray tracing, byte for byte.
+//! The first generation comes from the visibility algorithm: it knows what each sample sees first.
+//! Only samples on mirrors and on transparent surfaces are followed, each with a ray of its own
+//! (stratified, as samples are); all others are shaded as without ray tracing, byte for byte.
 //!
 //! In:   points of a tile, with normals and weights. Out: their colours, premultiplied.
-//! Cost: a search in the structure (`--acceleration`) for each ray, and one for each light at each hit.
-//! Source: \[Whitted 1980\]; refraction after \[Heckbert 1989\], scattering after
-//! \[Cook, Porter & Carpenter 1984\]. Departs from them: opacity says what is transmitted, the
-//! material's flag `mirror` says which surfaces show images; bodies of glass must be closed to bend light.
+//! Cost: a search in the structure (`--acceleration`) for each ray, and one for each light at each
+//!       hit.
+//! Source: \[Whitted 1980\]; refraction after \[Heckbert 1989\], scattering after \[Cook, Porter &
+//! Carpenter 1984\]. Departs from them: opacity says what is transmitted, the material's flag
+//! `mirror` says which surfaces show images; bodies of glass must be closed to bend light.
 
 use super::branching::{Branching, RayHit};
 use super::coincident::{CoincidentGroup, CoincidentGroups};
@@ -56,8 +60,8 @@ use vitral_raster::{Layer, Tile};
 const LEAST_SEEN: f32 = 1.0 / 512.0;
 /// How steep the sRGB encoding is in the dark.
 const STEEPEST: f32 = 12.92;
-/// Depths that differ by less may be those of faces that coincide: their corners were snapped to 1/256 pixel, and a steep face's
-/// depth changes much along that. A probe tells for certain.
+/// Depths that differ by less may be those of faces that coincide: their corners were snapped to
+/// 1/256 pixel, and a steep face's depth changes much along that. A probe tells for certain.
 const SAME_DEPTH: f32 = 1.0 / (1 << 14) as f32;
 /// Samples whose trees are followed together.
 const TOGETHER: usize = 2048;
@@ -102,13 +106,19 @@ impl<'a> Whitted<'a> {
         // Refuse work that takes too long without an acceleration structure.
         if view.acceleration.asks_all {
             // About as many rays as samples.
-            let samples = u64::from(view.viewport.width) * u64::from(view.viewport.height) * view.pattern.len() as u64;
-            execution.budget.check_work(samples.saturating_mul(facets), "ray tracing without a structure")?;
+            let samples = u64::from(view.viewport.width)
+                * u64::from(view.viewport.height)
+                * view.pattern.len() as u64;
+            execution
+                .budget
+                .check_work(samples.saturating_mul(facets), "ray tracing without a structure")?;
         }
 
         // Charge for the structure and the trees of rays.
-        let forests = (execution.workers.threads() * TOGETHER * 8) as u64 * size_of::<(Branch, Hit)>() as u64;
-        let charged = Triangles::bytes(facets) + AnyStructure::bytes(view.acceleration, facets) + forests;
+        let forests =
+            (execution.workers.threads() * TOGETHER * 8) as u64 * size_of::<(Branch, Hit)>() as u64;
+        let charged =
+            Triangles::bytes(facets) + AnyStructure::bytes(view.acceleration, facets) + forests;
         execution.budget.charge(charged, "ray tracing")?;
         let structure = AnyStructure::new(view.acceleration, view.session, execution)
             .inspect_err(|_| execution.budget.release(charged))?;
@@ -120,7 +130,9 @@ impl<'a> Whitted<'a> {
             branching: Branching {
                 scene,
                 max_depth: settings.global.max_depth,
-                strata: Strata::new(settings.transparency.scatter_samples.div_ceil(settings.picture.samples)),
+                strata: Strata::new(
+                    settings.transparency.scatter_samples.div_ceil(settings.picture.samples),
+                ),
             },
             execution,
             least: least_weight(constants),
@@ -147,7 +159,8 @@ impl<'a> Whitted<'a> {
         outcome.is_ok()
     }
 
-    /// Starts the trees of some samples at their first surfaces, which are illuminated: the rays that go on from there.
+    /// Starts the trees of some samples at their first surfaces, which are illuminated: the rays
+    /// that go on from there.
     fn plant(
         &self,
         targets: &[u32],
@@ -168,7 +181,8 @@ impl<'a> Whitted<'a> {
             let (direction, travelled) = scene.eye_ray(position);
             let (corners, from_behind) = scene.seen(direction, number);
             let touches = front.touching.binary_search(&number).is_ok();
-            let pile = || scene.pile_at(&mut forest.piles, (number, corners), position, direction, true);
+            let pile =
+                || scene.pile_at(&mut forest.piles, (number, corners), position, direction, true);
             let eye_ray = Branch {
                 target,
                 weight: [1.0; 4],
@@ -196,7 +210,14 @@ impl<'a> Whitted<'a> {
 
             // Branch into mirrored and passing rays.
             let before = (forest.rays.len(), counters.total_reflections);
-            self.branching.branch(&eye_ray, travelled, &met, &forest.piles, &mut forest.rays, counters);
+            self.branching.branch(
+                &eye_ray,
+                travelled,
+                &met,
+                &forest.piles,
+                &mut forest.rays,
+                counters,
+            );
             if let Some(writer) = writer {
                 let surface = scene.surface(&eye_ray, bounce.normal, &bounce.place);
                 writer.goes_on(&eye_ray, &surface, number, &forest.rays, before, counters);
@@ -207,7 +228,8 @@ impl<'a> Whitted<'a> {
         forest.rays.settle(&mut lit.colors);
     }
 
-    /// Follows all rays to what they meet, adds its light, and leaves the rays that go on from there.
+    /// Follows all rays to what they meet, adds its light, and leaves the rays that go on from
+    /// there.
     #[inline(always)]
     fn generation<S: Simd>(
         &self,
@@ -249,7 +271,8 @@ impl<'a> Whitted<'a> {
 
         // Rays between surfaces that coincide meet the next one of them.
         for ray in &rays.piled {
-            let (CoincidentGroup { position, .. }, places) = piles.get(ray.pile.expect("it is in one"));
+            let (CoincidentGroup { position, .. }, places) =
+                piles.get(ray.pile.expect("it is in one"));
             let place = places[ray.layer as usize] as usize;
             let (hit, from_behind) = scene.meet(ray, place, *position);
             hitting.push((Branch { layer: ray.layer + 1, ..*ray }, from_behind));
@@ -265,7 +288,8 @@ impl<'a> Whitted<'a> {
                 straight[lane] = Ray::new(branch.origin.as_vec3(), branch.direction.as_vec3());
                 own[lane] = branch.own;
             }
-            let (met, crowded) = scene.structure.closest_hits(simd, &straight[..eight.len()], &own, &mut searched);
+            let (met, crowded) =
+                scene.structure.closest_hits(simd, &straight[..eight.len()], &own, &mut searched);
             for ((ray, met), crowded) in eight.iter().zip(met).zip(crowded) {
                 // Add the background of rays that hit nothing.
                 let Some((place, t)) = met else {
@@ -282,7 +306,8 @@ impl<'a> Whitted<'a> {
                 let (triangles, mut place) = (scene.structure.triangles(), place);
                 let facet = triangles.facets[place];
                 let corners = || triangles.corners[place].map(|c| c.as_dvec3());
-                let pile = || scene.pile_at(piles, (facet, corners()), position, ray.direction, false);
+                let pile =
+                    || scene.pile_at(piles, (facet, corners()), position, ray.direction, false);
                 let pile = crowded.then(pile).flatten();
                 if let Some(pile) = pile {
                     place = piles.get(pile).1[0] as usize;
@@ -351,7 +376,8 @@ impl Tracer for Whitted<'_> {
         }
         let before = |l: &&Layer| {
             let at = l.at as usize;
-            marks.index(l.facet).is_some() && nearer((l.depth, l.facet), (front.depth[at], front.facet[at]))
+            marks.index(l.facet).is_some()
+                && nearer((l.depth, l.facet), (front.depth[at], front.facet[at]))
         };
         let marked = layers.iter().filter(before).copied().collect();
         touching.sort_unstable();
@@ -361,7 +387,8 @@ impl Tracer for Whitted<'_> {
 
     fn follow(&self, front: &Front, points: &Points, lit: &mut ShadedPoints) {
         // Prepare the counters, and a writer if somebody observes.
-        let mut counters = TracingCounters { shadow_rays: lit.shadow_rays, ..TracingCounters::default() };
+        let mut counters =
+            TracingCounters { shadow_rays: lit.shadow_rays, ..TracingCounters::default() };
         let scene = &self.branching.scene;
         let writer = self.execution.observer.as_deref().map(|observer| TraceWriter {
             observer,
@@ -370,7 +397,8 @@ impl Tracer for Whitted<'_> {
             constants: scene.constants,
         });
         let writer = writer.as_ref();
-        let mut forest = self.spare_forests.lock().expect("spare forests").pop().unwrap_or_default();
+        let mut forest =
+            self.spare_forests.lock().expect("spare forests").pop().unwrap_or_default();
 
         // Grow the trees of some samples at a time, generation by generation.
         for targets in points.followed.chunks(TOGETHER) {
@@ -397,11 +425,13 @@ impl Tracer for Whitted<'_> {
     }
 }
 
-/// What a branch's light must count at least to be followed: brighter lights are seen through more, and in sRGB all of it is
-/// seen in the dark.
+/// What a branch's light must count at least to be followed: brighter lights are seen through more,
+/// and in sRGB all of it is seen in the dark.
 fn least_weight(constants: &FrameConstants<'_>) -> f32 {
-    let lights = constants.lights.iter().flat_map(|light| [light.ambient, light.diffuse, light.specular]);
+    let lights =
+        constants.lights.iter().flat_map(|light| [light.ambient, light.diffuse, light.specular]);
     let glow = constants.materials.iter().map(|m| m.material.emission);
-    let brightest = lights.chain(glow).flatten().filter(|channel| channel.is_finite()).fold(1.0, f32::max);
+    let brightest =
+        lights.chain(glow).flatten().filter(|channel| channel.is_finite()).fold(1.0, f32::max);
     LEAST_SEEN / brightest / if constants.raw { 1.0 } else { STEEPEST }
 }

@@ -1,8 +1,9 @@
-//! How clouds of points show their form: points with normals are lit like matt surfaces, others grow paler with distance.
+//! How clouds of points show their form: points with normals are lit like matt surfaces, others
+//! grow paler with distance.
 //!
-//! Dots of one colour are a silhouette. Scans bring a normal at each point, and the lights of the picture reach it as they
-//! would reach a surface there, on the side that faces the viewer. A cloud that brings neither normals nor colours is dark in
-//! front and pale behind.
+//! Dots of one colour are a silhouette. Scans bring a normal at each point, and the lights of the
+//! picture reach it as they would reach a surface there, on the side that faces the viewer. A cloud
+//! that brings neither normals nor colours is dark in front and pale behind.
 //!
 //! In:   an instance whose points are drawn, the lights in view space.
 //! Out:  the factor of a point's colour, or its colour.
@@ -54,7 +55,9 @@ impl<'a> Cloud<'a> {
         let mesh = &*instance.mesh;
         let view_from_model = view.view.view_from_world * instance.world_from_model;
         let shading = &settings.shading;
-        let is_cloud = mesh.points.len() >= CLOUD_THRESHOLD && mesh.triangles.is_empty() && mesh.lines.is_empty();
+        let is_cloud = mesh.points.len() >= CLOUD_THRESHOLD
+            && mesh.triangles.is_empty()
+            && mesh.lines.is_empty();
         let depths = framing::depth_range(&view.camera, &view.session.world.bounds);
         Self {
             lighting,
@@ -74,8 +77,13 @@ impl<'a> Cloud<'a> {
 
     /// The light that a white point reflects towards the viewer; `None` without a normal.
     fn reflected(&self, vertex: u32) -> Option<Rgb> {
-        let normals = self.mesh.normals.as_ref().filter(|normals| self.is_lit && normals.corners.is_none())?;
-        let normal = self.normals * DVec3::from(normals.values.get(vertex as usize)?.map(f64::from));
+        let normals = self
+            .mesh
+            .normals
+            .as_ref()
+            .filter(|normals| self.is_lit && normals.corners.is_none())?;
+        let normal =
+            self.normals * DVec3::from(normals.values.get(vertex as usize)?.map(f64::from));
         let normal = normal.try_normalize()?;
         let position = DVec3::from(self.mesh.positions[vertex as usize].map(f64::from));
         let position = self.view_from_model.transform_point3(position);
@@ -88,15 +96,23 @@ impl<'a> Cloud<'a> {
         let white = V3::splat(0.0f32, [1.0; 3]);
         let matt = Phong { ka: white, kd: white, ks: V3::splat(0.0, [0.0; 3]), shininess: 1.0 };
         let PointLighting { lights, ambient } = self.lighting;
-        let reflected = phong(Illumination::Lambert, lights, ambient, &surface, &matt, |_| white, |_| 0.0);
+        let reflected =
+            phong(Illumination::Lambert, lights, ambient, &surface, &matt, |_| white, |_| 0.0);
         Some(reflected.diffuse.to_array())
     }
 
     /// The colour of a point whose own colour, premultiplied, is this, and which is so deep.
-    pub(super) fn shaded(&self, own: [f32; 4], material: Option<u32>, vertex: u32, depth: f32) -> [f32; 4] {
+    pub(super) fn shaded(
+        &self,
+        own: [f32; 4],
+        material: Option<u32>,
+        vertex: u32,
+        depth: f32,
+    ) -> [f32; 4] {
         let is_plain = self.is_plain(material);
         if let Some(light) = self.reflected(vertex) {
-            let [r, g, b, alpha] = if is_plain { [REFLECTION, REFLECTION, REFLECTION, 1.0] } else { own };
+            let [r, g, b, alpha] =
+                if is_plain { [REFLECTION, REFLECTION, REFLECTION, 1.0] } else { own };
             return [r * light[0], g * light[1], b * light[2], alpha];
         }
         match self.depths {

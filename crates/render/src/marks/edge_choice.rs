@@ -1,6 +1,8 @@
-//! Which edges of an instance are drawn: those of the wanted classes, and none whose faces are not seen by themselves.
+//! Which edges of an instance are drawn: those of the wanted classes, and none whose faces are not
+//! seen by themselves.
 //!
-//! The classes are those of vector drawings (crate `draw`), decided for whole edges by their first two faces:
+//! The classes are those of vector drawings (crate `draw`), decided for whole edges by their first
+//! two faces:
 //!
 //! | class | an edge |
 //! |---|---|
@@ -31,7 +33,8 @@ pub(super) struct EdgeChoice<'a> {
     classes: LineClasses,
     /// Cosine of [`CREASE_ANGLE`].
     crease: f32,
-    /// By face, whether it faces the viewer (1), away (-1) or is seen edge-on (0); empty where it does not count.
+    /// By face, whether it faces the viewer (1), away (-1) or is seen edge-on (0); empty where it
+    /// does not count.
     facing: Vec<i8>,
     /// Unit normals of faces, model space; empty where they do not count.
     normals: Vec<[f32; 3]>,
@@ -40,15 +43,26 @@ pub(super) struct EdgeChoice<'a> {
 }
 
 impl<'a> EdgeChoice<'a> {
-    pub(super) fn new(view: &PreparedView<'_>, instance: &'a Instance, settings: &Settings, workers: &Workers) -> Self {
+    pub(super) fn new(
+        view: &PreparedView<'_>,
+        instance: &'a Instance,
+        settings: &Settings,
+        workers: &Workers,
+    ) -> Self {
         let (mesh, classes) = (&*instance.mesh, settings.picture.edge_classes);
         let materials = &view.session.scene.materials;
         let hides = |material: Option<u32>| {
-            material.and_then(|m| materials.get(m as usize)).is_some_and(|m| m.front_only && !m.double_sided)
+            material
+                .and_then(|m| materials.get(m as usize))
+                .is_some_and(|m| m.front_only && !m.double_sided)
         };
-        let hides_backs = settings.picture.lines != Lines::Wireframe && mesh.parts.iter().any(|p| hides(p.material));
-        let front_only =
-            if hides_backs { (0..materials.len()).map(|m| hides(Some(m as u32))).collect() } else { Vec::new() };
+        let hides_backs = settings.picture.lines != Lines::Wireframe
+            && mesh.parts.iter().any(|p| hides(p.material));
+        let front_only = if hides_backs {
+            (0..materials.len()).map(|m| hides(Some(m as u32))).collect()
+        } else {
+            Vec::new()
+        };
 
         // Turn the faces to the viewer.
         let names_contours = classes.has(LineClass::Contour) && !classes.has(LineClass::Smooth);
@@ -56,7 +70,8 @@ impl<'a> EdgeChoice<'a> {
         if names_contours || hides_backs {
             normals = face_normals(mesh, workers);
             let viewer = instance.world_from_model.inverse() * view.viewer();
-            facing = (0..mesh.face_count()).map(|f| facing_of(mesh, f, normals[f], viewer)).collect();
+            facing =
+                (0..mesh.face_count()).map(|f| facing_of(mesh, f, normals[f], viewer)).collect();
         }
         Self { mesh, classes, crease: func::cos(CREASE_ANGLE) as f32, facing, normals, front_only }
     }
@@ -70,7 +85,8 @@ impl<'a> EdgeChoice<'a> {
         self.classes.has(LineClass::Smooth) && !edge_is_cut(self.mesh, edge)
             || self.classes.has(LineClass::Section) && edge_is_cut(self.mesh, edge)
             || self.classes.has(LineClass::Boundary) && edge.kind == EdgeKind::Boundary
-            || self.classes.has(LineClass::Crease) && (edge.kind == EdgeKind::NonManifold || edge.cosine < self.crease)
+            || self.classes.has(LineClass::Crease)
+                && (edge.kind == EdgeKind::NonManifold || edge.cosine < self.crease)
             || self.classes.has(LineClass::Contour) && self.is_contour(edge)
             || self.classes.has(LineClass::Material) && {
                 let first = faces.next().map(|&face| self.material(face));
@@ -84,8 +100,10 @@ impl<'a> EdgeChoice<'a> {
         if b == Edge::NO_FACE || self.facing.is_empty() {
             return false;
         }
-        let ([n, m], [s, t]) = ([a, b].map(|f| self.normals[f as usize]), [a, b].map(|f| self.facing[f as usize]));
-        // Where both run along the edge in the same direction, the cosine is that of one of them turned.
+        let ([n, m], [s, t]) =
+            ([a, b].map(|f| self.normals[f as usize]), [a, b].map(|f| self.facing[f as usize]));
+        // Where both run along the edge in the same direction, the cosine is that of one of them
+        // turned.
         let dot = n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
         let t = if dot * edge.cosine < 0.0 { -t } else { t };
         (s > 0) != (t > 0)
@@ -106,10 +124,12 @@ fn edge_is_cut(mesh: &Mesh, edge: &Edge) -> bool {
     mesh.section.as_ref().is_some_and(|section| section.has_edge(edge.ends[0], edge.ends[1]))
 }
 
-/// Which way a face looks: 1 to the viewer, -1 away, 0 across. `viewer` is a place or, without `w`, a direction, model space.
+/// Which way a face looks: 1 to the viewer, -1 away, 0 across. `viewer` is a place or, without `w`,
+/// a direction, model space.
 fn facing_of(mesh: &Mesh, face: usize, normal: [f32; 3], viewer: DVec4) -> i8 {
     let Some(&corner) = mesh.face_corners(face).first() else { return 0 };
-    let [normal, place] = [normal, mesh.positions[corner as usize]].map(|v| DVec3::from_array(v.map(f64::from)));
+    let [normal, place] =
+        [normal, mesh.positions[corner as usize]].map(|v| DVec3::from_array(v.map(f64::from)));
     let to_viewer = viewer.truncate() - place * viewer.w;
     let cosine = normal.dot(to_viewer.normalize_or_zero());
     if cosine.abs() < 1e-6 { 0 } else { cosine.signum() as i8 }

@@ -1,14 +1,17 @@
-//! The lines in which faces penetrate each other: where a triangle of the scene passes through another one.
+//! The lines in which faces penetrate each other: where a triangle of the scene passes through
+//! another one.
 //!
-//! A tree of boxes over all triangles finds the pairs that may meet: it is gone through against itself, two boxes at a time.
-//! Each triangle of a pair must have corners on both sides of the other's plane. Then both triangles cut the line in which the
-//! planes meet, and the part of it that lies in both is the line of penetration. A corner in a plane counts as in front of it, so
-//! that a body whose edge lies in a face is cut once. Neighbours along an edge share that line already, and coplanar
-//! triangles have none.
+//! A tree of boxes over all triangles finds the pairs that may meet: it is gone through against
+//! itself, two boxes at a time. Each triangle of a pair must have corners on both sides of the
+//! other's plane. Then both triangles cut the line in which the planes meet, and the part of it
+//! that lies in both is the line of penetration. A corner in a plane counts as in front of it, so
+//! that a body whose edge lies in a face is cut once. Neighbours along an edge share that line
+//! already, and coplanar triangles have none.
 //!
 //! In:   the world's triangles. Out: segments, world space less [`Penetrations::center`].
-//! Cost: `n log n` for the tree, then one test for each pair of triangles whose boxes meet; a mesh without penetrations has about
-//! seven pairs a triangle, its neighbours. Memory: about 110 bytes a triangle while it is built.
+//! Cost: `n log n` for the tree, then one test for each pair of triangles whose boxes meet; a mesh
+//! without penetrations has about seven pairs a triangle, its neighbours. Memory: about 110 bytes a
+//! triangle while it is built.
 //! Source: \[Möller 1997\] for the test of a pair, in double precision.
 
 use crate::{Cached, Execution, Session};
@@ -24,8 +27,8 @@ const LEAF: usize = 4;
 const TASKS: usize = 256;
 /// Sine of the angle between planes, squared, below which they count as parallel.
 const PARALLEL: f64 = 1e-12;
-/// Part of the scene's largest coordinate below which a distance or a length is rounding of positions, which are of single
-/// precision: two of its steps.
+/// Part of the scene's largest coordinate below which a distance or a length is rounding of
+/// positions, which are of single precision: two of its steps.
 const ROUNDING: f64 = 1.0 / (1u32 << 22) as f64;
 /// Bytes of a triangle, its box and its place in the tree.
 const BYTES_A_TRIANGLE: u64 = 112;
@@ -53,7 +56,9 @@ impl Penetrations {
     pub fn of(session: &Session, execution: &Execution) -> Result<Arc<Self>, Limit> {
         session.cache().get_or_build((), || {
             let bytes = u64::from(session.world().facet_count) * BYTES_A_TRIANGLE;
-            execution.budget.charged(bytes, "lines of penetration", || Self::find(session.world(), execution))
+            execution
+                .budget
+                .charged(bytes, "lines of penetration", || Self::find(session.world(), execution))
         })
     }
 
@@ -74,7 +79,9 @@ impl Penetrations {
             execution.budget.check("lines of penetration")?;
             let mut lines = Vec::new();
             let [a, b] = tasks[i];
-            tree.meet(a, b, &triangles, &mut lines, &|| execution.budget.check("lines of penetration"))?;
+            tree.meet(a, b, &triangles, &mut lines, &|| {
+                execution.budget.check("lines of penetration")
+            })?;
             Ok(lines)
         });
 
@@ -92,8 +99,9 @@ impl Penetrations {
 fn triangles(world: &World, center: DVec3) -> Vec<[DVec3; 3]> {
     let mut triangles = Vec::with_capacity(world.facet_count as usize);
     for instance in &world.instances {
-        let placed =
-            |p: &[f32; 3]| instance.world_from_model.transform_point3(DVec3::from_array(p.map(f64::from))) - center;
+        let placed = |p: &[f32; 3]| {
+            instance.world_from_model.transform_point3(DVec3::from_array(p.map(f64::from))) - center
+        };
         let positions: Vec<DVec3> = instance.mesh.positions.iter().map(placed).collect();
         let corners = instance.mesh.triangles.iter().map(|t| t.map(|i| positions[i as usize]));
         triangles.extend(corners.filter(|[a, b, c]| {
@@ -117,7 +125,10 @@ impl Bounds {
     fn of(corners: &[DVec3; 3]) -> Self {
         let [a, b, c] = *corners;
         let (min, max) = (a.min(b).min(c), a.max(b).max(c));
-        Self { min: min.to_array().map(|v| (v as f32).next_down()), max: max.to_array().map(|v| (v as f32).next_up()) }
+        Self {
+            min: min.to_array().map(|v| (v as f32).next_down()),
+            max: max.to_array().map(|v| (v as f32).next_up()),
+        }
     }
 
     fn with(&self, other: &Self) -> Self {
@@ -142,7 +153,8 @@ impl Bounds {
     }
 }
 
-/// A node of the tree: its box, its triangles, and where its children stand, the second one's number; 0 for a leaf.
+/// A node of the tree: its box, its triangles, and where its children stand, the second one's
+/// number; 0 for a leaf.
 #[derive(Clone, Debug)]
 struct Node {
     bounds: Bounds,
@@ -196,7 +208,9 @@ impl Tree {
             let mut next = Vec::with_capacity(3 * tasks.len());
             for &[a, b] in &tasks {
                 match self.split(a, b) {
-                    Some(parts) => next.extend(parts.into_iter().filter(|&[a, b]| self.may_meet(a, b))),
+                    Some(parts) => {
+                        next.extend(parts.into_iter().filter(|&[a, b]| self.may_meet(a, b)))
+                    }
                     None => next.push([a, b]),
                 }
             }
@@ -238,12 +252,17 @@ impl Tree {
                 check()?;
             }
             for i in self.nodes[a].items.clone() {
-                let others = if a == b { i + 1..self.nodes[a].items.end } else { self.nodes[b].items.clone() };
+                let others = if a == b {
+                    i + 1..self.nodes[a].items.end
+                } else {
+                    self.nodes[b].items.clone()
+                };
                 let own = &self.boxes[i as usize];
                 for j in others.filter(|&j| own.meets(&self.boxes[j as usize])) {
                     let pair = [i, j].map(|at| &triangles[self.order[at as usize] as usize]);
                     lines.extend(
-                        penetration(pair[0], pair[1], self.noise).map(|ends| ends.map(|p| p.as_vec3().to_array())),
+                        penetration(pair[0], pair[1], self.noise)
+                            .map(|ends| ends.map(|p| p.as_vec3().to_array())),
                     );
                 }
             }
@@ -252,8 +271,13 @@ impl Tree {
     }
 }
 
-/// The nodes of a subtree over `items`, the first of which is the `first` of all; sorts them into the order of the leaves.
-fn build(items: &mut [(Bounds, u32)], first: u32, execution: &Execution) -> Result<Vec<Node>, Limit> {
+/// The nodes of a subtree over `items`, the first of which is the `first` of all; sorts them into
+/// the order of the leaves.
+fn build(
+    items: &mut [(Bounds, u32)],
+    first: u32,
+    execution: &Execution,
+) -> Result<Vec<Node>, Limit> {
     /// Subtrees of fewer triangles are built by one thread.
     const ALONE: usize = 8192;
 
@@ -267,7 +291,9 @@ fn build(items: &mut [(Bounds, u32)], first: u32, execution: &Execution) -> Resu
     // Split at the median along the longest side.
     let mut nodes = vec![node(0)];
     let (axis, half) = (bounds.longest_axis(), items.len() / 2);
-    items.select_nth_unstable_by(half, |a, b| a.0.middle(axis).total_cmp(&b.0.middle(axis)).then(a.1.cmp(&b.1)));
+    items.select_nth_unstable_by(half, |a, b| {
+        a.0.middle(axis).total_cmp(&b.0.middle(axis)).then(a.1.cmp(&b.1))
+    });
     let (low, high) = items.split_at_mut(half);
     let middle = first + half as u32;
     let (low, high) = if half >= ALONE {
@@ -283,7 +309,8 @@ fn build(items: &mut [(Bounds, u32)], first: u32, execution: &Execution) -> Resu
         if offset > 1 {
             nodes[0].second = offset;
         }
-        let moved = |n: Node| Node { second: if n.second == 0 { 0 } else { n.second + offset }, ..n };
+        let moved =
+            |n: Node| Node { second: if n.second == 0 { 0 } else { n.second + offset }, ..n };
         nodes.extend(part.into_iter().map(moved));
     }
     Ok(nodes)
@@ -317,8 +344,9 @@ fn penetration(a: &[DVec3; 3], b: &[DVec3; 3], noise: f64) -> Option<[DVec3; 2]>
     (along.dot(end - start) > noise).then_some([start, end])
 }
 
-/// Signed distances, times the length of `normal`, of the corners of `t` from the plane through `point`; a corner nearer to the
-/// plane than `noise` counts as in front of it. `None` if all corners are on one side.
+/// Signed distances, times the length of `normal`, of the corners of `t` from the plane through
+/// `point`; a corner nearer to the plane than `noise` counts as in front of it. `None` if all
+/// corners are on one side.
 fn distances(point: DVec3, normal: DVec3, t: &[DVec3; 3], noise: f64) -> Option<[f64; 3]> {
     let least = normal.length() * noise;
     let d = t.map(|p| {
@@ -333,7 +361,9 @@ fn distances(point: DVec3, normal: DVec3, t: &[DVec3; 3], noise: f64) -> Option<
 fn crossing(t: &[DVec3; 3], d: &[f64; 3]) -> [DVec3; 2] {
     // The corner that is alone on its side.
     let is_before = d.map(|d| d >= 0.0);
-    let alone = (0..3).find(|&i| is_before[i] != is_before[(i + 1) % 3] && is_before[i] != is_before[(i + 2) % 3]);
+    let alone = (0..3).find(|&i| {
+        is_before[i] != is_before[(i + 1) % 3] && is_before[i] != is_before[(i + 2) % 3]
+    });
     let i = alone.unwrap_or(0);
     [1, 2].map(|k| {
         let j = (i + k) % 3;
@@ -363,7 +393,10 @@ mod tests {
         if p.x > q.x {
             std::mem::swap(&mut p, &mut q);
         }
-        assert!(p.distance(dvec3(-0.25, 0.0, 0.0)) < 1e-6 && q.distance(dvec3(0.25, 0.0, 0.0)) < 1e-6, "{p} {q}");
+        assert!(
+            p.distance(dvec3(-0.25, 0.0, 0.0)) < 1e-6 && q.distance(dvec3(0.25, 0.0, 0.0)) < 1e-6,
+            "{p} {q}"
+        );
         let same = penetration(&wall, &floor).unwrap();
         assert!(same.iter().all(|r| r.distance(p) < 1e-9 || r.distance(q) < 1e-9), "{same:?}");
     }
@@ -385,7 +418,11 @@ mod tests {
             None,
             "one corner in common"
         );
-        assert_eq!(penetration(&floor, &standing.map(|p| p + DVec3::X * 9.0 - DVec3::Y * 0.5)), None, "beside it");
+        assert_eq!(
+            penetration(&floor, &standing.map(|p| p + DVec3::X * 9.0 - DVec3::Y * 0.5)),
+            None,
+            "beside it"
+        );
     }
 
     #[test]

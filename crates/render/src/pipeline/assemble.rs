@@ -38,9 +38,15 @@ impl Assembler<'_> {
     }
 
     /// The pictures after each pass, which `budget` has room for.
-    pub(super) fn passes(&self, passes: &Passes, budget: &Budget) -> Result<Vec<Plane<[u8; 4]>>, Limit> {
-        let count = passes.iter().map(|p| p.lock().expect("finished tile").len()).max().unwrap_or(0);
-        let bytes = count as u64 * u64::from(self.viewport.width) * u64::from(self.viewport.height) * 4;
+    pub(super) fn passes(
+        &self,
+        passes: &Passes,
+        budget: &Budget,
+    ) -> Result<Vec<Plane<[u8; 4]>>, Limit> {
+        let count =
+            passes.iter().map(|p| p.lock().expect("finished tile").len()).max().unwrap_or(0);
+        let bytes =
+            count as u64 * u64::from(self.viewport.width) * u64::from(self.viewport.height) * 4;
         budget.charge(bytes, "pictures after each pass")?;
         budget.release(bytes);
         // A tile that is done stays as it is.

@@ -1,4 +1,5 @@
-//! What a scene must not ask for together with the settings, and what the user has to know about a picture.
+//! What a scene must not ask for together with the settings, and what the user has to know about a
+//! picture.
 
 use crate::radiosity::enclosure::{has_holes, partly_transparent};
 use crate::radiosity::lamps;
@@ -15,34 +16,44 @@ pub(super) fn check_indices(scene: &Scene) -> Result<(), Error> {
     let bad = scene.materials.iter().find(|m| !(m.ior > 0.0 && m.ior.is_finite()));
     bad.map_or(Ok(()), |m| {
         let name = &m.name;
-        Err(Error::Scene(format!("material `{name}`: index of refraction {}: above 0 is required", m.ior)))
+        Err(Error::Scene(format!(
+            "material `{name}`: index of refraction {}: above 0 is required",
+            m.ior
+        )))
     })
 }
 
-/// Light is computed in scenes of these sizes: squares of distances stay well within single precision.
+/// Light is computed in scenes of these sizes: squares of distances stay well within single
+/// precision.
 const LIT_SIZES: RangeInclusive<f64> = 1e-16..=1e16;
-/// Rays are followed, and light between surfaces and shadows computed, in scenes of these sizes: products of three lengths stay
-/// within single precision, of small triangles, too.
+/// Rays are followed, and light between surfaces and shadows computed, in scenes of these sizes:
+/// products of three lengths stay within single precision, of small triangles, too.
 const TRACED_SIZES: RangeInclusive<f64> = 1e-9..=1e12;
 
 /// Light needs numbers that single precision has: a picture without it can be of any size.
 pub(super) fn check_size(session: &Session, settings: &Settings) -> Result<(), Error> {
     let shading = &settings.shading;
     let bounds = &session.world.bounds;
-    let is_lit = settings.picture.channels.color && shading.lighting && shading.illumination != Illumination::Constant;
-    let is_traced =
-        settings.global.model != Global::None || !settings.shadows.algorithm.is_none || settings.casts_rays();
+    let is_lit = settings.picture.channels.color
+        && shading.lighting
+        && shading.illumination != Illumination::Constant;
+    let is_traced = settings.global.model != Global::None
+        || !settings.shadows.algorithm.is_none
+        || settings.casts_rays();
     if !(is_lit || settings.picture.channels.any_shadow()) || bounds.is_empty() {
         return Ok(());
     }
-    let (sizes, what) = if is_traced { (TRACED_SIZES, "shadows and rays are") } else { (LIT_SIZES, "light is") };
+    let (sizes, what) =
+        if is_traced { (TRACED_SIZES, "shadows and rays are") } else { (LIT_SIZES, "light is") };
     let size = bounds.size().max_element();
     if size == 0.0 || sizes.contains(&size) {
         return Ok(());
     }
     let (least, most) = (sizes.start(), sizes.end());
     let help = "scale it, or do without light (--lighting off)";
-    Err(Error::Scene(format!("the scene is {size:.1e} across, and {what} computed from {least:e} to {most:e}: {help}")))
+    Err(Error::Scene(format!(
+        "the scene is {size:.1e} across, and {what} computed from {least:e} to {most:e}: {help}"
+    )))
 }
 
 /// Translucent surfaces need an order that can show them.
@@ -56,7 +67,12 @@ pub(super) fn check_order(material: &str, settings: &Settings) -> Result<(), Set
 }
 
 /// What the user has to know about the picture.
-pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, workers: &Workers) -> Vec<String> {
+pub(super) fn warnings(
+    stats: &Stats,
+    session: &Session,
+    settings: &Settings,
+    workers: &Workers,
+) -> Vec<String> {
     let mut warnings = Vec::new();
     if settings.global.model == Global::RayTrace && settings.transparency.model.sees_through() {
         warnings.extend(session.sheets(workers).into_iter().map(|name| {
@@ -73,12 +89,15 @@ pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, wo
             "radiosity ended at the time limit: {left:.1} % of the light was still on its way, and is guessed; raise --time-limit for the rest"
         ));
     }
-    if settings.global.model == Global::Radiosity && lamps::made_of(&session.scene, &session.world, partly_transparent)
+    if settings.global.model == Global::Radiosity
+        && lamps::made_of(&session.scene, &session.world, partly_transparent)
     {
         let glass = "radiosity takes glass of an opacity of 0.5 and more for opaque, and does without all other";
         warnings.push(glass.to_owned());
     }
-    if settings.global.model == Global::Radiosity && lamps::made_of(&session.scene, &session.world, has_holes) {
+    if settings.global.model == Global::Radiosity
+        && lamps::made_of(&session.scene, &session.world, has_holes)
+    {
         let holes = "radiosity knows holes of cut-out surfaces by 16 samples of each element, and glass in textures as all or nothing";
         warnings.push(holes.to_owned());
     }
@@ -90,7 +109,9 @@ pub(super) fn warnings(stats: &Stats, session: &Session, settings: &Settings, wo
     }
     if stats.picture.lost_layers > 0 {
         let allowed = settings.transparency.layer_memory >> 20;
-        warnings.push(format!("transparent layers behind others were dropped, they need more than {allowed} MiB"));
+        warnings.push(format!(
+            "transparent layers behind others were dropped, they need more than {allowed} MiB"
+        ));
     }
     warnings
 }
@@ -104,7 +125,8 @@ fn unused_transparency(session: &Session, settings: &Settings) -> Vec<String> {
     let parts = session.world.instances.iter().flat_map(|instance| &instance.mesh.parts);
     let used = parts.filter(|part| !part.triangles.is_empty()).filter_map(|part| part.material);
     let used: BTreeSet<u32> = used.collect();
-    let used: Vec<&Material> = used.iter().filter_map(|&m| session.scene.materials.get(m as usize)).collect();
+    let used: Vec<&Material> =
+        used.iter().filter_map(|&m| session.scene.materials.get(m as usize)).collect();
     let first = |of: &dyn Fn(&Material) -> bool| {
         used.iter().find(|m| of(m)).map(|m| match &*m.name {
             "" => "a material without a name".to_owned(),
@@ -115,7 +137,8 @@ fn unused_transparency(session: &Session, settings: &Settings) -> Vec<String> {
     let mut warnings = Vec::new();
     if model.sees_through() && !model.tints() {
         let filter = first(&|m| is_blended(m) && m.filter != [1.0; 3]);
-        let said = |name| format!("the filter of {name} colours nothing without --transparency filtered");
+        let said =
+            |name| format!("the filter of {name} colours nothing without --transparency filtered");
         warnings.extend(filter.map(said));
     }
     if model.sees_through() && model != Transparency::Kay {
@@ -123,8 +146,10 @@ fn unused_transparency(session: &Session, settings: &Settings) -> Vec<String> {
         let said = |name| format!("kt-min of {name} counts for nothing without --transparency kay");
         warnings.extend(least.map(said));
     }
-    let scattering = first(&|m| m.transmission == Transmission::Translucent && m.alpha_mode != AlphaMode::Blend);
-    let said = |name| format!("{name} is translucent, but lets no light pass: give it an opacity below 1");
+    let scattering =
+        first(&|m| m.transmission == Transmission::Translucent && m.alpha_mode != AlphaMode::Blend);
+    let said =
+        |name| format!("{name} is translucent, but lets no light pass: give it an opacity below 1");
     warnings.extend(scattering.map(said));
     warnings
 }

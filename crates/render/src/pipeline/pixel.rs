@@ -1,4 +1,5 @@
-//! One pixel of a picture: the tile that holds it is made as in the whole picture, and what happens there is told.
+//! One pixel of a picture: the tile that holds it is made as in the whole picture, and what happens
+//! there is told.
 
 use super::{FrameContext, Shade, Shot, direct_shot};
 use crate::display::DecodeTables;
@@ -21,13 +22,13 @@ pub struct ExaminedPixel {
     pub candidates: Vec<Candidate>,
     /// How its colour comes about.
     pub light: PixelLight,
-    /// Its colour in the picture. With ray tracing it holds what mirrors and glass show, and with translucent materials what shines
-    /// through them, beyond the numbers of `light`.
+    /// Its colour in the picture. With ray tracing it holds what mirrors and glass show, and with
+    /// translucent materials what shines through them, beyond the numbers of `light`.
     pub bytes: [u8; 4],
 }
 
-/// Makes the tile of a pixel as in the whole picture, with all its samples, and takes the pixel apart. Translucent materials in
-/// view need the whole picture, which is made then.
+/// Makes the tile of a pixel as in the whole picture, with all its samples, and takes the pixel
+/// apart. Translucent materials in view need the whole picture, which is made then.
 ///
 /// # Errors
 /// As [`render`](super::render).
@@ -40,7 +41,8 @@ pub fn examine_pixel(
 ) -> Result<ExaminedPixel, Error> {
     // Check the settings and find the pixel's tile.
     let viewport = settings.check()?;
-    let direct = (settings.global.model == Global::Radiosity).then(|| lamps::direct_lights(session, shot.lights));
+    let direct = (settings.global.model == Global::Radiosity)
+        .then(|| lamps::direct_lights(session, shot.lights));
     let shot = &direct_shot(shot, direct.as_deref());
     let context = FrameContext { shot, settings, viewport, execution };
     let pattern = SamplePattern::new(settings.picture.samples as usize);
@@ -92,8 +94,12 @@ pub fn examine_pixel(
 
     // Take the pixel apart.
     let occluders = Occluders::new(session, settings);
-    let examination =
-        Examination { constants: &constants, marks: &mark_colors, lights: shot.lights, occluders: &occluders };
+    let examination = Examination {
+        constants: &constants,
+        marks: &mark_colors,
+        lights: shot.lights,
+        occluders: &occluders,
+    };
     let light = examination.pixel(&seen_tile, &layers, at);
     let seen = SeenPixel { tile: &seen_tile, layers: &layers, pixel: at };
     let candidates = candidates(&whole, &seen, settings.picture.lines == Lines::Wireframe);
@@ -101,7 +107,8 @@ pub fn examine_pixel(
     Ok(ExaminedPixel { candidates, light, bytes })
 }
 
-/// Keeps a copy of one tile on its way to the sink that colours it. Layers come sample by sample, all at once.
+/// Keeps a copy of one tile on its way to the sink that colours it. Layers come sample by sample,
+/// all at once.
 struct TileCopy<'s, 'a> {
     inner: &'s ColorSink<'a>,
     wanted: usize,
@@ -111,7 +118,8 @@ struct TileCopy<'s, 'a> {
 impl TileSink for TileCopy<'_, '_> {
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
         if index == self.wanted {
-            *self.copy.lock().expect("no thread panics while it copies a tile") = Some((tile.clone(), layers.to_vec()));
+            *self.copy.lock().expect("no thread panics while it copies a tile") =
+                Some((tile.clone(), layers.to_vec()));
         }
         self.inner.tile(index, tile, layers);
     }

@@ -1,23 +1,28 @@
-//! The polygons of a visible-surface algorithm in its own order, for vector drawings: no sample is looked at.
+//! The polygons of a visible-surface algorithm in its own order, for vector drawings: no sample is
+//! looked at.
 //!
-//! The algorithm sees a picture as large as pictures can be: its grid of 1/256 pixel has up to 2^22 steps a side. Surfaces through
-//! which something behind would be seen count as opaque.
+//! The algorithm sees a picture as large as pictures can be: its grid of 1/256 pixel has up to 2^22
+//! steps a side. Surfaces through which something behind would be seen count as opaque.
 
 use crate::stats::CullCounters;
 use crate::visible::PolygonList;
 use crate::{
-    Error, Execution, Lines, PreparedView, Session, Settings, SettingsError, Transparency, Visibility, registry,
+    Error, Execution, Lines, PreparedView, Session, Settings, SettingsError, Transparency,
+    Visibility, registry,
 };
 use vitral_raster::{MAX_SIDE, SamplePattern, Viewport};
 use vitral_scene::Camera;
 
-/// Samples a pixel: what lies between two lines of samples is not brought to the screen, and so many leave steps of 1/16 pixel.
+/// Samples a pixel: what lies between two lines of samples is not brought to the screen, and so
+/// many leave steps of 1/16 pixel.
 const SAMPLES: usize = 16;
 
-/// The polygons that `settings.visibility` comes to, in a view of the shape of the picture of `settings`.
+/// The polygons that `settings.visibility` comes to, in a view of the shape of the picture of
+/// `settings`.
 ///
 /// # Errors
-/// An algorithm that comes to no polygons, settings that cannot be carried out, or a limit that was reached.
+/// An algorithm that comes to no polygons, settings that cannot be carried out, or a limit that was
+/// reached.
 pub fn outlined_polygons(
     session: &Session,
     camera: &Camera,

@@ -1,4 +1,5 @@
-//! The steps of the visibility algorithm, with one sample a pixel: drawn over the picture, or one after the other.
+//! The steps of the visibility algorithm, with one sample a pixel: drawn over the picture, or one
+//! after the other.
 
 use super::{FrameContext, Shot, render};
 use crate::display::BackgroundRows;
@@ -16,12 +17,20 @@ impl FrameContext<'_> {
     /// The steps over the colour picture, which goes if it was not asked for.
     pub(super) fn render_steps(&self, session: &Session, frame: &mut Frame) -> Result<(), Error> {
         let Viewport { width, height, .. } = self.viewport;
-        self.execution.budget.charged(Recorder::bytes(width, height), "the picture of the steps", || {
-            let recorder = Arc::new(Recorder::new(width, height));
-            self.resolve_watched(session, Arc::clone(&recorder) as Arc<dyn Observer>, &NullSink)?;
-            frame.steps = frame.color.as_ref().map(|image| recorder.over(image));
-            Ok(())
-        })?;
+        self.execution.budget.charged(
+            Recorder::bytes(width, height),
+            "the picture of the steps",
+            || {
+                let recorder = Arc::new(Recorder::new(width, height));
+                self.resolve_watched(
+                    session,
+                    Arc::clone(&recorder) as Arc<dyn Observer>,
+                    &NullSink,
+                )?;
+                frame.steps = frame.color.as_ref().map(|image| recorder.over(image));
+                Ok(())
+            },
+        )?;
         if !self.settings.picture.channels.color {
             frame.color = None;
         }
@@ -44,8 +53,8 @@ impl FrameContext<'_> {
     }
 }
 
-/// Renders a picture, and keeps the steps of the visibility algorithm with one sample a pixel. At `watched` each comparison of the
-/// z-buffer is kept.
+/// Renders a picture, and keeps the steps of the visibility algorithm with one sample a pixel. At
+/// `watched` each comparison of the z-buffer is kept.
 ///
 /// # Errors
 /// As [`render`]; [`Limit::Memory`](vitral_exec::Limit::Memory) if the steps are too many.
@@ -76,7 +85,11 @@ pub fn watch_steps(
         _ => None,
     };
     let drawn = steps.iter().map(|numbered| drawn(&numbered.step)).collect();
-    let seen = seen.facets().into_iter().map(|facet| (facet != NO_FACET).then(|| surface(facet))).collect();
+    let seen = seen
+        .facets()
+        .into_iter()
+        .map(|facet| (facet != NO_FACET).then(|| surface(facet)))
+        .collect();
     let picture = &settings.picture;
     let background = (picture.background, viewport.height, picture.color_space == ColorSpace::Raw);
     let background = BackgroundRows::new(&background).bytes;
@@ -91,7 +104,10 @@ struct SeenFacets {
 
 impl SeenFacets {
     fn new(viewport: Viewport) -> Self {
-        Self { viewport, facets: Mutex::new(Plane::filled(viewport.width, viewport.height, NO_FACET)) }
+        Self {
+            viewport,
+            facets: Mutex::new(Plane::filled(viewport.width, viewport.height, NO_FACET)),
+        }
     }
 
     /// Row by row.

@@ -2,7 +2,8 @@
 
 use vitral_exec::Budget;
 
-/// A clock that gives the seconds since it was last asked, so that no time falls between two stages.
+/// A clock that gives the seconds since it was last asked, so that no time falls between two
+/// stages.
 pub(super) struct StopWatch<'a> {
     budget: &'a Budget,
     last: f64,

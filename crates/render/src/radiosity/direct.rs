@@ -1,15 +1,19 @@
 //! Light that comes straight from light sources to elements, with shadows by rays.
 //!
-//! An element is asked at the middles of 16 parts. Where they disagree, as at the border of a shadow or in a narrow cone of
-//! light, each quarter of the element is asked as finely again, and those of its quarters in which neighbours disagree.
+//! An element is asked at the middles of 16 parts. Where they disagree, as at the border of a
+//! shadow or in a narrow cone of light, each quarter of the element is asked as finely again, and
+//! those of its quarters in which neighbours disagree.
 //!
 //! In:   sides of elements. Out: the mean of what arrives.
-//! Cost: 16 places for each light, each with a ray or as many as an area light has samples; up to 336 where light ends.
+//! Cost: 16 places for each light, each with a ray or as many as an area light has samples; up to
+//!       336 where light ends.
 
 use super::element::Color;
 use super::parts::{PARTS, WHOLE, middle, parts, quarters};
 use crate::raytrace::triangles::Triangles;
-use crate::shadow::{LightVisibility, PreparedShadows, ShadowAlgorithm, SurfacePoint, SurfacePoints, ray::RayShadows};
+use crate::shadow::{
+    LightVisibility, PreparedShadows, ShadowAlgorithm, SurfacePoint, SurfacePoints, ray::RayShadows,
+};
 use crate::{Execution, GlobalSettings, Session, Settings};
 use vitral_exec::Limit;
 use vitral_light::{Light, PreparedLight};
@@ -48,7 +52,8 @@ impl<'a> Direct<'a> {
         Ok(Some(Self { lights: prepared, shadows }))
     }
 
-    /// What arrives on average at those parts of a triangle that are `there`; `side` says where it faces.
+    /// What arrives on average at those parts of a triangle that are `there`; `side` says where it
+    /// faces.
     pub(super) fn mean(&self, side: &SurfacePoint, corners: [DVec3; 3], there: u16) -> Color {
         self.mean_at(side, corners, there, 0)
     }
@@ -57,7 +62,11 @@ impl<'a> Direct<'a> {
         let numbers: Vec<usize> = (0..PARTS).filter(|part| there >> part & 1 == 1).collect();
         let parts = parts(corners);
         let seed = |part: usize| side.seed.wrapping_mul(PARTS as u32).wrapping_add(part as u32);
-        let place = |&part: &usize| SurfacePoint { position: middle(parts[part]), seed: seed(part), ..*side };
+        let place = |&part: &usize| SurfacePoint {
+            position: middle(parts[part]),
+            seed: seed(part),
+            ..*side
+        };
         let mut light = self.arriving(&numbers.iter().map(place).collect::<Vec<_>>());
         let sums: Vec<f64> = light.iter().map(|color| color.iter().sum()).collect();
         let most = sums.iter().copied().fold(0.0, f64::max);
@@ -67,8 +76,11 @@ impl<'a> Direct<'a> {
         };
         // Between the first places light may end unseen anywhere, once it ends somewhere.
         let all = depth == 0 && disagree(&(0..sums.len()).collect::<Vec<_>>());
-        for (quarter, corners) in quarters(corners).into_iter().enumerate().filter(|_| depth < MOST_DEPTH) {
-            let own: Vec<usize> = (0..numbers.len()).filter(|&i| numbers[i] / 4 == quarter).collect();
+        for (quarter, corners) in
+            quarters(corners).into_iter().enumerate().filter(|_| depth < MOST_DEPTH)
+        {
+            let own: Vec<usize> =
+                (0..numbers.len()).filter(|&i| numbers[i] / 4 == quarter).collect();
             if own.len() == 4 && (all || disagree(&own)) {
                 let mean = self.mean_at(side, corners, WHOLE, depth + 1);
                 own.into_iter().for_each(|i| light[i] = mean);
@@ -101,7 +113,8 @@ impl<'a> Direct<'a> {
             self.shadows.light_visibility(*number, &all, &mut visible, &mut 0);
             for (i, sum) in sums.iter_mut().enumerate() {
                 let visible = visible.get(i);
-                (0..3).for_each(|k| sum[k] += f64::from(light.diffuse[k] * visible[k] * unhidden[i]));
+                (0..3)
+                    .for_each(|k| sum[k] += f64::from(light.diffuse[k] * visible[k] * unhidden[i]));
             }
         }
         sums

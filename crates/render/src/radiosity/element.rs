@@ -1,7 +1,7 @@
 //! What light goes between: elements, which receive it, and patches, which send it.
 //!
-//! Both have two sides, each with a number of its own: `2 e` is the front of `e`, from which its corners run
-//! counter-clockwise, `2 e + 1` its back.
+//! Both have two sides, each with a number of its own: `2 e` is the front of `e`, from which its
+//! corners run counter-clockwise, `2 e + 1` its back.
 
 use vitral_math::DVec3;
 

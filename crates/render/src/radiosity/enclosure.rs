@@ -1,9 +1,11 @@
-//! What radiosity needs to know of a scene: elements, how they reflect, what they send out by themselves.
+//! What radiosity needs to know of a scene: elements, how they reflect, what they send out by
+//! themselves.
 //!
-//! Both sides of a surface may be lit, so each element counts twice: `2 e` is its front, from which its corners run
-//! counter-clockwise, `2 e + 1` its back. Light that surfaces send out leaves the front, and the back as well if the
-//! material is two-sided. What light sources bring (`direct`) is reflected once before anything else happens. Surfaces that
-//! let more than half of the light pass take no part.
+//! Both sides of a surface may be lit, so each element counts twice: `2 e` is its front, from which
+//! its corners run counter-clockwise, `2 e + 1` its back. Light that surfaces send out leaves the
+//! front, and the back as well if the material is two-sided. What light sources bring (`direct`) is
+//! reflected once before anything else happens. Surfaces that let more than half of the light pass
+//! take no part.
 //!
 //! In:   a session, lights. Out: [`Enclosure`].
 //! Cost: linear in elements, times lights and textures.
@@ -39,8 +41,8 @@ pub struct Enclosure {
     pub elements: Vec<Element>,
     /// Patches, by number.
     pub patches: Vec<Patch>,
-    /// Radiosity of each side of each element before light goes on from surface to surface: what it sends out by itself,
-    /// and what it reflects of light sources.
+    /// Radiosity of each side of each element before light goes on from surface to surface: what it
+    /// sends out by itself, and what it reflects of light sources.
     pub emission: Vec<Color>,
     /// What light sources bring to each side of each element; empty without any.
     pub(super) direct: Vec<Color>,
@@ -69,7 +71,11 @@ pub(super) fn takes_part(material: Option<&Material>) -> bool {
 }
 
 /// Quadtrees over the facets that take part.
-pub(super) fn trees(session: &Session, longest: f64, execution: &Execution) -> Result<Trees, Limit> {
+pub(super) fn trees(
+    session: &Session,
+    longest: f64,
+    execution: &Execution,
+) -> Result<Trees, Limit> {
     let (world, center) = (&session.world, Triangles::center_of(&session.world));
     let corners = |number: u32| {
         let instance = &world.instances[world.instance_of_facet(number)];
@@ -80,7 +86,11 @@ pub(super) fn trees(session: &Session, longest: f64, execution: &Execution) -> R
         let part = takes_part(material.and_then(|m| session.scene.materials.get(m as usize)));
         (sound && part).then_some(corners)
     };
-    let limit = Limit::Work { needed: 2 * MOST_ELEMENTS as u64, limit: MOST_ELEMENTS as u64, stage: "cutting patches" };
+    let limit = Limit::Work {
+        needed: 2 * MOST_ELEMENTS as u64,
+        limit: MOST_ELEMENTS as u64,
+        stage: "cutting patches",
+    };
     let facets: Vec<_> = (0..world.facet_count).map(corners).collect();
     let pieces = walls::cut(&facets, longest, world.bounds.diagonal(), execution)?;
     let corners = |number: u32| facets[number as usize];
@@ -110,9 +120,12 @@ fn elements(
 /// The patches that the elements are parts of.
 fn patches(trees: &Trees, elements: &[Element]) -> Vec<Patch> {
     // A patch's own node comes before those of its elements.
-    let none = Patch { center: DVec3::ZERO, normal: DVec3::Z, is_group: false, corners: [DVec3::ZERO; 3] };
+    let none =
+        Patch { center: DVec3::ZERO, normal: DVec3::Z, is_group: false, corners: [DVec3::ZERO; 3] };
     let mut patches = vec![none; trees.patches as usize];
-    for (number, node) in trees.nodes.iter().enumerate().rev().filter(|(_, node)| node.patch != NONE) {
+    for (number, node) in
+        trees.nodes.iter().enumerate().rev().filter(|(_, node)| node.patch != NONE)
+    {
         patches[node.patch as usize].corners = trees.places(number as u32);
     }
     let mut facets = vec![NONE; patches.len()];
@@ -125,19 +138,26 @@ fn patches(trees: &Trees, elements: &[Element]) -> Vec<Patch> {
     // Add up the elements' middles, weighted by their areas.
     let mut areas = vec![0.0; patches.len()];
     for element in elements {
-        let (patch, area) = (&mut patches[element.patch as usize], &mut areas[element.patch as usize]);
-        (patch.center, patch.normal) = (patch.center + element.center * element.area, element.normal);
+        let (patch, area) =
+            (&mut patches[element.patch as usize], &mut areas[element.patch as usize]);
+        (patch.center, patch.normal) =
+            (patch.center + element.center * element.area, element.normal);
         *area += element.area;
     }
 
-    patches.iter_mut().zip(&areas).filter(|(_, area)| **area > 0.0).for_each(|(patch, area)| patch.center /= *area);
+    patches
+        .iter_mut()
+        .zip(&areas)
+        .filter(|(_, area)| **area > 0.0)
+        .for_each(|(patch, area)| patch.center /= *area);
 
     // A group looks from a place on its surface.
     let middles: Vec<DVec3> = patches.iter().map(|patch| patch.center).collect();
     let mut nearest = vec![f64::INFINITY; patches.len()];
     for element in elements.iter().filter(|e| e.there != 0) {
         let number = element.patch as usize;
-        let (patch, distance) = (&mut patches[number], element.center.distance_squared(middles[number]));
+        let (patch, distance) =
+            (&mut patches[number], element.center.distance_squared(middles[number]));
         if patch.is_group && distance < nearest[number] {
             nearest[number] = distance;
             (patch.center, patch.normal) = (element.center, element.normal);
@@ -169,13 +189,16 @@ impl Enclosure {
         let (elements, own) = elements(&trees, session, settings, execution);
         let patches = patches(&trees, &elements);
         let there: Vec<u16> = elements.iter().map(|e| e.there).collect();
-        let (targets, neighbours) = (Targets::with_holes(&trees, &there), Neighbours::new(&elements));
+        let (targets, neighbours) =
+            (Targets::with_holes(&trees, &there), Neighbours::new(&elements));
         let tree = Bvh::of(&targets.session, execution)?;
         let mut emission = own.into_flattened();
         // What a light of the picture stands for sends nothing by itself.
         let mut stood_for = vec![false; session.world.facet_count as usize];
         for lamp in lamps(session) {
-            if settings.shading.lighting && lights.iter().any(|light| light.enabled && light.kind == lamp.light.kind) {
+            if settings.shading.lighting
+                && lights.iter().any(|light| light.enabled && light.kind == lamp.light.kind)
+            {
                 lamp.facets.iter().for_each(|&f| stood_for[f as usize] = true);
             }
         }
@@ -184,7 +207,16 @@ impl Enclosure {
                 *sides = [[0.0; 3]; 2];
             }
         }
-        let mut enclosure = Self { trees, elements, patches, emission, direct: Vec::new(), targets, neighbours, tree };
+        let mut enclosure = Self {
+            trees,
+            elements,
+            patches,
+            emission,
+            direct: Vec::new(),
+            targets,
+            neighbours,
+            tree,
+        };
         enclosure.add_direct(session, lights, settings, execution)?;
         Ok(enclosure)
     }
@@ -211,7 +243,9 @@ impl Enclosure {
         settings: &Settings,
         execution: &Execution,
     ) -> Result<(), Limit> {
-        let Some(direct) = Direct::new(session, lights, settings, execution)? else { return Ok(()) };
+        let Some(direct) = Direct::new(session, lights, settings, execution)? else {
+            return Ok(());
+        };
 
         // Compute what arrives from light sources at both sides of each element.
         let arriving = execution.workers.map(self.emission.len(), |i| {

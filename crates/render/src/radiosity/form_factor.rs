@@ -1,16 +1,18 @@
-//! Form factors between polygons: the part of the diffuse light of one that arrives at the other, nothing between them.
+//! Form factors between polygons: the part of the diffuse light of one that arrives at the other,
+//! nothing between them.
 //!
-//! From a point (a differential area), Lambert's formula sums over the polygon's edges the angle under which each is seen,
-//! times the cosine between the normal and the edge's plane. From an area, Stokes' theorem turns the double integral over
-//! both areas into one over both outlines, `F = 1 / (2π A) ∮∮ ln r dx·dy`. The inner integral, of the logarithm of the
-//! distance to a point along an edge, has a closed form; the outer one is computed by Gauss' rule, cut in half until the
-//! result settles, which resolves the corner where edges meet.
+//! From a point (a differential area), Lambert's formula sums over the polygon's edges the angle
+//! under which each is seen, times the cosine between the normal and the edge's plane. From an
+//! area, Stokes' theorem turns the double integral over both areas into one over both outlines,
+//! `F = 1 / (2π A) ∮∮ ln r dx·dy`. The inner integral, of the logarithm of the distance to a point
+//! along an edge, has a closed form; the outer one is computed by Gauss' rule, cut in half until
+//! the result settles, which resolves the corner where edges meet.
 //!
-//! In:   planar polygons, counter-clockwise seen from the side that shines or is shone on; each wholly in front of the
-//!       other. Out: form factors.
+//! In:   planar polygons, counter-clockwise seen from the side that shines or is shone on; each
+//!       wholly in front of the other. Out: form factors.
 //! Cost: edges of one times edges of the other, each some hundred logarithms.
-//! Source: \[Lambert 1760\], \[Goral et al. 1984\], \[Schröder & Hanrahan 1993\]. Departs from the last: one of its two
-//! integrals is done by quadrature, to about 12 digits.
+//! Source: \[Lambert 1760\], \[Goral et al. 1984\], \[Schröder & Hanrahan 1993\]. Departs from the
+//! last: one of its two integrals is done by quadrature, to about 12 digits.
 
 use std::f64::consts::PI;
 use vitral_math::{DVec3, func};
@@ -34,7 +36,8 @@ fn doubled_area(polygon: &[DVec3]) -> DVec3 {
     edges(polygon).map(|(a, b)| (a - polygon[0]).cross(b - polygon[0])).sum()
 }
 
-/// The form factor from a small area at `point` with unit normal to a polygon in front of it that faces it.
+/// The form factor from a small area at `point` with unit normal to a polygon in front of it that
+/// faces it.
 pub fn from_point(point: DVec3, normal: DVec3, polygon: &[DVec3]) -> f64 {
     let sum: f64 = edges(polygon)
         .map(|(a, b)| {
@@ -95,7 +98,8 @@ fn integral(f: &impl Fn(f64) -> f64, [from, to]: [f64; 2], tolerance: f64, halvi
     if (whole - sum).abs() <= tolerance * (to - from) || halvings == 0 {
         return sum;
     }
-    integral(f, [from, middle], tolerance, halvings - 1) + integral(f, [middle, to], tolerance, halvings - 1)
+    integral(f, [from, middle], tolerance, halvings - 1)
+        + integral(f, [middle, to], tolerance, halvings - 1)
 }
 
 fn gauss(f: &impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
@@ -120,8 +124,9 @@ mod tests {
         let wall = square(DVec3::ZERO, DVec3::Y, DVec3::Z);
         let (parallel, perpendicular) = (between(&floor, &ceiling), between(&floor, &wall));
         // Closed forms: Howell's catalogue, C-11 and C-14, for unit squares.
-        let p =
-            2.0 / PI * (func::ln((4.0f64 / 3.0).sqrt()) + 2.0 * 2f64.sqrt() * func::atan2(1.0, 2f64.sqrt()) - PI / 2.0);
+        let p = 2.0 / PI
+            * (func::ln((4.0f64 / 3.0).sqrt()) + 2.0 * 2f64.sqrt() * func::atan2(1.0, 2f64.sqrt())
+                - PI / 2.0);
         assert!((p - 0.199_824_895_7).abs() < 1e-9);
         assert!((parallel - p).abs() < 1e-9, "{parallel} {p}");
         assert!((perpendicular - 0.200_043_776_1).abs() < 1e-9, "{perpendicular}");
@@ -135,10 +140,18 @@ mod tests {
     #[test]
     fn reciprocity_holds_between_unequal_polygons() {
         let triangle = [dvec3(0.2, 0.1, 0.0), dvec3(2.0, 0.3, 0.0), dvec3(0.4, 1.7, 0.1)];
-        let quad = [dvec3(-1.0, 0.0, 3.0), dvec3(-1.0, 0.9, 2.5), dvec3(0.5, 0.9, 2.5), dvec3(0.5, 0.0, 3.0)];
+        let quad = [
+            dvec3(-1.0, 0.0, 3.0),
+            dvec3(-1.0, 0.9, 2.5),
+            dvec3(0.5, 0.9, 2.5),
+            dvec3(0.5, 0.0, 3.0),
+        ];
         let (there, back) = (between(&triangle, &quad), between(&quad, &triangle));
         let areas = [doubled_area(&triangle).length(), doubled_area(&quad).length()];
-        assert!(there > 0.01 && (areas[0] * there - areas[1] * back).abs() < 1e-10, "{there} {back}");
+        assert!(
+            there > 0.01 && (areas[0] * there - areas[1] * back).abs() < 1e-10,
+            "{there} {back}"
+        );
     }
 
     #[test]
@@ -146,8 +159,9 @@ mod tests {
         let ceiling = square(DVec3::Z, DVec3::Y, DVec3::X);
         const STEPS: usize = 24;
         let at = |i: usize| (i as f64 + 0.5) / STEPS as f64;
-        let sum: f64 =
-            (0..STEPS * STEPS).map(|i| from_point(dvec3(at(i % STEPS), at(i / STEPS), 0.0), DVec3::Z, &ceiling)).sum();
+        let sum: f64 = (0..STEPS * STEPS)
+            .map(|i| from_point(dvec3(at(i % STEPS), at(i / STEPS), 0.0), DVec3::Z, &ceiling))
+            .sum();
         let mean = sum / (STEPS * STEPS) as f64;
         assert!((mean - 0.199_824_895_7).abs() < 1e-4, "{mean}");
         // A polygon so large that it fills the hemisphere.

@@ -1,11 +1,13 @@
-//! Surfaces that shine, as area lights: what they light directly is found for each point of the picture, by rays and without
-//! elements, so that shadows are sharp where they are sharp.
+//! Surfaces that shine, as area lights: what they light directly is found for each point of the
+//! picture, by rays and without elements, so that shadows are sharp where they are sharp.
 //!
-//! That is for few lamps, which shine evenly. Many small ones, and those whose light is a texture, send their light from
-//! element to element as all other surfaces do. A light of the scene is left out if at least half of it lies on surfaces that
-//! shine to the same side: it stands for them. Lights that were chosen for the picture stay, wherever they are.
+//! That is for few lamps, which shine evenly. Many small ones, and those whose light is a texture,
+//! send their light from element to element as all other surfaces do. A light of the scene is left
+//! out if at least half of it lies on surfaces that shine to the same side: it stands for them.
+//! Lights that were chosen for the picture stay, wherever they are.
 //!
-//! In:   a session, lights. Out: the lights that light surfaces directly, and the facets that they stand for.
+//! In:   a session, lights. Out: the lights that light surfaces directly, and the facets that they
+//!       stand for.
 //! Cost: area lights times facets that shine.
 
 use super::enclosure::takes_part;
@@ -20,7 +22,8 @@ use vitral_scene::{Scene, World};
 const APART: f64 = 0.05;
 /// The least cosine between their normals.
 const PARALLEL: f64 = 0.98;
-/// By how much points may miss the surface, in weights of its corners: on the edge between two facets they hit one.
+/// By how much points may miss the surface, in weights of its corners: on the edge between two
+/// facets they hit one.
 const BESIDE: f32 = 1e-3;
 
 /// Whether a surface of the world shines by itself.
@@ -50,8 +53,8 @@ pub(super) struct Lamp {
     pub(super) light: Light,
 }
 
-/// The lights that light surfaces directly: without ambient light, without those that surfaces stand for, and with those
-/// that stand for surfaces.
+/// The lights that light surfaces directly: without ambient light, without those that surfaces
+/// stand for, and with those that stand for surfaces.
 pub(crate) fn direct_lights(session: &Session, lights: &[Light]) -> Vec<Light> {
     let own = |light: &Light| session.world.lights.iter().any(|own| own.kind == light.kind);
     let twice = |light: &Light| match &light.kind {
@@ -83,7 +86,9 @@ pub(super) fn lamps(session: &Session) -> Vec<Lamp> {
                 }
                 // Two halves of a quadrilateral are one lamp.
                 let whole = before.filter(|(_, _, n)| n.dot(normal) > 1.0 - 1e-9);
-                let whole = whole.and_then(|(other, first, _)| Some((other, quadrilateral(&first, &corners, normal)?)));
+                let whole = whole.and_then(|(other, first, _)| {
+                    Some((other, quadrilateral(&first, &corners, normal)?))
+                });
 
                 // Replace the last lamp by the quadrilateral of both, or add a lamp.
                 if let Some((other, outline)) = whole {
@@ -128,10 +133,13 @@ fn quadrilateral(first: &[DVec3; 3], second: &[DVec3; 3], normal: DVec3) -> Opti
 
 /// Adds the lights of a shape that shines to its front, or to both sides.
 fn push(lamps: &mut Vec<Lamp>, facets: Vec<u32>, outline: &[DVec3], material: &Material) {
-    let fan = outline.windows(2).skip(1).map(|pair| (pair[0] - outline[0]).cross(pair[1] - outline[0]));
+    let fan =
+        outline.windows(2).skip(1).map(|pair| (pair[0] - outline[0]).cross(pair[1] - outline[0]));
     let area = 0.5 * fan.sum::<DVec3>().length();
-    // A white surface that a light of intensity 1 faces receives 1: a lamp of radiosity B sends B A / π along its axis.
-    let diffuse = material.emission.map(|e| (f64::from(e.max(0.0)) * area / std::f64::consts::PI) as f32);
+    // A white surface that a light of intensity 1 faces receives 1: a lamp of radiosity B sends B A
+    // / π along its axis.
+    let diffuse =
+        material.emission.map(|e| (f64::from(e.max(0.0)) * area / std::f64::consts::PI) as f32);
     let backwards = outline.iter().rev().copied().collect();
     let sides = [outline.to_vec(), backwards];
     for corners in sides.into_iter().take(if material.double_sided { 2 } else { 1 }) {
@@ -211,7 +219,11 @@ impl Spread {
             }
         };
         let size = outline.iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
-        Some(Self { normal, size, points: outline.into_iter().map(|p| p.midpoint(middle)).collect() })
+        Some(Self {
+            normal,
+            size,
+            points: outline.into_iter().map(|p| p.midpoint(middle)).collect(),
+        })
     }
 }
 
@@ -240,13 +252,27 @@ mod tests {
     #[test]
     fn only_area_lights_on_surfaces_that_shine_are_left_out() {
         assert!(is_left_out(&|_| ()), "the lamp is there twice");
-        let mut disc = AreaShape::Disc { center: DVec3::new(0.278, 0.5478, -0.28), normal: DVec3::NEG_Y, radius: 0.04 };
-        assert!(is_left_out(&|scene| scene.lights[0].kind = LightKind::Area { shape: disc.clone() }));
+        let mut disc = AreaShape::Disc {
+            center: DVec3::new(0.278, 0.5478, -0.28),
+            normal: DVec3::NEG_Y,
+            radius: 0.04,
+        };
+        assert!(is_left_out(
+            &|scene| scene.lights[0].kind = LightKind::Area { shape: disc.clone() }
+        ));
         let AreaShape::Disc { normal, .. } = &mut disc else { unreachable!() };
         *normal = DVec3::Y;
-        assert!(!is_left_out(&|scene| scene.lights[0].kind = LightKind::Area { shape: disc.clone() }));
-        assert!(!is_left_out(&|scene| corners(scene).iter_mut().for_each(|c| c.y -= 0.01)), "below the lamp");
-        assert!(!is_left_out(&|scene| corners(scene).iter_mut().for_each(|c| c.x += 0.1)), "beside it");
+        assert!(!is_left_out(
+            &|scene| scene.lights[0].kind = LightKind::Area { shape: disc.clone() }
+        ));
+        assert!(
+            !is_left_out(&|scene| corners(scene).iter_mut().for_each(|c| c.y -= 0.01)),
+            "below the lamp"
+        );
+        assert!(
+            !is_left_out(&|scene| corners(scene).iter_mut().for_each(|c| c.x += 0.1)),
+            "beside it"
+        );
         // A lamp that is no surface of the scene.
         let dark = |scene: &mut Scene| {
             let lamp = scene.materials.iter().position(|m| m.emission != [0.0; 3]).unwrap();
@@ -261,10 +287,13 @@ mod tests {
         let session = Session::new(Arc::new(builtin::scene("cornell").unwrap())).unwrap();
         let lamps = lamps(&session);
         assert_eq!(lamps.len(), 1, "two triangles");
-        let LightKind::Area { shape: AreaShape::Polygon { corners } } = &lamps[0].light.kind else { panic!() };
+        let LightKind::Area { shape: AreaShape::Polygon { corners } } = &lamps[0].light.kind else {
+            panic!()
+        };
         assert_eq!((corners.len(), lamps[0].facets.len()), (4, 2));
         let area = (corners[1] - corners[0]).length() * (corners[2] - corners[1]).length();
-        let emission = session.scene.materials.iter().find(|m| m.emission != [0.0; 3]).unwrap().emission;
+        let emission =
+            session.scene.materials.iter().find(|m| m.emission != [0.0; 3]).unwrap().emission;
         for k in 0..3 {
             let expected = f64::from(emission[k]) * area / std::f64::consts::PI;
             assert!((f64::from(lamps[0].light.diffuse[k]) / expected - 1.0).abs() < 1e-5);
@@ -276,8 +305,13 @@ mod tests {
         let session = Session::new(Arc::new(builtin::scene("cornell").unwrap())).unwrap();
         let mut light = session.world.lights[0].clone();
         light.diffuse = [1.0; 3];
-        assert!(!direct_lights(&session, &[light.clone()])[0].enabled, "the scene's, at another intensity");
-        let LightKind::Area { shape: AreaShape::Polygon { corners } } = &mut light.kind else { unreachable!() };
+        assert!(
+            !direct_lights(&session, &[light.clone()])[0].enabled,
+            "the scene's, at another intensity"
+        );
+        let LightKind::Area { shape: AreaShape::Polygon { corners } } = &mut light.kind else {
+            unreachable!()
+        };
         corners[0].x += 1e-3;
         assert!(direct_lights(&session, &[light])[0].enabled);
     }

@@ -1,13 +1,15 @@
 //! Radiosity: light that matt surfaces send to each other.
 //!
-//! Surfaces are cut into patches ([`patch`]); form factors say what part of the light of one arrives at another
-//! ([`form_factor`], [`hemicube`], `near`); light is sent from patch to patch until little is left on its way ([`progressive`]),
-//! or all patches gather it from all others, the reference ([`gather`]). Where the light changes fast, elements are cut
-//! again and the solution begins anew. The [`solution`] belongs to the scene, not to a viewer: the session keeps it, and
+//! Surfaces are cut into patches ([`patch`]); form factors say what part of the light of one
+//! arrives at another ([`form_factor`], [`hemicube`], `near`); light is sent from patch to patch
+//! until little is left on its way ([`progressive`]), or all patches gather it from all others, the
+//! reference ([`gather`]). Where the light changes fast, elements are cut again and the solution
+//! begins anew. The [`solution`] belongs to the scene, not to a viewer: the session keeps it, and
 //! pictures from other cameras only look it up.
 //!
-//! A picture adds what arrives from other surfaces to what the local model says about light sources, with their shadows.
-//! Ambient light, the local models' guess at all this, is left out. Glass counts all or nothing ([`enclosure`]).
+//! A picture adds what arrives from other surfaces to what the local model says about light
+//! sources, with their shadows. Ambient light, the local models' guess at all this, is left out.
+//! Glass counts all or nothing ([`enclosure`]).
 //!
 //! Source: \[Goral et al. 1984\], \[Cohen et al. 1988\].
 
@@ -45,9 +47,11 @@ use vitral_scene::Attribute;
 
 /// Pixels along an edge of hemicubes, from those of the weakest patches to those of the strongest.
 const HEMICUBES: [u32; 13] = [16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
-/// How many of them, the coarsest, are used to find out where elements are to be cut. With fewer, noise is cut, too.
+/// How many of them, the coarsest, are used to find out where elements are to be cut. With fewer,
+/// noise is cut, too.
 const ROUGH_HEMICUBES: usize = 9;
-/// The part of the light that stays in the scene that may be left: it is missing in the solution, where other errors are some tenths of a percent.
+/// The part of the light that stays in the scene that may be left: it is missing in the solution,
+/// where other errors are some tenths of a percent.
 pub const RESIDUAL: f64 = 0.002;
 /// The part that may be left before elements are cut again.
 const ROUGH: f64 = 0.2;
@@ -55,7 +59,8 @@ const ROUGH: f64 = 0.2;
 const ROUNDS: usize = 2;
 /// What is told while it goes on.
 const STAGE: &str = "radiosity";
-/// Thousandths of the progress at which the rough solutions and the last one begin, about as they take time.
+/// Thousandths of the progress at which the rough solutions and the last one begin, about as they
+/// take time.
 const BEGINNINGS: [u64; ROUNDS + 1] = [0, 100, 250];
 /// The part of the time limit after which a solution ends as it is: the rest is for the picture.
 const SOLVING: f64 = 0.75;
@@ -90,8 +95,8 @@ impl Cached for LoadedSolution {
     const REUSE: Reuse = Reuse::Session;
 }
 
-/// The solution for these lights: the one that was handed in, the one that is known, or a new one, whose making is
-/// counted.
+/// The solution for these lights: the one that was handed in, the one that is known, or a new one,
+/// whose making is counted.
 pub(crate) fn solution(
     session: &Session,
     lights: &[Light],
@@ -133,7 +138,8 @@ fn solve(
     // Reserve a part of the time for the solution.
     let start = execution.budget.elapsed();
     let limit = execution.budget.time_limit().map(|limit| SOLVING * limit);
-    let execution = &Execution { budget: execution.budget.clone().with_time_limit(limit), ..execution.clone() };
+    let execution =
+        &Execution { budget: execution.budget.clone().with_time_limit(limit), ..execution.clone() };
 
     // Choose hemicubes and the size of patches.
     let diagonal = session.world.bounds.diagonal();
@@ -143,19 +149,29 @@ fn solve(
     execution.budget.progress(STAGE, 0, 1000);
 
     // Solve roughly, and cut elements where light changes fast.
-    let mut enclosure = enclosed(enclosure::trees(session, longest, execution)?, session, lights, settings, execution)?;
+    let mut enclosure = enclosed(
+        enclosure::trees(session, longest, execution)?,
+        session,
+        lights,
+        settings,
+        execution,
+    )?;
     let mut stopped = None;
     for round in 0..ROUNDS {
         let part = part_of(execution, BEGINNINGS[round]..BEGINNINGS[round + 1]);
-        let rough = progressive::solve(&enclosure, &hemicubes[..ROUGH_HEMICUBES], ROUGH, most, &part)?;
+        let rough =
+            progressive::solve(&enclosure, &hemicubes[..ROUGH_HEMICUBES], ROUGH, most, &part)?;
         if rough.stopped {
             stopped = Some(rough);
             break;
         }
         let contrasts = contrasts(&enclosure, &rough);
-        let is_coarse = |node: u32| patch::longest_edge(enclosure.trees.places(node)) > FINEST * longest;
-        let changing = enclosure.elements.iter().zip(contrasts).filter(|(_, contrast)| *contrast > CONTRAST);
-        let cut: Vec<u32> = changing.map(|(element, _)| element.node).filter(|&node| is_coarse(node)).collect();
+        let is_coarse =
+            |node: u32| patch::longest_edge(enclosure.trees.places(node)) > FINEST * longest;
+        let changing =
+            enclosure.elements.iter().zip(contrasts).filter(|(_, contrast)| *contrast > CONTRAST);
+        let cut: Vec<u32> =
+            changing.map(|(element, _)| element.node).filter(|&node| is_coarse(node)).collect();
         if cut.is_empty() {
             break;
         }
@@ -209,13 +225,17 @@ fn contrasts(enclosure: &Enclosure, rough: &Progress) -> Vec<f64> {
     contrasts.into_iter().zip(direct).map(|(a, b)| a.max(b)).collect()
 }
 
-/// `execution` for one of several solutions, whose progress is this part of the whole, in thousandths.
+/// `execution` for one of several solutions, whose progress is this part of the whole, in
+/// thousandths.
 fn part_of(execution: &Execution, part: Range<u64>) -> Execution {
     let whole = execution.budget.clone();
     let listener = move |stage: &str, done: u64, total: u64| {
         whole.progress(stage, part.start + done * (part.end - part.start) / total.max(1), 1000);
     };
-    Execution { budget: execution.budget.clone().with_progress(Arc::new(listener)), ..execution.clone() }
+    Execution {
+        budget: execution.budget.clone().with_progress(Arc::new(listener)),
+        ..execution.clone()
+    }
 }
 
 /// An enclosure whose memory the budget allows.
@@ -226,20 +246,25 @@ fn enclosed(
     settings: &Settings,
     execution: &Execution,
 ) -> Result<Enclosure, Limit> {
-    // A node, a vertex, an element with two sides, its triangle, what the solution keeps of it; and form factors.
+    // A node, a vertex, an element with two sides, its triangle, what the solution keeps of it; and
+    // form factors.
     let count = trees.nodes.len() as u64;
-    let bytes = count * 600 + progressive::MOST_BYTES.min(count.saturating_mul(count).saturating_mul(8));
+    let bytes =
+        count * 600 + progressive::MOST_BYTES.min(count.saturating_mul(count).saturating_mul(8));
     execution.budget.charge(bytes, "radiosity")?;
     execution.budget.release(bytes);
     Enclosure::new(trees, session, lights, settings, execution)
 }
 
-/// A number that tells these lights, whether they are on, and how light is computed with, from others, for stored solutions.
-/// How fine a solution is does not matter.
+/// A number that tells these lights, whether they are on, and how light is computed with, from
+/// others, for stored solutions. How fine a solution is does not matter.
 fn fingerprint_of(lights: &[Light], settings: &Settings) -> u64 {
     let (lighting, color_space) = (settings.shading.lighting, settings.picture.color_space);
     let transparency = settings.transparency.model;
-    solution::mix(FINGERPRINT, format!("{lights:?} {lighting} {color_space:?} {transparency:?}").as_bytes())
+    solution::mix(
+        FINGERPRINT,
+        format!("{lights:?} {lighting} {color_space:?} {transparency:?}").as_bytes(),
+    )
 }
 
 /// Where fingerprints start.
@@ -248,7 +273,11 @@ const FINGERPRINT: u64 = 0xcbf2_9ce4_8422_2325;
 /// Mixes in what the corners of triangles have.
 fn mix_attributes<const N: usize>(mut hash: u64, attributes: &[Attribute<[f32; N]>]) -> u64 {
     for attribute in attributes {
-        attribute.values.as_flattened().iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
+        attribute
+            .values
+            .as_flattened()
+            .iter()
+            .for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
         let corners = attribute.corners.iter().flatten().flatten();
         corners.for_each(|i| hash = solution::mix(hash, &i.to_le_bytes()));
     }
@@ -256,7 +285,8 @@ fn mix_attributes<const N: usize>(mut hash: u64, attributes: &[Attribute<[f32; N
 }
 
 impl Session {
-    /// A number that tells this scene's shapes and what of its materials light depends on from others, for stored solutions.
+    /// A number that tells this scene's shapes and what of its materials light depends on from
+    /// others, for stored solutions.
     fn fingerprint(&self) -> u64 {
         // Hash the geometry of each instance.
         let mut hash = FINGERPRINT;
@@ -264,35 +294,52 @@ impl Session {
             let matrix = instance.world_from_model.to_cols_array();
             matrix.iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
             let mesh = &instance.mesh;
-            mesh.positions.as_flattened().iter().for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
-            mesh.triangles.as_flattened().iter().for_each(|i| hash = solution::mix(hash, &i.to_le_bytes()));
+            mesh.positions
+                .as_flattened()
+                .iter()
+                .for_each(|v| hash = solution::mix(hash, &v.to_le_bytes()));
+            mesh.triangles
+                .as_flattened()
+                .iter()
+                .for_each(|i| hash = solution::mix(hash, &i.to_le_bytes()));
             hash = mix_attributes(hash, mesh.colors.as_slice());
             hash = solution::mix(hash, &[u8::from(mesh.colors_from_srgb)]);
             hash = mix_attributes(hash, &mesh.uvs);
             for part in &mesh.parts {
-                hash = solution::mix(hash, format!("{:?} {:?}", part.triangles, part.material).as_bytes());
+                hash = solution::mix(
+                    hash,
+                    format!("{:?} {:?}", part.triangles, part.material).as_bytes(),
+                );
             }
         }
 
         // Hash the materials, and the textures that they use.
         let mut textures = BTreeSet::new();
         for m in &self.scene.materials {
-            let surface = (&m.reflectance, m.emission, m.double_sided, m.opacity, &m.alpha_mode, m.filter);
-            let used = [m.base_texture, m.emission_texture, m.opacity_texture, m.metallic_roughness_texture];
+            let surface =
+                (&m.reflectance, m.emission, m.double_sided, m.opacity, &m.alpha_mode, m.filter);
+            let used = [
+                m.base_texture,
+                m.emission_texture,
+                m.opacity_texture,
+                m.metallic_roughness_texture,
+            ];
             hash = solution::mix(hash, format!("{surface:?} {used:?}").as_bytes());
             textures.extend(used.into_iter().flatten().map(|reference| reference.texture));
         }
         for texture in textures.iter().filter_map(|&t| self.scene.textures.get(t as usize)) {
             hash = solution::mix(hash, format!("{:?}", texture.encoding).as_bytes());
             for level in &texture.levels {
-                hash = solution::mix(hash, format!("{} {}", level.width(), level.height()).as_bytes());
+                hash =
+                    solution::mix(hash, format!("{} {}", level.width(), level.height()).as_bytes());
                 hash = solution::mix(hash, level.data().as_flattened());
             }
         }
         hash
     }
 
-    /// The solution of the last picture with radiosity, as bytes for [`Self::load_radiosity`]; `None` without one.
+    /// The solution of the last picture with radiosity, as bytes for [`Self::load_radiosity`];
+    /// `None` without one.
     pub fn save_radiosity(&self) -> Option<Vec<u8>> {
         let loaded = self.cache.get::<LoadedSolution>().map(|loaded| Arc::clone(&loaded.0));
         let solution = loaded.or_else(|| self.cache.get::<Solution>());

@@ -1,13 +1,16 @@
 //! Elements so near a patch that it is no point to them.
 //!
-//! The hemicube in the middle of a patch stands for all of it, which is true some sizes of the patch away. An element that is
-//! nearer says itself how much of its sky the patch fills: by Lambert's formula from the element's middle, as far as rays
-//! from there reach the parts of the patch. The light that then arrives is `F_pe = F_ep A_e / A_p` of what the patch sends. What
-//! is farther away shares the rest in the proportions that the hemicube found, so that no light is lost or made.
+//! The hemicube in the middle of a patch stands for all of it, which is true some sizes of the
+//! patch away. An element that is nearer says itself how much of its sky the patch fills: by
+//! Lambert's formula from the element's middle, as far as rays from there reach the parts of the
+//! patch. The light that then arrives is `F_pe = F_ep A_e / A_p` of what the patch sends. What is
+//! farther away shares the rest in the proportions that the hemicube found, so that no light is
+//! lost or made.
 //!
 //! In:   what a hemicube sees. Out: the same, with the factors of near elements put right.
 //! Cost: a search for neighbours; for each of those that face the patch up to 16 rays.
-//! Source: \[Wallace, Elmquist & Haines 1989\]. Departs from it: only near elements ask, and for all of the polygon.
+//! Source: \[Wallace, Elmquist & Haines 1989\]. Departs from it: only near elements ask, and for
+//!         all of the polygon.
 
 use super::element::{FormFactors, turned};
 use super::enclosure::Enclosure;
@@ -42,7 +45,12 @@ struct Sender {
 }
 
 /// Puts the factors of near elements right in what the hemicube on a side of a patch sees.
-pub(super) fn refined(enclosure: &Enclosure, seen: FormFactors, shooter: usize, execution: &Execution) -> FormFactors {
+pub(super) fn refined(
+    enclosure: &Enclosure,
+    seen: FormFactors,
+    shooter: usize,
+    execution: &Execution,
+) -> FormFactors {
     // Describe the side that shoots.
     let patch = &enclosure.patches[shooter / 2];
     if patch.is_group {
@@ -59,15 +67,21 @@ pub(super) fn refined(enclosure: &Enclosure, seen: FormFactors, shooter: usize, 
 
     // Compute the factors of near elements with rays.
     let mut near = FormFactors::new();
-    enclosure.neighbours.visit(&enclosure.elements, patch.center, NEAR * sender.longest, |number| {
-        let element = &enclosure.elements[number as usize];
-        let cuts = if element.center.distance(patch.center) < NEXT * sender.longest { 2 } else { 1 };
-        for side in [2 * number, 2 * number + 1] {
-            let normal = element.normal * turned(side as usize);
-            let part = sender.seen(element.center, normal, cuts, &enclosure.tree, execution);
-            near.extend(part.map(|part| (side, part * element.area / sender.area)));
-        }
-    });
+    enclosure.neighbours.visit(
+        &enclosure.elements,
+        patch.center,
+        NEAR * sender.longest,
+        |number| {
+            let element = &enclosure.elements[number as usize];
+            let cuts =
+                if element.center.distance(patch.center) < NEXT * sender.longest { 2 } else { 1 };
+            for side in [2 * number, 2 * number + 1] {
+                let normal = element.normal * turned(side as usize);
+                let part = sender.seen(element.center, normal, cuts, &enclosure.tree, execution);
+                near.extend(part.map(|part| (side, part * element.area / sender.area)));
+            }
+        },
+    );
     if near.is_empty() {
         return seen;
     }
@@ -82,18 +96,28 @@ pub(super) fn refined(enclosure: &Enclosure, seen: FormFactors, shooter: usize, 
 
     // What is farther away has the rest, the sky with it.
     let (sum, rest) = (near.iter().map(|(_, factor)| factor).sum::<f64>(), 1.0 - replaced);
-    let farther = if rest > 0.0 { ((1.0 - sum) / rest).clamp(1.0 / MOST_SCALED, MOST_SCALED) } else { 0.0 };
+    let farther =
+        if rest > 0.0 { ((1.0 - sum) / rest).clamp(1.0 / MOST_SCALED, MOST_SCALED) } else { 0.0 };
     let nearer = if sum > 0.0 { (1.0 - farther * rest) / sum } else { 1.0 };
     row.iter_mut().for_each(|(_, factor)| *factor *= farther);
-    row.extend(near.into_iter().filter(|(_, part)| *part > 0.0).map(|(side, part)| (side, part * nearer)));
+    row.extend(
+        near.into_iter().filter(|(_, part)| *part > 0.0).map(|(side, part)| (side, part * nearer)),
+    );
     row.sort_unstable_by_key(|(side, _)| *side);
     row
 }
 
 impl Sender {
-    /// The part of the sky above `point` that the side fills, as far as it is seen, cut into 4 to the power `cuts` parts;
-    /// `None` if it would not be seen if nothing were in between.
-    fn seen(&self, point: DVec3, normal: DVec3, cuts: u32, tree: &Bvh, execution: &Execution) -> Option<f64> {
+    /// The part of the sky above `point` that the side fills, as far as it is seen, cut into 4 to
+    /// the power `cuts` parts; `None` if it would not be seen if nothing were in between.
+    fn seen(
+        &self,
+        point: DVec3,
+        normal: DVec3,
+        cuts: u32,
+        tree: &Bvh,
+        execution: &Execution,
+    ) -> Option<f64> {
         // Skip the point if it lies behind the side or the side below its horizon.
         let (center, extent) = (tree.triangles().center, f64::from(tree.triangles().extent));
         let clear = clearance(point, extent);
@@ -119,12 +143,14 @@ impl Sender {
 
         // Trace a ray to the middle of each part that lies above the horizon.
         let mut visible = Vec::with_capacity(parts.len());
-        let polygons = parts.iter().map(|part| above(part, point, normal)).filter(|polygon| polygon.len() > 2);
+        let polygons =
+            parts.iter().map(|part| above(part, point, normal)).filter(|polygon| polygon.len() > 2);
         let polygons: Vec<Vec<DVec3>> = polygons.collect();
         for eight in polygons.chunks(LANES) {
             let from = point + normal * clear;
             let rays = eight.iter().map(|polygon| {
-                let middle = polygon.iter().sum::<DVec3>() / polygon.len() as f64 + self.normal * clear;
+                let middle =
+                    polygon.iter().sum::<DVec3>() / polygon.len() as f64 + self.normal * clear;
                 Ray::new((from - center).as_vec3(), (middle - from).as_vec3())
             });
             let rays: Vec<Ray> = rays.collect();

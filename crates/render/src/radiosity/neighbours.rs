@@ -5,8 +5,8 @@
 use super::element::Element;
 use vitral_math::DVec3;
 
-/// Elements by their places: the middle of each range has smaller ones before it and larger ones after it, along x, y and z
-/// in turns.
+/// Elements by their places: the middle of each range has smaller ones before it and larger ones
+/// after it, along x, y and z in turns.
 #[derive(Debug)]
 pub(super) struct Neighbours(Vec<u32>);
 
@@ -20,7 +20,13 @@ impl Neighbours {
     }
 
     /// Calls `visit` with the elements whose middles are nearer to `point` than `radius`.
-    pub(super) fn visit(&self, elements: &[Element], point: DVec3, radius: f64, mut visit: impl FnMut(u32)) {
+    pub(super) fn visit(
+        &self,
+        elements: &[Element],
+        point: DVec3,
+        radius: f64,
+        mut visit: impl FnMut(u32),
+    ) {
         let mut waiting = vec![(&self.0[..], 0)];
         while let Some((range, axis)) = waiting.pop() {
             if range.is_empty() {
@@ -65,12 +71,21 @@ mod tests {
     use vitral_math::dvec3;
 
     fn element(center: DVec3) -> Element {
-        Element { node: 0, patch: 0, center, normal: DVec3::Z, area: 1.0, there: WHOLE, reflectance: [0.0; 3] }
+        Element {
+            node: 0,
+            patch: 0,
+            center,
+            normal: DVec3::Z,
+            area: 1.0,
+            there: WHOLE,
+            reflectance: [0.0; 3],
+        }
     }
 
     #[test]
     fn neighbours_are_those_within_the_radius() {
-        let place = |i: u32| dvec3(f64::from(i * 37 % 101), f64::from(i * 53 % 89), f64::from(i * 29 % 7));
+        let place =
+            |i: u32| dvec3(f64::from(i * 37 % 101), f64::from(i * 53 % 89), f64::from(i * 29 % 7));
         let mut elements: Vec<Element> = (0..500).map(|i| element(place(i))).collect();
         (elements[40].there, elements[77].there) = (0, 0);
         let neighbours = Neighbours::new(&elements);

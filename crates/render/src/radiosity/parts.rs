@@ -1,4 +1,5 @@
-//! The 16 parts of an element: its triangle, cut in four at the middles of its edges, and each quarter cut again.
+//! The 16 parts of an element: its triangle, cut in four at the middles of its edges, and each
+//! quarter cut again.
 
 use vitral_math::DVec3;
 

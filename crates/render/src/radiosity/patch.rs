@@ -1,12 +1,13 @@
 //! Patches and elements: the surfaces of a scene, cut into small triangles.
 //!
-//! A facet is cut in four at the middles of its edges, and its parts again, until no edge is longer than asked for: the
-//! *patches*, which send light. Where fewer patches come of it, the edges of all facets are first cut in three. Where light
-//! changes fast patches are cut further, into the *elements*, which receive it. So each facet is a small grid of quadtrees.
-//! Vertices on edges are shared by all facets that share the edge, and the trees are kept balanced: across an edge, levels
-//! differ by one at most. A leaf whose neighbour is finer has a vertex in the middle of its edge; whoever interpolates cuts
-//! it there, so that there are no T-junctions. Facets much smaller than a patch are patches in groups: those in one cell of a grid
-//! that face one axis.
+//! A facet is cut in four at the middles of its edges, and its parts again, until no edge is longer
+//! than asked for: the *patches*, which send light. Where fewer patches come of it, the edges of
+//! all facets are first cut in three. Where light changes fast patches are cut further, into the
+//! *elements*, which receive it. So each facet is a small grid of quadtrees. Vertices on edges are
+//! shared by all facets that share the edge, and the trees are kept balanced: across an edge,
+//! levels differ by one at most. A leaf whose neighbour is finer has a vertex in the middle of its
+//! edge; whoever interpolates cuts it there, so that there are no T-junctions. Facets much smaller
+//! than a patch are patches in groups: those in one cell of a grid that face one axis.
 //!
 //! In:   facets, world space less the scene's middle. Out: the trees.
 //! Cost: linear in leaves.
@@ -18,12 +19,14 @@ use vitral_math::DVec3;
 
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
-/// In how many parts the edges of facets may be cut before they are halved: sizes half-way between those of halving.
+/// In how many parts the edges of facets may be cut before they are halved: sizes half-way between
+/// those of halving.
 const CUTS: [u32; 2] = [1, MOST_CUTS];
 /// Most of these parts.
 pub(super) const MOST_CUTS: u32 = 3;
 
-/// Leaves whose longest edge is less than this part of the longest of patches may be a patch together with others.
+/// Leaves whose longest edge is less than this part of the longest of patches may be a patch
+/// together with others.
 const SMALL: f64 = 0.5;
 /// So many patches of several leaves at most: each looks at the whole scene from either side.
 const MOST_GROUPS: usize = 2048;
@@ -35,8 +38,8 @@ const COARSER: f64 = 1.25;
 pub struct QuadtreeNode {
     /// Vertices.
     pub corners: [u32; 3],
-    /// The first of four children, or `u32::MAX` for a leaf. The k-th of the first three keeps corner k, the fourth is
-    /// in the middle.
+    /// The first of four children, or `u32::MAX` for a leaf. The k-th of the first three keeps
+    /// corner k, the fourth is in the middle.
     pub children: u32,
     /// The facet that it is a part of.
     pub facet: u32,
@@ -51,8 +54,8 @@ pub struct Trees {
     pub vertices: Vec<DVec3>,
     /// All nodes, parents before children.
     pub nodes: Vec<QuadtreeNode>,
-    /// The first root of each facet, `u32::MAX` for those that take no part. Its other roots follow: rows from corner 0
-    /// on, each from corner 2 to corner 1, every second one upside down.
+    /// The first root of each facet, `u32::MAX` for those that take no part. Its other roots
+    /// follow: rows from corner 0 on, each from corner 2 to corner 1, every second one upside down.
     pub roots: Vec<u32>,
     /// Parts of each facet's edges before quadtrees begin, at least 1.
     pub cuts: u32,
@@ -70,9 +73,14 @@ pub struct Trees {
 }
 
 impl Trees {
-    /// Trees for each of the facets that `corners` gives corners for, with no edge longer than `longest`. `None`: there
-    /// would be more than `most` leaves.
-    pub fn new(facets: u32, corners: impl Fn(u32) -> Option<[DVec3; 3]>, longest: f64, most: usize) -> Option<Self> {
+    /// Trees for each of the facets that `corners` gives corners for, with no edge longer than
+    /// `longest`. `None`: there would be more than `most` leaves.
+    pub fn new(
+        facets: u32,
+        corners: impl Fn(u32) -> Option<[DVec3; 3]>,
+        longest: f64,
+        most: usize,
+    ) -> Option<Self> {
         Self::with_pieces(facets, corners, WallPieces::default(), longest, most)
     }
 
@@ -94,13 +102,23 @@ impl Trees {
             None => corners(f),
         };
 
-        let lengths: Vec<f64> = (0..facets).filter_map(|f| Some(longest_edge(corners(f)?))).collect();
-        let leaves = |cuts: u32| lengths.iter().map(|length| leaves(length / longest, cuts)).sum::<f64>();
-        let cuts = CUTS.into_iter().fold(CUTS[0], |best, cuts| if leaves(cuts) < leaves(best) { cuts } else { best });
+        let lengths: Vec<f64> =
+            (0..facets).filter_map(|f| Some(longest_edge(corners(f)?))).collect();
+        let leaves =
+            |cuts: u32| lengths.iter().map(|length| leaves(length / longest, cuts)).sum::<f64>();
+        let cuts = CUTS
+            .into_iter()
+            .fold(CUTS[0], |best, cuts| if leaves(cuts) < leaves(best) { cuts } else { best });
         if leaves(cuts) > most as f64 {
             return None;
         }
-        let mut trees = Self { roots: vec![NONE; facets as usize], cuts, pieces, facets: count, ..Self::default() };
+        let mut trees = Self {
+            roots: vec![NONE; facets as usize],
+            cuts,
+            pieces,
+            facets: count,
+            ..Self::default()
+        };
         trees.plant_all(facets, corners);
         trees.split_longer(longest, most)?;
         trees.balance();
@@ -128,7 +146,8 @@ impl Trees {
         }
     }
 
-    /// Cuts nodes until no edge is longer than `longest`. `None`: there would be more than `most` leaves.
+    /// Cuts nodes until no edge is longer than `longest`. `None`: there would be more than `most`
+    /// leaves.
     fn split_longer(&mut self, longest: f64, most: usize) -> Option<()> {
         let mut at = 0;
         while at < self.nodes.len() {
@@ -143,12 +162,16 @@ impl Trees {
         Some(())
     }
 
-    /// Makes each leaf a patch. Facets much smaller than `longest` that lie together and face about the same way are one.
+    /// Makes each leaf a patch. Facets much smaller than `longest` that lie together and face about
+    /// the same way are one.
     fn number_patches(&mut self, longest: f64) {
-        // Find leaves that are small as against a patch, and how coarse a grid leaves few groups of them.
-        // Pieces of one facet may be on two sides of a wall.
+        // Find leaves that are small as against a patch, and how coarse a grid leaves few groups of
+        // them. Pieces of one facet may be on two sides of a wall.
         let whole = &self.roots[..self.facets as usize];
-        let roots = whole.iter().filter(|&&root| root != NONE).flat_map(|&root| root..root + self.cuts * self.cuts);
+        let roots = whole
+            .iter()
+            .filter(|&&root| root != NONE)
+            .flat_map(|&root| root..root + self.cuts * self.cuts);
         let is_leaf = |n: &u32| self.nodes[*n as usize].children == NONE;
         let is_small = |n: &u32| longest_edge(self.places(*n)) < SMALL * longest;
         let small: Vec<u32> = roots.filter(is_leaf).filter(is_small).collect();
@@ -165,7 +188,8 @@ impl Trees {
             members.into_iter().for_each(|n| self.nodes[n as usize].patch = self.patches);
             self.patches += 1;
         }
-        for node in self.nodes.iter_mut().filter(|node| node.children == NONE && node.patch == NONE) {
+        for node in self.nodes.iter_mut().filter(|node| node.children == NONE && node.patch == NONE)
+        {
             node.patch = self.patches;
             self.patches += 1;
         }
@@ -177,7 +201,8 @@ impl Trees {
         for &leaf in leaves {
             let [a, b, c] = self.places(leaf);
             let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a).to_array());
-            let axis = (0..3).fold(0, |most, k| if normal[k].abs() > normal[most].abs() { k } else { most });
+            let axis = (0..3)
+                .fold(0, |most, k| if normal[k].abs() > normal[most].abs() { k } else { most });
             let faces = 2 * axis as u8 + u8::from(normal[axis] < 0.0);
             let cell = (middle / size).floor().to_array().map(|c| c as i64);
             groups.entry((cell, faces)).or_default().push(leaf);
@@ -226,7 +251,8 @@ impl Trees {
         self.middles.get(&[a.min(b), a.max(b)]).copied()
     }
 
-    /// Makes a facet's roots; `edges` has the first of the vertices that cut an edge, from its lower end on.
+    /// Makes a facet's roots; `edges` has the first of the vertices that cut an edge, from its
+    /// lower end on.
     fn plant(&mut self, facet: u32, corners: [u32; 3], edges: &mut HashMap<[u32; 2], u32>) {
         // Make each vertex once: a corner, one on an edge shared with neighbours, or one inside.
         let n = self.cuts;
@@ -240,13 +266,16 @@ impl Trees {
                 [(low, _), (high, along)] => {
                     let first = *edges.entry([low, high]).or_insert_with(|| {
                         let [a, b] = [low, high].map(|v| trees.vertices[v as usize]);
-                        trees.vertices.extend((1..n).map(|i| a.lerp(b, f64::from(i) / f64::from(n))));
+                        trees
+                            .vertices
+                            .extend((1..n).map(|i| a.lerp(b, f64::from(i) / f64::from(n))));
                         trees.vertices.len() as u32 - (n - 1)
                     });
                     first + along - 1
                 }
                 _ => *vertices.entry(steps).or_insert_with(|| {
-                    let parts = (0..3).map(|k| trees.vertices[corners[k] as usize] * f64::from(steps[k]));
+                    let parts =
+                        (0..3).map(|k| trees.vertices[corners[k] as usize] * f64::from(steps[k]));
                     let sum: DVec3 = parts.sum();
                     trees.vertices.push(sum / f64::from(n));
                     trees.vertices.len() as u32 - 1
@@ -302,13 +331,20 @@ impl Trees {
     fn is_too_coarse(&self, node: &QuadtreeNode) -> bool {
         (0..3).any(|k| {
             let (a, b) = (node.corners[k], node.corners[(k + 1) % 3]);
-            self.middle(a, b).is_some_and(|m| self.middle(a, m).is_some() || self.middle(m, b).is_some())
+            self.middle(a, b)
+                .is_some_and(|m| self.middle(a, m).is_some() || self.middle(m, b).is_some())
         })
     }
 
-    /// The leaf at a point of the tree from `node` on. The weights of the node's corners there, and how they change along
-    /// some line, come in, those of the leaf's go out; all may be times any positive number.
-    pub fn leaf_along(&self, node: u32, mut weights: [f64; 3], mut slopes: [f64; 3]) -> (u32, [f64; 3], [f64; 3]) {
+    /// The leaf at a point of the tree from `node` on. The weights of the node's corners there, and
+    /// how they change along some line, come in, those of the leaf's go out; all may be times any
+    /// positive number.
+    pub fn leaf_along(
+        &self,
+        node: u32,
+        mut weights: [f64; 3],
+        mut slopes: [f64; 3],
+    ) -> (u32, [f64; 3], [f64; 3]) {
         let mut at = node;
         while self.nodes[at as usize].children != NONE {
             // Find the child: at a corner if its weight is at least half, else the middle one.
@@ -354,11 +390,13 @@ fn leaves(length: f64, cuts: u32) -> f64 {
     pieces * pieces
 }
 
-/// A cell of a triangle whose edges are cut in `n` parts: upright as the triangle, or upside down between others. Corner k
-/// of a cell upside down lies opposite to where corner k of an upright one is.
+/// A cell of a triangle whose edges are cut in `n` parts: upright as the triangle, or upside down
+/// between others. Corner k of a cell upside down lies opposite to where corner k of an upright one
+/// is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cell {
-    /// Of the n-ths of the weights in the cell, the whole numbers; their sum is `n - 1`, or `n - 2` upside down.
+    /// Of the n-ths of the weights in the cell, the whole numbers; their sum is `n - 1`, or `n - 2`
+    /// upside down.
     pub steps: [u32; 3],
     pub upright: bool,
 }
@@ -389,7 +427,8 @@ impl Cell {
         Self { steps: [i, j, k - u32::from(!upright)], upright }
     }
 
-    /// Weights within the cell of a point with these weights in the triangle, both times the same number.
+    /// Weights within the cell of a point with these weights in the triangle, both times the same
+    /// number.
     #[inline]
     pub(super) fn inside(&self, weights: [f64; 3], n: u32) -> [f64; 3] {
         let sum = weights[0] + weights[1] + weights[2];
@@ -407,7 +446,9 @@ impl Cell {
 
     /// The n-ths of the triangle's corners in each corner.
     fn corners(&self) -> [[u32; 3]; 3] {
-        [0, 1, 2].map(|corner| [0, 1, 2].map(|k| self.steps[k] + u32::from(self.upright == (k == corner))))
+        [0, 1, 2].map(|corner| {
+            [0, 1, 2].map(|k| self.steps[k] + u32::from(self.upright == (k == corner)))
+        })
     }
 }
 
@@ -441,7 +482,8 @@ mod tests {
     /// Two triangles of a square.
     fn square(longest: f64) -> Trees {
         let p = [DVec3::ZERO, DVec3::X, dvec3(1.0, 1.0, 0.0), DVec3::Y];
-        let corners = move |f: u32| Some(if f == 0 { [p[0], p[1], p[2]] } else { [p[0], p[2], p[3]] });
+        let corners =
+            move |f: u32| Some(if f == 0 { [p[0], p[1], p[2]] } else { [p[0], p[2], p[3]] });
         Trees::new(2, corners, longest, 1 << 20).unwrap()
     }
 
@@ -480,7 +522,10 @@ mod tests {
         assert_eq!(trees.vertices.len(), 16, "those on the diagonal belong to both facets");
         for leaf in trees.leaves() {
             let [a, b, c] = trees.places(leaf);
-            assert!(((b - a).cross(c - a).z - 1.0 / 9.0).abs() < 1e-12, "all of one size, and turned alike");
+            assert!(
+                ((b - a).cross(c - a).z - 1.0 / 9.0).abs() < 1e-12,
+                "all of one size, and turned alike"
+            );
         }
         assert_eq!(square(0.25).leaves().len(), 72, "in three parts and these in two");
         assert_eq!(square(2.0).cuts, 1);
@@ -488,7 +533,9 @@ mod tests {
             let w = [i as f32 / 60.0 + 0.003, (59 - i) as f32 / 120.0 + 0.001];
             let w = [w[0], w[1], 1.0 - w[0] - w[1]];
             let (root, inside) = within(w, 3);
-            let place = |corners: [DVec3; 3], w: [f32; 3]| (0..3).map(|k| corners[k] * f64::from(w[k])).sum::<DVec3>();
+            let place = |corners: [DVec3; 3], w: [f32; 3]| {
+                (0..3).map(|k| corners[k] * f64::from(w[k])).sum::<DVec3>()
+            };
             assert!(inside.iter().all(|w| *w > -1e-6), "{inside:?}");
             let (root, facet) = (trees.places(trees.roots[1] + root), trees.corners_of(1));
             assert!(place(root, inside).abs_diff_eq(place(facet, w), 1e-6));

@@ -1,23 +1,25 @@
 //! Progressive refinement: the patch with the most light left to send sends it, again and again.
 //!
-//! Every side of a patch has light that it has received, or sends out by itself, and has not yet sent on. The one with
-//! the most of it stands in the middle of a hemicube, which says what part arrives at each element; each element takes
-//! that, and has so much more to send in turn. After a few patches the picture is near the solution, and it only gets
-//! brighter. As long as that goes on, the light that is still on its way is guessed as an ambient term, the same everywhere:
-//! `A = R Σ Bunshot_i A_i / Σ A_i` with `R = 1 / (1 - ρ)` of the mean reflectance. The end does without.
+//! Every side of a patch has light that it has received, or sends out by itself, and has not yet
+//! sent on. The one with the most of it stands in the middle of a hemicube, which says what part
+//! arrives at each element; each element takes that, and has so much more to send in turn. After a
+//! few patches the picture is near the solution, and it only gets brighter. As long as that goes
+//! on, the light that is still on its way is guessed as an ambient term, the same everywhere:
+//! `A = R Σ Bunshot_i A_i / Σ A_i` with `R = 1 / (1 - ρ)` of the mean reflectance. The end does
+//! without.
 //!
-//! Several patches shoot at the same time, each without knowing what the others bring it in this step, and their
-//! light is added in their order: so the result does not depend on threads. While it is added, those that shoot next look
-//! what they see; they were chosen before.
+//! Several patches shoot at the same time, each without knowing what the others bring it in this
+//! step, and their light is added in their order: so the result does not depend on threads. While
+//! it is added, those that shoot next look what they see; they were chosen before.
 //!
-//! Hemicubes have pixels in proportion to the light that is sent through them, so that a pixel of any of them carries about
-//! the same, and its error shows as much. All light together then goes through about as many pixels, into however many
-//! patches a scene is cut, until elements are so many that fewer and fewer pixels would show each: from there on pixels grow
-//! with them.
+//! Hemicubes have pixels in proportion to the light that is sent through them, so that a pixel of
+//! any of them carries about the same, and its error shows as much. All light together then goes
+//! through about as many pixels, into however many patches a scene is cut, until elements are so
+//! many that fewer and fewer pixels would show each: from there on pixels grow with them.
 //!
 //! In:   an enclosure. Out: irradiance of each side of each element.
-//! Cost: a hemicube for each patch that shoots (for each shot where there is no room to remember), and a few
-//! multiplications a shot for each element that it shows.
+//! Cost: a hemicube for each patch that shoots (for each shot where there is no room to remember),
+//! and a few multiplications a shot for each element that it shows.
 //! Source: \[Cohen et al. 1988\]. Departs from it: there all hemicubes have the same pixels.
 
 use super::element::{Color, Element, FormFactors, turned};
@@ -58,17 +60,19 @@ pub struct Progress {
     pub absorbed: f64,
 }
 
-/// Pixels along the edge of a hemicube, if there is one so fine, for a patch that sends at least this part of the light, where
-/// elements are few.
+/// Pixels along the edge of a hemicube, if there is one so fine, for a patch that sends at least
+/// this part of the light, where elements are few.
 const STRONG: (f64, f64) = (512.0, 1.0 / 64.0);
-/// Of all light that much more than stays in the scene counts when the patch's part is found: where nearly all leaves, what
-/// stays needs pixels, too.
+/// Of all light that much more than stays in the scene counts when the patch's part is found: where
+/// nearly all leaves, what stays needs pixels, too.
 const MOST_LEAVING: f64 = 16.0;
-/// Elements that are few. More are smaller, and fewer pixels show each: hemicubes have so many times as many.
+/// Elements that are few. More are smaller, and fewer pixels show each: hemicubes have so many
+/// times as many.
 const FEW_ELEMENTS: usize = 8192;
 
-/// Shoots until at most `residual` of the light that stays in the scene is left, or `most` shots were made. Of the `hemicubes`, at least one, from
-/// coarse to fine, the finest are for the patches with the most light, whose errors show the most.
+/// Shoots until at most `residual` of the light that stays in the scene is left, or `most` shots
+/// were made. Of the `hemicubes`, at least one, from coarse to fine, the finest are for the patches
+/// with the most light, whose errors show the most.
 ///
 /// At a limit of time it ends with what was found so far.
 ///
@@ -93,7 +97,8 @@ pub fn solve(
         // Measure what is left.
         let staying = progress.note_residual(&unsent);
         let finished = progress.residual <= residual || progress.shots >= most;
-        let share = share_done(progress.residual, residual).max(progress.shots as f64 / most as f64);
+        let share =
+            share_done(progress.residual, residual).max(progress.shots as f64 / most as f64);
         report_progress(if finished { 1.0 } else { share }, execution);
         if finished {
             break;
@@ -114,7 +119,8 @@ pub fn solve(
         }
 
         // Take their light and choose the next ones by what is left without it.
-        let powers: Vec<Color> = shooters.iter().map(|&(side, _)| std::mem::take(&mut unsent[side])).collect();
+        let powers: Vec<Color> =
+            shooters.iter().map(|&(side, _)| std::mem::take(&mut unsent[side])).collect();
         let next = shooting.choose(&unsent, staying, progress.shots + shooters.len() as u64);
 
         // Deal the light out, while the next shooters look around.
@@ -160,10 +166,12 @@ fn emitted_power(enclosure: &Enclosure) -> Vec<Color> {
 }
 
 impl Progress {
-    /// Notes which part of the light in the scene has not been sent on; returns the light that stays there.
+    /// Notes which part of the light in the scene has not been sent on; returns the light that
+    /// stays there.
     fn note_residual(&mut self, unsent: &[Color]) -> f64 {
         let left: f64 = unsent.iter().map(power).sum();
-        // Light that leaves is no measure: however much of it there is, the rest is to go as far as without.
+        // Light that leaves is no measure: however much of it there is, the rest is to go as far as
+        // without.
         let staying = self.absorbed + left;
         self.residual = if staying > 0.0 { left / staying } else { 0.0 };
         staying
@@ -191,27 +199,46 @@ impl<'a> Shooting<'a> {
         (emitted, most): (f64, u64),
         execution: &'a Execution,
     ) -> Self {
-        let receiver = |e: &Element| Receiver { patch: e.patch, per_area: 1.0 / e.area, reflectance: e.reflectance };
+        let receiver = |e: &Element| Receiver {
+            patch: e.patch,
+            per_area: 1.0 / e.area,
+            reflectance: e.reflectance,
+        };
         let receivers = enclosure.elements.iter().map(receiver).collect();
         let volley = (enclosure.patches.len() / PATCHES_A_SHOOTER).clamp(VOLLEY[0], VOLLEY[1]);
         Self { enclosure, hemicubes, execution, receivers, emitted, most, volley }
     }
 
-    /// The sides with the most light, and the hemicubes that they need where so much light stays in the scene.
+    /// The sides with the most light, and the hemicubes that they need where so much light stays in
+    /// the scene.
     fn choose(&self, unsent: &[Color], staying: f64, shots: u64) -> Vec<(usize, usize)> {
-        let sides = strongest(unsent, self.volley.min((self.most - shots).try_into().unwrap_or(usize::MAX)));
-        let (all, elements) = (self.emitted.min(MOST_LEAVING * staying), self.enclosure.elements.len());
+        let sides = strongest(
+            unsent,
+            self.volley.min((self.most - shots).try_into().unwrap_or(usize::MAX)),
+        );
+        let (all, elements) =
+            (self.emitted.min(MOST_LEAVING * staying), self.enclosure.elements.len());
         let part = |side: usize| power(&unsent[side]) / all;
-        sides.into_iter().map(|side| (side, fineness(self.hemicubes, part(side), elements))).collect()
+        sides
+            .into_iter()
+            .map(|side| (side, fineness(self.hemicubes, part(side), elements)))
+            .collect()
     }
 
     /// What these sides see, by hemicubes that are at least as fine as theirs.
-    fn look(&self, shooters: &[(usize, usize)], known: &Known) -> Result<Vec<Arc<FormFactorRow>>, Limit> {
-        let seen = self.execution.workers.map(shooters.len(), |i| match (&known.rows[shooters[i].0], shooters[i]) {
-            (Some(seen), (_, fineness)) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
-            (_, (side, fineness)) => {
-                let row = look(self.enclosure, &self.hemicubes[fineness], side, self.execution)?;
-                Ok(Arc::new(FormFactorRow::new(fineness, &row)))
+    fn look(
+        &self,
+        shooters: &[(usize, usize)],
+        known: &Known,
+    ) -> Result<Vec<Arc<FormFactorRow>>, Limit> {
+        let seen = self.execution.workers.map(shooters.len(), |i| {
+            match (&known.rows[shooters[i].0], shooters[i]) {
+                (Some(seen), (_, fineness)) if seen.fineness >= fineness => Ok(Arc::clone(seen)),
+                (_, (side, fineness)) => {
+                    let row =
+                        look(self.enclosure, &self.hemicubes[fineness], side, self.execution)?;
+                    Ok(Arc::new(FormFactorRow::new(fineness, &row)))
+                }
             }
         });
         seen.into_iter().collect()
@@ -219,7 +246,13 @@ impl<'a> Shooting<'a> {
 }
 
 /// Elements take their parts of what is sent to those that are seen.
-fn receive(receivers: &[Receiver], seen: &FormFactorRow, sent: &Color, unsent: &mut [Color], progress: &mut Progress) {
+fn receive(
+    receivers: &[Receiver],
+    seen: &FormFactorRow,
+    sent: &Color,
+    unsent: &mut [Color],
+    progress: &mut Progress,
+) {
     let (scaled, mut kept) = (sent.map(|s| s * seen.scale), [0.0; 3]);
 
     // Add to the irradiance of each side and to the unsent light of its patch.
@@ -243,11 +276,13 @@ fn receive(receivers: &[Receiver], seen: &FormFactorRow, sent: &Color, unsent: &
     progress.shots += 1;
 }
 
-/// The coarsest hemicube with enough pixels for this part of all light and so many elements, else the finest.
+/// The coarsest hemicube with enough pixels for this part of all light and so many elements, else
+/// the finest.
 fn fineness(hemicubes: &[Hemicube], part: f64, elements: usize) -> usize {
     let (last, (side, strong)) = (hemicubes.len() - 1, STRONG);
     let side = side.min(f64::from(hemicubes[last].side()));
-    let needed = side * side * (part / strong).min(1.0) * (elements as f64 / FEW_ELEMENTS as f64).max(1.0);
+    let needed =
+        side * side * (part / strong).min(1.0) * (elements as f64 / FEW_ELEMENTS as f64).max(1.0);
     let enough = |hemicube: &Hemicube| f64::from(hemicube.side() * hemicube.side()) >= needed;
     hemicubes.iter().position(enough).unwrap_or(last)
 }
@@ -261,7 +296,8 @@ fn look(
 ) -> Result<FormFactors, Limit> {
     let patch = &enclosure.patches[shooter / 2];
     let from = (patch.center, patch.normal * turned(shooter));
-    let seen = hemicube.look((&enclosure.targets, &enclosure.trees), from, shooter / 2, execution)?;
+    let seen =
+        hemicube.look((&enclosure.targets, &enclosure.trees), from, shooter / 2, execution)?;
     Ok(refined(enclosure, enclosure.sides(seen, patch.center), shooter, execution))
 }
 
@@ -280,7 +316,8 @@ struct FormFactorRow {
 impl FormFactorRow {
     fn new(fineness: usize, row: &FormFactors) -> Self {
         let whole: f64 = row.iter().map(|(_, factor)| factor).sum();
-        let row: Vec<(u32, f32)> = row.iter().map(|&(side, factor)| (side, factor as f32)).collect();
+        let row: Vec<(u32, f32)> =
+            row.iter().map(|&(side, factor)| (side, factor as f32)).collect();
         let rounded: f64 = row.iter().map(|(_, factor)| f64::from(*factor)).sum();
         Self { fineness, row, scale: if rounded > 0.0 { whole / rounded } else { 1.0 }, whole }
     }
@@ -304,8 +341,10 @@ struct Known {
 impl Known {
     fn keep(&mut self, shooter: usize, seen: Arc<FormFactorRow>) {
         let known = self.rows[shooter].as_ref();
-        let (finer, room) =
-            (known.is_none_or(|k| k.fineness < seen.fineness), known.map_or(0, |k| k.row.len()) + self.room);
+        let (finer, room) = (
+            known.is_none_or(|k| k.fineness < seen.fineness),
+            known.map_or(0, |k| k.row.len()) + self.room,
+        );
         if finer && seen.row.len() <= room {
             self.room = room - seen.row.len();
             self.rows[shooter] = Some(seen);
@@ -319,7 +358,8 @@ fn power(color: &Color) -> f64 {
 
 /// The sides of patches with the most light to send, the most first; the lower number of equals.
 fn strongest(unsent: &[Color], count: usize) -> Vec<usize> {
-    let mut sides: Vec<(f64, usize)> = unsent.iter().map(power).zip(0..).filter(|(p, _)| *p > 0.0).collect();
+    let mut sides: Vec<(f64, usize)> =
+        unsent.iter().map(power).zip(0..).filter(|(p, _)| *p > 0.0).collect();
     let order = |a: &(f64, usize), b: &(f64, usize)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
     if sides.len() > count {
         sides.select_nth_unstable_by(count, order);
@@ -341,7 +381,8 @@ fn ambient(enclosure: &Enclosure, unsent: &[Color]) -> Color {
 
 /// How far it is from all light to `residual`, on the scale of logarithms on which the light falls.
 fn share_done(left: f64, residual: f64) -> f64 {
-    let ratio = vitral_math::func::ln(left.max(1e-12)) / vitral_math::func::ln(residual.clamp(1e-12, 0.999));
+    let ratio = vitral_math::func::ln(left.max(1e-12))
+        / vitral_math::func::ln(residual.clamp(1e-12, 0.999));
     ratio.clamp(0.0, 1.0)
 }
 
@@ -358,15 +399,28 @@ mod tests {
     fn hemicubes_have_pixels_in_proportion_to_the_light() {
         let hemicubes = [128, 256, 512].map(|side| Hemicube::new(side, 1.0));
         let strong = STRONG.1;
-        for (part, expected) in
-            [(1.0, 2), (strong, 2), (strong / 3.9, 2), (strong / 4.0, 1), (strong / 16.0, 0), (0.0, 0)]
-        {
+        for (part, expected) in [
+            (1.0, 2),
+            (strong, 2),
+            (strong / 3.9, 2),
+            (strong / 4.0, 1),
+            (strong / 16.0, 0),
+            (0.0, 0),
+        ] {
             assert_eq!(fineness(&hemicubes, part, FEW_ELEMENTS), expected, "{part}");
-            assert_eq!(fineness(&hemicubes, part / 4.0, 4 * FEW_ELEMENTS), expected, "{part} of smaller elements");
+            assert_eq!(
+                fineness(&hemicubes, part / 4.0, 4 * FEW_ELEMENTS),
+                expected,
+                "{part} of smaller elements"
+            );
             assert_eq!(fineness(&hemicubes, part, 1), expected, "{part} of large elements");
         }
         assert_eq!(fineness(&hemicubes[..1], 1.0, 9), 0, "there is no finer one");
-        assert_eq!(fineness(&hemicubes[..2], strong / 4.0, 9), 0, "in proportion to the finest that there is");
+        assert_eq!(
+            fineness(&hemicubes[..2], strong / 4.0, 9),
+            0,
+            "in proportion to the finest that there is"
+        );
     }
 
     #[test]
@@ -381,8 +435,9 @@ mod tests {
 
     #[test]
     fn what_is_seen_is_kept_while_there_is_room_and_replaced_by_finer() {
-        let seen =
-            |fineness, count: u32| Arc::new(FormFactorRow::new(fineness, &(0..count).map(|i| (i, 0.1)).collect()));
+        let seen = |fineness, count: u32| {
+            Arc::new(FormFactorRow::new(fineness, &(0..count).map(|i| (i, 0.1)).collect()))
+        };
         let mut known = Known { rows: vec![None, None], room: 10 };
         known.keep(0, seen(1, 6));
         known.keep(1, seen(1, 5));

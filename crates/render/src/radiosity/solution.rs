@@ -1,12 +1,14 @@
-//! A solution of radiosity: how much light arrives at any point of the scene, from wherever it is seen.
+//! A solution of radiosity: how much light arrives at any point of the scene, from wherever it is
+//! seen.
 //!
-//! Light is known for elements; between their middles it is interpolated. Each vertex gets the mean of the elements round
-//! it that lie about in its plane, so that light is smooth over a surface and breaks at its edges. A leaf that has a
-//! vertex in the middle of an edge, from a finer neighbour, is cut there: both sides of every edge then show the same.
-//! What is kept is irradiance, not radiosity, so that textures stay as sharp as they are.
+//! Light is known for elements; between their middles it is interpolated. Each vertex gets the mean
+//! of the elements round it that lie about in its plane, so that light is smooth over a surface and
+//! breaks at its edges. A leaf that has a vertex in the middle of an edge, from a finer neighbour,
+//! is cut there: both sides of every edge then show the same. What is kept is irradiance, not
+//! radiosity, so that textures stay as sharp as they are.
 //!
-//! In:   facet, weights of its corners, side. Out: irradiance, linear RGB, on the scale on which a white surface that a
-//!       light of intensity 1 faces receives 1.
+//! In:   facet, weights of its corners, side. Out: irradiance, linear RGB, on the scale on which a
+//!       white surface that a light of intensity 1 faces receives 1.
 //! Cost: a step for each level of the quadtree.
 //! Source: \[Cohen & Wallace 1993\], chapter 9.
 
@@ -22,7 +24,8 @@ use vitral_math::DVec3;
 const MAGIC: &[u8; 20] = b"vitral radiosity 5\n\0";
 /// Elements whose normals are apart by less than 30 degrees are one surface.
 const SAME_SURFACE: f64 = 0.866;
-/// How far elements may be off the plane of another one to tell about its light, as a part of how far they may be along it.
+/// How far elements may be off the plane of another one to tell about its light, as a part of how
+/// far they may be along it.
 const BESIDE: f64 = 0.5;
 
 /// Light at the corners of an element and at the middles of its edges (0 to 1, 1 to 2, 2 to 0).
@@ -86,7 +89,8 @@ impl Solution {
                 [0, 1].map(|side| {
                     let at = |vertex| around.mean(enclosure, progress, vertex, e, side);
                     let ends = corners.map(at);
-                    let between = |k: usize| [0, 1, 2].map(|c| (ends[k][c] + ends[(k + 1) % 3][c]) * 0.5);
+                    let between =
+                        |k: usize| [0, 1, 2].map(|c| (ends[k][c] + ends[(k + 1) % 3][c]) * 0.5);
                     let middle = |k: usize| middles[k].map_or_else(|| between(k), at);
                     [ends[0], ends[1], ends[2], middle(0), middle(1), middle(2)]
                 })
@@ -95,9 +99,13 @@ impl Solution {
 
         // Keep the ambient guess and the pieces of cut facets.
         let ambient = progress.ambient.map(|c| c as f32);
-        let pieces = trees.pieces.facets.iter().zip(&trees.pieces.corners).zip(&trees.pieces.wholes);
+        let pieces =
+            trees.pieces.facets.iter().zip(&trees.pieces.corners).zip(&trees.pieces.wholes);
         let pieces = pieces.map(|((&facet, own), whole)| Piece::new(facet, *own, *whole)).collect();
-        Self { pieces, ..Self::assemble(trees.nodes.clone(), (trees.roots.clone(), trees.cuts), light, ambient) }
+        Self {
+            pieces,
+            ..Self::assemble(trees.nodes.clone(), (trees.roots.clone(), trees.cuts), light, ambient)
+        }
     }
 
     /// The same, marked with what tells its lights from others.
@@ -110,19 +118,36 @@ impl Solution {
         self.key
     }
 
-    fn assemble(nodes: Vec<QuadtreeNode>, (roots, cuts): (Vec<u32>, u32), light: Vec<[Six; 2]>, ambient: Rgb) -> Self {
+    fn assemble(
+        nodes: Vec<QuadtreeNode>,
+        (roots, cuts): (Vec<u32>, u32),
+        light: Vec<[Six; 2]>,
+        ambient: Rgb,
+    ) -> Self {
         let mut leaves = 0;
         let leaf = nodes.iter().map(|n| {
             leaves += u32::from(n.children == NONE);
             leaves.wrapping_sub(1)
         });
-        Self { leaf: leaf.collect(), pieces: Vec::new(), nodes, roots, cuts, light, ambient, key: 0 }
+        Self {
+            leaf: leaf.collect(),
+            pieces: Vec::new(),
+            nodes,
+            roots,
+            cuts,
+            light,
+            ambient,
+            key: 0,
+        }
     }
 
-    /// Light that arrives at a point of a facet, on its front or back. Nothing for facets that take no part.
+    /// Light that arrives at a point of a facet, on its front or back. Nothing for facets that take
+    /// no part.
     pub fn irradiance(&self, facet: u32, weights: [f32; 3], front: bool) -> Rgb {
         let (facet, weights) = self.piece_at(facet, weights);
-        let Some(&root) = self.roots.get(facet as usize).filter(|&&root| root != NONE) else { return [0.0; 3] };
+        let Some(&root) = self.roots.get(facet as usize).filter(|&&root| root != NONE) else {
+            return [0.0; 3];
+        };
         let (root_in_facet, mut weights) = within(weights, self.cuts);
         let mut at = root + root_in_facet;
         while self.nodes[at as usize].children != NONE {
@@ -138,7 +163,8 @@ impl Solution {
         })
     }
 
-    /// The piece of a facet at a point, and the point's weights there; the facet itself if it is whole.
+    /// The piece of a facet at a point, and the point's weights there; the facet itself if it is
+    /// whole.
     fn piece_at(&self, facet: u32, weights: [f32; 3]) -> (u32, [f32; 3]) {
         let first = self.pieces.partition_point(|piece| piece.facet < facet);
         let own = self.pieces[first..].iter().take_while(|piece| piece.facet == facet);
@@ -161,7 +187,10 @@ impl Solution {
             let values = six.iter().map(sum);
             values.clone().fold(f64::MIN, f64::max) - values.fold(f64::MAX, f64::min)
         };
-        self.light.iter().map(|sides| sides.iter().map(contrast).fold(0.0, f64::max) / mean.max(1e-300)).collect()
+        self.light
+            .iter()
+            .map(|sides| sides.iter().map(contrast).fold(0.0, f64::max) / mean.max(1e-300))
+            .collect()
     }
 
     /// The solution as bytes, to be loaded with the scene that has this fingerprint.
@@ -177,9 +206,14 @@ impl Solution {
         bytes.extend((self.pieces.len() as u32).to_le_bytes());
 
         // Write nodes, roots, light and pieces.
-        let numbers = self.nodes.iter().flat_map(|n| [n.children, n.facet, n.patch]).chain(self.roots.iter().copied());
+        let numbers = self
+            .nodes
+            .iter()
+            .flat_map(|n| [n.children, n.facet, n.patch])
+            .chain(self.roots.iter().copied());
         numbers.for_each(|n| bytes.extend(n.to_le_bytes()));
-        let floats = self.light.as_flattened().as_flattened().as_flattened().iter().chain(&self.ambient);
+        let floats =
+            self.light.as_flattened().as_flattened().as_flattened().iter().chain(&self.ambient);
         floats.for_each(|f| bytes.extend(f.to_le_bytes()));
         for piece in &self.pieces {
             bytes.extend(piece.facet.to_le_bytes());
@@ -195,20 +229,24 @@ impl Solution {
     pub fn from_bytes(bytes: &[u8], fingerprint: u64) -> Result<Self, Error> {
         // Read the head.
         let rest = bytes.strip_prefix(MAGIC).ok_or_else(|| bad("this is no stored solution"))?;
-        let (own, rest) = rest.split_first_chunk::<8>().ok_or_else(|| bad("the file is cut off"))?;
+        let (own, rest) =
+            rest.split_first_chunk::<8>().ok_or_else(|| bad("the file is cut off"))?;
         if u64::from_le_bytes(*own) != fingerprint {
             return Err(bad("the solution belongs to another scene, or to other materials"));
         }
-        let (key, rest) = rest.split_first_chunk::<8>().ok_or_else(|| bad("the file is cut off"))?;
+        let (key, rest) =
+            rest.split_first_chunk::<8>().ok_or_else(|| bad("the file is cut off"))?;
         let (words, extra) = rest.as_chunks::<4>();
         if words.len() < 8 || !extra.is_empty() {
             return Err(bad("the file is cut off"));
         }
         let word = |i: usize| u32::from_le_bytes(words[i]);
-        let [nodes, roots, leaves, pieces] = [word(0), word(1), word(2), word(4)].map(|n| n as usize);
+        let [nodes, roots, leaves, pieces] =
+            [word(0), word(1), word(2), word(4)].map(|n| n as usize);
         let sizes = [(nodes, 3), (roots, 1), (leaves, 36), (pieces, 10)];
-        let needed =
-            sizes.into_iter().fold(8usize, |sum, (count, size)| sum.saturating_add(count.saturating_mul(size)));
+        let needed = sizes
+            .into_iter()
+            .fold(8usize, |sum, (count, size)| sum.saturating_add(count.saturating_mul(size)));
         if needed != words.len() || pieces > roots {
             return Err(bad("the file's length is not that of its contents"));
         }
@@ -314,11 +352,25 @@ impl Around {
     }
 
     /// The mean light of the elements round a vertex that lie about in the plane of element `own`.
-    fn mean(&self, enclosure: &Enclosure, progress: &Progress, vertex: u32, own: usize, side: usize) -> Rgb {
-        let range = self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize;
+    fn mean(
+        &self,
+        enclosure: &Enclosure,
+        progress: &Progress,
+        vertex: u32,
+        own: usize,
+        side: usize,
+    ) -> Rgb {
+        let range =
+            self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize;
         let normal: DVec3 = enclosure.elements[own].normal;
         if enclosure.is_small(own) {
-            return mean_near(enclosure, progress, enclosure.trees.vertices[vertex as usize], own, side);
+            return mean_near(
+                enclosure,
+                progress,
+                enclosure.trees.vertices[vertex as usize],
+                own,
+                side,
+            );
         }
 
         // Average the elements around the vertex by their area.
@@ -338,9 +390,15 @@ impl Around {
     }
 }
 
-/// The mean light of all elements near a point that face about as element `own`. Few pixels of a hemicube show a small element:
-/// only many of them together tell what light arrives.
-fn mean_near(enclosure: &Enclosure, progress: &Progress, point: DVec3, own: usize, side: usize) -> Rgb {
+/// The mean light of all elements near a point that face about as element `own`. Few pixels of a
+/// hemicube show a small element: only many of them together tell what light arrives.
+fn mean_near(
+    enclosure: &Enclosure,
+    progress: &Progress,
+    point: DVec3,
+    own: usize,
+    side: usize,
+) -> Rgb {
     let (normal, radius) = (enclosure.elements[own].normal, enclosure.trees.reach);
     let (mut sum, mut weight): (Color, f64) = ([0.0; 3], 0.0);
     enclosure.neighbours.visit(&enclosure.elements, point, radius, |e| {
@@ -362,7 +420,9 @@ fn mean_near(enclosure: &Enclosure, progress: &Progress, point: DVec3, own: usiz
 
 /// Mixes bytes into a fingerprint.
 pub(super) fn mix(fingerprint: u64, bytes: &[u8]) -> u64 {
-    bytes.iter().fold(fingerprint, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    bytes
+        .iter()
+        .fold(fingerprint, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 #[cfg(test)]
@@ -372,7 +432,9 @@ mod tests {
     fn two_leaves() -> Solution {
         let node = |children| QuadtreeNode { corners: [NONE; 3], children, facet: 0, patch: 0 };
         let nodes = vec![node(1), node(NONE), node(NONE), node(NONE), node(NONE)];
-        let light = (0..4).map(|e| [0, 1].map(|s| std::array::from_fn(|k| [e as f32, s as f32, k as f32]))).collect();
+        let light = (0..4)
+            .map(|e| [0, 1].map(|s| std::array::from_fn(|k| [e as f32, s as f32, k as f32])))
+            .collect();
         Solution::assemble(nodes, (vec![NONE, 0], 1), light, [0.0, 0.0, 0.5])
     }
 
@@ -383,12 +445,17 @@ mod tests {
         let back = Solution::from_bytes(&bytes, 77).unwrap();
         for weights in [[0.9, 0.05, 0.05], [0.1, 0.2, 0.7], [0.3, 0.3, 0.4]] {
             for front in [true, false] {
-                assert_eq!(solution.irradiance(1, weights, front), back.irradiance(1, weights, front));
+                assert_eq!(
+                    solution.irradiance(1, weights, front),
+                    back.irradiance(1, weights, front)
+                );
             }
         }
         assert_eq!(back.irradiance(1, [1.0, 0.0, 0.0], false), [0.0, 1.0, 0.5]);
         assert_eq!(back.irradiance(0, [1.0, 0.0, 0.0], true), [0.0; 3], "takes no part");
-        assert!(Solution::from_bytes(&bytes, 78).unwrap_err().to_string().contains("another scene"));
+        assert!(
+            Solution::from_bytes(&bytes, 78).unwrap_err().to_string().contains("another scene")
+        );
         for cut in 0..bytes.len() {
             assert!(Solution::from_bytes(&bytes[..cut], 77).is_err());
         }

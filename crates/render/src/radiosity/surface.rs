@@ -1,9 +1,11 @@
-//! What elements are made of: what they reflect, what they send out by themselves, and what of them is there at all.
+//! What elements are made of: what they reflect, what they send out by themselves, and what of them
+//! is there at all.
 //!
-//! An element is looked at in 16 equal parts, in the middle of each: at textures at the level whose texels are as large as a
-//! part, so that each element has its own part of the picture, and at vertex colours. Parts that are cut out, or let more than
-//! half of the light pass, are not there: light goes through, and the rest of the element has the light to itself. That is
-//! asked of the finest level, whose holes have not been blurred away.
+//! An element is looked at in 16 equal parts, in the middle of each: at textures at the level whose
+//! texels are as large as a part, so that each element has its own part of the picture, and at
+//! vertex colours. Parts that are cut out, or let more than half of the light pass, are not there:
+//! light goes through, and the rest of the element has the light to itself. That is asked of the
+//! finest level, whose holes have not been blurred away.
 //!
 //! In:   an element's corners. Out: [`ElementSurface`].
 //! Cost: 16 lookups in each texture.
@@ -50,7 +52,10 @@ pub(super) struct Surfaces<'a> {
 impl<'a> Surfaces<'a> {
     pub(super) fn new(session: &'a Session, settings: &Settings) -> Self {
         let linear = Settings {
-            transparency: TransparencySettings { model: Transparency::Linear, ..settings.transparency },
+            transparency: TransparencySettings {
+                model: Transparency::Linear,
+                ..settings.transparency
+            },
             ..settings.clone()
         };
         Self {
@@ -73,7 +78,9 @@ impl<'a> Surfaces<'a> {
         let (corners, normal) = facet_of(instance, triangle as u32, self.center);
         let mesh = &*instance.mesh;
         let material = mesh.material_of_triangle(triangle);
-        let material = material.and_then(|m| self.session.scene.materials.get(m as usize)).unwrap_or(&self.default);
+        let material = material
+            .and_then(|m| self.session.scene.materials.get(m as usize))
+            .unwrap_or(&self.default);
 
         let corners = corners.map(|c| c.as_vec3());
         let own = trees.places(node);
@@ -85,7 +92,8 @@ impl<'a> Surfaces<'a> {
         let places = if varies { parts(own).map(middle).to_vec() } else { vec![middle(own)] };
 
         // Sum over the parts that are not cut out.
-        let mut surface = ElementSurface { normal, there: 0, reflectance: [0.0; 3], emission: [[0.0; 3]; 2] };
+        let mut surface =
+            ElementSurface { normal, there: 0, reflectance: [0.0; 3], emission: [[0.0; 3]; 2] };
         let mut count = 0.0;
         for (part, &place) in places.iter().enumerate() {
             if opaque || self.is_there(facet, &corners, place) {
@@ -101,7 +109,8 @@ impl<'a> Surfaces<'a> {
         }
 
         // Take the mean, and emit from both sides if the material has two.
-        surface.reflectance = surface.reflectance.map(|c| (c / f64::max(count, 1.0)).clamp(0.0, MOST_REFLECTED));
+        surface.reflectance =
+            surface.reflectance.map(|c| (c / f64::max(count, 1.0)).clamp(0.0, MOST_REFLECTED));
         surface.emission[0] = surface.emission[0].map(|c| c / f64::max(count, 1.0));
         if material.double_sided {
             surface.emission[1] = surface.emission[0];
@@ -163,17 +172,31 @@ impl Look<'_> {
 
     fn texel(&self, reference: Option<TextureRef>, weights: [f32; 3]) -> Option<[f32; 4]> {
         let Surfaces { session, tables, .. } = self.surfaces;
-        texel(session, tables, reference, self.mesh, self.triangle, weights, self.level(reference?)?)
+        texel(
+            session,
+            tables,
+            reference,
+            self.mesh,
+            self.triangle,
+            weights,
+            self.level(reference?)?,
+        )
     }
 
     /// The level whose texels are as large as a part.
     fn level(&self, reference: TextureRef) -> Option<f32> {
-        let finest = self.surfaces.session.scene.textures.get(reference.texture as usize)?.levels.first()?;
-        let uvs = self.mesh.uvs.get(reference.uv_set as usize)?.at(self.triangle, &self.mesh.triangles);
+        let finest =
+            self.surfaces.session.scene.textures.get(reference.texture as usize)?.levels.first()?;
+        let uvs =
+            self.mesh.uvs.get(reference.uv_set as usize)?.at(self.triangle, &self.mesh.triangles);
         let [[au, av], [bu, bv], [cu, cv]] = uvs.map(|uv| uv.map(f64::from));
         let [[ux, uy, _], [vx, vy, _]] = reference.transform.map(|row| row.map(f64::from));
         let doubled = ((bu - au) * (cv - av) - (bv - av) * (cu - au)) * (ux * vy - uy * vx);
-        let texels = 0.5 * doubled.abs() * f64::from(finest.width()) * f64::from(finest.height()) * self.share;
+        let texels = 0.5
+            * doubled.abs()
+            * f64::from(finest.width())
+            * f64::from(finest.height())
+            * self.share;
         Some((0.5 * func::ln(texels.max(1.0)) / std::f64::consts::LN_2) as f32)
     }
 }
@@ -186,10 +209,11 @@ mod tests {
     use vitral_light::AlphaMode;
     use vitral_scene::{Attribute, Scene, builtin::solids};
 
-    const MATT: Reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.9; 3], ks: [0.0; 3], shininess: 1.0 };
+    const MATT: Reflectance =
+        Reflectance::Phong { ka: [0.0; 3], kd: [0.9; 3], ks: [0.0; 3], shininess: 1.0 };
 
-    /// The elements of a unit square in `y = 0`, with their middles. Its texture, 64 texels wide, is `left` in the left half and
-    /// `right` in the other.
+    /// The elements of a unit square in `y = 0`, with their middles. Its texture, 64 texels wide,
+    /// is `left` in the left half and `right` in the other.
     fn looks(
         [left, right]: [[u8; 4]; 2],
         settings: &Settings,
@@ -197,7 +221,11 @@ mod tests {
     ) -> Vec<(DVec3, ElementSurface)> {
         let mut square = solids::plane(1.0, 1.0, 1, 1);
         let texels = (0..64 * 4).map(|i| if i % 64 < 32 { left } else { right }).collect();
-        let texture = Texture::new("halves".to_owned(), Plane::from_rows(64, 4, texels).unwrap(), Encoding::Linear);
+        let texture = Texture::new(
+            "halves".to_owned(),
+            Plane::from_rows(64, 4, texels).unwrap(),
+            Encoding::Linear,
+        );
         let mut reference = TextureRef::new(0);
         reference.sampler.wrap_s = Wrap::ClampToEdge;
         let mut material = Material { reflectance: MATT, ..Material::default() };
@@ -208,9 +236,14 @@ mod tests {
         square.parts.iter_mut().for_each(|p| p.material = Some(material));
         scene.add_mesh(square, vitral_math::DMat4::IDENTITY);
         let session = Session::new(Arc::new(scene)).unwrap();
-        let trees = crate::radiosity::enclosure::trees(&session, 0.4, &crate::Execution::default()).unwrap();
+        let trees = crate::radiosity::enclosure::trees(&session, 0.4, &crate::Execution::default())
+            .unwrap();
         let surfaces = Surfaces::new(&session, settings);
-        trees.leaves().into_iter().map(|leaf| (middle(trees.places(leaf)), surfaces.of(&trees, leaf))).collect()
+        trees
+            .leaves()
+            .into_iter()
+            .map(|leaf| (middle(trees.places(leaf)), surfaces.of(&trees, leaf)))
+            .collect()
     }
 
     fn close(a: Color, b: Color) -> bool {
@@ -225,23 +258,40 @@ mod tests {
             (material.base_texture, material.emission_texture) = (Some(texture), Some(texture));
             material.emission = [2.0; 3];
         });
-        let away = |found: Vec<(DVec3, ElementSurface)>| found.into_iter().filter(|(middle, _)| middle.x.abs() > 0.2);
+        let away = |found: Vec<(DVec3, ElementSurface)>| {
+            found.into_iter().filter(|(middle, _)| middle.x.abs() > 0.2)
+        };
         assert!(found.len() >= 16);
         for (middle, surface) in away(found) {
             let color = if middle.x < 0.0 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
-            assert!(close(surface.reflectance, color.map(|c| 0.9 * c)), "{middle} {:?}", surface.reflectance);
-            assert!(close(surface.emission[0], color.map(|c| 2.0 * c)), "{middle} {:?}", surface.emission);
+            assert!(
+                close(surface.reflectance, color.map(|c| 0.9 * c)),
+                "{middle} {:?}",
+                surface.reflectance
+            );
+            assert!(
+                close(surface.emission[0], color.map(|c| 2.0 * c)),
+                "{middle} {:?}",
+                surface.emission
+            );
             assert_eq!((surface.there, surface.emission[1]), (WHOLE, [0.0; 3]));
         }
         // Blue says where there is metal, which is not matt.
         let found = looks([[0, 0, 255, 255], [0, 0, 0, 255]], &settings, |material, _, texture| {
-            material.reflectance =
-                Reflectance::MetallicRoughness { base_color: [0.8; 3], metallic: 1.0, roughness: 1.0 };
+            material.reflectance = Reflectance::MetallicRoughness {
+                base_color: [0.8; 3],
+                metallic: 1.0,
+                roughness: 1.0,
+            };
             material.metallic_roughness_texture = Some(texture);
         });
         for (middle, surface) in away(found) {
             let expected = if middle.x < 0.0 { 0.0 } else { 0.8 };
-            assert!(close(surface.reflectance, [expected; 3]), "{middle} {:?}", surface.reflectance);
+            assert!(
+                close(surface.reflectance, [expected; 3]),
+                "{middle} {:?}",
+                surface.reflectance
+            );
         }
     }
 
@@ -257,7 +307,11 @@ mod tests {
             })
         };
         for (middle, surface) in of(false, true) {
-            assert!(close(surface.reflectance, [0.9 * (middle.x + 0.5), 0.18, 0.18]), "{:?}", surface.reflectance);
+            assert!(
+                close(surface.reflectance, [0.9 * (middle.x + 0.5), 0.18, 0.18]),
+                "{:?}",
+                surface.reflectance
+            );
         }
         let encoded = 0.9 * f64::from(Lanes::srgb_from_linear(0.2f32));
         assert!(of(true, true).iter().all(|(_, s)| (s.reflectance[1] - encoded).abs() < 1e-3));
@@ -271,12 +325,16 @@ mod tests {
             let found = looks(half, &Settings::default(), |material, _, texture| {
                 (material.alpha_mode, material.base_texture) = (alpha_mode, Some(texture));
             });
-            let count = |there: fn(u16) -> bool| found.iter().filter(|(_, s)| there(s.there)).count();
+            let count =
+                |there: fn(u16) -> bool| found.iter().filter(|(_, s)| there(s.there)).count();
             if alpha_mode == AlphaMode::Opaque {
                 assert_eq!(count(|there| there == WHOLE), found.len());
                 continue;
             }
-            assert!(count(|there| there == 0) > 0 && count(|there| there == WHOLE) > 0, "{alpha_mode:?}");
+            assert!(
+                count(|there| there == 0) > 0 && count(|there| there == WHOLE) > 0,
+                "{alpha_mode:?}"
+            );
             let area: u32 = found.iter().map(|(_, s)| s.there.count_ones()).sum();
             let share = f64::from(area) / (PARTS * found.len()) as f64;
             assert!((share - 0.5).abs() < 0.05, "{share}");

@@ -1,8 +1,8 @@
 //! What hemicubes look at: facets to be drawn, and the elements that lie in each.
 //!
-//! A facet's quadtrees are the same down to some depth: a grid, in which the cell at a point is found by dividing, however
-//! deep. Only below that a tree is gone down. Of facets with holes the elements are drawn one by one, and of elements with
-//! holes the parts that are there.
+//! A facet's quadtrees are the same down to some depth: a grid, in which the cell at a point is
+//! found by dividing, however deep. Only below that a tree is gone down. Of facets with holes the
+//! elements are drawn one by one, and of elements with holes the parts that are there.
 //!
 //! In:   quadtrees over facets. Out: the facets as a scene, and the element at a point of each.
 //! Cost: linear in nodes; a question takes a step, and one for each level of a tree below the grid.
@@ -88,7 +88,8 @@ impl Targets {
         Self::with_holes(trees, &vec![WHOLE; trees.leaves().len()])
     }
 
-    /// The leaves of `trees`, and for each, in their order, which parts of it are there. Facets with holes are drawn in pieces.
+    /// The leaves of `trees`, and for each, in their order, which parts of it are there. Facets
+    /// with holes are drawn in pieces.
     pub(super) fn with_holes(trees: &Trees, there: &[u16]) -> Self {
         // Number the leaves, and find the facets without holes.
         let mut numbers = vec![NONE; trees.nodes.len()];
@@ -107,7 +108,13 @@ impl Targets {
             let (first, side) = (cells.len(), trees.cuts << depth);
             cells.resize(first + (side * side) as usize, Content::Node(NONE));
             for (number, root) in (0..).zip(roots) {
-                fill(trees, &numbers, (root, Cell::numbered(number, trees.cuts)), side, &mut cells[first..]);
+                fill(
+                    trees,
+                    &numbers,
+                    (root, Cell::numbered(number, trees.cuts)),
+                    side,
+                    &mut cells[first..],
+                );
             }
             triangles.push(trees.corners_of(facet));
             grids.push(Grid { first: first as u32, side });
@@ -121,11 +128,15 @@ impl Targets {
             let before = triangles.len();
             match there {
                 WHOLE => triangles.push(corners),
-                _ => {
-                    triangles.extend((0..PARTS).filter(|part| there >> part & 1 == 1).map(|part| parts(corners)[part]))
-                }
+                _ => triangles.extend(
+                    (0..PARTS)
+                        .filter(|part| there >> part & 1 == 1)
+                        .map(|part| parts(corners)[part]),
+                ),
             }
-            grids.extend((before..triangles.len()).map(|_| Grid { first: cells.len() as u32, side: 1 }));
+            grids.extend(
+                (before..triangles.len()).map(|_| Grid { first: cells.len() as u32, side: 1 }),
+            );
             cells.push(Content::Leaf(number));
         }
 
@@ -137,7 +148,10 @@ impl Targets {
     /// Sums that are all 0.
     pub(super) fn sums(&self) -> Sums {
         let spare = self.spare.lock().expect("spare sums").pop();
-        spare.unwrap_or_else(|| Sums { sums: vec![0.0; self.leaves], touched: vec![0; self.leaves.div_ceil(64)] })
+        spare.unwrap_or_else(|| Sums {
+            sums: vec![0.0; self.leaves],
+            touched: vec![0; self.leaves.div_ceil(64)],
+        })
     }
 
     /// The sums that are above 0, with their leaves, in the order of leaves.
@@ -153,12 +167,14 @@ impl Targets {
         [0, 1, 2].map(|k| Vec3::from(positions[(3 * facet + k) as usize]).as_dvec3())
     }
 
-    /// How many borders of a facet's cells a line crosses in its first step, about; `slopes` tells how the weights change.
+    /// How many borders of a facet's cells a line crosses in its first step, about; `slopes` tells
+    /// how the weights change.
     #[inline]
     pub(super) fn borders_crossed(&self, facet: u32, weights: [f64; 3], slopes: [f64; 3]) -> f64 {
         let [sum, slope] = [weights, slopes].map(|values| values[0] + values[1] + values[2]);
         let changes = [0, 1, 2].map(|k| (slopes[k] * sum - weights[k] * slope).abs());
-        f64::from(self.grids[facet as usize].side) * (changes[0] + changes[1] + changes[2]) / (sum * sum)
+        f64::from(self.grids[facet as usize].side) * (changes[0] + changes[1] + changes[2])
+            / (sum * sum)
     }
 
     /// The leaf at a point of a facet, by its number; the sum of the weights is above 0.
@@ -176,8 +192,8 @@ impl Targets {
         }
     }
 
-    /// The same, and the way on: how the weights change along some line comes in, those of the leaf's corners and how they
-    /// change go out, times any positive number.
+    /// The same, and the way on: how the weights change along some line comes in, those of the
+    /// leaf's corners and how they change go out, times any positive number.
     #[inline]
     pub(super) fn leaf_along(
         &self,
@@ -214,20 +230,34 @@ fn scene_of(triangles: &[[DVec3; 3]]) -> Session {
 fn least_depth(trees: &Trees, node: u32) -> u32 {
     match trees.nodes[node as usize].children {
         NONE => 0,
-        children => 1 + (children..children + 4).map(|child| least_depth(trees, child)).min().unwrap_or(0),
+        children => {
+            1 + (children..children + 4).map(|child| least_depth(trees, child)).min().unwrap_or(0)
+        }
     }
 }
 
 /// Enters what is below a node into the cells of a grid with `side` of them along an edge.
-fn fill(trees: &Trees, numbers: &[u32], (node, cell): (u32, Cell), side: u32, cells: &mut [Content]) {
+fn fill(
+    trees: &Trees,
+    numbers: &[u32],
+    (node, cell): (u32, Cell),
+    side: u32,
+    cells: &mut [Content],
+) {
     // Upright and upside down, the numbers of steps tell in how many parts edges are cut here.
     let along = cell.steps.iter().sum::<u32>() + if cell.upright { 1 } else { 2 };
     let children = trees.nodes[node as usize].children;
     if along == side {
-        let content = if children == NONE { Content::Leaf(numbers[node as usize]) } else { Content::Node(node) };
+        let content = if children == NONE {
+            Content::Leaf(numbers[node as usize])
+        } else {
+            Content::Node(node)
+        };
         cells[cell.number(side) as usize] = content;
     } else {
-        (0..4).for_each(|k| fill(trees, numbers, (children + k, cell.child(k as usize)), side, cells));
+        (0..4).for_each(|k| {
+            fill(trees, numbers, (children + k, cell.child(k as usize)), side, cells)
+        });
     }
 }
 
@@ -251,20 +281,26 @@ mod tests {
             let (targets, leaves) = (Targets::new(&trees), trees.leaves());
             let mut met = vec![false; leaves.len()];
             for i in 0..4096u32 {
-                let (facet, (u, v)) = (i % 2, (f64::from(i % 64) / 64.0 + 0.004, f64::from(i / 64) / 64.0 + 0.009));
-                let w = if u + v < 1.0 { [u, v, 1.0 - u - v] } else { [1.0 - u, 1.0 - v, u + v - 1.0] };
+                let (facet, (u, v)) =
+                    (i % 2, (f64::from(i % 64) / 64.0 + 0.004, f64::from(i / 64) / 64.0 + 0.009));
+                let w =
+                    if u + v < 1.0 { [u, v, 1.0 - u - v] } else { [1.0 - u, 1.0 - v, u + v - 1.0] };
                 // Any scale will do.
                 let (w, step) = (w.map(|w| 3.0 * w), [0.02, -0.03, 0.01]);
                 let (leaf, inside, along) = targets.leaf_along(&trees, facet, w, step);
                 met[leaf as usize] = true;
                 assert_eq!(targets.leaf_at(&trees, facet, w), leaf);
                 let place = |corners: [DVec3; 3], w: [f64; 3]| {
-                    (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2]) / w.iter().sum::<f64>()
+                    (corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2])
+                        / w.iter().sum::<f64>()
                 };
                 let (facet, leaf) = (trees.corners_of(facet), trees.places(leaves[leaf as usize]));
                 let ahead = |w: [f64; 3], step: [f64; 3]| [0, 1, 2].map(|k| w[k] + 0.7 * step[k]);
                 assert!(place(leaf, inside).abs_diff_eq(place(facet, w), 1e-12));
-                assert!(place(leaf, ahead(inside, along)).abs_diff_eq(place(facet, ahead(w, step)), 1e-12));
+                assert!(
+                    place(leaf, ahead(inside, along))
+                        .abs_diff_eq(place(facet, ahead(w, step)), 1e-12)
+                );
                 assert!(inside.iter().all(|w| *w > -1e-12), "{inside:?}");
             }
             assert!(met.iter().all(|met| *met));
@@ -273,20 +309,28 @@ mod tests {
 
     #[test]
     fn lines_cross_as_many_borders_as_is_said() {
-        let trees = Trees::new(1, |_| Some([DVec3::ZERO, DVec3::X, DVec3::Y]), 0.36, 1 << 10).unwrap();
+        let trees =
+            Trees::new(1, |_| Some([DVec3::ZERO, DVec3::X, DVec3::Y]), 0.36, 1 << 10).unwrap();
         let targets = Targets::new(&trees);
-        // Along an edge of the facet four borders of either other direction begin, those of the corners with them.
-        assert_eq!((trees.leaves().len(), targets.borders_crossed(0, [1.0, 0.0, 0.0], [-1.0, 1.0, 0.0])), (16, 8.0));
+        // Along an edge of the facet four borders of either other direction begin, those of the
+        // corners with them.
+        assert_eq!(
+            (trees.leaves().len(), targets.borders_crossed(0, [1.0, 0.0, 0.0], [-1.0, 1.0, 0.0])),
+            (16, 8.0)
+        );
         assert_eq!(targets.borders_crossed(0, [3.0, 0.0, 0.0], [-1.5, 1.5, 0.0]), 4.0);
     }
 
     #[test]
     fn sums_are_given_in_order_and_begin_anew() {
-        let trees = Trees::new(1, |_| Some([DVec3::ZERO, DVec3::X, DVec3::Y]), 0.1, 1 << 10).unwrap();
+        let trees =
+            Trees::new(1, |_| Some([DVec3::ZERO, DVec3::X, DVec3::Y]), 0.1, 1 << 10).unwrap();
         let targets = Targets::new(&trees);
         for _ in 0..2 {
             let mut sums = targets.sums();
-            [(70, 0.5), (3, 0.25), (70, 0.25), (64, 0.0)].into_iter().for_each(|(leaf, factor)| sums.add(leaf, factor));
+            [(70, 0.5), (3, 0.25), (70, 0.25), (64, 0.0)]
+                .into_iter()
+                .for_each(|(leaf, factor)| sums.add(leaf, factor));
             assert_eq!(targets.finish(sums), [(3, 0.25), (70, 0.75)]);
         }
     }

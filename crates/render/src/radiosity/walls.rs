@@ -1,12 +1,14 @@
 //! Walls that stand on a facet, or go through it: the facet is cut along them.
 //!
-//! An element on both sides of a wall would carry light from one side to the other. So a facet is cut along the line in which
-//! another one meets it, and its pieces share no vertices across the wall: nothing is interpolated through it. Only facets
-//! that are large as against a patch are cut; others are as good as elements that end somewhere near the wall.
+//! An element on both sides of a wall would carry light from one side to the other. So a facet is
+//! cut along the line in which another one meets it, and its pieces share no vertices across the
+//! wall: nothing is interpolated through it. Only facets that are large as against a patch are cut;
+//! others are as good as elements that end somewhere near the wall.
 //!
 //! In:   facets, world space less the scene's middle. Out: [`WallPieces`].
 //! Cost: large facets times all facets, for boxes; a few operations for those that meet.
-//! Source: \[Baum, Mann, Smith & Winget 1991\]. Departs from it: only facets are cut, along whole lines within a convex piece.
+//! Source: \[Baum, Mann, Smith & Winget 1991\]. Departs from it: only facets are cut, along whole
+//!         lines within a convex piece.
 
 use crate::Execution;
 use std::collections::{BTreeMap, HashMap};
@@ -15,7 +17,8 @@ use vitral_math::DVec3;
 
 /// Facets whose longest edge is less than this part of a patch's are not cut.
 const LARGE: f64 = 0.25;
-/// Corners count as in a plane up to this part of the scene's size from it: some steps of single precision.
+/// Corners count as in a plane up to this part of the scene's size from it: some steps of single
+/// precision.
 const IN_PLANE: f64 = 2e-6;
 /// Walls on one facet at most, the longest.
 const MOST_WALLS: usize = 64;
@@ -35,12 +38,14 @@ pub(super) struct WallPieces {
     pub(super) corners: Vec<[DVec3; 3]>,
     /// Corners of its facet.
     pub(super) wholes: Vec<[DVec3; 3]>,
-    /// Corners beside walls, by the number of their facet or piece, with a number for the side of the walls that they are on.
+    /// Corners beside walls, by the number of their facet or piece, with a number for the side of
+    /// the walls that they are on.
     sides: HashMap<(u32, u8), u32>,
 }
 
 impl WallPieces {
-    /// Which side of the walls a corner is on, the same for corners at one place that are to share a vertex.
+    /// Which side of the walls a corner is on, the same for corners at one place that are to share
+    /// a vertex.
     pub(super) fn side(&self, piece: u32, corner: u8) -> u32 {
         self.sides.get(&(piece, corner)).copied().unwrap_or(0)
     }
@@ -74,7 +79,8 @@ pub(super) fn cut(
     if large.len() as u64 * facets.len() as u64 > MOST_BOXES {
         return Ok(WallPieces::default());
     }
-    let boxes: Vec<[DVec3; 2]> = facets.iter().map(|corners| bounds(corners.as_ref(), near)).collect();
+    let boxes: Vec<[DVec3; 2]> =
+        facets.iter().map(|corners| bounds(corners.as_ref(), near)).collect();
     let found = execution.workers.map(large.len(), |i| {
         execution.budget.check("radiosity")?;
         Ok(walls_on(large[i], facets, &boxes, near))
@@ -92,7 +98,11 @@ pub(super) fn cut(
         for part in parts {
             for k in 1..part.len() - 1 {
                 let own = |edge: usize, real: bool| real && part[edge].1;
-                walls.push([own(0, k == 1), own(k, true), own(part.len() - 1, k + 2 == part.len())]);
+                walls.push([
+                    own(0, k == 1),
+                    own(k, true),
+                    own(part.len() - 1, k + 2 == part.len()),
+                ]);
                 pieces.facets.push(facet);
                 pieces.wholes.push(corners);
                 pieces.corners.push([part[0].0, part[k].0, part[k + 1].0]);
@@ -114,10 +124,16 @@ fn bounds(corners: Option<&[DVec3; 3]>, margin: f64) -> [DVec3; 2] {
 }
 
 /// The walls on a facet, the longest first.
-fn walls_on(facet: u32, facets: &[Option<[DVec3; 3]>], boxes: &[[DVec3; 2]], near: f64) -> Vec<Wall> {
+fn walls_on(
+    facet: u32,
+    facets: &[Option<[DVec3; 3]>],
+    boxes: &[[DVec3; 2]],
+    near: f64,
+) -> Vec<Wall> {
     let Some(corners) = facets[facet as usize] else { return Vec::new() };
     let [low, high] = boxes[facet as usize];
-    let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize() else {
+    let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize()
+    else {
         return Vec::new();
     };
 
@@ -127,7 +143,10 @@ fn walls_on(facet: u32, facets: &[Option<[DVec3; 3]>], boxes: &[[DVec3; 2]], nea
         if low.cmpgt(*other_high).any() || other_low.cmpgt(high).any() || other == facet as usize {
             continue;
         }
-        let Some(wall) = facets[other].and_then(|other| meeting(&corners, normal, &other, near)) else { continue };
+        let Some(wall) = facets[other].and_then(|other| meeting(&corners, normal, &other, near))
+        else {
+            continue;
+        };
         join(&mut walls, wall, near);
     }
 
@@ -138,14 +157,18 @@ fn walls_on(facet: u32, facets: &[Option<[DVec3; 3]>], boxes: &[[DVec3; 2]], nea
     walls
 }
 
-/// Where the facet `other` meets the plane of a facet, as far as that lies within the facet and not along its edges.
+/// Where the facet `other` meets the plane of a facet, as far as that lies within the facet and not
+/// along its edges.
 fn meeting(corners: &[DVec3; 3], normal: DVec3, other: &[DVec3; 3], near: f64) -> Option<Wall> {
     // Find the two points in which the other's outline meets the plane.
     let heights = other.map(|p| {
         let height = (p - corners[0]).dot(normal);
         if height.abs() <= near { 0.0 } else { height }
     });
-    if heights.iter().all(|h| *h == 0.0) || heights.iter().all(|h| *h > 0.0) || heights.iter().all(|h| *h < 0.0) {
+    if heights.iter().all(|h| *h == 0.0)
+        || heights.iter().all(|h| *h > 0.0)
+        || heights.iter().all(|h| *h < 0.0)
+    {
         return None;
     }
     let mut ends = Vec::with_capacity(3);
@@ -196,7 +219,10 @@ fn join(walls: &mut Vec<Wall>, mut wall: Wall, near: f64) {
 
         // Extend this one by a wall on the same line, and search from the start.
         let start = wall.from;
-        wall = Wall { from: start + along * a.min(b).min(0.0), to: start + along * a.max(b).max(length) };
+        wall = Wall {
+            from: start + along * a.min(b).min(0.0),
+            to: start + along * a.max(b).max(length),
+        };
         walls.swap_remove(at);
         at = 0;
     }
@@ -259,7 +285,8 @@ fn split(mut part: Part, wall: &Wall, normal: DVec3, near: f64, into: &mut Vec<P
         let ((here, walled), (there, _)) = (part[k], part[(k + 1) % count]);
         let (height, next) = (heights[k], heights[(k + 1) % count]);
         if height == 0.0 {
-            // The edge that leaves the line towards a side keeps its mark there; the other half has the cut.
+            // The edge that leaves the line towards a side keeps its mark there; the other half has
+            // the cut.
             halves[0].push((here, walled && next > 0.0));
             halves[1].push((here, walled && next < 0.0));
             ends.push(here);
@@ -298,7 +325,8 @@ fn split(mut part: Part, wall: &Wall, normal: DVec3, near: f64, into: &mut Vec<P
     }
 }
 
-/// A place on a grid that is finer than what counts as near: both facets at an edge find the same place.
+/// A place on a grid that is finer than what counts as near: both facets at an edge find the same
+/// place.
 fn rounded(p: DVec3, near: f64) -> DVec3 {
     // The power of two at or below an eighth.
     let step = f64::from_bits((near * 0.125).to_bits() & !((1 << 52) - 1));
@@ -311,9 +339,13 @@ fn key(p: DVec3) -> [u64; 3] {
     (p + 0.0).to_array().map(f64::to_bits)
 }
 
-/// For corners at the ends of walls, which side of them they are on: those whose triangles hang together round the place, by
-/// edges without walls, are on one.
-fn sides(facets: &[Option<[DVec3; 3]>], pieces: &WallPieces, walls: &[[bool; 3]]) -> HashMap<(u32, u8), u32> {
+/// For corners at the ends of walls, which side of them they are on: those whose triangles hang
+/// together round the place, by edges without walls, are on one.
+fn sides(
+    facets: &[Option<[DVec3; 3]>],
+    pieces: &WallPieces,
+    walls: &[[bool; 3]],
+) -> HashMap<(u32, u8), u32> {
     // Collect the places at the ends of walls.
     let mut at_walls: BTreeMap<[u64; 3], Vec<(u32, u8)>> = BTreeMap::new();
     for (corners, walls) in pieces.corners.iter().zip(walls) {
@@ -326,8 +358,13 @@ fn sides(facets: &[Option<[DVec3; 3]>], pieces: &WallPieces, walls: &[[bool; 3]]
     // Collect the corners there, of pieces and of whole facets.
     let mut is_cut = vec![false; facets.len()];
     pieces.facets.iter().for_each(|&f| is_cut[f as usize] = true);
-    let whole = facets.iter().enumerate().filter(|(f, _)| !is_cut[*f]).filter_map(|(f, c)| Some((f as u32, (*c)?)));
-    let cut = pieces.corners.iter().enumerate().map(|(i, corners)| ((facets.len() + i) as u32, *corners));
+    let whole = facets
+        .iter()
+        .enumerate()
+        .filter(|(f, _)| !is_cut[*f])
+        .filter_map(|(f, c)| Some((f as u32, (*c)?)));
+    let cut =
+        pieces.corners.iter().enumerate().map(|(i, corners)| ((facets.len() + i) as u32, *corners));
     let all: Vec<(u32, [DVec3; 3])> = whole.chain(cut).collect();
     let mut triangles: HashMap<u32, [[u64; 3]; 3]> = HashMap::new();
     for (number, corners) in all {
@@ -340,8 +377,9 @@ fn sides(facets: &[Option<[DVec3; 3]>], pieces: &WallPieces, walls: &[[bool; 3]]
     }
 
     // Join corners whose triangles share an edge from there without a wall.
-    let has_wall =
-        |number: u32, edge: usize| (number as usize).checked_sub(facets.len()).is_some_and(|piece| walls[piece][edge]);
+    let has_wall = |number: u32, edge: usize| {
+        (number as usize).checked_sub(facets.len()).is_some_and(|piece| walls[piece][edge])
+    };
     let mut sides = HashMap::new();
     for list in at_walls.values() {
         let mut group: Vec<usize> = (0..list.len()).collect();
@@ -354,9 +392,9 @@ fn sides(facets: &[Option<[DVec3; 3]>], pieces: &WallPieces, walls: &[[bool; 3]]
                 let joined = [(ka, 1), (ka, 2)].into_iter().any(|(ka, step)| {
                     let edge = if step == 1 { ka } else { (ka + 2) % 3 };
                     let end = ta[(ka + step) % 3];
-                    [(1, kb), (2, (kb + 2) % 3)]
-                        .into_iter()
-                        .any(|(step, other)| tb[(kb + step) % 3] == end && !has_wall(a, edge) && !has_wall(b, other))
+                    [(1, kb), (2, (kb + 2) % 3)].into_iter().any(|(step, other)| {
+                        tb[(kb + step) % 3] == end && !has_wall(a, edge) && !has_wall(b, other)
+                    })
                 });
                 if joined {
                     let (old, new) = (group[i].max(group[j]), group[i].min(group[j]));
@@ -378,10 +416,14 @@ mod tests {
     use super::*;
     use vitral_math::dvec3;
 
-    /// A square floor from 0 to 4 in two triangles, and the triangles of upright walls along these lines.
+    /// A square floor from 0 to 4 in two triangles, and the triangles of upright walls along these
+    /// lines.
     fn floor_with(walls: &[[[f64; 2]; 2]]) -> Vec<Option<[DVec3; 3]>> {
         let at = |x: f64, z: f64| dvec3(x, 0.0, z);
-        let mut facets = vec![[at(0.0, 0.0), at(0.0, 4.0), at(4.0, 4.0)], [at(0.0, 0.0), at(4.0, 4.0), at(4.0, 0.0)]];
+        let mut facets = vec![
+            [at(0.0, 0.0), at(0.0, 4.0), at(4.0, 4.0)],
+            [at(0.0, 0.0), at(4.0, 4.0), at(4.0, 0.0)],
+        ];
         for [[ax, az], [bx, bz]] in walls {
             let [a, b] = [at(*ax, *az), at(*bx, *bz)];
             facets.extend([[a, b, b + DVec3::Y], [a, b + DVec3::Y, a + DVec3::Y]]);
@@ -402,7 +444,10 @@ mod tests {
         let mut sides: [Vec<u32>; 2] = [Vec::new(), Vec::new()];
         for (i, corners) in pieces.corners.iter().enumerate() {
             let beyond = corners.iter().any(|p| p.x > 1.0 + 1e-9);
-            assert!(!beyond || corners.iter().all(|p| p.x > 1.0 - 1e-9), "{corners:?} is on both sides");
+            assert!(
+                !beyond || corners.iter().all(|p| p.x > 1.0 - 1e-9),
+                "{corners:?} is on both sides"
+            );
             for (k, _) in (0..3u8).zip(corners).filter(|(_, p)| (p.x - 1.0).abs() < 1e-9) {
                 sides[usize::from(beyond)].push(pieces.side((facets.len() + i) as u32, k));
             }
@@ -419,8 +464,10 @@ mod tests {
             let middle = (c[0] + c[1] + c[2]) / 3.0;
             (1.0..2.0).contains(&middle.x) && (1.5..2.5).contains(&middle.z)
         };
-        let (within, all): (f64, f64) =
-            (pieces.corners.iter().filter(inside).map(area).sum(), pieces.corners.iter().map(area).sum());
+        let (within, all): (f64, f64) = (
+            pieces.corners.iter().filter(inside).map(area).sum(),
+            pieces.corners.iter().map(area).sum(),
+        );
         assert!((within - 1.0).abs() < 1e-9 && (all - 16.0).abs() < 1e-9, "{within} {all}");
     }
 

@@ -1,9 +1,11 @@
 //! A beam: a ray with a square cross-section that may grow along the way.
 //!
-//! A ray answers "what lies under this point"; but corners on the screen are snapped, so what covers a sample may miss
-//! the ray by a hair. A beam as wide as that hair meets everything that can cover the sample. On each axis it fills the
-//! places `origin ± width + (direction ± growth) t`, so a box and the beam share a place at `t` if two straight lines
-//! lie on the right sides of the box's faces: the slabs of a ray, with one line for each side.
+//! A ray answers "what lies under this point"; but corners on the screen are snapped, so what
+//! covers a sample may miss the ray by a hair. A beam as wide as that hair meets everything that
+//! can cover the sample. On each axis it fills the places
+//! `origin ± width + (direction ± growth) t`, so a box and the beam share a place at `t` if two
+//! straight lines lie on the right sides of the box's faces: the slabs of a ray, with one line for
+//! each side.
 //!
 //! In:   a box, in the beam's space. Out: the smallest parameter at which they may meet.
 //! Cost: six multiplications.
@@ -32,7 +34,8 @@ pub struct Beam {
     axes: [Axis; 3],
 }
 
-/// Two lines on one axis: the beam's upper side must reach the box's lower face, its lower side the upper one.
+/// Two lines on one axis: the beam's upper side must reach the box's lower face, its lower side the
+/// upper one.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     /// Where the upper line starts.
@@ -46,7 +49,8 @@ struct Axis {
 }
 
 impl Beam {
-    /// A beam round the ray from `origin` along `direction`, with half its width and that width's growth by axis.
+    /// A beam round the ray from `origin` along `direction`, with half its width and that width's
+    /// growth by axis.
     pub fn new(origin: Vec3, direction: Vec3, width: Vec3, growth: Vec3) -> Self {
         let axis = |k: usize| {
             // A slope of zero is replaced by one that lets more through.
@@ -61,10 +65,16 @@ impl Beam {
         Self { origin, direction, width, growth, axes: [axis(0), axis(1), axis(2)] }
     }
 
-    /// A beam just wide enough that rounding in a space of half-width `extent` cannot make it miss what `ray` meets.
+    /// A beam just wide enough that rounding in a space of half-width `extent` cannot make it miss
+    /// what `ray` meets.
     pub fn around(ray: &Ray, extent: f32) -> Self {
         let width = (ray.origin.abs() + extent) * ROUNDING;
-        Self::new(ray.origin, ray.direction, width, ray.direction.abs() * ROUNDING + Vec3::splat(1e-30))
+        Self::new(
+            ray.origin,
+            ray.direction,
+            width,
+            ray.direction.abs() * ROUNDING + Vec3::splat(1e-30),
+        )
     }
 }
 
@@ -131,11 +141,14 @@ mod tests {
 
     #[test]
     fn a_beam_meets_what_its_width_reaches() {
-        let beam = |width: f32, growth: f32| Beam::new(Vec3::ZERO, Vec3::Z, Vec3::splat(width), Vec3::splat(growth));
+        let beam = |width: f32, growth: f32| {
+            Beam::new(Vec3::ZERO, Vec3::Z, Vec3::splat(width), Vec3::splat(growth))
+        };
         let (min, max) = ([0.1, -1.0, 4.0], [0.5, 1.0, 5.0]);
         assert_eq!(beam(0.05, 0.0).enters(min, max), None);
         assert!((beam(0.2, 0.0).enters(min, max).unwrap() - 3.8).abs() < 1e-4);
-        // Growing by 0.01 a unit, the beam never becomes wide enough; by 0.025 it does after 4 units.
+        // Growing by 0.01 a unit, the beam never becomes wide enough; by 0.025 it does after 4
+        // units.
         assert_eq!(beam(0.0, 0.01).enters(min, max), None);
         assert!((beam(0.0, 0.025).enters(min, max).unwrap() - 4.0).abs() < 1e-4);
         assert_eq!(beam(0.2, 0.1).enters([0.0, 0.0, -3.0], [1.0, 1.0, -2.0]), None, "behind");

@@ -1,20 +1,25 @@
-//! A box round the scene, cut in two by a plane across one axis, and its parts again: binary space partitioning.
+//! A box round the scene, cut in two by a plane across one axis, and its parts again: binary space
+//! partitioning.
 //!
-//! Planes lie across an axis (such a tree is also called a k-d tree), but anywhere on it: where the surface area heuristic
-//! expects rays to have least to do. A plane costs its visit and, on each side, the triangles there in proportion to the side's
-//! surface; planes are tried at equal distances between the first and the last triangle of a cell, and just before and behind
-//! these, which cuts off empty space. Sides fill their cell and do not overlap, so a ray passes them one after the other. A
-//! triangle belongs to every leaf it reaches into; a visitor may see it several times.
+//! Planes lie across an axis (such a tree is also called a k-d tree), but anywhere on it: where the
+//! surface area heuristic expects rays to have least to do. A plane costs its visit and, on each
+//! side, the triangles there in proportion to the side's surface; planes are tried at equal
+//! distances between the first and the last triangle of a cell, and just before and behind these,
+//! which cuts off empty space. Sides fill their cell and do not overlap, so a ray passes them one
+//! after the other. A triangle belongs to every leaf it reaches into; a visitor may see it several
+//! times.
 //!
-//! Nodes keep their plane alone: who goes down carries the cell along, so that whatever is followed (a ray, a beam, rays through
-//! a block of pixels) is tested against boxes, as in the other trees.
+//! Nodes keep their plane alone: who goes down carries the cell along, so that whatever is followed
+//! (a ray, a beam, rays through a block of pixels) is tested against boxes, as in the other trees.
 //!
-//! The tree of `--visibility bsp` is another: it cuts polygons by the planes of polygons, and gives an order.
+//! The tree of `--visibility bsp` is another: it cuts polygons by the planes of polygons, and gives
+//! an order.
 //!
 //! In:   triangles. Out: [`KdTree`].
-//! Cost: `O(n log n)` to build; 16 bytes a node, and at most [`REFERENCES`] entries a triangle, whatever the scene.
-//! Source: [Kaplan 1985], the heuristic after [MacDonald & Booth 1990]. Departs from them: planes are tried at equal distances, not at every
-//!         triangle.
+//! Cost: `O(n log n)` to build; 16 bytes a node, and at most [`REFERENCES`] entries a triangle,
+//!       whatever the scene.
+//! Source: [Kaplan 1985], the heuristic after [MacDonald & Booth 1990]. Departs from them: planes
+//!         are tried at equal distances, not at every triangle.
 
 use super::beam::Beam;
 use super::follow::{Follow, StructureUser};
@@ -52,7 +57,8 @@ struct Node {
     axis: u32,
     /// Where the plane is on it.
     at: f32,
-    /// Distance to the node of the upper side (that of the lower one is the next); the first entry of a leaf.
+    /// Distance to the node of the upper side (that of the lower one is the next); the first entry
+    /// of a leaf.
     link: u32,
     /// A leaf's entries.
     count: u32,
@@ -100,12 +106,15 @@ impl KdTree {
     /// A limit of the budget.
     pub fn of(session: &Session, execution: &Execution) -> Result<Arc<Self>, Limit> {
         let triangles = Triangles::of(session, execution)?;
-        session.cache.get_or_build((), || Self::build(&triangles, &execution.workers, &execution.budget))
+        session
+            .cache
+            .get_or_build((), || Self::build(&triangles, &execution.workers, &execution.budget))
     }
 
     /// Bytes needed while a tree over this many triangles is built.
     pub fn bytes(triangles: u64) -> u64 {
-        // Entries twice, while parts are joined; a leaf has one at least or is the other side of a cut.
+        // Entries twice, while parts are joined; a leaf has one at least or is the other side of a
+        // cut.
         triangles * (REFERENCES * 8 + size_of::<Node>() * 4 * 2 + 40) as u64
     }
 
@@ -113,7 +122,11 @@ impl KdTree {
     ///
     /// # Errors
     /// A limit of the budget.
-    pub fn build(triangles: &Arc<Triangles>, workers: &Workers, budget: &Budget) -> Result<Self, Limit> {
+    pub fn build(
+        triangles: &Arc<Triangles>,
+        workers: &Workers,
+        budget: &Budget,
+    ) -> Result<Self, Limit> {
         budget.check("building the partition of space")?;
         let count = triangles.count();
         let root = if count > 0 { triangles.bounds() } else { [Vec3::ZERO; 2] };
@@ -122,7 +135,13 @@ impl KdTree {
         let mut part = Part::default();
         build.grow((0..count as u32).collect(), root, (0, REFERENCES * count), &mut part)?;
         let root = widened(root, slack);
-        Ok(Self { root, slack, nodes: part.nodes, entries: part.entries, triangles: Arc::clone(triangles) })
+        Ok(Self {
+            root,
+            slack,
+            nodes: part.nodes,
+            entries: part.entries,
+            triangles: Arc::clone(triangles),
+        })
     }
 }
 
@@ -145,7 +164,8 @@ fn area(size: Vec3) -> f32 {
 }
 
 impl Build<'_> {
-    /// Adds the tree in `cell`, into which `inside` reach. It is cut so often already, and its leaves may have so many entries.
+    /// Adds the tree in `cell`, into which `inside` reach. It is cut so often already, and its
+    /// leaves may have so many entries.
     fn grow(
         &self,
         inside: Vec<u32>,
@@ -158,9 +178,12 @@ impl Build<'_> {
         if large {
             self.budget.check("building the partition of space")?;
         }
-        let plane = (inside.len() > LEAF && depth < DEPTH).then(|| self.plane(&inside, cell)).flatten();
+        let plane =
+            (inside.len() > LEAF && depth < DEPTH).then(|| self.plane(&inside, cell)).flatten();
         let cut = plane.map(|(axis, at)| (axis, at, sides(cell, axis, at, 0.0)));
-        let cut = cut.map(|(axis, at, cells)| (axis, at, cells, cells.map(|cell| self.within(&inside, cell))));
+        let cut = cut.map(|(axis, at, cells)| {
+            (axis, at, cells, cells.map(|cell| self.within(&inside, cell)))
+        });
 
         // Emit a leaf where no plane pays within the allowance.
         let Some((axis, at, cells, [lower, upper])) =
@@ -186,7 +209,9 @@ impl Build<'_> {
                 let mut part = Part::default();
                 self.grow(inside, cell, limits, &mut part).map(|()| part)
             };
-            let (lower, upper) = self.workers.join(|| alone(lower, cells[0], below), || alone(upper, cells[1], above));
+            let (lower, upper) = self
+                .workers
+                .join(|| alone(lower, cells[0], below), || alone(upper, cells[1], above));
             part.append(lower?);
             part.nodes[root].link = (part.nodes.len() - root) as u32;
             part.append(upper?);
@@ -202,7 +227,8 @@ impl Build<'_> {
     fn within(&self, inside: &[u32], cell: Cell) -> Vec<u32> {
         let [min, max] = widened(cell, self.slack);
         let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
-        let reaches = |&&place: &&u32| reaches(&self.triangles.corners[place as usize], middle, half);
+        let reaches =
+            |&&place: &&u32| reaches(&self.triangles.corners[place as usize], middle, half);
         inside.iter().filter(reaches).copied().collect()
     }
 
@@ -279,7 +305,8 @@ impl Planes {
             side[axis] = extent;
             area(side * scale)
         };
-        let triangles = side(at - self.min[axis]) * lower as f32 + side(self.max[axis] - at) * upper as f32;
+        let triangles =
+            side(at - self.min[axis]) * lower as f32 + side(self.max[axis] - at) * upper as f32;
         let empty = if lower == 0 || upper == 0 { EMPTY_SIDE } else { 1.0 };
         let cost = VISIT + empty * triangles / self.whole;
         if cost < self.cost {
@@ -384,7 +411,8 @@ impl Tree for KdTree {
                 let Node { axis, count, .. } = self.nodes[below[side]];
                 if axis != NO_AXIS || count > 0 {
                     visited += 1;
-                    enters[side] = probe.enters(cells[side][0].to_array(), cells[side][1].to_array());
+                    enters[side] =
+                        probe.enters(cells[side][0].to_array(), cells[side][1].to_array());
                 }
             }
             // The farther one waits below the nearer one.
@@ -418,7 +446,8 @@ mod tests {
             [at, at + vec3(0.1, 0.0, 0.0), at + vec3(0.0, 0.05, 0.1)]
         };
         let corners: Vec<_> = (0..8).flat_map(|i| [small(-10.0, i), small(10.0, i)]).collect();
-        let triangles = Triangles { extent: 10.1, facets: (0..16).collect(), corners, ..Triangles::default() };
+        let triangles =
+            Triangles { extent: 10.1, facets: (0..16).collect(), corners, ..Triangles::default() };
         let tree = build(triangles, 1);
         assert_eq!(tree.nodes[0].axis, 0, "{:?}", tree.nodes[0]);
         assert!(tree.nodes[0].at > -9.9 && tree.nodes[0].at < 10.0, "{:?}", tree.nodes[0]);
@@ -429,7 +458,8 @@ mod tests {
     #[test]
     fn every_triangle_is_in_the_leaves_it_reaches_and_entries_are_bounded() {
         let world = World::new(&builtin::scene("teapot").unwrap()).unwrap();
-        let trees = [1, 3].map(|threads| build(Triangles::of_world(&world, &Workers::new(threads)), threads));
+        let trees = [1, 3]
+            .map(|threads| build(Triangles::of_world(&world, &Workers::new(threads)), threads));
         assert!(trees[0] == trees[1], "threads change nothing");
         let tree = &trees[0];
         let count = tree.triangles.count();
@@ -437,7 +467,8 @@ mod tests {
         let mut listed = vec![false; count];
         tree.entries.iter().for_each(|&t| listed[t as usize] = true);
         assert!(listed.iter().all(|&l| l));
-        // Go down to each leaf: no corner strictly within its cell is of a triangle that it does not list.
+        // Go down to each leaf: no corner strictly within its cell is of a triangle that it does
+        // not list.
         let mut cells = vec![(0, tree.root)];
         while let Some((index, cell)) = cells.pop() {
             let node = &tree.nodes[index];
@@ -448,20 +479,39 @@ mod tests {
             }
             let within = |p: &Vec3| p.cmpgt(cell[0]).all() && p.cmplt(cell[1]).all();
             for (t, corners) in (0..).zip(&tree.triangles.corners) {
-                assert!(!corners.iter().any(within) || tree.entries_of(node).contains(&t), "{t} in {cell:?}");
+                assert!(
+                    !corners.iter().any(within) || tree.entries_of(node).contains(&t),
+                    "{t} in {cell:?}"
+                );
             }
         }
     }
 
     #[test]
     fn what_no_plane_separates_stays_together() {
-        let fan = |i: u16| [Vec3::ZERO, vec3(1.0, f32::from(i), 0.0), vec3(1.0, f32::from(i) + 1.0, 0.5)];
+        let fan =
+            |i: u16| [Vec3::ZERO, vec3(1.0, f32::from(i), 0.0), vec3(1.0, f32::from(i) + 1.0, 0.5)];
         let corners = (0..400).map(fan).collect();
-        let tree = build(Triangles { extent: 500.0, corners, facets: (0..400).collect(), ..Triangles::default() }, 1);
+        let tree = build(
+            Triangles {
+                extent: 500.0,
+                corners,
+                facets: (0..400).collect(),
+                ..Triangles::default()
+            },
+            1,
+        );
         assert!(tree.entries.len() <= REFERENCES * 400, "{} entries", tree.entries.len());
         let same = vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 300];
-        let tree =
-            build(Triangles { extent: 1.0, corners: same, facets: (0..300).collect(), ..Triangles::default() }, 1);
+        let tree = build(
+            Triangles {
+                extent: 1.0,
+                corners: same,
+                facets: (0..300).collect(),
+                ..Triangles::default()
+            },
+            1,
+        );
         assert!(tree.nodes.len() < 8, "{:?}", tree.nodes);
         let none = build(Triangles::default(), 1);
         assert!(none.root().is_none() && none.step().is_none());

@@ -1,11 +1,12 @@
 //! A hierarchy of bounding volumes over all triangles of a scene.
 //!
-//! Each node is a box round the two nodes below it; a ray that misses the box misses everything in it. How the tree is cut is
-//! in `sah.rs`. Packets of eight rays go down it together (`packet.rs`), all others down a tree with eight boxes a node that is
-//! made of it (`wide.rs`).
+//! Each node is a box round the two nodes below it; a ray that misses the box misses everything in
+//! it. How the tree is cut is in `sah.rs`. Packets of eight rays go down it together (`packet.rs`),
+//! all others down a tree with eight boxes a node that is made of it (`wide.rs`).
 //!
 //! In:   triangles. Out: [`Bvh`], with the triangles in the order of its leaves.
-//! Cost: `O(n log n)` to build; 32 bytes a node, 40 a triangle, and up to 100 a triangle for eight boxes a node.
+//! Cost: `O(n log n)` to build; 32 bytes a node, 40 a triangle, and up to 100 a triangle for eight
+//!       boxes a node.
 //! Source: [Rubin & Whitted 1980].
 
 use super::beam::Beam;
@@ -36,7 +37,8 @@ pub struct Bvh {
     triangles: Triangles,
 }
 
-/// Nodes that a packet goes down later, and where each ray enters them; infinite for those that pass one by.
+/// Nodes that a packet goes down later, and where each ray enters them; infinite for those that
+/// pass one by.
 struct PacketStack {
     nodes: [(u32, [f32; LANES]); STACK],
     count: usize,
@@ -59,7 +61,8 @@ impl Bvh {
         })
     }
 
-    /// Bytes needed while a tree over this many triangles, or the tree with eight boxes a node, is built.
+    /// Bytes needed while a tree over this many triangles, or the tree with eight boxes a node, is
+    /// built.
     pub fn bytes(triangles: u64) -> u64 {
         triangles * (BYTES_A_TRIANGLE + size_of::<[Vec3; 3]>() + 4 + Wide::BYTES) as u64
     }
@@ -70,7 +73,11 @@ impl Bvh {
     /// A limit of the budget.
     pub fn build(triangles: &Triangles, workers: &Workers, budget: &Budget) -> Result<Self, Limit> {
         let (nodes, order) = build(triangles, workers, budget)?;
-        Ok(Self { nodes, wide: OnceLock::new(), triangles: triangles.reordered(order.iter().copied()) })
+        Ok(Self {
+            nodes,
+            wide: OnceLock::new(),
+            triangles: triangles.reordered(order.iter().copied()),
+        })
     }
 
     #[inline(always)]
@@ -122,8 +129,8 @@ impl Bvh {
         }
     }
 
-    /// The child of an inner node that is gone down first and where each of the `wanted` rays enters it, if any does. The other
-    /// one is left for later.
+    /// The child of an inner node that is gone down first and where each of the `wanted` rays
+    /// enters it, if any does. The other one is left for later.
     #[inline(always)]
     fn open<S: Simd>(
         &self,
@@ -147,8 +154,8 @@ impl Bvh {
             (true, true) => {
                 // Descend first where more rays enter sooner.
                 let sooner = |mask: Mask8<S>| mask.to_bitmask().count_ones();
-                let left_first =
-                    !nearest_first || sooner(at_right.simd_lt(at_left)) <= sooner(at_left.simd_lt(at_right));
+                let left_first = !nearest_first
+                    || sooner(at_right.simd_lt(at_left)) <= sooner(at_left.simd_lt(at_right));
                 let (next, later) = if left_first {
                     ((left, at_left), (right, at_right))
                 } else {
@@ -169,7 +176,13 @@ impl Bvh {
 
 impl Follow for Bvh {
     #[inline(always)]
-    fn follow<S: Simd>(&self, simd: S, rays: &[Ray], visitor: &mut impl PacketVisitor, counters: &mut Counters) {
+    fn follow<S: Simd>(
+        &self,
+        simd: S,
+        rays: &[Ray],
+        visitor: &mut impl PacketVisitor,
+        counters: &mut Counters,
+    ) {
         simd.vectorize(
             #[inline(always)]
             || self.descend_together(simd, rays, visitor, counters),
@@ -206,7 +219,12 @@ impl Structure for Bvh {
     }
 
     /// With the machine's best instruction set: it makes no difference to what is met.
-    fn closest_hit_from(&self, ray: &Ray, own: u32, counters: &mut Counters) -> Option<(usize, f32)> {
+    fn closest_hit_from(
+        &self,
+        ray: &Ray,
+        own: u32,
+        counters: &mut Counters,
+    ) -> Option<(usize, f32)> {
         dispatch!(Level::new(), simd => self.wide().closest_hit(simd, &self.triangles, (ray, own), counters))
     }
 }
@@ -276,7 +294,8 @@ mod tests {
             };
             let bvh = Bvh::build(&triangles, &Workers::single(), &Budget::default()).unwrap();
             assert_eq!(bvh.triangles.count(), count as usize);
-            let hit = bvh.closest_hit(&Ray::new(vec3(0.2, 0.3, -1.0), Vec3::Z), &mut Counters::default());
+            let hit =
+                bvh.closest_hit(&Ray::new(vec3(0.2, 0.3, -1.0), Vec3::Z), &mut Counters::default());
             assert_eq!(hit, (count > 0).then_some((0, 2.0)), "the lowest of equals");
         }
     }
@@ -294,8 +313,10 @@ mod tests {
         let bvh = Bvh::build(&triangles, &Workers::single(), &Budget::default()).unwrap();
         let (size, mut state, mut hits) = (triangles.extent, 3, 0);
         for packet in 0..600 {
-            // Bundles side by side, bundles from one point, and rays that have nothing in common; some packets are not full.
-            let mut vector = || vec3(random(&mut state), random(&mut state), random(&mut state)) * size;
+            // Bundles side by side, bundles from one point, and rays that have nothing in common;
+            // some packets are not full.
+            let mut vector =
+                || vec3(random(&mut state), random(&mut state), random(&mut state)) * size;
             let (from, to) = (vector() * 2.0, vector() * 0.5);
             let rays: Vec<Ray> = (0..1 + packet % 8)
                 .map(|_| match packet % 3 {
@@ -305,12 +326,18 @@ mod tests {
                 })
                 .collect();
             let mut alone = Counters::default();
-            let first: Vec<_> = rays.iter().map(|r| bvh.closest_hit_from(r, u32::MAX, &mut alone)).collect();
+            let first: Vec<_> =
+                rays.iter().map(|r| bvh.closest_hit_from(r, u32::MAX, &mut alone)).collect();
             // Leaving what was met, each ray meets the next.
-            let own: Vec<u32> =
-                first.iter().map(|hit| hit.map_or(u32::MAX, |(p, _)| bvh.triangles().facets[p])).collect();
-            let second: Vec<_> =
-                rays.iter().zip(&own).map(|(r, own)| bvh.closest_hit_from(r, *own, &mut alone)).collect();
+            let own: Vec<u32> = first
+                .iter()
+                .map(|hit| hit.map_or(u32::MAX, |(p, _)| bvh.triangles().facets[p]))
+                .collect();
+            let second: Vec<_> = rays
+                .iter()
+                .zip(&own)
+                .map(|(r, own)| bvh.closest_hit_from(r, *own, &mut alone))
+                .collect();
             for (_, level) in available_levels() {
                 let mut together = Counters::default();
                 let nobody = [u32::MAX; LANES];
@@ -318,7 +345,11 @@ mod tests {
                     bvh.closest_hits(simd, &rays, &nobody, &mut together).0,
                     bvh.closest_hits(simd, &rays, &own, &mut together).0
                 ));
-                assert_eq!((&a[..rays.len()], &b[..rays.len()]), (&first[..], &second[..]), "packet {packet}");
+                assert_eq!(
+                    (&a[..rays.len()], &b[..rays.len()]),
+                    (&first[..], &second[..]),
+                    "packet {packet}"
+                );
             }
             hits += second.iter().flatten().count();
         }

@@ -1,7 +1,8 @@
-//! Following rays that begin at surfaces, through any structure: mirrored and bent rays, and rays to lights.
+//! Following rays that begin at surfaces, through any structure: mirrored and bent rays, and rays
+//! to lights.
 //!
-//! The tree of boxes takes eight rays at a time (`packet.rs`), every other structure one after the other. A structure says which
-//! by implementing [`Follow`] in its own file.
+//! The tree of boxes takes eight rays at a time (`packet.rs`), every other structure one after the
+//! other. A structure says which by implementing [`Follow`] in its own file.
 //!
 //! In:   one to eight rays in the space of the structure's triangles. Out: triangles that they hit.
 //! Cost: that of the structure.
@@ -16,12 +17,18 @@ use vitral_math::lanes::{LANES, Simd};
 pub(crate) trait Follow: Structure + Sized {
     /// Shows `visitor` what one to eight rays meet, each triangle once.
     #[inline(always)]
-    fn follow<S: Simd>(&self, _: S, rays: &[Ray], visitor: &mut impl PacketVisitor, counters: &mut Counters) {
+    fn follow<S: Simd>(
+        &self,
+        _: S,
+        rays: &[Ray],
+        visitor: &mut impl PacketVisitor,
+        counters: &mut Counters,
+    ) {
         one_by_one(self, rays, visitor, counters);
     }
 
-    /// [`Structure::closest_hit_from`] for one to eight rays, which leave the facets `own`; and whether they hit something
-    /// else at the same place, as far as rounding tells.
+    /// [`Structure::closest_hit_from`] for one to eight rays, which leave the facets `own`; and
+    /// whether they hit something else at the same place, as far as rounding tells.
     #[inline(never)]
     fn closest_hits<S: Simd>(
         &self,
@@ -58,7 +65,12 @@ pub(crate) trait StructureUser {
 }
 
 /// Shows a packet's visitor what each ray of it meets.
-fn one_by_one<T: Structure>(structure: &T, rays: &[Ray], visitor: &mut impl PacketVisitor, counters: &mut Counters) {
+fn one_by_one<T: Structure>(
+    structure: &T,
+    rays: &[Ray],
+    visitor: &mut impl PacketVisitor,
+    counters: &mut Counters,
+) {
     let triangles = structure.triangles();
     let mut hit = Vec::new();
     for (lane, ray) in rays.iter().enumerate() {

@@ -1,18 +1,21 @@
 //! A uniform grid: space is cut into equal cells, and a ray walks from cell to cell.
 //!
-//! The walk is that of a line drawn on paper with squares, in three dimensions. For each axis we know at which parameter
-//! the ray meets the next wall across that axis; the smallest of the three numbers says which wall comes first, and one
-//! step along its axis leads into the next cell. No tree is searched, and cells come in the order of the ray, so that
-//! the walk can end at the first hit. The price is that a cell is as large where there is much as where there is little.
+//! The walk is that of a line drawn on paper with squares, in three dimensions. For each axis we
+//! know at which parameter the ray meets the next wall across that axis; the smallest of the three
+//! numbers says which wall comes first, and one step along its axis leads into the next cell. No
+//! tree is searched, and cells come in the order of the ray, so that the walk can end at the first
+//! hit. The price is that a cell is as large where there is much as where there is little.
 //!
-//! A ray may be a thin beam here (see [`super::beam`]). So each triangle is listed in all cells that it comes within a
-//! margin of, and a beam no wider than that finds all it meets by walking along its middle. A beam that is wider looks
-//! into the neighbouring cells, too, as many as it is wide.
+//! A ray may be a thin beam here (see [`super::beam`]). So each triangle is listed in all cells
+//! that it comes within a margin of, and a beam no wider than that finds all it meets by walking
+//! along its middle. A beam that is wider looks into the neighbouring cells, too, as many as it is
+//! wide.
 //!
 //! In:   triangles. Out: [`Grid`].
 //! Cost: linear to build, about [`DENSITY`] cells a triangle; a walk passes `O(n^(1/3))` cells.
-//! Source: [Amanatides & Woo 1987]; the number of cells after [Cleary & Wyvill 1988]. Departs from the first: the
-//!         parameter of a wall is computed anew, not by adding, so that rounding does not grow along the way.
+//! Source: [Amanatides & Woo 1987]; the number of cells after [Cleary & Wyvill 1988]. Departs from
+//!         the first: the parameter of a wall is computed anew, not by adding, so that rounding
+//!         does not grow along the way.
 
 use super::beam::Beam;
 use super::follow::Follow;
@@ -42,7 +45,8 @@ pub struct Grid {
     cell: Vec3,
     /// Cells along each axis.
     count: [i32; 3],
-    /// `entries[starts[c]..starts[c + 1]]` are the places of triangles in cell `c`; x runs fastest, then y.
+    /// `entries[starts[c]..starts[c + 1]]` are the places of triangles in cell `c`; x runs fastest,
+    /// then y.
     starts: Vec<u32>,
     entries: Vec<u32>,
     triangles: Arc<Triangles>,
@@ -101,8 +105,8 @@ impl Grid {
         Ok(grid)
     }
 
-    /// How large cells are: cubes, nearly, `DENSITY` a triangle, unless triangles are so large that each would be in
-    /// very many.
+    /// How large cells are: cubes, nearly, `DENSITY` a triangle, unless triangles are so large that
+    /// each would be in very many.
     fn layout(triangles: &Arc<Triangles>) -> Self {
         // Measure the scene.
         let n = triangles.count() as f32;
@@ -118,8 +122,10 @@ impl Grid {
             let largest = size.max_element();
             let relative = size / largest;
             let side = cube_root(relative.x * relative.y * relative.z / cells);
-            let count = [0, 1, 2].map(|k| (relative[k] / side + 0.5).floor().clamp(1.0, MAX_CELLS_ALONG_AN_AXIS));
-            let cell = size / Vec3::from_array(count) * (1.0 + 4.0 * MARGIN / Vec3::from_array(count));
+            let count = [0, 1, 2]
+                .map(|k| (relative[k] / side + 0.5).floor().clamp(1.0, MAX_CELLS_ALONG_AN_AXIS));
+            let cell =
+                size / Vec3::from_array(count) * (1.0 + 4.0 * MARGIN / Vec3::from_array(count));
             let grid = Self {
                 min: min - cell * (2.0 * MARGIN),
                 cell,
@@ -128,7 +134,8 @@ impl Grid {
                 entries: Vec::new(),
                 triangles: Arc::clone(triangles),
             };
-            let entries: u64 = triangles.corners.iter().map(|corners| grid.cells_of_box(corners)).sum();
+            let entries: u64 =
+                triangles.corners.iter().map(|corners| grid.cells_of_box(corners)).sum();
             if entries <= REFERENCES * triangles.count() as u64 || count == [1.0; 3] {
                 return grid;
             }
@@ -139,7 +146,9 @@ impl Grid {
     /// The cells, first and last on each axis, that come within a margin of the triangle's box.
     fn range(&self, corners: &[Vec3; 3]) -> [[i32; 2]; 3] {
         let [min, max] = bounds_of(corners);
-        let at = |p: f32, k: usize| ((p - self.min[k]) / self.cell[k]).floor().clamp(0.0, self.count[k] as f32 - 1.0);
+        let at = |p: f32, k: usize| {
+            ((p - self.min[k]) / self.cell[k]).floor().clamp(0.0, self.count[k] as f32 - 1.0)
+        };
         [0, 1, 2].map(|k| {
             let margin = self.cell[k] * MARGIN;
             [at(min[k] - margin, k) as i32, at(max[k] + margin, k) as i32]
@@ -150,19 +159,22 @@ impl Grid {
         self.range(corners).iter().map(|[first, last]| (last - first + 1) as u64).product()
     }
 
-    /// Calls `f` with the number of each cell that comes within a margin of the triangle's box and plane.
+    /// Calls `f` with the number of each cell that comes within a margin of the triangle's box and
+    /// plane.
     fn for_cells(&self, corners: &[Vec3; 3], mut f: impl FnMut(usize)) {
         let [xs, ys, zs] = self.range(corners);
         let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a);
         let reach = normal.abs().dot(self.cell) * (0.5 + MARGIN + 1.0 / (1 << 14) as f32);
         // The normal of a needle is mostly rounding.
-        let rounding = (b - a).abs().max_element() * (c - a).abs().max_element() * (1.0 / (1 << 19) as f32);
+        let rounding =
+            (b - a).abs().max_element() * (c - a).abs().max_element() * (1.0 / (1 << 19) as f32);
         let one = xs[0] == xs[1] && ys[0] == ys[1] && zs[0] == zs[1];
         for z in zs[0]..=zs[1] {
             for y in ys[0]..=ys[1] {
                 for x in xs[0]..=xs[1] {
-                    let middle = self.min + self.cell * (Vec3::new(x as f32, y as f32, z as f32) + 0.5) - a;
+                    let middle =
+                        self.min + self.cell * (Vec3::new(x as f32, y as f32, z as f32) + 0.5) - a;
                     let slack = rounding * (middle.abs().max_element() + self.cell.max_element());
                     // A normal that is zero or overflows decides nothing.
                     let beside = normal.dot(middle).abs() > reach + slack;
@@ -213,7 +225,8 @@ struct Walk {
 }
 
 impl Walk {
-    /// Where the middle of the beam comes into the grid, and the parameter there; `None` if it passes by.
+    /// Where the middle of the beam comes into the grid, and the parameter there; `None` if it
+    /// passes by.
     fn start(grid: &Grid, beam: &Beam) -> Option<(Self, f32)> {
         // How wide does the beam become before it leaves?
         let size = grid.cell * Vec3::from_array(grid.count.map(|c| c as f32));
@@ -230,7 +243,10 @@ impl Walk {
         let (mut enter, mut leave) = (0.0f32, f32::INFINITY);
         for k in 0..3 {
             let wide = reach[k] as f32 * grid.cell[k];
-            let (low, high) = (grid.min[k] - wide - beam.origin[k], grid.min[k] + size[k] + wide - beam.origin[k]);
+            let (low, high) = (
+                grid.min[k] - wide - beam.origin[k],
+                grid.min[k] + size[k] + wide - beam.origin[k],
+            );
             let d = beam.direction[k];
             if d == 0.0 {
                 if low > 0.0 || high < 0.0 {
@@ -275,7 +291,10 @@ impl Walk {
         let k = if x <= y && x <= z { 0 } else { 2 - usize::from(y <= z) };
         let near = self.next[k];
         self.at[k] += self.step[k];
-        if near == f32::INFINITY || self.at[k] < -self.reach[k] || self.at[k] >= grid.count[k] + self.reach[k] {
+        if near == f32::INFINITY
+            || self.at[k] < -self.reach[k]
+            || self.at[k] >= grid.count[k] + self.reach[k]
+        {
             return None;
         }
         self.next[k] = self.wall(grid, beam, k);
@@ -289,7 +308,9 @@ impl Walk {
             grid.show(self.at, near, visitor);
             return 1;
         }
-        let range = |k: usize| (self.at[k] - self.reach[k]).max(0)..(self.at[k] + self.reach[k] + 1).min(grid.count[k]);
+        let range = |k: usize| {
+            (self.at[k] - self.reach[k]).max(0)..(self.at[k] + self.reach[k] + 1).min(grid.count[k])
+        };
         let mut count = 0;
         for z in range(2) {
             for y in range(1) {
@@ -313,8 +334,13 @@ impl Structure for Grid {
     }
 
     fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32> {
-        let largest = |places: &[u32]| places.iter().map(|&p| value(p as usize)).fold(f32::NEG_INFINITY, f32::max);
-        self.starts.windows(2).map(|w| largest(&self.entries[w[0] as usize..w[1] as usize])).collect()
+        let largest = |places: &[u32]| {
+            places.iter().map(|&p| value(p as usize)).fold(f32::NEG_INFINITY, f32::max)
+        };
+        self.starts
+            .windows(2)
+            .map(|w| largest(&self.entries[w[0] as usize..w[1] as usize]))
+            .collect()
     }
 
     fn step(&self) -> Option<Step> {
@@ -325,7 +351,9 @@ impl Structure for Grid {
 
     fn names(&self, parts: &[u32]) -> Passed {
         let [columns, rows, _] = self.count.map(|c| c as u32);
-        Passed::Cells(parts.iter().map(|p| [p % columns, p / columns % rows, p / (columns * rows)]).collect())
+        Passed::Cells(
+            parts.iter().map(|p| [p % columns, p / columns % rows, p / (columns * rows)]).collect(),
+        )
     }
 
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64 {
@@ -405,20 +433,30 @@ mod tests {
         seen.sort_unstable();
         seen.dedup();
         assert_eq!(seen, [0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23]);
-        assert!(!walk(vec3(-1.0, 4.5, 0.5), Vec3::X, 0.6).is_empty(), "its middle passes the grid by");
+        assert!(
+            !walk(vec3(-1.0, 4.5, 0.5), Vec3::X, 0.6).is_empty(),
+            "its middle passes the grid by"
+        );
     }
 
     #[test]
     fn flat_huge_and_no_triangles_have_a_grid() {
         let build = |corners: Vec<[Vec3; 3]>| {
             let facets = (0..corners.len() as u32).collect();
-            let triangles = Arc::new(Triangles { extent: 1e30, corners, facets, ..Triangles::default() });
+            let triangles =
+                Arc::new(Triangles { extent: 1e30, corners, facets, ..Triangles::default() });
             Grid::build(&triangles, &Budget::default()).unwrap()
         };
         assert_eq!(build(Vec::new()).entries.len(), 0);
-        let flat = build((0..100).map(|i| [0.0, 1.0, 2.0].map(|k| vec3(i as f32 + k, k * k, 0.0))).collect());
+        let flat = build(
+            (0..100).map(|i| [0.0, 1.0, 2.0].map(|k| vec3(i as f32 + k, k * k, 0.0))).collect(),
+        );
         assert_eq!(flat.count[2], 1, "{:?}", flat.count);
-        let walls = build(vec![[vec3(-1e30, 0.0, 0.0), vec3(1e30, 1e30, 3.0), vec3(1.0, -1e30, -9.0)]; 1000]);
+        let walls =
+            build(vec![
+                [vec3(-1e30, 0.0, 0.0), vec3(1e30, 1e30, 3.0), vec3(1.0, -1e30, -9.0)];
+                1000
+            ]);
         assert!(walls.entries.len() as u64 <= REFERENCES * 1000);
     }
 }

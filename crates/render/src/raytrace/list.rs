@@ -1,5 +1,5 @@
-//! The list of triangles as a structure that is none: it shows every triangle to every ray, the `O(n p)` that other structures are
-//! measured against.
+//! The list of triangles as a structure that is none: it shows every triangle to every ray, the
+//! `O(n p)` that other structures are measured against.
 //!
 //! In:   triangles. Out: all of them.
 //! Cost: linear in the triangles for each ray.
@@ -57,7 +57,10 @@ mod tests {
         let middle = list.corners[0].iter().copied().sum::<Vec3>() / 3.0;
         let mut counters = Counters::default();
         let hit = list.closest_hit(&Ray::new(middle * 3.0, -middle), &mut counters);
-        assert!(hit.is_some_and(|(facet, t)| facet == list.facets[0] && (t - 2.0).abs() < 1e-5), "{hit:?}");
+        assert!(
+            hit.is_some_and(|(facet, t)| facet == list.facets[0] && (t - 2.0).abs() < 1e-5),
+            "{hit:?}"
+        );
         assert_eq!(counters, Counters { boxes: 0, triangles: 1 });
     }
 }

@@ -1,10 +1,11 @@
 //! Rays: what they meet, and the structures that find it.
 //!
-//! A structure knows where triangles are, so that a ray need not ask each of them: a tree of boxes round neighbours
-//! ([`bvh`]), a cube cut in eight again and again ([`octree`]), a box cut in two ([`bsp`]), a grid of equal cells ([`grid`]), a
-//! volume round each object ([`volumes`]), or nothing but the list (`list.rs`). Whoever follows a ray is a [`Visitor`]: the
-//! structure shows it the triangles near the ray, part by part, about the nearest first; the visitor says which parts it can do
-//! without. All structures give the same hits.
+//! A structure knows where triangles are, so that a ray need not ask each of them: a tree of boxes
+//! round neighbours ([`bvh`]), a cube cut in eight again and again ([`octree`]), a box cut in two
+//! ([`bsp`]), a grid of equal cells ([`grid`]), a volume round each object ([`volumes`]), or
+//! nothing but the list (`list.rs`). Whoever follows a ray is a [`Visitor`]: the structure shows it
+//! the triangles near the ray, part by part, about the nearest first; the visitor says which parts
+//! it can do without. All structures give the same hits.
 
 pub mod beam;
 pub mod bsp;

@@ -1,17 +1,19 @@
 //! A cube round the scene, cut in eight where there is much, and its parts again.
 //!
-//! Unlike a tree of boxes round triangles, an octree divides *space*: the eight children of a cell fill it and do not
-//! overlap, so a ray passes them one after the other. A triangle belongs to every leaf it reaches into; a visitor may see
-//! it several times. Empty cells cost nothing but their test. A cell is cut while more than a few triangles reach into
-//! it, unless its children together would hold many more than it does: no cut separates triangles that share a vertex.
+//! Unlike a tree of boxes round triangles, an octree divides *space*: the eight children of a cell
+//! fill it and do not overlap, so a ray passes them one after the other. A triangle belongs to
+//! every leaf it reaches into; a visitor may see it several times. Empty cells cost nothing but
+//! their test. A cell is cut while more than a few triangles reach into it, unless its children
+//! together would hold many more than it does: no cut separates triangles that share a vertex.
 //!
-//! Whether a triangle reaches into a cell is asked of its box and of its plane. A needle that lies aslant may be listed
-//! in cells that it only passes by, which costs a test and is not wrong.
+//! Whether a triangle reaches into a cell is asked of its box and of its plane. A needle that lies
+//! aslant may be listed in cells that it only passes by, which costs a test and is not wrong.
 //!
 //! In:   triangles. Out: [`Octree`].
 //! Cost: `O(n log n)` to build; at most [`REFERENCES`] entries a triangle, whatever the scene.
-//! Source: [Glassner 1984]. Departs from it: children are found through their parent, not by a hash of their names, and
-//!         tested against the ray one by one, since what is followed may be as wide as a block of pixels.
+//! Source: [Glassner 1984]. Departs from it: children are found through their parent, not by a hash
+//!         of their names, and tested against the ray one by one, since what is followed may be as
+//!         wide as a block of pixels.
 
 use super::beam::Beam;
 use super::follow::{Follow, StructureUser};
@@ -114,7 +116,9 @@ impl Octree {
     /// A limit of the budget.
     pub fn of(session: &Session, execution: &Execution) -> Result<Arc<Self>, Limit> {
         let triangles = Triangles::of(session, execution)?;
-        session.cache.get_or_build((), || Self::build(&triangles, &execution.workers, &execution.budget))
+        session
+            .cache
+            .get_or_build((), || Self::build(&triangles, &execution.workers, &execution.budget))
     }
 
     /// Bytes needed while a tree over this many triangles is built.
@@ -127,7 +131,11 @@ impl Octree {
     ///
     /// # Errors
     /// A limit of the budget.
-    pub fn build(triangles: &Arc<Triangles>, workers: &Workers, budget: &Budget) -> Result<Self, Limit> {
+    pub fn build(
+        triangles: &Arc<Triangles>,
+        workers: &Workers,
+        budget: &Budget,
+    ) -> Result<Self, Limit> {
         budget.check("building the octree")?;
         let count = triangles.count();
         let [min, max] = if count > 0 { triangles.bounds() } else { [Vec3::ZERO; 2] };
@@ -141,7 +149,13 @@ impl Octree {
 
 impl Build<'_> {
     /// The tree in `cube`, into which `inside` reach; its leaves may have `allowance` entries.
-    fn part(&self, inside: Vec<u32>, cube: Cube, depth: usize, allowance: usize) -> Result<Part, Limit> {
+    fn part(
+        &self,
+        inside: Vec<u32>,
+        cube: Cube,
+        depth: usize,
+        allowance: usize,
+    ) -> Result<Part, Limit> {
         // Emit a leaf for few triangles, at the greatest depth, or where overlap would outgrow the
         // cell.
         let leaf = |inside: Vec<u32>| Part {
@@ -177,7 +191,13 @@ impl Build<'_> {
         let children: Vec<_> = children.into_iter().enumerate().collect();
         let parts: Vec<Result<Part, Limit>> = if large {
             let slots: Vec<_> = children.into_iter().map(|c| Mutex::new(Some(c))).collect();
-            let take = |i: usize| slots[i].lock().expect("no thread panics while it takes").take().expect("taken once");
+            let take = |i: usize| {
+                slots[i]
+                    .lock()
+                    .expect("no thread panics while it takes")
+                    .take()
+                    .expect("taken once")
+            };
             self.workers.map(8, |i| grow(take(i)))
         } else {
             children.into_iter().map(grow).collect()
@@ -239,7 +259,8 @@ impl Structure for Octree {
         // Children stand behind their parent.
         for (i, cell) in self.cells.iter().enumerate().rev() {
             values[i] = if cell.children == 0 {
-                let entries = &self.entries[cell.first as usize..(cell.first + cell.count) as usize];
+                let entries =
+                    &self.entries[cell.first as usize..(cell.first + cell.count) as usize];
                 entries.iter().map(|&place| value(place as usize)).fold(f32::NEG_INFINITY, f32::max)
             } else {
                 let first = cell.children as usize;
@@ -301,7 +322,8 @@ impl Tree for Octree {
             let cell = &self.cells[index];
             // Visit the triangles of a leaf.
             if cell.children == 0 {
-                let entries = &self.entries[cell.first as usize..(cell.first + cell.count) as usize];
+                let entries =
+                    &self.entries[cell.first as usize..(cell.first + cell.count) as usize];
                 for &place in entries {
                     visitor.triangle(place as usize);
                 }
@@ -342,7 +364,10 @@ mod tests {
         assert!(cube.holds(&inside, 0.0));
         assert!((0..8).filter(|&i| cube.child(i).holds(&inside, 0.0)).eq([7]));
         let corner_cut = [vec3(4.0, 0.0, 0.0), vec3(0.0, 4.0, 0.0), vec3(0.0, 0.0, 4.0)];
-        assert!(!cube.holds(&corner_cut, 0.0), "its box reaches in, its plane x + y + z = 4 does not");
+        assert!(
+            !cube.holds(&corner_cut, 0.0),
+            "its box reaches in, its plane x + y + z = 4 does not"
+        );
         assert!(cube.holds(&corner_cut.map(|p| p * 0.7), 0.0));
     }
 
@@ -351,7 +376,12 @@ mod tests {
         let world = World::new(&builtin::scene("teapot").unwrap()).unwrap();
         let trees = [1, 3].map(|threads| {
             let workers = Workers::new(threads);
-            Octree::build(&Arc::new(Triangles::of_world(&world, &workers)), &workers, &Budget::default()).unwrap()
+            Octree::build(
+                &Arc::new(Triangles::of_world(&world, &workers)),
+                &workers,
+                &Budget::default(),
+            )
+            .unwrap()
         });
         assert!(trees[0] == trees[1], "threads change nothing");
         let tree = &trees[0];
@@ -366,7 +396,8 @@ mod tests {
             let entries = &tree.entries[cell.first as usize..(cell.first + cell.count) as usize];
             for (t, corners) in (0..).zip(&tree.triangles.corners) {
                 assert!(
-                    !corners.iter().any(|p| (*p - cube.middle).abs().max_element() < cube.half) || entries.contains(&t)
+                    !corners.iter().any(|p| (*p - cube.middle).abs().max_element() < cube.half)
+                        || entries.contains(&t)
                 );
             }
         }
@@ -374,7 +405,8 @@ mod tests {
 
     #[test]
     fn triangles_that_no_cut_separates_stay_together() {
-        let fan = |i: u16| [Vec3::ZERO, vec3(1.0, f32::from(i), 0.0), vec3(1.0, f32::from(i) + 1.0, 0.5)];
+        let fan =
+            |i: u16| [Vec3::ZERO, vec3(1.0, f32::from(i), 0.0), vec3(1.0, f32::from(i) + 1.0, 0.5)];
         let triangles = Arc::new(Triangles {
             extent: 500.0,
             corners: (0..400).map(fan).collect(),

@@ -1,12 +1,14 @@
 //! Eight rays that go down a tree of boxes together.
 //!
-//! Neighbours' rays to one light, or through one pane, meet mostly the same boxes. A node is fetched once for eight of them
-//! and tested in as many lanes; it is opened if one of them enters it, and below it only those count that do. So each ray is
-//! shown the triangles that it would be shown alone, whatever its companions are. Triangles are tested in lanes, too, as far
-//! as that is a matter of plain rounding; where it may decide, and for hits, [`Ray::hit`] has the word.
+//! Neighbours' rays to one light, or through one pane, meet mostly the same boxes. A node is
+//! fetched once for eight of them and tested in as many lanes; it is opened if one of them enters
+//! it, and below it only those count that do. So each ray is shown the triangles that it would be
+//! shown alone, whatever its companions are. Triangles are tested in lanes, too, as far as that is
+//! a matter of plain rounding; where it may decide, and for hits, [`Ray::hit`] has the word.
 //!
 //! In:   rays in the space of the tree's triangles. Out: triangles that they hit.
-//! Cost: that of one ray in eight lanes as long as they stay together; rays that part share nothing, and cost as if alone.
+//! Cost: that of one ray in eight lanes as long as they stay together; rays that part share
+//!       nothing, and cost as if alone.
 //! Source: \[Wald et al. 2001\].
 
 use super::beam::{self, BeamLines};
@@ -18,8 +20,8 @@ use vitral_math::lanes::{self, F32x8, LANES, Mask8, Simd};
 
 /// Follows the rays of a packet.
 pub(crate) trait PacketVisitor {
-    /// Whether what most rays enter first is wanted first. Else triangles come in the order of the tree, which is the same for
-    /// a ray whatever its companions are.
+    /// Whether what most rays enter first is wanted first. Else triangles come in the order of the
+    /// tree, which is the same for a ray whatever its companions are.
     const NEAREST_FIRST: bool;
 
     /// For each ray a parameter beyond which nothing is wanted; negative where nothing at all is.
@@ -39,7 +41,8 @@ pub(crate) struct Packet<'r, S: Simd> {
     /// Whether the upper and the lower one rise.
     rise: [[Mask8<S>; 2]; 3],
     origin: [F32x8<S>; 3],
-    /// The axes of all rays, renamed as in [`Ray`], and their shear; `None` if they run along different axes.
+    /// The axes of all rays, renamed as in [`Ray`], and their shear; `None` if they run along
+    /// different axes.
     sheared: Option<([usize; 3], [F32x8<S>; 2])>,
 }
 
@@ -60,7 +63,9 @@ impl<'r, S: Simd> Packet<'r, S> {
         // Gather origins and directions by component.
         let component = lanes::inlined(
             #[inline(always)]
-            |k: usize| [gathered(simd, rays, |r| r.origin[k]), gathered(simd, rays, |r| r.direction[k])],
+            |k: usize| {
+                [gathered(simd, rays, |r| r.origin[k]), gathered(simd, rays, |r| r.direction[k])]
+            },
         );
         let [x, y, z] = [component(0), component(1), component(2)];
 
@@ -73,15 +78,16 @@ impl<'r, S: Simd> Packet<'r, S> {
         let zero = F32x8::splat(simd, 0.0);
         let rises = lanes::inlined(
             #[inline(always)]
-            |lines: &BeamLines<S>| [lines.inverse_upper_slope.simd_gt(zero), lines.inverse_lower_slope.simd_gt(zero)],
+            |lines: &BeamLines<S>| {
+                [lines.inverse_upper_slope.simd_gt(zero), lines.inverse_lower_slope.simd_gt(zero)]
+            },
         );
 
         // Share the shear of triangle tests if all rays have one main axis.
         let axes = rays[0].axes;
-        let sheared = rays
-            .iter()
-            .all(|r| r.axes == axes)
-            .then(|| (axes, [gathered(simd, rays, |r| r.shear.x), gathered(simd, rays, |r| r.shear.y)]));
+        let sheared = rays.iter().all(|r| r.axes == axes).then(|| {
+            (axes, [gathered(simd, rays, |r| r.shear.x), gathered(simd, rays, |r| r.shear.y)])
+        });
         Self {
             rays,
             live: Mask8::from_bitmask(simd, (1 << rays.len()) - 1),
@@ -98,12 +104,15 @@ impl<'r, S: Simd> Packet<'r, S> {
         self.live
     }
 
-    /// For each ray a parameter that no place common to it and the box goes below; infinite if they are apart.
+    /// For each ray a parameter that no place common to it and the box goes below; infinite if they
+    /// are apart.
     #[inline(always)]
     pub(crate) fn enters(&self, simd: S, min: [f32; 3], max: [f32; 3]) -> F32x8<S> {
         let infinity = F32x8::splat(simd, f32::INFINITY);
         let (mut near, mut far) = (F32x8::splat(simd, 0.0), infinity);
-        for (k, (lines, &[upper_rises, lower_rises])) in self.lines.iter().zip(&self.rise).enumerate() {
+        for (k, (lines, &[upper_rises, lower_rises])) in
+            self.lines.iter().zip(&self.rise).enumerate()
+        {
             let at_min = (-lines.upper_start + min[k]) * lines.inverse_upper_slope;
             let at_max = (-lines.lower_start + max[k]) * lines.inverse_lower_slope;
             near = lanes::Lanes::max(near, upper_rises.select(at_min, -infinity));
@@ -115,7 +124,8 @@ impl<'r, S: Simd> Packet<'r, S> {
         near.simd_le(far * (1.0 + beam::ROUNDING)).select(near, infinity)
     }
 
-    /// The lanes among `wanted` whose ray may meet a triangle: what a ray's own edge functions deny without doubt is left out.
+    /// The lanes among `wanted` whose ray may meet a triangle: what a ray's own edge functions deny
+    /// without doubt is left out.
     #[inline(always)]
     fn may_meet(&self, corners: &[Vec3; 3], wanted: Mask8<S>) -> u64 {
         let Some(([x, y, z], shear)) = self.sheared else { return wanted.to_bitmask() };
@@ -186,8 +196,8 @@ impl PacketVisitor for ClosestHits<'_> {
     }
 }
 
-/// What `follow` shows of one to eight rays, which leave the facets `own`: their first hits, and whether they hit something else
-/// at the same place.
+/// What `follow` shows of one to eight rays, which leave the facets `own`: their first hits, and
+/// whether they hit something else at the same place.
 #[inline(always)]
 pub(super) fn closest_hits<'a>(
     triangles: &'a Triangles,

@@ -2,8 +2,8 @@
 
 use vitral_math::lanes::LANES;
 
-/// Eight boxes side by side: for each axis the least and the largest coordinates. Nothing meets a box whose least are
-/// greater than its largest.
+/// Eight boxes side by side: for each axis the least and the largest coordinates. Nothing meets a
+/// box whose least are greater than its largest.
 pub type Boxes = [[[f32; LANES]; 2]; 3];
 
 /// Something that boxes are tested against: a ray, a beam, rays through a block of pixels.

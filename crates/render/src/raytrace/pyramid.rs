@@ -1,14 +1,18 @@
-//! The rays through a block of pixels as one probe: the pyramid (or, in a parallel view, the prism) that holds them all.
+//! The rays through a block of pixels as one probe: the pyramid (or, in a parallel view, the prism)
+//! that holds them all.
 //!
-//! Rays through neighbouring pixels meet the same boxes. Instead of testing a box against each of them, it is tested
-//! against the four planes round them: a box that lies behind one of the planes is met by none. For a plane only the
-//! corner that lies farthest along its normal counts, and the four planes are tested at the same time, one a lane. Two
-//! more lanes hold the direction of view: how near the box begins, and whether it lies behind the eye altogether. Of eight
-//! boxes, each plane is asked in turn, one box a lane.
+//! Rays through neighbouring pixels meet the same boxes. Instead of testing a box against each of
+//! them, it is tested against the four planes round them: a box that lies behind one of the planes
+//! is met by none. For a plane only the corner that lies farthest along its normal counts, and the
+//! four planes are tested at the same time, one a lane. Two more lanes hold the direction of view:
+//! how near the box begins, and whether it lies behind the eye altogether. Of eight boxes, each
+//! plane is asked in turn, one box a lane.
 //!
-//! In:   planes and boxes in one space. Out: the smallest distance along the direction of view at which they may meet.
+//! In:   planes and boxes in one space. Out: the smallest distance along the direction of view at
+//!       which they may meet.
 //! Cost: six products on eight lanes for a box, 18 for eight.
-//! Source: packets of rays after [Wald et al. 2001], the test of boxes after [Gribb & Hartmann 2001].
+//! Source: packets of rays after [Wald et al. 2001], the test of boxes after [Gribb & Hartmann
+//!         2001].
 
 use super::{Boxes, Probe};
 use vitral_math::lanes::prelude::*;
@@ -50,15 +54,23 @@ struct Side {
     normal: [f32; 3],
     /// `normal · p + offset >= 0` inside, with slack for rounding.
     offset: f32,
-    /// Where a box lies farthest along the normal, on each axis: 0 at its least coordinate, 1 at its largest.
+    /// Where a box lies farthest along the normal, on each axis: 0 at its least coordinate, 1 at
+    /// its largest.
     corner: [usize; 3],
 }
 
 impl<S: Simd> Pyramid<S> {
-    /// The pyramid inside `sides` and, unless the view is parallel, ahead of `eye`; no coordinate of a box is larger
-    /// than `extent`.
+    /// The pyramid inside `sides` and, unless the view is parallel, ahead of `eye`; no coordinate
+    /// of a box is larger than `extent`.
     #[inline(always)]
-    pub fn new(simd: S, sides: &[Plane; 4], forward: DVec3, eye: DVec3, perspective: bool, extent: f64) -> Self {
+    pub fn new(
+        simd: S,
+        sides: &[Plane; 4],
+        forward: DVec3,
+        eye: DVec3,
+        perspective: bool,
+        extent: f64,
+    ) -> Self {
         // Round the planes outwards to single precision.
         let mut normal = [[0.0f32; LANES]; 3];
         let mut offset = [0.0f32; LANES];
@@ -135,7 +147,8 @@ impl<S: Simd> Probe for Pyramid<S> {
             lanes::Lanes::min(lanes::Lanes::min(value(2), value(3)), value(AHEAD)),
         );
         // A box that is not there has no corner within.
-        let there = F32x8::from_slice(simd, &boxes[0][0]).simd_le(F32x8::from_slice(simd, &boxes[0][1]));
+        let there =
+            F32x8::from_slice(simd, &boxes[0][0]).simd_le(F32x8::from_slice(simd, &boxes[0][1]));
 
         // Return where each box begins and which are met.
         let met = lowest.simd_ge(zero).to_bitmask() & there.to_bitmask();
@@ -151,7 +164,8 @@ mod tests {
 
     #[test]
     fn boxes_are_met_or_lie_beside_or_behind() {
-        // The eye at (0, 0, 1) looks along z; the sides are |x| <= t / 4 and |y| <= t / 2 at distance t.
+        // The eye at (0, 0, 1) looks along z; the sides are |x| <= t / 4 and |y| <= t / 2 at
+        // distance t.
         let (eye, forward) = (dvec3(0.0, 0.0, 1.0), DVec3::Z);
         let side = |normal: DVec3| Plane { normal, offset: -normal.dot(eye) };
         let sides = [
@@ -172,7 +186,10 @@ mod tests {
             assert!(enters([0.7, -0.1, 3.0], [0.9, 0.1, 4.0]).is_some(), "{name}");
             assert_eq!(enters([-0.1, 1.6, 3.0], [0.1, 1.7, 4.0]), None, "{name}: above");
             assert_eq!(enters([-9.0, -9.0, -4.0], [9.0, 9.0, 0.9]), None, "{name}: behind the eye");
-            assert!(enters([-9.0; 3], [9.0; 3]).is_some_and(|near| near <= 0.0), "{name}: round the eye");
+            assert!(
+                enters([-9.0; 3], [9.0; 3]).is_some_and(|near| near <= 0.0),
+                "{name}: round the eye"
+            );
         }
     }
 
@@ -180,7 +197,12 @@ mod tests {
     fn eight_boxes_are_met_as_each_by_itself() {
         let (eye, forward) = (dvec3(0.5, 0.0, -3.0), dvec3(0.1, -0.2, 1.0).normalize());
         let side = |normal: DVec3| Plane { normal, offset: -normal.dot(eye) };
-        let sides = [dvec3(1.0, 0.1, 0.3), dvec3(-1.0, 0.0, 0.3), dvec3(0.0, 1.0, 0.4), dvec3(0.2, -1.0, 0.4)];
+        let sides = [
+            dvec3(1.0, 0.1, 0.3),
+            dvec3(-1.0, 0.0, 0.3),
+            dvec3(0.0, 1.0, 0.4),
+            dvec3(0.2, -1.0, 0.4),
+        ];
         let sides = sides.map(side);
         let (mut met, mut apart) = (0, 0);
         for (name, level) in available_levels() {
@@ -190,7 +212,9 @@ mod tests {
                     let mut boxes = [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3];
                     for lane in 0..LANES - 1 {
                         for (k, axis) in boxes.iter_mut().enumerate() {
-                            let at = |step: u32| ((turn * 8 + lane as u32) * step % 89) as f32 / 22.0 - 2.0;
+                            let at = |step: u32| {
+                                ((turn * 8 + lane as u32) * step % 89) as f32 / 22.0 - 2.0
+                            };
                             axis[0][lane] = at([13, 29, 53][k]);
                             axis[1][lane] = axis[0][lane] + at([7, 37, 11][k]).abs();
                         }

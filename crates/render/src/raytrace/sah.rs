@@ -1,14 +1,15 @@
 //! Where to cut a tree of boxes: the surface area heuristic.
 //!
-//! A good tree separates large empty places early. A ray that meets a node meets a child in proportion to the child's surface,
-//! so the expected cost of a cut is the sum over its sides of area times triangles. The triangles' centres are sorted into a
-//! few bins an axis and the borders between bins tried; of a large node, all three axes are filled in one pass over its
-//! triangles. Large halves are built at the same time.
+//! A good tree separates large empty places early. A ray that meets a node meets a child in
+//! proportion to the child's surface, so the expected cost of a cut is the sum over its sides of
+//! area times triangles. The triangles' centres are sorted into a few bins an axis and the borders
+//! between bins tried; of a large node, all three axes are filled in one pass over its triangles.
+//! Large halves are built at the same time.
 //!
 //! In:   triangles. Out: the nodes of a tree, and the triangles in the order of its leaves.
 //! Cost: `O(n log n)`; 32 bytes a node.
-//! Source: [MacDonald & Booth 1990], bins after [Wald 2007]. Departs from them: below a certain depth cuts are at the median,
-//!       which bounds the stack.
+//! Source: [MacDonald & Booth 1990], bins after [Wald 2007]. Departs from them: below a certain
+//!       depth cuts are at the median, which bounds the stack.
 
 use super::triangles::{Triangles, bounds_of};
 use vitral_exec::{Budget, Limit, Workers};
@@ -87,7 +88,8 @@ pub(super) fn area<const N: usize>(min: &[f32; N], max: &[f32; N]) -> f32 {
     x * y + y * z + z * x
 }
 
-/// The triangles of a node, in no order yet, the box round them, and the box round their doubled centres.
+/// The triangles of a node, in no order yet, the box round them, and the box round their doubled
+/// centres.
 struct Span<'a> {
     items: &'a mut [Item],
     /// The place of the first in the tree.
@@ -97,8 +99,8 @@ struct Span<'a> {
     depth: usize,
 }
 
-/// Builds the nodes of a tree, none for no triangles, and gives the order of the triangles in its leaves. The result does not
-/// depend on the number of workers.
+/// Builds the nodes of a tree, none for no triangles, and gives the order of the triangles in its
+/// leaves. The result does not depend on the number of workers.
 pub(super) fn build(
     triangles: &Triangles,
     workers: &Workers,
@@ -140,9 +142,10 @@ impl<'a> Span<'a> {
     /// Cuts in two, or not where a leaf is cheaper.
     fn cut(self) -> Result<[Span<'a>; 2], Self> {
         let (axis, size) = self.widest();
-        let cut = (self.items.len() > 1 && size > 0.0 && size.is_finite() && self.depth < SAH_DEPTH)
-            .then(|| BinCut::cheapest(&self))
-            .flatten();
+        let cut =
+            (self.items.len() > 1 && size > 0.0 && size.is_finite() && self.depth < SAH_DEPTH)
+                .then(|| BinCut::cheapest(&self))
+                .flatten();
         if self.items.len() <= LEAF {
             let leaf = self.items.len() as f32;
             let split = cut.as_ref().map_or(f32::INFINITY, |c| VISIT + c.cost / self.bounds.area());
@@ -221,7 +224,8 @@ impl Bins {
     /// The bin, by rounding: adding 2^23 leaves a whole number in the last bits.
     #[inline(always)]
     fn of(&self, center: [f32; 4]) -> [usize; 4] {
-        let at: [f32; 4] = std::array::from_fn(|k| (center[k] - self.min[k]) * self.scale[k] + 8_388_608.0);
+        let at: [f32; 4] =
+            std::array::from_fn(|k| (center[k] - self.min[k]) * self.scale[k] + 8_388_608.0);
         at.map(|v| v.to_bits() as usize & (BINS - 1))
     }
 }
@@ -264,7 +268,8 @@ impl BinCut {
     }
 }
 
-/// The cost (area times triangles, both sides), the first bin of the right side, and the sides' boxes of the best cut.
+/// The cost (area times triangles, both sides), the first bin of the right side, and the sides'
+/// boxes of the best cut.
 fn cheapest_border(bins: &[(Bounds, u32)]) -> Option<(f32, usize, [Bounds; 2])> {
     // Sweep from the right, remembering each right side, then from the left.
     let mut rights = [(0.0f32, Bounds::EMPTY); BINS];
@@ -298,7 +303,8 @@ fn split(span: Span<'_>, workers: &Workers, budget: &Budget) -> Result<Vec<BoxNo
     let bounds = span.bounds;
     // More items than a leaf holds are always cut.
     let [left, right] = span.cut().unwrap_or_else(|span| span.halves(0));
-    let (left, right) = workers.join(|| split(left, workers, budget), || split(right, workers, budget));
+    let (left, right) =
+        workers.join(|| split(left, workers, budget), || split(right, workers, budget));
     let (left, right) = (left?, right?);
     let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
     nodes.push(node(&bounds, 0, left.len() + 1));
@@ -323,5 +329,10 @@ fn split_small(span: Span<'_>, nodes: &mut Vec<BoxNode>) {
 
 fn node(bounds: &Bounds, count: usize, link: usize) -> BoxNode {
     let three = |v: [f32; 4]| [v[0], v[1], v[2]];
-    BoxNode { min: three(bounds.min), max: three(bounds.max), count: count as u32, link: link as u32 }
+    BoxNode {
+        min: three(bounds.min),
+        max: three(bounds.max),
+        count: count as u32,
+        link: link as u32,
+    }
 }

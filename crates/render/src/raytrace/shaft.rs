@@ -1,11 +1,13 @@
 //! Shafts: the space between a box and a point, as planes round it.
 //!
-//! Whatever hides a box from a light, or a part of it, reaches into the convex hull of both. From each of the three
-//! axes the box is a rectangle and the light a point; the two lines from the point that touch the rectangle are planes of the
-//! hull seen edge-on. With the faces of the box that point away from the light they bound the shaft. A light
-//! infinitely far away is a direction: the shaft has no end.
+//! Whatever hides a box from a light, or a part of it, reaches into the convex hull of both. From
+//! each of the three axes the box is a rectangle and the light a point; the two lines from the
+//! point that touch the rectangle are planes of the hull seen edge-on. With the faces of the box
+//! that point away from the light they bound the shaft. A light infinitely far away is a direction:
+//! the shaft has no end.
 //!
-//! In:   a box or a triangle and a point, homogeneous: `w` is 1, or 0 for a direction. Out: a probe for trees of boxes.
+//! In:   a box or a triangle and a point, homogeneous: `w` is 1, or 0 for a direction. Out: a probe
+//!       for trees of boxes.
 //! Cost: up to twelve products and comparisons for each box.
 //! Source: [Haines & Wallace 1991].
 
@@ -35,7 +37,10 @@ impl Block {
     pub fn new(min: DVec3, max: DVec3) -> Self {
         // Narrowing must not make it smaller.
         let wider = |c: f64, sign: f64| (c + sign * c.abs() * ROUNDING) as f32;
-        Self { min: min.to_array().map(|c| wider(c, -1.0)), max: max.to_array().map(|c| wider(c, 1.0)) }
+        Self {
+            min: min.to_array().map(|c| wider(c, -1.0)),
+            max: max.to_array().map(|c| wider(c, 1.0)),
+        }
     }
 }
 
@@ -52,7 +57,8 @@ fn way(from: DVec3, to: DVec4) -> DVec3 {
 }
 
 impl Shaft {
-    /// The places between a box and `light`. No coordinate that is asked about is larger than `extent`.
+    /// The places between a box and `light`. No coordinate that is asked about is larger than
+    /// `extent`.
     pub fn between(min: DVec3, max: DVec3, light: DVec4, extent: f32) -> Self {
         let mut shaft = Self { planes: Vec::with_capacity(12) };
         // Add the sides of the box that face the light, or planes through the light.
@@ -106,7 +112,8 @@ impl Shaft {
         }
         // The third side, unless it is at infinity.
         if let Some(finite) = others.iter().find(|o| o.w > 0.0) {
-            let (from, to) = (finite.truncate(), if *finite == others[0] { others[1] } else { others[0] });
+            let (from, to) =
+                (finite.truncate(), if *finite == others[0] { others[1] } else { others[0] });
             let side = normal.cross(way(from, to)).normalize_or_zero();
             shaft.push(if side.dot(base - from) < 0.0 { -side } else { side }, from, extent);
         }
@@ -164,23 +171,48 @@ mod tests {
 
     #[test]
     fn a_shaft_holds_what_lies_between() {
-        let to_point = Shaft::between(-DVec3::ONE, DVec3::ONE, DVec4::new(0.0, 10.0, 0.0, 1.0), 20.0);
-        assert!(meets(&to_point, [0.0, 5.0, 0.0]) && meets(&to_point, [0.4, 5.0, -0.4]) && meets(&to_point, [0.0; 3]));
-        assert!(!meets(&to_point, [0.9, 5.0, 0.0]) && !meets(&to_point, [0.0, 5.0, -0.9]), "beside");
-        assert!(!meets(&to_point, [0.0, 10.3, 0.0]) && !meets(&to_point, [0.0, -1.3, 0.0]), "before and behind");
-        let to_infinity = Shaft::between(-DVec3::ONE, DVec3::ONE, DVec4::new(1.0, 1.0, 0.0, 0.0), 200.0);
+        let to_point =
+            Shaft::between(-DVec3::ONE, DVec3::ONE, DVec4::new(0.0, 10.0, 0.0, 1.0), 20.0);
+        assert!(
+            meets(&to_point, [0.0, 5.0, 0.0])
+                && meets(&to_point, [0.4, 5.0, -0.4])
+                && meets(&to_point, [0.0; 3])
+        );
+        assert!(
+            !meets(&to_point, [0.9, 5.0, 0.0]) && !meets(&to_point, [0.0, 5.0, -0.9]),
+            "beside"
+        );
+        assert!(
+            !meets(&to_point, [0.0, 10.3, 0.0]) && !meets(&to_point, [0.0, -1.3, 0.0]),
+            "before and behind"
+        );
+        let to_infinity =
+            Shaft::between(-DVec3::ONE, DVec3::ONE, DVec4::new(1.0, 1.0, 0.0, 0.0), 200.0);
         assert!(meets(&to_infinity, [99.0, 99.0, 0.9]) && meets(&to_infinity, [100.5, 99.0, 0.0]));
-        assert!(!meets(&to_infinity, [99.0, 102.3, 0.0]) && !meets(&to_infinity, [99.0, 99.0, 1.3]));
+        assert!(
+            !meets(&to_infinity, [99.0, 102.3, 0.0]) && !meets(&to_infinity, [99.0, 99.0, 1.3])
+        );
         assert!(!meets(&to_infinity, [-5.0, -5.0, 0.0]));
         // Side by side, with one that is not there.
-        let places = [[99.0, 99.0, 0.9], [99.0, 102.3, 0.0], [1.0, 1.5, -0.5], [5.0; 3], [0.0; 3], [100.5, 99.0, 0.0]];
+        let places = [
+            [99.0, 99.0, 0.9],
+            [99.0, 102.3, 0.0],
+            [1.0, 1.5, -0.5],
+            [5.0; 3],
+            [0.0; 3],
+            [100.5, 99.0, 0.0],
+        ];
         let mut boxes = [[[f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]]; 3];
         for (lane, place) in places.iter().enumerate() {
             for (k, axis) in boxes.iter_mut().enumerate() {
                 (axis[0][lane], axis[1][lane]) = (place[k] - 0.1, place[k] + 0.1);
             }
         }
-        let each = places.iter().enumerate().map(|(lane, &p)| u64::from(meets(&to_infinity, p)) << lane).sum::<u64>();
+        let each = places
+            .iter()
+            .enumerate()
+            .map(|(lane, &p)| u64::from(meets(&to_infinity, p)) << lane)
+            .sum::<u64>();
         assert_eq!(to_infinity.enters_each(&boxes).1, each);
         assert_eq!(each, 0b110101);
         // The light in the box: nothing but the box.
@@ -200,8 +232,16 @@ mod tests {
         let other = [DVec4::new(4.0, 0.0, 0.0, 1.0), DVec4::new(0.0, 0.0, 1.0, 0.0)];
         let strip = Shaft::triangle(DVec3::ZERO, other, 100.0);
         assert!(meets(&strip, [2.0, 0.0, 50.0]) && meets(&strip, [0.0, 0.05, 0.0]));
-        assert!(!meets(&strip, [2.0, 0.2, 5.0]) && !meets(&strip, [4.2, 0.0, 5.0]) && !meets(&strip, [2.0, 0.0, -0.2]));
-        let small = Shaft::triangle(dvec3(1.0, 1.0, 1.0), [other[0], DVec4::new(0.0, 0.0, 2.0, 1.0)], 100.0);
+        assert!(
+            !meets(&strip, [2.0, 0.2, 5.0])
+                && !meets(&strip, [4.2, 0.0, 5.0])
+                && !meets(&strip, [2.0, 0.0, -0.2])
+        );
+        let small = Shaft::triangle(
+            dvec3(1.0, 1.0, 1.0),
+            [other[0], DVec4::new(0.0, 0.0, 2.0, 1.0)],
+            100.0,
+        );
         assert!(meets(&small, [1.6, 0.3, 1.0]) && !meets(&small, [4.0, 0.5, 2.0]));
     }
 }

@@ -16,7 +16,8 @@ pub trait Visitor {
     fn done(&self, near: f32) -> bool;
     /// A triangle near the ray, by its place in [`Structure::triangles`].
     fn triangle(&mut self, place: usize);
-    /// The ray goes through `part`: a node that is opened, a cell of a grid whether or not something is in it.
+    /// The ray goes through `part`: a node that is opened, a cell of a grid whether or not
+    /// something is in it.
     #[inline(always)]
     fn passes(&mut self, _part: usize) {}
 }
@@ -62,19 +63,25 @@ pub trait Structure: Sync {
     /// The names of parts, those above a part before it.
     fn names(&self, parts: &[u32]) -> Passed;
 
-    /// Shows `visitor` the triangles of all parts that the beam meets and it does not skip. Returns the number of boxes
-    /// or cells looked at.
+    /// Shows `visitor` the triangles of all parts that the beam meets and it does not skip. Returns
+    /// the number of boxes or cells looked at.
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64;
 
-    /// The first triangle that the ray (less [`Triangles::center`]) meets: facet and parameter; the lower facet of two
-    /// at the same place. Adds what it took to `counters`.
+    /// The first triangle that the ray (less [`Triangles::center`]) meets: facet and parameter; the
+    /// lower facet of two at the same place. Adds what it took to `counters`.
     fn closest_hit(&self, ray: &Ray, counters: &mut Counters) -> Option<(u32, f32)> {
-        self.closest_hit_from(ray, u32::MAX, counters).map(|(place, t)| (self.triangles().facets[place], t))
+        self.closest_hit_from(ray, u32::MAX, counters)
+            .map(|(place, t)| (self.triangles().facets[place], t))
     }
 
-    /// [`Self::closest_hit`] of a ray that leaves the facet `own`, which it cannot meet again: the triangle's place in
-    /// [`Self::triangles`] and the parameter.
-    fn closest_hit_from(&self, ray: &Ray, own: u32, counters: &mut Counters) -> Option<(usize, f32)> {
+    /// [`Self::closest_hit`] of a ray that leaves the facet `own`, which it cannot meet again: the
+    /// triangle's place in [`Self::triangles`] and the parameter.
+    fn closest_hit_from(
+        &self,
+        ray: &Ray,
+        own: u32,
+        counters: &mut Counters,
+    ) -> Option<(usize, f32)> {
         let triangles = self.triangles();
         let slack = ray.rounding(triangles.extent);
         let mut closest = ClosestHit { triangles, ray, own, slack, best: None, tests: 0 };
@@ -86,14 +93,15 @@ pub trait Structure: Sync {
 
 /// A structure of boxes within boxes, which any probe can go down.
 pub trait Tree: Structure {
-    /// Builds, with all of `workers`, what probes but packets of rays go down, unless it is there. Without this, who goes down it
-    /// first builds it alone.
+    /// Builds, with all of `workers`, what probes but packets of rays go down, unless it is there.
+    /// Without this, who goes down it first builds it alone.
     fn widen(&self, _: &Workers) {}
 
     /// The box round everything; `None` if there is nothing.
     fn root(&self) -> Option<[[f32; 3]; 2]>;
 
-    /// [`Tree::descend`] below the root, which the probe enters at `near`; boxes looked at besides the root.
+    /// [`Tree::descend`] below the root, which the probe enters at `near`; boxes looked at besides
+    /// the root.
     fn descend_from(&self, near: f32, probe: &impl Probe, visitor: &mut impl Visitor) -> u64;
 
     /// [`Structure::traverse`] with any probe.
@@ -109,7 +117,11 @@ pub trait Tree: Structure {
 }
 
 /// The step that tells the space of a structure, a box less [`Triangles::center`].
-pub(crate) fn space_step(triangles: &Triangles, [min, max]: [Vec3; 2], cells: Option<[u32; 3]>) -> Step {
+pub(crate) fn space_step(
+    triangles: &Triangles,
+    [min, max]: [Vec3; 2],
+    cells: Option<[u32; 3]>,
+) -> Step {
     let [min, max] = [min, max].map(|p| (p.as_dvec3() + triangles.center).to_array());
     Step::Space { min, max, cells }
 }

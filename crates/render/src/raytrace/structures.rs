@@ -1,10 +1,11 @@
 //! The table of structures that find the triangles near a ray, and the one that was chosen.
 //!
-//! A new structure is its file and its row here. The row names its type; `AnyStructure` is one of these types, and code that is
-//! written for any structure runs with the type itself, so that choosing costs one branch for each packet of rays.
+//! A new structure is its file and its row here. The row names its type; `AnyStructure` is one of
+//! these types, and code that is written for any structure runs with the type itself, so that
+//! choosing costs one branch for each packet of rays.
 //!
-//! What a ray is told is the same with every structure: each triangle that it hits, once. Only the order may be another, and who
-//! asks must not depend on it.
+//! What a ray is told is the same with every structure: each triangle that it hits, once. Only the
+//! order may be another, and who asks must not depend on it.
 //!
 //! In:   rays in the space of the structure's triangles. Out: triangles that they hit.
 //! Cost: that of the structure.
@@ -184,7 +185,11 @@ impl AnyStructure {
     }
 
     /// The session's.
-    pub(crate) fn new(acceleration: Acceleration, session: &Session, execution: &Execution) -> Result<Self, Limit> {
+    pub(crate) fn new(
+        acceleration: Acceleration,
+        session: &Session,
+        execution: &Execution,
+    ) -> Result<Self, Limit> {
         (row(acceleration).build)(session, execution)
     }
 

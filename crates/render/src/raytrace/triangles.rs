@@ -1,8 +1,8 @@
 //! The triangles of a scene in one list: what all structures are built over.
 //!
-//! There is one flat list, not one for each mesh with instances on top: no matrix stands between ray and triangle, at
-//! the price of memory where a mesh is used often. Coordinates are relative to the middle of the scene, so that 32 bits
-//! are enough wherever in the world it lies.
+//! There is one flat list, not one for each mesh with instances on top: no matrix stands between
+//! ray and triangle, at the price of memory where a mesh is used often. Coordinates are relative to
+//! the middle of the scene, so that 32 bits are enough wherever in the world it lies.
 //!
 //! In:   the world. Out: [`Triangles`], world space less [`Triangles::center`].
 //! Cost: linear; 40 bytes a triangle.
@@ -32,8 +32,9 @@ pub(super) fn bounds_of(corners: &[Vec3; 3]) -> [Vec3; 2] {
     [a.min(b).min(c), a.max(b).max(c)]
 }
 
-/// Whether a triangle reaches into the box with this middle and half its size, or nearly so: asked of the triangle's box and
-/// plane, so that a needle that lies aslant may be said to reach into boxes that it only passes by.
+/// Whether a triangle reaches into the box with this middle and half its size, or nearly so: asked
+/// of the triangle's box and plane, so that a needle that lies aslant may be said to reach into
+/// boxes that it only passes by.
 pub(super) fn reaches(corners: &[Vec3; 3], middle: Vec3, half: Vec3) -> bool {
     let [min, max] = bounds_of(corners);
     if (min - middle).cmpgt(half).any() || (max - middle).cmplt(-half).any() {
@@ -47,7 +48,8 @@ pub(super) fn reaches(corners: &[Vec3; 3], middle: Vec3, half: Vec3) -> bool {
     let to_plane = a - middle;
     let distance = normal.dot(to_plane).abs();
     let edges = (b - a).abs().max_element() * (c - a).abs().max_element();
-    let rounding = edges * (to_plane.abs().max_element() + half.max_element()) * (1.0 / (1 << 19) as f32);
+    let rounding =
+        edges * (to_plane.abs().max_element() + half.max_element()) * (1.0 / (1 << 19) as f32);
     let beside = distance > reach + rounding;
     !beside
 }
@@ -62,7 +64,8 @@ impl Triangles {
         triangles * 80
     }
 
-    /// All triangles of the world. Those with a corner that is not finite are left out, as everywhere.
+    /// All triangles of the world. Those with a corner that is not finite are left out, as
+    /// everywhere.
     pub fn of_world(world: &World, workers: &Workers) -> Self {
         let center = Self::center_of(world);
         let per_instance = workers.map(world.instances.len(), |i| placed(world, i, center));
@@ -100,12 +103,19 @@ impl Triangles {
         all.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[min, max], &p| [min.min(p), max.max(p)])
     }
 
-    /// Whether a hit, its triangle's place and its parameter, is met before the `best` so far by a ray that leaves the facet
-    /// `own`: of equally near ones the lower facet is.
+    /// Whether a hit, its triangle's place and its parameter, is met before the `best` so far by a
+    /// ray that leaves the facet `own`: of equally near ones the lower facet is.
     #[inline(always)]
-    pub(super) fn replaces(&self, best: Option<(usize, f32)>, (place, t): (usize, f32), own: u32) -> bool {
+    pub(super) fn replaces(
+        &self,
+        best: Option<(usize, f32)>,
+        (place, t): (usize, f32),
+        own: u32,
+    ) -> bool {
         let facet = self.facets[place];
-        facet != own && best.is_none_or(|(p, nearest)| t < nearest || (t == nearest && facet < self.facets[p]))
+        facet != own
+            && best
+                .is_none_or(|(p, nearest)| t < nearest || (t == nearest && facet < self.facets[p]))
     }
 
     /// The same triangles in another order.

@@ -1,12 +1,16 @@
-//! A volume round each object: a ray that misses it misses the object, and asks none of its triangles.
+//! A volume round each object: a ray that misses it misses the object, and asks none of its
+//! triangles.
 //!
-//! The volume is tested first. A box along the axes is the cheapest to test; one that is turned to fit lies closer round what
-//! is long and lies askew; a sphere is the same from all sides. Whatever meets the volume has all of the object's triangles to
-//! ask, so this pays for scenes of many small objects. For large ones volumes stand within volumes: [`super::bvh`].
+//! The volume is tested first. A box along the axes is the cheapest to test; one that is turned to
+//! fit lies closer round what is long and lies askew; a sphere is the same from all sides. Whatever
+//! meets the volume has all of the object's triangles to ask, so this pays for scenes of many small
+//! objects. For large ones volumes stand within volumes: [`super::bvh`].
 //!
 //! In:   triangles, and where each object's begin. Out: [`Volumes`].
-//! Cost: `O(n)` to build; a test for each object and ray, and the triangles of those objects whose volumes are met.
-//! Source: [Clark 1976], [Rubin & Whitted 1980]; how the volumes are made, after [Gottschalk, Lin & Manocha 1996] and [Ritter 1990].
+//! Cost: `O(n)` to build; a test for each object and ray, and the triangles of those objects whose
+//!       volumes are met.
+//! Source: [Clark 1976], [Rubin & Whitted 1980]; how the volumes are made, after [Gottschalk, Lin &
+//!         Manocha 1996] and [Ritter 1990].
 
 use super::beam::{Beam, ROUNDING};
 use super::follow::Follow;
@@ -61,9 +65,9 @@ impl Volumes {
     pub fn of(session: &Session, shape: Shape, execution: &Execution) -> Result<Arc<Self>, Limit> {
         let triangles = Triangles::of(session, execution)?;
         let first_facets = session.world.instances.iter().map(|instance| instance.first_facet);
-        session
-            .cache
-            .get_or_build(shape, || Self::build(&triangles, first_facets, shape, &execution.workers, &execution.budget))
+        session.cache.get_or_build(shape, || {
+            Self::build(&triangles, first_facets, shape, &execution.workers, &execution.budget)
+        })
     }
 
     /// Bytes needed while volumes are built: an object's corners in double precision.
@@ -71,7 +75,8 @@ impl Volumes {
         triangles * (3 * size_of::<DVec3>() + size_of::<Volume>()) as u64
     }
 
-    /// Puts volumes round objects. `first_facets` are those with which each begins, in order; `triangles` are in the order of facets.
+    /// Puts volumes round objects. `first_facets` are those with which each begins, in order;
+    /// `triangles` are in the order of facets.
     ///
     /// # Errors
     /// A limit of the budget.
@@ -90,7 +95,8 @@ impl Volumes {
         starts.dedup();
         let slack = triangles.extent * (1.0 / (1 << 19) as f32);
         let volumes = workers.map(starts.len() - 1, |object| {
-            let corners = triangles.corners[starts[object] as usize..starts[object + 1] as usize].as_flattened();
+            let corners = triangles.corners[starts[object] as usize..starts[object + 1] as usize]
+                .as_flattened();
             let points: Vec<DVec3> = corners.iter().map(|p| p.as_dvec3()).collect();
             Volume::round(&points, shape, slack)
         });
@@ -108,18 +114,22 @@ impl Volume {
                 Self::Aligned([min.to_array(), max.to_array()])
             }
             Shape::Oriented => {
-                let fitted = Obb::from_points(points).expect("an object has triangles, and they are finite");
-                let axes = [fitted.axes.x_axis, fitted.axes.y_axis, fitted.axes.z_axis].map(|axis| axis.as_vec3());
+                let fitted =
+                    Obb::from_points(points).expect("an object has triangles, and they are finite");
+                let axes = [fitted.axes.x_axis, fitted.axes.y_axis, fitted.axes.z_axis]
+                    .map(|axis| axis.as_vec3());
                 Self::Oriented(fitted.center.as_vec3(), axes, fitted.half.as_vec3() + slack)
             }
             Shape::Sphere => {
-                let fitted = Sphere::from_points(points).expect("an object has triangles, and they are finite");
+                let fitted = Sphere::from_points(points)
+                    .expect("an object has triangles, and they are finite");
                 Self::Sphere(fitted.center, fitted.radius + f64::from(slack))
             }
         }
     }
 
-    /// A parameter that no place common to the volume and the beam goes below; `None` if they are apart.
+    /// A parameter that no place common to the volume and the beam goes below; `None` if they are
+    /// apart.
     fn enters(&self, beam: &Beam) -> Option<f32> {
         match self {
             Self::Aligned([min, max]) => beam.enters(*min, *max),
@@ -136,8 +146,10 @@ impl Volume {
             }
             Self::Sphere(center, radius) => {
                 // |origin + direction t - center| <= radius + width + growth t, where the beam is as wide as its corners reach.
-                let (origin, direction) = (beam.origin.as_dvec3() - *center, beam.direction.as_dvec3());
-                let (reach, growth) = (radius + beam.width.as_dvec3().length(), beam.growth.as_dvec3().length());
+                let (origin, direction) =
+                    (beam.origin.as_dvec3() - *center, beam.direction.as_dvec3());
+                let (reach, growth) =
+                    (radius + beam.width.as_dvec3().length(), beam.growth.as_dvec3().length());
                 let a = direction.length_squared() - growth * growth;
                 let b = origin.dot(direction) - reach * growth;
                 let c = origin.length_squared() - reach * reach;
@@ -162,12 +174,15 @@ impl Structure for Volumes {
     }
 
     fn largest(&self, value: &dyn Fn(usize) -> f32) -> Vec<f32> {
-        let of = |object: &[u32]| (object[0]..object[1]).map(|p| value(p as usize)).fold(f32::NEG_INFINITY, f32::max);
+        let of = |object: &[u32]| {
+            (object[0]..object[1]).map(|p| value(p as usize)).fold(f32::NEG_INFINITY, f32::max)
+        };
         self.starts.windows(2).map(of).collect()
     }
 
     fn step(&self) -> Option<Step> {
-        (self.triangles.count() > 0).then(|| space_step(&self.triangles, self.triangles.bounds(), None))
+        (self.triangles.count() > 0)
+            .then(|| space_step(&self.triangles, self.triangles.bounds(), None))
     }
 
     fn names(&self, parts: &[u32]) -> Passed {
@@ -176,8 +191,10 @@ impl Structure for Volumes {
 
     /// The object whose volume is nearest comes first.
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64 {
-        let entered = |(object, volume): (usize, &Volume)| volume.enters(beam).map(|near| (near, object));
-        let mut met: Vec<(f32, usize)> = self.volumes.iter().enumerate().filter_map(entered).collect();
+        let entered =
+            |(object, volume): (usize, &Volume)| volume.enters(beam).map(|near| (near, object));
+        let mut met: Vec<(f32, usize)> =
+            self.volumes.iter().enumerate().filter_map(entered).collect();
         met.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (near, object) in met {
             if visitor.done(near) {
@@ -185,7 +202,8 @@ impl Structure for Volumes {
             }
             if !visitor.skips(object, near) {
                 visitor.passes(object);
-                (self.starts[object]..self.starts[object + 1]).for_each(|place| visitor.triangle(place as usize));
+                (self.starts[object]..self.starts[object + 1])
+                    .for_each(|place| visitor.triangle(place as usize));
             }
         }
         self.volumes.len() as u64
@@ -202,16 +220,22 @@ mod tests {
         // A rod along the diagonal of x and y.
         let rod: Vec<DVec3> = [-1.0, 1.0]
             .into_iter()
-            .flat_map(|s| [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1]].map(|[a, b]| DVec3::new(s * 5.0 + a, s * 5.0 - a, b)))
+            .flat_map(|s| {
+                [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1]]
+                    .map(|[a, b]| DVec3::new(s * 5.0 + a, s * 5.0 - a, b))
+            })
             .collect();
         let down = |x: f32, y: f32| {
             let ray = super::super::intersect::Ray::new(vec3(x, y, 10.0), vec3(0.0, 0.0, -2.0));
             Beam::around(&ray, 10.0)
         };
         let met = |x: f32, y: f32| {
-            [Shape::Aligned, Shape::Oriented, Shape::Sphere].map(|s| Volume::round(&rod, s, 1e-5).enters(&down(x, y)))
+            [Shape::Aligned, Shape::Oriented, Shape::Sphere]
+                .map(|s| Volume::round(&rod, s, 1e-5).enters(&down(x, y)))
         };
-        let near = |t: Option<f32>, expected: f32| assert!(t.is_some_and(|t| (t - expected).abs() < 1e-3), "{t:?}");
+        let near = |t: Option<f32>, expected: f32| {
+            assert!(t.is_some_and(|t| (t - expected).abs() < 1e-3), "{t:?}")
+        };
         let [aligned, oriented, sphere] = met(0.0, 0.0);
         near(aligned, 4.95);
         near(oriented, 4.95);

@@ -1,14 +1,16 @@
 //! A tree of boxes with eight boxes a node.
 //!
-//! What goes down a tree alone, be it a ray or the pyramid round a block of pixels, has nothing to fill lanes with, so
-//! here they hold what it is asked about. Of the tree with two children a node, the largest nodes below the root are
-//! opened until there are eight; their boxes stand side by side and are tested at once, and those below each make a node
-//! again. Whatever holds eight triangles or fewer is a leaf. For a ray its triangles are tested at once, too, as far as
-//! that is a matter of plain rounding; [`Ray::hit`] has the last word.
+//! What goes down a tree alone, be it a ray or the pyramid round a block of pixels, has nothing to
+//! fill lanes with, so here they hold what it is asked about. Of the tree with two children a node,
+//! the largest nodes below the root are opened until there are eight; their boxes stand side by
+//! side and are tested at once, and those below each make a node again. Whatever holds eight
+//! triangles or fewer is a leaf. For a ray its triangles are tested at once, too, as far as that is
+//! a matter of plain rounding; [`Ray::hit`] has the last word.
 //!
-//! In:   a tree of boxes with its triangles; rays and other probes in their space. Out: what a ray meets first, or the
-//!       triangles near a probe.
-//! Cost: linear to build; 60 to 100 bytes a triangle. A ray opens about a third as many nodes as with two children each.
+//! In:   a tree of boxes with its triangles; rays and other probes in their space. Out: what a ray
+//!       meets first, or the triangles near a probe.
+//! Cost: linear to build; 60 to 100 bytes a triangle. A ray opens about a third as many nodes as
+//!       with two children each.
 //! Source: \[Wald, Benthin & Boulos 2008\].
 
 use super::beam::{self, BeamLines};
@@ -26,7 +28,8 @@ use vitral_math::lanes::{self, F32x8, LANES, Simd};
 const LEAF: u32 = 1 << 31;
 /// Leaves that are filled at once.
 const CHUNK: usize = 1024;
-/// What may wait without memory being asked for. A ray seldom meets more than a few boxes of a node.
+/// What may wait without memory being asked for. A ray seldom meets more than a few boxes of a
+/// node.
 const WAITING: usize = 64;
 
 /// Eight boxes; those that are not there are met by nothing.
@@ -49,7 +52,8 @@ pub(super) struct Wide {
     places: Vec<[u32; 2]>,
 }
 
-/// What is below boxes that were met, and where those are entered; the nearest of a node's boxes come first.
+/// What is below boxes that were met, and where those are entered; the nearest of a node's boxes
+/// come first.
 struct Waiting {
     list: [(u32, f32); WAITING],
     count: usize,
@@ -57,7 +61,8 @@ struct Waiting {
     more: Vec<(u32, f32)>,
 }
 
-/// The beam round a ray on one axis, the same in all lanes: where it enters boxes, and where it leaves them.
+/// The beam round a ray on one axis, the same in all lanes: where it enters boxes, and where it
+/// leaves them.
 #[derive(Clone, Copy)]
 struct Slab<S: Simd> {
     /// The side by which it enters, 0 for the least coordinates.
@@ -107,11 +112,14 @@ impl Wide {
     fn grow(&mut self, tree: &[sah::BoxNode], runs: &[[u32; 2]], top: usize) -> u32 {
         // Open the largest inner child until there are eight.
         let is_leaf = |i: usize| (runs[i][1] - runs[i][0]) as usize <= LANES;
-        let member = |i: usize| (i, if is_leaf(i) { f32::NEG_INFINITY } else { area(&tree[i].min, &tree[i].max) });
+        let member = |i: usize| {
+            (i, if is_leaf(i) { f32::NEG_INFINITY } else { area(&tree[i].min, &tree[i].max) })
+        };
         let mut members = [member(top); LANES];
         let mut count = 1;
         while count < LANES {
-            let largest = (1..count).fold(0, |m, other| if members[other].1 > members[m].1 { other } else { m });
+            let largest = (1..count)
+                .fold(0, |m, other| if members[other].1 > members[m].1 { other } else { m });
             let (i, _) = members[largest];
             if is_leaf(i) {
                 break;
@@ -134,7 +142,8 @@ impl Wide {
             };
             let node = &mut self.nodes[number];
             for k in 0..3 {
-                (node.bounds[k][0][lane], node.bounds[k][1][lane]) = (tree[i].min[k], tree[i].max[k]);
+                (node.bounds[k][0][lane], node.bounds[k][1][lane]) =
+                    (tree[i].min[k], tree[i].max[k]);
             }
             node.below[lane] = below;
         }
@@ -212,7 +221,8 @@ impl Wide {
         }
     }
 
-    /// The number, as a part, of what is below a box: nodes come first, those above before those below, then leaves.
+    /// The number, as a part, of what is below a box: nodes come first, those above before those
+    /// below, then leaves.
     #[inline(always)]
     fn part(&self, below: u32) -> usize {
         if below & LEAF == 0 { below as usize } else { self.nodes.len() + (below & !LEAF) as usize }
@@ -227,9 +237,14 @@ impl Wide {
         }
         // Nodes stand before those below them.
         for (i, node) in self.nodes.iter().enumerate().rev() {
-            let there = node.below.iter().zip(&node.bounds[0][0]).filter(|(_, least)| **least < f32::INFINITY);
-            let below =
-                there.map(|(&b, _)| if b & LEAF == 0 { nodes[b as usize] } else { leaves[(b & !LEAF) as usize] });
+            let there = node
+                .below
+                .iter()
+                .zip(&node.bounds[0][0])
+                .filter(|(_, least)| **least < f32::INFINITY);
+            let below = there.map(|(&b, _)| {
+                if b & LEAF == 0 { nodes[b as usize] } else { leaves[(b & !LEAF) as usize] }
+            });
             nodes[i] = below.fold(f32::NEG_INFINITY, f32::max);
         }
         values
@@ -237,7 +252,12 @@ impl Wide {
 
     /// [`super::Tree::descend_from`]: the nearest of a node's boxes come first.
     #[inline(always)]
-    pub(super) fn descend_from(&self, near: f32, probe: &impl Probe, visitor: &mut impl Visitor) -> u64 {
+    pub(super) fn descend_from(
+        &self,
+        near: f32,
+        probe: &impl Probe,
+        visitor: &mut impl Visitor,
+    ) -> u64 {
         // Begin with the root.
         let mut visited = 0;
         let mut waiting = Waiting::new();
@@ -253,7 +273,8 @@ impl Wide {
                     visited += LANES as u64;
                     waiting.add(&node.below, &near, met);
                 } else {
-                    // No closure, which would not have the visitor's instruction set if it were not inlined.
+                    // No closure, which would not have the visitor's instruction set if it were not
+                    // inlined.
                     for place in range(&self.places[(below & !LEAF) as usize]) {
                         visitor.triangle(place);
                     }
@@ -313,14 +334,17 @@ fn slabs<S: Simd>(simd: S, ray: &Ray, extent: f32) -> [Slab<S>; 3] {
     );
     let lines = BeamLines::around(simd, axes(ray.origin), axes(ray.direction), extent);
     let (upper, lower) = (lines.inverse_upper_slope, lines.inverse_lower_slope);
-    // The upper line meets a side sooner than the lower one if it rises. If only it rises, the beam is flat and gets infinitely
-    // far before it leaves.
+    // The upper line meets a side sooner than the lower one if it rises. If only it rises, the beam
+    // is flat and gets infinitely far before it leaves.
     let rises = upper.simd_gt(F32x8::splat(simd, 0.0));
     let sides = !rises.to_bitmask();
 
     // Choose the lines that enter and leave first, with rounding outwards.
     let (start, inverse) = (
-        [rises.select(lines.upper_start, lines.lower_start), rises.select(lines.lower_start, lines.upper_start)],
+        [
+            rises.select(lines.upper_start, lines.lower_start),
+            rises.select(lines.lower_start, lines.upper_start),
+        ],
         [rises.select(upper, lower), rises.select(lanes::Lanes::abs(lower), upper)],
     );
     let inverse = [inverse[0] * (1.0 - beam::ROUNDING), inverse[1] * (1.0 + beam::ROUNDING)];
@@ -409,16 +433,19 @@ mod tests {
             let origin = vec3(turn(13), turn(29), turn(53)) * list.extent * 2.0;
             // Some go along an axis, or in a plane of two.
             let aim = vec3(turn(71), turn(37), turn(11)) * list.extent * 0.5;
-            let direction =
-                (aim - origin) * [vec3(1.0, 1.0, 1.0), vec3(0.0, 1.0, 1.0), vec3(0.0, 0.0, 1.0)][i as usize % 3];
+            let direction = (aim - origin)
+                * [vec3(1.0, 1.0, 1.0), vec3(0.0, 1.0, 1.0), vec3(0.0, 0.0, 1.0)][i as usize % 3];
             let ray = Ray::new(origin, direction);
             let expected = list.closest_hit(&ray, &mut Counters::default());
             hits += usize::from(expected.is_some());
             for (name, level) in available_levels() {
                 let counters = &mut Counters::default();
-                let found =
-                    dispatch!(level, simd => wide.closest_hit(simd, bvh.triangles(), (&ray, u32::MAX), counters));
-                assert_eq!(found.map(|(place, t)| (bvh.triangles().facets[place], t)), expected, "{name}, {ray:?}");
+                let found = dispatch!(level, simd => wide.closest_hit(simd, bvh.triangles(), (&ray, u32::MAX), counters));
+                assert_eq!(
+                    found.map(|(place, t)| (bvh.triangles().facets[place], t)),
+                    expected,
+                    "{name}, {ray:?}"
+                );
             }
         }
         assert!(hits > 20, "{hits}");
@@ -436,7 +463,11 @@ mod tests {
             next = end;
         }
         assert_eq!(next as usize, list.count());
-        let below = wide.nodes.iter().flat_map(|n| n.bounds[0][0].iter().zip(n.below)).filter(|(x, _)| x.is_finite());
+        let below = wide
+            .nodes
+            .iter()
+            .flat_map(|n| n.bounds[0][0].iter().zip(n.below))
+            .filter(|(x, _)| x.is_finite());
         assert_eq!(below.count(), wide.leaves.len() + wide.nodes.len() - 1);
     }
 }

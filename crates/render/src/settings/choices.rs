@@ -45,7 +45,8 @@ pub enum Global {
     /// None: surfaces are lit by lights alone.
     #[default]
     None,
-    /// Mirror images and refraction; shadows are those of [`ShadowSettings`](super::ShadowSettings).
+    /// Mirror images and refraction; shadows are those of
+    /// [`ShadowSettings`](super::ShadowSettings).
     RayTrace,
     /// What matt surfaces send to each other.
     Radiosity,
@@ -55,11 +56,13 @@ pub enum Global {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Environment {
-    /// The image of the [`Surroundings`](crate::Surroundings) if there is one, else the sky, for pictures in the default lights; who
-    /// makes pictures says which these are, and here it is nothing.
+    /// The image of the [`Surroundings`](crate::Surroundings) if there is one, else the sky, for
+    /// pictures in the default lights; who makes pictures says which these are, and here it is
+    /// nothing.
     #[default]
     Auto,
-    /// A soft sky over a darker ground ([`Sky`](vitral_light::Sky)), which turns with the camera like the default lights.
+    /// A soft sky over a darker ground ([`Sky`](vitral_light::Sky)), which turns with the camera
+    /// like the default lights.
     Sky,
     /// Nothing: they show highlights alone.
     None,
@@ -72,8 +75,8 @@ pub enum GroundShadow {
     /// Nothing: there is no ground.
     #[default]
     None,
-    /// A soft shadow in the default lights, else that of the lights; who makes pictures says which these are, and here it is that of
-    /// the lights.
+    /// A soft shadow in the default lights, else that of the lights; who makes pictures says which
+    /// these are, and here it is that of the lights.
     Auto,
     /// What the model keeps of the light of all lights that cast shadows.
     Lights,
@@ -99,8 +102,9 @@ pub enum ColorSpace {
     /// Light is computed linearly and encoded as sRGB.
     #[default]
     Srgb,
-    /// Intensities go straight to bytes, as in the course's arithmetic. Textures, coefficients and colours of vertices are
-    /// taken as the file has them: sRGB in OBJ, PLY and OFF files, linear factors and `COLOR_0` in glTF.
+    /// Intensities go straight to bytes, as in the course's arithmetic. Textures, coefficients and
+    /// colours of vertices are taken as the file has them: sRGB in OBJ, PLY and OFF files, linear
+    /// factors and `COLOR_0` in glTF.
     Raw,
 }
 
@@ -111,8 +115,8 @@ pub enum Transparency {
     /// `opacity` of the surface, the rest of what is behind.
     #[default]
     Linear,
-    /// Less where the surface turns away from the viewer: with the material's `kt` and `kt-min` it is
-    /// `kt_min + (kt - kt_min) (1 - (1 - |nz|)^m)`.
+    /// Less where the surface turns away from the viewer: with the material's `kt` and `kt-min` it
+    /// is `kt_min + (kt - kt_min) (1 - (1 - |nz|)^m)`.
     Kay,
     /// Tinted by the material's filter; highlights stay whole.
     Filtered,

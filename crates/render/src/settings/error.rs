@@ -88,7 +88,9 @@ pub enum SettingsError {
     #[error("{0} shadow maps per light: 1 to 8 are possible")]
     ShadowCascades(u32),
     /// A way to count shadow volumes, but none.
-    #[error("a way to count shadow volumes is chosen, but the shadow algorithm is `{0}`: choose volume")]
+    #[error(
+        "a way to count shadow volumes is chosen, but the shadow algorithm is `{0}`: choose volume"
+    )]
     VolumeCounting(Shadows),
     /// The polygons of a shadow algorithm are wanted, but it works with none.
     #[error("the shadow algorithm `{shadows}` does not work with polygons: choose {choices}")]
@@ -99,7 +101,9 @@ pub enum SettingsError {
         choices: String,
     },
     /// The polygons of a visibility algorithm are wanted, but it comes to none.
-    #[error("the visibility algorithm `{visibility}` finds samples, not polygons: choose {choices}")]
+    #[error(
+        "the visibility algorithm `{visibility}` finds samples, not polygons: choose {choices}"
+    )]
     Polygons {
         /// Asked for.
         visibility: Visibility,
@@ -145,7 +149,9 @@ pub enum SettingsError {
         choices: String,
     },
     /// Pictures of passes are wanted, but there are none.
-    #[error("the transparency order `{0}` has no passes to show: choose multi-pass, and neither rays nor brute-force")]
+    #[error(
+        "the transparency order `{0}` has no passes to show: choose multi-pass, and neither rays nor brute-force"
+    )]
     Passes(&'static str),
     /// The buffers of the two-buffer z-buffer are wanted, but there are none.
     #[error("the transparency order `{0}` has no two buffers to show: choose two-buffer")]

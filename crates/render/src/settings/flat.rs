@@ -1,7 +1,8 @@
-//! Settings in files: one flat object, `{"width": 640, "shadows": "ray", …}`, with kebab-case names.
+//! Settings in files: one flat object, `{"width": 640, "shadows": "ray", …}`, with kebab-case
+//! names.
 //!
-//! The table below is the one place that knows which name stands for which setting. A name may be left out; an unknown one is an
-//! error that lists all.
+//! The table below is the one place that knows which name stands for which setting. A name may be
+//! left out; an unknown one is an error that lists all.
 
 use super::Settings;
 use serde::de::{Error, MapAccess, Visitor};
@@ -99,7 +100,8 @@ impl<'de> Visitor<'de> for Object {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Settings, A::Error> {
         let (mut settings, mut seen) = (Settings::default(), BTreeSet::new());
         while let Some(name) = map.next_key::<String>()? {
-            if let Some(twice) = NAMES.iter().find(|known| **known == name && !seen.insert(**known)) {
+            if let Some(twice) = NAMES.iter().find(|known| **known == name && !seen.insert(**known))
+            {
                 return Err(A::Error::duplicate_field(twice));
             }
             settings.set(&name, &mut map)?;

@@ -1,8 +1,9 @@
 //! What the user may choose, in one plain structure that command line, files and other faces share.
 //!
-//! Settings stand in groups: what the picture is like, who finds visible surfaces, and how light, shadows, transparency and light
-//! from other surfaces are computed. In files they are one flat object (`flat.rs`). Algorithms are chosen by a [`Choice`] of a row of
-//! the [`registry`](crate::registry), closed sets by an enum.
+//! Settings stand in groups: what the picture is like, who finds visible surfaces, and how light,
+//! shadows, transparency and light from other surfaces are computed. In files they are one flat
+//! object (`flat.rs`). Algorithms are chosen by a [`Choice`] of a row of the
+//! [`registry`](crate::registry), closed sets by an enum.
 
 mod choices;
 mod error;
@@ -10,8 +11,8 @@ mod flat;
 mod picture;
 
 pub use choices::{
-    ColorSpace, Environment, Global, GroundShadow, Interpolation, Lines, Shading, Terminator, Transparency,
-    VolumeCounting,
+    ColorSpace, Environment, Global, GroundShadow, Interpolation, Lines, Shading, Terminator,
+    Transparency, VolumeCounting,
 };
 pub use error::SettingsError;
 pub use picture::{Background, Channels, DepthCue, PictureSettings};
@@ -34,16 +35,19 @@ pub struct Settings {
     pub picture: PictureSettings,
     /// What finds the visible surface at each sample.
     pub visibility: Visibility,
-    /// What finds the triangles near a ray; only where there are rays: of algorithms that cast them, of shadows by rays, of
-    /// ray tracing. `None`: the default structure for them.
+    /// What finds the triangles near a ray; only where there are rays: of algorithms that cast
+    /// them, of shadows by rays, of ray tracing. `None`: the default structure for them.
     pub acceleration: Option<Acceleration>,
-    /// Kinds of coherence that the visibility algorithm uses; `None`: all that it exploits. They do not change the picture.
+    /// Kinds of coherence that the visibility algorithm uses; `None`: all that it exploits. They do
+    /// not change the picture.
     pub coherence: Option<Vec<Coherence>>,
-    /// Bits of an integer depth, `8..=32`, of the z-buffer alone: it shows what few of them do. `None`: depths are of floating point.
+    /// Bits of an integer depth, `8..=32`, of the z-buffer alone: it shows what few of them do.
+    /// `None`: depths are of floating point.
     pub depth_bits: Option<u32>,
     /// What is thrown away early.
     pub cull: Culling,
-    /// Materials that show their front alone are seen from behind, too: for views from lights, to which every face is solid.
+    /// Materials that show their front alone are seen from behind, too: for views from lights, to
+    /// which every face is solid.
     pub shows_all_backs: bool,
     /// How light is reflected, and where that is computed.
     pub shading: ShadingSettings,
@@ -82,10 +86,11 @@ pub struct ShadingSettings {
     pub interpolation: Interpolation,
     /// What polished surfaces mirror of their surroundings.
     pub environment: Environment,
-    /// Rays by which a point finds out how much of the ambient light, and of the light of the surroundings, what is near keeps away,
-    /// `1..=4096`; `None`: all of it arrives.
+    /// Rays by which a point finds out how much of the ambient light, and of the light of the
+    /// surroundings, what is near keeps away, `1..=4096`; `None`: all of it arrives.
     pub ambient_occlusion: Option<u32>,
-    /// How far away such things may be, in the world's unit, above 0; `None`: half the radius of the scene's bounding sphere.
+    /// How far away such things may be, in the world's unit, above 0; `None`: half the radius of
+    /// the scene's bounding sphere.
     pub occlusion_radius: Option<f64>,
     /// Light sources on; off shows each surface's own colour.
     pub lighting: bool,
@@ -131,7 +136,8 @@ pub struct ShadowSettings {
     pub light_samples: u32,
     /// Texels along the longer side of a shadow map, `16..=8192`.
     pub map_size: u32,
-    /// Shadow maps that share what is near the viewer of a large scene, for each light, `1..=8`; 1: one for the whole scene.
+    /// Shadow maps that share what is near the viewer of a large scene, for each light, `1..=8`; 1:
+    /// one for the whole scene.
     pub cascades: u32,
     /// Where shadow volumes are counted from; only for them. `None`: [`VolumeCounting::ZFail`].
     pub volume_counting: Option<VolumeCounting>,
@@ -181,12 +187,14 @@ pub struct TransparencySettings {
     pub model: Transparency,
     /// In which order transparent surfaces are combined.
     pub order: TransparencyOrder,
-    /// The exponent `m` of [`Transparency::Kay`], above 0: the larger, the thinner the glass; 2 or 3 are usual.
+    /// The exponent `m` of [`Transparency::Kay`], above 0: the larger, the thinner the glass; 2 or
+    /// 3 are usual.
     pub kay_exponent: f32,
     /// Rays a pixel that each translucent surface scatters, about, `1..=4096`.
     pub scatter_samples: u32,
-    /// Memory in bytes for the transparent layers of a picture. When it is full, the layers behind others are dropped,
-    /// and the picture comes with a warning. Two for each sample are always allowed.
+    /// Memory in bytes for the transparent layers of a picture. When it is full, the layers behind
+    /// others are dropped, and the picture comes with a warning. Two for each sample are always
+    /// allowed.
     pub layer_memory: u64,
 }
 
@@ -210,7 +218,8 @@ pub struct GlobalSettings {
     pub model: Global,
     /// How often a ray may be mirrored or bent, `1..=64`.
     pub max_depth: u32,
-    /// Longest edge of a patch, in the world's unit, above 0; `None`: a sixteenth of the scene's diagonal.
+    /// Longest edge of a patch, in the world's unit, above 0; `None`: a sixteenth of the scene's
+    /// diagonal.
     pub patch_size: Option<f64>,
     /// Patches that may send light, at least 1; `None`: until no more than
     /// [`RESIDUAL`](crate::radiosity::RESIDUAL) of it is left.
@@ -318,7 +327,8 @@ impl Settings {
         self
     }
 
-    /// How much light a transparent surface lets through, and in which order such surfaces are combined.
+    /// How much light a transparent surface lets through, and in which order such surfaces are
+    /// combined.
     #[must_use]
     pub fn with_transparency(mut self, model: Transparency, order: TransparencyOrder) -> Self {
         (self.transparency.model, self.transparency.order) = (model, order);
@@ -360,7 +370,8 @@ impl Settings {
 
     /// Whether anything casts rays that a structure serves.
     pub fn casts_rays(&self) -> bool {
-        let for_ambient = self.shading.ambient_occlusion.is_some() || self.shadows.ground != GroundShadow::None;
+        let for_ambient =
+            self.shading.ambient_occlusion.is_some() || self.shadows.ground != GroundShadow::None;
         self.visibility.casts_rays
             || self.shadows.algorithm.casts_rays
             || for_ambient
@@ -390,13 +401,18 @@ impl Settings {
         let asked = self.coherence.iter().flatten();
         if let Some(kind) = asked.copied().find(|kind| !visibility.coherence.contains(kind)) {
             let choices: Vec<_> = visibility.coherence.iter().map(|kind| kind.name()).collect();
-            return Err(SettingsError::Coherence { visibility, kind: kind.name(), choices: choices.join(", ") });
+            return Err(SettingsError::Coherence {
+                visibility,
+                kind: kind.name(),
+                choices: choices.join(", "),
+            });
         }
         Ok(())
     }
 
     fn check_order(&self) -> Result<(), SettingsError> {
-        let (transparency, channels, visibility) = (&self.transparency, &self.picture.channels, self.visibility);
+        let (transparency, channels, visibility) =
+            (&self.transparency, &self.picture.channels, self.visibility);
         let (order, traces) = (transparency.order, self.global.model == Global::RayTrace);
         if !(1..=4096).contains(&transparency.scatter_samples) {
             return Err(SettingsError::ScatterSamples(transparency.scatter_samples));
@@ -411,7 +427,10 @@ impl Settings {
             return Err(SettingsError::Buffers(order.name));
         }
         if order.needs_list && !visibility.makes_list() {
-            return Err(SettingsError::ListOrder { visibility, choices: Visibility::names(|row| row.makes_list()) });
+            return Err(SettingsError::ListOrder {
+                visibility,
+                choices: Visibility::names(|row| row.makes_list()),
+            });
         }
         Ok(())
     }
@@ -442,7 +461,14 @@ mod tests {
         let error = listed.check().unwrap_err().to_string();
         assert!(error.contains("`z-buffer` does not: choose painter, bsp"), "{error}");
         assert!(listed.with_visibility(Visibility::BSP).check().is_ok());
-        let structure = Settings::default().with_acceleration(Acceleration::GRID).check().unwrap_err().to_string();
-        assert!(structure.contains("choose the visibility ray-cast, the shadows ray"), "{structure}");
+        let structure = Settings::default()
+            .with_acceleration(Acceleration::GRID)
+            .check()
+            .unwrap_err()
+            .to_string();
+        assert!(
+            structure.contains("choose the visibility ray-cast, the shadows ray"),
+            "{structure}"
+        );
     }
 }

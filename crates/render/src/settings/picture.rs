@@ -24,7 +24,8 @@ pub struct PictureSettings {
     pub lines: Lines,
     /// Width of edges and of the model's own lines in pixels, `0.1..=64`.
     pub line_width: f32,
-    /// Colour of edges in the display's encoding, `0..=1`; `None`: dark on light ground and the other way round.
+    /// Colour of edges in the display's encoding, `0..=1`; `None`: dark on light ground and the
+    /// other way round.
     pub edge_color: Option<[f32; 3]>,
     /// Which edges are drawn, where some are; at least one class.
     pub edge_classes: LineClasses,
@@ -55,7 +56,8 @@ impl Default for PictureSettings {
 }
 
 impl PictureSettings {
-    /// Width of lines where nothing is said, pixels: a little more than one, so that slanted ones do not look thin.
+    /// Width of lines where nothing is said, pixels: a little more than one, so that slanted ones
+    /// do not look thin.
     pub const LINE_WIDTH: f32 = 1.3;
 
     /// Side of points where nothing is said, pixels.
@@ -84,13 +86,15 @@ impl PictureSettings {
     }
 }
 
-/// Depth cueing: `I' = s I + (1 - s) Idc`, where `s` depends linearly on the distance between two planes across the direction of sight.
+/// Depth cueing: `I' = s I + (1 - s) Idc`, where `s` depends linearly on the distance between two
+/// planes across the direction of sight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case", deny_unknown_fields)]
 pub struct DepthCue {
     /// `Idc` in the display's encoding, `0..=1`; `None`: the background of the pixel's row.
     pub color: Option<[f32; 3]>,
-    /// Distance of the front plane from the viewer along the direction of sight, at least 0, world units; `None`: where the scene begins.
+    /// Distance of the front plane from the viewer along the direction of sight, at least 0, world
+    /// units; `None`: where the scene begins.
     pub front: Option<f64>,
     /// Distance of the back plane, farther away; `None`: where the scene ends.
     pub back: Option<f64>,
@@ -123,8 +127,12 @@ impl DepthCue {
             return bad("the back plane must be farther away than the front plane");
         }
         match (self.color, background) {
-            (None, Background::Transparent) => bad("without a background there must be a colour to fade into"),
-            (Some(color), _) if !color.into_iter().all(unit) => bad("a colour from 0 to 1 is required"),
+            (None, Background::Transparent) => {
+                bad("without a background there must be a colour to fade into")
+            }
+            (Some(color), _) if !color.into_iter().all(unit) => {
+                bad("a colour from 0 to 1 is required")
+            }
             _ => Ok(()),
         }
     }
@@ -132,7 +140,12 @@ impl DepthCue {
 
 /// Behind everything.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "type", rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
+#[serde(
+    tag = "type",
+    rename_all = "kebab-case",
+    rename_all_fields = "kebab-case",
+    deny_unknown_fields
+)]
 pub enum Background {
     /// Alpha 0.
     Transparent,
@@ -205,7 +218,12 @@ impl Default for Channels {
 impl Channels {
     /// Whether any plane besides colour is wanted.
     pub fn any_data(&self) -> bool {
-        self.depth || self.surface || self.object || self.material || self.normal || self.any_shadow()
+        self.depth
+            || self.surface
+            || self.object
+            || self.material
+            || self.normal
+            || self.any_shadow()
     }
 
     /// Whether a plane of shadows is wanted.

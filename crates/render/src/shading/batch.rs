@@ -22,7 +22,8 @@ pub(crate) struct ShadingBatch8<'a> {
     pub records: &'a [Record],
     /// The rays that see them, if it is not the eye.
     pub along: Option<&'a Along>,
-    /// Which part of each light reaches the points of the group; empty without shadows, or if the material does not need it.
+    /// Which part of each light reaches the points of the group; empty without shadows, or if the
+    /// material does not need it.
     pub light_visibility: &'a [LightVisibility],
     /// The same for the other side of a translucent sheet.
     pub light_visibility_behind: &'a [LightVisibility],
@@ -32,8 +33,8 @@ pub(crate) struct ShadingBatch8<'a> {
     pub first: usize,
 }
 
-/// Goes through the points of all groups, eight at a time. `asks` says which materials need the visibility of
-/// the lights, and `rays` counts the shadow rays.
+/// Goes through the points of all groups, eight at a time. `asks` says which materials need the
+/// visibility of the lights, and `rays` counts the shadow rays.
 #[inline(always)]
 pub(crate) fn each_eight<S: Simd>(
     simd: S,
@@ -73,15 +74,26 @@ pub(super) fn each_pair<S: Simd>(
         let (subject, material) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
         let light = if asks(material) {
-            shadowed::group_light(simd, constants, (&subject, material), points, order, facets, rays)
+            shadowed::group_light(
+                simd,
+                constants,
+                (&subject, material),
+                points,
+                order,
+                facets,
+                rays,
+            )
         } else {
             GroupLight::default()
         };
 
         // Visit the points in pairs of eight.
-        for (i, (order, records)) in order.chunks(2 * LANES).zip(facets.of_point.chunks(2 * LANES)).enumerate() {
+        for (i, (order, records)) in
+            order.chunks(2 * LANES).zip(facets.of_point.chunks(2 * LANES)).enumerate()
+        {
             let count = order.len().min(LANES);
-            let ((mine, next), (my_records, next_records)) = (order.split_at(count), records.split_at(count));
+            let ((mine, next), (my_records, next_records)) =
+                (order.split_at(count), records.split_at(count));
             let eight = |points, slots, first| ShadingBatch8 {
                 subject: &subject,
                 material,

@@ -1,25 +1,31 @@
-//! What is seen through translucent surfaces: a blurred picture of what is behind them, taken from the picture's own layers.
+//! What is seen through translucent surfaces: a blurred picture of what is behind them, taken from
+//! the picture's own layers.
 //!
-//! A picture that keeps, for every pixel, all transparent fragments and the opaque surface behind them, with their depths
-//! and colours, is a scene of its own, seen from the eye. Rays can be followed in it. From each fragment of a
-//! translucent surface some dozens start, scattered round the direction of sight; each looks for the next thing on its way:
-//! where is the ray when it is as deep as what the pixel under it shows? It is asked of the pixel that the ray is
-//! over, which gives a depth, which gives another pixel, three times at the most. There its colour is taken; if it is
-//! transparent the ray goes on behind it, if it is translucent in a new direction. The mean of the rays is what the
-//! surface shows instead of what is straight behind. Objects in front of the surface are not blurred into
-//! it, and things blur the more the farther behind it they are; what touches it stays sharp.
+//! A picture that keeps, for every pixel, all transparent fragments and the opaque surface behind
+//! them, with their depths and colours, is a scene of its own, seen from the eye. Rays can be
+//! followed in it. From each fragment of a translucent surface some dozens start, scattered round
+//! the direction of sight; each looks for the next thing on its way: where is the ray when it is as
+//! deep as what the pixel under it shows? It is asked of the pixel that the ray is over, which
+//! gives a depth, which gives another pixel, three times at the most. There its colour is taken; if
+//! it is transparent the ray goes on behind it, if it is translucent in a new direction. The mean
+//! of the rays is what the surface shows instead of what is straight behind. Objects in front of
+//! the surface are not blurred into it, and things blur the more the farther behind it they are;
+//! what touches it stays sharp.
 //!
-//! A picture does not know what it does not show. A ray that would come to something hidden by an opaque surface in
-//! front of the translucent one does not count; beyond the picture's border, the border goes on. A ray counts
-//! fragments as behind its start if the start lies on the viewer's side of their planes, so that a pane does not
-//! see its own rim. Rays stay within 84° of the direction in which the eye looks.
+//! A picture does not know what it does not show. A ray that would come to something hidden by an
+//! opaque surface in front of the translucent one does not count; beyond the picture's border, the
+//! border goes on. A ray counts fragments as behind its start if the start lies on the viewer's
+//! side of their planes, so that a pane does not see its own rim. Rays stay within 84° of the
+//! direction in which the eye looks.
 //!
 //! Tiles are kept until all are there, then composed.
 //!
-//! In:   shaded points and layers of all tiles. Out: for each fragment of a translucent surface what is behind it.
-//! Cost: rays times layers passed times three lookups, each linear in the layers of a pixel; memory: all points and layers.
-//! Source: \[Cook, Porter & Carpenter 1984\] for the rays. Departs from it: they are followed in the picture, from fragment
-//! to fragment, as in the lists of \[Carpenter 1984\].
+//! In:   shaded points and layers of all tiles. Out: for each fragment of a translucent surface
+//!       what is behind it.
+//! Cost: rays times layers passed times three lookups, each linear in the layers of a pixel;
+//!       memory: all points and layers.
+//! Source: \[Cook, Porter & Carpenter 1984\] for the rays. Departs from it: they are followed in
+//! the picture, from fragment to fragment, as in the lists of \[Carpenter 1984\].
 
 use super::FrameConstants;
 use super::fragments::fragment;
@@ -108,7 +114,14 @@ impl<'a> DeepImage<'a> {
         let mut starts = vec![0; TILE_PIXELS + 1];
         points.fragments.iter().for_each(|f| starts[f.pixel as usize + 1] += 1);
         (0..TILE_PIXELS).for_each(|p| starts[p + 1] += starts[p]);
-        let mut kept = DeepTile { tile: Some(tile.clone()), points, lit, sources, starts, ..DeepTile::default() };
+        let mut kept = DeepTile {
+            tile: Some(tile.clone()),
+            points,
+            lit,
+            sources,
+            starts,
+            ..DeepTile::default()
+        };
         self.describe(&mut kept);
         let bytes = kept.bytes();
         let mut outcome = self.outcome.lock().expect("no thread panics while it counts");
@@ -139,7 +152,8 @@ impl<'a> DeepImage<'a> {
                 let material = instance.mesh.material_of_triangle(triangle as usize);
                 let (corners, normal) = facet(instance, triangle, DVec3::ZERO);
                 let to_view = |p: DVec3| view.view.view_from_world.transform_point3(p);
-                let (at, n) = (to_view(corners[0]), view.view.view_from_world.transform_vector3(normal));
+                let (at, n) =
+                    (to_view(corners[0]), view.view.view_from_world.transform_vector3(normal));
                 let plane = n.extend(-n.dot(at));
                 let eye = if view.view.perspective { DVec4::W } else { DVec4::Z };
                 let plane = if plane.dot(eye) < 0.0 { -plane } else { plane };
@@ -215,9 +229,15 @@ impl DeepPicture<'_> {
         Some((tile.tile.as_ref()?, &tile.points, lit))
     }
 
-    /// What is behind a fragment of a translucent surface, premultiplied; `None` for other fragments, for those behind
-    /// others of the kind at all their samples, and where the picture does not show it. `fragments` are all of the pixel.
-    pub(crate) fn behind(&self, index: usize, of: &FragmentPoint, fragments: &[FragmentPoint]) -> Option<[f32; 4]> {
+    /// What is behind a fragment of a translucent surface, premultiplied; `None` for other
+    /// fragments, for those behind others of the kind at all their samples, and where the picture
+    /// does not show it. `fragments` are all of the pixel.
+    pub(crate) fn behind(
+        &self,
+        index: usize,
+        of: &FragmentPoint,
+        fragments: &[FragmentPoint],
+    ) -> Option<[f32; 4]> {
         // Find how far the surface scatters.
         let tile = &self.tiles[index];
         let exponent = self.exponent(tile, of);
@@ -232,7 +252,8 @@ impl DeepPicture<'_> {
         let from = self.lens.place(dvec2(x, y), self.lens.away(depth));
         let pixel = [x as u32, y as u32];
         let seed = hash(pixel[0] ^ pixel[1] << 16);
-        let axis = if self.constants.view.view.perspective { from.normalize() } else { DVec3::NEG_Z };
+        let axis =
+            if self.constants.view.view.perspective { from.normalize() } else { DVec3::NEG_Z };
 
         // Follow several scattered rays and take the mean.
         let (mut sum, mut count) = ([0.0; 4], 0.0);
@@ -252,9 +273,16 @@ impl DeepPicture<'_> {
     }
 
     /// Whether other translucent fragments lie in front of it at each of its samples.
-    fn is_behind_another(&self, tile: &DeepTile, of: &FragmentPoint, fragments: &[FragmentPoint]) -> bool {
+    fn is_behind_another(
+        &self,
+        tile: &DeepTile,
+        of: &FragmentPoint,
+        fragments: &[FragmentPoint],
+    ) -> bool {
         let mut left = of.mask;
-        for other in fragments.iter().filter(|f| f.facet != of.facet && self.exponent(tile, f) > 0.0) {
+        for other in
+            fragments.iter().filter(|f| f.facet != of.facet && self.exponent(tile, f) > 0.0)
+        {
             let common = left & other.mask;
             for sample in samples_in(common) {
                 let [own, others] = [of, other].map(|f| tile.points.depth(f, sample));
@@ -314,10 +342,17 @@ impl DeepPicture<'_> {
 
             // Continue behind it, scattered if it scatters.
             pixel = place;
-            from = self.lens.place(dvec2(f64::from(place[0]) + 0.5, f64::from(place[1]) + 0.5), surface.away);
+            from = self
+                .lens
+                .place(dvec2(f64::from(place[0]) + 0.5, f64::from(place[1]) + 0.5), surface.away);
             if surface.exponent > 0.0 {
                 let strata = Strata::new(1);
-                direction = forward(strata.direction(passed as u32, seed, surface.exponent, direction.normalize()));
+                direction = forward(strata.direction(
+                    passed as u32,
+                    seed,
+                    surface.exponent,
+                    direction.normalize(),
+                ));
             }
         }
         Some(light)
@@ -326,7 +361,8 @@ impl DeepPicture<'_> {
     /// What is behind all surfaces of a pixel.
     fn background(&self, pixel: [u32; 2]) -> [f32; 4] {
         let side = TILE as u32;
-        let tile = &self.tiles[(pixel[1] / side * self.constants.view.viewport.tiles_x() + pixel[0] / side) as usize];
+        let tile = &self.tiles
+            [(pixel[1] / side * self.constants.view.viewport.tiles_x() + pixel[0] / side) as usize];
         let dark = tile.points.ground.get((pixel[1] % side * side + pixel[0] % side) as usize);
         let rows = &self.constants.background;
         dark.map_or_else(|| rows.color(pixel[1]), |&dark| rows.shaded(pixel[1], dark))
@@ -375,7 +411,12 @@ impl DeepPicture<'_> {
         if point == NO_POINT || away <= least || !faces(point as usize) {
             return Next::Hidden;
         }
-        Next::Surface(LayerHit { away, color: tile.lit.colors[point as usize], passes: [0.0; 3], exponent: 0.0 })
+        Next::Surface(LayerHit {
+            away,
+            color: tile.lit.colors[point as usize],
+            passes: [0.0; 3],
+            exponent: 0.0,
+        })
     }
 }
 
@@ -408,7 +449,8 @@ impl Lens {
 
     /// The distance along the direction of view at a depth.
     fn away(&self, depth: f32) -> f64 {
-        let (a, b, depth) = (self.clip_from_view.z_axis.z, self.clip_from_view.w_axis.z, f64::from(depth));
+        let (a, b, depth) =
+            (self.clip_from_view.z_axis.z, self.clip_from_view.w_axis.z, f64::from(depth));
         if self.perspective { b / (depth + a) } else { (b - depth) / a }
     }
 
@@ -422,7 +464,8 @@ impl Lens {
         DVec3::new(x, y, -away)
     }
 
-    /// The pixel over which a homogeneous point appears, or the nearest to it; `None` for a direction in a parallel view.
+    /// The pixel over which a homogeneous point appears, or the nearest to it; `None` for a
+    /// direction in a parallel view.
     fn pixel(&self, point: DVec4) -> Option<[u32; 2]> {
         let clip = self.clip_from_view * point;
         if clip.w <= 0.0 {
@@ -440,7 +483,9 @@ mod tests {
 
     #[test]
     fn a_lens_knows_the_way_there_and_back() {
-        for projection in [Projection::Perspective { view_angle: 0.7 }, Projection::Parallel { height: 3.0 }] {
+        for projection in
+            [Projection::Perspective { view_angle: 0.7 }, Projection::Parallel { height: 3.0 }]
+        {
             let camera = Camera {
                 position: DVec3::new(3.0, 4.0, 5.0),
                 focal_point: DVec3::ZERO,
@@ -449,8 +494,11 @@ mod tests {
                 clip: Some((2.0, 9.0)),
             };
             let view = camera.transform(1.5, (2.0, 9.0));
-            let lens =
-                Lens { clip_from_view: view.clip_from_view, size: dvec2(300.0, 200.0), perspective: view.perspective };
+            let lens = Lens {
+                clip_from_view: view.clip_from_view,
+                size: dvec2(300.0, 200.0),
+                perspective: view.perspective,
+            };
             for (at, away) in [([10.5, 20.5], 2.5), ([290.5, 150.5], 8.0)] {
                 let place = lens.place(DVec2::from(at), away);
                 let clip = view.clip_from_view * place.extend(1.0);

@@ -1,7 +1,8 @@
 //! The buffers of the two-buffer order of transparency, for whoever wants to see them.
 //!
-//! The first holds what is opaque, with its depth. The second holds what the list of transparent surfaces leaves there, a
-//! coefficient and an intensity, in front of that depth. The picture is made of both.
+//! The first holds what is opaque, with its depth. The second holds what the list of transparent
+//! surfaces leaves there, a coefficient and an intensity, in front of that depth. The picture is
+//! made of both.
 //!
 //! In:   a tile with its layers. Out: the buffers of its pixels.
 //! Cost: linear in the samples; nothing if nobody asks.
@@ -29,8 +30,8 @@ pub(crate) struct BufferPlanes {
 /// Bytes of the buffers of a pixel, tile by tile and in the picture.
 pub(crate) const BYTES_A_PIXEL: u64 = 2 * (16 + 4 + 4 + 12 + 12);
 
-/// The buffers of a tile whose points are lit: means of the samples, but depth and number of layers, which are those of the
-/// first sample.
+/// The buffers of a tile whose points are lit: means of the samples, but depth and number of
+/// layers, which are those of the first sample.
 pub(super) fn planes(
     tile: &Tile,
     points: &Points,
@@ -54,7 +55,8 @@ pub(super) fn planes(
 
     // Compose each pixel's layers, sample by sample.
     for pixel in 0..TILE_PIXELS {
-        let (mine, rest) = layers.split_at(layers.iter().take_while(|l| l.pixel as usize == pixel).count());
+        let (mine, rest) =
+            layers.split_at(layers.iter().take_while(|l| l.pixel as usize == pixel).count());
         layers = rest;
         fragments.clear();
         fragments.extend(mine.iter().map(|f| fragment(f, tile, points, lit, constants, marks)));

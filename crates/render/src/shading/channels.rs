@@ -1,5 +1,5 @@
-//! Planes of data about what is visible at each pixel's centre: depth, surface, object, material, normal. Transparent things are
-//! looked through; cut-out ones are seen where they are there.
+//! Planes of data about what is visible at each pixel's centre: depth, surface, object, material,
+//! normal. Transparent things are looked through; cut-out ones are seen where they are there.
 
 use super::FrameConstants;
 use super::batch::each_eight;
@@ -101,14 +101,16 @@ impl TileSink for ChannelSink<'_> {
 }
 
 impl ChannelSink<'_> {
-    /// The tile with the cut-out surfaces that are nearest where they are there; `None` if it has none. Out of line: compilers for
-    /// WebAssembly take very long over functions that are very large.
+    /// The tile with the cut-out surfaces that are nearest where they are there; `None` if it has
+    /// none. Out of line: compilers for WebAssembly take very long over functions that are very
+    /// large.
     #[inline(never)]
     fn with_cut_outs(&self, tile: &Tile, layers: &[Layer]) -> Option<Tile> {
         let world = &self.constants.view.session.world;
         let is_cut_out = |facet: u32| {
             let instance = &world.instances[world.instance_of_facet(facet)];
-            let material = instance.mesh.material_of_triangle((facet - instance.first_facet) as usize);
+            let material =
+                instance.mesh.material_of_triangle((facet - instance.first_facet) as usize);
             self.constants.material(material).cutoff.is_some()
         };
         let mut last = (NO_FACET, false);
@@ -123,7 +125,8 @@ impl ChannelSink<'_> {
             return None;
         }
 
-        // Their alpha is part of what they look like; what is behind them need not be illuminated for that.
+        // Their alpha is part of what they look like; what is behind them need not be illuminated
+        // for that.
         let mut bare = tile.clone();
         bare.facet.fill(NO_FACET);
         let (mut points, mut lit) = (Points::default(), ShadedPoints::default());
@@ -132,7 +135,9 @@ impl ChannelSink<'_> {
         let mut front = tile.clone();
         for f in &points.fragments {
             let (at, candidate) = (f.pixel as usize, (points.depth(f, 0), f.facet));
-            if lit.colors[f.source as usize][3] > 0.0 && nearer(candidate, (front.depth[at], front.facet[at])) {
+            if lit.colors[f.source as usize][3] > 0.0
+                && nearer(candidate, (front.depth[at], front.facet[at]))
+            {
                 (front.depth[at], front.facet[at]) = candidate;
                 front.touched = true;
             }
@@ -153,8 +158,10 @@ impl ChannelSink<'_> {
                     let object = world.instance_of_facet(facet);
                     let instance = &world.instances[object];
                     let triangle = (facet - instance.first_facet) as usize;
-                    let surface = instance.first_surface + instance.mesh.face_of_triangle(triangle) as u32;
-                    let material = instance.mesh.material_of_triangle(triangle).unwrap_or(Frame::BACKGROUND);
+                    let surface =
+                        instance.first_surface + instance.mesh.face_of_triangle(triangle) as u32;
+                    let material =
+                        instance.mesh.material_of_triangle(triangle).unwrap_or(Frame::BACKGROUND);
                     [surface, object as u32, material]
                 };
                 last = (facet, if facet == NO_FACET { [Frame::BACKGROUND; 3] } else { of(facet) });
@@ -166,7 +173,12 @@ impl ChannelSink<'_> {
 
 /// World-space shading normals of the points, on the viewer's side where both sides are seen.
 #[inline(always)]
-fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, out: &mut [[f32; 3]]) {
+fn normals<S: Simd>(
+    simd: S,
+    points: &Points,
+    constants: &FrameConstants<'_>,
+    out: &mut [[f32; 3]],
+) {
     let rotation = constants.view.view.view_from_world.as_mat4();
     let mut of_point = vec![[0.0; 3]; points.len()];
     each_eight(
@@ -182,7 +194,8 @@ fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, ou
             for (lane, &p) in eight.points.iter().enumerate() {
                 let view = vitral_math::Vec3::new(soa[0][lane], soa[1][lane], soa[2][lane]);
                 // The inverse of a rotation is its transpose.
-                let world = [rotation.x_axis, rotation.y_axis, rotation.z_axis].map(|a| a.truncate().dot(view));
+                let world = [rotation.x_axis, rotation.y_axis, rotation.z_axis]
+                    .map(|a| a.truncate().dot(view));
                 of_point[p as usize] = world;
             }
         },
@@ -196,7 +209,12 @@ fn normals<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, ou
 
 /// Attached and cast shadows of the points.
 #[inline(always)]
-fn shadows<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, planes: &mut DataPlanes) {
+fn shadows<S: Simd>(
+    simd: S,
+    points: &Points,
+    constants: &FrameConstants<'_>,
+    planes: &mut DataPlanes,
+) {
     let mut of_point = vec![[0.0; 2]; points.len()];
     each_eight(
         simd,
@@ -208,7 +226,8 @@ fn shadows<S: Simd>(simd: S, points: &Points, constants: &FrameConstants<'_>, pl
         |eight| {
             let mut surface = surface(simd, eight.records, eight.slots);
             surface.screen_linear = eight.subject.viewing.screen_linear();
-            let [attached, cast] = shadow_shares(constants, &surface, eight.light_visibility, eight.first);
+            let [attached, cast] =
+                shadow_shares(constants, &surface, eight.light_visibility, eight.first);
             for (lane, &p) in eight.points.iter().enumerate() {
                 of_point[p as usize] = [attached[lane], cast[lane]];
             }

@@ -1,10 +1,14 @@
-//! Which points of a tile to illuminate, sorted by object and material: one for each facet in a pixel.
+//! Which points of a tile to illuminate, sorted by object and material: one for each facet in a
+//! pixel.
 //!
-//! In:   the facets and depths of a tile's samples, and what lies in front of them. Out: its [`Points`].
+//! In:   the facets and depths of a tile's samples, and what lies in front of them. Out: its
+//!       [`Points`].
 //! Cost: linear in samples; layers are sorted pixel by pixel.
 
 use super::FrameConstants;
-use super::points::{FragmentPoint, Group, LayerPoint, NO_POINT, Pixel, Points, Source, samples_in, visible_part};
+use super::points::{
+    FragmentPoint, Group, LayerPoint, NO_POINT, Pixel, Points, Source, samples_in, visible_part,
+};
 use crate::marks::MarkColors;
 use crate::visible::Peel;
 use vitral_raster::{Fragment, Layer, NO_FACET, TILE, TILE_PIXELS, Tile};
@@ -71,20 +75,23 @@ impl Points {
         for y in 0..height {
             let row = y * TILE;
             let down = (tile.y as usize + y) as f32 + 0.5;
-            for (facets, first) in tile.facet[row..row + width].chunks(RUN).zip((0..).step_by(RUN)) {
+            for (facets, first) in tile.facet[row..row + width].chunks(RUN).zip((0..).step_by(RUN))
+            {
                 if is_empty(facets) {
                     continue;
                 }
                 if self.facet.len() < count + RUN {
                     self.facet.resize(count + 16 * RUN, 0);
                     self.place.resize(count + 16 * RUN, [0.0; 2]);
-                    self.pixels.resize(count + 16 * RUN, Pixel { index: 0, source: Source::Point(0) });
+                    self.pixels
+                        .resize(count + 16 * RUN, Pixel { index: 0, source: Source::Point(0) });
                 }
                 for (x, &facet) in (first..).zip(facets) {
                     // Written in any case, kept where something is: no branch to guess.
                     self.facet[count] = facet;
                     self.place[count] = [(tile.x as usize + x) as f32 + 0.5, down];
-                    self.pixels[count] = Pixel { index: (row + x) as u32, source: Source::Point(count as u32) };
+                    self.pixels[count] =
+                        Pixel { index: (row + x) as u32, source: Source::Point(count as u32) };
                     count += usize::from(facet != NO_FACET);
                 }
             }
@@ -94,9 +101,14 @@ impl Points {
         self.pixels.truncate(count);
     }
 
-    /// [`Self::collect_opaque`] for few samples and no rays that go on: where facets are small, whether they fill a
-    /// pixel is anyone's guess, so everything is written in any case, and kept where it is needed.
-    fn collect_samples<const SAMPLES: usize>(&mut self, tile: &Tile, constants: &FrameConstants<'_>) {
+    /// [`Self::collect_opaque`] for few samples and no rays that go on: where facets are small,
+    /// whether they fill a pixel is anyone's guess, so everything is written in any case, and kept
+    /// where it is needed.
+    fn collect_samples<const SAMPLES: usize>(
+        &mut self,
+        tile: &Tile,
+        constants: &FrameConstants<'_>,
+    ) {
         let middles = &constants.middles[..1 << SAMPLES];
         let (width, height) = visible_part(tile, constants.view.viewport);
         let [mut points, mut pixels, mut mixed] = [0; 3];
@@ -106,7 +118,9 @@ impl Points {
             for first in (0..width).step_by(RUN) {
                 let start = y * TILE + first;
                 let planes: [&[u32; RUN]; SAMPLES] = std::array::from_fn(|s| {
-                    tile.facet[s * TILE_PIXELS + start..].first_chunk().expect("a tile's rows are whole runs")
+                    tile.facet[s * TILE_PIXELS + start..]
+                        .first_chunk()
+                        .expect("a tile's rows are whole runs")
                 });
                 let (mut all, mut different) = ([NO_FACET; RUN], [0; RUN]);
                 for plane in planes {
@@ -125,7 +139,8 @@ impl Points {
                     self.place.resize(points + 16 * RUN * SAMPLES, [0.0; 2]);
                 }
                 if self.pixels.len() < pixels + RUN {
-                    self.pixels.resize(pixels + 16 * RUN, Pixel { index: 0, source: Source::Point(0) });
+                    self.pixels
+                        .resize(pixels + 16 * RUN, Pixel { index: 0, source: Source::Point(0) });
                 }
                 if self.mixed.len() < mixed + RUN * SAMPLES {
                     self.mixed.resize(mixed + 16 * RUN * SAMPLES, NO_POINT);
@@ -138,7 +153,8 @@ impl Points {
                     let mut point_of = [NO_POINT; SAMPLES];
                     for s in 0..SAMPLES {
                         // The facet is new unless an earlier sample has it.
-                        let (mut point, mut is_new, mut mask) = (points as u32, facets[s] != NO_FACET, 0);
+                        let (mut point, mut is_new, mut mask) =
+                            (points as u32, facets[s] != NO_FACET, 0);
                         for t in 0..s {
                             let same = facets[t] == facets[s];
                             point = if same { point_of[t] } else { point };
@@ -156,7 +172,11 @@ impl Points {
 
                     // Write the pixel, with its points if they differ.
                     let is_mixed = different[x] != 0;
-                    let source = if is_mixed { Source::Mixed(mixed as u32) } else { Source::Point(point_of[0]) };
+                    let source = if is_mixed {
+                        Source::Mixed(mixed as u32)
+                    } else {
+                        Source::Point(point_of[0])
+                    };
                     self.mixed[mixed..mixed + SAMPLES].copy_from_slice(&point_of);
                     self.pixels[pixels] = Pixel { index: (start + x) as u32, source };
                     mixed += SAMPLES * usize::from(is_mixed);
@@ -187,7 +207,9 @@ impl Points {
                     let first = tile.facet[pixel];
                     let facet_of = |s: usize| tile.facet[s * TILE_PIXELS + pixel];
                     let place = [(tile.x as usize + x) as f32, (tile.y as usize + y) as f32];
-                    let source = if !constants.follows(first) && (1..samples).all(|s| facet_of(s) == first) {
+                    let source = if !constants.follows(first)
+                        && (1..samples).all(|s| facet_of(s) == first)
+                    {
                         // The common case: one facet, or none, fills the pixel.
                         if first == NO_FACET {
                             continue;
@@ -233,7 +255,13 @@ impl Points {
         Source::Mixed(start as u32)
     }
 
-    fn collect_layers(&mut self, tile: &Tile, layers: &[Layer], constants: &FrameConstants<'_>, marks: &MarkColors) {
+    fn collect_layers(
+        &mut self,
+        tile: &Tile,
+        layers: &[Layer],
+        constants: &FrameConstants<'_>,
+        marks: &MarkColors,
+    ) {
         self.sort_layers(tile, layers, constants);
         let mut layers = std::mem::take(&mut self.layers);
         let mut start = 0;
@@ -244,14 +272,16 @@ impl Points {
             if here.is_empty() {
                 continue;
             }
-            let place = [(tile.x as usize + pixel % TILE) as f32, (tile.y as usize + pixel / TILE) as f32];
+            let place =
+                [(tile.x as usize + pixel % TILE) as f32, (tile.y as usize + pixel / TILE) as f32];
             if constants.view.lists_layers {
                 self.collect_listed(pixel as u32, here, place, constants, marks);
                 continue;
             }
 
             // Emit one fragment for each facet. Layers mostly come in the order of the scene.
-            let count = if here.is_sorted_by(|a, b| a.key() < b.key()) { here.len() } else { settle(here) };
+            let count =
+                if here.is_sorted_by(|a, b| a.key() < b.key()) { here.len() } else { settle(here) };
             let mut i = 0;
             while i < count {
                 // One point for each facet in a pixel.
@@ -263,8 +293,10 @@ impl Points {
                     i += 1;
                 }
                 let mark = marks.index(facet);
-                let source = mark.unwrap_or_else(|| self.push(facet, constants.middle(place, mask)));
-                let fragment = self.fragment((pixel as u32, facet), (mask, start), (source, mark.is_some()));
+                let source =
+                    mark.unwrap_or_else(|| self.push(facet, constants.middle(place, mask)));
+                let fragment =
+                    self.fragment((pixel as u32, facet), (mask, start), (source, mark.is_some()));
                 self.fragments.push(fragment);
             }
         }
@@ -294,15 +326,18 @@ impl Points {
         let corner = [tile.x as usize, tile.y as usize];
         let place = |f: &FragmentPoint| {
             let pixel = f.pixel as usize;
-            constants.middle([(corner[0] + pixel % TILE) as f32, (corner[1] + pixel / TILE) as f32], f.mask)
+            constants.middle(
+                [(corner[0] + pixel % TILE) as f32, (corner[1] + pixel / TILE) as f32],
+                f.mask,
+            )
         };
         let surfaces = || self.fragments.iter().filter(|f| !f.is_mark);
         self.facet.extend(surfaces().map(|f| f.facet));
         self.place.extend(surfaces().map(place));
     }
 
-    /// Sorts each pixel's fragments by facet and makes one of those of a facet, as where it was clipped into several
-    /// triangles: of a sample on their common border the nearer depth stays.
+    /// Sorts each pixel's fragments by facet and makes one of those of a facet, as where it was
+    /// clipped into several triangles: of a sample on their common border the nearer depth stays.
     fn unite(&mut self) {
         let mut fragments = std::mem::take(&mut self.fragments);
         fragments.sort_by_key(|f| (f.pixel, f.facet));
@@ -311,7 +346,9 @@ impl Points {
             if same {
                 let (start, mask) = (self.depths.len() as u32, f.mask | next.mask);
                 for sample in samples_in(mask) {
-                    let depth = |f: &FragmentPoint| if f.covers(sample) { self.depth(f, sample) } else { f32::MIN };
+                    let depth = |f: &FragmentPoint| {
+                        if f.covers(sample) { self.depth(f, sample) } else { f32::MIN }
+                    };
                     self.depths.push(depth(f).max(depth(next)));
                 }
                 *f = self.fragment((f.pixel, f.facet), (mask, start), (0, false));
@@ -322,18 +359,37 @@ impl Points {
     }
 
     /// Fragments pixel by pixel, each pixel's in the order in which they came.
-    fn sort_fragments(&mut self, tile: &Tile, fragments: &[Fragment], constants: &FrameConstants<'_>) {
+    fn sort_fragments(
+        &mut self,
+        tile: &Tile,
+        fragments: &[Fragment],
+        constants: &FrameConstants<'_>,
+    ) {
         let inside = pixels_inside(tile, constants);
         let point = |f: &Fragment| {
             let &Fragment { facet, start, far, near, pixel, mask, count } = f;
             let (pixel, count) = (u32::from(pixel), u32::from(count));
-            (pixel as usize, FragmentPoint { pixel, facet, mask, start, count, far, near, source: 0, is_mark: false })
+            (
+                pixel as usize,
+                FragmentPoint {
+                    pixel,
+                    facet,
+                    mask,
+                    start,
+                    count,
+                    far,
+                    near,
+                    source: 0,
+                    is_mark: false,
+                },
+            )
         };
         let points = fragments.iter().map(point).filter(|(pixel, _)| inside(*pixel));
         sort_by_slot(&mut self.ends, TILE_PIXELS, &mut self.fragments, points);
     }
 
-    /// Layers of one pass, a fragment for each facet in a pixel, illuminated where it would be with all layers at once.
+    /// Layers of one pass, a fragment for each facet in a pixel, illuminated where it would be with
+    /// all layers at once.
     pub(crate) fn collect_pass(
         &mut self,
         tile: &Tile,
@@ -346,11 +402,13 @@ impl Points {
         self.place.clear();
         self.fragments.clear();
         self.depths.clear();
-        let (samples, (width, height)) = (constants.view.pattern.len(), visible_part(tile, constants.view.viewport));
+        let (samples, (width, height)) =
+            (constants.view.pattern.len(), visible_part(tile, constants.view.viewport));
 
         // Emit one fragment for each facet of the layer.
         for pixel in (0..height).flat_map(|y| (0..width).map(move |x| y * TILE + x)) {
-            let place = [(tile.x as usize + pixel % TILE) as f32, (tile.y as usize + pixel / TILE) as f32];
+            let place =
+                [(tile.x as usize + pixel % TILE) as f32, (tile.y as usize + pixel / TILE) as f32];
             let layer = |sample: usize| peel.layer(sample * TILE_PIXELS + pixel);
             let mut done = 0u32;
             for first in 0..samples {
@@ -364,15 +422,18 @@ impl Points {
                 }
                 done |= mask;
                 let mark = marks.index(facet);
-                let source = mark.unwrap_or_else(|| self.push(facet, constants.middle(place, found.covers)));
-                let fragment = self.fragment((pixel as u32, facet), (mask, start), (source, mark.is_some()));
+                let source =
+                    mark.unwrap_or_else(|| self.push(facet, constants.middle(place, found.covers)));
+                let fragment =
+                    self.fragment((pixel as u32, facet), (mask, start), (source, mark.is_some()));
                 self.fragments.push(fragment);
             }
         }
         self.group(constants);
     }
 
-    /// Layers pixel by pixel, each pixel's in the order in which they came; leaves each pixel's end in `ends`.
+    /// Layers pixel by pixel, each pixel's in the order in which they came; leaves each pixel's end
+    /// in `ends`.
     fn sort_layers(&mut self, tile: &Tile, layers: &[Layer], constants: &FrameConstants<'_>) {
         let inside = pixels_inside(tile, constants);
         let point = |l: &Layer| {
@@ -384,7 +445,11 @@ impl Points {
     }
 
     /// Takes facets as points that are nowhere on the screen, and sorts them into groups.
-    pub(crate) fn collect_facets(&mut self, facets: impl Iterator<Item = u32>, constants: &FrameConstants<'_>) {
+    pub(crate) fn collect_facets(
+        &mut self,
+        facets: impl Iterator<Item = u32>,
+        constants: &FrameConstants<'_>,
+    ) {
         self.facet.clear();
         self.facet.extend(facets);
         self.group(constants);
@@ -404,7 +469,10 @@ impl Points {
                 let triangle = facet - instance.first_facet;
                 let p = instance.mesh.parts.partition_point(|p| p.triangles.end <= triangle);
                 let part = &instance.mesh.parts[p];
-                (from, to) = (instance.first_facet + part.triangles.start, instance.first_facet + part.triangles.end);
+                (from, to) = (
+                    instance.first_facet + part.triangles.start,
+                    instance.first_facet + part.triangles.end,
+                );
                 let wanted = [i as u32, p as u32];
                 key = match self.keys.iter().position(|k| *k == wanted) {
                     Some(k) => k as u32,
@@ -440,8 +508,8 @@ impl Points {
     }
 }
 
-/// Sorts items by the slots that they come with, those of one slot in the order in which they come (a counting sort). Leaves
-/// each slot's end in `ends`.
+/// Sorts items by the slots that they come with, those of one slot in the order in which they come
+/// (a counting sort). Leaves each slot's end in `ends`.
 #[inline(always)]
 fn sort_by_slot<T: Copy + Default>(
     ends: &mut Vec<u32>,
@@ -479,8 +547,8 @@ fn pixels_inside(tile: &Tile, constants: &FrameConstants<'_>) -> impl Fn(usize) 
     move |pixel| whole || (pixel % TILE < width && pixel / TILE < height)
 }
 
-/// Sorts a pixel's layers facet by facet, sample by sample; the first so many are left. A clipped facet's pieces may both
-/// touch a sample on their common border: the nearer stays.
+/// Sorts a pixel's layers facet by facet, sample by sample; the first so many are left. A clipped
+/// facet's pieces may both touch a sample on their common border: the nearer stays.
 fn settle(layers: &mut [LayerPoint]) -> usize {
     layers.sort_unstable_by_key(LayerPoint::key);
     let mut last = 0;

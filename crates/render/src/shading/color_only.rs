@@ -1,6 +1,6 @@
-//! Points whose colours are all that a picture takes of them, as most are: sixteen go together where registers hold as many, and
-//! what textures and vertex colours would vary is left out where there are none. The results are those of the general way,
-//! bit by bit.
+//! Points whose colours are all that a picture takes of them, as most are: sixteen go together
+//! where registers hold as many, and what textures and vertex colours would vary is left out where
+//! there are none. The results are those of the general way, bit by bit.
 //!
 //! In:   points of one object and material. Out: their colours.
 //! Cost: linear in points, times the number of lights.
@@ -19,7 +19,10 @@ use vitral_math::lanes::{Floats, LANES, Lanes, Simd, V3};
 
 /// Whether the picture takes nothing of a material's points but what they reflect and shine.
 #[inline(always)]
-pub(super) fn has_color_only(material: &MaterialConstants<'_>, constants: &FrameConstants<'_>) -> bool {
+pub(super) fn has_color_only(
+    material: &MaterialConstants<'_>,
+    constants: &FrameConstants<'_>,
+) -> bool {
     constants.shading == Shading::Phong
         && material.model.needs_light_visibility()
         && constants.radiosity.is_none()
@@ -31,7 +34,8 @@ pub(super) fn has_color_only(material: &MaterialConstants<'_>, constants: &Frame
         && constants.occlusion.is_none()
 }
 
-/// Illuminates what [`has_color_only`]: eight points and the next eight of the group, or the first eight alone.
+/// Illuminates what [`has_color_only`]: eight points and the next eight of the group, or the first
+/// eight alone.
 pub(super) fn shade_color_only<S: Simd, V: Floats<S>>(
     simd: S,
     eights: [&ShadingBatch8<'_>; 2],
@@ -57,10 +61,17 @@ pub(super) fn shade_color_only<S: Simd, V: Floats<S>>(
                     ),
                 )
             };
-            let PointNumbers { placed: Placed { position, normal }, emission, alpha, coverage, coefficients } = points;
+            let PointNumbers {
+                placed: Placed { position, normal },
+                emission,
+                alpha,
+                coverage,
+                coefficients,
+            } = points;
 
             // Reflect the lights and store the colours.
-            let reflected = lighting(first, constants).reflect(simd, &position, &normal, &coefficients);
+            let reflected =
+                lighting(first, constants).reflect(simd, &position, &normal, &coefficients);
             let color = premultiplied(first.material, false, &reflected, emission, alpha, coverage);
             V::by_eights(
                 simd,
@@ -87,9 +98,16 @@ struct PointNumbers<T> {
 impl<T: Lanes> PointNumbers<T> {
     #[inline(always)]
     fn to_array(&self) -> [T; NUMBERS + 11] {
-        let Self { placed: Placed { position: p, normal: n }, emission: e, alpha, coverage, coefficients } = self;
+        let Self {
+            placed: Placed { position: p, normal: n },
+            emission: e,
+            alpha,
+            coverage,
+            coefficients,
+        } = self;
         let mut numbers = [*alpha; NUMBERS + 11];
-        numbers[..11].copy_from_slice(&[p.x, p.y, p.z, n.x, n.y, n.z, e.x, e.y, e.z, *alpha, *coverage]);
+        numbers[..11]
+            .copy_from_slice(&[p.x, p.y, p.z, n.x, n.y, n.z, e.x, e.y, e.z, *alpha, *coverage]);
         numbers[11..].copy_from_slice(&coefficients.numbers());
         numbers
     }
@@ -118,27 +136,46 @@ impl<T: Lanes> PointNumbers<T> {
     {
         let (one, material) = (every(simd, 1.0), eights[0].material);
         let (coefficients, alpha) = surface_parameters::uniform(one, material);
-        let placed = Placed::new(&surfaces(simd, eights[0].records, [eights[0].slots, eights[1].slots]));
-        Self { placed, emission: V3::splat(one, material.material.emission), alpha, coverage: one, coefficients }
+        let placed =
+            Placed::new(&surfaces(simd, eights[0].records, [eights[0].slots, eights[1].slots]));
+        Self {
+            placed,
+            emission: V3::splat(one, material.material.emission),
+            alpha,
+            coverage: one,
+            coefficients,
+        }
     }
 }
 
 /// Whether all points of a material on a mesh look the same but for how they are placed.
 pub(super) fn is_uniform(eight: &ShadingBatch8<'_>, constants: &FrameConstants<'_>) -> bool {
     let (material, mesh) = (eight.material, eight.subject.mesh);
-    let varied_by_angle = material.blend && (material.material.glass || constants.transparency.varies_by_angle());
+    let varied_by_angle =
+        material.blend && (material.material.glass || constants.transparency.varies_by_angle());
     !varied_by_angle && !material.has_textures() && mesh.colors.is_none()
 }
 
 /// [`PointNumbers`] of eight points, whatever the material.
 #[inline(never)]
-fn point_numbers<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameConstants<'_>) -> [F<S>; NUMBERS + 11] {
+fn point_numbers<S: Simd>(
+    simd: S,
+    eight: &ShadingBatch8<'_>,
+    constants: &FrameConstants<'_>,
+) -> [F<S>; NUMBERS + 11] {
     simd.vectorize(
         #[inline(always)]
         || {
             let &ShadingBatch8 { subject, material, slots, records, .. } = eight;
             let surface = surface(simd, records, slots);
-            let mut parameters = SurfaceParameters::new(simd, subject.mesh, slots, &surface, material, constants.raw);
+            let mut parameters = SurfaceParameters::new(
+                simd,
+                subject.mesh,
+                slots,
+                &surface,
+                material,
+                constants.raw,
+            );
             parameters.let_through(simd, &surface, material, constants, None);
             let normal = parameters.mapped_normal(simd, subject, slots, &surface, material);
             let numbers = PointNumbers {

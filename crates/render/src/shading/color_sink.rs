@@ -83,7 +83,8 @@ impl<'a> ColorSink<'a> {
         *self.counters.lock().expect("counters")
     }
 
-    /// When all tiles were handed over: composes what was kept until the whole picture is there. Gives what else is shown.
+    /// When all tiles were handed over: composes what was kept until the whole picture is there.
+    /// Gives what else is shown.
     pub(crate) fn finish(self, workers: &Workers) -> Result<Shown, Limit> {
         self.deadline.into_result()?;
         let shown = Shown { passes: self.passes, buffers: self.buffers };
@@ -146,7 +147,12 @@ impl TileSink for ColorSink<'_> {
             *passes.lock().expect("tile pictures") = std::mem::take(&mut pictures);
         }
         let shaded_points = opaque + shaded;
-        let counters = PictureCounters { covered_pixels, shaded_points, layer_samples, ..PictureCounters::default() };
+        let counters = PictureCounters {
+            covered_pixels,
+            shaded_points,
+            layer_samples,
+            ..PictureCounters::default()
+        };
         self.counters.lock().expect("counters").add(&counters);
         self.spare.give_back(scratch);
     }
@@ -164,7 +170,8 @@ impl TileSink for ColorSink<'_> {
             return self.tiles.fill(index, &self.constants.background.bytes[tile.y as usize..]);
         }
 
-        // Collect the points. A tracer takes the first surface at each sample alone, and finds what is behind it by itself.
+        // Collect the points. A tracer takes the first surface at each sample alone, and finds what
+        // is behind it by itself.
         let mut scratch = self.spare.take();
         let Scratch { points, facets, lit, composer, picture } = &mut scratch;
         let constants = self.constants;
@@ -205,7 +212,8 @@ impl TileSink for ColorSink<'_> {
             composer.compose(tile, points, lit, constants, self.marks, None, picture);
             self.tiles.write(index, picture);
             if let Some(buffers) = self.buffers.get(index) {
-                *buffers.lock().expect("buffers of a tile") = buffers::planes(tile, points, lit, constants, self.marks);
+                *buffers.lock().expect("buffers of a tile") =
+                    buffers::planes(tile, points, lit, constants, self.marks);
             }
         }
         self.spare.give_back(scratch);

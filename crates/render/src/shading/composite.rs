@@ -1,8 +1,8 @@
 //! From illuminated points to the pixels of a tile: samples, layers, background, display encoding.
 //!
-//! The layers in front of a pixel are laid over its samples by the chosen order of transparency (see
-//! [`crate::transparency`]); a pixel is the mean of its samples. Everything is premultiplied and, except in the raw
-//! colour space, linear; bytes are encoded at the end.
+//! The layers in front of a pixel are laid over its samples by the chosen order of transparency
+//! (see [`crate::transparency`]); a pixel is the mean of its samples. Everything is premultiplied
+//! and, except in the raw colour space, linear; bytes are encoded at the end.
 //! Source: [Porter & Duff 1984] for the operator.
 
 use super::FrameConstants;
@@ -25,7 +25,8 @@ pub(crate) struct Composer {
 }
 
 impl Composer {
-    /// `deep` is the whole picture and the tile's number in it, where there are translucent surfaces.
+    /// `deep` is the whole picture and the tile's number in it, where there are translucent
+    /// surfaces.
     pub(crate) fn compose(
         &mut self,
         tile: &Tile,
@@ -52,7 +53,13 @@ impl Composer {
     }
 
     /// Begins a picture with the background, and the shadow on the ground.
-    pub(super) fn begin(&mut self, tile: &Tile, points: &Points, constants: &FrameConstants<'_>, out: &mut [[u8; 4]]) {
+    pub(super) fn begin(
+        &mut self,
+        tile: &Tile,
+        points: &Points,
+        constants: &FrameConstants<'_>,
+        out: &mut [[u8; 4]],
+    ) {
         let (width, height) = visible_part(tile, constants.view.viewport);
         for y in 0..height {
             out[y * TILE..y * TILE + width].fill(constants.background.bytes[tile.y as usize + y]);
@@ -61,9 +68,11 @@ impl Composer {
         self.colors.clear();
         if !points.ground.is_empty() {
             let is_dark = |&pixel: &u32| points.ground[pixel as usize] > 0.0;
-            let seen = |&pixel: &u32| (pixel as usize % TILE) < width && (pixel as usize / TILE) < height;
+            let seen =
+                |&pixel: &u32| (pixel as usize % TILE) < width && (pixel as usize / TILE) < height;
             self.places.extend((0..TILE_PIXELS as u32).filter(seen).filter(is_dark));
-            let color = |&pixel: &u32| points.background(tile, pixel as usize, &constants.background);
+            let color =
+                |&pixel: &u32| points.background(tile, pixel as usize, &constants.background);
             self.colors.extend(self.places.iter().map(color));
             encode(constants.level, &self.places, &self.colors, constants.raw, out);
             self.places.clear();
@@ -83,14 +92,22 @@ impl Composer {
     }
 
     /// [`Self::mix`] where nothing lies in front.
-    fn mix_opaque(&mut self, tile: &Tile, points: &Points, lit: &ShadedPoints, constants: &FrameConstants<'_>) {
+    fn mix_opaque(
+        &mut self,
+        tile: &Tile,
+        points: &Points,
+        lit: &ShadedPoints,
+        constants: &FrameConstants<'_>,
+    ) {
         let samples = constants.view.pattern.len();
         self.places.extend(points.pixels.iter().map(|p| p.index));
         self.colors.extend(points.pixels.iter().map(|pixel| match pixel.source {
             Source::Point(point) => lit.colors[point as usize],
             Source::Mixed(start) => {
                 let behind = points.background(tile, pixel.index as usize, &constants.background);
-                let color = |&point: &u32| if point == NO_POINT { behind } else { lit.colors[point as usize] };
+                let color = |&point: &u32| {
+                    if point == NO_POINT { behind } else { lit.colors[point as usize] }
+                };
                 mean(points.mixed[start as usize..][..samples].iter().map(color))
             }
         }));
@@ -121,7 +138,9 @@ impl Composer {
             // Take the pixel's surface and its layers.
             // Found when a pixel first needs it: most are covered.
             let background = || points.background(tile, index as usize, &constants.background);
-            let behind = |point: u32| if point == NO_POINT { background() } else { lit.colors[point as usize] };
+            let behind = |point: u32| {
+                if point == NO_POINT { background() } else { lit.colors[point as usize] }
+            };
             let mut source = Source::Point(NO_POINT);
             if of_surface == index {
                 source = pixels[0].source;
@@ -140,10 +159,15 @@ impl Composer {
                     opaque_of_pixel(source, points, behind, below);
                     if !mine.is_empty() {
                         fragments.clear();
-                        fragments.extend(mine.iter().map(|f| fragment(f, tile, points, lit, constants, marks)));
+                        fragments.extend(
+                            mine.iter().map(|f| fragment(f, tile, points, lit, constants, marks)),
+                        );
                         if let Some((deep, index)) = deep {
                             let behind = mine.iter().map(|f| deep.behind(index, f, mine));
-                            fragments.iter_mut().zip(behind).for_each(|(f, behind)| f.behind = behind);
+                            fragments
+                                .iter_mut()
+                                .zip(behind)
+                                .for_each(|(f, behind)| f.behind = behind);
                         }
                         (constants.lay)(&fragments, below);
                     }
@@ -183,7 +207,8 @@ pub(super) fn mean(samples: impl ExactSizeIterator<Item = [f32; 4]>) -> [f32; 4]
     sum.map(|c| c / count)
 }
 
-/// The colours of a tile's samples, all pixels of one sample after the other: what is opaque, and the background.
+/// The colours of a tile's samples, all pixels of one sample after the other: what is opaque, and
+/// the background.
 pub(super) fn opaque_samples(
     tile: &Tile,
     points: &Points,
@@ -192,7 +217,8 @@ pub(super) fn opaque_samples(
 ) -> Vec<[f32; 4]> {
     let background = |pixel: usize| points.background(tile, pixel, &constants.background);
     let samples = constants.view.pattern.len();
-    let mut colors: Vec<_> = (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect();
+    let mut colors: Vec<_> =
+        (0..samples * TILE_PIXELS).map(|at| background(at % TILE_PIXELS)).collect();
     for pixel in &points.pixels {
         for sample in 0..samples {
             let point = match pixel.source {

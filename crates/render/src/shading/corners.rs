@@ -1,7 +1,8 @@
 //! What illumination makes of the corners of facets, for whoever wants to see that stage.
 //!
-//! Pictures illuminate what is seen, after visibility. Here the corners of facets go through the same formulas, textures and
-//! shadows, seen or not, each as part of its facet: that is where Gouraud's shading takes its intensities.
+//! Pictures illuminate what is seen, after visibility. Here the corners of facets go through the
+//! same formulas, textures and shadows, seen or not, each as part of its facet: that is where
+//! Gouraud's shading takes its intensities.
 //!
 //! In:   a prepared view. Out: a colour for each corner of the facets that culling left.
 //! Cost: three points a facet.
@@ -36,7 +37,8 @@ pub struct LitCorner {
 /// Facets that are illuminated together.
 const FACETS_AT_ONCE: usize = 4096;
 
-/// Shadow asks about a place this much inside the facet, by weight: on an edge it would be decided by rounding.
+/// Shadow asks about a place this much inside the facet, by weight: on an edge it would be decided
+/// by rounding.
 const INSIDE: f32 = 1.0 / 4096.0;
 
 /// Illuminates the corners of `facets`.
@@ -57,7 +59,10 @@ pub(crate) fn lit_corners(
         points.collect_facets(hits.iter().map(|hit: &Hit| hit.place.facet), constants);
         lit.reset(hits.len(), constants);
         dispatch!(constants.level, simd => shade_hits(simd, &points, &hits, constants, &mut lit));
-        corners[first..].iter_mut().zip(&lit.colors).for_each(|(corner, color)| corner.color = *color);
+        corners[first..]
+            .iter_mut()
+            .zip(&lit.colors)
+            .for_each(|(corner, color)| corner.color = *color);
     }
     Ok(corners)
 }
@@ -70,7 +75,12 @@ fn row_of(view: &PreparedView<'_>, point: DVec3) -> u32 {
 }
 
 /// Adds the corners of a facet, seen from where the eye is.
-fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, corners: &mut Vec<LitCorner>) {
+fn of_facet(
+    facet: u32,
+    constants: &FrameConstants<'_>,
+    hits: &mut Vec<Hit>,
+    corners: &mut Vec<LitCorner>,
+) {
     // Place the facet and turn its normal to the viewer.
     let view = constants.view;
     let world = &view.session.world;
@@ -102,8 +112,19 @@ fn of_facet(facet: u32, constants: &FrameConstants<'_>, hits: &mut Vec<Hit>, cor
         };
         let seed = facet.wrapping_mul(0x9e37_79b9) ^ corner as u32;
         let place = SurfacePoint { position, normal, facet, seed, pixel: None };
-        hits.push(Hit { weights, origin: origin.as_vec3().to_array(), place, row: Some(row_of(view, at)) });
-        corners.push(LitCorner { facet, corner: corner as u8, world: at, view: in_view, color: [0.0; 4] });
+        hits.push(Hit {
+            weights,
+            origin: origin.as_vec3().to_array(),
+            place,
+            row: Some(row_of(view, at)),
+        });
+        corners.push(LitCorner {
+            facet,
+            corner: corner as u8,
+            world: at,
+            view: in_view,
+            color: [0.0; 4],
+        });
     }
     debug_assert!(viewer != DVec4::ZERO);
 }

@@ -1,5 +1,6 @@
-//! Shading that ends at a limit. Whoever finds visible surfaces hands tiles on one after the other and asks nothing; from the limit on
-//! nothing is shaded, and who asked for the picture is told in the end.
+//! Shading that ends at a limit. Whoever finds visible surfaces hands tiles on one after the other
+//! and asks nothing; from the limit on nothing is shaded, and who asked for the picture is told in
+//! the end.
 
 use std::sync::OnceLock;
 use vitral_exec::{Budget, Limit};

@@ -1,6 +1,7 @@
 //! Depth cueing of shaded points, eight at a time: see [`Fade`].
 //!
-//! In:   colours and depths of up to eight points. Out: the faded colours; those that rays see after a turn stay.
+//! In:   colours and depths of up to eight points. Out: the faded colours; those that rays see
+//!       after a turn stay.
 //! Cost: a multiplication and a few additions a point.
 
 use super::geometry::{F, Surface, constant};
@@ -10,8 +11,8 @@ use crate::display::{BackgroundRows, Fade};
 use vitral_math::lanes::prelude::SimdBase;
 use vitral_math::lanes::{F32x8, LANES, Lanes, Simd, V3};
 
-/// Premultiplied colours of up to eight points. One instruction-set function: kept out of line, so that each level compiles it
-/// once.
+/// Premultiplied colours of up to eight points. One instruction-set function: kept out of line, so
+/// that each level compiles it once.
 #[inline(never)]
 pub(super) fn faded_eight<S: Simd>(
     simd: S,
@@ -34,7 +35,11 @@ pub(super) fn faded_eight<S: Simd>(
                 straight[lane] = 1.0;
             }
             let [r, g, b] = &into;
-            let into = V3::new(F32x8::from_slice(simd, r), F32x8::from_slice(simd, g), F32x8::from_slice(simd, b));
+            let into = V3::new(
+                F32x8::from_slice(simd, r),
+                F32x8::from_slice(simd, g),
+                F32x8::from_slice(simd, b),
+            );
             let kept = fade.kept(-surface.position().z);
             let faded = color.scale(kept) + into.scale(alpha * (-kept + 1.0));
             let is_straight = Lanes::lt(constant(simd, 0.0), F32x8::from_slice(simd, &straight));

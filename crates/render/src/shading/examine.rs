@@ -16,8 +16,8 @@ use super::lighting::{Coefficients, towards_viewer};
 use super::material_constants::MaterialConstants;
 use super::model::Model;
 use super::pixel_light::{
-    CoefficientValues, DepthCueTerms, Evaluation, LayerLight, NumberedTerms, PixelLight, PointLight, SampleLight,
-    ShadowOfLight,
+    CoefficientValues, DepthCueTerms, Evaluation, LayerLight, NumberedTerms, PixelLight,
+    PointLight, SampleLight, ShadowOfLight,
 };
 use super::points::{NO_POINT, Points, Source};
 use super::shade::{irradiance, shade};
@@ -31,8 +31,8 @@ use crate::raytrace::triangles::Triangles;
 use crate::shadow::{Occluders, SurfacePoint, blocker};
 use crate::transparency::MOST_SAMPLES;
 use vitral_light::{
-    EnvironmentLight, Illumination, Light, Microfacet, Phong, Reflected, Rgb, ambient_term, microfacet_terms,
-    phong_terms, sum_of_terms,
+    EnvironmentLight, Illumination, Light, Microfacet, Phong, Reflected, Rgb, ambient_term,
+    microfacet_terms, phong_terms, sum_of_terms,
 };
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{Lanes, Simd, V3, dispatch};
@@ -54,13 +54,16 @@ impl Examination<'_> {
         // Leave the pixel alone in the tile.
         let (mut alone, samples) = (tile.clone(), self.constants.view.pattern.len());
         alone.facet.fill(NO_FACET);
-        for at in (0..samples).map(|s| s * TILE_PIXELS + pixel).filter(|&at| at < tile.facet.len()) {
+        for at in (0..samples).map(|s| s * TILE_PIXELS + pixel).filter(|&at| at < tile.facet.len())
+        {
             alone.facet[at] = tile.facet[at];
         }
-        let layers: Vec<Layer> = layers.iter().filter(|l| l.at as usize % TILE_PIXELS == pixel).copied().collect();
+        let layers: Vec<Layer> =
+            layers.iter().filter(|l| l.at as usize % TILE_PIXELS == pixel).copied().collect();
 
         // Shade it, and take apart how.
-        let (mut points, mut facets, mut lit) = (Points::default(), FacetTable::default(), ShadedPoints::default());
+        let (mut points, mut facets, mut lit) =
+            (Points::default(), FacetTable::default(), ShadedPoints::default());
         points.collect(&alone, InFront::Samples(&layers), self.constants, self.marks);
         points.ground = self.constants.ground_shadow(&alone);
         shade(&points, &mut facets, self.constants, &mut lit);
@@ -103,20 +106,26 @@ impl Examination<'_> {
         // Place the points and vary the material, as for a picture.
         let mut surface = surface(simd, records, slots);
         surface.screen_linear = subject.viewing.screen_linear();
-        let mut parameters = SurfaceParameters::new(simd, subject.mesh, slots, &surface, material, constants.raw);
+        let mut parameters =
+            SurfaceParameters::new(simd, subject.mesh, slots, &surface, material, constants.raw);
         parameters.let_through(simd, &surface, material, constants, None);
         parameters.occlude(simd, eight);
-        let places = shadowed::world_places(simd, constants, subject, slots, &surface.place_weights());
+        let places =
+            shadowed::world_places(simd, constants, subject, slots, &surface.place_weights());
         let wanted = self.evaluations(simd, eight, &surface, &parameters);
-        let received = constants.radiosity.filter(|_| material.model.needs_light_visibility()).map(|solution| {
-            let k = parameters.coefficients(simd, material, parameters.base);
-            k.diffuse_part().times(irradiance(simd, solution, subject, slots, &surface))
-        });
+        let received = constants.radiosity.filter(|_| material.model.needs_light_visibility()).map(
+            |solution| {
+                let k = parameters.coefficients(simd, material, parameters.base);
+                k.diffuse_part().times(irradiance(simd, solution, subject, slots, &surface))
+            },
+        );
         let shines = material.scatters.is_some() && material.model.needs_light_visibility();
         let glow = shines.then(|| glow(simd, eight, &parameters, &surface, constants));
         let own = match material.model {
             Model::Own => Some(parameters.own(simd, material)),
-            Model::Constant(color) => Some(V3::splat(parameters.alpha, color).times(parameters.base)),
+            Model::Constant(color) => {
+                Some(V3::splat(parameters.alpha, color).times(parameters.base))
+            }
             Model::Empirical(_) | Model::Microfacet => None,
         };
 
@@ -126,7 +135,8 @@ impl Examination<'_> {
             let triple = |v: V3<F<S>>| [number(v.x), number(v.y), number(v.z)];
             let visibility: Vec<Rgb> =
                 eight.light_visibility.iter().map(|parts| parts.get(eight.first + lane)).collect();
-            let evaluations: Vec<_> = wanted.iter().map(|w| self.evaluate(w, material, lane, &visibility)).collect();
+            let evaluations: Vec<_> =
+                wanted.iter().map(|w| self.evaluate(w, material, lane, &visibility)).collect();
             let emission = match material.model {
                 Model::Constant(_) => [0.0; 3],
                 _ => triple(parameters.emission),
@@ -141,7 +151,9 @@ impl Examination<'_> {
             let place = &places[lane];
             let weights = surface.weights.map(number);
             let reflected = match own.map(triple) {
-                Some(own) => Reflected { diffuse: V3::from_array(own), specular: V3::from_array([0.0; 3]) },
+                Some(own) => {
+                    Reflected { diffuse: V3::from_array(own), specular: V3::from_array([0.0; 3]) }
+                }
                 None => together(&evaluations, weights, triple(parameters.texture)),
             };
 
@@ -150,7 +162,8 @@ impl Examination<'_> {
             found[p as usize] = Some(PointLight {
                 facet: points.facet[p as usize],
                 at: points.place[p as usize],
-                world: (place.position + Triangles::center_of(&constants.view.session.world)).to_array(),
+                world: (place.position + Triangles::center_of(&constants.view.session.world))
+                    .to_array(),
                 weights,
                 model: model_name(material.model),
                 shading: constants.shading.name(),
@@ -188,7 +201,8 @@ impl Examination<'_> {
         }
 
         // Evaluate where the shading model does: at the point, on the face, or at the corners.
-        let viewer = |position: &V3<F<S>>| towards_viewer(simd, position, None, subject.viewing.perspective);
+        let viewer =
+            |position: &V3<F<S>>| towards_viewer(simd, position, None, subject.viewing.perspective);
         let of_point = |placed: Placed<F<S>>| {
             let v = viewer(&placed.position);
             vec![Wanted {
@@ -200,20 +214,29 @@ impl Examination<'_> {
             }]
         };
         match self.constants.shading {
-            Shading::Phong => {
-                of_point(phong::placed(surface, parameters.mapped_normal(simd, subject, slots, surface, material)))
-            }
+            Shading::Phong => of_point(phong::placed(
+                surface,
+                parameters.mapped_normal(simd, subject, slots, surface, material),
+            )),
             Shading::Flat => {
                 let mesh = subject.mesh;
-                let faces = self.constants.faces.get_or_build(subject.mesh_index, || FaceTable::new(mesh));
+                let faces =
+                    self.constants.faces.get_or_build(subject.mesh_index, || FaceTable::new(mesh));
                 of_point(flat::placed(simd, (mesh, faces), subject.instance, slots, surface))
             }
             Shading::Gouraud => {
                 let corner = |k: usize| Wanted {
                     corner: Some(k as u8),
-                    placed: Placed { position: surface.positions[k], normal: surface.normals[k].normalize() },
+                    placed: Placed {
+                        position: surface.positions[k],
+                        normal: surface.normals[k].normalize(),
+                    },
                     v: viewer(&surface.positions[k]),
-                    coefficients: parameters.coefficients(simd, material, parameters.corner_colors[k]),
+                    coefficients: parameters.coefficients(
+                        simd,
+                        material,
+                        parameters.corner_colors[k],
+                    ),
                     weight: surface.weights[k],
                 };
                 [0, 1, 2].map(corner).into()
@@ -235,8 +258,13 @@ impl Examination<'_> {
         let number = |v: F<S>| v.to_array()[lane];
         let triple = |v: V3<F<S>>| V3::new(number(v.x), number(v.y), number(v.z));
         let Placed { position, normal } = wanted.placed;
-        let s = vitral_light::Surface { position: triple(position), n: triple(normal), v: triple(wanted.v) };
-        let coefficients = Coefficients::from_numbers(material.model, wanted.coefficients.numbers().map(number));
+        let s = vitral_light::Surface {
+            position: triple(position),
+            n: triple(normal),
+            v: triple(wanted.v),
+        };
+        let coefficients =
+            Coefficients::from_numbers(material.model, wanted.coefficients.numbers().map(number));
         let seen = |j: usize| visibility.get(j).copied().unwrap_or([1.0; 3]);
 
         // Evaluate each light's terms.
@@ -251,18 +279,25 @@ impl Examination<'_> {
                     Model::Empirical(illumination) => illumination,
                     _ => Illumination::Phong,
                 };
-                let terms = lights.map(|(j, light)| phong_terms(model, light, &s, &k, seen(j))).collect();
+                let terms =
+                    lights.map(|(j, light)| phong_terms(model, light, &s, &k, seen(j))).collect();
                 let Phong { ka, kd, ks, shininess } = k;
                 let [ka, kd, ks] = [ka, kd, ks].map(V3::to_array);
                 let values = CoefficientValues::Empirical { ka, kd, ks, shininess };
                 (terms, ambient_term(ka, constants.ambient), values)
             }
             Coefficients::Microfacet(m) => {
-                let terms = lights.map(|(j, light)| microfacet_terms(light, &s, &m, seen(j))).collect();
+                let terms =
+                    lights.map(|(j, light)| microfacet_terms(light, &s, &m, seen(j))).collect();
                 let Microfacet { base_color, metallic, roughness, occlusion } = m;
-                let ambient = ambient_term(base_color.scale(occlusion).to_array(), constants.ambient);
+                let ambient =
+                    ambient_term(base_color.scale(occlusion).to_array(), constants.ambient);
                 let base_color = base_color.to_array();
-                (terms, ambient, CoefficientValues::Microfacet { base_color, metallic, roughness, occlusion })
+                (
+                    terms,
+                    ambient,
+                    CoefficientValues::Microfacet { base_color, metallic, roughness, occlusion },
+                )
             }
         };
 
@@ -271,9 +306,12 @@ impl Examination<'_> {
         let (gathered, environment) = match (sky, &constants.environment, microfacet) {
             (Some(sky), _, Some(m)) => (None, Some(sky.mirrored(&s, &m))),
             (None, Some(image), Some(m)) => {
-                let [gathered, mirrored] = EnvironmentLight::reflected(&s, &m, |n, towards, roughness| {
-                    image.arriving(n.to_array(), towards.to_array(), roughness).map(V3::from_array)
-                });
+                let [gathered, mirrored] =
+                    EnvironmentLight::reflected(&s, &m, |n, towards, roughness| {
+                        image
+                            .arriving(n.to_array(), towards.to_array(), roughness)
+                            .map(V3::from_array)
+                    });
                 (Some(gathered), Some(mirrored).filter(|_| material.mirrors_sky))
             }
             _ => (None, None),
@@ -304,12 +342,15 @@ impl Examination<'_> {
     fn shadows(&self, visibility: &[Rgb], place: &SurfacePoint) -> Vec<ShadowOfLight> {
         let session = self.constants.view.session;
         let of_light = |(&light, &visibility): (&usize, &Rgb)| {
-            let mut shadow = ShadowOfLight { light, visibility, attached: false, blocker: None, distance: None };
+            let mut shadow =
+                ShadowOfLight { light, visibility, attached: false, blocker: None, distance: None };
             if visibility == [1.0; 3] {
                 return shadow;
             }
-            shadow.attached = faces_away(&self.lights[light], place, Triangles::center_of(&session.world));
-            let found = blocker(session, self.occluders, &self.lights[light], place).filter(|_| !shadow.attached);
+            shadow.attached =
+                faces_away(&self.lights[light], place, Triangles::center_of(&session.world));
+            let found = blocker(session, self.occluders, &self.lights[light], place)
+                .filter(|_| !shadow.attached);
             (shadow.blocker, shadow.distance) = (found.map(|b| b.facet), found.map(|b| b.distance));
             shadow
         };
@@ -331,7 +372,8 @@ impl Examination<'_> {
         let (x, y) = (tile.x + (pixel % TILE) as u32, tile.y + (pixel / TILE) as u32);
         let source = points.pixels.first().map_or(Source::Point(NO_POINT), |p| p.source);
         let background = points.background(tile, pixel, &constants.background);
-        let behind = |point: u32| if point == NO_POINT { background } else { lit.colors[point as usize] };
+        let behind =
+            |point: u32| if point == NO_POINT { background } else { lit.colors[point as usize] };
 
         // Lay the layers over the opaque samples.
         let mut below = [[0.0; 4]; MOST_SAMPLES];
@@ -351,16 +393,19 @@ impl Examination<'_> {
                 Source::Mixed(start) => points.mixed[start as usize + s],
             };
             let over = points.fragments.iter().zip(&fragments).filter(|(f, _)| f.covers(s as u32));
-            let layer =
-                |(f, colored): (&super::points::FragmentPoint, &crate::transparency::Fragment<'_>)| LayerLight {
-                    point: (!f.is_mark).then(|| numbers.number(f.source)).flatten(),
-                    depth: points.depth(f, s as u32),
-                    color: colored.color,
-                    passes: colored.passes,
-                };
+            let layer = |(f, colored): (
+                &super::points::FragmentPoint,
+                &crate::transparency::Fragment<'_>,
+            )| LayerLight {
+                point: (!f.is_mark).then(|| numbers.number(f.source)).flatten(),
+                depth: points.depth(f, s as u32),
+                color: colored.color,
+                passes: colored.passes,
+            };
             let mut layers: Vec<_> = over.map(layer).collect();
             layers.sort_by(|a, b| b.depth.total_cmp(&a.depth));
-            let [right, down] = constants.view.pattern.position(s).map(|p| p as f32 / SUBPIXEL as f32);
+            let [right, down] =
+                constants.view.pattern.position(s).map(|p| p as f32 / SUBPIXEL as f32);
             SampleLight {
                 at: [x as f32 + right, y as f32 + down],
                 point: numbers.number(point),
@@ -403,7 +448,8 @@ impl Numbers {
     }
 }
 
-/// What a point reflects by its evaluations: the only one, or those of the corners, weighed, times the texture.
+/// What a point reflects by its evaluations: the only one, or those of the corners, weighed, times
+/// the texture.
 fn together(evaluations: &[Evaluation], weights: [f32; 3], texture: Rgb) -> Reflected<f32> {
     let of = |e: &Evaluation| [V3::from_array(e.diffuse), V3::from_array(e.specular)];
     match evaluations {
@@ -412,7 +458,10 @@ fn together(evaluations: &[Evaluation], weights: [f32; 3], texture: Rgb) -> Refl
             let blended = [0, 1].map(|k| blend3(&weights, &[a[k], b[k], c[k]]));
             Reflected { diffuse: blended[0].times(V3::from_array(texture)), specular: blended[1] }
         }
-        [only, ..] => Reflected { diffuse: V3::from_array(only.diffuse), specular: V3::from_array(only.specular) },
+        [only, ..] => Reflected {
+            diffuse: V3::from_array(only.diffuse),
+            specular: V3::from_array(only.specular),
+        },
         [] => Reflected { diffuse: V3::from_array([0.0; 3]), specular: V3::from_array([0.0; 3]) },
     }
 }
@@ -466,7 +515,9 @@ fn faces_away(light: &Light, place: &SurfacePoint, center: vitral_math::DVec3) -
             let above = place.normal.dot(*middle - center - place.position);
             above + radius * (1.0 - tilt * tilt).max(0.0).sqrt() <= 0.0
         }
-        LightKind::Area { shape: AreaShape::Polygon { corners } } => corners.iter().all(|&corner| at(corner)),
+        LightKind::Area { shape: AreaShape::Polygon { corners } } => {
+            corners.iter().all(|&corner| at(corner))
+        }
     }
 }
 

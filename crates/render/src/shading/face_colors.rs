@@ -1,8 +1,10 @@
 //! The light of whole faces, without a picture: flat shading for drawings.
 //!
-//! The same models and coefficients as in pictures, evaluated once for a face, at a place of it. Textures do not take part.
+//! The same models and coefficients as in pictures, evaluated once for a face, at a place of it.
+//! Textures do not take part.
 //!
-//! In:   lights and a viewer; for each face a place, its normal, a material, and the lights that reach it. Out: its colour, linear.
+//! In:   lights and a viewer; for each face a place, its normal, a material, and the lights that
+//!       reach it. Out: its colour, linear.
 //! Cost: the lights of each face.
 //! Source: \[Foley et al. 1990\], 16.2.1, constant shading.
 
@@ -11,8 +13,8 @@ use super::model::Model;
 use super::surface_parameters::of_base;
 use crate::settings::ShadingSettings;
 use vitral_light::{
-    Light, Material, PreparedLight, Reflected, Rgb, Surface, ambient_term, constant_color, microfacet_terms,
-    phong_terms, sum_of_terms,
+    Light, Material, PreparedLight, Reflected, Rgb, Surface, ambient_term, constant_color,
+    microfacet_terms, phong_terms, sum_of_terms,
 };
 use vitral_math::lanes::V3;
 use vitral_math::{DMat4, DVec3};
@@ -42,15 +44,33 @@ pub struct FacePlace {
 
 impl FaceColors {
     /// For a viewer, `lights` (world space) and `ambient` light from everywhere.
-    pub fn new(settings: ShadingSettings, view: &ViewTransform, lights: &[Light], ambient: Rgb) -> Self {
+    pub fn new(
+        settings: ShadingSettings,
+        view: &ViewTransform,
+        lights: &[Light],
+        ambient: Rgb,
+    ) -> Self {
         let view_from_world = view.view_from_world;
         let prepared = lights.iter().enumerate();
-        let prepared = prepared.filter_map(|(i, light)| Some((i, PreparedLight::new(light, &view_from_world)?)));
-        Self { settings, lights: prepared.collect(), ambient, view_from_world, perspective: view.perspective }
+        let prepared = prepared
+            .filter_map(|(i, light)| Some((i, PreparedLight::new(light, &view_from_world)?)));
+        Self {
+            settings,
+            lights: prepared.collect(),
+            ambient,
+            view_from_world,
+            perspective: view.perspective,
+        }
     }
 
-    /// The light that a face sends to the viewer, linear, not clamped. `reaches` says of a light's number whether it is not in shadow.
-    pub fn color(&self, material: &Material, place: &FacePlace, reaches: impl Fn(usize) -> bool) -> Rgb {
+    /// The light that a face sends to the viewer, linear, not clamped. `reaches` says of a light's
+    /// number whether it is not in shadow.
+    pub fn color(
+        &self,
+        material: &Material,
+        place: &FacePlace,
+        reaches: impl Fn(usize) -> bool,
+    ) -> Rgb {
         // Place it in view space.
         let vector = |v: DVec3| V3::from_array(v.as_vec3().to_array());
         let position = self.view_from_world.transform_point3(place.position);
@@ -59,18 +79,31 @@ impl FaceColors {
         let surface = Surface { position: vector(position), n: vector(normal), v: vector(viewer) };
 
         // Evaluate the model of the material.
-        let model = Model::of_material(material, self.settings.illumination, self.settings.lighting);
+        let model =
+            Model::of_material(material, self.settings.illumination, self.settings.lighting);
         let lights = self.lights.iter();
         let visibility = |number: usize| if reaches(number) { [1.0; 3] } else { [0.0; 3] };
-        let sum = match (model, of_base(1.0f32, &material.reflectance, model, V3::from_array(place.base))) {
-            (Model::Own | Model::Constant(_), _) => return times(constant_color(material), place.base),
+        let sum = match (
+            model,
+            of_base(1.0f32, &material.reflectance, model, V3::from_array(place.base)),
+        ) {
+            (Model::Own | Model::Constant(_), _) => {
+                return times(constant_color(material), place.base);
+            }
             (Model::Empirical(illumination), Coefficients::Empirical(k)) => {
-                let terms = lights.map(|(i, light)| phong_terms(illumination, light, &surface, &k, visibility(*i)));
-                sum_of_terms(ambient_term(k.ka.to_array(), self.ambient), &terms.collect::<Vec<_>>())
+                let terms = lights.map(|(i, light)| {
+                    phong_terms(illumination, light, &surface, &k, visibility(*i))
+                });
+                sum_of_terms(
+                    ambient_term(k.ka.to_array(), self.ambient),
+                    &terms.collect::<Vec<_>>(),
+                )
             }
             (_, Coefficients::Microfacet(m)) => {
-                let terms = lights.map(|(i, light)| microfacet_terms(light, &surface, &m, visibility(*i)));
-                let ambient = ambient_term(m.base_color.scale(m.occlusion).to_array(), self.ambient);
+                let terms =
+                    lights.map(|(i, light)| microfacet_terms(light, &surface, &m, visibility(*i)));
+                let ambient =
+                    ambient_term(m.base_color.scale(m.occlusion).to_array(), self.ambient);
                 sum_of_terms(ambient, &terms.collect::<Vec<_>>())
             }
             (Model::Microfacet, Coefficients::Empirical(_)) => {
@@ -99,7 +132,10 @@ mod tests {
     fn front(material: Material, lens: Lens) -> [[u8; 3]; 2] {
         let mut scene = Scene::default();
         let index = scene.add_material(material.clone());
-        scene.add_mesh(solids::cuboid(DVec3::new(2.0, 1.0, 1.0)).with_material(index), DMat4::IDENTITY);
+        scene.add_mesh(
+            solids::cuboid(DVec3::new(2.0, 1.0, 1.0)).with_material(index),
+            DMat4::IDENTITY,
+        );
         let mut settings = Settings::default().with_size(9, 9);
         settings.shading.model = Shading::Flat;
         let mut session = Session::new(Arc::new(scene)).unwrap();
@@ -111,14 +147,24 @@ mod tests {
 
         let view = camera.transform(1.0, depth_range(&camera, &session.world().bounds));
         let colors = FaceColors::new(settings.shading, &view, &lights, ambient);
-        let place = FacePlace { position: DVec3::new(0.0, 0.0, 0.5), normal: DVec3::Z, base: [1.0; 3] };
+        let place =
+            FacePlace { position: DVec3::new(0.0, 0.0, 0.5), normal: DVec3::Z, base: [1.0; 3] };
         let color = colors.color(&material, &place, |_| true);
-        [[r, g, b], color.map(|c| vitral_math::color::byte_from_unit(vitral_math::color::srgb_from_linear(c)))]
+        [
+            [r, g, b],
+            color.map(|c| {
+                vitral_math::color::byte_from_unit(vitral_math::color::srgb_from_linear(c))
+            }),
+        ]
     }
 
     #[test]
     fn faces_have_the_colours_of_flat_shaded_pictures() {
-        let metal = Reflectance::MetallicRoughness { base_color: [0.9, 0.6, 0.2], metallic: 1.0, roughness: 0.5 };
+        let metal = Reflectance::MetallicRoughness {
+            base_color: [0.9, 0.6, 0.2],
+            metallic: 1.0,
+            roughness: 0.5,
+        };
         let shining = Material { emission: [0.05, 0.1, 0.0], ..Material::default() };
         let unlit = Material { unlit: true, ..Material::default() };
         for material in [Material::default(), Material::new(metal), shining, unlit] {

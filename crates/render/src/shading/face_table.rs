@@ -2,7 +2,8 @@
 
 use vitral_scene::{Faces, Mesh, normals};
 
-/// Centre and normal of each polygon of a mesh, model space. Meshes of triangles need none: a facet is a face.
+/// Centre and normal of each polygon of a mesh, model space. Meshes of triangles need none: a facet
+/// is a face.
 #[derive(Debug, Default)]
 pub struct FaceTable {
     pub(super) centers_and_normals: Vec<[[f32; 3]; 2]>,

@@ -1,12 +1,14 @@
 //! What is the same all over a facet, computed once for each facet that a tile shows.
 //!
-//! Weights of the corners: with corners in homogeneous screen coordinates `(X, Y, W)` relative to a point,
-//! `e0 = X1 Y2 - X2 Y1` and so on are in the ratio of the point's barycentric coordinates on the surface in space
-//! (perspective-correct), for corners behind the eye too. As functions of the point's place they are linear:
-//! `c + a x + b y`, taken from an anchor on the facet so that little cancels. Each multiplied with its corner's `W`
-//! they would be those on the screen; that is the classical defect, kept for comparison.
+//! Weights of the corners: with corners in homogeneous screen coordinates `(X, Y, W)` relative to a
+//! point, `e0 = X1 Y2 - X2 Y1` and so on are in the ratio of the point's barycentric coordinates on
+//! the surface in space (perspective-correct), for corners behind the eye too. As functions of the
+//! point's place they are linear: `c + a x + b y`, taken from an anchor on the facet so that little
+//! cancels. Each multiplied with its corner's `W` they would be those on the screen; that is the
+//! classical defect, kept for comparison.
 //!
-//! In:   the points of one object and material. Out: a record for each of their facets, and which one each point has.
+//! In:   the points of one object and material. Out: a record for each of their facets, and which
+//!       one each point has.
 //! Cost: linear in points; the record of a facet costs as much as a few points.
 //! Source: [Heckbert & Moreton 1991], [Olano & Greer 1997].
 
@@ -41,7 +43,13 @@ impl FacetTable {
     }
 
     /// Makes the records for the points `order`.
-    pub(crate) fn fill<S: Simd>(&mut self, simd: S, points: &Points, order: &[u32], subject: &Subject<'_>) {
+    pub(crate) fn fill<S: Simd>(
+        &mut self,
+        simd: S,
+        points: &Points,
+        order: &[u32],
+        subject: &Subject<'_>,
+    ) {
         // Number the facets; a small table finds those seen lately.
         self.triangles.clear();
         self.anchors.clear();
@@ -62,7 +70,11 @@ impl FacetTable {
         self.records.resize(self.triangles.len(), Record([0.0; 32]));
 
         // Compute the records, eight at a time.
-        let eights = self.triangles.chunks(LANES).zip(self.anchors.chunks(LANES)).zip(self.records.chunks_mut(LANES));
+        let eights = self
+            .triangles
+            .chunks(LANES)
+            .zip(self.anchors.chunks(LANES))
+            .zip(self.records.chunks_mut(LANES));
         for ((triangles, anchors), records) in eights {
             simd.vectorize(
                 #[inline(always)]
@@ -79,12 +91,20 @@ pub(super) fn model_corners<S: Simd>(simd: S, triangles: &[u32], mesh: &Mesh) ->
     gather(
         simd,
         #[inline(always)]
-        |lane, corner| mesh.positions[mesh.triangles[triangles[lane.min(last)] as usize][corner] as usize],
+        |lane, corner| {
+            mesh.positions[mesh.triangles[triangles[lane.min(last)] as usize][corner] as usize]
+        },
     )
 }
 
 #[inline(always)]
-fn eight_records<S: Simd>(simd: S, triangles: &[u32], anchors: &[[f32; 2]], subject: &Subject<'_>, out: &mut [Record]) {
+fn eight_records<S: Simd>(
+    simd: S,
+    triangles: &[u32],
+    anchors: &[[f32; 2]],
+    subject: &Subject<'_>,
+    out: &mut [Record],
+) {
     // Gather the corners and the points at which weights are anchored.
     let (instance, viewing) = (subject.instance, subject.viewing);
     let last = triangles.len() - 1;
@@ -97,7 +117,8 @@ fn eight_records<S: Simd>(simd: S, triangles: &[u32], anchors: &[[f32; 2]], subj
 
     // Weights as functions of the place.
     let to_screen = &instance.screen_from_model;
-    let mut s = [affine(to_screen, &model[0]), affine(to_screen, &model[1]), affine(to_screen, &model[2])];
+    let mut s =
+        [affine(to_screen, &model[0]), affine(to_screen, &model[1]), affine(to_screen, &model[2])];
     for c in 0..3 {
         s[c] = V3::new(s[c].x - x0 * s[c].z, s[c].y - y0 * s[c].z, s[c].z);
     }
@@ -107,9 +128,12 @@ fn eight_records<S: Simd>(simd: S, triangles: &[u32], anchors: &[[f32; 2]], subj
         edges[c] = [p.x * q.y - q.x * p.y, q.z * p.y - p.z * q.y, q.x * p.z - p.x * q.z];
     }
     if viewing.screen_linear() {
-        // Linear on the screen. A facet that reaches behind the eye has corners that are nowhere on it.
-        let before =
-            lanes::Lanes::lt(constant(simd, 0.0), lanes::Lanes::min(lanes::Lanes::min(s[0].z, s[1].z), s[2].z));
+        // Linear on the screen. A facet that reaches behind the eye has corners that are nowhere on
+        // it.
+        let before = lanes::Lanes::lt(
+            constant(simd, 0.0),
+            lanes::Lanes::min(lanes::Lanes::min(s[0].z, s[1].z), s[2].z),
+        );
         for c in 0..3 {
             let scale = lanes::Lanes::select(before, s[c].z, constant(simd, 1.0));
             edges[c] = [edges[c][0] * scale, edges[c][1] * scale, edges[c][2] * scale];
@@ -119,7 +143,8 @@ fn eight_records<S: Simd>(simd: S, triangles: &[u32], anchors: &[[f32; 2]], subj
     write_records(simd, triangles, subject, &model, None, edges, [x0, y0], out);
 }
 
-/// Corners and normals in view space, and with the weights into records; seen from `origin` (view space) if not by the eye.
+/// Corners and normals in view space, and with the weights into records; seen from `origin` (view
+/// space) if not by the eye.
 #[inline(always)]
 pub(super) fn write_records<S: Simd>(
     simd: S,
@@ -134,7 +159,8 @@ pub(super) fn write_records<S: Simd>(
     // Bring corners and normals to view space, on the viewer's side.
     let instance = subject.instance;
     let to_view = &instance.view_from_model;
-    let positions = [affine(to_view, &model[0]), affine(to_view, &model[1]), affine(to_view, &model[2])];
+    let positions =
+        [affine(to_view, &model[0]), affine(to_view, &model[1]), affine(to_view, &model[2])];
     let geometric = (positions[1] - positions[0]).cross(positions[2] - positions[0]).normalize();
     let geometric = if instance.mirrored { -geometric } else { geometric };
     let normals = corner_normals(simd, triangles, subject, geometric);
@@ -169,7 +195,12 @@ pub(super) fn write_records<S: Simd>(
 
 /// Unit normals at the corners: the mesh's, or the facet's where there is none.
 #[inline(always)]
-fn corner_normals<S: Simd>(simd: S, triangles: &[u32], subject: &Subject<'_>, geometric: V3<F<S>>) -> [V3<F<S>>; 3] {
+fn corner_normals<S: Simd>(
+    simd: S,
+    triangles: &[u32],
+    subject: &Subject<'_>,
+    geometric: V3<F<S>>,
+) -> [V3<F<S>>; 3] {
     let (mesh, last) = (subject.mesh, triangles.len() - 1);
     let mut normals = [geometric; 3];
     if let Some(attribute) = &mesh.normals {
@@ -177,7 +208,9 @@ fn corner_normals<S: Simd>(simd: S, triangles: &[u32], subject: &Subject<'_>, ge
         let values: [[F<S>; 3]; 3] = gather(
             simd,
             #[inline(always)]
-            |lane, corner| attribute.values[corners[triangles[lane.min(last)] as usize][corner] as usize],
+            |lane, corner| {
+                attribute.values[corners[triangles[lane.min(last)] as usize][corner] as usize]
+            },
         );
         for c in 0..3 {
             let n = linear(&subject.instance.view_from_model_normal, &values[c]).normalize();
@@ -211,12 +244,13 @@ fn facing<S: Simd>(
     } else {
         geometric.z
     };
-    let facet_normal = V3::select(lanes::Lanes::lt(towards, constant(simd, 0.0)), -geometric, geometric);
+    let facet_normal =
+        V3::select(lanes::Lanes::lt(towards, constant(simd, 0.0)), -geometric, geometric);
     if subject.mesh.normals_stay {
         return (facet_normal, normals);
     }
-    // Each by itself: files have facets of which one corner's normal lies on the wrong side. A normal in the facet's plane, but for
-    // rounding, is on neither side: it stays as it is.
+    // Each by itself: files have facets of which one corner's normal lies on the wrong side. A
+    // normal in the facet's plane, but for rounding, is on neither side: it stays as it is.
     let hair = constant(simd, -1e-4);
     for normal in &mut normals {
         let behind = lanes::Lanes::lt(normal.dot(facet_normal), hair);

@@ -1,9 +1,11 @@
-//! Flat (constant) shading: one intensity for each face of the file, however many triangles it was cut into.
+//! Flat (constant) shading: one intensity for each face of the file, however many triangles it was
+//! cut into.
 //!
-//! The model supposes light and viewer at infinity; here both are taken as seen from the face's centre. Neighbouring
-//! faces differ in steps, and the eye exaggerates them (Mach bands).
+//! The model supposes light and viewer at infinity; here both are taken as seen from the face's
+//! centre. Neighbouring faces differ in steps, and the eye exaggerates them (Mach bands).
 //!
-//! Input: the face's centre and normal, model space. Output: reflected light, the same at all points of the face.
+//! Input: the face's centre and normal, model space. Output: reflected light, the same at all
+//! points of the face.
 //! Source: [Foley et al. 1990], 16.2.1.
 
 use super::face_table::FaceTable;

@@ -1,4 +1,5 @@
-//! What stays the same for all points of a frame: matrices of each instance, lights, materials, the background.
+//! What stays the same for all points of a frame: matrices of each instance, lights, materials, the
+//! background.
 
 use super::face_table::FaceTable;
 use super::instance_constants::InstanceConstants;
@@ -11,8 +12,8 @@ use crate::settings::Terminator;
 use crate::shadow::{AmbientOcclusion, Ground, PreparedShadows};
 use crate::transparency::Lay;
 use crate::{
-    ColorSpace, DepthCue, Environment, Execution, Global, Interpolation, PerMesh, PreparedView, Settings, Shading,
-    Surroundings, Transparency,
+    ColorSpace, DepthCue, Environment, Execution, Global, Interpolation, PerMesh, PreparedView,
+    Settings, Shading, Surroundings, Transparency,
 };
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -52,7 +53,8 @@ pub(crate) struct FrameConstants<'a> {
     pub light_numbers: Vec<usize>,
     /// What says which part of a light arrives; `None` without shadows.
     pub shadows: Option<&'a dyn PreparedShadows>,
-    /// What softens the border of attached shadows; `None` without shadows, and where it is to be exact.
+    /// What softens the border of attached shadows; `None` without shadows, and where it is to be
+    /// exact.
     pub(super) terminator: Option<Box<dyn PreparedShadows + 'a>>,
     /// What says which part of ambient light arrives; `None`: all of it.
     pub occlusion: Option<&'a AmbientOcclusion<'a>>,
@@ -98,14 +100,17 @@ impl<'a> FrameConstants<'a> {
         tables: &'a DecodeTables,
         execution: &Execution,
     ) -> Self {
-        let FrameLight { lights, ambient, surroundings, shadows, occlusion, ground, radiosity } = *light;
+        let FrameLight { lights, ambient, surroundings, shadows, occlusion, ground, radiosity } =
+            *light;
         let session = view.session;
         let raw = settings.picture.color_space == ColorSpace::Raw;
-        let instances =
-            (0..session.world.instances.len()).map(|i| InstanceConstants::new(view, i, settings, execution)).collect();
+        let instances = (0..session.world.instances.len())
+            .map(|i| InstanceConstants::new(view, i, settings, execution))
+            .collect();
         let default = Material { name: "default".to_owned(), ..Material::default() };
         let materials = session.scene.materials.iter().chain([&default]);
-        let materials: Vec<_> = materials.map(|m| MaterialConstants::new(m, view, settings, tables)).collect();
+        let materials: Vec<_> =
+            materials.map(|m| MaterialConstants::new(m, view, settings, tables)).collect();
 
         // Find the facets from which rays go on.
         let follows = match settings.global.model {
@@ -117,10 +122,13 @@ impl<'a> FrameConstants<'a> {
         let key = (settings.picture.background, settings.picture.height, raw);
         let make = || Ok::<_, Infallible>(BackgroundRows::new(&key));
         let Ok(background) = session.cache.get_or_build(key, make);
-        let prepared = lights.iter().map(|l| PreparedLight::new(l, &view.view.view_from_world)).enumerate();
+        let prepared =
+            lights.iter().map(|l| PreparedLight::new(l, &view.view.view_from_world)).enumerate();
         let soft = shadows.is_some() && settings.shadows.terminator == Terminator::Soft;
-        let terminator =
-            || Box::new(SoftTerminator::new(view, lights, settings, execution)) as Box<dyn PreparedShadows + 'a>;
+        let terminator = || {
+            Box::new(SoftTerminator::new(view, lights, settings, execution))
+                as Box<dyn PreparedShadows + 'a>
+        };
         let terminator = soft.then(terminator);
         let (light_numbers, lights) = prepared.filter_map(|(i, l)| Some((i, l?))).unzip();
 
@@ -147,7 +155,9 @@ impl<'a> FrameConstants<'a> {
             kay_exponent: settings.transparency.kay_exponent,
             fade: settings.picture.depth_cue.map(|cue| fade(view, &cue, raw)),
             lay: settings.transparency.order.lay,
-            middles: (0..1 << view.pattern.len().min(8)).map(|mask| offset(mask, &view.pattern)).collect(),
+            middles: (0..1 << view.pattern.len().min(8))
+                .map(|mask| offset(mask, &view.pattern))
+                .collect(),
             in_passes: settings.transparency.order.draws_passes,
             surfaces_are_background: settings.picture.lines == crate::Lines::WireframeHiddenLine,
             background,
@@ -178,18 +188,25 @@ impl<'a> FrameConstants<'a> {
         let shown = self.view.instances.iter().filter(|i| !i.layered.is_empty());
         let mut parts = shown.flat_map(|i| &world.instances[i.instance].mesh.parts);
         let scatters = |m: &&MaterialConstants<'_>| m.scatters.is_some();
-        parts.find_map(|part| Some(self.material(part.material)).filter(scatters)).map(|m| m.material.name.as_str())
+        parts
+            .find_map(|part| Some(self.material(part.material)).filter(scatters))
+            .map(|m| m.material.name.as_str())
     }
 
-    /// Where to illuminate a facet that covers the samples `mask` of the pixel at `place`: at the pixel's centre if it
-    /// covers them all, else in their middle, so that nothing is extrapolated.
+    /// Where to illuminate a facet that covers the samples `mask` of the pixel at `place`: at the
+    /// pixel's centre if it covers them all, else in their middle, so that nothing is extrapolated.
     #[inline(always)]
     pub(super) fn middle(&self, place: [f32; 2], mask: u32) -> [f32; 2] {
-        let [x, y] = self.middles.get(mask as usize).copied().unwrap_or_else(|| offset(mask, &self.view.pattern));
+        let [x, y] = self
+            .middles
+            .get(mask as usize)
+            .copied()
+            .unwrap_or_else(|| offset(mask, &self.view.pattern));
         [place[0] + x, place[1] + y]
     }
 
-    /// The part of the background that a shadow on the ground takes in each pixel of a tile; empty without one.
+    /// The part of the background that a shadow on the ground takes in each pixel of a tile; empty
+    /// without one.
     pub(crate) fn ground_shadow(&self, tile: &Tile) -> Vec<f32> {
         self.ground.map(|ground| ground.tile(tile, self.fade.as_ref())).unwrap_or_default()
     }
@@ -201,16 +218,24 @@ impl<'a> FrameConstants<'a> {
     }
 }
 
-/// The sky that polished surfaces mirror. Radiosity, which computes what surfaces light each other with, does without.
+/// The sky that polished surfaces mirror. Radiosity, which computes what surfaces light each other
+/// with, does without.
 fn sky(view: &PreparedView<'_>, settings: &Settings) -> Option<Sky> {
-    let wanted = settings.shading.environment == Environment::Sky && settings.global.model != Global::Radiosity;
-    let up = view.view.view_from_world.transform_vector3(view.camera.view_up).normalize_or(DVec3::Y);
+    let wanted = settings.shading.environment == Environment::Sky
+        && settings.global.model != Global::Radiosity;
+    let up =
+        view.view.view_from_world.transform_vector3(view.camera.view_up).normalize_or(DVec3::Y);
     wanted.then(|| Sky { up: up.as_vec3().to_array() })
 }
 
 /// The image that polished surfaces mirror. Radiosity does without.
-fn environment(view: &PreparedView<'_>, settings: &Settings, surroundings: &Surroundings) -> Option<EnvironmentLight> {
-    let wanted = settings.shading.environment == Environment::Auto && settings.global.model != Global::Radiosity;
+fn environment(
+    view: &PreparedView<'_>,
+    settings: &Settings,
+    surroundings: &Surroundings,
+) -> Option<EnvironmentLight> {
+    let wanted = settings.shading.environment == Environment::Auto
+        && settings.global.model != Global::Radiosity;
     let map = surroundings.image.as_ref().filter(|_| wanted)?;
     let world_from_view = DMat3::from_mat4(view.view.view_from_world).transpose();
     let image_from_view = surroundings.image_from_world() * world_from_view;
@@ -232,7 +257,8 @@ fn facets_that_follow(view: &PreparedView<'_>, materials: &[MaterialConstants<'_
     for instance in &world.instances {
         for part in &instance.mesh.parts {
             let index = part.material.map_or(materials.len() - 1, |m| m as usize);
-            let range = part.triangles.start + instance.first_facet..part.triangles.end + instance.first_facet;
+            let range = part.triangles.start + instance.first_facet
+                ..part.triangles.end + instance.first_facet;
             follows[range.start as usize..range.end as usize].fill(materials[index].follows);
         }
     }

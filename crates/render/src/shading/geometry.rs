@@ -1,13 +1,14 @@
 //! The surface at eight points: which corners each point lies between, and with which weights.
 //!
-//! What is the same all over a facet is in its [`Record`], see [`super::facets`]; here each point weighs the corners.
+//! What is the same all over a facet is in its [`Record`], see [`super::facets`]; here each point
+//! weighs the corners.
 
 use super::slots::Slots;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x4, F32x8, Floats, LANES, Lanes, Simd, V3};
 
-/// Numbers of a facet, in view space:
-/// `c a b` of the three corners' weights, anchor `x y`, facet normal, three positions, three normals.
+/// Numbers of a facet, in view space: `c a b` of the three corners' weights, anchor `x y`, facet
+/// normal, three positions, three normals.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(crate) struct Record(pub [f32; 32]);
@@ -27,8 +28,9 @@ pub(super) fn every<S: Simd, V: Floats<S>>(simd: S, value: f32) -> V {
     <V as SimdBase<S>>::splat(simd, value)
 }
 
-/// Gathers `C` values with `N` components, at most four, for each lane: `[value][component]`. `value` gives a lane's by number. Each is one load, and they are transposed in registers: numbers that are put side by side in memory one by one are
-/// slow to load together.
+/// Gathers `C` values with `N` components, at most four, for each lane: `[value][component]`.
+/// `value` gives a lane's by number. Each is one load, and they are transposed in registers:
+/// numbers that are put side by side in memory one by one are slow to load together.
 #[inline(always)]
 pub(crate) fn gather<S: Simd, const N: usize, const C: usize>(
     simd: S,
@@ -88,13 +90,16 @@ impl<T: Lanes> Placed<T> {
 pub(crate) struct Surface<T> {
     /// Positions, view space.
     pub positions: [V3<T>; 3],
-    /// Shading normals at the corners, view space, any length, turned to the viewer's side where both sides are seen.
+    /// Shading normals at the corners, view space, any length, turned to the viewer's side where
+    /// both sides are seen.
     pub normals: [V3<T>; 3],
     /// Unit normal of the facet, view space, turned likewise.
     pub facet_normal: V3<T>,
-    /// Barycentric coordinates of the point, not negative, sum 1: what is interpolated has these weights of the corners.
+    /// Barycentric coordinates of the point, not negative, sum 1: what is interpolated has these
+    /// weights of the corners.
     pub weights: [T; 3],
-    /// The weights are linear on the screen, and thus not those of the place, see [`Self::place_weights`].
+    /// The weights are linear on the screen, and thus not those of the place, see
+    /// [`Self::place_weights`].
     pub screen_linear: bool,
     edges: [Edge<T>; 3],
     /// Barycentric coordinates before they were scaled to the sum 1.
@@ -161,8 +166,10 @@ fn columns<S: Simd>(simd: S, rows: &[&Record; LANES], at: usize) -> [F<S>; 4] {
                 #[inline(always)]
                 |i: usize| F32x4::from_slice(simd, &rows[first + i].0[at..at + 4]),
             );
-            let (even_low, even_high) = (simd.zip_low_f32x4(row(0), row(2)), simd.zip_high_f32x4(row(0), row(2)));
-            let (odd_low, odd_high) = (simd.zip_low_f32x4(row(1), row(3)), simd.zip_high_f32x4(row(1), row(3)));
+            let (even_low, even_high) =
+                (simd.zip_low_f32x4(row(0), row(2)), simd.zip_high_f32x4(row(0), row(2)));
+            let (odd_low, odd_high) =
+                (simd.zip_low_f32x4(row(1), row(3)), simd.zip_high_f32x4(row(1), row(3)));
             [
                 simd.zip_low_f32x4(even_low, odd_low),
                 simd.zip_high_f32x4(even_low, odd_low),
@@ -191,15 +198,16 @@ fn columns_of<S: Simd, V: Floats<S>>(simd: S, rows: &[[&Record; LANES]; 2], at: 
     )
 }
 
-/// Slopes and values of the unscaled barycentric coordinates of each lane's point, and the number that comes after them in
-/// the records.
+/// Slopes and values of the unscaled barycentric coordinates of each lane's point, and the number
+/// that comes after them in the records.
 #[inline(always)]
 fn weighed<S: Simd, V: Floats<S>>(
     simd: S,
     rows: &[[&Record; LANES]; 2],
     slots: [&Slots; 2],
 ) -> ([Edge<V>; 3], [V; 3], V) {
-    let ([c0, a0, b0, c1], [a1, b1, c2, a2]): ([V; 4], [V; 4]) = (columns_of(simd, rows, 0), columns_of(simd, rows, 4));
+    let ([c0, a0, b0, c1], [a1, b1, c2, a2]): ([V; 4], [V; 4]) =
+        (columns_of(simd, rows, 0), columns_of(simd, rows, 4));
     let [b2, x0, y0, next]: [V; 4] = columns_of(simd, rows, 8);
     let place = V::by_eights(
         simd,
@@ -242,7 +250,11 @@ pub(super) fn point_weights<S: Simd>(simd: S, records: &[Record], slots: &Slots)
 
 /// [`surface`] under eight points and eight more, or the first eight alone.
 #[inline(always)]
-pub(super) fn surfaces<S: Simd, V: Floats<S>>(simd: S, records: &[Record], slots: [&Slots; 2]) -> Surface<V> {
+pub(super) fn surfaces<S: Simd, V: Floats<S>>(
+    simd: S,
+    records: &[Record],
+    slots: [&Slots; 2],
+) -> Surface<V> {
     let rows = [rows(records, slots[0]), rows(records, slots[1])];
     let q = lanes::inlined(
         #[inline(always)]
@@ -264,8 +276,8 @@ pub(super) fn surfaces<S: Simd, V: Floats<S>>(simd: S, records: &[Record], slots
 }
 
 impl<T: Lanes> Surface<T> {
-    /// Weights of the corners in the place of the point. What is interpolated linearly on the screen shows a defect; the place, with
-    /// the ways to lights and shadows, is the real one.
+    /// Weights of the corners in the place of the point. What is interpolated linearly on the
+    /// screen shows a defect; the place, with the ways to lights and shadows, is the real one.
     #[inline(always)]
     pub(crate) fn place_weights(&self) -> [T; 3] {
         if !self.screen_linear {
@@ -275,7 +287,11 @@ impl<T: Lanes> Surface<T> {
         // See `super::facets`: where a corner is not before the eye, weights are not linear.
         let before = a.splat(0.0).lt(a.min(b).min(c));
         let of_place = normalized([w0 / a, w1 / b, w2 / c]);
-        [T::select(before, of_place[0], w0), T::select(before, of_place[1], w1), T::select(before, of_place[2], w2)]
+        [
+            T::select(before, of_place[0], w0),
+            T::select(before, of_place[1], w1),
+            T::select(before, of_place[2], w2),
+        ]
     }
 
     /// The point, view space.
@@ -294,11 +310,14 @@ impl<T: Lanes> Surface<T> {
         V3::select(usable, n, self.facet_normal)
     }
 
-    /// Barycentric coordinates one pixel to the right and one pixel down, for texture derivatives; they may leave
-    /// `0..=1`.
+    /// Barycentric coordinates one pixel to the right and one pixel down, for texture derivatives;
+    /// they may leave `0..=1`.
     #[inline(always)]
     pub(crate) fn neighbours(&self) -> [[T; 3]; 2] {
         let ([v0, v1, v2], [e0, e1, e2]) = (self.values, self.edges);
-        [normalized([v0 + e0.a, v1 + e1.a, v2 + e2.a]), normalized([v0 + e0.b, v1 + e1.b, v2 + e2.b])]
+        [
+            normalized([v0 + e0.a, v1 + e1.a, v2 + e2.a]),
+            normalized([v0 + e0.b, v1 + e1.b, v2 + e2.b]),
+        ]
     }
 }

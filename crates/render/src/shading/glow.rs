@@ -1,11 +1,14 @@
 //! Light that comes through a translucent surface from light sources behind it.
 //!
-//! A sheet glows in the light that falls on its other side. The skin of a solid body glows on its inner side, where the light
-//! that enters the body is scattered; from outside one sees that through the skin in front, which scatters it once more, and to
-//! count the same light there again would be once too much.
+//! A sheet glows in the light that falls on its other side. The skin of a solid body glows on its
+//! inner side, where the light that enters the body is scattered; from outside one sees that
+//! through the skin in front, which scatters it once more, and to count the same light there again
+//! would be once too much.
 //!
-//! In:   up to eight points of one object and material. Out: light, premultiplied, in the space of composition.
-//! Cost: one pass over the lights; with shadows one more question for each point of a sheet and each light.
+//! In:   up to eight points of one object and material. Out: light, premultiplied, in the space of
+//!       composition.
+//! Cost: one pass over the lights; with shadows one more question for each point of a sheet and
+//!       each light.
 //! Source: \[Rushmeier & Torrance 1990\], see `vitral_light::transmitted_light`.
 
 use super::FrameConstants;
@@ -17,7 +20,8 @@ use crate::Shading;
 use vitral_light::transmitted_light;
 use vitral_math::lanes::{self, Simd, V3};
 
-/// See the module. One instruction-set function: kept out of line, so that each level compiles it once.
+/// See the module. One instruction-set function: kept out of line, so that each level compiles it
+/// once.
 #[inline(never)]
 pub(super) fn glow<S: Simd>(
     simd: S,
@@ -40,8 +44,10 @@ pub(super) fn glow<S: Simd>(
 
             // Normals are turned to the viewer, light comes from the other side.
             let parts = eight.light_visibility_behind;
-            let (v, zero) =
-                (towards_viewer(simd, &position, eight.along, subject.viewing.perspective), constant(simd, 0.0));
+            let (v, zero) = (
+                towards_viewer(simd, &position, eight.along, subject.viewing.perspective),
+                constant(simd, 0.0),
+            );
             let away = lanes::Lanes::lt(surface.facet_normal.dot(v), zero);
             let normal = V3::select(away, -normal, normal);
             let light_visibility = lanes::inlined(
@@ -53,12 +59,14 @@ pub(super) fn glow<S: Simd>(
             );
 
             // Sum the light that shines through; the walls of a body get it on their inner side.
-            let mut light = transmitted_light(&constants.lights, position, normal, light_visibility);
+            let mut light =
+                transmitted_light(&constants.lights, position, normal, light_visibility);
             if !subject.is_sheet() {
                 let [a, b, c] = surface.positions;
                 let winding = (b - a).cross(c - a).dot(v);
                 let outward = if subject.instance.mirrored { -winding } else { winding };
-                light = V3::select(lanes::Lanes::lt(outward, zero), light, V3::new(zero, zero, zero));
+                light =
+                    V3::select(lanes::Lanes::lt(outward, zero), light, V3::new(zero, zero, zero));
             }
 
             // Filter it by the material.

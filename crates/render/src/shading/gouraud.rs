@@ -1,13 +1,14 @@
 //! Gouraud shading: intensities are computed at the vertices and interpolated.
 //!
-//! The four steps: normals of the faces; normals of the vertices, the mean of their faces'; intensities of the vertices
-//! by an illumination model; interpolation along edges and spans. The first two belong to the mesh
-//! (`vitral_scene::normals`). A highlight inside a face is lost.
+//! The four steps: normals of the faces; normals of the vertices, the mean of their faces';
+//! intensities of the vertices by an illumination model; interpolation along edges and spans. The
+//! first two belong to the mesh (`vitral_scene::normals`). A highlight inside a face is lost.
 //!
-//! Scan conversion adds one number a pixel: with `py = (iV - iU) / (yV - yU)` along an edge from U to V,
-//! `I(k+1) = I(k) + py`, and with `px = (Ik2 - Ik1) / (xk2 - xk1)` along a span, `I(x+1) = I(x) + px`
-//! ([`edge_increment`], [`span_increment`]): [`scan_convert`] does it, for whoever wants to see it. The tile renderer weighs the
-//! vertices directly, since a sum would depend on where it began; up to rounding that is the same.
+//! Scan conversion adds one number a pixel: with `py = (iV - iU) / (yV - yU)` along an edge from U
+//! to V, `I(k+1) = I(k) + py`, and with `px = (Ik2 - Ik1) / (xk2 - xk1)` along a span,
+//! `I(x+1) = I(x) + px` ([`edge_increment`], [`span_increment`]): [`scan_convert`] does it, for
+//! whoever wants to see it. The tile renderer weighs the vertices directly, since a sum would
+//! depend on where it began; up to rounding that is the same.
 //!
 //! Input: corners and weights of a point, view space. Output: reflected light at the point.
 //! Source: [Gouraud 1971].
@@ -28,7 +29,12 @@ pub(crate) fn shade<S: Simd>(
     let at = lanes::inlined(
         #[inline(always)]
         |k: usize| {
-            lighting.reflect(simd, &surface.positions[k], &surface.normals[k].normalize(), &corner_coefficients[k])
+            lighting.reflect(
+                simd,
+                &surface.positions[k],
+                &surface.normals[k].normalize(),
+                &corner_coefficients[k],
+            )
         },
     );
     let (a, b, c) = (at(0), at(1), at(2));
@@ -38,12 +44,14 @@ pub(crate) fn shade<S: Simd>(
     }
 }
 
-/// Change of intensity from one scan line to the next along the edge from `(y, intensity)` `u` to `v`.
+/// Change of intensity from one scan line to the next along the edge from `(y, intensity)` `u` to
+/// `v`.
 pub fn edge_increment(u: (f64, f64), v: (f64, f64)) -> f64 {
     (v.1 - u.1) / (v.0 - u.0)
 }
 
-/// Change of intensity from one pixel to the next along the span from `(x, intensity)` `left` to `right`.
+/// Change of intensity from one pixel to the next along the span from `(x, intensity)` `left` to
+/// `right`.
 pub fn span_increment(left: (f64, f64), right: (f64, f64)) -> f64 {
     (right.1 - left.1) / (right.0 - left.0)
 }
@@ -96,9 +104,13 @@ pub struct Additions {
     pub spans: u64,
 }
 
-/// Scan converts a triangle with Gouraud's increments: calls `put` for each pixel whose middle is in it, row by row, with its
-/// span, its column and its intensity. Nothing is added up where nothing is: a triangle without height has no lines.
-pub fn scan_convert(vertices: &[ScreenIntensity; 3], mut put: impl FnMut(&SpanSteps, i64, [f64; 3])) -> Additions {
+/// Scan converts a triangle with Gouraud's increments: calls `put` for each pixel whose middle is
+/// in it, row by row, with its span, its column and its intensity. Nothing is added up where
+/// nothing is: a triangle without height has no lines.
+pub fn scan_convert(
+    vertices: &[ScreenIntensity; 3],
+    mut put: impl FnMut(&SpanSteps, i64, [f64; 3]),
+) -> Additions {
     let mut additions = Additions::default();
 
     // Sort the corners from top to bottom.
@@ -113,10 +125,13 @@ pub fn scan_convert(vertices: &[ScreenIntensity; 3], mut put: impl FnMut(&SpanSt
         for row in short.rows.clone() {
             let on_long = long.at(row, &mut additions);
             let on_short = short.at(row, &mut additions);
-            let (left, right) = if on_long.x <= on_short.x { (on_long, on_short) } else { (on_short, on_long) };
+            let (left, right) =
+                if on_long.x <= on_short.x { (on_long, on_short) } else { (on_short, on_long) };
 
             // Step the intensity along the span.
-            let px = [0, 1, 2].map(|k| span_increment((left.x, left.intensity[k]), (right.x, right.intensity[k])));
+            let px = [0, 1, 2].map(|k| {
+                span_increment((left.x, left.intensity[k]), (right.x, right.intensity[k]))
+            });
             let pixels = [left.x, right.x].map(|x| (x - 0.5).ceil() as i64);
             if pixels[0] >= pixels[1] {
                 continue;
@@ -151,7 +166,8 @@ impl Walk {
     fn new(vertices: &[ScreenIntensity; 3], ends: [usize; 2]) -> Self {
         let [u, v] = ends.map(|i| vertices[i]);
         let rows = (u.at[1] - 0.5).ceil() as i64..(v.at[1] - 0.5).ceil() as i64;
-        let py = [0, 1, 2].map(|k| edge_increment((u.at[1], u.intensity[k]), (v.at[1], v.intensity[k])));
+        let py =
+            [0, 1, 2].map(|k| edge_increment((u.at[1], u.intensity[k]), (v.at[1], v.intensity[k])));
         let dx = edge_increment((u.at[1], u.at[0]), (v.at[1], v.at[0]));
         let down = rows.start as f64 + 0.5 - u.at[1];
         let intensity = [0, 1, 2].map(|k| u.intensity[k] + py[k] * down);
@@ -180,7 +196,9 @@ mod tests {
 
     /// The intensity at `(x, y)` between three vertices `(x, y, intensity)`.
     fn barycentric(v: [(f64, f64, f64); 3], x: f64, y: f64) -> f64 {
-        let area = |a: (f64, f64), b: (f64, f64), c: (f64, f64)| (b.0 - a.0) * (c.1 - a.1) - (c.0 - a.0) * (b.1 - a.1);
+        let area = |a: (f64, f64), b: (f64, f64), c: (f64, f64)| {
+            (b.0 - a.0) * (c.1 - a.1) - (c.0 - a.0) * (b.1 - a.1)
+        };
         let [a, b, c] = v.map(|p| (p.0, p.1));
         let whole = area(a, b, c);
         let p = (x, y);
@@ -191,7 +209,8 @@ mod tests {
     fn l9_increments_equal_direct_interpolation() {
         let v @ [top, left, right] = [(40.0, 0.0, 0.9), (0.0, 100.0, 0.1), (90.0, 100.0, 0.5)];
         // Walk both edges down and each span to the right, one addition a step.
-        let (dl, dr) = (edge_increment((0.0, 0.9), (100.0, 0.1)), edge_increment((0.0, 0.9), (100.0, 0.5)));
+        let (dl, dr) =
+            (edge_increment((0.0, 0.9), (100.0, 0.1)), edge_increment((0.0, 0.9), (100.0, 0.5)));
         let (mut i_left, mut i_right) = (top.2, top.2);
         for y in 0..=100 {
             let t = f64::from(y) / 100.0;
@@ -202,7 +221,10 @@ mod tests {
                 let mut intensity = i_left + px * (first - x_left);
                 let mut x = first;
                 while x <= x_right {
-                    assert!((intensity - barycentric(v, x, f64::from(y))).abs() < 1e-6, "({x}, {y})");
+                    assert!(
+                        (intensity - barycentric(v, x, f64::from(y))).abs() < 1e-6,
+                        "({x}, {y})"
+                    );
                     intensity += px;
                     x += 1.0;
                 }
@@ -221,8 +243,10 @@ mod tests {
         };
         let (mut pixels, mut spans) = (0u64, 0u64);
         for _ in 0..400 {
-            let mut vertex =
-                || ScreenIntensity { at: [next(200) - 40.0, next(120)], intensity: [0; 3].map(|_| next(16) / 16.0) };
+            let mut vertex = || ScreenIntensity {
+                at: [next(200) - 40.0, next(120)],
+                intensity: [0; 3].map(|_| next(16) / 16.0),
+            };
             let v = [vertex(), vertex(), vertex()];
             let at = |k: usize| v.map(|p| (p.at[0], p.at[1], p.intensity[k]));
             let inside = |x: f64, y: f64| {
@@ -232,22 +256,33 @@ mod tests {
                 };
                 (0..3).all(|i| side(i) > 1e-9) || (0..3).all(|i| side(i) < -1e-9)
             };
-            let (mut put, mut rows) = (std::collections::BTreeSet::new(), std::collections::BTreeSet::new());
+            let (mut put, mut rows) =
+                (std::collections::BTreeSet::new(), std::collections::BTreeSet::new());
             let additions = scan_convert(&v, |span, x, intensity| {
                 let place = (x as f64 + 0.5, span.row as f64 + 0.5);
                 for k in 0..3 {
                     let direct = barycentric(at(k), place.0, place.1);
                     // What is left of a needle's width is rounding.
                     let steep = span.px[k].abs().max(1.0);
-                    assert!((intensity[k] - direct).abs() <= 1e-6 * steep, "{v:?} {place:?}: {intensity:?}, {direct}");
+                    assert!(
+                        (intensity[k] - direct).abs() <= 1e-6 * steep,
+                        "{v:?} {place:?}: {intensity:?}, {direct}"
+                    );
                 }
                 assert!(put.insert((x, span.row)), "each pixel once");
                 rows.insert(span.row);
             });
-            assert_eq!(additions.spans, (put.len() - rows.len()) as u64, "one addition for each pixel but the first");
+            assert_eq!(
+                additions.spans,
+                (put.len() - rows.len()) as u64,
+                "one addition for each pixel but the first"
+            );
             assert!(additions.edges <= 2 * 120);
             for (x, y) in (-42..162).flat_map(|x| (0..121).map(move |y| (x, y))) {
-                assert!(!inside(x as f64 + 0.5, y as f64 + 0.5) || put.contains(&(x, y)), "{v:?}: {x} {y}");
+                assert!(
+                    !inside(x as f64 + 0.5, y as f64 + 0.5) || put.contains(&(x, y)),
+                    "{v:?}: {x} {y}"
+                );
             }
             (pixels, spans) = (pixels + put.len() as u64, spans + rows.len() as u64);
         }

@@ -1,8 +1,9 @@
 //! Surfaces that rays meet, in the form in which the eye's points are shaded.
 //!
-//! A point of the picture knows its place on the screen; a hit knows the weights of the corners of its facet. Its record
-//! says so: weights that hold at the place `(0, 0)`, and change from there as the footprint of the pixel's ray does. So
-//! hits go through the same formulas, textures and levels of detail as what the eye sees.
+//! A point of the picture knows its place on the screen; a hit knows the weights of the corners of
+//! its facet. Its record says so: weights that hold at the place `(0, 0)`, and change from there as
+//! the footprint of the pixel's ray does. So hits go through the same formulas, textures and levels
+//! of detail as what the eye sees.
 //!
 //! In:   hits on one object. Out: a record for each of them.
 //! Source: the footprint after [Amanatides 1984], a cone round the ray.
@@ -18,13 +19,15 @@ use vitral_math::lanes::{F32x8, LANES, Simd, V3};
 /// A place where a ray meets a facet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hit {
-    /// Weights of the facet's corners, and how they change over the pixel's footprint along two directions.
+    /// Weights of the facet's corners, and how they change over the pixel's footprint along two
+    /// directions.
     pub weights: [[f32; 3]; 3],
     /// Where the ray comes from, view space.
     pub origin: [f32; 3],
     /// The place in the world.
     pub place: SurfacePoint,
-    /// Row of the picture whose background the ray sees; `None` if it took a turn since it left the eye.
+    /// Row of the picture whose background the ray sees; `None` if it took a turn since it left the
+    /// eye.
     pub row: Option<u32>,
 }
 
@@ -71,7 +74,8 @@ pub(crate) fn prepare<S: Simd>(
 ) -> (Slots, Along) {
     // Spread the hits over the lanes; missing ones repeat the last.
     let along = Along::new(hits);
-    let mut slots = Slots { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
+    let mut slots =
+        Slots { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
     let mut weights = [[[0.0; LANES]; 3]; 3];
     for lane in 0..LANES {
         let hit = &hits[lane.min(hits.len() - 1)];
@@ -93,6 +97,15 @@ pub(crate) fn prepare<S: Simd>(
 
     // Write the facets' records.
     let model = model_corners(simd, &slots.triangle, subject.mesh);
-    write_records(simd, &slots.triangle, subject, &model, Some(along.origin(simd)), lanes, [zero; 2], records);
+    write_records(
+        simd,
+        &slots.triangle,
+        subject,
+        &model,
+        Some(along.origin(simd)),
+        lanes,
+        [zero; 2],
+        records,
+    );
     (slots, along)
 }

@@ -21,14 +21,20 @@ pub(crate) struct InstanceConstants {
 
 impl InstanceConstants {
     /// Of an instance of the world, by its index.
-    pub(super) fn new(view: &PreparedView<'_>, index: usize, settings: &Settings, execution: &Execution) -> Self {
+    pub(super) fn new(
+        view: &PreparedView<'_>,
+        index: usize,
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Self {
         let instance = &view.session.world.instances[index];
         let view_from_model = view.view.view_from_world * instance.world_from_model;
         let clip = view.view.clip_from_view * view_from_model;
         let (w, h) = (f64::from(view.viewport.width) * 0.5, f64::from(view.viewport.height) * 0.5);
         let [x, y, clip_w] = [clip.row(0), clip.row(1), clip.row(3)];
         let screen: [DVec4; 3] = [x * w + clip_w * w, clip_w * h - y * h, clip_w];
-        // The cofactor matrix is the inverse transpose times the determinant, and exists for flat transforms too.
+        // The cofactor matrix is the inverse transpose times the determinant, and exists for flat
+        // transforms too.
         let [a, b, c] = [0, 1, 2].map(|k| view_from_model.col(k).truncate());
         let cofactor = [b.cross(c), c.cross(a), a.cross(b)];
         let mirrored = mirrors(&instance.world_from_model);
@@ -40,7 +46,14 @@ impl InstanceConstants {
             screen_from_model: screen.map(|r| r.as_vec4().to_array()),
             view_from_model: rows(&view_from_model),
             view_from_model_normal: [0, 1, 2].map(normal_row),
-            two_sided: !is_solid(view.session, instance, &view.camera, &view.view, settings, execution),
+            two_sided: !is_solid(
+                view.session,
+                instance,
+                &view.camera,
+                &view.view,
+                settings,
+                execution,
+            ),
             mirrored,
         }
     }

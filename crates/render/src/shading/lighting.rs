@@ -1,6 +1,7 @@
 //! What points reflect of the lights of a frame.
 //!
-//! In:   positions, normals and coefficients, eight or sixteen; lights in view space. Out: light towards the viewer.
+//! In:   positions, normals and coefficients, eight or sixteen; lights in view space. Out: light
+//!       towards the viewer.
 //! Cost: linear in points, times the number of lights.
 
 use super::FrameConstants;
@@ -10,7 +11,8 @@ use super::hits::Along;
 use super::model::Model;
 use crate::shadow::LightVisibility;
 use vitral_light::{
-    EnvironmentLight, Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, Sky, Surface, cook_torrance,
+    EnvironmentLight, Illumination, Microfacet, Phong, PreparedLight, Reflected, Rgb, Sky, Surface,
+    cook_torrance,
 };
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, LANES, Lanes, Simd, V3};
@@ -32,9 +34,12 @@ impl<T: Lanes> Coefficients<T> {
             Self::Empirical(Phong { ka, kd, ks, shininess }) => {
                 [ka.x, ka.y, ka.z, kd.x, kd.y, kd.z, ks.x, ks.y, ks.z, *shininess]
             }
-            Self::Microfacet(Microfacet { base_color: b, metallic: m, roughness: r, occlusion: o }) => {
-                [b.x, b.y, b.z, *m, *r, *o, *o, *o, *o, *o]
-            }
+            Self::Microfacet(Microfacet {
+                base_color: b,
+                metallic: m,
+                roughness: r,
+                occlusion: o,
+            }) => [b.x, b.y, b.z, *m, *r, *o, *o, *o, *o, *o],
         }
     }
 
@@ -165,7 +170,15 @@ impl Lighting<'_> {
                     #[inline(always)]
                     |light: &PreparedLight| light.direction_rounding(*position),
                 );
-                vitral_light::phong(self.illumination, self.lights, self.ambient, &surface, k, lit, grazing)
+                vitral_light::phong(
+                    self.illumination,
+                    self.lights,
+                    self.ambient,
+                    &surface,
+                    k,
+                    lit,
+                    grazing,
+                )
             }
             Coefficients::Microfacet(m) => {
                 let mut reflected = cook_torrance(self.lights, self.ambient, &surface, m, lit);
@@ -194,16 +207,22 @@ fn of_surroundings<S: Simd, V: Floats<S>>(
     m: &Microfacet<V>,
 ) -> [V3<V>; 2] {
     let lookup = |n: V3<V>, towards: V3<V>, roughness: V| {
-        let arriving = V::by_eights(simd, [n.x, n.y, n.z, towards.x, towards.y, towards.z, roughness], |_, eight| {
-            let eight = eight.map(|number| number.to_array());
-            let mut found = [[0.0; LANES]; 6];
-            for lane in 0..LANES {
-                let at = |k: usize| [eight[k][lane], eight[k + 1][lane], eight[k + 2][lane]];
-                let [gathered, mirrored] = environment.arriving(at(0), at(3), eight[6][lane]);
-                (0..3).for_each(|k| (found[k][lane], found[k + 3][lane]) = (gathered[k], mirrored[k]));
-            }
-            found.map(|number| F32x8::from_slice(simd, &number))
-        });
+        let arriving = V::by_eights(
+            simd,
+            [n.x, n.y, n.z, towards.x, towards.y, towards.z, roughness],
+            |_, eight| {
+                let eight = eight.map(|number| number.to_array());
+                let mut found = [[0.0; LANES]; 6];
+                for lane in 0..LANES {
+                    let at = |k: usize| [eight[k][lane], eight[k + 1][lane], eight[k + 2][lane]];
+                    let [gathered, mirrored] = environment.arriving(at(0), at(3), eight[6][lane]);
+                    (0..3).for_each(|k| {
+                        (found[k][lane], found[k + 3][lane]) = (gathered[k], mirrored[k])
+                    });
+                }
+                found.map(|number| F32x8::from_slice(simd, &number))
+            },
+        );
         let [a, b, c, d, e, f] = arriving;
         [V3::new(a, b, c), V3::new(d, e, f)]
     };
@@ -212,12 +231,18 @@ fn of_surroundings<S: Simd, V: Floats<S>>(
 
 /// The lights of a frame for some points and those that follow in their group.
 #[inline(always)]
-pub(super) fn lighting<'a>(eight: &ShadingBatch8<'a>, constants: &'a FrameConstants<'_>) -> Lighting<'a> {
+pub(super) fn lighting<'a>(
+    eight: &ShadingBatch8<'a>,
+    constants: &'a FrameConstants<'_>,
+) -> Lighting<'a> {
     Lighting {
         lights: &constants.lights,
         ambient: constants.ambient,
         sky: constants.sky.as_ref().filter(|_| eight.material.mirrors_sky),
-        environment: constants.environment.as_ref().map(|image| (image, eight.material.mirrors_sky)),
+        environment: constants
+            .environment
+            .as_ref()
+            .map(|image| (image, eight.material.mirrors_sky)),
         illumination: match eight.material.model {
             Model::Empirical(illumination) => illumination,
             _ => Illumination::Phong,

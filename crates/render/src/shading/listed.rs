@@ -1,9 +1,11 @@
 //! The layers of a pixel in the order of a list: what is drawn, piece by piece.
 //!
-//! A list of the painter's algorithm or of a BSP tree has its order from planes in space. The depth of a sample comes from
-//! corners that were snapped to 1/256 pixel: at samples within such a hair of the line in which two surfaces meet, the two
-//! disagree. As for opaque surfaces ([`vitral_raster::PrioritySink`]) the depth function has the last word there, since it is
-//! the law for all algorithms; everywhere else the list is the order, and how often it was overruled is counted.
+//! A list of the painter's algorithm or of a BSP tree has its order from planes in space. The depth
+//! of a sample comes from corners that were snapped to 1/256 pixel: at samples within such a hair
+//! of the line in which two surfaces meet, the two disagree. As for opaque surfaces
+//! ([`vitral_raster::PrioritySink`]) the depth function has the last word there, since it is the
+//! law for all algorithms; everywhere else the list is the order, and how often it was overruled is
+//! counted.
 
 use super::FrameConstants;
 use super::points::{FragmentPoint, LayerPoint, Points, samples_in};
@@ -11,8 +13,8 @@ use crate::marks::MarkColors;
 use crate::visible::nearer;
 
 impl Points {
-    /// A pixel's layers in the order of a list. What comes one after the other of one facet is a fragment; all fragments of
-    /// a facet share a point, the same as without a list.
+    /// A pixel's layers in the order of a list. What comes one after the other of one facet is a
+    /// fragment; all fragments of a facet share a point, the same as without a list.
     pub(super) fn collect_listed(
         &mut self,
         pixel: u32,
@@ -38,7 +40,8 @@ impl Points {
             };
         }
 
-        // One fragment for each piece; a sample on the common border of clipped pieces belongs to the first.
+        // One fragment for each piece; a sample on the common border of clipped pieces belongs to
+        // the first.
         let mut drawn = Vec::new();
         for piece in here.chunk_by_mut(|a, b| a.facet == b.facet) {
             let facet = piece[0].facet;
@@ -68,8 +71,9 @@ impl Points {
         self.fragments.append(&mut drawn);
     }
 
-    /// Where a fragment is farther, at a sample, than the one that the list puts behind it there, it goes behind that one at
-    /// this sample, and behind all that are nearer than it. `drawn` holds no marks but at its end.
+    /// Where a fragment is farther, at a sample, than the one that the list puts behind it there,
+    /// it goes behind that one at this sample, and behind all that are nearer than it. `drawn`
+    /// holds no marks but at its end.
     fn overrule(&mut self, drawn: &mut Vec<FragmentPoint>) {
         let mut i = 1;
         while i < drawn.len() && !drawn[i].is_mark {
@@ -100,7 +104,9 @@ impl Points {
                 self.depths.push(depth);
                 let (place, at, source) = of(1 << s, start);
                 let single = self.fragment(place, at, source);
-                let behind = drawn[..next].iter().rposition(|b| b.covers(s) && !self.is_in_front(b, &single, s));
+                let behind = drawn[..next]
+                    .iter()
+                    .rposition(|b| b.covers(s) && !self.is_in_front(b, &single, s));
                 drawn.insert(behind.map_or(0, |b| b + 1), single);
                 next += 1;
                 self.overruled += 1;
@@ -126,14 +132,17 @@ impl Points {
         nearer((self.depth(a, sample), a.facet), (self.depth(b, sample), b.facet))
     }
 
-    /// Marks come after the list, sample by sample. Puts each in front of the last fragment that is farther than it.
+    /// Marks come after the list, sample by sample. Puts each in front of the last fragment that is
+    /// farther than it.
     fn place_marks(&self, drawn: &mut [FragmentPoint]) {
         let first = drawn.iter().position(|f| f.is_mark).unwrap_or(drawn.len());
         for i in first..drawn.len() {
             let mark = drawn[i];
             let in_front = |f: &FragmentPoint| {
                 let common = f.mask & mark.mask;
-                common != 0 && self.depth(f, common.trailing_zeros()) > self.depth(&mark, common.trailing_zeros())
+                common != 0
+                    && self.depth(f, common.trailing_zeros())
+                        > self.depth(&mark, common.trailing_zeros())
             };
             let behind = drawn[..i].iter().rposition(|f| !in_front(f) && f.mask & mark.mask != 0);
             let place = behind.map_or(0, |b| b + 1);
@@ -149,8 +158,8 @@ mod tests {
     #[test]
     fn depth_has_the_last_word_sample_by_sample() {
         let mut points = Points::default();
-        // By the list 0, 1, 2 from back to front, over samples 0 and 1. At sample 1 facet 2 is behind both others, at sample 0
-        // the list is right.
+        // By the list 0, 1, 2 from back to front, over samples 0 and 1. At sample 1 facet 2 is
+        // behind both others, at sample 0 the list is right.
         let mut drawn = Vec::new();
         for (facet, depths) in [(0, [0.1, 0.5]), (1, [0.2, 0.6]), (2, [0.3, 0.4])] {
             let start = points.depths.len() as u32;
@@ -158,8 +167,13 @@ mod tests {
             drawn.push(points.fragment((7, facet), (0b11, start), (facet, false)));
         }
         points.overrule(&mut drawn);
-        let at =
-            |s: u32| drawn.iter().filter(|f| f.covers(s)).map(|f| (f.facet, points.depth(f, s))).collect::<Vec<_>>();
+        let at = |s: u32| {
+            drawn
+                .iter()
+                .filter(|f| f.covers(s))
+                .map(|f| (f.facet, points.depth(f, s)))
+                .collect::<Vec<_>>()
+        };
         assert_eq!(at(0), [(0, 0.1), (1, 0.2), (2, 0.3)]);
         assert_eq!(at(1), [(2, 0.4), (0, 0.5), (1, 0.6)]);
         assert_eq!(points.overruled, 1);

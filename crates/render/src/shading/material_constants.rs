@@ -4,7 +4,9 @@ use super::model::Model;
 use crate::display::DecodeTables;
 use crate::{Global, PreparedView, Settings};
 use vitral_frame::Texture;
-use vitral_light::{AlphaMode, Material, Reflectance, TextureRef, Transmission, scattering_exponent};
+use vitral_light::{
+    AlphaMode, Material, Reflectance, TextureRef, Transmission, scattering_exponent,
+};
 
 /// A texture as a material uses it, ready to sample.
 pub(crate) struct TextureConstants<'a> {
@@ -26,11 +28,13 @@ pub(crate) struct MaterialConstants<'a> {
     pub normal: Option<TextureConstants<'a>>,
     /// Below this alpha nothing is there (cut-outs), else `None`.
     pub cutoff: Option<f32>,
-    /// Its cut-outs have soft borders, a pixel wide: pixels have several samples, which do not decide by themselves.
+    /// Its cut-outs have soft borders, a pixel wide: pixels have several samples, which do not
+    /// decide by themselves.
     pub soft_cut: bool,
     /// Alpha matters.
     pub blend: bool,
-    /// It mirrors the soft sky or the image of the surroundings, where rays do not show what is there.
+    /// It mirrors the soft sky or the image of the surroundings, where rays do not show what is
+    /// there.
     pub mirrors_sky: bool,
     /// Rays that meet it are followed on.
     pub follows: bool,
@@ -67,7 +71,11 @@ impl<'a> MaterialConstants<'a> {
         let mut material = material.clone();
         material.mirror |= traced && is_polished_metal(&material);
         Self {
-            model: Model::of_material(&material, settings.shading.illumination, settings.shading.lighting),
+            model: Model::of_material(
+                &material,
+                settings.shading.illumination,
+                settings.shading.lighting,
+            ),
             base: texture(material.base_texture),
             specular: texture(material.specular_texture),
             emission: texture(material.emission_texture),
@@ -87,7 +95,8 @@ impl<'a> MaterialConstants<'a> {
     }
 }
 
-/// Whether rays that a surface mirrors show its surroundings sharply: a metal that is all but smooth.
+/// Whether rays that a surface mirrors show its surroundings sharply: a metal that is all but
+/// smooth.
 fn is_polished_metal(material: &Material) -> bool {
     const MOST_ROUGHNESS: f32 = 0.2;
     const LEAST_METALLIC: f32 = 0.5;
@@ -104,7 +113,9 @@ impl MaterialConstants<'_> {
 
     /// Whether textures vary it.
     pub(super) fn has_textures(&self) -> bool {
-        let Self { base, specular, emission, opacity, metallic_roughness, occlusion, normal, .. } = self;
+        let Self {
+            base, specular, emission, opacity, metallic_roughness, occlusion, normal, ..
+        } = self;
         [base, specular, emission, opacity, metallic_roughness, occlusion, normal]
             .iter()
             .any(|texture| texture.is_some())

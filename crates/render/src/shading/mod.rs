@@ -1,13 +1,14 @@
 //! Colouring what is visible: one pass over the samples of each tile, eight points at a time.
 //!
-//! A *point* is a facet in a pixel: however many samples of the pixel show it, it is illuminated once, at the pixel's
-//! centre, or at the middle of its samples where it does not fill the pixel. Points of one object and material go
-//! through the formulas together.
+//! A *point* is a facet in a pixel: however many samples of the pixel show it, it is illuminated
+//! once, at the pixel's centre, or at the middle of its samples where it does not fill the pixel.
+//! Points of one object and material go through the formulas together.
 //!
-//! From the ground up: `collect` finds the `Points` of a tile. `facets` and `geometry` place them on their facets,
-//! `surface_parameters` looks textures up, `lighting` reflects the lights, and `shade` puts these steps together, a
-//! `batch` of eight points at a time. `composite` makes pixels of points and `color_sink` runs the steps for each tile.
-//! Ray tracing takes over samples through the trait `Tracer`.
+//! From the ground up: `collect` finds the `Points` of a tile. `facets` and `geometry` place them
+//! on their facets, `surface_parameters` looks textures up, `lighting` reflects the lights, and
+//! `shade` puts these steps together, a `batch` of eight points at a time. `composite` makes pixels
+//! of points and `color_sink` runs the steps for each tile. Ray tracing takes over samples through
+//! the trait `Tracer`.
 //!
 //! In:   a tile's facets and depths. Out: display colours, straight alpha.
 //! Cost: linear in points, times the number of lights.

@@ -17,7 +17,11 @@ pub(crate) enum Model {
 
 impl Model {
     /// The model of a material.
-    pub(crate) fn of_material(material: &Material, illumination: Illumination, lighting: bool) -> Self {
+    pub(crate) fn of_material(
+        material: &Material,
+        illumination: Illumination,
+        lighting: bool,
+    ) -> Self {
         match illumination.for_reflectance(&material.reflectance) {
             Illumination::Constant => Self::Constant(constant_color(material)),
             _ if !lighting || material.unlit => Self::Own,

@@ -1,10 +1,12 @@
 //! Composing a tile pass by pass, with one layer in memory.
 //!
-//! The picture begins with what is opaque. Each pass brings one layer for each sample that has some left, the farthest:
-//! it is illuminated, laid over the picture, and forgotten. What a layer looks like, and where in the pixel it is
-//! illuminated, is the same as when all layers are there at once, to the last bit.
+//! The picture begins with what is opaque. Each pass brings one layer for each sample that has some
+//! left, the farthest: it is illuminated, laid over the picture, and forgotten. What a layer looks
+//! like, and where in the pixel it is illuminated, is the same as when all layers are there at
+//! once, to the last bit.
 //!
-//! In:   a tile, and passes over what is in front of it. Out: its pixels, and on demand those after each pass.
+//! In:   a tile, and passes over what is in front of it. Out: its pixels, and on demand those after
+//!       each pass.
 //! Cost: see `visible/peel.rs`; memory: a colour for each sample.
 //! Source: \[Mammen 1989\].
 
@@ -27,8 +29,9 @@ struct Canvas {
     layered: Vec<bool>,
 }
 
-/// Composes a tile; `pass` goes through the layers. Gives what each pass made of it, the opaque tile first, if it is
-/// to be `shown`, else the last alone; and how many samples of layers there were.
+/// Composes a tile; `pass` goes through the layers. Gives what each pass made of it, the opaque
+/// tile first, if it is to be `shown`, else the last alone; and how many samples of layers there
+/// were.
 pub(super) fn compose(
     tile: &Tile,
     scratch: &mut Scratch,
@@ -58,7 +61,8 @@ pub(super) fn compose(
             let fragment = fragment(of, tile, points, lit, constants, marks);
             (canvas.filled[of.pixel as usize], canvas.layered[of.pixel as usize]) = (true, true);
             for sample in samples_in(of.mask) {
-                fragment.over(&mut canvas.samples[sample as usize * TILE_PIXELS + of.pixel as usize]);
+                fragment
+                    .over(&mut canvas.samples[sample as usize * TILE_PIXELS + of.pixel as usize]);
                 layers += 1;
             }
         }
@@ -70,7 +74,12 @@ pub(super) fn compose(
 }
 
 /// What is opaque, and the background.
-fn canvas(tile: &Tile, points: &Points, lit: &ShadedPoints, constants: &FrameConstants<'_>) -> Canvas {
+fn canvas(
+    tile: &Tile,
+    points: &Points,
+    lit: &ShadedPoints,
+    constants: &FrameConstants<'_>,
+) -> Canvas {
     let mut canvas = Canvas {
         samples: opaque_samples(tile, points, lit, constants),
         filled: vec![false; TILE_PIXELS],
@@ -84,7 +93,12 @@ fn canvas(tile: &Tile, points: &Points, lit: &ShadedPoints, constants: &FrameCon
 }
 
 /// The canvas as display bytes.
-fn encode(tile: &Tile, scratch: &mut Scratch, canvas: &Canvas, constants: &FrameConstants<'_>) -> Vec<[u8; 4]> {
+fn encode(
+    tile: &Tile,
+    scratch: &mut Scratch,
+    canvas: &Canvas,
+    constants: &FrameConstants<'_>,
+) -> Vec<[u8; 4]> {
     let Scratch { points, composer, .. } = scratch;
     let mut picture = vec![[0; 4]; TILE_PIXELS];
     let samples = constants.view.pattern.len();

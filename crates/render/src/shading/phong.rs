@@ -1,4 +1,5 @@
-//! Phong shading: the normal is interpolated and every pixel is illuminated by itself. The costly reference.
+//! Phong shading: the normal is interpolated and every pixel is illuminated by itself. The costly
+//! reference.
 //!
 //! Input: corners and weights of a point, view space. Output: reflected light at the point.
 //! Source: [Phong 1975].
@@ -23,6 +24,12 @@ pub(crate) fn shade<S: Simd>(
 
 /// Where each point is, and its normal.
 #[inline(always)]
-pub(super) fn placed<S: Simd>(surface: &Surface<F32x8<S>>, normal: Option<V3<F32x8<S>>>) -> Placed<F32x8<S>> {
-    Placed { position: surface.position(), normal: normal.unwrap_or_else(|| surface.interpolated_normal()) }
+pub(super) fn placed<S: Simd>(
+    surface: &Surface<F32x8<S>>,
+    normal: Option<V3<F32x8<S>>>,
+) -> Placed<F32x8<S>> {
+    Placed {
+        position: surface.position(),
+        normal: normal.unwrap_or_else(|| surface.interpolated_normal()),
+    }
 }

@@ -1,8 +1,9 @@
 //! How the colour of one pixel comes about, in numbers that add up to its bytes.
 //!
-//! A pixel is the mean of its samples. A sample shows a point of an opaque surface or the background, and the layers in front.
-//! Phong's shading illuminates the point itself, Gouraud's the corners of its facet, and every light adds its terms there. The
-//! picture was made with these very numbers: a sum given here was added up in single precision and in this order.
+//! A pixel is the mean of its samples. A sample shows a point of an opaque surface or the
+//! background, and the layers in front. Phong's shading illuminates the point itself, Gouraud's the
+//! corners of its facet, and every light adds its terms there. The picture was made with these very
+//! numbers: a sum given here was added up in single precision and in this order.
 
 use serde::Serialize;
 use vitral_light::{LightTerms, Rgb};
@@ -21,7 +22,8 @@ pub struct PixelLight {
     pub straight: Rgb,
     /// Some channel is above 1 or below 0 and is clamped.
     pub clamped: bool,
-    /// Red, green, blue and opacity in the display's encoding times 255, before they are rounded; clamped.
+    /// Red, green, blue and opacity in the display's encoding times 255, before they are rounded;
+    /// clamped.
     pub encoded: [f32; 4],
     /// The bytes that these numbers round to.
     pub bytes: [u8; 4],
@@ -33,7 +35,8 @@ pub struct PixelLight {
 pub struct SampleLight {
     /// Where it lies, in pixels of the picture.
     pub at: [f32; 2],
-    /// The opaque point that it shows, by its number in [`PixelLight::points`]; `None` is the background.
+    /// The opaque point that it shows, by its number in [`PixelLight::points`]; `None` is the
+    /// background.
     pub point: Option<usize>,
     /// The colour of that point or of the background, premultiplied RGBA.
     pub behind: [f32; 4],
@@ -69,19 +72,23 @@ pub struct PointLight {
     pub world: [f64; 3],
     /// How it weighs the corners of its facet.
     pub weights: [f32; 3],
-    /// The formula: `own` (the surface's colour without lights), `constant`, or an illumination model.
+    /// The formula: `own` (the surface's colour without lights), `constant`, or an illumination
+    /// model.
     pub model: &'static str,
     /// Where that is evaluated: `flat`, `gouraud` or `phong`.
     pub shading: &'static str,
-    /// The evaluations of the formula: one, or one for each corner with Gouraud's shading; none without lights.
+    /// The evaluations of the formula: one, or one for each corner with Gouraud's shading; none
+    /// without lights.
     pub evaluations: Vec<Evaluation>,
     /// For each light how much of it arrives and what stands in its way; empty without shadows.
     pub shadows: Vec<ShadowOfLight>,
     /// Colour of the texture.
     pub texture: Rgb,
-    /// Colour of the texture times that of the vertices: a factor of the ambient and diffuse coefficients, or of the base colour.
+    /// Colour of the texture times that of the vertices: a factor of the ambient and diffuse
+    /// coefficients, or of the base colour.
     pub base: Rgb,
-    /// Ambient and diffuse light: the evaluations weighed; with Gouraud's shading times the texture.
+    /// Ambient and diffuse light: the evaluations weighed; with Gouraud's shading times the
+    /// texture.
     pub diffuse: Rgb,
     /// Specular light.
     pub specular: Rgb,
@@ -93,7 +100,8 @@ pub struct PointLight {
     pub alpha: f32,
     /// The part of the point that textures and vertex colours leave of the surface.
     pub coverage: f32,
-    /// Specular light is multiplied with the coverage, not with the opacity: a transparent surface keeps its highlights.
+    /// Specular light is multiplied with the coverage, not with the opacity: a transparent surface
+    /// keeps its highlights.
     pub keeps_specular: bool,
     /// Light that shines through a translucent surface from behind.
     pub glow: Option<Rgb>,
@@ -113,7 +121,8 @@ pub struct DepthCueTerms {
     pub into: Rgb,
 }
 
-/// One evaluation of an illumination model. Vectors in view space: the eye in the origin, `z` towards it.
+/// One evaluation of an illumination model. Vectors in view space: the eye in the origin, `z`
+/// towards it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Evaluation {
@@ -133,11 +142,14 @@ pub struct Evaluation {
     pub ambient: Rgb,
     /// What each light adds, with its number in the scene.
     pub lights: Vec<NumberedTerms>,
-    /// Sum of the ambient and diffuse terms, in this order: the scene's ambient light, then each light's ambient and diffuse term.
+    /// Sum of the ambient and diffuse terms, in this order: the scene's ambient light, then each
+    /// light's ambient and diffuse term.
     pub diffuse: Rgb,
-    /// What it reflects diffusely of an image of the surroundings, with metallic-roughness materials; part of `diffuse`.
+    /// What it reflects diffusely of an image of the surroundings, with metallic-roughness
+    /// materials; part of `diffuse`.
     pub gathered: Option<Rgb>,
-    /// What it mirrors of the soft sky round the scene, or of the image, with metallic-roughness materials.
+    /// What it mirrors of the soft sky round the scene, or of the image, with metallic-roughness
+    /// materials.
     pub environment: Option<Rgb>,
     /// Sum of the specular terms, and of what it mirrors of the surroundings.
     pub specular: Rgb,
@@ -194,8 +206,8 @@ pub struct ShadowOfLight {
     pub visibility: Rgb,
     /// The facet faces away from the light: the shadow is its own.
     pub attached: bool,
-    /// The first facet on the way to the light (to the middle of a light with a shape), where not all of it arrives and the facet
-    /// does not face away.
+    /// The first facet on the way to the light (to the middle of a light with a shape), where not
+    /// all of it arrives and the facet does not face away.
     pub blocker: Option<u32>,
     /// How far that is, world space.
     pub distance: Option<f64>,

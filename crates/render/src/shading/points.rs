@@ -17,7 +17,8 @@ pub(crate) struct Points {
     pub mixed: Vec<u32>,
     /// The points that rays are followed on from, one for each sample.
     pub followed: Vec<u32>,
-    /// Layers, facet by facet in each pixel, in the order of the scene; by a list, piece by piece in its order.
+    /// Layers, facet by facet in each pixel, in the order of the scene; by a list, piece by piece
+    /// in its order.
     pub fragments: Vec<FragmentPoint>,
     /// Their depths, sample by sample.
     pub depths: Vec<f32>,
@@ -26,7 +27,8 @@ pub(crate) struct Points {
     pub order: Vec<u32>,
     /// Runs of `order` with one object and material.
     pub groups: Vec<Group>,
-    /// For each pixel the part of its background that a shadow on the ground takes; empty without one.
+    /// For each pixel the part of its background that a shadow on the ground takes; empty without
+    /// one.
     pub ground: Vec<f32>,
     /// Pixels with a surface.
     pub covered_pixels: u64,
@@ -165,15 +167,23 @@ impl Points {
 
     /// Bytes of what is left then.
     pub(crate) fn bytes(&self) -> usize {
-        let fragments = self.fragments.capacity() * size_of::<FragmentPoint>() + self.depths.capacity() * 4;
+        let fragments =
+            self.fragments.capacity() * size_of::<FragmentPoint>() + self.depths.capacity() * 4;
         let pixels = self.pixels.capacity() * size_of::<Pixel>() + self.mixed.capacity() * 4;
-        fragments + pixels + self.facet.capacity() * 4 + self.place.capacity() * 8 + self.ground.capacity() * 4
+        fragments
+            + pixels
+            + self.facet.capacity() * 4
+            + self.place.capacity() * 8
+            + self.ground.capacity() * 4
     }
 }
 
 /// Columns and rows of the tile that lie in the picture.
 pub(crate) fn visible_part(tile: &Tile, viewport: Viewport) -> (usize, usize) {
-    ((viewport.width - tile.x).min(TILE as u32) as usize, (viewport.height - tile.y).min(TILE as u32) as usize)
+    (
+        (viewport.width - tile.x).min(TILE as u32) as usize,
+        (viewport.height - tile.y).min(TILE as u32) as usize,
+    )
 }
 
 /// The samples of a mask, from the lowest.

@@ -26,7 +26,12 @@ use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd, V3, Widest, dispatch};
 
 /// Illuminates all points of a tile; `facets` is memory for the records of their facets.
-pub(super) fn shade(points: &Points, facets: &mut FacetTable, constants: &FrameConstants<'_>, lit: &mut ShadedPoints) {
+pub(super) fn shade(
+    points: &Points,
+    facets: &mut FacetTable,
+    constants: &FrameConstants<'_>,
+    lit: &mut ShadedPoints,
+) {
     lit.reset(points.len(), constants);
     dispatch!(constants.level, simd => shade_all(simd, points, facets, constants, lit));
 }
@@ -58,7 +63,8 @@ fn shade_all<S: Simd>(
         (|material: &MaterialConstants<'_>| material.model.needs_light_visibility(), &mut rays),
         #[inline(always)]
         |first, second| {
-            // A second way through the same formulas is more than WebAssembly's compiler takes in minutes.
+            // A second way through the same formulas is more than WebAssembly's compiler takes in
+            // minutes.
             if cfg!(target_family = "wasm") {
                 shade_eight(simd, first, constants, lit);
                 if let Some(second) = second {
@@ -70,7 +76,13 @@ fn shade_all<S: Simd>(
             let uniform = simple && is_uniform(first, constants);
             match second {
                 Some(second) if simple && lanes::has_sixteen(simd.level()) => {
-                    shade_color_only::<S, Widest<S>>(simd, [first, second], uniform, constants, lit);
+                    shade_color_only::<S, Widest<S>>(
+                        simd,
+                        [first, second],
+                        uniform,
+                        constants,
+                        lit,
+                    );
                 }
                 _ => {
                     for eight in std::iter::once(first).chain(second) {
@@ -87,7 +99,8 @@ fn shade_all<S: Simd>(
     lit.shadow_rays += rays;
 }
 
-/// Illuminates what rays hit; `points` holds the facets in groups, `hits` the same in the same order.
+/// Illuminates what rays hit; `points` holds the facets in groups, `hits` the same in the same
+/// order.
 #[inline(always)]
 pub(crate) fn shade_hits<S: Simd>(
     simd: S,
@@ -104,7 +117,12 @@ pub(crate) fn shade_hits<S: Simd>(
         let (subject, material) = subject(group, constants);
         let light = if material.model.needs_light_visibility() {
             let places: SurfacePoints = order.iter().map(|&p| hits[p as usize].place).collect();
-            GroupLight::of_places(constants, material.scatters.is_some(), places, &mut lit.shadow_rays)
+            GroupLight::of_places(
+                constants,
+                material.scatters.is_some(),
+                places,
+                &mut lit.shadow_rays,
+            )
         } else {
             GroupLight::default()
         };
@@ -116,7 +134,8 @@ pub(crate) fn shade_hits<S: Simd>(
             let (slots, along) = hits::prepare(simd, &subject, &together, &mut records);
             let (subject, along) = (&subject, Some(&along));
             let (slots, records, first) = (&slots, &records, i * LANES);
-            let (light_visibility, light_visibility_behind, open) = (&light.seen, &light.behind, &light.open);
+            let (light_visibility, light_visibility_behind, open) =
+                (&light.seen, &light.behind, &light.open);
             let eight = ShadingBatch8 {
                 subject,
                 material,
@@ -135,23 +154,36 @@ pub(crate) fn shade_hits<S: Simd>(
 }
 
 /// One instruction-set function: kept out of line, so that each level compiles it once.
-fn shade_eight<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameConstants<'_>, lit: &mut ShadedPoints) {
+fn shade_eight<S: Simd>(
+    simd: S,
+    eight: &ShadingBatch8<'_>,
+    constants: &FrameConstants<'_>,
+    lit: &mut ShadedPoints,
+) {
     simd.vectorize(
         #[inline(always)]
         || illuminate(simd, eight, constants, lit),
     );
 }
 
-/// Illuminates up to eight points: light reflected from the lights and from other surfaces, transparency, depth cueing.
+/// Illuminates up to eight points: light reflected from the lights and from other surfaces,
+/// transparency, depth cueing.
 #[inline(always)]
-fn illuminate<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameConstants<'_>, lit: &mut ShadedPoints) {
+fn illuminate<S: Simd>(
+    simd: S,
+    eight: &ShadingBatch8<'_>,
+    constants: &FrameConstants<'_>,
+    lit: &mut ShadedPoints,
+) {
     let &ShadingBatch8 { subject, material, slots, records, along, .. } = eight;
     let is_lit = material.model.needs_light_visibility();
 
-    // SurfacePoint the points on their facets, and let textures and vertex colours vary the material.
+    // SurfacePoint the points on their facets, and let textures and vertex colours vary the
+    // material.
     let mut surface = surface(simd, records, slots);
     surface.screen_linear = along.is_none() && subject.viewing.screen_linear();
-    let mut parameters = SurfaceParameters::new(simd, subject.mesh, slots, &surface, material, constants.raw);
+    let mut parameters =
+        SurfaceParameters::new(simd, subject.mesh, slots, &surface, material, constants.raw);
     parameters.let_through(simd, &surface, material, constants, along);
     parameters.occlude(simd, eight);
 
@@ -159,7 +191,8 @@ fn illuminate<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameCons
     let mut reflected = reflect_lights(simd, eight, &parameters, &surface, constants);
     if let (Some(solution), true) = (constants.radiosity, is_lit) {
         let kd = parameters.coefficients(simd, material, parameters.base).diffuse_part();
-        reflected.diffuse = reflected.diffuse + kd.times(irradiance(simd, solution, subject, slots, &surface));
+        reflected.diffuse =
+            reflected.diffuse + kd.times(irradiance(simd, solution, subject, slots, &surface));
     }
 
     // Premultiply.
@@ -168,7 +201,14 @@ fn illuminate<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameCons
         _ => parameters.emission,
     };
     let filtered = constants.transparency.tints();
-    let mut color = premultiplied(material, filtered, &reflected, emitted, parameters.alpha, parameters.coverage);
+    let mut color = premultiplied(
+        material,
+        filtered,
+        &reflected,
+        emitted,
+        parameters.alpha,
+        parameters.coverage,
+    );
 
     // Add the light that comes through translucent surfaces, and fade with the distance.
     if material.scatters.is_some() && is_lit {
@@ -176,7 +216,14 @@ fn illuminate<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameCons
     }
     if let Some(fade) = &constants.fade {
         let rows = &constants.background;
-        color = depth_cue::faded_eight(simd, fade, (color, parameters.alpha), &surface, (slots, along), rows);
+        color = depth_cue::faded_eight(
+            simd,
+            fade,
+            (color, parameters.alpha),
+            &surface,
+            (slots, along),
+            rows,
+        );
     }
 
     // Hand on the colours, what passes of the light from behind, and how rays go on.
@@ -189,7 +236,8 @@ fn illuminate<S: Simd>(simd: S, eight: &ShadingBatch8<'_>, constants: &FrameCons
     }
 }
 
-/// What up to eight points reflect of the lights, by the model of their material and the frame's shading.
+/// What up to eight points reflect of the lights, by the model of their material and the frame's
+/// shading.
 #[inline(always)]
 fn reflect_lights<S: Simd>(
     simd: S,
@@ -202,12 +250,16 @@ fn reflect_lights<S: Simd>(
     let &ShadingBatch8 { subject, material, slots, .. } = eight;
     let lighting = lighting(eight, constants);
     match material.model {
-        Model::Own => {
-            Reflected { diffuse: parameters.own(simd, material), specular: V3::splat(parameters.alpha, [0.0; 3]) }
-        }
+        Model::Own => Reflected {
+            diffuse: parameters.own(simd, material),
+            specular: V3::splat(parameters.alpha, [0.0; 3]),
+        },
         Model::Constant(color) => {
             let color = V3::splat(parameters.alpha, color);
-            Reflected { diffuse: color.times(parameters.base), specular: V3::splat(parameters.alpha, [0.0; 3]) }
+            Reflected {
+                diffuse: color.times(parameters.base),
+                specular: V3::splat(parameters.alpha, [0.0; 3]),
+            }
         }
         // Evaluate the model at the point, once for the face, or at the corners.
         Model::Empirical(_) | Model::Microfacet => match constants.shading {
@@ -218,8 +270,19 @@ fn reflect_lights<S: Simd>(
             }
             Shading::Flat => {
                 let k = parameters.coefficients(simd, material, parameters.base);
-                let faces = constants.faces.get_or_build(subject.mesh_index, || FaceTable::new(subject.mesh));
-                flat::shade(simd, subject.mesh, faces, subject.instance, slots, surface, &lighting, &k)
+                let faces = constants
+                    .faces
+                    .get_or_build(subject.mesh_index, || FaceTable::new(subject.mesh));
+                flat::shade(
+                    simd,
+                    subject.mesh,
+                    faces,
+                    subject.instance,
+                    slots,
+                    surface,
+                    &lighting,
+                    &k,
+                )
             }
             Shading::Gouraud => {
                 let colors = &parameters.corner_colors;
@@ -235,9 +298,14 @@ fn reflect_lights<S: Simd>(
     }
 }
 
-/// Keeps what passes of the light from behind up to eight points, which filtered transparency tints.
+/// Keeps what passes of the light from behind up to eight points, which filtered transparency
+/// tints.
 #[inline(always)]
-fn put_passes<S: Simd>(eight: &ShadingBatch8<'_>, parameters: &SurfaceParameters<S>, lit: &mut ShadedPoints) {
+fn put_passes<S: Simd>(
+    eight: &ShadingBatch8<'_>,
+    parameters: &SurfaceParameters<S>,
+    lit: &mut ShadedPoints,
+) {
     let &ShadingBatch8 { material, points, .. } = eight;
     if material.blend {
         let passes = filtered::passes(parameters.coverage, parameters.kt, material.material.filter);
@@ -301,5 +369,9 @@ pub(super) fn irradiance<S: Simd>(
         let light = solution.irradiance(facet, weights.map(|w| w[lane]), front);
         (0..3).for_each(|k| soa[k][lane] = light[k]);
     }
-    V3::new(F32x8::from_slice(simd, &soa[0]), F32x8::from_slice(simd, &soa[1]), F32x8::from_slice(simd, &soa[2]))
+    V3::new(
+        F32x8::from_slice(simd, &soa[0]),
+        F32x8::from_slice(simd, &soa[1]),
+        F32x8::from_slice(simd, &soa[2]),
+    )
 }

@@ -16,7 +16,8 @@ pub(crate) struct ShadedPoints {
     pub colors: Vec<[f32; 4]>,
     /// What passes of the light from behind; empty where that is `1 - A` in all channels.
     pub passes: Vec<[f32; 3]>,
-    /// How rays go on from there; kept for materials that let them, and empty where none are followed.
+    /// How rays go on from there; kept for materials that let them, and empty where none are
+    /// followed.
     pub bounces: Vec<Bounce>,
     /// Shadow rays that were followed.
     pub shadow_rays: u64,
@@ -35,7 +36,13 @@ pub(crate) struct Bounce {
 
 impl Default for Bounce {
     fn default() -> Self {
-        let place = SurfacePoint { position: DVec3::ZERO, normal: DVec3::ZERO, facet: u32::MAX, seed: 0, pixel: None };
+        let place = SurfacePoint {
+            position: DVec3::ZERO,
+            normal: DVec3::ZERO,
+            facet: u32::MAX,
+            seed: 0,
+            pixel: None,
+        };
         Self { normal: [0.0; 3], mirror: [0.0; 3], place }
     }
 }

@@ -1,19 +1,22 @@
-//! Edges of shadows within a pixel: shadows are asked once for each facet in a pixel, and for each of its samples where that
-//! is not enough.
+//! Edges of shadows within a pixel: shadows are asked once for each facet in a pixel, and for each
+//! of its samples where that is not enough.
 //!
-//! A point whose answer differs from one in a neighbouring pixel lies near the edge of a shadow; there each sample is asked, and
-//! the point gets the mean. At the border of a tile, whose neighbours are not known, a place one pixel beyond is asked, on the
-//! facet's plane. What comes out does not depend on how a picture is cut into tiles' work.
+//! A point whose answer differs from one in a neighbouring pixel lies near the edge of a shadow;
+//! there each sample is asked, and the point gets the mean. At the border of a tile, whose
+//! neighbours are not known, a place one pixel beyond is asked, on the facet's plane. What comes
+//! out does not depend on how a picture is cut into tiles' work.
 //!
 //! In:   points of an object and material, what reaches them. Out: the same, with means at edges.
-//! Cost: a pass over the points; as many questions as samples near edges, and one more at the border of a tile.
+//! Cost: a pass over the points; as many questions as samples near edges, and one more at the
+//!       border of a tile.
 
 use super::FrameConstants;
 use super::points::{NO_POINT, Points, Source, samples_in};
 use crate::shadow::{LightVisibility, SurfacePoints, grey};
 use vitral_raster::TILE;
 
-/// What must differ between neighbours. Answers about area lights differ by chance, so it takes more.
+/// What must differ between neighbours. Answers about area lights differ by chance, so it takes
+/// more.
 const DIFFERS: [f32; 2] = [1.0 / 256.0, 0.3];
 /// Numbers in a tile with a rim of one pixel.
 const WIDE: usize = TILE + 2;
@@ -35,7 +38,8 @@ impl Questions {
     }
 }
 
-/// Asks each sample of the points of a group that are near the edge of a shadow. `place` finds the places of questions.
+/// Asks each sample of the points of a group that are near the edge of a shadow. `place` finds the
+/// places of questions.
 pub(super) fn soften(
     constants: &FrameConstants<'_>,
     points: &Points,
@@ -103,11 +107,13 @@ fn mark_edges(
     is_edge: &mut [bool],
 ) {
     // Mostly a group has one answer.
-    let all = (0..order.len())
-        .map(|i| parts.get(i))
-        .chain(beyond_parts.into_iter().flat_map(|parts| (0..beyond.numbers.len()).map(|i| parts.get(i))));
+    let all = (0..order.len()).map(|i| parts.get(i)).chain(
+        beyond_parts.into_iter().flat_map(|parts| (0..beyond.numbers.len()).map(|i| parts.get(i))),
+    );
     let [low, high] =
-        all.map(grey).fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], part| [low.min(part), high.max(part)]);
+        all.map(grey).fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], part| {
+            [low.min(part), high.max(part)]
+        });
     if high - low <= differs {
         return;
     }
@@ -134,7 +140,8 @@ fn mark_edges(
     // Compare each pixel with its neighbours.
     for (number, &point) in order.iter().enumerate() {
         let middle = slot(points.place[point as usize]);
-        let around = [middle - WIDE, middle, middle + WIDE].into_iter().flat_map(|row| row - 1..=row + 1);
+        let around =
+            [middle - WIDE, middle, middle + WIDE].into_iter().flat_map(|row| row - 1..=row + 1);
         let [low, high] = around.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], slot| {
             [low.min(ranges[slot][0]), high.max(ranges[slot][1])]
         });
@@ -152,7 +159,9 @@ fn masks(points: &Points, samples: usize) -> Vec<u32> {
             Source::Point(_) => {}
             Source::Mixed(start) => {
                 let mixed = points.mixed[start as usize..][..samples].iter().enumerate();
-                mixed.filter(|(_, p)| **p != NO_POINT).for_each(|(s, &p)| masks[p as usize] |= 1 << s);
+                mixed
+                    .filter(|(_, p)| **p != NO_POINT)
+                    .for_each(|(s, &p)| masks[p as usize] |= 1 << s);
             }
         }
     }

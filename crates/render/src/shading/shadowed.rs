@@ -1,7 +1,8 @@
-//! Which part of each light reaches the points of a group, and the shadows as pictures of their own.
+//! Which part of each light reaches the points of a group, and the shadows as pictures of their
+//! own.
 //!
-//! Shadows are found where the surface is, once for each point, whatever the shading model: flat and Gouraud shading
-//! illuminate centres and corners, but a shadow's edge runs across facets.
+//! Shadows are found where the surface is, once for each point, whatever the shading model: flat
+//! and Gouraud shading illuminate centres and corners, but a shadow's edge runs across facets.
 
 use super::FrameConstants;
 use super::facets::FacetTable;
@@ -29,11 +30,19 @@ pub(crate) struct GroupLight {
 }
 
 impl GroupLight {
-    /// What reaches these places, and if `both`, the other side of their facets. Adds the rays that it took.
-    pub(crate) fn of_places(constants: &FrameConstants<'_>, both: bool, places: SurfacePoints, rays: &mut u64) -> Self {
-        let open = constants.occlusion.map(|occlusion| occlusion.open(&places, rays)).unwrap_or_default();
+    /// What reaches these places, and if `both`, the other side of their facets. Adds the rays that
+    /// it took.
+    pub(crate) fn of_places(
+        constants: &FrameConstants<'_>,
+        both: bool,
+        places: SurfacePoints,
+        rays: &mut u64,
+    ) -> Self {
+        let open =
+            constants.occlusion.map(|occlusion| occlusion.open(&places, rays)).unwrap_or_default();
         let seen = light_visibility_at(constants, &places, rays);
-        let behind = if both { light_visibility_at(constants, &places.turned(), rays) } else { Vec::new() };
+        let behind =
+            if both { light_visibility_at(constants, &places.turned(), rays) } else { Vec::new() };
         Self { seen, behind, open }
     }
 }
@@ -63,15 +72,19 @@ pub(crate) fn group_light<S: Simd>(
                 let slots = Slots::of_points(points, eight, records, subject.first_facet);
                 let weights = place_weights(simd, subject, facets, &slots);
                 let facets = std::array::from_fn(|lane| &corners[slots.record[lane] as usize]);
-                let places = placing.places(simd, (&slots.triangle, facets), &weights, [&slots.x, &slots.y]);
+                let places =
+                    placing.places(simd, (&slots.triangle, facets), &weights, [&slots.x, &slots.y]);
                 all.push(places, eight.len());
             },
         );
     }
-    let mut light = GroupLight::of_places(constants, material.scatters.is_some() && subject.turns(), all, rays);
+    let mut light =
+        GroupLight::of_places(constants, material.scatters.is_some() && subject.turns(), all, rays);
 
     // Near edges of shadows each sample counts.
-    if constants.view.pattern.len() > 1 && constants.shadows.is_some_and(|shadows| !shadows.is_smooth()) {
+    if constants.view.pattern.len() > 1
+        && constants.shadows.is_some_and(|shadows| !shadows.is_smooth())
+    {
         let asked = Cell::new(0);
         let place = |questions: &Questions| {
             let mut places = SurfacePoints::with_capacity(questions.numbers.len());
@@ -81,18 +94,25 @@ pub(crate) fn group_light<S: Simd>(
                 simd.vectorize(
                     #[inline(always)]
                     || {
-                        let mut slots =
-                            Slots { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
+                        let mut slots = Slots {
+                            triangle: [0; LANES],
+                            record: [0; LANES],
+                            x: [0.0; LANES],
+                            y: [0.0; LANES],
+                        };
                         for lane in 0..LANES {
                             let (number, [x, y]) = eight[lane.min(eight.len() - 1)];
                             slots.record[lane] = facets.of_point[number as usize];
-                            slots.triangle[lane] = points.facet[order[number as usize] as usize] - subject.first_facet;
+                            slots.triangle[lane] =
+                                points.facet[order[number as usize] as usize] - subject.first_facet;
                             (slots.x[lane], slots.y[lane]) = (x, y);
                         }
                         let weights = place_weights(simd, subject, facets, &slots);
-                        let facets = std::array::from_fn(|lane| &corners[slots.record[lane] as usize]);
+                        let facets =
+                            std::array::from_fn(|lane| &corners[slots.record[lane] as usize]);
                         let screen = [&slots.x, &slots.y];
-                        let eight_places = placing.places(simd, (&slots.triangle, facets), &weights, screen);
+                        let eight_places =
+                            placing.places(simd, (&slots.triangle, facets), &weights, screen);
                         places.push(eight_places, eight.len());
                     },
                 );
@@ -115,7 +135,12 @@ pub(crate) fn group_light<S: Simd>(
 
 /// Weights of the facets' corners at eight points on the screen.
 #[inline(always)]
-fn place_weights<S: Simd>(simd: S, subject: &Subject<'_>, facets: &FacetTable, slots: &Slots) -> [F<S>; 3] {
+fn place_weights<S: Simd>(
+    simd: S,
+    subject: &Subject<'_>,
+    facets: &FacetTable,
+    slots: &Slots,
+) -> [F<S>; 3] {
     if !subject.viewing.screen_linear() {
         return point_weights(simd, &facets.records, slots);
     }
@@ -124,8 +149,13 @@ fn place_weights<S: Simd>(simd: S, subject: &Subject<'_>, facets: &FacetTable, s
     surface.place_weights()
 }
 
-/// Which part of each light reaches these places; empty without shadows. Adds the rays that it took.
-fn light_visibility_at(constants: &FrameConstants<'_>, places: &SurfacePoints, rays: &mut u64) -> Vec<LightVisibility> {
+/// Which part of each light reaches these places; empty without shadows. Adds the rays that it
+/// took.
+fn light_visibility_at(
+    constants: &FrameConstants<'_>,
+    places: &SurfacePoints,
+    rays: &mut u64,
+) -> Vec<LightVisibility> {
     let Some(shadows) = constants.shadows else { return Vec::new() };
     let of_light = |(number, &light): (usize, &usize)| {
         let mut parts = LightVisibility::new(places.len(), [0.0; 3]);
@@ -147,7 +177,8 @@ pub(super) fn world_places<S: Simd>(
 ) -> [SurfacePoint; LANES] {
     let placing = placing(constants, subject);
     let facets = placing.eight_facets(simd, &slots.triangle);
-    let places = placing.places(simd, (&slots.triangle, facets.each_ref()), weights, [&slots.x, &slots.y]);
+    let places =
+        placing.places(simd, (&slots.triangle, facets.each_ref()), weights, [&slots.x, &slots.y]);
     std::array::from_fn(|lane| places.get(lane))
 }
 
@@ -156,9 +187,10 @@ fn placing<'a>(constants: &FrameConstants<'a>, subject: &Subject<'_>) -> Placing
     Placing::new(constants.view, instance, subject.turns())
 }
 
-/// Attached and cast shadow of eight points, the first the `first` of its group: shares of the lights that have a place
-/// or a direction. Nothing hides a light where it does not shine: beside a spot's cone, behind an area light.
-/// A surface faces away from a light in its plane, wherever rounding puts it.
+/// Attached and cast shadow of eight points, the first the `first` of its group: shares of the
+/// lights that have a place or a direction. Nothing hides a light where it does not shine: beside a
+/// spot's cone, behind an area light. A surface faces away from a light in its plane, wherever
+/// rounding puts it.
 #[inline(always)]
 pub(crate) fn shadow_shares<S: Simd>(
     constants: &FrameConstants<'_>,
@@ -175,7 +207,9 @@ pub(crate) fn shadow_shares<S: Simd>(
     let mut shares = [[0.0; LANES]; 2];
     for lane in 0..LANES {
         let at = |v: &[[f32; LANES]; 3]| V3::new(v[0][lane], v[1][lane], v[2][lane]);
-        let part = |light: usize| light_visibility.get(light).map_or(1.0, |parts| grey(parts.get(first + lane)));
+        let part = |light: usize| {
+            light_visibility.get(light).map_or(1.0, |parts| grey(parts.get(first + lane)))
+        };
         let [attached, cast] = shares_at(constants, at(&position), [at(&normal), at(&facet)], part);
         (shares[0][lane], shares[1][lane]) = (attached, cast);
     }

@@ -19,8 +19,14 @@ pub(crate) struct Slots {
 impl Slots {
     /// The slots of up to eight points of a group.
     #[inline(always)]
-    pub(crate) fn of_points(points: &Points, eight: &[u32], records: &[u32], first_facet: u32) -> Self {
-        let mut slots = Self { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
+    pub(crate) fn of_points(
+        points: &Points,
+        eight: &[u32],
+        records: &[u32],
+        first_facet: u32,
+    ) -> Self {
+        let mut slots =
+            Self { triangle: [0; LANES], record: [0; LANES], x: [0.0; LANES], y: [0.0; LANES] };
         if let (&[first, .., last], Ok(records)) = (eight, records.try_into())
             && last - first == LANES as u32 - 1
             && let (Some(facets), Some(places)) = (

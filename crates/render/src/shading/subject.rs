@@ -14,7 +14,8 @@ pub(crate) struct Viewing {
     pub perspective: bool,
     /// The material shows both sides.
     pub double_sided: bool,
-    /// The material has holes or lets light through: what it covers is seen, the inner side of its own body, too.
+    /// The material has holes or lets light through: what it covers is seen, the inner side of its
+    /// own body, too.
     pub layered: bool,
 }
 
@@ -70,7 +71,8 @@ pub(crate) fn subject<'a>(
     let normal_set = material.normal.as_ref().map(|texture| texture.reference.uv_set);
     let subject = Subject {
         mesh,
-        tangents: normal_set.and_then(|set| constants.view.session.tangents(world_instance.mesh_index, set)),
+        tangents: normal_set
+            .and_then(|set| constants.view.session.tangents(world_instance.mesh_index, set)),
         instance,
         first_facet: world_instance.first_facet,
         mesh_index: world_instance.mesh_index,

@@ -1,9 +1,11 @@
 //! What textures and vertex colours make of a material at eight points.
 //!
-//! A material says how a surface reflects on the whole; its textures and the mesh's colours vary that from point to
-//! point. Here they are looked up and put together into the coefficients that the illumination models take.
+//! A material says how a surface reflects on the whole; its textures and the mesh's colours vary
+//! that from point to point. Here they are looked up and put together into the coefficients that
+//! the illumination models take.
 //!
-//! In:   points of one object and material. Out: [`SurfaceParameters`], linear or raw as the picture is.
+//! In:   points of one object and material. Out: [`SurfaceParameters`], linear or raw as the
+//!       picture is.
 //! Cost: a lookup for each texture and point.
 //! Source: \[Foley et al. 1990\], 16.3, for textures; the transparency models name their own.
 
@@ -18,7 +20,9 @@ use super::slots::Slots;
 use super::subject::Subject;
 use crate::Shading;
 use crate::transparency::{kay, linear};
-use vitral_light::{DIELECTRIC_F0, Microfacet, Phong, Reflectance, microfacet_from_phong, phong_from_microfacet};
+use vitral_light::{
+    DIELECTRIC_F0, Microfacet, Phong, Reflectance, microfacet_from_phong, phong_from_microfacet,
+};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Lanes, Simd, V3};
 use vitral_scene::{Attribute, Mesh};
@@ -140,7 +144,8 @@ impl<S: Simd> SurfaceParameters<S> {
         }
     }
 
-    /// Kay's model, and glass: how much light a blended surface lets through depends on how it is turned.
+    /// Kay's model, and glass: how much light a blended surface lets through depends on how it is
+    /// turned.
     #[inline(always)]
     pub(super) fn let_through(
         &mut self,
@@ -226,9 +231,9 @@ impl<S: Simd> SurfaceParameters<S> {
         )
     }
 
-    /// The shading normal bent by the normal texture, if there is one and the mesh has texture coordinates. Red leans it along
-    /// growing u, green along falling v, which is upwards in the picture, on both sides of a surface and however its texture is
-    /// mirrored (glTF's convention).
+    /// The shading normal bent by the normal texture, if there is one and the mesh has texture
+    /// coordinates. Red leans it along growing u, green along falling v, which is upwards in the
+    /// picture, on both sides of a surface and however its texture is mirrored (glTF's convention).
     pub(super) fn mapped_normal(
         &self,
         simd: S,
@@ -246,8 +251,10 @@ impl<S: Simd> SurfaceParameters<S> {
                 let uv = gather_attribute(simd, attribute, mesh, slots);
                 let n = surface.interpolated_normal();
 
-                let (e1, e2) =
-                    (surface.positions[1] - surface.positions[0], surface.positions[2] - surface.positions[0]);
+                let (e1, e2) = (
+                    surface.positions[1] - surface.positions[0],
+                    surface.positions[2] - surface.positions[0],
+                );
                 let (dv1, dv2) = (uv[1][1] - uv[0][1], uv[2][1] - uv[0][1]);
                 let (du1, du2) = (uv[1][0] - uv[0][0], uv[2][0] - uv[0][0]);
                 let zero = constant(simd, 0.0);
@@ -257,7 +264,8 @@ impl<S: Simd> SurfaceParameters<S> {
                 // Whether falling v is normal × tangent where corners run counter-clockwise.
                 let (tangent, upwards) = match subject.tangents {
                     Some(attribute) => {
-                        let (smooth, w) = interpolated_tangent(simd, attribute, subject, slots, surface);
+                        let (smooth, w) =
+                            interpolated_tangent(simd, attribute, subject, slots, surface);
                         let known = Lanes::lt(zero, smooth.dot(smooth));
                         let upwards = (known & Lanes::lt(zero, w)) | (!known & flipped);
                         (V3::select(known, smooth, tangent), upwards)
@@ -266,15 +274,21 @@ impl<S: Simd> SurfaceParameters<S> {
                 };
                 let tangent = (tangent - n.scale(n.dot(tangent))).normalize();
 
-                // The normal, u and falling v make a right-handed frame where corners run counter-clockwise on the
-                // surface and clockwise in the texture, whose v grows downwards, or both the other way.
+                // The normal, u and falling v make a right-handed frame where corners run
+                // counter-clockwise on the surface and clockwise in the texture, whose v grows
+                // downwards, or both the other way.
                 let clockwise = Lanes::lt(e1.cross(e2).dot(surface.facet_normal), zero);
                 let bitangent = n.cross(tangent);
                 let bitangent = V3::select(clockwise ^ upwards, bitangent, -bitangent);
                 let scale = material.material.normal_scale;
-                let (x, y, z) = ((texel[0] * 2.0 - 1.0) * scale, (texel[1] * 2.0 - 1.0) * scale, texel[2] * 2.0 - 1.0);
+                let (x, y, z) = (
+                    (texel[0] * 2.0 - 1.0) * scale,
+                    (texel[1] * 2.0 - 1.0) * scale,
+                    texel[2] * 2.0 - 1.0,
+                );
                 let leaning = tangent.scale(x) + bitangent.scale(y);
-                // The back of a bump is a dent: seen from there, the normal was turned, and leans the other way.
+                // The back of a bump is a dent: seen from there, the normal was turned, and leans
+                // the other way.
                 let back = if subject.instance.mirrored { !clockwise } else { clockwise };
                 Some((V3::select(back, -leaning, leaning) + n.scale(z)).normalize())
             },
@@ -291,13 +305,21 @@ struct VertexColors<S: Simd> {
     alpha: F<S>,
 }
 
-/// The mesh's vertex colours at eight points; white without any. They are kept linear; the raw colour space wants them as they
-/// were in the file: glTF's are linear there, as its factors are.
+/// The mesh's vertex colours at eight points; white without any. They are kept linear; the raw
+/// colour space wants them as they were in the file: glTF's are linear there, as its factors are.
 #[inline(always)]
-fn vertex_colors<S: Simd>(simd: S, mesh: &Mesh, slots: &Slots, surface: &Surface<F<S>>, raw: bool) -> VertexColors<S> {
+fn vertex_colors<S: Simd>(
+    simd: S,
+    mesh: &Mesh,
+    slots: &Slots,
+    surface: &Surface<F<S>>,
+    raw: bool,
+) -> VertexColors<S> {
     let one = constant(simd, 1.0);
     let white = V3::new(one, one, one);
-    let Some(attribute) = &mesh.colors else { return VertexColors { corners: [white; 3], color: white, alpha: one } };
+    let Some(attribute) = &mesh.colors else {
+        return VertexColors { corners: [white; 3], color: white, alpha: one };
+    };
     let values = gather_attribute(simd, attribute, mesh, slots);
     let mut corners = [white; 3];
     for c in 0..3 {
@@ -309,7 +331,11 @@ fn vertex_colors<S: Simd>(simd: S, mesh: &Mesh, slots: &Slots, surface: &Surface
         }
     }
     let color = blend3(&surface.weights, &corners);
-    VertexColors { corners, color, alpha: blend(&surface.weights, [values[0][3], values[1][3], values[2][3]]) }
+    VertexColors {
+        corners,
+        color,
+        alpha: blend(&surface.weights, [values[0][3], values[1][3], values[2][3]]),
+    }
 }
 
 /// Between the tangents at the corners of each lane's facet, view space, and their common `w`.
@@ -349,7 +375,8 @@ fn coefficients<T: Lanes>(
     color: V3<T>,
     factors: &Factors<T>,
 ) -> Coefficients<T> {
-    let &Factors { specular, metallic: metallic_factor, roughness: roughness_factor, occlusion } = factors;
+    let &Factors { specular, metallic: metallic_factor, roughness: roughness_factor, occlusion } =
+        factors;
     match (*reflectance, model) {
         (Reflectance::Phong { ka, kd, ks, shininess }, model) => {
             let k = Phong {
@@ -359,7 +386,9 @@ fn coefficients<T: Lanes>(
                 shininess: occlusion.splat(shininess),
             };
             match model {
-                Model::Microfacet => Coefficients::Microfacet(Microfacet { occlusion, ..microfacet_from_phong(&k) }),
+                Model::Microfacet => {
+                    Coefficients::Microfacet(Microfacet { occlusion, ..microfacet_from_phong(&k) })
+                }
                 _ => Coefficients::Empirical(k),
             }
         }
@@ -378,16 +407,25 @@ fn coefficients<T: Lanes>(
     }
 }
 
-/// A material's coefficients and opacity where neither textures nor vertex colours vary them; `one` is 1.
+/// A material's coefficients and opacity where neither textures nor vertex colours vary them; `one`
+/// is 1.
 #[inline(always)]
 pub(super) fn uniform<T: Lanes>(one: T, material: &MaterialConstants<'_>) -> (Coefficients<T>, T) {
     let white = V3::new(one, one, one);
-    (of_base(one, &material.material.reflectance, material.model, white), opaque_part(material, one))
+    (
+        of_base(one, &material.material.reflectance, material.model, white),
+        opaque_part(material, one),
+    )
 }
 
 /// Coefficients where only a base colour varies them; `one` is 1.
 #[inline(always)]
-pub(super) fn of_base<T: Lanes>(one: T, reflectance: &Reflectance, model: Model, base: V3<T>) -> Coefficients<T> {
+pub(super) fn of_base<T: Lanes>(
+    one: T,
+    reflectance: &Reflectance,
+    model: Model,
+    base: V3<T>,
+) -> Coefficients<T> {
     let white = V3::new(one, one, one);
     let factors = Factors { specular: white, metallic: one, roughness: one, occlusion: one };
     coefficients(reflectance, model, base, &factors)
@@ -404,8 +442,9 @@ fn opaque_part<T: Lanes>(material: &MaterialConstants<'_>, alpha: T) -> T {
     }
 }
 
-/// How much of a pixel a cut-out surface fills where its opacity is `alpha` in the middle: as if that went on as it does to the
-/// next pixels, to the right and down, a border of the surface runs through the pixel where it reaches the cutoff.
+/// How much of a pixel a cut-out surface fills where its opacity is `alpha` in the middle: as if
+/// that went on as it does to the next pixels, to the right and down, a border of the surface runs
+/// through the pixel where it reaches the cutoff.
 #[inline(never)]
 fn soft_cut<S: Simd>(
     simd: S,
@@ -421,10 +460,13 @@ fn soft_cut<S: Simd>(
             let [right, down] = surface.neighbours();
             let change = lanes::inlined(
                 #[inline(always)]
-                |weights: &[F<S>; 3]| Lanes::abs(alpha_at(simd, mesh, slots, (surface, weights), material) - alpha),
+                |weights: &[F<S>; 3]| {
+                    Lanes::abs(alpha_at(simd, mesh, slots, (surface, weights), material) - alpha)
+                },
             );
             let opacity = material.material.opacity;
-            let width = Lanes::max((change(&right) + change(&down)) * opacity, constant(simd, 1e-6));
+            let width =
+                Lanes::max((change(&right) + change(&down)) * opacity, constant(simd, 1e-6));
             let beyond = alpha * opacity - material.cutoff.unwrap_or(0.0);
             Lanes::saturate(beyond / width + 0.5)
         },
@@ -445,7 +487,9 @@ fn alpha_at<S: Simd>(
         let corners = gather_attribute(simd, attribute, mesh, slots);
         alpha = blend(weights, [corners[0][3], corners[1][3], corners[2][3]]);
     }
-    if let Some(texel) = material.base.as_ref().and_then(|t| sample(simd, mesh, slots, (surface, weights), t)) {
+    if let Some(texel) =
+        material.base.as_ref().and_then(|t| sample(simd, mesh, slots, (surface, weights), t))
+    {
         alpha *= texel[3];
     }
     // That of glass says how much light it keeps.
@@ -472,7 +516,8 @@ fn gather_attribute<S: Simd, const N: usize>(
     )
 }
 
-/// SurfaceParameters a texture up at eight points, where the corners have these weights; `None` if the mesh has no such texture coordinates.
+/// SurfaceParameters a texture up at eight points, where the corners have these weights; `None` if
+/// the mesh has no such texture coordinates.
 fn sample<S: Simd>(
     simd: S,
     mesh: &Mesh,
@@ -503,7 +548,8 @@ fn sample<S: Simd>(
             let length2 = lanes::inlined(
                 #[inline(always)]
                 |weights: &[F<S>; 3]| {
-                    let (du, dv) = ((blend(weights, u) - middle.0) * w, (blend(weights, v) - middle.1) * h);
+                    let (du, dv) =
+                        ((blend(weights, u) - middle.0) * w, (blend(weights, v) - middle.1) * h);
                     du * du + dv * dv
                 },
             );
@@ -513,7 +559,13 @@ fn sample<S: Simd>(
             let (us, vs, lods) = (here.0.to_array(), here.1.to_array(), lod.to_array());
             let mut soa = [[0.0f32; LANES]; 4];
             for lane in 0..LANES {
-                let texel = t.texture.sample(&t.reference.sampler, us[lane], vs[lane], lods[lane], t.decode);
+                let texel = t.texture.sample(
+                    &t.reference.sampler,
+                    us[lane],
+                    vs[lane],
+                    lods[lane],
+                    t.decode,
+                );
                 for k in 0..4 {
                     soa[k][lane] = texel[k];
                 }

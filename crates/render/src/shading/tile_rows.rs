@@ -16,7 +16,9 @@ impl<'a> TileRows<'a> {
             let first = tiles.len();
             tiles.resize_with(first + viewport.tiles_x() as usize, || Vec::with_capacity(TILE));
             for row in band.chunks_mut(viewport.width as usize) {
-                row.chunks_mut(TILE).zip(&mut tiles[first..]).for_each(|(part, tile)| tile.push(part));
+                row.chunks_mut(TILE)
+                    .zip(&mut tiles[first..])
+                    .for_each(|(part, tile)| tile.push(part));
             }
         }
         Self { tiles: tiles.into_iter().map(Mutex::new).collect() }

@@ -1,18 +1,21 @@
 //! Ambient occlusion: how much of the light from everywhere reaches a point past what stands near.
 //!
-//! The ambient term of the illumination models takes light from all sides for granted. In a corner, a fold or under an overhang most
-//! of it is kept away, and without that everything floats. So rays go from the point in directions over its facet, more of them
-//! straight up than aside (by the cosine, as matt surfaces gather light), and the ambient light is weakened by those that meet
-//! something. What is far away counts less: rays have all lengths up to a radius, so that the weight of an occluder falls linearly to 0
-//! there, and closed rooms are not black.
+//! The ambient term of the illumination models takes light from all sides for granted. In a corner,
+//! a fold or under an overhang most of it is kept away, and without that everything floats. So rays
+//! go from the point in directions over its facet, more of them straight up than aside (by the
+//! cosine, as matt surfaces gather light), and the ambient light is weakened by those that meet
+//! something. What is far away counts less: rays have all lengths up to a radius, so that the
+//! weight of an occluder falls linearly to 0 there, and closed rooms are not black.
 //!
-//! The hemisphere is cut into cells with a ray in each; chance is a hash of the place in the picture, so a picture is the same whatever
-//! algorithm found its surfaces, and on however many threads.
+//! The hemisphere is cut into cells with a ray in each; chance is a hash of the place in the
+//! picture, so a picture is the same whatever algorithm found its surfaces, and on however many
+//! threads.
 //!
-//! In:   points on facets, world space less the scene's middle. Out: the part of ambient light that arrives, `0..=1`.
+//! In:   points on facets, world space less the scene's middle. Out: the part of ambient light that
+//!       arrives, `0..=1`.
 //! Cost: a fixed number of rays a point, about `O(log n)` each.
-//! Source: \[Zhukov, Iones & Kronin 1998\]; the cells are those of \[Cook, Porter & Carpenter 1984\]. Departs from it: transparent
-//! things let through what they let through of other light.
+//! Source: \[Zhukov, Iones & Kronin 1998\]; the cells are those of \[Cook, Porter & Carpenter
+//! 1984\]. Departs from it: transparent things let through what they let through of other light.
 
 use super::grey;
 use super::hash::hash;
@@ -25,7 +28,8 @@ use vitral_math::DVec3;
 
 /// Exponent of the cosine by which a matt surface gathers light.
 const COSINE: f32 = 1.0;
-/// The radius where none is chosen, in radii of the scene's bounding sphere. Chosen by eye: folds and feet darken, halls do not.
+/// The radius where none is chosen, in radii of the scene's bounding sphere. Chosen by eye: folds
+/// and feet darken, halls do not.
 pub(super) const RADIUS: f64 = 0.5;
 /// Steps of the golden ratio, in parts of 2^32, spread the rays' lengths evenly.
 const GOLDEN: u32 = 0x9e37_79b9;
@@ -42,13 +46,21 @@ impl<'a> AmbientOcclusion<'a> {
     ///
     /// # Errors
     /// A limit of the budget.
-    pub(crate) fn new(session: &'a Session, settings: &Settings, execution: &Execution) -> Result<Option<Self>, Limit> {
+    pub(crate) fn new(
+        session: &'a Session,
+        settings: &Settings,
+        execution: &Execution,
+    ) -> Result<Option<Self>, Limit> {
         let shading = &settings.shading;
-        let Some(count) = shading.ambient_occlusion.filter(|_| shading.lighting) else { return Ok(None) };
+        let Some(count) = shading.ambient_occlusion.filter(|_| shading.lighting) else {
+            return Ok(None);
+        };
         let radius = shading.occlusion_radius;
-        let radius = radius.unwrap_or_else(|| RADIUS * session.world.bounds.bounding_sphere().radius);
+        let radius =
+            radius.unwrap_or_else(|| RADIUS * session.world.bounds.bounding_sphere().radius);
         let pixels = u64::from(settings.picture.width) * u64::from(settings.picture.height);
-        Self::with(session, (settings, execution), (count, radius), pixels * u64::from(count)).map(Some)
+        Self::with(session, (settings, execution), (count, radius), pixels * u64::from(count))
+            .map(Some)
     }
 
     /// That of any points: `count` rays of each within `radius`, `rays` in all.
@@ -61,7 +73,12 @@ impl<'a> AmbientOcclusion<'a> {
         (count, radius): (u32, f64),
         rays: u64,
     ) -> Result<Self, Limit> {
-        let rays = LightRays::new(session, settings, execution, (rays, "ambient occlusion without a structure"))?;
+        let rays = LightRays::new(
+            session,
+            settings,
+            execution,
+            (rays, "ambient occlusion without a structure"),
+        )?;
         Ok(Self { rays, strata: Strata::new(count), radius })
     }
 
@@ -99,18 +116,31 @@ mod tests {
     /// The part that reaches the middle of a floor with something above it.
     fn open(above: Mesh, lift: f64, radius: f64) -> f32 {
         let mut scene = Scene::default();
-        scene.add_mesh(solids::cuboid(DVec3::new(200.0, 1.0, 200.0)), DMat4::from_translation(DVec3::Y * -0.5));
+        scene.add_mesh(
+            solids::cuboid(DVec3::new(200.0, 1.0, 200.0)),
+            DMat4::from_translation(DVec3::Y * -0.5),
+        );
         scene.add_mesh(above, DMat4::from_translation(DVec3::Y * lift));
         let session = Session::new(Arc::new(scene)).unwrap();
         let mut settings = Settings::default();
-        (settings.shading.ambient_occlusion, settings.shading.occlusion_radius) = (Some(4096), Some(radius));
-        let occlusion = AmbientOcclusion::new(&session, &settings, &Execution::default()).unwrap().unwrap();
+        (settings.shading.ambient_occlusion, settings.shading.occlusion_radius) =
+            (Some(4096), Some(radius));
+        let occlusion =
+            AmbientOcclusion::new(&session, &settings, &Execution::default()).unwrap().unwrap();
         let floor = (0..12u32).find(|&f| {
-            let (corners, normal) = super::super::facet(&session.world.instances[0], f, occlusion.rays.center());
-            normal.normalize().y > 0.9 && corners.iter().any(|c| c.y + occlusion.rays.center().y > -0.1)
+            let (corners, normal) =
+                super::super::facet(&session.world.instances[0], f, occlusion.rays.center());
+            normal.normalize().y > 0.9
+                && corners.iter().any(|c| c.y + occlusion.rays.center().y > -0.1)
         });
         let position = DVec3::new(0.01, 0.0, 0.02) - occlusion.rays.center();
-        let place = SurfacePoint { position, normal: DVec3::Y, facet: floor.unwrap(), seed: 7, pixel: None };
+        let place = SurfacePoint {
+            position,
+            normal: DVec3::Y,
+            facet: floor.unwrap(),
+            seed: 7,
+            pixel: None,
+        };
         let mut rays = 0;
         let part = occlusion.open(&SurfacePoints::from_iter([place]), &mut rays)[0];
         assert_eq!(rays, 4096);
@@ -119,9 +149,9 @@ mod tests {
 
     #[test]
     fn a_plate_above_keeps_away_what_its_solid_angle_says() {
-        // A square of side 2a at the height h fills a part of the hemisphere, weighted by the cosine, of
-        // 4/π X/√(1+X²) atan(X/√(1+X²)) with X = a/h (the configuration factor of a parallel rectangle). Radii much larger than the
-        // distance leave all of that.
+        // A square of side 2a at the height h fills a part of the hemisphere, weighted by the
+        // cosine, of 4/π X/√(1+X²) atan(X/√(1+X²)) with X = a/h (the configuration factor of a
+        // parallel rectangle). Radii much larger than the distance leave all of that.
         let factor = |x: f64| {
             let s = x / (1.0 + x * x).sqrt();
             4.0 / std::f64::consts::PI * s * vitral_math::func::atan2(s, 1.0)

@@ -1,7 +1,8 @@
-//! What stands between a point and a light: the first facet on the way, for whoever wants to know who casts a shadow.
+//! What stands between a point and a light: the first facet on the way, for whoever wants to know
+//! who casts a shadow.
 //!
-//! No structure is needed for one ray: runs of triangles are rejected by their boxes, and the triangles of the others are
-//! met one by one, in double precision.
+//! No structure is needed for one ray: runs of triangles are rejected by their boxes, and the
+//! triangles of the others are met one by one, in double precision.
 //!
 //! In:   a place, a light. Out: the facet, and how far away it is.
 //! Cost: a box test for each run of triangles of the scene.
@@ -31,8 +32,8 @@ struct Feeler {
     own: u32,
 }
 
-/// The first facet that keeps light of `light` from `place`; on the way to its middle, if it has a shape. `None` for ambient light
-/// and where nothing stands.
+/// The first facet that keeps light of `light` from `place`; on the way to its middle, if it has a
+/// shape. `None` for ambient light and where nothing stands.
 pub(crate) fn blocker(
     session: &Session,
     occluders: &Occluders<'_>,
@@ -64,7 +65,9 @@ pub(crate) fn blocker(
                 let number = instance.first_facet + triangle;
                 let Some(t) = feeler.meets(number, &corners) else { continue };
                 let passing = || origin + feeler.way * t;
-                if occluders.transmittance(number, &corners.map(DVec3::as_vec3), passing) != [1.0; 3] {
+                if occluders.transmittance(number, &corners.map(DVec3::as_vec3), passing)
+                    != [1.0; 3]
+                {
                     feeler.reach.end = t;
                     found = Some(Blocker { facet: number, distance: t * way.length() });
                 }
@@ -80,18 +83,22 @@ impl Feeler {
         // Bring the ray to the instance's space.
         let count = instance.mesh.triangles.len();
         let inverse = (DMat4::from_translation(-center) * instance.world_from_model).inverse();
-        let (origin, way) = (inverse.transform_point3(self.origin), inverse.transform_vector3(self.way));
+        let (origin, way) =
+            (inverse.transform_point3(self.origin), inverse.transform_vector3(self.way));
         let known = origin.is_finite() && way.is_finite();
         let passes = |bounds: &Aabb| {
             // A hair more than the box, for what rounding moved out of it.
-            let slack = DVec3::splat(1e-5 * (bounds.size().max_element() + origin.abs().max_element() * 1e-3));
-            let [a, b] = [bounds.min - slack, bounds.max + slack].map(|corner| (corner - origin) / way);
+            let slack = DVec3::splat(
+                1e-5 * (bounds.size().max_element() + origin.abs().max_element() * 1e-3),
+            );
+            let [a, b] =
+                [bounds.min - slack, bounds.max + slack].map(|corner| (corner - origin) / way);
             let (mut enter, mut leave) = (self.reach.start, self.reach.end);
             // Intersect the ray with the two planes of each axis.
             for axis in 0..3 {
                 if way[axis] == 0.0 {
-                    let is_beside =
-                        origin[axis] < bounds.min[axis] - slack[axis] || origin[axis] > bounds.max[axis] + slack[axis];
+                    let is_beside = origin[axis] < bounds.min[axis] - slack[axis]
+                        || origin[axis] > bounds.max[axis] + slack[axis];
                     leave = if is_beside { f64::NEG_INFINITY } else { leave };
                 } else {
                     enter = enter.max(a[axis].min(b[axis]));
@@ -102,8 +109,12 @@ impl Feeler {
         };
 
         // Keep the runs whose box the ray meets.
-        let runs = (0..count.div_ceil(TRIANGLES_A_RUN)).filter(|&run| !known || bounds.get(run).is_none_or(passes));
-        runs.map(|run| (run * TRIANGLES_A_RUN) as u32..((run + 1) * TRIANGLES_A_RUN).min(count) as u32).collect()
+        let runs = (0..count.div_ceil(TRIANGLES_A_RUN))
+            .filter(|&run| !known || bounds.get(run).is_none_or(passes));
+        runs.map(|run| {
+            (run * TRIANGLES_A_RUN) as u32..((run + 1) * TRIANGLES_A_RUN).min(count) as u32
+        })
+        .collect()
     }
 
     /// The parameter at which it meets a facet other than its own, within reach.
@@ -118,6 +129,7 @@ impl Feeler {
         let u = from.dot(p) / determinant;
         let q = from.cross(e1);
         let (v, t) = (self.way.dot(q) / determinant, e2.dot(q) / determinant);
-        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > self.reach.start && t < self.reach.end).then_some(t)
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > self.reach.start && t < self.reach.end)
+            .then_some(t)
     }
 }

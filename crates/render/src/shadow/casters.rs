@@ -1,8 +1,9 @@
-//! What keeps light: the triangles of the scene, and the solid without end that each hides from a light.
+//! What keeps light: the triangles of the scene, and the solid without end that each hides from a
+//! light.
 //!
-//! Opaque triangles are found in the session's tree of boxes, transparent ones in a tree of their own. A light is a
-//! homogeneous point: `w` is 1, or 0 for a direction. Whatever two triangles share, an edge or a corner, gives both the same
-//! numbers, so that their solids leave no gap.
+//! Opaque triangles are found in the session's tree of boxes, transparent ones in a tree of their
+//! own. A light is a homogeneous point: `w` is 1, or 0 for a direction. Whatever two triangles
+//! share, an edge or a corner, gives both the same numbers, so that their solids leave no gap.
 
 use super::occluders::Occluders;
 use super::places::SurfacePoint;
@@ -31,11 +32,13 @@ pub(crate) struct Casters {
 /// The space that a triangle hides from a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Solid {
-    /// Normals, turned inwards, and a point on each: the triangle's own plane, those through its edges and the light.
+    /// Normals, turned inwards, and a point on each: the triangle's own plane, those through its
+    /// edges and the light.
     pub(super) planes: [(DVec3, DVec3); 4],
 }
 
-/// Transparent triangles up to which all points of a facet share one list of filters; with more, each point searches its own.
+/// Transparent triangles up to which all points of a facet share one list of filters; with more,
+/// each point searches its own.
 const MAX_SHARED_FILTERS: usize = 512;
 
 /// Whether `a` comes first: any order will do that is the same for all.
@@ -68,14 +71,15 @@ pub(super) fn winding_normal([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (*b - *a).cross(*c - *a)
 }
 
-/// 1 if a triangle's winding turns it towards the light, -1 if away, 0 if the light is no farther than `near` from its
-/// plane: then it hides nothing.
+/// 1 if a triangle's winding turns it towards the light, -1 if away, 0 if the light is no farther
+/// than `near` from its plane: then it hides nothing.
 #[inline(always)]
 pub(super) fn turned(corners: &[DVec3; 3], light: DVec4, near: f64) -> i8 {
     let normal = winding_normal(corners);
     let height = -normal.dot(away(light, corners[0]));
     // For a direction, what is thinner than rounding.
-    let least = if light.w > 0.0 { near } else { 1e-9 * light.truncate().length() } * normal.length();
+    let least =
+        if light.w > 0.0 { near } else { 1e-9 * light.truncate().length() } * normal.length();
     i8::from(height > least) - i8::from(height < -least)
 }
 
@@ -109,10 +113,16 @@ impl Solid {
             sign => f64::from(sign),
         };
         let side = |p: DVec3, q: DVec3| {
-            if ordered(p, q) { (side_normal(p, q, light) * -turned, p) } else { (side_normal(q, p, light) * turned, q) }
+            if ordered(p, q) {
+                (side_normal(p, q, light) * -turned, p)
+            } else {
+                (side_normal(q, p, light) * turned, q)
+            }
         };
         let [a, b, c] = *corners;
-        Some(Self { planes: [(winding_normal(corners) * -turned, a), side(a, b), side(b, c), side(c, a)] })
+        Some(Self {
+            planes: [(winding_normal(corners) * -turned, a), side(a, b), side(b, c), side(c, a)],
+        })
     }
 
     /// Whether a place that is on no triangle is in it.
@@ -130,7 +140,8 @@ impl Solid {
 
 /// The middle of the box round some places, and half its sides.
 pub(super) fn box_around(places: impl Iterator<Item = DVec3>, slack: f64) -> (DVec3, DVec3) {
-    let [min, max] = places.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[min, max], p| [min.min(p), max.max(p)]);
+    let [min, max] = places
+        .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[min, max], p| [min.min(p), max.max(p)]);
     ((min + max) * 0.5, (max - min) * 0.5 + DVec3::splat(slack))
 }
 
@@ -166,11 +177,19 @@ impl Cached for Casters {
 
 impl Casters {
     /// Those of the session; lights do not matter.
-    pub(super) fn of(session: &Session, occluders: &Occluders<'_>, execution: &Execution) -> Result<Arc<Self>, Limit> {
+    pub(super) fn of(
+        session: &Session,
+        occluders: &Occluders<'_>,
+        execution: &Execution,
+    ) -> Result<Arc<Self>, Limit> {
         session.cache.get_or_build(occluders.key(), || Self::new(session, occluders, execution))
     }
 
-    fn new(session: &Session, occluders: &Occluders<'_>, execution: &Execution) -> Result<Self, Limit> {
+    fn new(
+        session: &Session,
+        occluders: &Occluders<'_>,
+        execution: &Execution,
+    ) -> Result<Self, Limit> {
         let tree = Bvh::of(session, execution)?;
         tree.widen(&execution.workers);
         let triangles = tree.triangles();
@@ -225,8 +244,8 @@ impl Casters {
         self.filters.triangles().facets[triangle as usize]
     }
 
-    /// The part of each colour that transparent triangles let through to a place (lifted) on the facet `own`. `list` has all
-    /// that may matter, and more.
+    /// The part of each colour that transparent triangles let through to a place (lifted) on the
+    /// facet `own`. `list` has all that may matter, and more.
     pub(super) fn filtered(
         &self,
         occluders: &Occluders<'_>,
@@ -249,9 +268,11 @@ impl Casters {
         // Find the filters whose shadow volume holds the place.
         let hides = |t: &&u32| {
             let facet = triangles.facets[**t as usize];
-            facet != own && Solid::new(&self.filter(**t), light, near).is_some_and(|s| s.contains(place))
+            facet != own
+                && Solid::new(&self.filter(**t), light, near).is_some_and(|s| s.contains(place))
         };
-        let mut hits: Vec<_> = list.iter().filter(hides).map(|&t| (triangles.facets[t as usize], t)).collect();
+        let mut hits: Vec<_> =
+            list.iter().filter(hides).map(|&t| (triangles.facets[t as usize], t)).collect();
         // In one order, as products are rounded.
         hits.sort_unstable();
 
@@ -276,14 +297,21 @@ mod tests {
         let corners = [dvec3(-1.0, 1.0, -1.0), dvec3(1.0, 1.0, -1.0), dvec3(0.0, 1.0, 2.0)];
         for corners in [corners, [corners[1], corners[0], corners[2]]] {
             let lamp = Solid::new(&corners, DVec4::new(0.0, 2.0, 0.0, 1.0), 1e-6).unwrap();
-            assert!(lamp.contains(DVec3::ZERO) && lamp.contains(dvec3(0.0, -3.0, 9.0)), "it widens");
+            assert!(
+                lamp.contains(DVec3::ZERO) && lamp.contains(dvec3(0.0, -3.0, 9.0)),
+                "it widens"
+            );
             assert!(!lamp.contains(dvec3(0.0, 1.5, 0.0)) && !lamp.contains(dvec3(0.0, 9.0, 0.0)));
             let sun = Solid::new(&corners, DVec4::new(0.0, 1.0, 0.0, 0.0), 1e-6).unwrap();
             assert!(sun.contains(dvec3(0.0, -99.0, 0.0)) && !sun.contains(dvec3(0.0, -99.0, 2.1)));
             assert!(sun.touches(dvec3(0.0, -5.0, 3.0), DVec3::splat(1.1)));
             assert!(!sun.touches(dvec3(0.0, 2.1, 0.0), DVec3::splat(1.0)));
         }
-        assert_eq!(Solid::new(&corners, DVec4::new(5.0, 1.0, 0.0, 1.0), 1e-6), None, "the light is in its plane");
+        assert_eq!(
+            Solid::new(&corners, DVec4::new(5.0, 1.0, 0.0, 1.0), 1e-6),
+            None,
+            "the light is in its plane"
+        );
         assert_eq!(Solid::new(&corners, DVec4::new(1.0, 0.0, 0.0, 0.0), 1e-6), None);
     }
 }

@@ -1,12 +1,15 @@
 //! A soft shadow on the ground: darkest where a model touches it, and faded out a little way off.
 //!
-//! It is the ambient occlusion of the ground ([`super::ambient_occlusion`]), which does not depend on where lights or viewers are. A
-//! picture would show the noise of few rays on an even ground, so the shadow is computed on a grid over the model's footprint, once
-//! for a scene: sixteen sets of directions alternate from cell to cell, and each value is the mean of the sixteen cells round it, so
-//! that few rays a cell are many a value. Between values the shadow is interpolated.
+//! It is the ambient occlusion of the ground ([`super::ambient_occlusion`]), which does not depend
+//! on where lights or viewers are. A picture would show the noise of few rays on an even ground, so
+//! the shadow is computed on a grid over the model's footprint, once for a scene: sixteen sets of
+//! directions alternate from cell to cell, and each value is the mean of the sixteen cells round
+//! it, so that few rays a cell are many a value. Between values the shadow is interpolated.
 //!
-//! In:   a scene, which way is up. Out: the part of light that is kept away from a place of the ground.
-//! Cost: a million and a half short rays for a square footprint, whatever the picture's size; a lookup afterwards.
+//! In:   a scene, which way is up. Out: the part of light that is kept away from a place of the
+//!       ground.
+//! Cost: a million and a half short rays for a square footprint, whatever the picture's size; a
+//!       lookup afterwards.
 //! Source: \[Keller & Heidrich 2001\] for sets of samples that alternate.
 
 use super::ambient_occlusion::{AmbientOcclusion, RADIUS};
@@ -22,7 +25,8 @@ use vitral_scene::Axis;
 const CELLS: f64 = 256.0;
 /// Rays of a cell.
 const RAYS: u32 = 24;
-/// Cells along a side of the square whose mean is a value; as many sets of directions as it has cells.
+/// Cells along a side of the square whose mean is a value; as many sets of directions as it has
+/// cells.
 const MIXED: usize = 4;
 /// The part of the occlusion that shows: grounds are lit from below as well, and black is ugly.
 const STRENGTH: f32 = 0.8;
@@ -44,7 +48,8 @@ impl Cached for ContactShadow {
 }
 
 impl ContactShadow {
-    /// The shadow of a scene whose corners lie between `least` and `most` along `axes`, on the ground at this height.
+    /// The shadow of a scene whose corners lie between `least` and `most` along `axes`, on the
+    /// ground at this height.
     ///
     /// # Errors
     /// A limit of the budget.
@@ -63,7 +68,8 @@ impl ContactShadow {
             let (start, size) = (least - margin, most - least + 2.0 * margin);
             let [columns, rows] = size.to_array().map(|length| (length / cell).ceil() as usize);
             let rays = (columns * rows) as u64 * u64::from(RAYS);
-            let occlusion = AmbientOcclusion::with(session, (settings, execution), (RAYS, radius), rays)?;
+            let occlusion =
+                AmbientOcclusion::with(session, (settings, execution), (RAYS, radius), rays)?;
 
             // Find how open each cell is.
             let place = |column: usize, row: usize| {
@@ -81,13 +87,17 @@ impl ContactShadow {
                 let places: SurfacePoints = (0..columns).map(|column| place(column, row)).collect();
                 Ok(occlusion.open(&places, &mut 0))
             };
-            let open = execution.workers.map(rows, row).into_iter().collect::<Result<Vec<_>, Limit>>()?;
+            let open =
+                execution.workers.map(rows, row).into_iter().collect::<Result<Vec<_>, Limit>>()?;
 
             // Mix neighbours.
             let [across, down] = [columns, rows].map(|count| count + 1 - MIXED);
             let mixed = |i: usize| {
                 let (column, row) = (i % across, i / across);
-                let sum: f32 = open[row..row + MIXED].iter().flat_map(|row| &row[column..column + MIXED]).sum();
+                let sum: f32 = open[row..row + MIXED]
+                    .iter()
+                    .flat_map(|row| &row[column..column + MIXED])
+                    .sum();
                 STRENGTH * (1.0 - sum / (MIXED * MIXED) as f32).max(0.0)
             };
             let dark = (0..across * down).map(mixed).collect();
@@ -104,7 +114,8 @@ impl ContactShadow {
         if !(inside.cmpge(DVec2::ZERO).all() && inside.cmplt(last).all()) {
             return 0.0;
         }
-        let ([x, y], (column, row)) = ((on_grid - inside).as_vec2().to_array(), (inside.x as usize, inside.y as usize));
+        let ([x, y], (column, row)) =
+            ((on_grid - inside).as_vec2().to_array(), (inside.x as usize, inside.y as usize));
         let along = |row: usize| {
             let [a, b] = [0, 1].map(|next| self.dark[row * self.columns + column + next]);
             a + (b - a) * x

@@ -1,11 +1,13 @@
-//! A facet in the world: its corners and normal as rays see them, and the way between points and barycentric weights.
+//! A facet in the world: its corners and normal as rays see them, and the way between points and
+//! barycentric weights.
 
 use crate::prepare::mirrors;
 use vitral_math::{DVec3, Vec3};
 use vitral_scene::Instance;
 
-/// The corners of an instance's triangle, world space less `center`, as the rays' triangles have them, and its unit normal
-/// on the side from which they run counter-clockwise in the model; zero without area.
+/// The corners of an instance's triangle, world space less `center`, as the rays' triangles have
+/// them, and its unit normal on the side from which they run counter-clockwise in the model; zero
+/// without area.
 pub(crate) fn facet(instance: &Instance, triangle: u32, center: DVec3) -> ([DVec3; 3], DVec3) {
     let corners = instance.corners(triangle).map(|p| (p - center).as_vec3().as_dvec3());
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
@@ -40,7 +42,10 @@ mod tests {
         let corners = [vec3(1.0, 0.0, 2.0), vec3(4.0, 1.0, 2.0), vec3(1.0, 3.0, 5.0)];
         let p = corners[0] * 0.5 + corners[1] * 0.25 + corners[2] * 0.25;
         let w = weights(&corners, p.as_dvec3());
-        assert!((w[0] - 0.5).abs() < 1e-6 && (w[1] - 0.25).abs() < 1e-6 && (w[2] - 0.25).abs() < 1e-6, "{w:?}");
+        assert!(
+            (w[0] - 0.5).abs() < 1e-6 && (w[1] - 0.25).abs() < 1e-6 && (w[2] - 0.25).abs() < 1e-6,
+            "{w:?}"
+        );
         assert_eq!(weights(&[Vec3::ONE; 3], dvec3(1.0, 1.0, 1.0)), [1.0, 0.0, 0.0]);
     }
 }

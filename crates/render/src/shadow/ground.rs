@@ -1,16 +1,19 @@
-//! A ground that only shows shadow: the background is darkened where the model keeps light from a plane below it.
+//! A ground that only shows shadow: the background is darkened where the model keeps light from a
+//! plane below it.
 //!
-//! The plane lies at the lowest point of all triangles. Seen from above it is behind everything, so it needs no visibility algorithm:
-//! the ray of sight through a pixel meets it at one place, and what is kept away there darkens the pixel's background. From below
-//! it is not seen.
+//! The plane lies at the lowest point of all triangles. Seen from above it is behind everything, so
+//! it needs no visibility algorithm: the ray of sight through a pixel meets it at one place, and
+//! what is kept away there darkens the pixel's background. From below it is not seen.
 //!
-//! The ground is matt and lit like the model. It keeps the share of the background that it has of its whole light: with the lights'
-//! shadows, ambient light and every light by the cosine, found by rays whatever algorithm shadows the model; or as a soft shadow
-//! that no light casts ([`super::contact`]).
+//! The ground is matt and lit like the model. It keeps the share of the background that it has of
+//! its whole light: with the lights' shadows, ambient light and every light by the cosine, found by
+//! rays whatever algorithm shadows the model; or as a soft shadow that no light casts
+//! ([`super::contact`]).
 //!
 //! A pixel asks at its centre; where neighbours differ, at all its samples.
 //!
-//! In:   a view, lights. Out: for each pixel of a tile the part of the background that the shadow takes, `0..=1`.
+//! In:   a view, lights. Out: for each pixel of a tile the part of the background that the shadow
+//!       takes, `0..=1`.
 //! Cost: a ray for each pixel and light, more at the edges of shadows; or a lookup for each pixel.
 
 use super::contact::ContactShadow;
@@ -81,7 +84,10 @@ impl<'a> Ground<'a> {
         (settings, execution): (&Settings, &Execution),
     ) -> Result<Option<Self>, Limit> {
         let chosen = settings.shadows.ground;
-        if chosen == GroundShadow::None || !settings.shading.lighting || settings.picture.lines.has_no_surfaces() {
+        if chosen == GroundShadow::None
+            || !settings.shading.lighting
+            || settings.picture.lines.has_no_surfaces()
+        {
             return Ok(None);
         }
         let session = view.session;
@@ -93,7 +99,8 @@ impl<'a> Ground<'a> {
         }
         let cast = if chosen == GroundShadow::Soft {
             let axes = [up.vector().cross(up.front()), up.front()];
-            let on_ground = || corners().map(|corner| dvec2(corner.dot(axes[0]), corner.dot(axes[1])));
+            let on_ground =
+                || corners().map(|corner| dvec2(corner.dot(axes[0]), corner.dot(axes[1])));
             let least = on_ground().fold(DVec2::INFINITY, DVec2::min);
             let most = on_ground().fold(DVec2::NEG_INFINITY, DVec2::max);
             let context = (settings, execution);
@@ -106,7 +113,8 @@ impl<'a> Ground<'a> {
             Cast::Lights(LitGround { shadows, lights, ambient: grey(ambient) })
         };
         let sight = Sight {
-            world_from_view: DMat4::from_translation(-triangles.center) * view.view.view_from_world.inverse(),
+            world_from_view: DMat4::from_translation(-triangles.center)
+                * view.view.view_from_world.inverse(),
             view_from_world: view.view.view_from_world * DMat4::from_translation(triangles.center),
             view_from_clip: view.view.clip_from_view.inverse(),
             perspective: view.view.perspective,
@@ -115,12 +123,15 @@ impl<'a> Ground<'a> {
         Ok(Some(Self { up: up.vector(), height, cast, sight, pattern: view.pattern.clone() }))
     }
 
-    /// The part of the background that the shadow takes in each pixel of a tile, less where depth cueing fades it; empty if it takes
-    /// nothing.
+    /// The part of the background that the shadow takes in each pixel of a tile, less where depth
+    /// cueing fades it; empty if it takes nothing.
     pub(crate) fn tile(&self, tile: &Tile, fade: Option<&Fade>) -> Vec<f32> {
         // Ask at the centres of all pixels and of their neighbours.
-        let place =
-            |i: usize| dvec2(f64::from(tile.x), f64::from(tile.y)) + dvec2((i % SIDE) as f64, (i / SIDE) as f64) - 0.5;
+        let place = |i: usize| {
+            dvec2(f64::from(tile.x), f64::from(tile.y))
+                + dvec2((i % SIDE) as f64, (i / SIDE) as f64)
+                - 0.5
+        };
         let centres = self.dark((0..SIDE * SIDE).map(place), fade);
         if centres.iter().all(|&dark| dark == 0.0) {
             return Vec::new();
@@ -132,13 +143,23 @@ impl<'a> Ground<'a> {
         let samples = self.pattern.len();
         let is_edge = |pixel: &usize| {
             let (i, own) = (at(*pixel), dark[*pixel]);
-            let neighbours = [i - SIDE - 1, i - SIDE, i - SIDE + 1, i - 1, i + 1, i + SIDE - 1, i + SIDE, i + SIDE + 1];
+            let neighbours = [
+                i - SIDE - 1,
+                i - SIDE,
+                i - SIDE + 1,
+                i - 1,
+                i + 1,
+                i + SIDE - 1,
+                i + SIDE,
+                i + SIDE + 1,
+            ];
             samples > 1 && neighbours.iter().any(|&n| (centres[n] - own).abs() > EDGE)
         };
         let edges: Vec<usize> = (0..TILE_PIXELS).filter(is_edge).collect();
         let sample = |&pixel: &usize| {
             let corner = place(at(pixel)) - 0.5;
-            (0..samples).map(move |s| corner + DVec2::from_array(self.pattern.offset(s).map(f64::from)))
+            (0..samples)
+                .map(move |s| corner + DVec2::from_array(self.pattern.offset(s).map(f64::from)))
         };
         let found = self.dark(edges.iter().flat_map(sample), fade);
         for (pixel, found) in edges.iter().zip(found.chunks(samples)) {
@@ -149,7 +170,8 @@ impl<'a> Ground<'a> {
 
     /// The part that the shadow takes at places of the picture, in pixels.
     fn dark(&self, places: impl Iterator<Item = DVec2>, fade: Option<&Fade>) -> Vec<f32> {
-        let seen: Vec<Option<(SurfacePoint, f32)>> = places.map(|place| self.seen(place, fade)).collect();
+        let seen: Vec<Option<(SurfacePoint, f32)>> =
+            places.map(|place| self.seen(place, fade)).collect();
         let shown: SurfacePoints = seen.iter().flatten().map(|(place, _)| *place).collect();
         let found = match &self.cast {
             Cast::Contact(shadow) => shown.iter().map(|place| shadow.at(place.position)).collect(),
@@ -160,7 +182,8 @@ impl<'a> Ground<'a> {
         seen.iter().map(|seen| seen.as_ref().map_or(0.0, |(_, kept)| next(*kept))).collect()
     }
 
-    /// The place of the ground that is seen at a place of the picture, and how much depth cueing keeps of it.
+    /// The place of the ground that is seen at a place of the picture, and how much depth cueing
+    /// keeps of it.
     fn seen(&self, at: DVec2, fade: Option<&Fade>) -> Option<(SurfacePoint, f32)> {
         let (origin, direction) = self.sight.ray(at);
         let above = origin.dot(self.up) - self.height;
@@ -196,7 +219,10 @@ impl LitGround<'_> {
                 lost[i] += if arriving > 0.0 { arriving * (1.0 - grey(parts.get(i))) } else { 0.0 };
             }
         }
-        lost.iter().zip(&whole).map(|(lost, whole)| if *lost > 0.0 { (lost / whole).min(1.0) } else { 0.0 }).collect()
+        lost.iter()
+            .zip(&whole)
+            .map(|(lost, whole)| if *lost > 0.0 { (lost / whole).min(1.0) } else { 0.0 })
+            .collect()
     }
 }
 
@@ -205,7 +231,11 @@ impl Sight {
     fn ray(&self, at: DVec2) -> (DVec3, DVec3) {
         let ndc = at / self.size * 2.0 - 1.0;
         let near = self.view_from_clip.project_point3(DVec3::new(ndc.x, -ndc.y, 1.0));
-        let (origin, direction) = if self.perspective { (DVec3::ZERO, near) } else { (near, DVec3::NEG_Z) };
-        (self.world_from_view.transform_point3(origin), self.world_from_view.transform_vector3(direction))
+        let (origin, direction) =
+            if self.perspective { (DVec3::ZERO, near) } else { (near, DVec3::NEG_Z) };
+        (
+            self.world_from_view.transform_point3(origin),
+            self.world_from_view.transform_vector3(direction),
+        )
     }
 }

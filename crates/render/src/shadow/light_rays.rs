@@ -1,15 +1,17 @@
 //! Rays on which light comes, or does not: what of it is left at their ends.
 //!
-//! Unlike a ray of sight such a ray need not know what it meets first: the first opaque thing ends it, and transparent things take
-//! their part of the light in any order.
+//! Unlike a ray of sight such a ray need not know what it meets first: the first opaque thing ends
+//! it, and transparent things take their part of the light in any order.
 //!
-//! A point found by arithmetic lies a hair off its surface, and its ray might meet the very surface it leaves. The facet
-//! itself cannot hide its own points from a light in front of it, so it is left out by its number; as its neighbours may,
-//! the ray starts as far above the facet as rounding can have put things wrong (`rounding.rs`).
+//! A point found by arithmetic lies a hair off its surface, and its ray might meet the very surface
+//! it leaves. The facet itself cannot hide its own points from a light in front of it, so it is
+//! left out by its number; as its neighbours may, the ray starts as far above the facet as rounding
+//! can have put things wrong (`rounding.rs`).
 //!
 //! Neighbours' rays go together, eight at a time (`raytrace/packet.rs`).
 //!
-//! In:   places, and ways from them, world space less the scene's middle. Out: the part of light that passes.
+//! In:   places, and ways from them, world space less the scene's middle. Out: the part of light
+//!       that passes.
 //! Cost: about `O(log n)` a ray.
 //! Source: [Whitted 1980]. Departs from it: transparent things filter light without bending it.
 
@@ -47,7 +49,8 @@ pub(super) struct Feeler {
 }
 
 impl<'a> LightRays<'a> {
-    /// Rays through the scene; `tests` is how many there are about, each with all triangles, where no structure helps.
+    /// Rays through the scene; `tests` is how many there are about, each with all triangles, where
+    /// no structure helps.
     ///
     /// # Errors
     /// A limit of the budget.
@@ -59,7 +62,9 @@ impl<'a> LightRays<'a> {
     ) -> Result<Self, Limit> {
         let acceleration = settings.acceleration.unwrap_or_default();
         if acceleration.asks_all {
-            execution.budget.check_work(rays.saturating_mul(u64::from(session.world.facet_count)), what)?;
+            execution
+                .budget
+                .check_work(rays.saturating_mul(u64::from(session.world.facet_count)), what)?;
         }
         let structure = AnyStructure::new(acceleration, session, execution)?;
         Ok(Self { structure, occluders: Occluders::new(session, settings), level: execution.level })
@@ -70,8 +75,8 @@ impl<'a> LightRays<'a> {
         self.structure.triangles().center
     }
 
-    /// What passes from each of these places along its way, to the way's end or to infinity, into as many `parts`. Leaves in
-    /// `feelers` the rays that were followed for it.
+    /// What passes from each of these places along its way, to the way's end or to infinity, into
+    /// as many `parts`. Leaves in `feelers` the rays that were followed for it.
     pub(super) fn transmittance(
         &self,
         feelers: &mut Vec<Feeler>,
@@ -82,7 +87,9 @@ impl<'a> LightRays<'a> {
         feelers.clear();
         for (of, (place, way)) in ways.enumerate() {
             match self.feeler(&place, way, ends) {
-                Ok((ray, far, light)) => feelers.push(Feeler { ray, far, light, own: place.facet, of }),
+                Ok((ray, far, light)) => {
+                    feelers.push(Feeler { ray, far, light, own: place.facet, of })
+                }
                 Err(part) => parts[of] = part,
             }
         }
@@ -94,9 +101,14 @@ impl<'a> LightRays<'a> {
         });
     }
 
-    /// The ray from a place along `way`, the parameter of its end, and the light, homogeneous; or what arrives, where that is known
-    /// without one.
-    fn feeler(&self, place: &SurfacePoint, way: DVec3, ends: bool) -> Result<(Ray, f32, DVec4), Rgb> {
+    /// The ray from a place along `way`, the parameter of its end, and the light, homogeneous; or
+    /// what arrives, where that is known without one.
+    fn feeler(
+        &self,
+        place: &SurfacePoint,
+        way: DVec3,
+        ends: bool,
+    ) -> Result<(Ray, f32, DVec4), Rgb> {
         // Attached shadow; also a light in the facet's plane, or at the very place.
         let light = if ends { (place.position + way).extend(1.0) } else { way.extend(0.0) };
         if place.normal.dot(way) <= horizon(place.position, light) {
@@ -135,7 +147,8 @@ struct Passing<'a> {
     feelers: &'a [Feeler],
     /// Parameters of the light; negative for rays of which nothing is left.
     limits: [f32; LANES],
-    /// In double precision: rounded once, the product is the same in whatever order a structure shows the triangles.
+    /// In double precision: rounded once, the product is the same in whatever order a structure
+    /// shows the triangles.
     left: [[f64; 3]; LANES],
 }
 
@@ -156,7 +169,8 @@ impl packet::PacketVisitor for Passing<'_> {
         if self.limits[lane] < 0.0 || facet == *own || t >= *far {
             return;
         }
-        // A facet in whose plane the light lies does not hide it: a ray that grazes it seems to meet it well before its end.
+        // A facet in whose plane the light lies does not hide it: a ray that grazes it seems to
+        // meet it well before its end.
         if turned(&wide(corners), *light, near(*light, triangles.extent)) == 0 {
             return;
         }

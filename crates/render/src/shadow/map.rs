@@ -1,25 +1,32 @@
-//! Shadow maps: the z-buffer algorithm twice. First from the light, which leaves at each texel how far the nearest thing is;
-//! then from the viewer, and a visible point is lit if nothing nearer to the light is in its texel.
+//! Shadow maps: the z-buffer algorithm twice. First from the light, which leaves at each texel how
+//! far the nearest thing is; then from the viewer, and a visible point is lit if nothing nearer to
+//! the light is in its texel.
 //!
-//! The first pass computes depths alone, and the second asks only about points that are seen. The maps belong to the
-//! lights and the scene, not to the viewer: a session keeps them over a turntable.
+//! The first pass computes depths alone, and the second asks only about points that are seen. The
+//! maps belong to the lights and the scene, not to the viewer: a session keeps them over a
+//! turntable.
 //!
-//! Texels are coarser than pixels, and a lit surface must not find itself in its own way (*acne*), nor may it be moved so far
-//! that its shadow loosens from its foot (*peter-panning*). So the depth that is compared is not the point's own but that of
-//! its facet's plane in the middle of the texel, which takes a slope exactly into account; what is left, the rounding of
-//! corners to 1/256 texel, grows with the slope (*slope-scaled bias*). And because the texel's middle may lie on a neighbour
-//! that rises towards the light, the point is lifted by half a texel along its normal (*normal bias*). Four texels round the
-//! point are compared one by one, and the answers are blended (*percentage-closer filtering*), but for those in which the
-//! light sees something far behind: the surface does not reach there.
+//! Texels are coarser than pixels, and a lit surface must not find itself in its own way (*acne*),
+//! nor may it be moved so far that its shadow loosens from its foot (*peter-panning*). So the depth
+//! that is compared is not the point's own but that of its facet's plane in the middle of the
+//! texel, which takes a slope exactly into account; what is left, the rounding of corners to 1/256
+//! texel, grows with the slope (*slope-scaled bias*). And because the texel's middle may lie on a
+//! neighbour that rises towards the light, the point is lifted by half a texel along its normal
+//! (*normal bias*). Four texels round the point are compared one by one, and the answers are
+//! blended (*percentage-closer filtering*), but for those in which the light sees something far
+//! behind: the surface does not reach there.
 //!
-//! A parallel light has one map, fitted to the scene. A point's map is fitted likewise where the scene fills a cone before
-//! it; else it has six, the faces of a cube. A spot has the one that fits its cone. An area light has maps at several of its
-//! places. Transparent things are kept as lists at their texels, with the part of each colour of light that passes. In large scenes, one
-//! map may be joined by sharper ones for what is near the viewer (`map/cascade.rs`), as many as `shadow_cascades` says.
+//! A parallel light has one map, fitted to the scene. A point's map is fitted likewise where the
+//! scene fills a cone before it; else it has six, the faces of a cube. A spot has the one that fits
+//! its cone. An area light has maps at several of its places. Transparent things are kept as lists
+//! at their texels, with the part of each colour of light that passes. In large scenes, one map may
+//! be joined by sharper ones for what is near the viewer (`map/cascade.rs`), as many as
+//! `shadow_cascades` says.
 //!
 //! In:   lights, scene. Out: the part of a light that arrives at a place.
 //! Cost: a z-buffer pass for each map; a question is a constant number of texels. 4 bytes a texel.
-//! Source: [Williams 1978]; filtering after [Reeves, Salesin & Cook 1987], area lights after [Brotman & Badler 1984].
+//! Source: [Williams 1978]; filtering after [Reeves, Salesin & Cook 1987], area lights after
+//!         [Brotman & Badler 1984].
 
 mod cascade;
 mod draw;
@@ -81,7 +88,13 @@ impl ShadowAlgorithm for MapShadows {
         let key = CascadesKey { maps: LightMapsKey::new(lights, settings), count, view: view.view };
         let cascades = session.cache.get_or_build(key, || {
             let occluders = Occluders::new(session, settings);
-            let pass = FirstPass { session, occluders: &occluders, settings, execution, when: When::Asked };
+            let pass = FirstPass {
+                session,
+                occluders: &occluders,
+                settings,
+                execution,
+                when: When::Asked,
+            };
             Cascades::new(&session.world, &view.view, &maps, (count, size), |lens| pass.draw(lens))
         })?;
         Ok(Box::new(Prepared { maps, cascades: Some(cascades), level: execution.level }))
@@ -101,7 +114,13 @@ impl PreparedShadows for Prepared {
         true
     }
 
-    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
+    fn light_visibility(
+        &self,
+        light: usize,
+        places: &SurfacePoints,
+        parts: &mut LightVisibility,
+        _: &mut u64,
+    ) {
         match &self.maps.0[light] {
             LightMaps::Unoccluded => parts.fill([1.0; 3]),
             LightMaps::Infinity { towards, map } if self.cascades.is_none() => {
@@ -111,10 +130,16 @@ impl PreparedShadows for Prepared {
             // Ask the cascades about the places that face the light.
             LightMaps::Infinity { towards, map } => {
                 parts.fill([0.0; 3]);
-                let facing = places.iter().enumerate().filter(|(_, place)| faces(place, towards.extend(0.0)));
+                let facing = places
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, place)| faces(place, towards.extend(0.0)));
                 let questions: Vec<_> = facing.map(|(number, _)| (0, number)).collect();
                 let answers = self.answers(light, &[map], &questions, places);
-                questions.iter().zip(answers).for_each(|((_, number), answer)| parts.set(*number, answer));
+                questions
+                    .iter()
+                    .zip(answers)
+                    .for_each(|((_, number), answer)| parts.set(*number, answer));
             }
             LightMaps::Positions(emitters)
                 if self.cascades.is_none()
@@ -130,24 +155,40 @@ impl PreparedShadows for Prepared {
                     let maps: Vec<_> = maps.iter().collect();
                     let weights: Vec<_> = places.iter().map(|place| from.weight(&place)).collect();
                     // What no map sees is lit: nothing has this number.
-                    let seeing =
-                        |p: SurfacePoint| maps.iter().position(|m| m.lens.sees(p.position)).unwrap_or(usize::MAX);
-                    let asking = places.iter().zip(&weights).enumerate().filter(|(_, (_, weight))| **weight > 0.0);
-                    let questions: Vec<_> = asking.map(|(number, (place, _))| (seeing(place), number)).collect();
+                    let seeing = |p: SurfacePoint| {
+                        maps.iter().position(|m| m.lens.sees(p.position)).unwrap_or(usize::MAX)
+                    };
+                    let asking = places
+                        .iter()
+                        .zip(&weights)
+                        .enumerate()
+                        .filter(|(_, (_, weight))| **weight > 0.0);
+                    let questions: Vec<_> =
+                        asking.map(|(number, (place, _))| (seeing(place), number)).collect();
                     let mut answers = self.answers(light, &maps, &questions, places).into_iter();
                     for (share, &weight) in shares.iter_mut().zip(&weights) {
                         share.add(weight, || answers.next().unwrap_or([1.0; 3]));
                     }
                 }
-                shares.iter().enumerate().for_each(|(number, share)| parts.set(number, share.part()));
+                shares
+                    .iter()
+                    .enumerate()
+                    .for_each(|(number, share)| parts.set(number, share.part()));
             }
         }
     }
 }
 
 impl Prepared {
-    /// What maps of the whole scene, or sharper ones in their place, answer to questions: which map, about which place.
-    fn answers(&self, light: usize, maps: &[&Map], questions: &[(usize, usize)], places: &SurfacePoints) -> Vec<Rgb> {
+    /// What maps of the whole scene, or sharper ones in their place, answer to questions: which
+    /// map, about which place.
+    fn answers(
+        &self,
+        light: usize,
+        maps: &[&Map],
+        questions: &[(usize, usize)],
+        places: &SurfacePoints,
+    ) -> Vec<Rgb> {
         match &self.cascades {
             Some(cascades) => cascades.answers(self.level, light, maps, questions, places),
             None => lookup::answers(self.level, maps, questions, places),

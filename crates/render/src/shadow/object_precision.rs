@@ -1,20 +1,23 @@
 //! Object-precision shadows: what the light sees is lit.
 //!
-//! Hidden surfaces are removed twice. Seen from the light, polygons are clipped against each other until only visible
-//! parts are left. These are brought back to the polygons that they are parts of, and stay there as *surface detail*: lit
-//! polygons. Then any visible-surface algorithm makes a picture from any side, and a place is lit if it lies in a
-//! lit polygon of its facet. The polygons do not depend on the viewer: a session keeps them over a turntable, and they can
-//! be written to a file.
+//! Hidden surfaces are removed twice. Seen from the light, polygons are clipped against each other
+//! until only visible parts are left. These are brought back to the polygons that they are parts
+//! of, and stay there as *surface detail*: lit polygons. Then any visible-surface algorithm makes a
+//! picture from any side, and a place is lit if it lies in a lit polygon of its facet. The polygons
+//! do not depend on the viewer: a session keeps them over a turntable, and they can be written to a
+//! file.
 //!
-//! From each facet is taken away what lies in the solids that other triangles hide from the light. Clipping by their
-//! planes, in space, leaves convex polygons, and a light may stand anywhere: no view volume has to be cut in sectors.
-//! Where many triangles cast shadows on one facet it is first cut in two, and each half has those that reach it, until
-//! they are few or one of them covers the whole part. The cuts are kept as a tree, which leads from a place to its polygon.
+//! From each facet is taken away what lies in the solids that other triangles hide from the light.
+//! Clipping by their planes, in space, leaves convex polygons, and a light may stand anywhere: no
+//! view volume has to be cut in sectors. Where many triangles cast shadows on one facet it is first
+//! cut in two, and each half has those that reach it, until they are few or one of them covers the
+//! whole part. The cuts are kept as a tree, which leads from a place to its polygon.
 //!
-//! In:   lights and triangles, world space less the scene's middle. Out: lit polygons; the part of a light that arrives.
+//! In:   lights and triangles, world space less the scene's middle. Out: lit polygons; the part of
+//!       a light that arrives.
 //! Cost: for each facet the triangles between it and the light. 100 bytes a lit polygon.
-//! Source: [Atherton, Weiler & Greenberg 1978]. Departs from it: polygons are clipped in their own planes, not in a
-//! picture of the light's, by one solid after another.
+//! Source: [Atherton, Weiler & Greenberg 1978]. Departs from it: polygons are clipped in their own
+//! planes, not in a picture of the light's, by one solid after another.
 
 mod clip;
 
@@ -79,7 +82,8 @@ struct Prepared<'a> {
 const EPS: f64 = 1e-13;
 /// Light that meets a facet with a smaller cosine grazes it.
 const GRAZING: f64 = 0.02;
-/// A place beside a lit polygon by no more than this part of the scene is in it: no crack between two.
+/// A place beside a lit polygon by no more than this part of the scene is in it: no crack between
+/// two.
 const SLACK: f64 = 1e-9;
 /// Triangles in one piece of work.
 const TRIANGLES_A_JOB: usize = 256;
@@ -102,9 +106,16 @@ impl ShadowAlgorithm for ObjectPrecisionShadows {
             let casters = Casters::of(session, &occluders, execution)?;
             let facets = session.world.facet_count as usize;
             let of_light = |light: &Light| -> Result<Vec<OfLight>, Limit> {
-                let places =
-                    LightSource::new(light, settings.shadows.light_samples, casters.triangles().center).places();
-                places.into_iter().map(|place| OfLight::new(place, &casters, facets, execution)).collect()
+                let places = LightSource::new(
+                    light,
+                    settings.shadows.light_samples,
+                    casters.triangles().center,
+                )
+                .places();
+                places
+                    .into_iter()
+                    .map(|place| OfLight::new(place, &casters, facets, execution))
+                    .collect()
             };
             let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
             Ok(LitPolygons { lights: lights?, casters })
@@ -120,7 +131,12 @@ fn lift(corners: &[DVec3; 3], extent: f32) -> f64 {
 }
 
 impl OfLight {
-    fn new(from: Emitter, casters: &Casters, facets: usize, execution: &Execution) -> Result<Self, Limit> {
+    fn new(
+        from: Emitter,
+        casters: &Casters,
+        facets: usize,
+        execution: &Execution,
+    ) -> Result<Self, Limit> {
         let triangles = casters.triangles();
 
         // Compute the lit polygons of several triangles a job.
@@ -180,7 +196,8 @@ impl Details {
         self.found.push(Found { piece: 0, root, filters: [first, self.filters.len() as u32] });
     }
 
-    /// Takes from a triangle what others hide from the light, to which its normal is turned; gives the root of what is left.
+    /// Takes from a triangle what others hide from the light, to which its normal is turned; gives
+    /// the root of what is left.
     fn clip(
         &mut self,
         triangle: usize,
@@ -192,8 +209,9 @@ impl Details {
         let extent = triangles.extent;
         let near = near(light, extent);
 
-        // What touches the facet, as its neighbours do, does not hide it: solids begin a little behind. A facet
-        // that light grazes lies along their sides, too: it is looked at from a little above.
+        // What touches the facet, as its neighbours do, does not hide it: solids begin a little
+        // behind. A facet that light grazes lies along their sides, too: it is looked at from a
+        // little above.
         let lift = lift(&corners, extent);
         let cosine = |c: &DVec3| -normal.dot(away(light, *c).normalize_or_zero());
         let grazed = corners.iter().any(|c| cosine(c) < GRAZING);
@@ -201,7 +219,10 @@ impl Details {
         let corners = corners.map(|c| c + normal * above);
 
         // Find the triangles between it and the light.
-        let (min, max) = (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+        let (min, max) = (
+            corners[0].min(corners[1]).min(corners[2]),
+            corners[0].max(corners[1]).max(corners[2]),
+        );
         let shaft = Shaft::between(min, max, light, extent);
         let (mut list, mut filters) = (Vec::new(), Vec::new());
         casters.opaque_near(&shaft, &mut list);
@@ -218,7 +239,8 @@ impl Details {
         };
         let own = triangles.facets[triangle];
         let others = list.iter().filter(|&&t| triangles.facets[t as usize] != own);
-        let solids: Vec<_> = others.filter_map(|&t| solid(&wide(&triangles.corners[t as usize]))).collect();
+        let solids: Vec<_> =
+            others.filter_map(|&t| solid(&wide(&triangles.corners[t as usize]))).collect();
         self.filters.extend(filters.iter().filter(|&&t| solid(&casters.filter(t)).is_some()));
 
         let eps = f64::from(extent) * EPS;
@@ -232,7 +254,13 @@ impl Details {
 }
 
 impl PreparedShadows for Prepared<'_> {
-    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
+    fn light_visibility(
+        &self,
+        light: usize,
+        places: &SurfacePoints,
+        parts: &mut LightVisibility,
+        _: &mut u64,
+    ) {
         let LitPolygons { casters, lights } = &*self.polygons;
         let lights = &lights[light];
         if lights.is_empty() {
@@ -247,7 +275,9 @@ impl PreparedShadows for Prepared<'_> {
                 shares.add(l.from.weight(&place), || {
                     let filters = l.at(place.facet, place.position, slack);
                     let at = lifted(&place, extent);
-                    let passing = |filters| casters.filtered(&self.occluders, l.from.at, place.facet, at, filters);
+                    let passing = |filters| {
+                        casters.filtered(&self.occluders, l.from.at, place.facet, at, filters)
+                    };
                     filters.map_or([0.0; 3], passing)
                 });
             }
@@ -262,7 +292,8 @@ impl PreparedShadows for Prepared<'_> {
 
         // Hand out the lit polygons of each position of each light.
         for (light, places) in self.polygons.lights.iter().enumerate() {
-            for (piece, details) in places.iter().flat_map(|place| place.details.iter().enumerate()) {
+            for (piece, details) in places.iter().flat_map(|place| place.details.iter().enumerate())
+            {
                 for (i, found) in details.found.iter().enumerate() {
                     let facet = Some(triangles.facets[piece * TRIANGLES_A_JOB + i]);
                     details.detail.each(found.root, &mut |polygon| {

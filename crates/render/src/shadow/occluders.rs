@@ -1,5 +1,6 @@
-//! How much of the light a facet keeps: all of it if it is opaque, else what its opacity, textures and vertex colours say
-//! at the point where the ray passes. With filtered transparency, what passes has the colour of the glass.
+//! How much of the light a facet keeps: all of it if it is opaque, else what its opacity, textures
+//! and vertex colours say at the point where the ray passes. With filtered transparency, what
+//! passes has the colour of the glass.
 
 use super::facet::weights;
 use crate::display::DecodeTables;
@@ -37,7 +38,8 @@ impl<'a> Occluders<'a> {
         Self { session, opaque, all_opaque, blend_is_opaque, filtered, tables }
     }
 
-    /// Facets keep all light in one scene and not in another, or with other settings; this tells the settings apart.
+    /// Facets keep all light in one scene and not in another, or with other settings; this tells
+    /// the settings apart.
     pub(super) fn key(&self) -> bool {
         self.blend_is_opaque
     }
@@ -55,7 +57,12 @@ impl<'a> Occluders<'a> {
 
     /// The part of light that passes the facet with these corners at `point` of it.
     #[inline(always)]
-    pub(crate) fn transmittance(&self, facet: u32, corners: &[Vec3; 3], point: impl Fn() -> DVec3) -> Rgb {
+    pub(crate) fn transmittance(
+        &self,
+        facet: u32,
+        corners: &[Vec3; 3],
+        point: impl Fn() -> DVec3,
+    ) -> Rgb {
         if self.all_opaque { [0.0; 3] } else { self.transmittance_at(facet, corners, point()) }
     }
 
@@ -65,7 +72,8 @@ impl<'a> Occluders<'a> {
         let Some(material) = material else { return Some([0.0; 3]) };
         let textures = [material.base_texture, material.opacity_texture, metal_texture(material)];
         let differs = mesh.colors.is_some() || textures.iter().any(Option::is_some);
-        (!differs).then(|| self.let_through(material, 1.0, opaque_part(material, material.opacity, 1.0)))
+        (!differs)
+            .then(|| self.let_through(material, 1.0, opaque_part(material, material.opacity, 1.0)))
     }
 
     /// The facet's mesh, its triangle there, and its material if that lets light through.
@@ -101,17 +109,26 @@ impl<'a> Occluders<'a> {
         }
 
         // Let light through by what is left.
-        let metallic = self.sample(metal_texture(material), mesh, triangle, weights).map_or(1.0, |texel| texel[2]);
+        let metallic = self
+            .sample(metal_texture(material), mesh, triangle, weights)
+            .map_or(1.0, |texel| texel[2]);
         self.let_through(material, coverage, opaque_part(material, opacity, metallic))
     }
 
-    /// What passes a material of this opacity, of which textures and colours leave so much; as shading finds it.
+    /// What passes a material of this opacity, of which textures and colours leave so much; as
+    /// shading finds it.
     fn let_through(&self, material: &Material, coverage: f32, opacity: f32) -> Rgb {
         let alpha = (opacity * coverage).clamp(0.0, 1.0);
         match material.alpha_mode {
-            AlphaMode::Mask { cutoff } => [f32::from(u8::from(alpha < AlphaMode::least_opacity(cutoff))); 3],
+            AlphaMode::Mask { cutoff } => {
+                [f32::from(u8::from(alpha < AlphaMode::least_opacity(cutoff))); 3]
+            }
             AlphaMode::Blend if self.filtered => {
-                let passes = filtered::passes(coverage.clamp(0.0, 1.0), linear::opacity(opacity), material.filter);
+                let passes = filtered::passes(
+                    coverage.clamp(0.0, 1.0),
+                    linear::opacity(opacity),
+                    material.filter,
+                );
                 [passes.x, passes.y, passes.z]
             }
             _ => [1.0 - alpha; 3],
@@ -142,7 +159,8 @@ fn metal_texture(material: &Material) -> Option<TextureRef> {
     material.metallic_roughness_texture.filter(|_| material.glass)
 }
 
-/// A texture at a point of a triangle, at a level of detail (0: the finest); `None` where there is none.
+/// A texture at a point of a triangle, at a level of detail (0: the finest); `None` where there is
+/// none.
 pub(crate) fn texel(
     session: &Session,
     tables: &DecodeTables,
@@ -164,7 +182,12 @@ pub(crate) fn texel(
 }
 
 /// An attribute between the corners of a triangle.
-fn blend<const N: usize>(a: &Attribute<[f32; N]>, mesh: &Mesh, triangle: usize, weights: [f32; 3]) -> [f32; N] {
+fn blend<const N: usize>(
+    a: &Attribute<[f32; N]>,
+    mesh: &Mesh,
+    triangle: usize,
+    weights: [f32; 3],
+) -> [f32; N] {
     let corners = a.at(triangle, &mesh.triangles);
     std::array::from_fn(|k| (0..3).map(|c| weights[c] * corners[c][k]).sum())
 }

@@ -1,10 +1,12 @@
 //! From points of the picture to places in the world.
 //!
-//! A point is a facet and weights of its corners. The same weights of the corners in the world, as rays see them, give a
-//! place that lies in the facet's plane but for the last bit of a double: much nearer than the way back from the screen.
+//! A point is a facet and weights of its corners. The same weights of the corners in the world, as
+//! rays see them, give a place that lies in the facet's plane but for the last bit of a double:
+//! much nearer than the way back from the screen.
 //!
-//! Places keep a hair's breadth from the facet's edges. On an edge itself a place, lifted off its facet, would stand in the
-//! plane of a wall that begins there, and rounding would say on which side.
+//! Places keep a hair's breadth from the facet's edges. On an edge itself a place, lifted off its
+//! facet, would stand in the plane of a wall that begins there, and rounding would say on which
+//! side.
 
 use super::places::SurfacePoints8;
 use super::rounding::clearance;
@@ -20,13 +22,15 @@ use vitral_scene::Instance;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub(crate) struct Facet {
-    /// Of each corner where it is, and the least weight of it with which a place keeps from the edge opposite.
+    /// Of each corner where it is, and the least weight of it with which a place keeps from the
+    /// edge opposite.
     corners: [[f32; 4]; 3],
     /// Unit normal, and one number of no meaning.
     normal: [f64; 4],
 }
 
-/// How far places keep from edges, in heights to which they are lifted: enough between walls that meet at 15 degrees.
+/// How far places keep from edges, in heights to which they are lifted: enough between walls that
+/// meet at 15 degrees.
 const MARGIN: f64 = 4.0;
 /// No least weight is larger: facets may be smaller than the margin.
 const MAX_LEAST_WEIGHT: f64 = 0.1;
@@ -68,7 +72,14 @@ impl<'a> Placing<'a> {
         let center = Triangles::center_of(world);
         let half = (world.bounds.max - center).max_element();
         let margin = margin(if half.is_finite() { half } else { 0.0 });
-        Self { view, instance, mirrored: mirrors(&instance.world_from_model), turns, center, margin }
+        Self {
+            view,
+            instance,
+            mirrored: mirrors(&instance.world_from_model),
+            turns,
+            center,
+            margin,
+        }
     }
 
     /// Triangles of its mesh.
@@ -76,14 +87,19 @@ impl<'a> Placing<'a> {
         let mut facets = Vec::with_capacity(triangles.len());
         for triangles in triangles.chunks(LANES) {
             let last = triangles.len() - 1;
-            let eight = self.eight_facets(simd, &std::array::from_fn(|lane| triangles[lane.min(last)]));
+            let eight =
+                self.eight_facets(simd, &std::array::from_fn(|lane| triangles[lane.min(last)]));
             facets.extend_from_slice(&eight[..triangles.len()]);
         }
         facets
     }
 
     /// [`super::facet::facet`] of eight triangles, by the same operations.
-    pub(crate) fn eight_facets<S: Simd>(&self, simd: S, triangles: &[u32; LANES]) -> [Facet; LANES] {
+    pub(crate) fn eight_facets<S: Simd>(
+        &self,
+        simd: S,
+        triangles: &[u32; LANES],
+    ) -> [Facet; LANES] {
         simd.vectorize(
             #[inline(always)]
             || self.eight_facets_inlined(simd, triangles),
@@ -97,17 +113,22 @@ impl<'a> Placing<'a> {
         // Take the cross product of two sides.
         let side = lanes::inlined(
             #[inline(always)]
-            |c: usize, k: usize| F64x8::from_slice(simd, &corners[c][k]) - F64x8::from_slice(simd, &corners[0][k]),
+            |c: usize, k: usize| {
+                F64x8::from_slice(simd, &corners[c][k]) - F64x8::from_slice(simd, &corners[0][k])
+            },
         );
         let (a, b) = ([side(1, 0), side(1, 1), side(1, 2)], [side(2, 0), side(2, 1), side(2, 2)]);
-        let across = [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]];
+        let across =
+            [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]];
         let length = (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]).sqrt();
 
-        // Divide by its length: the unit normal, and from each side's length the least weight of the corner opposite.
+        // Divide by its length: the unit normal, and from each side's length the least weight of
+        // the corner opposite.
         let normals = self.unit_normals(simd, across, length);
         let scale = F64x8::splat(simd, self.margin) / length;
         let mut least = [[0.0; LANES]; 3];
-        for (stored, edge) in least.iter_mut().zip([[b[0] - a[0], b[1] - a[1], b[2] - a[2]], b, a]) {
+        for (stored, edge) in least.iter_mut().zip([[b[0] - a[0], b[1] - a[1], b[2] - a[2]], b, a])
+        {
             let length = (edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]).sqrt();
             (length * scale).store_slice(stored);
         }
@@ -123,11 +144,13 @@ impl<'a> Placing<'a> {
         })
     }
 
-    /// The corners of eight triangles, by corner and axis, in single precision less the scene's middle.
+    /// The corners of eight triangles, by corner and axis, in single precision less the scene's
+    /// middle.
     #[inline(always)]
     fn world_corners<S: Simd>(&self, simd: S, triangles: &[u32; LANES]) -> [[[f64; LANES]; 3]; 3] {
         let (mesh, m) = (&self.instance.mesh, &self.instance.world_from_model);
-        let axes = [m.x_axis.to_array(), m.y_axis.to_array(), m.z_axis.to_array(), m.w_axis.to_array()];
+        let axes =
+            [m.x_axis.to_array(), m.y_axis.to_array(), m.z_axis.to_array(), m.w_axis.to_array()];
         let center = self.center.to_array();
 
         // Gather the model's corners.
@@ -157,10 +180,15 @@ impl<'a> Placing<'a> {
         corners
     }
 
-    /// Unit normals from vectors of these lengths, on the side from which the model's corners run counter-clockwise; zero
-    /// without area.
+    /// Unit normals from vectors of these lengths, on the side from which the model's corners run
+    /// counter-clockwise; zero without area.
     #[inline(always)]
-    fn unit_normals<S: Simd>(&self, simd: S, across: [F64x8<S>; 3], length: F64x8<S>) -> [[f64; LANES]; 3] {
+    fn unit_normals<S: Simd>(
+        &self,
+        simd: S,
+        across: [F64x8<S>; 3],
+        length: F64x8<S>,
+    ) -> [[f64; LANES]; 3] {
         let inverse = F64x8::splat(simd, 1.0) / length;
         let (zero, infinity) = (F64x8::splat(simd, 0.0), F64x8::splat(simd, f64::INFINITY));
         let usable = inverse.simd_gt(zero) & inverse.simd_lt(infinity);
@@ -172,7 +200,8 @@ impl<'a> Placing<'a> {
         normals
     }
 
-    /// Eight points of such facets, whose triangles these are: by the corners' weights, and where they are on the screen.
+    /// Eight points of such facets, whose triangles these are: by the corners' weights, and where
+    /// they are on the screen.
     #[inline(always)]
     pub(crate) fn places<S: Simd>(
         &self,
@@ -209,7 +238,12 @@ impl<'a> Placing<'a> {
 
     /// Turns normals at these positions to the side that the viewer sees.
     #[inline(always)]
-    fn turn_to_viewer<S: Simd>(&self, simd: S, position: &[F64x8<S>; 3], normal: &mut [F64x8<S>; 3]) {
+    fn turn_to_viewer<S: Simd>(
+        &self,
+        simd: S,
+        position: &[F64x8<S>; 3],
+        normal: &mut [F64x8<S>; 3],
+    ) {
         // Find the direction to the eye.
         let (eye, perspective) = self.view.eye();
         let towards = if perspective {
@@ -327,7 +361,8 @@ mod tests {
     fn eight_facets_are_those_found_one_by_one() {
         let mut scene = builtin::scene("teapot").expect("there is one");
         let turned = DQuat::from_rotation_y(0.7);
-        let transform = DMat4::from_scale_rotation_translation(dvec3(-1.5, 0.3, 2.0), turned, DVec3::ONE);
+        let transform =
+            DMat4::from_scale_rotation_translation(dvec3(-1.5, 0.3, 2.0), turned, DVec3::ONE);
         scene.nodes[0].transform = NodeTransform::Matrix(transform);
         let session = Session::new(Arc::new(scene)).expect("a sound scene");
         let (viewport, pattern) = (Viewport { width: 8, height: 8 }, SamplePattern::new(1));
@@ -340,7 +375,9 @@ mod tests {
         };
         let (settings, execution) = (Settings::default(), Execution::default());
         let counters = &mut crate::stats::CullCounters::default();
-        let view = PreparedView::new(&session, &camera, &settings, viewport, pattern, &execution, counters);
+        let view = PreparedView::new(
+            &session, &camera, &settings, viewport, pattern, &execution, counters,
+        );
         let instance = &session.world.instances[0];
         let placing = Placing::new(&view, instance, false);
         assert!(placing.mirrored);

@@ -1,5 +1,5 @@
-//! Places of a group and what arrives at them, in eights: each number of eight neighbours lies in a row, for algorithms that
-//! answer eight together; others ask for them one by one.
+//! Places of a group and what arrives at them, in eights: each number of eight neighbours lies in a
+//! row, for algorithms that answer eight together; others ask for them one by one.
 
 use vitral_light::Rgb;
 use vitral_math::lanes::prelude::*;
@@ -11,14 +11,15 @@ use vitral_math::{DVec3, dvec3};
 pub struct SurfacePoint {
     /// World space less [`crate::raytrace::triangles::Triangles::center`].
     pub position: DVec3,
-    /// Unit normal of the facet on the side that is seen, world space; zero for a facet without area.
+    /// Unit normal of the facet on the side that is seen, world space; zero for a facet without
+    /// area.
     pub normal: DVec3,
     /// Id of the facet that it lies on.
     pub facet: u32,
     /// Chooses the places on area lights that are asked; neighbours should differ.
     pub seed: u32,
-    /// Where it is seen, in pixels of the picture, if the viewer sees it straight: places with one `y` that are on one
-    /// facet are on one line.
+    /// Where it is seen, in pixels of the picture, if the viewer sees it straight: places with one
+    /// `y` that are on one facet are on one line.
     pub pixel: Option<[f32; 2]>,
 }
 
@@ -145,7 +146,8 @@ impl SurfacePoints {
 impl FromIterator<SurfacePoint> for SurfacePoints {
     fn from_iter<I: IntoIterator<Item = SurfacePoint>>(places: I) -> Self {
         let places: Vec<SurfacePoint> = places.into_iter().collect();
-        let eight = |eight: &[SurfacePoint]| SurfacePoints8::of(|lane| eight[lane.min(eight.len() - 1)]);
+        let eight =
+            |eight: &[SurfacePoint]| SurfacePoints8::of(|lane| eight[lane.min(eight.len() - 1)]);
         Self { eights: places.chunks(LANES).map(eight).collect(), count: places.len() }
     }
 }
@@ -222,7 +224,11 @@ mod tests {
                 assert_eq!(places.position(last), all[last].position);
             }
             let back = places.turned();
-            assert!(back.iter().zip(&all).all(|(b, a)| b.normal == -a.normal && b.position == a.position));
+            assert!(
+                back.iter()
+                    .zip(&all)
+                    .all(|(b, a)| b.normal == -a.normal && b.position == a.position)
+            );
 
             let mut parts = LightVisibility::new(count, [0.5; 3]);
             for i in 0..count {

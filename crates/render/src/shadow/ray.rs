@@ -1,11 +1,14 @@
-//! Shadows by rays: a point is lit if nothing stands on the way from it to the light. The reference of the others.
+//! Shadows by rays: a point is lit if nothing stands on the way from it to the light. The reference
+//! of the others.
 //!
-//! From each visible point a ray goes towards each light, and a structure (`--acceleration`) shows it what stands near
-//! (`light_rays.rs`).
+//! From each visible point a ray goes towards each light, and a structure (`--acceleration`) shows
+//! it what stands near (`light_rays.rs`).
 //!
-//! In:   points on facets, world space less the scene's middle; lights. Out: the part of light that arrives.
+//! In:   points on facets, world space less the scene's middle; lights. Out: the part of light that
+//!       arrives.
 //! Cost: a ray for each point and light (or cell of an area light), about `O(log n)` each.
-//! Source: [Appel 1968], [Whitted 1980]. Departs from it: transparent things filter light without bending it.
+//! Source: [Appel 1968], [Whitted 1980]. Departs from it: transparent things filter light without
+//!         bending it.
 
 use super::hash::hash;
 use super::light_rays::{Feeler, LightRays};
@@ -24,7 +27,8 @@ pub struct RayShadows;
 struct Prepared<'a> {
     rays: LightRays<'a>,
     sources: Vec<LightSource>,
-    /// The same in more cells, for points where those of `sources` disagree; without it, points choose their places by chance.
+    /// The same in more cells, for points where those of `sources` disagree; without it, points
+    /// choose their places by chance.
     finer: Option<Vec<LightSource>>,
 }
 
@@ -38,25 +42,35 @@ impl ShadowAlgorithm for RayShadows {
         execution: &Execution,
     ) -> Result<Box<dyn PreparedShadows + 'a>, Limit> {
         let pixels = u64::from(settings.picture.width) * u64::from(settings.picture.height);
-        let asked = (pixels.saturating_mul(lights.len() as u64), "shadows by rays without a structure");
+        let asked =
+            (pixels.saturating_mul(lights.len() as u64), "shadows by rays without a structure");
         let rays = LightRays::new(session, settings, execution, asked)?;
         let center = rays.center();
-        let of = |samples: u32| lights.iter().map(|l| LightSource::new(l, samples, center)).collect::<Vec<_>>();
+        let of = |samples: u32| {
+            lights.iter().map(|l| LightSource::new(l, samples, center)).collect::<Vec<_>>()
+        };
         let sources = of(settings.shadows.light_samples);
-        let finer = (settings.global.model == Global::Radiosity).then(|| of(FINER * settings.shadows.light_samples));
+        let finer = (settings.global.model == Global::Radiosity)
+            .then(|| of(FINER * settings.shadows.light_samples));
         Ok(Box::new(Prepared { rays, sources, finer }))
     }
 }
 
-/// So many times as many cells where those of an area light disagree, with radiosity: lamps there are large, and light that goes
-/// on from surfaces is smooth, so that chance would show as noise.
+/// So many times as many cells where those of an area light disagree, with radiosity: lamps there
+/// are large, and light that goes on from surfaces is smooth, so that chance would show as noise.
 const FINER: u32 = 8;
 
 /// SurfacePoints whose rays are made ready before the first is followed.
 const TOGETHER: usize = 64;
 
 impl PreparedShadows for Prepared<'_> {
-    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, rays: &mut u64) {
+    fn light_visibility(
+        &self,
+        light: usize,
+        places: &SurfacePoints,
+        parts: &mut LightVisibility,
+        rays: &mut u64,
+    ) {
         let mut feelers = Vec::with_capacity(TOGETHER);
         // Trace several points at a time.
         for first in (0..places.len()).step_by(TOGETHER) {
@@ -66,7 +80,12 @@ impl PreparedShadows for Prepared<'_> {
             match &self.sources[light] {
                 LightSource::Unoccluded => {}
                 LightSource::Infinity(towards) => {
-                    self.rays.transmittance(&mut feelers, asking.map(|place| (place, *towards)), false, found);
+                    self.rays.transmittance(
+                        &mut feelers,
+                        asking.map(|place| (place, *towards)),
+                        false,
+                        found,
+                    );
                 }
                 LightSource::Point(at) => {
                     self.rays.transmittance(

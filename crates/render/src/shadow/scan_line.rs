@@ -1,20 +1,26 @@
-//! Scan-line shadows: while a scan line crosses a polygon, it crosses the shadows that lie on the polygon too.
+//! Scan-line shadows: while a scan line crosses a polygon, it crosses the shadows that lie on the
+//! polygon too.
 //!
-//! Seen from a light, a polygon that stands before another one casts its projection on it: a *shadow polygon* in the plane
-//! of the other. Which polygons can do that is found beforehand: what touches the shaft between the visible part and the
-//! light. Then the visible part is taken line by line. A line of pixels is a straight line on the polygon; it enters and
-//! leaves each shadow polygon at an edge, and what lies on the span between is in shadow.
+//! Seen from a light, a polygon that stands before another one casts its projection on it: a
+//! *shadow polygon* in the plane of the other. Which polygons can do that is found beforehand: what
+//! touches the shaft between the visible part and the light. Then the visible part is taken line by
+//! line. A line of pixels is a straight line on the polygon; it enters and leaves each shadow
+//! polygon at an edge, and what lies on the span between is in shadow.
 //!
-//! A shadow polygon is where the plane meets the solid that a triangle hides from the light. So it needs no corners, and a
-//! light amidst the scene no projection on a sphere round it: the line is cut by the four planes of the solid. Two triangles
-//! that share an edge cut the line in one place.
+//! A shadow polygon is where the plane meets the solid that a triangle hides from the light. So it
+//! needs no corners, and a light amidst the scene no projection on a sphere round it: the line is
+//! cut by the four planes of the solid. Two triangles that share an edge cut the line in one place.
 //!
-//! The shadow polygons themselves do not depend on the viewer, and can be written to a file (`scan_line/on_receivers.rs`).
+//! The shadow polygons themselves do not depend on the viewer, and can be written to a file
+//! (`scan_line/on_receivers.rs`).
 //!
-//! In:   lights, triangles and places, world space less the scene's middle. Out: the part of a light that arrives.
-//! Cost: for each visible facet in a tile the triangles before it, and for each of its lines those that it crosses.
-//! Source: [Appel 1968], [Bouknight & Kelley 1970]. Departs from it: pairs of polygons are found by a tree of boxes
-//! instead of all with all; places between the pixels of a line (the middles of its samples) are lines of their own.
+//! In:   lights, triangles and places, world space less the scene's middle. Out: the part of a
+//!       light that arrives.
+//! Cost: for each visible facet in a tile the triangles before it, and for each of its lines those
+//!       that it crosses.
+//! Source: [Appel 1968], [Bouknight & Kelley 1970]. Departs from it: pairs of polygons are found by
+//! a tree of boxes instead of all with all; places between the pixels of a line (the middles of its
+//! samples) are lines of their own.
 
 mod on_receivers;
 
@@ -57,8 +63,10 @@ impl ShadowAlgorithm for ScanLineShadows {
         let occluders = Occluders::new(session, settings);
         let casters = Casters::of(session, &occluders, execution)?;
         let center = casters.triangles().center;
-        let lights =
-            lights.iter().map(|l| LightSource::new(l, settings.shadows.light_samples, center).places()).collect();
+        let lights = lights
+            .iter()
+            .map(|l| LightSource::new(l, settings.shadows.light_samples, center).places())
+            .collect();
         let (transparency, execution) = (settings.transparency.model, execution.clone());
         Ok(Box::new(Prepared { session, transparency, execution, casters, occluders, lights }))
     }
@@ -86,7 +94,13 @@ struct Work {
 }
 
 impl PreparedShadows for Prepared<'_> {
-    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
+    fn light_visibility(
+        &self,
+        light: usize,
+        places: &SurfacePoints,
+        parts: &mut LightVisibility,
+        _: &mut u64,
+    ) {
         let lights = &self.lights[light];
         if lights.is_empty() {
             return parts.fill([1.0; 3]);
@@ -119,7 +133,13 @@ impl PreparedShadows for Prepared<'_> {
             for part in points.chunk_by(|a, b| a.facet == b.facet) {
                 self.scan(part, from, &mut work, |point, filters| {
                     let place = places.get(point.index);
-                    let passing = self.casters.filtered(&self.occluders, from, place.facet, point.lifted, filters);
+                    let passing = self.casters.filtered(
+                        &self.occluders,
+                        from,
+                        place.facet,
+                        point.lifted,
+                        filters,
+                    );
                     parts.add(point.index, emitter.weight(&place), passing);
                 });
             }
@@ -139,16 +159,23 @@ impl PreparedShadows for Prepared<'_> {
                     casters: &self.casters,
                     light: emitter.at,
                 };
-                receivers.each(&mut |kind, corners| take(Drawn { light, kind, facet: None, corners }));
+                receivers
+                    .each(&mut |kind, corners| take(Drawn { light, kind, facet: None, corners }));
             }
         }
     }
 }
 
 impl Prepared<'_> {
-    /// Scans the visible part of one facet, and calls `lit` for its places that no opaque triangle hides, with the
-    /// transparent ones that may.
-    fn scan(&self, part: &[Point], light: DVec4, work: &mut Work, mut lit: impl FnMut(&Point, &[u32])) {
+    /// Scans the visible part of one facet, and calls `lit` for its places that no opaque triangle
+    /// hides, with the transparent ones that may.
+    fn scan(
+        &self,
+        part: &[Point],
+        light: DVec4,
+        work: &mut Work,
+        mut lit: impl FnMut(&Point, &[u32]),
+    ) {
         let extent = self.casters.extent();
         let slack = f64::from(extent) * 1e-9;
         let near = near(light, extent);
@@ -168,7 +195,8 @@ impl Prepared<'_> {
         solids.extend(casting.filter_map(solid).filter(|s| s.touches(middle, half)));
 
         // What is seen in mirrors is on no line of the picture.
-        let one_line = |a: &Point, b: &Point| a.pixel.zip(b.pixel).is_some_and(|(a, b)| a[1] == b[1]);
+        let one_line =
+            |a: &Point, b: &Point| a.pixel.zip(b.pixel).is_some_and(|(a, b)| a[1] == b[1]);
         for line in part.chunk_by(one_line) {
             dark.clear();
             dark.resize(line.len(), false);
@@ -178,10 +206,15 @@ impl Prepared<'_> {
                 // The shadow polygons that the line may cross.
                 let (middle, half) = box_around(line.iter().map(|p| p.lifted), slack);
                 active.clear();
-                active.extend((0..solids.len() as u32).filter(|&s| solids[s as usize].touches(middle, half)));
+                active.extend(
+                    (0..solids.len() as u32).filter(|&s| solids[s as usize].touches(middle, half)),
+                );
                 cross(line, active.iter().map(|&s| &solids[s as usize]), dark);
             }
-            line.iter().zip(&*dark).filter(|(_, dark)| !**dark).for_each(|(point, _)| lit(point, filters));
+            line.iter()
+                .zip(&*dark)
+                .filter(|(_, dark)| !**dark)
+                .for_each(|(point, _)| lit(point, filters));
         }
     }
 }
@@ -224,7 +257,8 @@ mod tests {
 
     #[test]
     fn f21_a_line_is_dark_from_edge_to_edge() {
-        // A triangle at height 1 under a lamp at height 2: its shadow on the floor is twice as large.
+        // A triangle at height 1 under a lamp at height 2: its shadow on the floor is twice as
+        // large.
         let corners = [dvec3(-1.0, 1.0, -1.0), dvec3(1.0, 1.0, -1.0), dvec3(0.0, 1.0, 1.0)];
         let solid = Solid::new(&corners, DVec4::new(0.0, 2.0, 0.0, 1.0), 1e-9).unwrap();
         let at = |z: f64| span(&solid, dvec3(-4.0, 0.0, z), dvec3(4.0, 0.0, z));

@@ -1,9 +1,10 @@
 //! Scattered rays: the directions in which a translucent surface shows what is behind it.
 //!
-//! What a rough surface lets through is a mean over directions. The square of the two numbers that choose one is cut into
-//! cells, and one direction is taken in each (stratified sampling), so that a few dozen stand for all. Chance is a hash of
-//! the place in the picture: a picture is the same however it is made, and neighbours err differently. A ray that
-//! was scattered before is scattered again in one direction only: its siblings see to the others.
+//! What a rough surface lets through is a mean over directions. The square of the two numbers that
+//! choose one is cut into cells, and one direction is taken in each (stratified sampling), so that
+//! a few dozen stand for all. Chance is a hash of the place in the picture: a picture is the same
+//! however it is made, and neighbours err differently. A ray that was scattered before is scattered
+//! again in one direction only: its siblings see to the others.
 //!
 //! In:   number and seed of a ray, the direction of clear glass. Out: its direction.
 //! Source: \[Cook, Porter & Carpenter 1984\]; the lobe is that of `vitral_light`.

@@ -1,20 +1,25 @@
-//! Where the light of a source comes from, as seen from a point: a direction, a point, or samples of a shape.
+//! Where the light of a source comes from, as seen from a point: a direction, a point, or samples
+//! of a shape.
 //!
-//! An area light is cut into cells of equal area, and one place is chosen at random in each (stratified sampling): the
-//! part of the places that see the point is the part of the light that arrives. In the umbra none does, in the penumbra
-//! some do. Chance is a hash of the point's place in the picture, so that a picture is the same however it is made, and
-//! neighbouring pixels err differently: noise instead of bands.
+//! An area light is cut into cells of equal area, and one place is chosen at random in each
+//! (stratified sampling): the part of the places that see the point is the part of the light that
+//! arrives. In the umbra none does, in the penumbra some do. Chance is a hash of the point's place
+//! in the picture, so that a picture is the same however it is made, and neighbouring pixels err
+//! differently: noise instead of bands.
 //!
-//! Places do not count alike. What a light wholly in view sends to a point is computed without sampling, and shadows only
-//! say which part of it arrives; so each place counts with `cos θ cos θ' / d²`, its share in that whole (a *ratio estimator*).
-//! Places below the horizon of the point's facet have no share: they are not in the whole either.
+//! Places do not count alike. What a light wholly in view sends to a point is computed without
+//! sampling, and shadows only say which part of it arrives; so each place counts with
+//! `cos θ cos θ' / d²`, its share in that whole (a *ratio estimator*). Places below the horizon of
+//! the point's facet have no share: they are not in the whole either.
 //!
-//! A disc's cells are squares of a square that is mapped to the disc ring by ring, which keeps areas in proportion. A
-//! polygon's are squares of the rectangle round it, along its longest edge, whose middle lies inside.
+//! A disc's cells are squares of a square that is mapped to the disc ring by ring, which keeps
+//! areas in proportion. A polygon's are squares of the rectangle round it, along its longest edge,
+//! whose middle lies inside.
 //!
 //! In:   a light, world space. Out: places on it, less the scene's middle.
 //! Cost: one ray for each cell.
-//! Source: [Cook, Porter & Carpenter 1984]; the disc after [Shirley & Chiu 1997], shares after [Heitz, Hill & McGuire 2018].
+//! Source: [Cook, Porter & Carpenter 1984]; the disc after [Shirley & Chiu 1997], shares after
+//!         [Heitz, Hill & McGuire 2018].
 
 use super::hash::hash;
 use super::places::{LightVisibility, SurfacePoint, SurfacePoints};
@@ -87,8 +92,12 @@ impl LightSource {
             LightKind::Directional { direction } => {
                 (-*direction).try_normalize().map_or(Self::Unoccluded, Self::Infinity)
             }
-            LightKind::Point { position } | LightKind::Spot { position, .. } => Self::Point(*position - center),
-            LightKind::Area { shape } => Area::new(shape, samples, center).map_or(Self::Unoccluded, Self::Area),
+            LightKind::Point { position } | LightKind::Spot { position, .. } => {
+                Self::Point(*position - center)
+            }
+            LightKind::Area { shape } => {
+                Area::new(shape, samples, center).map_or(Self::Unoccluded, Self::Area)
+            }
         }
     }
 }
@@ -107,7 +116,8 @@ impl LightSource {
 }
 
 impl Emitter {
-    /// The place's share in what the facet of `place` gets of the light; 0 if it looks away, 1 for a light of one place.
+    /// The place's share in what the facet of `place` gets of the light; 0 if it looks away, 1 for
+    /// a light of one place.
     pub(super) fn weight(&self, place: &SurfacePoint) -> f32 {
         let way = self.at.truncate() - place.position * self.at.w;
         let cos = place.normal.dot(way);
@@ -136,7 +146,8 @@ impl Shares {
         self.lit.map(|channel| if self.whole > 0.0 { channel / self.whole } else { 0.0 })
     }
 
-    /// Parts from what arrives at each of the places, weighted, and added in the order of the emitters.
+    /// Parts from what arrives at each of the places, weighted, and added in the order of the
+    /// emitters.
     pub(super) fn normalize(
         emitters: impl Iterator<Item = Emitter> + Clone,
         places: &SurfacePoints,
@@ -159,7 +170,15 @@ impl Area {
                 let (cells, size) = cells([DVec2::NEG_ONE, DVec2::ONE], 1.0, samples, |_| true);
                 let axes = [x * *radius, y * *radius];
                 let even = even(&cells, size);
-                Some(Self { shape: Shape::Disc, cells, size, even, origin: *middle - center, axes, normal })
+                Some(Self {
+                    shape: Shape::Disc,
+                    cells,
+                    size,
+                    even,
+                    origin: *middle - center,
+                    axes,
+                    normal,
+                })
             }
             AreaShape::Polygon { corners } => Self::polygon(corners, samples, center),
         }
@@ -170,13 +189,16 @@ impl Area {
         let edges = || (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
         let normal: DVec3 = edges().map(|(a, b)| (a - corners[0]).cross(b - corners[0])).sum();
         let (area, normal) = (0.5 * normal.length(), normal.try_normalize()?);
-        let longest = edges().map(|(a, b)| b - a).max_by(|a, b| a.length().total_cmp(&b.length()))?;
+        let longest =
+            edges().map(|(a, b)| b - a).max_by(|a, b| a.length().total_cmp(&b.length()))?;
         let x = longest.try_normalize()?;
         let y = normal.cross(x);
 
         // Flatten the polygon to its plane.
-        let flat: Vec<DVec2> =
-            corners.iter().map(|&c| dvec2((c - corners[0]).dot(x), (c - corners[0]).dot(y))).collect();
+        let flat: Vec<DVec2> = corners
+            .iter()
+            .map(|&c| dvec2((c - corners[0]).dot(x), (c - corners[0]).dot(y)))
+            .collect();
         let bounds = flat.iter().fold([flat[0]; 2], |[low, high], &p| [low.min(p), high.max(p)]);
 
         // Choose cells so that about as many as asked for lie inside.
@@ -207,7 +229,8 @@ impl Area {
     }
 
     fn place(&self, i: usize, seed: u32) -> DVec3 {
-        let p = self.cells[i] + self.size * if seed == 0 { self.even[i] } else { by_chance(i, seed) };
+        let p =
+            self.cells[i] + self.size * if seed == 0 { self.even[i] } else { by_chance(i, seed) };
         let p = match &self.shape {
             Shape::Disc => disc_from_square(p),
             Shape::Polygon(corners) if contains(corners, p) => p,
@@ -218,10 +241,11 @@ impl Area {
     }
 }
 
-/// A place in the unit square for each cell, where all points see the same places. Cells of one row lie at different heights in
-/// theirs, and those of one column at different widths: along either axis the places are spread as evenly as their number
-/// allows. What one offset rises by along a row, the other falls by along a column, which makes a turned grid whose spread is the
-/// same in all directions: edges of shadows are as wide as by any number of places, however they run.
+/// A place in the unit square for each cell, where all points see the same places. Cells of one row
+/// lie at different heights in theirs, and those of one column at different widths: along either
+/// axis the places are spread as evenly as their number allows. What one offset rises by along a
+/// row, the other falls by along a column, which makes a turned grid whose spread is the same in
+/// all directions: edges of shadows are as wide as by any number of places, however they run.
 fn even(cells: &[DVec2], size: DVec2) -> Vec<DVec2> {
     let low = cells.iter().fold(DVec2::INFINITY, |low, c| low.min(*c));
     let high = cells.iter().fold(DVec2::NEG_INFINITY, |high, c| high.max(*c));
@@ -240,8 +264,14 @@ fn by_chance(i: usize, seed: u32) -> DVec2 {
     dvec2(u, v)
 }
 
-/// About `samples` cells, as square as may be, whose middles are `inside`; `share` of the rectangle is.
-fn cells(bounds: [DVec2; 2], share: f64, samples: u32, inside: impl Fn(DVec2) -> bool) -> (Vec<DVec2>, DVec2) {
+/// About `samples` cells, as square as may be, whose middles are `inside`; `share` of the rectangle
+/// is.
+fn cells(
+    bounds: [DVec2; 2],
+    share: f64,
+    samples: u32,
+    inside: impl Fn(DVec2) -> bool,
+) -> (Vec<DVec2>, DVec2) {
     let extent = bounds[1] - bounds[0];
     let wanted = (f64::from(samples) / share.clamp(1e-3, 1.0)).ceil().max(1.0);
     let mut columns = (wanted * extent.x / extent.y).sqrt().round().clamp(1.0, wanted);
@@ -273,7 +303,8 @@ fn disc_from_square(p: DVec2) -> DVec2 {
     dvec2(cos, sin) * radius
 }
 
-/// Whether a polygon contains a point: a line to the right crosses its outline an odd number of times.
+/// Whether a polygon contains a point: a line to the right crosses its outline an odd number of
+/// times.
 fn contains(corners: &[DVec2], p: DVec2) -> bool {
     let mut inside = false;
     for (i, &a) in corners.iter().enumerate() {
@@ -296,7 +327,8 @@ mod tests {
 
     #[test]
     fn each_cell_of_a_square_has_one_place() {
-        let corners = [[0., 0.], [2., 0.], [2., 2.], [0., 2.]].map(|[x, y]| dvec3(x, y, 5.0)).to_vec();
+        let corners =
+            [[0., 0.], [2., 0.], [2., 2.], [0., 2.]].map(|[x, y]| dvec3(x, y, 5.0)).to_vec();
         let square = area(AreaShape::Polygon { corners }, 16);
         assert_eq!(square.count(), 16);
         let mut seen = vec![0; 16];
@@ -311,18 +343,24 @@ mod tests {
 
     #[test]
     fn the_same_places_for_all_points_are_spread_evenly_along_both_axes() {
-        let corners = [[0., 0.], [4., 0.], [4., 4.], [0., 4.]].map(|[x, y]| dvec3(x, y, 0.0)).to_vec();
+        let corners =
+            [[0., 0.], [4., 0.], [4., 4.], [0., 4.]].map(|[x, y]| dvec3(x, y, 0.0)).to_vec();
         let square = area(AreaShape::Polygon { corners }, 16);
         for axis in 0..2 {
             let mut along: Vec<f64> = (0..16).map(|i| square.place(i, 0)[axis]).collect();
             along.sort_by(f64::total_cmp);
-            assert!(along.iter().zip(0..).all(|(v, i)| (v - (f64::from(i) + 0.5) / 4.0).abs() < 1e-12), "{along:?}");
+            assert!(
+                along.iter().zip(0..).all(|(v, i)| (v - (f64::from(i) + 0.5) / 4.0).abs() < 1e-12),
+                "{along:?}"
+            );
         }
     }
 
     #[test]
     fn places_stay_on_concave_polygons_and_discs() {
-        let l = [[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]].map(|[x, y]| dvec3(x, y, 0.0)).to_vec();
+        let l = [[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]]
+            .map(|[x, y]| dvec3(x, y, 0.0))
+            .to_vec();
         let l = area(AreaShape::Polygon { corners: l }, 48);
         assert_eq!(l.count(), 48);
         let disc = AreaShape::Disc { center: DVec3::Z, normal: DVec3::Z * 3.0, radius: 2.0 };
@@ -332,7 +370,9 @@ mod tests {
         for seed in 0..50 {
             for i in 0..48 {
                 let p = l.place(i, seed);
-                assert!(p.x >= 0.0 && p.y >= 0.0 && p.max_element() <= 2.0 && p.min_element() <= 1.0);
+                assert!(
+                    p.x >= 0.0 && p.y >= 0.0 && p.max_element() <= 2.0 && p.min_element() <= 1.0
+                );
             }
             for i in 0..100 {
                 let p = disc.place(i, seed) - DVec3::Z;
@@ -340,7 +380,10 @@ mod tests {
                 inner += usize::from(p.length() < 2.0 / 2.0f64.sqrt());
             }
         }
-        assert!((2400..2600).contains(&inner), "half of the area holds half of the places: {inner} of 5000");
+        assert!(
+            (2400..2600).contains(&inner),
+            "half of the area holds half of the places: {inner} of 5000"
+        );
     }
 
     #[test]

@@ -1,27 +1,35 @@
-//! Shadow volumes: the space that a triangle hides from a light is a solid without end, and a place is in shadow if it lies
-//! in one.
+//! Shadow volumes: the space that a triangle hides from a light is a solid without end, and a place
+//! is in shadow if it lies in one.
 //!
-//! A triangle's volume has the triangle for its near cap, three sides that run through its edges away from the light, and
-//! its shadow at infinity for its far cap. How many volumes a place is in is counted along a path from somewhere known:
-//! plus one where the path enters through a polygon of a volume, minus one where it leaves. Two triangles that share an
-//! edge have the side there in common. If one turns the same way from it as the other, the two sides add up: a
-//! *silhouette edge*. If not, one leaves where the other enters, and both are dropped. The sum is the edge's *multiplicity*;
-//! it is ±1 along an open border, and any number where more than two triangles meet, so no mesh has to be closed.
+//! A triangle's volume has the triangle for its near cap, three sides that run through its edges
+//! away from the light, and its shadow at infinity for its far cap. How many volumes a place is in
+//! is counted along a path from somewhere known: plus one where the path enters through a polygon
+//! of a volume, minus one where it leaves. Two triangles that share an edge have the side there in
+//! common. If one turns the same way from it as the other, the two sides add up: a *silhouette
+//! edge*. If not, one leaves where the other enters, and both are dropped. The sum is the edge's
+//! *multiplicity*; it is ±1 along an open border, and any number where more than two triangles
+//! meet, so no mesh has to be closed.
 //!
-//! *Z-pass* counts from the viewer to what is seen, beginning with the number of volumes that the viewer is in. *Z-fail*
-//! counts from infinity beyond it, beginning with the far caps. Both give the number at any place, and need it only once for a
-//! batch of neighbours: from there on, the path goes to the others. The batch is cut in two again and again, and each half
-//! keeps the polygons that touch the box round its places; where none is left, all have the same number. Polygons are
-//! homogeneous (the sides end at points with `w = 0`) and nothing is clipped, so no near plane can cut a volume open.
+//! *Z-pass* counts from the viewer to what is seen, beginning with the number of volumes that the
+//! viewer is in. *Z-fail* counts from infinity beyond it, beginning with the far caps. Both give
+//! the number at any place, and need it only once for a batch of neighbours: from there on, the
+//! path goes to the others. The batch is cut in two again and again, and each half keeps the
+//! polygons that touch the box round its places; where none is left, all have the same number.
+//! Polygons are homogeneous (the sides end at points with `w = 0`) and nothing is clipped, so no
+//! near plane can cut a volume open.
 //!
-//! Signs of determinants decide whether a path meets a polygon. What two polygons share, an edge or the ray from a corner
-//! to infinity, gives both the same number, so no path slips between them. Places are lifted off their facets as those
-//! of rays are. Transparent triangles keep a volume of their own each, and take their part of the light.
+//! Signs of determinants decide whether a path meets a polygon. What two polygons share, an edge or
+//! the ray from a corner to infinity, gives both the same number, so no path slips between them.
+//! Places are lifted off their facets as those of rays are. Transparent triangles keep a volume of
+//! their own each, and take their part of the light.
 //!
-//! In:   lights, triangles and places, world space less the scene's middle. Out: the part of a light that arrives.
-//! Cost: linear in triangles for each light; for a batch, the polygons near it, and each again for the halves it touches.
-//! Source: [Crow 1977]; z-fail after [Everitt & Kilgard 2002], multiplicities after [Bergeron 1986], regions with one
-//! count after [Aila & Akenine-Möller 2004]. Departs from them: counts go from place to place, not pixel by pixel.
+//! In:   lights, triangles and places, world space less the scene's middle. Out: the part of a
+//!       light that arrives.
+//! Cost: linear in triangles for each light; for a batch, the polygons near it, and each again for
+//!       the halves it touches.
+//! Source: [Crow 1977]; z-fail after [Everitt & Kilgard 2002], multiplicities after [Bergeron
+//! 1986], regions with one count after [Aila & Akenine-Möller 2004]. Departs from them: counts go
+//! from place to place, not pixel by pixel.
 
 mod count;
 mod edges;
@@ -102,7 +110,14 @@ impl ShadowAlgorithm for VolumeShadows {
             places.iter().map(around).collect()
         });
         let around_viewer = around_viewer.collect();
-        Ok(Box::new(Counting { volumes, occluders, level: execution.level, counting, viewer, around_viewer }))
+        Ok(Box::new(Counting {
+            volumes,
+            occluders,
+            level: execution.level,
+            counting,
+            viewer,
+            around_viewer,
+        }))
     }
 }
 
@@ -119,12 +134,17 @@ impl Volumes {
         execution: &Execution,
     ) -> Result<Self, Limit> {
         let casters = Casters::of(session, occluders, execution)?;
-        let surface =
-            session.cache.get_or_build(occluders.key(), || CasterSurface::new(&session.world, &casters, execution))?;
+        let surface = session.cache.get_or_build(occluders.key(), || {
+            CasterSurface::new(&session.world, &casters, execution)
+        })?;
         let triangles = casters.triangles();
         let of_light = |light: &Light| -> Result<Vec<LightVolumes>, Limit> {
-            let places = LightSource::new(light, settings.shadows.light_samples, triangles.center).places();
-            places.into_iter().map(|place| LightVolumes::new(place, triangles, &surface, execution)).collect()
+            let places =
+                LightSource::new(light, settings.shadows.light_samples, triangles.center).places();
+            places
+                .into_iter()
+                .map(|place| LightVolumes::new(place, triangles, &surface, execution))
+                .collect()
         };
         let lights: Result<_, Limit> = lights.iter().map(of_light).collect();
         Ok(Self { lights: lights?, surface, casters })
@@ -136,7 +156,13 @@ impl Volumes {
 }
 
 impl PreparedShadows for Counting<'_> {
-    fn light_visibility(&self, light: usize, places: &SurfacePoints, parts: &mut LightVisibility, _: &mut u64) {
+    fn light_visibility(
+        &self,
+        light: usize,
+        places: &SurfacePoints,
+        parts: &mut LightVisibility,
+        _: &mut u64,
+    ) {
         let volumes = &self.volumes.lights[light];
         if volumes.is_empty() {
             return parts.fill([1.0; 3]);
@@ -157,7 +183,13 @@ impl PreparedShadows for Counting<'_> {
             batch.count(self.level, &lit, start, |index, at, count, filters| {
                 if count <= 0 {
                     let place = places.get(index);
-                    let passing = self.volumes.casters.filtered(&self.occluders, light, place.facet, at, filters);
+                    let passing = self.volumes.casters.filtered(
+                        &self.occluders,
+                        light,
+                        place.facet,
+                        at,
+                        filters,
+                    );
                     parts.add(index, from.weight(&place), passing);
                 }
             });
@@ -170,7 +202,9 @@ impl PreparedShadows for Counting<'_> {
     fn draw(&self, take: &mut dyn FnMut(Drawn<'_>)) {
         let triangles = self.volumes.casters.triangles();
         for (light, places) in self.volumes.lights.iter().enumerate() {
-            places.iter().for_each(|place| place.draw(light, &self.volumes.casters, triangles, take));
+            places
+                .iter()
+                .for_each(|place| place.draw(light, &self.volumes.casters, triangles, take));
         }
     }
 }

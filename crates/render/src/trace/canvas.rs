@@ -28,20 +28,29 @@ impl Canvas {
         }
     }
 
-    /// Calls `f` with the pixels whose centres lie in what `edges` bound, by the parity of crossings. Edges are in pixels.
-    pub(super) fn fill(&self, edges: impl Iterator<Item = [[f32; 2]; 2]>, mut f: impl FnMut(usize)) {
+    /// Calls `f` with the pixels whose centres lie in what `edges` bound, by the parity of
+    /// crossings. Edges are in pixels.
+    pub(super) fn fill(
+        &self,
+        edges: impl Iterator<Item = [[f32; 2]; 2]>,
+        mut f: impl FnMut(usize),
+    ) {
         let edges: Vec<_> = edges.collect();
         let ends = edges.iter().flatten().map(|p| p[1]);
-        let (low, high) = ends.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
+        let (low, high) = ends
+            .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
         let mut crossings = Vec::new();
         for row in low.max(0.0) as i64..=(high.min(self.height as f32) as i64) {
             let middle = row as f32 + 0.5;
             let crossed = edges.iter().filter(|[a, b]| (a[1] > middle) != (b[1] > middle));
             crossings.clear();
-            crossings.extend(crossed.map(|[a, b]| a[0] + (middle - a[1]) / (b[1] - a[1]) * (b[0] - a[0])));
+            crossings.extend(
+                crossed.map(|[a, b]| a[0] + (middle - a[1]) / (b[1] - a[1]) * (b[0] - a[0])),
+            );
             crossings.sort_by(f32::total_cmp);
             for pair in crossings.chunks_exact(2) {
-                let [from, to] = [pair[0], pair[1]].map(|x| (x - 0.5).ceil().clamp(0.0, self.width as f32) as i64);
+                let [from, to] = [pair[0], pair[1]]
+                    .map(|x| (x - 0.5).ceil().clamp(0.0, self.width as f32) as i64);
                 (from..to).filter_map(|x| self.index(x, row)).for_each(&mut f);
             }
         }

@@ -1,4 +1,5 @@
-//! What the colours of a picture of steps mean, algorithm by algorithm: `docs/steps.md`, `vitral algorithms`.
+//! What the colours of a picture of steps mean, algorithm by algorithm: `docs/steps.md`,
+//! `vitral algorithms`.
 
 use super::picture::{MARKS, OUTLINE, STOPS};
 use std::fmt::Write;
@@ -10,7 +11,8 @@ pub enum Legend {
     Cost(&'static str),
     /// Windows, outlined in the colour of their verdict.
     Windows,
-    /// The place of what is on top in the list, as a ramp, with the outlines of polygons that were cut.
+    /// The place of what is on top in the list, as a ramp, with the outlines of polygons that were
+    /// cut.
     List,
     /// Outlines of visible polygons.
     Outlines,

@@ -1,6 +1,7 @@
 //! What painter's algorithm and BSP trees tell about their lists and nodes.
 //!
-//! Polygons are named by the id of their first facet: the flat convex face that they are, or a part of it.
+//! Polygons are named by the id of their first facet: the flat convex face that they are, or a part
+//! of it.
 
 use serde::Serialize;
 
@@ -37,7 +38,8 @@ pub enum ListTest {
     ExchangedBehind,
     /// The fourth test with the roles exchanged: P lies in front of the plane of Q.
     ExchangedInFront,
-    /// Both lie in one plane: the one that faces the viewer is painted last; of two that face one way, the lower facet.
+    /// Both lie in one plane: the one that faces the viewer is painted last; of two that face one
+    /// way, the lower facet.
     Coplanar,
     /// After all tests: the depths in the overlap of the projections.
     Overlap,
@@ -54,7 +56,9 @@ impl ListTest {
             Self::InFrontOfPlane => format!("test 4: {q} lies in front of the plane of {p}"),
             Self::Projection => "test 5: the projections do not overlap".to_owned(),
             Self::ExchangedBehind => format!("test 3 exchanged: {q} lies behind the plane of {p}"),
-            Self::ExchangedInFront => format!("test 4 exchanged: {p} lies in front of the plane of {q}"),
+            Self::ExchangedInFront => {
+                format!("test 4 exchanged: {p} lies in front of the plane of {q}")
+            }
             Self::Coplanar => "both lie in one plane: facing and facet decide".to_owned(),
             Self::Overlap => "the depths where the projections overlap".to_owned(),
         }

@@ -1,9 +1,10 @@
 //! Steps in the algorithm's own order, with numbers and parents.
 //!
-//! Threads tell the steps of tiles, bands and rays as they are done, each its own in order. A [`Collector`] keeps them, and puts
-//! them in an order that does not depend on the threads: culling, clipping, what is built before anything is seen, then windows from the
-//! whole picture down, each before its parts, lines from top to bottom, facets and lists in their order, rays by their pixels.
-//! Two pictures of one view have the same steps, whatever the session knew before.
+//! Threads tell the steps of tiles, bands and rays as they are done, each its own in order. A
+//! [`Collector`] keeps them, and puts them in an order that does not depend on the threads:
+//! culling, clipping, what is built before anything is seen, then windows from the whole picture
+//! down, each before its parts, lines from top to bottom, facets and lists in their order, rays by
+//! their pixels. Two pictures of one view have the same steps, whatever the session knew before.
 //!
 //! In:   steps as they are told. Out: numbered steps.
 //! Cost: sorting the steps; memory: all of them, charged to the budget.
@@ -44,7 +45,8 @@ struct RecordedSteps {
 }
 
 impl Collector {
-    /// Charges the steps to `budget`; `watched` is a pixel at which each comparison of the z-buffer is kept.
+    /// Charges the steps to `budget`; `watched` is a pixel at which each comparison of the z-buffer
+    /// is kept.
     pub fn new(budget: Budget, watched: Option<[u32; 2]>) -> Self {
         Self { budget, watched, kept: Mutex::default() }
     }
@@ -54,7 +56,8 @@ impl Collector {
     /// # Errors
     /// [`Limit::Memory`] if they were too many.
     pub fn take(&self) -> Result<Vec<NumberedStep>, Limit> {
-        let kept = std::mem::take(&mut *self.kept.lock().expect("no thread panics while it keeps a step"));
+        let kept =
+            std::mem::take(&mut *self.kept.lock().expect("no thread panics while it keeps a step"));
         self.budget.release(kept.charged);
         kept.limit.map_or_else(|| Ok(numbered(kept.steps)), Err)
     }
@@ -86,10 +89,13 @@ pub fn numbered(mut steps: Vec<Step>) -> Vec<NumberedStep> {
     steps.sort_by_key(place);
     let mut parents = Parents::default();
     let steps = joined(steps).into_iter().zip(0..);
-    steps.map(|(step, number)| NumberedStep { number, parent: parents.of(&step, number), step }).collect()
+    steps
+        .map(|(step, number)| NumberedStep { number, parent: parents.of(&step, number), step })
+        .collect()
 }
 
-/// Where a step comes among all: the stage, and the place in it. Those of one place stay in the order in which they were told.
+/// Where a step comes among all: the stage, and the place in it. Those of one place stay in the
+/// order in which they were told.
 fn place(step: &Step) -> [u64; 3] {
     let row_by_row = |stage, [x, y]: [u32; 2]| [stage, u64::from(y), u64::from(x)];
     match step {
@@ -98,7 +104,10 @@ fn place(step: &Step) -> [u64; 3] {
         // Told by one thread after the other, in order.
         Step::Space { .. } | Step::TreeNode { .. } => [2, 0, 0],
         Step::TreeVisit { .. } => [3, 0, 0],
-        Step::FirstOrder { .. } | Step::Turn { .. } | Step::Compared { .. } | Step::Moved { .. } => [3, 0, 0],
+        Step::FirstOrder { .. }
+        | Step::Turn { .. }
+        | Step::Compared { .. }
+        | Step::Moved { .. } => [3, 0, 0],
         Step::Circle { .. } | Step::Split { .. } | Step::Painted { .. } => [3, 0, 0],
         Step::NearestFirst { .. } | Step::Clip { .. } | Step::Visible { .. } => [3, 0, 0],
         Step::DepthTest { facet, .. } => [3, u64::from(*facet), 0],
@@ -113,7 +122,8 @@ fn place(step: &Step) -> [u64; 3] {
     }
 }
 
-/// A path of quarters as a number that sorts a window before its parts, and these in their order: three bits a digit.
+/// A path of quarters as a number that sorts a window before its parts, and these in their order:
+/// three bits a digit.
 fn path_key(path: &str) -> u64 {
     let digits = path.bytes().take(20).enumerate();
     digits.fold(0, |key, (level, digit)| key | u64::from(digit - b'0' + 1) << (60 - 3 * level))
@@ -159,12 +169,13 @@ fn join_runs(runs: &mut Vec<[u32; 3]>) {
 #[derive(Default)]
 struct Parents {
     windows: HashMap<String, u32>,
-    /// The boxes round the last one, from the root down: what each holds, of which instance, and its number.
+    /// The boxes round the last one, from the root down: what each holds, of which instance, and
+    /// its number.
     boxes: Vec<([u32; 2], Option<u32>, u32)>,
     /// Boxes round instances that came before.
     boxes_of_instances: Vec<([u32; 2], Option<u32>, u32)>,
-    /// The polygons in their first order, the turn of one of them, nodes of a tree and visits to them by the nodes' numbers, clips
-    /// by their own.
+    /// The polygons in their first order, the turn of one of them, nodes of a tree and visits to
+    /// them by the nodes' numbers, clips by their own.
     first_order: Option<u32>,
     turn: Option<u32>,
     nodes: HashMap<u32, u32>,
@@ -227,7 +238,9 @@ impl Parents {
                 self.clips.insert(*clip, number);
                 within.map_or(self.first_order, |outer| self.clips.get(&outer).copied())
             }
-            Step::Visible { clip, .. } => clip.map_or(self.first_order, |clip| self.clips.get(&clip).copied()),
+            Step::Visible { clip, .. } => {
+                clip.map_or(self.first_order, |clip| self.clips.get(&clip).copied())
+            }
 
             // Lines hang below the edge table, and rays below the structure.
             Step::EdgeTable { .. } => {
@@ -258,7 +271,8 @@ impl Parents {
         }
     }
 
-    /// The smallest box before that holds what this one holds. Boxes are told from the root down, those of an instance together.
+    /// The smallest box before that holds what this one holds. Boxes are told from the root down,
+    /// those of an instance together.
     fn above(&mut self, instance: Option<u32>, items: [u32; 2], number: u32) -> Option<u32> {
         let holds = |outer: [u32; 2], inner: [u32; 2]| outer[0] <= inner[0] && inner[1] <= outer[1];
         if self.boxes.last().is_some_and(|(_, of, _)| *of != instance) {
@@ -336,16 +350,27 @@ mod tests {
 
     #[test]
     fn a_facet_of_several_tiles_is_one_step() {
-        let drawn = |facet, stays: &[[u32; 3]]| Step::Drawn { facet, stays: stays.to_vec(), hidden: Vec::new() };
-        let steps =
-            numbered(vec![drawn(1, &[[5, 64, 70]]), drawn(0, &[[0, 0, 1]]), drawn(1, &[[5, 60, 64], [6, 0, 2]])]);
+        let drawn = |facet, stays: &[[u32; 3]]| Step::Drawn {
+            facet,
+            stays: stays.to_vec(),
+            hidden: Vec::new(),
+        };
+        let steps = numbered(vec![
+            drawn(1, &[[5, 64, 70]]),
+            drawn(0, &[[0, 0, 1]]),
+            drawn(1, &[[5, 60, 64], [6, 0, 2]]),
+        ]);
         assert_eq!(steps.len(), 2);
         assert_eq!(steps[1].step, drawn(1, &[[5, 60, 70], [6, 0, 2]]));
     }
 
     #[test]
     fn lines_follow_from_the_tables_of_their_band() {
-        let table = |first, end| Step::EdgeTable { rows: [first, end], polygons: Vec::new(), buckets: Vec::new() };
+        let table = |first, end| Step::EdgeTable {
+            rows: [first, end],
+            polygons: Vec::new(),
+            buckets: Vec::new(),
+        };
         let line = |row| Step::Line { row, sample: 0, active_edges: Vec::new(), spans: Vec::new() };
         let steps = numbered(vec![table(8, 16), line(8), line(9), table(0, 8), line(0)]);
         let parents: Vec<_> = steps.iter().map(|s| s.parent).collect();

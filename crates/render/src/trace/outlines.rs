@@ -1,9 +1,10 @@
-//! Polygons with outlines, in the steps of Weiler and Atherton's algorithm. Places are pixels from the top left.
+//! Polygons with outlines, in the steps of Weiler and Atherton's algorithm. Places are pixels from
+//! the top left.
 
 use serde::Serialize;
 
-/// Facets of an outside list that a step names: all of a scene that one looks at step by step, and a bound for large ones, in which
-/// each of many clips has a long list.
+/// Facets of an outside list that a step names: all of a scene that one looks at step by step, and
+/// a bound for large ones, in which each of many clips has a long list.
 pub const MAX_LISTED: usize = 1024;
 
 /// A closed outline of a polygon.

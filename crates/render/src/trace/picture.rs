@@ -1,14 +1,14 @@
 //! A picture of an algorithm's steps, over the image in grey.
 //!
-//! - Windows and visible polygons: outlines; the window's verdict is its colour (green one polygon, yellow surrounded, red
-//!   single pixels, blue empty).
-//! - Lists: the order as a ramp from blue (the first, far) over green to red (the last, near), with the outlines of
-//!   polygons that were cut.
-//! - Everything else: what each pixel cost, from blue to red: facets over it, polygons in its spans, boxes and facets
-//!   its rays were tested against.
+//! - Windows and visible polygons: outlines; the window's verdict is its colour (green one polygon,
+//!   yellow surrounded, red single pixels, blue empty).
+//! - Lists: the order as a ramp from blue (the first, far) over green to red (the last, near), with
+//!   the outlines of polygons that were cut.
+//! - Everything else: what each pixel cost, from blue to red: facets over it, polygons in its
+//!   spans, boxes and facets its rays were tested against.
 //!
-//! [`super::legend`] tells that to users. Steps are added as they come and not kept, so a large model takes no more than the picture. Sums and maxima do not
-//! depend on the order of threads.
+//! [`super::legend`] tells that to users. Steps are added as they come and not kept, so a large
+//! model takes no more than the picture. Sums and maxima do not depend on the order of threads.
 
 use super::canvas::Canvas;
 use super::outlines::{Contour, edges};
@@ -36,7 +36,8 @@ struct Planes {
 }
 
 /// Outlines: empty windows and visible polygons, one polygon, surrounded, single pixels.
-pub(super) const MARKS: [[u8; 3]; 4] = [[70, 110, 220], [60, 190, 90], [250, 210, 60], [225, 60, 50]];
+pub(super) const MARKS: [[u8; 3]; 4] =
+    [[70, 110, 220], [60, 190, 90], [250, 210, 60], [225, 60, 50]];
 
 /// Outlines of polygons in a list that were cut.
 pub(super) const OUTLINE: [u8; 3] = [20; 3];
@@ -48,8 +49,12 @@ impl Recorder {
     /// For a picture of this size.
     pub fn new(width: u32, height: u32) -> Self {
         let count = width as usize * height as usize;
-        let planes =
-            Planes { cost: vec![0; count], order: vec![0; count], outline: vec![0; count], mark: vec![0; count] };
+        let planes = Planes {
+            cost: vec![0; count],
+            order: vec![0; count],
+            outline: vec![0; count],
+            mark: vec![0; count],
+        };
         Self { canvas: Canvas { width, height }, planes: Mutex::new(planes) }
     }
 
@@ -101,12 +106,18 @@ impl Recorder {
     fn spend(&self, planes: &mut Planes, [left, top, width, height]: [u32; 4], cost: u64) {
         for y in top..(top + height).min(self.canvas.height) {
             let row = y as usize * self.canvas.width as usize;
-            let (from, to) = (row + left as usize, row + (left + width).min(self.canvas.width) as usize);
+            let (from, to) =
+                (row + left as usize, row + (left + width).min(self.canvas.width) as usize);
             planes.cost[from..to].iter_mut().for_each(|c| *c += cost);
         }
     }
 
-    fn window(&self, planes: &mut Planes, [left, top, width, height]: [u32; 4], verdict: WindowVerdict) {
+    fn window(
+        &self,
+        planes: &mut Planes,
+        [left, top, width, height]: [u32; 4],
+        verdict: WindowVerdict,
+    ) {
         let mark = match verdict {
             WindowVerdict::Empty => 1,
             WindowVerdict::One => 2,
@@ -152,10 +163,13 @@ impl Observer for Recorder {
                 self.spend(planes, *pixels, boxes + facets);
             }
             Step::Piece { order, cuts, outline, .. } => {
-                self.canvas.fill(edges(outline), |at| planes.order[at] = planes.order[at].max(order + 1));
+                self.canvas
+                    .fill(edges(outline), |at| planes.order[at] = planes.order[at].max(order + 1));
                 if *cuts > 0 {
                     for edge in edges(outline) {
-                        self.canvas.line(edge, |at| planes.outline[at] = planes.outline[at].max(order + 1));
+                        self.canvas.line(edge, |at| {
+                            planes.outline[at] = planes.outline[at].max(order + 1)
+                        });
                     }
                 }
             }
@@ -164,8 +178,14 @@ impl Observer for Recorder {
                     self.canvas.line(edge, |at| planes.mark[at] = 1);
                 }
             }
-            Step::TreeNode { .. } | Step::TreeVisit { .. } | Step::FirstOrder { .. } | Step::Turn { .. } => {}
-            Step::Compared { .. } | Step::Moved { .. } | Step::Circle { .. } | Step::Split { .. } => {}
+            Step::TreeNode { .. }
+            | Step::TreeVisit { .. }
+            | Step::FirstOrder { .. }
+            | Step::Turn { .. } => {}
+            Step::Compared { .. }
+            | Step::Moved { .. }
+            | Step::Circle { .. }
+            | Step::Split { .. } => {}
             Step::Painted { .. } | Step::Overruled { .. } | Step::NearestFirst { .. } => {}
             Step::Clip { .. } | Step::Space { .. } | Step::EdgeTable { .. } => {}
             Step::RayMeets { .. } | Step::RayGoesOn { .. } => {}
@@ -174,8 +194,13 @@ impl Observer for Recorder {
 }
 
 /// The colours of the ramp.
-pub(super) const STOPS: [[f32; 3]; 5] =
-    [[50.0, 60.0, 200.0], [50.0, 170.0, 220.0], [90.0, 210.0, 90.0], [250.0, 220.0, 60.0], [230.0, 50.0, 40.0]];
+pub(super) const STOPS: [[f32; 3]; 5] = [
+    [50.0, 60.0, 200.0],
+    [50.0, 170.0, 220.0],
+    [90.0, 210.0, 90.0],
+    [250.0, 220.0, 60.0],
+    [230.0, 50.0, 40.0],
+];
 
 /// From blue over green and yellow to red, for 0 to 1.
 fn ramp(t: f32) -> [u8; 3] {
@@ -196,7 +221,14 @@ mod tests {
     fn what_is_on_top_of_the_list_has_its_colour() {
         let recorder = Recorder::new(4, 4);
         let square = |low: f32, high: f32| vec![[low, low], [high, low], [high, high], [low, high]];
-        let piece = |order, outline| Step::Piece { order, polygon: 0, node: None, facet: 0, cuts: 0, outline };
+        let piece = |order, outline| Step::Piece {
+            order,
+            polygon: 0,
+            node: None,
+            facet: 0,
+            cuts: 0,
+            outline,
+        };
         // Told in the wrong order, as threads may.
         recorder.step(&piece(1, square(0.0, 2.0)));
         recorder.step(&piece(0, square(0.0, 4.0)));
@@ -211,7 +243,14 @@ mod tests {
     fn costs_add_up_and_windows_have_sides() {
         let recorder = Recorder::new(4, 2);
         let through = Passed::Cells(vec![[0; 3]; 5]);
-        recorder.step(&Step::Rays { pixels: [2, 0, 8, 8], rays: 4, boxes: 5, facets: 2, tested: vec![1, 0], through });
+        recorder.step(&Step::Rays {
+            pixels: [2, 0, 8, 8],
+            rays: 4,
+            boxes: 5,
+            facets: 2,
+            tested: vec![1, 0],
+            through,
+        });
         recorder.step(&Step::Drawn { facet: 0, stays: vec![[0, 1, 4]], hidden: vec![[0, 3, 4]] });
         recorder.step(&Step::Drawn { facet: 1, stays: vec![], hidden: vec![[0, 3, 9]] });
         recorder.step(&window([0, 0, 4, 2], WindowVerdict::One));
@@ -237,10 +276,19 @@ mod tests {
             let recorder = std::sync::Arc::new(Recorder::new(96, 72));
             let observer = Some(std::sync::Arc::clone(&recorder) as std::sync::Arc<dyn Observer>);
             let execution = crate::Execution { observer, ..crate::Execution::default() };
-            let (pattern, culled) = (vitral_raster::SamplePattern::new(1), &mut crate::stats::CullCounters::default());
-            let view = crate::PreparedView::new(&session, &camera, &settings, viewport, pattern, &execution, culled);
+            let (pattern, culled) =
+                (vitral_raster::SamplePattern::new(1), &mut crate::stats::CullCounters::default());
+            let view = crate::PreparedView::new(
+                &session, &camera, &settings, viewport, pattern, &execution, culled,
+            );
             let mut grid = vitral_raster::TileGrid::new(viewport, 1);
-            let resolved = algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &crate::visible::NullSink);
+            let resolved = algorithm.algorithm.resolve(
+                &view,
+                None,
+                &mut grid,
+                &execution,
+                &crate::visible::NullSink,
+            );
             resolved.unwrap();
             let planes = recorder.planes.lock().unwrap();
             let drawn = [

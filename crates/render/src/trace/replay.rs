@@ -1,10 +1,12 @@
 //! The picture as it is after a step: what is decided so far, with what the step is about outlined.
 //!
-//! Algorithms that decide a place once and for all (windows, spans, rays, visible polygons) uncover the picture there; the rest
-//! is paper. Those that overwrite (the z-buffer, lists painted from the back) begin with the background: where another
-//! surface than the one that is seen in the end lies on top, it has a pale colour of its own.
+//! Algorithms that decide a place once and for all (windows, spans, rays, visible polygons) uncover
+//! the picture there; the rest is paper. Those that overwrite (the z-buffer, lists painted from the
+//! back) begin with the background: where another surface than the one that is seen in the end lies
+//! on top, it has a pale colour of its own.
 //!
-//! In:   numbered steps, the finished picture, the surface that is seen at each pixel. Out: a picture for each step.
+//! In:   numbered steps, the finished picture, the surface that is seen at each pixel. Out: a
+//!       picture for each step.
 //! Cost: for each step the pixels that it is about, for each picture all pixels.
 
 use super::canvas::Canvas;
@@ -24,7 +26,8 @@ pub struct WatchedSteps {
     pub background: Vec<[u8; 4]>,
     /// The surface that is seen at each pixel, row by row; none for the background.
     pub seen: Vec<Option<u32>>,
-    /// The surface of the facet that a step draws, where it may be drawn over; by the step's number.
+    /// The surface of the facet that a step draws, where it may be drawn over; by the step's
+    /// number.
     pub drawn: Vec<Option<u32>>,
 }
 
@@ -87,7 +90,8 @@ impl<'w> Replay<'w> {
         if let Some(last) = self.taken.checked_sub(1) {
             let mut data = picture.data().to_vec();
             self.outline(&self.watched.steps[last].step, &mut data);
-            picture = Plane::from_rows(self.canvas.width, self.canvas.height, data).expect("as many pixels as before");
+            picture = Plane::from_rows(self.canvas.width, self.canvas.height, data)
+                .expect("as many pixels as before");
         }
         picture
     }
@@ -98,11 +102,14 @@ impl<'w> Replay<'w> {
             Shown::Paper => opaque(PAPER),
             Shown::Background => self.watched.background[i / self.canvas.width as usize],
             Shown::Final => self.watched.image.data()[i],
-            Shown::Surface(surface) if self.watched.seen[i] == Some(surface) => self.watched.image.data()[i],
+            Shown::Surface(surface) if self.watched.seen[i] == Some(surface) => {
+                self.watched.image.data()[i]
+            }
             Shown::Surface(surface) => opaque(pale(surface)),
         };
         let data: Vec<[u8; 4]> = self.shown.iter().enumerate().map(pixel).collect();
-        Plane::from_rows(self.canvas.width, self.canvas.height, data).expect("as many pixels as before")
+        Plane::from_rows(self.canvas.width, self.canvas.height, data)
+            .expect("as many pixels as before")
     }
 
     /// Takes a step, which draws a surface that may be drawn over, or none.
@@ -114,11 +121,16 @@ impl<'w> Replay<'w> {
             Step::Window { pixels, .. } | Step::Rays { pixels, .. } => {
                 rectangle(canvas, *pixels, |at| shown[at] = Shown::Final);
             }
-            Step::Line { row, .. } => rectangle(canvas, [0, *row, canvas.width, 1], |at| shown[at] = Shown::Final),
+            Step::Line { row, .. } => {
+                rectangle(canvas, [0, *row, canvas.width, 1], |at| shown[at] = Shown::Final)
+            }
             Step::Drawn { stays, .. } => runs(canvas, stays, |at| shown[at] = overwritten),
-            Step::Piece { outline, .. } => canvas.fill(edges(outline), |at| shown[at] = overwritten),
+            Step::Piece { outline, .. } => {
+                canvas.fill(edges(outline), |at| shown[at] = overwritten)
+            }
             Step::Visible { contours, .. } => {
-                canvas.fill(contours.iter().flat_map(Contour::edges), |at| shown[at] = Shown::Final);
+                canvas
+                    .fill(contours.iter().flat_map(Contour::edges), |at| shown[at] = Shown::Final);
             }
             _ => {}
         }
@@ -133,7 +145,9 @@ impl<'w> Replay<'w> {
         match step {
             Step::Window { pixels, .. } | Step::Rays { pixels, .. } => sides(canvas, *pixels, mark),
             Step::Line { row, .. } => rectangle(canvas, [0, *row, canvas.width, 1], mark),
-            Step::EdgeTable { rows: [first, end], .. } => sides(canvas, [0, *first, canvas.width, end - first], mark),
+            Step::EdgeTable { rows: [first, end], .. } => {
+                sides(canvas, [0, *first, canvas.width, end - first], mark)
+            }
             Step::Drawn { stays, hidden, .. } => {
                 // The border of what it covers, and every other pixel of what is hidden.
                 let mut covers = vec![false; data.len()];
@@ -155,7 +169,10 @@ impl<'w> Replay<'w> {
                 edges(outline).for_each(|edge| canvas.line(edge, &mut mark));
             }
             Step::Visible { contours, .. } => {
-                contours.iter().flat_map(Contour::edges).for_each(|edge| canvas.line(edge, &mut mark));
+                contours
+                    .iter()
+                    .flat_map(Contour::edges)
+                    .for_each(|edge| canvas.line(edge, &mut mark));
             }
             _ => {}
         }
@@ -204,7 +221,9 @@ fn borders(canvas: Canvas, covers: &[bool]) -> Vec<usize> {
         x > 0 && x + 1 < width && y > 0 && y + 1 < height
     };
     let is_border = |&at: &usize| {
-        covers[at] && !(is_inner(at) && [at - 1, at + 1, at - width, at + width].iter().all(|n| covers[*n]))
+        covers[at]
+            && !(is_inner(at)
+                && [at - 1, at + 1, at - width, at + width].iter().all(|n| covers[*n]))
     };
     (0..covers.len()).filter(is_border).collect()
 }
@@ -219,7 +238,8 @@ mod tests {
     #[test]
     fn facets_cover_each_other_as_they_come() {
         // The far facet covers all, the near one the right half.
-        let drawn = |facet, from| Step::Drawn { facet, stays: vec![[0, from, 4]], hidden: Vec::new() };
+        let drawn =
+            |facet, from| Step::Drawn { facet, stays: vec![[0, from, 4]], hidden: Vec::new() };
         let steps = numbered(vec![drawn(0, 0), drawn(1, 2)]);
         let image = Plane::from_rows(4, 1, vec![RED; 4]).unwrap();
         let seen = vec![Some(7), Some(7), Some(8), Some(8)];
@@ -230,7 +250,10 @@ mod tests {
         replay.go_to(0);
         assert_eq!(replay.shown, [Shown::Surface(7); 4]);
         replay.go_to(1);
-        assert_eq!(replay.shown, [Shown::Surface(7), Shown::Surface(7), Shown::Surface(8), Shown::Surface(8)]);
+        assert_eq!(
+            replay.shown,
+            [Shown::Surface(7), Shown::Surface(7), Shown::Surface(8), Shown::Surface(8)]
+        );
         // All that is not outlined is as in the end.
         let picture = replay.picture();
         assert_eq!(picture.data()[..2], [RED; 2]);
@@ -240,16 +263,30 @@ mod tests {
     #[test]
     fn windows_uncover_the_picture() {
         let window = super::super::tests::window;
-        let steps = vec![window([0, 0, 4, 4], WindowVerdict::Cut), window([0, 0, 2, 4], WindowVerdict::Empty)];
-        let steps = steps.into_iter().zip(0..).map(|(step, number)| NumberedStep { number, parent: None, step });
+        let steps = vec![
+            window([0, 0, 4, 4], WindowVerdict::Cut),
+            window([0, 0, 2, 4], WindowVerdict::Empty),
+        ];
+        let steps = steps.into_iter().zip(0..).map(|(step, number)| NumberedStep {
+            number,
+            parent: None,
+            step,
+        });
         let image = Plane::from_rows(4, 4, vec![RED; 16]).unwrap();
-        let (steps, background, seen, drawn) = (steps.collect(), vec![[9; 4]; 4], vec![None; 16], vec![None; 2]);
+        let (steps, background, seen, drawn) =
+            (steps.collect(), vec![[9; 4]; 4], vec![None; 16], vec![None; 2]);
         let watched = WatchedSteps { steps, image, background, seen, drawn };
         let mut replay = Replay::new(&watched);
         replay.go_to(0);
-        assert!(replay.shown.iter().all(|s| *s == Shown::Paper), "a window that is cut decides nothing");
+        assert!(
+            replay.shown.iter().all(|s| *s == Shown::Paper),
+            "a window that is cut decides nothing"
+        );
         assert_eq!(replay.picture().data()[5], opaque(PAPER), "only its sides are marked");
         replay.go_to(1);
-        assert!(replay.shown.iter().all(|s| *s == Shown::Final), "the last step leaves nothing open");
+        assert!(
+            replay.shown.iter().all(|s| *s == Shown::Final),
+            "the last step leaves nothing open"
+        );
     }
 }

@@ -1,7 +1,9 @@
-//! The structures that algorithms build, drawn from the steps that they tell: `vitral render --structure FILE.svg`.
+//! The structures that algorithms build, drawn from the steps that they tell:
+//! `vitral render --structure FILE.svg`.
 //!
-//! Warnock's windows are drawn in the picture and as a tree, a BSP tree as nodes and links, the painter's list as two columns: the
-//! first order beside the final one. Large structures are abbreviated; what is left out is counted in the picture.
+//! Warnock's windows are drawn in the picture and as a tree, a BSP tree as nodes and links, the
+//! painter's list as two columns: the first order beside the final one. Large structures are
+//! abbreviated; what is left out is counted in the picture.
 
 mod depth_sort;
 mod quadtree;

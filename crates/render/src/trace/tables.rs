@@ -2,16 +2,16 @@
 
 use serde::Serialize;
 
-/// An entry of the polygon table: a convex polygon on the screen, of a face that is flat. A face that is not flat, or not
-/// convex, has several.
+/// An entry of the polygon table: a convex polygon on the screen, of a face that is flat. A face
+/// that is not flat, or not convex, has several.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TablePolygon {
     /// The first of its facets.
     pub facet: u32,
     /// The face of the file that it is of.
     pub surface: u32,
-    /// Its plane: change of depth for a pixel to the right, for a pixel down, and depth at the picture's top left, which may
-    /// be far outside of it.
+    /// Its plane: change of depth for a pixel to the right, for a pixel down, and depth at the
+    /// picture's top left, which may be far outside of it.
     pub plane: [f64; 3],
 }
 

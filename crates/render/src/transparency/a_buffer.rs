@@ -1,13 +1,17 @@
-//! The A-buffer: each pixel keeps a list of fragments with coverage masks, and packs it when all are there.
+//! The A-buffer: each pixel keeps a list of fragments with coverage masks, and packs it when all
+//! are there.
 //!
-//! A fragment is a facet in a pixel: which samples it covers (a bit mask) and how far it is there. Sorting a pixel's few
-//! fragments once, by their ranges of depth, serves all its samples; laying one over the others is a loop over the bits of
-//! its mask. That is right as long as fragments that share samples do not overlap in depth. Where they do, as where two
-//! surfaces meet within a pixel, Carpenter estimates how much of each is in front; here the depths at the samples are
-//! still known, so the pixel is sorted sample by sample, and the result is exact everywhere.
+//! A fragment is a facet in a pixel: which samples it covers (a bit mask) and how far it is there.
+//! Sorting a pixel's few fragments once, by their ranges of depth, serves all its samples; laying
+//! one over the others is a loop over the bits of its mask. That is right as long as fragments that
+//! share samples do not overlap in depth. Where they do, as where two surfaces meet within a pixel,
+//! Carpenter estimates how much of each is in front; here the depths at the samples are still
+//! known, so the pixel is sorted sample by sample, and the result is exact everywhere.
 //!
-//! In:   fragments of a pixel. Out: its samples; the same bytes in whatever order the fragments came.
-//! Cost: n²/4 comparisons for up to 32 fragments in the worst order, beyond that as [`super::sorted`].
+//! In:   fragments of a pixel. Out: its samples; the same bytes in whatever order the fragments
+//!       came.
+//! Cost: n²/4 comparisons for up to 32 fragments in the worst order, beyond that as
+//!       [`super::sorted`].
 //! Source: \[Carpenter 1984\].
 
 use super::fragment::{Fragment, MOST_SAMPLES};
@@ -51,7 +55,9 @@ fn pack<const MAX: usize>(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) 
     let all = u32::MAX >> (MOST_SAMPLES - samples.len().clamp(1, MOST_SAMPLES));
     let same = samples.iter().all(|s| *s == samples[0]);
     let (mut color, mut nearest, mut count) = (samples[0], f32::MIN, 0);
-    while let Some(fragment) = order.get(count).map(of).filter(|f| same && f.mask == all && f.far > nearest) {
+    while let Some(fragment) =
+        order.get(count).map(of).filter(|f| same && f.mask == all && f.far > nearest)
+    {
         fragment.over(&mut color);
         (nearest, count) = (fragment.near, count + 1);
     }
@@ -59,8 +65,8 @@ fn pack<const MAX: usize>(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) 
         return samples.fill(color);
     }
 
-    // Beyond, each sample knows how near the nearest fragment is that was laid over it: another that is not nearer all over
-    // may cross it.
+    // Beyond, each sample knows how near the nearest fragment is that was laid over it: another
+    // that is not nearer all over may cross it.
     let (mut laid, mut nearest) = ([color; MOST_SAMPLES], [nearest; MOST_SAMPLES]);
     if count == 0 {
         laid[..samples.len()].copy_from_slice(samples);
@@ -90,7 +96,8 @@ mod tests {
     fn t7_stacks_of_one_to_eight_panes_are_the_closed_sum() {
         let depths: Vec<[f32; 1]> = (0..8).map(|i| [0.9 - 0.1 * i as f32]).collect();
         for n in 1..=8 {
-            let panes: Vec<_> = (0..n).map(|i| pane(i as u32, &depths[i], 0.1 * (i + 1) as f32, 0.5)).collect();
+            let panes: Vec<_> =
+                (0..n).map(|i| pane(i as u32, &depths[i], 0.1 * (i + 1) as f32, 0.5)).collect();
             let halved = |times| (0..times).fold(1.0f32, |share, _| share * 0.5);
             let sum: f32 = (0..n).map(|i| halved(i + 1) * 0.1 * (i + 1) as f32).sum();
             let expected = sum + halved(n) * 0.7;
@@ -102,8 +109,9 @@ mod tests {
     fn surfaces_that_meet_within_a_pixel_are_sorted_sample_by_sample() {
         // Two crossing panes over four samples: which one is in front changes in the middle.
         let (rising, falling) = ([0.2, 0.4, 0.6, 0.8], [0.8, 0.6, 0.4, 0.2]);
-        let fragment =
-            |facet, depths, red: f32| Fragment::new(facet, (0b1111, depths), [red * 0.5, 0.0, 0.0, 0.5], [0.5; 3]);
+        let fragment = |facet, depths, red: f32| {
+            Fragment::new(facet, (0b1111, depths), [red * 0.5, 0.0, 0.0, 0.5], [0.5; 3])
+        };
         for order in [[0, 1], [1, 0]] {
             let both = [fragment(0, &rising, 1.0), fragment(1, &falling, 0.0)];
             let mut samples = [[0.0, 0.0, 0.0, 1.0]; 4];

@@ -1,9 +1,11 @@
-//! Filtered transparency: coloured glass. Light from behind passes in the proportion `kt`, tinted by the glass.
+//! Filtered transparency: coloured glass. Light from behind passes in the proportion `kt`, tinted
+//! by the glass.
 //!
-//! `I = (1 - kt) Id1 + Is1 + kt F I2`: the filter `F` is the material's (`Tf` of an MTL file), white for clear glass. The
-//! highlights `Is1` are reflected by the surface and stay whole however clear the glass is (course notes F, figure of the
-//! stick in water); the linear model lets them fade with the rest. Where a texture or a vertex colour says that there is
-//! no glass at all, by the coverage `a`, neither is there a highlight: `I = a (…) + (1 - a) I2`.
+//! `I = (1 - kt) Id1 + Is1 + kt F I2`: the filter `F` is the material's (`Tf` of an MTL file),
+//! white for clear glass. The highlights `Is1` are reflected by the surface and stay whole however
+//! clear the glass is (course notes F, figure of the stick in water); the linear model lets them
+//! fade with the rest. Where a texture or a vertex colour says that there is no glass at all, by
+//! the coverage `a`, neither is there a highlight: `I = a (…) + (1 - a) I2`.
 //!
 //! In:   coverage, kt, filter. Out: what passes, RGB.
 //! Source: \[Foley et al. 1990\], 16.5.1.

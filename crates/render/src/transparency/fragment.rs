@@ -25,7 +25,8 @@ pub struct Fragment<'a> {
     pub color: [f32; 4],
     /// The part of the light from behind that passes.
     pub passes: [f32; 3],
-    /// What is behind it in place of what the pixel holds, premultiplied: blurred, for a translucent surface.
+    /// What is behind it in place of what the pixel holds, premultiplied: blurred, for a
+    /// translucent surface.
     pub behind: Option<[f32; 4]>,
 }
 
@@ -37,8 +38,14 @@ pub(crate) fn range(depths: &[f32]) -> [f32; 2] {
 }
 
 impl<'a> Fragment<'a> {
-    /// A fragment of `facet` at the samples `mask`, with its depth at each of them; nothing is known of what is behind it.
-    pub fn new(facet: u32, (mask, depths): (u32, &'a [f32]), color: [f32; 4], passes: [f32; 3]) -> Self {
+    /// A fragment of `facet` at the samples `mask`, with its depth at each of them; nothing is
+    /// known of what is behind it.
+    pub fn new(
+        facet: u32,
+        (mask, depths): (u32, &'a [f32]),
+        color: [f32; 4],
+        passes: [f32; 3],
+    ) -> Self {
         let [far, near] = range(depths);
         Self { facet, mask, depths, far, near, color, passes, behind: None }
     }
@@ -89,8 +96,9 @@ impl Fragment<'_> {
     }
 }
 
-/// The fragments that cover `sample`, in the order of the scene, without the ones that an opaque one hides (cut-outs,
-/// lines), and the nearest opaque one, which is behind them. For the orders that know nothing but one transparent buffer.
+/// The fragments that cover `sample`, in the order of the scene, without the ones that an opaque
+/// one hides (cut-outs, lines), and the nearest opaque one, which is behind them. For the orders
+/// that know nothing but one transparent buffer.
 pub(super) fn in_front_of_opaque<'f, 'a>(
     fragments: &'f [Fragment<'a>],
     sample: usize,
@@ -98,7 +106,9 @@ pub(super) fn in_front_of_opaque<'f, 'a>(
     let here = move |f: &&Fragment<'_>| f.covers(sample);
     let opaque = fragments.iter().filter(here).filter(|f| f.is_opaque());
     let nearest = opaque.max_by(|a, b| a.far_to_near(b, sample));
-    let hidden = move |f: &Fragment<'_>| nearest.is_some_and(|n| f.far_to_near(n, sample) != Ordering::Greater);
+    let hidden = move |f: &Fragment<'_>| {
+        nearest.is_some_and(|n| f.far_to_near(n, sample) != Ordering::Greater)
+    };
     (fragments.iter().filter(here).filter(move |f| !hidden(f)), nearest)
 }
 
@@ -122,7 +132,8 @@ pub(crate) mod tests {
 
     #[test]
     fn opaque_fragments_hide_what_is_behind() {
-        let fragments = [pane(0, &[0.2], 1.0, 0.5), pane(1, &[0.5], 0.3, 0.0), pane(2, &[0.7], 1.0, 0.5)];
+        let fragments =
+            [pane(0, &[0.2], 1.0, 0.5), pane(1, &[0.5], 0.3, 0.0), pane(2, &[0.7], 1.0, 0.5)];
         let (seen, nearest) = in_front_of_opaque(&fragments, 0);
         let seen: Vec<_> = seen.map(|f| f.facet).collect();
         assert_eq!((seen, nearest.map(|f| f.color)), (vec![2], Some([0.3, 0.3, 0.3, 1.0])));

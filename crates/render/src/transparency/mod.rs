@@ -1,14 +1,16 @@
 //! How transparent surfaces are combined with what is behind them.
 //!
-//! Two choices, independent of each other and of everything else. A *model* says how much light a surface lets through:
-//! [`linear`], [`kay`], [`filtered`]. An *order* says how the surfaces in front of a pixel are laid over each other: by
-//! [`a_buffer`], [`sorted`], [`multi_pass`], [`back_to_front`] exactly, by [`two_buffer`] and [`submission`] with the errors for which
-//! they are known. [`registry`] lists both.
+//! Two choices, independent of each other and of everything else. A *model* says how much light a
+//! surface lets through: [`linear`], [`kay`], [`filtered`]. An *order* says how the surfaces in
+//! front of a pixel are laid over each other: by [`a_buffer`], [`sorted`], [`multi_pass`],
+//! [`back_to_front`] exactly, by [`two_buffer`] and [`submission`] with the errors for which they
+//! are known. [`registry`] lists both.
 //!
-//! A visibility algorithm resolves the opaque surfaces and hands on every transparent facet that lies in front of them;
-//! all algorithms hand on the same ones, so each model and each order works with each of them. The facets of a pixel
-//! become [`Fragment`]s; the orders take these in the order of the scene (that in which triangles were submitted), only
-//! [`back_to_front`] in that of a list. A translucent surface shows a blurred picture of what is behind it instead
+//! A visibility algorithm resolves the opaque surfaces and hands on every transparent facet that
+//! lies in front of them; all algorithms hand on the same ones, so each model and each order works
+//! with each of them. The facets of a pixel become [`Fragment`]s; the orders take these in the
+//! order of the scene (that in which triangles were submitted), only [`back_to_front`] in that of a
+//! list. A translucent surface shows a blurred picture of what is behind it instead
 //! ([`registry::TRANSLUCENCY`]).
 
 pub mod a_buffer;

@@ -1,17 +1,21 @@
-//! Multi-pass transparency: every pass over the geometry lays one more layer, the farthest that is left.
+//! Multi-pass transparency: every pass over the geometry lays one more layer, the farthest that is
+//! left.
 //!
-//! Besides the opaque z-buffer there is one more buffer of depths. A pass goes through all transparent facets in any
-//! order and keeps, at each sample, the farthest one that is nearer than what has been laid so far; then it is laid over
-//! the picture, and its depth becomes the new limit. There are as many passes as layers, and no list is ever sorted.
-//! Depth peeling is the same from the other end, from near to far. `visible/peel.rs` goes through the triangles of a tile,
-//! `shading/passes.rs` lays what it finds; nothing is kept of earlier passes but their picture, so thousands of layers
-//! are only a matter of time. Rays, and the comparison of every facet with every sample, find all layers of a sample
-//! at once; for them a pass goes through the pixel's fragments, here.
+//! Besides the opaque z-buffer there is one more buffer of depths. A pass goes through all
+//! transparent facets in any order and keeps, at each sample, the farthest one that is nearer than
+//! what has been laid so far; then it is laid over the picture, and its depth becomes the new
+//! limit. There are as many passes as layers, and no list is ever sorted. Depth peeling is the same
+//! from the other end, from near to far. `visible/peel.rs` goes through the triangles of a tile,
+//! `shading/passes.rs` lays what it finds; nothing is kept of earlier passes but their picture, so
+//! thousands of layers are only a matter of time. Rays, and the comparison of every facet with
+//! every sample, find all layers of a sample at once; for them a pass goes through the pixel's
+//! fragments, here.
 //!
 //! In:   fragments of a pixel. Out: its samples.
-//! Cost: n² for n layers; memory: one layer a sample, whatever n is, where passes go through triangles.
-//! Source: \[Mammen 1989\]; from near to far \[Everitt 2001\]. Departs from both: of coincident facets each gets a pass of
-//! its own, the lower facet last.
+//! Cost: n² for n layers; memory: one layer a sample, whatever n is, where passes go through
+//!       triangles.
+//! Source: \[Mammen 1989\]; from near to far \[Everitt 2001\]. Departs from both: of coincident
+//! facets each gets a pass of its own, the lower facet last.
 
 use super::fragment::Fragment;
 
@@ -42,7 +46,8 @@ mod tests {
     #[test]
     fn t12_e19_passes_give_what_sorting_gives() {
         let depths = [[0.3], [0.9], [0.5], [0.5], [0.1]];
-        let panes: Vec<_> = (0..5).map(|i| pane(i as u32, &depths[i], 0.2 * i as f32, 0.3)).collect();
+        let panes: Vec<_> =
+            (0..5).map(|i| pane(i as u32, &depths[i], 0.2 * i as f32, 0.3)).collect();
         let expected = laid(super::super::sorted::lay, &panes, 0.4);
         assert_eq!(laid(lay, &panes, 0.4), expected);
         let turned: Vec<_> = panes.iter().rev().copied().collect();

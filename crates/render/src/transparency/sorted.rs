@@ -1,8 +1,9 @@
-//! Back to front at each sample: the definition of recursive transparency, the reference of the other orders.
+//! Back to front at each sample: the definition of recursive transparency, the reference of the
+//! other orders.
 //!
-//! The facets in front of a sample are sorted by depth there, then laid over each other from far to near. It is what the
-//! painter's algorithm and the BSP tree do with transparent polygons, fragment over pixel, without their having to cut
-//! polygons to find an order.
+//! The facets in front of a sample are sorted by depth there, then laid over each other from far to
+//! near. It is what the painter's algorithm and the BSP tree do with transparent polygons, fragment
+//! over pixel, without their having to cut polygons to find an order.
 //!
 //! In:   fragments of a pixel. Out: its samples.
 //! Cost: n log n for n layers, at each sample.

@@ -1,8 +1,10 @@
-//! Transparency in a plain z-buffer: facets are blended in the order in which they come. Wrong, and shown for that.
+//! Transparency in a plain z-buffer: facets are blended in the order in which they come. Wrong, and
+//! shown for that.
 //!
-//! Opaque surfaces are drawn first. Then each transparent facet passes the depth test, is laid over the pixel, and leaves
-//! its depth there. A facet that comes after a nearer one is lost: what is seen through glass depends on the order of
-//! the scene. One layer, or layers that happen to come from far to near, are right.
+//! Opaque surfaces are drawn first. Then each transparent facet passes the depth test, is laid over
+//! the pixel, and leaves its depth there. A facet that comes after a nearer one is lost: what is
+//! seen through glass depends on the order of the scene. One layer, or layers that happen to come
+//! from far to near, are right.
 //!
 //! In:   fragments of a pixel in the order of the scene. Out: its samples.
 //! Cost: linear, no memory.
@@ -37,7 +39,10 @@ mod tests {
     fn t11_the_order_of_submission_shows() {
         let (near, far) = (pane(0, &[0.9], 0.8, 0.25), pane(1, &[0.4], 0.6, 0.5));
         let exact = 0.75 * 0.8 + 0.25 * (0.5 * 0.6 + 0.5 * 0.2);
-        assert!((laid(lay, &[far, near], 0.2) - exact).abs() < 1e-6, "from far to near it is right");
+        assert!(
+            (laid(lay, &[far, near], 0.2) - exact).abs() < 1e-6,
+            "from far to near it is right"
+        );
         let lost = 0.75 * 0.8 + 0.25 * 0.2;
         assert!((laid(lay, &[near, far], 0.2) - lost).abs() < 1e-6, "the far pane is lost");
     }

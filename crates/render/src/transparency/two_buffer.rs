@@ -1,15 +1,18 @@
-//! The two-buffer z-buffer of the course notes: opaque surfaces in one buffer, all transparent ones together in another.
+//! The two-buffer z-buffer of the course notes: opaque surfaces in one buffer, all transparent ones
+//! together in another.
 //!
-//! First the opaque surfaces are drawn; transparent ones go to a list. Then each of these that is nearer than the
-//! z-buffer is added to a second buffer with a coefficient and an intensity, in the order of the list:
-//! `k' = 1 - (1 - k) (1 - kc)`, `I' = k I + kc Ic`, with `kc = 1 - kt` of the surface. At last the two are combined,
-//! `I + (1 - k) I_opaque`. There is no sorting, and depths of transparent surfaces are not kept. One layer is exact.
-//! Beyond that the order of the list shows, and what was there before is weighed once more with its own
-//! coefficient: two layers give `k1² I1 + k2 I2 + (1 - k1) (1 - k2) I_opaque` (docs/course.md, E3).
+//! First the opaque surfaces are drawn; transparent ones go to a list. Then each of these that is
+//! nearer than the z-buffer is added to a second buffer with a coefficient and an intensity, in the
+//! order of the list: `k' = 1 - (1 - k) (1 - kc)`, `I' = k I + kc Ic`, with `kc = 1 - kt` of the
+//! surface. At last the two are combined, `I + (1 - k) I_opaque`. There is no sorting, and depths
+//! of transparent surfaces are not kept. One layer is exact. Beyond that the order of the list
+//! shows, and what was there before is weighed once more with its own coefficient: two layers give
+//! `k1² I1 + k2 I2 + (1 - k1) (1 - k2) I_opaque` (docs/course.md, E3).
 //!
 //! In:   fragments of a pixel in the order of the scene. Out: its samples.
 //! Cost: linear; memory: one colour and coefficient a sample.
-//! Source: course notes F; \[Foley et al. 1990\], 16.5.1. The notes' `f` is left open; here it is that of two filters.
+//! Source: course notes F; \[Foley et al. 1990\], 16.5.1. The notes' `f` is left open; here it is
+//!         that of two filters.
 
 use super::fragment::{Fragment, in_front_of_opaque};
 
@@ -59,7 +62,8 @@ pub fn fill(fragments: &[Fragment<'_>], sample: usize, mut behind: Behind) -> Fi
 /// See the module.
 pub fn lay(fragments: &[Fragment<'_>], samples: &mut [[f32; 4]]) {
     for (s, color) in samples.iter_mut().enumerate() {
-        let Filled { behind, light, passes, alpha, .. } = fill(fragments, s, Behind { color: *color, depth: None });
+        let Filled { behind, light, passes, alpha, .. } =
+            fill(fragments, s, Behind { color: *color, depth: None });
         for k in 0..3 {
             color[k] = light[k] + passes[k] * behind.color[k];
         }

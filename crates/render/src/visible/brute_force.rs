@@ -1,13 +1,14 @@
 //! Brute force: every facet is tested at every sample.
 //!
-//! For each sample, look at all facets; of those that cover it, the nearest is seen. This is the first of the two
-//! approaches that courses begin with, and the one that nobody can get wrong: no order, no coherence, no structure.
-//! The other algorithms are measured against it.
+//! For each sample, look at all facets; of those that cover it, the nearest is seen. This is the
+//! first of the two approaches that courses begin with, and the one that nobody can get wrong: no
+//! order, no coherence, no structure. The other algorithms are measured against it.
 //!
 //! In:   prepared draws (model space). Out: the samples of each tile (screen space).
-//! Cost: samples times facets, always. It refuses what would take more than [`vitral_exec::MAX_STEPS`], and stops at the time limit.
-//! Source: [Foley et al. 1990], section 15.1. Departs from it: facets that lie beside the picture or face away are
-//!       dropped when they are set up, as the view says.
+//! Cost: samples times facets, always. It refuses what would take more than
+//!       [`vitral_exec::MAX_STEPS`], and stops at the time limit.
+//! Source: [Foley et al. 1990], section 15.1. Departs from it: facets that lie beside the picture
+//!       or face away are dropped when they are set up, as the view says.
 
 use super::agreement::nearer;
 use super::screen_setups::ScreenSetups;
@@ -40,9 +41,12 @@ impl VisibleSurface for BruteForce {
             let facets = ScreenSetups::new(view, execution, &mut resolved.geometry)?;
             resolved.geometry_seconds = execution.budget.elapsed() - start;
             let pixels = u64::from(view.viewport.width) * u64::from(view.viewport.height);
-            let needed = (pixels * view.pattern.len() as u64).saturating_mul(facets.setups.len() as u64);
+            let needed =
+                (pixels * view.pattern.len() as u64).saturating_mul(facets.setups.len() as u64);
             execution.budget.check_work(needed, "brute force")?;
-            let look = |tile: &mut Tile, layers: &mut LayerList| look(view, &facets, tile, layers, execution);
+            let look = |tile: &mut Tile, layers: &mut LayerList| {
+                look(view, &facets, tile, layers, execution)
+            };
             resolved.counters = each_tile(view, marks, grid, execution, sink, look)?;
             Ok(resolved)
         })

@@ -1,21 +1,27 @@
-//! Binary space partition: the scene is cut up once, and then there is an order from back to front for every eye.
+//! Binary space partition: the scene is cut up once, and then there is an order from back to front
+//! for every eye.
 //!
-//! A plane cuts space in two. Seen from an eye on one side, nothing beyond the plane can hide anything on the eye's side.
-//! So: first draw what lies beyond, then what lies in the plane, then what lies on the eye's side; and within each half
-//! do the same with a plane of its own. The planes are those of polygons (and, while there are many polygons, planes
-//! across an axis), each half's polygons are cut where they cross the plane, and the whole is a tree that depends on the
-//! scene alone. To draw a picture is to walk the tree, asking at each node on which side the eye is.
+//! A plane cuts space in two. Seen from an eye on one side, nothing beyond the plane can hide
+//! anything on the eye's side. So: first draw what lies beyond, then what lies in the plane, then
+//! what lies on the eye's side; and within each half do the same with a plane of its own. The
+//! planes are those of polygons (and, while there are many polygons, planes across an axis), each
+//! half's polygons are cut where they cross the plane, and the whole is a tree that depends on the
+//! scene alone. To draw a picture is to walk the tree, asking at each node on which side the eye
+//! is.
 //!
-//! The polygons are the faces of the file: flat convex ones whole, others in the few convex pieces that their triangles can be
-//! joined to (`bsp/polygons.rs`). Those in one plane share a node; of these, what faces the viewer comes last, then the lower facet.
+//! The polygons are the faces of the file: flat convex ones whole, others in the few convex pieces
+//! that their triangles can be joined to (`bsp/polygons.rs`). Those in one plane share a node; of
+//! these, what faces the viewer comes last, then the lower facet.
 //!
 //! In:   the world's polygons (world space). Out: the samples of each tile (screen space).
-//! Cost: building, see `bsp/tree.rs`; a picture costs the nodes plus covered samples, hidden ones included.
-//! Source: [Fuchs, Kedem & Naylor 1980], [Schumacker et al. 1969]. Departs from them: a parallel projection asks for the
-//! side of the direction to the viewer; the list is taken from its end, from front to back, so that what is full need not
-//! be looked at again; a fragment is not a new polygon but its facets and the planes that cut it, which
-//! become lines on the screen (see `pieces.rs`).
-//! Coherence: of frames. The tree stays in the session, so a second picture from anywhere does not build one.
+//! Cost: building, see `bsp/tree.rs`; a picture costs the nodes plus covered samples, hidden ones
+//!       included.
+//! Source: [Fuchs, Kedem & Naylor 1980], [Schumacker et al. 1969]. Departs from them: a parallel
+//! projection asks for the side of the direction to the viewer; the list is taken from its end,
+//! from front to back, so that what is full need not be looked at again; a fragment is not a new
+//! polygon but its facets and the planes that cut it, which become lines on the screen (see
+//! `pieces.rs`). Coherence: of frames. The tree stays in the session, so a second picture from
+//! anywhere does not build one.
 
 mod polygons;
 mod tree;
@@ -78,7 +84,12 @@ impl VisibleSurface for Bsp {
 }
 
 impl PolygonAlgorithm for Bsp {
-    fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit> {
+    fn polygons(
+        &self,
+        view: &PreparedView<'_>,
+        execution: &Execution,
+        list: &mut PolygonList,
+    ) -> Result<(), Limit> {
         // Set the facets up and take the tree from the cache.
         let facets = Facets::without_tiles(view, execution)?;
         let setups: Vec<&Setup> = facets.all().collect();
@@ -97,7 +108,9 @@ impl PolygonAlgorithm for Bsp {
                     execution.budget.check("the BSP tree")?;
                 }
                 let facets = tree.facets(fragment);
-                fragments.each_outline(fragment, |outline, _| list.push_convex(facets.to_vec(), outline));
+                fragments.each_outline(fragment, |outline, _| {
+                    list.push_convex(facets.to_vec(), outline)
+                });
             }
 
             // Report the tree's size.
@@ -136,9 +149,12 @@ fn picture(
     let (view, execution) = (facets.view(), facets.execution());
     let (setups, opaque) = facets.listed();
     let facet_count = view.session.world.facet_count;
-    let bytes = tree.fragment_count() * 60 + u64::from(facet_count) * 4 + size_of_val(tree.cutters()) as u64;
+    let bytes = tree.fragment_count() * 60
+        + u64::from(facet_count) * 4
+        + size_of_val(tree.cutters()) as u64;
     execution.budget.charged(bytes, "BSP fragments on the screen", || {
-        // Find the order of the fragments from front to back, and where their facets are on the screen.
+        // Find the order of the fragments from front to back, and where their facets are on the
+        // screen.
         let raster = Raster::new(view.viewport, &view.pattern);
         let footprints = footprints(&setups, &raster, execution);
         let (order, places) = execution.workers.join(
@@ -156,14 +172,19 @@ fn picture(
 
         // Draw them, tile by tile.
         let list = PriorityList { setups: &setups, opaque, runs: &runs };
-        let mut counters = draw_list::<true>(facets, &list, marks, grid, sink, "drawing BSP fragments")?;
+        let mut counters =
+            draw_list::<true>(facets, &list, marks, grid, sink, "drawing BSP fragments")?;
         counters.pieces = runs.iter().map(|r| r.len() as u64).sum();
         Ok(counters)
     })
 }
 
 /// Where each triangle may have samples. Of a fine mesh, most facets lie between the samples.
-fn footprints(setups: &[&Setup], raster: &Raster<'_>, execution: &Execution) -> Vec<Option<Footprint>> {
+fn footprints(
+    setups: &[&Setup],
+    raster: &Raster<'_>,
+    execution: &Execution,
+) -> Vec<Option<Footprint>> {
     let mut footprints: Vec<Option<Footprint>> = vec![None; setups.len()];
     execution.workers.for_each_chunk(&mut footprints, FACETS_A_JOB, |job, footprints| {
         for (footprint, setup) in footprints.iter_mut().zip(&setups[job * FACETS_A_JOB..]) {
@@ -173,7 +194,8 @@ fn footprints(setups: &[&Setup], raster: &Raster<'_>, execution: &Execution) -> 
     footprints
 }
 
-/// The fragments of the tree from front to back, those of facets that have no place in the tree last.
+/// The fragments of the tree from front to back, those of facets that have no place in the tree
+/// last.
 fn front_to_back(tree: &BspTree, to_viewer: DVec4) -> Vec<u32> {
     let mut order = Vec::with_capacity(tree.fragment_count() as usize);
     tree.back_to_front(to_viewer, |fragment| order.push(fragment));
@@ -209,11 +231,14 @@ impl OnScreen<'_> {
 
     /// The lines along which a fragment is cut from a triangle of its polygon, that has this depth.
     fn cuts(&self, fragment: u32, depth: Depth) -> impl ExactSizeIterator<Item = Cut> + '_ {
-        self.tree.cuts(fragment).map(move |(cutter, positive)| self.lines.cut(cutter, positive, depth))
+        self.tree
+            .cuts(fragment)
+            .map(move |(cutter, positive)| self.lines.cut(cutter, positive, depth))
     }
 
-    /// Calls `f` with the outline of a fragment, clockwise, 1/256 pixel, and how many lines cut it: once for all triangles of its
-    /// polygon, or more often if that was not brought to the screen as a whole. An outline may have become empty.
+    /// Calls `f` with the outline of a fragment, clockwise, 1/256 pixel, and how many lines cut it:
+    /// once for all triangles of its polygon, or more often if that was not brought to the screen
+    /// as a whole. An outline may have become empty.
     fn each_outline(&self, fragment: u32, mut f: impl FnMut(&[[f64; 2]], u32)) {
         let wholes = Polygons::joined(self.triangles(fragment).map(|(_, setup)| setup), |_| 0);
         let mut scratch = Vec::new();
@@ -234,8 +259,14 @@ impl Fragments<'_> {
         let first = run * FRAGMENTS_A_RUN;
         for &fragment in self.order[first..].iter().take(FRAGMENTS_A_RUN) {
             let triangles = self.on_screen.triangles(fragment);
-            let triangles = triangles.map(|(index, setup)| (index, setup, self.footprints[index as usize]));
-            pieces.add_polygon(fragment, triangles, |depth| self.on_screen.cuts(fragment, depth), &self.raster);
+            let triangles =
+                triangles.map(|(index, setup)| (index, setup, self.footprints[index as usize]));
+            pieces.add_polygon(
+                fragment,
+                triangles,
+                |depth| self.on_screen.cuts(fragment, depth),
+                &self.raster,
+            );
         }
         pieces.finish(self.raster.viewport());
         pieces
@@ -272,7 +303,8 @@ fn eye(view: &PreparedView<'_>) -> DVec4 {
     if view.view.perspective { world_from_view.w_axis } else { world_from_view.z_axis }
 }
 
-/// Where each facet's triangles are among the view's, if they may have samples. Those of a clipped facet follow one another.
+/// Where each facet's triangles are among the view's, if they may have samples. Those of a clipped
+/// facet follow one another.
 struct SetupIndex {
     first: Vec<u32>,
 }
@@ -287,7 +319,11 @@ impl SetupIndex {
         Self { first }
     }
 
-    fn setups_of<'s>(&self, facet: u32, setups: &'s [&Setup]) -> impl Iterator<Item = u32> + use<'s> {
+    fn setups_of<'s>(
+        &self,
+        facet: u32,
+        setups: &'s [&Setup],
+    ) -> impl Iterator<Item = u32> + use<'s> {
         let first = self.first[facet as usize];
         (first..setups.len() as u32).take_while(move |&at| setups[at as usize].facet == facet)
     }
@@ -311,7 +347,8 @@ impl Lines {
         Self { planes }
     }
 
-    /// Where a facet meets a cutter's plane: the plane's value at `(x, y, depth of the facet there)` is linear in x and y.
+    /// Where a facet meets a cutter's plane: the plane's value at
+    /// `(x, y, depth of the facet there)` is linear in x and y.
     #[inline]
     fn cut(&self, cutter: u32, positive: bool, Depth { slope, at_zero }: Depth) -> Cut {
         let p = self.planes[cutter as usize];
@@ -323,7 +360,8 @@ impl Lines {
 fn screen_from_world(clip_from_world: &DMat4, viewport: Viewport) -> DMat4 {
     let half = [viewport.width, viewport.height].map(|s| f64::from(s) * 0.5 * f64::from(SUBPIXEL));
     let scale = DVec3::new(1.0 / half[0], -1.0 / half[1], 1.0);
-    let ndc_from_screen = DMat4::from_scale(scale) * DMat4::from_translation(DVec3::new(-half[0], -half[1], 0.0));
+    let ndc_from_screen =
+        DMat4::from_scale(scale) * DMat4::from_translation(DVec3::new(-half[0], -half[1], 0.0));
     // Planes go the way back, transposed.
     (clip_from_world.inverse() * ndc_from_screen).transpose()
 }
@@ -334,7 +372,8 @@ mod tests {
 
     #[test]
     fn a_plane_becomes_the_line_where_it_meets_the_facet() {
-        // Parallel projection of the cube [-1, 1]^3 along z: ndc depth (z + 1) / 2, picture of 4 by 2 pixels.
+        // Parallel projection of the cube [-1, 1]^3 along z: ndc depth (z + 1) / 2, picture of 4 by
+        // 2 pixels.
         let clip_from_world = DMat4::from_cols(
             DVec4::new(1.0, 0.0, 0.0, 0.0),
             DVec4::new(0.0, 1.0, 0.0, 0.0),

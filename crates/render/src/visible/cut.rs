@@ -1,11 +1,12 @@
 //! Lines on the screen along which facets are cut, and what is left of a triangle between them.
 //!
-//! Whether a sample lies on the kept side of a line is one function, the same for both halves of a cut. Outlines, by contrast,
-//! are computed with rounding: they err outwards.
+//! Whether a sample lies on the kept side of a line is one function, the same for both halves of a
+//! cut. Outlines, by contrast, are computed with rounding: they err outwards.
 
 use vitral_raster::{SUBPIXEL, Setup};
 
-/// A facet's depth as a linear function of the place, not clamped: `at_zero + slope . (x, y)` in 1/256 pixel.
+/// A facet's depth as a linear function of the place, not clamped: `at_zero + slope . (x, y)` in
+/// 1/256 pixel.
 #[derive(Clone, Copy)]
 pub(super) struct Depth {
     /// Change of depth with 1/256 pixel along x and y.
@@ -62,14 +63,16 @@ impl Cut {
         Self { positive: !self.positive, ..self }
     }
 
-    /// Whether a box, given by its smallest and largest corner, lies on the kept side with room to spare.
+    /// Whether a box, given by its smallest and largest corner, lies on the kept side with room to
+    /// spare.
     pub(super) fn holds_box(&self, [[x0, y0], [x1, y1]]: [[f64; 2]; 2]) -> bool {
         let x = if (self.a > 0.0) == self.positive { x0 } else { x1 };
         let y = if (self.b > 0.0) == self.positive { y0 } else { y1 };
         self.holds(&[[x, y]])
     }
 
-    /// Whether a polygon lies on the kept side with room to spare, so that no sample in it can be beyond.
+    /// Whether a polygon lies on the kept side with room to spare, so that no sample in it can be
+    /// beyond.
     pub(super) fn holds(&self, polygon: &[[f64; 2]]) -> bool {
         polygon.iter().all(|&[x, y]| {
             let v = self.value([x, y]);

@@ -1,12 +1,14 @@
 //! All facets of a view at once, for algorithms that look at several facets before they decide.
 //!
-//! The z-buffer takes triangles a few hundred thousand at a time and forgets them; algorithms that sort, subdivide or
-//! sweep need them together. Here all draws of a view are brought to the screen and set up, opaque ones apart from the
-//! layers, with their lists by tile and by row of tiles. The frame of such an algorithm is the same each time, too: fill
-//! some tiles with opaque facets, collect the layers and marks in front, hand the tiles on ([`fill_tiles`]).
+//! The z-buffer takes triangles a few hundred thousand at a time and forgets them; algorithms that
+//! sort, subdivide or sweep need them together. Here all draws of a view are brought to the screen
+//! and set up, opaque ones apart from the layers, with their lists by tile and by row of tiles. The
+//! frame of such an algorithm is the same each time, too: fill some tiles with opaque facets,
+//! collect the layers and marks in front, hand the tiles on ([`fill_tiles`]).
 //!
 //! In:   prepared draws (model space). Out: set-up triangles (screen space).
-//! Cost: linear in vertices and triangles; memory: all triangles, charged to the budget before they are set up.
+//! Cost: linear in vertices and triangles; memory: all triangles, charged to the budget before they
+//!       are set up.
 
 use super::Resolved;
 use super::front_end::{BYTES_A_TRIANGLE, DrawOrder, FrontEnd, triangle_count};
@@ -26,7 +28,8 @@ pub(super) struct Facets<'v, 'a> {
     execution: &'v Execution,
     opaque: Vec<Batch>,
     layered: Vec<Batch>,
-    /// For each row of tiles the opaque triangles that may have samples in it: batch and index in the batch. Once asked.
+    /// For each row of tiles the opaque triangles that may have samples in it: batch and index in
+    /// the batch. Once asked.
     rows: OnceLock<Vec<Vec<[u32; 2]>>>,
     charged: u64,
 }
@@ -42,7 +45,10 @@ impl<'v, 'a> Facets<'v, 'a> {
     }
 
     /// [`Self::new`] without lists by tile: nobody looks at samples.
-    pub(super) fn without_tiles(view: &'v PreparedView<'a>, execution: &'v Execution) -> Result<Self, Limit> {
+    pub(super) fn without_tiles(
+        view: &'v PreparedView<'a>,
+        execution: &'v Execution,
+    ) -> Result<Self, Limit> {
         Self::with_lists(view, execution, &mut Resolved::default(), TileLists::Unwanted)
     }
 
@@ -57,7 +63,8 @@ impl<'v, 'a> Facets<'v, 'a> {
         let charged = triangle_count(view) * BYTES_A_TRIANGLE;
         execution.budget.charge(charged, "the view's facets")?;
         let rows = OnceLock::new();
-        let mut facets = Self { view, execution, opaque: Vec::new(), layered: Vec::new(), rows, charged };
+        let mut facets =
+            Self { view, execution, opaque: Vec::new(), layered: Vec::new(), rows, charged };
 
         // Set up all rounds and keep their batches.
         let mut front_end = FrontEnd::new(view, execution);
@@ -79,12 +86,14 @@ impl<'v, 'a> Facets<'v, 'a> {
     fn sort_by_row(&self) -> Vec<Vec<[u32; 2]>> {
         let tile_rows = self.view.viewport.tiles_y() as i32;
         let mut rows = vec![Vec::new(); tile_rows as usize];
-        // A sample lies below the top of its pixel and above its bottom: the tile of its y is the tile of its pixel.
+        // A sample lies below the top of its pixel and above its bottom: the tile of its y is the
+        // tile of its pixel.
         let row = |y: i32| y.div_euclid(TILE as i32 * SUBPIXEL);
         for (b, batch) in self.opaque.iter().enumerate() {
             for (i, setup) in batch.setups().iter().enumerate() {
                 let [y0, y1, y2] = setup.y;
-                let (first, last) = (row(y0.min(y1).min(y2)).max(0), row(y0.max(y1).max(y2)).min(tile_rows - 1));
+                let (first, last) =
+                    (row(y0.min(y1).min(y2)).max(0), row(y0.max(y1).max(y2)).min(tile_rows - 1));
                 for r in first..=last {
                     rows[r as usize].push([b as u32, i as u32]);
                 }
@@ -96,7 +105,9 @@ impl<'v, 'a> Facets<'v, 'a> {
     /// The opaque triangles that may have samples in a row of tiles.
     pub(super) fn in_row(&self, row: usize) -> impl ExactSizeIterator<Item = &Setup> {
         let rows = self.rows.get_or_init(|| self.sort_by_row());
-        rows[row].iter().map(|&[batch, index]| &self.opaque[batch as usize].setups()[index as usize])
+        rows[row]
+            .iter()
+            .map(|&[batch, index]| &self.opaque[batch as usize].setups()[index as usize])
     }
 
     /// All opaque triangles, those of a face one after the other.
@@ -109,8 +120,9 @@ impl<'v, 'a> Facets<'v, 'a> {
         self.opaque.iter().chain(&self.layered).flat_map(Batch::setups)
     }
 
-    /// The triangles that take part in a list by depth, those of a clipped facet one after the other, and how many of them are
-    /// opaque: these come first, then the layers, where they are to be drawn by a list.
+    /// The triangles that take part in a list by depth, those of a clipped facet one after the
+    /// other, and how many of them are opaque: these come first, then the layers, where they are to
+    /// be drawn by a list.
     pub(super) fn listed(&self) -> (Vec<&Setup>, usize) {
         let mut setups: Vec<_> = self.opaque.iter().flat_map(Batch::setups).collect();
         let opaque = setups.len();
@@ -177,11 +189,14 @@ impl Drop for Facets<'_, '_> {
 }
 
 /// Collects the layers in front of a tile's finished opaque samples, from back to front.
-pub(super) type Collect<'f> = dyn Fn(&Facets<'_, '_>, usize, &Tile, &mut LayerList) + Sync + Send + 'f;
+pub(super) type Collect<'f> =
+    dyn Fn(&Facets<'_, '_>, usize, &Tile, &mut LayerList) + Sync + Send + 'f;
 
-/// Fills tiles with opaque facets: all facets, index of the first tile, the tiles (empty), counters.
-pub(super) type Fill<'f> =
-    dyn Fn(&Facets<'_, '_>, usize, &mut [Tile], &mut VisibilityCounters) -> Result<(), Limit> + Sync + 'f;
+/// Fills tiles with opaque facets: all facets, index of the first tile, the tiles (empty),
+/// counters.
+pub(super) type Fill<'f> = dyn Fn(&Facets<'_, '_>, usize, &mut [Tile], &mut VisibilityCounters) -> Result<(), Limit>
+    + Sync
+    + 'f;
 
 /// Calls `fill` for each `chunk` tiles, on all threads, and hands the tiles on.
 pub(super) fn fill_tiles(
@@ -199,7 +214,8 @@ pub(super) fn fill_tiles(
     Ok(resolved)
 }
 
-/// [`fill_tiles`], of facets that are on the screen already; `collect` takes the layers by a list, if there is one.
+/// [`fill_tiles`], of facets that are on the screen already; `collect` takes the layers by a list,
+/// if there is one.
 pub(super) fn fill_with(
     facets: &Facets<'_, '_>,
     marks: Option<&Marks>,

@@ -1,7 +1,9 @@
-//! What became of the facets whose outline holds a pixel: which stage took each away, or which samples show it.
+//! What became of the facets whose outline holds a pixel: which stage took each away, or which
+//! samples show it.
 //!
-//! In:   a view before visibility, a pixel, and what was seen at its samples. Out: a [`Candidate`] for each facet of the scene
-//!       that the projectors through the pixel meet, in front of the near plane and beyond the far one, too.
+//! In:   a view before visibility, a pixel, and what was seen at its samples. Out: a [`Candidate`]
+//!       for each facet of the scene that the projectors through the pixel meet, in front of the
+//!       near plane and beyond the far one, too.
 //! Cost: a box test for each run of triangles; a few operations for each facet found.
 
 use crate::PreparedView;
@@ -147,9 +149,13 @@ impl SeenPixel<'_> {
 /// How far outside a pixel an outline may lie, in pixels, because corners are snapped.
 const SNAPPED: f64 = 2.0 / SUBPIXEL as f64;
 
-/// All facets of the scene whose outlines hold a pixel of `view`, the nearest first; those that cover no sample after them, in
-/// the order of the scene.
-pub(crate) fn candidates(view: &PreparedView<'_>, seen: &SeenPixel<'_>, wireframe: bool) -> Vec<Candidate> {
+/// All facets of the scene whose outlines hold a pixel of `view`, the nearest first; those that
+/// cover no sample after them, in the order of the scene.
+pub(crate) fn candidates(
+    view: &PreparedView<'_>,
+    seen: &SeenPixel<'_>,
+    wireframe: bool,
+) -> Vec<Candidate> {
     let world = &view.session.world;
 
     // Search all instances, whether they are drawn or not.
@@ -161,18 +167,30 @@ pub(crate) fn candidates(view: &PreparedView<'_>, seen: &SeenPixel<'_>, wirefram
         let prepared = view.instances.iter().find(|p| p.instance == index);
         let draws = || prepared.iter().flat_map(|p| p.opaque.iter().chain(&p.layered));
         // Judge each triangle whose outline holds the pixel.
-        for triangle in window.pyramid_of(instance).triangles(&instance.mesh, bounds, &[all]).into_iter().flatten() {
+        for triangle in window
+            .pyramid_of(instance)
+            .triangles(&instance.mesh, bounds, &[all])
+            .into_iter()
+            .flatten()
+        {
             let facet = instance.first_facet + triangle;
             let draw = draws().find(|d| d.ranges.iter().any(|range| range.contains(&triangle)));
             let (fate, depth) = match draw {
                 Some(draw) => fate(view, draw, facet, seen),
                 None if wireframe => (Fate::NotDrawn, None),
-                None => (Fate::BoxCulled { planes: ClipPlane::of_flags(common(view.corner_flags(facet))) }, None),
+                None => (
+                    Fate::BoxCulled {
+                        planes: ClipPlane::of_flags(common(view.corner_flags(facet))),
+                    },
+                    None,
+                ),
             };
             found.push(Candidate { facet, depth, fate });
         }
     }
-    found.sort_by(|a, b| b.depth.unwrap_or(-1.0).total_cmp(&a.depth.unwrap_or(-1.0)).then(a.facet.cmp(&b.facet)));
+    found.sort_by(|a, b| {
+        b.depth.unwrap_or(-1.0).total_cmp(&a.depth.unwrap_or(-1.0)).then(a.facet.cmp(&b.facet))
+    });
     found
 }
 
@@ -182,7 +200,12 @@ fn common([a, b, c]: [u32; 3]) -> u32 {
 }
 
 /// What becomes of a facet that a draw holds, and its nearest depth at the samples that it covers.
-fn fate(view: &PreparedView<'_>, draw: &Draw<'_>, facet: u32, seen: &SeenPixel<'_>) -> (Fate, Option<f32>) {
+fn fate(
+    view: &PreparedView<'_>,
+    draw: &Draw<'_>,
+    facet: u32,
+    seen: &SeenPixel<'_>,
+) -> (Fate, Option<f32>) {
     // Test what culling and clipping test, in their order.
     let flags = view.corner_flags(facet);
     let any = flags[0] | flags[1] | flags[2];
@@ -216,8 +239,10 @@ fn fate(view: &PreparedView<'_>, draw: &Draw<'_>, facet: u32, seen: &SeenPixel<'
     let nearest = depths.iter().flatten().copied().reduce(f32::max);
     if covered.is_empty() {
         let instance = &view.session.world.instances[view.session.world.instance_of_facet(facet)];
-        let was_there = !cutting.is_empty() && places.iter().any(|&place| meets(view, instance, facet, place));
-        let fate = if was_there { Fate::ClippedAway { planes: cutting } } else { Fate::BetweenSamples };
+        let was_there =
+            !cutting.is_empty() && places.iter().any(|&place| meets(view, instance, facet, place));
+        let fate =
+            if was_there { Fate::ClippedAway { planes: cutting } } else { Fate::BetweenSamples };
         return (fate, None);
     }
 
@@ -231,7 +256,8 @@ fn fate(view: &PreparedView<'_>, draw: &Draw<'_>, facet: u32, seen: &SeenPixel<'
     if !passed.is_empty() {
         return (Fate::Layer { samples: numbers(&passed) }, nearest);
     }
-    let mut by: Vec<u32> = covered.iter().map(|&s| seen.facet(s)).filter(|&f| f != NO_FACET).collect();
+    let mut by: Vec<u32> =
+        covered.iter().map(|&s| seen.facet(s)).filter(|&f| f != NO_FACET).collect();
     by.sort_unstable();
     by.dedup();
     (Fate::Hidden { samples: numbers(&covered), by }, nearest)
@@ -246,14 +272,16 @@ fn sample_places(view: &PreparedView<'_>, pixel: [u32; 2]) -> Vec<[i32; 2]> {
     (0..view.pattern.len()).map(place).collect()
 }
 
-/// Whether the projector through a place on the screen, 1/256 pixel, meets a facet before it is clipped.
+/// Whether the projector through a place on the screen, 1/256 pixel, meets a facet before it is
+/// clipped.
 fn meets(view: &PreparedView<'_>, instance: &Instance, facet: u32, place: [i32; 2]) -> bool {
     let size = [view.viewport.width, view.viewport.height].map(f64::from);
     let at = place.map(|p| f64::from(p) / f64::from(SUBPIXEL));
     let ndc = [2.0 * at[0] / size[0] - 1.0, 1.0 - 2.0 * at[1] / size[1]];
     let clip_from_model = view.view.clip_from_world() * instance.world_from_model;
     let corners = crate::cull::window::corners(&instance.mesh, facet - instance.first_facet);
-    // Homogeneous and sheared so that the projector is the axis: its side of each edge, seen from the eye.
+    // Homogeneous and sheared so that the projector is the axis: its side of each edge, seen from
+    // the eye.
     let sheared = corners.map(|p: DVec3| {
         let clip: DVec4 = clip_from_model * p.extend(1.0);
         DVec3::new(clip.x - ndc[0] * clip.w, clip.y - ndc[1] * clip.w, clip.w)
@@ -266,8 +294,8 @@ fn meets(view: &PreparedView<'_>, instance: &Instance, facet: u32, place: [i32; 
     total != 0.0 && weights.iter().all(|v| v * total >= 0.0) && w / total > 0.0
 }
 
-/// The facets of a view that cover a place of the screen, 1/256 pixel, with their depths there and whether they are layers; the
-/// nearest first.
+/// The facets of a view that cover a place of the screen, 1/256 pixel, with their depths there and
+/// whether they are layers; the nearest first.
 pub fn facets_at(view: &PreparedView<'_>, [x, y]: [i32; 2]) -> Vec<(u32, f32, bool)> {
     // Find the triangles near the pixel.
     let world = &view.session.world;
@@ -276,11 +304,14 @@ pub fn facets_at(view: &PreparedView<'_>, [x, y]: [i32; 2]) -> Vec<(u32, f32, bo
     let mut found = Vec::new();
     for prepared in &view.instances {
         let instance = &world.instances[prepared.instance];
-        let (pyramid, bounds) = (window.pyramid_of(instance), &world.run_bounds[instance.mesh_index as usize]);
+        let (pyramid, bounds) =
+            (window.pyramid_of(instance), &world.run_bounds[instance.mesh_index as usize]);
         let opaque = prepared.opaque.iter().map(|draw| (false, draw));
         for (is_layer, draw) in opaque.chain(prepared.layered.iter().map(|draw| (true, draw))) {
             // Keep those that cover the position.
-            for triangle in pyramid.triangles(&instance.mesh, bounds, &draw.ranges).into_iter().flatten() {
+            for triangle in
+                pyramid.triangles(&instance.mesh, bounds, &draw.ranges).into_iter().flatten()
+            {
                 let facet = draw.first_facet + triangle;
                 let setups = view.setups(facet, draw.back_faces);
                 if let Some(setup) = setups.iter().find(|setup| setup.covers(x, y)) {

@@ -1,6 +1,8 @@
-//! The view's draws, cut into jobs of about equal size and grouped into rounds: the work of the geometry front end.
+//! The view's draws, cut into jobs of about equal size and grouped into rounds: the work of the
+//! geometry front end.
 //!
-//! In:   prepared draws. Out: jobs, each of one or several runs of triangles, in the order of the scene.
+//! In:   prepared draws. Out: jobs, each of one or several runs of triangles, in the order of the
+//!       scene.
 //! Cost: linear in jobs and draws.
 
 use crate::PreparedView;
@@ -69,7 +71,9 @@ impl<'v, 'a> Jobs<'v, 'a> {
 
             // Extend the last piece if the triangles follow it.
             match job.pieces.last_mut() {
-                Some(last) if std::ptr::eq(last.draw, piece.draw) && last.range.end == start => last.range.end = end,
+                Some(last) if std::ptr::eq(last.draw, piece.draw) && last.range.end == start => {
+                    last.range.end = end
+                }
                 _ => job.pieces.push(TriangleRun { range: start..end, ..piece.clone() }),
             }
             start = end;

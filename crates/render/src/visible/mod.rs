@@ -57,8 +57,8 @@ pub struct Resolved {
 
 /// An algorithm that finds the visible surface at each sample.
 pub trait VisibleSurface: Sync {
-    /// Fills `grid`, if `sink` keeps its tiles, and hands each finished tile to `sink`. `marks` are lines and points already on the screen, to be
-    /// tested against the finished depth.
+    /// Fills `grid`, if `sink` keeps its tiles, and hands each finished tile to `sink`. `marks` are
+    /// lines and points already on the screen, to be tested against the finished depth.
     ///
     /// # Errors
     /// A limit of the budget.

@@ -1,6 +1,8 @@
-//! Opaque triangles from near to far, roughly: what is drawn first hides what comes later, which is then rejected unseen.
+//! Opaque triangles from near to far, roughly: what is drawn first hides what comes later, which is
+//! then rejected unseen.
 //!
-//! Runs of triangles are dealt into slices by how far away their boxes begin; within a slice they stay in the scene's order.
+//! Runs of triangles are dealt into slices by how far away their boxes begin; within a slice they
+//! stay in the scene's order.
 //!
 //! In:   jobs in the scene's order. Out: the same triangles in jobs of about the same size.
 //! Cost: linear in runs of [`TRIANGLES_A_RUN`] triangles.
@@ -14,7 +16,10 @@ use vitral_scene::TRIANGLES_A_RUN;
 const SLICES: usize = 256;
 
 /// The jobs, those with opaque triangles from near to far.
-pub(super) fn near_first<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>]) -> Vec<Job<'v, 'a>> {
+pub(super) fn near_first<'v, 'a>(
+    view: &'v PreparedView<'a>,
+    jobs: &[Job<'v, 'a>],
+) -> Vec<Job<'v, 'a>> {
     let (distances, pieces) = runs(view, jobs);
     let mut ordered = Jobs::default();
     for number in by_distance(&distances) {
@@ -29,7 +34,10 @@ pub(super) fn near_first<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>
 }
 
 /// The runs of opaque triangles: how far away each begins, and its part of a piece.
-fn runs<'v, 'a>(view: &'v PreparedView<'a>, jobs: &[Job<'v, 'a>]) -> (Vec<f64>, Vec<TriangleRun<'v, 'a>>) {
+fn runs<'v, 'a>(
+    view: &'v PreparedView<'a>,
+    jobs: &[Job<'v, 'a>],
+) -> (Vec<f64>, Vec<TriangleRun<'v, 'a>>) {
     let (mut distances, mut pieces) = (Vec::new(), Vec::new());
     let mut item = None;
     let mut forward = DVec4::ZERO;
@@ -102,14 +110,20 @@ mod tests {
 
     #[test]
     fn all_triangles_come_once_and_far_runs_last() {
-        let session = Session::new(Arc::new(builtin::scene("teapot").expect("there is one"))).expect("a sound scene");
-        for projection in [Projection::Perspective { view_angle: 0.7 }, Projection::Parallel { height: 8.0 }] {
-            let (position, focal_point, view_up) = (DVec3::new(9.0, 4.0, 5.0), DVec3::ZERO, DVec3::Z);
+        let session = Session::new(Arc::new(builtin::scene("teapot").expect("there is one")))
+            .expect("a sound scene");
+        for projection in
+            [Projection::Perspective { view_angle: 0.7 }, Projection::Parallel { height: 8.0 }]
+        {
+            let (position, focal_point, view_up) =
+                (DVec3::new(9.0, 4.0, 5.0), DVec3::ZERO, DVec3::Z);
             let camera = Camera { position, focal_point, view_up, projection, clip: None };
             let (viewport, pattern) = (Viewport { width: 64, height: 64 }, SamplePattern::new(1));
             let (settings, execution) = (Settings::default(), Execution::default());
             let counters = &mut CullCounters::default();
-            let view = PreparedView::new(&session, &camera, &settings, viewport, pattern, &execution, counters);
+            let view = PreparedView::new(
+                &session, &camera, &settings, viewport, pattern, &execution, counters,
+            );
             let before = jobs(&view);
             let after = near_first(&view, &before);
             let triangles = |jobs: &[Job<'_, '_>]| -> Vec<(usize, u32)> {
@@ -124,7 +138,8 @@ mod tests {
             let mean = |half: &[(usize, u32)]| -> f64 {
                 let sum = half.iter().map(|&(item, t)| {
                     let instance = &session.world.instances[view.instances[item].instance];
-                    let corner = instance.mesh.positions[instance.mesh.triangles[t as usize][0] as usize];
+                    let corner =
+                        instance.mesh.positions[instance.mesh.triangles[t as usize][0] as usize];
                     let [x, y, z] = corner.map(f64::from);
                     instance.world_from_model.transform_point3(DVec3::new(x, y, z)).dot(along)
                 });

@@ -1,10 +1,13 @@
-//! Polygons as algorithms come to them before they look at samples: what a vector drawing is made of.
+//! Polygons as algorithms come to them before they look at samples: what a vector drawing is made
+//! of.
 //!
-//! Painter's algorithm and BSP trees end in a list from back to front, Weiler–Atherton in polygons that do not overlap. All three work
-//! with corners on the grid of 1/256 pixel. For a drawing the picture is as large as pictures can be, so that the grid is finer than
-//! a drawing's precision, and no sample is ever looked at.
+//! Painter's algorithm and BSP trees end in a list from back to front, Weiler–Atherton in polygons
+//! that do not overlap. All three work with corners on the grid of 1/256 pixel. For a drawing the
+//! picture is as large as pictures can be, so that the grid is finer than a drawing's precision,
+//! and no sample is ever looked at.
 //!
-//! In:   outlines on the screen (1/256 pixel, y downwards). Out: the same on a page whose width and height are 1, y upwards.
+//! In:   outlines on the screen (1/256 pixel, y downwards). Out: the same on a page whose width and
+//!       height are 1, y upwards.
 //! Cost: linear in corners.
 
 use crate::stats::VisibilityCounters;
@@ -18,7 +21,12 @@ pub trait PolygonAlgorithm: Sync {
     ///
     /// # Errors
     /// A limit of the budget.
-    fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit>;
+    fn polygons(
+        &self,
+        view: &PreparedView<'_>,
+        execution: &Execution,
+        list: &mut PolygonList,
+    ) -> Result<(), Limit>;
 }
 
 /// A polygon, or what an algorithm made of one.
@@ -26,8 +34,8 @@ pub trait PolygonAlgorithm: Sync {
 pub struct OutlinedPolygon {
     /// The facets of the polygon that it is a part of, first the one by which that is named.
     pub facets: Vec<u32>,
-    /// Outlines, closed without repeating the first point: counter-clockwise round the polygon, clockwise round holes. The page reaches
-    /// from `[0, 0]`, lower left, to `[1, 1]`.
+    /// Outlines, closed without repeating the first point: counter-clockwise round the polygon,
+    /// clockwise round holes. The page reaches from `[0, 0]`, lower left, to `[1, 1]`.
     pub outlines: Vec<Vec<[f64; 2]>>,
 }
 
@@ -63,16 +71,22 @@ impl PolygonList {
     }
 
     /// Adds a polygon by its outlines, clockwise on the screen, those of holes the other way round.
-    pub(super) fn push(&mut self, facets: Vec<u32>, outlines: impl IntoIterator<Item = Vec<[f64; 2]>>) {
+    pub(super) fn push(
+        &mut self,
+        facets: Vec<u32>,
+        outlines: impl IntoIterator<Item = Vec<[f64; 2]>>,
+    ) {
         let [width, height] = self.size();
         let on_page = |[x, y]: [f64; 2]| [x / width, 1.0 - y / height];
-        let outlines = outlines.into_iter().map(|corners| corners.into_iter().rev().map(on_page).collect());
+        let outlines =
+            outlines.into_iter().map(|corners| corners.into_iter().rev().map(on_page).collect());
         self.polygons.push(OutlinedPolygon { facets, outlines: outlines.collect() });
     }
 
     /// Width and height of the picture, 1/256 pixel.
     fn size(&self) -> [f64; 2] {
-        [self.viewport.width, self.viewport.height].map(|side| f64::from(side) * f64::from(SUBPIXEL))
+        [self.viewport.width, self.viewport.height]
+            .map(|side| f64::from(side) * f64::from(SUBPIXEL))
     }
 }
 

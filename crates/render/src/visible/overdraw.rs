@@ -1,7 +1,8 @@
 //! The z-buffer as somebody who looks on is told it: facet by facet, in the order of the scene.
 //!
-//! Tiles are drawn from near to far, which is faster and gives the same picture. For an onlooker each tile is gone through
-//! once more, one sample a pixel: for each facet, where it stays and where it is hidden.
+//! Tiles are drawn from near to far, which is faster and gives the same picture. For an onlooker
+//! each tile is gone through once more, one sample a pixel: for each facet, where it stays and
+//! where it is hidden.
 //!
 //! In:   batches of set-up triangles (screen space). Out: a step for each facet in a tile.
 //! Cost: linear in the pixels that the triangles' boxes cover; nothing where nobody looks on.
@@ -38,11 +39,15 @@ impl Overdraw {
         let mut pixels = pixels.lock().expect("no thread panics while it compares depths");
         let (rows, columns) = size_in_picture(view, tile);
         pixels.resize(rows * columns, None);
-        let mut setups: Vec<_> =
-            batches.iter().filter(|(layered, _)| !layered).flat_map(|(_, batch)| batch.tile(index)).collect();
+        let mut setups: Vec<_> = batches
+            .iter()
+            .filter(|(layered, _)| !layered)
+            .flat_map(|(_, batch)| batch.tile(index))
+            .collect();
         setups.sort_by_key(|setup| setup.facet);
         for setup in setups {
-            let mut there = Pixels { held: &mut pixels, size: [columns, rows], origin: [tile.x, tile.y] };
+            let mut there =
+                Pixels { held: &mut pixels, size: [columns, rows], origin: [tile.x, tile.y] };
             there.compare(setup, view.pattern.position(0), execution);
         }
     }
@@ -67,7 +72,8 @@ impl Pixels<'_> {
         for row in rows {
             for column in columns.clone() {
                 let pixel = [left + column as u32, top + row as u32];
-                let [x, y] = [pixel[0] as i32 * SUBPIXEL + sample_x, pixel[1] as i32 * SUBPIXEL + sample_y];
+                let [x, y] =
+                    [pixel[0] as i32 * SUBPIXEL + sample_x, pixel[1] as i32 * SUBPIXEL + sample_y];
                 if !setup.covers(x, y) {
                     continue;
                 }
@@ -81,8 +87,16 @@ impl Pixels<'_> {
                 extend(if is_nearer { &mut stays } else { &mut hidden }, pixel);
                 if execution.observer.as_ref().is_some_and(|observer| observer.watches(pixel)) {
                     let ((depth, facet), stays) = (came, held.map_or(came.1, |(_, facet)| facet));
-                    let (there, there_depth) = (was.map(|(_, facet)| facet), was.map(|(depth, _)| depth));
-                    execution.report(|| Step::DepthTest { pixel, facet, depth, there, there_depth, stays });
+                    let (there, there_depth) =
+                        (was.map(|(_, facet)| facet), was.map(|(depth, _)| depth));
+                    execution.report(|| Step::DepthTest {
+                        pixel,
+                        facet,
+                        depth,
+                        there,
+                        there_depth,
+                        stays,
+                    });
                 }
             }
         }
@@ -94,7 +108,8 @@ impl Pixels<'_> {
     /// Columns and rows of the tile that the facet's box touches.
     fn within_box(&self, setup: &Setup) -> [std::ops::Range<usize>; 2] {
         let ends = |corners: [i32; 3], k: usize| {
-            let [low, high] = [corners.iter().min(), corners.iter().max()].map(|v| v.copied().unwrap_or(0));
+            let [low, high] =
+                [corners.iter().min(), corners.iter().max()].map(|v| v.copied().unwrap_or(0));
             let pixel = |v: i32| i64::from(v.div_euclid(SUBPIXEL)) - i64::from(self.origin[k]);
             let place = |pixel: i64| pixel.clamp(0, self.size[k] as i64) as usize;
             place(pixel(low))..place(pixel(high) + 1)

@@ -1,27 +1,33 @@
 //! Painter's algorithm: sort the polygons from back to front and paint each over what is there.
 //!
-//! Polygons are taken in the order of their farthest points. That order can be wrong where extents in depth overlap. So
-//! before a polygon P is painted it is compared with each unpainted Q that it might cover, and passes by the first of
-//! five tests, cheap ones first, that shows that it does not: (1) extents in x or (2) in y are disjoint; (3) P lies
-//! behind the plane of Q; (4) Q lies in front of the plane of P; (5) the projections do not overlap. If none holds but
-//! 3 or 4 with the roles exchanged, Q has to come first: it is moved before P and marked, and the same is asked of Q.
-//! If a polygon has to wait for one that is marked, they wait for each other in a circle, which is cut: one of them is
-//! split. If Q is neither before nor behind P, they penetrate, and one is split where the planes meet.
+//! Polygons are taken in the order of their farthest points. That order can be wrong where extents
+//! in depth overlap. So before a polygon P is painted it is compared with each unpainted Q that it
+//! might cover, and passes by the first of five tests, cheap ones first, that shows that it does
+//! not: (1) extents in x or (2) in y are disjoint; (3) P lies behind the plane of Q; (4) Q lies in
+//! front of the plane of P; (5) the projections do not overlap. If none holds but 3 or 4 with the
+//! roles exchanged, Q has to come first: it is moved before P and marked, and the same is asked of
+//! Q. If a polygon has to wait for one that is marked, they wait for each other in a circle, which
+//! is cut: one of them is split. If Q is neither before nor behind P, they penetrate, and one is
+//! split where the planes meet.
 //!
-//! The polygons are the faces of the file: flat convex ones whole, others in the few convex pieces that their triangles can be
-//! joined to (`polygons.rs`).
+//! The polygons are the faces of the file: flat convex ones whole, others in the few convex pieces
+//! that their triangles can be joined to (`polygons.rs`).
 //!
-//! It always ends. A polygon is split along planes and edges of the others it meets, each time into two parts that lie
-//! clearly off the line; when no line is left that splits one, the circle is one of rounding, and P is painted.
+//! It always ends. A polygon is split along planes and edges of the others it meets, each time into
+//! two parts that lie clearly off the line; when no line is left that splits one, the circle is one
+//! of rounding, and P is painted.
 //!
-//! In:   set-up triangles, joined to polygons (screen space). Out: the samples of each tile (screen space).
-//! Cost: `O(n log n)` for sorting, plus pairs of polygons in one cell of a grid, plus covered samples, hidden ones too.
-//! Source: [Newell, Newell & Sancha 1972]. Departs from it: a grid over the picture finds the polygons to compare with;
-//! marked polygons form a stack, so that one that has to come first is painted at once; before a split the depths in
-//! the overlap of the projections are looked at, since planes often meet elsewhere; circles are cut along a
-//! line, of a plane or an edge, that leaves no part both waiting and waited for, if there is one; of two polygons that penetrate, the
-//! smaller is split, which makes fewer parts; parts go on with the comparisons of the whole; and the grid becomes finer as parts
-//! become many.
+//! In:   set-up triangles, joined to polygons (screen space). Out: the samples of each tile (screen
+//!       space).
+//! Cost: `O(n log n)` for sorting, plus pairs of polygons in one cell of a grid, plus covered
+//!       samples, hidden ones too.
+//! Source: [Newell, Newell & Sancha 1972]. Departs from it: a grid over the picture finds the
+//! polygons to compare with; marked polygons form a stack, so that one that has to come first is
+//! painted at once; before a split the depths in the overlap of the projections are looked at,
+//! since planes often meet elsewhere; circles are cut along a line, of a plane or an edge, that
+//! leaves no part both waiting and waited for, if there is one; of two polygons that penetrate, the
+//! smaller is split, which makes fewer parts; parts go on with the comparisons of the whole; and
+//! the grid becomes finer as parts become many.
 
 mod compare;
 mod split;
@@ -66,7 +72,8 @@ impl VisibleSurface for Painter {
             // Sort from back to front, splitting what is in no order.
             let mut counters = VisibilityCounters::default();
             let raster = Raster::new(view.viewport, &view.pattern);
-            let list = sorted(&polygons, raster, execution, &mut counters, |sorting| sorting.list())?;
+            let list =
+                sorted(&polygons, raster, execution, &mut counters, |sorting| sorting.list())?;
             counters.pieces = list.len() as u64;
 
             // Paint.
@@ -84,7 +91,12 @@ impl VisibleSurface for Painter {
 }
 
 impl PolygonAlgorithm for Painter {
-    fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit> {
+    fn polygons(
+        &self,
+        view: &PreparedView<'_>,
+        execution: &Execution,
+        list: &mut PolygonList,
+    ) -> Result<(), Limit> {
         // Set up the facets and join them to polygons.
         let facets = Facets::without_tiles(view, execution)?;
         let wholes = Polygons::new(facets.all(), view);
@@ -162,7 +174,11 @@ impl PartialOrd for Farness {
 impl Ord for Farness {
     /// The greatest is painted first; of equally far ones, the higher facet.
     fn cmp(&self, other: &Self) -> Ordering {
-        other.far.total_cmp(&self.far).then(self.facet.cmp(&other.facet)).then(other.polygon.cmp(&self.polygon))
+        other
+            .far
+            .total_cmp(&self.far)
+            .then(self.facet.cmp(&other.facet))
+            .then(other.polygon.cmp(&self.polygon))
     }
 }
 
@@ -173,7 +189,8 @@ struct Marked {
     progress: Progress,
 }
 
-/// How far the comparisons of a polygon have come. What it passed once it need not be compared with again, nor with parts of it.
+/// How far the comparisons of a polygon have come. What it passed once it need not be compared with
+/// again, nor with parts of it.
 #[derive(Clone, Copy)]
 struct Progress {
     /// Cell of the grid, and place in its list.
@@ -183,7 +200,8 @@ struct Progress {
     version: u32,
 }
 
-/// A polygon on the list of a cell, with what is looked at first when another is compared with it. Small, since many are looked at.
+/// A polygon on the list of a cell, with what is looked at first when another is compared with it.
+/// Small, since many are looked at.
 #[derive(Clone, Copy)]
 struct Entry {
     polygon: u32,
@@ -198,9 +216,11 @@ const SMALLEST_CELL: u32 = 8;
 /// About how many polygons a cell should hold.
 const POLYGONS_A_CELL: usize = 12;
 /// Bytes of a polygon: itself, its corners, its place, its comparisons, its entries in the grid.
-const BYTES_A_POLYGON: u64 =
-    (size_of::<PainterPolygon>() + 4 * 16 + size_of::<Farness>() + size_of::<Progress>() + 2 * size_of::<Entry>())
-        as u64;
+const BYTES_A_POLYGON: u64 = (size_of::<PainterPolygon>()
+    + 4 * 16
+    + size_of::<Farness>()
+    + size_of::<Progress>()
+    + 2 * size_of::<Entry>()) as u64;
 
 /// The sorting of one picture.
 struct Sorting<'f, 'c> {
@@ -307,7 +327,14 @@ impl<'f, 'c> Sorting<'f, 'c> {
         let first = self.corners.len() as u32;
         self.corners.extend_from_slice(corners);
         let own = first..self.corners.len() as u32;
-        let polygon = PainterPolygon::new(plane, whole, corners, own, cuts, pixels.map(|p| p / self.cell as u16));
+        let polygon = PainterPolygon::new(
+            plane,
+            whole,
+            corners,
+            own,
+            cuts,
+            pixels.map(|p| p / self.cell as u16),
+        );
         let number = self.polygons.len() as u32;
         self.enter(number, polygon.far, polygon.cells);
         self.pending += 1;
@@ -364,7 +391,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
                 let Some(pixels) = self.raster.pixels(around) else { continue };
                 let own = pixels.map(|p| p / cell as u16);
                 self.polygons[number as usize].cells = own;
-                self.progress[number as usize] = Progress { cell: [own[0], own[1]], at: 0, version: 0 };
+                self.progress[number as usize] =
+                    Progress { cell: [own[0], own[1]], at: 0, version: 0 };
                 self.enter(number, self.polygons[number as usize].far, own);
             }
         }
@@ -373,13 +401,20 @@ impl<'f, 'c> Sorting<'f, 'c> {
     /// A polygon as steps tell it.
     fn listed(&self, polygon: u32) -> ListedPolygon {
         let depth = &self.polygons[polygon as usize].depth;
-        ListedPolygon { polygon, facet: self.facet(polygon), far: depth.min as f32, near: depth.max as f32 }
+        ListedPolygon {
+            polygon,
+            facet: self.facet(polygon),
+            far: depth.min as f32,
+            near: depth.max as f32,
+        }
     }
 
     /// The step of the first order.
     fn first_order(&self) -> Step {
         let order = self.waiting.clone().into_sorted_vec();
-        Step::FirstOrder { polygons: order.iter().rev().map(|farness| self.listed(farness.polygon)).collect() }
+        Step::FirstOrder {
+            polygons: order.iter().rev().map(|farness| self.listed(farness.polygon)).collect(),
+        }
     }
 
     /// Finds the order.
@@ -443,7 +478,10 @@ impl<'f, 'c> Sorting<'f, 'c> {
             self.tidy();
             let Some((other, verdict)) = self.obstacle()? else {
                 self.finish(top.polygon, State::Painted);
-                self.execution.report(|| Step::Painted { polygon: top.polygon, facet: self.facet(top.polygon) });
+                self.execution.report(|| Step::Painted {
+                    polygon: top.polygon,
+                    facet: self.facet(top.polygon),
+                });
                 self.painted.push(top.polygon);
                 self.execution.budget.advance();
                 self.marked.pop();
@@ -472,21 +510,25 @@ impl<'f, 'c> Sorting<'f, 'c> {
         Ok(())
     }
 
-    /// Goes on with the comparisons of the last marked polygon, until one says that it cannot be painted yet.
+    /// Goes on with the comparisons of the last marked polygon, until one says that it cannot be
+    /// painted yet.
     fn obstacle(&mut self) -> Result<Option<(u32, Verdict)>, Limit> {
         // Continue where the last comparison stopped.
         let Some(top) = self.marked.last_mut() else { return Ok(None) };
         let (polygon, at) = (top.polygon, &mut top.progress);
         let p = &self.polygons[polygon as usize];
         let [x0, _, x1, y1] = p.cells;
-        let version = self.versions[at.cell[1] as usize * self.columns as usize + at.cell[0] as usize];
+        let version =
+            self.versions[at.cell[1] as usize * self.columns as usize + at.cell[0] as usize];
         if at.version != version {
             // The list was tidied since: look at all of it.
             *at = Progress { at: 0, version, ..*at };
         }
         loop {
             let cell = at.cell[1] as usize * self.columns as usize + at.cell[0] as usize;
-            while let Some(&Entry { polygon: other, far, cell: first }) = self.cells[cell].get(at.at as usize) {
+            while let Some(&Entry { polygon: other, far, cell: first }) =
+                self.cells[cell].get(at.at as usize)
+            {
                 // Two polygons are compared in the first cell that both are in.
                 let here = [0, 1].map(|k| p.cells[k].max(first[k])) == at.cell;
                 if here && self.states[other as usize].is_pending() && other != polygon {
@@ -498,7 +540,9 @@ impl<'f, 'c> Sorting<'f, 'c> {
                         }
                     };
                     self.execution.report(|| {
-                        let facet = |i: u32| self.wholes.get(self.polygons[i as usize].whole as usize).facet();
+                        let facet = |i: u32| {
+                            self.wholes.get(self.polygons[i as usize].whole as usize).facet()
+                        };
                         let (facet, with_facet) = (facet(polygon), facet(other));
                         Step::Compared { polygon, facet, with: other, with_facet, test, verdict }
                     });
@@ -517,7 +561,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
                     return Ok(None);
                 }
             }
-            let version = self.versions[next[1] as usize * self.columns as usize + next[0] as usize];
+            let version =
+                self.versions[next[1] as usize * self.columns as usize + next[0] as usize];
             *at = Progress { cell: next, at: 0, version };
         }
     }
@@ -526,7 +571,8 @@ impl<'f, 'c> Sorting<'f, 'c> {
     fn account(&mut self) -> Result<(), Limit> {
         let budget = &self.execution.budget;
         budget.check("the painter's list")?;
-        let now = self.polygons.len() as u64 * BYTES_A_POLYGON + (self.cuts.len() * size_of::<Cut>()) as u64;
+        let now = self.polygons.len() as u64 * BYTES_A_POLYGON
+            + (self.cuts.len() * size_of::<Cut>()) as u64;
         if now > self.charged + (1 << 16) {
             budget.charge(now - self.charged, "the painter's list")?;
             self.charged = now;
@@ -554,7 +600,14 @@ impl<'f, 'c> Sorting<'f, 'c> {
                 let polygon = &self.polygons[number as usize];
                 let outline = on_screen(polygon.points(&self.corners));
                 let cuts = polygon.cuts.len() as u32;
-                Step::Piece { order, polygon: number, node: None, facet: self.facet(number), cuts, outline }
+                Step::Piece {
+                    order,
+                    polygon: number,
+                    node: None,
+                    facet: self.facet(number),
+                    cuts,
+                    outline,
+                }
             });
         }
         list.finish(self.raster.viewport());
@@ -568,7 +621,11 @@ mod tests {
     use vitral_raster::{CornerPosition, SamplePattern, Viewport};
 
     fn triangle(corners: [[i32; 2]; 3], z: [f32; 3], facet: u32) -> Setup {
-        let [a, b, c] = [0, 1, 2].map(|i| CornerPosition { x: corners[i][0] * 256, y: corners[i][1] * 256, z: z[i] });
+        let [a, b, c] = [0, 1, 2].map(|i| CornerPosition {
+            x: corners[i][0] * 256,
+            y: corners[i][1] * 256,
+            z: z[i],
+        });
         Setup::new([a, b, c], Setup::doubled_area(a, b, c), facet)
     }
 
@@ -611,14 +668,17 @@ mod tests {
 
     #[test]
     fn p21_penetrating_polygons_are_split_once() {
-        let (painted, counters) = order(&[triangle(LARGE, [0.2, 0.8, 0.2], 0), triangle(LARGE, [0.8, 0.2, 0.8], 1)]);
+        let (painted, counters) =
+            order(&[triangle(LARGE, [0.2, 0.8, 0.2], 0), triangle(LARGE, [0.8, 0.2, 0.8], 1)]);
         assert_eq!((painted.len(), counters.splits), (3, 1));
     }
 
     #[test]
     fn p21_a_circle_is_cut() {
         // Three bars on the screen, each far at one end and near at the other.
-        let bar = |a: [i32; 2], b: [i32; 2], c: [i32; 2], facet| triangle([a, b, c], [0.2, 0.8, 0.8], facet);
+        let bar = |a: [i32; 2], b: [i32; 2], c: [i32; 2], facet| {
+            triangle([a, b, c], [0.2, 0.8, 0.8], facet)
+        };
         let (painted, counters) = order(&[
             bar([2, 20], [60, 18], [60, 24], 0),
             bar([50, 2], [36, 60], [30, 58], 1),

@@ -1,6 +1,7 @@
 //! The z-buffer for views whose tiles nobody needs afterwards: shadow maps, hemicubes.
 //!
-//! All tiles are filled in the same memory, one after the other, and tiles that no triangle touches are passed over.
+//! All tiles are filled in the same memory, one after the other, and tiles that no triangle touches
+//! are passed over.
 //!
 //! In:   prepared draws (model space). Out: the samples of each tile (screen space).
 //! Cost: that of the z-buffer, less the tiles without triangles.
@@ -17,8 +18,8 @@ use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_raster::{Batch, Tile, TileGrid};
 
-/// Resolves a view without marks and hands each tile to `sink` unless nothing is in it. The samples are those that [`ZBuffer`]
-/// finds. Only the top `rows` of tiles need be.
+/// Resolves a view without marks and hands each tile to `sink` unless nothing is in it. The samples
+/// are those that [`ZBuffer`] finds. Only the top `rows` of tiles need be.
 pub(crate) fn resolve_in_passing(
     view: &PreparedView<'_>,
     rows: u32,
@@ -51,9 +52,9 @@ pub(crate) fn resolve_in_passing(
     })
 }
 
-/// Calls `tile` with the number of each tile of the top `rows` that triangles touch, and the batches that hold them: whether
-/// they are layers, in order. From any thread. Gives `false` and does nothing where there are too many triangles to be set up
-/// at once.
+/// Calls `tile` with the number of each tile of the top `rows` that triangles touch, and the
+/// batches that hold them: whether they are layers, in order. From any thread. Gives `false` and
+/// does nothing where there are too many triangles to be set up at once.
 fn each_touched_tile(
     view: &PreparedView<'_>,
     rows: u32,

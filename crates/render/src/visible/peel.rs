@@ -1,9 +1,10 @@
 //! One pass over the transparent facets of a tile: at each sample the farthest layer that is left.
 //!
-//! A pass needs two depths a sample, whatever the number of layers: that of what has been laid so far, and that of the
-//! farthest layer found that is nearer than it and in front of what is opaque. Of coincident facets the lower is nearer,
-//! so that none is passed over. A second walk finds which samples of its pixel each of these facets covers, those of other
-//! passes included: it is illuminated in the middle of them.
+//! A pass needs two depths a sample, whatever the number of layers: that of what has been laid so
+//! far, and that of the farthest layer found that is nearer than it and in front of what is opaque.
+//! Of coincident facets the lower is nearer, so that none is passed over. A second walk finds which
+//! samples of its pixel each of these facets covers, those of other passes included: it is
+//! illuminated in the middle of them.
 //!
 //! In:   set-up triangles (screen space), a tile's opaque samples. Out: a layer for each sample.
 //! Cost: twice the covered samples; memory: five numbers a sample.
@@ -13,7 +14,8 @@ use super::agreement::nearer;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{Level, Mask8, Simd, dispatch};
 use vitral_raster::{
-    Batch, NO_FACET, RowPlane, RowSink, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, traverse_by_rows,
+    Batch, NO_FACET, RowPlane, RowSink, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile,
+    traverse_by_rows,
 };
 
 /// Depth and facet; [`NO_FACET`] for none.
@@ -85,7 +87,12 @@ impl Peel {
 }
 
 #[inline(always)]
-fn walk<'b, S: Simd>(simd: S, batches: impl Iterator<Item = &'b Batch>, index: usize, sink: &mut PassSink<'_>) {
+fn walk<'b, S: Simd>(
+    simd: S,
+    batches: impl Iterator<Item = &'b Batch>,
+    index: usize,
+    sink: &mut PassSink<'_>,
+) {
     let (place, pattern) = ((sink.tile.x, sink.tile.y), sink.pattern);
     for setup in batches.flat_map(|batch| batch.tile(index)) {
         traverse_by_rows(simd, setup, place, pattern, sink);
@@ -114,7 +121,9 @@ impl PassSink<'_> {
                 let other = s * TILE_PIXELS + pixel;
                 covers[other] |= u32::from(farthest[other].1 == facet) << sample;
             }
-        } else if nearer(candidate, laid[at]) && (farthest[at].1 == NO_FACET || nearer(farthest[at], candidate)) {
+        } else if nearer(candidate, laid[at])
+            && (farthest[at].1 == NO_FACET || nearer(farthest[at], candidate))
+        {
             farthest[at] = candidate;
         }
     }

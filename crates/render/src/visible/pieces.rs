@@ -1,10 +1,12 @@
 //! Pieces of polygons: what painter's algorithm and BSP trees cut polygons into.
 //!
-//! A piece of a polygon is its facets and the lines it was cut along, no new corners: a sample belongs to the piece if one of the
-//! facets covers it and it lies on the kept side of each line. The two halves of a cut share the line and differ in the
-//! side, so a sample belongs to one of them, never to none or both. The outline of a piece, by contrast, is computed
-//! with rounding; it only bounds the pixels where samples are looked for, a little too far out. A triangle of few samples
-//! needs no outline: each sample is asked, and the piece is the list of those that belong to it.
+//! A piece of a polygon is its facets and the lines it was cut along, no new corners: a sample
+//! belongs to the piece if one of the facets covers it and it lies on the kept side of each line.
+//! The two halves of a cut share the line and differ in the side, so a sample belongs to one of
+//! them, never to none or both. The outline of a piece, by contrast, is computed with rounding; it
+//! only bounds the pixels where samples are looked for, a little too far out. A triangle of few
+//! samples needs no outline: each sample is asked, and the piece is the list of those that belong
+//! to it.
 //!
 //! In:   polygons' set-up triangles and lines (screen space). Out: pieces, sorted into tiles.
 //! Cost: linear in the pieces and the tiles that each touches.
@@ -38,11 +40,13 @@ pub(super) const UNLISTED: u32 = u32::MAX;
 /// A run of the list, sorted into tiles.
 #[derive(Debug, Default)]
 pub(super) struct Pieces {
-    /// The polygons that have samples, in the order of the list: the numbers that [`Pieces::add_polygon`] was given.
+    /// The polygons that have samples, in the order of the list: the numbers that
+    /// [`Pieces::add_polygon`] was given.
     pub(super) listed: Vec<u32>,
     pub(super) pieces: Vec<Piece>,
     pub(super) cuts: Vec<Cut>,
-    /// Samples of small pieces: for each sample of a pixel the pixels from the upper left of the piece's, 8 a row.
+    /// Samples of small pieces: for each sample of a pixel the pixels from the upper left of the
+    /// piece's, 8 a row.
     pub(super) samples: Vec<u64>,
     /// Tile and piece, in the order of the list.
     entries: Vec<[u32; 2]>,
@@ -81,7 +85,9 @@ impl<'p> Raster<'p> {
     /// Whether it takes less to ask each sample of these pixels than to clip an outline.
     fn are_few(&self, [x0, y0, x1, y1]: [u16; 4]) -> bool {
         let [width, height] = [x1 - x0 + 1, y1 - y0 + 1].map(usize::from);
-        width <= BLOCK && height <= BLOCK && width * height * self.pattern.len() <= MAX_LISTED_SAMPLES
+        width <= BLOCK
+            && height <= BLOCK
+            && width * height * self.pattern.len() <= MAX_LISTED_SAMPLES
     }
 
     /// Where a triangle may have samples, if anywhere; what has few pixels is asked for each.
@@ -91,18 +97,21 @@ impl<'p> Raster<'p> {
             return Some(Footprint { pixels, few: None });
         }
         let first = self.covered(setup, pixels, 0);
-        let any = first != 0 || (1..self.pattern.len()).any(|s| self.covered(setup, pixels, s) != 0);
+        let any =
+            first != 0 || (1..self.pattern.len()).any(|s| self.covered(setup, pixels, s) != 0);
         any.then_some(Footprint { pixels, few: Some(first) })
     }
 
-    /// A sample of each of a few pixels, where a triangle covers it: bits from the upper left, 8 a row.
+    /// A sample of each of a few pixels, where a triangle covers it: bits from the upper left, 8 a
+    /// row.
     fn covered(&self, setup: &Setup, [x0, y0, x1, y1]: [u16; 4], sample: usize) -> u64 {
         let [dx, dy] = self.pattern.position(sample);
         let first = [i32::from(x0) * SUBPIXEL + dx, i32::from(y0) * SUBPIXEL + dy];
         setup.covered(first, usize::from(x1 - x0 + 1), usize::from(y1 - y0 + 1))
     }
 
-    /// First and last column and row of pixels that may have samples in a box, given by its smallest and largest corner.
+    /// First and last column and row of pixels that may have samples in a box, given by its
+    /// smallest and largest corner.
     pub(super) fn pixels(&self, around: [[f64; 2]; 2]) -> Option<[u16; 4]> {
         let mut ends = [[0u16; 2]; 2];
         for (axis, size) in [self.viewport.width, self.viewport.height].into_iter().enumerate() {
@@ -130,8 +139,8 @@ impl<'p> Raster<'p> {
 }
 
 impl Pieces {
-    /// Adds the next polygon of the list: its triangles with their indices and footprints, each with the cuts for its depth,
-    /// as far as they can have samples.
+    /// Adds the next polygon of the list: its triangles with their indices and footprints, each
+    /// with the cuts for its depth, as far as they can have samples.
     pub(super) fn add_polygon<'s, C: ExactSizeIterator<Item = Cut>>(
         &mut self,
         number: u32,
@@ -141,16 +150,17 @@ impl Pieces {
     ) {
         let mut any = false;
         for (index, setup, footprint) in triangles {
-            any |=
-                footprint.is_some_and(|footprint| self.add(index, (setup, footprint), cuts(Depth::of(setup)), raster));
+            any |= footprint.is_some_and(|footprint| {
+                self.add(index, (setup, footprint), cuts(Depth::of(setup)), raster)
+            });
         }
         if any {
             self.listed.push(number);
         }
     }
 
-    /// Adds a piece, a triangle with its footprint and the cuts that make it, if it can have samples;
-    /// whether it can.
+    /// Adds a piece, a triangle with its footprint and the cuts that make it, if it can have
+    /// samples; whether it can.
     fn add(
         &mut self,
         index: u32,
@@ -163,7 +173,9 @@ impl Pieces {
         let (first, listed) = (self.cuts.len(), self.samples.len());
         let (found, samples) = match footprint.few {
             _ if cuts.len() == 0 => (Some(pixels), UNLISTED),
-            Some(covered) => (self.list_samples(setup, (pixels, covered), cuts, raster), listed as u32),
+            Some(covered) => {
+                (self.list_samples(setup, (pixels, covered), cuts, raster), listed as u32)
+            }
             None => (self.cut_outline(setup, cuts, raster), UNLISTED),
         };
 
@@ -174,9 +186,15 @@ impl Pieces {
             return false;
         };
         // A list counts from where it began.
-        let pixels = if samples == UNLISTED { found } else { [pixels[0], pixels[1], found[2], found[3]] };
+        let pixels =
+            if samples == UNLISTED { found } else { [pixels[0], pixels[1], found[2], found[3]] };
         let piece = self.pieces.len() as u32;
-        self.pieces.push(Piece { setup: index, pixels, cuts: first as u32..self.cuts.len() as u32, samples });
+        self.pieces.push(Piece {
+            setup: index,
+            pixels,
+            cuts: first as u32..self.cuts.len() as u32,
+            samples,
+        });
 
         // Enter the piece in the tiles it touches.
         let [tx0, ty0, tx1, ty1] = found.map(|p| u32::from(p) / TILE as u32);
@@ -187,8 +205,8 @@ impl Pieces {
         true
     }
 
-    /// Lists the samples of a few pixels that the triangle covers (`covered`: the first of each) and all cuts keep. First and
-    /// last column and row of pixels with such a sample.
+    /// Lists the samples of a few pixels that the triangle covers (`covered`: the first of each)
+    /// and all cuts keep. First and last column and row of pixels with such a sample.
     fn list_samples(
         &mut self,
         setup: &Setup,
@@ -219,15 +237,22 @@ impl Pieces {
         // Bound the pixels that keep a sample.
         let columns = (1..BLOCK).fold(any, |columns, row| columns | any >> (BLOCK * row)) as u8;
         (any != 0).then(|| {
-            let x = [columns.trailing_zeros(), 7 - columns.leading_zeros()].map(|x| pixels[0] + x as u16);
-            let y = [any.trailing_zeros() / 8, 7 - any.leading_zeros() / 8].map(|y| pixels[1] + y as u16);
+            let x = [columns.trailing_zeros(), 7 - columns.leading_zeros()]
+                .map(|x| pixels[0] + x as u16);
+            let y = [any.trailing_zeros() / 8, 7 - any.leading_zeros() / 8]
+                .map(|y| pixels[1] + y as u16);
             [x[0], y[0], x[1], y[1]]
         })
     }
 
-    /// Clips a triangle's outline: first and last column and row of pixels that may have samples in what is left. Adds
-    /// the cuts that matter.
-    fn cut_outline(&mut self, setup: &Setup, cuts: impl Iterator<Item = Cut>, raster: &Raster<'_>) -> Option<[u16; 4]> {
+    /// Clips a triangle's outline: first and last column and row of pixels that may have samples in
+    /// what is left. Adds the cuts that matter.
+    fn cut_outline(
+        &mut self,
+        setup: &Setup,
+        cuts: impl Iterator<Item = Cut>,
+        raster: &Raster<'_>,
+    ) -> Option<[u16; 4]> {
         // Clip the outline, skipping cuts that leave it whole.
         let mut around = around(setup);
         let [outline, scratch] = &mut self.outline;
@@ -294,7 +319,8 @@ impl Pieces {
     }
 }
 
-/// What of 8x8 pixels is left when they are moved by `dx` to the right and `dy` down, less than 8 either way.
+/// What of 8x8 pixels is left when they are moved by `dx` to the right and `dy` down, less than 8
+/// either way.
 #[inline(always)]
 pub(super) fn moved(pixels: u64, dx: i32, dy: i32) -> u64 {
     let shifted = |v: u64, by: i32| if by >= 0 { v << by } else { v >> -by };
@@ -303,8 +329,14 @@ pub(super) fn moved(pixels: u64, dx: i32, dy: i32) -> u64 {
     shifted(shifted(pixels, 8 * dy), dx) & (columns * 0x0101_0101_0101_0101)
 }
 
-/// Takes from the coverage of a block, at pixel `origin`, what lies beyond the cuts; false if nothing is left.
-pub(super) fn cut_masks(cuts: &[Cut], pattern: &SamplePattern, origin: [usize; 2], masks: &mut [u64]) -> bool {
+/// Takes from the coverage of a block, at pixel `origin`, what lies beyond the cuts; false if
+/// nothing is left.
+pub(super) fn cut_masks(
+    cuts: &[Cut],
+    pattern: &SamplePattern,
+    origin: [usize; 2],
+    masks: &mut [u64],
+) -> bool {
     let mut any = false;
     for (s, mask) in masks.iter_mut().enumerate() {
         for cut in cuts {
@@ -318,14 +350,16 @@ pub(super) fn cut_masks(cuts: &[Cut], pattern: &SamplePattern, origin: [usize; 2
     any
 }
 
-/// What of a sample's bits, one for each of 8x8 pixels from `origin` on, a cut keeps. `offset` is the sample's place in a pixel.
+/// What of a sample's bits, one for each of 8x8 pixels from `origin` on, a cut keeps. `offset` is
+/// the sample's place in a pixel.
 fn keep(cut: &Cut, offset: [i32; 2], origin: [usize; 2], mut mask: u64) -> u64 {
     let at = |column: usize, row: usize| {
-        let place = |k: usize, pixel: usize| ((origin[k] + pixel) as i32 * SUBPIXEL + offset[k]) as f64;
+        let place =
+            |k: usize, pixel: usize| ((origin[k] + pixel) as i32 * SUBPIXEL + offset[k]) as f64;
         [place(0, column), place(1, row)]
     };
-    // The value is monotonic: the corners of the block decide for all, where they agree. For few samples it takes no more
-    // to ask them.
+    // The value is monotonic: the corners of the block decide for all, where they agree. For few
+    // samples it takes no more to ask them.
     if mask.count_ones() > CORNER_TEST_THRESHOLD {
         let last = BLOCK - 1;
         let keeps = [at(0, 0), at(last, 0), at(0, last), at(last, last)].map(|p| cut.keeps(p));
@@ -352,15 +386,21 @@ mod tests {
     use vitral_raster::CornerPosition;
 
     fn triangle() -> Setup {
-        let [a, b, c] = [[0, 0], [2560, 0], [0, 2560]].map(|[x, y]| CornerPosition { x, y, z: 0.5 });
+        let [a, b, c] =
+            [[0, 0], [2560, 0], [0, 2560]].map(|[x, y]| CornerPosition { x, y, z: 0.5 });
         Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0)
     }
 
     #[test]
     fn the_halves_of_a_cut_share_the_samples_out() {
         let pattern = SamplePattern::new(4);
-        let lines =
-            [[1.0, 0.0, -1000.0], [0.3, -0.7, 128.0], [1.0, 1.0, -1024.0], [f64::NAN, 0.0, 0.0], [0.0, 0.0, 1.0]];
+        let lines = [
+            [1.0, 0.0, -1000.0],
+            [0.3, -0.7, 128.0],
+            [1.0, 1.0, -1024.0],
+            [f64::NAN, 0.0, 0.0],
+            [0.0, 0.0, 1.0],
+        ];
         for [a, b, c] in lines {
             let cut = Cut { a, b, c, positive: true };
             let (mut one, mut other) = ([u64::MAX; 4], [u64::MAX; 4]);
@@ -384,13 +424,21 @@ mod tests {
         let cut = Cut { a: 1.0, b: 0.0, c: -1280.0, positive: false };
         for cuts in [&[][..], &[cut], &[cut.opposite()], &[cut, cut.opposite()]] {
             let setup = triangle();
-            pieces.add(0, (&setup, raster.footprint(&setup).unwrap()), cuts.iter().copied(), &raster);
+            pieces.add(
+                0,
+                (&setup, raster.footprint(&setup).unwrap()),
+                cuts.iter().copied(),
+                &raster,
+            );
         }
         let bounds: Vec<_> = pieces.pieces.iter().map(|p| p.pixels).collect();
         // The last is the line itself: no pixel centre lies on it.
         assert_eq!(bounds, [[0, 0, 9, 9], [0, 0, 4, 9], [5, 0, 9, 4]]);
         pieces.finish(raster.viewport);
-        assert_eq!((pieces.items.as_slice(), pieces.starts.as_slice()), (&[0, 1, 2][..], &[0, 3, 3][..]));
+        assert_eq!(
+            (pieces.items.as_slice(), pieces.starts.as_slice()),
+            (&[0, 1, 2][..], &[0, 3, 3][..])
+        );
     }
     #[test]
     fn a_piece_has_the_samples_that_all_its_cuts_keep() {
@@ -419,18 +467,23 @@ mod tests {
                 })
                 .collect();
             let mut pieces = Pieces::default();
-            let added = raster
-                .footprint(&setup)
-                .is_some_and(|footprint| pieces.add(0, (&setup, footprint), cuts.iter().copied(), &raster));
-            few += usize::from(raster.pixels([[0.0; 2], [f64::from(size); 2]]).is_some_and(|p| raster.are_few(p)));
+            let added = raster.footprint(&setup).is_some_and(|footprint| {
+                pieces.add(0, (&setup, footprint), cuts.iter().copied(), &raster)
+            });
+            few += usize::from(
+                raster.pixels([[0.0; 2], [f64::from(size); 2]]).is_some_and(|p| raster.are_few(p)),
+            );
             gone += usize::from(!added);
-            for (x, y, s) in (0..12u16).flat_map(|y| (0..12u16).flat_map(move |x| (0..3).map(move |s| (x, y, s)))) {
+            for (x, y, s) in (0..12u16)
+                .flat_map(|y| (0..12u16).flat_map(move |x| (0..3).map(move |s| (x, y, s))))
+            {
                 if s >= pattern.len() {
                     continue;
                 }
                 let offset = pattern.position(s);
                 let [px, py] = [i32::from(x) * 256 + offset[0], i32::from(y) * 256 + offset[1]];
-                let expected = setup.covers(px, py) && cuts.iter().all(|c| c.keeps([f64::from(px), f64::from(py)]));
+                let expected = setup.covers(px, py)
+                    && cuts.iter().all(|c| c.keeps([f64::from(px), f64::from(py)]));
                 let within = pieces.pieces.iter().any(|p| {
                     let [x0, y0, x1, y1] = p.pixels;
                     if p.samples != UNLISTED {
@@ -443,10 +496,15 @@ mod tests {
                     }
                     let own = &pieces.cuts[p.cuts.start as usize..p.cuts.end as usize];
                     // Without cuts the whole triangle is drawn.
-                    let inside = own.is_empty() || ((x0..=x1).contains(&x) && (y0..=y1).contains(&y));
+                    let inside =
+                        own.is_empty() || ((x0..=x1).contains(&x) && (y0..=y1).contains(&y));
                     inside && own.iter().all(|c| c.keeps([f64::from(px), f64::from(py)]))
                 });
-                assert_eq!(setup.covers(px, py) && within, expected, "{setup:?} {cuts:?} {x} {y} {s}");
+                assert_eq!(
+                    setup.covers(px, py) && within,
+                    expected,
+                    "{setup:?} {cuts:?} {x} {y} {s}"
+                );
             }
         }
         assert!(few > 100 && gone > 50, "{few} {gone}");

@@ -1,21 +1,25 @@
-//! Convex polygons on the screen: the faces of the file as algorithms with lists of polygons know them.
+//! Convex polygons on the screen: the faces of the file as algorithms with lists of polygons know
+//! them.
 //!
-//! The front end sets up triangles. Those of a flat face lie in one plane of the world and have one depth function, as have
-//! the parts of a facet that was clipped: they are joined again, over the edges that they share, as long as the outline stays
-//! convex. That is asked exactly, of the corners on the grid of 1/256 pixel, so a polygon covers the samples that its
-//! triangles cover, no more and no less. A face that is flat but not convex comes out as a few polygons, one that is not flat as
-//! its triangles.
+//! The front end sets up triangles. Those of a flat face lie in one plane of the world and have one
+//! depth function, as have the parts of a facet that was clipped: they are joined again, over the
+//! edges that they share, as long as the outline stays convex. That is asked exactly, of the
+//! corners on the grid of 1/256 pixel, so a polygon covers the samples that its triangles cover, no
+//! more and no less. A face that is flat but not convex comes out as a few polygons, one that is
+//! not flat as its triangles.
 //!
 //! In:   set-up triangles, those of a face one after the other (screen space). Out: polygons.
-//! Cost: linear in triangles; for a face, its triangles times the polygons it comes out as, the last [`RECENT`] at most.
+//! Cost: linear in triangles; for a face, its triangles times the polygons it comes out as, the
+//!       last [`RECENT`] at most.
 //! Source: the joining of triangles after [Hertel & Mehlhorn 1983].
 
 use crate::PreparedView;
 use std::ops::Range;
 use vitral_raster::Setup;
 
-/// A triangle is joined to one of the polygons that its face has come out as, of these the last so many: more would take time
-/// that grows with the square of the triangles, and triangulations put neighbours close together.
+/// A triangle is joined to one of the polygons that its face has come out as, of these the last so
+/// many: more would take time that grows with the square of the triangles, and triangulations put
+/// neighbours close together.
 pub(super) const RECENT: usize = 32;
 
 /// The polygons of some triangles.
@@ -31,7 +35,8 @@ pub(super) struct Polygons<'f> {
 /// One of them.
 #[derive(Clone, Debug)]
 struct Polygon {
-    /// Its depth function: the corners are those of its first triangle, the range of depths is that of all.
+    /// Its depth function: the corners are those of its first triangle, the range of depths is that
+    /// of all.
     plane: Setup,
     triangles: Range<u32>,
     corners: Range<u32>,
@@ -53,21 +58,31 @@ struct Growing<'f> {
 
 impl<'f> Polygons<'f> {
     /// Joins triangles to polygons; those of a face come one after the other.
-    pub(super) fn new(setups: impl IntoIterator<Item = &'f Setup>, view: &PreparedView<'_>) -> Self {
+    pub(super) fn new(
+        setups: impl IntoIterator<Item = &'f Setup>,
+        view: &PreparedView<'_>,
+    ) -> Self {
         let world = view.session.world();
         Self::joined(setups, |facet| world.surface_of_facet(facet))
     }
 
     /// [`Self::new`]; `face` is the face that a facet is of.
-    pub(super) fn joined(setups: impl IntoIterator<Item = &'f Setup>, face: impl Fn(u32) -> u32) -> Self {
+    pub(super) fn joined(
+        setups: impl IntoIterator<Item = &'f Setup>,
+        face: impl Fn(u32) -> u32,
+    ) -> Self {
         let setups = setups.into_iter();
         let mut polygons = Self::with_room(setups.size_hint().0);
         polygons.extend(setups, face);
         polygons
     }
 
-    /// [`Self::new`], of opaque triangles and then of layers: none is joined with one of the others.
-    pub(super) fn of_list((opaque, layers): (&[&'f Setup], &[&'f Setup]), view: &PreparedView<'_>) -> Self {
+    /// [`Self::new`], of opaque triangles and then of layers: none is joined with one of the
+    /// others.
+    pub(super) fn of_list(
+        (opaque, layers): (&[&'f Setup], &[&'f Setup]),
+        view: &PreparedView<'_>,
+    ) -> Self {
         let world = view.session.world();
         let mut polygons = Self::with_room(opaque.len() + layers.len());
         for setups in [opaque, layers] {
@@ -115,7 +130,10 @@ impl<'f> Polygons<'f> {
             for setup in face.iter() {
                 let recent = growing.len().saturating_sub(RECENT);
                 if !growing[recent..].iter_mut().any(|polygon| polygon.join(setup)) {
-                    growing.push(Growing { triangles: vec![setup], outline: JoinedOutline::new(setup.corners()) });
+                    growing.push(Growing {
+                        triangles: vec![setup],
+                        outline: JoinedOutline::new(setup.corners()),
+                    });
                 }
             }
             growing.iter().for_each(|done| self.push(&done.triangles, &done.outline.corners));
@@ -124,7 +142,8 @@ impl<'f> Polygons<'f> {
     }
 
     fn push(&mut self, of_polygon: &[&'f Setup], outline: &[[i32; 2]]) {
-        let (first_triangle, first_corner) = (self.triangles.len() as u32, self.corners.len() as u32);
+        let (first_triangle, first_corner) =
+            (self.triangles.len() as u32, self.corners.len() as u32);
         self.triangles.extend(of_polygon);
         self.corners.extend(outline);
         let mut plane = *of_polygon[0];
@@ -178,8 +197,8 @@ impl<'f> Polygons<'f> {
 }
 
 impl<'p, 'f> ConvexPolygon<'p, 'f> {
-    /// Its name in lists and steps: the id of its first triangle. No two polygons have the same, but those of a facet that was
-    /// clipped and came out in parts.
+    /// Its name in lists and steps: the id of its first triangle. No two polygons have the same,
+    /// but those of a facet that was clipped and came out in parts.
     pub(super) fn facet(self) -> u32 {
         self.plane.facet
     }
@@ -197,12 +216,14 @@ impl<'p, 'f> ConvexPolygon<'p, 'f> {
         facets
     }
 
-    /// Its plane, with the depths of all corners as the range; the corners in it are those of its first triangle alone.
+    /// Its plane, with the depths of all corners as the range; the corners in it are those of its
+    /// first triangle alone.
     pub(super) fn plane(self) -> &'p Setup {
         self.plane
     }
 
-    /// Corners, clockwise on the screen, 1/256 pixel: all edge functions are positive or zero inside.
+    /// Corners, clockwise on the screen, 1/256 pixel: all edge functions are positive or zero
+    /// inside.
     pub(super) fn outline(self) -> &'p [[i32; 2]] {
         self.outline
     }
@@ -246,7 +267,8 @@ impl<'f> Growing<'f> {
 pub(super) struct JoinedOutline<C> {
     /// Its corners in order.
     pub(super) corners: Vec<C>,
-    /// The corner that was added last: in a fan or a strip, the next triangle has an edge beside it.
+    /// The corner that was added last: in a fan or a strip, the next triangle has an edge beside
+    /// it.
     tip: usize,
 }
 
@@ -256,8 +278,9 @@ impl<C: Copy + PartialEq> JoinedOutline<C> {
         Self { corners: triangle.to_vec(), tip: 0 }
     }
 
-    /// Adds the tip of a triangle, if they share an edge and the outline stays convex; whether it does. `is_convex` says whether three
-    /// corners in a row turn the outline's way or go straight on.
+    /// Adds the tip of a triangle, if they share an edge and the outline stays convex; whether it
+    /// does. `is_convex` says whether three corners in a row turn the outline's way or go straight
+    /// on.
     pub(super) fn add(&mut self, [a, b, c]: [C; 3], is_convex: impl Fn(C, C, C) -> bool) -> bool {
         let corners = &mut self.corners;
         let count = corners.len();
@@ -283,8 +306,9 @@ fn turn(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> i64 {
     bx * cy - by * cx
 }
 
-/// Whether two facets have one depth function. That of facets in a shared plane is never clamped where they are; that of
-/// others begins at their first corner, and is the same only for parts of one.
+/// Whether two facets have one depth function. That of facets in a shared plane is never clamped
+/// where they are; that of others begins at their first corner, and is the same only for parts of
+/// one.
 pub(super) fn same_plane(a: &Setup, b: &Setup) -> bool {
     let plane = |s: &Setup| ([s.z, s.dz_dx, s.dz_dy].map(f32::to_bits), s.origin);
     plane(a) == plane(b)
@@ -328,7 +352,11 @@ mod tests {
         // Triangles that turn the other way are turned by the setup.
         let turned: Vec<_> = fan.iter().map(|&[a, b, c]| [a, c, b]).collect();
         assert_eq!(outlines(&turned), [6]);
-        assert_eq!(outlines(&[fan[0], fan[2], fan[1], fan[3]]), [4, 4], "the second fan has no edge in common yet");
+        assert_eq!(
+            outlines(&[fan[0], fan[2], fan[1], fan[3]]),
+            [4, 4],
+            "the second fan has no edge in common yet"
+        );
     }
 
     #[test]

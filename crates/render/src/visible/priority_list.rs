@@ -1,12 +1,14 @@
 //! Lists of polygons in order of depth: what painter's algorithm and BSP trees come to in the end.
 //!
-//! The list decides what is seen: from back to front, what comes later covers what came before; from front to back, it
-//! fills what is left, and full blocks of 8x8 pixels are passed over. Samples at which the common depth function
-//! says otherwise go to the nearer facet, since that is the law for all algorithms, and are counted as overruled:
-//! corners are snapped to 1/256 pixel, so surfaces closer than that moves them can seem to change places.
+//! The list decides what is seen: from back to front, what comes later covers what came before;
+//! from front to back, it fills what is left, and full blocks of 8x8 pixels are passed over.
+//! Samples at which the common depth function says otherwise go to the nearer facet, since that is
+//! the law for all algorithms, and are counted as overruled: corners are snapped to 1/256 pixel, so
+//! surfaces closer than that moves them can seem to change places.
 //!
-//! Transparent facets can take part in the list, for an order of transparency that draws by it. Which of them lie in front
-//! of what is opaque is the law's matter as for all algorithms; in which order they are drawn is the list's alone.
+//! Transparent facets can take part in the list, for an order of transparency that draws by it.
+//! Which of them lie in front of what is opaque is the law's matter as for all algorithms; in which
+//! order they are drawn is the list's alone.
 //!
 //! In:   pieces of facets in order (screen space). Out: the samples of each tile (screen space).
 //! Cost: linear in the pieces of each tile and covered samples, hidden ones included.
@@ -24,8 +26,9 @@ use std::sync::Mutex;
 use vitral_exec::Limit;
 use vitral_math::lanes::{Simd, dispatch};
 use vitral_raster::{
-    BLOCK, Block, BlockSink, InBlocks, LayerList, LayerSink, NO_FACET, PriorityCounts, PrioritySink, RowSink, SUBPIXEL,
-    SamplePattern, Setup, TILE, TILE_PIXELS, Tile, TileGrid, traverse_by_rows, traverse_window,
+    BLOCK, Block, BlockSink, InBlocks, LayerList, LayerSink, NO_FACET, PriorityCounts,
+    PrioritySink, RowSink, SUBPIXEL, SamplePattern, Setup, TILE, TILE_PIXELS, Tile, TileGrid,
+    traverse_by_rows, traverse_window,
 };
 
 /// An outline in 1/256 pixel as steps tell it, in pixels.
@@ -59,9 +62,13 @@ pub(super) fn draw_list<const FRONT_FIRST: bool>(
     sink: &dyn TileSink,
     stage: &'static str,
 ) -> Result<VisibilityCounters, Limit> {
-    // Tiles are drawn by all threads; what an observer is told of them comes in the order of tiles, at the end.
+    // Tiles are drawn by all threads; what an observer is told of them comes in the order of tiles,
+    // at the end.
     let overruled = Mutex::new(Vec::new());
-    let fill = |facets: &Facets<'_, '_>, index: usize, tiles: &mut [Tile], counters: &mut VisibilityCounters| {
+    let fill = |facets: &Facets<'_, '_>,
+                index: usize,
+                tiles: &mut [Tile],
+                counters: &mut VisibilityCounters| {
         facets.execution().budget.check(stage)?;
         let before = counters.overruled;
         draw::<FRONT_FIRST>(facets, list, index, &mut tiles[0], counters);
@@ -95,7 +102,9 @@ fn overruled_step<const FRONT_FIRST: bool>(
     // Paint by the list alone.
     let pattern = &facets.view().pattern;
     let mut by_list = vec![NO_FACET; TILE_PIXELS * pattern.len()];
-    for (run, piece) in list.in_tile(index).filter(|(_, piece)| (piece.setup as usize) < list.opaque) {
+    for (run, piece) in
+        list.in_tile(index).filter(|(_, piece)| (piece.setup as usize) < list.opaque)
+    {
         let facet = list.setups[piece.setup as usize].facet;
         each_sample(list, (run, piece), (tile.x, tile.y), pattern, |at| {
             if !FRONT_FIRST || by_list[at] == NO_FACET {
@@ -112,12 +121,18 @@ fn overruled_step<const FRONT_FIRST: bool>(
             let (by_list, by_depth) = (by_list[at], tile.facet[at]);
             if by_list != by_depth {
                 let place = [tile.x + (pixel % TILE) as u32, tile.y + (pixel / TILE) as u32];
-                samples.push(OverruledSample { pixel: place, sample: sample as u32, by_list, by_depth });
+                samples.push(OverruledSample {
+                    pixel: place,
+                    sample: sample as u32,
+                    by_list,
+                    by_depth,
+                });
             }
         }
     }
     let viewport = facets.view().viewport;
-    let [width, height] = [viewport.width - tile.x, viewport.height - tile.y].map(|side| side.min(TILE as u32));
+    let [width, height] =
+        [viewport.width - tile.x, viewport.height - tile.y].map(|side| side.min(TILE as u32));
     Step::Overruled { pixels: [tile.x, tile.y, width, height], samples }
 }
 
@@ -141,10 +156,14 @@ fn each_sample(
                 // Test the outline and the cuts, or look the sample up.
                 let has = if piece.samples == UNLISTED {
                     let offset = pattern.position(s);
-                    let [px, py] = [x as i32 * SUBPIXEL + offset[0], y as i32 * SUBPIXEL + offset[1]];
-                    setup.covers(px, py) && cuts.iter().all(|cut| cut.keeps([f64::from(px), f64::from(py)]))
+                    let [px, py] =
+                        [x as i32 * SUBPIXEL + offset[0], y as i32 * SUBPIXEL + offset[1]];
+                    setup.covers(px, py)
+                        && cuts.iter().all(|cut| cut.keeps([f64::from(px), f64::from(py)]))
                 } else {
-                    run.samples[piece.samples as usize + s] >> ((y - y0) * BLOCK as u32 + (x - x0)) & 1 == 1
+                    run.samples[piece.samples as usize + s] >> ((y - y0) * BLOCK as u32 + (x - x0))
+                        & 1
+                        == 1
                 };
                 if has {
                     f(s * TILE_PIXELS + ((y - place.1) * tile + (x - place.0)) as usize);
@@ -177,7 +196,8 @@ fn draw<const FRONT_FIRST: bool>(
     counters.overruled_far += counts.overruled_far;
 }
 
-/// Collects the layers of a tile's part of a list from back to front, as far as they lie in front of its opaque samples.
+/// Collects the layers of a tile's part of a list from back to front, as far as they lie in front
+/// of its opaque samples.
 fn draw_layers<const FRONT_FIRST: bool>(
     facets: &Facets<'_, '_>,
     list: &PriorityList<'_>,
@@ -300,7 +320,9 @@ impl<S: Simd, K: BlockSink<S>> BlockSink<S> for PieceSink<'_, K> {
 #[cfg(test)]
 mod tests {
     use super::super::pieces::Raster;
-    use super::super::{NullSink, Resolved, VisibleSurface, bsp::Bsp, painter::Painter, zbuffer::ZBuffer};
+    use super::super::{
+        NullSink, Resolved, VisibleSurface, bsp::Bsp, painter::Painter, zbuffer::ZBuffer,
+    };
     use super::{Facets, Pieces, PriorityList, TileSink, draw_list};
     use crate::marks::Marks;
     use crate::stats::{CullCounters, VisibilityCounters};
@@ -324,7 +346,8 @@ mod tests {
     /// A mesh of faces with four corners each.
     fn squares(corners: &[[f32; 3]]) -> Mesh {
         let faces = corners.len() as u32 / 4;
-        let triangles = (0..faces).flat_map(|f| [[4 * f, 4 * f + 1, 4 * f + 2], [4 * f, 4 * f + 2, 4 * f + 3]]);
+        let triangles =
+            (0..faces).flat_map(|f| [[4 * f, 4 * f + 1, 4 * f + 2], [4 * f, 4 * f + 2, 4 * f + 3]]);
         let faces = Faces::Polygons {
             starts: (0..=faces).map(|f| 4 * f).collect(),
             corners: (0..corners.len() as u32).collect(),
@@ -335,22 +358,31 @@ mod tests {
     /// What is seen at each sample, facets and depths; the counters, the steps.
     type Found = (Vec<(u32, u32)>, VisibilityCounters, Vec<Step>);
 
-    fn find(session: &Session, camera: &Camera, algorithm: &dyn VisibleSurface, threads: usize) -> Found {
+    fn find(
+        session: &Session,
+        camera: &Camera,
+        algorithm: &dyn VisibleSurface,
+        threads: usize,
+    ) -> Found {
         const SIDE: u32 = 80;
         let (viewport, samples) = (Viewport::new(SIDE, SIDE).unwrap(), 2);
         let kept = Arc::new(Steps::default());
         let observer = Some(Arc::clone(&kept) as Arc<dyn Observer>);
-        let execution = Execution { observer, workers: Workers::new(threads), ..Execution::default() };
+        let execution =
+            Execution { observer, workers: Workers::new(threads), ..Execution::default() };
         let (settings, pattern) = (Settings::default(), SamplePattern::new(samples));
         let culled = &mut CullCounters::default();
-        let view = PreparedView::new(session, camera, &settings, viewport, pattern, &execution, culled);
+        let view =
+            PreparedView::new(session, camera, &settings, viewport, pattern, &execution, culled);
         let mut grid = TileGrid::new(viewport, samples);
         let resolved = algorithm.resolve(&view, None, &mut grid, &execution, &NullSink).unwrap();
         let mut seen = Vec::new();
         for (y, x) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (y, x))) {
             let (tile, at) = grid.locate(x, y);
             seen.extend(
-                (0..samples).map(|s| s * super::TILE_PIXELS + at).map(|at| (tile.facet[at], tile.depth[at].to_bits())),
+                (0..samples)
+                    .map(|s| s * super::TILE_PIXELS + at)
+                    .map(|at| (tile.facet[at], tile.depth[at].to_bits())),
             );
         }
         let steps = std::mem::take(&mut *kept.0.lock().unwrap());
@@ -378,7 +410,8 @@ mod tests {
         })
     }
 
-    const SHEET: [[f32; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+    const SHEET: [[f32; 3]; 4] =
+        [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
 
     #[test]
     fn p21_p22_lists_agree_with_the_depth_buffer_and_depth_overrules_no_coplanar_faces() {
@@ -387,7 +420,9 @@ mod tests {
         let through = [[-0.9, 0.1, -0.8], [0.8, 0.2, -0.8], [0.8, 0.2, 0.9], [-0.9, 0.1, 0.9f32]];
         // Both sides of a sheet with a decal; the same, and a face that penetrates them.
         let sheet = || vec![squares(&[d, c, b, a]), squares(&SHEET), squares(&decal)];
-        for (meshes, is_coplanar) in [(sheet(), true), ([sheet(), vec![squares(&through)]].concat(), false)] {
+        for (meshes, is_coplanar) in
+            [(sheet(), true), ([sheet(), vec![squares(&through)]].concat(), false)]
+        {
             let session = session(meshes);
             for camera in cameras() {
                 let (expected, ..) = find(&session, &camera, &ZBuffer, 1);
@@ -398,7 +433,11 @@ mod tests {
                     let told = steps.iter().filter(|s| matches!(s, Step::Overruled { .. })).count();
                     assert_eq!(counters.overruled > 0, told > 0);
                     if is_coplanar {
-                        assert_eq!((counters.overruled, counters.splits, counters.pieces), (0, 0, 3), "{counters:?}");
+                        assert_eq!(
+                            (counters.overruled, counters.splits, counters.pieces),
+                            (0, 0, 3),
+                            "{counters:?}"
+                        );
                     }
                 }
             }
@@ -444,7 +483,8 @@ mod tests {
             }
             run.finish(view.viewport);
             let list = PriorityList { setups: &setups, opaque, runs: &[run] };
-            resolved.counters = draw_list::<false>(&facets, &list, marks, grid, sink, "a list in the wrong order")?;
+            resolved.counters =
+                draw_list::<false>(&facets, &list, marks, grid, sink, "a list in the wrong order")?;
             Ok(resolved)
         }
     }
@@ -458,19 +498,28 @@ mod tests {
         scene.add_mesh(squares(&near), DMat4::IDENTITY);
         let session = Session::new(Arc::new(scene)).unwrap();
         let projection = Projection::Parallel { height: 4.0 };
-        let camera = Camera { projection, ..Camera::look_at(DVec3::new(0.0, 0.0, 6.0), DVec3::ZERO) };
+        let camera =
+            Camera { projection, ..Camera::look_at(DVec3::new(0.0, 0.0, 6.0), DVec3::ZERO) };
         let (seen, counters, steps) = find(&session, &camera, &WrongOrder, 1);
-        assert!(seen == find(&session, &camera, &ZBuffer, 1).0, "the nearer facet is seen whatever the list says");
+        assert!(
+            seen == find(&session, &camera, &ZBuffer, 1).0,
+            "the nearer facet is seen whatever the list says"
+        );
         let told: Vec<_> = steps
             .iter()
-            .filter_map(|step| if let Step::Overruled { samples, .. } = step { Some(samples) } else { None })
+            .filter_map(|step| {
+                if let Step::Overruled { samples, .. } = step { Some(samples) } else { None }
+            })
             .flatten()
             .collect();
         assert_eq!((told.len() as u64, told.len()), (counters.overruled, 40 * 40 * 2));
         assert!(told.iter().all(|s| s.by_list < 2 && s.by_depth >= 2), "{:?}", told[0]);
         for algorithm in [&Painter as &dyn VisibleSurface, &Bsp] {
             let (.., steps) = find(&session, &camera, algorithm, 1);
-            assert!(!steps.iter().any(|step| matches!(step, Step::Overruled { .. })), "their lists are right");
+            assert!(
+                !steps.iter().any(|step| matches!(step, Step::Overruled { .. })),
+                "their lists are right"
+            );
         }
     }
 }

@@ -1,18 +1,22 @@
 //! Ray casting: a ray through every sample, and what it meets first.
 //!
-//! A structure over the world's triangles (a tree of boxes, an octree, a partition, a grid: `--acceleration`) finds those near a ray
-//! without looking at the others; what is nearest comes first, and once a facet is found, whatever begins behind it is
-//! passed over. The structure serves every view.
+//! A structure over the world's triangles (a tree of boxes, an octree, a partition, a grid:
+//! `--acceleration`) finds those near a ray without looking at the others; what is nearest comes
+//! first, and once a facet is found, whatever begins behind it is passed over. The structure serves
+//! every view.
 //!
-//! So that the picture is that of the other algorithms sample by sample, rays only *find*; what covers a sample and how
-//! near it is there is decided on the screen, by `Setup::covers` and `Setup::depth`. Corners on the screen are snapped,
-//! so a facet may cover a sample whose ray misses it by a hair: rays are beams, wider than snapping and rounding can
-//! move a corner (`ray_cast/eye.rs`). And the depth on the screen rounds, so a box is passed over only if it lies behind by more
-//! than its facets' depths can be wrong. Facets that were culled in this view do not count, nor do boxes with nothing
-//! else. Through trees the rays of 8x8 pixels go together (`packet.rs`), through a grid one by one (`single.rs`).
+//! So that the picture is that of the other algorithms sample by sample, rays only *find*; what
+//! covers a sample and how near it is there is decided on the screen, by `Setup::covers` and
+//! `Setup::depth`. Corners on the screen are snapped, so a facet may cover a sample whose ray
+//! misses it by a hair: rays are beams, wider than snapping and rounding can move a corner
+//! (`ray_cast/eye.rs`). And the depth on the screen rounds, so a box is passed over only if it lies
+//! behind by more than its facets' depths can be wrong. Facets that were culled in this view do not
+//! count, nor do boxes with nothing else. Through trees the rays of 8x8 pixels go together
+//! (`packet.rs`), through a grid one by one (`single.rs`).
 //!
 //! In:   prepared draws (model space). Out: the samples of each tile (screen space).
-//! Cost: `O(log n)` for each sample in scenes of everyday, after `O(n log n)` for the structure and `O(n)` for a view.
+//! Cost: `O(log n)` for each sample in scenes of everyday, after `O(n log n)` for the structure and
+//!       `O(n)` for a view.
 //! Source: [Appel 1968]; the tree after [Rubin & Whitted 1980]. Departs from them: see above.
 
 mod cast;
@@ -52,7 +56,8 @@ impl VisibleSurface for RayCast {
         let bytes = AnyStructure::bytes(view.acceleration, facets);
         let bytes = ScreenSetups::bytes(view) + Triangles::bytes(facets) + bytes + facets * 32;
         execution.budget.charged(bytes, "ray casting", || {
-            let casting = RayCasting { view, marks, execution, sink, start: execution.budget.elapsed() };
+            let casting =
+                RayCasting { view, marks, execution, sink, start: execution.budget.elapsed() };
             AnyStructure::new(view.acceleration, view.session, execution)?.lend((casting, grid))
         })
     }
@@ -94,7 +99,9 @@ impl RayCasting<'_> {
         &self,
         grid: &mut TileGrid,
         structure: &T,
-        look: impl Fn(&Cast<'_, T>, &mut Tile, &mut LayerList) -> Result<VisibilityCounters, Limit> + Sync + Send,
+        look: impl Fn(&Cast<'_, T>, &mut Tile, &mut LayerList) -> Result<VisibilityCounters, Limit>
+        + Sync
+        + Send,
     ) -> Result<Resolved, Limit> {
         let (view, execution) = (self.view, self.execution);
 

@@ -1,6 +1,8 @@
-//! Tiles that are drawn in rounds of triangles: what is known of them between rounds, and how a round changes one.
+//! Tiles that are drawn in rounds of triangles: what is known of them between rounds, and how a
+//! round changes one.
 //!
-//! In:   batches of set-up triangles (screen space). Out: the samples of each tile, handed on after the last round.
+//! In:   batches of set-up triangles (screen space). Out: the samples of each tile, handed on after
+//!       the last round.
 //! Cost: linear in triangles and covered samples; memory: the layers of all rounds.
 
 use super::front_end::BYTES_A_TRIANGLE;
@@ -44,11 +46,13 @@ impl<'a> RoundTiles<'a> {
         count: usize,
     ) -> Self {
         let layers = (0..count).map(|_| Mutex::new(layer_list(view, sink))).collect();
-        let (overdraw, kept) = (Overdraw::new(count, execution), KeptLayers::new(&execution.budget));
+        let (overdraw, kept) =
+            (Overdraw::new(count, execution), KeptLayers::new(&execution.budget));
         Self { view, marks, execution, sink, layers, overdraw, kept }
     }
 
-    /// Draws a round's triangles into a tile; after the last round draws the marks and hands the tile on.
+    /// Draws a round's triangles into a tile; after the last round draws the marks and hands the
+    /// tile on.
     pub(super) fn draw(&self, round: &Round, index: usize, tile: &mut Tile) {
         // Empty the tile before the first round.
         if round.is_first {
@@ -58,7 +62,8 @@ impl<'a> RoundTiles<'a> {
         let mut layers = self.layers[index].lock().expect("no thread panics while it holds layers");
         self.overdraw.come(view, self.execution, &round.batches, index, tile);
 
-        // Let marks hide what is behind them, then walk the triangles. Layers that are asked for in passes wait.
+        // Let marks hide what is behind them, then walk the triangles. Layers that are asked for in
+        // passes wait.
         let marks = self.marks.filter(|_| round.is_last);
         if let Some(marks) = marks {
             hide_behind((level, view.depth_bits), &marks.hiding, index, tile, &view.pattern);
@@ -68,14 +73,18 @@ impl<'a> RoundTiles<'a> {
         let batches: Vec<_> = batches.filter(|(layered, _)| !(passes && *layered)).collect();
         match view.depth_bits {
             None => walk(level, &batches, index, tile, &view.pattern, &mut layers),
-            Some(bits) => walk_integer((level, bits), &batches, index, tile, &view.pattern, &mut layers),
+            Some(bits) => {
+                walk_integer((level, bits), &batches, index, tile, &view.pattern, &mut layers)
+            }
         }
 
         // Hand the finished tile on.
         if round.is_last {
             if passes {
-                let here = round.batches.iter().filter(|(layered, _)| *layered).map(|(_, batch)| batch);
-                let layered = self.kept.batches.iter().chain(here).chain(marks.map(|marks| &marks.all));
+                let here =
+                    round.batches.iter().filter(|(layered, _)| *layered).map(|(_, batch)| batch);
+                let layered =
+                    self.kept.batches.iter().chain(here).chain(marks.map(|marks| &marks.all));
                 hand_on_in_passes(view, self.execution, layered, index, tile, self.sink);
             } else {
                 layers.finish();
@@ -85,7 +94,10 @@ impl<'a> RoundTiles<'a> {
     }
 
     /// Keeps the layers of a round for passes to go through and returns the other batches.
-    pub(super) fn keep_layers(&mut self, batches: Vec<(bool, Batch)>) -> Result<Vec<(bool, Batch)>, Limit> {
+    pub(super) fn keep_layers(
+        &mut self,
+        batches: Vec<(bool, Batch)>,
+    ) -> Result<Vec<(bool, Batch)>, Limit> {
         if !self.sink.takes_passes() {
             return Ok(batches);
         }
@@ -108,7 +120,8 @@ impl<'e> KeptLayers<'e> {
 
     /// Keeps the layers and gives the rest back.
     fn keep(&mut self, batches: Vec<(bool, Batch)>) -> Result<Vec<(bool, Batch)>, Limit> {
-        let (layered, rest): (Vec<_>, Vec<_>) = batches.into_iter().partition(|(layered, _)| *layered);
+        let (layered, rest): (Vec<_>, Vec<_>) =
+            batches.into_iter().partition(|(layered, _)| *layered);
         for (_, batch) in layered {
             let bytes = batch.counters.tile_entries * BYTES_A_TRIANGLE;
             self.budget.charge(bytes, "layers to go through")?;

@@ -13,8 +13,8 @@ pub(super) struct ScreenSetups {
     pub setups: Vec<Setup>,
     /// How many are opaque.
     pub opaque: usize,
-    /// Runs `(end, clipped)` of `setups`: whether one of the run may be a piece of a clipped facet, which takes its
-    /// depth plane from another piece.
+    /// Runs `(end, clipped)` of `setups`: whether one of the run may be a piece of a clipped facet,
+    /// which takes its depth plane from another piece.
     pub runs: Vec<(usize, bool)>,
 }
 

@@ -6,11 +6,12 @@ use vitral_raster::{LayerList, Tile};
 
 /// Takes tiles as they are finished, from any thread, each once.
 pub trait TileSink: Sync {
-    /// `layers` are the transparent facets in front of the tile's opaque samples, in no particular order.
+    /// `layers` are the transparent facets in front of the tile's opaque samples, in no particular
+    /// order.
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList);
 
-    /// Whether the caller reads the grid's tiles afterwards. If not, algorithms may fill all tiles in the same memory, one after
-    /// the other.
+    /// Whether the caller reads the grid's tiles afterwards. If not, algorithms may fill all tiles
+    /// in the same memory, one after the other.
     fn keeps_tiles(&self) -> bool {
         true
     }
@@ -20,12 +21,14 @@ pub trait TileSink: Sync {
         false
     }
 
-    /// Whether it asks for layers pass by pass. Algorithms that find all layers of a sample at once (rays) hand on all.
+    /// Whether it asks for layers pass by pass. Algorithms that find all layers of a sample at once
+    /// (rays) hand on all.
     fn takes_passes(&self) -> bool {
         false
     }
 
-    /// [`Self::tile`] for those that do: `pass` goes through all layers again, as long as it finds some.
+    /// [`Self::tile`] for those that do: `pass` goes through all layers again, as long as it finds
+    /// some.
     fn tile_in_passes(&self, _: usize, _: &Tile, _: &mut dyn FnMut(&mut Peel) -> bool) {}
 }
 
@@ -37,7 +40,8 @@ impl TileSink for NullSink {
     fn tile(&self, _: usize, _: &Tile, _: &mut LayerList) {}
 }
 
-/// An empty list for the layers of a tile, as `sink` takes them from an algorithm that walks triangles one by one.
+/// An empty list for the layers of a tile, as `sink` takes them from an algorithm that walks
+/// triangles one by one.
 pub(crate) fn layer_list(view: &PreparedView<'_>, sink: &dyn TileSink) -> LayerList {
     let mut list = view.layer_list();
     if sink.takes_fragments() {

@@ -38,7 +38,8 @@ impl Outcome {
     }
 }
 
-/// Lets `look` fill each tile and its layers, adds the marks and hands the tile on. After a limit the rest is left out.
+/// Lets `look` fill each tile and its layers, adds the marks and hands the tile on. After a limit
+/// the rest is left out.
 pub(super) fn each_tile(
     view: &PreparedView<'_>,
     marks: Option<&Marks>,
@@ -60,7 +61,14 @@ pub(super) fn each_tile(
             // Test lines and points against the finished depth.
             if let Some(marks) = marks {
                 hide_behind((execution.level, None), &marks.hiding, index, tile, &view.pattern);
-                collect_layers(execution.level, &marks.all, index, tile, &view.pattern, &mut layers);
+                collect_layers(
+                    execution.level,
+                    &marks.all,
+                    index,
+                    tile,
+                    &view.pattern,
+                    &mut layers,
+                );
             }
             layers.finish();
             sink.tile(index, tile, &mut layers);
@@ -71,8 +79,8 @@ pub(super) fn each_tile(
     outcome.into_result()
 }
 
-/// Hands a tile on to a sink that asks for its layers pass by pass, which walk `layered`. Passes end early at a limit: check the
-/// budget when all tiles are handed on.
+/// Hands a tile on to a sink that asks for its layers pass by pass, which walk `layered`. Passes
+/// end early at a limit: check the budget when all tiles are handed on.
 pub(super) fn hand_on_in_passes<'b>(
     view: &PreparedView<'_>,
     execution: &Execution,
@@ -82,7 +90,9 @@ pub(super) fn hand_on_in_passes<'b>(
     sink: &dyn TileSink,
 ) {
     let go_on = || execution.budget.check(PASSES).is_ok();
-    let mut pass = |peel: &mut Peel| go_on() && peel.pass(execution.level, layered.clone(), index, tile, &view.pattern);
+    let mut pass = |peel: &mut Peel| {
+        go_on() && peel.pass(execution.level, layered.clone(), index, tile, &view.pattern)
+    };
     sink.tile_in_passes(index, tile, &mut pass);
 }
 

@@ -1,9 +1,10 @@
-//! A tile's triangles, walked one after the other: opaque ones are tested against the depths of its samples, layers collected.
+//! A tile's triangles, walked one after the other: opaque ones are tested against the depths of its
+//! samples, layers collected.
 
 use vitral_math::lanes::{Level, Simd, dispatch};
 use vitral_raster::{
-    Batch, FragmentSink, IntegerDepth, LayerList, LayerSink, NO_FACET, RowSink, SamplePattern, Tile, VisibilitySink,
-    traverse_by_rows,
+    Batch, FragmentSink, IntegerDepth, LayerList, LayerSink, NO_FACET, RowSink, SamplePattern,
+    Tile, VisibilitySink, traverse_by_rows,
 };
 
 /// Walks a tile's triangles, those of layers last.
@@ -71,7 +72,8 @@ fn walk_layers(
     layers: &mut LayerList,
 ) {
     let place = (tile.x, tile.y);
-    let mut in_front = batches.iter().filter(|(layered, batch)| *layered && batch.tile(index).next().is_some());
+    let mut in_front =
+        batches.iter().filter(|(layered, batch)| *layered && batch.tile(index).next().is_some());
     let Some(first) = in_front.next() else { return };
     let in_front = std::iter::once(first).chain(in_front).map(|(_, batch)| *batch);
     dispatch!(level, simd => {
@@ -85,9 +87,16 @@ fn walk_layers(
     });
 }
 
-/// Draws what is opaque in a tile. Out of line: compilers for WebAssembly take very long over functions that are very large.
+/// Draws what is opaque in a tile. Out of line: compilers for WebAssembly take very long over
+/// functions that are very large.
 #[inline(never)]
-fn walk_opaque(level: Level, batches: &[(bool, &Batch)], index: usize, tile: &mut Tile, pattern: &SamplePattern) {
+fn walk_opaque(
+    level: Level,
+    batches: &[(bool, &Batch)],
+    index: usize,
+    tile: &mut Tile,
+    pattern: &SamplePattern,
+) {
     let place = (tile.x, tile.y);
     dispatch!(level, simd => {
         for (_, batch) in batches.iter().filter(|(layered, _)| !layered) {
@@ -96,8 +105,9 @@ fn walk_opaque(level: Level, batches: &[(bool, &Batch)], index: usize, tile: &mu
     });
 }
 
-/// Lets facets that are drawn as layers hide what is behind them, though not each other where they are equally near: nothing is
-/// left there but a depth just behind theirs. Depths are integers of `bits` bits, if of any.
+/// Lets facets that are drawn as layers hide what is behind them, though not each other where they
+/// are equally near: nothing is left there but a depth just behind theirs. Depths are integers of
+/// `bits` bits, if of any.
 pub(super) fn hide_behind(
     (level, bits): (Level, Option<u32>),
     hiding: &Batch,

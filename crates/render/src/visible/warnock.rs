@@ -1,21 +1,25 @@
-//! Warnock's area subdivision: what is simple in a window is drawn, the rest is looked at in four smaller windows.
+//! Warnock's area subdivision: what is simple in a window is drawn, the rest is looked at in four
+//! smaller windows.
 //!
-//! A polygon is to a window one of four things: disjoint, contained, intersecting, or surrounding it. Four cases are
-//! simple. All polygons are disjoint: the window stays empty. One polygon is left, contained or intersecting: it is
-//! drawn into the window. One polygon is left, and surrounds: it fills the window. Several are left, but one that
-//! surrounds is nearer than all others at the window's four corners, hence everywhere in it: it fills the window.
-//! Everything else is put off: the window is cut in four. Disjoint polygons and those behind a surrounder are not
-//! handed down, so lists become shorter; surrounders stay surrounders and need no further test. A window of one pixel
-//! is not cut: the nearest facet at each of the pixel's samples is taken.
+//! A polygon is to a window one of four things: disjoint, contained, intersecting, or surrounding
+//! it. Four cases are simple. All polygons are disjoint: the window stays empty. One polygon is
+//! left, contained or intersecting: it is drawn into the window. One polygon is left, and
+//! surrounds: it fills the window. Several are left, but one that surrounds is nearer than all
+//! others at the window's four corners, hence everywhere in it: it fills the window. Everything
+//! else is put off: the window is cut in four. Disjoint polygons and those behind a surrounder are
+//! not handed down, so lists become shorter; surrounders stay surrounders and need no further test.
+//! A window of one pixel is not cut: the nearest facet at each of the pixel's samples is taken.
 //!
-//! The first window is the whole picture. Windows of several tiles are looked at first, all of one size at once, then the
-//! tiles, each by one thread.
+//! The first window is the whole picture. Windows of several tiles are looked at first, all of one
+//! size at once, then the tiles, each by one thread.
 //!
-//! In:   set-up triangles, joined to polygons (screen space). Out: the samples of each tile (screen space).
+//! In:   set-up triangles, joined to polygons (screen space). Out: the samples of each tile (screen
+//!       space).
 //! Cost: windows (about the length of visible edges in pixels) times the polygons in them.
-//! Source: [Warnock 1969]. Departs from it: large windows are cut between tiles of 64x64 pixels, nearest to their middle
-//! (`warnock/window.rs`); a window's corners are those of the box round its samples. The four-corner test leaves a margin for
-//! rounding and reckons with the clamping of depths, so that it never decides but what the facets' depth function would
+//! Source: [Warnock 1969]. Departs from it: large windows are cut between tiles of 64x64 pixels,
+//! nearest to their middle (`warnock/window.rs`); a window's corners are those of the box round its
+//! samples. The four-corner test leaves a margin for rounding and reckons with the clamping of
+//! depths, so that it never decides but what the facets' depth function would
 //! (`warnock/depths.rs`); two facets with one depth plane are decided by their ids.
 
 mod depths;
@@ -100,8 +104,13 @@ struct Divided {
 }
 
 impl Divided {
-    /// Looks at the windows of several tiles, from the whole picture down. What the lists take is charged to `memory`.
-    fn new(facets: &Facets<'_, '_>, polygons: &Polygons<'_>, memory: &Charge<'_>) -> Result<Self, Limit> {
+    /// Looks at the windows of several tiles, from the whole picture down. What the lists take is
+    /// charged to `memory`.
+    fn new(
+        facets: &Facets<'_, '_>,
+        polygons: &Polygons<'_>,
+        memory: &Charge<'_>,
+    ) -> Result<Self, Limit> {
         // Begin with the whole picture and all polygons.
         let view = facets.view();
         // Of the facets of a single tile no list of a larger window can be told.
@@ -109,12 +118,14 @@ impl Divided {
         let execution = &Execution { observer, ..facets.execution().clone() };
         let tiles = (0..view.viewport.tiles_x() * view.viewport.tiles_y()).map(|_| None).collect();
         let mut divided = Self { tiles, counters: VisibilityCounters::default() };
-        let all = (0..polygons.len() as u32).map(|polygon| Entry { polygon, relation: WindowRelation::Intersecting });
+        let all = (0..polygons.len() as u32)
+            .map(|polygon| Entry { polygon, relation: WindowRelation::Intersecting });
         let whole = Window::whole(view.viewport.width, view.viewport.height);
         let mut level: Vec<(Window, Arc<[Entry]>)> = vec![(whole, all.collect())];
         while !level.is_empty() {
             // Windows of single tiles are looked at with the tile.
-            let (single, several): (Vec<_>, Vec<_>) = level.into_iter().partition(|(window, _)| window.is_in_tile());
+            let (single, several): (Vec<_>, Vec<_>) =
+                level.into_iter().partition(|(window, _)| window.is_in_tile());
             for (window, list) in single {
                 let index = tile_of(&window, view);
                 divided.tiles[index] = Some(TileWork { window, task: Task::LookAt(list) });
@@ -172,7 +183,9 @@ fn tile_of(window: &Window, view: &PreparedView<'_>) -> usize {
 fn is_wanted(window: &Window, view: &PreparedView<'_>) -> bool {
     let tiles = |pixels: &Range<u32>| pixels.start / TILE as u32..pixels.end.div_ceil(TILE as u32);
     let columns = view.viewport.tiles_x();
-    tiles(&window.y).any(|row| tiles(&window.x).any(|column| view.makes_tile((row * columns + column) as usize)))
+    tiles(&window.y).any(|row| {
+        tiles(&window.x).any(|column| view.makes_tile((row * columns + column) as usize))
+    })
 }
 
 /// The subdivision of one tile.
@@ -198,7 +211,14 @@ impl<'t, 'f> Subdivision<'t, 'f> {
             Task::LookAt(list) => list,
         };
         let lists = Lists::new(facets.view(), facets.execution(), polygons, first);
-        Self { execution: facets.execution(), pattern: &facets.view().pattern, polygons, lists, tile, counters }
+        Self {
+            execution: facets.execution(),
+            pattern: &facets.view().pattern,
+            polygons,
+            lists,
+            tile,
+            counters,
+        }
     }
 
     /// Draws what is seen in the tile.
@@ -249,7 +269,11 @@ impl<'t, 'f> Subdivision<'t, 'f> {
                 for column in window.x.clone() {
                     let [x, y] = sample(self.pattern, [column, row], s);
                     if let Some(facet) = facet_at(polygon, entry, [x, y]) {
-                        put(self.tile, place(self.tile, [column, row], s), (polygon.depth(x, y), facet));
+                        put(
+                            self.tile,
+                            place(self.tile, [column, row], s),
+                            (polygon.depth(x, y), facet),
+                        );
                     }
                 }
             }

@@ -1,23 +1,29 @@
 //! Weiler–Atherton: clip polygons against each other until only visible ones are left.
 //!
-//! Sort the polygons by their nearest points. Take the first and clip all others by it: the part of the scene inside it
-//! and the part outside become two lists. In the inside list, what lies behind the clipping polygon is hidden and goes.
-//! If nothing else remains there, the clipping polygon is visible. If something lies in front, the preliminary order
-//! erred, and the inside list is treated in the same way with that as the clipping polygon. Go on with the outside list.
-//! Polygons that penetrate the clipping polygon are cut where they do. In the end there are polygons of any shape, with
-//! holes, which do not overlap and are all that is seen.
+//! Sort the polygons by their nearest points. Take the first and clip all others by it: the part of
+//! the scene inside it and the part outside become two lists. In the inside list, what lies behind
+//! the clipping polygon is hidden and goes. If nothing else remains there, the clipping polygon is
+//! visible. If something lies in front, the preliminary order erred, and the inside list is treated
+//! in the same way with that as the clipping polygon. Go on with the outside list. Polygons that
+//! penetrate the clipping polygon are cut where they do. In the end there are polygons of any
+//! shape, with holes, which do not overlap and are all that is seen.
 //!
-//! The whole picture is one list. A clipping polygon only meets polygons whose boxes overlap its own (`buckets.rs`), and of a
-//! polygon with many edges only those nearby (`edge_index.rs`). A long list is clipped polygon by polygon on all threads
-//! (`spread.rs`): what is left of a polygon depends on the clipping polygons before it, not on what is left of others. Short
-//! lists go to the threads whole. Neither shows in the result: visible polygons, counters and steps are those of the plain order.
+//! The whole picture is one list. A clipping polygon only meets polygons whose boxes overlap its
+//! own (`buckets.rs`), and of a polygon with many edges only those nearby (`edge_index.rs`). A long
+//! list is clipped polygon by polygon on all threads (`spread.rs`): what is left of a polygon
+//! depends on the clipping polygons before it, not on what is left of others. Short lists go to the
+//! threads whole. Neither shows in the result: visible polygons, counters and steps are those of
+//! the plain order.
 //!
-//! In:   set-up triangles, joined to convex polygons (screen space). Out: visible polygons, and the samples of each tile (screen space).
+//! In:   set-up triangles, joined to convex polygons (screen space). Out: visible polygons, and the
+//!       samples of each tile (screen space).
 //! Cost: pairs of polygons whose boxes overlap on the screen, times their edges nearby.
-//! Source: [Weiler & Atherton 1977]. Departs from it: how regions are clipped, see `weiler_atherton/region.rs`. A clipping polygon
-//! is the polygon as it came in, not what is left of it. Whatever is closer to the clipping polygon than the rounding of depths is
-//! not taken for hidden by it: then both are visible polygons, and where they overlap the facets' depth function decides each
-//! sample. Nothing loops: a list never takes the same clipping polygon twice. Triangles that cover no sample are not in the list.
+//! Source: [Weiler & Atherton 1977]. Departs from it: how regions are clipped, see
+//! `weiler_atherton/region.rs`. A clipping polygon is the polygon as it came in, not what is left
+//! of it. Whatever is closer to the clipping polygon than the rounding of depths is not taken for
+//! hidden by it: then both are visible polygons, and where they overlap the facets' depth function
+//! decides each sample. Nothing loops: a list never takes the same clipping polygon twice.
+//! Triangles that cover no sample are not in the list.
 
 mod buckets;
 mod edge_index;
@@ -69,7 +75,8 @@ impl VisibleSurface for WeilerAtherton {
 
         // Find the visible polygons.
         let sorted = in_first_order(&polygons);
-        let sorting = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: false };
+        let sorting =
+            AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: false };
         let Found { visible, mut counters, .. } = sorting.run(view.viewport)?;
         counters.visible_polygons = visible.len() as u64;
 
@@ -96,20 +103,27 @@ impl VisibleSurface for WeilerAtherton {
 }
 
 impl PolygonAlgorithm for WeilerAtherton {
-    fn polygons(&self, view: &PreparedView<'_>, execution: &Execution, list: &mut PolygonList) -> Result<(), Limit> {
+    fn polygons(
+        &self,
+        view: &PreparedView<'_>,
+        execution: &Execution,
+        list: &mut PolygonList,
+    ) -> Result<(), Limit> {
         let facets = Facets::without_tiles(view, execution)?;
         let polygons = Polygons::new(facets.all(), view);
         let held = Charge::new(&execution.budget, STAGE);
         held.add(polygons.bytes() + (polygons.len() * size_of::<AreaPolygon<'_>>()) as u64)?;
         let sorted = in_first_order(&polygons);
-        let sorting = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: true };
+        let sorting =
+            AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: true };
         let found = sorting.run(view.viewport)?;
         for (number, outlines) in found.outlines {
             let facets = polygons.get(number as usize).all_facets();
             list.push(facets, outlines.into_iter().map(|outline| outline.corners));
         }
         list.wholes = polygons.len() as u64;
-        list.counters = VisibilityCounters { visible_polygons: list.polygons.len() as u64, ..found.counters };
+        list.counters =
+            VisibilityCounters { visible_polygons: list.polygons.len() as u64, ..found.counters };
         Ok(())
     }
 }
@@ -132,7 +146,8 @@ struct Item {
     polygon: u32,
     /// It has been the clipping polygon of this list, or of one that this list came from.
     clipped_with: bool,
-    /// A part of it was cut off where it meets another's plane: there its outline has nothing left to clip.
+    /// A part of it was cut off where it meets another's plane: there its outline has nothing left
+    /// to clip.
     is_reduced: bool,
     region: Region,
 }
@@ -165,7 +180,8 @@ struct Inside {
 #[derive(Debug, Default)]
 struct Found {
     visible: VisiblePolygons,
-    /// The same as outlines, if these are wanted, each with the number of its polygon among the view's.
+    /// The same as outlines, if these are wanted, each with the number of its polygon among the
+    /// view's.
     outlines: Vec<(u32, Vec<RegionOutline>)>,
     counters: VisibilityCounters,
 }
@@ -205,8 +221,8 @@ impl List {
     }
 }
 
-/// Items from which on a list has buckets, and is clipped polygon by polygon on all threads: below, a look at all boxes takes
-/// less.
+/// Items from which on a list has buckets, and is clipped polygon by polygon on all threads: below,
+/// a look at all boxes takes less.
 const LONG: usize = 256;
 /// Pairs of polygons between two looks at the budget.
 const PAIRS_A_CHECK: u32 = 64;
@@ -216,7 +232,8 @@ const PAIRS_A_COUNT: u32 = 1 << 14;
 impl AreaSorting<'_> {
     /// Finds what is visible in a picture.
     fn run(&self, viewport: Viewport) -> Result<Found, Limit> {
-        let list = self.whole([viewport.width, viewport.height].map(|side| side as i32 * SUBPIXEL))?;
+        let list =
+            self.whole([viewport.width, viewport.height].map(|side| side as i32 * SUBPIXEL))?;
         self.execution.budget.begin("polygons", list.items.len() as u64);
         if self.execution.observer.is_none() {
             return self.spread(list);
@@ -239,7 +256,12 @@ impl AreaSorting<'_> {
                 Clipped::Inside => region,
                 Clipped::Both(inside) => inside,
             };
-            list.items.push(Item { polygon: place, clipped_with: false, is_reduced: false, region });
+            list.items.push(Item {
+                polygon: place,
+                clipped_with: false,
+                is_reduced: false,
+                region,
+            });
         }
         self.held.add(list.bytes())?;
         Ok(list)
@@ -273,11 +295,14 @@ impl AreaSorting<'_> {
         self.held.change(charged + shown, worker.found.bytes())
     }
 
-    /// Takes the nearest polygon of a list that nothing was clipped with yet, clips the list by it, and gives the inside list.
+    /// Takes the nearest polygon of a list that nothing was clipped with yet, clips the list by it,
+    /// and gives the inside list.
     fn clip_next(&self, frame: &mut Frame, worker: &mut Worker) -> Result<Option<List>, Limit> {
         let items = &mut frame.list.items;
         let may_clip = |item: &Item| !item.clipped_with && !item.region.is_empty();
-        let Some(at) = (frame.next..items.len()).find(|&i| may_clip(&items[i])) else { return Ok(None) };
+        let Some(at) = (frame.next..items.len()).find(|&i| may_clip(&items[i])) else {
+            return Ok(None);
+        };
         frame.next = at + 1;
         let front = &self.polygons[items[at].polygon as usize];
         let mut report = self.report(worker);
@@ -289,7 +314,8 @@ impl AreaSorting<'_> {
         for &i in &near {
             let item = &mut items[i as usize];
             if i as usize == at {
-                let own = Item { clipped_with: true, region: std::mem::take(&mut item.region), ..*item };
+                let own =
+                    Item { clipped_with: true, region: std::mem::take(&mut item.region), ..*item };
                 report.own(front, &own);
                 inside.push(own);
             } else if (i as usize > at || item.clipped_with) && !item.region.is_empty() {
@@ -313,7 +339,12 @@ impl AreaSorting<'_> {
     }
 
     /// Clips an item by another polygon: leaves the outside, and gives what is inside.
-    fn clip(&self, item: &mut Item, front: &AreaPolygon<'_>, worker: &mut Worker) -> Result<Option<Inside>, Limit> {
+    fn clip(
+        &self,
+        item: &mut Item,
+        front: &AreaPolygon<'_>,
+        worker: &mut Worker,
+    ) -> Result<Option<Inside>, Limit> {
         // Check the budget from time to time.
         worker.pairs = worker.pairs.wrapping_add(1);
         if worker.pairs.is_multiple_of(PAIRS_A_CHECK) {
@@ -346,7 +377,8 @@ impl AreaSorting<'_> {
         // Cut where the planes meet.
         if let Some(line) = line_of_gap(front, back, margin, part.bounds()) {
             let mut rest = part.clone();
-            if let Clipped::Both(behind) = rest.clip(&ConvexOutline::half_plane(line), &back.shape, &mut worker.work)
+            if let Clipped::Both(behind) =
+                rest.clip(&ConvexOutline::half_plane(line), &back.shape, &mut worker.work)
                 && relation(front, back, &behind) == DepthRelation::Hidden
             {
                 counters.splits += 1;
@@ -371,7 +403,8 @@ impl AreaSorting<'_> {
 impl Frame {
     fn new(list: List) -> Self {
         let is_long = list.items.len() > LONG;
-        let buckets = is_long.then(|| Buckets::new(list.items.iter().map(|item| item.region.bounds()).collect()));
+        let buckets = is_long
+            .then(|| Buckets::new(list.items.iter().map(|item| item.region.bounds()).collect()));
         Self { list, next: 0, buckets }
     }
 }
@@ -390,7 +423,11 @@ fn near_items(around: [f64; 4], buckets: Option<&Buckets>, count: usize, near: &
 impl Found {
     /// Bytes of what is visible.
     fn bytes(&self) -> u64 {
-        let corners = self.outlines.iter().flat_map(|(_, outlines)| outlines).map(|outline| outline.corners.len());
+        let corners = self
+            .outlines
+            .iter()
+            .flat_map(|(_, outlines)| outlines)
+            .map(|outline| outline.corners.len());
         self.visible.bytes() + (corners.sum::<usize>() * size_of::<[f64; 2]>()) as u64
     }
 

@@ -1,16 +1,19 @@
 //! The z-buffer: every sample keeps the nearest facet that covers it.
 //!
-//! Triangles come in any order. For each covered sample their depth is compared with the depth that the sample holds;
-//! the nearer one stays. Here the picture is cut into tiles of 64x64 pixels whose samples fit in the second-level
-//! cache, and stay there if nobody keeps them; triangles are sorted into the tiles they touch, a few hundred thousand at
-//! a time (`front_end.rs`), and each tile is then walked by one thread (`round_tiles.rs`, `walk.rs`). Blocks of 8x8 pixels
-//! remember how far their farthest sample is, so that hidden triangles are rejected without looking at samples; what seems
-//! nearer is drawn first. Transparent facets are not tested against each other but collected, after all opaque ones.
+//! Triangles come in any order. For each covered sample their depth is compared with the depth that
+//! the sample holds; the nearer one stays. Here the picture is cut into tiles of 64x64 pixels whose
+//! samples fit in the second-level cache, and stay there if nobody keeps them; triangles are sorted
+//! into the tiles they touch, a few hundred thousand at a time (`front_end.rs`), and each tile is
+//! then walked by one thread (`round_tiles.rs`, `walk.rs`). Blocks of 8x8 pixels remember how far
+//! their farthest sample is, so that hidden triangles are rejected without looking at samples; what
+//! seems nearer is drawn first. Transparent facets are not tested against each other but collected,
+//! after all opaque ones.
 //!
 //! In:   prepared draws (model space). Out: the samples of each tile (screen space).
-//! Cost: linear in vertices, triangles and covered samples; memory: the samples and one round of triangles.
-//! Source: [Catmull 1974], [Straßer 1974]; hierarchical depth after [Greene et al. 1993]. Departs from them: equal
-//! depths go to the lower facet, so the order of triangles cannot be seen.
+//! Cost: linear in vertices, triangles and covered samples; memory: the samples and one round of
+//!       triangles.
+//! Source: [Catmull 1974], [Straßer 1974]; hierarchical depth after [Greene et al. 1993]. Departs
+//! from them: equal depths go to the lower facet, so the order of triangles cannot be seen.
 
 use super::front_end::{DrawOrder, FrontEnd, give_back};
 use super::round_tiles::{Round, RoundTiles};
@@ -55,7 +58,8 @@ impl VisibleSurface for ZBuffer {
             front_end.retire(round.clone());
 
             // Draw them, tile by tile; the last round finishes the tiles.
-            let round = Round { batches, is_first: number == 0, is_last: number + 1 == rounds.len() };
+            let round =
+                Round { batches, is_first: number == 0, is_last: number + 1 == rounds.len() };
             execution.workers.for_each_chunk(&mut grid.tiles, 1, |index, tile| {
                 // At a limit the rest of the tiles is left out.
                 if !view.makes_tile(index) || execution.budget.check(STAGE).is_err() {

@@ -5,14 +5,21 @@ use vitral_light::Attenuation;
 
 /// A square of side 1.6 at height 3 that shines down, by the physical law.
 fn square() -> Light {
-    let corners = [[-0.8, -0.8], [0.8, -0.8], [0.8, 0.8], [-0.8, 0.8]].map(|[x, z]| dvec3(x, 3.0, z)).to_vec();
+    let corners = [[-0.8, -0.8], [0.8, -0.8], [0.8, 0.8], [-0.8, 0.8]]
+        .map(|[x, z]| dvec3(x, 3.0, z))
+        .to_vec();
     let shape = LightKind::Area { shape: AreaShape::Polygon { corners } };
     Light { attenuation: Attenuation::InverseSquare, diffuse: [8.0; 3], ..light(shape) }
 }
 
 fn matt() -> Material {
     Material {
-        reflectance: vitral_light::Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 },
+        reflectance: vitral_light::Reflectance::Phong {
+            ka: [0.0; 3],
+            kd: [1.0; 3],
+            ks: [0.0; 3],
+            shininess: 1.0,
+        },
         ..Material::default()
     }
 }
@@ -46,7 +53,8 @@ fn from_above(scene: &Scene, lights: &[Light], settings: Settings) -> Vec<u8> {
 fn full_light_of_a_shape_is_smooth_and_exact() {
     let scene = room();
     let plain = from_above(&scene, &[square()], settings("none"));
-    // On the floor, away from the ball: four rectangles over one of their corners, added with signs.
+    // On the floor, away from the ball: four rectangles over one of their corners, added with
+    // signs.
     let corner = |x: f64, z: f64| {
         let part = |a: f64, b: f64| {
             let root = (9.0 + a * a).sqrt();
@@ -56,20 +64,28 @@ fn full_light_of_a_shape_is_smooth_and_exact() {
     };
     let floor = |x: f64, z: f64| {
         let (low, high) = ([-0.8 - x, -0.8 - z], [0.8 - x, 0.8 - z]);
-        let sum = corner(high[0], high[1]) - corner(low[0], high[1]) - corner(high[0], low[1]) + corner(low[0], low[1]);
+        let sum = corner(high[0], high[1]) - corner(low[0], high[1]) - corner(high[0], low[1])
+            + corner(low[0], low[1]);
         8.0 * sum / 2.56
     };
     for (i, &byte) in plain.iter().enumerate() {
         let [x, z] = [i % 192, i / 192].map(|k| (k as f64 + 0.5) / 24.0 - 4.0);
         if (x - 1.5).abs() > 0.5 || z.abs() > 0.5 {
             let wanted = (floor(x, z) * 255.0).min(255.0);
-            assert!((f64::from(byte) - wanted).abs() < 0.51 + wanted * 1e-5, "{x} {z}: {byte}, {wanted}");
+            assert!(
+                (f64::from(byte) - wanted).abs() < 0.51 + wanted * 1e-5,
+                "{x} {z}: {byte}, {wanted}"
+            );
         }
     }
     // Where the whole light is seen, shadows change no bit, however few places are asked.
     for algorithm in names() {
         let sampled = Settings {
-            shadows: ShadowSettings { light_samples: 4, map_size: 512, ..settings(algorithm).shadows },
+            shadows: ShadowSettings {
+                light_samples: 4,
+                map_size: 512,
+                ..settings(algorithm).shadows
+            },
             ..settings(algorithm)
         };
         let shadowed = from_above(&scene, &[square()], sampled);
@@ -82,7 +98,8 @@ fn full_light_of_a_shape_is_smooth_and_exact() {
 
 #[test]
 fn the_part_of_a_light_below_the_horizon_casts_no_shadow() {
-    // A wall under the light: half of the light is behind its plane, and nothing stands in the way of the other half.
+    // A wall under the light: half of the light is behind its plane, and nothing stands in the way
+    // of the other half.
     let mut scene = Scene::default();
     let wall = solids::cuboid(dvec3(0.25, 2.0, 4.0));
     add(&mut scene, wall, matt(), dvec3(-0.125, 1.0, 0.0));
@@ -121,7 +138,8 @@ fn the_part_of_a_light_below_the_horizon_casts_no_shadow() {
                     return;
                 }
                 let found = arriving(place);
-                // From above the shade, tan = 0.4 / 1.5, to the light's border: ∫ x / (x² + y² + 4)² by strips.
+                // From above the shade, tan = 0.4 / 1.5, to the light's border: ∫ x / (x² + y² +
+                // 4)² by strips.
                 let share = |from: f64, to: f64| -> f64 {
                     let strips = (0..400).flat_map(|i| (0..400).map(move |k| (i, k)));
                     let at = strips.map(|(i, k)| {
@@ -143,21 +161,31 @@ fn the_part_of_a_light_below_the_horizon_casts_no_shadow() {
 fn odd_area_lights_are_defined() {
     let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
     let flat = |y: f64, half: f64| {
-        let corners = [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]].map(|[x, z]| dvec3(x * half, y, z * half)).to_vec();
+        let corners = [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]]
+            .map(|[x, z]| dvec3(x * half, y, z * half))
+            .to_vec();
         light(LightKind::Area { shape: AreaShape::Polygon { corners } })
     };
     let disc = |center: DVec3, normal: DVec3, radius: f64| {
         light(LightKind::Area { shape: AreaShape::Disc { center, normal, radius } })
     };
-    let line = light(LightKind::Area { shape: AreaShape::Polygon { corners: vec![DVec3::X, DVec3::Y, DVec3::X] } });
+    let line = light(LightKind::Area {
+        shape: AreaShape::Polygon { corners: vec![DVec3::X, DVec3::Y, DVec3::X] },
+    });
     for algorithm in names() {
         let at = |light: &Light, position: DVec3| {
             let lights = std::slice::from_ref(light);
-            with_shadows(&scene, lights, &settings(algorithm), |arriving| arriving(place(position, DVec3::Y)))
+            with_shadows(&scene, lights, &settings(algorithm), |arriving| {
+                arriving(place(position, DVec3::Y))
+            })
         };
         let beside = dvec3(2.0, 0.0, 0.3);
         assert_eq!(at(&flat(1.5, 0.3), beside), 0.0, "{algorithm}: inside the box");
-        assert_eq!(at(&flat(1.0, 0.5), dvec3(0.1, 0.0, 0.1)), 1.0, "{algorithm}: on the box's lower side");
+        assert_eq!(
+            at(&flat(1.0, 0.5), dvec3(0.1, 0.0, 0.1)),
+            1.0,
+            "{algorithm}: on the box's lower side"
+        );
         assert_eq!(at(&flat(0.0, 3.0), beside), 0.0, "{algorithm}: in the floor's own plane");
         assert_eq!(at(&disc(dvec3(2.0, 3.0, 0.0), DVec3::NEG_Y, 0.3), beside), 1.0, "{algorithm}");
         assert_eq!(
@@ -180,8 +208,17 @@ fn odd_area_lights_are_defined() {
                 clip: None,
             };
             let mut session = Session::new(Arc::new(scene.clone())).unwrap();
-            let shot = Shot { camera, lights: &lights, ambient: [0.0; 3], surroundings: Surroundings::default() };
-            render(&mut session, &shot, settings, &Execution::default()).unwrap().frame.color.unwrap()
+            let shot = Shot {
+                camera,
+                lights: &lights,
+                ambient: [0.0; 3],
+                surroundings: Surroundings::default(),
+            };
+            render(&mut session, &shot, settings, &Execution::default())
+                .unwrap()
+                .frame
+                .color
+                .unwrap()
         };
         let [lit, dark] = [settings("none"), settings(algorithm)].map(|s| look(&s));
         let changed = lit.data().iter().zip(dark.data()).filter(|(a, b)| a != b).count();
@@ -189,18 +226,20 @@ fn odd_area_lights_are_defined() {
     }
 }
 
-/// Width of the penumbra behind an edge, along a line across it: from where the first light is seen to where all of it is; and
-/// by the slope in its middle.
+/// Width of the penumbra behind an edge, along a line across it: from where the first light is seen
+/// to where all of it is; and by the slope in its middle.
 fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> [f64; 2] {
     // A board whose edge runs along z through x = 0, at height 1; the light is 2 above it.
-    let scene = above_floor(solids::plane(4.0, 8.0, 1, 1), Material::default(), dvec3(-2.0, 1.0, 0.0));
+    let scene =
+        above_floor(solids::plane(4.0, 8.0, 1, 1), Material::default(), dvec3(-2.0, 1.0, 0.0));
     let settings = Settings {
         shadows: ShadowSettings { light_samples: samples, ..settings(algorithm).shadows },
         ..settings(algorithm)
     };
     with_shadows(&scene, &[light(LightKind::Area { shape })], &settings, |arriving| {
         let at = |x: f64| {
-            let parts = (0..32).map(|seed| arriving(SurfacePoint { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
+            let parts = (0..32)
+                .map(|seed| arriving(SurfacePoint { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
             f64::from(parts.sum::<f32>()) / 32.0
         };
         assert_eq!((at(-1.0), at(1.0)), (0.0, 1.0), "umbra and full light");
@@ -220,7 +259,9 @@ fn penumbra(algorithm: &str, shape: AreaShape, samples: u32) -> [f64; 2] {
 
 #[test]
 fn f27_the_penumbra_is_as_wide_as_the_light_times_b_over_a() {
-    let corners = [[-0.4, -0.4], [0.4, -0.4], [0.4, 0.4], [-0.4, 0.4]].map(|[x, z]| dvec3(x, 3.0, z)).to_vec();
+    let corners = [[-0.4, -0.4], [0.4, -0.4], [0.4, 0.4], [-0.4, 0.4]]
+        .map(|[x, z]| dvec3(x, 3.0, z))
+        .to_vec();
     // D = 0.8, a = 2, b = 1.
     let square = AreaShape::Polygon { corners };
     let [width, slope] = penumbra("ray", square.clone(), 256);
@@ -237,14 +278,16 @@ fn f27_the_penumbra_is_as_wide_as_the_light_times_b_over_a() {
     assert!((width / 0.4 - 1.0).abs() < 0.02, "{width}");
     // Through its middle the lit part rises by 4 / (π D) of its width.
     let t: f64 = 0.5;
-    let share = 2.0 / std::f64::consts::PI * (t * (1.0 - t * t).sqrt() + std::f64::consts::FRAC_PI_6);
+    let share =
+        2.0 / std::f64::consts::PI * (t * (1.0 - t * t).sqrt() + std::f64::consts::FRAC_PI_6);
     assert!((slope / (0.2 / share) - 1.0).abs() < 0.03, "{slope}");
 }
 
-/// Width of the penumbra behind the edge of `penumbra` by all of its course: six times the integral of `f (1 - f)`, which for a
-/// part `f` of the light that rises evenly is where it rises.
+/// Width of the penumbra behind the edge of `penumbra` by all of its course: six times the integral
+/// of `f (1 - f)`, which for a part `f` of the light that rises evenly is where it rises.
 fn width(algorithm: &str, shape: AreaShape, samples: u32) -> f64 {
-    let scene = above_floor(solids::plane(4.0, 8.0, 1, 1), Material::default(), dvec3(-2.0, 1.0, 0.0));
+    let scene =
+        above_floor(solids::plane(4.0, 8.0, 1, 1), Material::default(), dvec3(-2.0, 1.0, 0.0));
     let settings = Settings {
         shadows: ShadowSettings { light_samples: samples, ..settings(algorithm).shadows },
         ..settings(algorithm)
@@ -253,7 +296,8 @@ fn width(algorithm: &str, shape: AreaShape, samples: u32) -> f64 {
         // Chance differs from place to place, so that its mean is what is seen along the edge.
         let seeds = if algorithm == "ray" { 1024_u32.div_ceil(samples) } else { 1 };
         let part = |x: f64| {
-            let parts = (0..seeds).map(|seed| arriving(SurfacePoint { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
+            let parts = (0..seeds)
+                .map(|seed| arriving(SurfacePoint { seed, ..place(dvec3(x, 0.0, 0.0), DVec3::Y) }));
             f64::from(parts.sum::<f32>()) / f64::from(seeds)
         };
         let step = 1.0 / 400.0;
@@ -267,14 +311,24 @@ fn f27_sixteen_samples_show_penumbrae_as_wide_as_they_are() {
     let turned = |degrees: f64| {
         let (sin, cos) = vitral_math::func::sin_cos(degrees.to_radians());
         let corner = |x: f64, z: f64| dvec3(cos * x - sin * z, 3.0, sin * x + cos * z);
-        AreaShape::Polygon { corners: vec![corner(-0.4, -0.4), corner(0.4, -0.4), corner(0.4, 0.4), corner(-0.4, 0.4)] }
+        AreaShape::Polygon {
+            corners: vec![
+                corner(-0.4, -0.4),
+                corner(0.4, -0.4),
+                corner(0.4, 0.4),
+                corner(-0.4, 0.4),
+            ],
+        }
     };
     let disc = AreaShape::Disc { center: dvec3(0.0, 3.0, 0.0), normal: DVec3::NEG_Y, radius: 0.4 };
     for shape in [turned(0.0), turned(20.0), turned(45.0), turned(-45.0), disc] {
         let right = width("ray", shape.clone(), 4096);
         for algorithm in names() {
             let found = width(algorithm, shape.clone(), 16);
-            assert!((found / right - 1.0).abs() < 0.05, "{algorithm}, {shape:?}: {found}, {right} by 4096 rays");
+            assert!(
+                (found / right - 1.0).abs() < 0.05,
+                "{algorithm}, {shape:?}: {found}, {right} by 4096 rays"
+            );
         }
     }
 }

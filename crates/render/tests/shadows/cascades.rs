@@ -10,15 +10,30 @@ fn plain() -> Scene {
     let mut scene = Scene::default();
     add(&mut scene, solids::plane(2000.0, 2000.0, 1, 1), Material::default(), DVec3::ZERO);
     for (size, at) in [([1.0, 0.06, 0.7], [0.0, 0.7, 0.0]), ([0.3, 0.3, 0.2], [0.1, 0.88, 0.0])] {
-        add(&mut scene, solids::cuboid(DVec3::from_array(size)), Material::default(), DVec3::from_array(at));
+        add(
+            &mut scene,
+            solids::cuboid(DVec3::from_array(size)),
+            Material::default(),
+            DVec3::from_array(at),
+        );
     }
     for (x, z) in [(-0.45, -0.3), (0.45, -0.3), (-0.45, 0.3), (0.45, 0.3)] {
-        add(&mut scene, solids::cuboid(dvec3(0.05, 0.7, 0.05)), Material::default(), dvec3(x, 0.35, z));
+        add(
+            &mut scene,
+            solids::cuboid(dvec3(0.05, 0.7, 0.05)),
+            Material::default(),
+            dvec3(x, 0.35, z),
+        );
     }
     for i in 0..12 {
         let away = 4.0 * vitral_math::func::pow(1.6, f64::from(i));
         let size = dvec3(0.1 * away, 0.4 * away, 0.1 * away);
-        add(&mut scene, solids::cuboid(size), Material::default(), dvec3(away * 0.4 - 2.0, size.y * 0.5, -away));
+        add(
+            &mut scene,
+            solids::cuboid(size),
+            Material::default(),
+            dvec3(away * 0.4 - 2.0, size.y * 0.5, -away),
+        );
     }
     scene
 }
@@ -49,23 +64,41 @@ fn mask(scene: &Scene, camera: Camera, light: &Light, settings: &Settings) -> Ve
 }
 
 /// How deep in a cast, and in an attached shadow they are, and on which object.
-fn shadows(scene: &Scene, camera: Camera, light: &Light, settings: &Settings) -> Vec<Option<(f32, f32, u32)>> {
-    let channels =
-        Channels { color: false, object: true, cast_shadow: true, attached_shadow: true, ..Channels::default() };
+fn shadows(
+    scene: &Scene,
+    camera: Camera,
+    light: &Light,
+    settings: &Settings,
+) -> Vec<Option<(f32, f32, u32)>> {
+    let channels = Channels {
+        color: false,
+        object: true,
+        cast_shadow: true,
+        attached_shadow: true,
+        ..Channels::default()
+    };
     let settings = settings.clone().with_channels(channels);
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
-    let shot =
-        Shot { camera, lights: std::slice::from_ref(light), ambient: [0.0; 3], surroundings: Surroundings::default() };
+    let shot = Shot {
+        camera,
+        lights: std::slice::from_ref(light),
+        ambient: [0.0; 3],
+        surroundings: Surroundings::default(),
+    };
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
-    let (object, cast, attached) = (frame.object.unwrap(), frame.cast_shadow.unwrap(), frame.attached_shadow.unwrap());
+    let (object, cast, attached) =
+        (frame.object.unwrap(), frame.cast_shadow.unwrap(), frame.attached_shadow.unwrap());
     let seen = object.data().iter().zip(cast.data().iter().zip(attached.data()));
-    seen.map(|(&object, (&cast, &attached))| (object != Frame::BACKGROUND).then_some((cast, attached, object)))
-        .collect()
+    seen.map(|(&object, (&cast, &attached))| {
+        (object != Frame::BACKGROUND).then_some((cast, attached, object))
+    })
+    .collect()
 }
 
 /// The part of pixels with a surface in which two masks agree.
 fn same(a: &[Option<f32>], b: &[Option<f32>]) -> f64 {
-    let seen: Vec<_> = a.iter().zip(b).filter_map(|(a, b)| Some((a.as_ref()?, b.as_ref()?))).collect();
+    let seen: Vec<_> =
+        a.iter().zip(b).filter_map(|(a, b)| Some((a.as_ref()?, b.as_ref()?))).collect();
     let same = seen.iter().filter(|(a, b)| (**a >= 0.5) == (**b >= 0.5)).count();
     same as f64 / seen.len() as f64
 }
@@ -87,15 +120,18 @@ fn f23_cascades_make_near_shadows_of_a_vast_scene_sharp() {
         let dark = rays.iter().flatten().filter(|&&cast| cast == 1.0).count();
         assert!(dark > 5000, "{dark}");
         let [one, four] = [1, 4].map(|count| mask(&scene, camera, &light, &with_cascades(count)));
-        // The only map has texels two units wide: the table throws no shadow that it could be known by.
+        // The only map has texels two units wide: the table throws no shadow that it could be known
+        // by.
         let (coarse, fine) = (same(&rays, &one), same(&rays, &four));
         assert!(coarse < 0.97, "{:?}: {coarse}", light.kind);
         assert!(fine >= 0.99, "{:?}: {fine}", light.kind);
-        // Where they differ, it is within two pixels of an edge of a shadow, cast or attached, or of where two things meet,
-        // as a texel of one may show the other; but for the farthest, whose pixels are larger than texels.
+        // Where they differ, it is within two pixels of an edge of a shadow, cast or attached, or
+        // of where two things meet, as a texel of one may show the other; but for the farthest,
+        // whose pixels are larger than texels.
         let width = 400i64;
         let at = |i: i64| seen.get(i as usize).copied().flatten();
-        let kind = |i: i64| at(i).map(|(cast, attached, object)| (cast >= 0.5 || attached >= 0.5, object));
+        let kind =
+            |i: i64| at(i).map(|(cast, attached, object)| (cast >= 0.5 || attached >= 0.5, object));
         let mut met = 0;
         for i in 60 * width..rays.len() as i64 {
             let [fine, ray] = [&four, &rays].map(|mask| mask[i as usize].map(|cast| cast >= 0.5));
@@ -110,7 +146,13 @@ fn f23_cascades_make_near_shadows_of_a_vast_scene_sharp() {
 }
 
 /// Asks the first of the lights, at places as the view sees them.
-fn ask_view(scene: &Scene, camera: &Camera, light: &Light, settings: &Settings, places: &[SurfacePoint]) -> Vec<f32> {
+fn ask_view(
+    scene: &Scene,
+    camera: &Camera,
+    light: &Light,
+    settings: &Settings,
+    places: &[SurfacePoint],
+) -> Vec<f32> {
     let session = Session::new(Arc::new(scene.clone())).unwrap();
     let execution = Execution::default();
     let viewport = Viewport::new(settings.picture.width, settings.picture.height).unwrap();
@@ -118,9 +160,11 @@ fn ask_view(scene: &Scene, camera: &Camera, light: &Light, settings: &Settings, 
     let culled = &mut CullCounters::default();
     let view = PreparedView::new(&session, camera, settings, viewport, pattern, &execution, culled);
     let algorithm = registry::shadows(settings.shadows.algorithm).unwrap();
-    let ready = algorithm.prepare_for(&view, std::slice::from_ref(light), settings, &execution).unwrap();
+    let ready =
+        algorithm.prepare_for(&view, std::slice::from_ref(light), settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
-    let places: SurfacePoints = places.iter().map(|p| SurfacePoint { position: p.position - center, ..*p }).collect();
+    let places: SurfacePoints =
+        places.iter().map(|p| SurfacePoint { position: p.position - center, ..*p }).collect();
     let mut parts = LightVisibility::new(places.len(), [f32::NAN; 3]);
     ready.light_visibility(0, &places, &mut parts, &mut 0);
     (0..places.len()).map(|place| parts.get(place)[0]).collect()
@@ -138,10 +182,16 @@ fn ground(count: u32, side: f64) -> Vec<SurfacePoint> {
 
 #[test]
 fn between_cascades_is_no_gap_and_no_acne() {
-    // A plain without anything on it is lit everywhere, right and left of the view, and where slices meet.
+    // A plain without anything on it is lit everywhere, right and left of the view, and where
+    // slices meet.
     let mut bare = Scene::default();
     add(&mut bare, solids::plane(2000.0, 2000.0, 1, 1), Material::default(), DVec3::ZERO);
-    add(&mut bare, solids::cuboid(dvec3(0.01, 0.01, 0.01)), Material::default(), dvec3(-990.0, 0.1, 990.0));
+    add(
+        &mut bare,
+        solids::cuboid(dvec3(0.01, 0.01, 0.01)),
+        Material::default(),
+        dvec3(-990.0, 0.1, 990.0),
+    );
     for elevation in [3.0f64, 20.0, 70.0] {
         let (sin, cos) = vitral_math::func::sin_cos(elevation.to_radians());
         let light = sun(-dvec3(cos * 0.6, sin, cos * 0.8));
@@ -155,11 +205,19 @@ fn between_cascades_is_no_gap_and_no_acne() {
     }
     // Under a roof over all of it nothing is lit.
     let mut covered = plain();
-    add(&mut covered, solids::plane(1990.0, 1990.0, 1, 1), Material::default(), dvec3(0.0, 300.0, 0.0));
+    add(
+        &mut covered,
+        solids::plane(1990.0, 1990.0, 1, 1),
+        Material::default(),
+        dvec3(0.0, 300.0, 0.0),
+    );
     let places = ground(4000, 0.0);
-    let found = ask_view(&covered, &near_the_table(), &sun(DVec3::NEG_Y), &with_cascades(4), &places);
+    let found =
+        ask_view(&covered, &near_the_table(), &sun(DVec3::NEG_Y), &with_cascades(4), &places);
     assert!(found.len() > 3000);
-    for (place, part) in places.iter().zip(found).filter(|(p, _)| p.position.abs().max_element() < 980.0) {
+    for (place, part) in
+        places.iter().zip(found).filter(|(p, _)| p.position.abs().max_element() < 980.0)
+    {
         assert_eq!(part, 0.0, "{}", place.position);
     }
 }
@@ -170,11 +228,14 @@ fn shadows_of_cascades_stand_still_while_the_viewer_moves() {
     // Round the table and its shadow.
     let places: Vec<SurfacePoint> = (0..10_000)
         .map(|i| {
-            let position = dvec3(f64::from(i % 100) * 0.0171 - 1.2, 0.0, f64::from(i / 100) * 0.0173 - 0.8);
+            let position =
+                dvec3(f64::from(i % 100) * 0.0171 - 1.2, 0.0, f64::from(i / 100) * 0.0173 - 0.8);
             SurfacePoint { position, normal: DVec3::Y, facet: 0, seed: 0, pixel: Some([0.0; 2]) }
         })
         .collect();
-    let lit = |camera: &Camera, count: u32| ask_view(&scene, camera, &light, &with_cascades(count), &places);
+    let lit = |camera: &Camera, count: u32| {
+        ask_view(&scene, camera, &light, &with_cascades(count), &places)
+    };
     let rays = ask_view(&scene, &near_the_table(), &light, &settings("ray"), &places);
     assert!(rays.iter().filter(|&&part| part == 0.0).count() > 500);
     let mut last: Option<Vec<f32>> = None;
@@ -182,8 +243,11 @@ fn shadows_of_cascades_stand_still_while_the_viewer_moves() {
     for step in 0..12 {
         let away = DVec3::new(0.031, 0.017, -0.023) * f64::from(step);
         let camera = near_the_table();
-        let camera =
-            Camera { position: camera.position + away, focal_point: camera.focal_point + away * 0.6, ..camera };
+        let camera = Camera {
+            position: camera.position + away,
+            focal_point: camera.focal_point + away * 0.6,
+            ..camera
+        };
         let found = lit(&camera, 4);
         let wrong = found.iter().zip(&rays).filter(|(a, b)| (**a >= 0.5) != (**b >= 0.5)).count();
         assert!(wrong * 50 < places.len(), "step {step}: {wrong} of {}", places.len());
@@ -213,7 +277,12 @@ fn pictures_with_cascades_do_not_depend_on_threads_instructions_or_sessions() {
     let lights = [sun(SUN)];
     let settings = with_cascades(3).with_samples(2);
     let picture = |session: &mut Session, camera: Camera, execution: &Execution| {
-        let shot = Shot { camera, lights: &lights, ambient: [0.2; 3], surroundings: Surroundings::default() };
+        let shot = Shot {
+            camera,
+            lights: &lights,
+            ambient: [0.2; 3],
+            surroundings: Surroundings::default(),
+        };
         render(session, &shot, &settings, execution).unwrap().frame
     };
     let one = Execution { workers: Workers::single(), ..Execution::default() };

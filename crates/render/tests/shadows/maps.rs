@@ -12,7 +12,8 @@ fn f23_maps_agree_with_rays_the_better_the_larger() {
                     shadows: ShadowSettings { map_size: size, ..settings("map").shadows },
                     ..settings("map")
                 };
-                let [coarse, fine] = [256, 1024].map(|size| agreement(name, &light, from, &maps(size)));
+                let [coarse, fine] =
+                    [256, 1024].map(|size| agreement(name, &light, from, &maps(size)));
                 assert!(fine >= 0.98, "{name}, {:?} from {from}: {fine}", light.kind);
                 means = [means[0] + coarse / 45.0, means[1] + fine / 45.0];
             }
@@ -29,15 +30,23 @@ fn maps_show_no_acne() {
     };
     for degrees in [1.0, 5.0, 20.0, 50.0, 90.0] {
         let towards = light_from(degrees);
-        let floor = above_floor(solids::plane(0.1, 0.1, 1, 1), Material::default(), dvec3(0.0, -1.0, 0.0));
+        let floor =
+            above_floor(solids::plane(0.1, 0.1, 1, 1), Material::default(), dvec3(0.0, -1.0, 0.0));
         for light in [sun(-towards), lamp(towards * 20.0)] {
             with_shadows(
                 &floor,
                 &[light],
-                &Settings { shadows: ShadowSettings { map_size: 512, ..settings("map").shadows }, ..settings("map") },
+                &Settings {
+                    shadows: ShadowSettings { map_size: 512, ..settings("map").shadows },
+                    ..settings("map")
+                },
                 |arriving| {
                     for i in 0..10_000 {
-                        let p = dvec3(f64::from(i % 100) * 0.0791 - 3.9, 0.0, f64::from(i / 100) * 0.0787 - 3.9);
+                        let p = dvec3(
+                            f64::from(i % 100) * 0.0791 - 3.9,
+                            0.0,
+                            f64::from(i / 100) * 0.0787 - 3.9,
+                        );
                         assert_eq!(arriving(place(p, DVec3::Y)), 1.0, "{degrees} degrees, {p}");
                     }
                 },
@@ -50,7 +59,10 @@ fn maps_show_no_acne() {
     with_shadows(
         &ball,
         &[sun(dvec3(-1.0, -2.0, 0.5))],
-        &Settings { shadows: ShadowSettings { map_size: 512, ..settings("map").shadows }, ..settings("map") },
+        &Settings {
+            shadows: ShadowSettings { map_size: 512, ..settings("map").shadows },
+            ..settings("map")
+        },
         |arriving| {
             for (facet, t) in (0..).zip(&mesh.triangles) {
                 let [a, b, c] = t.map(|i| {
@@ -61,7 +73,13 @@ fn maps_show_no_acne() {
                 if normal.dot(dvec3(1.0, 2.0, -0.5).normalize()) > 0.0 {
                     let position = (a + b + c) / 3.0;
                     assert_eq!(
-                        arriving(SurfacePoint { position, normal, facet, seed: 0, pixel: Some([0.5; 2]) }),
+                        arriving(SurfacePoint {
+                            position,
+                            normal,
+                            facet,
+                            seed: 0,
+                            pixel: Some([0.5; 2])
+                        }),
                         1.0,
                         "facet {facet}"
                     );
@@ -75,14 +93,17 @@ fn maps_show_no_acne() {
 fn shadows_of_maps_start_at_the_foot_and_let_nothing_through() {
     // A box that stands on the floor, and one that the floor cuts through.
     for (height, inside) in [(0.5, false), (0.1, true)] {
-        let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, height, 0.0));
+        let scene =
+            above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, height, 0.0));
         let size = 512;
         let texel = 12.0 / f64::from(size - 8);
         for i in 0..24 {
             let (sin, cos) = vitral_math::func::sin_cos(f64::from(i) * 0.26);
             let towards = dvec3(cos, 1.0, sin);
-            let settings =
-                Settings { shadows: ShadowSettings { map_size: size, ..settings("map").shadows }, ..settings("map") };
+            let settings = Settings {
+                shadows: ShadowSettings { map_size: size, ..settings("map").shadows },
+                ..settings("map")
+            };
             for light in [sun(-towards), lamp(towards * 6.0)] {
                 let dark = with_shadows(&scene, &[light], &settings, |arriving| {
                     let at = |p: DVec3| arriving(place(p, DVec3::Y)) == 0.0;
@@ -91,7 +112,11 @@ fn shadows_of_maps_start_at_the_foot_and_let_nothing_through() {
                     let edge = 0.5 / cos.abs().max(sin.abs());
                     let behind = at(away * (edge + 3.0 * texel));
                     let under = (0..400).all(|k| {
-                        let p = dvec3(f64::from(k % 20) / 20.0 - 0.475, 0.0, f64::from(k / 20) / 20.0 - 0.475);
+                        let p = dvec3(
+                            f64::from(k % 20) / 20.0 - 0.475,
+                            0.0,
+                            f64::from(k / 20) / 20.0 - 0.475,
+                        );
                         at(p * 0.95)
                     });
                     behind && (under || !inside)
@@ -104,10 +129,18 @@ fn shadows_of_maps_start_at_the_foot_and_let_nothing_through() {
 
 #[test]
 fn no_dark_line_lies_where_a_wall_meets_the_floor_before_a_lamp() {
-    let scene = above_floor(solids::cuboid(dvec3(0.2, 3.0, 6.0)), Material::default(), dvec3(-1.9, 1.5, 0.0));
-    for (lamp_at, size) in [(dvec3(1.3, 2.1, 0.7), 512), (dvec3(0.2, 3.3, -1.9), 512), (dvec3(2.5, 1.0, 2.2), 256)] {
-        let settings =
-            Settings { shadows: ShadowSettings { map_size: size, ..settings("map").shadows }, ..settings("map") };
+    let scene = above_floor(
+        solids::cuboid(dvec3(0.2, 3.0, 6.0)),
+        Material::default(),
+        dvec3(-1.9, 1.5, 0.0),
+    );
+    for (lamp_at, size) in
+        [(dvec3(1.3, 2.1, 0.7), 512), (dvec3(0.2, 3.3, -1.9), 512), (dvec3(2.5, 1.0, 2.2), 256)]
+    {
+        let settings = Settings {
+            shadows: ShadowSettings { map_size: size, ..settings("map").shadows },
+            ..settings("map")
+        };
         with_shadows(&scene, &[lamp(lamp_at)], &settings, |arriving| {
             // Along the seam, on the floor and up the wall, ever closer to it.
             for i in 0..400 {
@@ -141,24 +174,41 @@ fn maps_differ_from_rays_only_near_edges_of_shadows() {
                 shadows: ShadowSettings { map_size: size, ..settings(algorithm).shadows },
                 ..settings(algorithm)
             };
-            with_shadows(&scene, &[sun(-towards)], &settings, |a| places.iter().map(|&p| a(p) >= 0.5).collect())
+            with_shadows(&scene, &[sun(-towards)], &settings, |a| {
+                places.iter().map(|&p| a(p) >= 0.5).collect()
+            })
         };
         let (rays, maps) = (ask("ray", &places), ask("map", &places));
         let different: Vec<_> = (0..places.len()).filter(|&i| rays[i] != maps[i]).collect();
-        assert!(different.len() * 50 < places.len(), "{name}: {} of {}", different.len(), places.len());
+        assert!(
+            different.len() * 50 < places.len(),
+            "{name}: {} of {}",
+            different.len(),
+            places.len()
+        );
         // Somewhere within 1.5 texels the rays themselves change their mind.
         let around = different.iter().flat_map(|&i| {
             let place = places[i];
-            let slant = move |d: DVec3| d - towards * (d.dot(place.normal) / towards.dot(place.normal));
+            let slant =
+                move |d: DVec3| d - towards * (d.dot(place.normal) / towards.dot(place.normal));
             (0..48).map(move |k| {
-                let (sin, cos) = vitral_math::func::sin_cos(f64::from(k / 3) * std::f64::consts::FRAC_PI_8);
+                let (sin, cos) =
+                    vitral_math::func::sin_cos(f64::from(k / 3) * std::f64::consts::FRAC_PI_8);
                 let step = texel * 0.5 * f64::from(k % 3 + 1);
-                SurfacePoint { position: place.position + slant((x * cos + y * sin) * step), ..place }
+                SurfacePoint {
+                    position: place.position + slant((x * cos + y * sin) * step),
+                    ..place
+                }
             })
         });
         let near = ask("ray", &around.collect::<Vec<_>>());
         for (&i, near) in different.iter().zip(near.chunks(48)) {
-            assert!(near.iter().any(|&n| n != rays[i]), "{name}: no edge near {:?}, lit {}", places[i], rays[i]);
+            assert!(
+                near.iter().any(|&n| n != rays[i]),
+                "{name}: no edge near {:?}, lit {}",
+                places[i],
+                rays[i]
+            );
         }
     }
 }

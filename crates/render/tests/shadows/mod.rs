@@ -14,8 +14,8 @@ use vitral_math::{DMat4, DVec3, DVec4, dvec3};
 use vitral_render::raytrace::triangles::Triangles;
 use vitral_render::shadow::{self, Drawn, LightVisibility, SurfacePoint, SurfacePoints};
 use vitral_render::{
-    Channels, Execution, PictureSettings, Session, Settings, Shading, ShadowSettings, Shadows, Shot, Surroundings,
-    TransparencySettings, VolumeCounting, registry, render,
+    Channels, Execution, PictureSettings, Session, Settings, Shading, ShadowSettings, Shadows,
+    Shot, Surroundings, TransparencySettings, VolumeCounting, registry, render,
 };
 use vitral_scene::builtin::{self, solids};
 use vitral_scene::{Camera, Mesh, Part, Projection, Scene};
@@ -68,9 +68,12 @@ fn with_colored_shadows<R>(
         algorithm.prepare(&session, lights, VIEWER, settings, &execution).unwrap();
     let center = Triangles::center_of(session.world());
     ask(&|place| {
-        let facet = if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };
+        let facet =
+            if place.facet == u32::MAX { facet_at(&session, place.position) } else { place.facet };
         let places: SurfacePoints =
-            [SurfacePoint { position: place.position - center, facet, ..place }].into_iter().collect();
+            [SurfacePoint { position: place.position - center, facet, ..place }]
+                .into_iter()
+                .collect();
         let mut parts = LightVisibility::new(1, [f32::NAN; 3]);
         ready.light_visibility(0, &places, &mut parts, &mut 0);
         parts.get(0)
@@ -86,7 +89,8 @@ fn facet_at(session: &Session, position: DVec3) -> u32 {
                 instance.world_from_model.transform_point3(dvec3(x, y, z)) - position
             });
             let normal = (b - a).cross(c - a);
-            let inside = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| p.cross(*q).dot(normal) >= -1e-9);
+            let inside =
+                [(a, b), (b, c), (c, a)].iter().all(|(p, q)| p.cross(*q).dot(normal) >= -1e-9);
             if inside && normal.dot(a).abs() < 1e-9 {
                 return facet;
             }
@@ -134,8 +138,10 @@ fn picture(scene: &Scene, lights: &[Light], settings: &Settings, execution: &Exe
 
 #[test]
 fn a_ball_throws_a_round_shadow() {
-    // The lamp at height 4, the ball at 2: its shadow is the cone that touches it, cut by the floor.
-    let scene = above_floor(solids::sphere(0.5, 192, 96), Material::default(), dvec3(0.0, 2.0, 0.0));
+    // The lamp at height 4, the ball at 2: its shadow is the cone that touches it, cut by the
+    // floor.
+    let scene =
+        above_floor(solids::sphere(0.5, 192, 96), Material::default(), dvec3(0.0, 2.0, 0.0));
     let sine = 0.5 / 2.0f64;
     let radius = 4.0 * sine / (1.0 - sine * sine).sqrt();
     with_shadows(&scene, &[lamp(dvec3(0.0, 4.0, 0.0))], &settings("ray"), |arriving| {
@@ -169,8 +175,13 @@ fn nothing_shades_itself() {
                     if normal.dot((far - p).normalize()) < 0.02 {
                         continue;
                     }
-                    let part =
-                        arriving(SurfacePoint { position: p + center, normal, facet, seed: 0, pixel: Some([0.5; 2]) });
+                    let part = arriving(SurfacePoint {
+                        position: p + center,
+                        normal,
+                        facet,
+                        seed: 0,
+                        pixel: Some([0.5; 2]),
+                    });
                     assert_eq!(part, 1.0, "facet {facet} at {p}");
                     lit += 1;
                 }
@@ -182,8 +193,13 @@ fn nothing_shades_itself() {
 
 #[test]
 fn f18_attached_shadows_face_away_and_cast_shadows_are_hidden() {
-    let channels =
-        Channels { color: false, normal: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
+    let channels = Channels {
+        color: false,
+        normal: true,
+        attached_shadow: true,
+        cast_shadow: true,
+        ..Channels::default()
+    };
     let settings = settings("ray").with_channels(channels);
     let towards = dvec3(-1.0, 2.0, -0.5).normalize();
     let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
@@ -195,7 +211,10 @@ fn f18_attached_shadows_face_away_and_cast_shadows_are_hidden() {
         let n = dvec3(f64::from(n[0]), f64::from(n[1]), f64::from(n[2]));
         let away = n != DVec3::ZERO && n.dot(towards) <= 0.0;
         assert_eq!(attached, f32::from(u8::from(away)));
-        assert!(cast == 0.0 || (cast == 1.0 && attached == 0.0 && n.y > 0.9), "only the floor lies in a cast shadow");
+        assert!(
+            cast == 0.0 || (cast == 1.0 && attached == 0.0 && n.y > 0.9),
+            "only the floor lies in a cast shadow"
+        );
         let which = [attached == 1.0, cast == 1.0, n != DVec3::ZERO && attached + cast == 0.0];
         (0..3).for_each(|k| counts[k] += usize::from(which[k]));
     }
@@ -207,8 +226,10 @@ fn f20_a_light_that_does_not_arrive_leaves_ambient_light_alone() {
     let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
     let light = Light { ambient: [0.1; 3], ..lamp(dvec3(2.0, 6.0, 1.0)) };
     let dark = Light { diffuse: [0.0; 3], specular: [0.0; 3], ..light.clone() };
-    let data = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
-    for (shading, algorithm) in Shading::ALL.iter().flat_map(|s| names().map(move |name| (s, name))) {
+    let data =
+        Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
+    for (shading, algorithm) in Shading::ALL.iter().flat_map(|s| names().map(move |name| (s, name)))
+    {
         let settings = settings(algorithm).with_channels(data).with_shading(shading.0);
         let execution = Execution::default();
         let shaded = picture(&scene, std::slice::from_ref(&light), &settings, &execution);
@@ -219,7 +240,8 @@ fn f20_a_light_that_does_not_arrive_leaves_ambient_light_alone() {
             &settings.clone().with_shadows(Shadows::NONE).with_channels(Channels::default()),
             &execution,
         );
-        let [shaded_color, unlit, plain] = [&shaded, &unlit, &plain].map(|f| f.color.clone().unwrap());
+        let [shaded_color, unlit, plain] =
+            [&shaded, &unlit, &plain].map(|f| f.color.clone().unwrap());
         let cast = shaded.cast_shadow.unwrap();
         let attached = shaded.attached_shadow.unwrap();
         let mut counts = [0; 2];
@@ -244,17 +266,26 @@ fn transparent_things_take_their_part() {
     let glass = |opacity| Material { opacity, alpha_mode: AlphaMode::Blend, ..Material::default() };
     let mut scene = above_floor(solids::plane(2.0, 2.0, 1, 1), glass(0.25), dvec3(0.1, 1.0, 0.2));
     add(&mut scene, solids::plane(1.0, 1.0, 1, 1), glass(0.5), dvec3(-0.3, 2.0, 0.2));
-    let mask = Material { opacity: 0.4, alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() };
+    let mask = Material {
+        opacity: 0.4,
+        alpha_mode: AlphaMode::Mask { cutoff: 0.5 },
+        ..Material::default()
+    };
     add(&mut scene, solids::plane(1.0, 1.0, 1, 1), mask, dvec3(0.0, 3.0, 0.0));
     let down = [sun(DVec3::NEG_Y)];
     let at = |x: f64, settings: &Settings| {
-        with_shadows(&scene, &down, settings, |arriving| arriving(place(dvec3(x, 0.0, 0.1), DVec3::Y)))
+        with_shadows(&scene, &down, settings, |arriving| {
+            arriving(place(dvec3(x, 0.0, 0.1), DVec3::Y))
+        })
     };
     for algorithm in names() {
         let filtering = settings(algorithm);
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &filtering)), [1.0, 0.75, 0.375], "{algorithm}");
         let opaque = Settings {
-            transparency: TransparencySettings { model: vitral_render::Transparency::None, ..filtering.transparency },
+            transparency: TransparencySettings {
+                model: vitral_render::Transparency::None,
+                ..filtering.transparency
+            },
             ..filtering
         };
         assert_eq!([3.0, 0.9, -0.2].map(|x| at(x, &opaque)), [1.0, 0.0, 0.0], "{algorithm}");
@@ -263,8 +294,12 @@ fn transparent_things_take_their_part() {
 
 #[test]
 fn filtered_glass_colours_the_light_that_passes() {
-    let glass =
-        Material { opacity: 0.25, alpha_mode: AlphaMode::Blend, filter: [1.0, 0.5, 0.0], ..Material::default() };
+    let glass = Material {
+        opacity: 0.25,
+        alpha_mode: AlphaMode::Blend,
+        filter: [1.0, 0.5, 0.0],
+        ..Material::default()
+    };
     let scene = above_floor(solids::plane(2.0, 2.0, 1, 1), glass, dvec3(0.0, 1.0, 0.0));
     for algorithm in names() {
         for (transparency, expected) in [
@@ -272,7 +307,10 @@ fn filtered_glass_colours_the_light_that_passes() {
             (vitral_render::Transparency::Linear, [0.75; 3]),
         ] {
             let settings = Settings {
-                transparency: TransparencySettings { model: transparency, ..settings(algorithm).transparency },
+                transparency: TransparencySettings {
+                    model: transparency,
+                    ..settings(algorithm).transparency
+                },
                 ..settings(algorithm)
             };
             for light in [sun(DVec3::NEG_Y), lamp(dvec3(0.0, 4.0, 0.0))] {
@@ -299,7 +337,8 @@ fn what_a_lamp_is_fixed_to_does_not_hide_it_at_grazing_angles() {
     for algorithm in names().filter(|&name| name != "map") {
         with_shadows(&scene, std::slice::from_ref(&lamp), &settings(algorithm), |arriving| {
             for i in 0..4000 {
-                let (x, below) = (f64::from(i % 200) * 0.0199 - 1.97, f64::from(i / 200 + 1) * 0.003);
+                let (x, below) =
+                    (f64::from(i % 200) * 0.0199 - 1.97, f64::from(i / 200 + 1) * 0.003);
                 let p = dvec3(x, 5.0 - below, -5.0);
                 assert_eq!(arriving(place(p, DVec3::Z)), 1.0, "{algorithm}: {p}");
             }
@@ -309,8 +348,13 @@ fn what_a_lamp_is_fixed_to_does_not_hide_it_at_grazing_angles() {
 
 #[test]
 fn f18_a_surface_with_the_lamp_in_its_plane_is_in_its_own_shadow() {
-    let channels =
-        Channels { color: false, normal: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
+    let channels = Channels {
+        color: false,
+        normal: true,
+        attached_shadow: true,
+        cast_shadow: true,
+        ..Channels::default()
+    };
     let camera = Camera {
         position: dvec3(1.1, -0.3, 3.7),
         focal_point: dvec3(0.4, 5.0, -1.3),
@@ -327,10 +371,13 @@ fn f18_a_surface_with_the_lamp_in_its_plane_is_in_its_own_shadow() {
     };
     let settings = settings("ray").with_channels(channels);
     let frame = render(&mut session, &shot, &settings, &Execution::default()).unwrap().frame;
-    let (normals, attached, cast) = (frame.normal.unwrap(), frame.attached_shadow.unwrap(), frame.cast_shadow.unwrap());
-    let ceiling: Vec<_> = (0..normals.data().len()).filter(|&i| normals.data()[i][1] < -0.9).collect();
+    let (normals, attached, cast) =
+        (frame.normal.unwrap(), frame.attached_shadow.unwrap(), frame.cast_shadow.unwrap());
+    let ceiling: Vec<_> =
+        (0..normals.data().len()).filter(|&i| normals.data()[i][1] < -0.9).collect();
     assert!(ceiling.len() > 5000, "{}", ceiling.len());
-    let rounding = ceiling.iter().filter(|&&i| (attached.data()[i], cast.data()[i]) != (1.0, 0.0)).count();
+    let rounding =
+        ceiling.iter().filter(|&&i| (attached.data()[i], cast.data()[i]) != (1.0, 0.0)).count();
     assert_eq!(rounding, 0, "of {}", ceiling.len());
 }
 
@@ -339,7 +386,8 @@ fn nothing_is_in_a_cast_shadow_beside_the_cone_of_a_spot() {
     let scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
     let cast = |algorithm: &str, direction: DVec3| {
         let (cutoff, position) = (0.15, dvec3(0.0, 5.0, 0.0));
-        let spot = light(LightKind::Spot { position, direction, cutoff, inner: cutoff, exponent: 0.0 });
+        let spot =
+            light(LightKind::Spot { position, direction, cutoff, inner: cutoff, exponent: 0.0 });
         let channels = Channels { color: false, cast_shadow: true, ..Channels::default() };
         let settings = Settings {
             picture: PictureSettings { channels, ..settings(algorithm).picture },
@@ -362,7 +410,8 @@ fn nothing_is_in_a_cast_shadow_beside_the_cone_of_a_spot() {
 fn maps_of_a_scene_far_from_the_origin_are_those_of_one_near_it() {
     let far = 1e5;
     let scene = |from: f32| {
-        let mut scene = above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
+        let mut scene =
+            above_floor(solids::cuboid(DVec3::ONE), Material::default(), dvec3(0.0, 1.5, 0.0));
         for mesh in &mut scene.meshes {
             Arc::make_mut(mesh).positions.iter_mut().flatten().for_each(|k| *k += from);
         }
@@ -370,16 +419,24 @@ fn maps_of_a_scene_far_from_the_origin_are_those_of_one_near_it() {
     };
     for light in [sun(dvec3(-0.4, -1.0, -0.3)), lamp(dvec3(0.3, 4.0, 1.0))] {
         let moved = light.transformed(&DMat4::from_translation(DVec3::splat(far)));
-        let maps = Settings { shadows: ShadowSettings { map_size: 512, ..settings("map").shadows }, ..settings("map") };
+        let maps = Settings {
+            shadows: ShadowSettings { map_size: 512, ..settings("map").shadows },
+            ..settings("map")
+        };
         let lit = |scene: &Scene, light: &Light, at: DVec3| {
             with_shadows(scene, std::slice::from_ref(light), &maps, |arriving| {
-                let places =
-                    (0..2500).map(|i| dvec3(f64::from(i % 50) * 0.151 - 3.7, 0.0, f64::from(i / 50) * 0.149 - 3.7));
-                let part = |p: DVec3| arriving(SurfacePoint { facet: 0, ..place(p + at, DVec3::Y) });
+                let places = (0..2500).map(|i| {
+                    dvec3(f64::from(i % 50) * 0.151 - 3.7, 0.0, f64::from(i / 50) * 0.149 - 3.7)
+                });
+                let part =
+                    |p: DVec3| arriving(SurfacePoint { facet: 0, ..place(p + at, DVec3::Y) });
                 places.map(part).collect::<Vec<_>>()
             })
         };
-        let (near, far) = (lit(&scene(0.0), &light, DVec3::ZERO), lit(&scene(far as f32), &moved, DVec3::splat(far)));
+        let (near, far) = (
+            lit(&scene(0.0), &light, DVec3::ZERO),
+            lit(&scene(far as f32), &moved, DVec3::splat(far)),
+        );
         // Positions of the box, too, are a whole number of 1/128 there.
         let different = near.iter().zip(&far).filter(|(a, b)| (**a - **b).abs() > 0.1).count();
         assert!(different <= 5, "{:?}: {different} of 2500 differ", light.kind);
@@ -414,9 +471,14 @@ fn pictures_by_volumes_do_not_depend_on_threads_instructions_or_visibility() {
 
 fn pictures_do_not_depend(algorithm: &str) {
     let scene = builtin::scene("scene1").unwrap();
-    let disc = AreaShape::Disc { center: dvec3(3.0, 7.0, 2.0), normal: dvec3(-3.0, -7.0, -2.0), radius: 0.6 };
+    let disc = AreaShape::Disc {
+        center: dvec3(3.0, 7.0, 2.0),
+        normal: dvec3(-3.0, -7.0, -2.0),
+        radius: 0.6,
+    };
     let lights = [sun(dvec3(1.0, -2.0, -1.0)), light(LightKind::Area { shape: disc })];
-    let channels = Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
+    let channels =
+        Channels { color: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
     let settings = Settings {
         picture: PictureSettings { channels, samples: 4, ..settings(algorithm).picture },
         shadows: ShadowSettings { light_samples: 4, map_size: 512, ..settings(algorithm).shadows },
@@ -427,7 +489,10 @@ fn pictures_do_not_depend(algorithm: &str) {
     assert!(first.cast_shadow.as_ref().unwrap().data().iter().any(|&c| c > 0.0));
     let many = Execution { workers: Workers::new(3), ..Execution::default() };
     for (name, level) in available_levels() {
-        assert!(first == picture(&scene, &lights, &settings, &Execution { level, ..many.clone() }), "{name}");
+        assert!(
+            first == picture(&scene, &lights, &settings, &Execution { level, ..many.clone() }),
+            "{name}"
+        );
     }
     for algorithm in registry::VISIBILITY.iter().filter(|a| a.name != "brute-force") {
         let settings = settings.clone().with_visibility(algorithm.choice());
@@ -443,13 +508,16 @@ fn odd_lights_are_defined() {
 
 fn odd_lights(scene: &Scene, algorithm: &str) {
     let at = |light: Light| {
-        with_shadows(scene, &[light], &settings(algorithm), |a| a(place(dvec3(2.0, 0.0, 0.0), DVec3::Y)))
+        with_shadows(scene, &[light], &settings(algorithm), |a| {
+            a(place(dvec3(2.0, 0.0, 0.0), DVec3::Y))
+        })
     };
     assert_eq!(at(lamp(dvec3(0.0, 1.5, 0.0))), 0.0, "inside the box");
     assert_eq!(at(lamp(dvec3(2.0, 0.0, 0.0))), 0.0, "at the very place");
     assert_eq!(at(lamp(dvec3(0.5, 1.5, 0.0))), 1.0, "on the side of the box");
     assert_eq!(at(Light { shadow: false, ..lamp(dvec3(0.0, 1.5, 0.0)) }), 1.0, "it casts none");
-    let point = AreaShape::Disc { center: dvec3(-2.0, 4.0, 0.0), normal: DVec3::NEG_Y, radius: 0.0 };
+    let point =
+        AreaShape::Disc { center: dvec3(-2.0, 4.0, 0.0), normal: DVec3::NEG_Y, radius: 0.0 };
     assert_eq!(at(light(LightKind::Area { shape: point })), 0.0, "without size, behind the box");
     assert_eq!(at(light(LightKind::Ambient)), 1.0);
 }
@@ -460,33 +528,54 @@ fn settings_that_cannot_be_are_refused() {
     let unknown = "umbra".parse::<Shadows>().unwrap_err().to_string();
     assert!(unknown.contains("choose none, ray, map"), "{unknown}");
     assert!(
-        text(Settings { shadows: ShadowSettings { light_samples: 0, ..settings("ray").shadows }, ..settings("ray") })
-            .contains("1 to 4096")
+        text(Settings {
+            shadows: ShadowSettings { light_samples: 0, ..settings("ray").shadows },
+            ..settings("ray")
+        })
+        .contains("1 to 4096")
     );
     assert!(
-        text(Settings { shadows: ShadowSettings { map_size: 9000, ..settings("map").shadows }, ..settings("map") })
-            .contains("16 to 8192")
+        text(Settings {
+            shadows: ShadowSettings { map_size: 9000, ..settings("map").shadows },
+            ..settings("map")
+        })
+        .contains("16 to 8192")
     );
     assert!(
-        text(Settings { shadows: ShadowSettings { cascades: 9, ..settings("map").shadows }, ..settings("map") })
-            .contains("1 to 8")
+        text(Settings {
+            shadows: ShadowSettings { cascades: 9, ..settings("map").shadows },
+            ..settings("map")
+        })
+        .contains("1 to 8")
     );
     assert!(
-        text(Settings { shadows: ShadowSettings { cascades: 0, ..settings("map").shadows }, ..settings("map") })
-            .contains("1 to 8")
+        text(Settings {
+            shadows: ShadowSettings { cascades: 0, ..settings("map").shadows },
+            ..settings("map")
+        })
+        .contains("1 to 8")
     );
     let channels = Channels { cast_shadow: true, ..Channels::default() };
-    assert!(text(settings("none").with_channels(channels)).contains("needs a shadow algorithm: choose ray"));
+    assert!(
+        text(settings("none").with_channels(channels))
+            .contains("needs a shadow algorithm: choose ray")
+    );
 }
 
-/// The part of pixels with a surface in which another algorithm and rays tell light from shadow alike.
+/// The part of pixels with a surface in which another algorithm and rays tell light from shadow
+/// alike.
 fn agreement(name: &str, light: &Light, from: DVec3, other_settings: &Settings) -> f64 {
     let scene = on_floor(name);
     let mut session = Session::new(Arc::new(scene.clone())).unwrap();
     let camera = camera(&scene, from);
     let mut mask = |settings: &Settings| {
-        let channels =
-            Channels { color: false, object: true, attached_shadow: true, cast_shadow: true, ..Channels::default() };
+        let channels = Channels {
+            color: false,
+            object: true,
+            attached_shadow: true,
+            cast_shadow: true,
+            ..Channels::default()
+        };
         let settings = settings.clone().with_size(320, 240).with_channels(channels);
         let shot = Shot {
             camera,
@@ -499,15 +588,19 @@ fn agreement(name: &str, light: &Light, from: DVec3, other_settings: &Settings) 
     let (rays, other) = (mask(&settings("ray")), mask(other_settings));
     let (object, attached) = (rays.object.unwrap(), rays.attached_shadow.unwrap());
     let (rays, other) = (rays.cast_shadow.unwrap(), other.cast_shadow.unwrap());
-    let seen: Vec<_> = (0..object.data().len()).filter(|&i| object.data()[i] != Frame::BACKGROUND).collect();
+    let seen: Vec<_> =
+        (0..object.data().len()).filter(|&i| object.data()[i] != Frame::BACKGROUND).collect();
     assert!(seen.iter().any(|&i| rays.data()[i] == 1.0), "{name}: something is in shadow");
-    let [rays, shadows] = [&rays, &other].map(|mask| mask.data().iter().map(|&c| c >= 0.5).collect::<Vec<_>>());
+    let [rays, shadows] =
+        [&rays, &other].map(|mask| mask.data().iter().map(|&c| c >= 0.5).collect::<Vec<_>>());
     let different: Vec<_> = seen.iter().filter(|&&i| rays[i] != shadows[i]).collect();
     if !other_settings.shadows.algorithm.draws_maps {
-        // Texels may be larger, but these differ no more than 1.5 pixels from an edge of a shadow, cast or attached.
+        // Texels may be larger, but these differ no more than 1.5 pixels from an edge of a shadow,
+        // cast or attached.
         let dark = |i: usize| rays.get(i).map(|&cast| cast || attached.data()[i] > 0.0);
         for &&i in &different {
-            let around = [-321, -320, -319, -1, 1, 319, 320, 321].map(|d| dark(i.wrapping_add_signed(d)));
+            let around =
+                [-321, -320, -319, -1, 1, 319, 320, 321].map(|d| dark(i.wrapping_add_signed(d)));
             let edge = around.iter().any(|&n| n.is_some() && n != dark(i));
             assert!(edge, "{name}: no edge near pixel {i}");
         }
@@ -542,8 +635,8 @@ fn lights_for(name: &str) -> [Light; 3] {
 /// Three sides from which a scene is looked at.
 const SIDES: [DVec3; 3] = [dvec3(0.6, 0.5, 0.9), dvec3(-0.9, 0.3, 0.4), dvec3(0.1, 1.2, 0.2)];
 
-/// Built-in scenes of opaque things that stand before each other: glass keeps only a part of the light, the Cornell box is lit from
-/// within, and figures of defects are flat.
+/// Built-in scenes of opaque things that stand before each other: glass keeps only a part of the
+/// light, the Cornell box is lit from within, and figures of defects are flat.
 fn opaque_scenes() -> Vec<&'static str> {
     let opaque = |name: &&str| {
         let scene = builtin::scene(name).unwrap();
@@ -561,12 +654,20 @@ fn what_is_kept_changes_nothing() {
 fn kept_changes_nothing(algorithm: &str) {
     let scene = builtin::scene("scene0").unwrap();
     let lights = [lamp(dvec3(3.0, 6.0, 2.0))];
-    let settings =
-        Settings { shadows: ShadowSettings { map_size: 256, ..settings(algorithm).shadows }, ..settings(algorithm) };
+    let settings = Settings {
+        shadows: ShadowSettings { map_size: 256, ..settings(algorithm).shadows },
+        ..settings(algorithm)
+    };
     let mut used = Session::new(Arc::new(scene.clone())).unwrap();
-    for (view, lights) in [(0, &lights[..]), (1, &lights[..]), (1, &[sun(dvec3(1.0, -1.0, 0.0))]), (2, &lights[..])] {
-        let camera = camera(&scene, [dvec3(0.6, 0.5, 0.9), dvec3(-0.6, 0.5, 0.9), dvec3(0.6, 0.9, -0.9)][view]);
-        let shot = Shot { camera, lights, ambient: [0.1; 3], surroundings: Surroundings::default() };
+    for (view, lights) in
+        [(0, &lights[..]), (1, &lights[..]), (1, &[sun(dvec3(1.0, -1.0, 0.0))]), (2, &lights[..])]
+    {
+        let camera = camera(
+            &scene,
+            [dvec3(0.6, 0.5, 0.9), dvec3(-0.6, 0.5, 0.9), dvec3(0.6, 0.9, -0.9)][view],
+        );
+        let shot =
+            Shot { camera, lights, ambient: [0.1; 3], surroundings: Surroundings::default() };
         let again = render(&mut used, &shot, &settings, &Execution::default()).unwrap().frame;
         let mut fresh = Session::new(Arc::new(scene.clone())).unwrap();
         assert!(
@@ -592,7 +693,13 @@ fn places_on(scene: &Scene) -> Vec<SurfacePoint> {
             for (i, k) in (0..side).flat_map(|i| (0..side - i).map(move |k| (i, k))) {
                 let [u, v] = [i, k].map(|n| (f64::from(n) + 1.0 / 3.0) / f64::from(side));
                 let position = a + (b - a) * u + (c - a) * v;
-                places.push(SurfacePoint { position, normal, facet, seed: 0, pixel: Some([k, i].map(|n| n as f32)) });
+                places.push(SurfacePoint {
+                    position,
+                    normal,
+                    facet,
+                    seed: 0,
+                    pixel: Some([k, i].map(|n| n as f32)),
+                });
             }
         }
     }

@@ -1,4 +1,5 @@
-//! Puts meshes together polygon by polygon, with separate indices for positions, normals and texture coordinates.
+//! Puts meshes together polygon by polygon, with separate indices for positions, normals and
+//! texture coordinates.
 
 use crate::{Attribute, Corners, Faces, Mesh, Part};
 use vitral_math::{DVec2, DVec3};
@@ -49,7 +50,8 @@ impl Builder {
         self.uvs.values.len() as u32 - 1
     }
 
-    /// Adds a convex polygon with at least three corners, counter-clockwise seen from outside, as a fan of triangles.
+    /// Adds a convex polygon with at least three corners, counter-clockwise seen from outside, as a
+    /// fan of triangles.
     pub(crate) fn polygon(&mut self, corners: &[Corner]) {
         self.corners.extend(corners.iter().map(|c| c[0]));
         self.starts.push(self.corners.len() as u32);
@@ -70,7 +72,8 @@ impl Builder {
 
     /// The mesh. Triangles after the last part become a part of their own.
     pub(crate) fn finish(mut self) -> Mesh {
-        if self.mesh.parts.last().map_or(0, |p| p.triangles.end) < self.mesh.triangles.len() as u32 {
+        if self.mesh.parts.last().map_or(0, |p| p.triangles.end) < self.mesh.triangles.len() as u32
+        {
             let name = self.mesh.name.clone();
             self.end_part(&name);
         }

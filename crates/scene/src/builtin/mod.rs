@@ -1,9 +1,11 @@
-//! Scenes that need no file: `builtin:NAME`, and `builtin:NAME?PARAMETER=NUMBER&...` for those that are made of curved surfaces.
+//! Scenes that need no file: `builtin:NAME`, and `builtin:NAME?PARAMETER=NUMBER&...` for those that
+//! are made of curved surfaces.
 //!
-//! `cubs`, `sphere`, `scene0` and `scene1` are those of the course's program Lab3D (its menu *Exercises*), with its two
-//! lights ([`crate::lab`]); what they showed exactly is not handed down, so the objects here are our choice. `refraction`,
-//! `rod`, `lens`, `mirrors` and `cornell` are about global illumination, `realism` has everything at once. The names with `defect-`
-//! show what is wrong with interpolated shading. `teapot` has no lights and gets the default ones.
+//! `cubs`, `sphere`, `scene0` and `scene1` are those of the course's program Lab3D (its menu
+//! *Exercises*), with its two lights ([`crate::lab`]); what they showed exactly is not handed down,
+//! so the objects here are our choice. `refraction`, `rod`, `lens`, `mirrors` and `cornell` are
+//! about global illumination, `realism` has everything at once. The names with `defect-` show what
+//! is wrong with interpolated shading. `teapot` has no lights and gets the default ones.
 
 pub(crate) mod builder;
 mod defects;
@@ -80,17 +82,30 @@ const fn figure(name: &'static str, about: &'static str, make: fn() -> Scene) ->
 }
 
 const SCENES: [Recipe; 16] = [
-    framed("cubs", "Lab3D's Cubs(): eight cubes in the colours of the RGB cube, one normal per face", scenes::cubs),
+    framed(
+        "cubs",
+        "Lab3D's Cubs(): eight cubes in the colours of the RGB cube, one normal per face",
+        scenes::cubs,
+    ),
     tessellated(
         "sphere",
         "Lab3D's Sphere(): a smooth sphere with vertex normals",
         &[
             Parameter { name: "slices", about: "meridians", range: [3, 4096], default: 96 },
-            Parameter { name: "stacks", about: "belts from pole to pole", range: [2, 4096], default: 48 },
+            Parameter {
+                name: "stacks",
+                about: "belts from pole to pole",
+                range: [2, 4096],
+                default: 48,
+            },
         ],
         |numbers| scenes::sphere(numbers[0], numbers[1]),
     ),
-    framed("scene0", "Lab3D's Scene 0: box, sphere, cone and cylinder on a chequered floor", scenes::scene0),
+    framed(
+        "scene0",
+        "Lab3D's Scene 0: box, sphere, cone and cylinder on a chequered floor",
+        scenes::scene0,
+    ),
     framed(
         "scene1",
         "Lab3D's Scene 1: a flight of steps with a torus, a tetrahedron, a column and a ball",
@@ -102,9 +117,21 @@ const SCENES: [Recipe; 16] = [
         optics::refraction,
     ),
     figure("rod", "a stick in water, which looks broken (--global ray-trace)", optics::rod),
-    figure("lens", "a glass ball that turns what is behind upside down (--global ray-trace)", optics::lens),
-    figure("mirrors", "mirrors, glass, a coloured pane, two lights (--global ray-trace)", optics::mirrors),
-    figure("cornell", "the Cornell box, with a lamp that shines by itself (--global radiosity)", optics::cornell),
+    figure(
+        "lens",
+        "a glass ball that turns what is behind upside down (--global ray-trace)",
+        optics::lens,
+    ),
+    figure(
+        "mirrors",
+        "mirrors, glass, a coloured pane, two lights (--global ray-trace)",
+        optics::mirrors,
+    ),
+    figure(
+        "cornell",
+        "the Cornell box, with a lamp that shines by itself (--global radiosity)",
+        optics::cornell,
+    ),
     figure(
         "realism",
         "everything at once: lights of four kinds, shadows, mirrors, glass, marble (--global ray-trace --transparency filtered)",
@@ -138,7 +165,12 @@ const SCENES: [Recipe; 16] = [
     tessellated(
         "teapot",
         "the Utah teapot, 32 Bezier patches with exact normals",
-        &[Parameter { name: "divisions", about: "faces along a side of each patch", range: [1, 256], default: 12 }],
+        &[Parameter {
+            name: "divisions",
+            about: "faces along a side of each patch",
+            range: [1, 256],
+            default: 12,
+        }],
         |numbers| scenes::teapot_scene(numbers[0]),
     ),
 ];
@@ -175,7 +207,8 @@ pub fn scene(name: &str) -> Option<Scene> {
 /// The built-in scene `NAME` or `NAME?PARAMETER=NUMBER&...` (without `builtin:`).
 ///
 /// # Errors
-/// A name that is not there, a parameter that the scene does not take, a number that it cannot have.
+/// A name that is not there, a parameter that the scene does not take, a number that it cannot
+/// have.
 pub fn parse(text: &str) -> Result<Scene, BuiltinError> {
     let (name, values) = text.split_once('?').unwrap_or((text, ""));
     let recipe = recipe(name).ok_or(BuiltinError::Name)?;
@@ -201,7 +234,10 @@ mod tests {
     #[test]
     fn curved_scenes_take_the_fineness_of_their_faces() {
         let faces = |text: &str| parse(text).unwrap().meshes[0].face_count();
-        assert_eq!([faces("sphere"), faces("sphere?slices=8&stacks=4"), faces("sphere?Slices=8")], [4608, 32, 384]);
+        assert_eq!(
+            [faces("sphere"), faces("sphere?slices=8&stacks=4"), faces("sphere?Slices=8")],
+            [4608, 32, 384]
+        );
         assert_eq!(faces("sphere?slices=3,stacks=2"), 6);
         let triangles = |text: &str| parse(text).unwrap().meshes[0].triangles.len();
         assert!(triangles("teapot?divisions=1") < triangles("teapot?divisions=2"));
@@ -210,18 +246,26 @@ mod tests {
 
     #[test]
     fn what_a_scene_does_not_take_is_refused_with_what_it_takes() {
-        let taken =
-            "builtin:sphere takes slices=96 (meridians, 3 to 4096), stacks=48 (belts from pole to pole, 2 to 4096)";
+        let taken = "builtin:sphere takes slices=96 (meridians, 3 to 4096), stacks=48 (belts from pole to pole, 2 to 4096)";
         for (text, what) in [
             ("sphere?sides=8", "builtin:sphere takes no `sides`"),
-            ("sphere?slices=2", "builtin:sphere: slices `2`: a whole number from 3 to 4096 is required"),
-            ("sphere?slices", "builtin:sphere: slices ``: a whole number from 3 to 4096 is required"),
+            (
+                "sphere?slices=2",
+                "builtin:sphere: slices `2`: a whole number from 3 to 4096 is required",
+            ),
+            (
+                "sphere?slices",
+                "builtin:sphere: slices ``: a whole number from 3 to 4096 is required",
+            ),
             ("sphere?slices=8&slices=9", "builtin:sphere: `slices` is given twice"),
         ] {
             assert_eq!(refused(text), (what.to_owned(), taken.to_owned()));
         }
         let (what, hint) = refused("cubs?slices=8");
-        assert_eq!([what.as_str(), &hint], ["builtin:cubs takes no `slices`", "builtin:cubs takes no parameters"]);
+        assert_eq!(
+            [what.as_str(), &hint],
+            ["builtin:cubs takes no `slices`", "builtin:cubs takes no parameters"]
+        );
         assert!(matches!(parse("ball?slices=8"), Err(BuiltinError::Name)));
     }
 }

@@ -1,17 +1,26 @@
-//! Scenes about light that other surfaces send: the notes' figures of refraction, mirrors, the Cornell box.
+//! Scenes about light that other surfaces send: the notes' figures of refraction, mirrors, the
+//! Cornell box.
 
 use super::builder::Builder;
 use super::scenes::{chalk, lab_camera, place, place_as, place_floor, plastic};
 use super::solids;
 use crate::{Camera, Mesh, Node, Projection, Scene};
-use vitral_light::{AlphaMode, AreaShape, Attenuation, Light, LightKind, Material, Reflectance, Rgb};
+use vitral_light::{
+    AlphaMode, AreaShape, Attenuation, Light, LightKind, Material, Reflectance, Rgb,
+};
 use vitral_math::{DMat4, DVec3, dvec3};
 
 /// A body through which light passes, and bends.
 pub(super) fn clear(name: &str, kt: f32, ior: f32) -> Material {
-    let reflectance = Reflectance::Phong { ka: [0.02; 3], kd: [0.02; 3], ks: [0.5; 3], shininess: 200.0 };
-    let mut material =
-        Material { name: name.to_owned(), reflectance, ior, alpha_mode: AlphaMode::Blend, ..Material::default() };
+    let reflectance =
+        Reflectance::Phong { ka: [0.02; 3], kd: [0.02; 3], ks: [0.5; 3], shininess: 200.0 };
+    let mut material = Material {
+        name: name.to_owned(),
+        reflectance,
+        ior,
+        alpha_mode: AlphaMode::Blend,
+        ..Material::default()
+    };
     material.set_kt(kt);
     material
 }
@@ -38,12 +47,20 @@ pub(super) fn quad(name: &str, corners: [DVec3; 4]) -> Mesh {
 }
 
 /// A wall in the plane at `z`, towards +z, between two corners.
-fn poster_at(scene: &mut Scene, name: &str, color: Rgb, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], z: f64) {
+fn poster_at(
+    scene: &mut Scene,
+    name: &str,
+    color: Rgb,
+    [x0, y0]: [f64; 2],
+    [x1, y1]: [f64; 2],
+    z: f64,
+) {
     let corners = [dvec3(x0, y0, z), dvec3(x1, y0, z), dvec3(x1, y1, z), dvec3(x0, y1, z)];
     place(scene, quad(name, corners), poster(name, color), DVec3::ZERO);
 }
 
-/// A prism along x, 3 wide: upright in front at z = 0, a base of 1.2 at `y = base`, an edge at `y = tip`.
+/// A prism along x, 3 wide: upright in front at z = 0, a base of 1.2 at `y = base`, an edge at
+/// `y = tip`.
 fn prism(base: f64, tip: f64) -> Mesh {
     let mut b = Builder::new("prism");
     let up = (tip - base).signum();
@@ -72,19 +89,27 @@ fn prism(base: f64, tip: f64) -> Mesh {
     b.finish()
 }
 
-/// The notes' figure: transparent 1 and 2 in front of opaque 3 (red, above) and 4 (blue, below), seen by parallel rays
-/// along -z. P is at (0, 1), on 1, and Q at (0, -1), on 2. Straight on, P shows 3 and Q shows 4; bent, the other way round.
+/// The notes' figure: transparent 1 and 2 in front of opaque 3 (red, above) and 4 (blue, below),
+/// seen by parallel rays along -z. P is at (0, 1), on 1, and Q at (0, -1), on 2. Straight on, P
+/// shows 3 and Q shows 4; bent, the other way round.
 pub(super) fn refraction() -> Scene {
     let mut scene = Scene { ambient: [1.0; 3], ..Scene::default() };
-    scene.lights =
-        vec![Light { kind: LightKind::Directional { direction: dvec3(0.3, -1.0, -0.6) }, ..Light::default() }];
+    scene.lights = vec![Light {
+        kind: LightKind::Directional { direction: dvec3(0.3, -1.0, -0.6) },
+        ..Light::default()
+    }];
     place(&mut scene, prism(0.1, 1.8), clear("1", 0.9, 1.5), DVec3::ZERO);
     place(&mut scene, prism(-0.1, -1.8), clear("2", 0.9, 1.5), DVec3::ZERO);
     poster_at(&mut scene, "3", [0.85, 0.15, 0.1], [-2.6, 0.0], [2.6, 2.4], -6.0);
     poster_at(&mut scene, "4", [0.1, 0.25, 0.85], [-2.6, -2.4], [2.6, 0.0], -6.0);
     let projection = Projection::Parallel { height: 6.0 };
-    let camera =
-        Camera { position: dvec3(0.0, 0.0, 8.0), focal_point: DVec3::ZERO, view_up: DVec3::Y, projection, clip: None };
+    let camera = Camera {
+        position: dvec3(0.0, 0.0, 8.0),
+        focal_point: DVec3::ZERO,
+        view_up: DVec3::Y,
+        projection,
+        clip: None,
+    };
     look(&mut scene, camera);
     scene
 }
@@ -93,7 +118,8 @@ pub(super) fn refraction() -> Scene {
 pub(super) fn rod() -> Scene {
     let mut scene = Scene { ambient: [0.25; 3], ..Scene::default() };
     let lamp = LightKind::Point { position: dvec3(-4.0, 7.0, 5.0) };
-    scene.lights = vec![Light { name: "lamp".to_owned(), kind: lamp, diffuse: [0.9; 3], ..Light::default() }];
+    scene.lights =
+        vec![Light { name: "lamp".to_owned(), kind: lamp, diffuse: [0.9; 3], ..Light::default() }];
     place_floor(&mut scene, 9.0, 12);
     let mut water = clear("water", 0.93, 1.333);
     water.filter = [0.85, 0.95, 1.0];
@@ -119,28 +145,45 @@ pub(super) fn lens() -> Scene {
     }
     place(&mut scene, solids::sphere(1.0, 192, 96), clear("glass", 0.95, 1.5), DVec3::ZERO);
     let projection = Projection::Perspective { view_angle: std::f64::consts::FRAC_PI_6 };
-    let camera =
-        Camera { position: dvec3(0.0, 0.0, 7.0), focal_point: DVec3::ZERO, view_up: DVec3::Y, projection, clip: None };
+    let camera = Camera {
+        position: dvec3(0.0, 0.0, 7.0),
+        focal_point: DVec3::ZERO,
+        view_up: DVec3::Y,
+        projection,
+        clip: None,
+    };
     look(&mut scene, camera);
     scene
 }
 
-/// Mirrors and glass on a chequered floor: a mirror, a ball of chrome, one of glass, a coloured pane, a plastic cone, two lamps.
+/// Mirrors and glass on a chequered floor: a mirror, a ball of chrome, one of glass, a coloured
+/// pane, a plastic cone, two lamps.
 pub(super) fn mirrors() -> Scene {
     let mut scene = Scene { ambient: [0.2; 3], ..Scene::default() };
     let lamp = |at: DVec3, color: Rgb| {
         let kind = LightKind::Point { position: at };
         Light { kind, diffuse: color, specular: color, ..Light::default() }
     };
-    scene.lights = vec![lamp(dvec3(4.0, 7.0, 5.0), [0.6; 3]), lamp(dvec3(-5.0, 5.0, 3.0), [0.35, 0.33, 0.28])];
+    scene.lights =
+        vec![lamp(dvec3(4.0, 7.0, 5.0), [0.6; 3]), lamp(dvec3(-5.0, 5.0, 3.0), [0.35, 0.33, 0.28])];
     place_floor(&mut scene, 9.0, 12);
     let mirror = Material {
         name: "mirror".to_owned(),
-        reflectance: Reflectance::Phong { ka: [0.03; 3], kd: [0.05; 3], ks: [0.85; 3], shininess: 200.0 },
+        reflectance: Reflectance::Phong {
+            ka: [0.03; 3],
+            kd: [0.05; 3],
+            ks: [0.85; 3],
+            shininess: 200.0,
+        },
         mirror: true,
         ..Material::default()
     };
-    let corners = [dvec3(-3.5, 0.1, -2.5), dvec3(3.5, 0.1, -2.5), dvec3(3.5, 3.4, -2.5), dvec3(-3.5, 3.4, -2.5)];
+    let corners = [
+        dvec3(-3.5, 0.1, -2.5),
+        dvec3(3.5, 0.1, -2.5),
+        dvec3(3.5, 3.4, -2.5),
+        dvec3(-3.5, 3.4, -2.5),
+    ];
     place(&mut scene, quad("mirror", corners), mirror.clone(), DVec3::ZERO);
     place(
         &mut scene,
@@ -148,10 +191,20 @@ pub(super) fn mirrors() -> Scene {
         Material { name: "chrome".to_owned(), ..mirror },
         dvec3(1.7, 0.8, -0.6),
     );
-    place(&mut scene, solids::sphere(0.75, 128, 64), clear("glass", 0.9, 1.5), dvec3(-0.1, 0.76, 1.0));
+    place(
+        &mut scene,
+        solids::sphere(0.75, 128, 64),
+        clear("glass", 0.9, 1.5),
+        dvec3(-0.1, 0.76, 1.0),
+    );
     let mut pane = clear("red glass", 0.7, 1.0);
     (pane.filter, pane.double_sided) = ([1.0, 0.25, 0.2], true);
-    let corners = [dvec3(-3.1, 0.0, 0.9), dvec3(-1.5, 0.0, 1.4), dvec3(-1.5, 1.7, 1.4), dvec3(-3.1, 1.7, 0.9)];
+    let corners = [
+        dvec3(-3.1, 0.0, 0.9),
+        dvec3(-1.5, 0.0, 1.4),
+        dvec3(-1.5, 1.7, 1.4),
+        dvec3(-3.1, 1.7, 0.9),
+    ];
     place(&mut scene, quad("pane", corners), pane, DVec3::ZERO);
     let green = plastic("green cone", [0.2, 0.55, 0.25], 40.0);
     place(&mut scene, solids::cone(0.6, 1.5, 64), green, dvec3(-2.0, 0.75, -0.6));
@@ -159,8 +212,9 @@ pub(super) fn mirrors() -> Scene {
     scene
 }
 
-/// The Cornell box: white walls, a red one on the left, a green one on the right, two blocks, a lamp in the ceiling.
-/// Lengths in metres; a wall's colours are those of the box's measured spectra, as red, green and blue.
+/// The Cornell box: white walls, a red one on the left, a green one on the right, two blocks, a
+/// lamp in the ceiling. Lengths in metres; a wall's colours are those of the box's measured
+/// spectra, as red, green and blue.
 pub(super) fn cornell() -> Scene {
     // Build the walls.
     let mut scene = Scene::default();
@@ -188,7 +242,12 @@ pub(super) fn cornell() -> Scene {
     place(&mut scene, quad("lamp", corners), lamp, DVec3::ZERO);
     let mut block = |name: &str, size: DVec3, center: [f64; 2], angle: f64| {
         let at = DMat4::from_translation(dvec3(center[0], 0.5 * size.y, -center[1]));
-        place_as(&mut scene, solids::cuboid(size), chalk(name, white), at * DMat4::from_rotation_y(angle));
+        place_as(
+            &mut scene,
+            solids::cuboid(size),
+            chalk(name, white),
+            at * DMat4::from_rotation_y(angle),
+        );
     };
     block("short block", dvec3(0.165, 0.165, 0.165), [0.3685, 0.169], -0.29);
     block("tall block", dvec3(0.165, 0.33, 0.165), [0.1845, 0.3515], 0.3);
@@ -205,9 +264,15 @@ pub(super) fn cornell() -> Scene {
     scene.lights = vec![light];
 
     // Place the camera in front of the open side.
-    let (middle, projection) = (dvec3(0.278, 0.273, 0.8), Projection::Perspective { view_angle: 0.6863 });
-    let camera =
-        Camera { position: middle, focal_point: dvec3(0.278, 0.273, 0.0), view_up: DVec3::Y, projection, clip: None };
+    let (middle, projection) =
+        (dvec3(0.278, 0.273, 0.8), Projection::Perspective { view_angle: 0.6863 });
+    let camera = Camera {
+        position: middle,
+        focal_point: dvec3(0.278, 0.273, 0.0),
+        view_up: DVec3::Y,
+        projection,
+        clip: None,
+    };
     look(&mut scene, camera);
     scene
 }

@@ -22,14 +22,20 @@ impl std::fmt::Display for Parameter {
     }
 }
 
-/// The values of `parameters` that `text` gives, the part behind the question mark; defaults for the others.
-pub(super) fn read(scene: &str, parameters: &[Parameter], text: &str) -> Result<Vec<u32>, BuiltinError> {
+/// The values of `parameters` that `text` gives, the part behind the question mark; defaults for
+/// the others.
+pub(super) fn read(
+    scene: &str,
+    parameters: &[Parameter],
+    text: &str,
+) -> Result<Vec<u32>, BuiltinError> {
     let refused = |what: String| BuiltinError::Parameter { what, hint: hint(scene, parameters) };
     let mut values: Vec<u32> = parameters.iter().map(|parameter| parameter.default).collect();
     let mut given = vec![false; values.len()];
     for piece in text.split(['&', ',']).filter(|piece| !piece.is_empty()) {
         let (name, value) = piece.split_once('=').unwrap_or((piece, ""));
-        let Some(number) = parameters.iter().position(|p| p.name.eq_ignore_ascii_case(name.trim())) else {
+        let Some(number) = parameters.iter().position(|p| p.name.eq_ignore_ascii_case(name.trim()))
+        else {
             return Err(refused(format!("builtin:{scene} takes no `{name}`")));
         };
         if std::mem::replace(&mut given[number], true) {

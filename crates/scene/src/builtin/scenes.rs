@@ -6,7 +6,8 @@ use crate::{Camera, Mesh, Node, Projection, Scene};
 use vitral_light::{Material, Reflectance, Rgb};
 use vitral_math::{DMat4, DVec3};
 
-/// Coloured plastic: the colour in ambient and diffuse light, white highlights (docs/course.md P35).
+/// Coloured plastic: the colour in ambient and diffuse light, white highlights (docs/course.md
+/// P35).
 pub(super) fn plastic(name: &str, color: Rgb, shininess: f32) -> Material {
     let reflectance = Reflectance::Phong { ka: color, kd: color, ks: [0.35; 3], shininess };
     Material { name: name.to_owned(), reflectance, ..Material::default() }
@@ -38,7 +39,12 @@ pub(super) fn place(scene: &mut Scene, mesh: Mesh, material: Material, position:
 }
 
 /// Adds `mesh`, moved by a transform, all of it of one material.
-pub(super) fn place_as(scene: &mut Scene, mut mesh: Mesh, material: Material, world_from_model: DMat4) {
+pub(super) fn place_as(
+    scene: &mut Scene,
+    mut mesh: Mesh,
+    material: Material,
+    world_from_model: DMat4,
+) {
     mesh.name.clone_from(&material.name);
     let material = Some(scene.add_material(material));
     mesh.parts.iter_mut().for_each(|p| p.material = material);
@@ -71,7 +77,12 @@ pub(super) fn cubs() -> Scene {
 /// One sphere of radius 1 at the origin.
 pub(super) fn sphere(slices: u32, stacks: u32) -> Scene {
     let mut scene = lab_scene(DVec3::ZERO, 5.0);
-    place(&mut scene, solids::sphere(1.0, slices, stacks), plastic("ball", [0.75, 0.2, 0.15], 60.0), DVec3::ZERO);
+    place(
+        &mut scene,
+        solids::sphere(1.0, slices, stacks),
+        plastic("ball", [0.75, 0.2, 0.15], 60.0),
+        DVec3::ZERO,
+    );
     scene
 }
 
@@ -98,7 +109,12 @@ pub(super) fn scene1() -> Scene {
     for k in 0..4 {
         let height = 0.4 * f64::from(k + 1);
         let stone = chalk(&format!("step {}", k + 1), [0.62, 0.58, 0.52]);
-        place(&mut scene, solids::cuboid(DVec3::new(1.3, height, 2.6)), stone, DVec3::new(at(k), 0.5 * height, 0.0));
+        place(
+            &mut scene,
+            solids::cuboid(DVec3::new(1.3, height, 2.6)),
+            stone,
+            DVec3::new(at(k), 0.5 * height, 0.0),
+        );
     }
     let violet = plastic("violet torus", [0.5, 0.25, 0.65], 60.0);
     place(&mut scene, solids::torus(0.4, 0.17, 72, 36), violet, DVec3::new(at(0), 0.57, 0.5));
@@ -114,7 +130,12 @@ pub(super) fn scene1() -> Scene {
 /// The teapot alone.
 pub(super) fn teapot_scene(divisions: u32) -> Scene {
     let mut scene = Scene::default();
-    place(&mut scene, super::teapot(divisions), plastic("teapot", [0.72, 0.66, 0.58], 60.0), DVec3::ZERO);
+    place(
+        &mut scene,
+        super::teapot(divisions),
+        plastic("teapot", [0.72, 0.66, 0.58], 60.0),
+        DVec3::ZERO,
+    );
     scene
 }
 
@@ -153,7 +174,10 @@ mod tests {
         for t in 0..mesh.triangles.len() {
             let at = |k: usize| mesh.positions[mesh.triangles[t][k] as usize];
             for (k, n) in mesh.normals.as_ref().unwrap().at(t, &mesh.triangles).iter().enumerate() {
-                assert!((0..3).all(|c| (n[c] - at(k)[c]).abs() < 1e-6), "the normal of a unit sphere is its point");
+                assert!(
+                    (0..3).all(|c| (n[c] - at(k)[c]).abs() < 1e-6),
+                    "the normal of a unit sphere is its point"
+                );
             }
         }
     }

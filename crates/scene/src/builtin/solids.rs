@@ -1,8 +1,8 @@
 //! Simple solids round the origin, y up: for built-in scenes, tests and benches.
 //!
-//! All are wound counter-clockwise seen from outside, keep their quads and caps as polygons, and have exact normals and
-//! texture coordinates. All but the plane and the checkerboard are closed. Counts below the least that makes a solid
-//! are raised to it.
+//! All are wound counter-clockwise seen from outside, keep their quads and caps as polygons, and
+//! have exact normals and texture coordinates. All but the plane and the checkerboard are closed.
+//! Counts below the least that makes a solid are raised to it.
 
 use super::builder::{Builder, Corner};
 use crate::{Mesh, Part};
@@ -69,8 +69,12 @@ pub fn sphere(radius: f64, slices: u32, stacks: u32) -> Mesh {
 /// A cylinder from `y = -height / 2` to `height / 2`. The caps are polygons with `slices` corners.
 pub fn cylinder(radius: f64, height: f64, slices: u32) -> Mesh {
     let (mut b, turn) = (Builder::new("cylinder"), Turn::new(slices));
-    let (low, high) = (turn.positions(&mut b, radius, -0.5 * height), turn.positions(&mut b, radius, 0.5 * height));
-    let (lower, upper) = (turn.ring(&mut b, low, (1.0, 0.0), 1.0), turn.ring(&mut b, high, (1.0, 0.0), 0.0));
+    let (low, high) = (
+        turn.positions(&mut b, radius, -0.5 * height),
+        turn.positions(&mut b, radius, 0.5 * height),
+    );
+    let (lower, upper) =
+        (turn.ring(&mut b, low, (1.0, 0.0), 1.0), turn.ring(&mut b, high, (1.0, 0.0), 0.0));
     turn.band(&mut b, &lower, &upper);
     turn.cap(&mut b, low, false);
     turn.cap(&mut b, high, true);
@@ -80,17 +84,19 @@ pub fn cylinder(radius: f64, height: f64, slices: u32) -> Mesh {
 /// A cone with its base at `y = -height / 2` and its tip at `height / 2`.
 pub fn cone(radius: f64, height: f64, slices: u32) -> Mesh {
     let (mut b, turn) = (Builder::new("cone"), Turn::new(slices));
-    let (base, tip) = (turn.positions(&mut b, radius, -0.5 * height), turn.positions(&mut b, 0.0, 0.5 * height));
+    let (base, tip) =
+        (turn.positions(&mut b, radius, -0.5 * height), turn.positions(&mut b, 0.0, 0.5 * height));
     let length = (radius * radius + height * height).sqrt();
     let normal = (height / length, radius / length);
-    let (lower, upper) = (turn.ring(&mut b, base, normal, 1.0), turn.ring(&mut b, tip, normal, 0.0));
+    let (lower, upper) =
+        (turn.ring(&mut b, base, normal, 1.0), turn.ring(&mut b, tip, normal, 0.0));
     turn.band(&mut b, &lower, &upper);
     turn.cap(&mut b, base, false);
     b.finish()
 }
 
-/// A torus round the y axis: a tube of radius `minor` whose centre runs at distance `major`; `slices` round the axis,
-/// `sides` round the tube.
+/// A torus round the y axis: a tube of radius `minor` whose centre runs at distance `major`;
+/// `slices` round the axis, `sides` round the tube.
 pub fn torus(major: f64, minor: f64, slices: u32, sides: u32) -> Mesh {
     let (mut b, turn, tube) = (Builder::new("torus"), Turn::new(slices), Turn::new(sides));
     let rings: Vec<Ring> = (0..=tube.slices)
@@ -109,8 +115,8 @@ pub fn torus(major: f64, minor: f64, slices: u32, sides: u32) -> Mesh {
     b.finish()
 }
 
-/// A closed, smooth torus of about `triangles` triangles (at least 18), each a face, with vertex normals: the mesh of
-/// the benches. 1,000,000 gives exactly as many.
+/// A closed, smooth torus of about `triangles` triangles (at least 18), each a face, with vertex
+/// normals: the mesh of the benches. 1,000,000 gives exactly as many.
 pub fn grid_torus(triangles: usize) -> Mesh {
     let sides = ((triangles as f64 / 4.0).sqrt().round() as u32).max(3);
     let slices = ((triangles as f64 / (2.0 * f64::from(sides))).round() as u32).max(3);
@@ -132,7 +138,11 @@ pub fn grid_torus(triangles: usize) -> Mesh {
             mesh.triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    mesh.parts = vec![Part { name: String::new(), triangles: 0..mesh.triangles.len() as u32, material: None }];
+    mesh.parts = vec![Part {
+        name: String::new(),
+        triangles: 0..mesh.triangles.len() as u32,
+        material: None,
+    }];
     mesh.normals = Some(crate::Attribute::per_vertex(normals));
     mesh
 }
@@ -145,7 +155,8 @@ pub fn plane(width: f64, depth: f64, columns: u32, rows: u32) -> Mesh {
     b.finish()
 }
 
-/// A [`plane`] of `tiles` x `tiles` squares in two parts, `dark` and `light`, which may get different materials.
+/// A [`plane`] of `tiles` x `tiles` squares in two parts, `dark` and `light`, which may get
+/// different materials.
 pub fn checkerboard(width: f64, tiles: u32) -> Mesh {
     let mut b = Builder::new("checkerboard");
     let all = grid(&mut b, width, width, tiles.max(1), tiles.max(1));
@@ -157,7 +168,13 @@ pub fn checkerboard(width: f64, tiles: u32) -> Mesh {
 }
 
 /// The quads of a plane, row by row, each with the colour that it has on a chessboard.
-fn grid(b: &mut Builder, width: f64, depth: f64, columns: u32, rows: u32) -> Vec<(bool, [Corner; 4])> {
+fn grid(
+    b: &mut Builder,
+    width: f64,
+    depth: f64,
+    columns: u32,
+    rows: u32,
+) -> Vec<(bool, [Corner; 4])> {
     let n = b.normal(DVec3::Y);
     for j in 0..=rows {
         for i in 0..=columns {
@@ -185,7 +202,8 @@ struct Positions {
     pole: bool,
 }
 
-/// A ring with normals (one a slice; at a pole in the middle of the slice) and texture coordinates (one more).
+/// A ring with normals (one a slice; at a pole in the middle of the slice) and texture coordinates
+/// (one more).
 struct Ring {
     positions: Positions,
     normals: u32,
@@ -292,9 +310,19 @@ mod tests {
             let (topology, solidity) =
                 (Topology::of(&mesh, &Workers::single()), Solidity::of(&mesh, &Workers::single()));
             assert!(solidity.is_solid(), "{}: {solidity:?}", mesh.name);
-            assert_eq!((topology.euler_characteristic, topology.closed), (euler, true), "{}", mesh.name);
+            assert_eq!(
+                (topology.euler_characteristic, topology.closed),
+                (euler, true),
+                "{}",
+                mesh.name
+            );
             assert_eq!(topology.degenerate_triangles, 0, "{}", mesh.name);
-            assert_eq!(topology.vertices, mesh.positions.len(), "{}: no vertex is repeated or idle", mesh.name);
+            assert_eq!(
+                topology.vertices,
+                mesh.positions.len(),
+                "{}: no vertex is repeated or idle",
+                mesh.name
+            );
         }
     }
 
@@ -302,12 +330,20 @@ mod tests {
     fn normals_are_unit_and_agree_with_the_faces() {
         let flat = [plane(2.0, 3.0, 2, 3), checkerboard(4.0, 4)].map(|m| (m, 1));
         // The coarsest torus has no face that its normals agree with.
-        for (mesh, _) in solids().into_iter().chain(flat).filter(|(mesh, _)| mesh.triangles.len() != 18) {
+        for (mesh, _) in
+            solids().into_iter().chain(flat).filter(|(mesh, _)| mesh.triangles.len() != 18)
+        {
             for t in 0..mesh.triangles.len() {
-                let face = DVec3::from_array(normals::face_normal(&mesh, mesh.face_of_triangle(t)).map(f64::from));
+                let face = DVec3::from_array(
+                    normals::face_normal(&mesh, mesh.face_of_triangle(t)).map(f64::from),
+                );
                 for n in mesh.normals.as_ref().unwrap().at(t, &mesh.triangles) {
                     let n = DVec3::from_array(n.map(f64::from));
-                    assert!((n.length() - 1.0).abs() < 1e-6 && n.dot(face) > 0.4, "{}: {n} by {face}", mesh.name);
+                    assert!(
+                        (n.length() - 1.0).abs() < 1e-6 && n.dot(face) > 0.4,
+                        "{}: {n} by {face}",
+                        mesh.name
+                    );
                 }
             }
         }
@@ -322,6 +358,9 @@ mod tests {
     fn a_checkerboard_has_two_parts_of_equal_size() {
         let mesh = checkerboard(1.0, 4);
         mesh.check().unwrap();
-        assert_eq!(mesh.parts.iter().map(|p| p.triangles.clone()).collect::<Vec<_>>(), [0..16, 16..32]);
+        assert_eq!(
+            mesh.parts.iter().map(|p| p.triangles.clone()).collect::<Vec<_>>(),
+            [0..16, 16..32]
+        );
     }
 }

@@ -1,14 +1,16 @@
 //! The Utah teapot, from its Bézier patches.
 //!
-//! Idea: 32 bicubic patches. Rim, body, lid and bottom are turned: a profile of four control points, swept through four
-//! quarter turns. A cubic cannot make an exact quarter circle; the control points in between lie at 0.56 of the radius
-//! along the tangent (at 0.5625 in the knob). Handle and spout are given as halves and mirrored. Each patch is
-//! evaluated on a grid and gives quads, triangles where a side of the patch is a point; normals are the cross
-//! products of the partial derivatives.
+//! Idea: 32 bicubic patches. Rim, body, lid and bottom are turned: a profile of four control
+//! points, swept through four quarter turns. A cubic cannot make an exact quarter circle; the
+//! control points in between lie at 0.56 of the radius along the tangent (at 0.5625 in the knob).
+//! Handle and spout are given as halves and mirrored. Each patch is evaluated on a grid and gives
+//! quads, triangles where a side of the patch is a point; normals are the cross products of the
+//! partial derivatives.
 //!
 //! In:   the number of quads along each side of a patch.
-//! Out:  a mesh, y up, standing on `y = 0`, radius 2 and height 3.15 units; vertices shared between patches. It is
-//!       open, as the original is: between lid and rim, and where handle and spout enter the body.
+//! Out:  a mesh, y up, standing on `y = 0`, radius 2 and height 3.15 units; vertices shared between
+//!       patches. It is open, as the original is: between lid and rim, and where handle and spout
+//!       enter the body.
 //! Cost: `O(32 divisions²)`.
 //! Source: [Newell 1975] (measured from a Melitta teapot); bottom after [Crow 1987].
 
@@ -25,7 +27,8 @@ type Patch = [[DVec3; 4]; 4];
 /// A profile's control points: radius, offset of the tangent's control points, height.
 type Profile = [[f64; 3]; 4];
 
-/// Rim, upper and lower body, bottom: one smooth curve, from the inner edge of the rim to the middle of the bottom.
+/// Rim, upper and lower body, bottom: one smooth curve, from the inner edge of the rim to the
+/// middle of the bottom.
 const BODY: [Profile; 4] = [
     [[1.4, 0.784, 2.4], [1.3375, 0.749, 2.53125], [1.4375, 0.805, 2.53125], [1.5, 0.84, 2.4]],
     [[1.5, 0.84, 2.4], [1.75, 0.98, 1.875], [2.0, 1.12, 1.35], [2.0, 1.12, 0.9]],
@@ -39,8 +42,9 @@ const LID: [Profile; 2] = [
     [[0.2, 0.112, 2.7], [0.4, 0.224, 2.55], [1.3, 0.728, 2.55], [1.3, 0.728, 2.4]],
 ];
 
-/// Rows of handle and spout: the two ends of a half section in the plane of symmetry, each `[x, z]`, and the half
-/// width (the two control points in between lie beside the ends, at this distance).
+/// Rows of handle and spout: the two ends of a half section in the plane of symmetry, each
+/// `[x, z]`, and the half width (the two control points in between lie beside the ends, at this
+/// distance).
 type Row = ([f64; 2], [f64; 2], f64);
 
 const HANDLE: [Row; 7] = [
@@ -63,13 +67,16 @@ const SPOUT: [Row; 7] = [
     ([2.8, 2.4], [3.2, 2.4], 0.15),
 ];
 
-/// The teapot with `divisions` quads along each side of its 32 patches, from 1 to 256 (values outside are moved there).
+/// The teapot with `divisions` quads along each side of its 32 patches, from 1 to 256 (values
+/// outside are moved there).
 pub fn teapot(divisions: u32) -> Mesh {
     let divisions = divisions.clamp(1, 256);
     let mut b = Builder::new("teapot");
     for (name, profiles) in [("body", &BODY[..]), ("lid", &LID[..])] {
         for profile in profiles {
-            (0..4).for_each(|quarter| tessellate(&mut b, &turned(profile, quarter), divisions, false));
+            (0..4).for_each(|quarter| {
+                tessellate(&mut b, &turned(profile, quarter), divisions, false)
+            });
         }
         b.end_part(name);
     }
@@ -77,7 +84,12 @@ pub fn teapot(divisions: u32) -> Mesh {
         for half in [&rows[..4], &rows[3..]] {
             let patch: Patch = from_fn(|j| section(&half[j]));
             tessellate(&mut b, &patch, divisions, false);
-            tessellate(&mut b, &patch.map(|row| row.map(|p| p * DVec3::new(1.0, -1.0, 1.0))), divisions, true);
+            tessellate(
+                &mut b,
+                &patch.map(|row| row.map(|p| p * DVec3::new(1.0, -1.0, 1.0))),
+                divisions,
+                true,
+            );
         }
         b.end_part(name);
     }
@@ -87,19 +99,27 @@ pub fn teapot(divisions: u32) -> Mesh {
 /// The patch of one quarter turn (clockwise seen from above) of a profile.
 fn turned(profile: &Profile, quarter: usize) -> Patch {
     profile.map(|[radius, tangent, z]| {
-        [[radius, 0.0], [radius, -tangent], [tangent, -radius], [0.0, -radius]].map(|[mut x, mut y]| {
-            // Quarter turns by exchange of coordinates are exact, so that patches meet in equal positions.
-            for _ in 0..quarter {
-                (x, y) = (y, -x);
-            }
-            DVec3::new(x, y, z)
-        })
+        [[radius, 0.0], [radius, -tangent], [tangent, -radius], [0.0, -radius]].map(
+            |[mut x, mut y]| {
+                // Quarter turns by exchange of coordinates are exact, so that patches meet in equal
+                // positions.
+                for _ in 0..quarter {
+                    (x, y) = (y, -x);
+                }
+                DVec3::new(x, y, z)
+            },
+        )
     })
 }
 
 /// The control points across handle or spout.
 fn section(&([x0, z0], [x1, z1], width): &Row) -> [DVec3; 4] {
-    [DVec3::new(x0, 0.0, z0), DVec3::new(x0, -width, z0), DVec3::new(x1, -width, z1), DVec3::new(x1, 0.0, z1)]
+    [
+        DVec3::new(x0, 0.0, z0),
+        DVec3::new(x0, -width, z0),
+        DVec3::new(x1, -width, z1),
+        DVec3::new(x1, 0.0, z1),
+    ]
 }
 
 /// Bernstein polynomials of degree 3, and their derivatives.
@@ -187,10 +207,14 @@ mod tests {
         let mesh = teapot(8);
         mesh.check().unwrap();
         let t = Topology::of(&mesh, &Workers::single());
-        // Bodies: lid, spout, and the body with the handle, which ends in a vertex of the widest ring.
-        assert_eq!((t.components, t.degenerate_triangles, t.non_manifold_edges, t.inconsistent_edges), (3, 0, 0, 0));
-        // Open: rim and lid have one boundary each, handle and spout two; a boundary of four quarters has 32 edges, one
-        // of two halves 16.
+        // Bodies: lid, spout, and the body with the handle, which ends in a vertex of the widest
+        // ring.
+        assert_eq!(
+            (t.components, t.degenerate_triangles, t.non_manifold_edges, t.inconsistent_edges),
+            (3, 0, 0, 0)
+        );
+        // Open: rim and lid have one boundary each, handle and spout two; a boundary of four
+        // quarters has 32 edges, one of two halves 16.
         assert_eq!(t.boundary_edges, 2 * 32 + 4 * 16);
         let bounds = mesh.bounds();
         assert_eq!((bounds.min.y, (bounds.max.y - 3.15).abs() < 1e-6), (0.0, true));
@@ -200,10 +224,15 @@ mod tests {
     fn normals_are_unit_and_look_the_way_the_faces_do() {
         let mesh = teapot(10);
         for t in 0..mesh.triangles.len() {
-            let face = DVec3::from_array(normals::face_normal(&mesh, mesh.face_of_triangle(t)).map(f64::from));
+            let face = DVec3::from_array(
+                normals::face_normal(&mesh, mesh.face_of_triangle(t)).map(f64::from),
+            );
             for n in mesh.normals.as_ref().unwrap().at(t, &mesh.triangles) {
                 let n = DVec3::from_array(n.map(f64::from));
-                assert!((n.length() - 1.0).abs() < 1e-6 && n.dot(face) > 0.3, "triangle {t}: {n} by {face}");
+                assert!(
+                    (n.length() - 1.0).abs() < 1e-6 && n.dot(face) > 0.3,
+                    "triangle {t}: {n} by {face}"
+                );
             }
         }
     }
@@ -212,7 +241,8 @@ mod tests {
     fn the_body_looks_outwards() {
         // The widest ring, at height 0.9: normals lead away from the axis.
         let mesh = teapot(4);
-        let widest = |p: &[f32; 3]| (p[1] - 0.9).abs() < 1e-6 && (p[0] * p[0] + p[2] * p[2]).sqrt() > 1.95;
+        let widest =
+            |p: &[f32; 3]| (p[1] - 0.9).abs() < 1e-6 && (p[0] * p[0] + p[2] * p[2]).sqrt() > 1.95;
         let mut seen = 0;
         for t in mesh.parts[0].triangles.clone().map(|t| t as usize) {
             let n = mesh.normals.as_ref().unwrap().at(t, &mesh.triangles);

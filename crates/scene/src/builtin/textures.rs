@@ -1,7 +1,8 @@
 //! Textures by formulas: chequered marble, checks, wood, a lattice with round holes.
 //!
-//! Idea: marble and wood are stripes that turbulence bends; turbulence is noise at several scales, the finer the weaker; noise
-//! is a random number at each corner of a grid, smoothly interpolated. All repeat without a seam.
+//! Idea: marble and wood are stripes that turbulence bends; turbulence is noise at several scales,
+//! the finer the weaker; noise is a random number at each corner of a grid, smoothly interpolated.
+//! All repeat without a seam.
 //!
 //! Source: \[Perlin 1985\]; the noise is the simpler one of values instead of gradients.
 
@@ -16,7 +17,8 @@ const SIDE: u32 = 256;
 fn texture(name: &str, side: u32, texel: impl Fn(f64, f64) -> [u8; 4]) -> Texture {
     let at = |i: u32| (f64::from(i) + 0.5) / f64::from(side);
     let texels = (0..side * side).map(|i| texel(at(i % side), at(i / side))).collect();
-    let image = Plane::from_rows(side, side, texels).unwrap_or_else(|| Plane::filled(1, 1, [255; 4]));
+    let image =
+        Plane::from_rows(side, side, texels).unwrap_or_else(|| Plane::filled(1, 1, [255; 4]));
     Texture::new(name.to_owned(), image, Encoding::Srgb)
 }
 
@@ -77,7 +79,9 @@ pub(super) fn marble_tiles() -> Texture {
 
 /// Two by two cells, black and white.
 pub(super) fn checks() -> Texture {
-    texture("checks", 64, |u, v| if (u < 0.5) == (v < 0.5) { [235, 235, 230, 255] } else { [40, 44, 52, 255] })
+    texture("checks", 64, |u, v| {
+        if (u < 0.5) == (v < 0.5) { [235, 235, 230, 255] } else { [40, 44, 52, 255] }
+    })
 }
 
 /// Boards of wood with the grain along u.
@@ -108,7 +112,9 @@ mod tests {
         let places = || (0..1000).map(|i| f64::from(i) / 1000.0);
         let at = |x: f64, y: f64| turbulence([x, y], [3, 4]);
         for t in places() {
-            for (here, there) in [(at(1e-9, t), at(1.0 - 1e-9, t)), (at(t, 1e-9), at(t, 1.0 - 1e-9))] {
+            for (here, there) in
+                [(at(1e-9, t), at(1.0 - 1e-9, t)), (at(t, 1e-9), at(t, 1.0 - 1e-9))]
+            {
                 assert!((here - there).abs() < 1e-6, "{t}: {here} {there}");
             }
         }

@@ -1,8 +1,8 @@
 //! The corners at a bucket of vertices, and what their faces say to them.
 //!
-//! Idea: triangles are measured in the buckets that they have corners in, into memory that stays in the cache; measured
-//! beforehand, all of them would go through main memory twice. Of other faces each corner is dealt, and they are measured
-//! beforehand: a large one may lie in many buckets.
+//! Idea: triangles are measured in the buckets that they have corners in, into memory that stays in
+//! the cache; measured beforehand, all of them would go through main memory twice. Of other faces
+//! each corner is dealt, and they are measured beforehand: a large one may lie in many buckets.
 
 use crate::buckets::{Buckets, Source, shift_and_count};
 use crate::directions::is_near;
@@ -40,11 +40,19 @@ impl<'a> AllFaces<'a> {
         }
         let pieces = workers.map(mesh.face_count().div_ceil(PIECE), |piece| {
             let faces = piece * PIECE..mesh.face_count().min((piece + 1) * PIECE);
-            faces.flat_map(|f| mesh.face_corners(f).iter().map(move |_| f as u32)).collect::<Vec<_>>()
+            faces
+                .flat_map(|f| mesh.face_corners(f).iter().map(move |_| f as u32))
+                .collect::<Vec<_>>()
         });
         let (shift, count) = shift_and_count(mesh.positions.len());
         let corners = mesh.corner_list();
-        let polygons = Polygons { weld, shift, corners, data: face_data(mesh, workers), of_corner: pieces.concat() };
+        let polygons = Polygons {
+            weld,
+            shift,
+            corners,
+            data: face_data(mesh, workers),
+            of_corner: pieces.concat(),
+        };
         let dealt = Buckets::deal(&polygons, count, workers);
         Self::Polygons(polygons, dealt)
     }
@@ -132,7 +140,10 @@ impl Bucket {
             for k in 0..3 {
                 let vertex = welded[k].wrapping_sub(*first_vertex) as usize;
                 if vertex < degrees.len() {
-                    visit(vertex, Corner { index: 3 * triangle + k as u32, face, angle: angles[k] });
+                    visit(
+                        vertex,
+                        Corner { index: 3 * triangle + k as u32, face, angle: angles[k] },
+                    );
                 }
             }
         }
@@ -148,8 +159,14 @@ impl Bucket {
         });
     }
 
-    /// Tells the vertices with a face whose normal is farther from the vertex's mean than `half`, a cosine.
-    pub(super) fn for_each_crease(&self, means: &[[f32; 3]], half: f32, mut tell: impl FnMut(usize)) {
+    /// Tells the vertices with a face whose normal is farther from the vertex's mean than `half`, a
+    /// cosine.
+    pub(super) fn for_each_crease(
+        &self,
+        means: &[[f32; 3]],
+        half: f32,
+        mut tell: impl FnMut(usize),
+    ) {
         self.for_each_corner(|vertex, corner| {
             if !is_near(means[vertex], self.normals[corner.face as usize], half) {
                 tell(vertex);
@@ -168,7 +185,8 @@ impl Bucket {
         }));
         self.sorted.resize(before as usize, Corner::default());
         // Each start runs ahead to the next one's, and is put back.
-        let (mut starts, mut sorted) = (std::mem::take(&mut self.starts), std::mem::take(&mut self.sorted));
+        let (mut starts, mut sorted) =
+            (std::mem::take(&mut self.starts), std::mem::take(&mut self.sorted));
         self.for_each_corner(|vertex, corner| {
             if chosen[vertex] {
                 sorted[starts[vertex] as usize] = corner;

@@ -29,8 +29,15 @@ pub(super) struct Fan {
 }
 
 impl Fan {
-    /// Makes the normals at a vertex with these corners, at least one of them; `normals` are those of the bucket's `faces`.
-    pub(super) fn make(&mut self, corners: &[Corner], faces: &[u32], normals: &[[f32; 3]], rule: Rule) {
+    /// Makes the normals at a vertex with these corners, at least one of them; `normals` are those
+    /// of the bucket's `faces`.
+    pub(super) fn make(
+        &mut self,
+        corners: &[Corner],
+        faces: &[u32],
+        normals: &[[f32; 3]],
+        rule: Rule,
+    ) {
         let member = |c: &Corner| {
             let n = normals[c.face as usize];
             Member { direction: n, sum: n.map(|k| k * c.angle) }
@@ -66,7 +73,8 @@ impl Fan {
         self.slots = slots;
     }
 
-    /// Finds the normal of each member, with those within the angle; many members are gathered into cells first.
+    /// Finds the normal of each member, with those within the angle; many members are gathered into
+    /// cells first.
     fn extend_by_angle(&mut self, rule: Rule, values: &mut Vec<[f32; 3]>) {
         if self.members.len() <= CELL_THRESHOLD {
             return self.by_angle(rule, values);
@@ -95,7 +103,11 @@ impl Fan {
         }
         for m in &self.members {
             let near = self.members.iter().filter(|o| dot(m.direction, o.direction) >= whole);
-            let normal = if m.direction == [0.0; 3] { unit(all) } else { unit(total(near)).or(Some(m.direction)) };
+            let normal = if m.direction == [0.0; 3] {
+                unit(all)
+            } else {
+                unit(total(near)).or(Some(m.direction))
+            };
             let slot = share(values, from, normal.unwrap_or(DEFAULT_NORMAL));
             self.slots.push(slot);
         }
@@ -133,7 +145,8 @@ fn total<'a>(members: impl Iterator<Item = &'a Member>) -> [f32; 3] {
     members.fold([0.0; 3], |s, m| [s[0] + m.sum[0], s[1] + m.sum[1], s[2] + m.sum[2]])
 }
 
-/// A cell of a 16x16 grid on each side of the cube round the unit sphere; the zero vector has a cell of its own.
+/// A cell of a 16x16 grid on each side of the cube round the unit sphere; the zero vector has a
+/// cell of its own.
 fn cell(d: [f32; 3]) -> u32 {
     let axis = (0..3).fold(0, |best, k| if d[k].abs() > d[best].abs() { k } else { best });
     if d[axis] == 0.0 {

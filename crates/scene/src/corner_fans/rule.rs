@@ -10,16 +10,22 @@ pub(crate) struct Rule<'a> {
     pub(super) whole: f32,
     /// Cosine of half of it.
     pub(super) half: f32,
-    /// One number a face: of faces within the angle, those with the same number are averaged, if it is not 0.
+    /// One number a face: of faces within the angle, those with the same number are averaged, if it
+    /// is not 0.
     pub(super) groups: Option<&'a [u32]>,
 }
 
 impl<'a> Rule<'a> {
     /// Within `angle` radians; NaN stands for `π`.
     pub(crate) fn within(angle: f64) -> Self {
-        // A hair of slack, so that a right angle is not above π/2; it must be less for half the angle.
+        // A hair of slack, so that a right angle is not above π/2; it must be less for half the
+        // angle.
         let angle = if angle.is_nan() { PI } else { angle.clamp(0.0, PI) };
-        Self { whole: (func::cos(angle) - 1e-6) as f32, half: func::cos(0.5 * angle) as f32, groups: None }
+        Self {
+            whole: (func::cos(angle) - 1e-6) as f32,
+            half: func::cos(0.5 * angle) as f32,
+            groups: None,
+        }
     }
 
     /// The rule within smoothing groups.

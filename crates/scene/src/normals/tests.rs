@@ -14,7 +14,11 @@ fn with_normals(mesh: Mesh, crease_angle: f64) -> Mesh {
     generate(&mut one, crease_angle, &Workers::single());
     generate(&mut many, crease_angle, &Workers::new(3));
     assert_eq!(one.normals, many.normals, "normals do not depend on threads");
-    one.parts = vec![crate::Part { name: String::new(), triangles: 0..one.triangles.len() as u32, material: None }];
+    one.parts = vec![crate::Part {
+        name: String::new(),
+        triangles: 0..one.triangles.len() as u32,
+        material: None,
+    }];
     one.check().unwrap();
     one
 }
@@ -27,7 +31,8 @@ fn close(a: [f32; 3], b: [f32; 3]) -> bool {
     (0..3).all(|k| (a[k] - b[k]).abs() < 1e-6)
 }
 
-/// docs/course.md L8: the vertex normals of a cube are `(±1, ±1, ±1)/√3`, cut into triangles or not.
+/// docs/course.md L8: the vertex normals of a cube are `(±1, ±1, ±1)/√3`, cut into triangles or
+/// not.
 #[test]
 fn l8_cube_vertex_normals_are_diagonals_for_quads_and_for_triangles() {
     let quads = solids::cuboid(DVec3::splat(2.0));
@@ -52,13 +57,16 @@ fn a_crease_angle_below_a_right_angle_keeps_the_cube_sharp() {
     }
     // Corners that are told apart, as in STL, are welded and make no more.
     let mut soup = solids::cuboid(DVec3::ONE);
-    soup.positions = soup.triangles.as_flattened().iter().map(|&v| soup.positions[v as usize]).collect();
+    soup.positions =
+        soup.triangles.as_flattened().iter().map(|&v| soup.positions[v as usize]).collect();
     soup.triangles = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     soup.faces = Faces::Triangles;
     let soup = with_normals(soup, FRAC_PI_6);
     assert_eq!(normals(&soup).values.len(), 24);
     for t in 0..12 {
-        assert!(normals(&soup).at(t, &soup.triangles).iter().all(|n| close(*n, face_normal(&soup, t))));
+        assert!(
+            normals(&soup).at(t, &soup.triangles).iter().all(|n| close(*n, face_normal(&soup, t)))
+        );
     }
     let right = with_normals(solids::cuboid(DVec3::ONE), FRAC_PI_2);
     assert!(normals(&right).corners.is_none(), "a right angle is not more than a right angle");
@@ -78,7 +86,9 @@ fn smoothing_groups_decide_instead_of_the_angle() {
             let together = (0..6).filter(|&g| g == f || groups[g] == groups[f] && groups[f] != 0);
             let sum = together
                 .filter(|&g| mesh.face_corners(g).contains(&v))
-                .fold(DVec3::ZERO, |s, g| s + DVec3::from_array(face_normal(&mesh, g).map(f64::from)));
+                .fold(DVec3::ZERO, |s, g| {
+                    s + DVec3::from_array(face_normal(&mesh, g).map(f64::from))
+                });
             assert!(close(n, sum.normalize().as_vec3().to_array()), "triangle {t}, corner {k}");
         }
     }
@@ -88,8 +98,10 @@ fn smoothing_groups_decide_instead_of_the_angle() {
 fn seams_with_repeated_positions_stay_smooth() {
     // A sphere torn into separate triangles.
     let sphere = solids::sphere(1.0, 24, 12);
-    let positions: Vec<_> = sphere.triangles.as_flattened().iter().map(|&i| sphere.positions[i as usize]).collect();
-    let triangles: Vec<_> = (0..sphere.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let positions: Vec<_> =
+        sphere.triangles.as_flattened().iter().map(|&i| sphere.positions[i as usize]).collect();
+    let triangles: Vec<_> =
+        (0..sphere.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     let torn = with_normals(Mesh { positions, triangles, ..Mesh::default() }, PI);
     for (n, p) in normals(&torn).values.iter().zip(&torn.positions) {
         let cosine = n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
@@ -99,14 +111,25 @@ fn seams_with_repeated_positions_stay_smooth() {
 
 #[test]
 fn degenerate_faces_have_no_say_and_lone_vertices_have_the_default() {
-    let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0], [9.0; 3], [f32::NAN; 3]];
+    let positions = vec![
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [9.0; 3],
+        [f32::NAN; 3],
+    ];
     let triangles = vec![[0, 1, 2], [0, 1, 3], [3, 3, 3], [0, 1, 5]];
     for crease in [PI, 0.5] {
         let mesh = with_normals(
             Mesh { positions: positions.clone(), triangles: triangles.clone(), ..Mesh::default() },
             crease,
         );
-        assert!(normals(&mesh).values.iter().all(|n| *n == [0.0, 0.0, 1.0]), "{:?}", normals(&mesh));
+        assert!(
+            normals(&mesh).values.iter().all(|n| *n == [0.0, 0.0, 1.0]),
+            "{:?}",
+            normals(&mesh)
+        );
     }
 }
 
@@ -140,7 +163,12 @@ fn only_missing_normals_are_made() {
 fn the_tip_of_a_fine_cone_and_a_long_outline_are_no_trouble() {
     // 20000 faces at the tip, and a base with 20000 corners.
     let cone = with_normals(solids::cone(1.0, 1.0, 20_000), FRAC_PI_6);
-    assert!(normals(&cone).values.iter().all(|n| (n.iter().map(|c| c * c).sum::<f32>() - 1.0).abs() < 1e-5));
+    assert!(
+        normals(&cone)
+            .values
+            .iter()
+            .all(|n| (n.iter().map(|c| c * c).sum::<f32>() - 1.0).abs() < 1e-5)
+    );
     let t = mesh_triangle_at(&cone, [1.0, -0.5, 0.0]);
     let face = face_normal(&cone, cone.face_of_triangle(t));
     for n in normals(&cone).at(t, &cone.triangles) {
@@ -179,8 +207,15 @@ fn concave_corners_weigh_with_their_reflex_angle() {
 
 #[test]
 fn normals_of_any_length_can_be_squared() {
-    let values = vec![[3e-30, 0.0, -4e-30], [0.0, 1e30, 0.0], [0.0, 2.0, 0.0], [0.0; 3], [f32::NAN, 0.0, 0.0]];
-    let mut mesh = Arc::new(Mesh { normals: Some(Attribute::per_vertex(values)), ..Mesh::default() });
+    let values = vec![
+        [3e-30, 0.0, -4e-30],
+        [0.0, 1e30, 0.0],
+        [0.0, 2.0, 0.0],
+        [0.0; 3],
+        [f32::NAN, 0.0, 0.0],
+    ];
+    let mut mesh =
+        Arc::new(Mesh { normals: Some(Attribute::per_vertex(values)), ..Mesh::default() });
     let shared = Arc::clone(&mesh);
     make_measurable(&mut mesh, &Workers::single());
     let made = &mesh.normals.as_ref().unwrap().values;

@@ -1,10 +1,13 @@
 //! Closes the cuts through bodies.
 //!
-//! The loops of all closed bodies of one material lie on an integer grid in the plane. What they go round is cut into triangles; corners
-//! of the loops stay the mesh's vertices, so that a closed surface is closed afterwards. Where loops cross, as where surfaces penetrate
-//! themselves, vertices are added. Rounding makes short sides cross as well; triangles that thin close these gaps.
+//! The loops of all closed bodies of one material lie on an integer grid in the plane. What they go
+//! round is cut into triangles; corners of the loops stay the mesh's vertices, so that a closed
+//! surface is closed afterwards. Where loops cross, as where surfaces penetrate themselves,
+//! vertices are added. Rounding makes short sides cross as well; triangles that thin close these
+//! gaps.
 //!
-//! In:   a clipped mesh and the outline of the cut. Out: the mesh with a flat face for each region inside.
+//! In:   a clipped mesh and the outline of the cut. Out: the mesh with a flat face for each region
+//!       inside.
 //! Cost: `n log n` in the corners of the loops.
 
 use super::gaps::close_gaps;
@@ -23,7 +26,8 @@ use vitral_math::{DMat4, DVec2, DVec3};
 
 /// Half the steps of the grid across a cut.
 const HALF_GRID: f64 = (1u64 << 29) as f64;
-/// How far rounding may move a vertex, as a part of the largest coordinate: two steps of single precision.
+/// How far rounding may move a vertex, as a part of the largest coordinate: two steps of single
+/// precision.
 const ROUNDING: f64 = 1.0 / (1u64 << 22) as f64;
 
 type Point = IntPoint<i32>;
@@ -47,7 +51,12 @@ struct Grid {
 
 impl Grid {
     /// A grid for loops of a mesh; `None` where it would be of no size.
-    fn new(mesh: &Mesh, instance: &Instance, plane: &SectionPlane, loops: &[BodyLoops]) -> Option<Self> {
+    fn new(
+        mesh: &Mesh,
+        instance: &Instance,
+        plane: &SectionPlane,
+        loops: &[BodyLoops],
+    ) -> Option<Self> {
         // Measure the loops along two axes of the plane.
         let across = plane.normal.any_orthonormal_vector();
         let up = plane.normal.cross(across);
@@ -55,7 +64,8 @@ impl Grid {
         let corners = || loops.iter().flat_map(|body| body.loops.iter().flatten()).copied();
         let along = |axis: DVec3| {
             let all = corners().map(|v| axis.dot(place(v) - plane.point));
-            let (low, high) = all.fold((f64::MAX, f64::MIN), |(low, high), at| (low.min(at), high.max(at)));
+            let (low, high) =
+                all.fold((f64::MAX, f64::MIN), |(low, high), at| (low.min(at), high.max(at)));
             ((low + high) / 2.0, (high - low) / 2.0)
         };
         let ((x, half_width), (y, half_height)) = (along(across), along(up));
@@ -68,7 +78,8 @@ impl Grid {
         // Find the vertex at each point; of several, the first.
         let origin = plane.point + across * x + up * y;
         let largest = corners().fold(DVec3::ZERO, |largest, v| largest.max(mesh.position(v).abs()));
-        let scale = DVec3::AXES.map(|axis| instance.world_from_model.transform_vector3(axis).length());
+        let scale =
+            DVec3::AXES.map(|axis| instance.world_from_model.transform_vector3(axis).length());
         let farthest = DVec3::from_array(scale).dot(largest);
         let rounding = 2.0 + farthest * ROUNDING * steps_a_unit;
         let mut grid = Self {
@@ -86,7 +97,8 @@ impl Grid {
             let Point { x, y } = grid.point(mesh, vertex);
             let first = grid.vertices.entry([x, y]).or_insert(vertex);
             *first = vertex.min(*first);
-            let first = grid.vertex_at.entry(bits(mesh.positions[vertex as usize])).or_insert(vertex);
+            let first =
+                grid.vertex_at.entry(bits(mesh.positions[vertex as usize])).or_insert(vertex);
             *first = vertex.min(*first);
         }
         Some(grid)
@@ -105,7 +117,9 @@ impl Grid {
             let Point { x, y } = self.point(mesh, v);
             DVec2::new(f64::from(x), f64::from(y))
         });
-        (b - a).perp_dot(c - a).abs() / (a.distance(b) + b.distance(c) + c.distance(a)).max(1.0) / self.rounding
+        (b - a).perp_dot(c - a).abs()
+            / (a.distance(b) + b.distance(c) + c.distance(a)).max(1.0)
+            / self.rounding
     }
 
     /// The vertex at a point, a new one where the mesh has none.
@@ -131,7 +145,13 @@ fn bits(position: [f32; 3]) -> [u32; 3] {
 type Loops<'o> = Vec<&'o [u32]>;
 
 /// Adds caps and the outline of the cut to a clipped mesh.
-pub(super) fn close(clipped: &mut Mesh, whole: &Mesh, instance: &Instance, plane: &SectionPlane, outline: &Outline) {
+pub(super) fn close(
+    clipped: &mut Mesh,
+    whole: &Mesh,
+    instance: &Instance,
+    plane: &SectionPlane,
+    outline: &Outline,
+) {
     // Gather the loops of each group and material.
     let mut edges: Vec<[u32; 2]> = outline.edges.clone();
     let mut groups: BTreeMap<(&str, Option<u32>, Inside), Loops<'_>> = BTreeMap::new();
@@ -144,13 +164,16 @@ pub(super) fn close(clipped: &mut Mesh, whole: &Mesh, instance: &Instance, plane
     }
 
     // Cut what they go round into triangles.
-    let normal = instance.world_from_model.transpose().transform_vector3(plane.normal).normalize_or_zero();
+    let normal =
+        instance.world_from_model.transpose().transform_vector3(plane.normal).normalize_or_zero();
     let mirrored = instance.world_from_model.determinant() < 0.0;
     if let Some(mut grid) = Grid::new(clipped, instance, plane, &outline.bodies) {
         for ((name, material, inside), loops) in groups {
             let shapes = regions(clipped, &grid, &loops, inside);
             let mut cap: Vec<Corners> = Vec::new();
-            shapes.iter().for_each(|shape| cap.extend(triangles(shape, &mut grid, &mut clipped.positions, mirrored)));
+            shapes.iter().for_each(|shape| {
+                cap.extend(triangles(shape, &mut grid, &mut clipped.positions, mirrored))
+            });
             if inside == Inside::Winding {
                 close_gaps(&loops, &mut cap, |corners| grid.thickness(clipped, corners));
             }
@@ -189,11 +212,19 @@ fn regions(mesh: &Mesh, grid: &Grid, loops: &[&[u32]], inside: Inside) -> Vec<Ve
     overlay.overlay(OverlayRule::Subject, rule)
 }
 
-/// The triangles of a region, as vertices of the mesh, counter-clockwise seen from the side that is taken away.
-fn triangles(shape: &Vec<Vec<Point>>, grid: &mut Grid, positions: &mut Vec<[f32; 3]>, mirrored: bool) -> Vec<Corners> {
+/// The triangles of a region, as vertices of the mesh, counter-clockwise seen from the side that is
+/// taken away.
+fn triangles(
+    shape: &Vec<Vec<Point>>,
+    grid: &mut Grid,
+    positions: &mut Vec<[f32; 3]>,
+    mirrored: bool,
+) -> Vec<Corners> {
     let found = shape.uncheck_triangulate().into_triangulation::<u32>();
-    let vertices: Vec<u32> = found.points.iter().map(|point| grid.vertex(point, positions)).collect();
-    let corners = found.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|i| vertices[i as usize]));
+    let vertices: Vec<u32> =
+        found.points.iter().map(|point| grid.vertex(point, positions)).collect();
+    let corners =
+        found.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|i| vertices[i as usize]));
     let turned = corners.map(|[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] });
     turned.filter(|[a, b, c]| a != b && b != c && c != a).collect()
 }
@@ -207,7 +238,13 @@ fn add_outline(triangles: &[Corners], edges: &mut Vec<[u32; 2]>) {
 }
 
 /// Adds flat faces of these triangles at the end of a mesh.
-fn add_faces(mesh: &mut Mesh, triangles: &[Corners], name: &str, material: Option<u32>, normal: DVec3) {
+fn add_faces(
+    mesh: &mut Mesh,
+    triangles: &[Corners],
+    name: &str,
+    material: Option<u32>,
+    normal: DVec3,
+) {
     let Faces::Polygons { starts, corners } = &mut mesh.faces else { return };
     let first = mesh.triangles.len() as u32;
     for ring in if triangles.is_empty() { Vec::new() } else { rings(triangles) } {

@@ -1,10 +1,12 @@
 //! Takes away what of a mesh lies in front of a plane.
 //!
-//! A new vertex on an edge is computed from the edge's ends in the order of their numbers, once for all triangles at it. A face is
-//! clipped triangle by triangle and put together again, so that a polygon stays a polygon. Triangles within the plane stay where they
-//! look to the side that is taken away: the body behind them is not cut.
+//! A new vertex on an edge is computed from the edge's ends in the order of their numbers, once for
+//! all triangles at it. A face is clipped triangle by triangle and put together again, so that a
+//! polygon stays a polygon. Triangles within the plane stay where they look to the side that is
+//! taken away: the body behind them is not cut.
 //!
-//! In:   a mesh, heights of its vertices over the plane. Out: the mesh below the plane, and the sides of its triangles in the plane.
+//! In:   a mesh, heights of its vertices over the plane. Out: the mesh below the plane, and the
+//!       sides of its triangles in the plane.
 //! Cost: linear.
 //! Source: [Sutherland & Hodgman 1974].
 
@@ -54,10 +56,12 @@ struct Clipper<'m> {
 /// The part of a mesh below a plane, and the sides of triangles in the plane.
 pub(super) fn clip(mesh: &Mesh, weld: &Weld, heights: &Heights) -> (Mesh, Vec<PlaneSide>) {
     // Start with all positions; crossings are appended.
-    let mut clipper = Clipper { mesh, weld, heights, positions: mesh.positions.clone(), made: HashMap::new() };
+    let mut clipper =
+        Clipper { mesh, weld, heights, positions: mesh.positions.clone(), made: HashMap::new() };
     let (mut pieces, mut parts, mut groups) = (Vec::new(), Vec::<Part>::new(), Vec::new());
     let (mut starts, mut outlines) = (vec![0], Vec::new());
-    let first_cap = mesh.section.as_ref().map_or(mesh.face_count(), |section| section.first_cap as usize);
+    let first_cap =
+        mesh.section.as_ref().map_or(mesh.face_count(), |section| section.first_cap as usize);
     let mut kept_first_cap = None;
     let mut part = 0;
     for face in 0..mesh.face_count() {
@@ -69,7 +73,8 @@ pub(super) fn clip(mesh: &Mesh, weld: &Weld, heights: &Heights) -> (Mesh, Vec<Pl
         let whole = mesh.face_triangles(face);
         let first = whole.start as u32;
         let of_face: Vec<Piece> = whole.flat_map(|t| clipper.triangle(t as u32)).collect();
-        let corners: Vec<Corners> = of_face.iter().map(|piece| piece.corners.map(|c| c.vertex)).collect();
+        let corners: Vec<Corners> =
+            of_face.iter().map(|piece| piece.corners.map(|c| c.vertex)).collect();
         for ring in if corners.is_empty() { Vec::new() } else { rings(&corners) } {
             pieces.extend(ring.triangles.iter().map(|&t| of_face[t as usize]));
             outlines.extend(ring.corners);
@@ -84,13 +89,16 @@ pub(super) fn clip(mesh: &Mesh, weld: &Weld, heights: &Heights) -> (Mesh, Vec<Pl
         let (start, end) = (parts.last().map_or(0, |p| p.triangles.end), pieces.len() as u32);
         if let Some(of) = mesh.parts.get(part).filter(|_| end > start) {
             match parts.last_mut() {
-                Some(last) if last.material == of.material && last.name == of.name => last.triangles.end = end,
+                Some(last) if last.material == of.material && last.name == of.name => {
+                    last.triangles.end = end
+                }
                 _ => parts.push(Part { triangles: start..end, ..of.clone() }),
             }
         }
     }
     let faces = starts.len() as u32 - 1;
-    let old_outline = mesh.section.as_ref().map_or(Vec::new(), |section| clipper.old_outline(section));
+    let old_outline =
+        mesh.section.as_ref().map_or(Vec::new(), |section| clipper.old_outline(section));
     let section = Section { first_cap: kept_first_cap.unwrap_or(faces), outline: old_outline };
 
     // Clip lines and points.
@@ -98,11 +106,20 @@ pub(super) fn clip(mesh: &Mesh, weld: &Weld, heights: &Heights) -> (Mesh, Vec<Pl
     for (i, &line) in mesh.lines.iter().enumerate() {
         if let Some(line) = clipper.line(line) {
             lines.push(line);
-            FreePart::extend(&mut line_parts, lines.len() - 1..lines.len(), FreePart::material_of(&mesh.line_parts, i));
+            FreePart::extend(
+                &mut line_parts,
+                lines.len() - 1..lines.len(),
+                FreePart::material_of(&mesh.line_parts, i),
+            );
         }
     }
     let (mut points, mut point_parts) = (Vec::new(), Vec::new());
-    for (i, &point) in mesh.points.iter().enumerate().filter(|&(_, &p)| heights.side(p).is_some_and(|side| side <= 0)) {
+    for (i, &point) in mesh
+        .points
+        .iter()
+        .enumerate()
+        .filter(|&(_, &p)| heights.side(p).is_some_and(|side| side <= 0))
+    {
         points.push(point);
         let material = FreePart::material_of(&mesh.point_parts, i);
         FreePart::extend(&mut point_parts, points.len() - 1..points.len(), material);
@@ -147,7 +164,11 @@ fn plane_sides(pieces: &[Piece]) -> Vec<PlaneSide> {
 }
 
 /// The values of an attribute at the corners of pieces.
-fn attribute<const N: usize>(all: &Attribute<[f32; N]>, mesh: &Mesh, pieces: &[Piece]) -> Attribute<[f32; N]> {
+fn attribute<const N: usize>(
+    all: &Attribute<[f32; N]>,
+    mesh: &Mesh,
+    pieces: &[Piece],
+) -> Attribute<[f32; N]> {
     let indices = all.corners.as_deref().unwrap_or(&mesh.triangles);
     let mut values = all.values.clone();
     let corners = pieces.iter().map(|piece| {
@@ -173,9 +194,16 @@ impl Clipper<'_> {
     /// The pieces of a triangle.
     fn triangle(&mut self, t: u32) -> Vec<Piece> {
         let vertices = self.mesh.triangles[t as usize];
-        let [Some(a), Some(b), Some(c)] = vertices.map(|v| self.heights.side(v)) else { return Vec::new() };
+        let [Some(a), Some(b), Some(c)] = vertices.map(|v| self.heights.side(v)) else {
+            return Vec::new();
+        };
         let sides = [a, b, c];
-        let whole = |k: usize| Corner { vertex: vertices[k], between: [k; 2], way: 0.0, in_plane: sides[k] == 0 };
+        let whole = |k: usize| Corner {
+            vertex: vertices[k],
+            between: [k; 2],
+            way: 0.0,
+            in_plane: sides[k] == 0,
+        };
         let piece = |corners: [Corner; 3]| Piece { triangle: t, corners };
         if sides == [0; 3] {
             let [p, q, r] = vertices.map(|v| self.mesh.position(v));
@@ -201,7 +229,8 @@ impl Clipper<'_> {
         polygon.windows(2).skip(1).map(|pair| piece([polygon[0], pair[0], pair[1]])).collect()
     }
 
-    /// The vertex where the way from one vertex to another meets the plane, and how far on the way it is.
+    /// The vertex where the way from one vertex to another meets the plane, and how far on the way
+    /// it is.
     fn vertex_between(&mut self, from: u32, to: u32) -> (u32, f64) {
         let [a, b] = [from, to].map(|v| self.weld.of(v));
         let (low, high) = (a.min(b), a.max(b));

@@ -1,10 +1,11 @@
 //! Closes the gaps between a cap and the loops that it should end at.
 //!
-//! Vertices are rounded, so that loops cross where they come close to each other. There a cap ends at a crossing, and hairs of it look the
-//! wrong way. Hairs beside a gap are taken away; thin triangles then join what is left to the loops.
+//! Vertices are rounded, so that loops cross where they come close to each other. There a cap ends
+//! at a crossing, and hairs of it look the wrong way. Hairs beside a gap are taken away; thin
+//! triangles then join what is left to the loops.
 //!
-//! In:   loops, and triangles for what they go round. Out: triangles whose outline is the loops, but for wide gaps: those are left where
-//! surfaces penetrate themselves.
+//! In:   loops, and triangles for what they go round. Out: triangles whose outline is the loops,
+//! but for wide gaps: those are left where surfaces penetrate themselves.
 //! Cost: `n log n` in the number of triangles.
 
 use super::outline::directed_loops;
@@ -13,8 +14,8 @@ use std::collections::{BTreeMap, HashSet};
 
 /// How thick triangles are that rounding could turn over, in what it moves a vertex.
 const HAIR: f64 = 1.0;
-/// How thick triangles are that fill gaps. Vertices along edges that are almost in the plane move farther than others, and the hairs
-/// that were taken away add up.
+/// How thick triangles are that fill gaps. Vertices along edges that are almost in the plane move
+/// farther than others, and the hairs that were taken away add up.
 const GAP: f64 = 32.0;
 /// Corners of gaps up to which they are filled; rounding makes none so long.
 const MAX_CORNERS: usize = 64;
@@ -28,8 +29,13 @@ struct Uses {
     triangles: [u32; 2],
 }
 
-/// Makes triangles end at the loops. `thickness` is that of a triangle in what rounding may move a vertex.
-pub(super) fn close_gaps(loops: &[&[u32]], triangles: &mut Vec<Corners>, thickness: impl Fn(Corners) -> f64) {
+/// Makes triangles end at the loops. `thickness` is that of a triangle in what rounding may move a
+/// vertex.
+pub(super) fn close_gaps(
+    loops: &[&[u32]],
+    triangles: &mut Vec<Corners>,
+    thickness: impl Fn(Corners) -> f64,
+) {
     // Take the outline of the triangles from the loops. What is left goes round the gaps.
     let mut edges: BTreeMap<[u32; 2], Uses> = BTreeMap::new();
     for (edge, forward) in loops.iter().flat_map(|corners| sides(corners)) {
@@ -41,14 +47,18 @@ pub(super) fn close_gaps(loops: &[&[u32]], triangles: &mut Vec<Corners>, thickne
         uses.triangles[usize::from(forward)] += 1;
     }
 
-    // Take hairs away that lie beside a gap or on each other, which widens gaps, until there are none.
+    // Take hairs away that lie beside a gap or on each other, which widens gaps, until there are
+    // none.
     let mut count = usize::MAX;
     while count != triangles.len() {
         count = triangles.len();
-        let is_amiss = |uses: &Uses| uses.missing != 0 || uses.triangles.iter().any(|&count| count > 1);
-        let amiss: HashSet<[u32; 2]> = edges.iter().filter(|(_, uses)| is_amiss(uses)).map(|(&edge, _)| edge).collect();
-        let stays =
-            |corners: &Corners| !sides(corners).any(|(edge, _)| amiss.contains(&edge)) || thickness(*corners) > HAIR;
+        let is_amiss =
+            |uses: &Uses| uses.missing != 0 || uses.triangles.iter().any(|&count| count > 1);
+        let amiss: HashSet<[u32; 2]> =
+            edges.iter().filter(|(_, uses)| is_amiss(uses)).map(|(&edge, _)| edge).collect();
+        let stays = |corners: &Corners| {
+            !sides(corners).any(|(edge, _)| amiss.contains(&edge)) || thickness(*corners) > HAIR
+        };
         let hairs: Vec<Corners> = triangles.extract_if(.., |corners| !stays(corners)).collect();
         for (edge, forward) in hairs.iter().flat_map(|corners| sides(corners)) {
             let uses = edges.entry(edge).or_default();
@@ -67,9 +77,13 @@ pub(super) fn close_gaps(loops: &[&[u32]], triangles: &mut Vec<Corners>, thickne
     for mut gap in gaps {
         let mut filling = Vec::new();
         while gap.len() > 2 {
-            let ear = |k: usize| [gap[(k + gap.len() - 1) % gap.len()], gap[k], gap[(k + 1) % gap.len()]];
+            let ear =
+                |k: usize| [gap[(k + gap.len() - 1) % gap.len()], gap[k], gap[(k + 1) % gap.len()]];
             let ears = (0..gap.len()).map(|k| (thickness(ear(k)), k));
-            let Some((_, k)) = ears.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|ear| ear.0 <= GAP) else { break };
+            let Some((_, k)) = ears.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|ear| ear.0 <= GAP)
+            else {
+                break;
+            };
             filling.push(ear(k));
             gap.remove(k);
         }

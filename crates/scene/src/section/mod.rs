@@ -1,13 +1,17 @@
-//! Sections: what is left of a scene where planes take one side of it away, and caps on bodies that they cut open.
+//! Sections: what is left of a scene where planes take one side of it away, and caps on bodies that
+//! they cut open.
 //!
-//! Each mesh that a plane crosses is clipped exactly there, faces staying faces. Where bodies are closed, the cut is closed as well: a
-//! cap is one flat face with the body's material. Caps are the last faces of a mesh, and [`Section`](crate::Section) names them and the edges along the
-//! cuts. A cut mesh with its caps is an ordinary mesh: pictures and drawings show it, and the next plane cuts it.
+//! Each mesh that a plane crosses is clipped exactly there, faces staying faces. Where bodies are
+//! closed, the cut is closed as well: a cap is one flat face with the body's material. Caps are the
+//! last faces of a mesh, and [`Section`](crate::Section) names them and the edges along the cuts. A
+//! cut mesh with its caps is an ordinary mesh: pictures and drawings show it, and the next plane
+//! cuts it.
 //!
-//! In:   a scene and planes in world space. Out: the scene with meshes of its own for each instance that is cut.
+//! In:   a scene and planes in world space. Out: the scene with meshes of its own for each instance
+//!       that is cut.
 //! Cost: linear in the triangles of these instances, `n log n` in the length of the cuts.
-//! Source: polygons are clipped as by [Sutherland & Hodgman 1974]; the crates `i_overlay` and `i_triangle` tell the inside of a cut by
-//! winding numbers and cut it into triangles.
+//! Source: polygons are clipped as by [Sutherland & Hodgman 1974]; the crates `i_overlay` and
+//! `i_triangle` tell the inside of a cut by winding numbers and cut it into triangles.
 
 mod caps;
 mod clip;
@@ -38,7 +42,8 @@ pub enum SectionError {
 }
 
 impl Scene {
-    /// The scene without what lies in front of the planes, cut one after the other. Closed bodies get caps of their material.
+    /// The scene without what lies in front of the planes, cut one after the other. Closed bodies
+    /// get caps of their material.
     ///
     /// ```
     /// use vitral_scene::{Scene, SectionPlane, World, builtin::solids};
@@ -60,13 +65,17 @@ impl Scene {
 
     /// Whether a plane has cut one of the meshes.
     pub fn is_cut(&self) -> bool {
-        self.shown_meshes().filter_map(|mesh| mesh.section.as_deref()).any(|section| !section.outline.is_empty())
+        self.shown_meshes()
+            .filter_map(|mesh| mesh.section.as_deref())
+            .any(|section| !section.outline.is_empty())
     }
 
     /// Whether a plane has cut a closed body, which has a cap then.
     pub fn has_caps(&self) -> bool {
         let has_cap = |mesh: &Arc<Mesh>| {
-            mesh.section.as_ref().is_some_and(|section| (section.first_cap as usize) < mesh.face_count())
+            mesh.section
+                .as_ref()
+                .is_some_and(|section| (section.first_cap as usize) < mesh.face_count())
         };
         self.shown_meshes().any(has_cap)
     }
@@ -81,7 +90,12 @@ impl Scene {
 ///
 /// # Errors
 /// A scene whose graph or numbers cannot be; a limit.
-pub fn cut(scene: &Scene, planes: &[SectionPlane], workers: &Workers, budget: &Budget) -> Result<Scene, SectionError> {
+pub fn cut(
+    scene: &Scene,
+    planes: &[SectionPlane],
+    workers: &Workers,
+    budget: &Budget,
+) -> Result<Scene, SectionError> {
     let world = World::with_workers(scene, workers)?;
     let mut scene = scene.clone();
     for mut instance in world.instances {
@@ -130,9 +144,11 @@ fn cut_mesh(
     // Leave meshes alone that lie wholly on one side.
     let mesh = &*instance.mesh;
     let heights = Heights::new(instance, plane);
-    let used = mesh.triangles.as_flattened().iter().chain(mesh.lines.as_flattened()).chain(&mesh.points);
+    let used =
+        mesh.triangles.as_flattened().iter().chain(mesh.lines.as_flattened()).chain(&mesh.points);
     let (mut stays, mut goes) = (false, false);
-    used.filter_map(|&v| heights.side(v)).for_each(|side| (stays, goes) = (stays || side < 0, goes || side > 0));
+    used.filter_map(|&v| heights.side(v))
+        .for_each(|side| (stays, goes) = (stays || side < 0, goes || side > 0));
     match (stays, goes) {
         (_, false) => return Ok(Cut::Whole),
         (false, true) => return Ok(Cut::Nothing),

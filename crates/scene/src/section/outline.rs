@@ -1,8 +1,10 @@
-//! The outline of a cut: which bodies are closed, and how the sides of their triangles in the plane join to loops.
+//! The outline of a cut: which bodies are closed, and how the sides of their triangles in the plane
+//! join to loops.
 //!
-//! What a plane leaves of a closed surface is bounded by sides in the plane alone. Sides that two triangles use in opposite directions
-//! cancel out; the rest enters and leaves each vertex equally often, if the triangles agree about the outside, and falls apart into
-//! loops. If they do not, sides that are used an odd number of times make loops as well, of no direction.
+//! What a plane leaves of a closed surface is bounded by sides in the plane alone. Sides that two
+//! triangles use in opposite directions cancel out; the rest enters and leaves each vertex equally
+//! often, if the triangles agree about the outside, and falls apart into loops. If they do not,
+//! sides that are used an odd number of times make loops as well, of no direction.
 //!
 //! In:   sides in the plane. Out: for each body its outline, and loops if it is closed.
 //! Cost: `n log n` in the number of sides.
@@ -64,7 +66,8 @@ impl Bodies {
                 borders.push(uses[0].face());
             }
         };
-        let borders = for_each_edge(mesh, &weld.representative, Outlines::SoundTriangles, workers, visit);
+        let borders =
+            for_each_edge(mesh, &weld.representative, Outlines::SoundTriangles, workers, visit);
         bodies.body.iter_mut().for_each(|body| *body = sets.find(*body));
         bodies.is_open.fill(false);
         borders.iter().flatten().for_each(|&t| bodies.is_open[sets.find(t) as usize] = true);
@@ -92,7 +95,13 @@ impl Outline {
             let [a, b] = ends.map(welded);
             if a != b {
                 let body = bodies.body[triangle as usize];
-                uses.push(Use2 { body, edge: [a.min(b), a.max(b)], reversed: a > b, ends, triangle });
+                uses.push(Use2 {
+                    body,
+                    edge: [a.min(b), a.max(b)],
+                    reversed: a > b,
+                    ends,
+                    triangle,
+                });
             }
         }
         uses.sort_unstable();
@@ -107,7 +116,8 @@ impl Outline {
                 let back = of_edge.len() - forth;
                 if forth != back || of_edge.len() % 2 == 1 {
                     outline.edges.extend(of_edge.iter().map(|side| side.ends));
-                    triangle = of_edge.iter().fold(triangle, |first, side| first.min(side.triangle));
+                    triangle =
+                        of_edge.iter().fold(triangle, |first, side| first.min(side.triangle));
                 }
                 // A cap runs against the triangles beside it.
                 let [a, b] = of_edge[0].edge;
@@ -119,7 +129,9 @@ impl Outline {
                 continue;
             }
             let by_winding = directed_loops(directed).map(|loops| (Inside::Winding, loops));
-            if let Some((inside, loops)) = by_winding.or_else(|| Some((Inside::Parity, undirected_loops(&odd)?))) {
+            if let Some((inside, loops)) =
+                by_winding.or_else(|| Some((Inside::Parity, undirected_loops(&odd)?)))
+            {
                 outline.bodies.push(BodyLoops { triangle, inside, loops });
             }
         }

@@ -1,8 +1,9 @@
 //! The outline of a face that is given as triangles.
 //!
-//! A ring grows from one triangle: each side with a triangle beyond it that is not in the ring is replaced by that triangle's other two
-//! sides. So a ring of `n` corners has `n - 2` triangles, as the faces of a mesh have; where the triangles leave a hole, the ring goes to
-//! it and back along a bridge.
+//! A ring grows from one triangle: each side with a triangle beyond it that is not in the ring is
+//! replaced by that triangle's other two sides. So a ring of `n` corners has `n - 2` triangles, as
+//! the faces of a mesh have; where the triangles leave a hole, the ring goes to it and back along a
+//! bridge.
 //!
 //! In:   triangles that share sides. Out: a ring for each connected set of them.
 //! Cost: linear, expected.
@@ -78,6 +79,9 @@ mod tests {
             .collect();
         let ring = &rings(&frame)[0];
         assert_eq!((ring.triangles.len(), ring.corners.len()), (8, 10));
-        assert_eq!((0..8).map(|v| ring.corners.iter().filter(|&&c| c == v).count()).sum::<usize>(), 10);
+        assert_eq!(
+            (0..8).map(|v| ring.corners.iter().filter(|&&c| c == v).count()).sum::<usize>(),
+            10
+        );
     }
 }

@@ -48,13 +48,9 @@ fn joined(a: &Mesh, b: &Mesh, turned: bool) -> Mesh {
     let shift = a.positions.len() as u32;
     let mut mesh = bare(a);
     mesh.positions.extend(&b.positions);
-    mesh.triangles.extend(
-        b.triangles.iter().map(
-            |&[p, q, r]| {
-                if turned { [p, r, q].map(|v| v + shift) } else { [p, q, r].map(|v| v + shift) }
-            },
-        ),
-    );
+    mesh.triangles.extend(b.triangles.iter().map(|&[p, q, r]| {
+        if turned { [p, r, q].map(|v| v + shift) } else { [p, q, r].map(|v| v + shift) }
+    }));
     mesh.parts[0].triangles = 0..mesh.triangles.len() as u32;
     mesh
 }
@@ -83,13 +79,20 @@ fn planes_beside_and_along_faces_cut_nothing() {
         assert!(!cut.is_cut() && cut.nodes[0].mesh == Some(0), "{height}");
     }
     assert!(left(&scene, &[plane([0.0, -1.5, 0.0], [0.0, 1.0, 0.0])]).is_empty());
-    // Two boxes, one on the other, in one mesh: the lower one's top lies in the plane and is not cut.
+    // Two boxes, one on the other, in one mesh: the lower one's top lies in the plane and is not
+    // cut.
     let mut upper = solids::cuboid(DVec3::ONE);
     upper.positions.iter_mut().for_each(|p| p[1] += 1.5);
     let both = Scene::from_mesh(joined(&solids::cuboid(DVec3::splat(2.0)), &upper, false));
     let [lower] = &left(&both, &[plane([0.0, 1.0, 0.0], [0.0, 1.0, 0.0])])[..] else { panic!() };
-    assert_eq!((cap_area(lower), outline_length(lower), lower.mesh.triangles.len()), (0.0, 0.0, 12));
-    assert!(SectionPlane::new([0.0; 3], [0.0; 3]).is_none() && SectionPlane::new([f64::NAN; 3], [1.0; 3]).is_none());
+    assert_eq!(
+        (cap_area(lower), outline_length(lower), lower.mesh.triangles.len()),
+        (0.0, 0.0, 12)
+    );
+    assert!(
+        SectionPlane::new([0.0; 3], [0.0; 3]).is_none()
+            && SectionPlane::new([f64::NAN; 3], [1.0; 3]).is_none()
+    );
 }
 
 #[test]
@@ -105,7 +108,9 @@ fn hollow_bodies_have_caps_with_holes_and_open_ones_none() {
     // A torus has two discs.
     let torus = Scene::from_mesh(solids::torus(2.0, 0.5, 24, 16));
     let [half] = &left(&torus, &middle)[..] else { panic!() };
-    assert!(is_solid(&half.mesh) && (cap_area(half) - 2.0 * 0.25 * std::f64::consts::PI).abs() < 0.1);
+    assert!(
+        is_solid(&half.mesh) && (cap_area(half) - 2.0 * 0.25 * std::f64::consts::PI).abs() < 0.1
+    );
 
     // Without its lid, a box has three lines.
     let mut open = bare(&outer);
@@ -120,7 +125,8 @@ fn mirrored_and_twisted_bodies_are_closed_as_well() {
     let cut = [plane([0.0; 3], [0.0, 1.0, 1.0])];
     let area = 4.0 * 2f64.sqrt();
     let mut scene = Scene::default();
-    scene.add_mesh(solids::cuboid(DVec3::splat(2.0)), DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)));
+    scene
+        .add_mesh(solids::cuboid(DVec3::splat(2.0)), DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)));
     let [half] = &left(&scene, &cut)[..] else { panic!() };
     assert!((cap_area(half) - area).abs() < 1e-5 && is_solid(&half.mesh));
     // One triangle of the wrong winding.
@@ -139,7 +145,9 @@ fn what_is_at_corners_is_interpolated_and_shared_meshes_stay() {
     let mut scene = Scene::from_mesh(mesh);
     scene.add_instance(0, DMat4::from_translation(DVec3::new(-9.0, 0.0, 0.0)));
     scene.nodes.push(Node::default());
-    let [cut, whole] = &left(&scene, &[plane([1.0, 0.0, 0.0], [1.0, 0.0, 0.0])])[..] else { panic!() };
+    let [cut, whole] = &left(&scene, &[plane([1.0, 0.0, 0.0], [1.0, 0.0, 0.0])])[..] else {
+        panic!()
+    };
     assert!(whole.mesh.section.is_none() && whole.mesh_index == 0);
     assert_eq!((cut.mesh.face_count(), cut.mesh.lines.len(), cut.mesh.points.len()), (1, 2, 1));
     for t in 0..cut.mesh.triangles.len() {

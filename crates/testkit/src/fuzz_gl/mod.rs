@@ -1,7 +1,8 @@
 //! Random calls to the OpenGL state machine: any bytes are a stream of them.
 //!
-//! Two contexts that share their objects and have a bounded piece of memory each draw into buffers there. Whatever comes,
-//! no call may panic, run on and on, or allocate beyond the limits that the state machine announces.
+//! Two contexts that share their objects and have a bounded piece of memory each draw into buffers
+//! there. Whatever comes, no call may panic, run on and on, or allocate beyond the limits that the
+//! state machine announces.
 
 mod calls;
 mod groups;
@@ -68,8 +69,14 @@ fn context(shared: &Arc<Shared>) -> Context {
 fn window(c: &mut Context, source: &mut Source<'_>) {
     match source.byte() % 8 {
         0 => {
-            let kinds = [enums::UNSIGNED_BYTE, enums::UNSIGNED_SHORT, enums::FLOAT, enums::UNSIGNED_SHORT_5_6_5];
-            let (kind, width, height) = (kinds[source.below(4)], source.byte() % 80, source.byte() % 80);
+            let kinds = [
+                enums::UNSIGNED_BYTE,
+                enums::UNSIGNED_SHORT,
+                enums::FLOAT,
+                enums::UNSIGNED_SHORT_5_6_5,
+            ];
+            let (kind, width, height) =
+                (kinds[source.below(4)], source.byte() % 80, source.byte() % 80);
             c.make_current(BASE + LEN / 4 * 3, kind, width.into(), height.into());
         }
         1 => c.set_buffer_row_length(source.below(100)),
@@ -98,7 +105,8 @@ fn primitive(c: &mut Context, source: &mut Source<'_>) {
 /// A texture that is most often complete.
 fn texture(c: &mut Context, source: &mut Source<'_>) {
     let target: u32 = source.of(groups::TEXTURE_TARGET);
-    let image = if target == enums::TEXTURE_CUBE_MAP { enums::TEXTURE_CUBE_MAP_POSITIVE_X } else { target };
+    let image =
+        if target == enums::TEXTURE_CUBE_MAP { enums::TEXTURE_CUBE_MAP_POSITIVE_X } else { target };
     let faces = if target == enums::TEXTURE_CUBE_MAP { 6 } else { 1 };
     let (log, format) = (source.byte() % 6, source.of::<u32>(groups::INTERNAL_FORMAT) as i32);
     let levels = if source.byte().is_multiple_of(2) { 1 } else { log + 1 };
@@ -106,11 +114,16 @@ fn texture(c: &mut Context, source: &mut Source<'_>) {
     c.bind_texture(target, u32::from(source.byte() % 4));
     for level in 0..levels {
         let (size, level) = (1 << (log - level), i32::from(level));
-        let (layout, kind, at) = (source.of(groups::PIXEL_FORMAT), source.of(groups::PIXEL_TYPE), source.any());
+        let (layout, kind, at) =
+            (source.of(groups::PIXEL_FORMAT), source.of(groups::PIXEL_TYPE), source.any());
         for face in 0..faces {
             match target {
-                enums::TEXTURE_1D => c.tex_image_1d(target, level, format, size, 0, layout, kind, at),
-                enums::TEXTURE_3D => c.tex_image_3d(target, level, format, size, size, size, 0, layout, kind, at),
+                enums::TEXTURE_1D => {
+                    c.tex_image_1d(target, level, format, size, 0, layout, kind, at)
+                }
+                enums::TEXTURE_3D => {
+                    c.tex_image_3d(target, level, format, size, size, size, 0, layout, kind, at)
+                }
                 _ => c.tex_image_2d(image + face, level, format, size, size, 0, layout, kind, at),
             }
         }
@@ -146,7 +159,12 @@ fn arrays(c: &mut Context, source: &mut Source<'_>) {
     if source.byte().is_multiple_of(2) {
         c.bind_buffer(enums::ARRAY_BUFFER, u32::from(source.byte() % 3));
     }
-    c.vertex_pointer(2 + i32::from(source.byte() % 3), enums::FLOAT, i32::from(source.byte() % 4) * 4, source.any());
+    c.vertex_pointer(
+        2 + i32::from(source.byte() % 3),
+        enums::FLOAT,
+        i32::from(source.byte() % 4) * 4,
+        source.any(),
+    );
     c.enable_client_state(enums::VERTEX_ARRAY);
     c.enable_client_state(source.of(groups::ENABLE_CAP));
     let (mode, count) = (source.of(groups::PRIMITIVE_TYPE), i32::from(source.byte()));

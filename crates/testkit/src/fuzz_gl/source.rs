@@ -17,7 +17,8 @@ pub(super) fn memory() -> Arena {
         random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         random >> 8
     };
-    let floats: Vec<u8> = (0..quarter / 4).flat_map(|_| (next() as f32 / 4e6 - 2.0).to_ne_bytes()).collect();
+    let floats: Vec<u8> =
+        (0..quarter / 4).flat_map(|_| (next() as f32 / 4e6 - 2.0).to_ne_bytes()).collect();
     let numbers: Vec<u8> = (0..quarter / 4).flat_map(|_| (next() % 32).to_ne_bytes()).collect();
     let noise: Vec<u8> = (0..quarter).map(|_| next() as u8).collect();
     for (i, bytes) in [floats, numbers, noise].iter().enumerate() {
@@ -61,7 +62,8 @@ impl<'a> Source<'a> {
 
     /// One of so many, at most 65,536.
     pub(crate) fn below(&mut self, count: usize) -> usize {
-        let number = usize::from(self.byte()) | usize::from(if count > 256 { self.byte() } else { 0 }) << 8;
+        let number =
+            usize::from(self.byte()) | usize::from(if count > 256 { self.byte() } else { 0 }) << 8;
         number % count.max(1)
     }
 

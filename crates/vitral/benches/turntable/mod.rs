@@ -1,4 +1,5 @@
-//! What it costs to make frames in one way or another: each way's frames of a turntable, in turns, as ratios of the fastest.
+//! What it costs to make frames in one way or another: each way's frames of a turntable, in turns,
+//! as ratios of the fastest.
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -39,8 +40,10 @@ pub(crate) fn run(bench: &str, measure: impl FnOnce(&Arguments) -> Result<(), Er
 
 /// As many threads as `VITRAL_THREADS` says, with the instruction set that `VITRAL_SIMD` names.
 fn threads() -> Result<Execution, Error> {
-    let execution = execution(std::env::var("VITRAL_THREADS").ok().and_then(|n| n.parse().ok()).unwrap_or(0));
-    let level = level_from_environment().map_err(|what| Error::Usage { what, hint: String::new() })?;
+    let execution =
+        execution(std::env::var("VITRAL_THREADS").ok().and_then(|n| n.parse().ok()).unwrap_or(0));
+    let level =
+        level_from_environment().map_err(|what| Error::Usage { what, hint: String::new() })?;
     Ok(Execution { level, ..execution })
 }
 
@@ -58,13 +61,21 @@ impl Arguments {
     /// Renders the model, or what was made of it.
     pub(crate) fn renderer(&self, scene: Scene) -> Result<Renderer, Error> {
         let mut renderer = Renderer::with_execution(scene, threads()?)?;
-        (renderer.settings.picture.width, renderer.settings.picture.height, renderer.settings.picture.samples) =
-            (1024, 768, 4);
+        (
+            renderer.settings.picture.width,
+            renderer.settings.picture.height,
+            renderer.settings.picture.samples,
+        ) = (1024, 768, 4);
         Ok(renderer)
     }
 
     /// Prints a table of the ways; the first is what the others are measured by.
-    pub(crate) fn print<'a>(&self, bench: &str, renderer: &Renderer, ways: impl IntoIterator<Item = &'a Way>) {
+    pub(crate) fn print<'a>(
+        &self,
+        bench: &str,
+        renderer: &Renderer,
+        ways: impl IntoIterator<Item = &'a Way>,
+    ) {
         let mut ways = ways.into_iter().peekable();
         let Some(&first) = ways.peek() else { return };
         println!(
@@ -89,8 +100,8 @@ impl Way {
         Self { name: name.to_owned(), most, fastest: [f64::INFINITY; FRAMES] }
     }
 
-    /// Renders the turntable, with `before` done before each frame, and keeps each frame's fastest time: what else the
-    /// machine does takes from all ways alike when they take turns.
+    /// Renders the turntable, with `before` done before each frame, and keeps each frame's fastest
+    /// time: what else the machine does takes from all ways alike when they take turns.
     pub(crate) fn turn(
         &mut self,
         renderer: &mut Renderer,

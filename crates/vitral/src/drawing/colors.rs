@@ -1,8 +1,10 @@
 //! The colours of filled drawings.
 //!
-//! Shaded faces have the light of flat shading, in steps: faces of one material and step become one region. A step is one of a
-//! brightness and not of a colour. What the light makes of the material's own colour is divided into the brightest of three factors,
-//! which is rounded, and the ratios of the others to it: they are 1 under white light without a highlight, whatever the material.
+//! Shaded faces have the light of flat shading, in steps: faces of one material and step become one
+//! region. A step is one of a brightness and not of a colour. What the light makes of the
+//! material's own colour is divided into the brightest of three factors, which is rounded, and the
+//! ratios of the others to it: they are 1 under white light without a highlight, whatever the
+//! material.
 //!
 //! In:   what faces look like. Out: sRGB.
 //! Cost: the lights of each face.
@@ -21,7 +23,8 @@ use vitral_scene::{Camera, Instance, depth_range};
 const LEAST_BASE: f32 = 0.02;
 /// Steps of the ratios between the factors of three channels.
 const RATIO_STEPS: f32 = 64.0;
-/// How far the hues of parts that follow each other are apart, in turns: the golden ratio leaves none near to another.
+/// How far the hues of parts that follow each other are apart, in turns: the golden ratio leaves
+/// none near to another.
 const HUE_STEP: f64 = 0.618_033_988_749_895;
 
 /// Gives faces their colours.
@@ -36,7 +39,8 @@ pub(crate) struct Colors<'r> {
 
 impl<'r> Colors<'r> {
     pub(crate) fn new(renderer: &'r Renderer, camera: &Camera, fill: &FillSettings) -> Self {
-        let view = camera.transform(renderer.aspect(), depth_range(camera, &renderer.world().bounds));
+        let view =
+            camera.transform(renderer.aspect(), depth_range(camera, &renderer.world().bounds));
         let (lights, ambient) = (renderer.frame_lights(camera), renderer.frame_ambient());
         let light = FaceColors::new(renderer.settings.shading, &view, &lights, ambient);
         let parts = match fill.color_by {
@@ -51,7 +55,8 @@ impl<'r> Colors<'r> {
         let world = self.renderer.world();
         let instance = &world.instances[world.instance_of_facet(look.facet)];
         let face = instance.mesh.face_of_triangle((look.facet - instance.first_facet) as usize);
-        let material = look.material.and_then(|index| self.renderer.scene().materials.get(index as usize));
+        let material =
+            look.material.and_then(|index| self.renderer.scene().materials.get(index as usize));
         let material = material.unwrap_or(&self.usual);
         let own = |material: &Material, base: Rgb| {
             let constant = constant_color(material);
@@ -72,11 +77,13 @@ impl<'r> Colors<'r> {
         }
     }
 
-    /// What vertex colours and textures make of a material's colour: the mean of a face, and that of the whole texture.
+    /// What vertex colours and textures make of a material's colour: the mean of a face, and that
+    /// of the whole texture.
     fn base_of(&self, instance: &Instance, face: usize, material: &Material) -> Rgb {
         let vertices = vertex_color(instance, face);
         let textures = &self.renderer.scene().textures;
-        let texture = material.base_texture.and_then(|reference| textures.get(reference.texture as usize));
+        let texture =
+            material.base_texture.and_then(|reference| textures.get(reference.texture as usize));
         let texture = texture.map_or([1.0; 3], |texture| mean_of(texture));
         [0, 1, 2].map(|k| vertices[k] * texture[k])
     }
@@ -84,7 +91,9 @@ impl<'r> Colors<'r> {
 
 /// The mean colour of a texture, linear: its smallest level.
 fn mean_of(texture: &Texture) -> Rgb {
-    let Some([r, g, b, _]) = texture.levels.last().map(|level| level.row(0)[0]) else { return [1.0; 3] };
+    let Some([r, g, b, _]) = texture.levels.last().map(|level| level.row(0)[0]) else {
+        return [1.0; 3];
+    };
     let decoded = |byte: u8| match texture.encoding {
         Encoding::Linear => f32::from(byte) / 255.0,
         Encoding::Srgb => linear_from_srgb(f32::from(byte) / 255.0),
@@ -120,16 +129,19 @@ fn in_steps(color: Rgb, own: Rgb, shades: u32) -> Rgb {
     }
     let steps = shades.max(1) as f32;
     let step = (srgb_from_linear(brightest.min(1.0)) * steps).round() / steps;
-    // Light that is brighter than white is as bright as it is in pictures, and none of the steps is black.
+    // Light that is brighter than white is as bright as it is in pictures, and none of the steps is
+    // black.
     let rounded = if brightest > 1.0 { brightest } else { linear_from_srgb(step.max(0.5 / steps)) };
-    [0, 1, 2].map(|k| own[k] * rounded * ((factors[k] / brightest) * RATIO_STEPS).round() / RATIO_STEPS)
+    [0, 1, 2]
+        .map(|k| own[k] * rounded * ((factors[k] / brightest) * RATIO_STEPS).round() / RATIO_STEPS)
 }
 
 fn encoded(linear: Rgb) -> [u8; 3] {
     linear.map(|c| byte_from_unit(srgb_from_linear(c)))
 }
 
-/// A colour for each part: light, with hues that are far from each other for parts that follow each other.
+/// A colour for each part: light, with hues that are far from each other for parts that follow each
+/// other.
 fn hue_of_part(number: usize) -> [u8; 3] {
     let turns = number as f64 * HUE_STEP;
     let hue = (turns - turns.floor()) * 6.0;
@@ -152,7 +164,10 @@ mod tests {
         let own = [0.8, 0.4, 0.1];
         let lit = own.map(|c| c * 0.37);
         let stepped = in_steps(lit, own, 8);
-        assert!((stepped[0] / stepped[1] - 2.0).abs() < 1e-5 && (stepped[1] / stepped[2] - 4.0).abs() < 1e-4);
+        assert!(
+            (stepped[0] / stepped[1] - 2.0).abs() < 1e-5
+                && (stepped[1] / stepped[2] - 4.0).abs() < 1e-4
+        );
         // sRGB of 0.37 is 0.643: the nearest of eight steps is 0.625.
         assert!((srgb_from_linear(stepped[0] / own[0]) - 0.625).abs() < 1e-3);
         // What differs little is in one step.

@@ -10,27 +10,40 @@ use vitral_render::trace::{Observer, SpanVerdict, Step};
 use vitral_render::visible::{NullSink, VisibleSurface, scanline::ScanLine};
 use vitral_scene::Camera;
 
-/// Keeps what is told of the tables, with the place of each part: row of pixels, and 0 for tables, 1 for lines.
+/// Keeps what is told of the tables, with the place of each part: row of pixels, and 0 for tables,
+/// 1 for lines.
 #[derive(Debug, Default)]
 struct Tables(Mutex<Vec<([u32; 2], String)>>);
 
 impl Observer for Tables {
     fn step(&self, step: &Step) {
-        let (Step::EdgeTable { rows: [row, _], .. } | Step::Line { row, .. }) = step else { return };
+        let (Step::EdgeTable { rows: [row, _], .. } | Step::Line { row, .. }) = step else {
+            return;
+        };
         let place = [*row, u32::from(matches!(step, Step::Line { .. }))];
-        self.0.lock().expect("no thread panics while it keeps a step").push((place, describe(step)));
+        self.0
+            .lock()
+            .expect("no thread panics while it keeps a step")
+            .push((place, describe(step)));
     }
 }
 
 /// The tables of the view from `camera`.
-pub(super) fn edge_tables(renderer: &Renderer, camera: &Camera, viewport: Viewport) -> Result<String, Error> {
+pub(super) fn edge_tables(
+    renderer: &Renderer,
+    camera: &Camera,
+    viewport: Viewport,
+) -> Result<String, Error> {
     let tables = Arc::new(Tables::default());
     let observer = Some(Arc::clone(&tables) as Arc<dyn Observer>);
     let execution = Execution { observer, ..renderer.execution().clone() };
     let view = renderer.prepared(camera, &mut CullCounters::default())?;
     let mut grid = TileGrid::new(viewport, 1);
-    ScanLine.resolve(&view, None, &mut grid, &execution, &NullSink).map_err(vitral_render::Error::from)?;
-    let mut parts = std::mem::take(&mut *tables.0.lock().expect("no thread panics while it keeps a step"));
+    ScanLine
+        .resolve(&view, None, &mut grid, &execution, &NullSink)
+        .map_err(vitral_render::Error::from)?;
+    let mut parts =
+        std::mem::take(&mut *tables.0.lock().expect("no thread panics while it keeps a step"));
     parts.sort_by_key(|(place, _)| *place);
     Ok(parts.into_iter().map(|(_, text)| text).collect())
 }
@@ -53,7 +66,8 @@ fn describe(step: &Step) -> String {
                 let _ = writeln!(text, "    row {}", bucket.row);
                 for e in &bucket.edges {
                     let of = format!("polygon {} edge {} (facet {})", e.polygon, e.edge, e.facet);
-                    let _ = writeln!(text, "      {of}: x {} dx {} to row {}", e.x, e.dx, e.last[0]);
+                    let _ =
+                        writeln!(text, "      {of}: x {} dx {} to row {}", e.x, e.dx, e.last[0]);
                 }
             }
         }
@@ -61,7 +75,11 @@ fn describe(step: &Step) -> String {
             // Write the active edges of the line and its spans.
             let _ = writeln!(text, "  row {row}");
             for e in active_edges {
-                let _ = writeln!(text, "    x {}: polygon {} edge {} (facet {})", e.x, e.polygon, e.edge, e.facet);
+                let _ = writeln!(
+                    text,
+                    "    x {}: polygon {} edge {} (facet {})",
+                    e.x, e.polygon, e.edge, e.facet
+                );
             }
             for span in spans {
                 let [from, to] = [span.pixels[0], span.pixels[1] - 1];
@@ -69,7 +87,9 @@ fn describe(step: &Step) -> String {
                 let won = match (span.verdict, span.facet) {
                     (SpanVerdict::Only, Some(facet)) => format!("facet {facet} alone"),
                     (SpanVerdict::Hides, Some(facet)) => format!("facet {facet} hides the others"),
-                    (SpanVerdict::ImpliedEdge, Some(facet)) => format!("facet {facet}, on its side of an implied edge"),
+                    (SpanVerdict::ImpliedEdge, Some(facet)) => {
+                        format!("facet {facet}, on its side of an implied edge")
+                    }
                     _ => "sample by sample".to_owned(),
                 };
                 let _ = writeln!(text, "    span {from} to {to}: in {}; {won}", inside.join(" "));

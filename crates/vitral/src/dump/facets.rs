@@ -10,7 +10,9 @@ use vitral_render::shading::LitCorner;
 /// The facets that culling left, in their order, each with what was prepared for it.
 fn kept<'v, 'a>(view: &'v PreparedView<'a>) -> Vec<(u32, &'v Draw<'a>)> {
     let draws = view.instances.iter().flat_map(|i| i.opaque.iter().chain(&i.layered));
-    let of = |draw: &'v Draw<'a>| draw.ranges.iter().cloned().flatten().map(move |t| (draw.first_facet + t, draw));
+    let of = |draw: &'v Draw<'a>| {
+        draw.ranges.iter().cloned().flatten().map(move |t| (draw.first_facet + t, draw))
+    };
     let mut facets: Vec<_> = draws.flat_map(of).collect();
     facets.sort_unstable_by_key(|(facet, _)| *facet);
     facets
@@ -20,7 +22,8 @@ fn kept<'v, 'a>(view: &'v PreparedView<'a>) -> Vec<(u32, &'v Draw<'a>)> {
 pub(super) fn illuminated(corners: &[LitCorner]) -> String {
     let mut text = "facet,corner,x,y,z,r,g,b,a\n".to_owned();
     for LitCorner { facet, corner, world, color: [r, g, b, a], .. } in corners {
-        let _ = writeln!(text, "{facet},{corner},{},{},{},{r},{g},{b},{a}", world.x, world.y, world.z);
+        let _ =
+            writeln!(text, "{facet},{corner},{},{},{},{r},{g},{b},{a}", world.x, world.y, world.z);
     }
     text
 }
@@ -42,7 +45,8 @@ pub(super) fn clipped(view: &PreparedView<'_>) -> String {
         let Some((corners, cut)) = view.clipped(facet) else { continue };
         let (surface, cut) = (world.surface_of_facet(facet), u8::from(cut));
         for (number, c) in corners.iter().enumerate() {
-            let _ = writeln!(text, "{facet},{surface},{cut},{number},{},{},{},{}", c.x, c.y, c.z, c.w);
+            let _ =
+                writeln!(text, "{facet},{surface},{cut},{number},{},{},{},{}", c.x, c.y, c.z, c.w);
         }
     }
     text

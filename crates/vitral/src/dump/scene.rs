@@ -14,7 +14,11 @@ fn matrix(m: &DMat4) -> Value {
 }
 
 fn bounds(b: &Aabb) -> Value {
-    if b.is_empty() { Value::Null } else { json!({"min": b.min.to_array(), "max": b.max.to_array()}) }
+    if b.is_empty() {
+        Value::Null
+    } else {
+        json!({"min": b.min.to_array(), "max": b.max.to_array()})
+    }
 }
 
 pub(super) fn scene_graph(scene: &Scene) -> Value {
@@ -94,7 +98,11 @@ pub(super) fn culled(view: &PreparedView<'_>, counters: &CullCounters) -> Value 
     json!({"kept": view.instances.iter().map(instance).collect::<Vec<_>>(), "counters": counters})
 }
 
-pub(super) fn lights_in_view(renderer: &Renderer, camera: &Camera, view: &PreparedView<'_>) -> Value {
+pub(super) fn lights_in_view(
+    renderer: &Renderer,
+    camera: &Camera,
+    view: &PreparedView<'_>,
+) -> Value {
     let lights = renderer.frame_lights(camera);
     let in_view = lights.iter().map(|l| l.transformed(&view.view.view_from_world));
     json!({

@@ -31,10 +31,15 @@ pub(super) fn list(view: &PreparedView<'_>) -> String {
 }
 
 /// Renders the buffers that `camera` sees, and writes them.
-pub(super) fn write(renderer: &mut Renderer, camera: &Camera, put: &mut Write<'_>) -> Result<Vec<Listed>, Error> {
+pub(super) fn write(
+    renderer: &mut Renderer,
+    camera: &Camera,
+    put: &mut Write<'_>,
+) -> Result<Vec<Listed>, Error> {
     let settings = renderer.settings.clone();
     renderer.settings.picture.samples = 1;
-    renderer.settings.picture.channels = vitral_render::Channels { buffers: true, ..Default::default() };
+    renderer.settings.picture.channels =
+        vitral_render::Channels { buffers: true, ..Default::default() };
     let rendered = renderer.render_from(camera);
     renderer.settings = settings;
     let mut frame = rendered?.frame;
@@ -49,23 +54,49 @@ pub(super) fn write(renderer: &mut Renderer, camera: &Camera, put: &mut Write<'_
     };
     let shown = |plane: &Plane<[f32; 4]>| plane.map(|&c| bytes(c, raw));
     let png = |plane: Plane<[u8; 4]>, srgb: bool| {
-        let frame = Frame { width: plane.width(), height: plane.height(), color: Some(plane), ..Frame::default() };
-        picture::encode_with(&frame, Channel::Color, PictureFormat::Png, &EncodeOptions { srgb, ..Default::default() })
+        let frame = Frame {
+            width: plane.width(),
+            height: plane.height(),
+            color: Some(plane),
+            ..Frame::default()
+        };
+        picture::encode_with(
+            &frame,
+            Channel::Color,
+            PictureFormat::Png,
+            &EncodeOptions { srgb, ..Default::default() },
+        )
     };
     let opaque_rgb = opaque.map(|&[r, g, b, _]| [r, g, b]);
     file("9-opaque.png", "first buffer: what is opaque".to_owned(), png(shown(opaque), !raw)?)?;
-    file("9-opaque.npy", "the same, premultiplied numbers".to_owned(), encode::npy_f32x3(&opaque_rgb))?;
+    file(
+        "9-opaque.npy",
+        "the same, premultiplied numbers".to_owned(),
+        encode::npy_f32x3(&opaque_rgb),
+    )?;
     file("9-opaque-depth.npy", "its depth".to_owned(), encode::npy_f32(depth))?;
     let what = format!("surfaces of the list in front of that, {most} at most");
     file("9-transparent-layers.npy", what, encode::npy_u32(layers))?;
     let light = intensity.map(|&[r, g, b]| bytes([r, g, b, 1.0], raw));
-    file("9-transparent-intensity.png", "second buffer: intensity I".to_owned(), png(light, !raw)?)?;
-    file("9-transparent-intensity.npy", "the same, numbers".to_owned(), encode::npy_f32x3(intensity))?;
+    file(
+        "9-transparent-intensity.png",
+        "second buffer: intensity I".to_owned(),
+        png(light, !raw)?,
+    )?;
+    file(
+        "9-transparent-intensity.npy",
+        "the same, numbers".to_owned(),
+        encode::npy_f32x3(intensity),
+    )?;
     let k = coefficient.map(|&[r, g, b]| [r, g, b, 1.0].map(byte_from_unit));
     file("9-transparent-k.png", "its coefficient k, a channel each".to_owned(), png(k, false)?)?;
     file("9-transparent-k.npy", "the same, numbers".to_owned(), encode::npy_f32x3(coefficient))?;
     let combined = frame.color.take().unwrap_or_default();
-    file("9-combined.png", "both together: I + (1 - k) of what is opaque".to_owned(), png(combined, !raw)?)?;
+    file(
+        "9-combined.png",
+        "both together: I + (1 - k) of what is opaque".to_owned(),
+        png(combined, !raw)?,
+    )?;
     Ok(listed)
 }
 

@@ -6,7 +6,8 @@ use vitral_raster::SUBPIXEL;
 use vitral_render::stats::CullCounters;
 use vitral_scene::Camera;
 
-/// Corners in each space of the pipeline. Clipping may add corners or take them away, so that there are others from clip space on.
+/// Corners in each space of the pipeline. Clipping may add corners or take them away, so that there
+/// are others from clip space on.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct FacetSpaces {
@@ -20,7 +21,8 @@ pub struct FacetSpaces {
     pub view: [[f64; 3]; 3],
     /// Clip space, after clipping: x, y, z, w.
     pub clip: Vec<[f32; 4]>,
-    /// The same divided by w: x and y from -1 to 1 in the view, z from 0 on the far plane to 1 on the near one.
+    /// The same divided by w: x and y from -1 to 1 in the view, z from 0 on the far plane to 1 on
+    /// the near one.
     pub ndc: Vec<[f32; 3]>,
     /// Pixels from the top left, snapped to 1/256, and the depth.
     pub screen: Vec<[f64; 3]>,
@@ -32,7 +34,11 @@ pub struct FacetSpaces {
 /// Settings that cannot be; a facet that the scene has not.
 pub fn spaces(renderer: &Renderer, camera: &Camera, facet: u32) -> Result<FacetSpaces, Error> {
     let world = renderer.world();
-    if world.instances.last().is_none_or(|last| facet >= last.first_facet + last.mesh.triangles.len() as u32) {
+    if world
+        .instances
+        .last()
+        .is_none_or(|last| facet >= last.first_facet + last.mesh.triangles.len() as u32)
+    {
         return Err(Error::usage(format!("there is no facet {facet}"), ""));
     }
     let view = renderer.prepared(camera, &mut CullCounters::default())?;
@@ -45,7 +51,11 @@ pub fn spaces(renderer: &Renderer, camera: &Camera, facet: u32) -> Result<FacetS
     let clip = view.clipped(facet).map_or(Vec::new(), |(corners, _)| corners);
     let screen = clip.iter().map(|corner| {
         let at = view.screen.transform().project(*corner);
-        [f64::from(at.x) / f64::from(SUBPIXEL), f64::from(at.y) / f64::from(SUBPIXEL), f64::from(corner.z / corner.w)]
+        [
+            f64::from(at.x) / f64::from(SUBPIXEL),
+            f64::from(at.y) / f64::from(SUBPIXEL),
+            f64::from(corner.z / corner.w),
+        ]
     });
     Ok(FacetSpaces {
         facet,
@@ -53,7 +63,10 @@ pub fn spaces(renderer: &Renderer, camera: &Camera, facet: u32) -> Result<FacetS
         world: corners.map(|corner| corner.to_array()),
         view: corners.map(|corner| view_from_world.transform_point3(corner).to_array()),
         screen: screen.collect(),
-        ndc: clip.iter().map(|corner| [corner.x, corner.y, corner.z].map(|c| c / corner.w)).collect(),
+        ndc: clip
+            .iter()
+            .map(|corner| [corner.x, corner.y, corner.z].map(|c| c / corner.w))
+            .collect(),
         clip: clip.iter().map(|corner| corner.to_array()).collect(),
     })
 }
@@ -70,18 +83,28 @@ mod tests {
         let mut renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
         (renderer.settings.picture.width, renderer.settings.picture.height) = (64, 48);
         let camera = renderer.frame_camera();
-        let seen = explain(&renderer, &camera, [32, 20], &Deciders::Chosen, None).unwrap().surfaces[0].facet;
+        let seen = explain(&renderer, &camera, [32, 20], &Deciders::Chosen, None).unwrap().surfaces
+            [0]
+        .facet;
         let told = spaces(&renderer, &camera, seen).unwrap();
         let Projection::Perspective { view_angle } = camera.projection else { panic!() };
         let half = func::tan(view_angle / 2.0);
         for i in 0..3 {
             // In view space the eye looks along -z; w is the distance.
             let ([x, y, z], [nx, ny, depth]) = (told.view[i], told.ndc[i].map(f64::from));
-            assert!(z < 0.0 && (f64::from(told.clip[i][3]) + z).abs() < 1e-5 && (0.0..=1.0).contains(&depth));
-            let pixel = [(1.0 + nx) * 32.0, (1.0 - ny) * 24.0];
-            assert!((0..2).all(|k| (told.screen[i][k] - pixel[k]).abs() <= 1.0 / 256.0), "{told:?}");
             assert!(
-                (nx * half * renderer.aspect() * -z - x).abs() < 1e-6 * -z && (ny * half * -z - y).abs() < 1e-6 * -z
+                z < 0.0
+                    && (f64::from(told.clip[i][3]) + z).abs() < 1e-5
+                    && (0.0..=1.0).contains(&depth)
+            );
+            let pixel = [(1.0 + nx) * 32.0, (1.0 - ny) * 24.0];
+            assert!(
+                (0..2).all(|k| (told.screen[i][k] - pixel[k]).abs() <= 1.0 / 256.0),
+                "{told:?}"
+            );
+            assert!(
+                (nx * half * renderer.aspect() * -z - x).abs() < 1e-6 * -z
+                    && (ny * half * -z - y).abs() < 1e-6 * -z
             );
         }
         assert!(spaces(&renderer, &camera, u32::MAX).is_err());

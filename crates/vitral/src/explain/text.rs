@@ -3,7 +3,9 @@
 use super::{Explanation, Gouraud, TracedRay};
 use std::fmt;
 use vitral_light::{Highlight, LightTerms};
-use vitral_render::shading::pixel_light::{CoefficientValues, Evaluation, PixelLight, PointLight, ShadowOfLight};
+use vitral_render::shading::pixel_light::{
+    CoefficientValues, Evaluation, PixelLight, PointLight, ShadowOfLight,
+};
 use vitral_render::visible::fates::{ClipPlane, Fate};
 
 impl fmt::Display for Explanation {
@@ -15,18 +17,29 @@ impl fmt::Display for Explanation {
             let material = c.material.as_ref().map_or(String::new(), |m| format!(", material {m}"));
             let depth = c.candidate.depth.map_or("-".to_owned(), |depth| format!("{depth:.7}"));
             let (facet, surface, fate) = (c.candidate.facet, c.surface, fate(&c.candidate.fate));
-            writeln!(f, "  depth {depth}  facet {facet} (surface {surface}, {}{material}): {fate}", c.mesh)?;
+            writeln!(
+                f,
+                "  depth {depth}  facet {facet} (surface {surface}, {}{material}): {fate}",
+                c.mesh
+            )?;
         }
         light(f, &self.light)?;
         if self.light.bytes != self.bytes {
-            writeln!(f, "  with what mirrors, glass and translucent surfaces show: {r} {g} {b}, opacity {a}")?;
+            writeln!(
+                f,
+                "  with what mirrors, glass and translucent surfaces show: {r} {g} {b}, opacity {a}"
+            )?;
         }
         writeln!(f, "{} surface(s) cover its centre, the nearest first", self.surfaces.len())?;
         for s in &self.surfaces {
             let material = s.material.as_ref().map_or(String::new(), |m| format!(", material {m}"));
             let layer = if s.layer { ", transparent" } else { "" };
             let (facet, surface) = (s.facet, s.surface);
-            writeln!(f, "  depth {:.7}  facet {facet} (surface {surface}, {}{material}{layer})", s.depth, s.mesh)?;
+            writeln!(
+                f,
+                "  depth {:.7}  facet {facet} (surface {surface}, {}{material}{layer})",
+                s.depth, s.mesh
+            )?;
         }
         if let Some(gouraud) = &self.gouraud {
             write!(f, "{gouraud}")?;
@@ -34,7 +47,9 @@ impl fmt::Display for Explanation {
         for d in &self.decisions {
             match (&d.limit, d.facet, d.depth) {
                 (Some(limit), ..) => writeln!(f, "{}: {limit}", d.algorithm)?,
-                (None, Some(facet), Some(depth)) => writeln!(f, "{}: facet {facet} at depth {depth:.7}", d.algorithm)?,
+                (None, Some(facet), Some(depth)) => {
+                    writeln!(f, "{}: facet {facet} at depth {depth:.7}", d.algorithm)?
+                }
                 _ => writeln!(f, "{}: background", d.algorithm)?,
             }
             for step in &d.steps {
@@ -50,19 +65,28 @@ impl fmt::Display for Explanation {
 
 /// What became of a facet, in words.
 fn fate(fate: &Fate) -> String {
-    let names = |planes: &[ClipPlane]| planes.iter().map(|p| p.name()).collect::<Vec<_>>().join(" and ");
+    let names =
+        |planes: &[ClipPlane]| planes.iter().map(|p| p.name()).collect::<Vec<_>>().join(" and ");
     let list = |numbers: &[u32]| numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
     match fate {
         Fate::NotDrawn => "not drawn, in a wireframe".to_owned(),
-        Fate::BoxCulled { planes } if planes.is_empty() => "culled, its box is outside of the view".to_owned(),
-        Fate::BoxCulled { planes } => format!("culled, its box is beyond the {} plane", names(planes)),
-        Fate::OutsideFrustum { planes } => format!("outside of the view, beyond the {} plane", names(planes)),
+        Fate::BoxCulled { planes } if planes.is_empty() => {
+            "culled, its box is outside of the view".to_owned()
+        }
+        Fate::BoxCulled { planes } => {
+            format!("culled, its box is beyond the {} plane", names(planes))
+        }
+        Fate::OutsideFrustum { planes } => {
+            format!("outside of the view, beyond the {} plane", names(planes))
+        }
         Fate::NotFinite => "a corner is no finite number".to_owned(),
         Fate::Degenerate => "no area on the grid of 1/256 pixel".to_owned(),
         Fate::BackFace => "a back face, culled".to_owned(),
         Fate::ClippedAway { planes } => format!("clipped away here by the {} plane", names(planes)),
         Fate::BetweenSamples => "between the samples".to_owned(),
-        Fate::Hidden { samples, by } => format!("hidden at sample(s) {} by facet(s) {}", list(samples), list(by)),
+        Fate::Hidden { samples, by } => {
+            format!("hidden at sample(s) {} by facet(s) {}", list(samples), list(by))
+        }
         Fate::Layer { samples } => format!("seen through, a layer at sample(s) {}", list(samples)),
         Fate::Visible { samples } => format!("visible at sample(s) {}", list(samples)),
     }
@@ -94,12 +118,26 @@ fn light(f: &mut fmt::Formatter<'_>, light: &PixelLight) -> fmt::Result {
         write!(f, "  sample {number} at {x},{y}: {shows} {}", four(sample.behind))?;
         for layer in &sample.layers {
             let of = layer.point.map_or("a line or dot".to_owned(), |p| format!("point {p}"));
-            write!(f, "; in front {of} {}, lets {} through", four(layer.color), three(layer.passes))?;
+            write!(
+                f,
+                "; in front {of} {}, lets {} through",
+                four(layer.color),
+                three(layer.passes)
+            )?;
         }
-        if sample.layers.is_empty() { writeln!(f)? } else { writeln!(f, "; together {}", four(sample.color))? }
+        if sample.layers.is_empty() {
+            writeln!(f)?
+        } else {
+            writeln!(f, "; together {}", four(sample.color))?
+        }
     }
     let clamped = if light.clamped { ", clamped" } else { "" };
-    writeln!(f, "  mean of the samples {}; colour {}{clamped}", four(light.average), three(light.straight))?;
+    writeln!(
+        f,
+        "  mean of the samples {}; colour {}{clamped}",
+        four(light.average),
+        three(light.straight)
+    )?;
     let [r, g, b, a] = light.bytes;
     writeln!(f, "  encoded, times 255: {}; rounded: {r} {g} {b}, opacity {a}", four(light.encoded))
 }
@@ -115,7 +153,13 @@ fn point(f: &mut fmt::Formatter<'_>, number: usize, p: &PointLight) -> fmt::Resu
         evaluation(f, e)?;
     }
     writeln!(f, "    texture {}, with vertex colours {}", three(p.texture), three(p.base))?;
-    writeln!(f, "    diffuse {}, specular {}, emission {}", three(p.diffuse), three(p.specular), three(p.emission))?;
+    writeln!(
+        f,
+        "    diffuse {}, specular {}, emission {}",
+        three(p.diffuse),
+        three(p.specular),
+        three(p.emission)
+    )?;
     if let Some(received) = p.interreflection {
         writeln!(f, "    from other surfaces {}", three(received))?;
     }
@@ -125,7 +169,8 @@ fn point(f: &mut fmt::Formatter<'_>, number: usize, p: &PointLight) -> fmt::Resu
     if let Some(cue) = p.depth_cue {
         writeln!(f, "    distance keeps {} of it and fades into {}", cue.kept, three(cue.into))?;
     }
-    let times = if p.keeps_specular { "; specular light is multiplied with the coverage" } else { "" };
+    let times =
+        if p.keeps_specular { "; specular light is multiplied with the coverage" } else { "" };
     writeln!(f, "    opacity {}, coverage {}{times}: colour {}", p.alpha, p.coverage, four(p.color))
 }
 
@@ -133,7 +178,9 @@ fn of_shadow(s: &ShadowOfLight) -> String {
     let arrives = format!("light {}: S = {}", s.light, three(s.visibility));
     match (s.attached, s.blocker, s.distance) {
         (true, ..) => format!("{arrives}, the facet faces away"),
-        (false, Some(facet), Some(distance)) => format!("{arrives}, facet {facet} stands in the way at {distance:.5}"),
+        (false, Some(facet), Some(distance)) => {
+            format!("{arrives}, facet {facet} stands in the way at {distance:.5}")
+        }
         _ => arrives,
     }
 }
@@ -145,11 +192,20 @@ fn evaluation(f: &mut fmt::Formatter<'_>, e: &Evaluation) -> fmt::Result {
     writeln!(f, "    N = {}, V = {}, at {}", three(e.normal), three(e.viewer), three(e.position))?;
     match e.coefficients {
         CoefficientValues::Empirical { ka, kd, ks, shininess } => {
-            writeln!(f, "    ka = {}, kd = {}, ks = {}, n = {shininess}", three(ka), three(kd), three(ks))?;
+            writeln!(
+                f,
+                "    ka = {}, kd = {}, ks = {}, n = {shininess}",
+                three(ka),
+                three(kd),
+                three(ks)
+            )?;
         }
         CoefficientValues::Microfacet { base_color, metallic, roughness, occlusion } => {
             let base = three(base_color);
-            writeln!(f, "    base {base}, metallic {metallic}, roughness {roughness}, occlusion {occlusion}")?;
+            writeln!(
+                f,
+                "    base {base}, metallic {metallic}, roughness {roughness}, occlusion {occlusion}"
+            )?;
         }
     }
     writeln!(f, "    ambient light of the scene {}", three(e.ambient))?;
@@ -205,9 +261,14 @@ impl fmt::Display for TracedRay {
         write!(f, "  after {} turn(s), from {from} towards {towards}: ", self.turns)?;
         match &self.meets {
             Some(met) => {
-                let material = met.material.as_ref().map_or(String::new(), |m| format!(", material {m}"));
+                let material =
+                    met.material.as_ref().map_or(String::new(), |m| format!(", material {m}"));
                 let (facet, surface, distance) = (met.facet, met.surface, met.distance);
-                write!(f, "facet {facet} (surface {surface}, {}{material}) at {distance:.4}", met.mesh)?;
+                write!(
+                    f,
+                    "facet {facet} (surface {surface}, {}{material}) at {distance:.4}",
+                    met.mesh
+                )?;
             }
             None => write!(f, "background")?,
         }
@@ -232,9 +293,17 @@ impl fmt::Display for Gouraud {
         for (side, edge) in ["left", "right"].iter().zip(&self.edges) {
             let [u, v] = edge.corners;
             let (py, at) = (rgb(edge.py), rgb(edge.intensity));
-            writeln!(f, "  {side} edge from corner {u} to {v}: py = {py}; I = {at} at x = {:.3}", edge.x)?;
+            writeln!(
+                f,
+                "  {side} edge from corner {u} to {v}: py = {py}; I = {at} at x = {:.3}",
+                edge.x
+            )?;
         }
         let (px, intensity, direct) = (rgb(self.px), rgb(self.intensity), rgb(self.direct));
-        writeln!(f, "  span: px = {px}, added {} time(s): I = {intensity}; by weights {direct}", self.additions)
+        writeln!(
+            f,
+            "  span: px = {px}, added {} time(s): I = {intensity}; by weights {direct}",
+            self.additions
+        )
     }
 }

@@ -1,4 +1,5 @@
-//! Lights and cameras in a line each, under the names and in the units that `--light` and the camera options have.
+//! Lights and cameras in a line each, under the names and in the units that `--light` and the
+//! camera options have.
 
 use super::{quoted, short, triple};
 use serde::Serialize;
@@ -74,8 +75,12 @@ impl LightInfo {
         };
         match &light.kind {
             LightKind::Ambient => Self { kind: "ambient", ..info },
-            &LightKind::Directional { direction } => Self { kind: "directional", direction: vector(direction), ..info },
-            &LightKind::Point { position } => Self { kind: "point", position: vector(position), ..info },
+            &LightKind::Directional { direction } => {
+                Self { kind: "directional", direction: vector(direction), ..info }
+            }
+            &LightKind::Point { position } => {
+                Self { kind: "point", position: vector(position), ..info }
+            }
             &LightKind::Spot { position, direction, cutoff, inner, exponent } => Self {
                 kind: "spot",
                 position: vector(position),
@@ -85,12 +90,18 @@ impl LightInfo {
                 exponent: Some(exponent),
                 ..info
             },
-            LightKind::Area { shape: AreaShape::Disc { center, normal, radius } } => {
-                Self { kind: "area", center: vector(*center), normal: vector(*normal), radius: Some(*radius), ..info }
-            }
-            LightKind::Area { shape: AreaShape::Polygon { corners } } => {
-                Self { kind: "area", corners: Some(corners.iter().map(|c| c.to_array()).collect()), ..info }
-            }
+            LightKind::Area { shape: AreaShape::Disc { center, normal, radius } } => Self {
+                kind: "area",
+                center: vector(*center),
+                normal: vector(*normal),
+                radius: Some(*radius),
+                ..info
+            },
+            LightKind::Area { shape: AreaShape::Polygon { corners } } => Self {
+                kind: "area",
+                corners: Some(corners.iter().map(|c| c.to_array()).collect()),
+                ..info
+            },
         }
     }
 }
@@ -111,10 +122,20 @@ impl fmt::Display for LightInfo {
             let corners: Vec<_> = corners.iter().map(|&c| triple(c)).collect();
             write!(f, " with corners {}", corners.join(" "))?;
         }
-        if let (Some(cutoff), Some(inner), Some(exponent)) = (self.cutoff_degrees, self.inner_degrees, self.exponent) {
-            write!(f, ", cutoff {}, inner {} degrees, exponent {}", short(cutoff), short(inner), short(exponent))?;
+        if let (Some(cutoff), Some(inner), Some(exponent)) =
+            (self.cutoff_degrees, self.inner_degrees, self.exponent)
+        {
+            write!(
+                f,
+                ", cutoff {}, inner {} degrees, exponent {}",
+                short(cutoff),
+                short(inner),
+                short(exponent)
+            )?;
         }
-        for (term, color) in [("ambient", self.ambient), ("diffuse", self.diffuse), ("specular", self.specular)] {
+        for (term, color) in
+            [("ambient", self.ambient), ("diffuse", self.diffuse), ("specular", self.specular)]
+        {
             write!(f, ", {term} {}", triple(color.map(f64::from)))?;
         }
         let of = |terms: [f64; 3]| terms.map(short).join(",");
@@ -156,7 +177,9 @@ pub struct CameraInfo {
 impl CameraInfo {
     pub(super) fn of(camera: &Camera) -> Self {
         let (projection, view_angle_degrees, height) = match camera.projection {
-            Projection::Perspective { view_angle } => ("perspective", Some(view_angle.to_degrees()), None),
+            Projection::Perspective { view_angle } => {
+                ("perspective", Some(view_angle.to_degrees()), None)
+            }
             Projection::Parallel { height } => ("parallel", None, Some(height)),
             Projection::Window { upwards: [low, high], .. } => {
                 let angle = func::atan2(high, 1.0) - func::atan2(low, 1.0);
@@ -171,7 +194,8 @@ impl CameraInfo {
 
 impl fmt::Display for CameraInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [position, focal_point, up] = [self.position, self.focal_point, self.view_up].map(triple);
+        let [position, focal_point, up] =
+            [self.position, self.focal_point, self.view_up].map(triple);
         write!(f, "{} at {position} looking at {focal_point}, up {up}", self.projection)?;
         match (self.view_angle_degrees, self.height) {
             (Some(angle), _) => write!(f, ", view angle {} degrees", short(angle)),
@@ -221,7 +245,10 @@ mod tests {
         );
         // The table has the direction to the light, as OpenGL.
         assert_eq!(json["lights"][1]["direction"], json!([-1.0, -0.2, -0.3]));
-        assert!(json["lights"][0].get("direction").is_none() && json["lights"][0].get("cutoff").is_none());
+        assert!(
+            json["lights"][0].get("direction").is_none()
+                && json["lights"][0].get("cutoff").is_none()
+        );
         assert_eq!(json["default-lights"], false);
         assert!(!text.contains("no lights"));
     }
@@ -241,7 +268,13 @@ mod tests {
         let fading = Attenuation::Clamped { c1: 1.0, c2: 0.0, c3: 0.25 };
         let mut scene = load_builtin("teapot").unwrap();
         scene.lights = vec![
-            Light { kind: spot, attenuation: fading, shadow: false, enabled: false, ..Light::default() },
+            Light {
+                kind: spot,
+                attenuation: fading,
+                shadow: false,
+                enabled: false,
+                ..Light::default()
+            },
             area(disc),
             area(AreaShape::Polygon { corners }),
         ];
@@ -254,12 +287,18 @@ mod tests {
             format!("area at (0, 1, 0) towards (0, -1, 0), radius 0.5, {colors}"),
             format!("area with corners (0, 0, 0) (1, 0, 0) (0, 0, 1), {colors}"),
         ] {
-            assert!(text.contains(&format!("light without name: {expected}\n")), "{expected} in {text}");
+            assert!(
+                text.contains(&format!("light without name: {expected}\n")),
+                "{expected} in {text}"
+            );
         }
         let spot = &json["lights"][0];
         assert!((spot["cutoff"].as_f64().unwrap() - 30.0).abs() < 1e-9 && spot["exponent"] == 8.0);
         assert_eq!((&spot["enabled"], &spot["shadow"]), (&json!(false), &json!(false)));
-        assert_eq!(spot["attenuation"], json!({"form": "clamped", "c1": 1.0, "c2": 0.0, "c3": 0.25}));
+        assert_eq!(
+            spot["attenuation"],
+            json!({"form": "clamped", "c1": 1.0, "c2": 0.0, "c3": 0.25})
+        );
         assert_eq!(json["lights"][1]["radius"], 0.5);
         assert_eq!(json["lights"][2]["corners"][1], json!([1.0, 0.0, 0.0]));
     }
@@ -268,20 +307,36 @@ mod tests {
     fn scenes_without_lights_say_what_lights_them() {
         let mut scene = load_builtin("teapot").unwrap();
         let (text, json) = told(&scene);
-        assert!(text.contains("no lights: default ones are used, which follow the camera\n"), "{text}");
-        assert_eq!((&json["default-lights"], json["lights"].as_array().map(Vec::len)), (&json!(true), Some(0)));
+        assert!(
+            text.contains("no lights: default ones are used, which follow the camera\n"),
+            "{text}"
+        );
+        assert_eq!(
+            (&json["default-lights"], json["lights"].as_array().map(Vec::len)),
+            (&json!(true), Some(0))
+        );
         // Light from everywhere is light.
         scene.ambient = [0.3; 3];
         let (text, json) = told(&scene);
-        assert!(text.contains("ambient light (0.3, 0.3, 0.3)\n") && !text.contains("no lights"), "{text}");
+        assert!(
+            text.contains("ambient light (0.3, 0.3, 0.3)\n") && !text.contains("no lights"),
+            "{text}"
+        );
         assert_eq!(json["default-lights"], false);
     }
 
     #[test]
     fn cameras_are_told_with_what_they_see() {
         let (text, json) = told(&load_builtin("refraction").unwrap());
-        assert!(text.contains("camera: parallel at (0, 0, 8) looking at (0, 0, 0), up (0, 1, 0), 6 high\n"), "{text}");
-        assert!(json["cameras"][0]["height"] == 6.0 && json["cameras"][0].get("view-angle").is_none());
+        assert!(
+            text.contains(
+                "camera: parallel at (0, 0, 8) looking at (0, 0, 0), up (0, 1, 0), 6 high\n"
+            ),
+            "{text}"
+        );
+        assert!(
+            json["cameras"][0]["height"] == 6.0 && json["cameras"][0].get("view-angle").is_none()
+        );
         let (text, json) = told(&load_builtin("lens").unwrap());
         assert!(text.contains("view angle 30 degrees\n"), "{text}");
         assert!((json["cameras"][0]["view-angle"].as_f64().unwrap() - 30.0).abs() < 1e-9);

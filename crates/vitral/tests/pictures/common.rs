@@ -2,15 +2,17 @@
 
 use vitral::internals::math::DVec2;
 use vitral::{
-    Background, Camera, Channels, ColorSpace, DMat4, DVec3, Error, Frame, Illumination, Light, LightKind, Limit,
-    Material, Mesh, Projection, Reflectance, RenderError, Renderer, Scene, SettingsError, load_builtin,
+    Background, Camera, Channels, ColorSpace, DMat4, DVec3, Error, Frame, Illumination, Light,
+    LightKind, Limit, Material, Mesh, Projection, Reflectance, RenderError, Renderer, Scene,
+    SettingsError, load_builtin,
 };
 
 /// A renderer for exact checks: raw colours, one sample a pixel, black background, Phong's model.
 pub(crate) fn exact(scene: Scene, width: u32, height: u32) -> Renderer {
     let mut renderer = Renderer::new(scene).unwrap();
     let settings = &mut renderer.settings;
-    (settings.picture.width, settings.picture.height, settings.picture.samples) = (width, height, 1);
+    (settings.picture.width, settings.picture.height, settings.picture.samples) =
+        (width, height, 1);
     settings.picture.color_space = ColorSpace::Raw;
     settings.picture.background = Background::Color { color: [0.0; 3] };
     settings.shading.illumination = Illumination::Phong;
@@ -80,7 +82,12 @@ pub(crate) fn colors_and_ids(frame: &Frame) -> impl Iterator<Item = ([u8; 4], u3
 /// A directional light of one intensity whose rays come from `from`.
 pub(crate) fn sun(from: DVec3, intensity: f32) -> Light {
     let colors = [intensity; 3];
-    Light { kind: LightKind::Directional { direction: -from }, diffuse: colors, specular: colors, ..Light::default() }
+    Light {
+        kind: LightKind::Directional { direction: -from },
+        diffuse: colors,
+        specular: colors,
+        ..Light::default()
+    }
 }
 
 /// A perspective camera on the z axis that looks at the origin.
@@ -100,7 +107,8 @@ pub(crate) fn project(renderer: &Renderer, point: DVec3) -> DVec2 {
     let depths = vitral::internals::scene::depth_range(&camera, &renderer.world().bounds);
     let clip = camera.transform(renderer.aspect(), depths).clip_from_world() * point.extend(1.0);
     let (x, y) = (clip.x / clip.w, clip.y / clip.w);
-    let (w, h) = (f64::from(renderer.settings.picture.width), f64::from(renderer.settings.picture.height));
+    let (w, h) =
+        (f64::from(renderer.settings.picture.width), f64::from(renderer.settings.picture.height));
     DVec2::new((x + 1.0) * 0.5 * w, (1.0 - y) * 0.5 * h)
 }
 

@@ -2,14 +2,17 @@
 
 use super::common::exact;
 use vitral::{
-    Camera, Channels, DMat4, DVec3, Mesh, Projection, Renderer, Scene, SettingsError, Transparency, TransparencyOrder,
-    Visibility,
+    Camera, Channels, DMat4, DVec3, Mesh, Projection, Renderer, Scene, SettingsError, Transparency,
+    TransparencyOrder, Visibility,
 };
 
 /// Two squares from 2 to 40 away; the second is nearer by a hundredth, and hides the first.
 fn close_planes() -> Renderer {
     let square = |y: f32| {
-        Mesh::new([[-9.0, y, -2.0], [9.0, y, -2.0], [9.0, y, -40.0], [-9.0, y, -40.0]], [[0, 1, 2], [0, 2, 3]])
+        Mesh::new(
+            [[-9.0, y, -2.0], [9.0, y, -2.0], [9.0, y, -40.0], [-9.0, y, -40.0]],
+            [[0, 1, 2], [0, 2, 3]],
+        )
     };
     let mut scene = Scene::default();
     scene.add_mesh(square(-0.01), DMat4::IDENTITY);
@@ -22,7 +25,8 @@ fn close_planes() -> Renderer {
         projection: Projection::Perspective { view_angle: 0.6 },
         clip: Some((1.0, 50.0)),
     });
-    renderer.settings.picture.channels = Channels { color: true, object: true, depth: true, ..Channels::default() };
+    renderer.settings.picture.channels =
+        Channels { color: true, object: true, depth: true, ..Channels::default() };
     renderer
 }
 
@@ -43,7 +47,10 @@ fn p17_close_planes_fight_at_8_bits_and_not_at_24() {
     assert_eq!(fought[0] + fought[1], exact[1], "every pixel is one of them");
     // Steps halve with each bit, and what fights with them.
     let counts: Vec<_> = [8, 10, 12, 16].map(|bits| objects(Some(bits))[0]).to_vec();
-    assert!(counts.windows(2).all(|pair| pair[1] <= pair[0]) && counts[3] < counts[0] / 4, "{counts:?}");
+    assert!(
+        counts.windows(2).all(|pair| pair[1] <= pair[0]) && counts[3] < counts[0] / 4,
+        "{counts:?}"
+    );
 }
 
 #[test]
@@ -82,9 +89,15 @@ fn what_has_no_integer_depths_says_so() {
         told
     };
     let scan_line = told(|r| r.settings.visibility = Visibility::SCAN_LINE);
-    assert_eq!(scan_line, "integer depths need the visibility algorithm z-buffer, and `scan-line` is chosen");
+    assert_eq!(
+        scan_line,
+        "integer depths need the visibility algorithm z-buffer, and `scan-line` is chosen"
+    );
     let passes = told(|r| {
-        r.settings = r.settings.clone().with_transparency(Transparency::Linear, TransparencyOrder::MULTI_PASS);
+        r.settings = r
+            .settings
+            .clone()
+            .with_transparency(Transparency::Linear, TransparencyOrder::MULTI_PASS);
     });
     assert!(passes.contains("`multi-pass`"), "{passes}");
     assert_eq!(told(|r| r.settings.depth_bits = Some(7)), SettingsError::DepthBits(7).to_string());

@@ -1,31 +1,38 @@
-//! Filled drawings agree with the z-buffer: at the middle of each pixel, the region of a drawing shows the face whose id the picture has.
+//! Filled drawings agree with the z-buffer: at the middle of each pixel, the region of a drawing
+//! shows the face whose id the picture has.
 //!
-//! Pixels are left out where an outline of a region passes within [`NEAR`] of the middle: the drawing and the picture snap corners to
-//! different grids. Where two faces have the same depth, either may be shown.
+//! Pixels are left out where an outline of a region passes within [`NEAR`] of the middle: the
+//! drawing and the picture snap corners to different grids. Where two faces have the same depth,
+//! either may be shown.
 //!
-//! Built-in scenes, the figures of `tests/fixtures` and the models of `examples` are compared in seven parallel views and one in
-//! perspective; no pixel may differ. Shared models of up to [`ALL_VIEWS`] triangles are compared in the seven parallel views, larger
-//! ones in the default view alone, so that the whole takes less than a minute; one pixel in a thousand may differ.
+//! Built-in scenes, the figures of `tests/fixtures` and the models of `examples` are compared in
+//! seven parallel views and one in perspective; no pixel may differ. Shared models of up to
+//! [`ALL_VIEWS`] triangles are compared in the seven parallel views, larger ones in the default
+//! view alone, so that the whole takes less than a minute; one pixel in a thousand may differ.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use vitral::internals::scene::depth_range;
 use vitral::{
-    AlphaMode, Background, Channels, ColorBy, DVec3, Drawing, DrawingSettings, FillSettings, Frame, Lens, LineClasses,
-    LoadOptions, PageSize, Region, Renderer, Scene, Seams, View, builtin_names, load_builtin, load_with,
+    AlphaMode, Background, Channels, ColorBy, DVec3, Drawing, DrawingSettings, FillSettings, Frame,
+    Lens, LineClasses, LoadOptions, PageSize, Region, Renderer, Scene, Seams, View, builtin_names,
+    load_builtin, load_with,
 };
 use vitral_testkit::fixture::{files_below, repository, shared_models};
 
 /// Size of the pictures; pages have a millimetre for each pixel.
 const SIZE: [usize; 2] = [200, 150];
-/// Pixels with an outline within this distance of their middle are left out, in pixels. Pictures snap corners to 1/256 of a pixel.
+/// Pixels with an outline within this distance of their middle are left out, in pixels. Pictures
+/// snap corners to 1/256 of a pixel.
 const NEAR: f64 = 1.0 / 16.0;
 /// Models of up to so many triangles are compared in all views.
 const ALL_VIEWS: u32 = 12_000;
-/// Difference of depth of faces that count as coincident, in parts of the range of depths: some steps of the grid of a drawing.
+/// Difference of depth of faces that count as coincident, in parts of the range of depths: some
+/// steps of the grid of a drawing.
 const SAME_DEPTH: f64 = 4e-6;
 
-const VIEWS: [View; 7] = [View::Iso, View::Front, View::Back, View::Left, View::Right, View::Top, View::Bottom];
+const VIEWS: [View; 7] =
+    [View::Iso, View::Front, View::Back, View::Left, View::Right, View::Top, View::Bottom];
 
 /// Pixels of comparisons.
 #[derive(Clone, Debug, Default)]
@@ -60,8 +67,11 @@ struct Shown {
 impl Shown {
     fn new(drawing: &Drawing) -> Self {
         let count = SIZE[0] * SIZE[1];
-        let mut shown =
-            Self { ids: vec![Frame::BACKGROUND; count], twice: vec![false; count], near: vec![false; count] };
+        let mut shown = Self {
+            ids: vec![Frame::BACKGROUND; count],
+            twice: vec![false; count],
+            near: vec![false; count],
+        };
         for region in &drawing.regions {
             shown.fill(region, drawing.height);
             for [a, b] in sides(region, drawing.height) {
@@ -97,15 +107,19 @@ impl Shown {
 
     /// Marks the pixels whose middles are near a segment.
     fn mark(&mut self, a: [f64; 2], b: [f64; 2]) {
-        let range = |k: usize| first_middle(a[k].min(b[k]) - NEAR)..first_middle(a[k].max(b[k]) + NEAR).min(SIZE[k]);
+        let range = |k: usize| {
+            first_middle(a[k].min(b[k]) - NEAR)..first_middle(a[k].max(b[k]) + NEAR).min(SIZE[k])
+        };
         let way = [0, 1].map(|k| b[k] - a[k]);
         let square = way[0] * way[0] + way[1] * way[1];
         for row in range(1) {
             for column in range(0) {
                 let from = [column as f64 + 0.5 - a[0], row as f64 + 0.5 - a[1]];
-                let along = ((from[0] * way[0] + from[1] * way[1]) / square.max(1e-12)).clamp(0.0, 1.0);
+                let along =
+                    ((from[0] * way[0] + from[1] * way[1]) / square.max(1e-12)).clamp(0.0, 1.0);
                 let off = [0, 1].map(|k| from[k] - way[k] * along);
-                self.near[row * SIZE[0] + column] |= off[0] * off[0] + off[1] * off[1] < NEAR * NEAR;
+                self.near[row * SIZE[0] + column] |=
+                    off[0] * off[0] + off[1] * off[1] < NEAR * NEAR;
             }
         }
     }
@@ -114,10 +128,9 @@ impl Shown {
 /// The sides of a region, with y downwards.
 fn sides(region: &Region, height: f64) -> impl Iterator<Item = [[f64; 2]; 2]> {
     let down = move |p: [f64; 2]| [p[0], height - p[1]];
-    region
-        .rings
-        .iter()
-        .flat_map(move |ring| ring.iter().zip(ring.iter().cycle().skip(1)).map(move |(&a, &b)| [down(a), down(b)]))
+    region.rings.iter().flat_map(move |ring| {
+        ring.iter().zip(ring.iter().cycle().skip(1)).map(move |(&a, &b)| [down(a), down(b)])
+    })
 }
 
 /// The first pixel whose middle is not below a coordinate.
@@ -144,8 +157,14 @@ fn opaque(mut scene: Scene) -> Renderer {
 fn compare(renderer: &mut Renderer) -> Pixels {
     // Draw the camera's whole window, a millimetre a pixel, each face as regions of its own.
     let page = PageSize::Window { window: SIZE[0] as f64 };
-    let settings = DrawingSettings { page, lines: LineClasses::EMPTY, ..DrawingSettings::default() };
-    let fill = FillSettings { color_by: ColorBy::None, seams: Seams::None, by_face: true, ..FillSettings::default() };
+    let settings =
+        DrawingSettings { page, lines: LineClasses::EMPTY, ..DrawingSettings::default() };
+    let fill = FillSettings {
+        color_by: ColorBy::None,
+        seams: Seams::None,
+        by_face: true,
+        ..FillSettings::default()
+    };
     let drawing = renderer.draw_filled(&settings, &fill).unwrap().drawing;
     assert!((drawing.width - 200.0).abs() < 1e-3 && (drawing.height - 150.0).abs() < 1e-3);
     let shown = Shown::new(&drawing);
@@ -166,7 +185,9 @@ fn compare(renderer: &mut Renderer) -> Pixels {
         }
         let both = [id, drawn].map(|surface| depths.at(surface, at));
         match both {
-            [Some(a), Some(b)] if (a - b).abs() <= SAME_DEPTH && !shown.twice[i] => pixels.coincident += 1,
+            [Some(a), Some(b)] if (a - b).abs() <= SAME_DEPTH && !shown.twice[i] => {
+                pixels.coincident += 1
+            }
             _ => pixels.wrong.push((at, id, drawn)),
         }
     }
@@ -189,11 +210,14 @@ impl<'r> Depths<'r> {
     fn at(&mut self, surface: u32, pixel: [usize; 2]) -> Option<f64> {
         let world = self.renderer.world();
         if self.facets.is_empty() {
-            self.facets = (0..world.facet_count).map(|facet| (world.surface_of_facet(facet), facet)).collect();
+            self.facets = (0..world.facet_count)
+                .map(|facet| (world.surface_of_facet(facet), facet))
+                .collect();
             self.facets.sort_unstable();
         }
         let camera = self.renderer.frame_camera();
-        let transform = camera.transform(self.renderer.aspect(), depth_range(&camera, &world.bounds));
+        let transform =
+            camera.transform(self.renderer.aspect(), depth_range(&camera, &world.bounds));
         let clip = transform.clip_from_world();
         let middle = [pixel[0] as f64 + 0.5, pixel[1] as f64 + 0.5];
         let first = self.facets.partition_point(|&(s, _)| s < surface);
@@ -201,7 +225,10 @@ impl<'r> Depths<'r> {
         own.filter_map(|&(_, facet)| {
             let corners = world.corners_of_facet(facet).map(|corner| {
                 let p = clip * corner.extend(1.0);
-                let [x, y] = [(p.x / p.w + 1.0) * 0.5 * SIZE[0] as f64, (1.0 - p.y / p.w) * 0.5 * SIZE[1] as f64];
+                let [x, y] = [
+                    (p.x / p.w + 1.0) * 0.5 * SIZE[0] as f64,
+                    (1.0 - p.y / p.w) * 0.5 * SIZE[1] as f64,
+                ];
                 DVec3::new(x - middle[0], y - middle[1], p.z / p.w)
             });
             let [a, b, c] = corners;
@@ -230,12 +257,15 @@ fn compare_views(scene: Scene, views: &[View], lens: Lens) -> Pixels {
 fn own_files() -> Vec<PathBuf> {
     let mut files = files_below(&repository().join("crates/vitral/tests/fixtures"));
     files.extend(files_below(&repository().join("examples/models")));
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "json" || extension == "obj"));
+    files.retain(|path| {
+        path.extension().is_some_and(|extension| extension == "json" || extension == "obj")
+    });
     files
 }
 
 fn read(path: &Path) -> Scene {
-    let options = LoadOptions { allow_external: true, make_normals: false, ..LoadOptions::default() };
+    let options =
+        LoadOptions { allow_external: true, make_normals: false, ..LoadOptions::default() };
     load_with(path, &options).unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -1,4 +1,5 @@
-//! P17: facets in one plane have equal depths at every sample, whatever their corners, order, winding or size.
+//! P17: facets in one plane have equal depths at every sample, whatever their corners, order,
+//! winding or size.
 
 use super::common::{colors, exact, poster};
 use vitral::internals::render::registry::VISIBILITY;
@@ -45,7 +46,8 @@ fn count(picture: &[[u8; 4]], is: impl Fn(&[u8; 4]) -> bool) -> usize {
     picture.iter().filter(|p| is(p)).count()
 }
 
-/// Pixels that are neither of a pure red or green nor of the background, of a renderer without filtering.
+/// Pixels that are neither of a pure red or green nor of the background, of a renderer without
+/// filtering.
 fn red_and_green(r: &mut Renderer) -> [usize; 2] {
     let picture = colors(r);
     [count(&picture, |p| p[0] > 200 && p[1] < 50), count(&picture, |p| p[1] > 200 && p[0] < 50)]

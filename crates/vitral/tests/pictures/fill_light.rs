@@ -13,7 +13,8 @@ fn open(file: &str) -> Renderer {
 /// The brightest red of the cube, and whether the light is told.
 fn look(r: &mut Renderer) -> (u8, bool) {
     let Picture { frame, warnings, .. } = r.render().unwrap();
-    let red = frame.color.unwrap().data().iter().filter(|p| p[3] == 255).map(|p| p[0]).max().unwrap();
+    let red =
+        frame.color.unwrap().data().iter().filter(|p| p[3] == 255).map(|p| p[0]).max().unwrap();
     (red, warnings.iter().any(|w| w.contains("a dim light from the viewer is added")))
 }
 

@@ -3,8 +3,8 @@
 use super::common::{colors, exact, on_z, one, poster, sun};
 use vitral::internals::render::registry::{SHADOWS, VISIBILITY};
 use vitral::{
-    AlphaMode, Camera, DMat4, DVec3, Light, Material, MaterialOverride, Mesh, NodeTransform, Projection, Renderer,
-    Scene, override_material, solids,
+    AlphaMode, Camera, DMat4, DVec3, Light, Material, MaterialOverride, Mesh, NodeTransform,
+    Projection, Renderer, Scene, override_material, solids,
 };
 
 const RED: [f32; 3] = [1.0, 0.0, 0.0];
@@ -41,9 +41,19 @@ fn backs_are_not_seen_by_any_algorithm() {
         assert!(all > 300, "{}", row.name);
         assert_eq!(count(false, front_only()), 0, "{}", row.name);
         assert_eq!(count(false, poster(RED)), all, "{}: others show both sides", row.name);
-        assert_eq!(count(false, Material { double_sided: true, ..front_only() }), all, "{}", row.name);
+        assert_eq!(
+            count(false, Material { double_sided: true, ..front_only() }),
+            all,
+            "{}",
+            row.name
+        );
         for mode in [AlphaMode::Blend, AlphaMode::Mask { cutoff: 0.5 }] {
-            assert_eq!([count(true, layered(mode)), count(false, layered(mode))], [all, 0], "{}, {mode:?}", row.name);
+            assert_eq!(
+                [count(true, layered(mode)), count(false, layered(mode))],
+                [all, 0],
+                "{}, {mode:?}",
+                row.name
+            );
         }
     }
 }
@@ -69,11 +79,14 @@ fn a_sheet_with_a_copy_for_its_back_shows_the_front_alone() {
     let scene = vitral::load(path).unwrap();
     for row in VISIBILITY {
         let mut r = Renderer::new(scene.clone()).unwrap();
-        (r.settings.picture.width, r.settings.picture.height, r.settings.picture.samples) = (80, 60, 1);
+        (r.settings.picture.width, r.settings.picture.height, r.settings.picture.samples) =
+            (80, 60, 1);
         r.settings.visibility = row.name.parse().unwrap();
         r.settings.picture.channels.material = true;
         let frame = r.render().unwrap().frame;
-        let of = |number| frame.material.as_ref().unwrap().data().iter().filter(|m| **m == number).count();
+        let of = |number| {
+            frame.material.as_ref().unwrap().data().iter().filter(|m| **m == number).count()
+        };
         assert!(of(0) > 500 && of(1) == 0, "{}: {} and {}", row.name, of(0), of(1));
     }
 }
@@ -81,7 +94,8 @@ fn a_sheet_with_a_copy_for_its_back_shows_the_front_alone() {
 #[test]
 fn the_property_double_sided_decides() {
     let with = |value: &str| {
-        let mut scene = one(sheet(false), Material { name: "m".to_owned(), front_only: true, ..poster(RED) });
+        let mut scene =
+            one(sheet(false), Material { name: "m".to_owned(), front_only: true, ..poster(RED) });
         override_material(&mut scene, "m", "double-sided", value).unwrap();
         seen(scene, "z-buffer")
     };
@@ -92,7 +106,8 @@ fn the_property_double_sided_decides() {
     assert_eq!(seen(plain, "z-buffer"), 0, "of any format");
 }
 
-/// A floor, and over it a sheet that turns its back on the light and the viewer, who look straight down.
+/// A floor, and over it a sheet that turns its back on the light and the viewer, who look straight
+/// down.
 fn floor_below_a_back() -> (Scene, Camera, Vec<Light>) {
     let mut scene = one(solids::plane(4.0, 4.0, 1, 1), Material::matte([1.0; 3]));
     let material = Some(scene.add_material(Material { front_only: true, ..Material::matte(BLUE) }));
@@ -116,7 +131,12 @@ fn shadows_take_it_as_solid() {
         r.settings.shadows.algorithm = row.name.parse().unwrap();
         let picture = colors(&mut r);
         let at = |x: usize, y: usize| picture[y * 60 + x];
-        assert!(at(30, 30)[0] < 40 && at(30, 30)[2] < 40, "{}: the floor in the shadow: {:?}", row.name, at(30, 30));
+        assert!(
+            at(30, 30)[0] < 40 && at(30, 30)[2] < 40,
+            "{}: the floor in the shadow: {:?}",
+            row.name,
+            at(30, 30)
+        );
         assert!(at(5, 5)[0] > 200, "{}: the floor in the light: {:?}", row.name, at(5, 5));
     }
 }

@@ -8,8 +8,8 @@ use vitral::internals::render::raytrace::intersect::Ray;
 use vitral::internals::render::raytrace::{Counters, Structure};
 use vitral::internals::scene::edges::edges;
 use vitral::{
-    Background, Camera, DMat4, DVec3, Lines, Plane, Projection, Renderer, Scene, Workers, load_builtin, load_bytes,
-    solids,
+    Background, Camera, DMat4, DVec3, Lines, Plane, Projection, Renderer, Scene, Workers,
+    load_builtin, load_bytes, solids,
 };
 
 /// What rays say about a place on an edge.
@@ -21,7 +21,8 @@ enum Seen {
     Unclear,
 }
 
-/// How many places on edges were looked at: clear ones, unclear ones, and those where the picture differs from the rays.
+/// How many places on edges were looked at: clear ones, unclear ones, and those where the picture
+/// differs from the rays.
 #[derive(Debug, Default)]
 struct Count {
     visible: usize,
@@ -71,14 +72,16 @@ impl Eye<'_> {
         hit.map_or(f64::INFINITY, |(_, t)| f64::from(t))
     }
 
-    /// Rays through a place and round it: it is seen if none of them meets anything before it, hidden if all do.
+    /// Rays through a place and round it: it is seen if none of them meets anything before it,
+    /// hidden if all do.
     fn look(&self, p: DVec3) -> Seen {
         const AROUND: f64 = 2.5;
         // An edge is drawn as far before its place as a few pixels are large.
         const LIFT: f64 = 6.0;
         let (at, depth) = self.pixel(p);
         let gap = LIFT * depth / self.focal;
-        let around = (0..9).map(|i| at + DVec2::new(f64::from(i % 3 - 1), f64::from(i / 3 - 1)) * AROUND);
+        let around =
+            (0..9).map(|i| at + DVec2::new(f64::from(i % 3 - 1), f64::from(i / 3 - 1)) * AROUND);
         // What lies on the edge's own faces is met about there, before or behind.
         let before = around.map(|at| self.depth(at) < depth - gap);
         match before.filter(|before| *before).count() {
@@ -99,7 +102,9 @@ fn lines_of(renderer: &Renderer) -> Vec<[DVec3; 2]> {
             let p = instance.mesh.positions[i as usize].map(f64::from);
             instance.world_from_model.transform_point3(DVec3::from_array(p))
         };
-        lines.extend(edges(&instance.mesh, 0.0, &Workers::single()).iter().map(|edge| edge.ends.map(corner)));
+        lines.extend(
+            edges(&instance.mesh, 0.0, &Workers::single()).iter().map(|edge| edge.ends.map(corner)),
+        );
     }
     lines
 }
@@ -144,7 +149,8 @@ fn compare(name: &str, from: DVec3) -> Count {
     let mut may_show = vec![false; picture.len()];
     for (x, y, seen) in &places {
         if *seen != Seen::Hidden {
-            (0..25).for_each(|i| may_show[((y + i / 5 - 2) * width + x + i % 5 - 2) as usize] = true);
+            (0..25)
+                .for_each(|i| may_show[((y + i / 5 - 2) * width + x + i % 5 - 2) as usize] = true);
         }
     }
     let mut count = Count::default();
@@ -171,7 +177,8 @@ fn p2_visible_edges_are_those_that_rays_see() {
         for view in 0..views {
             let angle = 0.4 + 1.7 * f64::from(view);
             let (sin, cos) = vitral::internals::math::func::sin_cos(angle);
-            let Count { visible, hidden, unclear, wrong } = compare(name, DVec3::new(sin, 0.35 + 0.2 * cos, cos));
+            let Count { visible, hidden, unclear, wrong } =
+                compare(name, DVec3::new(sin, 0.35 + 0.2 * cos, cos));
             all.visible += visible;
             all.hidden += hidden;
             all.unclear += unclear;
@@ -206,7 +213,8 @@ fn faces_that_penetrate_each_other_show_the_line_between_them() {
     for apart in [false, true] {
         let mut renderer = Renderer::new(boxes(apart)).unwrap();
         let found = Penetrations::of(renderer.session(), renderer.execution()).unwrap();
-        // The square in which the small box leaves the face z = 0.7 of the large one: x and y from -0.2 to 0.4.
+        // The square in which the small box leaves the face z = 0.7 of the large one: x and y from
+        // -0.2 to 0.4.
         let length = |[a, b]: &[[f32; 3]; 2]| {
             (DVec3::from_array(a.map(f64::from)) - DVec3::from_array(b.map(f64::from))).length()
         };
@@ -214,7 +222,8 @@ fn faces_that_penetrate_each_other_show_the_line_between_them() {
         assert!((total - 2.4).abs() < 1e-5, "{apart}: {total} of {:?}", found.lines);
         for p in found.lines.iter().flatten() {
             let at = DVec3::from_array(p.map(f64::from)) + found.center;
-            let on_border = [at.x, at.y].iter().any(|v| (v + 0.2).abs() < 1e-6 || (v - 0.4).abs() < 1e-6);
+            let on_border =
+                [at.x, at.y].iter().any(|v| (v + 0.2).abs() < 1e-6 || (v - 0.4).abs() < 1e-6);
             assert!((at.z - 0.7).abs() < 1e-6 && on_border, "{at}");
         }
 
@@ -231,8 +240,8 @@ fn faces_that_penetrate_each_other_show_the_line_between_them() {
                 projection: Projection::Parallel { height: 2.0 },
                 clip: None,
             };
-            // Pixels are a hundredth; the line y = -0.2 from x = -0.2 to 0.4, looked at along z, coincides with an edge of the box:
-            // look a little from below.
+            // Pixels are a hundredth; the line y = -0.2 from x = -0.2 to 0.4, looked at along z,
+            // coincides with an edge of the box: look a little from below.
             renderer.camera = Some(eye(DVec3::new(0.0, -2.0, 5.0)));
             let front = renderer.render().unwrap().frame.color.unwrap();
             let camera = renderer.camera.unwrap();
@@ -242,14 +251,17 @@ fn faces_that_penetrate_each_other_show_the_line_between_them() {
                 let p = DVec3::new(x, y, z);
                 (((1.0 + p.x) * 100.0) as u32, ((1.0 - p.dot(up)) * 100.0) as u32)
             };
-            let is_dark =
-                |picture: &Plane<[u8; 4]>, (x, y): (u32, u32)| (y - 1..=y + 1).any(|y| picture.at(x, y)[0] < 100);
+            let is_dark = |picture: &Plane<[u8; 4]>, (x, y): (u32, u32)| {
+                (y - 1..=y + 1).any(|y| picture.at(x, y)[0] < 100)
+            };
             for i in 0..10 {
                 let at = place(-0.15 + f64::from(i) * 0.05, -0.2, 0.7);
                 assert!(is_dark(&front, at), "{apart} {lines:?} {i}");
             }
             // Above the small box the line y = 0.4 is hidden by it.
-            let hidden = (0..10).filter(|i| is_dark(&front, place(-0.15 + f64::from(*i) * 0.05, 0.4, 0.7))).count();
+            let hidden = (0..10)
+                .filter(|i| is_dark(&front, place(-0.15 + f64::from(*i) * 0.05, 0.4, 0.7)))
+                .count();
             assert_eq!(hidden, 0, "{apart} {lines:?}");
             renderer.camera = Some(eye(DVec3::new(0.0, 0.0, -5.0)));
             let back = renderer.render().unwrap().frame.color.unwrap();

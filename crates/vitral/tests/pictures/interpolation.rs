@@ -1,25 +1,32 @@
-//! Texture coordinates between vertices: as on the plane in space, or linearly on the screen, which is the classical
-//! defect.
+//! Texture coordinates between vertices: as on the plane in space, or linearly on the screen, which
+//! is the classical defect.
 
 use super::common::{all_channels, colors, exact, on_z, one};
 use std::sync::Arc;
 use vitral::internals::math::DVec4;
 use vitral::{
-    Attribute, Camera, Channels, DMat4, DVec3, Encoding, Filter, Frame, Interpolation, Light, LightKind, Material,
-    Mesh, MipFilter, Part, Plane, Projection, Renderer, Sampler, Texture, TextureRef, solids,
+    Attribute, Camera, Channels, DMat4, DVec3, Encoding, Filter, Frame, Interpolation, Light,
+    LightKind, Material, Mesh, MipFilter, Part, Plane, Projection, Renderer, Sampler, Texture,
+    TextureRef, solids,
 };
 
 const CELLS: f64 = 8.0;
 const SIDE: u32 = 200;
 
-/// A square of side 4 in the plane y = 0 with a texture of 8 x 8 black and white cells, seen at a flat angle.
+/// A square of side 4 in the plane y = 0 with a texture of 8 x 8 black and white cells, seen at a
+/// flat angle.
 fn floor() -> Renderer {
     let texel = |i: u32| if (i % 8 + i / 8).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] };
     let image = Plane::from_rows(8, 8, (0..64).map(texel).collect()).unwrap();
-    let sampler =
-        Sampler { magnify: Filter::Nearest, minify: Filter::Nearest, mip: MipFilter::None, ..Sampler::default() };
+    let sampler = Sampler {
+        magnify: Filter::Nearest,
+        minify: Filter::Nearest,
+        mip: MipFilter::None,
+        ..Sampler::default()
+    };
     let texture = TextureRef { sampler, ..TextureRef::new(0) };
-    let reflectance = vitral::Reflectance::Phong { ka: [1.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+    let reflectance =
+        vitral::Reflectance::Phong { ka: [1.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
     let mut scene = one(
         solids::plane(4.0, 4.0, 1, 1),
         Material { base_texture: Some(texture), reflectance, ..Material::default() },
@@ -42,18 +49,21 @@ fn floor() -> Renderer {
     renderer
 }
 
-/// Whether the cell under pixel centre `(x, y)` is white by ray and plane; `None` near a cell's border or outside.
+/// Whether the cell under pixel centre `(x, y)` is white by ray and plane; `None` near a cell's
+/// border or outside.
 fn analytic(renderer: &Renderer, x: u32, y: u32) -> Option<bool> {
     let clip = renderer.frame_camera().transform(1.0, (0.0, 0.0)).clip_from_world().inverse();
     let side = f64::from(SIDE);
     let (x, y) = ((f64::from(x) + 0.5) / side * 2.0 - 1.0, 1.0 - (f64::from(y) + 0.5) / side * 2.0);
-    let [near, far] = [1.0, 0.5].map(|z| clip * DVec4::new(x, y, z, 1.0)).map(|p| p.truncate() / p.w);
+    let [near, far] =
+        [1.0, 0.5].map(|z| clip * DVec4::new(x, y, z, 1.0)).map(|p| p.truncate() / p.w);
     let t = near.y / (near.y - far.y);
     let p = near + (far - near) * t;
     let (u, v) = ((p.x + 2.0) / 4.0 * CELLS, (p.z + 2.0) / 4.0 * CELLS);
     let border = |w: f64| (w - w.round()).abs() < 0.01;
     let inside = (0.0..CELLS).contains(&u) && (0.0..CELLS).contains(&v) && t > 0.0;
-    // Corner (0, 0) of the texture may be at any corner of the square: white and black repeat with it.
+    // Corner (0, 0) of the texture may be at any corner of the square: white and black repeat with
+    // it.
     (inside && !border(u) && !border(v)).then(|| (u.floor() + v.floor()) % 2.0 == 0.0)
 }
 
@@ -92,16 +102,21 @@ fn p27_linear_interpolation_on_the_screen_bends_them() {
     assert!((0.2..0.8).contains(&share), "neither right nor exchanged: {share}");
 }
 
-/// What is interpolated shows the defect; places are those of space, so that shadows fall where they do.
+/// What is interpolated shows the defect; places are those of space, so that shadows fall where
+/// they do.
 #[test]
 fn f19_shadows_stay_where_they_are() {
     for shadows in ["ray", "map", "volume", "scan-line", "object-precision"] {
         let picture = |interpolation| {
             let mut scene = one(solids::plane(12.0, 12.0, 1, 1), Material::default());
-            scene.add_mesh(solids::sphere(1.0, 32, 16), DMat4::from_translation(DVec3::new(0.0, 1.2, -1.0)));
-            scene
-                .lights
-                .push(Light { kind: LightKind::Point { position: DVec3::new(3.0, 6.0, 2.0) }, ..Light::default() });
+            scene.add_mesh(
+                solids::sphere(1.0, 32, 16),
+                DMat4::from_translation(DVec3::new(0.0, 1.2, -1.0)),
+            );
+            scene.lights.push(Light {
+                kind: LightKind::Point { position: DVec3::new(3.0, 6.0, 2.0) },
+                ..Light::default()
+            });
             let mut renderer = exact(scene, 160, 120);
             renderer.camera = Some(Camera {
                 position: DVec3::new(0.0, 2.0, 8.0),
@@ -116,13 +131,17 @@ fn f19_shadows_stay_where_they_are() {
             let frame = renderer.render().unwrap().frame;
             (frame.cast_shadow.unwrap().into_data(), frame.color.unwrap().into_data())
         };
-        let [(there, right), (linear, defect)] = [Interpolation::Perspective, Interpolation::Linear].map(picture);
+        let [(there, right), (linear, defect)] =
+            [Interpolation::Perspective, Interpolation::Linear].map(picture);
         let dark = there.iter().filter(|&&s| s > 0.5).count();
         let apart = there.iter().zip(&linear).filter(|(a, b)| (*a - *b).abs() > 0.5).count();
         assert!(dark > 200 && apart <= 3, "{shadows}: {apart} of {dark}");
         // The floor's colours are the same: of its corners' normals all are one.
-        let apart =
-            right.iter().zip(&defect).filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2)).count();
+        let apart = right
+            .iter()
+            .zip(&defect)
+            .filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2))
+            .count();
         assert!(apart < 1000, "{shadows}: {apart} colours differ");
     }
 }
@@ -148,8 +167,11 @@ fn p27_facets_that_reach_behind_the_eye_keep_their_colours() {
         let mut renderer = exact(scene, 201, 151);
         renderer.settings.shading.lighting = false;
         renderer.settings.shading.interpolation = interpolation;
-        renderer.camera =
-            Some(Camera { position: DVec3::Y, focal_point: DVec3::new(0.0, 1.0, -1.0), ..on_z(1.0, 1.0) });
+        renderer.camera = Some(Camera {
+            position: DVec3::Y,
+            focal_point: DVec3::new(0.0, 1.0, -1.0),
+            ..on_z(1.0, 1.0)
+        });
         colors(&mut renderer)
     };
     let [space, linear] = [Interpolation::Perspective, Interpolation::Linear].map(picture);

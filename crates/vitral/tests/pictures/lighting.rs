@@ -1,14 +1,16 @@
-//! The course's checks on illumination and shading that need whole pictures (docs/course.md L1-L22, P30-P35).
+//! The course's checks on illumination and shading that need whole pictures (docs/course.md L1-L22,
+//! P30-P35).
 
 use super::common::{
-    all_channels, colors, colors_and_ids, exact, exact_builtin, largest_difference, on_z, one, project, sun,
+    all_channels, colors, colors_and_ids, exact, exact_builtin, largest_difference, on_z, one,
+    project, sun,
 };
 use std::collections::{BTreeMap, HashSet};
 use vitral::internals::math::DVec2;
 use vitral::{
-    Attenuation, Attribute, Camera, ColorSpace, DMat4, DQuat, DVec3, Encoding, Frame, Illumination, Light, LightKind,
-    Material, Mesh, NodeTransform, Part, Plane, Projection, Reflectance, Renderer, Scene, Shading, Texture, TextureRef,
-    View, lab, load_builtin, solids,
+    Attenuation, Attribute, Camera, ColorSpace, DMat4, DQuat, DVec3, Encoding, Frame, Illumination,
+    Light, LightKind, Material, Mesh, NodeTransform, Part, Plane, Projection, Reflectance,
+    Renderer, Scene, Shading, Texture, TextureRef, View, lab, load_builtin, solids,
 };
 
 const BLACK: [u8; 4] = [0, 0, 0, 255];
@@ -18,7 +20,8 @@ fn l1_unlit_disc_has_one_colour_and_lighting_gives_it_form() {
     let mut renderer = exact_builtin("sphere", 160, 120);
     let mut shades = |lighting| {
         renderer.settings.shading.lighting = lighting;
-        let colors: HashSet<_> = colors(&mut renderer).into_iter().filter(|c| *c != BLACK).collect();
+        let colors: HashSet<_> =
+            colors(&mut renderer).into_iter().filter(|c| *c != BLACK).collect();
         colors.len()
     };
     assert_eq!(shades(false), 1, "a flat disc");
@@ -43,11 +46,16 @@ fn l7_flat_one_colour_per_face() {
 
 /// A glossy square that faces the viewer, with a light that is mirrored in its middle.
 fn square_with_highlight(shading: Shading) -> Vec<[u8; 4]> {
-    let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.1; 3], ks: [0.9; 3], shininess: 100.0 };
+    let reflectance =
+        Reflectance::Phong { ka: [0.0; 3], kd: [0.1; 3], ks: [0.9; 3], shininess: 100.0 };
     let square = solids::plane(2.0, 2.0, 1, 1);
     let mut scene = one(square, Material { reflectance, ..Material::default() });
-    scene.nodes[0].transform = NodeTransform::Matrix(DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2));
-    scene.lights = vec![Light { kind: LightKind::Point { position: DVec3::new(0.0, 0.0, 3.0) }, ..sun(DVec3::Z, 1.0) }];
+    scene.nodes[0].transform =
+        NodeTransform::Matrix(DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2));
+    scene.lights = vec![Light {
+        kind: LightKind::Point { position: DVec3::new(0.0, 0.0, 3.0) },
+        ..sun(DVec3::Z, 1.0)
+    }];
     let mut renderer = exact(scene, 101, 101);
     renderer.camera = Some(on_z(4.0, 0.6));
     renderer.settings.shading.model = shading;
@@ -57,7 +65,8 @@ fn square_with_highlight(shading: Shading) -> Vec<[u8; 4]> {
 #[test]
 fn l10_a_highlight_in_the_middle_of_a_face_is_lost_by_gouraud() {
     let middle = 50 * 101 + 50;
-    let (phong, gouraud) = (square_with_highlight(Shading::Phong), square_with_highlight(Shading::Gouraud));
+    let (phong, gouraud) =
+        (square_with_highlight(Shading::Phong), square_with_highlight(Shading::Gouraud));
     assert!(phong[middle][0] > 240, "the highlight: {:?}", phong[middle]);
     assert!(gouraud[middle][0] < 40, "between dull corners: {:?}", gouraud[middle]);
 }
@@ -122,7 +131,8 @@ fn l19_one_field_changes_one_term_and_linearly() {
     }
 }
 
-/// Where light from `light` is mirrored by the unit sphere towards `eye`: by bisection on the arc between the two.
+/// Where light from `light` is mirrored by the unit sphere towards `eye`: by bisection on the arc
+/// between the two.
 fn mirror_point(light: DVec3, eye: DVec3) -> DVec3 {
     let (a, b) = (light.normalize(), eye.normalize());
     let (mut low, mut high) = (0.0, 1.0);
@@ -139,14 +149,20 @@ fn mirror_point(light: DVec3, eye: DVec3) -> DVec3 {
 
 #[test]
 fn l20_highlight_lies_where_a_mirror_would_show_the_light() {
-    let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [1.0; 3], shininess: 200.0 };
-    let mut renderer =
-        exact(one(solids::sphere(1.0, 128, 64), Material { reflectance, ..Material::default() }), 320, 240);
+    let reflectance =
+        Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [1.0; 3], shininess: 200.0 };
+    let mut renderer = exact(
+        one(solids::sphere(1.0, 128, 64), Material { reflectance, ..Material::default() }),
+        320,
+        240,
+    );
     let eye = DVec3::new(0.5, 0.8, 5.0);
     renderer.camera = Some(Camera { position: eye, ..on_z(1.0, 0.5) });
     let mut last: Option<(DVec2, DVec2)> = None;
-    for light in [DVec3::new(-3.0, 3.0, 6.0), DVec3::new(0.0, 4.0, 6.0), DVec3::new(4.0, 1.0, 5.0)] {
-        renderer.lights = Some(vec![Light { kind: LightKind::Point { position: light }, ..sun(DVec3::Z, 1.0) }]);
+    for light in [DVec3::new(-3.0, 3.0, 6.0), DVec3::new(0.0, 4.0, 6.0), DVec3::new(4.0, 1.0, 5.0)]
+    {
+        renderer.lights =
+            Some(vec![Light { kind: LightKind::Point { position: light }, ..sun(DVec3::Z, 1.0) }]);
         let (mut sum, mut weight) = (DVec2::ZERO, 0.0);
         for (i, color) in colors(&mut renderer).iter().enumerate() {
             let place = DVec2::new((i % 320) as f64 + 0.5, (i / 320) as f64 + 0.5);
@@ -158,16 +174,21 @@ fn l20_highlight_lies_where_a_mirror_would_show_the_light() {
         // The lamp is behind the viewer: what counts is how it moves across the view.
         let lamp = DVec2::new(light.x, -light.y);
         if let Some((seen_before, lamp_before)) = last {
-            assert!((seen - seen_before).dot(lamp - lamp_before) > 0.0, "it moves the way the light does");
+            assert!(
+                (seen - seen_before).dot(lamp - lamp_before) > 0.0,
+                "it moves the way the light does"
+            );
         }
         last = Some((seen, lamp));
     }
 }
 
-/// The sphere in white, moved as a whole (with the camera) by `offset`, with or without exercise 5.1.
+/// The sphere in white, moved as a whole (with the camera) by `offset`, with or without exercise
+/// 5.1.
 fn white_sphere(offset: DVec3, exercise: bool) -> Vec<[u8; 4]> {
     let white = Reflectance::Phong { ka: [0.4; 3], kd: [0.5; 3], ks: [0.3; 3], shininess: 20.0 };
-    let mut scene = one(solids::sphere(1.0, 48, 24), Material { reflectance: white, ..Material::default() });
+    let mut scene =
+        one(solids::sphere(1.0, 48, 24), Material { reflectance: white, ..Material::default() });
     scene.nodes[0].transform = NodeTransform::Matrix(DMat4::from_translation(offset));
     scene.lights = vec![sun(DVec3::new(-0.5, 1.0, 1.0), 0.3)];
     if exercise {
@@ -195,7 +216,8 @@ fn l21_exercise_5_1_a_green_light_at_infinity() {
     assert!(largest_difference(&after, &moved) <= 1, "a translation does not change it");
 }
 
-/// The colours of each object of scene 0 without normals, its front halves alone where it is `open`, under directional lights, for a viewer at infinity.
+/// The colours of each object of scene 0 without normals, its front halves alone where it is
+/// `open`, under directional lights, for a viewer at infinity.
 fn without_normals(turn: f64, open: bool) -> BTreeMap<u32, HashSet<[u8; 4]>> {
     let mut scene = load_builtin("scene0").unwrap();
     if open {
@@ -205,7 +227,11 @@ fn without_normals(turn: f64, open: bool) -> BTreeMap<u32, HashSet<[u8; 4]>> {
             let triangles: Vec<_> = mesh.triangles.iter().copied().step_by(2).collect();
             let material = mesh.parts[0].material;
             *mesh = Mesh { triangles, positions: mesh.positions.clone(), ..Mesh::default() };
-            mesh.parts = vec![Part { name: String::new(), triangles: 0..mesh.triangles.len() as u32, material }];
+            mesh.parts = vec![Part {
+                name: String::new(),
+                triangles: 0..mesh.triangles.len() as u32,
+                material,
+            }];
         }
     }
     lab::exercise_5_2(&mut scene);
@@ -220,7 +246,8 @@ fn without_normals(turn: f64, open: bool) -> BTreeMap<u32, HashSet<[u8; 4]>> {
     renderer.settings.picture.channels = all_channels();
     let frame = renderer.render().unwrap().frame;
     // The floor has two materials: tell objects apart by object and material.
-    let ids = frame.object.unwrap().into_data().into_iter().zip(frame.material.unwrap().into_data());
+    let ids =
+        frame.object.unwrap().into_data().into_iter().zip(frame.material.unwrap().into_data());
     let mut of_object: BTreeMap<u32, HashSet<[u8; 4]>> = BTreeMap::new();
     for ((object, material), color) in
         ids.zip(frame.color.unwrap().into_data()).filter(|((o, _), _)| *o != Frame::BACKGROUND)
@@ -237,7 +264,11 @@ fn l22_exercise_5_2_without_normals_one_colour_per_object() {
         assert!(still.len() >= objects, "{}", still.len());
         for (object, colors) in &still {
             assert_eq!(colors.len(), 1, "object {object}, open: {open}");
-            assert_ne!(turned.get(object), Some(colors), "object {object} changes its colour as it turns");
+            assert_ne!(
+                turned.get(object),
+                Some(colors),
+                "object {object} changes its colour as it turns"
+            );
         }
     }
 }
@@ -249,15 +280,20 @@ fn p30_self_luminous_objects_have_one_value_each() {
     renderer.settings.picture.channels = all_channels();
     let frame = renderer.render().unwrap().frame;
     let mut of_material: BTreeMap<u32, HashSet<[u8; 4]>> = BTreeMap::new();
-    for (material, color) in frame.material.unwrap().data().iter().zip(frame.color.unwrap().data()) {
+    for (material, color) in frame.material.unwrap().data().iter().zip(frame.color.unwrap().data())
+    {
         of_material.entry(*material).or_default().insert(*color);
     }
-    assert!(of_material.len() > 8 && of_material.values().all(|colors| colors.len() == 1), "{of_material:?}");
+    assert!(
+        of_material.len() > 8 && of_material.values().all(|colors| colors.len() == 1),
+        "{of_material:?}"
+    );
 }
 
 #[test]
 fn p33_lambert_looks_the_same_from_everywhere() {
-    // Flat shading illuminates each face at its centre, so that both cameras see the very same points.
+    // Flat shading illuminates each face at its centre, so that both cameras see the very same
+    // points.
     let mut renderer = exact_builtin("sphere", 200, 200);
     renderer.settings.shading.model = Shading::Flat;
     renderer.settings.shading.illumination = Illumination::Lambert;
@@ -265,7 +301,10 @@ fn p33_lambert_looks_the_same_from_everywhere() {
     let mut faces = |position: DVec3, projection| -> BTreeMap<u32, [u8; 4]> {
         renderer.camera = Some(Camera { position, projection, ..on_z(1.0, 0.6) });
         let frame = renderer.render().unwrap().frame;
-        colors_and_ids(&frame).map(|(color, id)| (id, color)).filter(|(id, _)| *id != Frame::BACKGROUND).collect()
+        colors_and_ids(&frame)
+            .map(|(color, id)| (id, color))
+            .filter(|(id, _)| *id != Frame::BACKGROUND)
+            .collect()
     };
     let one = faces(DVec3::new(1.0, 1.0, 4.0), Projection::Perspective { view_angle: 0.6 });
     let other = faces(DVec3::new(3.0, -0.5, 2.0), Projection::Parallel { height: 2.5 });
@@ -279,19 +318,34 @@ fn p33_lambert_looks_the_same_from_everywhere() {
 
 /// The brightest pixel of a sphere under a light of this specular colour.
 fn highlight(reflectance: Reflectance, model: Illumination, light: [f32; 3]) -> [f32; 3] {
-    let mut renderer: Renderer =
-        exact(one(solids::sphere(1.0, 96, 48), Material { reflectance, ..Material::default() }), 200, 200);
+    let mut renderer: Renderer = exact(
+        one(solids::sphere(1.0, 96, 48), Material { reflectance, ..Material::default() }),
+        200,
+        200,
+    );
     renderer.settings.shading.illumination = model;
     renderer.camera = Some(on_z(5.0, 0.5));
     let sun = sun(DVec3::new(0.3, 0.4, 1.0), 1.0);
     renderer.lights = Some(vec![Light { diffuse: light, specular: light, ..sun }]);
-    let brightest = colors(&mut renderer).into_iter().max_by_key(|c| c[..3].iter().map(|&v| u32::from(v)).sum::<u32>());
-    brightest.unwrap()[..3].iter().map(|&v| f32::from(v) / 255.0).collect::<Vec<_>>().try_into().unwrap()
+    let brightest = colors(&mut renderer)
+        .into_iter()
+        .max_by_key(|c| c[..3].iter().map(|&v| u32::from(v)).sum::<u32>());
+    brightest.unwrap()[..3]
+        .iter()
+        .map(|&v| f32::from(v) / 255.0)
+        .collect::<Vec<_>>()
+        .try_into()
+        .unwrap()
 }
 
 #[test]
 fn p35_the_highlight_on_an_apple_has_the_colour_of_the_light() {
-    let apple = Reflectance::Phong { ka: [0.3, 0.0, 0.0], kd: [0.1, 0.0, 0.0], ks: [0.9; 3], shininess: 60.0 };
+    let apple = Reflectance::Phong {
+        ka: [0.3, 0.0, 0.0],
+        kd: [0.1, 0.0, 0.0],
+        ks: [0.9; 3],
+        shininess: 60.0,
+    };
     for light in [[1.0, 1.0, 1.0], [0.4, 0.7, 1.0]] {
         let seen = highlight(apple, Illumination::Phong, light);
         for k in 0..3 {
@@ -299,9 +353,16 @@ fn p35_the_highlight_on_an_apple_has_the_colour_of_the_light() {
         }
     }
     // A metal tints it.
-    let gold = Reflectance::MetallicRoughness { base_color: [1.0, 0.75, 0.3], metallic: 1.0, roughness: 0.7 };
+    let gold = Reflectance::MetallicRoughness {
+        base_color: [1.0, 0.75, 0.3],
+        metallic: 1.0,
+        roughness: 0.7,
+    };
     let seen = highlight(gold, Illumination::CookTorrance, [0.6; 3]);
-    assert!((seen[1] / seen[0] - 0.75).abs() < 0.05 && (seen[2] / seen[0] - 0.3).abs() < 0.05, "{seen:?}");
+    assert!(
+        (seen[1] / seen[0] - 0.75).abs() < 0.05 && (seen[2] / seen[0] - 0.3).abs() < 0.05,
+        "{seen:?}"
+    );
 }
 
 #[test]
@@ -335,16 +396,22 @@ fn l16_lights_stay_in_the_world_while_the_objects_move() {
 
 #[test]
 fn an_occlusion_texture_takes_ambient_light_only() {
-    let dark = Texture::new("dark".into(), Plane::filled(1, 1, [0, 255, 255, 255]), Encoding::Linear);
+    let dark =
+        Texture::new("dark".into(), Plane::filled(1, 1, [0, 255, 255, 255]), Encoding::Linear);
     let middle = |illumination, ambient: f32, suns: &[Light], strength| {
         let material = Material {
-            reflectance: Reflectance::MetallicRoughness { base_color: [1.0; 3], metallic: 0.0, roughness: 1.0 },
+            reflectance: Reflectance::MetallicRoughness {
+                base_color: [1.0; 3],
+                metallic: 0.0,
+                roughness: 1.0,
+            },
             occlusion_texture: Some(TextureRef::new(0)),
             occlusion_strength: strength,
             ..Material::default()
         };
         let mut scene = one(solids::plane(2.0, 2.0, 1, 1), material);
-        scene.nodes[0].transform = NodeTransform::Matrix(DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2));
+        scene.nodes[0].transform =
+            NodeTransform::Matrix(DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2));
         scene.textures.push(std::sync::Arc::new(dark.clone()));
         (scene.ambient, scene.lights) = ([ambient; 3], suns.to_vec());
         let mut renderer = exact(scene, 33, 33);
@@ -355,7 +422,10 @@ fn an_occlusion_texture_takes_ambient_light_only() {
     // A light that is out keeps the lights of a scene without any away.
     let out = [sun(DVec3::Z, 0.0)];
     for illumination in [Illumination::Ambient, Illumination::Phong, Illumination::CookTorrance] {
-        assert_eq!([0.0, 0.5, 1.0].map(|strength| middle(illumination, 0.8, &out, strength)), [204, 102, 0]);
+        assert_eq!(
+            [0.0, 0.5, 1.0].map(|strength| middle(illumination, 0.8, &out, strength)),
+            [204, 102, 0]
+        );
     }
     for illumination in [Illumination::Lambert, Illumination::CookTorrance] {
         let lit = |strength| middle(illumination, 0.0, &[sun(DVec3::Z, 0.5)], strength);
@@ -365,8 +435,10 @@ fn an_occlusion_texture_takes_ambient_light_only() {
 
 #[test]
 fn a_light_in_the_plane_of_a_wall_leaves_no_specks() {
-    // A turned box under a light straight above: N·L of its walls is rounding, here above zero and there below.
-    let reflectance = Reflectance::Phong { ka: [0.1; 3], kd: [0.7; 3], ks: [0.9; 3], shininess: 5.0 };
+    // A turned box under a light straight above: N·L of its walls is rounding, here above zero and
+    // there below.
+    let reflectance =
+        Reflectance::Phong { ka: [0.1; 3], kd: [0.7; 3], ks: [0.9; 3], shininess: 5.0 };
     let mut scene = Scene::default();
     let material = Some(scene.add_material(Material { reflectance, ..Material::default() }));
     let mut cube = solids::cuboid(DVec3::splat(2.0));
@@ -375,9 +447,11 @@ fn a_light_in_the_plane_of_a_wall_leaves_no_specks() {
     scene.ambient = [1.0; 3];
     let lamp = LightKind::Point { position: DVec3::new(1.2, 9.0, 0.7) };
     for light in [sun(DVec3::Y, 1.0), Light { kind: lamp, ..Light::default() }] {
-        for (illumination, shadows) in
-            [(Illumination::Phong, "none"), (Illumination::BlinnPhong, "none"), (Illumination::BlinnPhong, "ray")]
-        {
+        for (illumination, shadows) in [
+            (Illumination::Phong, "none"),
+            (Illumination::BlinnPhong, "none"),
+            (Illumination::BlinnPhong, "ray"),
+        ] {
             // The lamp is in the plane of no wall: it only must not be forgotten.
             let in_plane = matches!(light.kind, LightKind::Directional { .. });
             let mut renderer = exact(scene.clone(), 400, 300);
@@ -387,8 +461,14 @@ fn a_light_in_the_plane_of_a_wall_leaves_no_specks() {
             let camera = on_z(1.0, 0.7);
             let (position, view_up) = (DVec3::new(2.9, -2.9, 3.3), DVec3::new(0.3, 1.0, 0.0));
             renderer.camera = Some(Camera { position, view_up, ..camera });
-            let shades: HashSet<_> = colors(&mut renderer).into_iter().filter(|c| *c != BLACK).collect();
-            assert_eq!(shades.len() == 1, in_plane, "{illumination}, shadows {shadows}: {}", shades.len());
+            let shades: HashSet<_> =
+                colors(&mut renderer).into_iter().filter(|c| *c != BLACK).collect();
+            assert_eq!(
+                shades.len() == 1,
+                in_plane,
+                "{illumination}, shadows {shadows}: {}",
+                shades.len()
+            );
         }
     }
 }
@@ -409,7 +489,9 @@ fn photometric_lights_are_exposed_unless_an_intensity_is_asked_for_and_the_pictu
         renderer.render().unwrap()
     };
     let named = |file: &[u8]| file.windows(13).any(|w| w == b"tEXtExposure\0");
-    for (strength, photometric, intensity) in [(4096.0, true, Some(1.0)), (4096.0, false, None), (1.0, false, None)] {
+    for (strength, photometric, intensity) in
+        [(4096.0, true, Some(1.0)), (4096.0, false, None), (1.0, false, None)]
+    {
         let shown = picture(strength, photometric, intensity);
         assert!(shown.warnings.is_empty() && shown.exposure == 1.0, "{:?}", shown.warnings);
         assert!(!named(&shown.encode(vitral::PictureFormat::Png).unwrap()));
@@ -420,22 +502,34 @@ fn photometric_lights_are_exposed_unless_an_intensity_is_asked_for_and_the_pictu
         let shown = picture(strength, true, None);
         let factor = shown.exposure;
         assert!(factor * strength > 0.1 && factor * strength < 10.0, "{factor}");
-        assert!(shown.warnings.len() == 1 && shown.warnings[0].contains("photometric"), "{:?}", shown.warnings);
+        assert!(
+            shown.warnings.len() == 1 && shown.warnings[0].contains("photometric"),
+            "{:?}",
+            shown.warnings
+        );
         assert!(named(&shown.encode(vitral::PictureFormat::Png).unwrap()));
         let pixels = shown.frame.color.unwrap().into_data();
-        let most = pixels.iter().flat_map(|c| c[..3].iter().copied()).filter(|&c| c > 60 && c < 250).count();
+        let most = pixels
+            .iter()
+            .flat_map(|c| c[..3].iter().copied())
+            .filter(|&c| c > 60 && c < 250)
+            .count();
         assert!(most > 500, "{strength}: {most}");
     }
 }
 
-/// A lamp that moves by a step changes the picture by a step: a white plane under a lamp of the `1 / d²` law.
+/// A lamp that moves by a step changes the picture by a step: a white plane under a lamp of the
+/// `1 / d²` law.
 #[test]
 fn a_lamp_of_a_scene_file_that_moves_away_gets_darker_by_the_law() {
     let shade = |d: f64| {
-        let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
-        let mut scene = one(solids::plane(0.4, 0.4, 1, 1), Material { reflectance, ..Material::default() });
+        let reflectance =
+            Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+        let mut scene =
+            one(solids::plane(0.4, 0.4, 1, 1), Material { reflectance, ..Material::default() });
         let kind = LightKind::Point { position: DVec3::Y * d };
-        scene.lights = vec![Light { kind, attenuation: Attenuation::InverseSquare, ..Light::default() }];
+        scene.lights =
+            vec![Light { kind, attenuation: Attenuation::InverseSquare, ..Light::default() }];
         let mut renderer = exact(scene, 20, 20);
         renderer.settings.picture.color_space = ColorSpace::Srgb;
         renderer.view = View::Top;
@@ -449,8 +543,10 @@ fn a_lamp_of_a_scene_file_that_moves_away_gets_darker_by_the_law() {
 #[test]
 fn raw_colours_are_those_of_the_lights_added_up() {
     let shade = |strengths: &[f32]| {
-        let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.5; 3], ks: [0.0; 3], shininess: 1.0 };
-        let mut scene = one(solids::plane(4.0, 4.0, 1, 1), Material { reflectance, ..Material::default() });
+        let reflectance =
+            Reflectance::Phong { ka: [0.0; 3], kd: [0.5; 3], ks: [0.0; 3], shininess: 1.0 };
+        let mut scene =
+            one(solids::plane(4.0, 4.0, 1, 1), Material { reflectance, ..Material::default() });
         scene.lights = strengths.iter().map(|&strength| sun(DVec3::Y, strength)).collect();
         let mut renderer = exact(scene, 20, 20);
         renderer.view = View::Top;
@@ -458,28 +554,39 @@ fn raw_colours_are_those_of_the_lights_added_up() {
         assert!(rendered.warnings.is_empty(), "{:?}", rendered.warnings);
         rendered.frame.color.unwrap().at(10, 10)[0]
     };
-    assert_eq!([shade(&[0.02]), shade(&[0.2]), shade(&[0.02, 0.2]), shade(&[30.0])], [3, 26, 28, 255]);
+    assert_eq!(
+        [shade(&[0.02]), shade(&[0.2]), shade(&[0.02, 0.2]), shade(&[30.0])],
+        [3, 26, 28, 255]
+    );
 }
 
 /// Ambient light alone: the formula's first term, and no light that nobody asked for.
 #[test]
 fn p31_a_scene_with_ambient_light_alone_has_no_other() {
-    let reflectance = Reflectance::Phong { ka: [0.5; 3], kd: [0.5; 3], ks: [0.5; 3], shininess: 1.0 };
-    let mut scene = one(solids::plane(4.0, 4.0, 1, 1), Material { reflectance, ..Material::default() });
+    let reflectance =
+        Reflectance::Phong { ka: [0.5; 3], kd: [0.5; 3], ks: [0.5; 3], shininess: 1.0 };
+    let mut scene =
+        one(solids::plane(4.0, 4.0, 1, 1), Material { reflectance, ..Material::default() });
     scene.ambient = [0.5, 0.25, 0.0];
     let mut renderer = exact(scene, 20, 20);
     renderer.view = View::Top;
     assert_eq!(colors(&mut renderer)[210], [64, 32, 0, 255]);
 }
 
-/// A facet that has the light in its plane gets nothing of it, wherever rounding puts the light: the picture shows what the channel
-/// says.
+/// A facet that has the light in its plane gets nothing of it, wherever rounding puts the light:
+/// the picture shows what the channel says.
 #[test]
 fn a_light_in_the_plane_of_a_facet_leaves_no_specks() {
     for shadows in ["ray", "map", "volume", "scan-line", "object-precision"] {
-        let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.8; 3], ks: [0.0; 3], shininess: 1.0 };
+        let reflectance =
+            Reflectance::Phong { ka: [0.0; 3], kd: [0.8; 3], ks: [0.0; 3], shininess: 1.0 };
         let mesh = Mesh {
-            positions: vec![[0.0, 0.0, -2.0], [0.0, 0.5, -1.0], [1.0, 0.5, -1.0], [1.0, -0.5, -2.0]],
+            positions: vec![
+                [0.0, 0.0, -2.0],
+                [0.0, 0.5, -1.0],
+                [1.0, 0.5, -1.0],
+                [1.0, -0.5, -2.0],
+            ],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             parts: vec![Part { name: String::new(), triangles: 0..2, material: None }],
             // As of the polygon: both facets' alike.
@@ -501,9 +608,13 @@ fn a_light_in_the_plane_of_a_facet_leaves_no_specks() {
         renderer.settings.picture.channels = all_channels();
         let frame = renderer.render().unwrap().frame;
         let attached = frame.attached_shadow.as_ref().unwrap().data().to_vec();
-        let in_plane: Vec<_> = colors_and_ids(&frame).zip(attached).filter(|((_, id), _)| *id == 1).collect();
+        let in_plane: Vec<_> =
+            colors_and_ids(&frame).zip(attached).filter(|((_, id), _)| *id == 1).collect();
         assert!(in_plane.len() > 100, "{} pixels", in_plane.len());
-        let lit = in_plane.iter().filter(|((color, _), attached)| *color != BLACK || *attached != 1.0).count();
+        let lit = in_plane
+            .iter()
+            .filter(|((color, _), attached)| *color != BLACK || *attached != 1.0)
+            .count();
         assert_eq!(lit, 0, "{shadows}: of {}", in_plane.len());
     }
 }
@@ -525,17 +636,36 @@ fn a_white_texture_changes_not_a_bit() {
         let lamp = LightKind::Point { position: DVec3::new(0.0, 2.0, 3.0) };
         scene.lights.push(Light { kind: lamp, ..Light::default() });
         let mut renderer = exact(scene, 90, 70);
-        (renderer.settings.shading.illumination, renderer.settings.picture.samples) = (illumination, 4);
+        (renderer.settings.shading.illumination, renderer.settings.picture.samples) =
+            (illumination, 4);
         colors(&mut renderer)
     };
-    let phong = Reflectance::Phong { ka: [0.1, 0.2, 0.3], kd: [0.7, 0.3, 0.5], ks: [0.9; 3], shininess: 17.0 };
-    let rough = Reflectance::MetallicRoughness { base_color: [0.9, 0.4, 0.2], metallic: 0.6, roughness: 0.4 };
-    let models = [Illumination::Lambert, Illumination::Phong, Illumination::BlinnPhong, Illumination::CookTorrance];
-    for (reflectance, illumination, opacity) in
-        [phong, rough].iter().flat_map(|r| models.iter().flat_map(move |m| [1.0, 0.5].map(|o| (*r, *m, o))))
+    let phong = Reflectance::Phong {
+        ka: [0.1, 0.2, 0.3],
+        kd: [0.7, 0.3, 0.5],
+        ks: [0.9; 3],
+        shininess: 17.0,
+    };
+    let rough = Reflectance::MetallicRoughness {
+        base_color: [0.9, 0.4, 0.2],
+        metallic: 0.6,
+        roughness: 0.4,
+    };
+    let models = [
+        Illumination::Lambert,
+        Illumination::Phong,
+        Illumination::BlinnPhong,
+        Illumination::CookTorrance,
+    ];
+    for (reflectance, illumination, opacity) in [phong, rough]
+        .iter()
+        .flat_map(|r| models.iter().flat_map(move |m| [1.0, 0.5].map(|o| (*r, *m, o))))
     {
         let plain = picture(reflectance, illumination, opacity, false);
         assert!(plain.iter().collect::<HashSet<_>>().len() > 200, "{illumination}");
-        assert!(plain == picture(reflectance, illumination, opacity, true), "{reflectance:?} {illumination} {opacity}");
+        assert!(
+            plain == picture(reflectance, illumination, opacity, true),
+            "{reflectance:?} {illumination} {opacity}"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! P21, P22: painter's list and the BSP tree over the faces of the file, counted by hand, and the steps that tell them.
+//! P21, P22: painter's list and the BSP tree over the faces of the file, counted by hand, and the
+//! steps that tell them.
 
 use super::common::exact;
 use super::traps;
@@ -8,8 +9,8 @@ use vitral::internals::render::trace::lists::{ListTest, ListVerdict, PlaneSide};
 use vitral::internals::render::trace::structure::{bsp_tree_svg, depth_sort_svg};
 use vitral::internals::render::trace::{Observer, Step};
 use vitral::{
-    Camera, DMat4, DVec3, Execution, Mesh, Projection, Renderer, Scene, Visibility, Workers, load_builtin, load_bytes,
-    solids,
+    Camera, DMat4, DVec3, Execution, Mesh, Projection, Renderer, Scene, Visibility, Workers,
+    load_builtin, load_bytes, solids,
 };
 
 #[derive(Debug, Default)]
@@ -57,17 +58,28 @@ fn p21_three_bars_in_a_circle_are_cut_once() {
     let Step::FirstOrder { polygons } = &steps[0] else { panic!("{:?}", steps[0]) };
     let facets: Vec<_> = polygons.iter().map(|p| p.facet).collect();
     assert_eq!(facets.len(), 3, "{polygons:?}");
-    assert!(polygons.windows(2).all(|p| p[0].far <= p[1].far) && polygons.iter().all(|p| p.far < p.near));
+    assert!(
+        polygons.windows(2).all(|p| p[0].far <= p[1].far)
+            && polygons.iter().all(|p| p.far < p.near)
+    );
 
     // The first to be painted waits for a second, that for the third, and that for the first.
-    let told: Vec<_> = steps.iter().filter(|s| !matches!(s, Step::Compared { .. } | Step::Piece { .. })).collect();
-    let [Step::FirstOrder { .. }, Step::Turn { facet: first, .. }, rest @ ..] = &told[..] else { panic!("{told:?}") };
-    let [Step::Moved { facet: second, before, .. }, Step::Moved { facet: third, before: waits, .. }, rest @ ..] = rest
+    let told: Vec<_> =
+        steps.iter().filter(|s| !matches!(s, Step::Compared { .. } | Step::Piece { .. })).collect();
+    let [Step::FirstOrder { .. }, Step::Turn { facet: first, .. }, rest @ ..] = &told[..] else {
+        panic!("{told:?}")
+    };
+    let [
+        Step::Moved { facet: second, before, .. },
+        Step::Moved { facet: third, before: waits, .. },
+        rest @ ..,
+    ] = rest
     else {
         panic!("{told:?}")
     };
     assert_eq!((first, second), (before, waits));
-    let [Step::Circle { facets, .. }, Step::Split { facet: split, by_facet, parts, .. }, ..] = rest else {
+    let [Step::Circle { facets, .. }, Step::Split { facet: split, by_facet, parts, .. }, ..] = rest
+    else {
         panic!("{told:?}")
     };
     assert_eq!(facets, &[*first, *second, *third]);
@@ -79,7 +91,10 @@ fn p21_three_bars_in_a_circle_are_cut_once() {
         .iter()
         .filter_map(|step| match step {
             Step::Compared { facet, with_facet, test, verdict: ListVerdict::After, .. } => {
-                assert!(matches!(test, ListTest::Overlap | ListTest::ExchangedBehind | ListTest::ExchangedInFront));
+                assert!(matches!(
+                    test,
+                    ListTest::Overlap | ListTest::ExchangedBehind | ListTest::ExchangedInFront
+                ));
                 Some((*facet, *with_facet))
             }
             _ => None,
@@ -97,8 +112,7 @@ fn p21_steps_and_counters_of_the_tests_agree() {
     let mut renderer = exact(load_builtin("cubs").unwrap(), 96, 72);
     let (steps, c) = steps(&mut renderer, Visibility::PAINTER);
     let count = |wanted: &[ListTest]| {
-        let is =
-            |s: &&Step| matches!(s, Step::Compared { test, verdict: ListVerdict::Before, .. } if wanted.contains(test));
+        let is = |s: &&Step| matches!(s, Step::Compared { test, verdict: ListVerdict::Before, .. } if wanted.contains(test));
         steps.iter().filter(is).count() as u64
     };
     assert_eq!(count(&[ListTest::DepthExtent]), c.by_depth_extent);
@@ -119,7 +133,17 @@ type NodeTold = (u32, Option<u32>, Option<PlaneSide>, Option<u32>, [Vec<u32>; 4]
 /// What the nodes of the tree say.
 fn nodes(steps: &[Step]) -> Vec<NodeTold> {
     let node = |step: &Step| match step {
-        Step::TreeNode { node, above: parent, side, splitter, coincident, front, back, cut, .. } => {
+        Step::TreeNode {
+            node,
+            above: parent,
+            side,
+            splitter,
+            coincident,
+            front,
+            back,
+            cut,
+            ..
+        } => {
             let sets = [coincident, front, back, cut].map(|set| set.facets.clone());
             Some((*node, *parent, *side, *splitter, sets))
         }
@@ -132,11 +156,17 @@ fn nodes(steps: &[Step]) -> Vec<NodeTold> {
 fn p22_four_squares_are_cut_three_times() {
     let (steps, counters) = steps(&mut four_squares(), Visibility::BSP);
     let nodes = nodes(&steps);
-    assert_eq!((counters.splits, counters.fragments, counters.pieces), (3, 7, 7), "{counters:?} {nodes:?}");
+    assert_eq!(
+        (counters.splits, counters.fragments, counters.pieces),
+        (3, 7, 7),
+        "{counters:?} {nodes:?}"
+    );
 
     // The root comes first, each node after its parent, and the sets follow from one another.
     assert_eq!((nodes[0].0, nodes[0].1, nodes[0].2), (0, None, None));
-    let below = |set: &[Vec<u32>; 4]| [0, 2, 4, 6].into_iter().filter(|f| set.iter().any(|s| s.contains(f))).count();
+    let below = |set: &[Vec<u32>; 4]| {
+        [0, 2, 4, 6].into_iter().filter(|f| set.iter().any(|s| s.contains(f))).count()
+    };
     assert_eq!(below(&nodes[0].4), 4);
     for (i, (number, parent, side, splitter, [coincident, ..])) in nodes.iter().enumerate() {
         assert!(coincident.contains(&splitter.unwrap()), "{nodes:?}");
@@ -159,15 +189,19 @@ fn p22_four_squares_are_cut_three_times() {
     let visits: Vec<_> = steps
         .iter()
         .filter_map(|step| match step {
-            Step::TreeVisit { order, node, polygons, .. } => Some((*order, *node, polygons.clone())),
+            Step::TreeVisit { order, node, polygons, .. } => {
+                Some((*order, *node, polygons.clone()))
+            }
             _ => None,
         })
         .collect();
     assert_eq!(visits.len(), nodes.len());
     assert!(visits.iter().enumerate().all(|(i, visit)| visit.0 == i as u32));
     let walked: Vec<u32> = visits.iter().flat_map(|visit| visit.2.clone()).collect();
-    let listed: Vec<u32> =
-        steps.iter().filter_map(|s| if let Step::Piece { facet, .. } = s { Some(*facet) } else { None }).collect();
+    let listed: Vec<u32> = steps
+        .iter()
+        .filter_map(|s| if let Step::Piece { facet, .. } = s { Some(*facet) } else { None })
+        .collect();
     assert_eq!(walked, listed, "all of them have samples");
     assert!(bsp_tree_svg(&steps).contains("3 cut(s), 7 polygon(s)"));
 }
@@ -177,8 +211,10 @@ fn p21_p22_steps_are_the_same_with_more_threads_and_in_a_used_session() {
     for visibility in [Visibility::PAINTER, Visibility::BSP] {
         for name in ["cubs", "teapot", "scene1"] {
             let told = |threads: usize| {
-                let execution = Execution { workers: Workers::new(threads), ..Execution::default() };
-                let mut renderer = Renderer::with_execution(load_builtin(name).unwrap(), execution).unwrap();
+                let execution =
+                    Execution { workers: Workers::new(threads), ..Execution::default() };
+                let mut renderer =
+                    Renderer::with_execution(load_builtin(name).unwrap(), execution).unwrap();
                 (renderer.settings.picture.width, renderer.settings.picture.height) = (150, 100);
                 let first = steps(&mut renderer, visibility).0;
                 let second = steps(&mut renderer, visibility).0;
@@ -208,7 +244,12 @@ fn sheet() -> Scene {
 fn p21_p22_depth_overrules_no_list_of_coplanar_faces() {
     let decal = fixture(include_bytes!("../fixtures/coplanar-decal.json"));
     let mut scenes = vec![("decal", decal), ("sheet", exact(sheet(), 128, 128))];
-    scenes.extend(traps::all().into_iter().filter(|(name, _)| *name == "coplanar").map(|(n, s)| (n, exact(s, 96, 96))));
+    scenes.extend(
+        traps::all()
+            .into_iter()
+            .filter(|(name, _)| *name == "coplanar")
+            .map(|(n, s)| (n, exact(s, 96, 96))),
+    );
     assert_eq!(scenes.len(), 3);
     for (name, mut renderer) in scenes {
         for i in 0..12 {
@@ -221,7 +262,10 @@ fn p21_p22_depth_overrules_no_list_of_coplanar_faces() {
             renderer.camera = Some(Camera { projection, ..Camera::look_at(position, DVec3::ZERO) });
             for visibility in [Visibility::PAINTER, Visibility::BSP] {
                 let (steps, counters) = steps(&mut renderer, visibility);
-                assert_eq!(counters.overruled, 0, "{name} from {position}, {visibility:?}: {counters:?}");
+                assert_eq!(
+                    counters.overruled, 0,
+                    "{name} from {position}, {visibility:?}: {counters:?}"
+                );
                 assert!(!steps.iter().any(|step| matches!(step, Step::Overruled { .. })));
             }
         }

@@ -1,10 +1,11 @@
-//! What pictures look like without options: colours as displays show them, forms that read as forms, metals that mirror.
+//! What pictures look like without options: colours as displays show them, forms that read as
+//! forms, metals that mirror.
 
 use crate::pictures::common::one;
 use vitral::internals::io::{ResolveError, Resolver};
 use vitral::{
-    Background, Channel, DVec3, Environment, FileColors, Illumination, LoadOptions, Material, Reflectance, Renderer,
-    Scene, View, load_builtin, load_bytes_with, solids,
+    Background, Channel, DVec3, Environment, FileColors, Illumination, LoadOptions, Material,
+    Reflectance, Renderer, Scene, View, load_builtin, load_bytes_with, solids,
 };
 
 /// Files by name.
@@ -19,7 +20,8 @@ impl Resolver for Files {
 
 /// A square that fills the front view, with a library that holds this.
 fn square(library: &str, options: &LoadOptions) -> Scene {
-    let text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1 4/1\n";
+    let text =
+        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1 4/1\n";
     // Type 2, one pixel of 24 bits.
     let mut texture = vec![0; 21];
     (texture[2], texture[12], texture[14], texture[16]) = (2, 1, 1, 24);
@@ -64,8 +66,12 @@ fn raw_colours_are_the_numbers_of_the_file() {
     let library = file.with_extension("mtl");
     std::fs::write(&library, "newmtl a\nKd 0.69 0.20 0.19\n").unwrap();
     let name = library.file_name().unwrap().to_string_lossy().into_owned();
-    std::fs::write(&file, format!("mtllib {name}\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl a\nf 1 2 3\n")).unwrap();
-    let mut state = vitral::State { models: vec![file.to_string_lossy().into_owned()], ..vitral::State::default() };
+    std::fs::write(&file, format!("mtllib {name}\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl a\nf 1 2 3\n"))
+        .unwrap();
+    let mut state = vitral::State {
+        models: vec![file.to_string_lossy().into_owned()],
+        ..vitral::State::default()
+    };
     let kd = |state: &vitral::State| match state.load_scene().unwrap().materials[0].reflectance {
         Reflectance::Phong { kd, .. } => kd,
         other => panic!("{other:?}"),
@@ -87,29 +93,39 @@ fn a_colour_beside_a_texture_multiplies_only_if_it_is_told_to() {
     // 0.1 is 0.01 in linear light.
     assert_eq!(shown(scene), [26, 7, 0]);
     // Without its texture the colour is all that there is.
-    assert_eq!(shown(square("newmtl a\nKd 1 0 0\nmap_Kd gone.tga\n", &LoadOptions::default())), [255, 0, 0]);
+    assert_eq!(
+        shown(square("newmtl a\nKd 1 0 0\nmap_Kd gone.tga\n", &LoadOptions::default())),
+        [255, 0, 0]
+    );
 }
 
 #[test]
 fn the_edges_of_a_box_are_sharp_inside_a_smoothing_group() {
-    let corners = "v -3 -1 -1\nv 3 -1 -1\nv 3 1 -1\nv -3 1 -1\nv -3 -1 1\nv 3 -1 1\nv 3 1 1\nv -3 1 1\n";
+    let corners =
+        "v -3 -1 -1\nv 3 -1 -1\nv 3 1 -1\nv -3 1 -1\nv -3 -1 1\nv 3 -1 1\nv 3 1 1\nv -3 1 1\n";
     let faces = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
     let picture = |smoothing: &str, crease_angle: Option<f64>| {
         let options = LoadOptions { crease_angle, ..LoadOptions::default() };
         let text = format!("{corners}{smoothing}{faces}");
-        let scene = load_bytes_with(text.as_bytes(), "box.obj", &Files(Vec::new()), &options).unwrap();
+        let scene =
+            load_bytes_with(text.as_bytes(), "box.obj", &Files(Vec::new()), &options).unwrap();
         let mut renderer = sized(scene, 64, 48);
         renderer.render().unwrap().frame.color.unwrap().into_data()
     };
     assert!(picture("s 1\n", None) == picture("", None));
-    assert!(picture("s 1\n", Some(std::f64::consts::PI)) != picture("", None), "a wide angle smooths all");
+    assert!(
+        picture("s 1\n", Some(std::f64::consts::PI)) != picture("", None),
+        "a wide angle smooths all"
+    );
 }
 
 #[test]
 fn polished_metal_shows_a_horizon() {
     let tones = |metallic: f32, roughness: f32, environment: Environment| {
-        let reflectance = Reflectance::MetallicRoughness { base_color: [0.9; 3], metallic, roughness };
-        let ball = one(solids::sphere(1.0, 64, 32), Material { reflectance, ..Material::default() });
+        let reflectance =
+            Reflectance::MetallicRoughness { base_color: [0.9; 3], metallic, roughness };
+        let ball =
+            one(solids::sphere(1.0, 64, 32), Material { reflectance, ..Material::default() });
         let mut renderer = sized(ball, 96, 96);
         renderer.settings.picture.background = Background::Transparent;
         renderer.settings.shading.environment = environment;
@@ -144,14 +160,16 @@ fn models_with_empirical_materials_mirror_no_sky() {
 fn ball_of_points(with_normals: bool) -> Scene {
     let ball = solids::sphere(1.0, 96, 48);
     let mut text = format!("ply\nformat ascii 1.0\nelement vertex {}\n", ball.positions.len());
-    let names = if with_normals { &["x", "y", "z", "nx", "ny", "nz"][..] } else { &["x", "y", "z"] };
+    let names =
+        if with_normals { &["x", "y", "z", "nx", "ny", "nz"][..] } else { &["x", "y", "z"] };
     names.iter().for_each(|name| text += &format!("property float {name}\n"));
     text += "end_header\n";
     for [x, y, z] in &ball.positions {
         text += &format!("{x} {y} {z}");
         text += &if with_normals { format!(" {x} {y} {z}\n") } else { "\n".to_owned() };
     }
-    load_bytes_with(text.as_bytes(), "ball.ply", &Files(Vec::new()), &LoadOptions::default()).unwrap()
+    load_bytes_with(text.as_bytes(), "ball.ply", &Files(Vec::new()), &LoadOptions::default())
+        .unwrap()
 }
 
 #[test]
@@ -165,7 +183,12 @@ fn points_with_normals_are_lit_and_others_grow_paler_with_distance() {
     let grey = |picture: &vitral::Plane<[u8; 4]>, x, y| i32::from(picture.at(x, y)[1]);
     // The key light comes from the upper left, and below it is darkest.
     let lit = shown(ball_of_points(true));
-    assert!(grey(&lit, 36, 30) > grey(&lit, 60, 80) + 60, "{} {}", grey(&lit, 36, 30), grey(&lit, 60, 80));
+    assert!(
+        grey(&lit, 36, 30) > grey(&lit, 60, 80) + 60,
+        "{} {}",
+        grey(&lit, 36, 30),
+        grey(&lit, 60, 80)
+    );
 
     // In the middle the near side is seen, at the rim what is farther away.
     let bare = shown(ball_of_points(false));
@@ -195,13 +218,19 @@ fn the_default_view_looks_slightly_down_and_centres_the_model() {
 
     Channel::Depth.request(&mut renderer.settings.picture.channels);
     let depth = renderer.render().unwrap().frame.depth.unwrap();
-    let seen: Vec<(u32, u32)> =
-        (0..256).flat_map(|y| (0..256).map(move |x| (x, y))).filter(|&(x, y)| *depth.at(x, y) > 0.0).collect();
+    let seen: Vec<(u32, u32)> = (0..256)
+        .flat_map(|y| (0..256).map(move |x| (x, y)))
+        .filter(|&(x, y)| *depth.at(x, y) > 0.0)
+        .collect();
     let margins = |of: fn(&(u32, u32)) -> u32| {
-        let (least, most) = (seen.iter().map(of).min().unwrap(), seen.iter().map(of).max().unwrap());
+        let (least, most) =
+            (seen.iter().map(of).min().unwrap(), seen.iter().map(of).max().unwrap());
         (least, 255 - most)
     };
     let ((left, right), (above, below)) = (margins(|p| p.0), margins(|p| p.1));
-    assert!(left.abs_diff(right) <= 2 && above.abs_diff(below) <= 6, "{left} {right} {above} {below}");
+    assert!(
+        left.abs_diff(right) <= 2 && above.abs_diff(below) <= 6,
+        "{left} {right} {above} {below}"
+    );
     assert!((10..=16).contains(&left), "the model fills the width: {left}");
 }

@@ -1,4 +1,5 @@
-//! Checks that need whole pictures: the course's (docs/course.md), the law of agreement, and what must never fail.
+//! Checks that need whole pictures: the course's (docs/course.md), the law of agreement, and what
+//! must never fail.
 
 mod agreement;
 mod common;

@@ -1,18 +1,19 @@
-//! Normal maps lean the normal along the texture as it lies on the surface, however it is turned, mirrored or seen
-//! (glTF 2.0, 3.7.2.1 and 3.9).
+//! Normal maps lean the normal along the texture as it lies on the surface, however it is turned,
+//! mirrored or seen (glTF 2.0, 3.7.2.1 and 3.9).
 
 use super::common::{colors, exact, on_z, sun};
 use std::sync::Arc;
 use vitral::internals::math::DVec2;
 use vitral::{
-    Attribute, Camera, DMat4, DVec3, Encoding, Illumination, Material, Mesh, Part, Plane, Reflectance, Scene, Texture,
-    TextureRef,
+    Attribute, Camera, DMat4, DVec3, Encoding, Illumination, Material, Mesh, Part, Plane,
+    Reflectance, Scene, Texture, TextureRef,
 };
 
 /// Red and green of the texel: a normal that leans along growing u, and more along falling v.
 const TEXEL: [u8; 4] = [153, 204, 230, 255];
 
-/// A square that faces +z, with texture coordinates that grow along these directions, and one texel all over.
+/// A square that faces +z, with texture coordinates that grow along these directions, and one texel
+/// all over.
 fn square(along_u: DVec2, along_v: DVec2, with_normals: bool, world_from_model: DMat4) -> Scene {
     let corners = [[-1.0f32, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let uv = corners.map(|[x, y]| {
@@ -28,10 +29,20 @@ fn square(along_u: DVec2, along_v: DVec2, with_normals: bool, world_from_model: 
         ..Mesh::default()
     };
     let mut scene = Scene::default();
-    scene.textures.push(Arc::new(Texture::new("leaning".into(), Plane::filled(1, 1, TEXEL), Encoding::Linear)));
-    let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+    scene.textures.push(Arc::new(Texture::new(
+        "leaning".into(),
+        Plane::filled(1, 1, TEXEL),
+        Encoding::Linear,
+    )));
+    let reflectance =
+        Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
     let normal_texture = Some(TextureRef::new(0));
-    scene.add_material(Material { reflectance, normal_texture, double_sided: true, ..Material::default() });
+    scene.add_material(Material {
+        reflectance,
+        normal_texture,
+        double_sided: true,
+        ..Material::default()
+    });
     scene.add_mesh(mesh, world_from_model);
     scene
 }
@@ -59,20 +70,29 @@ fn bumps_stay_bumps_on_mirrored_textures_and_nodes_and_are_dents_from_behind() {
         (quarter, DVec2::new(0.6, -0.8)),
         (-quarter, DVec2::new(0.6, -0.8)),
     ];
-    let scales = [DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, 1.0), DVec3::new(1.0, 1.0, -1.0)];
+    let scales = [
+        DVec3::ONE,
+        DVec3::new(-1.0, 1.0, 1.0),
+        DVec3::new(1.0, -1.0, 1.0),
+        DVec3::new(1.0, 1.0, -1.0),
+    ];
     for ((along_u, along_v), scale, side, with_normals) in cases(&ways, &scales) {
         let scene = square(along_u, along_v, with_normals, DMat4::from_scale(scale));
-        // What the texture says, in the model: the front is where corners run counter-clockwise, which a node does not change.
+        // What the texture says, in the model: the front is where corners run counter-clockwise,
+        // which a node does not change.
         let leaning = (along_u * x - along_v * y).extend(0.0) * scale;
         let front = scale.z * DVec3::Z;
         let normal = (leaning + front * z).normalize();
         let seen_from = DVec3::Z * side;
         let normal = if front.dot(seen_from) > 0.0 { normal } else { -normal };
-        for from in [DVec3::new(0.5, 0.3, side), DVec3::new(-0.4, 0.6, side), DVec3::new(0.2, -0.7, side)] {
+        for from in
+            [DVec3::new(0.5, 0.3, side), DVec3::new(-0.4, 0.6, side), DVec3::new(0.2, -0.7, side)]
+        {
             let shown = shown(&scene, seen_from, from);
             let expected = normal.dot(from.normalize()).max(0.0);
-            let case =
-                format!("u {along_u}, v {along_v}, node {scale}, side {side}, normals {with_normals}, from {from}");
+            let case = format!(
+                "u {along_u}, v {along_v}, node {scale}, side {side}, normals {with_normals}, from {from}"
+            );
             assert!((shown - expected).abs() < 0.02, "{case}: {shown}, not {expected}");
         }
     }
@@ -84,7 +104,9 @@ fn a_files_own_tangents_say_where_the_texture_lies() {
     let along = DVec3::new(0.6, 0.8, 0.0);
     for (scale, side, w) in [DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, 1.0, -1.0)]
         .into_iter()
-        .flat_map(|scale| [1.0, -1.0].into_iter().flat_map(move |side| [1.0, -1.0].map(|w| (scale, side, w))))
+        .flat_map(|scale| {
+            [1.0, -1.0].into_iter().flat_map(move |side| [1.0, -1.0].map(|w| (scale, side, w)))
+        })
     {
         // Texture coordinates say something else, and do not count.
         let mut scene = square(DVec2::X, -DVec2::Y, true, DMat4::from_scale(scale));
@@ -98,7 +120,10 @@ fn a_files_own_tangents_say_where_the_texture_lies() {
         for from in [DVec3::new(0.5, 0.3, side), DVec3::new(-0.4, 0.6, side)] {
             let shown = shown(&scene, seen_from, from);
             let expected = normal.dot(from.normalize()).max(0.0);
-            assert!((shown - expected).abs() < 0.02, "node {scale}, side {side}, w {w}: {shown}, not {expected}");
+            assert!(
+                (shown - expected).abs() < 0.02,
+                "node {scale}, side {side}, w {w}: {shown}, not {expected}"
+            );
         }
     }
 }

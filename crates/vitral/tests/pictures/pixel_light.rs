@@ -1,12 +1,13 @@
-//! The explanation of a pixel: its terms add up to its bytes, and it is the pixel of the whole picture.
+//! The explanation of a pixel: its terms add up to its bytes, and it is the pixel of the whole
+//! picture.
 
 use super::common::*;
 use serde_json::Value;
 use vitral::explain::{Deciders, Explanation, explain};
 use vitral::internals::math::func;
 use vitral::{
-    Attenuation, ColorSpace, DVec3, Global, Illumination, Light, LightKind, Renderer, Shading, Shadows, Transparency,
-    Visibility, load_builtin,
+    Attenuation, ColorSpace, DVec3, Global, Illumination, Light, LightKind, Renderer, Shading,
+    Shadows, Transparency, Visibility, load_builtin,
 };
 
 fn rgb(v: &Value) -> [f32; 3] {
@@ -46,17 +47,30 @@ fn reflected(e: &Value) -> [[f32; 3]; 2] {
             let (kd, ks) = (rgb(&k["kd"]), rgb(&k["ks"]));
             let f_ambient = single(&light["ambient-intensity"]);
             near(rgb(&light["ambient"]), each(|c| ka[c] * ambient[c] * f_ambient), "ambient term");
-            let caught = light["irradiance"].as_f64().map_or(f * n_l, |irradiance| irradiance as f32);
-            near(rgb(&light["diffuse"]), each(|c| kd[c] * of_diffuse[c] * (s[c] * caught)), "diffuse term");
+            let caught =
+                light["irradiance"].as_f64().map_or(f * n_l, |irradiance| irradiance as f32);
+            near(
+                rgb(&light["diffuse"]),
+                each(|c| kd[c] * of_diffuse[c] * (s[c] * caught)),
+                "diffuse term",
+            );
             let highlight = &light["highlight"];
             let lobe = highlight["lobe"].as_f64().unwrap_or(0.0) as f32;
-            near(rgb(&light["specular"]), each(|c| ks[c] * of_specular[c] * (s[c] * f * lobe)), "specular term");
+            near(
+                rgb(&light["specular"]),
+                each(|c| ks[c] * of_specular[c] * (s[c] * f * lobe)),
+                "specular term",
+            );
             if highlight.is_object() {
                 let cosine = single(&highlight["cosine"]);
-                let expected =
-                    if highlight["r"].is_array() { dot(rgb(&highlight["r"]), v) } else { dot(rgb(&highlight["h"]), n) };
+                let expected = if highlight["r"].is_array() {
+                    dot(rgb(&highlight["r"]), v)
+                } else {
+                    dot(rgb(&highlight["h"]), n)
+                };
                 assert!((cosine - expected).abs() < 1e-5);
-                let power = func::pow(f64::from(cosine.max(0.0)), f64::from(single(&k["shininess"])));
+                let power =
+                    func::pow(f64::from(cosine.max(0.0)), f64::from(single(&k["shininess"])));
                 assert!((power - f64::from(lobe)).abs() < 1e-4, "{light}");
             }
         }
@@ -82,8 +96,9 @@ fn color_of(p: &Value) -> [f32; 4] {
         corners => {
             assert_eq!(corners.len(), 3);
             let (w, of) = (rgb(&p["weights"]), [0, 1, 2].map(|i| reflected(&corners[i])));
-            let blend =
-                |which: usize| each(|c| w[0] * of[0][which][c] + w[1] * of[1][which][c] + w[2] * of[2][which][c]);
+            let blend = |which: usize| {
+                each(|c| w[0] * of[0][which][c] + w[1] * of[1][which][c] + w[2] * of[2][which][c])
+            };
             let texture = rgb(&p["texture"]);
             [each(|c| blend(0)[c] * texture[c]), blend(1)]
         }
@@ -92,7 +107,8 @@ fn color_of(p: &Value) -> [f32; 4] {
     if p["interreflection"].is_array() {
         diffuse = each(|c| diffuse[c] + single(&p["interreflection"][c]));
     }
-    let (emission, alpha, coverage) = (rgb(&p["emission"]), single(&p["alpha"]), single(&p["coverage"]));
+    let (emission, alpha, coverage) =
+        (rgb(&p["emission"]), single(&p["alpha"]), single(&p["coverage"]));
     let mut color = if p["keeps-specular"] == true {
         each(|c| (diffuse[c] + emission[c]) * alpha + specular[c] * coverage)
     } else {
@@ -124,7 +140,8 @@ fn bytes_of(told: &Explanation, raw: bool) -> [u8; 4] {
         let color = rgba(&sample["color"]);
         assert_eq!(point.unwrap_or_else(|| rgba(&sample["behind"])), rgba(&sample["behind"]));
         if let [layer] = &sample["layers"].as_array().unwrap()[..] {
-            let (over, passes, under) = (rgba(&layer["color"]), rgb(&layer["passes"]), rgba(&sample["behind"]));
+            let (over, passes, under) =
+                (rgba(&layer["color"]), rgb(&layer["passes"]), rgba(&sample["behind"]));
             near(rgb(&sample["color"]), each(|c| over[c] + passes[c] * under[c]), "one layer");
         } else if sample["layers"].as_array().unwrap().is_empty() {
             assert_eq!(color, rgba(&sample["behind"]));
@@ -132,14 +149,23 @@ fn bytes_of(told: &Explanation, raw: bool) -> [u8; 4] {
         (0..4).for_each(|k| sum[k] += color[k]);
         behind.push(color);
     }
-    let mean = if behind.iter().all(|c| *c == behind[0]) { behind[0] } else { sum.map(|s| s / samples.len() as f32) };
+    let mean = if behind.iter().all(|c| *c == behind[0]) {
+        behind[0]
+    } else {
+        sum.map(|s| s / samples.len() as f32)
+    };
     assert_eq!(rgba(&light["average"]), mean);
-    let straight = if mean[3] >= 1.0 || mean[3] <= 0.0 { mean } else { mean.map(|c| c * (1.0 / mean[3])) };
+    let straight =
+        if mean[3] >= 1.0 || mean[3] <= 0.0 { mean } else { mean.map(|c| c * (1.0 / mean[3])) };
     near(rgb(&light["straight"]), [straight[0], straight[1], straight[2]], "straight colour");
     let encoded = rgba(&light["encoded"]);
     for k in 0..3 {
         let linear = f64::from(straight[k]).clamp(0.0, 1.0);
-        let srgb = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * func::pow(linear, 1.0 / 2.4) - 0.055 };
+        let srgb = if linear <= 0.003_130_8 {
+            12.92 * linear
+        } else {
+            1.055 * func::pow(linear, 1.0 / 2.4) - 0.055
+        };
         let expected = 255.0 * if raw { linear } else { srgb };
         assert!((expected - f64::from(encoded[k])).abs() < 1e-3, "{expected}, {encoded:?}");
     }
@@ -155,7 +181,11 @@ fn check(renderer: &mut Renderer, pixels: &[[u32; 2]], what: &str) -> [usize; 2]
     for &[x, y] in pixels {
         let told = explain(renderer, &camera, [x, y], &Deciders::Chosen, None).unwrap();
         assert_eq!(told.bytes, *picture.at(x, y), "{what}, {x},{y}: the picture's\n{told}");
-        assert_eq!(bytes_of(&told, raw), told.light.bytes, "{what}, {x},{y}: the printed numbers\n{told}");
+        assert_eq!(
+            bytes_of(&told, raw),
+            told.light.bytes,
+            "{what}, {x},{y}: the printed numbers\n{told}"
+        );
         // What translucent surfaces show of the picture behind them comes on top.
         let shines = told.light.points.iter().any(|point| point.glow.is_some());
         assert!(told.light.bytes == told.bytes || shines, "{what}, {x},{y}\n{told}");
@@ -180,10 +210,18 @@ fn lights() -> Vec<Light> {
         exponent: 2.0,
     };
     let attenuation = Attenuation::Clamped { c1: 0.2, c2: 0.05, c3: 0.01 };
-    let kinds =
-        [LightKind::Point { position: at }, LightKind::Directional { direction: DVec3::new(-0.4, -1.0, -0.3) }, spot];
-    let light =
-        |kind| Light { kind, attenuation, ambient: [0.05, 0.04, 0.03], diffuse: [0.7, 0.6, 0.5], ..Light::default() };
+    let kinds = [
+        LightKind::Point { position: at },
+        LightKind::Directional { direction: DVec3::new(-0.4, -1.0, -0.3) },
+        spot,
+    ];
+    let light = |kind| Light {
+        kind,
+        attenuation,
+        ambient: [0.05, 0.04, 0.03],
+        diffuse: [0.7, 0.6, 0.5],
+        ..Light::default()
+    };
     kinds.map(light).to_vec()
 }
 
@@ -201,13 +239,21 @@ fn the_terms_of_every_model_and_shading_add_up_to_the_bytes() {
     let pixels: Vec<_> = all_over().into_iter().step_by(3).collect();
     for name in ["scene0", "realism"] {
         let mut renderer = small(name);
-        let models = [Illumination::Lambert, Illumination::Phong, Illumination::BlinnPhong, Illumination::CookTorrance];
+        let models = [
+            Illumination::Lambert,
+            Illumination::Phong,
+            Illumination::BlinnPhong,
+            Illumination::CookTorrance,
+        ];
         for (i, model) in models.into_iter().enumerate() {
             for shading in [Shading::Flat, Shading::Gouraud, Shading::Phong] {
-                (renderer.settings.shading.illumination, renderer.settings.shading.model) = (model, shading);
+                (renderer.settings.shading.illumination, renderer.settings.shading.model) =
+                    (model, shading);
                 let raw = i % 2 == 1;
-                renderer.settings.picture.color_space = if raw { ColorSpace::Raw } else { ColorSpace::Srgb };
-                let [points, _] = check(&mut renderer, &pixels, &format!("{name}, {model}, {shading:?}"));
+                renderer.settings.picture.color_space =
+                    if raw { ColorSpace::Raw } else { ColorSpace::Srgb };
+                let [points, _] =
+                    check(&mut renderer, &pixels, &format!("{name}, {model}, {shading:?}"));
                 assert!(points > 6, "{points}");
             }
         }
@@ -232,8 +278,11 @@ fn the_terms_add_up_in_shadow_and_tell_who_casts_it() {
                 lit += usize::from(shadow.visibility == [1.0; 3]);
                 attached += usize::from(shadow.attached);
                 blocked += usize::from(shadow.blocker.is_some());
-                assert!(shadow.visibility != [1.0; 3] || (!shadow.attached && shadow.blocker.is_none()));
-                let explained = shadow.attached || shadow.blocker.is_some() || shadow.visibility != [0.0; 3];
+                assert!(
+                    shadow.visibility != [1.0; 3] || (!shadow.attached && shadow.blocker.is_none())
+                );
+                let explained =
+                    shadow.attached || shadow.blocker.is_some() || shadow.visibility != [0.0; 3];
                 assert!(explained || shadows == Shadows::MAP, "{shadows}: {told}");
             }
         }
@@ -277,7 +326,8 @@ fn candidates_are_named_with_the_stage_that_took_them_away() {
         told.candidates.into_iter().map(|c| c.candidate.fate).collect()
     };
     let found = fates(&renderer, &camera);
-    let count = |found: &[Fate], wanted: fn(&Fate) -> bool| found.iter().filter(|f| wanted(f)).count();
+    let count =
+        |found: &[Fate], wanted: fn(&Fate) -> bool| found.iter().filter(|f| wanted(f)).count();
     assert_eq!(count(&found, |f| matches!(f, Fate::Visible { .. })), 1, "{found:?}");
     assert!(count(&found, |f| matches!(f, Fate::BackFace)) >= 1, "{found:?}");
     renderer.settings.cull.back_face = false;
@@ -289,9 +339,9 @@ fn candidates_are_named_with_the_stage_that_took_them_away() {
     let planes = |near: f64, far: f64| vitral::Camera { clip: Some((near, far)), ..camera };
     let distance = camera.position.distance(renderer.world().bounds.center());
     let culled = |f: &Fate, plane: ClipPlane| match f {
-        Fate::OutsideFrustum { planes } | Fate::BoxCulled { planes } | Fate::ClippedAway { planes } => {
-            planes.contains(&plane)
-        }
+        Fate::OutsideFrustum { planes }
+        | Fate::BoxCulled { planes }
+        | Fate::ClippedAway { planes } => planes.contains(&plane),
         _ => false,
     };
     let beyond = fates(&renderer, &planes(distance * 2.0, distance * 3.0));

@@ -1,14 +1,18 @@
-//! Whitted's ray tracing in whole pictures: the notes' figures, laws of optics, and agreement with the local models.
+//! Whitted's ray tracing in whole pictures: the notes' figures, laws of optics, and agreement with
+//! the local models.
 
-use super::common::{colors, exact, exact_builtin, largest_difference, on_z, one, pixel, poster, project, sun};
+use super::common::{
+    colors, exact, exact_builtin, largest_difference, on_z, one, pixel, poster, project, sun,
+};
 use std::sync::{Arc, Mutex};
 use vitral::explain::{Deciders, explain};
 use vitral::internals::render::registry::{SHADOWS, VISIBILITY};
 use vitral::internals::render::stats::TracingCounters;
 use vitral::internals::render::trace::{Observer, Step, Way};
 use vitral::{
-    Acceleration, AlphaMode, Background, Camera, DMat4, DVec3, Global, Light, LightKind, Material, Mesh, Part,
-    Projection, Reflectance, Renderer, Scene, Shadows, Transparency, Visibility, solids,
+    Acceleration, AlphaMode, Background, Camera, DMat4, DVec3, Global, Light, LightKind, Material,
+    Mesh, Part, Projection, Reflectance, Renderer, Scene, Shadows, Transparency, Visibility,
+    solids,
 };
 
 /// Glass that shows nothing of its own.
@@ -19,7 +23,8 @@ fn glass(kt: f32, ior: f32) -> Material {
 }
 
 fn mirror() -> Material {
-    let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [1.0; 3], shininess: 200.0 };
+    let reflectance =
+        Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [1.0; 3], shininess: 200.0 };
     Material { reflectance, mirror: true, unlit: true, ..Material::default() }
 }
 
@@ -66,8 +71,10 @@ fn t4_refraction_changes_which_polygon_is_seen_in_p_and_q() {
 fn t4_the_surface_under_p_and_q_is_told_with_the_way_of_its_rays() {
     let ids = |r: &Renderer, point: DVec3| {
         let p = project(r, point);
-        let told = explain(r, &r.frame_camera(), [p.x as u32, p.y as u32], &Deciders::Chosen, None).unwrap();
-        let behind = told.surfaces.iter().find(|s| !s.layer).expect("something opaque lies straight on");
+        let told = explain(r, &r.frame_camera(), [p.x as u32, p.y as u32], &Deciders::Chosen, None)
+            .unwrap();
+        let behind =
+            told.surfaces.iter().find(|s| !s.layer).expect("something opaque lies straight on");
         (behind.surface, behind.material.clone(), told)
     };
     let (p, q) = (DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, -1.0, 0.0));
@@ -80,7 +87,8 @@ fn t4_the_surface_under_p_and_q_is_told_with_the_way_of_its_rays() {
     for (point, expected) in [(p, under_q), (q, under_p)] {
         let (_, _, told) = ids(&bent, point);
         // The eye's ray, the one within the glass, and the one behind it.
-        let met: Vec<_> = told.rays.iter().map(|ray| ray.meets.as_ref().map(|met| met.surface)).collect();
+        let met: Vec<_> =
+            told.rays.iter().map(|ray| ray.meets.as_ref().map(|met| met.surface)).collect();
         assert_eq!(met.len(), 3, "{told}");
         assert_eq!(met[2], Some(expected), "{told}");
         assert!(told.rays[2].goes_on.is_empty() && told.rays[2].turns == 2);
@@ -88,7 +96,8 @@ fn t4_the_surface_under_p_and_q_is_told_with_the_way_of_its_rays() {
             let [turn] = &ray.goes_on[..] else { panic!("{told}") };
             assert_eq!((turn.way, turn.indices), (Way::Refracted, indices), "{told}");
             let [before, behind] = [0, 1].map(|k| {
-                f64::from(turn.indices[k]) * vitral::internals::math::func::sin(turn.angles_degrees[k].to_radians())
+                f64::from(turn.indices[k])
+                    * vitral::internals::math::func::sin(turn.angles_degrees[k].to_radians())
             });
             assert!((before - behind).abs() < 1e-6, "{before} {behind}: {told}");
         }
@@ -100,7 +109,10 @@ fn t4_the_surface_under_p_and_q_is_told_with_the_way_of_its_rays() {
         let sum = [0, 1, 2].map(|k| told.rays.iter().map(|ray| ray.light[k]).sum::<f32>());
         let picture = colors(&mut renderer);
         let shown = pixel(&renderer, &picture, point);
-        assert!((0..3).all(|k| (sum[k] * 255.0 - f32::from(shown[k])).abs() <= 1.0), "{sum:?} {shown:?}: {told}");
+        assert!(
+            (0..3).all(|k| (sum[k] * 255.0 - f32::from(shown[k])).abs() <= 1.0),
+            "{sum:?} {shown:?}: {told}"
+        );
         let text = told.to_string();
         assert!(text.contains("refracted at") && text.contains("in 1.5"), "{text}");
     }
@@ -132,21 +144,27 @@ fn p36_the_id_in_a_mirror_is_that_of_the_virtual_image() {
         add(&mut scene, facets(), poster([1.0; 3]), ball);
         let mut r = exact(scene, 120, 90);
         r.settings.cull.back_face = false;
-        let camera = Camera { position: DVec3::new(-2.0, 0.6, 4.0), focal_point: DVec3::ZERO, ..on_z(4.0, 0.8) };
+        let camera = Camera {
+            position: DVec3::new(-2.0, 0.6, 4.0),
+            focal_point: DVec3::ZERO,
+            ..on_z(4.0, 0.8)
+        };
         r.camera = Some(camera);
         r
     };
     let mut virtual_image = scene(false);
     virtual_image.settings.picture.channels.surface = true;
     let ids = virtual_image.render().unwrap().frame.surface.unwrap().into_data();
-    let of_ball = virtual_image.world().surface_of_facet(virtual_image.world().instances[1].first_facet);
+    let of_ball =
+        virtual_image.world().surface_of_facet(virtual_image.world().instances[1].first_facet);
 
     let mut mirrored = traced(scene(true));
     let meetings = Arc::new(Meetings::default());
     mirrored.execution_mut().observer = Some(Arc::clone(&meetings) as Arc<dyn Observer>);
     mirrored.render().unwrap();
     let first = mirrored.world().instances[1].first_facet;
-    let of_facet = |facet| mirrored.world().surface_of_facet(facet) - mirrored.world().surface_of_facet(first);
+    let of_facet =
+        |facet| mirrored.world().surface_of_facet(facet) - mirrored.world().surface_of_facet(first);
     let (mut seen, mut different) = (0, 0);
     for step in meetings.0.lock().unwrap().iter() {
         let Step::RayMeets { pixel: [x, y], turns: 1, facet, .. } = step else { continue };
@@ -154,7 +172,8 @@ fn p36_the_id_in_a_mirror_is_that_of_the_virtual_image() {
         // The ball itself may stand before its image.
         if expected < of_ball {
             seen += 1;
-            different += u32::from(facet.is_none_or(|facet| facet < first || of_facet(facet) != expected));
+            different +=
+                u32::from(facet.is_none_or(|facet| facet < first || of_facet(facet) != expected));
         }
     }
     assert!(seen > 150, "{seen}");
@@ -180,7 +199,12 @@ fn t5_a_slab_moves_what_is_behind_by_the_formula() {
     // A white bar behind a slab that is turned by 40 degrees, seen by parallel rays.
     let (thick, angle) = (1.0f64, 40f64.to_radians());
     let mut scene = Scene::default();
-    add(&mut scene, solids::cuboid(DVec3::new(0.4, 4.0, 0.1)), poster([1.0; 3]), at(0.0, 0.0, -4.0));
+    add(
+        &mut scene,
+        solids::cuboid(DVec3::new(0.4, 4.0, 0.1)),
+        poster([1.0; 3]),
+        at(0.0, 0.0, -4.0),
+    );
     let slab = solids::cuboid(DVec3::new(6.0, 4.0, thick));
     add(&mut scene, slab, glass(1.0, 1.5), DMat4::from_rotation_y(angle));
     let mut r = exact(scene, 400, 100);
@@ -196,17 +220,27 @@ fn t5_a_slab_moves_what_is_behind_by_the_formula() {
     let bent = center(&colors(&mut traced(r)));
     let sin_r = vitral::internals::math::func::sin(angle) / 1.5;
     let r_angle = vitral::internals::math::func::asin(sin_r);
-    let offset =
-        thick * vitral::internals::math::func::sin(angle - r_angle) / vitral::internals::math::func::cos(r_angle);
-    assert!(((bent - straight).abs() - offset * 100.0).abs() < 1.0, "{straight} {bent}, {}", offset * 100.0);
+    let offset = thick * vitral::internals::math::func::sin(angle - r_angle)
+        / vitral::internals::math::func::cos(r_angle);
+    assert!(
+        ((bent - straight).abs() - offset * 100.0).abs() < 1.0,
+        "{straight} {bent}, {}",
+        offset * 100.0
+    );
 }
 
 #[test]
 fn t3_red_green_and_blue_are_bent_alike() {
-    // A wedge before posters of one channel each: an edge of a colour appears where that of any other does.
+    // A wedge before posters of one channel each: an edge of a colour appears where that of any
+    // other does.
     let picture = |color: [f32; 3]| {
         let mut scene = Scene::default();
-        add(&mut scene, solids::cuboid(DVec3::new(0.7, 0.9, 0.1)), poster(color), at(0.3, 0.2, -4.0));
+        add(
+            &mut scene,
+            solids::cuboid(DVec3::new(0.7, 0.9, 0.1)),
+            poster(color),
+            at(0.3, 0.2, -4.0),
+        );
         let ball = glass(1.0, 1.5);
         add(&mut scene, solids::sphere(1.0, 48, 24), ball, DMat4::IDENTITY);
         let mut r = exact(scene, 90, 70);
@@ -221,7 +255,10 @@ fn t3_red_green_and_blue_are_bent_alike() {
         one[k] = 1.0;
         let own = picture(one).0;
         assert!(own.iter().zip(&white).all(|(own, white)| own[k] == white[k]), "channel {k}");
-        assert!(own.iter().all(|p| (0..3).all(|other| other == k || p[other] == 0)), "channel {k} alone");
+        assert!(
+            own.iter().all(|p| (0..3).all(|other| other == k || p[other] == 0)),
+            "channel {k} alone"
+        );
     }
     assert!(differing(&white, &straight, 100) > 100, "it is bent at all");
 }
@@ -232,7 +269,8 @@ fn p36_a_mirror_shows_the_virtual_image() {
     let ball = |z: f64, scene: &mut Scene| {
         add(scene, solids::sphere(0.4, 64, 32), poster([0.9, 0.3, 0.1]), at(0.5, 0.2, z));
     };
-    let camera = Camera { position: DVec3::new(-2.0, 0.6, 4.0), focal_point: DVec3::ZERO, ..on_z(4.0, 0.8) };
+    let camera =
+        Camera { position: DVec3::new(-2.0, 0.6, 4.0), focal_point: DVec3::ZERO, ..on_z(4.0, 0.8) };
     let wall = || solids::cuboid(DVec3::new(6.0, 6.0, 0.2));
     let mut mirrored = Scene::default();
     add(&mut mirrored, wall(), mirror(), at(0.0, 0.0, -0.1));
@@ -256,7 +294,8 @@ fn opaque_surfaces_look_as_without_ray_tracing() {
     for name in ["scene0", "scene1", "cubs", "teapot"] {
         for samples in [1, 4] {
             let mut local = exact_builtin(name, 96, 72);
-            (local.settings.shadows.algorithm, local.settings.picture.samples) = ("ray".parse().unwrap(), samples);
+            (local.settings.shadows.algorithm, local.settings.picture.samples) =
+                ("ray".parse().unwrap(), samples);
             let expected = colors(&mut local);
             assert!(colors(&mut traced(local)) == expected, "{name}, {samples}");
         }
@@ -270,7 +309,12 @@ fn panes(count: usize, ior: f32) -> Scene {
     for i in 0..count {
         let pane = Material { filter: [1.0, 0.5, 0.8], ..glass(0.7, ior) };
         let quad = solids::plane(6.0, 6.0, 1, 1);
-        add(&mut scene, quad, pane, at(0.0, 0.0, i as f64 * 0.3) * DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2));
+        add(
+            &mut scene,
+            quad,
+            pane,
+            at(0.0, 0.0, i as f64 * 0.3) * DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2),
+        );
     }
     scene
 }
@@ -278,7 +322,9 @@ fn panes(count: usize, ior: f32) -> Scene {
 #[test]
 fn t7_straight_through_any_number_of_panes_is_the_same_as_sorting_them() {
     for count in 1..=12 {
-        for model in [Transparency::Linear, Transparency::Kay, Transparency::Filtered, Transparency::None] {
+        for model in
+            [Transparency::Linear, Transparency::Kay, Transparency::Filtered, Transparency::None]
+        {
             // Sheets have no inside: their index does not matter.
             let mut sorted = exact(panes(count, 1.5), 40, 30);
             sorted.camera = Some(on_z(9.0, 0.6));
@@ -303,7 +349,11 @@ fn cuboid(scene: &mut Scene, size: DVec3, center: DVec3, material: Material) {
 
 /// A camera above the floor on which things stand.
 fn above() -> Camera {
-    Camera { position: DVec3::new(3.0, 4.1, 5.2), focal_point: DVec3::new(0.0, 0.2, 0.0), ..on_z(6.0, 0.7) }
+    Camera {
+        position: DVec3::new(3.0, 4.1, 5.2),
+        focal_point: DVec3::new(0.0, 0.2, 0.0),
+        ..on_z(6.0, 0.7)
+    }
 }
 
 /// Pixels of two pictures that differ by more than a step in any channel.
@@ -313,12 +363,27 @@ fn differing(a: &[[u8; 4]], b: &[[u8; 4]], step: u8) -> usize {
 
 #[test]
 fn coincident_panes_are_layers_in_the_order_of_the_scene() {
-    // Panes of one shape, whose order is seen, and panes that are cut in different triangles, which rounding orders as it likes.
-    let looks = [([0.9, 0.1, 0.2], 0.7), ([0.1, 0.8, 0.3], 0.5), ([0.2, 0.1, 0.9], 0.3), ([0.9, 0.8, 0.1], 0.8)];
-    for turn in [DMat4::from_rotation_x(1.5), DMat4::from_rotation_z(0.4) * DMat4::from_rotation_x(0.9)] {
-        for (order, columns) in [([0, 1, 2, 3], 1), ([3, 1, 0, 2], 1), ([2, 3, 1, 0], 1), ([1, 1, 1, 1], 3)] {
+    // Panes of one shape, whose order is seen, and panes that are cut in different triangles, which
+    // rounding orders as it likes.
+    let looks = [
+        ([0.9, 0.1, 0.2], 0.7),
+        ([0.1, 0.8, 0.3], 0.5),
+        ([0.2, 0.1, 0.9], 0.3),
+        ([0.9, 0.8, 0.1], 0.8),
+    ];
+    for turn in
+        [DMat4::from_rotation_x(1.5), DMat4::from_rotation_z(0.4) * DMat4::from_rotation_x(0.9)]
+    {
+        for (order, columns) in
+            [([0, 1, 2, 3], 1), ([3, 1, 0, 2], 1), ([2, 3, 1, 0], 1), ([1, 1, 1, 1], 3)]
+        {
             let mut scene = Scene::default();
-            cuboid(&mut scene, DVec3::splat(1.5), DVec3::new(0.0, 0.0, -3.0), poster([1.0, 0.6, 0.2]));
+            cuboid(
+                &mut scene,
+                DVec3::splat(1.5),
+                DVec3::new(0.0, 0.0, -3.0),
+                poster([1.0, 0.6, 0.2]),
+            );
             for (k, look) in order.into_iter().enumerate() {
                 let (color, kt) = looks[look];
                 let pane = solids::plane(3.0, 3.0, if k % 2 == 0 { 1 } else { columns }, 1);
@@ -335,8 +400,8 @@ fn coincident_panes_are_layers_in_the_order_of_the_scene() {
 
 #[test]
 fn what_glass_touches_is_seen_through_it() {
-    // Two boxes on the floor that share a wall, and one on top of both. Or they are `apart`: what is met first at one place, as it
-    // comes first in the scene, stands before the other.
+    // Two boxes on the floor that share a wall, and one on top of both. Or they are `apart`: what
+    // is met first at one place, as it comes first in the scene, stands before the other.
     let scene = |ior: f32, turn: f64, apart: f64| {
         let mut scene = Scene::default();
         let mut stand = |min: [f64; 3], max: [f64; 3], material| {
@@ -350,11 +415,13 @@ fn what_glass_touches_is_seen_through_it() {
         let floor = DMat4::from_rotation_y(0.2);
         add(&mut scene, solids::plane(7.0, 7.0, 3, 2), poster([0.2, 0.8, 0.2]), floor);
         let mut r = exact(scene, 120, 90);
-        (r.camera, r.settings.picture.background) = (Some(above()), Background::Color { color: [1.0, 0.0, 1.0] });
+        (r.camera, r.settings.picture.background) =
+            (Some(above()), Background::Color { color: [1.0, 0.0, 1.0] });
         r
     };
     for turn in [0.0, 0.37] {
-        // Where nothing bends, rays find the layers of the picture, but for where the boxes' outlines are moved.
+        // Where nothing bends, rays find the layers of the picture, but for where the boxes'
+        // outlines are moved.
         let expected = colors(&mut scene(1.0, turn, 1e-3));
         let found = differing(&colors(&mut traced(scene(1.0, turn, 0.0))), &expected, 1);
         assert!(found <= 40, "turned by {turn}: {found}");
@@ -368,12 +435,18 @@ fn what_glass_touches_is_seen_through_it() {
 
 #[test]
 fn a_liquid_that_touches_its_glass_is_one_border_with_it() {
-    // Light bends from glass to water, not from glass to air to water: as where the two overlap a little.
+    // Light bends from glass to water, not from glass to air to water: as where the two overlap a
+    // little.
     let picture = |width: f64| {
         let mut scene = Scene::default();
         for k in 0..16 {
             let color = if k % 2 == 0 { [1.0, 0.1, 0.1] } else { [0.1, 0.1, 1.0] };
-            cuboid(&mut scene, DVec3::new(0.5, 8.0, 0.1), DVec3::new(-3.75 + 0.5 * k as f64, 0.0, -4.0), poster(color));
+            cuboid(
+                &mut scene,
+                DVec3::new(0.5, 8.0, 0.1),
+                DVec3::new(-3.75 + 0.5 * k as f64, 0.0, -4.0),
+                poster(color),
+            );
         }
         let (wall, hollow) = (solids::cuboid(DVec3::splat(2.0)), solids::cuboid(DVec3::splat(1.6)));
         let inwards = hollow.triangles.iter().map(|[a, b, c]| [a + 8, c + 8, b + 8]);
@@ -386,7 +459,11 @@ fn a_liquid_that_touches_its_glass_is_one_border_with_it() {
         add(&mut scene, cup, glass(1.0, 1.5), DMat4::IDENTITY);
         cuboid(&mut scene, DVec3::splat(width), DVec3::ZERO, glass(1.0, 1.33));
         let mut r = traced(exact(scene, 120, 90));
-        r.camera = Some(Camera { position: DVec3::new(2.0, 1.0, 4.0), focal_point: DVec3::ZERO, ..on_z(4.0, 0.61) });
+        r.camera = Some(Camera {
+            position: DVec3::new(2.0, 1.0, 4.0),
+            focal_point: DVec3::ZERO,
+            ..on_z(4.0, 0.61)
+        });
         colors(&mut r)
     };
     let found = differing(&picture(1.6), &picture(1.6005), 8);
@@ -409,7 +486,12 @@ fn backgrounds_are_seen_through_glass_as_they_are() {
 fn shadows_of_coloured_glass_have_its_colour() {
     let mut scene = Scene::default();
     let white = Material {
-        reflectance: Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 },
+        reflectance: Reflectance::Phong {
+            ka: [0.0; 3],
+            kd: [1.0; 3],
+            ks: [0.0; 3],
+            shininess: 1.0,
+        },
         ..Material::default()
     };
     add(&mut scene, solids::plane(8.0, 8.0, 1, 1), white, DMat4::IDENTITY);
@@ -418,14 +500,18 @@ fn shadows_of_coloured_glass_have_its_colour() {
     let mut r = traced(exact(scene, 100, 100));
     r.settings.transparency.model = Transparency::Filtered;
     r.lights = Some(vec![sun(DVec3::new(1.0, 1.0, 0.0), 1.0)]);
-    let eye = Camera { position: DVec3::new(0.0, 6.0, 6.0), focal_point: DVec3::ZERO, ..on_z(6.0, 1.0) };
+    let eye =
+        Camera { position: DVec3::new(0.0, 6.0, 6.0), focal_point: DVec3::ZERO, ..on_z(6.0, 1.0) };
     r.camera = Some(eye);
     let picture = colors(&mut r);
     // The pane's shadow lies one to the left of it.
     let shadow = pixel(&r, &picture, DVec3::new(-1.6, 0.0, 0.0));
     let lit = pixel(&r, &picture, DVec3::new(2.5, 0.0, 0.0));
     let share = |k: usize| f64::from(shadow[k]) / f64::from(lit[k]);
-    assert!((share(0) - 0.8).abs() < 0.02 && (share(1) - 0.2).abs() < 0.02 && shadow[2] == 0, "{shadow:?} {lit:?}");
+    assert!(
+        (share(0) - 0.8).abs() < 0.02 && (share(1) - 0.2).abs() < 0.02 && shadow[2] == 0,
+        "{shadow:?} {lit:?}"
+    );
 }
 
 #[test]
@@ -477,13 +563,17 @@ fn every_shadow_algorithm_serves_what_rays_hit() {
 
 #[test]
 fn total_internal_reflection_and_the_most_turns() {
-    // From inside a block of glass the camera sees its side at a flat angle: everything is mirrored.
+    // From inside a block of glass the camera sees its side at a flat angle: everything is
+    // mirrored.
     let mut scene = Scene::default();
     add(&mut scene, solids::cuboid(DVec3::splat(4.0)), glass(1.0, 1.5), DMat4::IDENTITY);
     let mut r = traced(exact(scene, 16, 16));
     r.settings.picture.background = Background::Color { color: [1.0; 3] };
-    r.camera =
-        Some(Camera { position: DVec3::new(0.0, 0.0, 1.0), focal_point: DVec3::new(1.0, 1.0, 0.0), ..on_z(1.0, 0.1) });
+    r.camera = Some(Camera {
+        position: DVec3::new(0.0, 0.0, 1.0),
+        focal_point: DVec3::new(1.0, 1.0, 0.0),
+        ..on_z(1.0, 0.1)
+    });
     let tracing = r.render().unwrap().stats.tracing;
     // The diagonal meets all sides beyond the critical angle of 41.8 degrees: 54.7.
     assert_eq!((tracing.refracted, tracing.stopped_by_depth), (0, 256));
@@ -500,7 +590,12 @@ fn a_bubble_of_air_in_glass_bends_light() {
         let mut scene = Scene::default();
         for k in 0..8 {
             let center = DVec3::new(-3.5 + k as f64, 0.0, -4.0);
-            cuboid(&mut scene, DVec3::new(0.5, 8.0, 0.1), center, poster([1.0, 0.1 * k as f32, 0.1]));
+            cuboid(
+                &mut scene,
+                DVec3::new(0.5, 8.0, 0.1),
+                center,
+                poster([1.0, 0.1 * k as f32, 0.1]),
+            );
         }
         add(&mut scene, solids::sphere(1.0, 48, 24), glass(1.0, 1.5), DMat4::IDENTITY);
         add(&mut scene, solids::sphere(0.8, 48, 24), glass(1.0, air), DMat4::IDENTITY);
@@ -537,7 +632,8 @@ fn kays_sheets_let_the_same_light_through_with_and_without_rays() {
         r.camera = Some(camera);
         colors(&mut r)
     };
-    let (flat, rays) = (picture(exact(scene.clone(), 64, 48)), picture(traced(exact(scene, 64, 48))));
+    let (flat, rays) =
+        (picture(exact(scene.clone(), 64, 48)), picture(traced(exact(scene, 64, 48))));
     assert!(largest_difference(&flat, &rays) <= 1);
 }
 
@@ -559,10 +655,12 @@ fn limits_stop_the_rays() {
     let mut r = traced(exact_builtin("mirrors", 64, 48));
     r.execution_mut().budget = r.execution().budget.renewed().with_memory_limit(Some(1 << 20));
     assert!(r.render().is_err());
-    r.execution_mut().budget = r.execution().budget.renewed().with_memory_limit(None).with_time_limit(Some(1e-9));
+    r.execution_mut().budget =
+        r.execution().budget.renewed().with_memory_limit(None).with_time_limit(Some(1e-9));
     assert!(r.render().is_err());
     let light = Light { kind: LightKind::Ambient, ..Light::default() };
-    (r.lights, r.execution_mut().budget) = (Some(vec![light]), r.execution().budget.renewed().with_time_limit(None));
+    (r.lights, r.execution_mut().budget) =
+        (Some(vec![light]), r.execution().budget.renewed().with_time_limit(None));
     assert!(r.render().is_ok());
 }
 
@@ -573,7 +671,12 @@ fn the_eye_is_in_what_stands_round_it() {
         let mut scene = Scene::default();
         for k in 0..8 {
             let center = DVec3::new(-3.5 + k as f64, 0.0, -4.0);
-            cuboid(&mut scene, DVec3::new(0.5, 8.0, 0.1), center, poster([1.0, 0.1 * k as f32, 0.1]));
+            cuboid(
+                &mut scene,
+                DVec3::new(0.5, 8.0, 0.1),
+                center,
+                poster([1.0, 0.1 * k as f32, 0.1]),
+            );
         }
         if inside {
             cuboid(&mut scene, DVec3::splat(11.0), DVec3::ZERO, glass(1.0, 1.33));
@@ -585,7 +688,10 @@ fn the_eye_is_in_what_stands_round_it() {
     };
     let seen = |a: &[[u8; 4]], b: &[[u8; 4]]| differing(a, b, 1);
     let straight = picture(1.0, false);
-    assert!(seen(&picture(1.33, false), &straight) > 300, "in air the ball bends what is behind it");
+    assert!(
+        seen(&picture(1.33, false), &straight) > 300,
+        "in air the ball bends what is behind it"
+    );
     let found = seen(&picture(1.33, true), &straight);
     assert!(found <= 4, "in water it does not: {found}");
     assert!(seen(&picture(1.001, true), &straight) > 300, "a bubble does");
@@ -593,42 +699,75 @@ fn the_eye_is_in_what_stands_round_it() {
 
 #[test]
 fn p15_p16_every_structure_serves_all_rays_with_the_same_picture() {
-    // Boxes of glass that touch, four sheets of coloured glass over them, and a mirror: piles, bodies, products of shadows.
+    // Boxes of glass that touch, four sheets of coloured glass over them, and a mirror: piles,
+    // bodies, products of shadows.
     let touching = || {
         let mut scene = Scene::default();
-        cuboid(&mut scene, DVec3::splat(1.0), DVec3::new(-0.5, 0.5, 0.0), tinted([0.8, 0.2, 0.2], 0.7, 1.5));
-        cuboid(&mut scene, DVec3::splat(1.0), DVec3::new(0.5, 0.5, 0.0), tinted([0.2, 0.2, 0.8], 0.6, 1.33));
+        cuboid(
+            &mut scene,
+            DVec3::splat(1.0),
+            DVec3::new(-0.5, 0.5, 0.0),
+            tinted([0.8, 0.2, 0.2], 0.7, 1.5),
+        );
+        cuboid(
+            &mut scene,
+            DVec3::splat(1.0),
+            DVec3::new(0.5, 0.5, 0.0),
+            tinted([0.2, 0.2, 0.8], 0.6, 1.33),
+        );
         for k in 0..4 {
             let filter = [0.9 - 0.1 * k as f32, 0.37, 0.5 + 0.1 * k as f32];
             let sheet = Material { filter, ..tinted([0.1, 0.1, 0.1], 0.83, 1.0) };
-            add(&mut scene, solids::plane(2.3, 2.1, 1, 1), sheet, at(0.2, 1.5 + 0.2 * f64::from(k), 0.3));
+            add(
+                &mut scene,
+                solids::plane(2.3, 2.1, 1, 1),
+                sheet,
+                at(0.2, 1.5 + 0.2 * f64::from(k), 0.3),
+            );
         }
-        add(&mut scene, solids::plane(7.0, 7.0, 3, 2), Material::default(), DMat4::from_rotation_y(0.2));
+        add(
+            &mut scene,
+            solids::plane(7.0, 7.0, 3, 2),
+            Material::default(),
+            DMat4::from_rotation_y(0.2),
+        );
         cuboid(&mut scene, DVec3::new(3.0, 2.0, 0.1), DVec3::new(0.0, 1.0, -1.5), mirror());
         let mut r = exact(scene, 80, 60);
         r.camera = Some(above());
         r.settings.transparency.model = Transparency::Filtered;
-        r.lights = Some(vec![sun(DVec3::new(0.3, 1.0, 0.2), 1.0), sun(DVec3::new(-0.5, 0.8, 0.9), 0.5)]);
+        r.lights =
+            Some(vec![sun(DVec3::new(0.3, 1.0, 0.2), 1.0), sun(DVec3::new(-0.5, 0.8, 0.9), 0.5)]);
         r
     };
     // The eye within glass: what it is in is asked of all that a ray meets.
     let within = || {
         let mut r = touching();
-        r.camera =
-            Some(Camera { position: DVec3::new(0.4, 0.4, 0.3), focal_point: DVec3::new(-3.0, 0.6, -1.0), ..above() });
+        r.camera = Some(Camera {
+            position: DVec3::new(0.4, 0.4, 0.3),
+            focal_point: DVec3::new(-3.0, 0.6, -1.0),
+            ..above()
+        });
         r
     };
-    let scenes: [(&str, &dyn Fn() -> Renderer); 3] =
-        [("mirrors", &|| exact_builtin("mirrors", 16, 12)), ("touching", &touching), ("within", &within)];
+    let scenes: [(&str, &dyn Fn() -> Renderer); 3] = [
+        ("mirrors", &|| exact_builtin("mirrors", 16, 12)),
+        ("touching", &touching),
+        ("within", &within),
+    ];
     for (name, scene) in scenes {
         for global in [Global::None, Global::RayTrace] {
             let picture = |acceleration| {
                 let mut r = scene();
-                (r.settings.global.model, r.settings.shadows.algorithm) = (global, "ray".parse().unwrap());
+                (r.settings.global.model, r.settings.shadows.algorithm) =
+                    (global, "ray".parse().unwrap());
                 r.settings.acceleration = acceleration;
                 let rendered = r.render().unwrap();
-                let tests =
-                    TracingCounters { box_tests: 0, triangle_tests: 0, rays_per_second: 0.0, ..rendered.stats.tracing };
+                let tests = TracingCounters {
+                    box_tests: 0,
+                    triangle_tests: 0,
+                    rays_per_second: 0.0,
+                    ..rendered.stats.tracing
+                };
                 (rendered.frame, tests, rendered.stats.tracing.triangle_tests)
             };
             let (expected, counters, _) = picture(None);
@@ -639,7 +778,8 @@ fn p15_p16_every_structure_serves_all_rays_with_the_same_picture() {
                 let saves = structure.asks_all || tests < asked || asked == 0;
                 frame != expected || counted != counters || !saves
             };
-            let wrong: Vec<_> = Acceleration::all().filter(wrong).map(|structure| structure.name).collect();
+            let wrong: Vec<_> =
+                Acceleration::all().filter(wrong).map(|structure| structure.name).collect();
             assert!(wrong.is_empty(), "{name}, {global:?}: {wrong:?}");
         }
     }

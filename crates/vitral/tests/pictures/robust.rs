@@ -1,13 +1,17 @@
-//! Degenerate scenes and settings: everything is defined, nothing panics, no pixel comes from a NaN.
+//! Degenerate scenes and settings: everything is defined, nothing panics, no pixel comes from a
+//! NaN.
 
-use super::common::{all_channels, colors, exact, exact_builtin, limit, on_z, one, settings_error, sun};
+use super::common::{
+    all_channels, colors, exact, exact_builtin, limit, on_z, one, settings_error, sun,
+};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use vitral::internals::render::registry::SHADOWS;
 use vitral::{
-    AlphaMode, Budget, Camera, Channel, Channels, Clock, DMat4, DVec3, Error, Faces, Frame, Light, LightKind, Limit,
-    Material, Mesh, Node, NodeTransform, Projection, Reflectance, RenderError, Renderer, Scene, SettingsError, Shadows,
-    SystemClock, Viewpoint, Visibility, Workers, load_builtin, solids,
+    AlphaMode, Budget, Camera, Channel, Channels, Clock, DMat4, DVec3, Error, Faces, Frame, Light,
+    LightKind, Limit, Material, Mesh, Node, NodeTransform, Projection, Reflectance, RenderError,
+    Renderer, Scene, SettingsError, Shadows, SystemClock, Viewpoint, Visibility, Workers,
+    load_builtin, solids,
 };
 
 #[test]
@@ -41,12 +45,17 @@ fn a_camera_inside_a_model_sees_it_or_nothing_but_never_fails() {
     (dome.normals, dome.uvs) = (None, Vec::new());
     dome.parts[0].triangles.end -= 1;
     let mut inside = exact(Scene::from_mesh(dome), 64, 48);
-    inside.camera = Some(Camera { position: DVec3::new(0.1, 0.0, 0.2), focal_point: DVec3::X, ..on_z(1.0, 1.2) });
+    inside.camera = Some(Camera {
+        position: DVec3::new(0.1, 0.0, 0.2),
+        focal_point: DVec3::X,
+        ..on_z(1.0, 1.2)
+    });
     let stats = inside.render().unwrap().stats;
     assert_eq!(stats.picture.covered_pixels, 64 * 48, "the dome is all round");
     let mut scene0 = exact_builtin("scene0", 64, 48);
     for position in [DVec3::new(0.7, 0.8, 1.2), DVec3::new(-1.1, 0.7, -1.1), DVec3::ZERO] {
-        scene0.camera = Some(Camera { position, focal_point: DVec3::new(3.0, 0.0, 0.0), ..on_z(1.0, 1.2) });
+        scene0.camera =
+            Some(Camera { position, focal_point: DVec3::new(3.0, 0.0, 0.0), ..on_z(1.0, 1.2) });
         scene0.settings.picture.channels = all_channels();
         let frame = scene0.render().unwrap().frame;
         assert!(frame.depth.unwrap().data().iter().all(|z| (0.0..=1.0).contains(z)));
@@ -59,14 +68,20 @@ fn models_of_any_size_fill_the_picture() {
         let mut scene = Scene::default();
         scene.add_mesh(solids::cuboid(DVec3::splat(1.0)), DMat4::from_scale(DVec3::splat(size)));
         let mut renderer = exact(scene, 64, 48);
-        Viewpoint { orthographic: parallel, ..Viewpoint::default() }.apply(&mut renderer, Default::default()).unwrap();
+        Viewpoint { orthographic: parallel, ..Viewpoint::default() }
+            .apply(&mut renderer, Default::default())
+            .unwrap();
         renderer.render().unwrap().stats.picture.covered_pixels
     };
     for parallel in [false, true] {
         let usual = covered(1.0, parallel);
         assert!(usual > 500, "{usual}");
         for size in [1e-7, 1e-11, 1e-15, 1e9] {
-            assert!(covered(size, parallel).abs_diff(usual) < 20, "{size}: {} {usual}", covered(size, parallel));
+            assert!(
+                covered(size, parallel).abs_diff(usual) < 20,
+                "{size}: {} {usual}",
+                covered(size, parallel)
+            );
         }
     }
 }
@@ -77,7 +92,8 @@ fn triangles_with_nan_or_infinite_corners_vanish_and_are_counted() {
     mesh.positions[0][0] = f32::NAN;
     mesh.positions[6][1] = f32::INFINITY;
     mesh.positions[24][2] = f32::NEG_INFINITY;
-    let touched = mesh.triangles.iter().filter(|t| t.iter().any(|i| [0, 6, 24].contains(i))).count() as u64;
+    let touched =
+        mesh.triangles.iter().filter(|t| t.iter().any(|i| [0, 6, 24].contains(i))).count() as u64;
     mesh.normals.as_mut().unwrap().values.push([f32::NAN; 3]);
     let mut renderer = exact(Scene::from_mesh(mesh), 80, 60);
     renderer.settings.picture.samples = 4;
@@ -100,7 +116,11 @@ fn corners_too_far_away_to_clip_exactly_are_harmless() {
     renderer.settings.shading.lighting = false;
     renderer.settings.picture.channels = Channels { attached_shadow: false, ..all_channels() };
     let projection = Projection::Parallel { height: 10.924444444444445 };
-    for position in [DVec3::new(-3.21875, 2.4375, -3.8125), DVec3::new(3.0, 2.0, 1.0), DVec3::new(0.0, 0.0, 5.0)] {
+    for position in [
+        DVec3::new(-3.21875, 2.4375, -3.8125),
+        DVec3::new(3.0, 2.0, 1.0),
+        DVec3::new(0.0, 0.0, 5.0),
+    ] {
         let focal_point = DVec3::new(-1.84375, -0.75, -3.96875);
         let view_up = DVec3::new(-3.0, 0.96875, -0.15625);
         renderer.camera = Some(Camera { position, focal_point, view_up, projection, clip: None });
@@ -132,13 +152,18 @@ fn odd_numbers_everywhere_give_a_picture_all_the_same() {
     assert_eq!(colors(&mut renderer).len(), 1200);
     // A flat object, one scaled to nothing, and one far away.
     let mut scene = load_builtin("cubs").unwrap();
-    for (node, scale) in [(1, DVec3::new(1.0, 0.0, 1.0)), (2, DVec3::ZERO), (3, DVec3::splat(1e30))] {
+    for (node, scale) in [(1, DVec3::new(1.0, 0.0, 1.0)), (2, DVec3::ZERO), (3, DVec3::splat(1e30))]
+    {
         scene.nodes[node].transform = NodeTransform::Matrix(DMat4::from_scale(scale));
     }
     let mut renderer = exact(scene, 40, 30);
     renderer.settings.picture.channels = Channels { attached_shadow: false, ..all_channels() };
     let error = renderer.render().unwrap_err().to_string();
-    assert!(error.starts_with("the scene is ") && error.contains("light is computed from 1e-16 to 1e16"), "{error}");
+    assert!(
+        error.starts_with("the scene is ")
+            && error.contains("light is computed from 1e-16 to 1e16"),
+        "{error}"
+    );
     renderer.settings.shading.lighting = false;
     let frame = renderer.render().unwrap().frame;
     assert!(frame.normal.unwrap().data().iter().flatten().all(|n| n.is_finite()));
@@ -146,13 +171,18 @@ fn odd_numbers_everywhere_give_a_picture_all_the_same() {
 
 #[test]
 fn light_is_the_same_at_all_sizes_or_refused() {
-    // Lab3D's sphere and its lights, scaled; a point light without attenuation shines alike at all distances.
+    // Lab3D's sphere and its lights, scaled; a point light without attenuation shines alike at all
+    // distances.
     let picture = |scale: f64, change: fn(&mut Renderer)| {
         let mut scene = load_builtin("sphere").unwrap();
         let transform = DMat4::from_scale(DVec3::splat(scale));
         scene.roots.retain(|&root| scene.nodes[root as usize].camera.is_none());
         let children = std::mem::take(&mut scene.roots);
-        scene.add_root(Node { transform: NodeTransform::Matrix(transform), children, ..Node::default() });
+        scene.add_root(Node {
+            transform: NodeTransform::Matrix(transform),
+            children,
+            ..Node::default()
+        });
         scene.lights.iter_mut().for_each(|light| {
             if let LightKind::Point { position } = &mut light.kind {
                 *position *= scale;
@@ -183,7 +213,9 @@ fn light_is_the_same_at_all_sizes_or_refused() {
         let scaled = picture(scale, shadowed).unwrap();
         assert!(apart(&usual, &scaled) < usual.len() / 50, "{scale}: {}", apart(&usual, &scaled));
     }
-    assert!(picture(1e-12, shadowed).unwrap_err().to_string().contains("shadows and rays are computed"));
+    assert!(
+        picture(1e-12, shadowed).unwrap_err().to_string().contains("shadows and rays are computed")
+    );
 }
 
 /// The error for a resolution and a number of samples.
@@ -254,8 +286,13 @@ fn limits_stop_shading_between_tiles() {
         // Wherever in the tiles time is over, the rest is left out.
         let mut in_tiles = 0_u64;
         for limit in 1..ticks {
-            if let (Err(Error::Render(RenderError::Limit(Limit::Time { stage: "shading" | "visibility", .. }))), _) =
-                render(&mut renderer, limit as f64)
+            if let (
+                Err(Error::Render(RenderError::Limit(Limit::Time {
+                    stage: "shading" | "visibility",
+                    ..
+                }))),
+                _,
+            ) = render(&mut renderer, limit as f64)
             {
                 in_tiles += 1;
             }
@@ -269,7 +306,10 @@ fn unsound_scenes_are_errors() {
     let mut cyclic = load_builtin("cubs").unwrap();
     cyclic.nodes[1].children.push(1);
     let error = Renderer::new(cyclic).unwrap_err();
-    assert!(matches!(error, Error::Render(RenderError::World(_))) && error.to_string().contains("must be a tree"));
+    assert!(
+        matches!(error, Error::Render(RenderError::World(_)))
+            && error.to_string().contains("must be a tree")
+    );
     let mut broken = load_builtin("cubs").unwrap();
     Arc::make_mut(&mut broken.meshes[0]).triangles[0][0] = 99;
     assert!(Renderer::new(broken).unwrap_err().to_string().contains("index 99"));
@@ -284,7 +324,8 @@ fn no_light_leaks_in_where_walls_meet() {
     let mut room = solids::cuboid(DVec3::splat(10.0));
     room.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     (room.faces, room.normals, room.uvs) = (Faces::Triangles, None, Vec::new());
-    let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.9; 3], ks: [0.0; 3], shininess: 1.0 };
+    let reflectance =
+        Reflectance::Phong { ka: [0.0; 3], kd: [0.9; 3], ks: [0.0; 3], shininess: 1.0 };
     let walls = Material { reflectance, double_sided: true, ..Material::default() };
     let mut r = exact(one(room, walls), 320, 240);
     r.camera = Some(on_z(2.5, 80f64.to_radians()));
@@ -296,7 +337,8 @@ fn no_light_leaks_in_where_walls_meet() {
         let bright = colors(&mut r).iter().filter(|c| c[0] > 0).count();
         assert_eq!(bright, 0, "{}", shadows.name);
     }
-    // Maps see no better than a texel: some pixels along the edges have a wall's very edge in their texel.
+    // Maps see no better than a texel: some pixels along the edges have a wall's very edge in their
+    // texel.
     r.settings.shadows.algorithm = Shadows::MAP;
     for (size, most) in [(128, 350), (512, 15), (2048, 10)] {
         r.settings.shadows.map_size = size;
@@ -317,7 +359,8 @@ fn shadow_maps_of_transparent_things_keep_to_the_memory_limit() {
         scene.nodes.push(Node { mesh, transform, ..Node::default() });
     }
     let mut renderer = exact(scene, 16, 16);
-    (renderer.settings.shadows.algorithm, renderer.settings.shadows.map_size) = (Shadows::MAP, 1024);
+    (renderer.settings.shadows.algorithm, renderer.settings.shadows.map_size) =
+        (Shadows::MAP, 1024);
     renderer.lights = Some(vec![sun(DVec3::Y, 1.0)]);
     renderer.execution_mut().budget = Budget::default().with_memory_limit(Some(64 << 20));
     let error = renderer.render().unwrap_err().to_string();

@@ -4,7 +4,8 @@ use super::common::{colors, exact, sun};
 use std::collections::BTreeSet;
 use vitral::internals::render::registry::SHADOWS;
 use vitral::{
-    Camera, DMat4, DVec3, Global, Material, Reflectance, Renderer, Scene, Shadows, Terminator, load_bytes, solids,
+    Camera, DMat4, DVec3, Global, Material, Reflectance, Renderer, Scene, Shadows, Terminator,
+    load_bytes, solids,
 };
 
 fn fixture(bytes: &[u8], side: u32) -> Renderer {
@@ -14,7 +15,8 @@ fn fixture(bytes: &[u8], side: u32) -> Renderer {
 }
 
 fn matt(kd: f32) -> Material {
-    let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [kd; 3], ks: [0.0; 3], shininess: 1.0 };
+    let reflectance =
+        Reflectance::Phong { ka: [0.0; 3], kd: [kd; 3], ks: [0.0; 3], shininess: 1.0 };
     Material { reflectance, ..Material::default() }
 }
 
@@ -24,7 +26,8 @@ fn a_mirror_of_glass_in_an_evenly_bright_room_is_never_brighter_than_the_room() 
     renderer.settings.global.model = Global::RayTrace;
     let picture = renderer.render().unwrap();
     let rays = picture.stats.tracing.rays;
-    let brightest = picture.frame.color.unwrap().data().iter().flat_map(|p| [p[0], p[1], p[2]]).max().unwrap();
+    let brightest =
+        picture.frame.color.unwrap().data().iter().flat_map(|p| [p[0], p[1], p[2]]).max().unwrap();
     // Walls of 0.25 are all the light that there is.
     assert!(brightest <= 64, "{brightest}");
     assert!(rays < 40 * 96 * 96, "branches end where they add nothing: {rays}");
@@ -36,7 +39,8 @@ fn an_opacity_below_1_blends_unless_the_file_says_otherwise() {
     let middle = |file: &str| colors(&mut fixture(file.as_bytes(), 64))[32 * 64 + 32];
     // Half of (1, 0.2, 0.1) and half of (0.8, 0.6, 0.4).
     assert_eq!(middle(file), [230, 102, 64, 255]);
-    let opaque = file.replace("\"opacity\": 0.5", "\"opacity\": 0.5, \"alpha-mode\": {\"mode\": \"opaque\"}");
+    let opaque = file
+        .replace("\"opacity\": 0.5", "\"opacity\": 0.5, \"alpha-mode\": {\"mode\": \"opaque\"}");
     assert_eq!(middle(&opaque), [255, 51, 26, 255]);
 }
 
@@ -49,10 +53,19 @@ fn what_only_another_setting_shows_is_told() {
         renderer.render().unwrap().warnings.join("\n")
     };
     let filter = "\"opacity\": 0.5, \"filter\": [1, 0, 0]";
-    assert!(warnings(filter, &|_| ()).contains("material `glass` colours nothing without --transparency filtered"));
-    assert_eq!(warnings(filter, &|r| r.settings.transparency.model = vitral::Transparency::Filtered), "");
+    assert!(
+        warnings(filter, &|_| ())
+            .contains("material `glass` colours nothing without --transparency filtered")
+    );
+    assert_eq!(
+        warnings(filter, &|r| r.settings.transparency.model = vitral::Transparency::Filtered),
+        ""
+    );
     assert!(warnings("\"opacity\": 0.5, \"kt-min\": 0.2", &|_| ()).contains("--transparency kay"));
-    assert!(warnings("\"transmission\": \"translucent\"", &|_| ()).contains("give it an opacity below 1"));
+    assert!(
+        warnings("\"transmission\": \"translucent\"", &|_| ())
+            .contains("give it an opacity below 1")
+    );
     assert_eq!(warnings("\"opacity\": 0.5", &|_| ()), "");
 }
 
@@ -70,7 +83,8 @@ fn no_light_goes_through_the_foot_of_a_wall() {
     let mut renderer = fixture(include_bytes!("../fixtures/radiosity-leak.json"), 64);
     renderer.settings.global.model = Global::Radiosity;
     renderer.settings.shadows.algorithm = Shadows::RAY;
-    // A closed dark room. A sample may fall on the line itself in which wall and floor meet, and that belongs to both sides.
+    // A closed dark room. A sample may fall on the line itself in which wall and floor meet, and
+    // that belongs to both sides.
     let lit = colors(&mut renderer).into_iter().filter(|p| p[0].max(p[1]).max(p[2]) > 0).count();
     assert!(lit <= 1, "{lit} pixels of 4096");
     // The other side of the wall is lit.
@@ -126,7 +140,8 @@ fn coarse_round_bodies_have_a_smooth_border_of_light_by_all_shadows() {
         }
         seen.push((shadows.name, soft));
     }
-    // Nothing else stands in the light: what the interpolated normal says is the picture without shadows.
+    // Nothing else stands in the light: what the interpolated normal says is the picture without
+    // shadows.
     for (name, picture) in &seen[1..] {
         let worst = super::common::largest_difference(picture, &seen[0].1);
         assert!(worst < 3, "{name}: {worst}");
@@ -137,13 +152,16 @@ fn coarse_round_bodies_have_a_smooth_border_of_light_by_all_shadows() {
 fn a_sphere_of_glass_whose_pole_is_rounded_is_closed() {
     let mut ball = solids::sphere(1.0, 16, 8);
     // Each triangle has its own corners; those at a pole are off it by the sine of half a turn.
-    let corners: Vec<[f32; 3]> = ball.triangles.as_flattened().iter().map(|&v| ball.positions[v as usize]).collect();
+    let corners: Vec<[f32; 3]> =
+        ball.triangles.as_flattened().iter().map(|&v| ball.positions[v as usize]).collect();
     let noise = |i: usize, c: f32| if c.abs() < 1e-6 { 1e-16 * (i % 7) as f32 } else { c };
     ball.positions = corners.into_iter().enumerate().map(|(i, p)| p.map(|c| noise(i, c))).collect();
-    ball.triangles = (0..ball.positions.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    ball.triangles =
+        (0..ball.positions.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     (ball.normals, ball.faces) = (None, Default::default());
     ball.uvs.clear();
-    let glass = Material { opacity: 0.3, alpha_mode: vitral::AlphaMode::Blend, ior: 1.5, ..matt(0.5) };
+    let glass =
+        Material { opacity: 0.3, alpha_mode: vitral::AlphaMode::Blend, ior: 1.5, ..matt(0.5) };
     let mut renderer = exact(super::common::one(ball, glass), 16, 16);
     renderer.settings.global.model = Global::RayTrace;
     assert_eq!(renderer.render().unwrap().warnings, Vec::<String>::new());

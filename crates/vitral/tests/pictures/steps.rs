@@ -6,7 +6,10 @@ use std::sync::{Arc, Mutex};
 use vitral::internals::render::trace::numbered::NumberedStep;
 use vitral::internals::render::trace::replay::Replay;
 use vitral::internals::render::trace::{Observer, SpanVerdict, Step};
-use vitral::{Camera, Material, Mesh, Part, Projection, Renderer, Visibility, execution, load_builtin, load_bytes};
+use vitral::{
+    Camera, Material, Mesh, Part, Projection, Renderer, Visibility, execution, load_builtin,
+    load_bytes,
+};
 
 #[derive(Debug, Default)]
 struct Steps(Mutex<Vec<Step>>);
@@ -27,8 +30,10 @@ fn two_triangles() -> Renderer {
         parts: vec![Part { name: String::new(), triangles: 0..2, material: None }],
         ..Mesh::default()
     };
-    let mut renderer = exact(one(mesh, Material { double_sided: true, ..Material::default() }), 16, 16);
-    renderer.camera = Some(Camera { projection: Projection::Parallel { height: 16.0 }, ..on_z(5.0, 1.0) });
+    let mut renderer =
+        exact(one(mesh, Material { double_sided: true, ..Material::default() }), 16, 16);
+    renderer.camera =
+        Some(Camera { projection: Projection::Parallel { height: 16.0 }, ..on_z(5.0, 1.0) });
     renderer.settings.visibility = Visibility::SCAN_LINE;
     renderer
 }
@@ -46,9 +51,13 @@ fn p19_tables_of_two_triangles_that_overlap() {
     let Step::EdgeTable { rows, polygons, buckets } = &steps[0] else { panic!("{:?}", steps[0]) };
     assert_eq!(*rows, [0, 16]);
     assert_eq!(polygons.iter().map(|p| (p.facet, p.surface)).collect::<Vec<_>>(), [(0, 0), (1, 1)]);
-    let table: Vec<_> =
-        buckets.iter().flat_map(|b| b.edges.iter().map(|e| (b.row, e.facet, e.x, e.dx, e.last[0]))).collect();
-    for edge in [(1, 0, 2.0, 0.0, 8), (1, 0, 9.5, -1.0, 8), (2, 1, 4.0, 0.0, 9), (2, 1, 4.5, 1.0, 9)] {
+    let table: Vec<_> = buckets
+        .iter()
+        .flat_map(|b| b.edges.iter().map(|e| (b.row, e.facet, e.x, e.dx, e.last[0])))
+        .collect();
+    for edge in
+        [(1, 0, 2.0, 0.0, 8), (1, 0, 9.5, -1.0, 8), (2, 1, 4.0, 0.0, 9), (2, 1, 4.5, 1.0, 9)]
+    {
         assert!(table.contains(&edge), "{edge:?} in {table:?}");
     }
     assert_eq!((table.len(), buckets.len()), (4, 2), "horizontal edges have no entry");
@@ -56,12 +65,15 @@ fn p19_tables_of_two_triangles_that_overlap() {
     // On each line the edges that it crosses and the spans between.
     let line = |wanted: u32| {
         let found = steps.iter().find_map(|s| match s {
-            Step::Line { row, active_edges, spans, .. } if *row == wanted => Some((active_edges, spans)),
+            Step::Line { row, active_edges, spans, .. } if *row == wanted => {
+                Some((active_edges, spans))
+            }
             _ => None,
         });
         let (active, spans) = found.unwrap();
         let active: Vec<_> = active.iter().map(|e| (e.x, e.facet)).collect();
-        let spans: Vec<_> = spans.iter().map(|s| (s.pixels, s.inside.clone(), s.verdict, s.facet)).collect();
+        let spans: Vec<_> =
+            spans.iter().map(|s| (s.pixels, s.inside.clone(), s.verdict, s.facet)).collect();
         (active, spans)
     };
     let only = |pixels, facet| (pixels, vec![facet], SpanVerdict::Only, Some(facet));
@@ -70,11 +82,17 @@ fn p19_tables_of_two_triangles_that_overlap() {
     let both = |pixels| (pixels, vec![0, 1], SpanVerdict::Hides, Some(1));
     assert_eq!(
         line(3),
-        (vec![(2.0, 0), (4.0, 1), (5.5, 1), (7.5, 0)], vec![only([2, 4], 0), both([4, 5]), only([5, 7], 0)])
+        (
+            vec![(2.0, 0), (4.0, 1), (5.5, 1), (7.5, 0)],
+            vec![only([2, 4], 0), both([4, 5]), only([5, 7], 0)]
+        )
     );
     assert_eq!(
         line(5),
-        (vec![(2.0, 0), (4.0, 1), (5.5, 0), (7.5, 1)], vec![only([2, 4], 0), both([4, 5]), only([5, 7], 1)])
+        (
+            vec![(2.0, 0), (4.0, 1), (5.5, 0), (7.5, 1)],
+            vec![only([2, 4], 0), both([4, 5]), only([5, 7], 1)]
+        )
     );
     assert_eq!(line(9), (vec![(4.0, 1), (11.5, 1)], vec![only([4, 11], 1)]));
     assert_eq!(line(10), (vec![], vec![]));
@@ -85,7 +103,9 @@ fn steps_do_not_depend_on_threads_or_on_what_a_session_knows() {
     for row in Visibility::all() {
         let mut told: Vec<Vec<NumberedStep>> = Vec::new();
         for threads in [1, 2, 3] {
-            let mut renderer = Renderer::with_execution(load_builtin("cubs").unwrap(), execution(threads)).unwrap();
+            let mut renderer =
+                Renderer::with_execution(load_builtin("cubs").unwrap(), execution(threads))
+                    .unwrap();
             (renderer.settings.picture.width, renderer.settings.picture.height) = (150, 110);
             renderer.settings.visibility = row;
             let camera = renderer.frame_camera();
@@ -98,7 +118,11 @@ fn steps_do_not_depend_on_threads_or_on_what_a_session_knows() {
         assert!(first.len() > 5, "{}", row.name);
         for (number, step) in first.iter().enumerate() {
             assert_eq!(step.number as usize, number, "{}", row.name);
-            assert!(step.parent.is_none_or(|parent| parent < step.number), "{}: {step:?}", row.name);
+            assert!(
+                step.parent.is_none_or(|parent| parent < step.number),
+                "{}: {step:?}",
+                row.name
+            );
         }
         for other in &told[1..] {
             let differing = first.iter().zip(other).find(|(a, b)| a != b);
@@ -115,7 +139,8 @@ fn the_last_step_leaves_the_picture() {
         renderer.settings.visibility = row;
         let camera = renderer.frame_camera();
         let watched = renderer.watch_steps(&camera).unwrap();
-        let (mut replay, picture) = (Replay::new(&watched), renderer.render().unwrap().frame.color.unwrap());
+        let (mut replay, picture) =
+            (Replay::new(&watched), renderer.render().unwrap().frame.color.unwrap());
         let shown = |replay: &Replay<'_>| {
             let after = replay.picture();
             after.data().iter().zip(picture.data()).filter(|(a, b)| a == b).count()
@@ -124,7 +149,11 @@ fn the_last_step_leaves_the_picture() {
         replay.go_to(watched.steps.len());
         // What the last step is about is outlined.
         let after = shown(&replay);
-        assert!(after > 90 * 70 * 9 / 10 && after > before, "{}: {before} of 6300 pixels, then {after}", row.name);
+        assert!(
+            after > 90 * 70 * 9 / 10 && after > before,
+            "{}: {before} of 6300 pixels, then {after}",
+            row.name
+        );
     }
 }
 
@@ -144,7 +173,8 @@ fn names_in(value: &serde_json::Value, names: &mut BTreeSet<String>) {
 
 #[test]
 fn the_page_about_traces_names_every_step_and_field() {
-    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/trace.md")).unwrap();
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/trace.md"))
+        .unwrap();
     let mut names = BTreeSet::new();
     for scene in ["cubs", "scene0"] {
         for row in Visibility::all() {
@@ -172,12 +202,17 @@ fn p19_a_flat_convex_face_is_one_polygon() {
     let steps = renderer.watch_steps(&camera).unwrap().steps;
     let tables = steps.iter().filter_map(|numbered| match &numbered.step {
         Step::EdgeTable { polygons, buckets, .. } => {
-            let edges = buckets.iter().flat_map(|b| &b.edges).map(|e| (e.polygon, e.edge)).collect::<Vec<_>>();
+            let edges = buckets
+                .iter()
+                .flat_map(|b| &b.edges)
+                .map(|e| (e.polygon, e.edge))
+                .collect::<Vec<_>>();
             Some((polygons.iter().map(|p| p.surface).collect::<Vec<_>>(), edges.len()))
         }
         _ => None,
     });
-    // Three bands: the square at the upper right is in two, the large one at the lower left in two, the small one in one.
+    // Three bands: the square at the upper right is in two, the large one at the lower left in two,
+    // the small one in one.
     let tables: Vec<_> = tables.collect();
     assert_eq!(tables, [(vec![1], 2), (vec![0, 1], 4), (vec![0, 2], 4)]);
     // A line through two squares crosses four edges, upright ones, and is cut in three spans.
@@ -196,11 +231,17 @@ fn p19_a_flat_convex_face_is_one_polygon() {
 #[test]
 fn the_page_about_steps_tells_what_is_drawn() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/steps.md");
-    let page = vitral::internals::render::trace::legend::page(Visibility::all().map(|row| (row.name, row.steps)));
+    let page = vitral::internals::render::trace::legend::page(
+        Visibility::all().map(|row| (row.name, row.steps)),
+    );
     if std::env::var_os("UPDATE_DOCS").is_some() {
         std::fs::write(path, &page).unwrap();
     }
-    assert_eq!(std::fs::read_to_string(path).unwrap(), page, "docs/steps.md: run this test with UPDATE_DOCS=1");
+    assert_eq!(
+        std::fs::read_to_string(path).unwrap(),
+        page,
+        "docs/steps.md: run this test with UPDATE_DOCS=1"
+    );
 }
 
 #[test]
@@ -214,10 +255,23 @@ fn p19_the_tables_can_be_dumped() {
         Ok(())
     };
     vitral::dump::dump(&mut renderer, &camera, keep).unwrap();
-    let line =
-        |row: u32| text.split(&format!("\n  row {row}\n")).nth(1).unwrap().split("\n  row").next().unwrap().to_owned();
-    assert!(text.starts_with("rows 0 to 15\n  polygon table\n    0: facet 0, surface 0, depth "), "{text}");
+    let line = |row: u32| {
+        text.split(&format!("\n  row {row}\n"))
+            .nth(1)
+            .unwrap()
+            .split("\n  row")
+            .next()
+            .unwrap()
+            .to_owned()
+    };
+    assert!(
+        text.starts_with("rows 0 to 15\n  polygon table\n    0: facet 0, surface 0, depth "),
+        "{text}"
+    );
     assert!(text.contains("(facet 1): x 4.5 dx 1 to row 9\n"), "{text}");
     assert!(line(3).contains("    span 4 to 4: in 0 1; facet 1 hides the others"), "{text}");
-    assert!(!text.contains("row 10\n") && !text.contains("row 0\n"), "lines without edges are left out: {text}");
+    assert!(
+        !text.contains("row 10\n") && !text.contains("row 0\n"),
+        "lines without edges are left out: {text}"
+    );
 }

@@ -1,11 +1,13 @@
-//! What surrounds a model: an image that metals mirror, what is near and weakens ambient light, and the shadow on the ground.
+//! What surrounds a model: an image that metals mirror, what is near and weakens ambient light, and
+//! the shadow on the ground.
 
 use super::common::{colors, limit, one, settings_error};
 use std::sync::Arc;
 use vitral::internals::light::Panorama;
 use vitral::{
-    Axis, Background, DMat4, DVec3, Environment, EnvironmentMap, Global, GroundShadow, Light, LightKind, Limit,
-    Material, Reflectance, Renderer, Scene, SettingsError, Shadows, View, Visibility, load_builtin, solids,
+    Axis, Background, DMat4, DVec3, Environment, EnvironmentMap, Global, GroundShadow, Light,
+    LightKind, Limit, Material, Reflectance, Renderer, Scene, SettingsError, Shadows, View,
+    Visibility, load_builtin, solids,
 };
 
 /// An image whose red is up, whose green is down, and whose blue is on the right; all are 0 to 1.
@@ -51,7 +53,8 @@ fn at(pixels: &[[u8; 4]], x: usize, y: usize) -> [u8; 4] {
 #[test]
 fn a_mirror_shows_the_image_upright() {
     let pixels = colors(&mut ball(metal(1.0, 0.0)));
-    // The ball's normal halfway to the border turns the sight by 90 degrees: up, down, and to the sides.
+    // The ball's normal halfway to the border turns the sight by 90 degrees: up, down, and to the
+    // sides.
     let [up, down] = [at(&pixels, 32, 16), at(&pixels, 32, 48)];
     assert!(up[0] > 200 && up[1] < 20 && down[0] < 20 && down[1] > 200, "{up:?} {down:?}");
     let [left, right] = [at(&pixels, 15, 28), at(&pixels, 49, 28)];
@@ -68,13 +71,18 @@ fn a_mirror_shows_the_image_upright() {
 
 #[test]
 fn roughness_blurs_the_image_and_matt_surfaces_gather_it() {
-    let spread = |pixels: &[[u8; 4]]| i32::from(at(pixels, 32, 26)[0]) - i32::from(at(pixels, 32, 38)[0]);
+    let spread =
+        |pixels: &[[u8; 4]]| i32::from(at(pixels, 32, 26)[0]) - i32::from(at(pixels, 32, 38)[0]);
     let of = |metallic: f32, roughness: f32| spread(&colors(&mut ball(metal(metallic, roughness))));
     let (mirror, brushed, matt) = (of(1.0, 0.0), of(1.0, 0.5), of(0.0, 1.0));
-    assert!(mirror > 200 && brushed < mirror - 40 && matt < brushed && matt > 5, "{mirror} {brushed} {matt}");
+    assert!(
+        mirror > 200 && brushed < mirror - 40 && matt < brushed && matt > 5,
+        "{mirror} {brushed} {matt}"
+    );
     // A floor under half a sphere of red light gets all of it: 0.9 of 1.
     let mut floor = front(one(solids::cuboid(DVec3::new(4.0, 0.1, 4.0)), metal(0.0, 1.0)));
-    (floor.lights, floor.environment_image, floor.view) = (Some(Vec::new()), Some(colored()), View::Top);
+    (floor.lights, floor.environment_image, floor.view) =
+        (Some(Vec::new()), Some(colored()), View::Top);
     let [r, g, ..] = at(&colors(&mut floor), 32, 32);
     assert!((235..=255).contains(&r) && g < 90, "{r} {g}");
 }
@@ -87,9 +95,13 @@ fn every_visibility_algorithm_mirrors_the_same_image() {
         colors(&mut renderer)
     };
     let expected = picture(Visibility::Z_BUFFER);
-    for visibility in
-        [Visibility::SCAN_LINE, Visibility::WARNOCK, Visibility::PAINTER, Visibility::BSP, Visibility::RAY_CAST]
-    {
+    for visibility in [
+        Visibility::SCAN_LINE,
+        Visibility::WARNOCK,
+        Visibility::PAINTER,
+        Visibility::BSP,
+        Visibility::RAY_CAST,
+    ] {
         let other = picture(visibility);
         let differ = expected.iter().zip(&other).filter(|(a, b)| a != b).count();
         assert!(differ <= 4, "{visibility}: {differ}");
@@ -127,7 +139,10 @@ fn the_image_is_light_that_options_of_lights_change() {
     let whole = value(&|_| {});
     assert!(whole > 200);
     assert!(value(&|r| r.light_intensity = Some(0.25)) < 150);
-    assert!(value(&|r| r.settings.shading.environment = Environment::None) == 0, "none switches it off");
+    assert!(
+        value(&|r| r.settings.shading.environment = Environment::None) == 0,
+        "none switches it off"
+    );
     assert!(value(&|r| r.light_term = Some(vitral::LightTerm::Diffuse)) == 0);
     assert!(value(&|r| r.light_term = Some(vitral::LightTerm::Specular)) < 100);
     assert!(value(&|r| r.light_term = Some(vitral::LightTerm::Ambient)) > 200);
@@ -159,7 +174,8 @@ fn corner(lamp: bool) -> Renderer {
     let mut renderer = front(scene);
     renderer.view = View::Iso;
     renderer.ambient = [0.5; 3];
-    let sun = Light { kind: LightKind::Directional { direction: DVec3::NEG_Y }, ..Light::default() };
+    let sun =
+        Light { kind: LightKind::Directional { direction: DVec3::NEG_Y }, ..Light::default() };
     renderer.lights = Some(if lamp { vec![sun] } else { Vec::new() });
     renderer
 }
@@ -175,7 +191,8 @@ fn corners_get_less_ambient_light() {
     let (plain, weakened) = (picture(None, 0.0), picture(Some(64), 2.0));
     let pairs = || plain.iter().zip(&weakened).filter(|(a, _)| a[3] == 255);
     assert!(pairs().all(|(a, b)| b[0] <= a[0] && b[3] == 255));
-    let (same, darker) = (pairs().filter(|(a, b)| a == b).count(), pairs().filter(|(a, b)| a[0] > b[0] + 8).count());
+    let (same, darker) =
+        (pairs().filter(|(a, b)| a == b).count(), pairs().filter(|(a, b)| a[0] > b[0] + 8).count());
     assert!(same > 100 && darker > 60, "what is open stays, the corner is darker: {same} {darker}");
     // A radius that meets nothing changes nothing.
     assert!(picture(Some(16), 1e-5) == plain);
@@ -201,7 +218,12 @@ fn occlusion_is_the_same_for_all_algorithms_threads_and_structures() {
         colors(&mut renderer)
     };
     let expected = picture(&|_| {});
-    for visibility in [Visibility::SCAN_LINE, Visibility::WARNOCK, Visibility::WEILER_ATHERTON, Visibility::RAY_CAST] {
+    for visibility in [
+        Visibility::SCAN_LINE,
+        Visibility::WARNOCK,
+        Visibility::WEILER_ATHERTON,
+        Visibility::RAY_CAST,
+    ] {
         assert!(picture(&|r| r.settings.visibility = visibility) == expected, "{visibility}");
     }
     assert!(picture(&|r| r.settings.acceleration = Some(vitral::Acceleration::OCTREE)) == expected);
@@ -213,12 +235,21 @@ fn occlusion_is_the_same_for_all_algorithms_threads_and_structures() {
 fn occlusion_knows_its_numbers_and_limits() {
     let mut renderer = corner(false);
     renderer.settings.shading.ambient_occlusion = Some(0);
-    assert_eq!(settings_error(&renderer.render().unwrap_err()), &SettingsError::AmbientOcclusion(0));
-    (renderer.settings.shading.ambient_occlusion, renderer.settings.shading.occlusion_radius) = (None, Some(1.0));
+    assert_eq!(
+        settings_error(&renderer.render().unwrap_err()),
+        &SettingsError::AmbientOcclusion(0)
+    );
+    (renderer.settings.shading.ambient_occlusion, renderer.settings.shading.occlusion_radius) =
+        (None, Some(1.0));
     assert_eq!(settings_error(&renderer.render().unwrap_err()), &SettingsError::NoOcclusion);
-    (renderer.settings.shading.ambient_occlusion, renderer.settings.shading.occlusion_radius) = (Some(4), Some(-1.0));
-    assert_eq!(settings_error(&renderer.render().unwrap_err()), &SettingsError::OcclusionRadius(-1.0));
-    (renderer.settings.shading.ambient_occlusion, renderer.settings.shading.occlusion_radius) = (Some(4096), None);
+    (renderer.settings.shading.ambient_occlusion, renderer.settings.shading.occlusion_radius) =
+        (Some(4), Some(-1.0));
+    assert_eq!(
+        settings_error(&renderer.render().unwrap_err()),
+        &SettingsError::OcclusionRadius(-1.0)
+    );
+    (renderer.settings.shading.ambient_occlusion, renderer.settings.shading.occlusion_radius) =
+        (Some(4096), None);
     let budget = renderer.execution().budget.clone().with_time_limit(Some(0.001));
     renderer.execution_mut().budget = budget;
     assert!(matches!(limit(&mut renderer), Limit::Time { .. }));
@@ -237,17 +268,20 @@ fn cube(shadow: GroundShadow) -> Renderer {
 
 #[test]
 fn the_ground_shows_shadow_alone() {
-    for (kind, lights) in
-        [(GroundShadow::Auto, None), (GroundShadow::Lights, Some(vec![sun_from(DVec3::new(-1.0, 1.0, 0.0))]))]
-    {
+    for (kind, lights) in [
+        (GroundShadow::Auto, None),
+        (GroundShadow::Lights, Some(vec![sun_from(DVec3::new(-1.0, 1.0, 0.0))])),
+    ] {
         let picture = |kind, background| {
             let mut renderer = cube(kind);
             renderer.lights.clone_from(&lights);
             renderer.settings.picture.background = background;
             colors(&mut renderer)
         };
-        let (plain, shaded) =
-            (picture(GroundShadow::None, Background::Transparent), picture(kind, Background::Transparent));
+        let (plain, shaded) = (
+            picture(GroundShadow::None, Background::Transparent),
+            picture(kind, Background::Transparent),
+        );
         let mut shadow = 0;
         for (a, b) in plain.iter().zip(&shaded) {
             match a[3] {
@@ -278,20 +312,29 @@ fn sun_from(from: DVec3) -> Light {
 
 #[test]
 fn the_shadow_falls_where_the_light_says() {
-    // The sun stands 45 degrees high on the left: from above the shadow of the cube, which ends at x = 1, goes on to x = 3.
+    // The sun stands 45 degrees high on the left: from above the shadow of the cube, which ends at
+    // x = 1, goes on to x = 3.
     let mut renderer = cube(GroundShadow::Lights);
-    (renderer.view, renderer.lights) = (View::Top, Some(vec![sun_from(DVec3::new(-1.0, 1.0, 0.0))]));
+    (renderer.view, renderer.lights) =
+        (View::Top, Some(vec![sun_from(DVec3::new(-1.0, 1.0, 0.0))]));
     renderer.lens = vitral::Lens::Parallel;
     let camera = renderer.frame_camera();
     let pixels = colors(&mut renderer);
-    let vitral::Projection::Parallel { height } = camera.projection else { panic!("a parallel view") };
+    let vitral::Projection::Parallel { height } = camera.projection else {
+        panic!("a parallel view")
+    };
     let alpha = |x: f64, z: f64| {
         let at = [x, z].map(|v| (32.0 + v / height * 64.0) as usize);
         at_alpha(&pixels, at[0], at[1])
     };
     assert!([1.3, 2.0, 2.7].iter().all(|&x| alpha(x, 0.0) == 255), "the only light is gone");
-    assert!([-1.4, 3.3].iter().all(|&x| alpha(x, 0.0) == 0) && alpha(2.0, 1.4) == 0 && alpha(2.0, -1.4) == 0);
-    // In ambient light of a third of the sun's on the ground, three quarters are gone. A quarter of white is sRGB's 137.
+    assert!(
+        [-1.4, 3.3].iter().all(|&x| alpha(x, 0.0) == 0)
+            && alpha(2.0, 1.4) == 0
+            && alpha(2.0, -1.4) == 0
+    );
+    // In ambient light of a third of the sun's on the ground, three quarters are gone. A quarter of
+    // white is sRGB's 137.
     let sun = 0.5f32.sqrt();
     renderer.ambient = [sun / 3.0; 3];
     let pixels = colors(&mut renderer);
@@ -314,11 +357,17 @@ fn the_ground_is_the_same_for_all_algorithms_and_threads() {
         let expected = picture(&|_| {});
         let others = Visibility::all().filter(|v| *v != Visibility::BRUTE_FORCE);
         for visibility in others {
-            assert!(picture(&|r| r.settings.visibility = visibility) == expected, "{kind:?} {visibility}");
+            assert!(
+                picture(&|r| r.settings.visibility = visibility) == expected,
+                "{kind:?} {visibility}"
+            );
         }
         for shadows in [Shadows::MAP, Shadows::RAY] {
             let alpha = |pixels: &[[u8; 4]]| pixels.iter().map(|p| p[3]).collect::<Vec<_>>();
-            assert!(alpha(&picture(&|r| r.settings.shadows.algorithm = shadows)) == alpha(&expected), "{shadows}");
+            assert!(
+                alpha(&picture(&|r| r.settings.shadows.algorithm = shadows)) == alpha(&expected),
+                "{shadows}"
+            );
         }
         assert!(picture(&|r| *r.execution_mut() = vitral::execution(3)) == expected);
     }
@@ -359,7 +408,11 @@ fn glass_shows_the_shadow_behind_it_and_the_ground_has_no_back() {
     });
     let plain_by_rays = picture(&scene, &traced);
     assert!(by_rays.iter().zip(&plain_by_rays).filter(|(a, b)| a[0] + 8 < b[0]).count() > 50);
-    let far = shown.iter().zip(&by_rays).filter(|(a, b)| (0..3).any(|k| a[k].abs_diff(b[k]) > 60)).count();
+    let far = shown
+        .iter()
+        .zip(&by_rays)
+        .filter(|(a, b)| (0..3).any(|k| a[k].abs_diff(b[k]) > 60))
+        .count();
     assert!(far < 64 * 64 / 50, "{far}");
     // From below the ground does not hide the model.
     let below = |renderer: &mut Renderer| renderer.view = View::Bottom;

@@ -1,5 +1,5 @@
-//! Translucent surfaces in whole pictures: they blur what is behind them, glow in the light behind them, and are refused
-//! where they cannot be shown.
+//! Translucent surfaces in whole pictures: they blur what is behind them, glow in the light behind
+//! them, and are refused where they cannot be shown.
 
 use super::common::{colors, exact, limit, on_z, settings_error, sun};
 use vitral::internals::math::dvec3;
@@ -7,8 +7,9 @@ use vitral::internals::math::lanes::available_levels;
 use vitral::internals::render::registry::{SHADOWS, VISIBILITY};
 use vitral::internals::render::transparency::registry::ORDERS;
 use vitral::{
-    AlphaMode, Budget, Camera, DMat4, DVec3, Execution, Global, Limit, Material, Mesh, Part, Projection, Reflectance,
-    Renderer, Scene, SettingsError, SystemClock, Transmission, Transparency, TransparencyOrder, Workers, solids,
+    AlphaMode, Budget, Camera, DMat4, DVec3, Execution, Global, Limit, Material, Mesh, Part,
+    Projection, Reflectance, Renderer, Scene, SettingsError, SystemClock, Transmission,
+    Transparency, TransparencyOrder, Workers, solids,
 };
 
 /// A colour that no light changes.
@@ -21,8 +22,14 @@ fn plain(color: [f32; 3]) -> Material {
 fn glass(kt: f32, transmission: Transmission, shininess: f32) -> Material {
     let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [0.0; 3], ks: [0.0; 3], shininess };
     let alpha_mode = AlphaMode::Blend;
-    let mut material =
-        Material { name: "pane".into(), reflectance, transmission, alpha_mode, ior: 1.0, ..plain([0.0; 3]) };
+    let mut material = Material {
+        name: "pane".into(),
+        reflectance,
+        transmission,
+        alpha_mode,
+        ior: 1.0,
+        ..plain([0.0; 3])
+    };
     material.set_kt(kt);
     material
 }
@@ -36,7 +43,12 @@ fn add(scene: &mut Scene, mut mesh: Mesh, material: Material) {
 /// A rectangle across z.
 fn rectangle(low: [f32; 2], high: [f32; 2], z: f32) -> Mesh {
     Mesh {
-        positions: vec![[low[0], low[1], z], [high[0], low[1], z], [high[0], high[1], z], [low[0], high[1], z]],
+        positions: vec![
+            [low[0], low[1], z],
+            [high[0], low[1], z],
+            [high[0], high[1], z],
+            [low[0], high[1], z],
+        ],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         parts: vec![Part { name: String::new(), triangles: 0..2, material: None }],
         ..Mesh::default()
@@ -99,7 +111,10 @@ fn t1_a_translucent_slab_blurs_a_checker_and_a_transparent_one_does_not() {
     let whole = variance(&mut seen(bare, 4));
     for (name, with) in [("layers", (|r| r) as fn(Renderer) -> Renderer), ("rays", traced)] {
         let clear = variance(&mut with(of(Transmission::Transparent, 1.0)));
-        assert!((clear / whole - 1.0).abs() < 0.02, "{name}: transparent leaves it, {clear} of {whole}");
+        assert!(
+            (clear / whole - 1.0).abs() < 0.02,
+            "{name}: transparent leaves it, {clear} of {whole}"
+        );
         let blurred = variance(&mut with(of(Transmission::Translucent, 1.0)));
         assert!(blurred < 0.1 * whole, "{name}: translucent blurs, {blurred} of {whole}");
         // What touches the slab stays nearly sharp.
@@ -116,12 +131,21 @@ fn layers_and_rays_blur_alike() {
     for (exponent, behind) in [(30.0, 1.0), (100.0, 0.4), (300.0, 2.0)] {
         let mut pane = Scene::default();
         checker(&mut pane, -behind);
-        add(&mut pane, rectangle([-3.0; 2], [3.0; 2], 0.0), glass(0.8, Transmission::Translucent, exponent));
+        add(
+            &mut pane,
+            rectangle([-3.0; 2], [3.0; 2], 0.0),
+            glass(0.8, Transmission::Translucent, exponent),
+        );
         let mut renderer = seen(pane, 4);
         renderer.settings.transparency.scatter_samples = 400;
         let [layers, rays] = [colors(&mut renderer), colors(&mut traced(renderer))];
-        let apart: u64 = layers.iter().zip(&rays).map(|(a, b)| u64::from(a[0].abs_diff(b[0]))).sum();
-        assert!(apart < 4 * layers.len() as u64, "{exponent}, {behind}: {} on the mean", apart / layers.len() as u64);
+        let apart: u64 =
+            layers.iter().zip(&rays).map(|(a, b)| u64::from(a[0].abs_diff(b[0]))).sum();
+        assert!(
+            apart < 4 * layers.len() as u64,
+            "{exponent}, {behind}: {} on the mean",
+            apart / layers.len() as u64
+        );
     }
 }
 
@@ -129,7 +153,11 @@ fn layers_and_rays_blur_alike() {
 fn what_is_in_front_of_a_translucent_pane_is_not_blurred_into_it() {
     let mut scene = Scene::default();
     add(&mut scene, rectangle([-9.0; 2], [9.0; 2], -2.0), plain([0.2, 0.4, 0.6]));
-    add(&mut scene, rectangle([-3.0; 2], [3.0; 2], 0.0), glass(1.0, Transmission::Translucent, 20.0));
+    add(
+        &mut scene,
+        rectangle([-3.0; 2], [3.0; 2], 0.0),
+        glass(1.0, Transmission::Translucent, 20.0),
+    );
     add(&mut scene, rectangle([-0.2, -3.0], [0.2, 3.0], 0.5), plain([1.0, 0.0, 0.0]));
     for with in [(|r| r) as fn(Renderer) -> Renderer, traced] {
         let picture = colors(&mut with(seen(scene.clone(), 1)));
@@ -147,7 +175,8 @@ fn what_is_in_front_of_a_translucent_pane_is_not_blurred_into_it() {
 
 #[test]
 fn tilted_and_curved_surfaces_do_not_see_themselves() {
-    // Black glass that lets half pass: one pane halves the wall, a ball's two surfaces leave a quarter.
+    // Black glass that lets half pass: one pane halves the wall, a ball's two surfaces leave a
+    // quarter.
     let mut tilted = rectangle([-0.9; 2], [0.9; 2], 0.0);
     tilted.positions.iter_mut().for_each(|p| p[2] = -1.5 * p[0] + p[1]);
     for (mesh, expected) in [(tilted, 127), (solids::sphere(0.8, 48, 24), 64)] {
@@ -180,7 +209,8 @@ fn two_panes_behind_each_other_blur_twice_and_let_the_product_pass() {
 fn every_algorithm_and_order_that_can_blurs_the_same_and_the_others_refuse() {
     let picture = |order: TransparencyOrder, visibility: &str| {
         let mut r = seen(slab(glass(0.7, Transmission::Translucent, 30.0), 1.0), 4);
-        (r.settings.transparency.order, r.settings.visibility) = (order, visibility.parse().unwrap());
+        (r.settings.transparency.order, r.settings.visibility) =
+            (order, visibility.parse().unwrap());
         r.render().map(|rendered| rendered.frame.color.unwrap().into_data())
     };
     let expected = picture(TransparencyOrder::A_BUFFER, "z-buffer").unwrap();
@@ -188,7 +218,11 @@ fn every_algorithm_and_order_that_can_blurs_the_same_and_the_others_refuse() {
         for algorithm in VISIBILITY.iter().filter(|a| a.makes_list() || !order.needs_list) {
             let own = picture(order.choice(), algorithm.name);
             if order.blurs {
-                let same = own.unwrap().iter().zip(&expected).all(|(a, b)| (0..4).all(|k| a[k].abs_diff(b[k]) <= 1));
+                let same = own
+                    .unwrap()
+                    .iter()
+                    .zip(&expected)
+                    .all(|(a, b)| (0..4).all(|k| a[k].abs_diff(b[k]) <= 1));
                 assert!(same, "{} with {}", algorithm.name, order.name);
             } else {
                 let error = own.unwrap_err();
@@ -208,11 +242,16 @@ fn blur_is_the_same_at_every_level_with_one_and_three_threads() {
     let mut reference = None;
     for (name, level) in available_levels() {
         for threads in [1, 3] {
-            let execution =
-                Execution { workers: Workers::new(threads), level, budget: Budget::default(), observer: None };
+            let execution = Execution {
+                workers: Workers::new(threads),
+                level,
+                budget: Budget::default(),
+                observer: None,
+            };
             let scene = slab(glass(0.7, Transmission::Translucent, 30.0), 1.0);
             let mut r = Renderer::with_execution(scene, execution).unwrap();
-            (r.settings.picture.width, r.settings.picture.height, r.camera) = (130, 70, Some(on_z(4.0, 0.5)));
+            (r.settings.picture.width, r.settings.picture.height, r.camera) =
+                (130, 70, Some(on_z(4.0, 0.5)));
             let layers = colors(&mut r);
             let pictures = [layers, colors(&mut traced(r))];
             let expected = reference.get_or_insert_with(|| pictures.clone());
@@ -225,7 +264,8 @@ fn blur_is_the_same_at_every_level_with_one_and_three_threads() {
 fn t1_light_behind_a_translucent_pane_makes_it_glow() {
     let picture = |transmission, from: DVec3, model: Transparency| {
         let mut scene = Scene::default();
-        let pane = Material { unlit: false, filter: [1.0, 0.5, 0.0], ..glass(0.5, transmission, 40.0) };
+        let pane =
+            Material { unlit: false, filter: [1.0, 0.5, 0.0], ..glass(0.5, transmission, 40.0) };
         add(&mut scene, rectangle([-3.0; 2], [3.0; 2], 0.0), pane);
         let mut r = seen(scene, 1);
         r.lights = Some(vec![sun(from, 0.8)]);
@@ -236,7 +276,10 @@ fn t1_light_behind_a_translucent_pane_makes_it_glow() {
     let linear = Transparency::Linear;
     // kt Ip cos = 0.5 * 0.8 * 0.8.
     assert_eq!(picture(Transmission::Translucent, behind, linear), [82, 82, 82, 255]);
-    assert_eq!(picture(Transmission::Translucent, behind, Transparency::Filtered), [82, 41, 0, 255]);
+    assert_eq!(
+        picture(Transmission::Translucent, behind, Transparency::Filtered),
+        [82, 41, 0, 255]
+    );
     assert_eq!(picture(Transmission::Transparent, behind, linear), [0, 0, 0, 255]);
     assert_eq!(picture(Transmission::Translucent, -behind, linear), [0, 0, 0, 255]);
 }
@@ -275,14 +318,21 @@ fn blur_and_passes_stop_at_a_time_limit() {
     let with_limit = |scene: Scene, order| {
         let mut r = seen(scene, 4);
         r.settings.transparency.order = order;
-        let budget = Budget::new(std::sync::Arc::new(SystemClock::default())).with_time_limit(Some(1e-9));
+        let budget =
+            Budget::new(std::sync::Arc::new(SystemClock::default())).with_time_limit(Some(1e-9));
         r.execution_mut().budget = budget;
         limit(&mut r)
     };
     let clear = glass(0.7, Transmission::Transparent, 30.0);
-    assert!(matches!(with_limit(slab(clear, 1.0), TransparencyOrder::MULTI_PASS), Limit::Time { .. }));
+    assert!(matches!(
+        with_limit(slab(clear, 1.0), TransparencyOrder::MULTI_PASS),
+        Limit::Time { .. }
+    ));
     let translucent = glass(0.7, Transmission::Translucent, 30.0);
-    assert!(matches!(with_limit(slab(translucent, 1.0), TransparencyOrder::A_BUFFER), Limit::Time { .. }));
+    assert!(matches!(
+        with_limit(slab(translucent, 1.0), TransparencyOrder::A_BUFFER),
+        Limit::Time { .. }
+    ));
     // And at one of memory.
     let mut r = seen(slab(glass(0.7, Transmission::Translucent, 30.0), 1.0), 16);
     (r.settings.picture.width, r.settings.picture.height) = (800, 600);

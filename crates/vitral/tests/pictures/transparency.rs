@@ -6,9 +6,9 @@ use vitral::internals::frame::TwoBuffers;
 use vitral::internals::render::registry::VISIBILITY;
 use vitral::internals::render::transparency::registry::ORDERS;
 use vitral::{
-    AlphaMode, Attribute, Background, Camera, DMat4, DVec3, Encoding, Global, Lines, Material, Mesh, Part, Plane,
-    Projection, Reflectance, Renderer, Scene, SettingsError, Shading, Texture, TextureRef, Transparency,
-    TransparencyOrder, solids,
+    AlphaMode, Attribute, Background, Camera, DMat4, DVec3, Encoding, Global, Lines, Material,
+    Mesh, Part, Plane, Projection, Reflectance, Renderer, Scene, SettingsError, Shading, Texture,
+    TextureRef, Transparency, TransparencyOrder, solids,
 };
 
 /// A square from -1 to 1 at height `z`, which rises by `slope` along x.
@@ -25,7 +25,8 @@ pub(crate) fn square(z: f32, slope: f32) -> Mesh {
 /// Glass without light of its own but its colour.
 pub(crate) fn glass(color: [f32; 3], kt: f32) -> Material {
     let reflectance = Reflectance::Phong { ka: color, kd: color, ks: [0.0; 3], shininess: 1.0 };
-    let mut material = Material { reflectance, unlit: true, alpha_mode: AlphaMode::Blend, ..Material::default() };
+    let mut material =
+        Material { reflectance, unlit: true, alpha_mode: AlphaMode::Blend, ..Material::default() };
     material.set_kt(kt);
     material
 }
@@ -73,7 +74,11 @@ fn t10_t11_t12_f6_exact_orders_agree_in_every_algorithm_and_permutation() {
                 parts.rotate_left(turn);
                 parts.swap(0, 3);
                 let mut permuted = renderer(parts, order.choice(), samples);
-                assert!(colors(&mut permuted) == own, "{}, {samples} samples, permutation {turn}", order.name);
+                assert!(
+                    colors(&mut permuted) == own,
+                    "{}, {samples} samples, permutation {turn}",
+                    order.name
+                );
             }
         }
         for algorithm in VISIBILITY {
@@ -81,7 +86,12 @@ fn t10_t11_t12_f6_exact_orders_agree_in_every_algorithm_and_permutation() {
                 let mut r = renderer(glasses(), order.choice(), samples);
                 let expected = colors(&mut r);
                 r.settings.visibility = algorithm.choice();
-                assert!(colors(&mut r) == expected, "{} with {}, {samples}", algorithm.name, order.name);
+                assert!(
+                    colors(&mut r) == expected,
+                    "{} with {}, {samples}",
+                    algorithm.name,
+                    order.name
+                );
             }
         }
     }
@@ -141,13 +151,20 @@ fn t10_the_lists_of_painter_and_bsp_give_what_sorting_gives() {
             assert!(rendered.stats.visibility.splits > 0, "{}: the panes cross", algorithm.name);
             let own = rendered.frame.color.unwrap().into_data();
             let apart = |own: &[[u8; 4]]| {
-                let far = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(x, y)| x.abs_diff(*y) > 1);
+                let far = |(a, b): &(&[u8; 4], &[u8; 4])| {
+                    a.iter().zip(*b).any(|(x, y)| x.abs_diff(*y) > 1)
+                };
                 own.iter().zip(&reference).filter(far).count()
             };
-            // The tree cuts where planes of the world meet, depths are those of corners that were snapped to 1/256
-            // pixel: a sample between the two has another order, and depth has the last word. There are few of them.
+            // The tree cuts where planes of the world meet, depths are those of corners that were
+            // snapped to 1/256 pixel: a sample between the two has another order, and depth has the
+            // last word. There are few of them.
             let picture = rendered.stats.picture;
-            assert!(picture.overruled_layers * 5000 <= picture.layer_samples, "{}: {picture:?}", algorithm.name);
+            assert!(
+                picture.overruled_layers * 5000 <= picture.layer_samples,
+                "{}: {picture:?}",
+                algorithm.name
+            );
             assert_eq!(apart(&own), 0, "{}, {samples} samples", algorithm.name);
             for turn in 0..5 {
                 let mut parts = glasses();
@@ -167,10 +184,12 @@ fn t10_lines_take_their_place_among_the_panes_of_a_list() {
     for visibility in ["painter", "bsp"] {
         let picture = |order| {
             let mut r = renderer(glasses(), order, 4);
-            (r.settings.picture.lines, r.settings.visibility) = (Lines::Edges, visibility.parse().unwrap());
+            (r.settings.picture.lines, r.settings.visibility) =
+                (Lines::Edges, visibility.parse().unwrap());
             colors(&mut r)
         };
-        let (own, sorted) = (picture(TransparencyOrder::BACK_TO_FRONT), picture(TransparencyOrder::SORTED));
+        let (own, sorted) =
+            (picture(TransparencyOrder::BACK_TO_FRONT), picture(TransparencyOrder::SORTED));
         let apart = own.iter().zip(&sorted).filter(|(a, b)| a != b).count();
         assert!(apart <= 2, "{visibility}: {apart} pixels");
     }
@@ -193,11 +212,16 @@ fn t11_f8_e3_inexact_orders_show_their_error_and_are_exact_for_one_layer() {
     for order in ORDERS.iter().filter(|o| !o.exact) {
         let first = colors(&mut renderer(glasses(), order.choice(), 1));
         let other = colors(&mut renderer(turned.clone(), order.choice(), 1));
-        assert!(largest_difference(&first, &other) > 20, "{}: the order of the scene shows", order.name);
+        assert!(
+            largest_difference(&first, &other) > 20,
+            "{}: the order of the scene shows",
+            order.name
+        );
         assert!(largest_difference(&first, &exact) > 20, "{}", order.name);
         let panes = || vec![glasses().remove(4), glasses().remove(2)];
         let single = |value| colors(&mut renderer(panes(), value, 4));
-        let difference = largest_difference(&single(order.choice()), &single(TransparencyOrder::SORTED));
+        let difference =
+            largest_difference(&single(order.choice()), &single(TransparencyOrder::SORTED));
         assert!(difference <= 1, "{}: one layer is exact", order.name);
     }
 }
@@ -215,16 +239,24 @@ fn two_buffers(parts: Vec<(Mesh, Material)>) -> (TwoBuffers, Vec<[u8; 4]>) {
 #[test]
 fn f7_the_opaque_buffer_does_not_depend_on_the_transparent_list() {
     let (whole, picture) = two_buffers(glasses());
-    assert!(whole.layers.data().iter().any(|&n| n >= 3) && whole.opaque.data().iter().any(|c| c[0] > 0.5));
+    assert!(
+        whole.layers.data().iter().any(|&n| n >= 3)
+            && whole.opaque.data().iter().any(|c| c[0] > 0.5)
+    );
     let mut turned = glasses();
     turned.reverse();
     let (other, other_picture) = two_buffers(turned);
-    assert!(whole.opaque == other.opaque && whole.depth == other.depth && whole.layers == other.layers);
+    assert!(
+        whole.opaque == other.opaque && whole.depth == other.depth && whole.layers == other.layers
+    );
     assert_ne!(picture, other_picture, "the second buffer does depend on its order");
     // Nothing is on the list: the second buffer is empty and the picture is the first one.
     let (alone, picture) = two_buffers(vec![glasses().remove(4)]);
     assert!(whole.opaque == alone.opaque && whole.depth == alone.depth);
-    assert!(alone.layers.data().iter().all(|&n| n == 0) && alone.coefficient.data().iter().all(|k| *k == [0.0; 3]));
+    assert!(
+        alone.layers.data().iter().all(|&n| n == 0)
+            && alone.coefficient.data().iter().all(|k| *k == [0.0; 3])
+    );
     let bytes = alone.opaque.map(|c| c.map(|v| (v * 255.0 + 0.5) as u8));
     assert_eq!(bytes.data(), picture);
 }
@@ -232,16 +264,25 @@ fn f7_the_opaque_buffer_does_not_depend_on_the_transparent_list() {
 #[test]
 fn f8_one_layer_in_the_second_buffer_is_exact() {
     let (kt, color) = (0.25, [0.2, 0.6, 0.9]);
-    let (buffers, picture) = two_buffers(vec![(square(0.5, 0.0), glass(color, kt)), glasses().remove(4)]);
+    let (buffers, picture) =
+        two_buffers(vec![(square(0.5, 0.0), glass(color, kt)), glasses().remove(4)]);
     let mut seen = 0;
     for (i, pixel) in picture.iter().enumerate() {
-        let (layers, k, light) = (buffers.layers.data()[i], buffers.coefficient.data()[i], buffers.intensity.data()[i]);
+        let (layers, k, light) =
+            (buffers.layers.data()[i], buffers.coefficient.data()[i], buffers.intensity.data()[i]);
         let expected = if layers == 0 { 0.0 } else { 1.0 - kt };
         seen += layers;
         for c in 0..3 {
-            assert!(layers <= 1 && (k[c] - expected).abs() < 1e-6 && (light[c] - expected * color[c]).abs() < 1e-6);
+            assert!(
+                layers <= 1
+                    && (k[c] - expected).abs() < 1e-6
+                    && (light[c] - expected * color[c]).abs() < 1e-6
+            );
             let combined = light[c] + (1.0 - k[c]) * buffers.opaque.data()[i][c];
-            assert!((f32::from(pixel[c]) - 255.0 * combined).abs() <= 0.51, "{pixel:?}, {combined}");
+            assert!(
+                (f32::from(pixel[c]) - 255.0 * combined).abs() <= 0.51,
+                "{pixel:?}, {combined}"
+            );
         }
     }
     assert!(seen > 500, "{seen}");
@@ -250,7 +291,8 @@ fn f8_one_layer_in_the_second_buffer_is_exact() {
 #[test]
 fn t7_f4_stacks_of_one_to_eight_panes_in_a_picture() {
     for n in 1..=8 {
-        let panes = (0..n).map(|i| (square(0.1 * i as f32, 0.0), glass([0.1 * (i + 1) as f32; 3], 0.5)));
+        let panes =
+            (0..n).map(|i| (square(0.1 * i as f32, 0.0), glass([0.1 * (i + 1) as f32; 3], 0.5)));
         let mut r = renderer(panes.collect(), TransparencyOrder::A_BUFFER, 4);
         r.settings.picture.background = Background::Color { color: [0.6; 3] };
         let expected = (0..n).fold(0.6f32, |behind, i| 0.5 * 0.1 * (i + 1) as f32 + 0.5 * behind);
@@ -259,7 +301,8 @@ fn t7_f4_stacks_of_one_to_eight_panes_in_a_picture() {
     }
 }
 
-/// A ball of radius 1 in front of black, the row through its middle: place from -1 to 1 and intensity.
+/// A ball of radius 1 in front of black, the row through its middle: place from -1 to 1 and
+/// intensity.
 fn profile(material: Material, model: Transparency) -> Vec<(f64, f64)> {
     let mut renderer = exact(one(solids::sphere(1.0, 256, 128), material), 201, 201);
     let projection = Projection::Parallel { height: 2.01 };
@@ -267,7 +310,11 @@ fn profile(material: Material, model: Transparency) -> Vec<(f64, f64)> {
     renderer.settings.transparency.model = model;
     let row = colors(&mut renderer)[100 * 201..101 * 201].to_vec();
     let place = |i: usize| (i as f64 - 100.0) * 0.01;
-    row.iter().enumerate().map(|(i, c)| (place(i), f64::from(c[0]) / 255.0)).filter(|p| p.0.abs() < 0.97).collect()
+    row.iter()
+        .enumerate()
+        .map(|(i, c)| (place(i), f64::from(c[0]) / 255.0))
+        .filter(|p| p.0.abs() < 0.97)
+        .collect()
 }
 
 #[test]
@@ -279,7 +326,11 @@ fn t8_t9_f5_the_profile_of_a_glass_ball_tells_kays_model_from_the_linear_one() {
     for (x, seen) in profile(glass([1.0; 3], 0.8), Transparency::Kay) {
         let nz = (1.0 - x * x).sqrt();
         let kt = 0.8 * (1.0 - (1.0 - nz) * (1.0 - nz) * (1.0 - nz));
-        assert!((seen - (1.0 - kt * kt)).abs() < 0.012, "Kay: {seen} at {x}, not {}", 1.0 - kt * kt);
+        assert!(
+            (seen - (1.0 - kt * kt)).abs() < 0.012,
+            "Kay: {seen} at {x}, not {}",
+            1.0 - kt * kt
+        );
     }
 }
 
@@ -328,13 +379,18 @@ fn clear_bodies_of_glass_keep_highlights_and_rim() {
 
 #[test]
 fn textures_of_glass_say_what_factors_say_and_metals_let_nothing_through() {
-    // Opacity and metal, by factors and by textures of one texel. A wall behind shows what passes, and how light the shadow is.
+    // Opacity and metal, by factors and by textures of one texel. A wall behind shows what passes,
+    // and how light the shadow is.
     let pane = |opacity: f32, metallic: f32, textured: bool| {
         let mut pane = square(0.0, 0.0);
         pane.uvs = vec![Attribute::per_vertex(vec![[0.5; 2]; pane.positions.len()])];
         let number = |value: f32| if textured { 1.0 } else { value };
         let base_color = [0.0; 3];
-        let reflectance = Reflectance::MetallicRoughness { base_color, metallic: number(metallic), roughness: 0.5 };
+        let reflectance = Reflectance::MetallicRoughness {
+            base_color,
+            metallic: number(metallic),
+            roughness: 0.5,
+        };
         let texture = |number| textured.then(|| TextureRef::new(number));
         let material = Material {
             reflectance,
@@ -346,7 +402,8 @@ fn textures_of_glass_say_what_factors_say_and_metals_let_nothing_through() {
             metallic_roughness_texture: texture(1),
             ..Material::default()
         };
-        let reflectance = Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
+        let reflectance =
+            Reflectance::Phong { ka: [0.0; 3], kd: [1.0; 3], ks: [0.0; 3], shininess: 1.0 };
         let wall = (square(-0.5, 0.0), Material { reflectance, ..Material::default() });
         let mut scene = scene_of([wall, (pane, material)]);
         for value in [opacity, metallic] {
@@ -358,7 +415,8 @@ fn textures_of_glass_say_what_factors_say_and_metals_let_nothing_through() {
     };
     let seen = |opacity, metallic, textured, shadows: &str| {
         let mut r = exact(pane(opacity, metallic, textured), 20, 20);
-        (r.camera, r.lights, r.ambient) = (Some(on_z(1.0, 0.1)), Some(vec![sun(DVec3::Z, 1.0)]), [0.0; 3]);
+        (r.camera, r.lights, r.ambient) =
+            (Some(on_z(1.0, 0.1)), Some(vec![sun(DVec3::Z, 1.0)]), [0.0; 3]);
         r.settings.shadows.algorithm = shadows.parse().unwrap();
         i32::from(colors(&mut r)[210][0])
     };
@@ -380,13 +438,18 @@ fn textures_of_glass_say_what_factors_say_and_metals_let_nothing_through() {
 
 #[test]
 fn thousands_of_layers_stay_within_their_memory_with_a_warning() {
-    let panes: Vec<_> = (0..1200).map(|i| (square(-0.5 + 0.0005 * i as f32, 0.0), glass([0.5; 3], 0.98))).collect();
+    let panes: Vec<_> =
+        (0..1200).map(|i| (square(-0.5 + 0.0005 * i as f32, 0.0), glass([0.5; 3], 0.98))).collect();
     let run = |parts: Vec<(Mesh, Material)>, memory: u64| {
         let mut r = exact(scene_of(parts), 24, 24);
         r.camera = Some(on_z(3.0, 0.9));
         r.settings.transparency.layer_memory = memory;
         let rendered = r.render().unwrap();
-        (rendered.frame.color.unwrap().into_data(), rendered.warnings, rendered.stats.picture.lost_layers)
+        (
+            rendered.frame.color.unwrap().into_data(),
+            rendered.warnings,
+            rendered.stats.picture.lost_layers,
+        )
     };
     let (whole, warnings, lost) = run(panes.clone(), 1 << 30);
     assert!(warnings.is_empty() && lost == 0, "{warnings:?}");
@@ -399,14 +462,18 @@ fn thousands_of_layers_stay_within_their_memory_with_a_warning() {
 
 #[test]
 fn the_inner_sides_of_bodies_are_lit_as_both_sides_of_sheets_are() {
-    // Through the front of a closed body its back is seen from within, through holes as through glass.
+    // Through the front of a closed body its back is seen from within, through holes as through
+    // glass.
     let hole = Mesh { uvs: Vec::new(), ..solids::sphere(0.8, 24, 12) };
     let leaves = Material { alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() };
     let mut holed = hole.clone();
-    holed.colors =
-        Some(Attribute::per_vertex(hole.positions.iter().map(|p| [0.8, 0.7, 0.3, f32::from(p[2] < 0.3)]).collect()));
+    holed.colors = Some(Attribute::per_vertex(
+        hole.positions.iter().map(|p| [0.8, 0.7, 0.3, f32::from(p[2] < 0.3)]).collect(),
+    ));
     let lit = Material { unlit: false, ..glass([0.8, 0.3, 0.2], 0.6) };
-    for (mesh, material) in [(solids::cuboid(DVec3::ONE), lit.clone()), (hole, lit), (holed, leaves)] {
+    for (mesh, material) in
+        [(solids::cuboid(DVec3::ONE), lit.clone()), (hole, lit), (holed, leaves)]
+    {
         for (shading, shadows, global) in [
             (Shading::Phong, "none", Global::None),
             (Shading::Flat, "none", Global::None),
@@ -425,7 +492,11 @@ fn the_inner_sides_of_bodies_are_lit_as_both_sides_of_sheets_are() {
                 r.settings.shadows.algorithm = shadows.parse().unwrap();
                 colors(&mut r)
             };
-            assert!(picture(false) == picture(true), "{:?}, {shading:?}, {shadows}, {global:?}", material.alpha_mode);
+            assert!(
+                picture(false) == picture(true),
+                "{:?}, {shading:?}, {shadows}, {global:?}",
+                material.alpha_mode
+            );
         }
     }
 }
@@ -435,7 +506,8 @@ fn opacities_outside_their_range_and_coincident_panes_are_harmless() {
     for opacity in [-3.0, 7.0, f32::NAN, f32::INFINITY] {
         for model in [Transparency::Linear, Transparency::Kay, Transparency::Filtered] {
             let odd = Material { opacity, filter: [f32::NAN, -1.0, 9.0], ..glass([0.5; 3], 0.5) };
-            let mut r = exact(scene_of([(square(0.0, 0.0), odd.clone()), (square(0.0, 0.0), odd)]), 16, 16);
+            let mut r =
+                exact(scene_of([(square(0.0, 0.0), odd.clone()), (square(0.0, 0.0), odd)]), 16, 16);
             (r.camera, r.settings.transparency.model) = (Some(on_z(1.0, 0.9)), model);
             assert!(colors(&mut r).iter().all(|c| c[3] == 255), "{model:?} with {opacity}");
         }
@@ -444,17 +516,27 @@ fn opacities_outside_their_range_and_coincident_panes_are_harmless() {
 
 #[test]
 fn coincident_panes_are_two_layers_and_the_first_of_the_scene_is_in_front() {
-    let panes = || vec![(square(0.0, 0.2), glass([0.8; 3], 0.5)), (square(0.0, 0.2), glass([0.2; 3], 0.25))];
+    let panes = || {
+        vec![(square(0.0, 0.2), glass([0.8; 3], 0.5)), (square(0.0, 0.2), glass([0.2; 3], 0.25))]
+    };
     // 0.5 * 0.8 + 0.5 * (0.75 * 0.2 + 0.25 * 0), and the other way round.
     for (parts, expected) in [(panes(), 121u8), (panes().into_iter().rev().collect(), 64)] {
         for order in ORDERS.iter().filter(|o| o.exact) {
             let listing = VISIBILITY.iter().filter(|a| a.makes_list());
-            for algorithm in VISIBILITY.iter().filter(|_| !order.needs_list).chain(listing.filter(|_| order.needs_list))
+            for algorithm in VISIBILITY
+                .iter()
+                .filter(|_| !order.needs_list)
+                .chain(listing.filter(|_| order.needs_list))
             {
                 let mut r = renderer(Vec::clone(&parts), order.choice(), 4);
                 r.settings.visibility = algorithm.choice();
                 let middle = colors(&mut r)[35 * 90 + 45][0];
-                assert!(middle.abs_diff(expected) <= 1, "{}, {}: {middle}, not {expected}", algorithm.name, order.name);
+                assert!(
+                    middle.abs_diff(expected) <= 1,
+                    "{}, {}: {middle}, not {expected}",
+                    algorithm.name,
+                    order.name
+                );
             }
         }
     }
@@ -463,7 +545,8 @@ fn coincident_panes_are_two_layers_and_the_first_of_the_scene_is_in_front() {
 /// A pane with a highlight that moves over the pixel, and a checked texture's worth of facets.
 fn lit_glasses() -> Vec<(Mesh, Material)> {
     let shiny = |color: [f32; 3], kt| {
-        let reflectance = Reflectance::Phong { ka: color, kd: color, ks: [0.9; 3], shininess: 60.0 };
+        let reflectance =
+            Reflectance::Phong { ka: color, kd: color, ks: [0.9; 3], shininess: 60.0 };
         Material { reflectance, unlit: false, ..glass(color, kt) }
     };
     vec![
@@ -480,10 +563,12 @@ fn t12_passes_over_the_triangles_give_the_picture_of_all_layers_at_once() {
             let picture = |order| {
                 let mut r = renderer(lit_glasses(), order, samples);
                 r.lights = Some(vec![sun(DVec3::new(0.3, 0.4, 0.8), 1.0)]);
-                (r.settings.picture.lines, r.settings.visibility) = (Lines::Edges, algorithm.name.parse().unwrap());
+                (r.settings.picture.lines, r.settings.visibility) =
+                    (Lines::Edges, algorithm.name.parse().unwrap());
                 colors(&mut r)
             };
-            let same = picture(TransparencyOrder::MULTI_PASS) == picture(TransparencyOrder::A_BUFFER);
+            let same =
+                picture(TransparencyOrder::MULTI_PASS) == picture(TransparencyOrder::A_BUFFER);
             assert!(same, "{}, {samples} samples", algorithm.name);
         }
     }
@@ -491,7 +576,9 @@ fn t12_passes_over_the_triangles_give_the_picture_of_all_layers_at_once() {
 
 #[test]
 fn t12_the_picture_after_each_pass_can_be_had() {
-    let panes = |n: usize| (0..n).map(|i| (square(0.1 * i as f32, 0.0), glass([0.1 * (i + 1) as f32; 3], 0.5)));
+    let panes = |n: usize| {
+        (0..n).map(|i| (square(0.1 * i as f32, 0.0), glass([0.1 * (i + 1) as f32; 3], 0.5)))
+    };
     let mut r = renderer(panes(5).collect(), TransparencyOrder::MULTI_PASS, 4);
     r.settings.picture.channels.passes = true;
     let frame = r.render().unwrap().frame;
@@ -504,31 +591,43 @@ fn t12_the_picture_after_each_pass_can_be_had() {
         assert_eq!(middle(pass.data()), middle(&expected), "after pass {n}");
     }
     // Without passes it is an error to ask for them.
-    for (order, visibility) in [("sorted", "z-buffer"), ("multi-pass", "ray-cast"), ("multi-pass", "brute-force")] {
+    for (order, visibility) in
+        [("sorted", "z-buffer"), ("multi-pass", "ray-cast"), ("multi-pass", "brute-force")]
+    {
         let order = ORDERS.iter().find(|o| o.name == order).unwrap();
-        (r.settings.transparency.order, r.settings.visibility) = (order.choice(), visibility.parse().unwrap());
+        (r.settings.transparency.order, r.settings.visibility) =
+            (order.choice(), visibility.parse().unwrap());
         assert!(r.render().unwrap_err().to_string().contains("multi-pass"), "{visibility}");
     }
 }
 
 #[test]
 fn passes_lose_no_layer_and_lists_keep_the_nearest() {
-    let panes: Vec<_> = (0..400).map(|i| (square(-0.5 + 0.001 * i as f32, 0.0), glass([0.5; 3], 0.98))).collect();
+    let panes: Vec<_> =
+        (0..400).map(|i| (square(-0.5 + 0.001 * i as f32, 0.0), glass([0.5; 3], 0.98))).collect();
     let run = |order, visibility: &str, memory: u64| {
         let mut r = exact(scene_of(panes.clone()), 24, 24);
         (r.camera, r.settings.transparency.order) = (Some(on_z(3.0, 0.9)), order);
-        (r.settings.transparency.layer_memory, r.settings.visibility) = (memory, visibility.parse().unwrap());
+        (r.settings.transparency.layer_memory, r.settings.visibility) =
+            (memory, visibility.parse().unwrap());
         let rendered = r.render().unwrap();
         (rendered.frame.color.unwrap().into_data(), rendered.warnings.len())
     };
     let (small, large) = (1 << 20, 1 << 30);
     let whole = run(TransparencyOrder::A_BUFFER, "z-buffer", large);
-    assert_eq!(run(TransparencyOrder::MULTI_PASS, "z-buffer", small), whole, "passes need no memory for layers");
+    assert_eq!(
+        run(TransparencyOrder::MULTI_PASS, "z-buffer", small),
+        whole,
+        "passes need no memory for layers"
+    );
     let cut = run(TransparencyOrder::A_BUFFER, "z-buffer", small);
     assert!(cut.1 == 1 && cut.0 != whole.0);
     for visibility in ["painter", "bsp"] {
         let listed = run(TransparencyOrder::BACK_TO_FRONT, visibility, small);
-        assert!(listed.1 == 1 && largest_difference(&listed.0, &cut.0) <= 1, "{visibility}: the nearest stay");
+        assert!(
+            listed.1 == 1 && largest_difference(&listed.0, &cut.0) <= 1,
+            "{visibility}: the nearest stay"
+        );
     }
 }
 
@@ -558,8 +657,8 @@ fn exact_coverage(halves: &[[f64; 3]], x: f64, y: f64) -> f64 {
     0.5 * (0..polygon.len()).map(cross).sum::<f64>().abs()
 }
 
-/// Errors against exact areas, in the pixels on the border of a white square, turned and moved: of the A-buffer's masks, and of
-/// a mask of 4x8 places.
+/// Errors against exact areas, in the pixels on the border of a white square, turned and moved: of
+/// the A-buffer's masks, and of a mask of 4x8 places.
 fn coverage_errors(turns: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
     let mut errors = Vec::new();
     for (i, turn) in turns.enumerate() {
@@ -570,11 +669,14 @@ fn coverage_errors(turns: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
         let half = 11.3;
         for p in &mut mesh.positions {
             let [x, y] = [f64::from(p[0]) * half, f64::from(p[1]) * half];
-            *p = [(cos * x - sin * y + moved[0]) as f32, (sin * x + cos * y + moved[1]) as f32, 0.0];
+            *p =
+                [(cos * x - sin * y + moved[0]) as f32, (sin * x + cos * y + moved[1]) as f32, 0.0];
         }
         let mut r = exact(one(mesh, glass([1.0; 3], 0.0)), 40, 40);
-        r.camera = Some(Camera { projection: Projection::Parallel { height: 40.0 }, ..on_z(5.0, 1.0) });
-        (r.settings.picture.samples, r.settings.transparency.order) = (16, TransparencyOrder::A_BUFFER);
+        r.camera =
+            Some(Camera { projection: Projection::Parallel { height: 40.0 }, ..on_z(5.0, 1.0) });
+        (r.settings.picture.samples, r.settings.transparency.order) =
+            (16, TransparencyOrder::A_BUFFER);
         let middle = [20.0 + moved[0], 20.0 - moved[1]];
         let halves = [[cos, -sin], [-cos, sin], [sin, cos], [-sin, -cos]]
             .map(|[a, b]| [a, b, half + a * middle[0] + b * middle[1]]);
@@ -582,7 +684,10 @@ fn coverage_errors(turns: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
             let exact = exact_coverage(&halves, (at % 40) as f64, (at / 40) as f64);
             if exact > 1e-9 && exact < 1.0 - 1e-9 {
                 let place = |i: usize| {
-                    [(at % 40) as f64 + (i % 4) as f64 / 4.0 + 0.125, (at / 40) as f64 + (i / 4) as f64 / 8.0 + 0.0625]
+                    [
+                        (at % 40) as f64 + (i % 4) as f64 / 4.0 + 0.125,
+                        (at / 40) as f64 + (i / 4) as f64 / 8.0 + 0.0625,
+                    ]
                 };
                 let inside = |p: [f64; 2]| halves.iter().all(|[a, b, c]| a * p[0] + b * p[1] <= *c);
                 let mask = (0..32).filter(|&i| inside(place(i))).count() as f64 / 32.0;
@@ -597,8 +702,8 @@ fn coverage_errors(turns: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
 fn p18_coverage_masks_are_about_as_good_as_exact_areas() {
     // A byte, and 1/256 pixel to which corners are snapped.
     let rounding = 0.5 / 255.0 + 2.0 / 256.0;
-    // Upright edges: each of 16 samples has a column and a row of its own, so an edge is off by half a column at most. A
-    // corner of the square has two edges.
+    // Upright edges: each of 16 samples has a column and a row of its own, so an edge is off by
+    // half a column at most. A corner of the square has two edges.
     let upright = coverage_errors((0..12).map(|_| 0.0));
     assert!(upright.len() > 800);
     let far = upright.iter().filter(|[e, _]| e.abs() > 1.0 / 32.0 + rounding).count();
@@ -611,8 +716,14 @@ fn p18_coverage_masks_are_about_as_good_as_exact_areas() {
     let bias = all.iter().map(|e| e[0]).sum::<f64>() / count;
     assert!(mean(0) <= 1.0 / 32.0, "{} on the mean", mean(0));
     assert!(bias.abs() <= 1.0 / 320.0, "{bias} to one side");
-    // In a single pixel the error can be larger, of any mask: 4x8 places say an edge along their rows or columns is up to an eighth
-    // of a pixel from where it is. Twice as many places halve the mean.
-    assert!(worst(0) <= 0.18 && worst(1) > 1.0 / 32.0, "{} and {} at the worst", worst(0), worst(1));
+    // In a single pixel the error can be larger, of any mask: 4x8 places say an edge along their
+    // rows or columns is up to an eighth of a pixel from where it is. Twice as many places halve
+    // the mean.
+    assert!(
+        worst(0) <= 0.18 && worst(1) > 1.0 / 32.0,
+        "{} and {} at the worst",
+        worst(0),
+        worst(1)
+    );
     assert!(mean(0) <= 2.1 * mean(1), "{} and {} on the mean", mean(0), mean(1));
 }

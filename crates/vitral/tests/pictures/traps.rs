@@ -27,7 +27,12 @@ fn cyclic_triple() -> Scene {
     let bars = (0..3).flat_map(|k| {
         let (sin, cos) = [(0.0, 1.0), (0.866_025_4, -0.5), (-0.866_025_4, -0.5)][k];
         let turn = |x: f32, y: f32, z: f32| [cos * x - sin * y, sin * x + cos * y, z];
-        quad([turn(-1.2, -0.6, -0.3), turn(1.2, -0.6, 0.3), turn(1.2, -0.3, 0.3), turn(-1.2, -0.3, -0.3)])
+        quad([
+            turn(-1.2, -0.6, -0.3),
+            turn(1.2, -0.6, 0.3),
+            turn(1.2, -0.3, 0.3),
+            turn(-1.2, -0.3, -0.3),
+        ])
     });
     scene(&bars.collect::<Vec<_>>())
 }
@@ -58,12 +63,15 @@ fn t_junctions() -> Scene {
     let on = |t: f32| [0, 1, 2].map(|k| low[k] + (high[k] - low[k]) * t);
     let (top, bottom) = ([-0.9, 0.9, 0.0], [0.9, -0.9, 0.0]);
     let mut triangles = vec![[low, high, top]];
-    triangles.extend([0.0, 0.31, 0.77].into_iter().zip([0.31, 0.77, 1.0]).map(|(a, b)| [on(a), bottom, on(b)]));
+    triangles.extend(
+        [0.0, 0.31, 0.77].into_iter().zip([0.31, 0.77, 1.0]).map(|(a, b)| [on(a), bottom, on(b)]),
+    );
     triangles.push([[-3.0, -3.0, -1.0], [3.0, -3.0, -1.0], [0.0, 4.0, -1.0]]);
     scene(&triangles)
 }
 
-/// A fan of triangles thinner than a sample is from the next, across each other, some standing on edge.
+/// A fan of triangles thinner than a sample is from the next, across each other, some standing on
+/// edge.
 fn needles() -> Scene {
     let mut triangles = Vec::new();
     for i in 0..60u8 {
@@ -79,10 +87,30 @@ fn needles() -> Scene {
 /// A floor, a wall and a ceiling that run past the viewer, and faces before and behind.
 fn through_the_eye() -> Scene {
     let mut triangles = Vec::new();
-    triangles.extend(quad([[-9.0, -0.5, 9.0], [9.0, -0.5, 9.0], [9.0, -0.5, -9.0], [-9.0, -0.5, -9.0]]));
-    triangles.extend(quad([[0.7, -2.0, 9.0], [0.7, 2.0, 9.0], [0.7, 2.0, -9.0], [0.7, -2.0, -9.0]]));
-    triangles.extend(quad([[-9.0, 0.8, 9.0], [9.0, 0.9, 9.0], [9.0, 0.2, -9.0], [-9.0, 0.1, -9.0]]));
-    triangles.extend(quad([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.3], [1.0, 1.0, 0.0], [-1.0, 1.0, -0.3]]));
+    triangles.extend(quad([
+        [-9.0, -0.5, 9.0],
+        [9.0, -0.5, 9.0],
+        [9.0, -0.5, -9.0],
+        [-9.0, -0.5, -9.0],
+    ]));
+    triangles.extend(quad([
+        [0.7, -2.0, 9.0],
+        [0.7, 2.0, 9.0],
+        [0.7, 2.0, -9.0],
+        [0.7, -2.0, -9.0],
+    ]));
+    triangles.extend(quad([
+        [-9.0, 0.8, 9.0],
+        [9.0, 0.9, 9.0],
+        [9.0, 0.2, -9.0],
+        [-9.0, 0.1, -9.0],
+    ]));
+    triangles.extend(quad([
+        [-1.0, -1.0, 0.0],
+        [1.0, -1.0, 0.3],
+        [1.0, 1.0, 0.0],
+        [-1.0, 1.0, -0.3],
+    ]));
     triangles.push([[-2.0, 0.1, 20.0], [2.0, 0.3, -20.0], [0.0, -0.3, -2.0]]);
     scene(&triangles)
 }

@@ -40,8 +40,14 @@ fn a_window_shows_its_part_of_the_whole_picture() {
             None => expected,
         };
         let picture = window.render_from(&camera).unwrap();
-        let cut: Vec<[u8; 4]> =
-            expected.rgba8().as_chunks::<4>().0.chunks(96).flat_map(|row| &row[32..]).copied().collect();
+        let cut: Vec<[u8; 4]> = expected
+            .rgba8()
+            .as_chunks::<4>()
+            .0
+            .chunks(96)
+            .flat_map(|row| &row[32..])
+            .copied()
+            .collect();
         let apart = |a: &[u8; 4], b: &[u8; 4]| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 3);
         let seen = picture.rgba8().as_chunks::<4>().0;
         let different = cut.iter().zip(seen).filter(|(a, b)| apart(a, b)).count();

@@ -1,9 +1,9 @@
-//! The bibliography and the code agree: every cited key has an entry, every entry is cited or stands under "Further
-//! reading".
+//! The bibliography and the code agree: every cited key has an entry, every entry is cited or
+//! stands under "Further reading".
 //!
-//! A citation is a key in brackets, `[` and `]` (escaped or not), in a comment of Rust source or in a Markdown text. A key
-//! is what an entry is called, and whatever else looks like one: a name with a year behind it. It may run over the end of
-//! a line.
+//! A citation is a key in brackets, `[` and `]` (escaped or not), in a comment of Rust source or in
+//! a Markdown text. A key is what an entry is called, and whatever else looks like one: a name with
+//! a year behind it. It may run over the end of a line.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,9 +16,12 @@ const FURTHER: &str = "## Further reading";
 /// Most bytes of a key.
 const LONGEST: usize = 80;
 
-/// One line for each key without entry, entry without citation, and entry that stands there twice. `texts` are paths
-/// relative to the repository's top with their contents.
-pub(super) fn check<'a>(bibliography: &'a str, texts: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<String> {
+/// One line for each key without entry, entry without citation, and entry that stands there twice.
+/// `texts` are paths relative to the repository's top with their contents.
+pub(super) fn check<'a>(
+    bibliography: &'a str,
+    texts: impl Iterator<Item = (&'a str, &'a str)>,
+) -> Vec<String> {
     let mut violations = Vec::new();
     let mut entries: BTreeMap<&str, (usize, bool)> = BTreeMap::new();
     let mut further = false;
@@ -26,7 +29,10 @@ pub(super) fn check<'a>(bibliography: &'a str, texts: impl Iterator<Item = (&'a 
         if line.starts_with("## ") {
             further = line == FURTHER;
         }
-        let Some((key, _)) = line.strip_prefix("- **[").and_then(|rest| rest.split_once("]**")) else { continue };
+        let Some((key, _)) = line.strip_prefix("- **[").and_then(|rest| rest.split_once("]**"))
+        else {
+            continue;
+        };
         if entries.insert(key, (number, further)).is_some() {
             violations.push(format!("{FILE}:{number}: a second entry [{key}]"));
         }
@@ -47,7 +53,10 @@ pub(super) fn check<'a>(bibliography: &'a str, texts: impl Iterator<Item = (&'a 
     }
     let unused = entries.iter().filter(|(key, (_, further))| !further && !cited.contains(**key));
     violations.extend(unused.map(|(key, (number, _))| {
-        format!("{FILE}:{number}: [{key}] is cited nowhere; its place is below \"{}\"", FURTHER.trim_start_matches('#'))
+        format!(
+            "{FILE}:{number}: [{key}] is cited nowhere; its place is below \"{}\"",
+            FURTHER.trim_start_matches('#')
+        )
     }));
     violations
 }
@@ -56,11 +65,13 @@ pub(super) fn check<'a>(bibliography: &'a str, texts: impl Iterator<Item = (&'a 
 fn looks_like_a_key(text: &str) -> bool {
     let Some((name, year)) = text.rsplit_once(' ') else { return false };
     let year = year.strip_suffix(|c: char| c.is_ascii_lowercase()).unwrap_or(year);
-    let is_year = year.len() == 4 && year.parse().is_ok_and(|year: u32| (1600..2100).contains(&year));
+    let is_year =
+        year.len() == 4 && year.parse().is_ok_and(|year: u32| (1600..2100).contains(&year));
     is_year && name.starts_with(char::is_uppercase)
 }
 
-/// What stands in brackets in the comments of Rust source, or anywhere in another text, with its line.
+/// What stands in brackets in the comments of Rust source, or anywhere in another text, with its
+/// line.
 fn bracketed(path: &str, text: &str) -> Vec<(usize, String)> {
     let rust = path.ends_with(".rs");
     let mut found = Vec::new();
@@ -112,15 +123,27 @@ mod tests {
             ["a.rs:2: [Gouraud 1971b] has no entry in docs/bibliography.md"]
         );
         let split = with("a.rs", "//! [Newell, Newell &\n//! Sancha 1972]");
-        assert_eq!(split, ["a.rs:1: [Newell, Newell & Sancha 1972] has no entry in docs/bibliography.md"]);
+        assert_eq!(
+            split,
+            ["a.rs:1: [Newell, Newell & Sancha 1972] has no entry in docs/bibliography.md"]
+        );
     }
 
     #[test]
     fn an_entry_without_citation_is_told() {
-        let found = check(ENTRIES, [("a.rs", "// [OBJ]"), ("b.rs", "let x = \"[Phong 1975]\";")].into_iter());
+        let found = check(
+            ENTRIES,
+            [("a.rs", "// [OBJ]"), ("b.rs", "let x = \"[Phong 1975]\";")].into_iter(),
+        );
         assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].starts_with("docs/bibliography.md:4: [Phong 1975] is cited nowhere"), "{found:?}");
+        assert!(
+            found[0].starts_with("docs/bibliography.md:4: [Phong 1975] is cited nowhere"),
+            "{found:?}"
+        );
         let twice = format!("{ENTRIES}- **[OBJ]** again\n");
-        assert!(check(&twice, [("a.rs", "// [OBJ], [Phong 1975]")].into_iter())[0].contains("second entry [OBJ]"));
+        assert!(
+            check(&twice, [("a.rs", "// [OBJ], [Phong 1975]")].into_iter())[0]
+                .contains("second entry [OBJ]")
+        );
     }
 }

@@ -1,8 +1,9 @@
 //! Comments: long functions are divided into paragraphs, and no comment tells history.
 //!
-//! A function is a list of steps, and a comment above each step says what the step achieves. The rule counts comments,
-//! not their lines: adjacent lines are one comment. Tests are free of it, and so are tables: functions most of whose
-//! lines end with a comma, such as a `match` of one-line arms.
+//! A function is a list of steps, and a comment above each step says what the step achieves. The
+//! rule counts comments, not their lines: adjacent lines are one comment. Tests are free of it, and
+//! so are tables: functions most of whose lines end with a comma, such as a `match` of one-line
+//! arms.
 //!
 //! Comments describe how things are. How they were belongs to the changelog and to commit messages.
 
@@ -36,8 +37,8 @@ const HISTORY: [&str; 13] = [
     "used again",
 ];
 
-/// Phrases that contain one of [`HISTORY`] and speak of something else: of an instant at run time, of a length, or of a
-/// purpose.
+/// Phrases that contain one of [`HISTORY`] and speak of something else: of an instant at run time,
+/// of a length, or of a purpose.
 const NO_HISTORY: [&str; 15] = [
     "until now",
     "from now on",
@@ -56,7 +57,8 @@ const NO_HISTORY: [&str; 15] = [
     "not used to",
 ];
 
-/// One line for each rule that the comments of a file break. `path` is relative to the repository's top, with `/`.
+/// One line for each rule that the comments of a file break. `path` is relative to the repository's
+/// top, with `/`.
 pub(super) fn check(path: &str, text: &str) -> Vec<String> {
     let mut violations = Vec::new();
     if !is_test_file(path) && !UNDIVIDED.iter().any(|start| path.starts_with(start)) {
@@ -71,7 +73,8 @@ fn check_paragraphs(path: &str, text: &str) -> Vec<String> {
     let code = without_tests(&tokens(text));
 
     // Note the last word of each line of code, and the lines on which a comment starts.
-    let last_words: BTreeMap<usize, &str> = code.iter().map(|token| (token.line, token.text)).collect();
+    let last_words: BTreeMap<usize, &str> =
+        code.iter().map(|token| (token.line, token.text)).collect();
     let with_comment: BTreeSet<usize> = comments(text).iter().map(|comment| comment.line).collect();
 
     let mut violations = Vec::new();
@@ -86,7 +89,8 @@ fn check_paragraphs(path: &str, text: &str) -> Vec<String> {
         }
 
         // Count the comments: lines whose neighbour above has none.
-        let found = with_comment.range(lines).filter(|&line| !with_comment.contains(&(line - 1))).count();
+        let found =
+            with_comment.range(lines).filter(|&line| !with_comment.contains(&(line - 1))).count();
         let wanted = count / LINES_PER_COMMENT;
         if found < wanted {
             violations.push(format!(
@@ -98,14 +102,19 @@ fn check_paragraphs(path: &str, text: &str) -> Vec<String> {
     violations
 }
 
-/// Comments with a phrase that tells history. Phrases within backticks are code; those across two lines are not seen.
+/// Comments with a phrase that tells history. Phrases within backticks are code; those across two
+/// lines are not seen.
 fn check_history(path: &str, text: &str) -> Vec<String> {
     let mut violations = Vec::new();
     for comment in comments(text) {
         for (number, line) in (comment.line..).zip(comment.text.lines()) {
             let line = in_words(line);
-            let line = NO_HISTORY.iter().fold(line, |line, phrase| line.replace(&format!(" {phrase} "), " | "));
-            if let Some(phrase) = HISTORY.iter().find(|phrase| line.contains(&format!(" {phrase} "))) {
+            let line = NO_HISTORY
+                .iter()
+                .fold(line, |line, phrase| line.replace(&format!(" {phrase} "), " | "));
+            if let Some(phrase) =
+                HISTORY.iter().find(|phrase| line.contains(&format!(" {phrase} ")))
+            {
                 violations.push(format!(
                     "{path}:{number}: \"{phrase}\" tells history; say how it is, the changelog tells how it was"
                 ));
@@ -133,23 +142,31 @@ mod tests {
 
     /// A function of so many lines of code, with so many comments after its first line.
     fn function(lines: usize, count: usize, line: &str) -> String {
-        format!("fn f() {{\n{}{}}}", "// A step.\n\n".repeat(count), format!("{line}\n").repeat(lines - 2))
+        format!(
+            "fn f() {{\n{}{}}}",
+            "// A step.\n\n".repeat(count),
+            format!("{line}\n").repeat(lines - 2)
+        )
     }
 
     #[test]
     fn long_functions_say_their_steps() {
-        let found = |lines, comments| check("crates/io/src/a.rs", &function(lines, comments, "g();")).len();
+        let found =
+            |lines, comments| check("crates/io/src/a.rs", &function(lines, comments, "g();")).len();
         assert_eq!(found(40, 0), 0, "a short function");
         assert_eq!(
             check("crates/io/src/a.rs", &function(41, 1, "g();")),
-            ["crates/io/src/a.rs:1: fn f has 1 comments in 41 lines of code; say its steps, 2 are the least"]
+            [
+                "crates/io/src/a.rs:1: fn f has 1 comments in 41 lines of code; say its steps, 2 are the least"
+            ]
         );
         assert_eq!([found(41, 2), found(44, 2), found(45, 2), found(45, 3)], [0, 0, 1, 0]);
     }
 
     #[test]
     fn adjacent_lines_are_one_comment_and_blank_lines_are_no_code() {
-        let two_lines = function(41, 0, "g();").replacen("g();", "// A step\n// of two lines.\ng();", 1);
+        let two_lines =
+            function(41, 0, "g();").replacen("g();", "// A step\n// of two lines.\ng();", 1);
         assert_eq!(check("crates/io/src/a.rs", &two_lines).len(), 1);
         assert!(check("crates/io/src/a.rs", &function(40, 0, "g();\n\n")).is_empty());
         assert_eq!(check("crates/io/src/a.rs", &function(41, 0, "g(\"// no comment\");")).len(), 1);
@@ -158,7 +175,9 @@ mod tests {
     #[test]
     fn tests_and_tables_are_free_of_steps() {
         let long = function(60, 0, "g();");
-        assert!(check("crates/io/src/a.rs", &format!("#[cfg(test)] mod tests {{ {long} }}")).is_empty());
+        assert!(
+            check("crates/io/src/a.rs", &format!("#[cfg(test)] mod tests {{ {long} }}")).is_empty()
+        );
         for path in ["crates/io/tests/a.rs", "crates/io/src/a/tests.rs", "crates/cli/src/a.rs"] {
             assert!(check(path, &long).is_empty(), "{path}");
         }
@@ -169,7 +188,9 @@ mod tests {
     fn comments_tell_no_history() {
         assert_eq!(
             check("crates/io/src/a.rs", "fn f() {}\n// It was slow; now it is fast."),
-            ["crates/io/src/a.rs:2: \"now\" tells history; say how it is, the changelog tells how it was"]
+            [
+                "crates/io/src/a.rs:2: \"now\" tells history; say how it is, the changelog tells how it was"
+            ]
         );
         for text in [
             "/// Now it is fast.",

@@ -1,10 +1,10 @@
 //! The floors of the house: imports only point down.
 //!
-//! Input: `cargo metadata --no-deps`. A crate may use crates of lower floors, and on its own floor those that stand
-//! before it. Dev-dependencies are free: tests may look anywhere.
+//! Input: `cargo metadata --no-deps`. A crate may use crates of lower floors, and on its own floor
+//! those that stand before it. Dev-dependencies are free: tests may look anywhere.
 //!
-//! Threads stay behind the face's feature `threads`: nothing in the house may turn on the default features of
-//! `vitral-exec`, or a build for WebAssembly would bring a thread pool along.
+//! Threads stay behind the face's feature `threads`: nothing in the house may turn on the default
+//! features of `vitral-exec`, or a build for WebAssembly would bring a thread pool along.
 
 use serde_json::Value;
 
@@ -28,7 +28,8 @@ const FLOORS: [(&str, u32, u32); 16] = [
     ("vitral-python", 4, 2),
 ];
 
-/// Crates beside the house: they may use everything, nothing in the house may use them outside of tests.
+/// Crates beside the house: they may use everything, nothing in the house may use them outside of
+/// tests.
 const BESIDE: [&str; 4] = ["vitral-testkit", "vitral-xtask", "vitral-wasm-probe", "vitral-fuzz"];
 
 /// Where a crate stands.
@@ -42,10 +43,14 @@ fn place(name: &str) -> Option<Place> {
     if BESIDE.contains(&name) {
         return Some(Place::Beside);
     }
-    FLOORS.iter().find(|(crate_name, ..)| *crate_name == name).map(|&(_, floor, order)| Place::House(floor, order))
+    FLOORS
+        .iter()
+        .find(|(crate_name, ..)| *crate_name == name)
+        .map(|&(_, floor, order)| Place::House(floor, order))
 }
 
-/// The floor of the crate in `crates/FOLDER`; `None` beside the house or for a folder that is no crate of ours.
+/// The floor of the crate in `crates/FOLDER`; `None` beside the house or for a folder that is no
+/// crate of ours.
 pub(super) fn floor_of_folder(folder: &str) -> Option<u32> {
     let named = if folder == "vitral" { folder.to_owned() } else { format!("vitral-{folder}") };
     match place(&named) {
@@ -60,7 +65,9 @@ pub(super) fn check(metadata: &Value) -> Vec<String> {
     for package in list(&metadata["packages"]) {
         let name = package["name"].as_str().unwrap_or_default();
         let Some(from) = place(name) else {
-            violations.push(format!("{name}: has no floor; give it one in crates/xtask/src/check/floors.rs"));
+            violations.push(format!(
+                "{name}: has no floor; give it one in crates/xtask/src/check/floors.rs"
+            ));
             continue;
         };
 
@@ -71,8 +78,13 @@ pub(super) fn check(metadata: &Value) -> Vec<String> {
                 continue;
             }
             let Some(to) = place(used) else { continue };
-            if from != Place::Beside && used == "vitral-exec" && dependency["uses_default_features"] == true {
-                violations.push(format!("{name}: uses {used} with its default features, which bring threads along"));
+            if from != Place::Beside
+                && used == "vitral-exec"
+                && dependency["uses_default_features"] == true
+            {
+                violations.push(format!(
+                    "{name}: uses {used} with its default features, which bring threads along"
+                ));
             }
             match (from, to) {
                 (Place::Beside, _) => {}
@@ -106,7 +118,10 @@ mod tests {
     #[test]
     fn down_is_allowed_up_and_sideways_are_not() {
         assert!(with("vitral-render", "vitral-raster", Value::Null).is_empty());
-        assert!(with("vitral-scene", "vitral-light", Value::Null).is_empty(), "scene stands after light");
+        assert!(
+            with("vitral-scene", "vitral-light", Value::Null).is_empty(),
+            "scene stands after light"
+        );
         assert!(with("vitral-cli", "vitral", Value::Null).is_empty());
         for (name, dependency) in [
             ("vitral-raster", "vitral-render"),
@@ -118,7 +133,11 @@ mod tests {
         ] {
             assert_eq!(with(name, dependency, Value::Null).len(), 1, "{name} uses {dependency}");
         }
-        assert_eq!(with("vitral-raster", "vitral-render", json!("build")).len(), 1, "build scripts too");
+        assert_eq!(
+            with("vitral-raster", "vitral-render", json!("build")).len(),
+            1,
+            "build scripts too"
+        );
     }
 
     #[test]
@@ -130,10 +149,14 @@ mod tests {
 
     #[test]
     fn a_crate_without_a_floor_is_refused_and_registry_crates_are_not_ours() {
-        let violations = check(&json!({"packages": [{"name": "vitral-attic", "dependencies": []}]}));
+        let violations =
+            check(&json!({"packages": [{"name": "vitral-attic", "dependencies": []}]}));
         assert!(violations[0].contains("no floor"), "{violations:?}");
         let serde = json!({"name": "serde", "kind": null, "path": null});
-        assert!(check(&json!({"packages": [{"name": "vitral-io", "dependencies": [serde]}]})).is_empty());
+        assert!(
+            check(&json!({"packages": [{"name": "vitral-io", "dependencies": [serde]}]}))
+                .is_empty()
+        );
     }
 
     #[test]

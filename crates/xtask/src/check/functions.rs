@@ -1,7 +1,8 @@
 //! Functions have few lines of code and take few arguments.
 //!
-//! Tests are free of both limits. Methods that are entry points of OpenGL have the arguments that the standard gives
-//! them: a function of the crate `gl` may have as many as the table of entry points says for its name, and `self`.
+//! Tests are free of both limits. Methods that are entry points of OpenGL have the arguments that
+//! the standard gives them: a function of the crate `gl` may have as many as the table of entry
+//! points says for its name, and `self`.
 
 use super::tokens::{Token, tokens, without_tests};
 use std::collections::BTreeSet;
@@ -45,7 +46,8 @@ impl<'a> EntryPoints<'a> {
 
     /// Whether the function of the file `path` is one of these methods.
     fn have(&self, path: &str, function: &Function<'_>) -> bool {
-        path.starts_with(ENTRY_POINT_METHODS) && self.0.contains(&(function.name, function.arguments))
+        path.starts_with(ENTRY_POINT_METHODS)
+            && self.0.contains(&(function.name, function.arguments))
     }
 }
 
@@ -61,7 +63,8 @@ pub(super) struct Function<'a> {
     arguments: usize,
 }
 
-/// One line for each limit that a function breaks. `path` is relative to the repository's top, with `/`.
+/// One line for each limit that a function breaks. `path` is relative to the repository's top, with
+/// `/`.
 pub(super) fn check(path: &str, text: &str, entry_points: &EntryPoints<'_>) -> Vec<String> {
     let mut violations = Vec::new();
     if is_test_file(path) {
@@ -91,7 +94,8 @@ pub(super) fn is_test_file(path: &str) -> bool {
     path.ends_with("/tests.rs") || path.starts_with("tests/") || path.contains("/tests/")
 }
 
-/// The functions with a name, in the order of the text. A function inside of another counts for both.
+/// The functions with a name, in the order of the text. A function inside of another counts for
+/// both.
 pub(super) fn functions<'a>(code: &[Token<'a>]) -> Vec<Function<'a>> {
     let text = |at: usize| code.get(at).map_or("", |token| token.text);
     let mut found = Vec::new();
@@ -147,8 +151,8 @@ fn count_arguments(code: &[Token<'_>], open: usize) -> (usize, usize) {
     (count, code.len() - 1)
 }
 
-/// The line on which the function ends whose parameters close at `close`: that of its last brace, or of the semicolon
-/// of a declaration.
+/// The line on which the function ends whose parameters close at `close`: that of its last brace,
+/// or of the semicolon of a declaration.
 fn last_line(code: &[Token<'_>], close: usize) -> usize {
     let (mut braces, mut others) = (0, 0);
     for token in &code[close + 1..] {
@@ -190,13 +194,28 @@ mod tests {
         assert!(check_alone("crates/io/src/a.rs", &long(80)).is_empty());
         assert_eq!(
             check_alone("crates/io/src/a.rs", &format!("\n{}", long(81))),
-            ["crates/io/src/a.rs:2: fn f has 81 lines of code; split it by its steps, 80 is the limit"]
+            [
+                "crates/io/src/a.rs:2: fn f has 81 lines of code; split it by its steps, 80 is the limit"
+            ]
         );
         let signature = format!("fn f(\n) -> [u8; 2]\nwhere\n    A: B,\n{{{}}}", ";\n".repeat(77));
-        assert_eq!(check_alone("benches/a.rs", &signature).len(), 1, "lines of the signature count");
-        assert!(check_alone("benches/a.rs", &format!("fn f();{}fn g() {{}}", ";\n".repeat(99))).is_empty());
-        assert!(check_alone("benches/a.rs", &format!("fn f() {{{}}}", "// a step\n\n".repeat(99))).is_empty());
-        assert!(check_alone("benches/a.rs", &format!("type A = fn(u8);{}", ";\n".repeat(99))).is_empty());
+        assert_eq!(
+            check_alone("benches/a.rs", &signature).len(),
+            1,
+            "lines of the signature count"
+        );
+        assert!(
+            check_alone("benches/a.rs", &format!("fn f();{}fn g() {{}}", ";\n".repeat(99)))
+                .is_empty()
+        );
+        assert!(
+            check_alone("benches/a.rs", &format!("fn f() {{{}}}", "// a step\n\n".repeat(99)))
+                .is_empty()
+        );
+        assert!(
+            check_alone("benches/a.rs", &format!("type A = fn(u8);{}", ";\n".repeat(99)))
+                .is_empty()
+        );
     }
 
     #[test]
@@ -210,11 +229,15 @@ mod tests {
 
     #[test]
     fn arguments_are_counted_with_self_and_without_inner_commas() {
-        let count = |signature: &str| functions(&tokens(&format!("fn f{signature} {{}}")))[0].arguments;
+        let count =
+            |signature: &str| functions(&tokens(&format!("fn f{signature} {{}}")))[0].arguments;
         assert_eq!(count("()"), 0);
         assert_eq!(count("(&mut self)"), 1);
         assert_eq!(count("(&self, a: u8,)"), 2);
-        assert_eq!(count("<A: Fn(u8, u8) -> u8, const N: usize>(a: A, [b, c]: [u8; N]) -> (u8, u8)"), 2);
+        assert_eq!(
+            count("<A: Fn(u8, u8) -> u8, const N: usize>(a: A, [b, c]: [u8; N]) -> (u8, u8)"),
+            2
+        );
         assert_eq!(count("(a: Map<u8, u8>, b: impl Fn(u8) -> u8, (c, d): (u8, u8))"), 3);
     }
 
@@ -222,8 +245,13 @@ mod tests {
     fn tests_are_free() {
         for code in [long(99), format!("fn f{} {{}}", list(9))] {
             assert_eq!(check_alone("crates/io/src/a.rs", &code).len(), 1);
-            assert!(check_alone("crates/io/src/a.rs", &format!("#[cfg(test)] mod tests {{ {code} }}")).is_empty());
-            for path in ["crates/io/tests/a.rs", "crates/io/src/a/tests.rs", "crates/io/src/tests/a.rs"] {
+            assert!(
+                check_alone("crates/io/src/a.rs", &format!("#[cfg(test)] mod tests {{ {code} }}"))
+                    .is_empty()
+            );
+            for path in
+                ["crates/io/tests/a.rs", "crates/io/src/a/tests.rs", "crates/io/src/tests/a.rs"]
+            {
                 assert!(check_alone(path, &code).is_empty(), "{path}");
             }
         }
@@ -232,17 +260,31 @@ mod tests {
     #[test]
     fn entry_points_have_the_arguments_of_the_standard() {
         let arguments = list(8);
-        let table =
-            format!("glA glB => a{arguments} -> (); glC => [c]{arguments} -> u8; glD => [d unless e]{arguments};");
+        let table = format!(
+            "glA glB => a{arguments} -> (); glC => [c]{arguments} -> u8; glD => [d unless e]{arguments};"
+        );
         let found = |path, name, count| {
-            check(path, &format!("pub fn {name}{} {{}}", list(count)), &EntryPoints::read(&table)).len()
+            check(path, &format!("pub fn {name}{} {{}}", list(count)), &EntryPoints::read(&table))
+                .len()
         };
         for name in ["a", "c", "d", "e"] {
             assert_eq!(found("crates/gl/src/pixels/a.rs", name, 9), 0, "{name}: `self` and eight");
-            assert_eq!(found("crates/gl/src/pixels/a.rs", name, 10), 1, "{name}: more than the table says");
+            assert_eq!(
+                found("crates/gl/src/pixels/a.rs", name, 10),
+                1,
+                "{name}: more than the table says"
+            );
             assert_eq!(found("crates/raster/src/a.rs", name, 9), 1, "{name}: another crate");
         }
         assert_eq!(found("crates/gl/src/pixels/a.rs", "f", 9), 1, "no entry point");
-        assert_eq!(check("crates/gl/src/a.rs", &long(81).replace("fn f", "fn a"), &EntryPoints::read(&table)).len(), 1);
+        assert_eq!(
+            check(
+                "crates/gl/src/a.rs",
+                &long(81).replace("fn f", "fn a"),
+                &EntryPoints::read(&table)
+            )
+            .len(),
+            1
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Rules about the text of one file: its length, what is left in it, where `unsafe` may live, and what the floors below
-//! the faces may not touch (files, clocks, the environment, threads).
+//! Rules about the text of one file: its length, what is left in it, where `unsafe` may live, and
+//! what the floors below the faces may not touch (files, clocks, the environment, threads).
 
 use super::floors;
 use super::tokens::{Token, in_tests, tokens};
@@ -20,11 +20,13 @@ const UNSAFE_PLACES: [&str; 6] = [
 /// Macros that no finished code holds.
 const UNFINISHED: [&str; 3] = ["todo", "unimplemented", "dbg"];
 
-/// Marks of unfinished work in comments. (Written in two parts, so that this file does not object to itself.)
+/// Marks of unfinished work in comments. (Written in two parts, so that this file does not object
+/// to itself.)
 const MARKS: [&str; 3] = [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("XX", "X")];
 
 /// Starts of paths that exist on one machine only.
-const MACHINE_PATHS: [&str; 3] = [concat!("/wo", "rk/"), concat!("/ro", "ot/"), concat!("/ho", "me/")];
+const MACHINE_PATHS: [&str; 3] =
+    [concat!("/wo", "rk/"), concat!("/ro", "ot/"), concat!("/ho", "me/")];
 
 /// Modules of `std` that only faces use, and types that stand for the same.
 const FACES_ONLY: [&str; 5] = ["fs", "env", "process", "net", "thread"];
@@ -32,16 +34,28 @@ const CLOCKS: [&str; 2] = ["Instant", "SystemTime"];
 
 /// Exceptions: file, module, reason.
 const EXCEPTIONS: [(&str, &str, &str); 3] = [
-    ("crates/math/src/lanes.rs", "env", "VITRAL_SIMD chooses the instruction set, which no picture depends on"),
+    (
+        "crates/math/src/lanes.rs",
+        "env",
+        "VITRAL_SIMD chooses the instruction set, which no picture depends on",
+    ),
     ("crates/exec/src/workers.rs", "thread", "Workers are the one place that knows threads"),
-    ("crates/exec/src/started.rs", "thread", "Workers again, and what must wait where a fork comes"),
+    (
+        "crates/exec/src/started.rs",
+        "thread",
+        "Workers again, and what must wait where a fork comes",
+    ),
 ];
 
-/// One line for each rule that the file breaks. `path` is relative to the repository's top, with `/`.
+/// One line for each rule that the file breaks. `path` is relative to the repository's top, with
+/// `/`.
 pub(super) fn check(path: &str, text: &str) -> Vec<String> {
     let path = path.replace('\\', "/");
     let mut violations = Vec::new();
-    let count = text.lines().filter(|line| !(path.ends_with(".rs") && line.trim_start().starts_with("//"))).count();
+    let count = text
+        .lines()
+        .filter(|line| !(path.ends_with(".rs") && line.trim_start().starts_with("//")))
+        .count();
     if count > MOST_LINES {
         violations.push(format!(
             "{path}: {count} lines without comments; split it by what it holds, {MOST_LINES} is the limit"
@@ -67,8 +81,9 @@ pub(super) fn check(path: &str, text: &str) -> Vec<String> {
 /// Whether `word` stands in `line` with no letter, digit or underscore beside it.
 fn has_word(line: &str, word: &str) -> bool {
     let edge = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric() && c != '_');
-    line.match_indices(word)
-        .any(|(at, _)| edge(line[..at].chars().next_back()) && edge(line[at + word.len()..].chars().next()))
+    line.match_indices(word).any(|(at, _)| {
+        edge(line[..at].chars().next_back()) && edge(line[at + word.len()..].chars().next())
+    })
 }
 
 /// Macros and attributes of unfinished work.
@@ -78,7 +93,9 @@ fn leftovers(path: &str, tokens: &[Token<'_>], violations: &mut Vec<String>) {
             violations.push(format!("{path}:{}: {}! is left", pair[0].line, pair[0].text));
         }
     }
-    for triple in tokens.windows(3).filter(|t| t[0].text == "#" && t[1].text == "[" && t[2].text == "ignore") {
+    for triple in
+        tokens.windows(3).filter(|t| t[0].text == "#" && t[1].text == "[" && t[2].text == "ignore")
+    {
         violations.push(format!("{path}:{}: an ignored test is no test", triple[2].line));
     }
 }
@@ -91,8 +108,11 @@ fn unsafe_code(path: &str, text: &str, tokens: &[Token<'_>], violations: &mut Ve
         let line = pair[0].line;
         let above = &lines[line.saturating_sub(4)..line.min(lines.len())];
         if !allowed {
-            violations.push(format!("{path}:{line}: unsafe outside of the places where it may live"));
-        } else if matches!(pair[1].text, "{" | "impl") && !above.iter().any(|l| l.contains("SAFETY:")) {
+            violations
+                .push(format!("{path}:{line}: unsafe outside of the places where it may live"));
+        } else if matches!(pair[1].text, "{" | "impl")
+            && !above.iter().any(|l| l.contains("SAFETY:"))
+        {
             violations.push(format!("{path}:{line}: an unsafe block without a `// SAFETY:` line"));
         }
     }
@@ -101,7 +121,9 @@ fn unsafe_code(path: &str, text: &str, tokens: &[Token<'_>], violations: &mut Ve
 /// Files, clocks, the environment and threads below floor 4, outside of tests.
 fn faces_only(path: &str, tokens: &[Token<'_>], violations: &mut Vec<String>) {
     let mut parts = path.split('/');
-    let ("crates", Some(folder), Some("src")) = (parts.next().unwrap_or_default(), parts.next(), parts.next()) else {
+    let ("crates", Some(folder), Some("src")) =
+        (parts.next().unwrap_or_default(), parts.next(), parts.next())
+    else {
         return;
     };
     let below = floors::floor_of_folder(folder).is_some_and(|floor| floor < 4);
@@ -110,15 +132,20 @@ fn faces_only(path: &str, tokens: &[Token<'_>], violations: &mut Vec<String>) {
     }
     let tests = in_tests(tokens);
     for (at, token) in tokens.iter().enumerate().filter(|(at, _)| !tests[*at]) {
-        for name in std_modules(&tokens[at..]).into_iter().chain(CLOCKS.into_iter().filter(|c| *c == token.text)) {
+        for name in std_modules(&tokens[at..])
+            .into_iter()
+            .chain(CLOCKS.into_iter().filter(|c| *c == token.text))
+        {
             if !EXCEPTIONS.iter().any(|(file, module, _)| *file == path && *module == name) {
-                violations.push(format!("{path}:{}: {name} below floor 4; faces hand it in", token.line));
+                violations
+                    .push(format!("{path}:{}: {name} below floor 4; faces hand it in", token.line));
             }
         }
     }
 }
 
-/// The modules of [`FACES_ONLY`] that the path at the start names: `std::fs`, or `std::{fs::File, env}`.
+/// The modules of [`FACES_ONLY`] that the path at the start names: `std::fs`, or
+/// `std::{fs::File, env}`.
 fn std_modules<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
     let text = |at: usize| tokens.get(at).map_or("", |t| t.text);
     if [text(0), text(1), text(2)] != ["std", ":", ":"] {
@@ -135,7 +162,9 @@ fn std_modules<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
         match text(at) {
             "{" => depth += 1,
             "}" => depth -= 1,
-            _ if depth == 1 && matches!(text(at - 1), "{" | ",") && banned(at) => found.push(text_of(tokens, at)),
+            _ if depth == 1 && matches!(text(at - 1), "{" | ",") && banned(at) => {
+                found.push(text_of(tokens, at))
+            }
             _ => {}
         }
         if depth == 0 {
@@ -155,9 +184,15 @@ mod tests {
 
     #[test]
     fn what_is_left_is_found_in_code_only() {
-        assert_eq!(check("crates/io/src/a.rs", "fn f() { todo!() }"), ["crates/io/src/a.rs:1: todo! is left"]);
+        assert_eq!(
+            check("crates/io/src/a.rs", "fn f() { todo!() }"),
+            ["crates/io/src/a.rs:1: todo! is left"]
+        );
         assert_eq!(check("crates/io/src/a.rs", "\n#[ignore = \"slow\"]\nfn f() {}").len(), 1);
-        assert!(check("crates/io/src/a.rs", "// dbg!(x) would be wrong\nlet s = \"todo!()\";").is_empty());
+        assert!(
+            check("crates/io/src/a.rs", "// dbg!(x) would be wrong\nlet s = \"todo!()\";")
+                .is_empty()
+        );
         assert_eq!(check("benches/a.py", concat!("# FIX", "ME later")).len(), 1);
         assert!(check("benches/a.py", "XXXL and MIXXX are no marks").is_empty());
     }
@@ -167,8 +202,12 @@ mod tests {
         let block = "fn f() { unsafe { g() } }";
         assert_eq!(check("crates/io/src/a.rs", block).len(), 1);
         assert_eq!(check("crates/osmesa/src/a.rs", block).len(), 1, "no reason");
-        assert!(check("crates/osmesa/src/a.rs", &format!("// SAFETY: g is fine\n{block}")).is_empty());
-        assert!(check("crates/io/src/a.rs", "#![forbid(unsafe_code)] // no unsafe here").is_empty());
+        assert!(
+            check("crates/osmesa/src/a.rs", &format!("// SAFETY: g is fine\n{block}")).is_empty()
+        );
+        assert!(
+            check("crates/io/src/a.rs", "#![forbid(unsafe_code)] // no unsafe here").is_empty()
+        );
         assert!(check("crates/wasm-probe/src/lib.rs", "#[unsafe(no_mangle)] fn f() {}").is_empty());
     }
 
@@ -185,20 +224,35 @@ mod tests {
             assert!(check("crates/cli/src/a.rs", code).is_empty(), "{code} in a face");
             assert!(check("crates/io/tests/a.rs", code).is_empty(), "{code} in a test");
             assert!(
-                check("crates/io/src/a.rs", &format!("#[cfg(test)] mod tests {{ fn f() {{ {code}; }} }}")).is_empty()
+                check(
+                    "crates/io/src/a.rs",
+                    &format!("#[cfg(test)] mod tests {{ fn f() {{ {code}; }} }}")
+                )
+                .is_empty()
             );
         }
-        for code in ["use std::{sync::{Arc, fs}};", "env!(\"X\")", "use std::time::Duration;", "my::fs::read()"] {
+        for code in [
+            "use std::{sync::{Arc, fs}};",
+            "env!(\"X\")",
+            "use std::time::Duration;",
+            "my::fs::read()",
+        ] {
             assert!(check("crates/io/src/a.rs", code).is_empty(), "{code}");
         }
-        assert!(check("crates/math/src/lanes.rs", "std::env::var(x)").is_empty(), "an exception with a reason");
+        assert!(
+            check("crates/math/src/lanes.rs", "std::env::var(x)").is_empty(),
+            "an exception with a reason"
+        );
     }
 
     #[test]
     fn long_files_and_machine_paths_are_refused() {
         assert!(check("crates/io/src/a.rs", &"\n".repeat(700)).is_empty());
         assert_eq!(check("crates/io/src/a.rs", &"\n".repeat(701)).len(), 1);
-        assert!(check("crates/io/src/a.rs", &"    // A step.\n".repeat(701)).is_empty(), "comments do not count");
+        assert!(
+            check("crates/io/src/a.rs", &"    // A step.\n".repeat(701)).is_empty(),
+            "comments do not count"
+        );
         assert_eq!(check("benches/a.py", &"// 2\n".repeat(701)).len(), 1);
         assert_eq!(check("crates/io/src/a.rs", concat!("let p = \"/ro", "ot/x\";")).len(), 1);
     }

@@ -1,7 +1,8 @@
-//! Rust source as a list of words, in which comments, strings and characters are left out, and as a list of comments.
+//! Rust source as a list of words, in which comments, strings and characters are left out, and as a
+//! list of comments.
 //!
-//! Enough of the language to find paths and macros, not to understand them: identifiers (numbers too) are one token,
-//! every other visible character is one token.
+//! Enough of the language to find paths and macros, not to understand them: identifiers (numbers
+//! too) are one token, every other visible character is one token.
 
 /// A word of code, or a comment, and the line it starts on, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +34,8 @@ fn split(source: &str) -> (Vec<Token<'_>>, Vec<Token<'_>>) {
                 length
             }
             None => {
-                let length = rest.find(|c: char| !is_word(c)).unwrap_or(rest.len()).max(first.len_utf8());
+                let length =
+                    rest.find(|c: char| !is_word(c)).unwrap_or(rest.len()).max(first.len_utf8());
                 words.push(Token { text: &rest[..length], line });
                 length
             }
@@ -88,7 +90,9 @@ fn quoted(rest: &str) -> Option<usize> {
             Some(rest[body..].find(&end).map_or(rest.len(), |at| body + at + end.len()))
         }
         b'"' if hashes == 0 => Some(prefix.len() + closing(after, b'"')?),
-        b'\'' if hashes == 0 && !prefix.ends_with('r') => character(after).map(|length| prefix.len() + length),
+        b'\'' if hashes == 0 && !prefix.ends_with('r') => {
+            character(after).map(|length| prefix.len() + length)
+        }
         _ => None,
     }
 }
@@ -153,13 +157,15 @@ pub(super) fn group_length(tokens: &[Token<'_>]) -> usize {
 
 /// Length of a `#[cfg(...)]` that holds in tests alone.
 fn test_attribute(tokens: &[Token<'_>]) -> Option<usize> {
-    let starts = ["#", "[", "cfg", "("].iter().zip(tokens).filter(|(a, b)| **a == b.text).count() == 4;
+    let starts =
+        ["#", "[", "cfg", "("].iter().zip(tokens).filter(|(a, b)| **a == b.text).count() == 4;
     let length = 1 + group_length(tokens.get(1..).filter(|_| starts)?);
     let predicate = tokens.get(4..length.checked_sub(2)?)?;
     needs_test(predicate).then_some(length)
 }
 
-/// Whether a predicate of `cfg` cannot hold without `test`: one member of `all` needs it, or every member of `any`.
+/// Whether a predicate of `cfg` cannot hold without `test`: one member of `all` needs it, or every
+/// member of `any`.
 fn needs_test(predicate: &[Token<'_>]) -> bool {
     let [name, rest @ ..] = predicate else { return false };
     let members = || {
@@ -225,7 +231,10 @@ mod tests {
     #[test]
     fn comments_and_strings_are_left_out() {
         assert_eq!(words("a /* b /* c */ d */ e // f\ng"), ["a", "e", "g"]);
-        assert_eq!(words(r##"x("b \" c", r#"d " e"#, b"f", br"g\") y"##), ["x", "(", ",", ",", ",", ")", "y"]);
+        assert_eq!(
+            words(r##"x("b \" c", r#"d " e"#, b"f", br"g\") y"##),
+            ["x", "(", ",", ",", ",", ")", "y"]
+        );
         assert_eq!(words(r"'a' '\'' '\u{1F600}' 'é' b'x' z"), ["z"]);
     }
 
@@ -252,8 +261,12 @@ mod tests {
     fn test_items_are_marked() {
         let source = "fn a() {} #[cfg(test)] mod tests { fn b() { c() } } fn d() {} #[cfg(all(test, x))] use e; f";
         let found = tokens(source);
-        let outside: Vec<_> =
-            found.iter().zip(in_tests(&found)).filter(|(_, test)| !test).map(|(t, _)| t.text).collect();
+        let outside: Vec<_> = found
+            .iter()
+            .zip(in_tests(&found))
+            .filter(|(_, test)| !test)
+            .map(|(t, _)| t.text)
+            .collect();
         assert_eq!(outside.join(" "), "fn a ( ) { } fn d ( ) { } f");
     }
 
@@ -264,18 +277,25 @@ mod tests {
             words.join(" ")
         };
         assert_eq!(left("#[cfg(test)] const A: [u8; 2] = [1; 2]; b"), "b");
-        assert_eq!(left("struct A { #[cfg(test)] pub(crate) log: Vec<(u8, u8)>, b: u8 } c"), "struct A { b : u8 } c");
+        assert_eq!(
+            left("struct A { #[cfg(test)] pub(crate) log: Vec<(u8, u8)>, b: u8 } c"),
+            "struct A { b : u8 } c"
+        );
         assert_eq!(left("struct A { #[cfg(test)] log: Map<A, B> } c"), "struct A { } c");
         assert_eq!(left("#[cfg(test)] fn f<A, B>(a: A) -> [B; 2] where A: C, B: D { {} } c"), "c");
     }
 
     #[test]
     fn only_what_needs_tests_is_marked() {
-        let left = |predicate: &str| without_tests(&tokens(&format!("#[cfg({predicate})] fn f() {{}} c"))).len() == 1;
-        for predicate in ["test", "all(unix, test)", "any(test)", "any(test, all(test, x = \"y\"))"] {
+        let left = |predicate: &str| {
+            without_tests(&tokens(&format!("#[cfg({predicate})] fn f() {{}} c"))).len() == 1
+        };
+        for predicate in ["test", "all(unix, test)", "any(test)", "any(test, all(test, x = \"y\"))"]
+        {
             assert!(left(predicate), "{predicate}");
         }
-        for predicate in ["any(test, feature = \"x\")", "not(test)", "unix", "all(unix, not(test))"] {
+        for predicate in ["any(test, feature = \"x\")", "not(test)", "unix", "all(unix, not(test))"]
+        {
             assert!(!left(predicate), "{predicate}");
         }
     }

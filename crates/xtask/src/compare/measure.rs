@@ -30,7 +30,11 @@ pub(super) struct Frames {
 impl Frames {
     /// Reads the JSON object that is the last line of a program's output.
     fn parse(text: &str) -> Result<Self, String> {
-        let line = text.lines().rev().find(|line| line.starts_with('{')).ok_or("printed no JSON object")?;
+        let line = text
+            .lines()
+            .rev()
+            .find(|line| line.starts_with('{'))
+            .ok_or("printed no JSON object")?;
         let value: Value = serde_json::from_str(line).map_err(|e| e.to_string())?;
         let number = |key: &str| value[key].as_f64();
         let about = ["version", "renderer"].iter().filter_map(|key| value[*key].as_str());
@@ -94,7 +98,12 @@ impl Program {
     }
 
     /// Runs a turntable in one process.
-    pub(super) fn turntable(&self, model: &Path, samples: u32, frames: usize) -> Result<Frames, String> {
+    pub(super) fn turntable(
+        &self,
+        model: &Path,
+        samples: u32,
+        frames: usize,
+    ) -> Result<Frames, String> {
         let (samples, frames) = (samples.to_string(), frames.to_string());
         let mut program = match &self.kind {
             Kind::Vitral(folder) => {
@@ -112,7 +121,8 @@ impl Program {
         Frames::parse(&output(&mut program)?).map_err(|why| format!("{}: {why}", self.name))
     }
 
-    /// Seconds from the start of the process to its end, one model file to one PNG file, one sample a pixel.
+    /// Seconds from the start of the process to its end, one model file to one PNG file, one sample
+    /// a pixel.
     pub(super) fn whole_process(&self, model: &Path) -> Result<f64, String> {
         let picture = target_folder().join(format!("compare-{}.png", self.name));
         let mut program = match &self.kind {
@@ -140,8 +150,7 @@ mod tests {
 
     #[test]
     fn the_last_object_counts() {
-        let text =
-            "hello\n{\"median_ms\": 1}\n{\"median_ms\": 2.5, \"min_ms\": 2, \"coverage\": 0.25, \"version\": \"4\"}\n";
+        let text = "hello\n{\"median_ms\": 1}\n{\"median_ms\": 2.5, \"min_ms\": 2, \"coverage\": 0.25, \"version\": \"4\"}\n";
         let frames = Frames::parse(text).unwrap();
         assert_eq!(
             (frames.median_ms, frames.min_ms, frames.coverage, frames.about.as_str()),

@@ -2,12 +2,14 @@
 //!
 //! Peers: F3D and PyVista (VTK) from PyPI, over Mesa's software GL (llvmpipe). Two measures:
 //!
-//! * a turntable inside one process, load excluded: median time of a frame, from the new camera to the pixels in memory;
+//! * a turntable inside one process, load excluded: median time of a frame, from the new camera to
+//!   the pixels in memory;
 //! * the whole process, from a model file to a PNG file.
 //!
-//! Each round runs every program once, one after the other, so that a busy machine disturbs all alike; the median over
-//! the rounds counts. Anti-aliasing is off on both sides, then four samples a pixel; F3D's default is the former,
-//! PyVista's the latter (it asks for eight, llvmpipe gives four).
+//! Each round runs every program once, one after the other, so that a busy machine disturbs all
+//! alike; the median over the rounds counts. Anti-aliasing is off on both sides, then four samples
+//! a pixel; F3D's default is the former, PyVista's the latter (it asks for eight, llvmpipe gives
+//! four).
 
 pub(crate) mod draw;
 mod measure;
@@ -48,7 +50,11 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
         match *option {
             "--quick" => effort = Effort { rounds: 1, frames: 4, ..effort },
             "--peers-only" => effort.with_vitral = false,
-            other => return Err(format!("compare: unknown option `{other}` (there are --quick and --peers-only)")),
+            other => {
+                return Err(format!(
+                    "compare: unknown option `{other}` (there are --quick and --peers-only)"
+                ));
+            }
         }
     }
     let python = peers::install()?;
@@ -61,7 +67,11 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
     // Measure model after model; what is absent is named, never silently left out.
     let mut report = table::Report::new(&programs);
     for (name, path) in MODELS {
-        let model = if path == GENERATED { torus.clone() } else { repository().join("../shared/models").join(path) };
+        let model = if path == GENERATED {
+            torus.clone()
+        } else {
+            repository().join("../shared/models").join(path)
+        };
         if !model.exists() {
             println!("left out: {} is not there", relative(&model));
             continue;
@@ -86,12 +96,24 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
 /// Builds vitral's command and its turntable program.
 fn vitral() -> Result<Program, String> {
     run_command(cargo().args(["build", "--release", "--package", "vitral-cli"]))?;
-    run_command(cargo().args(["build", "--release", "--package", "vitral", "--example", "turntable_bench"]))?;
+    run_command(cargo().args([
+        "build",
+        "--release",
+        "--package",
+        "vitral",
+        "--example",
+        "turntable_bench",
+    ]))?;
     Ok(Program::vitral(&target_folder().join("release")))
 }
 
 /// One median turntable for each program; the reason where a program failed.
-fn turntables(programs: &[Program], model: &Path, samples: u32, effort: Effort) -> Vec<Result<Frames, String>> {
+fn turntables(
+    programs: &[Program],
+    model: &Path,
+    samples: u32,
+    effort: Effort,
+) -> Vec<Result<Frames, String>> {
     in_turns(programs, effort.rounds, |program| program.turntable(model, samples, effort.frames))
         .into_iter()
         .map(|rounds| rounds.map(Frames::median))
@@ -106,13 +128,15 @@ fn processes(programs: &[Program], model: &Path, effort: Effort) -> Vec<Result<f
         .collect()
 }
 
-/// Calls `measure` for every program in each round; gives each program's results, or its first failure.
+/// Calls `measure` for every program in each round; gives each program's results, or its first
+/// failure.
 fn in_turns<T>(
     programs: &[Program],
     rounds: usize,
     measure: impl Fn(&Program) -> Result<T, String>,
 ) -> Vec<Result<Vec<T>, String>> {
-    let mut results: Vec<Result<Vec<T>, String>> = programs.iter().map(|_| Ok(Vec::new())).collect();
+    let mut results: Vec<Result<Vec<T>, String>> =
+        programs.iter().map(|_| Ok(Vec::new())).collect();
     for _ in 0..rounds {
         for (program, result) in programs.iter().zip(&mut results) {
             if let Ok(done) = result {

@@ -37,7 +37,9 @@ pub(super) fn install() -> Result<PathBuf, String> {
 pub(super) fn generate(python: &Path, triangles: u64) -> Result<PathBuf, String> {
     let path = repository().join(format!("target/peers/torus-{triangles}.ply"));
     if !path.exists() {
-        output(command(python).arg("benches/peers/torus.py").arg(&path).arg(triangles.to_string()))?;
+        output(
+            command(python).arg("benches/peers/torus.py").arg(&path).arg(triangles.to_string()),
+        )?;
     }
     Ok(path)
 }

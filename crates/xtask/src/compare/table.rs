@@ -1,4 +1,5 @@
-//! The tables that `cargo xtask compare` prints: times, ratios and the targets beside them, as Markdown.
+//! The tables that `cargo xtask compare` prints: times, ratios and the targets beside them, as
+//! Markdown.
 
 use super::TRIANGLES;
 use super::measure::{Frames, Program, median};
@@ -41,11 +42,22 @@ impl Report {
     /// An empty report; vitral, where it takes part, is the first program.
     pub(super) fn new(programs: &[Program]) -> Self {
         let names: Vec<_> = programs.iter().map(|p| p.name).collect();
-        Self { versions: vec![String::new(); names.len()], names, frames: vec![], processes: vec![], notes: vec![] }
+        Self {
+            versions: vec![String::new(); names.len()],
+            names,
+            frames: vec![],
+            processes: vec![],
+            notes: vec![],
+        }
     }
 
     /// Adds one row of the turntable's table.
-    pub(super) fn turntable(&mut self, model: &str, samples: u32, results: &[Result<Frames, String>]) {
+    pub(super) fn turntable(
+        &mut self,
+        model: &str,
+        samples: u32,
+        results: &[Result<Frames, String>],
+    ) {
         self.note_failures(&format!("{model}, {samples} sample(s)"), results);
         let times: Vec<_> = results.iter().map(|r| r.as_ref().ok().map(|f| f.median_ms)).collect();
         let mut row = format!("| {model} | {samples} |");
@@ -74,7 +86,9 @@ impl Report {
                 ));
             }
         }
-        if let (Some(&"vitral"), Some(&Some(ms)), true) = (self.names.first(), times.first(), model.contains("1M")) {
+        if let (Some(&"vitral"), Some(&Some(ms)), true) =
+            (self.names.first(), times.first(), model.contains("1M"))
+        {
             let (frames, rate) = (1000.0 / ms, TRIANGLES as f64 / ms / 1000.0);
             let (least_frames, least_rate) = TORUS_TARGETS;
             self.notes.push(format!(
@@ -89,7 +103,8 @@ impl Report {
         let times: Vec<_> = results.iter().map(|r| r.as_ref().ok().copied()).collect();
         let mut row = format!("| {model} |");
         for time in &times {
-            row += &time.map_or(" failed |".to_owned(), |seconds| format!(" {:.0} |", 1000.0 * seconds));
+            row += &time
+                .map_or(" failed |".to_owned(), |seconds| format!(" {:.0} |", 1000.0 * seconds));
         }
         row += &self.ratios(&times, &PROCESS_TARGETS, model);
         self.processes.push(row);
@@ -107,16 +122,20 @@ impl Report {
         }
     }
 
-    /// Measures what Python and the peers' libraries cost before anything is loaded: part of the whole process.
+    /// Measures what Python and the peers' libraries cost before anything is loaded: part of the
+    /// whole process.
     pub(super) fn start_up(&mut self, python: &Path, rounds: usize) -> Outcome {
         for module in ["f3d", "pyvista"] {
             let once = |_| {
                 let start = Instant::now();
-                output(command(python).args(["-c", &format!("import {module}")])).map(|_| start.elapsed().as_secs_f64())
+                output(command(python).args(["-c", &format!("import {module}")]))
+                    .map(|_| start.elapsed().as_secs_f64())
             };
             let seconds = (0..rounds.max(1)).map(once).collect::<Result<Vec<_>, _>>()?;
             let ms = 1000.0 * median(seconds);
-            self.notes.push(format!("starting Python and importing {module}: {ms:.0} ms of each whole process"));
+            self.notes.push(format!(
+                "starting Python and importing {module}: {ms:.0} ms of each whole process"
+            ));
         }
         Ok(())
     }
@@ -127,12 +146,18 @@ impl Report {
         let mut cells = String::new();
         for (peer, time) in peers.iter().zip(&times[1..]) {
             let ratio = time.zip(times[0]).map(|(theirs, ours)| theirs / ours);
-            let target = targets.iter().find(|t| t.peer == *peer && (t.models.is_empty() || t.models.contains(&model)));
+            let target = targets
+                .iter()
+                .find(|t| t.peer == *peer && (t.models.is_empty() || t.models.contains(&model)));
             cells += &match (ratio, target) {
                 (None, _) => " – |".to_owned(),
                 (Some(ratio), None) => format!(" {ratio:.1}x |"),
-                (Some(ratio), Some(t)) if ratio >= t.ratio => format!(" {ratio:.1}x (target {}x) |", t.ratio),
-                (Some(ratio), Some(t)) => format!(" **{ratio:.1}x (target {}x missed)** |", t.ratio),
+                (Some(ratio), Some(t)) if ratio >= t.ratio => {
+                    format!(" {ratio:.1}x (target {}x) |", t.ratio)
+                }
+                (Some(ratio), Some(t)) => {
+                    format!(" **{ratio:.1}x (target {}x missed)** |", t.ratio)
+                }
             };
         }
         cells
@@ -161,7 +186,9 @@ impl Report {
 
 impl std::fmt::Display for Report {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        for (name, version) in self.names.iter().zip(&self.versions).filter(|(_, version)| !version.is_empty()) {
+        for (name, version) in
+            self.names.iter().zip(&self.versions).filter(|(_, version)| !version.is_empty())
+        {
             writeln!(f, "* {name}: {version}")?;
         }
         let coverage = format!(" coverage {} |", self.names.join(" / "));
@@ -171,7 +198,11 @@ impl std::fmt::Display for Report {
             self.head("| model | samples |", "ms", &coverage)
         )?;
         self.frames.iter().try_for_each(|row| writeln!(f, "{row}"))?;
-        write!(f, "\nWhole process, file to PNG, one sample a pixel\n\n{}", self.head("| model |", "ms", ""))?;
+        write!(
+            f,
+            "\nWhole process, file to PNG, one sample a pixel\n\n{}",
+            self.head("| model |", "ms", "")
+        )?;
         self.processes.iter().try_for_each(|row| writeln!(f, "{row}"))?;
         writeln!(f)?;
         self.notes.iter().try_for_each(|note| writeln!(f, "* {note}"))
@@ -210,7 +241,9 @@ mod tests {
         report.turntable("bunny", 1, &[Ok(frames(10.0)), Ok(frames(600.0)), Ok(frames(100.0))]);
         let text = report.to_string();
         assert!(
-            text.contains("| 60.0x (target 50x) | **10.0x (target 15x missed)** | 50.0 % / 50.0 % / 50.0 % |"),
+            text.contains(
+                "| 60.0x (target 50x) | **10.0x (target 15x missed)** | 50.0 % / 50.0 % / 50.0 % |"
+            ),
             "{text}"
         );
         let columns = |line: &str| line.matches('|').count();
@@ -221,8 +254,15 @@ mod tests {
     #[test]
     fn the_large_mesh_gives_rates() {
         let mut report = report();
-        report.turntable("torus, 1M triangles", 4, &[Ok(frames(20.0)), Ok(frames(600.0)), Ok(frames(100.0))]);
-        assert!(report.to_string().contains("50.0 frames/s (target 30), 50.0 Mtri/s (target 25)"), "{report}");
+        report.turntable(
+            "torus, 1M triangles",
+            4,
+            &[Ok(frames(20.0)), Ok(frames(600.0)), Ok(frames(100.0))],
+        );
+        assert!(
+            report.to_string().contains("50.0 frames/s (target 30), 50.0 Mtri/s (target 25)"),
+            "{report}"
+        );
     }
 
     #[test]

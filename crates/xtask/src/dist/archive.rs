@@ -9,8 +9,16 @@ use std::path::Path;
 /// Packs `name` of a folder.
 pub(super) fn tar(folder: &Path, name: &str, file: &Path, time: u64) -> Outcome {
     let mut tar = command("tar");
-    tar.args(["--create", "--format=gnu", "--sort=name", "--owner=0", "--group=0", "--numeric-owner"]);
-    tar.args(["--mode=u=rwX,go=rX", "--use-compress-program=gzip -n -9"]).arg(format!("--mtime=@{time}"));
+    tar.args([
+        "--create",
+        "--format=gnu",
+        "--sort=name",
+        "--owner=0",
+        "--group=0",
+        "--numeric-owner",
+    ]);
+    tar.args(["--mode=u=rwX,go=rX", "--use-compress-program=gzip -n -9"])
+        .arg(format!("--mtime=@{time}"));
     tar.arg("--file").arg(file).arg("--directory").arg(folder).arg(name);
     run(tar.env("LC_ALL", "C"))
 }
@@ -41,10 +49,18 @@ pub(super) fn deb(built: &Built, tree: &Path, scratch: &Path, package: &Path) ->
     fs::write(package, bytes).map_err(|e| shown(package, &e))
 }
 
-/// Adds a file to an archive of `ar`: a line of fixed columns, the bytes, and a newline where their number is odd.
+/// Adds a file to an archive of `ar`: a line of fixed columns, the bytes, and a newline where their
+/// number is odd.
 fn add(archive: &mut Vec<u8>, name: &str, bytes: &[u8], time: u64) {
     // Writing to a Vec cannot fail.
-    let _ = writeln!(archive, "{name:<16}{time:<12}{:<6}{:<6}{:<8}{:<10}`", 0, 0, "100644", bytes.len());
+    let _ = writeln!(
+        archive,
+        "{name:<16}{time:<12}{:<6}{:<6}{:<8}{:<10}`",
+        0,
+        0,
+        "100644",
+        bytes.len()
+    );
     archive.extend(bytes);
     if bytes.len() % 2 == 1 {
         archive.push(b'\n');
@@ -55,8 +71,9 @@ fn add(archive: &mut Vec<u8>, name: &str, bytes: &[u8], time: u64) {
 fn control_file(built: &Built, kilobytes: u64) -> Result<String, String> {
     let read = |file: &Path| fs::read(file).map_err(|e| shown(file, &e));
     let (command, library) = (read(&built.command)?, read(&built.library)?);
-    let (major, minor) =
-        newest_libc(&command).max(newest_libc(&library)).ok_or("the programs name no version of libc")?;
+    let (major, minor) = newest_libc(&command)
+        .max(newest_libc(&library))
+        .ok_or("the programs name no version of libc")?;
     Ok(format!(
         "Package: vitral\nVersion: {}\nArchitecture: {}\nMaintainer: The vitral developers\n\
          Installed-Size: {kilobytes}\nDepends: libc6 (>= {major}.{minor}), libgcc-s1\nSection: graphics\nPriority: optional\n\
@@ -69,16 +86,22 @@ fn control_file(built: &Built, kilobytes: u64) -> Result<String, String> {
     ))
 }
 
-/// The newest version of the C library whose symbols a program wants: its string table names `GLIBC_2.34`.
+/// The newest version of the C library whose symbols a program wants: its string table names
+/// `GLIBC_2.34`.
 fn newest_libc(program: &[u8]) -> Option<(u32, u32)> {
     const NAME: &[u8] = b"GLIBC_";
     let versions =
-        program.windows(NAME.len()).enumerate().filter(|(_, bytes)| *bytes == NAME).filter_map(|(start, _)| {
-            let rest = &program[start + NAME.len()..];
-            let end = rest.iter().position(|byte| !(byte.is_ascii_digit() || *byte == b'.'))?;
-            let mut numbers = std::str::from_utf8(&rest[..end]).ok()?.split('.').map(|number| number.parse().ok());
-            Some((numbers.next()??, numbers.next()??))
-        });
+        program.windows(NAME.len()).enumerate().filter(|(_, bytes)| *bytes == NAME).filter_map(
+            |(start, _)| {
+                let rest = &program[start + NAME.len()..];
+                let end = rest.iter().position(|byte| !(byte.is_ascii_digit() || *byte == b'.'))?;
+                let mut numbers = std::str::from_utf8(&rest[..end])
+                    .ok()?
+                    .split('.')
+                    .map(|number| number.parse().ok());
+                Some((numbers.next()??, numbers.next()??))
+            },
+        );
     versions.max()
 }
 
@@ -86,7 +109,10 @@ fn newest_libc(program: &[u8]) -> Option<(u32, u32)> {
 fn kilobytes(tree: &Path) -> u64 {
     let entries = fs::read_dir(tree).into_iter().flatten().flatten();
     let size = |path: &Path| path.symlink_metadata().map_or(0, |data| data.len().div_ceil(1024));
-    entries.map(|entry| entry.path()).map(|path| if path.is_dir() { kilobytes(&path) } else { size(&path) }).sum()
+    entries
+        .map(|entry| entry.path())
+        .map(|path| if path.is_dir() { kilobytes(&path) } else { size(&path) })
+        .sum()
 }
 
 #[cfg(test)]
@@ -99,7 +125,9 @@ mod tests {
         add(&mut archive, "debian-binary", b"odd", 12);
         add(&mut archive, "b", b"", 12);
         let text = String::from_utf8(archive).unwrap();
-        let line = |name: &str, size: usize| format!("{name:<16}12          0     0     100644  {size:<10}`\n");
+        let line = |name: &str, size: usize| {
+            format!("{name:<16}12          0     0     100644  {size:<10}`\n")
+        };
         assert_eq!(text, format!("!<arch>\n{}odd\n{}", line("debian-binary", 3), line("b", 0)));
     }
 

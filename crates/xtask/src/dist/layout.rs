@@ -19,7 +19,8 @@ pub(super) enum Kind {
 
 /// Fills an empty folder.
 pub(super) fn lay_out(built: &Built, prefix: &Path, kind: Kind) -> Outcome {
-    // Copy the command, and the library into a folder of its own: programs find Mesa's by its name unless they are told.
+    // Copy the command, and the library into a folder of its own: programs find Mesa's by its name
+    // unless they are told.
     copy(&built.command, &prefix.join("bin/vitral"), true)?;
     copy(&built.library, &prefix.join("lib/vitral/libOSMesa.so.8"), false)?;
     let link = prefix.join("lib/vitral/libOSMesa.so");
@@ -54,7 +55,10 @@ pub(super) fn lay_out(built: &Built, prefix: &Path, kind: Kind) -> Outcome {
         write(&prefix.join("share/applications/vitral.desktop"), &desktop::entry())?;
         let symbol = prefix.join("share/icons/hicolor/256x256/apps/vitral.png");
         made(symbol.parent().unwrap_or(prefix))?;
-        run(command(&built.command).args(["thumbnail", "builtin:teapot"]).arg(&symbol).arg(SYMBOL))?;
+        run(command(&built.command)
+            .args(["thumbnail", "builtin:teapot"])
+            .arg(&symbol)
+            .arg(SYMBOL))?;
     }
 
     // Add the licences.
@@ -79,7 +83,9 @@ pub(super) fn lay_out(built: &Built, prefix: &Path, kind: Kind) -> Outcome {
 
 /// Packs each file of a folder.
 fn compress(folder: &Path) -> Outcome {
-    let files = fs::read_dir(folder).map_err(|e| shown(folder, &e))?.filter_map(|entry| Some(entry.ok()?.path()));
+    let files = fs::read_dir(folder)
+        .map_err(|e| shown(folder, &e))?
+        .filter_map(|entry| Some(entry.ok()?.path()));
     let mut files: Vec<PathBuf> = files.collect();
     files.sort();
     run(command("gzip").args(["-n", "-9", "--"]).args(files))

@@ -18,7 +18,8 @@ pub(super) fn copyright(metadata: &Value) -> Result<String, String> {
     Ok(text)
 }
 
-/// The crates that are built in, each with its licence; then each text once, with the crates that it came with.
+/// The crates that are built in, each with its licence; then each text once, with the crates that
+/// it came with.
 pub(super) fn third_party(metadata: &Value) -> Result<String, String> {
     let mut text = String::new();
     let mut texts: Vec<(String, Vec<String>)> = Vec::new();
@@ -42,10 +43,13 @@ pub(super) fn third_party(metadata: &Value) -> Result<String, String> {
 /// The texts of licences that lie beside a manifest, in the order of their names.
 fn texts_beside(manifest: &Path) -> Result<Vec<String>, String> {
     let folder = manifest.parent().unwrap_or(manifest);
-    let files = fs::read_dir(folder).map_err(|e| shown(folder, &e))?.filter_map(|entry| Some(entry.ok()?.path()));
+    let files = fs::read_dir(folder)
+        .map_err(|e| shown(folder, &e))?
+        .filter_map(|entry| Some(entry.ok()?.path()));
     let is_licence = |path: &std::path::PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-        path.is_file() && ["license", "licence", "copying", "notice"].iter().any(|word| name.starts_with(word))
+        path.is_file()
+            && ["license", "licence", "copying", "notice"].iter().any(|word| name.starts_with(word))
     };
     let mut files: Vec<_> = files.filter(is_licence).collect();
     files.sort();

@@ -1,4 +1,5 @@
-//! The bill of materials: every crate that is built in, by `cargo metadata` and the lock file, as CycloneDX 1.5.
+//! The bill of materials: every crate that is built in, by `cargo metadata` and the lock file, as
+//! CycloneDX 1.5.
 
 use super::{Built, shown, text_of};
 use serde_json::{Value, json};
@@ -42,11 +43,13 @@ fn bill(built: &Built) -> Result<Value, String> {
     let components: Vec<Value> = all.iter().map(component).collect();
 
     // Tell who needs whom.
-    let names: BTreeMap<&str, String> = all.iter().map(|package| (text(package, "id"), reference(package))).collect();
+    let names: BTreeMap<&str, String> =
+        all.iter().map(|package| (text(package, "id"), reference(package))).collect();
     let mut dependencies = vec![json!({"ref": "vitral", "dependsOn": all.iter()
         .filter(|package| PROGRAMS.contains(&text(package, "name"))).map(|package| reference(package)).collect::<Vec<_>>()})];
     for (id, name) in &names {
-        let needed: BTreeSet<&String> = needs(&built.metadata, id).iter().filter_map(|id| names.get(id)).collect();
+        let needed: BTreeSet<&String> =
+            needs(&built.metadata, id).iter().filter_map(|id| names.get(id)).collect();
         dependencies.push(json!({"ref": name, "dependsOn": needed}));
     }
     Ok(json!({
@@ -70,7 +73,8 @@ pub(super) fn built_in(metadata: &Value) -> Result<Vec<&Value>, String> {
     // Follow what is needed at run time; macros and build scripts stay behind.
     let packages = || metadata["packages"].as_array().into_iter().flatten();
     let is_program = |package: &&Value| PROGRAMS.contains(&text(package, "name"));
-    let mut waiting: Vec<&str> = packages().filter(is_program).map(|package| text(package, "id")).collect();
+    let mut waiting: Vec<&str> =
+        packages().filter(is_program).map(|package| text(package, "id")).collect();
     if waiting.len() != PROGRAMS.len() {
         return Err("cargo metadata does not tell of all programs".to_owned());
     }
@@ -82,7 +86,8 @@ pub(super) fn built_in(metadata: &Value) -> Result<Vec<&Value>, String> {
             waiting.extend(needs(metadata, id));
         }
     }
-    let mut all: Vec<&Value> = packages().filter(|package| found.contains(text(package, "id"))).collect();
+    let mut all: Vec<&Value> =
+        packages().filter(|package| found.contains(text(package, "id"))).collect();
     all.sort_by_key(|package| (text(package, "name"), text(package, "version")));
     Ok(all)
 }
@@ -95,7 +100,9 @@ pub(super) fn is_own(package: &Value) -> bool {
 /// Whether a package is a macro, which runs in the compiler.
 fn is_macro(package: &Value) -> bool {
     let targets = package["targets"].as_array().into_iter().flatten();
-    targets.flat_map(|target| target["kind"].as_array().into_iter().flatten()).any(|kind| kind == "proc-macro")
+    targets
+        .flat_map(|target| target["kind"].as_array().into_iter().flatten())
+        .any(|kind| kind == "proc-macro")
 }
 
 /// What a package needs at run time.
@@ -103,8 +110,9 @@ fn needs<'m>(metadata: &'m Value, id: &str) -> Vec<&'m str> {
     let mut nodes = metadata["resolve"]["nodes"].as_array().into_iter().flatten();
     let node = nodes.find(|node| text(node, "id") == id);
     let needed = node.and_then(|node| node["deps"].as_array()).into_iter().flatten();
-    let at_run_time =
-        |dep: &&Value| dep["dep_kinds"].as_array().into_iter().flatten().any(|kind| kind["kind"].is_null());
+    let at_run_time = |dep: &&Value| {
+        dep["dep_kinds"].as_array().into_iter().flatten().any(|kind| kind["kind"].is_null())
+    };
     needed.filter(at_run_time).map(|dep| text(dep, "pkg")).collect()
 }
 
@@ -121,7 +129,8 @@ fn text<'v>(value: &'v Value, key: &str) -> &'v str {
 fn checksums(lock: &str) -> BTreeMap<(String, String), String> {
     let block = |block: &str| {
         let value = |key: &str| {
-            let line = block.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(" = \""))?;
+            let line =
+                block.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(" = \""))?;
             Some(line.trim_end_matches('"').to_owned())
         };
         Some(((value("name")?, value("version")?), value("checksum")?))
@@ -132,7 +141,9 @@ fn checksums(lock: &str) -> BTreeMap<(String, String), String> {
 /// A time as ISO 8601 has it, by the days of the civil calendar since 1970.
 fn date(seconds: u64) -> String {
     let (days, rest) = (seconds / 86_400, seconds % 86_400);
-    let is_leap = |year: u64| year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
+    let is_leap = |year: u64| {
+        year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
+    };
     let (mut year, mut day) = (1970, days);
     while day >= 365 + u64::from(is_leap(year)) {
         day -= 365 + u64::from(is_leap(year));
@@ -166,7 +177,10 @@ mod tests {
         let lock = "version = 4\n\n[[package]]\nname = \"a\"\nversion = \"1.0.0\"\n\n[[package]]\nname = \"b\"\nversion = \"2.0.0\"\n\
                     source = \"registry\"\nchecksum = \"00ff\"\n";
         let sums = checksums(lock);
-        assert_eq!(sums.into_iter().collect::<Vec<_>>(), [(("b".to_owned(), "2.0.0".to_owned()), "00ff".to_owned())]);
+        assert_eq!(
+            sums.into_iter().collect::<Vec<_>>(),
+            [(("b".to_owned(), "2.0.0".to_owned()), "00ff".to_owned())]
+        );
     }
 
     #[test]
@@ -183,7 +197,8 @@ mod tests {
                 {"id": "a", "deps": [dep("c", Value::Null)]},
             ]},
         });
-        let names: Vec<&str> = built_in(&metadata).unwrap().into_iter().map(|package| text(package, "name")).collect();
+        let names: Vec<&str> =
+            built_in(&metadata).unwrap().into_iter().map(|package| text(package, "name")).collect();
         assert_eq!(names, ["a", "c", "vitral-cli", "vitral-osmesa", "vitral-python"]);
         assert_eq!(reference(&metadata["packages"][3]), "pkg:cargo/a@1.0.0");
     }

@@ -1,6 +1,8 @@
-//! `cargo xtask dist`: what people install, in `target/dist`: an archive, a Debian package, the wheel, a bill of materials, checksums.
+//! `cargo xtask dist`: what people install, in `target/dist`: an archive, a Debian package, the
+//! wheel, a bill of materials, checksums.
 //!
-//! The same commit gives the same bytes with the same tools in the same folder: times are the commit's, names are sorted, owners are 0.
+//! The same commit gives the same bytes with the same tools in the same folder: times are the
+//! commit's, names are sorted, owners are 0.
 //!
 //! | file | what |
 //! |---|---|
@@ -19,7 +21,9 @@ mod materials;
 mod trial;
 
 use crate::checks::{Check, CheckResult};
-use crate::shell::{Outcome, cargo, command, output, profile_folder, relative, repository, run, target_folder};
+use crate::shell::{
+    Outcome, cargo, command, output, profile_folder, relative, repository, run, target_folder,
+};
 use crate::{lab, osmesa, python, test};
 use serde_json::Value;
 use std::fs;
@@ -40,7 +44,8 @@ pub(crate) struct Built {
     time: u64,
 }
 
-/// Makes everything, or tries it by `test`; `--profile NAME` builds with another profile than release, `--no-lab` leaves the Lab and its desktop entry out.
+/// Makes everything, or tries it by `test`; `--profile NAME` builds with another profile than
+/// release, `--no-lab` leaves the Lab and its desktop entry out.
 pub(crate) fn run_all(options: &[&str]) -> Outcome {
     if options == ["test"] {
         return try_out();
@@ -53,7 +58,11 @@ pub(crate) fn run_all(options: &[&str]) -> Outcome {
         match *word {
             "--no-lab" => with_lab = false,
             "--profile" => profile = words.next().ok_or("--profile: a name is wanted")?,
-            other => return Err(format!("dist: there is no option {other}; there are --profile NAME and --no-lab")),
+            other => {
+                return Err(format!(
+                    "dist: there is no option {other}; there are --profile NAME and --no-lab"
+                ));
+            }
         }
     }
 
@@ -110,7 +119,8 @@ pub(crate) fn test_all(profile: &str) -> Vec<Check> {
         Ok(files) => files,
         Err(why) => return failed("dist::pack", why),
     };
-    let same = same_bytes(&built, &files).map_or_else(CheckResult::Failed, |()| CheckResult::Passed);
+    let same =
+        same_bytes(&built, &files).map_or_else(CheckResult::Failed, |()| CheckResult::Passed);
     let mut checks = vec![Check { name: "dist::same_bytes", result: same }];
     checks.extend(trial::all(&built, &files, &folder));
     checks
@@ -142,17 +152,26 @@ fn build(profile: &str, has_lab: bool) -> Result<Built, String> {
     let library = osmesa::build(profile)?;
     let command = profile_folder(profile).join("vitral");
     let metadata = metadata(if has_lab { &features } else { &[] })?;
-    let version = metadata["packages"].as_array().into_iter().flatten().find(|package| package["name"] == "vitral-cli");
-    let version = version.and_then(|package| package["version"].as_str()).ok_or("cargo metadata tells no version")?;
+    let version = metadata["packages"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .find(|package| package["name"] == "vitral-cli");
+    let version = version
+        .and_then(|package| package["version"].as_str())
+        .ok_or("cargo metadata tells no version")?;
     Ok(Built { command, library, has_lab, version: version.to_owned(), metadata, time: time()? })
 }
 
 /// What cargo knows of the packages of this platform.
 fn metadata(features: &[&str]) -> Result<Value, String> {
     let host = output(command("rustc").arg("-vV"))?;
-    let host = host.lines().find_map(|line| line.strip_prefix("host: ")).ok_or("rustc tells no host")?;
+    let host =
+        host.lines().find_map(|line| line.strip_prefix("host: ")).ok_or("rustc tells no host")?;
     let mut words = cargo();
-    words.args(["metadata", "--format-version", "1", "--locked", "--filter-platform", host]).args(features);
+    words
+        .args(["metadata", "--format-version", "1", "--locked", "--filter-platform", host])
+        .args(features);
     serde_json::from_str(&output(&mut words)?).map_err(|e| format!("cargo metadata: {e}"))
 }
 
@@ -162,10 +181,14 @@ fn time() -> Result<u64, String> {
     let text = match told {
         Some(text) => text,
         None => output(command("git").args(["log", "-1", "--format=%ct"])).map_err(|why| {
-            format!("no time for the files: {why}\nhint: set SOURCE_DATE_EPOCH outside of a git clone")
+            format!(
+                "no time for the files: {why}\nhint: set SOURCE_DATE_EPOCH outside of a git clone"
+            )
         })?,
     };
-    text.trim().parse().map_err(|_| format!("SOURCE_DATE_EPOCH={text}: seconds since 1970 are wanted"))
+    text.trim()
+        .parse()
+        .map_err(|_| format!("SOURCE_DATE_EPOCH={text}: seconds since 1970 are wanted"))
 }
 
 /// Makes the archive and the Debian package in an empty folder; gives their paths.
@@ -181,7 +204,8 @@ fn pack(built: &Built, folder: &Path) -> Result<Vec<PathBuf>, String> {
 
     let tree = scratch.join("debian");
     layout::lay_out(built, &tree.join("usr"), layout::Kind::Debian)?;
-    let package = folder.join(format!("vitral_{}_{}.deb", built.version, archive::debian_processor()?));
+    let package =
+        folder.join(format!("vitral_{}_{}.deb", built.version, archive::debian_processor()?));
     archive::deb(built, &tree, &scratch, &package)?;
     fs::remove_dir_all(&scratch).map_err(|e| shown(&scratch, &e))?;
     Ok(vec![archive, package])

@@ -1,4 +1,5 @@
-//! Tries both packages: each in a root of its own that holds the package, the C library, and nothing else.
+//! Tries both packages: each in a root of its own that holds the package, the C library, and
+//! nothing else.
 
 use super::Built;
 use crate::checks::{Check, CheckResult};
@@ -55,7 +56,14 @@ pub(super) fn all(built: &Built, files: &[PathBuf], folder: &Path) -> Vec<Check>
             note("dist::manual", installed.manual());
             note("dist::bash", installed.bash());
             note("dist::zsh", installed.reads("zsh", "-n", "share/zsh/site-functions/_vitral"));
-            note("dist::fish", installed.reads("fish", "--no-execute", "share/fish/vendor_completions.d/vitral.fish"));
+            note(
+                "dist::fish",
+                installed.reads(
+                    "fish",
+                    "--no-execute",
+                    "share/fish/vendor_completions.d/vitral.fish",
+                ),
+            );
             note("dist::media_types", installed.media_types());
             note("dist::desktop", installed.desktop());
         }
@@ -89,7 +97,9 @@ fn unpack_package(package: &Path, installed: &Installed<'_>) -> Tried {
 /// Whether a system like this one has what the package depends on.
 fn needs_are_met(package: &Path) -> Tried {
     if !succeeds("apt-get", &["--version"]) {
-        return Err(Trouble::Missing("apt-get is not there: nobody looked whether dependencies are met".to_owned()));
+        return Err(Trouble::Missing(
+            "apt-get is not there: nobody looked whether dependencies are met".to_owned(),
+        ));
     }
     let told = output(command("apt-get").args(["install", "--simulate"]).arg(package))?;
     if told.contains("Inst vitral ") { Ok(()) } else { Err(Trouble::Failed(told)) }
@@ -117,13 +127,19 @@ impl Installed<'_> {
 
     /// The command and the library work there.
     fn runs(&self) -> Tried {
-        // Make the root: the libraries that the linker finds for both, and a folder for what is written.
+        // Make the root: the libraries that the linker finds for both, and a folder for what is
+        // written.
         there("bwrap", "bubblewrap")?;
         if !succeeds("bwrap", &["--unshare-all", "--ro-bind", "/", "/", "true"]) {
-            return Err(Trouble::Missing("bwrap may not make namespaces here: nothing ran in a bare root".to_owned()));
+            return Err(Trouble::Missing(
+                "bwrap may not make namespaces here: nothing ran in a bare root".to_owned(),
+            ));
         }
         let libraries = self.libraries()?;
-        let loader = libraries.iter().find(|path| path.contains("/ld-")).ok_or("no loader is named".to_owned())?;
+        let loader = libraries
+            .iter()
+            .find(|path| path.contains("/ld-"))
+            .ok_or("no loader is named".to_owned())?;
         let out = self.root.join("out");
         fs::create_dir_all(&out).map_err(|e| super::shown(&out, &e))?;
         let jailed = |words: &[&str]| output(self.jail(&libraries).args(words));
@@ -156,7 +172,9 @@ impl Installed<'_> {
     /// A program in the root, without environment or network.
     fn jail(&self, libraries: &[String]) -> Command {
         let mut jail = command("bwrap");
-        jail.args(["--unshare-all", "--clearenv", "--die-with-parent", "--bind"]).arg(&self.root).arg("/");
+        jail.args(["--unshare-all", "--clearenv", "--die-with-parent", "--bind"])
+            .arg(&self.root)
+            .arg("/");
         for library in libraries {
             jail.args(["--ro-bind", library, library]);
         }
@@ -164,7 +182,8 @@ impl Installed<'_> {
         jail
     }
 
-    /// The system's libraries that the command and the library are linked with, the loader among them.
+    /// The system's libraries that the command and the library are linked with, the loader among
+    /// them.
     fn libraries(&self) -> Result<Vec<String>, String> {
         let mut found = Vec::new();
         for name in ["bin/vitral", "lib/vitral/libOSMesa.so.8"] {
@@ -180,9 +199,14 @@ impl Installed<'_> {
     /// There is a page for each verb, which `man` can show.
     fn manual(&self) -> Tried {
         let help = output(command(&self.built.command).arg("--help"))?;
-        let verbs = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+        let verbs = help
+            .lines()
+            .skip_while(|line| *line != "Commands:")
+            .skip(1)
+            .take_while(|line| !line.is_empty());
         let starts_verb = |line: &&str| line.starts_with("  ") && !line.starts_with("   ");
-        let names: Vec<&str> = verbs.filter(starts_verb).filter_map(|line| line.split_whitespace().next()).collect();
+        let names: Vec<&str> =
+            verbs.filter(starts_verb).filter_map(|line| line.split_whitespace().next()).collect();
         if !names.contains(&"thumbnail") {
             return Err(Trouble::Failed(format!("the help names no verbs: {names:?}")));
         }
@@ -195,7 +219,9 @@ impl Installed<'_> {
         }
         there("man", "man-db")?;
         for page in pages {
-            let shown = output(command("man").args(["-P", "cat", "-l"]).arg(&page).env("LC_ALL", "C.UTF-8"))?;
+            let shown = output(
+                command("man").args(["-P", "cat", "-l"]).arg(&page).env("LC_ALL", "C.UTF-8"),
+            )?;
             if !shown.contains("SYNOPSIS") || !shown.contains("EXAMPLES") {
                 return Err(Trouble::Failed(format!("{}: man shows\n{shown}", page.display())));
             }
@@ -207,9 +233,14 @@ impl Installed<'_> {
     fn bash(&self) -> Tried {
         there("bash", "bash")?;
         let script = self.place("share/bash-completion/completions/vitral");
-        for (words, expected) in [("vitral thu", "thumbnail"), ("vitral render --visib", "--visibility")] {
+        for (words, expected) in
+            [("vitral thu", "thumbnail"), ("vitral render --visib", "--visibility")]
+        {
             let last = words.rsplit(' ').next().unwrap_or_default();
-            let before = words[..words.len() - last.len()].split_whitespace().next_back().unwrap_or_default();
+            let before = words[..words.len() - last.len()]
+                .split_whitespace()
+                .next_back()
+                .unwrap_or_default();
             let line = format!(
                 "source \"$0\"; COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); \
                  _vitral vitral {last} {before}; echo \"${{COMPREPLY[@]}}\""
@@ -233,7 +264,8 @@ impl Installed<'_> {
         there("update-mime-database", "shared-mime-info")?;
         let folder = self.place("share/mime");
         output(command("update-mime-database").arg(&folder))?;
-        let globs = fs::read_to_string(folder.join("globs2")).map_err(|e| super::shown(&folder, &e))?;
+        let globs =
+            fs::read_to_string(folder.join("globs2")).map_err(|e| super::shown(&folder, &e))?;
         match globs.contains("model/stl:*.stl") && folder.join("model/gltf-binary.xml").exists() {
             true => Ok(()),
             false => Err(Trouble::Failed(format!("the database knows: {globs}"))),
@@ -243,10 +275,14 @@ impl Installed<'_> {
     /// The entry of desktops is as these want it.
     fn desktop(&self) -> Tried {
         if !self.built.has_lab {
-            return Err(Trouble::Missing("the Lab was not built, and without it there is no desktop entry".to_owned()));
+            return Err(Trouble::Missing(
+                "the Lab was not built, and without it there is no desktop entry".to_owned(),
+            ));
         }
         there("desktop-file-validate", "desktop-file-utils")?;
-        let told = output(command("desktop-file-validate").arg(self.place("share/applications/vitral.desktop")))?;
+        let told = output(
+            command("desktop-file-validate").arg(self.place("share/applications/vitral.desktop")),
+        )?;
         if told.is_empty() { Ok(()) } else { Err(Trouble::Failed(told)) }
     }
 }

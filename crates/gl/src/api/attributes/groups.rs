@@ -3,8 +3,9 @@
 use crate::api::capabilities::saved_capabilities;
 use crate::pixels::SavedTextures;
 use crate::state::{
-    Blend, ColorBuffer, Current, DepthState, Fog, Lighting, Lines, MAX_CLIP_PLANES, MAX_TEXTURE_UNITS, PixelMode,
-    PixelTransfer, Points, Polygons, RasterPosition, Scissor, StencilState, TextureUnit, Viewport,
+    Blend, ColorBuffer, Current, DepthState, Fog, Lighting, Lines, MAX_CLIP_PLANES,
+    MAX_TEXTURE_UNITS, PixelMode, PixelTransfer, Points, Polygons, RasterPosition, Scissor,
+    StencilState, TextureUnit, Viewport,
 };
 use crate::{Context, enums as gl};
 use std::sync::Arc;
@@ -142,7 +143,9 @@ impl Context {
 
     fn save_enables(&mut self) -> Enables {
         Enables {
-            single: saved_capabilities().map(|cap| self.capability(cap).is_some_and(|on| *on)).collect(),
+            single: saved_capabilities()
+                .map(|cap| self.capability(cap).is_some_and(|on| *on))
+                .collect(),
             targets: std::array::from_fn(|i| self.state.units[i].enabled),
             generation: std::array::from_fn(|i| self.state.units[i].generation.map(|g| g.enabled)),
         }

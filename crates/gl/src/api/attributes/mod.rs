@@ -1,7 +1,7 @@
 //! The server and client attribute stacks.
 //!
-//! `PushAttrib` keeps a copy of each group in its mask; some fields are in two groups (an enable is in `ENABLE_BIT` and
-//! in the group of its feature) and may come back twice.
+//! `PushAttrib` keeps a copy of each group in its mask; some fields are in two groups (an enable is
+//! in `ENABLE_BIT` and in the group of its feature) and may come back twice.
 
 mod groups;
 mod restore;
@@ -88,7 +88,11 @@ impl Context {
             return;
         }
         let Some(saved) = self.stacks.client.pop() else {
-            return self.record_error(gl::STACK_UNDERFLOW, call, "the client attribute stack is empty");
+            return self.record_error(
+                gl::STACK_UNDERFLOW,
+                call,
+                "the client attribute stack is empty",
+            );
         };
         if let Some([unpack, pack]) = saved.pixel_store {
             (self.client.unpack, self.client.pack) = (unpack, pack);
@@ -157,7 +161,9 @@ mod tests {
         c.tex_envi(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, gl::DECAL as i32);
         c.scissor(1, 1, 1, 1);
         c.sample_coverage(0.5, 1);
-        for cap in saved_capabilities().chain([gl::TEXTURE_2D, gl::TEXTURE_GEN_R]).collect::<Vec<_>>() {
+        for cap in
+            saved_capabilities().chain([gl::TEXTURE_2D, gl::TEXTURE_GEN_R]).collect::<Vec<_>>()
+        {
             let on = c.is_enabled(cap) == 0;
             if on {
                 c.enable(cap)
@@ -203,7 +209,9 @@ mod tests {
     #[test]
     fn neighbours_of_a_group_stay() {
         let mut c = context();
-        c.push_attrib(gl::POLYGON_BIT | gl::TEXTURE_BIT | gl::COLOR_BUFFER_BIT | gl::PIXEL_MODE_BIT);
+        c.push_attrib(
+            gl::POLYGON_BIT | gl::TEXTURE_BIT | gl::COLOR_BUFFER_BIT | gl::PIXEL_MODE_BIT,
+        );
         stir(&mut c);
         c.pop_attrib();
         assert_eq!(c.state.polygons.cull_mode, gl::BACK);
@@ -224,7 +232,9 @@ mod tests {
         c.client.vertex.enabled = false;
         c.client.active_unit = 3;
         c.pop_client_attrib();
-        assert!(c.client.vertex.enabled && c.client.active_unit == 0 && c.client.unpack.alignment == 1);
+        assert!(
+            c.client.vertex.enabled && c.client.active_unit == 0 && c.client.unpack.alignment == 1
+        );
         c.pop_client_attrib();
         assert!(c.client.vertex.enabled && c.client.unpack.alignment == 4);
     }

@@ -1,7 +1,8 @@
 //! How groups come back.
 
 use super::groups::{
-    ColorGroup, Enables, EvalGroup, Groups, MultisampleGroup, PointGroup, TextureGroup, TransformGroup,
+    ColorGroup, Enables, EvalGroup, Groups, MultisampleGroup, PointGroup, TextureGroup,
+    TransformGroup,
 };
 use crate::api::capabilities::saved_capabilities;
 use crate::objects::BufferHandle;
@@ -51,7 +52,10 @@ impl Context {
         // Restore the groups whose changes have consequences.
         saved.color_buffer.into_iter().for_each(|group| self.restore_color_group(group));
         saved.eval.into_iter().for_each(|group| self.restore_eval_group(&group));
-        saved.pixel_mode.into_iter().for_each(|(transfer, mode)| self.restore_pixel_group(transfer, mode));
+        saved
+            .pixel_mode
+            .into_iter()
+            .for_each(|(transfer, mode)| self.restore_pixel_group(transfer, mode));
         saved.transform.into_iter().for_each(|group| self.restore_transform_group(&group));
         saved.multisample.into_iter().for_each(|group| self.restore_multisample_group(&group));
         saved.texture.into_iter().for_each(|group| self.restore_texture_group(*group));
@@ -79,8 +83,8 @@ impl Context {
         }
     }
 
-    /// Clear values of the accumulation buffer are in a group of their own; the draw buffer may belong to a framebuffer
-    /// object.
+    /// Clear values of the accumulation buffer are in a group of their own; the draw buffer may
+    /// belong to a framebuffer object.
     fn restore_color_group(&mut self, saved: ColorGroup) {
         self.set_draw_buffer_token(saved.buffer.draw_buffer);
         let s = &mut self.state;
@@ -149,7 +153,8 @@ impl Context {
 
     pub(super) fn restore_arrays(&mut self, saved: ClientState) {
         if saved.vertex_array != self.client.vertex_array {
-            if saved.vertex_array != 0 && !self.object_exists(gl::VERTEX_ARRAY, saved.vertex_array) {
+            if saved.vertex_array != 0 && !self.object_exists(gl::VERTEX_ARRAY, saved.vertex_array)
+            {
                 return;
             }
             self.switch_vertex_array(saved.vertex_array);

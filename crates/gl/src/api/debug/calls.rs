@@ -34,15 +34,26 @@ impl Context {
             self.refuse_operation(call, "numbers need a source and a type, and no severity");
         } else {
             for i in 0..count as usize {
-                let id = ids.checked_add(i * 4).filter(|_| ids != 0).and_then(|at| read(&*self.memory, at, 1));
-                let Some([id]) = id else { return self.refuse_value(call, "the numbers are not in readable memory") };
+                let id = ids
+                    .checked_add(i * 4)
+                    .filter(|_| ids != 0)
+                    .and_then(|at| read(&*self.memory, at, 1));
+                let Some([id]) = id else {
+                    return self.refuse_value(call, "the numbers are not in readable memory");
+                };
                 self.debug.wanted.set_single(source, type_, id, enabled != 0);
             }
         }
     }
 
     /// The text of a message; records the error if it is too long or cannot be read.
-    pub(super) fn debug_text(&mut self, call: &str, address: usize, length: i32, limit: usize) -> Option<Vec<u8>> {
+    pub(super) fn debug_text(
+        &mut self,
+        call: &str,
+        address: usize,
+        length: i32,
+        limit: usize,
+    ) -> Option<Vec<u8>> {
         match read_string(&*self.memory, address, length, limit) {
             Text::Bytes(bytes) => return Some(bytes),
             Text::TooLong => self.refuse_value(call, "the text is too long"),
@@ -52,7 +63,15 @@ impl Context {
     }
 
     /// `glDebugMessageInsert`.
-    pub fn debug_message_insert(&mut self, source: u32, type_: u32, id: u32, severity: u32, length: i32, buf: usize) {
+    pub fn debug_message_insert(
+        &mut self,
+        source: u32,
+        type_: u32,
+        id: u32,
+        severity: u32,
+        length: i32,
+        buf: usize,
+    ) {
         let call = "glDebugMessageInsert";
         let sources = [gl::DEBUG_SOURCE_APPLICATION, gl::DEBUG_SOURCE_THIRD_PARTY];
         if self.may_set(call)
@@ -107,16 +126,21 @@ impl Context {
             let Some(message) = self.debug.log.pop_front() else { break };
 
             // Write the message's fields, each to its array.
-            let fields = [message.source, message.kind, message.id, message.severity, length as u32];
-            for (array, value) in [sources, types, ids, severities, lengths].into_iter().zip(fields) {
-                if array != 0 && !self.give_results(call, array.saturating_add(done as usize * 4), &[value]) {
+            let fields =
+                [message.source, message.kind, message.id, message.severity, length as u32];
+            for (array, value) in [sources, types, ids, severities, lengths].into_iter().zip(fields)
+            {
+                if array != 0
+                    && !self.give_results(call, array.saturating_add(done as usize * 4), &[value])
+                {
                     return done;
                 }
             }
 
             // Write its text with the final NUL.
             let text = [&message.text[..], &[0]].concat();
-            if message_log != 0 && !self.give_results(call, message_log.saturating_add(used), &text) {
+            if message_log != 0 && !self.give_results(call, message_log.saturating_add(used), &text)
+            {
                 return done;
             }
             used += length;

@@ -23,8 +23,12 @@ pub(super) const KINDS: [u32; 9] = [
     gl::DEBUG_TYPE_PUSH_GROUP,
     gl::DEBUG_TYPE_POP_GROUP,
 ];
-pub(super) const SEVERITIES: [u32; 4] =
-    [gl::DEBUG_SEVERITY_LOW, gl::DEBUG_SEVERITY_MEDIUM, gl::DEBUG_SEVERITY_HIGH, gl::DEBUG_SEVERITY_NOTIFICATION];
+pub(super) const SEVERITIES: [u32; 4] = [
+    gl::DEBUG_SEVERITY_LOW,
+    gl::DEBUG_SEVERITY_MEDIUM,
+    gl::DEBUG_SEVERITY_HIGH,
+    gl::DEBUG_SEVERITY_NOTIFICATION,
+];
 
 /// Wanted or not, by severity.
 type Wanted = [bool; 4];
@@ -59,7 +63,8 @@ impl Volume {
     /// Whether a message passes.
     pub(super) fn wants(&self, message: &DebugMessage) -> bool {
         let (source, kind) = (position(message.source, &SOURCES), position(message.kind, &KINDS));
-        let wanted = self.single.get(&(source, kind, message.id)).unwrap_or(&self.classes[source][kind]);
+        let wanted =
+            self.single.get(&(source, kind, message.id)).unwrap_or(&self.classes[source][kind]);
         wanted[position(message.severity, &SEVERITIES)]
     }
 
@@ -68,10 +73,18 @@ impl Volume {
         let (in_source, in_kind) = (named(source, &SOURCES), named(kind, &KINDS));
         let in_severity = named(severity, &SEVERITIES);
         let set = |wanted: &mut Wanted| {
-            wanted.iter_mut().enumerate().filter(|(i, _)| in_severity(*i)).for_each(|(_, wanted)| *wanted = on);
+            wanted
+                .iter_mut()
+                .enumerate()
+                .filter(|(i, _)| in_severity(*i))
+                .for_each(|(_, wanted)| *wanted = on);
         };
         for (_, kinds) in self.classes.iter_mut().enumerate().filter(|(i, _)| in_source(*i)) {
-            kinds.iter_mut().enumerate().filter(|(k, _)| in_kind(*k)).for_each(|(_, wanted)| set(wanted));
+            kinds
+                .iter_mut()
+                .enumerate()
+                .filter(|(k, _)| in_kind(*k))
+                .for_each(|(_, wanted)| set(wanted));
         }
         for ((s, k, _), wanted) in &mut self.single {
             if in_source(*s) && in_kind(*k) {

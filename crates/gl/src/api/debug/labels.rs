@@ -65,18 +65,33 @@ impl Context {
     }
 
     /// `glGetObjectLabel`.
-    pub fn get_object_label(&mut self, identifier: u32, name: u32, buf_size: i32, length: usize, label: usize) {
+    pub fn get_object_label(
+        &mut self,
+        identifier: u32,
+        name: u32,
+        buf_size: i32,
+        length: usize,
+        label: usize,
+    ) {
         let call = "glGetObjectLabel";
         if self.check_object(call, identifier, name) {
             self.give_label(call, (identifier, name), buf_size, length, label);
         }
     }
 
-    fn give_label(&mut self, call: &str, of: (u32, u32), buf_size: i32, length: usize, label: usize) {
+    fn give_label(
+        &mut self,
+        call: &str,
+        of: (u32, u32),
+        buf_size: i32,
+        length: usize,
+        label: usize,
+    ) {
         let Ok(size) = usize::try_from(buf_size) else {
             return self.refuse_value(call, "the buffer's size is negative");
         };
-        let mut text = self.with_labels(of.0, |labels| labels.get(&of).cloned().unwrap_or_default());
+        let mut text =
+            self.with_labels(of.0, |labels| labels.get(&of).cloned().unwrap_or_default());
         if label != 0 {
             text.truncate(size.saturating_sub(1));
         }
@@ -146,7 +161,14 @@ mod tests {
             c.end_list();
         };
         make(&mut c);
-        let kinds = [gl::TEXTURE, gl::BUFFER, gl::FRAMEBUFFER, gl::RENDERBUFFER, gl::VERTEX_ARRAY, gl::DISPLAY_LIST];
+        let kinds = [
+            gl::TEXTURE,
+            gl::BUFFER,
+            gl::FRAMEBUFFER,
+            gl::RENDERBUFFER,
+            gl::VERTEX_ARRAY,
+            gl::DISPLAY_LIST,
+        ];
         for kind in kinds {
             c.object_label(kind, 3, -1, name + 4);
         }

@@ -1,5 +1,5 @@
-//! KHR_debug: who is told what happened. The way of a message: dropped if the output is off or the application does not
-//! want it; else to the callback; without one, to the log.
+//! KHR_debug: who is told what happened. The way of a message: dropped if the output is off or the
+//! application does not want it; else to the callback; without one, to the log.
 
 mod calls;
 mod control;

@@ -137,8 +137,11 @@ impl Context {
     }
 
     fn get_bits(&mut self, pname: u32) -> Option<Value> {
-        let known =
-            matches!(pname, gl::RED_BITS..=gl::ACCUM_ALPHA_BITS | gl::SAMPLES | gl::SAMPLE_BUFFERS | gl::DOUBLEBUFFER);
+        let known = matches!(
+            pname,
+            gl::RED_BITS
+                ..=gl::ACCUM_ALPHA_BITS | gl::SAMPLES | gl::SAMPLE_BUFFERS | gl::DOUBLEBUFFER
+        );
         if !known {
             return None;
         }

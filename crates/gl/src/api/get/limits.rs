@@ -8,8 +8,11 @@ use crate::{Context, enums as gl, state};
 const MAX_ELEMENTS: i32 = 65536;
 
 /// Those that programs may choose for any image: with one bit of alpha is not among them.
-const COMPRESSED_FORMATS: [u32; 3] =
-    [gl::COMPRESSED_RGB_S3TC_DXT1_EXT, gl::COMPRESSED_RGBA_S3TC_DXT3_EXT, gl::COMPRESSED_RGBA_S3TC_DXT5_EXT];
+const COMPRESSED_FORMATS: [u32; 3] = [
+    gl::COMPRESSED_RGB_S3TC_DXT1_EXT,
+    gl::COMPRESSED_RGBA_S3TC_DXT3_EXT,
+    gl::COMPRESSED_RGBA_S3TC_DXT5_EXT,
+];
 
 impl Context {
     pub(super) fn get_limits(&mut self, pname: u32) -> Option<Value> {
@@ -32,7 +35,9 @@ impl Context {
             gl::SUBPIXEL_BITS => Value::integer(8),
             gl::SMOOTH_POINT_SIZE_RANGE | gl::ALIASED_POINT_SIZE_RANGE => Value::floats(&points),
             gl::SMOOTH_LINE_WIDTH_RANGE | gl::ALIASED_LINE_WIDTH_RANGE => Value::floats(&points),
-            gl::SMOOTH_POINT_SIZE_GRANULARITY | gl::SMOOTH_LINE_WIDTH_GRANULARITY => Value::float(0.125),
+            gl::SMOOTH_POINT_SIZE_GRANULARITY | gl::SMOOTH_LINE_WIDTH_GRANULARITY => {
+                Value::float(0.125)
+            }
             gl::MAX_ELEMENTS_INDICES | gl::MAX_ELEMENTS_VERTICES => Value::integer(MAX_ELEMENTS),
             gl::MAX_SHININESS_NV | gl::MAX_SPOT_EXPONENT_NV => Value::integer(128),
             gl::MAX_DEBUG_MESSAGE_LENGTH => Value::size(MAX_MESSAGE_LENGTH),
@@ -49,15 +54,17 @@ impl Context {
 fn texture_limit(pname: u32) -> Option<Value> {
     Some(match pname {
         gl::MAX_TEXTURE_UNITS => Value::size(state::MAX_TEXTURE_UNITS),
-        gl::MAX_TEXTURE_SIZE | gl::MAX_CUBE_MAP_TEXTURE_SIZE | gl::MAX_RECTANGLE_TEXTURE_SIZE_ARB => {
-            Value::size(state::MAX_TEXTURE_SIZE)
-        }
+        gl::MAX_TEXTURE_SIZE
+        | gl::MAX_CUBE_MAP_TEXTURE_SIZE
+        | gl::MAX_RECTANGLE_TEXTURE_SIZE_ARB => Value::size(state::MAX_TEXTURE_SIZE),
         gl::MAX_RENDERBUFFER_SIZE => Value::size(state::MAX_TEXTURE_SIZE),
         gl::MAX_3D_TEXTURE_SIZE => Value::size(state::MAX_3D_TEXTURE_SIZE),
         gl::MAX_TEXTURE_LOD_BIAS => Value::float(state::MAX_TEXTURE_LOD_BIAS),
         gl::MAX_TEXTURE_MAX_ANISOTROPY_EXT => Value::float(state::MAX_ANISOTROPY),
         gl::NUM_COMPRESSED_TEXTURE_FORMATS => Value::size(COMPRESSED_FORMATS.len()),
-        gl::COMPRESSED_TEXTURE_FORMATS => Value::integers(&COMPRESSED_FORMATS.map(u32::cast_signed)),
+        gl::COMPRESSED_TEXTURE_FORMATS => {
+            Value::integers(&COMPRESSED_FORMATS.map(u32::cast_signed))
+        }
         gl::MAX_SAMPLES => Value::size(state::MAX_SAMPLES),
         gl::MAX_COLOR_ATTACHMENTS => Value::size(state::MAX_COLOR_ATTACHMENTS),
         _ => return None,

@@ -134,7 +134,12 @@ impl Answer for f64 {
 
 impl Context {
     /// Writes a value, if there is one, to the client.
-    pub(super) fn give_value<T: Answer>(&mut self, call: &str, address: usize, value: Option<Value>) {
+    pub(super) fn give_value<T: Answer>(
+        &mut self,
+        call: &str,
+        address: usize,
+        value: Option<Value>,
+    ) {
         if let Some(value) = value {
             let answers = value.numbers.map(|number| T::convert(value.kind, number));
             self.give_results(call, address, &answers[..value.len]);
@@ -143,7 +148,10 @@ impl Context {
 
     /// The table: the value of every queryable token; `None` for others.
     fn get(&mut self, pname: u32) -> Option<Value> {
-        let switch = self.capability(pname).map(|on| *on).or_else(|| self.client_capability(pname).map(|on| *on));
+        let switch = self
+            .capability(pname)
+            .map(|on| *on)
+            .or_else(|| self.client_capability(pname).map(|on| *on));
         if let Some(on) = switch {
             return Some(Value::boolean(on));
         }

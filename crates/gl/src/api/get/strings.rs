@@ -6,7 +6,8 @@ const VENDOR: &str = "vitral\0";
 const RENDERER: &str = "vitral software renderer\0";
 const VERSION: &str = concat!("1.5 vitral ", env!("CARGO_PKG_VERSION"), "\0");
 /// For programs that ask for 2.1, and use nothing of it.
-const VERSION_2_1: &str = concat!("2.1 vitral ", env!("CARGO_PKG_VERSION"), ", OpenGL 1.5 in fact\0");
+const VERSION_2_1: &str =
+    concat!("2.1 vitral ", env!("CARGO_PKG_VERSION"), ", OpenGL 1.5 in fact\0");
 const EXTENSIONS: &str = "\
     GL_APPLE_packed_pixels GL_ARB_clip_control GL_ARB_color_buffer_float GL_ARB_copy_buffer \
     GL_ARB_depth_buffer_float GL_ARB_depth_clamp GL_ARB_depth_texture GL_ARB_draw_buffers \
@@ -84,9 +85,12 @@ mod tests {
     fn extensions_are_sorted_words() {
         let words: Vec<&str> = EXTENSIONS.trim_end_matches('\0').split(' ').collect();
         assert!(words.iter().all(|word| word.starts_with("GL_")) && words.is_sorted());
-        for wanted in
-            ["GL_ARB_framebuffer_object", "GL_ARB_vertex_buffer_object", "GL_ARB_clip_control", "GL_KHR_debug"]
-        {
+        for wanted in [
+            "GL_ARB_framebuffer_object",
+            "GL_ARB_vertex_buffer_object",
+            "GL_ARB_clip_control",
+            "GL_KHR_debug",
+        ] {
             assert!(words.contains(&wanted));
         }
     }

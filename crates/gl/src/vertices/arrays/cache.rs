@@ -1,4 +1,5 @@
-//! Batches built from buffer objects, kept until the buffers change, so that the same draw gives the same batch.
+//! Batches built from buffer objects, kept until the buffers change, so that the same draw gives
+//! the same batch.
 
 use crate::state::ArrayPointer;
 use crate::vertex::VertexBatch;
@@ -11,7 +12,14 @@ pub(super) enum Vertices {
     Range { first: usize, count: usize },
     /// By indices of a type, at an address (or offset in the buffer of that number), plus `base`.
     /// The index `restart` begins the primitive anew.
-    Elements { count: usize, kind: u32, pointer: usize, buffer: u64, base: i32, restart: Option<u32> },
+    Elements {
+        count: usize,
+        kind: u32,
+        pointer: usize,
+        buffer: u64,
+        base: i32,
+        restart: Option<u32>,
+    },
 }
 
 /// Everything that a batch depends on.

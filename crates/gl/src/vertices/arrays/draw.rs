@@ -18,7 +18,8 @@ const BEFORE: Refusal = "an index with its base is negative or too large";
 /// The most vertices a draw may take.
 const MAX_VERTICES: usize = 1 << 28;
 
-/// Memory that a vertex of a draw takes, roughly: attributes, indices, what is found out about them.
+/// Memory that a vertex of a draw takes, roughly: attributes, indices, what is found out about
+/// them.
 const BYTES_A_VERTEX: usize = 64;
 
 impl Context {
@@ -29,8 +30,14 @@ impl Context {
 
     fn draw_range(&mut self, call: &'static str, mode: u32, first: i32, count: i32) {
         match (usize::try_from(first), usize::try_from(count)) {
-            (Ok(first), Ok(count)) => self.draw_vertices(call, mode, Vertices::Range { first, count }),
-            _ => self.draw_error(enums::INVALID_VALUE, call, format!("first {first}, count {count} is negative")),
+            (Ok(first), Ok(count)) => {
+                self.draw_vertices(call, mode, Vertices::Range { first, count })
+            }
+            _ => self.draw_error(
+                enums::INVALID_VALUE,
+                call,
+                format!("first {first}, count {count} is negative"),
+            ),
         }
     }
 
@@ -40,8 +47,24 @@ impl Context {
     }
 
     /// `glDrawRangeElements`.
-    pub fn draw_range_elements(&mut self, mode: u32, start: u32, end: u32, count: i32, type_: u32, indices: usize) {
-        self.draw_indexed_range("glDrawRangeElements", mode, [start, end], count, type_, indices, 0);
+    pub fn draw_range_elements(
+        &mut self,
+        mode: u32,
+        start: u32,
+        end: u32,
+        count: i32,
+        type_: u32,
+        indices: usize,
+    ) {
+        self.draw_indexed_range(
+            "glDrawRangeElements",
+            mode,
+            [start, end],
+            count,
+            type_,
+            indices,
+            0,
+        );
     }
 
     fn draw_indexed_range(
@@ -55,14 +78,25 @@ impl Context {
         base: i32,
     ) {
         if end < start {
-            self.draw_error(enums::INVALID_VALUE, call, format!("end {end} lies before start {start}"));
+            self.draw_error(
+                enums::INVALID_VALUE,
+                call,
+                format!("end {end} lies before start {start}"),
+            );
             return;
         }
         self.draw_indexed(call, mode, count, kind, pointer, base);
     }
 
     /// `glDrawElementsBaseVertex`.
-    pub fn draw_elements_base_vertex(&mut self, mode: u32, count: i32, type_: u32, indices: usize, basevertex: i32) {
+    pub fn draw_elements_base_vertex(
+        &mut self,
+        mode: u32,
+        count: i32,
+        type_: u32,
+        indices: usize,
+        basevertex: i32,
+    ) {
         self.draw_indexed("glDrawElementsBaseVertex", mode, count, type_, indices, basevertex);
     }
 
@@ -77,21 +111,45 @@ impl Context {
         indices: usize,
         basevertex: i32,
     ) {
-        self.draw_indexed_range("glDrawRangeElementsBaseVertex", mode, [start, end], count, type_, indices, basevertex);
+        self.draw_indexed_range(
+            "glDrawRangeElementsBaseVertex",
+            mode,
+            [start, end],
+            count,
+            type_,
+            indices,
+            basevertex,
+        );
     }
 
-    fn draw_indexed(&mut self, call: &'static str, mode: u32, count: i32, kind: u32, pointer: usize, base: i32) {
+    fn draw_indexed(
+        &mut self,
+        call: &'static str,
+        mode: u32,
+        count: i32,
+        kind: u32,
+        pointer: usize,
+        base: i32,
+    ) {
         let Ok(count) = usize::try_from(count) else {
             self.draw_error(enums::INVALID_VALUE, call, format!("count {count} is negative"));
             return;
         };
         if !matches!(kind, enums::UNSIGNED_BYTE | enums::UNSIGNED_SHORT | enums::UNSIGNED_INT) {
-            self.draw_error(enums::INVALID_ENUM, call, format!("type {kind:#x} is not one of indices"));
+            self.draw_error(
+                enums::INVALID_ENUM,
+                call,
+                format!("type {kind:#x} is not one of indices"),
+            );
             return;
         }
         let buffer = self.client.element_buffer.id();
         let restart = self.client.restart.0.then_some(self.client.restart.1);
-        self.draw_vertices(call, mode, Vertices::Elements { count, kind, pointer, buffer, base, restart });
+        self.draw_vertices(
+            call,
+            mode,
+            Vertices::Elements { count, kind, pointer, buffer, base, restart },
+        );
     }
 
     /// `glMultiDrawArrays`.
@@ -101,7 +159,11 @@ impl Context {
         let firsts = client::values::<i32>(&*self.memory, first, n);
         let counts = client::values::<i32>(&*self.memory, count, n);
         let (Some(firsts), Some(counts)) = (firsts, counts) else {
-            self.draw_error(enums::INVALID_VALUE, CALL, "its ranges are not in the client's memory".to_owned());
+            self.draw_error(
+                enums::INVALID_VALUE,
+                CALL,
+                "its ranges are not in the client's memory".to_owned(),
+            );
             return;
         };
         if firsts.iter().chain(&counts).any(|v| *v < 0) {
@@ -114,7 +176,14 @@ impl Context {
     }
 
     /// `glMultiDrawElements`.
-    pub fn multi_draw_elements(&mut self, mode: u32, count: usize, type_: u32, indices: usize, drawcount: i32) {
+    pub fn multi_draw_elements(
+        &mut self,
+        mode: u32,
+        count: usize,
+        type_: u32,
+        indices: usize,
+        drawcount: i32,
+    ) {
         self.draw_indexed_many("glMultiDrawElements", mode, count, type_, indices, drawcount, None);
     }
 
@@ -129,7 +198,15 @@ impl Context {
         basevertex: usize,
     ) {
         let bases = Some(basevertex);
-        self.draw_indexed_many("glMultiDrawElementsBaseVertex", mode, count, type_, indices, drawcount, bases);
+        self.draw_indexed_many(
+            "glMultiDrawElementsBaseVertex",
+            mode,
+            count,
+            type_,
+            indices,
+            drawcount,
+            bases,
+        );
     }
 
     fn draw_indexed_many(
@@ -145,9 +222,16 @@ impl Context {
         let Some(n) = self.draw_count(call, mode, drawcount) else { return };
         let counts = client::values::<i32>(&*self.memory, count, n);
         let pointers = client::values::<usize>(&*self.memory, indices, n);
-        let bases = bases.map_or_else(|| Some(vec![0; n]), |bases| client::values::<i32>(&*self.memory, bases, n));
+        let bases = bases.map_or_else(
+            || Some(vec![0; n]),
+            |bases| client::values::<i32>(&*self.memory, bases, n),
+        );
         let (Some(counts), Some(pointers), Some(bases)) = (counts, pointers, bases) else {
-            self.draw_error(enums::INVALID_VALUE, call, "its ranges are not in the client's memory".to_owned());
+            self.draw_error(
+                enums::INVALID_VALUE,
+                call,
+                "its ranges are not in the client's memory".to_owned(),
+            );
             return;
         };
         if counts.iter().any(|v| *v < 0) {
@@ -165,14 +249,22 @@ impl Context {
             return None;
         }
         if mode > enums::POLYGON {
-            self.draw_error(enums::INVALID_ENUM, call, format!("mode {mode:#x} is not a primitive"));
+            self.draw_error(
+                enums::INVALID_ENUM,
+                call,
+                format!("mode {mode:#x} is not a primitive"),
+            );
             return None;
         }
         match usize::try_from(n) {
             Ok(0) => self.draw_nothing(call),
             Ok(n) => return Some(n),
             Err(_) => {
-                self.draw_error(enums::INVALID_VALUE, call, format!("the number of draws {n} is negative"));
+                self.draw_error(
+                    enums::INVALID_VALUE,
+                    call,
+                    format!("the number of draws {n} is negative"),
+                );
             }
         }
         None
@@ -186,7 +278,11 @@ impl Context {
 
         // Check the mode and the number of vertices.
         if mode > enums::POLYGON {
-            self.draw_error(enums::INVALID_ENUM, call, format!("mode {mode:#x} is not a primitive"));
+            self.draw_error(
+                enums::INVALID_ENUM,
+                call,
+                format!("mode {mode:#x} is not a primitive"),
+            );
             return;
         }
         let (Vertices::Range { count, .. } | Vertices::Elements { count, .. }) = vertices;
@@ -195,11 +291,19 @@ impl Context {
             return;
         }
         if count > MAX_VERTICES {
-            self.record_error(enums::OUT_OF_MEMORY, call, &format!("{count} vertices are too many"));
+            self.record_error(
+                enums::OUT_OF_MEMORY,
+                call,
+                &format!("{count} vertices are too many"),
+            );
             return;
         }
         if !can_have(count * BYTES_A_VERTEX) {
-            self.record_error(enums::OUT_OF_MEMORY, call, &format!("there is no memory for {count} vertices"));
+            self.record_error(
+                enums::OUT_OF_MEMORY,
+                call,
+                &format!("there is no memory for {count} vertices"),
+            );
             return;
         }
 
@@ -265,10 +369,13 @@ impl Context {
     fn enabled_arrays(&self) -> Vec<(usize, ArrayPointer)> {
         let all = (0..=POSITION).map(|which| (which, self.client.array(which)));
         let enabled = all.filter(|(_, array)| array.enabled);
-        enabled.map(|(which, array)| (which, ArrayPointer { buffer: array.buffer.mark(), ..*array })).collect()
+        enabled
+            .map(|(which, array)| (which, ArrayPointer { buffer: array.buffer.mark(), ..*array }))
+            .collect()
     }
 
-    /// Whether a draw may use an array. One that it does not use may be too short, or lie in memory that is gone.
+    /// Whether a draw may use an array. One that it does not use may be too short, or lie in memory
+    /// that is gone.
     fn may_use(&self, which: usize) -> bool {
         let textured = |unit: usize| self.state.units[unit].enabled != [false; 5];
         let drawn = !self.lists.recording && self.feedback.mode == enums::RENDER;
@@ -282,7 +389,10 @@ impl Context {
 
     /// Whether at least one element of the positions lies in their buffer.
     fn has_positions(reader: &Reader, arrays: &[(usize, ArrayPointer)]) -> bool {
-        arrays.iter().filter(|(which, _)| *which == POSITION).all(|(_, array)| reader.has_some(array))
+        arrays
+            .iter()
+            .filter(|(which, _)| *which == POSITION)
+            .all(|(_, array)| reader.has_some(array))
     }
 
     fn array_batch(&mut self, mode: u32, vertices: Vertices) -> Result<Arc<VertexBatch>, Refusal> {
@@ -300,7 +410,8 @@ impl Context {
         }
 
         // Keep batches that lie in buffers as a whole; compare the client's bytes of the others.
-        let constant = element_buffer != Some(0) && arrays.iter().all(|(_, array)| !array.buffer.is_none());
+        let constant =
+            element_buffer != Some(0) && arrays.iter().all(|(_, array)| !array.buffer.is_none());
         let versions = reader.stores.iter().map(|store| store.version).collect();
         let key = Key { mode, vertices, arrays, versions };
         if !constant {
@@ -316,7 +427,11 @@ impl Context {
         Ok(batch)
     }
 
-    fn array_reader(&self, arrays: &[(usize, ArrayPointer)], indexed: bool) -> Result<Reader, Refusal> {
+    fn array_reader(
+        &self,
+        arrays: &[(usize, ArrayPointer)],
+        indexed: bool,
+    ) -> Result<Reader, Refusal> {
         let buffers = arrays.iter().map(|(which, _)| &self.client.array(*which).buffer);
         let mut stores: Vec<Store> = Vec::new();
         for buffer in buffers.chain(indexed.then_some(&self.client.element_buffer)) {
@@ -331,7 +446,9 @@ impl Context {
     pub fn array_element(&mut self, i: i32) {
         const CALL: &str = "glArrayElement";
         let Ok(i) = usize::try_from(i) else {
-            self.listable(move |c| c.record_error(enums::INVALID_VALUE, CALL, &format!("index {i} is negative")));
+            self.listable(move |c| {
+                c.record_error(enums::INVALID_VALUE, CALL, &format!("index {i} is negative"))
+            });
             return;
         };
         let arrays = self.enabled_arrays();
@@ -347,7 +464,11 @@ impl Context {
             // The position is the last.
             Ok(values) => {
                 for ((which, _), value) in arrays.iter().zip(values) {
-                    if *which == POSITION { self.give_vertex(value) } else { self.give_attribute(*which, value) }
+                    if *which == POSITION {
+                        self.give_vertex(value)
+                    } else {
+                        self.give_attribute(*which, value)
+                    }
                 }
             }
         }
@@ -391,9 +512,13 @@ pub(super) fn build(
     // Read each array.
     for (which, array) in arrays {
         match *which {
-            POSITION => batch.positions = reader.elements(array, &runs, false, [0.0, 0.0, 0.0, 1.0])?,
+            POSITION => {
+                batch.positions = reader.elements(array, &runs, false, [0.0, 0.0, 0.0, 1.0])?
+            }
             NORMAL => batch.normals = Some(reader.elements(array, &runs, true, [0.0; 3])?),
-            COLOR => batch.colors = Some(reader.elements(array, &runs, true, [0.0, 0.0, 0.0, 1.0])?),
+            COLOR => {
+                batch.colors = Some(reader.elements(array, &runs, true, [0.0, 0.0, 0.0, 1.0])?)
+            }
             SECONDARY => batch.secondary = Some(reader.elements(array, &runs, true, [0.0; 3])?),
             FOG => batch.fog = Some(reader.elements(array, &runs, false, [0.0])?.into_flattened()),
             EDGE => {
@@ -401,7 +526,10 @@ pub(super) fn build(
                 batch.edges = Some(flags.into_iter().map(|[flag]| flag != 0.0).collect());
             }
             INDEX => {}
-            _ => batch.tex[which - TEX] = Some(reader.elements(array, &runs, false, [0.0, 0.0, 0.0, 1.0])?),
+            _ => {
+                batch.tex[which - TEX] =
+                    Some(reader.elements(array, &runs, false, [0.0, 0.0, 0.0, 1.0])?)
+            }
         }
     }
 
@@ -416,7 +544,9 @@ pub(super) fn build(
 
 /// Renumbers indices from 0; the result says which elements to read for that.
 fn compact(indices: &mut [u32]) -> Vec<Run> {
-    let (Some(&least), Some(&most)) = (indices.iter().min(), indices.iter().max()) else { return Vec::new() };
+    let (Some(&least), Some(&most)) = (indices.iter().min(), indices.iter().max()) else {
+        return Vec::new();
+    };
     let span = (most - least) as usize + 1;
     if span <= 2 * indices.len() + 64 {
         indices.iter_mut().for_each(|i| *i -= least);
@@ -466,7 +596,10 @@ mod tests {
         assert_eq!(log[0].primitives, [Primitive { mode: enums::TRIANGLES, first: 0, count: 3 }]);
         assert_eq!(log[1].indices, Some(vec![0, 1, 2, 0, 2, 3]));
         assert_eq!(log[1].positions.len(), 4);
-        assert_eq!((log[2].indices.clone(), log[2].positions[0]), (Some(vec![0, 1]), [1.0, 1.0, 0.0, 1.0]));
+        assert_eq!(
+            (log[2].indices.clone(), log[2].positions[0]),
+            (Some(vec![0, 1]), [1.0, 1.0, 0.0, 1.0])
+        );
         assert_eq!(c.error, 0);
     }
 

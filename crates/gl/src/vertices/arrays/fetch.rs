@@ -55,7 +55,9 @@ pub(super) struct Store {
 pub(super) fn store(handle: &BufferHandle) -> Result<Store, Refusal> {
     match handle.lock() {
         Some(buffer) if buffer.is_mapped() => Err("a buffer is mapped"),
-        Some(buffer) => Ok(Store { buffer: handle.id(), version: buffer.version, bytes: buffer.bytes.clone() }),
+        Some(buffer) => {
+            Ok(Store { buffer: handle.id(), version: buffer.version, bytes: buffer.bytes.clone() })
+        }
         None => Err("a buffer was deleted"),
     }
 }
@@ -78,11 +80,12 @@ impl Reader {
 
     /// Whether an array in a buffer begins there.
     pub(super) fn has_some(&self, array: &ArrayPointer) -> bool {
-        array.buffer.is_none() || self.bytes(array.buffer.id()).is_ok_and(|bytes| array.pointer < bytes.len())
+        array.buffer.is_none()
+            || self.bytes(array.buffer.id()).is_ok_and(|bytes| array.pointer < bytes.len())
     }
 
-    /// The elements of `runs`, in order. Missing numbers come from `default`; `unit` maps whole numbers to 0..=1 or
-    /// -1..=1.
+    /// The elements of `runs`, in order. Missing numbers come from `default`; `unit` maps whole
+    /// numbers to 0..=1 or -1..=1.
     pub(super) fn elements<const N: usize>(
         &self,
         array: &ArrayPointer,
@@ -96,7 +99,8 @@ impl Reader {
         let mut elements = Vec::with_capacity(count.min(ROOM));
         let mut piece = Vec::new();
         for &(first, count) in runs {
-            let start = first.checked_mul(layout.stride).and_then(|start| start.checked_add(array.pointer));
+            let start =
+                first.checked_mul(layout.stride).and_then(|start| start.checked_add(array.pointer));
             let mut start = start.ok_or(OUTSIDE)?;
 
             // Convert elements of a buffer in place.
@@ -139,9 +143,13 @@ impl Reader {
         Ok(elements)
     }
 
-    /// The fingerprint of all bytes of the client's memory that [`Self::elements`] would read for these arrays; `None` where it would read
-    /// them one by one, or not at all.
-    pub(super) fn fingerprint(&self, arrays: &[(usize, ArrayPointer)], runs: &[Run]) -> Option<Fingerprint> {
+    /// The fingerprint of all bytes of the client's memory that [`Self::elements`] would read for
+    /// these arrays; `None` where it would read them one by one, or not at all.
+    pub(super) fn fingerprint(
+        &self,
+        arrays: &[(usize, ArrayPointer)],
+        runs: &[Run],
+    ) -> Option<Fingerprint> {
         // Collect the ranges of memory.
         let mut ranges: Vec<Range<usize>> = Vec::new();
         for (_, array) in arrays.iter().filter(|(_, array)| array.buffer.is_none()) {
@@ -170,9 +178,12 @@ impl Reader {
         Some(fingerprint)
     }
 
-    /// The fingerprint of indices in the client's memory; `None` if there are none or they cannot be read.
+    /// The fingerprint of indices in the client's memory; `None` if there are none or they cannot
+    /// be read.
     pub(super) fn index_fingerprint(&self, vertices: Vertices) -> Option<Fingerprint> {
-        let Vertices::Elements { count, kind, pointer, buffer: 0, .. } = vertices else { return None };
+        let Vertices::Elements { count, kind, pointer, buffer: 0, .. } = vertices else {
+            return None;
+        };
         let end = count.checked_mul(type_size(kind))?.checked_add(pointer)?;
         let mut fingerprint = Fingerprint::default();
         self.add_bytes(&mut fingerprint, pointer..end)?;
@@ -195,7 +206,13 @@ impl Reader {
     }
 
     /// `count` indices of a type, in the element buffer `buffer` or the client's memory.
-    pub(super) fn indices(&self, buffer: u64, kind: u32, count: usize, pointer: usize) -> Result<Vec<u32>, Refusal> {
+    pub(super) fn indices(
+        &self,
+        buffer: u64,
+        kind: u32,
+        count: usize,
+        pointer: usize,
+    ) -> Result<Vec<u32>, Refusal> {
         // Find the bytes in the buffer or in the client's memory.
         let size = type_size(kind);
         let owned;
@@ -204,16 +221,18 @@ impl Reader {
             owned = client::bytes(&*self.memory, pointer, len).ok_or(NOT_THERE)?;
             owned.as_slice()
         } else {
-            let end = count.checked_mul(size).and_then(|len| len.checked_add(pointer)).ok_or(OUTSIDE)?;
+            let end =
+                count.checked_mul(size).and_then(|len| len.checked_add(pointer)).ok_or(OUTSIDE)?;
             self.bytes(buffer)?.get(pointer..end).ok_or(OUTSIDE)?
         };
 
         // Widen the indices.
         Ok(match kind {
             enums::UNSIGNED_BYTE => bytes.iter().map(|&i| i.into()).collect(),
-            enums::UNSIGNED_SHORT => {
-                bytes.chunks_exact(2).map(|i| bytemuck::pod_read_unaligned::<u16>(i).into()).collect()
-            }
+            enums::UNSIGNED_SHORT => bytes
+                .chunks_exact(2)
+                .map(|i| bytemuck::pod_read_unaligned::<u16>(i).into())
+                .collect(),
             _ => bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect(),
         })
     }
@@ -328,7 +347,15 @@ mod tests {
     use crate::memory::Arena;
 
     fn array(size: i32, kind: u32, stride: i32, pointer: usize) -> ArrayPointer {
-        ArrayPointer { enabled: true, size, kind, stride, pointer, buffer: BufferHandle::NONE, count: 0 }
+        ArrayPointer {
+            enabled: true,
+            size,
+            kind,
+            stride,
+            pointer,
+            buffer: BufferHandle::NONE,
+            count: 0,
+        }
     }
 
     #[test]
@@ -338,9 +365,15 @@ mod tests {
             arena.write(16 + 4 * usize::from(i), bytemuck::bytes_of(&[i, 65535]));
         }
         let reader = Reader { memory: arena, stores: Vec::new() };
-        let found = reader.elements(&array(2, enums::UNSIGNED_SHORT, 0, 16), &[(1, 2), (7, 1)], false, [9.0; 3]);
+        let found = reader.elements(
+            &array(2, enums::UNSIGNED_SHORT, 0, 16),
+            &[(1, 2), (7, 1)],
+            false,
+            [9.0; 3],
+        );
         assert_eq!(found, Ok(vec![[1.0, 65535.0, 9.0], [2.0, 65535.0, 9.0], [7.0, 65535.0, 9.0]]));
-        let overlapping = reader.elements(&array(2, enums::UNSIGNED_SHORT, 2, 18), &[(0, 2)], true, [0.0; 4]);
+        let overlapping =
+            reader.elements(&array(2, enums::UNSIGNED_SHORT, 2, 18), &[(0, 2)], true, [0.0; 4]);
         assert_eq!(overlapping.unwrap()[1], [1.0 / 65535.0, 1.0, 0.0, 0.0]);
         let wide = reader.elements(&array(1, enums::SHORT, 2000, 16), &[(0, 4)], false, [0.0]);
         assert_eq!(wide, Err(NOT_THERE));
@@ -356,10 +389,18 @@ mod tests {
         arena.write(16, bytemuck::bytes_of(&[0x3c00_u16, 0xc000, 0x3800]));
         arena.write(32, &[51, 102, 153, 204]);
         let reader = Reader { memory: arena, stores: Vec::new() };
-        let halves = reader.elements(&array(3, enums::HALF_FLOAT_ARB, 0, 16), &[(0, 1)], true, [0.0, 0.0, 0.0, 1.0]);
+        let halves = reader.elements(
+            &array(3, enums::HALF_FLOAT_ARB, 0, 16),
+            &[(0, 1)],
+            true,
+            [0.0, 0.0, 0.0, 1.0],
+        );
         assert_eq!(halves, Ok(vec![[1.0, -2.0, 0.5, 1.0]]));
         let bgra = array(BGRA, enums::UNSIGNED_BYTE, 0, 32);
-        assert_eq!(reader.elements(&bgra, &[(0, 1)], true, [0.0; 4]), Ok(vec![[0.6, 0.4, 0.2, 0.8]]));
+        assert_eq!(
+            reader.elements(&bgra, &[(0, 1)], true, [0.0; 4]),
+            Ok(vec![[0.6, 0.4, 0.2, 0.8]])
+        );
         assert_eq!(reader.elements(&bgra, &[(0, 1)], true, [0.0; 3]), Ok(vec![[0.6, 0.4, 0.2]]));
     }
 
@@ -369,10 +410,14 @@ mod tests {
         let bytes = Arc::new(vec![0; 64]);
         let buffer = BufferHandle::new(1);
         let id = buffer.id();
-        let reader = Reader { memory: arena, stores: vec![Store { buffer: id, version: 0, bytes }] };
+        let reader =
+            Reader { memory: arena, stores: vec![Store { buffer: id, version: 0, bytes }] };
         let mut from = array(3, enums::FLOAT, i32::MAX, 16);
         assert_eq!(reader.elements(&from, &[(usize::MAX, 1)], false, [0.0; 3]), Err(OUTSIDE));
-        assert_eq!(reader.elements(&from, &[(0, i32::MAX as usize)], false, [0.0; 3]), Err(NOT_THERE));
+        assert_eq!(
+            reader.elements(&from, &[(0, i32::MAX as usize)], false, [0.0; 3]),
+            Err(NOT_THERE)
+        );
         from.buffer = buffer;
         assert!(reader.elements(&from, &[(0, 1)], false, [0.0; 3]).is_ok());
         assert_eq!(reader.elements(&from, &[(0, 2)], false, [0.0; 3]), Err(OUTSIDE));

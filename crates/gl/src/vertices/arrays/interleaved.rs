@@ -75,10 +75,13 @@ impl Context {
         let tex = (layout.tex > 0).then_some((layout.tex, enums::FLOAT, 0));
         let normal = layout.normal.map(|offset| (3, enums::FLOAT, offset));
         let vertex = Some((layout.vertex.0, enums::FLOAT, layout.vertex.1));
-        let parts = [(coordinates, tex), (COLOR, layout.color), (NORMAL, normal), (POSITION, vertex)];
+        let parts =
+            [(coordinates, tex), (COLOR, layout.color), (NORMAL, normal), (POSITION, vertex)];
 
         // Enable the attributes of the format and disable the others.
-        for (which, part) in parts.into_iter().chain([EDGE, INDEX, SECONDARY, FOG].map(|which| (which, None))) {
+        for (which, part) in
+            parts.into_iter().chain([EDGE, INDEX, SECONDARY, FOG].map(|which| (which, None)))
+        {
             self.client.array_mut(which).enabled = part.is_some();
             if let Some((size, kind, offset)) = part {
                 self.place_array(which, size, kind, stride, pointer.wrapping_add(offset));

@@ -62,13 +62,16 @@ impl ClientState {
 }
 
 impl Context {
-    /// Unbinds a deleted buffer. Array objects that are not bound keep it, and so do other contexts.
+    /// Unbinds a deleted buffer. Array objects that are not bound keep it, and so do other
+    /// contexts.
     pub(super) fn forget_buffer(&mut self, buffer: &BufferHandle) {
         self.forget_label(BUFFER, buffer.name);
         let client = &mut self.client;
         let (pack, unpack) = (&mut client.pack.buffer, &mut client.unpack.buffer);
         let [read, write] = &mut client.copy_buffers;
-        for binding in [&mut client.array_buffer, &mut client.element_buffer, pack, unpack, read, write] {
+        for binding in
+            [&mut client.array_buffer, &mut client.element_buffer, pack, unpack, read, write]
+        {
             if binding == buffer {
                 *binding = BufferHandle::NONE;
             }

@@ -1,4 +1,5 @@
-//! Vertex array objects. The arrays of the bound object are in the client state; all others are kept here.
+//! Vertex array objects. The arrays of the bound object are in the client state; all others are
+//! kept here.
 
 use crate::objects::BufferHandle;
 use crate::state::{ArrayPointer, ClientState, MAX_TEXTURE_UNITS};
@@ -15,15 +16,32 @@ pub(super) struct VertexArray {
 impl VertexArray {
     /// A new object's arrays.
     fn new() -> Self {
-        let ClientState { vertex, normal, color, secondary, index, edge, fog, tex, element_buffer, .. } =
-            ClientState::default();
+        let ClientState {
+            vertex,
+            normal,
+            color,
+            secondary,
+            index,
+            edge,
+            fog,
+            tex,
+            element_buffer,
+            ..
+        } = ClientState::default();
         Self { arrays: [vertex, normal, color, secondary, index, edge, fog], tex, element_buffer }
     }
 
     /// Changes places with the arrays of the object that is bound.
     fn swap(&mut self, c: &mut ClientState) {
-        let bound =
-            [&mut c.vertex, &mut c.normal, &mut c.color, &mut c.secondary, &mut c.index, &mut c.edge, &mut c.fog];
+        let bound = [
+            &mut c.vertex,
+            &mut c.normal,
+            &mut c.color,
+            &mut c.secondary,
+            &mut c.index,
+            &mut c.edge,
+            &mut c.fog,
+        ];
         self.arrays.iter_mut().zip(bound).for_each(|(kept, bound)| std::mem::swap(kept, bound));
         std::mem::swap(&mut self.tex, &mut c.tex);
         std::mem::swap(&mut self.element_buffer, &mut c.element_buffer);
@@ -52,7 +70,9 @@ impl Context {
 
     /// `glGenVertexArrays`.
     pub fn gen_vertex_arrays(&mut self, n: i32, arrays: usize) {
-        self.give_names("glGenVertexArrays", n, arrays, |c, n| c.shared.names.generate(&mut c.arrays.objects, n));
+        self.give_names("glGenVertexArrays", n, arrays, |c, n| {
+            c.shared.names.generate(&mut c.arrays.objects, n)
+        });
     }
 
     /// `glDeleteVertexArrays`.
@@ -128,11 +148,17 @@ mod tests {
         c.bind_buffer(enums::ELEMENT_ARRAY_BUFFER, 5);
         c.enable_client_state(enums::COLOR_ARRAY);
         c.bind_vertex_array(0);
-        assert_eq!((c.client.vertex.enabled, c.client.color.enabled, c.client.element_buffer.name), (true, false, 0));
+        assert_eq!(
+            (c.client.vertex.enabled, c.client.color.enabled, c.client.element_buffer.name),
+            (true, false, 0)
+        );
         c.bind_vertex_array(1);
         assert_eq!((c.client.color.enabled, c.client.element_buffer.name), (true, 5));
         c.delete_vertex_arrays(1, BASE);
-        assert_eq!((c.client.vertex_array, c.client.vertex.enabled, c.is_vertex_array(1)), (0, true, 0));
+        assert_eq!(
+            (c.client.vertex_array, c.client.vertex.enabled, c.is_vertex_array(1)),
+            (0, true, 0)
+        );
         c.bind_vertex_array(7);
         assert_eq!(c.error, enums::INVALID_OPERATION);
     }

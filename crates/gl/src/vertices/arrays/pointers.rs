@@ -8,10 +8,12 @@ use crate::{Context, enums};
 use std::ops::RangeInclusive;
 
 const REALS: &[u32] = &[enums::HALF_FLOAT_ARB, enums::FLOAT, enums::DOUBLE];
-const SIGNED: &[u32] = &[enums::SHORT, enums::INT, enums::HALF_FLOAT_ARB, enums::FLOAT, enums::DOUBLE];
+const SIGNED: &[u32] =
+    &[enums::SHORT, enums::INT, enums::HALF_FLOAT_ARB, enums::FLOAT, enums::DOUBLE];
 const SIGNED_AND_BYTE: &[u32] =
     &[enums::BYTE, enums::SHORT, enums::INT, enums::HALF_FLOAT_ARB, enums::FLOAT, enums::DOUBLE];
-const INDICES: &[u32] = &[enums::UNSIGNED_BYTE, enums::SHORT, enums::INT, enums::FLOAT, enums::DOUBLE];
+const INDICES: &[u32] =
+    &[enums::UNSIGNED_BYTE, enums::SHORT, enums::INT, enums::FLOAT, enums::DOUBLE];
 const FLAGS: &[u32] = &[enums::UNSIGNED_BYTE];
 const ALL: &[u32] = &[
     enums::BYTE,
@@ -40,7 +42,14 @@ fn allowed(which: usize) -> (RangeInclusive<i32>, &'static [u32]) {
 }
 
 impl Context {
-    fn set_pointer(&mut self, call: &str, which: usize, [size, stride, count]: [i32; 3], kind: u32, pointer: usize) {
+    fn set_pointer(
+        &mut self,
+        call: &str,
+        which: usize,
+        [size, stride, count]: [i32; 3],
+        kind: u32,
+        pointer: usize,
+    ) {
         if self.refused_inside_begin(call) {
             return;
         }
@@ -59,7 +68,10 @@ impl Context {
             Some((enums::INVALID_VALUE, format!("stride {stride} is negative")))
         } else if count < 0 {
             Some((enums::INVALID_VALUE, format!("count {count} is negative")))
-        } else if self.client.vertex_array != 0 && self.client.array_buffer.is_none() && pointer != 0 {
+        } else if self.client.vertex_array != 0
+            && self.client.array_buffer.is_none()
+            && pointer != 0
+        {
             let why = "a vertex array object takes no arrays in client memory".to_owned();
             Some((enums::INVALID_OPERATION, why))
         } else {
@@ -76,10 +88,18 @@ impl Context {
     }
 
     /// Sets an array's pointer, which is valid.
-    pub(super) fn place_array(&mut self, which: usize, size: i32, kind: u32, stride: i32, pointer: usize) {
+    pub(super) fn place_array(
+        &mut self,
+        which: usize,
+        size: i32,
+        kind: u32,
+        stride: i32,
+        pointer: usize,
+    ) {
         let buffer = self.client.array_buffer.clone();
         let array = self.client.array_mut(which);
-        *array = ArrayPointer { enabled: array.enabled, size, kind, stride, pointer, buffer, count: 0 };
+        *array =
+            ArrayPointer { enabled: array.enabled, size, kind, stride, pointer, buffer, count: 0 };
     }
 
     /// Texture coordinates of the active client unit.
@@ -128,8 +148,16 @@ impl Context {
         self.set_pointer("glEdgeFlagPointer", EDGE, [1, stride, 0], enums::UNSIGNED_BYTE, pointer);
     }
 
-    /// `glVertexPointerEXT`. EXT_vertex_array tells how many elements are static: kept for queries alone.
-    pub fn vertex_pointer_ext(&mut self, size: i32, type_: u32, stride: i32, count: i32, pointer: usize) {
+    /// `glVertexPointerEXT`. EXT_vertex_array tells how many elements are static: kept for queries
+    /// alone.
+    pub fn vertex_pointer_ext(
+        &mut self,
+        size: i32,
+        type_: u32,
+        stride: i32,
+        count: i32,
+        pointer: usize,
+    ) {
         self.set_pointer("glVertexPointerEXT", POSITION, [size, stride, count], type_, pointer);
     }
 
@@ -139,12 +167,26 @@ impl Context {
     }
 
     /// `glColorPointerEXT`.
-    pub fn color_pointer_ext(&mut self, size: i32, type_: u32, stride: i32, count: i32, pointer: usize) {
+    pub fn color_pointer_ext(
+        &mut self,
+        size: i32,
+        type_: u32,
+        stride: i32,
+        count: i32,
+        pointer: usize,
+    ) {
         self.set_pointer("glColorPointerEXT", COLOR, [size, stride, count], type_, pointer);
     }
 
     /// `glTexCoordPointerEXT`.
-    pub fn tex_coord_pointer_ext(&mut self, size: i32, type_: u32, stride: i32, count: i32, pointer: usize) {
+    pub fn tex_coord_pointer_ext(
+        &mut self,
+        size: i32,
+        type_: u32,
+        stride: i32,
+        count: i32,
+        pointer: usize,
+    ) {
         let which = self.active_coordinates();
         self.set_pointer("glTexCoordPointerEXT", which, [size, stride, count], type_, pointer);
     }
@@ -156,7 +198,13 @@ impl Context {
 
     /// `glEdgeFlagPointerEXT`.
     pub fn edge_flag_pointer_ext(&mut self, stride: i32, count: i32, pointer: usize) {
-        self.set_pointer("glEdgeFlagPointerEXT", EDGE, [1, stride, count], enums::UNSIGNED_BYTE, pointer);
+        self.set_pointer(
+            "glEdgeFlagPointerEXT",
+            EDGE,
+            [1, stride, count],
+            enums::UNSIGNED_BYTE,
+            pointer,
+        );
     }
 
     fn set_array_enabled(&mut self, call: &str, array: u32, enabled: bool) {
@@ -179,7 +227,11 @@ impl Context {
             enums::FOG_COORD_ARRAY => FOG,
             enums::SECONDARY_COLOR_ARRAY => SECONDARY,
             _ => {
-                self.record_error(enums::INVALID_ENUM, call, &format!("{array:#x} is not an array"));
+                self.record_error(
+                    enums::INVALID_ENUM,
+                    call,
+                    &format!("{array:#x} is not an array"),
+                );
                 return;
             }
         };
@@ -219,9 +271,17 @@ impl Context {
     pub fn lock_arrays_ext(&mut self, first: i32, count: i32) {
         if self.refused_inside_begin("glLockArraysEXT") {
         } else if self.arrays.locked.is_some() {
-            self.record_error(enums::INVALID_OPERATION, "glLockArraysEXT", "arrays are locked already");
+            self.record_error(
+                enums::INVALID_OPERATION,
+                "glLockArraysEXT",
+                "arrays are locked already",
+            );
         } else if first < 0 || count <= 0 {
-            self.record_error(enums::INVALID_VALUE, "glLockArraysEXT", &format!("{first}, {count} is not a range"));
+            self.record_error(
+                enums::INVALID_VALUE,
+                "glLockArraysEXT",
+                &format!("{first}, {count} is not a range"),
+            );
         } else {
             self.arrays.locked = Some((first, count));
         }
@@ -231,7 +291,11 @@ impl Context {
     pub fn unlock_arrays_ext(&mut self) {
         if self.refused_inside_begin("glUnlockArraysEXT") {
         } else if self.arrays.locked.take().is_none() {
-            self.record_error(enums::INVALID_OPERATION, "glUnlockArraysEXT", "arrays are not locked");
+            self.record_error(
+                enums::INVALID_OPERATION,
+                "glUnlockArraysEXT",
+                "arrays are not locked",
+            );
         }
     }
 }

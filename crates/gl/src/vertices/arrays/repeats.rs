@@ -1,8 +1,9 @@
-//! Draws from the client's own memory that are repeated: programs without buffer objects give the same arrays frame after frame.
+//! Draws from the client's own memory that are repeated: programs without buffer objects give the
+//! same arrays frame after frame.
 //!
-//! What lies there may change without a word, so each draw takes a fingerprint of all bytes that it would read. One with the
-//! fingerprint of the time before gets a batch that is kept from then on, and with it all that was found out about it. Draws that
-//! keep changing are seldom asked.
+//! What lies there may change without a word, so each draw takes a fingerprint of all bytes that it
+//! would read. One with the fingerprint of the time before gets a batch that is kept from then on,
+//! and with it all that was found out about it. Draws that keep changing are seldom asked.
 
 use super::cache::{Key, Vertices};
 use super::draw::build;
@@ -11,7 +12,8 @@ use crate::vertex::VertexBatch;
 use std::sync::Arc;
 use vitral_math::Fingerprint;
 
-/// Vertices or indices from which on a draw is compared with earlier ones: smaller ones are read faster than compared.
+/// Vertices or indices from which on a draw is compared with earlier ones: smaller ones are read
+/// faster than compared.
 const MIN_COUNT: usize = 1 << 10;
 
 /// How many draws are known.
@@ -50,7 +52,15 @@ struct Entry {
 
 impl Entry {
     fn new(key: Key) -> Self {
-        Self { key, indices: None, elements: None, runs: Vec::new(), batch: None, draws: 0, changes: 0 }
+        Self {
+            key,
+            indices: None,
+            elements: None,
+            runs: Vec::new(),
+            batch: None,
+            draws: 0,
+            changes: 0,
+        }
     }
 
     /// Whether a draw would read what it read when this was made.
@@ -164,7 +174,9 @@ mod tests {
         for indexed in [false, true] {
             let mut c = with_arrays();
             let batches: Vec<_> = (0..4).map(|_| draw(&mut c, indexed)).collect();
-            assert!(!Arc::ptr_eq(&batches[0], &batches[1]) && Arc::ptr_eq(&batches[1], &batches[3]));
+            assert!(
+                !Arc::ptr_eq(&batches[0], &batches[1]) && Arc::ptr_eq(&batches[1], &batches[3])
+            );
             assert_eq!(batches[0], batches[1]);
             // The last number that is read, then the last index.
             let last = BASE + 12 * COUNT - 4;
@@ -230,7 +242,11 @@ mod tests {
         let mut c = with_arrays();
         for first in 0..2 * ENTRIES {
             for _ in 0..2 {
-                c.draw_arrays(enums::POINTS, (first % 4) as i32, (MIN_COUNT + first / 4 % 4) as i32);
+                c.draw_arrays(
+                    enums::POINTS,
+                    (first % 4) as i32,
+                    (MIN_COUNT + first / 4 % 4) as i32,
+                );
                 c.vertex_pointer(3, enums::FLOAT, 0, BASE + 4 * (first / 16));
             }
         }

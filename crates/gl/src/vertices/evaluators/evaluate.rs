@@ -1,8 +1,9 @@
 //! Evaluation of maps.
 //!
-//! A map is a Bézier curve or surface: a sum of control points, weighted by Bernstein polynomials, which come from the
-//! triangle `b(i, n) = (1 - t) b(i, n - 1) + t b(i - 1, n - 1)`. The derivative of a polynomial of degree `d` is `d`
-//! times that of degree `d - 1` on the differences of neighbouring points.
+//! A map is a Bézier curve or surface: a sum of control points, weighted by Bernstein polynomials,
+//! which come from the triangle `b(i, n) = (1 - t) b(i, n - 1) + t b(i - 1, n - 1)`. The derivative
+//! of a polynomial of degree `d` is `d` times that of degree `d - 1` on the differences of
+//! neighbouring points.
 
 use crate::state::{Eval, MAX_EVAL_ORDER, Map1, Map2};
 use crate::vertices::attribute::{COLOR, INDEX, NORMAL, TEX};
@@ -79,7 +80,8 @@ fn surface(map: &Map2, index: usize, u: f32, v: f32) -> [[f32; 4]; 3] {
     let mut sums = [[0.0; 4]; 3];
     for (i, row) in map.points.chunks_exact(components * map.order[1]).enumerate() {
         for (j, control) in row.chunks_exact(components).enumerate() {
-            let factors = [value_u[i] * value_v[j], slope_u[i] * value_v[j], value_u[i] * slope_v[j]];
+            let factors =
+                [value_u[i] * value_v[j], slope_u[i] * value_v[j], value_u[i] * slope_v[j]];
             for (sum, factor) in sums.iter_mut().zip(factors) {
                 for (x, c) in sum.iter_mut().zip(control) {
                     *x += factor * c;
@@ -129,7 +131,9 @@ pub(super) fn evaluate_1(eval: &Eval, u: f32) -> Evaluated {
     let Some(index) = vertex_map(&eval.map1_enabled) else { return Evaluated::default() };
     let attributes = attribute_maps(&eval.map1_enabled);
     Evaluated {
-        attributes: attributes.map(|(index, which)| (which, curve(&eval.map1[index], index, u))).collect(),
+        attributes: attributes
+            .map(|(index, which)| (which, curve(&eval.map1[index], index, u)))
+            .collect(),
         position: Some(curve(&eval.map1[index], index, u)),
     }
 }
@@ -138,9 +142,11 @@ pub(super) fn evaluate_1(eval: &Eval, u: f32) -> Evaluated {
 pub(super) fn evaluate_2(eval: &Eval, u: f32, v: f32) -> Evaluated {
     let Some(index) = vertex_map(&eval.map2_enabled) else { return Evaluated::default() };
     let [position, du, dv] = surface(&eval.map2[index], index, u, v);
-    let attributes = attribute_maps(&eval.map2_enabled).filter(|(_, which)| *which != NORMAL || !eval.auto_normal);
-    let mut attributes: Vec<_> =
-        attributes.map(|(index, which)| (which, surface(&eval.map2[index], index, u, v)[0])).collect();
+    let attributes = attribute_maps(&eval.map2_enabled)
+        .filter(|(_, which)| *which != NORMAL || !eval.auto_normal);
+    let mut attributes: Vec<_> = attributes
+        .map(|(index, which)| (which, surface(&eval.map2[index], index, u, v)[0]))
+        .collect();
     if eval.auto_normal {
         attributes.push((NORMAL, filled(normal(position, du, dv))));
     }
@@ -179,7 +185,8 @@ mod tests {
         let mut eval = Eval::default();
         assert_eq!(evaluate_1(&eval, 0.0), Evaluated::default());
         eval.map1_enabled = [true; 9];
-        let order: Vec<_> = evaluate_1(&eval, 0.0).attributes.iter().map(|(which, _)| *which).collect();
+        let order: Vec<_> =
+            evaluate_1(&eval, 0.0).attributes.iter().map(|(which, _)| *which).collect();
         assert_eq!(order, [COLOR, INDEX, NORMAL, TEX]);
         assert_eq!(attribute_maps(&eval.map1_enabled).last(), Some((TEXTURE_COORD_1 + 3, TEX)));
     }

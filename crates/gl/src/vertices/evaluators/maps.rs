@@ -11,14 +11,22 @@ type Trouble = (u32, &'static str);
 /// Which map a target is, counted from `first`.
 fn map_index(target: u32, first: u32) -> Result<usize, Trouble> {
     let index = target.wrapping_sub(first) as usize;
-    if index < COMPONENTS.len() { Ok(index) } else { Err((enums::INVALID_ENUM, "target is not a map")) }
+    if index < COMPONENTS.len() {
+        Ok(index)
+    } else {
+        Err((enums::INVALID_ENUM, "target is not a map"))
+    }
 }
 
 /// Checks a stride and an order.
 fn checked(stride: i32, order: i32, components: usize) -> Result<(usize, usize), Trouble> {
     match usize::try_from(order) {
-        Ok(order @ 1..=MAX_EVAL_ORDER) if stride >= components as i32 => Ok((stride as usize, order)),
-        Ok(1..=MAX_EVAL_ORDER) => Err((enums::INVALID_VALUE, "stride is less than a control point")),
+        Ok(order @ 1..=MAX_EVAL_ORDER) if stride >= components as i32 => {
+            Ok((stride as usize, order))
+        }
+        Ok(1..=MAX_EVAL_ORDER) => {
+            Err((enums::INVALID_VALUE, "stride is less than a control point"))
+        }
         _ => Err((enums::INVALID_VALUE, "order is less than 1 or more than the maximum")),
     }
 }
@@ -35,10 +43,13 @@ impl Context {
     ) -> Result<Vec<f32>, Trouble> {
         let mut all = Vec::new();
         for offset in offsets {
-            let address = offset.checked_mul(size_of::<T>()).and_then(|offset| offset.checked_add(points));
-            let point = address.and_then(|address| client::values::<T>(&*self.memory, address, components));
+            let address =
+                offset.checked_mul(size_of::<T>()).and_then(|offset| offset.checked_add(points));
+            let point =
+                address.and_then(|address| client::values::<T>(&*self.memory, address, components));
             let point = if points == 0 { None } else { point };
-            let point = point.ok_or((enums::INVALID_VALUE, "control points are not in the client's memory"))?;
+            let point = point
+                .ok_or((enums::INVALID_VALUE, "control points are not in the client's memory"))?;
             all.extend(point.into_iter().map(Component::plain));
         }
         Ok(all)
@@ -57,7 +68,8 @@ impl Context {
         if u[0] == u[1] {
             return Err(EMPTY_DOMAIN);
         }
-        let points = self.control_points::<T>(points, components, (0..order).map(|i| i * stride))?;
+        let points =
+            self.control_points::<T>(points, components, (0..order).map(|i| i * stride))?;
         Ok((index, Map1 { order, u, points }))
     }
 
@@ -93,7 +105,11 @@ impl Context {
             match &map {
                 Err((error, why)) => c.record_error(*error, call, why),
                 Ok(_) if c.state.active_unit != 0 => {
-                    c.record_error(enums::INVALID_OPERATION, call, "the active texture unit is not 0");
+                    c.record_error(
+                        enums::INVALID_OPERATION,
+                        call,
+                        "the active texture unit is not 0",
+                    );
                 }
                 Ok((index, map)) => slot(c)[*index] = map.clone(),
             }
@@ -101,13 +117,29 @@ impl Context {
     }
 
     /// `glMap1d`.
-    pub fn map_1d(&mut self, target: u32, u1: f64, u2: f64, stride: i32, order: i32, points: usize) {
+    pub fn map_1d(
+        &mut self,
+        target: u32,
+        u1: f64,
+        u2: f64,
+        stride: i32,
+        order: i32,
+        points: usize,
+    ) {
         let map = self.read_map_1::<f64>(target, [u1 as f32, u2 as f32], (stride, order), points);
         self.store_map("glMap1d", map, |c| &mut c.state.eval.map1);
     }
 
     /// `glMap1f`.
-    pub fn map_1f(&mut self, target: u32, u1: f32, u2: f32, stride: i32, order: i32, points: usize) {
+    pub fn map_1f(
+        &mut self,
+        target: u32,
+        u1: f32,
+        u2: f32,
+        stride: i32,
+        order: i32,
+        points: usize,
+    ) {
         let map = self.read_map_1::<f32>(target, [u1, u2], (stride, order), points);
         self.store_map("glMap1f", map, |c| &mut c.state.eval.map1);
     }
@@ -127,7 +159,8 @@ impl Context {
         points: usize,
     ) {
         let (u, v) = ([u1 as f32, u2 as f32], [v1 as f32, v2 as f32]);
-        let map = self.read_map_2::<f64>(target, (u, ustride, uorder), (v, vstride, vorder), points);
+        let map =
+            self.read_map_2::<f64>(target, (u, ustride, uorder), (v, vstride, vorder), points);
         self.store_map("glMap2d", map, |c| &mut c.state.eval.map2);
     }
 
@@ -145,7 +178,12 @@ impl Context {
         vorder: i32,
         points: usize,
     ) {
-        let map = self.read_map_2::<f32>(target, ([u1, u2], ustride, uorder), ([v1, v2], vstride, vorder), points);
+        let map = self.read_map_2::<f32>(
+            target,
+            ([u1, u2], ustride, uorder),
+            ([v1, v2], vstride, vorder),
+            points,
+        );
         self.store_map("glMap2f", map, |c| &mut c.state.eval.map2);
     }
 
@@ -210,7 +248,14 @@ impl Context {
         }
     }
 
-    fn give_map<T: bytemuck::Pod>(&mut self, call: &str, target: u32, query: u32, to: usize, convert: fn(f32) -> T) {
+    fn give_map<T: bytemuck::Pod>(
+        &mut self,
+        call: &str,
+        target: u32,
+        query: u32,
+        to: usize,
+        convert: fn(f32) -> T,
+    ) {
         if self.refused_inside_begin(call) {
             return;
         }
@@ -257,7 +302,10 @@ mod tests {
         let told = client::values::<i32>(&*c.memory, BASE + 400, 12).unwrap();
         assert_eq!(told, [0, 1, 4, 5, 8, 9, 12, 13, 16, 17, 20, 21]);
         c.get_mapdv(enums::MAP2_TEXTURE_COORD_2, enums::DOMAIN, BASE + 400);
-        assert_eq!(client::values::<f64>(&*c.memory, BASE + 400, 4).unwrap(), [0.0, 1.0, -1.0, 1.0]);
+        assert_eq!(
+            client::values::<f64>(&*c.memory, BASE + 400, 4).unwrap(),
+            [0.0, 1.0, -1.0, 1.0]
+        );
         assert_eq!(c.error, 0);
     }
 

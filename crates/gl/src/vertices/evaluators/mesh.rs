@@ -55,7 +55,9 @@ impl Context {
     }
 
     fn coord<const N: usize>(&mut self, at: [f32; N]) {
-        self.listable(move |c| if N == 1 { c.exec_coord_1(at[0]) } else { c.exec_coord_2(at[0], at[N - 1]) });
+        self.listable(move |c| {
+            if N == 1 { c.exec_coord_1(at[0]) } else { c.exec_coord_2(at[0], at[N - 1]) }
+        });
     }
 
     /// `glEvalPoint1`.
@@ -138,7 +140,12 @@ impl Context {
     }
 
     /// One primitive of a mesh.
-    fn mesh_row(&mut self, primitive: u32, range: RangeInclusive<i32>, give: impl Fn(&mut Self, i32)) {
+    fn mesh_row(
+        &mut self,
+        primitive: u32,
+        range: RangeInclusive<i32>,
+        give: impl Fn(&mut Self, i32),
+    ) {
         self.gather(Submission::Now);
         self.builder.open(primitive);
         range.for_each(|i| give(self, i));

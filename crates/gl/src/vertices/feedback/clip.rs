@@ -1,6 +1,8 @@
-//! Clipping in clip space against the view volume and the user planes, and the way to window coordinates.
+//! Clipping in clip space against the view volume and the user planes, and the way to window
+//! coordinates.
 //!
-//! Polygons are cut plane by plane (Sutherland and Hodgman). An edge that a cut makes counts as a boundary.
+//! Polygons are cut plane by plane (Sutherland and Hodgman). An edge that a cut makes counts as a
+//! boundary.
 
 use super::{FeedbackVertex, Vertex};
 use crate::enums;
@@ -52,14 +54,17 @@ impl<'a> View<'a> {
 
     /// A bit for each plane that a vertex lies outside of.
     pub(super) fn outside(&self, vertex: &Vertex) -> u16 {
-        let is_outside = |&plane: &usize| self.distance(plane, vertex).is_some_and(|d| d.is_nan() || d < 0.0);
+        let is_outside =
+            |&plane: &usize| self.distance(plane, vertex).is_some_and(|d| d.is_nan() || d < 0.0);
         self.planes().filter(is_outside).fold(0, |bits, plane| bits | 1 << plane)
     }
 
     /// The part of a line that is inside.
     pub(super) fn clip_line(&self, mut a: Vertex, mut b: Vertex) -> Option<[Vertex; 2]> {
         for plane in self.planes() {
-            let (Some(da), Some(db)) = (self.distance(plane, &a), self.distance(plane, &b)) else { continue };
+            let (Some(da), Some(db)) = (self.distance(plane, &a), self.distance(plane, &b)) else {
+                continue;
+            };
             match (da >= 0.0, db >= 0.0) {
                 (true, true) => {}
                 (true, false) => b = between(&a, &b, da / (da - db)),
@@ -74,7 +79,9 @@ impl<'a> View<'a> {
     pub(super) fn clip_polygon(&self, mut polygon: Vec<Vertex>) -> Vec<Vertex> {
         // Measure the distances; skip planes that cut nothing.
         for plane in self.planes() {
-            let Some(distances) = polygon.iter().map(|v| self.distance(plane, v)).collect::<Option<Vec<f32>>>() else {
+            let Some(distances) =
+                polygon.iter().map(|v| self.distance(plane, v)).collect::<Option<Vec<f32>>>()
+            else {
                 continue;
             };
             if distances.iter().all(|d| *d >= 0.0) {
@@ -133,9 +140,16 @@ impl<'a> View<'a> {
         let over_w = if w == 0.0 { 0.0 } else { 1.0 / w };
         let [left, bottom, width, height] = viewport.rect.map(|n| n as f32);
         let up = if self.state.clip_control.0 == enums::UPPER_LEFT { -1.0 } else { 1.0 };
-        let (x, y) = (left + (x * over_w + 1.0) * 0.5 * width, bottom + (up * y * over_w + 1.0) * 0.5 * height);
+        let (x, y) = (
+            left + (x * over_w + 1.0) * 0.5 * width,
+            bottom + (up * y * over_w + 1.0) * 0.5 * height,
+        );
         let window = [x, y, self.depth(vertex), w];
-        FeedbackVertex { window, color: if back { vertex.back_color } else { vertex.color }, tex: vertex.tex[0] }
+        FeedbackVertex {
+            window,
+            color: if back { vertex.back_color } else { vertex.color },
+            tex: vertex.tex[0],
+        }
     }
 }
 
@@ -178,9 +192,16 @@ mod tests {
     fn a_cut_edge_is_a_boundary() {
         let state = State::default();
         let view = View::of(&state);
-        let cut = view.clip_polygon(vec![at(0.0, -0.5, false), at(2.0, -0.5, false), at(0.0, 0.5, false)]);
+        let cut = view.clip_polygon(vec![
+            at(0.0, -0.5, false),
+            at(2.0, -0.5, false),
+            at(0.0, 0.5, false),
+        ]);
         let found: Vec<_> = cut.iter().map(|v| (v.clip[0], v.clip[1], v.edge)).collect();
-        assert_eq!(found, [(0.0, -0.5, false), (1.0, -0.5, true), (1.0, 0.0, false), (0.0, 0.5, false)]);
+        assert_eq!(
+            found,
+            [(0.0, -0.5, false), (1.0, -0.5, true), (1.0, 0.0, false), (0.0, 0.5, false)]
+        );
         assert_eq!(View::area(&cut), 1.5);
     }
 

@@ -76,7 +76,8 @@ impl Feedback {
         self.overflow |= values.len() > room;
     }
 
-    /// Which parts of vertices are told: how many window coordinates, whether colours, whether coordinates of textures.
+    /// Which parts of vertices are told: how many window coordinates, whether colours, whether
+    /// coordinates of textures.
     fn parts(&self) -> (usize, bool, bool) {
         match self.buffer.map_or(enums::_2D, |(_, _, kind)| kind) {
             enums::_2D => (2, false, false),
@@ -148,7 +149,11 @@ impl Context {
         } else if self.feedback.mode == enums::FEEDBACK {
             self.record_error(enums::INVALID_OPERATION, CALL, "the render mode is feedback");
         } else if !(enums::_2D..=enums::_4D_COLOR_TEXTURE).contains(&type_) {
-            self.record_error(enums::INVALID_ENUM, CALL, &format!("type {type_:#x} is not one of feedback"));
+            self.record_error(
+                enums::INVALID_ENUM,
+                CALL,
+                &format!("type {type_:#x} is not one of feedback"),
+            );
         } else if let Ok(size) = usize::try_from(size) {
             self.feedback.buffer = Some((buffer, size, type_));
         } else {
@@ -182,7 +187,11 @@ impl Context {
             enums::FEEDBACK => self.feedback.buffer.is_some(),
             enums::SELECT => self.feedback.selection.is_some(),
             _ => {
-                self.record_error(enums::INVALID_ENUM, CALL, &format!("mode {mode:#x} is not a render mode"));
+                self.record_error(
+                    enums::INVALID_ENUM,
+                    CALL,
+                    &format!("mode {mode:#x} is not a render mode"),
+                );
                 return 0;
             }
         };
@@ -208,14 +217,19 @@ impl Context {
         }
 
         // Choose what the mode has gathered.
-        let (values, records) = (std::mem::take(&mut feedback.values), std::mem::take(&mut feedback.records));
+        let (values, records) =
+            (std::mem::take(&mut feedback.values), std::mem::take(&mut feedback.records));
         let (address, bytes, count): (_, &[u8], _) = match feedback.mode {
-            enums::FEEDBACK => {
-                (feedback.buffer.map_or(0, |buffer| buffer.0), bytemuck::cast_slice(&values), values.len() as i32)
-            }
-            enums::SELECT => {
-                (feedback.selection.map_or(0, |buffer| buffer.0), bytemuck::cast_slice(&records), feedback.hits)
-            }
+            enums::FEEDBACK => (
+                feedback.buffer.map_or(0, |buffer| buffer.0),
+                bytemuck::cast_slice(&values),
+                values.len() as i32,
+            ),
+            enums::SELECT => (
+                feedback.selection.map_or(0, |buffer| buffer.0),
+                bytemuck::cast_slice(&records),
+                feedback.hits,
+            ),
             _ => return 0,
         };
 
@@ -245,7 +259,11 @@ impl Context {
     pub(crate) fn feedback_image(&mut self, token: u32) {
         let position = &self.state.raster_position;
         if self.feedback.mode == enums::FEEDBACK && position.valid {
-            let vertex = FeedbackVertex { window: position.window, color: position.color, tex: position.tex[0] };
+            let vertex = FeedbackVertex {
+                window: position.window,
+                color: position.color,
+                tex: position.tex[0],
+            };
             self.feedback.primitive(token, None, &[vertex]);
         }
     }
@@ -290,7 +308,10 @@ mod tests {
         c.pass_through(5.0);
         assert_eq!(c.render_mode(enums::RENDER), 6);
         let told = client::values::<f32>(&*c.memory, BASE, 6).unwrap();
-        assert_eq!(told, [enums::BITMAP_TOKEN as f32, 7.0, 8.0, 0.0, enums::PASS_THROUGH_TOKEN as f32, 5.0]);
+        assert_eq!(
+            told,
+            [enums::BITMAP_TOKEN as f32, 7.0, 8.0, 0.0, enums::PASS_THROUGH_TOKEN as f32, 5.0]
+        );
         c.render_mode(enums::FEEDBACK);
         (0..4).for_each(|_| c.pass_through(1.0));
         assert_eq!((c.render_mode(enums::RENDER), c.error), (-1, 0));
@@ -326,7 +347,8 @@ mod tests {
     #[test]
     fn refused_names_record_nothing() {
         type Call = fn(&mut Context);
-        let calls: [(Call, usize); 3] = [(|c| c.load_name(3), 0), (|c| c.pop_name(), 0), (|c| c.push_name(3), 128)];
+        let calls: [(Call, usize); 3] =
+            [(|c| c.load_name(3), 0), (|c| c.pop_name(), 0), (|c| c.push_name(3), 128)];
         for (call, names) in calls {
             let mut c = context();
             c.select_buffer(400, BASE);
@@ -337,7 +359,10 @@ mod tests {
             assert_ne!(std::mem::take(&mut c.error), 0);
             c.window_pos_3f(0.0, 0.0, 0.0);
             assert_eq!(c.render_mode(enums::RENDER), 1, "one record over both depths");
-            assert_eq!(client::values::<u32>(&*c.memory, BASE, 3).unwrap(), [names as u32, 0, u32::MAX]);
+            assert_eq!(
+                client::values::<u32>(&*c.memory, BASE, 3).unwrap(),
+                [names as u32, 0, u32::MAX]
+            );
         }
     }
 }

@@ -5,8 +5,8 @@ use crate::state::MAX_NAME_STACK_DEPTH;
 use crate::{Context, enums};
 
 impl Context {
-    /// Lists a call that changes the name stack, unless something stands against that. What was hit until then is recorded
-    /// under the old names; a call that is refused records nothing.
+    /// Lists a call that changes the name stack, unless something stands against that. What was hit
+    /// until then is recorded under the old names; a call that is refused records nothing.
     fn name_call(
         &mut self,
         call: &'static str,
@@ -32,8 +32,9 @@ impl Context {
 
     /// `glLoadName`.
     pub fn load_name(&mut self, name: u32) {
-        let refusal =
-            |f: &Feedback| f.names.is_empty().then_some((enums::INVALID_OPERATION, "the name stack is empty"));
+        let refusal = |f: &Feedback| {
+            f.names.is_empty().then_some((enums::INVALID_OPERATION, "the name stack is empty"))
+        };
         self.name_call("glLoadName", refusal, move |names| {
             if let Some(top) = names.last_mut() {
                 *top = name;
@@ -44,13 +45,17 @@ impl Context {
     /// `glPushName`.
     pub fn push_name(&mut self, name: u32) {
         let is_full = |f: &Feedback| f.names.len() >= MAX_NAME_STACK_DEPTH;
-        let refusal = move |f: &Feedback| is_full(f).then_some((enums::STACK_OVERFLOW, "the name stack is full"));
+        let refusal = move |f: &Feedback| {
+            is_full(f).then_some((enums::STACK_OVERFLOW, "the name stack is full"))
+        };
         self.name_call("glPushName", refusal, move |names| names.push(name));
     }
 
     /// `glPopName`.
     pub fn pop_name(&mut self) {
-        let refusal = |f: &Feedback| f.names.is_empty().then_some((enums::STACK_UNDERFLOW, "the name stack is empty"));
+        let refusal = |f: &Feedback| {
+            f.names.is_empty().then_some((enums::STACK_UNDERFLOW, "the name stack is empty"))
+        };
         self.name_call("glPopName", refusal, |names| {
             names.pop();
         });

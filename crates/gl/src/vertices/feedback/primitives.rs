@@ -1,4 +1,5 @@
-//! Primitives of a batch, one by one: assembled, clipped, culled, and told as their polygon mode says.
+//! Primitives of a batch, one by one: assembled, clipped, culled, and told as their polygon mode
+//! says.
 
 use super::clip::View;
 use super::{Feedback, FeedbackVertex, Vertex, is_culled};
@@ -9,9 +10,19 @@ use crate::vertex::VertexBatch;
 /// Tells all primitives of a batch.
 pub(super) fn feed(batch: &VertexBatch, processed: &[Vertex], view: &View, to: &mut Feedback) {
     let polygons = &view.state.polygons;
-    let only_depths = to.mode == enums::SELECT && !polygons.cull && polygons.mode == [enums::FILL; 2];
+    let only_depths =
+        to.mode == enums::SELECT && !polygons.cull && polygons.mode == [enums::FILL; 2];
     let outside = processed.iter().map(|vertex| view.outside(vertex)).collect();
-    let mut feeder = Feeder { batch, processed, outside, only_depths, view, to, corners: Vec::new(), told: Vec::new() };
+    let mut feeder = Feeder {
+        batch,
+        processed,
+        outside,
+        only_depths,
+        view,
+        to,
+        corners: Vec::new(),
+        told: Vec::new(),
+    };
     for primitive in &batch.primitives {
         feeder.primitive(*primitive);
     }
@@ -43,7 +54,9 @@ impl Feeder<'_> {
                 (first + 1..end).for_each(|i| self.line(i - 1, i, i == first + 1));
                 self.line(end - 1, first, false);
             }
-            enums::TRIANGLES => (first..end).step_by(3).for_each(|i| self.polygon(&[i, i + 1, i + 2], i + 2, true)),
+            enums::TRIANGLES => {
+                (first..end).step_by(3).for_each(|i| self.polygon(&[i, i + 1, i + 2], i + 2, true))
+            }
             enums::TRIANGLE_STRIP => {
                 for i in first + 2..end {
                     let odd = (i - first) % 2 == 1;
@@ -51,12 +64,18 @@ impl Feeder<'_> {
                     self.polygon(&corners, i, false);
                 }
             }
-            enums::TRIANGLE_FAN => (first + 2..end).for_each(|i| self.polygon(&[first, i - 1, i], i, false)),
+            enums::TRIANGLE_FAN => {
+                (first + 2..end).for_each(|i| self.polygon(&[first, i - 1, i], i, false))
+            }
             enums::QUADS => {
-                (first..end).step_by(4).for_each(|i| self.polygon(&[i, i + 1, i + 2, i + 3], i + 3, true));
+                (first..end)
+                    .step_by(4)
+                    .for_each(|i| self.polygon(&[i, i + 1, i + 2, i + 3], i + 3, true));
             }
             enums::QUAD_STRIP => {
-                (first..end - 2).step_by(2).for_each(|i| self.polygon(&[i, i + 1, i + 3, i + 2], i + 3, false));
+                (first..end - 2)
+                    .step_by(2)
+                    .for_each(|i| self.polygon(&[i, i + 1, i + 3, i + 2], i + 3, false));
             }
             _ => {
                 let corners: Vec<u32> = (first..end).collect();
@@ -103,7 +122,10 @@ impl Feeder<'_> {
     fn polygon(&mut self, corners: &[u32], provoking: u32, own_edges: bool) {
         // Reject polygons outside, and take a shortcut for those inside whose depth alone counts.
         let bits = |i: &u32| self.outside[self.batch.vertex(*i)];
-        let (any, all) = corners.iter().map(bits).fold((0, u16::MAX), |(any, all), bits| (any | bits, all & bits));
+        let (any, all) = corners
+            .iter()
+            .map(bits)
+            .fold((0, u16::MAX), |(any, all), bits| (any | bits, all & bits));
         if all != 0 {
             return;
         }
@@ -174,7 +196,8 @@ mod tests {
     use crate::state::State;
 
     fn fed(state: &State, mode: u32, corners: &[[f32; 2]]) -> Vec<f32> {
-        let mut batch = VertexBatch { positions: vec![[0.0; 4]; corners.len()], ..VertexBatch::default() };
+        let mut batch =
+            VertexBatch { positions: vec![[0.0; 4]; corners.len()], ..VertexBatch::default() };
         batch.add_primitive(mode, 0, corners.len() as u32);
         let vertex = |(i, [x, y]): (usize, &[f32; 2])| Vertex {
             clip: [*x, *y, 0.0, 1.0],
@@ -183,7 +206,11 @@ mod tests {
             ..Vertex::default()
         };
         let processed: Vec<_> = corners.iter().enumerate().map(vertex).collect();
-        let mut to = Feedback { mode: enums::FEEDBACK, buffer: Some((0, 100, enums::_2D)), ..Feedback::default() };
+        let mut to = Feedback {
+            mode: enums::FEEDBACK,
+            buffer: Some((0, 100, enums::_2D)),
+            ..Feedback::default()
+        };
         feed(&batch, &processed, &View::of(state), &mut to);
         to.values
     }
@@ -200,11 +227,17 @@ mod tests {
     fn polygons_lines_and_points() {
         let mut state = state();
         let polygon = enums::POLYGON_TOKEN as f32;
-        assert_eq!(fed(&state, enums::QUADS, &SQUARE), [polygon, 4.0, 1.0, 1.0, 2.0, 1.0, 2.0, 2.0, 1.0, 2.0]);
+        assert_eq!(
+            fed(&state, enums::QUADS, &SQUARE),
+            [polygon, 4.0, 1.0, 1.0, 2.0, 1.0, 2.0, 2.0, 1.0, 2.0]
+        );
         state.polygons.mode[0] = enums::LINE;
         let lines = fed(&state, enums::QUADS, &SQUARE);
         assert_eq!(lines.len(), 20);
-        assert_eq!((lines[0], lines[5]), (enums::LINE_RESET_TOKEN as f32, enums::LINE_TOKEN as f32));
+        assert_eq!(
+            (lines[0], lines[5]),
+            (enums::LINE_RESET_TOKEN as f32, enums::LINE_TOKEN as f32)
+        );
         assert_eq!(lines[15..], [enums::LINE_TOKEN as f32, 1.0, 2.0, 1.0, 1.0]);
         state.polygons.mode[0] = enums::POINT;
         assert_eq!(fed(&state, enums::QUADS, &SQUARE).len(), 12);

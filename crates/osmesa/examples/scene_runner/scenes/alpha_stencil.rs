@@ -91,10 +91,18 @@ fn stencil_functions(gl: &mut Stage<'_>) {
     gl.glClearStencil(0x35);
     gl.glClear(STENCIL_BUFFER_BIT);
     for (i, function) in FUNCTIONS.into_iter().enumerate() {
-        for (j, (reference, mask)) in
-            [(0x34, 0xff), (0x35, 0xff), (0x36, 0xff), (0x05, 0x0f), (0x7f, 0x30), (300, 0xff), (-1, 0xff), (0x1ff, 1)]
-                .into_iter()
-                .enumerate()
+        for (j, (reference, mask)) in [
+            (0x34, 0xff),
+            (0x35, 0xff),
+            (0x36, 0xff),
+            (0x05, 0x0f),
+            (0x7f, 0x30),
+            (300, 0xff),
+            (-1, 0xff),
+            (0x1ff, 1),
+        ]
+        .into_iter()
+        .enumerate()
         {
             gl.glStencilFunc(function, reference, mask);
             gl.glColor3f(1.0, j as f32 / 8.0, i as f32 / 8.0);

@@ -32,12 +32,14 @@ fn types(gl: &mut Stage<'_>) {
     gl.glVertexPointer(3, INT, 0, at(&integers));
     gl.glColorPointer(3, UNSIGNED_SHORT, 0, at(&colors));
     gl.glDrawArrays(TRIANGLES, 0, 3);
-    let doubles: [[f64; 4]; 3] = [[4.0, 68.0, 0.0, 2.0], [28.0, 34.0, 0.0, 1.0], [7.0, 27.0, 0.0, 0.5]];
+    let doubles: [[f64; 4]; 3] =
+        [[4.0, 68.0, 0.0, 2.0], [28.0, 34.0, 0.0, 1.0], [7.0, 27.0, 0.0, 0.5]];
     let colors: [[f64; 3]; 3] = [[1.0, 1.0, 0.0], [0.0, 1.0, 1.0], [1.0, 0.0, 1.0]];
     gl.glVertexPointer(4, DOUBLE, 0, at(&doubles));
     gl.glColorPointer(3, DOUBLE, 0, at(&colors));
     gl.glDrawArrays(TRIANGLES, 0, 3);
-    let floats: [[f32; 5]; 3] = [[34.0, 34.0, 0.2, 0.4, 0.6], [60.0, 34.0, 1.0, 0.4, 0.1], [47.0, 60.0, 0.5, 1.0, 1.0]];
+    let floats: [[f32; 5]; 3] =
+        [[34.0, 34.0, 0.2, 0.4, 0.6], [60.0, 34.0, 1.0, 0.4, 0.1], [47.0, 60.0, 0.5, 1.0, 1.0]];
     gl.glVertexPointer(2, FLOAT, 20, at(&floats));
     gl.glColorPointer(3, FLOAT, 20, at(&floats) + 8);
     gl.glDrawArrays(TRIANGLES, 0, 3);
@@ -47,12 +49,23 @@ fn types(gl: &mut Stage<'_>) {
 fn grid() -> (Vec<[f32; 2]>, Vec<[f32; 3]>, Vec<u16>) {
     let n = 8_usize;
     let place = |i: usize| ((i % (n + 1)) as f32, (i / (n + 1)) as f32);
-    let positions = (0..(n + 1) * (n + 1)).map(place).map(|(x, y)| [3.0 + 7.2 * x + y.sin(), 3.0 + 7.2 * y - x.cos()]);
-    let colors = (0..(n + 1) * (n + 1)).map(place).map(|(x, y)| [x / 8.0, y / 8.0, ((x + y) as i32 % 2) as f32]);
+    let positions = (0..(n + 1) * (n + 1))
+        .map(place)
+        .map(|(x, y)| [3.0 + 7.2 * x + y.sin(), 3.0 + 7.2 * y - x.cos()]);
+    let colors = (0..(n + 1) * (n + 1))
+        .map(place)
+        .map(|(x, y)| [x / 8.0, y / 8.0, ((x + y) as i32 % 2) as f32]);
     let corner = |x: usize, y: usize| (y * (n + 1) + x) as u16;
     let cell = |i: usize| {
         let (x, y) = (i % n, i / n);
-        [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y), corner(x + 1, y + 1), corner(x, y + 1)]
+        [
+            corner(x, y),
+            corner(x + 1, y),
+            corner(x + 1, y + 1),
+            corner(x, y),
+            corner(x + 1, y + 1),
+            corner(x, y + 1),
+        ]
     };
     (positions.collect(), colors.collect(), (0..n * n).flat_map(cell).collect())
 }
@@ -95,7 +108,8 @@ fn elements(gl: &mut Stage<'_>) {
 
 fn multi(gl: &mut Stage<'_>) {
     pixels(gl);
-    let positions: Vec<[f32; 2]> = (0..32).map(|i| [(i / 2 * 4) as f32, if i % 2 == 0 { 4.0 } else { 30.0 }]).collect();
+    let positions: Vec<[f32; 2]> =
+        (0..32).map(|i| [(i / 2 * 4) as f32, if i % 2 == 0 { 4.0 } else { 30.0 }]).collect();
     gl.glEnableClientState(VERTEX_ARRAY);
     gl.glVertexPointer(2, FLOAT, 0, at(&positions));
     gl.glColor3f(1.0, 0.5, 0.0);
@@ -120,9 +134,10 @@ fn interleaved(gl: &mut Stage<'_>) {
     gl.glInterleavedArrays(T2F_N3F_V3F, 0, at(&points));
     gl.glDrawArrays(QUADS, 0, 4);
     gl.glDisable(TEXTURE_2D);
-    let points: Vec<[f32; 4]> = [(0.2, -1.5, 0xff00_00ff_u32), (1.6, -1.5, 0xff00_ff00), (0.9, 1.5, 0xffff_0000)]
-        .map(|(x, y, color)| [f32::from_bits(color), x, y, 0.0])
-        .to_vec();
+    let points: Vec<[f32; 4]> =
+        [(0.2, -1.5, 0xff00_00ff_u32), (1.6, -1.5, 0xff00_ff00), (0.9, 1.5, 0xffff_0000)]
+            .map(|(x, y, color)| [f32::from_bits(color), x, y, 0.0])
+            .to_vec();
     gl.glNormal3f(0.0, 0.0, 1.0);
     gl.glInterleavedArrays(C4UB_V3F, 0, at(&points));
     gl.glDrawArrays(TRIANGLES, 0, 3);
@@ -134,7 +149,8 @@ fn interleaved(gl: &mut Stage<'_>) {
 fn attributes(gl: &mut Stage<'_>) {
     pixels(gl);
     let positions: [[f32; 2]; 4] = [[4.0, 4.0], [60.0, 4.0], [60.0, 60.0], [4.0, 60.0]];
-    let second: [[f32; 3]; 4] = [[0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.0, 0.0, 0.5]];
+    let second: [[f32; 3]; 4] =
+        [[0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.0, 0.0, 0.5]];
     let fog: [f32; 4] = [0.0, 0.3, 0.8, 0.5];
     let coordinates: [[i16; 2]; 4] = [[0, 0], [2, 0], [2, 2], [0, 2]];
     gl.glEnableClientState(VERTEX_ARRAY);
@@ -162,7 +178,10 @@ fn attributes(gl: &mut Stage<'_>) {
 fn ball() -> (Vec<[f32; 3]>, Vec<u32>) {
     let (slices, stacks) = (24, 16);
     let point = |i: usize| {
-        sphere_point(-((i % (slices + 1)) as f32) / slices as f32, (i / (slices + 1)) as f32 / stacks as f32)
+        sphere_point(
+            -((i % (slices + 1)) as f32) / slices as f32,
+            (i / (slices + 1)) as f32 / stacks as f32,
+        )
     };
     let points = (0..(slices + 1) * (stacks + 1)).map(point).collect();
     let cell = |i: usize| {
@@ -274,8 +293,10 @@ fn buffer_changed(gl: &mut Stage<'_>) {
 
 fn vertex_array_objects(gl: &mut Stage<'_>) {
     pixels(gl);
-    let (first, second): ([[f32; 2]; 4], [[f32; 2]; 4]) =
-        ([[2.0, 2.0], [30.0, 2.0], [30.0, 60.0], [2.0, 60.0]], [[34.0, 2.0], [62.0, 2.0], [62.0, 60.0], [34.0, 60.0]]);
+    let (first, second): ([[f32; 2]; 4], [[f32; 2]; 4]) = (
+        [[2.0, 2.0], [30.0, 2.0], [30.0, 60.0], [2.0, 60.0]],
+        [[34.0, 2.0], [62.0, 2.0], [62.0, 60.0], [34.0, 60.0]],
+    );
     let colors: [[f32; 3]; 4] = [[1.0, 0.0, 0.0]; 4];
     let mut names = [0; 2];
     let mut buffers = [0; 3];

@@ -61,7 +61,9 @@ fn factors(gl: &mut Stage<'_>) {
 
 fn equations(gl: &mut Stage<'_>) {
     background(gl);
-    for (i, equation) in [FUNC_ADD, FUNC_SUBTRACT, FUNC_REVERSE_SUBTRACT, MIN, MAX].into_iter().enumerate() {
+    for (i, equation) in
+        [FUNC_ADD, FUNC_SUBTRACT, FUNC_REVERSE_SUBTRACT, MIN, MAX].into_iter().enumerate()
+    {
         gl.glBlendEquation(equation);
         for (j, factor) in FACTORS[..14].iter().enumerate() {
             gl.glBlendFunc(*factor, ONE);
@@ -80,7 +82,10 @@ fn separate(gl: &mut Stage<'_>) {
         gl.glBlendFuncSeparate(alpha, ZERO, ONE, FACTORS[(i + 5) % 14]);
         field(gl, i, 1);
         gl.glBlendFunc(SRC_ALPHA, ONE);
-        gl.glBlendEquationSeparateEXT(FUNC_REVERSE_SUBTRACT, [FUNC_ADD, FUNC_SUBTRACT, MIN, MAX][i % 4]);
+        gl.glBlendEquationSeparateEXT(
+            FUNC_REVERSE_SUBTRACT,
+            [FUNC_ADD, FUNC_SUBTRACT, MIN, MAX][i % 4],
+        );
         field(gl, i, 2);
         gl.glBlendEquationSeparateEXT([FUNC_ADD, FUNC_SUBTRACT, MIN, MAX][i % 4], FUNC_ADD);
         field(gl, i, 3);

@@ -29,13 +29,16 @@ fn ready(gl: &Gl) {
     gl.glColor4f(0.3, 0.6, 0.8, 0.7);
 }
 
-/// Every mode with every base format; columns are formats. Alpha is shown in a second half of each field's colours by blending.
+/// Every mode with every base format; columns are formats. Alpha is shown in a second half of each
+/// field's colours by blending.
 fn modes(gl: &mut Stage<'_>) {
     ready(gl);
     let texels = checks(8, 2);
     gl.glEnable(BLEND);
     gl.glBlendFunc(SRC_ALPHA, ZERO);
-    for (i, format) in [ALPHA, LUMINANCE, LUMINANCE_ALPHA, INTENSITY, RGB, RGBA].into_iter().enumerate() {
+    for (i, format) in
+        [ALPHA, LUMINANCE, LUMINANCE_ALPHA, INTENSITY, RGB, RGBA].into_iter().enumerate()
+    {
         gl.glTexImage2D(TEXTURE_2D, 0, format as i32, 8, 8, 0, RGBA, UNSIGNED_BYTE, at(&texels));
         for (j, mode) in [REPLACE, MODULATE, BLEND, ADD, DECAL].into_iter().enumerate() {
             // Decal is defined for RGB and RGBA only.
@@ -61,9 +64,13 @@ fn functions(gl: &mut Stage<'_>) {
     combining(gl);
     gl.glEnable(BLEND);
     gl.glBlendFunc(SRC_ALPHA, ZERO);
-    for (i, rgb) in [REPLACE, MODULATE, ADD, ADD_SIGNED, INTERPOLATE, SUBTRACT].into_iter().enumerate() {
+    for (i, rgb) in
+        [REPLACE, MODULATE, ADD, ADD_SIGNED, INTERPOLATE, SUBTRACT].into_iter().enumerate()
+    {
         set(gl, COMBINE_RGB, rgb);
-        for (j, alpha) in [REPLACE, MODULATE, ADD, ADD_SIGNED, INTERPOLATE, SUBTRACT].into_iter().enumerate() {
+        for (j, alpha) in
+            [REPLACE, MODULATE, ADD, ADD_SIGNED, INTERPOLATE, SUBTRACT].into_iter().enumerate()
+        {
             set(gl, COMBINE_ALPHA, alpha);
             field(gl, i, j);
         }
@@ -75,7 +82,9 @@ fn sources(gl: &mut Stage<'_>) {
     set(gl, COMBINE_RGB, MODULATE);
     for (i, source) in [TEXTURE, CONSTANT, PRIMARY_COLOR, PREVIOUS].into_iter().enumerate() {
         set(gl, SOURCE0_RGB, source);
-        for (j, operand) in [SRC_COLOR, ONE_MINUS_SRC_COLOR, SRC_ALPHA, ONE_MINUS_SRC_ALPHA].into_iter().enumerate() {
+        for (j, operand) in
+            [SRC_COLOR, ONE_MINUS_SRC_COLOR, SRC_ALPHA, ONE_MINUS_SRC_ALPHA].into_iter().enumerate()
+        {
             set(gl, OPERAND1_RGB, operand);
             field(gl, i, j);
         }
@@ -108,7 +117,8 @@ fn scale(gl: &mut Stage<'_>) {
 
 fn dot3(gl: &mut Stage<'_>) {
     combining(gl);
-    let normals: Vec<[u8; 4]> = (0..64).map(|i| [(i % 8 * 36) as u8, (i / 8 * 36) as u8, 220, (i * 4) as u8]).collect();
+    let normals: Vec<[u8; 4]> =
+        (0..64).map(|i| [(i % 8 * 36) as u8, (i / 8 * 36) as u8, 220, (i * 4) as u8]).collect();
     gl.glTexImage2D(TEXTURE_2D, 0, RGBA as i32, 8, 8, 0, RGBA, UNSIGNED_BYTE, at(&normals));
     set(gl, SOURCE1_RGB, PRIMARY_COLOR);
     gl.glColor4f(0.8, 0.7, 0.9, 1.0);

@@ -1,4 +1,5 @@
-//! Extensions beyond OpenGL 1.5: swizzles, red textures, sampler objects, immutable textures, arrays.
+//! Extensions beyond OpenGL 1.5: swizzles, red textures, sampler objects, immutable textures,
+//! arrays.
 
 use super::*;
 use crate::gl::at;
@@ -30,7 +31,12 @@ fn swizzle(gl: &mut Stage<'_>) {
     plain(gl, 8, &checks(8, 2));
     gl.glTexParameteri(TEXTURE_2D, TEXTURE_MAG_FILTER, NEAREST as i32);
     gl.glEnable(TEXTURE_2D);
-    let rows = [[RED, GREEN, BLUE, ALPHA], [BLUE, RED, GREEN, ONE], [ALPHA, ZERO, RED, BLUE], [GREEN, ONE, ZERO, ZERO]];
+    let rows = [
+        [RED, GREEN, BLUE, ALPHA],
+        [BLUE, RED, GREEN, ONE],
+        [ALPHA, ZERO, RED, BLUE],
+        [GREEN, ONE, ZERO, ZERO],
+    ];
     for (j, row) in rows.into_iter().enumerate() {
         for (name, from) in (TEXTURE_SWIZZLE_R..).zip(row) {
             gl.glTexParameteri(TEXTURE_2D, name, from as i32);
@@ -109,7 +115,17 @@ fn immutable(gl: &mut Stage<'_>) {
     gl.glBindTexture(TEXTURE_2D, name[0]);
     gl.glTexStorage2D(TEXTURE_2D, 2, RGBA8, 16, 16);
     gl.glTexSubImage2D(TEXTURE_2D, 0, 0, 0, 16, 16, RGBA, UNSIGNED_BYTE, at(&checks(16, 4)));
-    gl.glTexSubImage2D(TEXTURE_2D, 1, 0, 0, 8, 8, RGBA, UNSIGNED_BYTE, at(&[[255_u8, 200, 0, 255]; 64]));
+    gl.glTexSubImage2D(
+        TEXTURE_2D,
+        1,
+        0,
+        0,
+        8,
+        8,
+        RGBA,
+        UNSIGNED_BYTE,
+        at(&[[255_u8, 200, 0, 255]; 64]),
+    );
     gl.glTexParameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, NEAREST_MIPMAP_NEAREST as i32);
     gl.glTexParameteri(TEXTURE_2D, TEXTURE_MAG_FILTER, NEAREST as i32);
     gl.glEnable(TEXTURE_2D);

@@ -166,7 +166,9 @@ fn blit_formats(gl: &mut Stage<'_>) {
         for to in objects.into_iter().filter(|to| *to != from) {
             gl.glBindFramebuffer(READ_FRAMEBUFFER, from);
             gl.glBindFramebuffer(DRAW_FRAMEBUFFER, to);
-            for mask in [DEPTH_BUFFER_BIT, STENCIL_BUFFER_BIT, DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT] {
+            for mask in
+                [DEPTH_BUFFER_BIT, STENCIL_BUFFER_BIT, DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT]
+            {
                 gl.glBlitFramebuffer(0, 0, 8, 8, 0, 0, 8, 8, mask, NEAREST);
                 gl.note(gl.glGetError());
             }
@@ -186,7 +188,8 @@ fn multisample(gl: &mut Stage<'_>) {
     rainbow(gl, [4.0, 4.0, 60.0, 60.0], 0.0);
     gl.glColor3f(0.2, 0.2, 0.2);
     gl.glBegin(QUADS);
-    for (x, y, z) in [(20.0, 10.0, -0.5), (50.0, 10.0, 0.5), (50.0, 50.0, 0.5), (20.0, 50.0, -0.5)] {
+    for (x, y, z) in [(20.0, 10.0, -0.5), (50.0, 10.0, 0.5), (50.0, 50.0, 0.5), (20.0, 50.0, -0.5)]
+    {
         gl.glVertex3f(x, y, z);
     }
     gl.glEnd();
@@ -337,7 +340,17 @@ fn shadow_map(gl: &mut Stage<'_>, [min, mag]: [u32; 2]) {
     framebuffer(gl);
     let texture = name_of(|names| gl.glGenTextures(1, names));
     gl.glBindTexture(TEXTURE_2D, texture);
-    gl.glTexImage2D(TEXTURE_2D, 0, DEPTH_COMPONENT24 as i32, 64, 64, 0, DEPTH_COMPONENT, UNSIGNED_INT, 0);
+    gl.glTexImage2D(
+        TEXTURE_2D,
+        0,
+        DEPTH_COMPONENT24 as i32,
+        64,
+        64,
+        0,
+        DEPTH_COMPONENT,
+        UNSIGNED_INT,
+        0,
+    );
     for (name, value) in [
         (TEXTURE_MIN_FILTER, min),
         (TEXTURE_MAG_FILTER, mag),
@@ -382,7 +395,9 @@ fn shadow_map(gl: &mut Stage<'_>, [min, mag]: [u32; 2]) {
     gl.glScalef(0.5, 0.5, 0.5);
     light(gl);
     gl.glMatrixMode(MODELVIEW);
-    for (coordinate, cap) in [(S, TEXTURE_GEN_S), (T, TEXTURE_GEN_T), (R, TEXTURE_GEN_R), (Q, TEXTURE_GEN_Q)] {
+    for (coordinate, cap) in
+        [(S, TEXTURE_GEN_S), (T, TEXTURE_GEN_T), (R, TEXTURE_GEN_R), (Q, TEXTURE_GEN_Q)]
+    {
         let mut plane = [0.0; 4];
         plane[(coordinate - S) as usize] = 1.0;
         gl.glTexGeni(coordinate, TEXTURE_GEN_MODE, EYE_LINEAR as i32);
@@ -402,7 +417,9 @@ fn clip_control(gl: &mut Stage<'_>) {
     gl.glClear(DEPTH_BUFFER_BIT);
     gl.glMatrixMode(PROJECTION);
     // Reversed depth: near is 1, far is 0.
-    gl.glLoadMatrixf(&[2.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.1, -1.0, 0.0, 0.0, 1.1, 0.0]);
+    gl.glLoadMatrixf(&[
+        2.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.1, -1.0, 0.0, 0.0, 1.1, 0.0,
+    ]);
     gl.glMatrixMode(MODELVIEW);
     gl.glEnable(CULL_FACE);
     gl.glEnable(LIGHTING);

@@ -70,13 +70,18 @@ fn index(gl: &mut Stage<'_>) {
     gl.glDrawPixels(8, 8, COLOR_INDEX, UNSIGNED_BYTE, at(&indices));
 }
 
-/// No centre lies on a border where the image runs backwards: Mesa takes it for the wrong pixel's there.
+/// No centre lies on a border where the image runs backwards: Mesa takes it for the wrong pixel's
+/// there.
 fn zoom(gl: &mut Stage<'_>) {
     pixels(gl);
     let image = checks(8, 2);
-    for (x, y, zx, zy) in
-        [(2, 2, 2.0, 3.0), (60, 4, -2.4, 1.5), (4, 60, 0.5, -3.0), (62, 62, -3.0, -3.0), (26, 34, 1.3, 0.7)]
-    {
+    for (x, y, zx, zy) in [
+        (2, 2, 2.0, 3.0),
+        (60, 4, -2.4, 1.5),
+        (4, 60, 0.5, -3.0),
+        (62, 62, -3.0, -3.0),
+        (26, 34, 1.3, 0.7),
+    ] {
         gl.glRasterPos2i(x, y);
         gl.glPixelZoom(zx, zy);
         gl.glDrawPixels(8, 8, RGBA, UNSIGNED_BYTE, at(&image));
@@ -86,7 +91,9 @@ fn zoom(gl: &mut Stage<'_>) {
 fn transfer(gl: &mut Stage<'_>) {
     pixels(gl);
     let image = checks(16, 4);
-    for (i, (scale, bias)) in [(0.5, 0.0), (1.0, 0.3), (-1.0, 1.0), (2.0, -0.5)].into_iter().enumerate() {
+    for (i, (scale, bias)) in
+        [(0.5, 0.0), (1.0, 0.3), (-1.0, 1.0), (2.0, -0.5)].into_iter().enumerate()
+    {
         gl.glPixelTransferf([RED_SCALE, GREEN_SCALE, BLUE_SCALE, RED_SCALE][i], scale);
         gl.glPixelTransferf([RED_BIAS, GREEN_BIAS, BLUE_BIAS, ALPHA_BIAS][i], bias);
         gl.glRasterPos2i(2 + 31 * (i as i32 % 2), 2 + 31 * (i as i32 / 2));
@@ -266,7 +273,8 @@ fn raster_position(gl: &mut Stage<'_>) {
     gl.glEnable(LIGHTING);
     gl.glEnable(LIGHT0);
     gl.glNormal3f(0.3, 0.2, 1.0);
-    let positions = [[0.0, 0.0, 0.0], [1.0, 0.5, -1.0], [3.5, 0.0, 0.0], [0.0, 0.0, 5.0], [-1.0, -0.7, 2.0]];
+    let positions =
+        [[0.0, 0.0, 0.0], [1.0, 0.5, -1.0], [3.5, 0.0, 0.0], [0.0, 0.0, 5.0], [-1.0, -0.7, 2.0]];
     for position in positions {
         gl.glRasterPos3fv(&position);
         gl.note_floats::<1>(CURRENT_RASTER_POSITION_VALID);

@@ -69,7 +69,8 @@ fn wall(gl: &Gl) {
 
 fn spot(gl: &mut Stage<'_>) {
     lit(gl);
-    for (i, (x, cutoff, exponent)) in [(-0.9, 20.0, 0.0), (0.9, 35.0, 20.0)].into_iter().enumerate() {
+    for (i, (x, cutoff, exponent)) in [(-0.9, 20.0, 0.0), (0.9, 35.0, 20.0)].into_iter().enumerate()
+    {
         let light = LIGHT0 + i as u32;
         gl.glEnable(light);
         gl.glLightfv(light, POSITION, &[x, 0.3, 2.0, 1.0]);
@@ -97,7 +98,8 @@ fn eight(gl: &mut Stage<'_>) {
         let light = LIGHT0 + i;
         gl.glEnable(light);
         gl.glLightfv(light, POSITION, &[2.0 * angle.cos(), 2.0 * angle.sin(), 0.5, (i % 2) as f32]);
-        let color = [(i & 1) as f32 * 0.6, (i >> 1 & 1) as f32 * 0.6, 0.3 + (i >> 2 & 1) as f32 * 0.4, 1.0];
+        let color =
+            [(i & 1) as f32 * 0.6, (i >> 1 & 1) as f32 * 0.6, 0.3 + (i >> 2 & 1) as f32 * 0.4, 1.0];
         gl.glLightfv(light, DIFFUSE, &color);
         gl.glLightfv(light, AMBIENT, &[0.01, 0.02, 0.0, 1.0]);
     }
@@ -159,7 +161,9 @@ fn color_material(gl: &mut Stage<'_>) {
     lit(gl);
     gl.glEnable(LIGHT0);
     gl.glLightModelfv(LIGHT_MODEL_AMBIENT, &[0.4, 0.4, 0.4, 1.0]);
-    for (i, mode) in [AMBIENT, DIFFUSE, SPECULAR, EMISSION, AMBIENT_AND_DIFFUSE].into_iter().enumerate() {
+    for (i, mode) in
+        [AMBIENT, DIFFUSE, SPECULAR, EMISSION, AMBIENT_AND_DIFFUSE].into_iter().enumerate()
+    {
         gl.glPushAttrib(LIGHTING_BIT);
         shiny(gl, 8.0);
         gl.glColor4f(0.2, 0.2, 0.2, 1.0);
@@ -211,7 +215,8 @@ fn rescale(gl: &mut Stage<'_>) {
     sphere(gl, 0.4, 20, 12);
 }
 
-/// Scaling down makes normals longer; nobody makes them shorter again, so the highlight is wide and bright.
+/// Scaling down makes normals longer; nobody makes them shorter again, so the highlight is wide and
+/// bright.
 fn long_normals(gl: &mut Stage<'_>) {
     lit(gl);
     shiny(gl, 40.0);
@@ -277,7 +282,13 @@ fn get(gl: &mut Stage<'_>) {
         let mut direction = [0.0; 3];
         gl.glGetLightfv(light, SPOT_DIRECTION, &mut direction);
         gl.notes(&direction);
-        for name in [SPOT_EXPONENT, SPOT_CUTOFF, CONSTANT_ATTENUATION, LINEAR_ATTENUATION, QUADRATIC_ATTENUATION] {
+        for name in [
+            SPOT_EXPONENT,
+            SPOT_CUTOFF,
+            CONSTANT_ATTENUATION,
+            LINEAR_ATTENUATION,
+            QUADRATIC_ATTENUATION,
+        ] {
             let mut value = [0.0];
             gl.glGetLightfv(light, name, &mut value);
             gl.notes(&value);

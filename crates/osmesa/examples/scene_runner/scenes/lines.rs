@@ -77,7 +77,9 @@ fn line_kinds(gl: &mut Stage<'_>) {
     pixels(gl);
     for (mode, y) in [(LINES, 2.25), (LINE_STRIP, 22.25), (LINE_LOOP, 42.25)] {
         gl.glBegin(mode);
-        for (i, (dx, dy)) in [(3.2, 0.3), (20.3, 14.1), (35.7, 3.3), (50.2, 17.4), (60.9, 2.8)].into_iter().enumerate()
+        for (i, (dx, dy)) in [(3.2, 0.3), (20.3, 14.1), (35.7, 3.3), (50.2, 17.4), (60.9, 2.8)]
+            .into_iter()
+            .enumerate()
         {
             gl.glColor3f(1.0 - i as f32 * 0.2, i as f32 * 0.2, 1.0);
             gl.glVertex2f(dx, y + dy);

@@ -193,7 +193,8 @@ fn textures(gl: &mut Stage<'_>) {
 
 fn arrays(gl: &mut Stage<'_>) {
     pixels(gl);
-    let mut points: [[f32; 2]; 6] = [[4.0, 4.0], [40.0, 8.0], [20.0, 30.0], [24.0, 60.0], [60.0, 40.0], [30.0, 34.0]];
+    let mut points: [[f32; 2]; 6] =
+        [[4.0, 4.0], [40.0, 8.0], [20.0, 30.0], [24.0, 60.0], [60.0, 40.0], [30.0, 34.0]];
     gl.glEnableClientState(VERTEX_ARRAY);
     gl.glVertexPointer(2, FLOAT, 0, at(&points));
     gl.glNewList(6, COMPILE);
@@ -369,7 +370,18 @@ fn evaluator_color_texture(gl: &mut Stage<'_>) {
         2,
         &[1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0],
     );
-    gl.glMap2f(MAP2_TEXTURE_COORD_2, 0.0, 2.0, 4, 2, 0.0, 3.0, 2, 2, &[0.0, 0.0, 0.0, 2.0, 2.0, 0.0, 2.0, 2.0]);
+    gl.glMap2f(
+        MAP2_TEXTURE_COORD_2,
+        0.0,
+        2.0,
+        4,
+        2,
+        0.0,
+        3.0,
+        2,
+        2,
+        &[0.0, 0.0, 0.0, 2.0, 2.0, 0.0, 2.0, 2.0],
+    );
     for map in [MAP2_VERTEX_4, MAP2_COLOR_4, MAP2_TEXTURE_COORD_2] {
         gl.glEnable(map);
     }

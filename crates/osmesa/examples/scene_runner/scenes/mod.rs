@@ -23,8 +23,8 @@ use crate::gl::Gl;
 use crate::stage::{Stage, Surface, USUAL};
 use vitral_gl::enums::*;
 
-/// How well two libraries must agree on a scene. Numbers that a scene notes agree within a hundredth (or a thousandth of
-/// their size).
+/// How well two libraries must agree on a scene. Numbers that a scene notes agree within a
+/// hundredth (or a thousandth of their size).
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Agreement {
     /// Every byte.
@@ -101,15 +101,17 @@ fn camera(gl: &Gl) {
 /// A rectangle in the plane z = 0 with texture coordinates from 0 to `repeat`.
 fn textured(gl: &Gl, [x0, y0, x1, y1]: [f32; 4], repeat: f32) {
     gl.glBegin(QUADS);
-    for (x, y, s, t) in [(x0, y0, 0.0, 0.0), (x1, y0, repeat, 0.0), (x1, y1, repeat, repeat), (x0, y1, 0.0, repeat)] {
+    for (x, y, s, t) in
+        [(x0, y0, 0.0, 0.0), (x1, y0, repeat, 0.0), (x1, y1, repeat, repeat), (x0, y1, 0.0, repeat)]
+    {
         gl.glTexCoord2f(s, t);
         gl.glVertex2f(x, y);
     }
     gl.glEnd();
 }
 
-/// A square with a different colour in each corner, in the plane z. The colours lie in a plane as well, so that it does not
-/// matter along which diagonal a library cuts.
+/// A square with a different colour in each corner, in the plane z. The colours lie in a plane as
+/// well, so that it does not matter along which diagonal a library cuts.
 fn rainbow(gl: &Gl, [x0, y0, x1, y1]: [f32; 4], z: f32) {
     gl.glBegin(QUADS);
     gl.glColor4f(1.0, 0.0, 0.0, 1.0);

@@ -89,7 +89,8 @@ fn polygon_kinds(gl: &mut Stage<'_>) {
     gl.glEnd();
 }
 
-/// Quads whose colours are not linear show along which diagonal they are cut, which depends on how they were sent.
+/// Quads whose colours are not linear show along which diagonal they are cut, which depends on how
+/// they were sent.
 fn quad_ways(gl: &mut Stage<'_>) {
     pixels(gl);
     let corners = |x: f32, y: f32| [[x, y], [x + 18.0, y], [x + 18.0, y + 18.0], [x, y + 18.0]];
@@ -97,7 +98,8 @@ fn quad_ways(gl: &mut Stage<'_>) {
         std::array::from_fn(|i| [f32::from(i % 4 == 0), (i % 3) as f32 / 2.0, f32::from(i == 6)]);
     let send = |gl: &Gl, y: f32| {
         gl.glBegin(QUADS);
-        for (place, color) in [corners(2.0, y), corners(22.0, y)].as_flattened().iter().zip(&colors) {
+        for (place, color) in [corners(2.0, y), corners(22.0, y)].as_flattened().iter().zip(&colors)
+        {
             gl.glColor3fv(color);
             gl.glVertex2f(place[0], place[1]);
         }
@@ -143,13 +145,17 @@ fn shade_flat(gl: &mut Stage<'_>) {
     gl.glEnd();
     rainbow(gl, [3.0, 40.0, 20.0, 60.0], 0.0);
     gl.glBegin(TRIANGLE_FAN);
-    for (i, (x, y)) in [(25.0, 40.0), (40.0, 40.0), (38.0, 55.0), (24.0, 60.0)].into_iter().enumerate() {
+    for (i, (x, y)) in
+        [(25.0, 40.0), (40.0, 40.0), (38.0, 55.0), (24.0, 60.0)].into_iter().enumerate()
+    {
         gl.glColor3f(1.0, i as f32 / 3.0, 0.0);
         gl.glVertex2f(x, y);
     }
     gl.glEnd();
     gl.glBegin(POLYGON);
-    for (i, (x, y)) in [(45.0, 40.0), (60.0, 40.0), (61.0, 55.0), (50.0, 62.0)].into_iter().enumerate() {
+    for (i, (x, y)) in
+        [(45.0, 40.0), (60.0, 40.0), (61.0, 55.0), (50.0, 62.0)].into_iter().enumerate()
+    {
         gl.glColor3f(0.0, i as f32 / 3.0, 1.0 - i as f32 / 3.0);
         gl.glVertex2f(x, y);
     }
@@ -160,7 +166,9 @@ fn cull(gl: &mut Stage<'_>) {
     pixels(gl);
     gl.glEnable(CULL_FACE);
     for (i, (mode, front)) in
-        [(BACK, CCW), (BACK, CW), (FRONT, CCW), (FRONT, CW), (FRONT_AND_BACK, CCW)].into_iter().enumerate()
+        [(BACK, CCW), (BACK, CW), (FRONT, CCW), (FRONT, CW), (FRONT_AND_BACK, CCW)]
+            .into_iter()
+            .enumerate()
     {
         gl.glCullFace(mode);
         gl.glFrontFace(front);
@@ -194,22 +202,28 @@ fn polygon_mode_faces(gl: &mut Stage<'_>) {
     gl.glPolygonMode(BACK, LINE);
     gl.glBegin(TRIANGLES);
     gl.glColor3f(1.0, 0.5, 0.0);
-    for (x, y) in [(4.5, 4.5), (40.5, 8.5), (20.5, 30.5), (24.5, 60.5), (60.5, 40.5), (30.5, 34.5)] {
+    for (x, y) in [(4.5, 4.5), (40.5, 8.5), (20.5, 30.5), (24.5, 60.5), (60.5, 40.5), (30.5, 34.5)]
+    {
         gl.glVertex2f(x, y);
     }
     gl.glEnd();
 }
 
-/// Edges along the planes of the user show. (Those along the view volume do, too, but not with Mesa.)
+/// Edges along the planes of the user show. (Those along the view volume do, too, but not with
+/// Mesa.)
 fn polygon_mode_clip_planes(gl: &mut Stage<'_>) {
     pixels(gl);
     gl.glPolygonMode(FRONT_AND_BACK, LINE);
-    for (plane, equation) in [(CLIP_PLANE0, [-1.0, -0.3, 0.0, 50.0]), (CLIP_PLANE0 + 3, [0.2, -1.0, 0.0, 45.0])] {
+    for (plane, equation) in
+        [(CLIP_PLANE0, [-1.0, -0.3, 0.0, 50.0]), (CLIP_PLANE0 + 3, [0.2, -1.0, 0.0, 45.0])]
+    {
         gl.glClipPlane(plane, &equation);
         gl.glEnable(plane);
     }
     gl.glBegin(POLYGON);
-    for (x, y, edge) in [(3.5, 3.5, 1), (60.5, 6.5, 0), (62.5, 50.5, 1), (30.5, 60.5, 1), (5.5, 40.5, 1)] {
+    for (x, y, edge) in
+        [(3.5, 3.5, 1), (60.5, 6.5, 0), (62.5, 50.5, 1), (30.5, 60.5, 1), (5.5, 40.5, 1)]
+    {
         gl.glEdgeFlag(edge);
         gl.glColor3f(1.0, x / 64.0, y / 64.0);
         gl.glVertex2f(x, y);
@@ -223,7 +237,9 @@ fn edge_flags(gl: &mut Stage<'_>) {
     for (mode, y) in [(TRIANGLES, 3.5), (QUADS, 23.5), (POLYGON, 43.5)] {
         gl.glBegin(mode);
         for (i, (dx, dy)) in
-            [(3.5, 0.0), (28.5, 2.0), (18.5, 16.0), (40.5, 15.0), (35.5, 1.0), (60.5, 7.0)].into_iter().enumerate()
+            [(3.5, 0.0), (28.5, 2.0), (18.5, 16.0), (40.5, 15.0), (35.5, 1.0), (60.5, 7.0)]
+                .into_iter()
+                .enumerate()
         {
             if mode != POLYGON || i < 5 {
                 gl.glEdgeFlag(u8::from(i % 2 == 0));
@@ -263,7 +279,8 @@ fn polygon_offset_edges(gl: &mut Stage<'_>) {
     gl.glDepthFunc(ALWAYS);
     gl.glPointSize(16.0);
     gl.glLineWidth(5.0);
-    let modes = [(FILL, POLYGON_OFFSET_FILL), (LINE, POLYGON_OFFSET_LINE), (POINT, POLYGON_OFFSET_POINT)];
+    let modes =
+        [(FILL, POLYGON_OFFSET_FILL), (LINE, POLYGON_OFFSET_LINE), (POINT, POLYGON_OFFSET_POINT)];
     for (i, (mode, enable)) in modes.into_iter().enumerate() {
         gl.glPolygonMode(FRONT_AND_BACK, mode);
         gl.glEnable(enable);
@@ -334,7 +351,9 @@ fn near_far_clip(gl: &mut Stage<'_>) {
 /// A floor from behind the eye to behind the far plane.
 fn rainbow_floor(gl: &Gl, shade: f32) {
     gl.glBegin(QUADS);
-    for (i, (x, z)) in [(-4.0, 9.0), (4.0, 9.0), (4.0, -20.0), (-4.0, -20.0)].into_iter().enumerate() {
+    for (i, (x, z)) in
+        [(-4.0, 9.0), (4.0, 9.0), (4.0, -20.0), (-4.0, -20.0)].into_iter().enumerate()
+    {
         gl.glColor3f(shade, f32::from(u8::from(i == 1 || i == 2)), (i / 2) as f32);
         gl.glVertex3f(x, -1.0, z);
     }
@@ -362,8 +381,9 @@ fn depth_clamp_beyond(gl: &mut Stage<'_>) {
         let size = 0.4 * (4.0 - z);
         for (primitive, x) in [(TRIANGLES, -1.0), (LINES, 0.1), (POINTS, 0.6)] {
             gl.glBegin(primitive);
-            for (dx, y) in
-                [(0.0, -0.8), (0.6, -0.1), (0.3, 0.7)].into_iter().take(if primitive == LINES { 2 } else { 3 })
+            for (dx, y) in [(0.0, -0.8), (0.6, -0.1), (0.3, 0.7)]
+                .into_iter()
+                .take(if primitive == LINES { 2 } else { 3 })
             {
                 gl.glVertex3f((x + dx) * size, y * size, z);
             }
@@ -412,7 +432,9 @@ fn matrix_stacks(gl: &mut Stage<'_>) {
         gl.glPushMatrix();
         gl.glRotatef(90.0 * i as f32 + 15.0, 0.0, 0.0, 1.0);
         gl.glTranslatef(1.0, 0.0, 0.0);
-        gl.glMultMatrixf(&[1.0, 0.2, 0.0, 0.0, -0.1, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.1, 0.0, 0.0, 1.0]);
+        gl.glMultMatrixf(&[
+            1.0, 0.2, 0.0, 0.0, -0.1, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.1, 0.0, 0.0, 1.0,
+        ]);
         gl.glScalef(0.6, 0.4, 1.0);
         rainbow(gl, [-1.0, -1.0, 1.0, 1.0], 0.0);
         gl.note_floats::<16>(MODELVIEW_MATRIX);
@@ -420,7 +442,9 @@ fn matrix_stacks(gl: &mut Stage<'_>) {
     }
     gl.note_floats::<1>(MODELVIEW_STACK_DEPTH);
     gl.note_floats::<16>(PROJECTION_MATRIX);
-    gl.glLoadTransposeMatrixf(&[0.3, 0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0, 1.0, -4.0, 0.0, 0.0, 0.0, 1.0]);
+    gl.glLoadTransposeMatrixf(&[
+        0.3, 0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0, 1.0, -4.0, 0.0, 0.0, 0.0, 1.0,
+    ]);
     gl.note_floats::<16>(TRANSPOSE_MODELVIEW_MATRIX);
     rainbow(gl, [-1.0, -1.0, 1.0, 1.0], 0.0);
 }

@@ -16,8 +16,8 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("get-conversions", Exact, conversions),
 ];
 
-/// Notes what came back. Whether the stipple pattern begins anew with a line is left out: Mesa does not say so for lines that
-/// stand alone.
+/// Notes what came back. Whether the stipple pattern begins anew with a line is left out: Mesa does
+/// not say so for lines that stand alone.
 fn note_feedback(gl: &mut Stage<'_>, buffer: &[f32], count: i32) {
     gl.note(count);
     for value in &buffer[..count.max(0) as usize] {
@@ -67,7 +67,9 @@ fn feedback_clipped(gl: &mut Stage<'_>) {
     gl.glEnd();
     gl.glEnable(CULL_FACE);
     gl.glBegin(TRIANGLES);
-    for (x, y) in [(10.0, 10.0), (5.0, 20.0), (10.0, 20.0), (10.0, 10.0), (20.0, 10.0), (20.0, 20.0)] {
+    for (x, y) in
+        [(10.0, 10.0), (5.0, 20.0), (10.0, 20.0), (10.0, 10.0), (20.0, 10.0), (20.0, 20.0)]
+    {
         gl.glVertex2f(x, y);
     }
     gl.glEnd();
@@ -214,11 +216,19 @@ const WRONG_CALLS: &[fn(&Gl, &[u8])] = &[
     |gl, data| gl.glDrawPixels(1, 1, 0x77, UNSIGNED_BYTE, crate::gl::at(data)),
     |gl, data| gl.glDrawPixels(1, 1, RGBA, 0x77, crate::gl::at(data)),
     |gl, data| gl.glDrawPixels(1, 1, RGBA, UNSIGNED_SHORT_5_6_5, crate::gl::at(data)),
-    |gl, data| gl.glTexImage2D(TEXTURE_2D, -1, 4, 2, 2, 0, RGBA, UNSIGNED_BYTE, crate::gl::at(data)),
+    |gl, data| {
+        gl.glTexImage2D(TEXTURE_2D, -1, 4, 2, 2, 0, RGBA, UNSIGNED_BYTE, crate::gl::at(data))
+    },
     |gl, data| gl.glTexImage2D(TEXTURE_2D, 0, 4, 2, 2, 2, RGBA, UNSIGNED_BYTE, crate::gl::at(data)),
-    |gl, data| gl.glTexImage2D(TEXTURE_2D, 0, 4, -2, 2, 0, RGBA, UNSIGNED_BYTE, crate::gl::at(data)),
-    |gl, data| gl.glTexImage2D(TEXTURE_2D, 0, 9999, 2, 2, 0, RGBA, UNSIGNED_BYTE, crate::gl::at(data)),
-    |gl, data| gl.glTexSubImage2D(TEXTURE_2D, 5, 0, 0, 2, 2, RGBA, UNSIGNED_BYTE, crate::gl::at(data)),
+    |gl, data| {
+        gl.glTexImage2D(TEXTURE_2D, 0, 4, -2, 2, 0, RGBA, UNSIGNED_BYTE, crate::gl::at(data))
+    },
+    |gl, data| {
+        gl.glTexImage2D(TEXTURE_2D, 0, 9999, 2, 2, 0, RGBA, UNSIGNED_BYTE, crate::gl::at(data))
+    },
+    |gl, data| {
+        gl.glTexSubImage2D(TEXTURE_2D, 5, 0, 0, 2, 2, RGBA, UNSIGNED_BYTE, crate::gl::at(data))
+    },
     |gl, _| gl.glTexParameteri(TEXTURE_2D, TEXTURE_WRAP_S, 7),
     |gl, _| gl.glTexParameteri(TEXTURE_2D, TEXTURE_MAG_FILTER, LINEAR_MIPMAP_LINEAR as i32),
     |gl, _| gl.glTexEnvi(TEXTURE_ENV, TEXTURE_ENV_MODE, 3),
@@ -447,7 +457,14 @@ fn enables(gl: &mut Stage<'_>) {
         gl.glDisable(cap);
         gl.note(gl.glIsEnabled(cap));
     }
-    for array in [VERTEX_ARRAY, NORMAL_ARRAY, COLOR_ARRAY, EDGE_FLAG_ARRAY, TEXTURE_COORD_ARRAY, FOG_COORD_ARRAY] {
+    for array in [
+        VERTEX_ARRAY,
+        NORMAL_ARRAY,
+        COLOR_ARRAY,
+        EDGE_FLAG_ARRAY,
+        TEXTURE_COORD_ARRAY,
+        FOG_COORD_ARRAY,
+    ] {
         gl.note(gl.glIsEnabled(array));
         gl.glEnableClientState(array);
         gl.note(gl.glIsEnabled(array));

@@ -68,7 +68,9 @@ fn packed(gl: &mut Stage<'_>) {
 
 fn pack(gl: &mut Stage<'_>) {
     picture(gl);
-    for (row, rows, skip, alignment, swap) in [(0, 0, 0, 4, 0), (9, 1, 2, 4, 0), (0, 0, 1, 8, 1), (5, 2, 0, 2, 1)] {
+    for (row, rows, skip, alignment, swap) in
+        [(0, 0, 0, 4, 0), (9, 1, 2, 4, 0), (0, 0, 1, 8, 1), (5, 2, 0, 2, 1)]
+    {
         gl.glPixelStorei(PACK_ROW_LENGTH, row);
         gl.glPixelStorei(PACK_SKIP_ROWS, rows);
         gl.glPixelStorei(PACK_SKIP_PIXELS, skip);

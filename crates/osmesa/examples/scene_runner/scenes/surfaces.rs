@@ -1,4 +1,5 @@
-//! The window system's side: formats and types of the colour buffer, its rows, several contexts, shared objects.
+//! The window system's side: formats and types of the colour buffer, its rows, several contexts,
+//! shared objects.
 
 use super::*;
 use crate::gl::{at, at_mut};

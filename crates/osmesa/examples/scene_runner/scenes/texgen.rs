@@ -110,7 +110,11 @@ fn units(gl: &mut Stage<'_>) {
         gl.glBindTexture(TEXTURE_2D, name[0]);
         texture_images::plain(gl, 16, &checks(16, 1 << unit));
         gl.glTexParameteri(TEXTURE_2D, TEXTURE_MAG_FILTER, NEAREST as i32);
-        gl.glTexEnvi(TEXTURE_ENV, TEXTURE_ENV_MODE, [MODULATE, ADD, MODULATE, BLEND][unit as usize] as i32);
+        gl.glTexEnvi(
+            TEXTURE_ENV,
+            TEXTURE_ENV_MODE,
+            [MODULATE, ADD, MODULATE, BLEND][unit as usize] as i32,
+        );
         gl.glTexEnvfv(TEXTURE_ENV, TEXTURE_ENV_COLOR, &[0.3, 0.6, 0.9, 1.0]);
         gl.glEnable(TEXTURE_2D);
     }
@@ -119,7 +123,11 @@ fn units(gl: &mut Stage<'_>) {
     for (x, y) in [(-1.5_f32, -1.5_f32), (1.5, -1.5), (1.5, 1.5), (-1.5, 1.5)] {
         for unit in 0..4 {
             let (sin, cos) = (0.1 + unit as f32 * 0.3).sin_cos();
-            gl.glMultiTexCoord2f(TEXTURE0 + unit, 0.8 * (x * cos - y * sin), 0.8 * (x * sin + y * cos));
+            gl.glMultiTexCoord2f(
+                TEXTURE0 + unit,
+                0.8 * (x * cos - y * sin),
+                0.8 * (x * sin + y * cos),
+            );
         }
         gl.glVertex3f(x, y, 0.0);
     }

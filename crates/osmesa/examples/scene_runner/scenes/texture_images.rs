@@ -26,15 +26,39 @@ pub(crate) fn plain(gl: &Gl, size: usize, texels: &[[u8; 4]]) {
 
 /// A 2D texture with a colour for each level.
 pub(crate) fn levels(gl: &Gl, size: usize) {
-    let colors = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 0], [0, 255, 255], [255, 0, 255], [255, 255, 255]];
-    for (level, [r, g, b]) in colors.into_iter().enumerate().take_while(|(level, _)| size >> level > 0) {
+    let colors = [
+        [255, 0, 0],
+        [0, 255, 0],
+        [0, 0, 255],
+        [255, 255, 0],
+        [0, 255, 255],
+        [255, 0, 255],
+        [255, 255, 255],
+    ];
+    for (level, [r, g, b]) in
+        colors.into_iter().enumerate().take_while(|(level, _)| size >> level > 0)
+    {
         let side = size >> level;
         let texel = |i: usize| {
-            if (i % side + i / side).is_multiple_of(2) { [r, g, b, 255] } else { [r / 2, g / 2, b / 2, 128] }
+            if (i % side + i / side).is_multiple_of(2) {
+                [r, g, b, 255]
+            } else {
+                [r / 2, g / 2, b / 2, 128]
+            }
         };
         let texels: Vec<[u8; 4]> = (0..side * side).map(texel).collect();
         let side = side as i32;
-        gl.glTexImage2D(TEXTURE_2D, level as i32, RGBA as i32, side, side, 0, RGBA, UNSIGNED_BYTE, at(&texels));
+        gl.glTexImage2D(
+            TEXTURE_2D,
+            level as i32,
+            RGBA as i32,
+            side,
+            side,
+            0,
+            RGBA,
+            UNSIGNED_BYTE,
+            at(&texels),
+        );
     }
 }
 
@@ -133,9 +157,12 @@ fn pixel_formats(gl: &mut Stage<'_>) {
     let signed: Vec<i32> = (0..64).map(|i| i * 30_000_000).collect();
     let mut i = 0;
     for format in formats {
-        for (kind, data) in
-            [(UNSIGNED_BYTE, at(&bytes)), (UNSIGNED_SHORT, at(&shorts)), (FLOAT, at(&floats)), (INT, at(&signed))]
-        {
+        for (kind, data) in [
+            (UNSIGNED_BYTE, at(&bytes)),
+            (UNSIGNED_SHORT, at(&shorts)),
+            (FLOAT, at(&floats)),
+            (INT, at(&signed)),
+        ] {
             gl.glTexImage2D(TEXTURE_2D, 0, RGBA as i32, 4, 4, 0, format, kind, data);
             field(gl, i);
             i += 1;
@@ -172,8 +199,28 @@ fn packed_types(gl: &mut Stage<'_>) {
 
 fn sub_image(gl: &mut Stage<'_>) {
     ready(gl);
-    gl.glTexImage2D(TEXTURE_2D, 0, RGBA8 as i32, 16, 16, 0, RGBA, UNSIGNED_BYTE, at(&checks(16, 4)));
-    gl.glTexSubImage2D(TEXTURE_2D, 0, 3, 5, 8, 6, RGBA, UNSIGNED_BYTE, at(&[[250_u8, 120, 0, 255]; 48]));
+    gl.glTexImage2D(
+        TEXTURE_2D,
+        0,
+        RGBA8 as i32,
+        16,
+        16,
+        0,
+        RGBA,
+        UNSIGNED_BYTE,
+        at(&checks(16, 4)),
+    );
+    gl.glTexSubImage2D(
+        TEXTURE_2D,
+        0,
+        3,
+        5,
+        8,
+        6,
+        RGBA,
+        UNSIGNED_BYTE,
+        at(&[[250_u8, 120, 0, 255]; 48]),
+    );
     gl.glTexSubImage2D(TEXTURE_2D, 0, 0, 0, 4, 4, LUMINANCE, UNSIGNED_BYTE, at(&[200_u8; 16]));
     textured(gl, [0.0, 0.0, 64.0, 64.0], 1.0);
 }
@@ -184,7 +231,19 @@ fn sub_image_others(gl: &mut Stage<'_>) {
     gl.glTexImage1D(TEXTURE_1D, 0, RGBA as i32, 16, 0, RGBA, UNSIGNED_BYTE, at(&checks(4, 1)));
     gl.glTexSubImage1D(TEXTURE_1D, 0, 4, 8, RGBA, UNSIGNED_BYTE, at(&[[9_u8, 200, 100, 255]; 8]));
     gl.glTexImage3D(TEXTURE_3D, 0, RGBA as i32, 4, 4, 4, 0, RGBA, UNSIGNED_BYTE, at(&checks(8, 1)));
-    gl.glTexSubImage3D(TEXTURE_3D, 0, 1, 1, 2, 2, 2, 1, RGBA, UNSIGNED_BYTE, at(&[[255_u8, 100, 9, 255]; 4]));
+    gl.glTexSubImage3D(
+        TEXTURE_3D,
+        0,
+        1,
+        1,
+        2,
+        2,
+        2,
+        1,
+        RGBA,
+        UNSIGNED_BYTE,
+        at(&[[255_u8, 100, 9, 255]; 4]),
+    );
     for (target, y) in [(TEXTURE_1D, 2.0), (TEXTURE_3D, 34.0)] {
         gl.glTexParameteri(target, TEXTURE_MIN_FILTER, NEAREST as i32);
         gl.glTexParameteri(target, TEXTURE_MAG_FILTER, NEAREST as i32);
@@ -254,13 +313,17 @@ fn level_queries(gl: &mut Stage<'_>) {
     gl.glTexImage2D(TEXTURE_2D, 0, RGBA8 as i32, 16, 8, 0, RGBA, UNSIGNED_BYTE, at(&checks(16, 4)));
     gl.glTexImage2D(TEXTURE_2D, 1, RGBA8 as i32, 8, 4, 0, RGBA, UNSIGNED_BYTE, 0);
     for level in 0..3 {
-        for name in [TEXTURE_WIDTH, TEXTURE_HEIGHT, TEXTURE_DEPTH, TEXTURE_BORDER, TEXTURE_COMPRESSED] {
+        for name in
+            [TEXTURE_WIDTH, TEXTURE_HEIGHT, TEXTURE_DEPTH, TEXTURE_BORDER, TEXTURE_COMPRESSED]
+        {
             let mut value = [-1];
             gl.glGetTexLevelParameteriv(TEXTURE_2D, level, name, &mut value);
             gl.note(value[0]);
         }
     }
-    for name in [TEXTURE_RED_SIZE, TEXTURE_ALPHA_SIZE, TEXTURE_INTENSITY_SIZE, TEXTURE_INTERNAL_FORMAT] {
+    for name in
+        [TEXTURE_RED_SIZE, TEXTURE_ALPHA_SIZE, TEXTURE_INTENSITY_SIZE, TEXTURE_INTERNAL_FORMAT]
+    {
         let mut value = [-1];
         gl.glGetTexLevelParameteriv(TEXTURE_2D, 0, name, &mut value);
         gl.note(value[0]);
@@ -273,9 +336,10 @@ fn level_queries(gl: &mut Stage<'_>) {
 fn compressed(gl: &mut Stage<'_>) {
     ready(gl);
     let texels = checks(16, 8);
-    for (i, format) in [COMPRESSED_ALPHA, COMPRESSED_LUMINANCE, COMPRESSED_LUMINANCE_ALPHA, COMPRESSED_INTENSITY]
-        .into_iter()
-        .enumerate()
+    for (i, format) in
+        [COMPRESSED_ALPHA, COMPRESSED_LUMINANCE, COMPRESSED_LUMINANCE_ALPHA, COMPRESSED_INTENSITY]
+            .into_iter()
+            .enumerate()
     {
         gl.glTexImage2D(TEXTURE_2D, 0, format as i32, 16, 16, 0, RGBA, UNSIGNED_BYTE, at(&texels));
         let x = 16.0 * i as f32;

@@ -60,12 +60,17 @@ fn minified(gl: &mut Stage<'_>) {
     textured(gl, [32.0, 2.0, 62.0, 62.0], 1.7);
 }
 
-/// A row for each minification filter, in it squares whose texels are ever smaller. How exactly the level is found is
-/// free: these sizes are near powers of two. (Nor are they below the square root of two, from where on Mesa would magnify
-/// with nearest texels.)
+/// A row for each minification filter, in it squares whose texels are ever smaller. How exactly the
+/// level is found is free: these sizes are near powers of two. (Nor are they below the square root
+/// of two, from where on Mesa would magnify with nearest texels.)
 fn shrinking(gl: &Gl) {
     pixels(gl);
-    let rows = [NEAREST_MIPMAP_NEAREST, LINEAR_MIPMAP_NEAREST, NEAREST_MIPMAP_LINEAR, LINEAR_MIPMAP_LINEAR];
+    let rows = [
+        NEAREST_MIPMAP_NEAREST,
+        LINEAR_MIPMAP_NEAREST,
+        NEAREST_MIPMAP_LINEAR,
+        LINEAR_MIPMAP_LINEAR,
+    ];
     for (j, filter) in rows.into_iter().enumerate() {
         filters(gl, TEXTURE_2D, filter, LINEAR);
         for (i, texels) in [1.9, 2.15, 3.8, 4.3].into_iter().enumerate() {
@@ -118,7 +123,8 @@ fn lod_range(gl: &mut Stage<'_>) {
     levels(gl, 16);
     filters(gl, TEXTURE_2D, NEAREST_MIPMAP_NEAREST, NEAREST);
     gl.glEnable(TEXTURE_2D);
-    for (i, (least, most)) in [(0.0, 0.0), (1.0, 1.0), (2.0, 4.0), (-1000.0, 1.0), (-5.0, -2.0)].into_iter().enumerate()
+    for (i, (least, most)) in
+        [(0.0, 0.0), (1.0, 1.0), (2.0, 4.0), (-1000.0, 1.0), (-5.0, -2.0)].into_iter().enumerate()
     {
         gl.glTexParameterf(TEXTURE_2D, TEXTURE_MIN_LOD, least);
         gl.glTexParameterf(TEXTURE_2D, TEXTURE_MAX_LOD, most);
@@ -134,7 +140,8 @@ fn base_max_level(gl: &mut Stage<'_>) {
     levels(gl, 16);
     filters(gl, TEXTURE_2D, NEAREST_MIPMAP_NEAREST, NEAREST);
     gl.glEnable(TEXTURE_2D);
-    for (i, (base, most)) in [(0, 1000), (1, 1000), (2, 3), (0, 1), (4, 4)].into_iter().enumerate() {
+    for (i, (base, most)) in [(0, 1000), (1, 1000), (2, 3), (0, 1), (4, 4)].into_iter().enumerate()
+    {
         gl.glTexParameteri(TEXTURE_2D, TEXTURE_BASE_LEVEL, base);
         gl.glTexParameteri(TEXTURE_2D, TEXTURE_MAX_LEVEL, most);
         let x = 2.0 + 12.0 * i as f32;
@@ -177,7 +184,8 @@ fn wrap_linear(gl: &mut Stage<'_>) {
 
 fn one(gl: &mut Stage<'_>) {
     pixels(gl);
-    let texels: Vec<[u8; 4]> = (0..16_u8).map(|i| [i * 17, 255 - i * 17, 90 * (i % 3), 255]).collect();
+    let texels: Vec<[u8; 4]> =
+        (0..16_u8).map(|i| [i * 17, 255 - i * 17, 90 * (i % 3), 255]).collect();
     gl.glTexImage1D(TEXTURE_1D, 0, RGBA as i32, 16, 0, RGBA, UNSIGNED_BYTE, at(&texels));
     gl.glEnable(TEXTURE_1D);
     filters(gl, TEXTURE_1D, LINEAR, LINEAR);
@@ -241,7 +249,17 @@ fn cube_seamless(gl: &mut Stage<'_>) {
 fn rectangle(gl: &mut Stage<'_>) {
     pixels(gl);
     let texels: Vec<[u8; 4]> = checks(12, 3)[..84].to_vec();
-    gl.glTexImage2D(TEXTURE_RECTANGLE_ARB, 0, RGBA as i32, 12, 7, 0, RGBA, UNSIGNED_BYTE, at(&texels));
+    gl.glTexImage2D(
+        TEXTURE_RECTANGLE_ARB,
+        0,
+        RGBA as i32,
+        12,
+        7,
+        0,
+        RGBA,
+        UNSIGNED_BYTE,
+        at(&texels),
+    );
     gl.glEnable(TEXTURE_RECTANGLE_ARB);
     filters(gl, TEXTURE_RECTANGLE_ARB, NEAREST, NEAREST);
     textured(gl, [2.0, 2.0, 30.0, 62.0], 12.0);
@@ -252,7 +270,17 @@ fn rectangle(gl: &mut Stage<'_>) {
 fn npot(gl: &mut Stage<'_>) {
     pixels(gl);
     gl.glTexParameteri(TEXTURE_2D, GENERATE_MIPMAP, 1);
-    gl.glTexImage2D(TEXTURE_2D, 0, RGBA as i32, 13, 9, 0, RGBA, UNSIGNED_BYTE, at(&checks(13, 3)[..117]));
+    gl.glTexImage2D(
+        TEXTURE_2D,
+        0,
+        RGBA as i32,
+        13,
+        9,
+        0,
+        RGBA,
+        UNSIGNED_BYTE,
+        at(&checks(13, 3)[..117]),
+    );
     gl.glEnable(TEXTURE_2D);
     filters(gl, TEXTURE_2D, NEAREST, NEAREST);
     textured(gl, [2.0, 2.0, 30.0, 62.0], 1.5);
@@ -262,9 +290,29 @@ fn npot(gl: &mut Stage<'_>) {
 
 fn priority(gl: &mut Stage<'_>) {
     pixels(gl);
-    gl.glTexImage1D(TEXTURE_1D, 0, RGBA as i32, 2, 0, RGBA, UNSIGNED_BYTE, at(&[[255_u8, 0, 0, 255]; 2]));
+    gl.glTexImage1D(
+        TEXTURE_1D,
+        0,
+        RGBA as i32,
+        2,
+        0,
+        RGBA,
+        UNSIGNED_BYTE,
+        at(&[[255_u8, 0, 0, 255]; 2]),
+    );
     plain(gl, 2, &[[0, 255, 0, 255]; 4]);
-    gl.glTexImage3D(TEXTURE_3D, 0, RGBA as i32, 2, 2, 2, 0, RGBA, UNSIGNED_BYTE, at(&[[0_u8, 0, 255, 255]; 8]));
+    gl.glTexImage3D(
+        TEXTURE_3D,
+        0,
+        RGBA as i32,
+        2,
+        2,
+        2,
+        0,
+        RGBA,
+        UNSIGNED_BYTE,
+        at(&[[0_u8, 0, 255, 255]; 8]),
+    );
     for target in [TEXTURE_1D, TEXTURE_2D, TEXTURE_3D] {
         filters(gl, target, NEAREST, NEAREST);
     }
@@ -289,7 +337,8 @@ fn incomplete(gl: &mut Stage<'_>) {
 }
 
 fn depth_texture(gl: &Gl, internal: u32) {
-    let depths: Vec<f32> = (0..64).map(|i| (i % 8) as f32 / 7.0 * 0.6 + (i / 8) as f32 / 7.0 * 0.4).collect();
+    let depths: Vec<f32> =
+        (0..64).map(|i| (i % 8) as f32 / 7.0 * 0.6 + (i / 8) as f32 / 7.0 * 0.4).collect();
     gl.glTexImage2D(TEXTURE_2D, 0, internal as i32, 8, 8, 0, DEPTH_COMPONENT, FLOAT, at(&depths));
     filters(gl, TEXTURE_2D, NEAREST, NEAREST);
     gl.glEnable(TEXTURE_2D);
@@ -326,8 +375,19 @@ fn depth_modes(gl: &mut Stage<'_>) {
 
 fn srgb(gl: &mut Stage<'_>) {
     pixels(gl);
-    let texels: Vec<[u8; 4]> = (0..=255).map(|i| [i as u8, 255 - i as u8, i as u8 / 2, i as u8]).collect();
-    gl.glTexImage2D(TEXTURE_2D, 0, SRGB8_ALPHA8_EXT as i32, 16, 16, 0, RGBA, UNSIGNED_BYTE, at(&texels));
+    let texels: Vec<[u8; 4]> =
+        (0..=255).map(|i| [i as u8, 255 - i as u8, i as u8 / 2, i as u8]).collect();
+    gl.glTexImage2D(
+        TEXTURE_2D,
+        0,
+        SRGB8_ALPHA8_EXT as i32,
+        16,
+        16,
+        0,
+        RGBA,
+        UNSIGNED_BYTE,
+        at(&texels),
+    );
     filters(gl, TEXTURE_2D, NEAREST, LINEAR);
     gl.glEnable(TEXTURE_2D);
     textured(gl, [2.0, 2.0, 62.0, 62.0], 1.0);
@@ -335,7 +395,8 @@ fn srgb(gl: &mut Stage<'_>) {
 
 fn float(gl: &mut Stage<'_>) {
     pixels(gl);
-    let texels: Vec<[f32; 4]> = (0..64).map(|i| [i as f32 / 16.0 - 1.0, 4.0, -2.0, i as f32 / 64.0]).collect();
+    let texels: Vec<[f32; 4]> =
+        (0..64).map(|i| [i as f32 / 16.0 - 1.0, 4.0, -2.0, i as f32 / 64.0]).collect();
     gl.glTexImage2D(TEXTURE_2D, 0, RGBA32F_ARB as i32, 8, 8, 0, RGBA, FLOAT, at(&texels));
     filters(gl, TEXTURE_2D, LINEAR, LINEAR);
     gl.glEnable(TEXTURE_2D);

@@ -1,5 +1,5 @@
-//! Triangles that reach beyond the view volume or a plane of the user: cut there, with vertices that are weighted sums of their
-//! corners.
+//! Triangles that reach beyond the view volume or a plane of the user: cut there, with vertices
+//! that are weighted sums of their corners.
 
 use super::{Assembler, FacetAttributes, NONE};
 use crate::setup::{CornerPosition, DepthPlane};
@@ -32,14 +32,19 @@ pub(super) struct Corner {
 }
 
 impl Assembler<'_> {
-    /// Cuts a polygon at the view volume and the user's planes; what is left of it keeps its weights.
+    /// Cuts a polygon at the view volume and the user's planes; what is left of it keeps its
+    /// weights.
     fn cut(&self, corners: &[u32; 3], boundary: [bool; 3]) -> Vec<Corner> {
         // Start with the triangle's corners, each with weight one of its own.
         let mut polygon: Vec<Corner> = (0..3)
             .map(|k| {
                 let mut weights = [0.0; 3];
                 weights[k] = 1.0;
-                Corner { clip: self.vertices.clip[corners[k] as usize], weights, boundary: boundary[k] }
+                Corner {
+                    clip: self.vertices.clip[corners[k] as usize],
+                    weights,
+                    boundary: boundary[k],
+                }
             })
             .collect();
 
@@ -47,7 +52,8 @@ impl Assembler<'_> {
         let planes = self.state.user_planes;
         for plane in 0..planes {
             let d = [0, 1, 2].map(|k| self.vertices.user[corners[k] as usize * planes + plane]);
-            polygon = cut(&polygon, |c| d[0] * c.weights[0] + d[1] * c.weights[1] + d[2] * c.weights[2]);
+            polygon =
+                cut(&polygon, |c| d[0] * c.weights[0] + d[1] * c.weights[1] + d[2] * c.weights[2]);
         }
         let near = self.state.window.near;
         if !self.state.depth_clamp {
@@ -66,15 +72,22 @@ impl Assembler<'_> {
         polygon
     }
 
-    /// Draws what is left of a triangle; `smooth` says which edges of a smooth polygon's piece are the polygon's.
+    /// Draws what is left of a triangle; `smooth` says which edges of a smooth polygon's piece are
+    /// the polygon's.
     #[cold]
-    pub(super) fn clipped(&mut self, corners: &[u32; 3], provoking: u32, smooth: Option<[bool; 3]>) {
+    pub(super) fn clipped(
+        &mut self,
+        corners: &[u32; 3],
+        provoking: u32,
+        smooth: Option<[bool; 3]>,
+    ) {
         // Clip and project.
         let polygon = self.cut(corners, smooth.unwrap_or_default());
         if polygon.len() < 3 {
             return;
         }
-        let positions: Vec<CornerPosition> = polygon.iter().map(|c| self.state.window.project(c.clip)).collect();
+        let positions: Vec<CornerPosition> =
+            polygon.iter().map(|c| self.state.window.project(c.clip)).collect();
 
         // Decide the orientation by the area of the whole polygon.
         let area_of = |i: usize| Setup::doubled_area(positions[0], positions[i], positions[i + 1]);
@@ -102,28 +115,43 @@ impl Assembler<'_> {
             let slots = [slots[0], slots[i], slots[i + 1]];
             if smooth.is_some() {
                 let last = i + 2 == polygon.len();
-                let edges = [i == 1 && polygon[0].boundary, polygon[i].boundary, last && polygon[i + 1].boundary];
+                let edges = [
+                    i == 1 && polygon[0].boundary,
+                    polygon[i].boundary,
+                    last && polygon[i + 1].boundary,
+                ];
                 self.push_smooth(fan(i), area, &plane, edges, slots, provoking, back);
             } else if let Some(pixels) = self.pixels(&fan(i)) {
-                self.push(fan(i), area, &plane, pixels, slots, FacetAttributes::polygon(provoking, back));
+                self.push(
+                    fan(i),
+                    area,
+                    &plane,
+                    pixels,
+                    slots,
+                    FacetAttributes::polygon(provoking, back),
+                );
             }
         }
     }
 
-    /// One depth plane for all that is left of a triangle, at these places: that of the triangle before it was cut. Pieces do not
-    /// differ along their seams, and corners that clipping put far away, or near the eye's plane where depth is not a number,
-    /// tilt nothing by their rounding. `None` for a triangle seen edge on.
+    /// One depth plane for all that is left of a triangle, at these places: that of the triangle
+    /// before it was cut. Pieces do not differ along their seams, and corners that clipping put far
+    /// away, or near the eye's plane where depth is not a number, tilt nothing by their rounding.
+    /// `None` for a triangle seen edge on.
     fn whole_plane(&self, corners: &[u32; 3], places: &[CornerPosition]) -> Option<DepthPlane> {
         let window = &self.state.window;
-        // Told from a place in the picture: what is computed there needs no steps of thousands of pixels.
+        // Told from a place in the picture: what is computed there needs no steps of thousands of
+        // pixels.
         let origin = [0, 1].map(|k| {
             let (center, half) = (window.center[k], window.scale[k].abs());
             let [low, high] = [center - half, center + half].map(|v| (v * SUBPIXEL as f32) as i32);
             [places[0].x, places[0].y][k].clamp(low, high)
         });
-        let plane = window.homogeneous_plane(corners.map(|v| self.vertices.clip[v as usize]), origin)?;
+        let plane =
+            window.homogeneous_plane(corners.map(|v| self.vertices.clip[v as usize]), origin)?;
         if self.state.depth_clamp {
-            // Near and far planes cut nothing: each fragment's depth is clamped to the depth range, after the offset.
+            // Near and far planes cut nothing: each fragment's depth is clamped to the depth range,
+            // after the offset.
             let DepthPlane { z_min, z_max, .. } = plane;
             return Some(DepthPlane { z_min, z_max, ..self.offset(plane, 2) });
         }
@@ -176,13 +204,15 @@ impl Assembler<'_> {
                 let parent = |p: usize| self.out.records[d.parents[p] as usize + k];
                 // By differences, so that what is equal at all parents stays so.
                 let first = parent(0);
-                let value = first + ((parent(1) - first) * d.weights[1] + (parent(2) - first) * d.weights[2]);
+                let value = first
+                    + ((parent(1) - first) * d.weights[1] + (parent(2) - first) * d.weights[2]);
                 self.out.records[d.slot as usize + k] = value;
             }
             self.out.records[d.slot as usize] = d.inverse_w;
             if let Some([s, t]) = d.sprite {
                 for at in self.sprites.iter().flatten() {
-                    self.out.records[d.slot as usize + at..][..4].copy_from_slice(&[s, t, 0.0, 1.0]);
+                    self.out.records[d.slot as usize + at..][..4]
+                        .copy_from_slice(&[s, t, 0.0, 1.0]);
                 }
             }
         }
@@ -190,7 +220,13 @@ impl Assembler<'_> {
 }
 
 /// The point where the way from the inner to the outer corner leaves.
-pub(super) fn between(inner: &Corner, outer: &Corner, d_inner: f32, d_outer: f32, boundary: bool) -> Corner {
+pub(super) fn between(
+    inner: &Corner,
+    outer: &Corner,
+    d_inner: f32,
+    d_outer: f32,
+    boundary: bool,
+) -> Corner {
     let t = d_inner / (d_inner - d_outer);
     let mix = |a: f32, b: f32| a + (b - a) * t;
     Corner {
@@ -216,7 +252,8 @@ fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f32) -> Vec<Corner> {
         if inside(i) {
             result.push(polygon[i]);
         }
-        // Always from the inner to the outer corner: neighbours that share the edge get the same point.
+        // Always from the inner to the outer corner: neighbours that share the edge get the same
+        // point.
         if inside(i) && !inside(j) {
             result.push(between(&polygon[i], &polygon[j], d[i], d[j], false));
         } else if inside(j) && !inside(i) {

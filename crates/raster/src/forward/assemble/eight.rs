@@ -1,5 +1,6 @@
-//! Filled triangles eight at a time. Those that clipping must cut, and those that extend over more than a tile, go one by one; all
-//! come in their order, with the results of [`Assembler::triangle`].
+//! Filled triangles eight at a time. Those that clipping must cut, and those that extend over more
+//! than a tile, go one by one; all come in their order, with the results of
+//! [`Assembler::triangle`].
 
 use super::{Assembler, CUT, FacetAttributes};
 use crate::ScreenVertex;
@@ -16,7 +17,8 @@ impl Assembler<'_> {
     #[inline(always)]
     fn by_eights_inlined<S: Simd>(&mut self, simd: S, triangles: &[[u32; 3]]) {
         // Cull eight triangles at a time.
-        let culls = [-1, 1].map(|area| if self.state.cull[usize::from(self.is_back(area))] { 0xff } else { 0 });
+        let culls = [-1, 1]
+            .map(|area| if self.state.cull[usize::from(self.is_back(area))] { 0xff } else { 0 });
         let sieve = Sieve { outside: self.outside(), cut: CUT, culls, clip: self.state.clip };
         let (eights, rest) = triangles.as_chunks::<LANES>();
         for corners in eights {

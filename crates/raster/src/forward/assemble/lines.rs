@@ -34,8 +34,16 @@ impl Assembler<'_> {
 
         // Clip lines that cross it.
         let mut ends = [
-            Corner { clip: self.vertices.clip[from as usize], weights: [1.0, 0.0, 0.0], boundary: false },
-            Corner { clip: self.vertices.clip[to as usize], weights: [0.0, 1.0, 0.0], boundary: false },
+            Corner {
+                clip: self.vertices.clip[from as usize],
+                weights: [1.0, 0.0, 0.0],
+                boundary: false,
+            },
+            Corner {
+                clip: self.vertices.clip[to as usize],
+                weights: [0.0, 1.0, 0.0],
+                boundary: false,
+            },
         ];
         if (a.flags | b.flags) & (flag::CLIP | flag::FRUSTUM) != 0 || self.state.user_planes > 0 {
             let Some(clipped) = self.cut_line([from, to], ends) else { return stipple };
@@ -43,13 +51,22 @@ impl Assembler<'_> {
         }
 
         // Widen and emit what is left.
-        let slots = [self.derived_slot([from, to, to], &ends[0]), self.derived_slot([from, to, to], &ends[1])];
+        let slots = [
+            self.derived_slot([from, to, to], &ends[0]),
+            self.derived_slot([from, to, to], &ends[1]),
+        ];
         let stroke = Stroke { provoking: self.slot(provoking), back: false, offset: 0.0 };
         self.segment(ends.map(|end| end.clip), slots, stroke, stipple)
     }
 
     /// What clipping left of a line, or of a polygon's edge.
-    pub(super) fn segment(&mut self, ends: [[f32; 4]; 2], slots: [u32; 2], stroke: Stroke, stipple: u32) -> u32 {
+    pub(super) fn segment(
+        &mut self,
+        ends: [[f32; 4]; 2],
+        slots: [u32; 2],
+        stroke: Stroke,
+        stipple: u32,
+    ) -> u32 {
         // Project the ends.
         let at = ends.map(|end| self.project(end));
         let width = self.state.line_width;
@@ -76,14 +93,19 @@ impl Assembler<'_> {
             // They are stippled by pieces of a pixel's length, of which the last may be shorter.
             (quad, None, length.ceil() as u32)
         } else {
-            // Aliased lines are widened along the minor axis, to the nearest whole number of pixels.
+            // Aliased lines are widened along the minor axis, to the nearest whole number of
+            // pixels.
             let half = (width + 0.5).floor().max(1.0) * 0.5;
             let major = usize::from(dx.abs() < dy.abs());
             let (nx, ny) = if major == 0 { (0.0, half) } else { (half, 0.0) };
             let [from, to] = diamond_exit(at);
             let (first, count) = centers(from[major], to[major]);
             let ([x0, y0], [x1, y1]) = (from, to);
-            ([[x0 - nx, y0 - ny], [x1 - nx, y1 - ny], [x1 + nx, y1 + ny], [x0 + nx, y0 + ny]], Some(first), count)
+            (
+                [[x0 - nx, y0 - ny], [x1 - nx, y1 - ny], [x1 + nx, y1 + ny], [x0 + nx, y0 + ny]],
+                Some(first),
+                count,
+            )
         };
 
         // Compute the depth plane along the line.
@@ -99,7 +121,14 @@ impl Assembler<'_> {
             width: pixels,
         });
         let shape = self.out.shapes.len() as u32;
-        self.out.shapes.push(Shape::Line { from: [x0, y0], to: [x1, y1], width, first, stipple, hard });
+        self.out.shapes.push(Shape::Line {
+            from: [x0, y0],
+            to: [x1, y1],
+            width,
+            first,
+            stipple,
+            hard,
+        });
         if let Some(line) = hard {
             self.hard_line(&line, &plane, slots, stroke, kind, shape);
             return stipple.wrapping_add(count);
@@ -126,8 +155,14 @@ impl Assembler<'_> {
         self.state.user_planes + 7
     }
 
-    /// How far inside one of the cutting planes a point lies; `user` knows the distance to one of the user's.
-    pub(super) fn distance(&self, plane: usize, clip: [f32; 4], user: impl FnOnce(usize) -> f32) -> f32 {
+    /// How far inside one of the cutting planes a point lies; `user` knows the distance to one of
+    /// the user's.
+    pub(super) fn distance(
+        &self,
+        plane: usize,
+        clip: [f32; 4],
+        user: impl FnOnce(usize) -> f32,
+    ) -> f32 {
         let (near, guard) = (self.state.window.near, self.state.window.guard);
         match plane.checked_sub(self.state.user_planes) {
             None => user(plane),
@@ -182,18 +217,27 @@ impl Assembler<'_> {
     }
 
     /// A point, or a polygon's corner, that is inside.
-    pub(super) fn dot(&mut self, clip: [f32; 4], [size, fade]: [f32; 2], slot: u32, stroke: Stroke) {
+    pub(super) fn dot(
+        &mut self,
+        clip: [f32; 4],
+        [size, fade]: [f32; 2],
+        slot: u32,
+        stroke: Stroke,
+    ) {
         // Find the square's middle and half its side.
         let [x, y, z] = self.project(clip);
         let z = z.clamp(0.0, 1.0);
-        let (center, half) = if self.state.point_smooth || self.state.multisample || self.state.point_sprite {
-            ([x, y], size * 0.5 + if self.state.point_smooth { 0.5 } else { 0.0 })
-        } else {
-            // An aliased point is a square of whole pixels round the vertex. Half a pixel counts for nothing, as with Mesa.
-            let size = (size - 0.5).ceil().max(1.0);
-            let middle = |v: f32| if size % 2.0 == 1.0 { v.floor() + 0.5 } else { (v + 0.5).floor() };
-            ([middle(x), middle(y)], size * 0.5)
-        };
+        let (center, half) =
+            if self.state.point_smooth || self.state.multisample || self.state.point_sprite {
+                ([x, y], size * 0.5 + if self.state.point_smooth { 0.5 } else { 0.0 })
+            } else {
+                // An aliased point is a square of whole pixels round the vertex. Half a pixel counts
+                // for nothing, as with Mesa.
+                let size = (size - 0.5).ceil().max(1.0);
+                let middle =
+                    |v: f32| if size % 2.0 == 1.0 { v.floor() + 0.5 } else { (v + 0.5).floor() };
+                ([middle(x), middle(y)], size * 0.5)
+            };
         let quad = [[-half, -half], [half, -half], [half, half], [-half, half]]
             .map(|[dx, dy]| [center[0] + dx, center[1] + dy]);
         let origin = center.map(snapped);
@@ -209,7 +253,8 @@ impl Assembler<'_> {
             let mut slots = [slot; 4];
             if self.sprites != [None; UNITS] {
                 // s runs to the right, t downwards; from the corners as the rasteriser has them.
-                let from_center = |v: f32, k: usize| (snapped(v) as f32 / SUBPIXEL as f32 - center[k]) / size;
+                let from_center =
+                    |v: f32, k: usize| (snapped(v) as f32 / SUBPIXEL as f32 - center[k]) / size;
                 let place = |[x, y]: [f32; 2]| [0.5 + from_center(x, 0), 0.5 - from_center(y, 1)];
                 slots = quad.map(|corner| self.sprite_slot(slot, 1.0 / clip[3], place(corner)));
             }
@@ -222,7 +267,8 @@ impl Assembler<'_> {
         let Some(pixels) = self.stroke_pixels(&square) else { return };
         // One over a pixel's centre covers no other, and needs no box.
         let alone = kind == FacetKind::Plain && half == 0.5;
-        let (near, far) = if alone { (SUBPIXEL / 4, SUBPIXEL) } else { (0, 2 * (high[0] - low[0])) };
+        let (near, far) =
+            if alone { (SUBPIXEL / 4, SUBPIXEL) } else { (0, 2 * (high[0] - low[0])) };
         let mut shape = NONE;
         if !alone {
             shape = self.out.shapes.len() as u32;
@@ -296,29 +342,45 @@ impl Assembler<'_> {
         shape: u32,
     ) {
         let plane = self.stroke_plane(plane, stroke.offset);
-        let corner = |i: usize| CornerPosition { x: snapped(quad[i][0]), y: snapped(quad[i][1]), z: plane.z };
+        let corner = |i: usize| CornerPosition {
+            x: snapped(quad[i][0]),
+            y: snapped(quad[i][1]),
+            z: plane.z,
+        };
         for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
             let positions = [corner(i), corner(j), corner(k)];
             let area = Setup::doubled_area(positions[0], positions[1], positions[2]);
-            let Some(pixels) = self.stroke_pixels(&positions).filter(|_| area != 0) else { continue };
-            self.push(positions, area, &plane, pixels, [slots[i], slots[j], slots[k]], stroke.attributes(kind, shape));
+            let Some(pixels) = self.stroke_pixels(&positions).filter(|_| area != 0) else {
+                continue;
+            };
+            self.push(
+                positions,
+                area,
+                &plane,
+                pixels,
+                [slots[i], slots[j], slots[k]],
+                stroke.attributes(kind, shape),
+            );
         }
     }
 }
 
-/// On the grid of 1/256 pixel. The width may carry a corner over the end of the guard band, which is beyond the target.
+/// On the grid of 1/256 pixel. The width may carry a corner over the end of the guard band, which
+/// is beyond the target.
 fn snapped(v: f32) -> i32 {
     (v.clamp(-GUARD_BAND, GUARD_BAND) * SUBPIXEL as f32 + 0.5).floor() as i32
 }
 
-/// Ends of an aliased line, moved along it so that the pixel centres between them, the first included and the last not, are
-/// those of the diamond-exit rule: a line draws the pixels whose diamond it leaves. So the pixel where a line starts belongs
-/// to it and the one where it ends to the next line of the strip, whichever way they run.
+/// Ends of an aliased line, moved along it so that the pixel centres between them, the first
+/// included and the last not, are those of the diamond-exit rule: a line draws the pixels whose
+/// diamond it leaves. So the pixel where a line starts belongs to it and the one where it ends to
+/// the next line of the strip, whichever way they run.
 fn diamond_exit(at: [[f32; 3]; 2]) -> [[f32; 2]; 2] {
     let d = [at[1][0] - at[0][0], at[1][1] - at[0][1]];
     let (major, minor) = if d[0].abs() >= d[1].abs() { (0, 1) } else { (1, 0) };
     let (slope, way) = (d[minor] / d[major], 1.0f32.copysign(d[major]));
-    // The rasteriser includes what lies on the lower side. Lines that run down are moved by its smallest step.
+    // The rasteriser includes what lies on the lower side. Lines that run down are moved by its
+    // smallest step.
     let step = if way < 0.0 { 1.0 / SUBPIXEL as f32 } else { 0.0 };
     at.map(|end| {
         let center = [end[0].floor() + 0.5, end[1].floor() + 0.5];
@@ -333,7 +395,8 @@ fn diamond_exit(at: [[f32; 3]; 2]) -> [[f32; 2]; 2] {
     })
 }
 
-/// The pixel centres between an aliased line's ends as [`diamond_exit`] moved them: the first on its way, and how many.
+/// The pixel centres between an aliased line's ends as [`diamond_exit`] moved them: the first on
+/// its way, and how many.
 fn centers(from: f32, to: f32) -> (f32, u32) {
     // The number of the lowest pixel whose centre is not below.
     let above = |v: f32| (snapped(v) + SUBPIXEL / 2 - 1).div_euclid(SUBPIXEL);
@@ -342,9 +405,10 @@ fn centers(from: f32, to: f32) -> (f32, u32) {
     (first as f32 + 0.5, start.abs_diff(end))
 }
 
-/// The depth plane of a line: depth changes along it (along the longer axis if it is widened along the other one) and not
-/// across. The same line drawn the other way round gets the same plane bit by bit: polygons that share an edge both draw
-/// it, and where depths are compared for equality it must not fall into dots.
+/// The depth plane of a line: depth changes along it (along the longer axis if it is widened along
+/// the other one) and not across. The same line drawn the other way round gets the same plane bit
+/// by bit: polygons that share an edge both draw it, and where depths are compared for equality it
+/// must not fall into dots.
 fn line_plane(ends: [[f32; 3]; 2], rectangle: bool) -> DepthPlane {
     let [[x0, y0, z0], [x1, y1, z1]] = if ends[0] <= ends[1] { ends } else { [ends[1], ends[0]] };
     let (dx, dy, dz) = (x1 - x0, y1 - y0, z1 - z0);
@@ -383,10 +447,15 @@ mod tests {
         assert_eq!(columns(0.9, 3.9, 0.1), [1, 2, 3]);
         assert_eq!(columns(0.1, 3.1, 0.1), [0, 1, 2]);
         assert_eq!(columns(0.4, 0.6, 0.5), []);
-        for (x0, x1, first, count) in [(0.7, 3.7, 0.5, 3), (3.7, 0.7, 3.5, 3), (0.9, 3.9, 0.5, 3), (0.4, 0.6, 0.5, 0)] {
+        for (x0, x1, first, count) in
+            [(0.7, 3.7, 0.5, 3), (3.7, 0.7, 3.5, 3), (0.9, 3.9, 0.5, 3), (0.4, 0.6, 0.5, 0)]
+        {
             let [[a, _], [b, _]] = diamond_exit([[x0, 0.5, 0.0], [x1, 0.5, 0.0]]);
             let (found, number) = centers(a, b);
-            assert!(number == count && (count == 0 || found == first), "{x0} to {x1}: {number} from {found}");
+            assert!(
+                number == count && (count == 0 || found == first),
+                "{x0} to {x1}: {number} from {found}"
+            );
         }
     }
 

@@ -1,7 +1,9 @@
-//! Polygons in their polygon mode: the edges or corners of what clipping leaves of them, or their interior.
+//! Polygons in their polygon mode: the edges or corners of what clipping leaves of them, or their
+//! interior.
 //!
-//! Edges and corners that planes of the user make are drawn (OpenGL 1.5, section 2.11). Those that the view volume makes are not,
-//! though the section speaks of them, too: nobody else draws them, and half of them would frame the picture.
+//! Edges and corners that planes of the user make are drawn (OpenGL 1.5, section 2.11). Those that
+//! the view volume makes are not, though the section speaks of them, too: nobody else draws them,
+//! and half of them would frame the picture.
 
 use super::lines::Stroke;
 use super::*;
@@ -25,7 +27,8 @@ struct Corner {
 }
 
 impl Assembler<'_> {
-    /// A polygon in its polygon mode. `edges[i]` says whether the edge from corner `i` is a boundary.
+    /// A polygon in its polygon mode. `edges[i]` says whether the edge from corner `i` is a
+    /// boundary.
     pub fn polygon(&mut self, corners: &[u32], edges: &[bool], provoking: u32) {
         // Reject polygons outside the view volume.
         let s = self.vertices.screen;
@@ -51,7 +54,8 @@ impl Assembler<'_> {
         if outside {
             return;
         }
-        // What has no area, as what is seen edge-on, is a back face; its edges and corners are drawn.
+        // What has no area, as what is seen edge-on, is a back face; its edges and corners are
+        // drawn.
         let back = area == 0.0 || (area > 0.0) != self.state.counter_clockwise;
         if self.state.cull[usize::from(back)] {
             return;
@@ -64,8 +68,13 @@ impl Assembler<'_> {
         }
 
         // Cut the outline at the clip planes.
-        let outline: Vec<Corner> = corners.iter().zip(edges).map(|(&v, &edge)| self.corner(v, edge)).collect();
-        let outline = if any & (CUT | flag::FRUSTUM) == 0 { outline } else { self.cut_outline(outline, mode) };
+        let outline: Vec<Corner> =
+            corners.iter().zip(edges).map(|(&v, &edge)| self.corner(v, edge)).collect();
+        let outline = if any & (CUT | flag::FRUSTUM) == 0 {
+            outline
+        } else {
+            self.cut_outline(outline, mode)
+        };
         let offset = self.outline_offset(largest.1, &outline, mode);
         let stroke = Stroke { provoking: self.slot(provoking), back, offset };
 
@@ -76,7 +85,12 @@ impl Assembler<'_> {
                 self.dot(corner.clip, corner.size, corner.slot, stroke);
             } else {
                 let next = &outline[(i + 1) % outline.len()];
-                stipple = self.segment([corner.clip, next.clip], [corner.slot, next.slot], stroke, stipple);
+                stipple = self.segment(
+                    [corner.clip, next.clip],
+                    [corner.slot, next.slot],
+                    stroke,
+                    stipple,
+                );
             }
         }
     }
@@ -103,11 +117,12 @@ impl Assembler<'_> {
         Corner { clip, user, size, slot: self.slot(vertex), boundary }
     }
 
-    /// The part of an outline that is inside, for lines (1) or for its corners alone (0); the edges along planes of the user
-    /// are boundary edges.
+    /// The part of an outline that is inside, for lines (1) or for its corners alone (0); the edges
+    /// along planes of the user are boundary edges.
     fn cut_outline(&mut self, mut outline: Vec<Corner>, mode: usize) -> Vec<Corner> {
         for plane in 0..self.cutting_planes() {
-            let d: Vec<f32> = outline.iter().map(|c| self.distance(plane, c.clip, |k| c.user[k])).collect();
+            let d: Vec<f32> =
+                outline.iter().map(|c| self.distance(plane, c.clip, |k| c.user[k])).collect();
             if d.iter().all(|&d| d >= 0.0) {
                 continue;
             }
@@ -124,14 +139,20 @@ impl Assembler<'_> {
             let mut kept = Vec::with_capacity(outline.len() + 1);
             for (i, corner) in outline.iter().enumerate() {
                 let j = (i + 1) % outline.len();
-                // Always from the inner to the outer corner: neighbours that share the edge get the same point.
+                // Always from the inner to the outer corner: neighbours that share the edge get the
+                // same point.
                 if d[i] >= 0.0 {
                     kept.push(*corner);
                     if d[j].is_nan() || d[j] < 0.0 {
                         kept.push(self.on_edge(corner, &outline[j], d[i] / (d[i] - d[j]), by_user));
                     }
                 } else if d[j] >= 0.0 {
-                    kept.push(self.on_edge(&outline[j], corner, d[j] / (d[j] - d[i]), corner.boundary));
+                    kept.push(self.on_edge(
+                        &outline[j],
+                        corner,
+                        d[j] / (d[j] - d[i]),
+                        corner.boundary,
+                    ));
                 }
             }
             outline = kept;
@@ -143,7 +164,12 @@ impl Assembler<'_> {
     fn on_edge(&mut self, inner: &Corner, outer: &Corner, t: f32, boundary: bool) -> Corner {
         let mix = |a: f32, b: f32| a + (b - a) * t;
         let clip: [f32; 4] = std::array::from_fn(|k| mix(inner.clip[k], outer.clip[k]));
-        let slot = self.new_slot([inner.slot, outer.slot, outer.slot], [1.0 - t, t, 0.0], 1.0 / clip[3], None);
+        let slot = self.new_slot(
+            [inner.slot, outer.slot, outer.slot],
+            [1.0 - t, t, 0.0],
+            1.0 / clip[3],
+            None,
+        );
         Corner {
             clip,
             user: std::array::from_fn(|k| mix(inner.user[k], outer.user[k])),
@@ -153,12 +179,14 @@ impl Assembler<'_> {
         }
     }
 
-    /// Polygon offset of points or lines: by the slope of the polygon whose largest triangle is given.
+    /// Polygon offset of points or lines: by the slope of the polygon whose largest triangle is
+    /// given.
     fn outline_offset(&self, triangle: [[f32; 4]; 3], outline: &[Corner], offset: usize) -> f32 {
         if self.state.offset[offset] == [0.0; 2] {
             return 0.0;
         }
-        let deepest = outline.iter().map(|c| self.project(c.clip)[2].clamp(0.0, 1.0)).fold(0.0, f32::max);
+        let deepest =
+            outline.iter().map(|c| self.project(c.clip)[2].clamp(0.0, 1.0)).fold(0.0, f32::max);
         match self.state.window.homogeneous_plane(triangle, [0; 2]) {
             Some(plane) => self.offset_of(&DepthPlane { z_max: deepest, ..plane }, offset),
             None => 0.0,

@@ -28,7 +28,11 @@ pub(super) fn combine<S: Simd, V: Floats<S>>(
             // Fetch the operands and apply the colour function.
             let sources = Sources { unit, textures, primary, previous };
             let [color_scale, alpha_scale] = state.scale;
-            let a = [sources.color(state.rgb[0]), sources.color(state.rgb[1]), sources.color(state.rgb[2])];
+            let a = [
+                sources.color(state.rgb[0]),
+                sources.color(state.rgb[1]),
+                sources.color(state.rgb[2]),
+            ];
             let color = match state.functions[0] {
                 CombineFunction::Dot3Rgb | CombineFunction::Dot3Rgba => [dot3(&a[0], &a[1]); 3],
                 function => [
@@ -43,7 +47,11 @@ pub(super) fn combine<S: Simd, V: Floats<S>>(
                 // The dot product is alpha too; alpha's own function does not count.
                 color[0] * alpha_scale
             } else {
-                let b = [sources.alpha(state.alpha[0]), sources.alpha(state.alpha[1]), sources.alpha(state.alpha[2])];
+                let b = [
+                    sources.alpha(state.alpha[0]),
+                    sources.alpha(state.alpha[1]),
+                    sources.alpha(state.alpha[2]),
+                ];
                 component(state.functions[1], b[0], b[1], b[2]) * alpha_scale
             };
 
@@ -86,12 +94,15 @@ impl<V: Lanes> Sources<'_, V> {
         let a = self.source(source)[3];
         match operand {
             CombineOperand::Color | CombineOperand::Alpha => a,
-            CombineOperand::OneMinusColor | CombineOperand::OneMinusAlpha => self.previous[0].splat(1.0) - a,
+            CombineOperand::OneMinusColor | CombineOperand::OneMinusAlpha => {
+                self.previous[0].splat(1.0) - a
+            }
         }
     }
 }
 
-/// One component of all functions but the dot products, which alpha does not have: they keep the first argument.
+/// One component of all functions but the dot products, which alpha does not have: they keep the
+/// first argument.
 #[inline(always)]
 fn component<V: Lanes>(function: CombineFunction, a: V, b: V, c: V) -> V {
     match function {

@@ -7,7 +7,12 @@ use vitral_math::lanes::{self, Lanes};
 /// Adds the secondary colour; the sum is clamped to `0..=1`, alpha stays.
 #[inline(always)]
 pub(crate) fn color_sum<V: Lanes>(color: [V; 4], secondary: &[V; 3]) -> [V; 4] {
-    [saturate(color[0] + secondary[0]), saturate(color[1] + secondary[1]), saturate(color[2] + secondary[2]), color[3]]
+    [
+        saturate(color[0] + secondary[0]),
+        saturate(color[1] + secondary[1]),
+        saturate(color[2] + secondary[2]),
+        color[3],
+    ]
 }
 
 /// How much of the fragment's own colour shows through the fog: 1 without fog, 0 in the thickest.
@@ -59,12 +64,22 @@ mod tests {
                 let f = dispatch!(level, simd => fog_factor(mode, F32x8::from_slice(simd, &c)).to_array());
                 for lane in 0..8 {
                     let expected = formula(f64::from(c[lane])).clamp(0.0, 1.0) as f32;
-                    assert!((f[lane] - expected).abs() < 1e-6, "{name} {mode:?} {}: {}", c[lane], f[lane]);
+                    assert!(
+                        (f[lane] - expected).abs() < 1e-6,
+                        "{name} {mode:?} {}: {}",
+                        c[lane],
+                        f[lane]
+                    );
                 }
             }
             let same = FogMode::Linear { start: 2.0, end: 2.0 };
-            let f = dispatch!(level, simd => fog_factor(same, F32x8::from_slice(simd, &c)).to_array());
-            assert_eq!(f, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], "nothing up to the end, then all");
+            let f =
+                dispatch!(level, simd => fog_factor(same, F32x8::from_slice(simd, &c)).to_array());
+            assert_eq!(
+                f,
+                [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+                "nothing up to the end, then all"
+            );
         }
     }
 

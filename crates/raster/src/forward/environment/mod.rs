@@ -1,4 +1,5 @@
-//! What textures do to a fragment's colour: the texture environment of each unit, then colour sum and fog.
+//! What textures do to a fragment's colour: the texture environment of each unit, then colour sum
+//! and fog.
 //!
 //! Source: OpenGL 1.5 specification, sections 3.8.13 (tables 3.22 to 3.24), 3.9 and 3.10.
 
@@ -13,8 +14,9 @@ use vitral_math::lanes::{Floats, Lanes, Simd};
 /// How many texture units there are.
 pub(crate) const UNITS: usize = 8;
 
-/// The colour after `unit`, brought into `0..=1` if it `clamps`: `textures` are the texture colours of all units by their index,
-/// `primary` is the colour before the first unit, `previous` the one before this unit.
+/// The colour after `unit`, brought into `0..=1` if it `clamps`: `textures` are the texture colours
+/// of all units by their index, `primary` is the colour before the first unit, `previous` the one
+/// before this unit.
 #[inline(always)]
 pub(crate) fn environment<S: Simd, V: Floats<S>>(
     simd: S,
@@ -27,7 +29,9 @@ pub(crate) fn environment<S: Simd, V: Floats<S>>(
     let texture = &textures[unit.index % UNITS];
     let color = match &unit.mode {
         EnvironmentMode::Modulate => product(format_of(&unit.texture), texture, previous),
-        EnvironmentMode::Combine(state) => combine::combine(simd, state, unit, textures, primary, &previous),
+        EnvironmentMode::Combine(state) => {
+            combine::combine(simd, state, unit, textures, primary, &previous)
+        }
         mode => simple(simd, mode, format_of(&unit.texture), unit.color, texture, previous),
     };
     if clamps { saturate_rgba(color) } else { color }
@@ -96,12 +100,15 @@ fn simple<S: Simd, V: Floats<S>>(
     )
 }
 
-/// `DECAL`: the specification leaves other formats than RGB and RGBA open; here they change nothing.
+/// `DECAL`: the specification leaves other formats than RGB and RGBA open; here they change
+/// nothing.
 #[inline(always)]
 fn decal<V: Lanes>(format: BaseFormat, t: &[V; 4], p: [V; 4]) -> [V; 4] {
     match format {
         BaseFormat::Rgb => [t[0], t[1], t[2], p[3]],
-        BaseFormat::Rgba => [mix(p[0], t[0], t[3]), mix(p[1], t[1], t[3]), mix(p[2], t[2], t[3]), p[3]],
+        BaseFormat::Rgba => {
+            [mix(p[0], t[0], t[3]), mix(p[1], t[1], t[3]), mix(p[2], t[2], t[3]), p[3]]
+        }
         _ => p,
     }
 }
@@ -111,7 +118,12 @@ fn decal<V: Lanes>(format: BaseFormat, t: &[V; 4], p: [V; 4]) -> [V; 4] {
 fn blend<V: Lanes>(c: [f32; 4], intensity: bool, t: &[V; 4], p: [V; 4]) -> [V; 4] {
     let (c, one) = (c.map(|c| p[0].splat(c)), p[0].splat(1.0));
     let alpha = if intensity { p[3] * (one - t[3]) + c[3] * t[3] } else { p[3] * t[3] };
-    [p[0] * (one - t[0]) + c[0] * t[0], p[1] * (one - t[1]) + c[1] * t[1], p[2] * (one - t[2]) + c[2] * t[2], alpha]
+    [
+        p[0] * (one - t[0]) + c[0] * t[0],
+        p[1] * (one - t[1]) + c[1] * t[1],
+        p[2] * (one - t[2]) + c[2] * t[2],
+        alpha,
+    ]
 }
 
 #[cfg(test)]

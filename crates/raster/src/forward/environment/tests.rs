@@ -20,12 +20,14 @@ fn unit(format: BaseFormat, mode: EnvironmentMode) -> Unit {
         seamless: false,
     };
     let depth_mode = BaseFormat::Luminance;
-    let texture = Texture { depth_mode, ..Texture::new(TextureKind::Two, format, Vec::new(), sampler) };
+    let texture =
+        Texture { depth_mode, ..Texture::new(TextureKind::Two, format, Vec::new(), sampler) };
     Unit { index: 1, texture: Arc::new(texture), mode, color: [0.2, 0.4, 0.6, 0.8], lod_bias: 0.0 }
 }
 
 /// Texture colours of units 0, 1 and 2; the primary and the previous colour.
-const TEXTURES: [[f32; 4]; 3] = [[0.1, 0.3, 0.9, 0.6], [0.75, 0.5, 0.25, 0.7], [0.9, 0.05, 0.45, 0.35]];
+const TEXTURES: [[f32; 4]; 3] =
+    [[0.1, 0.3, 0.9, 0.6], [0.75, 0.5, 0.25, 0.7], [0.9, 0.05, 0.45, 0.35]];
 const PRIMARY: [f32; 4] = [0.15, 0.85, 0.55, 0.95];
 const PREVIOUS: [f32; 4] = [0.6, 0.3, 0.8, 0.5];
 
@@ -52,7 +54,8 @@ fn check(unit: &Unit, expected: [f32; 4], what: &str) {
     }
 }
 
-/// Tables 3.22 and 3.23: colour and alpha by mode and format. `None` where the specification leaves it open.
+/// Tables 3.22 and 3.23: colour and alpha by mode and format. `None` where the specification leaves
+/// it open.
 fn table(mode: &EnvironmentMode, format: BaseFormat, k: usize) -> Option<f32> {
     use BaseFormat::*;
     use EnvironmentMode::*;
@@ -146,7 +149,8 @@ fn dot_products_go_to_colour_or_to_all() {
     let dot = 4.0 * (0..3).map(|k| (t[k] - 0.5) * (p[k] - 0.5)).sum::<f32>();
     assert!(dot < 0.0, "clamped");
     let bright = CombineSource::TextureUnit(2);
-    for (function, scale, alpha) in [(Dot3Rgb, 2.0, t[3] * p[3] * 4.0), (Dot3Rgba, 2.0, dot * 4.0)] {
+    for (function, scale, alpha) in [(Dot3Rgb, 2.0, t[3] * p[3] * 4.0), (Dot3Rgba, 2.0, dot * 4.0)]
+    {
         let state = combine([function, Modulate], [scale, 4.0]);
         let u = unit(BaseFormat::Rgba, EnvironmentMode::Combine(state));
         check(&u, [dot * 2.0, dot * 2.0, dot * 2.0, alpha], &format!("{function:?}"));
@@ -156,7 +160,11 @@ fn dot_products_go_to_colour_or_to_all() {
     state.rgb[1].0 = bright;
     let b = TEXTURES[2];
     let length = 4.0 * (0..3).map(|k| (b[k] - 0.5) * (b[k] - 0.5)).sum::<f32>();
-    check(&unit(BaseFormat::Rgba, EnvironmentMode::Combine(state)), [length; 4], "a vector with itself");
+    check(
+        &unit(BaseFormat::Rgba, EnvironmentMode::Combine(state)),
+        [length; 4],
+        "a vector with itself",
+    );
 }
 
 #[test]

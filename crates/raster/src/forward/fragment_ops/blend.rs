@@ -35,7 +35,8 @@ pub(crate) fn blend<S: Simd, V: Floats<S>>(
             _ => [clamp(r, 0.0, one), clamp(g, 0.0, one), clamp(b, 0.0, one), clamp(a, 0.0, one)],
         },
     );
-    let (source, constant) = (limited(source), limited(every_rgba(simd, state.color.map(|c| c * one))));
+    let (source, constant) =
+        (limited(source), limited(every_rgba(simd, state.color.map(|c| c * one))));
 
     // Compute the factors of colour.
     let inputs = Inputs { one, source, stored, constant };
@@ -45,9 +46,12 @@ pub(crate) fn blend<S: Simd, V: Floats<S>>(
     // Combine each component with its factor; alpha has its own.
     let component = lanes::inlined(
         #[inline(always)]
-        |k: usize, s: V, d: V| combine(state.equation[usize::from(k == 3)], (source[k], s), (stored[k], d), one),
+        |k: usize, s: V, d: V| {
+            combine(state.equation[usize::from(k == 3)], (source[k], s), (stored[k], d), one)
+        },
     );
-    let alpha_factors = [inputs.alpha_factor(state.source[1]), inputs.alpha_factor(state.destination[1])];
+    let alpha_factors =
+        [inputs.alpha_factor(state.source[1]), inputs.alpha_factor(state.destination[1])];
     limited([
         component(0, s[0], d[0]),
         component(1, s[1], d[1]),
@@ -56,8 +60,8 @@ pub(crate) fn blend<S: Simd, V: Floats<S>>(
     ])
 }
 
-/// Blends packed pixels. Each byte is the nearest to the exact result: products and sums of bytes are exact, and 255 is odd, so
-/// that no quotient lies half between two.
+/// Blends packed pixels. Each byte is the nearest to the exact result: products and sums of bytes
+/// are exact, and 255 is odd, so that no quotient lies half between two.
 #[inline(always)]
 pub(crate) fn blend_packed<S: Simd, V: Floats<S>>(
     simd: S,
@@ -65,7 +69,8 @@ pub(crate) fn blend_packed<S: Simd, V: Floats<S>>(
     source: V::Words,
     stored: V::Words,
 ) -> V::Words {
-    let color: [V; 4] = blend(simd, state, unpack_bytes(source), unpack_bytes(stored), Components::Bytes);
+    let color: [V; 4] =
+        blend(simd, state, unpack_bytes(source), unpack_bytes(stored), Components::Bytes);
     let byte = lanes::inlined(
         #[inline(always)]
         |k: usize| -> V::Ints { (color[k] + 0.5).to_int() },
@@ -73,9 +78,15 @@ pub(crate) fn blend_packed<S: Simd, V: Floats<S>>(
     (byte(0) | (byte(1) << 8) | (byte(2) << 16) | (byte(3) << 24)).bitcast()
 }
 
-/// One component, and what it and the stored one are multiplied with; factors count in parts of `one`.
+/// One component, and what it and the stored one are multiplied with; factors count in parts of
+/// `one`.
 #[inline(always)]
-fn combine<V: Lanes>(equation: BlendEquation, (source, s): (V, V), (stored, d): (V, V), one: f32) -> V {
+fn combine<V: Lanes>(
+    equation: BlendEquation,
+    (source, s): (V, V),
+    (stored, d): (V, V),
+    one: f32,
+) -> V {
     match equation {
         BlendEquation::Add => (source * s + stored * d) * (1.0 / one),
         BlendEquation::Subtract => (source * s - stored * d) * (1.0 / one),
@@ -128,7 +139,9 @@ impl<V: Lanes> Inputs<V> {
             BlendFactor::DstColor | BlendFactor::DstAlpha => self.stored[3],
             BlendFactor::OneMinusDstColor | BlendFactor::OneMinusDstAlpha => one - self.stored[3],
             BlendFactor::ConstantColor | BlendFactor::ConstantAlpha => self.constant[3],
-            BlendFactor::OneMinusConstantColor | BlendFactor::OneMinusConstantAlpha => one - self.constant[3],
+            BlendFactor::OneMinusConstantColor | BlendFactor::OneMinusConstantAlpha => {
+                one - self.constant[3]
+            }
         }
     }
 }
@@ -220,7 +233,14 @@ mod tests {
         })
     }
 
-    fn check(level: Level, name: &str, state: &Blend, s: [[f32; 4]; 8], d: [[f32; 4]; 8], clamped: bool) {
+    fn check(
+        level: Level,
+        name: &str,
+        state: &Blend,
+        s: [[f32; 4]; 8],
+        d: [[f32; 4]; 8],
+        clamped: bool,
+    ) {
         let column = |v: [[f32; 4]; 8], k: usize| v.map(|p| p[k]);
         let out: [[f32; 8]; 4] = dispatch!(level, simd => {
             let load = |v: [[f32; 4]; 8]| -> Rgba<_> {
@@ -233,7 +253,13 @@ mod tests {
         });
         for lane in 0..8 {
             let expected = scalar(state, s[lane], d[lane], clamped);
-            assert_eq!(column_of(&out, lane), expected, "{name} {state:?} {:?} {:?}", s[lane], d[lane]);
+            assert_eq!(
+                column_of(&out, lane),
+                expected,
+                "{name} {state:?} {:?} {:?}",
+                s[lane],
+                d[lane]
+            );
         }
     }
 
@@ -243,7 +269,9 @@ mod tests {
 
     /// Eight colours, some beyond `0..=1`.
     fn colors(seed: u32) -> [[f32; 4]; 8] {
-        std::array::from_fn(|i| std::array::from_fn(|k| ((seed + 37 * i as u32 + 101 * k as u32) % 71) as f32 / 64.0))
+        std::array::from_fn(|i| {
+            std::array::from_fn(|k| ((seed + 37 * i as u32 + 101 * k as u32) % 71) as f32 / 64.0)
+        })
     }
 
     #[test]
@@ -270,10 +298,14 @@ mod tests {
     #[test]
     fn packed_pixels_blend_as_their_components_do() {
         let word = |i: u32| i.wrapping_mul(0x9e37_79b9) ^ i.wrapping_mul(i) << 7;
-        let (source, stored): ([u32; 16], [u32; 16]) =
-            (std::array::from_fn(|i| word(i as u32 + 3)), std::array::from_fn(|i| word(i as u32 + 77)));
+        let (source, stored): ([u32; 16], [u32; 16]) = (
+            std::array::from_fn(|i| word(i as u32 + 3)),
+            std::array::from_fn(|i| word(i as u32 + 77)),
+        );
         for (name, level) in available_levels() {
-            for (source_factor, destination) in FACTORS.iter().flat_map(|s| FACTORS.map(|d| (*s, d))) {
+            for (source_factor, destination) in
+                FACTORS.iter().flat_map(|s| FACTORS.map(|d| (*s, d)))
+            {
                 for equation in EQUATIONS {
                     let state = Blend {
                         source: [source_factor; 2],

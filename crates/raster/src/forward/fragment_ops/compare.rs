@@ -7,7 +7,12 @@ use vitral_math::lanes::{F32x8, Floats, Mask8, MaskOf, Simd};
 
 /// `incoming func stored`. NaN compares as IEEE 754 says: only `NotEqual` and `Always` pass.
 #[inline(always)]
-pub(crate) fn compare<S: Simd, V: Floats<S>>(simd: S, func: Compare, incoming: V, stored: V) -> MaskOf<S, V> {
+pub(crate) fn compare<S: Simd, V: Floats<S>>(
+    simd: S,
+    func: Compare,
+    incoming: V,
+    stored: V,
+) -> MaskOf<S, V> {
     match func {
         Compare::Never => SimdMask::splat(simd, false),
         Compare::Less => incoming.simd_lt(stored),
@@ -22,7 +27,11 @@ pub(crate) fn compare<S: Simd, V: Floats<S>>(simd: S, func: Compare, incoming: V
 
 /// Which fragments pass the alpha test.
 #[inline(always)]
-pub(crate) fn alpha_test<S: Simd, V: Floats<S>>(simd: S, test: AlphaTest, alpha: V) -> MaskOf<S, V> {
+pub(crate) fn alpha_test<S: Simd, V: Floats<S>>(
+    simd: S,
+    test: AlphaTest,
+    alpha: V,
+) -> MaskOf<S, V> {
     let [low, high]: [V; 2] = [every(simd, test.range[0]), every(simd, test.range[1])];
     let inside = low.simd_le(alpha) & alpha.simd_le(high);
     if test.inside { inside } else { !inside }
@@ -30,7 +39,12 @@ pub(crate) fn alpha_test<S: Simd, V: Floats<S>>(simd: S, test: AlphaTest, alpha:
 
 /// Which samples pass the depth test; both depths in the plane's units.
 #[inline(always)]
-pub(crate) fn depth_test<S: Simd>(simd: S, test: DepthTest, incoming: F32x8<S>, stored: F32x8<S>) -> Mask8<S> {
+pub(crate) fn depth_test<S: Simd>(
+    simd: S,
+    test: DepthTest,
+    incoming: F32x8<S>,
+    stored: F32x8<S>,
+) -> Mask8<S> {
     compare(simd, test.func, incoming, stored)
 }
 
@@ -76,7 +90,11 @@ mod tests {
                     F32x8::from_slice(simd, &b)
                 )));
                 for lane in 0..8 {
-                    assert_eq!(bits >> lane & 1 == 1, scalar(a[lane], b[lane]), "{name} {func:?} {lane}");
+                    assert_eq!(
+                        bits >> lane & 1 == 1,
+                        scalar(a[lane], b[lane]),
+                        "{name} {func:?} {lane}"
+                    );
                 }
             }
         }
@@ -104,7 +122,9 @@ mod tests {
             for func in FUNCTIONS {
                 for reference in (0..=one as u32).step_by(step).map(|r| r as f32) {
                     // The number itself, both ends of what is rounded to it, and its neighbours.
-                    for (away, number) in [(0.0, 0.0), (-0.49, 0.0), (0.49, 0.0), (-0.51, -1.0), (0.51, 1.0)] {
+                    for (away, number) in
+                        [(0.0, 0.0), (-0.49, 0.0), (0.49, 0.0), (-0.51, -1.0), (0.51, 1.0)]
+                    {
                         let alpha = (reference + away) / one;
                         let expected = holds(func, (reference + number).clamp(0.0, one), reference);
                         assert_eq!(
@@ -112,18 +132,30 @@ mod tests {
                             expected,
                             "{func:?} {reference} {away}"
                         );
-                        assert_eq!(passes(func, reference / one, Some(one), reference / one), holds(func, 0.0, 0.0));
+                        assert_eq!(
+                            passes(func, reference / one, Some(one), reference / one),
+                            holds(func, 0.0, 0.0)
+                        );
                     }
                 }
             }
         }
         // Halves are rounded up, as when they are stored.
         assert!(passes(Compare::Equal, 0.5, Some(255.0), 128.0 / 255.0));
-        assert!(passes(Compare::Greater, 0.499, Some(255.0), 0.5) && !passes(Compare::Greater, 0.5, Some(255.0), 0.5));
+        assert!(
+            passes(Compare::Greater, 0.499, Some(255.0), 0.5)
+                && !passes(Compare::Greater, 0.5, Some(255.0), 0.5)
+        );
         // Floating-point buffers store them as they are.
         for func in FUNCTIONS {
-            for alpha in [-1.0, 0.0, 0.5f32.next_down(), 0.5, 0.5f32.next_up(), 7.0, f32::INFINITY, f32::NAN] {
-                assert_eq!(passes(func, 0.5, None, alpha), holds(func, alpha, 0.5), "{func:?} {alpha}");
+            for alpha in
+                [-1.0, 0.0, 0.5f32.next_down(), 0.5, 0.5f32.next_up(), 7.0, f32::INFINITY, f32::NAN]
+            {
+                assert_eq!(
+                    passes(func, 0.5, None, alpha),
+                    holds(func, alpha, 0.5),
+                    "{func:?} {alpha}"
+                );
             }
         }
     }
@@ -135,7 +167,9 @@ mod tests {
             for func in FUNCTIONS {
                 let Some(test) = AlphaTest::new(func, 0.99, Some(255.0)) else { continue };
                 let bits = dispatch!(level, simd => bits_of(alpha_test(simd, test, F32x8::from_slice(simd, &alpha))));
-                (0..8).for_each(|lane| assert_eq!(bits >> lane & 1 == 1, test.passes(alpha[lane]), "{func:?} {lane}"));
+                (0..8).for_each(|lane| {
+                    assert_eq!(bits >> lane & 1 == 1, test.passes(alpha[lane]), "{func:?} {lane}")
+                });
             }
             let test = DepthTest { func: Compare::Less, write: true };
             let bits = dispatch!(level, simd => bits_of(depth_test(

@@ -1,14 +1,16 @@
 //! Alpha to coverage and sample coverage: how much of a pixel counts, as a set of its samples.
 //!
-//! A value `v` keeps the samples whose threshold is below it: 0 keeps none, 1 keeps all, and a larger value keeps all
-//! that a smaller one keeps. The sets depend on the value alone, not on the pixel, so nothing is dithered.
+//! A value `v` keeps the samples whose threshold is below it: 0 keeps none, 1 keeps all, and a
+//! larger value keeps all that a smaller one keeps. The sets depend on the value alone, not on the
+//! pixel, so nothing is dithered.
 
 use crate::forward::state::SampleCoverage;
 use crate::forward::wide::{bits_of, splat};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, Simd};
 
-/// In which order four samples are taken: the outer two of the sorted pattern first, so that halves are spread.
+/// In which order four samples are taken: the outer two of the sorted pattern first, so that halves
+/// are spread.
 const RANK: [usize; 4] = [0, 2, 3, 1];
 
 /// The value above which sample `s` of `samples` is kept.
@@ -42,7 +44,8 @@ mod tests {
 
     #[test]
     fn quarters_of_a_pixel() {
-        let sets: Vec<u32> = [0.0, 0.1, 0.125, 0.25, 0.5, 0.75, 0.87, 0.9, 1.0].map(|v| coverage_bits(v, 4)).into();
+        let sets: Vec<u32> =
+            [0.0, 0.1, 0.125, 0.25, 0.5, 0.75, 0.87, 0.9, 1.0].map(|v| coverage_bits(v, 4)).into();
         assert_eq!(sets, [0, 0, 0b0001, 0b0001, 0b1001, 0b1011, 0b1011, 0b1111, 0b1111]);
         assert_eq!([0.0, 0.49, 0.5, 1.0].map(|v| coverage_bits(v, 1)), [0, 0, 1, 1]);
         assert_eq!(coverage_bits(f32::NAN, 4), 0);
@@ -64,7 +67,11 @@ mod tests {
             for s in 0..4 {
                 let bits = dispatch!(level, simd => alpha_coverage(simd, F32x8::from_slice(simd, &alpha), s, 4));
                 for lane in 0..8 {
-                    assert_eq!(bits >> lane & 1, coverage_bits(alpha[lane], 4) >> s & 1, "{name} {lane} {s}");
+                    assert_eq!(
+                        bits >> lane & 1,
+                        coverage_bits(alpha[lane], 4) >> s & 1,
+                        "{name} {lane} {s}"
+                    );
                 }
             }
         }

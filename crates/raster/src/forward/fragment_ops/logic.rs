@@ -45,7 +45,11 @@ pub(crate) fn protected_bits(masked: [bool; 4]) -> u32 {
 
 /// `new`, but `old` in the protected bits.
 #[inline(always)]
-pub(crate) fn write_unprotected<S: Simd, W: SimdInt<S, Element = u32>>(new: W, old: W, protected: u32) -> W {
+pub(crate) fn write_unprotected<S: Simd, W: SimdInt<S, Element = u32>>(
+    new: W,
+    old: W,
+    protected: u32,
+) -> W {
     (new & !protected) | (old & protected)
 }
 
@@ -55,7 +59,8 @@ mod tests {
     use vitral_math::lanes::U32x8;
     use vitral_math::lanes::{available_levels, dispatch};
 
-    /// Bit `2 * s + d` of each is the result for source bit `s` and destination bit `d` (table 4.2 of the specification).
+    /// Bit `2 * s + d` of each is the result for source bit `s` and destination bit `d` (table 4.2
+    /// of the specification).
     const TRUTH: [(LogicOp, u32); 16] = [
         (LogicOp::Clear, 0b0000),
         (LogicOp::And, 0b1000),

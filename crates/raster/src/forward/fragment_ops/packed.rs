@@ -1,8 +1,9 @@
 //! Pixels of four bytes in a word: to and from lanes, and blending of words without unpacking them.
 //!
-//! The word blends compute two components at a time in the 16-bit halves of a word. On sources of whole bytes they give
-//! exactly what [`blend`](super::blend::blend) gives between [`unpack`] and [`pack`]: the nearest byte to the exact result (a
-//! tie cannot happen, 255 being odd). A source that is not whole bytes is rounded before instead of after.
+//! The word blends compute two components at a time in the 16-bit halves of a word. On sources of
+//! whole bytes they give exactly what [`blend`](super::blend::blend) gives between [`unpack`] and
+//! [`pack`]: the nearest byte to the exact result (a tie cannot happen, 255 being odd). A source
+//! that is not whole bytes is rounded before instead of after.
 
 use crate::forward::wide::{Rgba, saturate};
 use vitral_math::lanes::prelude::*;
@@ -11,7 +12,8 @@ use vitral_math::lanes::{Floats, Simd, U32x8};
 /// Red and blue of a word, or green and alpha of a word shifted by 8.
 const HALVES: u32 = 0x00ff_00ff;
 
-/// The byte of each value, `0.0 -> 0`, `1.0 -> 255`, rounded to nearest and clamped; red in the lowest byte.
+/// The byte of each value, `0.0 -> 0`, `1.0 -> 255`, rounded to nearest and clamped; red in the
+/// lowest byte.
 #[inline(always)]
 pub(crate) fn pack<S: Simd, V: Floats<S>>(color: &[V; 4]) -> V::Words {
     let r: V::Ints = (saturate(color[0]) * 255.0 + 0.5).to_int();
@@ -109,10 +111,17 @@ mod tests {
                 pack(&[v, v, v, v]).to_array()
             });
             for lane in 0..8 {
-                assert_eq!(words[lane].to_le_bytes(), [byte_from_unit(values[lane]); 4], "{name} {}", values[lane]);
+                assert_eq!(
+                    words[lane].to_le_bytes(),
+                    [byte_from_unit(values[lane]); 4],
+                    "{name} {}",
+                    values[lane]
+                );
             }
             for byte in (0..=255u32).step_by(8) {
-                let row: Vec<u32> = (0..8).map(|i| u32::from_le_bytes([byte as u8 + i, 255 - i, i, 77 + i])).collect();
+                let row: Vec<u32> = (0..8)
+                    .map(|i| u32::from_le_bytes([byte as u8 + i, 255 - i, i, 77 + i]))
+                    .collect();
                 let (same, floats) = dispatch!(level, simd => {
                     let color = unpack(U32x8::from_slice(simd, &row));
                     (pack(&color).to_array(), color[0].to_array())
@@ -123,7 +132,12 @@ mod tests {
         }
     }
 
-    fn float_blend(level: Level, factors: [BlendFactor; 2], s: &[u32; 8], d: &[u32; 8]) -> [u32; 8] {
+    fn float_blend(
+        level: Level,
+        factors: [BlendFactor; 2],
+        s: &[u32; 8],
+        d: &[u32; 8],
+    ) -> [u32; 8] {
         let state = Blend {
             source: [factors[0]; 2],
             destination: [factors[1]; 2],

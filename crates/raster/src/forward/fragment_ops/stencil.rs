@@ -47,7 +47,8 @@ pub(crate) fn stencil_holds(face: &StencilFace, stored: u8) -> bool {
     holds(face.func, f32::from(face.reference & face.mask), f32::from(stored & face.mask))
 }
 
-/// The values after the test: `covered` lanes change by the operation of their case, within the write mask.
+/// The values after the test: `covered` lanes change by the operation of their case, within the
+/// write mask.
 #[inline(always)]
 pub(crate) fn stencil_update<S: Simd>(
     simd: S,
@@ -116,7 +117,15 @@ mod tests {
 
     fn face(func: Compare, mask: u8) -> StencilFace {
         let keep = StencilOp::Keep;
-        StencilFace { func, reference: 0x83, mask, fail: keep, depth_fail: keep, pass: keep, write_mask: 255 }
+        StencilFace {
+            func,
+            reference: 0x83,
+            mask,
+            fail: keep,
+            depth_fail: keep,
+            pass: keep,
+            write_mask: 255,
+        }
     }
 
     #[test]
@@ -128,7 +137,12 @@ mod tests {
                     let bits = dispatch!(level, simd => bits_of(stencil_test(simd, &face, load_stencil(simd, &ROW))));
                     for lane in 0..8 {
                         let expected = scalar(0x83 & mask, ROW[lane] & mask);
-                        assert_eq!(bits >> lane & 1 == 1, expected, "{name} {func:?} {mask} {}", ROW[lane]);
+                        assert_eq!(
+                            bits >> lane & 1 == 1,
+                            expected,
+                            "{name} {func:?} {mask} {}",
+                            ROW[lane]
+                        );
                     }
                 }
             }

@@ -1,7 +1,8 @@
 //! Anisotropic filtering: a long footprint is covered by several lookups in a row.
 //!
-//! A pixel's footprint in the texture is about as long as the longer derivative and as wide as the shorter one. Probes
-//! of the width's level of detail along the longer side, averaged, blur less than one lookup of the length's level.
+//! A pixel's footprint in the texture is about as long as the longer derivative and as wide as the
+//! shorter one. Probes of the width's level of detail along the longer side, averaged, blur less
+//! than one lookup of the length's level.
 //!
 //! Source: EXT_texture_filter_anisotropic.
 
@@ -17,8 +18,9 @@ use vitral_math::lanes::{self, F32x8, Simd};
 /// Most probes a lookup.
 const MOST_PROBES: f32 = 16.0;
 
-/// As [`sample`], but with the derivatives in texels (see [`super::mip::derivatives`]) and the bias instead of the level of
-/// detail, and with as many probes as `sampler.anisotropy` allows. Only textures of two dimensions take more than one.
+/// As [`sample`], but with the derivatives in texels (see [`super::mip::derivatives`]) and the bias
+/// instead of the level of detail, and with as many probes as `sampler.anisotropy` allows. Only
+/// textures of two dimensions take more than one.
 #[inline(never)]
 pub(crate) fn sample_anisotropic<S: Simd>(
     simd: S,
@@ -48,7 +50,8 @@ pub(crate) fn sample_anisotropic<S: Simd>(
             let [s, t, r, q] = coords;
             let (s, t, r) = (s / q, t / q, r / q);
             let one = splat(simd, 1.0);
-            let (step_s, step_t) = (footprint.along[0] / size[0] as f32, footprint.along[1] / size[1] as f32);
+            let (step_s, step_t) =
+                (footprint.along[0] / size[0] as f32, footprint.along[1] / size[1] as f32);
 
             // Probe i of n lies at i / (n + 1) - 1/2 of the footprint's length from its middle.
             let mut sum = splat_rgba(simd, [0.0; 4]);
@@ -59,7 +62,14 @@ pub(crate) fn sample_anisotropic<S: Simd>(
                     break;
                 }
                 let at = splat(simd, i) / (footprint.probes + 1.0) - 0.5;
-                let color = sample(simd, texture, plane, [s + step_s * at, t + step_t * at, r, one], detail, lanes);
+                let color = sample(
+                    simd,
+                    texture,
+                    plane,
+                    [s + step_s * at, t + step_t * at, r, one],
+                    detail,
+                    lanes,
+                );
                 let counts = mask_of(simd, lanes);
                 for k in 0..4 {
                     sum[k] = select(counts, sum[k] + color[k], sum[k]);

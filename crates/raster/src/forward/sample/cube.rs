@@ -1,7 +1,8 @@
 //! Cube maps: a direction chooses a face and a point on it.
 //!
-//! Seamless filtering takes the texels beyond a face's edge from the face that meets it there; at a corner of the cube,
-//! where three faces meet and a fourth texel is missing, the three others' mean stands in for it.
+//! Seamless filtering takes the texels beyond a face's edge from the face that meets it there; at a
+//! corner of the cube, where three faces meet and a fourth texel is missing, the three others' mean
+//! stands in for it.
 //!
 //! Source: OpenGL 1.5 specification, table 3.20; ARB_seamless_cube_map.
 
@@ -29,9 +30,13 @@ pub(super) fn sample<S: Simd>(
         #[inline(always)]
         || {
             // Choose the face and the point on it.
-            let is_depth = matches!(level_of(texture, 0).map(|l| l.texels()), Some(Texels::Depth(_)));
+            let is_depth =
+                matches!(level_of(texture, 0).map(|l| l.texels()), Some(Texels::Depth(_)));
             let direction = [coords[0], coords[1], coords[2]];
-            let chart = Chart::new(simd, if is_depth { direction } else { turned(simd, direction, coords[3]) });
+            let chart = Chart::new(
+                simd,
+                if is_depth { direction } else { turned(simd, direction, coords[3]) },
+            );
             let (face, point) = (chart.face(simd), chart.point());
 
             // Sample a packed map if there is one.
@@ -51,7 +56,9 @@ pub(super) fn sample<S: Simd>(
                 lod,
                 active,
                 #[inline(always)]
-                |level, linear, lanes| lookup(simd, texture, level, linear, &face, point, lanes, reference),
+                |level, linear, lanes| {
+                    lookup(simd, texture, level, linear, &face, point, lanes, reference)
+                },
             );
             if is_depth { by_mode(simd, texture.depth_mode, color[0]) } else { color }
         },
@@ -99,7 +106,8 @@ impl<S: Simd, V: Floats<S>> Chart<S, V> {
             #[inline(always)]
             |n: f32| every::<S, V>(simd, n),
         );
-        let axis = select(self.x_major, number(0.0), select(self.y_major, number(2.0), number(4.0)));
+        let axis =
+            select(self.x_major, number(0.0), select(self.y_major, number(2.0), number(4.0)));
         (axis + select(self.negative, number(1.0), number(0.0))).to_int()
     }
 
@@ -183,8 +191,11 @@ fn lookup<S: Simd>(
         && inside
         && shape.border == 0
         && let Some(words) = TexelWords::new(shape)
-        && let Some(columns) =
-            if filtered { shape.columns(shape.size[0] as usize * shape.size[1] as usize) } else { Some(&[][..]) }
+        && let Some(columns) = if filtered {
+            shape.columns(shape.size[0] as usize * shape.size[1] as usize)
+        } else {
+            Some(&[][..])
+        }
     {
         let color = if filtered {
             bilinear(simd, (columns, size[0]), words, &x, &y)
@@ -225,7 +236,11 @@ fn bilinear<S: Simd>(
 
 /// Where an axis reaches beyond the image.
 #[inline(always)]
-pub(super) fn crosses<S: Simd, V: Floats<S>>(simd: S, axis: &Axis<S, V>, size: u32) -> MaskOf<S, V> {
+pub(super) fn crosses<S: Simd, V: Floats<S>>(
+    simd: S,
+    axis: &Axis<S, V>,
+    size: u32,
+) -> MaskOf<S, V> {
     axis.near.simd_lt(V::Ints::splat(simd, 0)) | axis.far.simd_ge(V::Ints::splat(simd, size as i32))
 }
 
@@ -284,7 +299,12 @@ fn general<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>) -> Rgba<S> {
 
 /// One raw texel a lane, each from its face.
 #[inline(always)]
-fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &TexelCoords8<S>) -> Rgba<S> {
+fn texels<S: Simd>(
+    simd: S,
+    texture: &Texture,
+    spot: &Spot<'_, S>,
+    place: &TexelCoords8<S>,
+) -> Rgba<S> {
     let index = place.index.to_array();
     // Fetch packed words lane by lane.
     if let Some(first) = TexelWords::new(spot.shape) {
@@ -292,7 +312,8 @@ fn texels<S: Simd>(simd: S, texture: &Texture, spot: &Spot<'_, S>, place: &Texel
         for lane in 0..LANES {
             let shape = level_of_face(texture, (place.face[lane] % 6) as usize, spot.level);
             if let Some(texels) = shape.and_then(TexelWords::new) {
-                words[lane] = texels.texels.get(index[lane] as u32 as usize).copied().unwrap_or_default();
+                words[lane] =
+                    texels.texels.get(index[lane] as u32 as usize).copied().unwrap_or_default();
             }
         }
         return first.meaning(simd, U32x8::from_slice(simd, &words));
@@ -355,10 +376,11 @@ fn texel_coords<S: Simd>(simd: S, spot: &Spot<'_, S>, x: I32x8<S>, y: I32x8<S>) 
     TexelCoords8 { face: faces, index, outside: mask_of(simd, 0), missing }
 }
 
-/// The face and texel next to `face` at `(x, y)`, one of which lies one texel beyond `0..size`; `None` if both do.
+/// The face and texel next to `face` at `(x, y)`, one of which lies one texel beyond `0..size`;
+/// `None` if both do.
 ///
-/// Texel centres are odd multiples of half a texel on a cube of `2 * size` halves. Folding a texel over the edge swaps
-/// its place along the axis that it leaves with the face's own axis.
+/// Texel centres are odd multiples of half a texel on a cube of `2 * size` halves. Folding a texel
+/// over the edge swaps its place along the axis that it leaves with the face's own axis.
 pub(super) fn neighbour(face: u32, x: i32, y: i32, size: i32) -> Option<(u32, i32, i32)> {
     let (sc, tc) = (2 * x + 1 - size, 2 * y + 1 - size);
     if sc.abs() > size && tc.abs() > size {
@@ -413,21 +435,29 @@ mod tests {
             for i in 0..size {
                 for (x, y) in [(-1, i), (size, i), (i, -1), (i, size)] {
                     let (other, u, v) = neighbour(face, x, y, size).unwrap();
-                    assert!(other != face && other / 2 != face / 2, "the opposite face is no neighbour");
+                    assert!(
+                        other != face && other / 2 != face / 2,
+                        "the opposite face is no neighbour"
+                    );
                     assert!((0..size).contains(&u) && (0..size).contains(&v));
-                    // From there one step back over the same edge leads to the texel inside the first face.
+                    // From there one step back over the same edge leads to the texel inside the
+                    // first face.
                     let inside = (x.clamp(0, size - 1), y.clamp(0, size - 1));
                     let steps = [(u - 1, v), (u + 1, v), (u, v - 1), (u, v + 1)];
-                    let back = steps.into_iter().filter(|&(u, v)| !(0..size).contains(&u) || !(0..size).contains(&v));
+                    let back = steps
+                        .into_iter()
+                        .filter(|&(u, v)| !(0..size).contains(&u) || !(0..size).contains(&v));
                     assert!(
-                        back.clone().any(|(u, v)| neighbour(other, u, v, size) == Some((face, inside.0, inside.1))),
+                        back.clone().any(|(u, v)| neighbour(other, u, v, size)
+                            == Some((face, inside.0, inside.1))),
                         "face {face} ({x}, {y})"
                     );
                 }
             }
         }
         assert_eq!(neighbour(0, -1, size, size), None);
-        // Table by hand: +x's left edge (s = 0) meets +z's right edge; its lower edge (t = 0) is +y's right edge.
+        // Table by hand: +x's left edge (s = 0) meets +z's right edge; its lower edge (t = 0) is
+        // +y's right edge.
         assert_eq!(neighbour(0, -1, 1, 4), Some((4, 3, 1)));
         assert_eq!(neighbour(0, 1, -1, 4), Some((2, 3, 2)));
     }

@@ -1,7 +1,7 @@
 //! Depth textures of one and two dimensions: shadow maps.
 //!
-//! With a comparison each texel becomes 0 or 1 before filtering, so that a linear filter gives the share of the four
-//! texels that pass, by their weights.
+//! With a comparison each texel becomes 0 or 1 before filtering, so that a linear filter gives the
+//! share of the four texels that pass, by their weights.
 
 use super::fetch::{LevelDepths, level_of};
 use super::flat::{axes, corner_texels};
@@ -16,8 +16,8 @@ use crate::forward::wide::{Rgba, every, floor, min, mix, saturate, select, splat
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, Lanes, Simd};
 
-/// A shadow map of the common kind, made ready for lookups: a plane with pending triangles, one texel a lookup, and a comparison
-/// that bounds of depths can settle.
+/// A shadow map of the common kind, made ready for lookups: a plane with pending triangles, one
+/// texel a lookup, and a comparison that bounds of depths can settle.
 #[derive(Clone, Copy)]
 pub(crate) struct PackedShadow<'a> {
     texture: &'a Texture,
@@ -54,9 +54,19 @@ impl<'a> PackedShadow<'a> {
 
     /// The colours at such places.
     #[inline(always)]
-    pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, [x, y, reference]: [V; 3], active: u32) -> [V; 4] {
+    pub(crate) fn at<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        [x, y, reference]: [V; 3],
+        active: u32,
+    ) -> [V; 4] {
         let sign = self.pending.sign();
-        let depth = if self.pending.is_clear::<S, V>(simd, [x.to_int(), y.to_int()], reference * sign, active) {
+        let depth = if self.pending.is_clear::<S, V>(
+            simd,
+            [x.to_int(), y.to_int()],
+            reference * sign,
+            active,
+        ) {
             every(simd, self.pending.best() * sign)
         } else {
             self.depth(simd, [x, y], reference, active)
@@ -67,13 +77,24 @@ impl<'a> PackedShadow<'a> {
 
     /// The depths of texels, as far as they decide.
     #[inline(never)]
-    fn depth<S: Simd, V: Floats<S>>(&self, simd: S, [x, y]: [V; 2], reference: V, active: u32) -> V {
+    fn depth<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        [x, y]: [V; 2],
+        reference: V,
+        active: u32,
+    ) -> V {
         simd.vectorize(
             #[inline(always)]
             || {
                 // Sixteen in several registers make long code.
                 if lanes::has_sixteen(simd.level()) {
-                    return self.pending.texels(simd, [x.to_int(), y.to_int()], active, Some(reference));
+                    return self.pending.texels(
+                        simd,
+                        [x.to_int(), y.to_int()],
+                        active,
+                        Some(reference),
+                    );
                 }
                 let [depth] = V::by_eights(
                     simd,
@@ -81,7 +102,12 @@ impl<'a> PackedShadow<'a> {
                     #[inline(always)]
                     |first, [x, y, reference]| {
                         let active = active >> first & 0xff;
-                        [self.pending.texels(simd, [x.to_int(), y.to_int()], active, Some(reference))]
+                        [self.pending.texels(
+                            simd,
+                            [x.to_int(), y.to_int()],
+                            active,
+                            Some(reference),
+                        )]
                     },
                 );
                 depth
@@ -121,7 +147,9 @@ pub(super) fn sample<S: Simd>(
                 |level, linear, lanes| {
                     // A constant number of dimensions unrolls the loops.
                     [match texture.kind {
-                        TextureKind::One => lookup::<S, 1>(simd, texture, plane, level, linear, point, lanes),
+                        TextureKind::One => {
+                            lookup::<S, 1>(simd, texture, plane, level, linear, point, lanes)
+                        }
                         _ => lookup::<S, 2>(simd, texture, plane, level, linear, point, lanes),
                     }]
                 },
@@ -145,7 +173,12 @@ pub(super) fn by_mode<S: Simd, V: Floats<S>>(simd: S, mode: BaseFormat, value: V
 
 /// A texel as it is filtered: its depth, or 1 where the comparison of the reference with it holds.
 #[inline(always)]
-pub(super) fn compared<S: Simd, V: Floats<S>>(simd: S, texture: &Texture, reference: V, depth: V) -> V {
+pub(super) fn compared<S: Simd, V: Floats<S>>(
+    simd: S,
+    texture: &Texture,
+    reference: V,
+    depth: V,
+) -> V {
     match texture.sampler.compare {
         None => depth,
         Some(func) => {
@@ -155,8 +188,8 @@ pub(super) fn compared<S: Simd, V: Floats<S>>(simd: S, texture: &Texture, refere
     }
 }
 
-/// Whether a comparison only fails more with a depth that is nearer in the plane, so that what is no nearer than the reference is
-/// settled.
+/// Whether a comparison only fails more with a depth that is nearer in the plane, so that what is
+/// no nearer than the reference is settled.
 #[inline(always)]
 fn settles(func: Option<Compare>, sign: f32) -> bool {
     match func {
@@ -166,9 +199,14 @@ fn settles(func: Option<Compare>, sign: f32) -> bool {
     }
 }
 
-/// The stored depth that decides a comparison, for each lane: triangles that are no nearer need not be looked at.
+/// The stored depth that decides a comparison, for each lane: triangles that are no nearer need not
+/// be looked at.
 #[inline(always)]
-fn known<S: Simd>(texture: &Texture, depths: &LevelDepths<'_>, reference: F32x8<S>) -> Option<F32x8<S>> {
+fn known<S: Simd>(
+    texture: &Texture,
+    depths: &LevelDepths<'_>,
+    reference: F32x8<S>,
+) -> Option<F32x8<S>> {
     settles(texture.sampler.compare, depths.pending()?).then_some(reference)
 }
 

@@ -1,7 +1,7 @@
 //! Texels of one level, fetched for eight lanes.
 //!
-//! Fetched colours are raw: bytes stay 0..=255 until a lookup is finished, so that they are divided once instead of
-//! once a texel. [`Image::raw`] brings other colours to that scale.
+//! Fetched colours are raw: bytes stay 0..=255 until a lookup is finished, so that they are divided
+//! once instead of once a texel. [`Image::raw`] brings other colours to that scale.
 
 use crate::forward::fragment_ops::packed::unpack_bytes;
 use crate::forward::plane::DepthBuffer;
@@ -55,8 +55,8 @@ pub(super) fn singles<S: Simd>(simd: S, texels: &[u32], at: I32x8<S>) -> U32x8<S
     U32x8::from_slice(simd, &gather(texels, at))
 }
 
-/// The four texels round places, lower left and right, upper left and right; 0 where there are none. A lane's begin with number
-/// `at` of `columns(lane)`: see [`Level::columns`].
+/// The four texels round places, lower left and right, upper left and right; 0 where there are
+/// none. A lane's begin with number `at` of `columns(lane)`: see [`Level::columns`].
 #[inline(always)]
 pub(super) fn quads<'a, S: Simd, V: Floats<S>>(
     simd: S,
@@ -79,7 +79,8 @@ pub(super) fn quads<'a, S: Simd, V: Floats<S>>(
         #[inline(always)]
         |k: usize| V::Words::from_slice(simd, &words[k * V::LEN..(k + 1) * V::LEN]),
     );
-    let ((left, right), (more_left, more_right)) = ((part(0).deinterleave(part(1))), part(2).deinterleave(part(3)));
+    let ((left, right), (more_left, more_right)) =
+        ((part(0).deinterleave(part(1))), part(2).deinterleave(part(3)));
     let ((a, b), (c, d)) = (left.deinterleave(more_left), right.deinterleave(more_right));
     [a, b, c, d]
 }
@@ -142,7 +143,8 @@ impl<'a> TexelWords<'a> {
     /// From raw colours to colours.
     #[inline(always)]
     pub(super) fn finish<V: Lanes>(&self, color: [V; 4]) -> [V; 4] {
-        // Times the reciprocal, which makes 1.0 of 255, and of a byte what rounds to that byte again.
+        // Times the reciprocal, which makes 1.0 of 255, and of a byte what rounds to that byte
+        // again.
         const UNIT: f32 = 1.0 / 255.0;
         let [r, g, b, a] = color;
         match self.decode {
@@ -203,7 +205,8 @@ impl<'a> Image<'a> {
             Self::Words(words) => words.colors(simd, index),
             Self::Floats(texels) => {
                 let index = index.to_array();
-                let row = |lane: usize| texels.get(index[lane] as usize).copied().unwrap_or_default();
+                let row =
+                    |lane: usize| texels.get(index[lane] as usize).copied().unwrap_or_default();
                 let [r, g, b, a] = lanes::columns_of_rows(
                     simd,
                     #[inline(always)]
@@ -260,7 +263,12 @@ pub(super) fn columns<S: Simd>(simd: S, colors: &[[f32; 4]; LANES]) -> Rgba<S> {
         }
     }
     let [r, g, b, a] = &columns;
-    [F32x8::from_slice(simd, r), F32x8::from_slice(simd, g), F32x8::from_slice(simd, b), F32x8::from_slice(simd, a)]
+    [
+        F32x8::from_slice(simd, r),
+        F32x8::from_slice(simd, g),
+        F32x8::from_slice(simd, b),
+        F32x8::from_slice(simd, a),
+    ]
 }
 
 /// Depths of a level.
@@ -279,7 +287,9 @@ impl<'a> LevelDepths<'a> {
         match (level.texels(), plane) {
             (Texels::DepthBuffer(_), Some(plane)) => Self::Plane(plane),
             (Texels::Depth(texels), _) => Self::Stored(texels),
-            (Texels::DepthBuffer(plane), None) => Self::Locked(plane.lock().unwrap_or_else(PoisonError::into_inner)),
+            (Texels::DepthBuffer(plane), None) => {
+                Self::Locked(plane.lock().unwrap_or_else(PoisonError::into_inner))
+            }
             _ => Self::Stored(&[]),
         }
     }
@@ -314,7 +324,8 @@ impl<'a> LevelDepths<'a> {
     }
 }
 
-/// Depths of sample 0 of a plane's pixels; other lanes than the active ones yield something harmless.
+/// Depths of sample 0 of a plane's pixels; other lanes than the active ones yield something
+/// harmless.
 #[inline(always)]
 fn plane_depths<S: Simd>(
     simd: S,

@@ -36,14 +36,23 @@ pub(super) fn sample<S: Simd>(
 
 /// One level, filtered.
 #[inline(always)]
-fn lookup<S: Simd>(simd: S, texture: &Texture, level: usize, linear: bool, point: [F32x8<S>; 3]) -> Rgba<S> {
+fn lookup<S: Simd>(
+    simd: S,
+    texture: &Texture,
+    level: usize,
+    linear: bool,
+    point: [F32x8<S>; 3],
+) -> Rgba<S> {
     // Find the texels and weights along the axes.
-    let Some(shape) = level_of(texture, level) else { return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]) };
+    let Some(shape) = level_of(texture, level) else {
+        return splat_rgba(simd, [0.0, 0.0, 0.0, 1.0]);
+    };
     let image = Image::new(shape);
     let dimensions = dimensions(texture.kind);
     let axes = axes(simd, texture, shape, dimensions, linear, point);
 
-    // Fetch the corners of the cell round the point. Bit k of a corner's number chooses the far texel of axis k.
+    // Fetch the corners of the cell round the point. Bit k of a corner's number chooses the far
+    // texel of axis k.
     let border = splat_rgba(simd, image.raw(texture.sampler.border));
     let corners = if linear { 1 << dimensions } else { 1 };
     let mut colors = [border; 8];
@@ -89,7 +98,8 @@ pub(super) fn axes<S: Simd>(
     axes
 }
 
-/// Coordinates of a corner's texels within the stored image, border included; and where there is no such texel.
+/// Coordinates of a corner's texels within the stored image, border included; and where there is no
+/// such texel.
 #[inline(always)]
 pub(super) fn corner_texels<S: Simd>(
     simd: S,

@@ -1,12 +1,14 @@
 //! Colours of bytes, filtered without being turned into floating point.
 //!
-//! Two components lie in the 16-bit halves of each word. Weights have 8 bits, so that products stay below 2^16; each mix is
-//! rounded to nearest, which puts a colour filtered from eight texels within 2/255 of the exact one.
+//! Two components lie in the 16-bit halves of each word. Weights have 8 bits, so that products stay
+//! below 2^16; each mix is rounded to nearest, which puts a colour filtered from eight texels
+//! within 2/255 of the exact one.
 
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{Floats, Simd};
 
-/// Colours of bytes, two in the 16-bit halves of each word: they are filtered together, with weights of 8 bits.
+/// Colours of bytes, two in the 16-bit halves of each word: they are filtered together, with
+/// weights of 8 bits.
 pub(super) struct Halves<S: Simd, V: Floats<S>> {
     /// Red, and blue in the higher half.
     rb: V::Halves,
@@ -50,8 +52,12 @@ impl<S: Simd, V: Floats<S>> Halves<S, V> {
     pub(super) fn unpack(&self) -> [V; 4] {
         let (rb, ga): (V::Words, V::Words) = (self.rb.bitcast(), self.ga.bitcast());
         // Signed integers, because they are turned into floats in one instruction.
-        let [r, g, b, a]: [V::Ints; 4] =
-            [(rb & 0xffff).bitcast(), (ga & 0xffff).bitcast(), (rb >> 16).bitcast(), (ga >> 16).bitcast()];
+        let [r, g, b, a]: [V::Ints; 4] = [
+            (rb & 0xffff).bitcast(),
+            (ga & 0xffff).bitcast(),
+            (rb >> 16).bitcast(),
+            (ga >> 16).bitcast(),
+        ];
         [r.to_float(), g.to_float(), b.to_float(), a.to_float()]
     }
 }
@@ -79,7 +85,9 @@ mod tests {
     #[test]
     fn components_do_not_touch_each_other() {
         let texels: [[u32; LANES]; 4] = std::array::from_fn(|k| {
-            std::array::from_fn(|i| (i as u32).wrapping_mul(0x2947_1bd3).rotate_left(7 * k as u32) ^ 0xff00_00ff)
+            std::array::from_fn(|i| {
+                (i as u32).wrapping_mul(0x2947_1bd3).rotate_left(7 * k as u32) ^ 0xff00_00ff
+            })
         });
         let weights = [0.0, 0.25, 0.5, 0.498, 0.75, 0.999, 1.0, 0.1];
         for (name, level) in available_levels() {
@@ -95,7 +103,10 @@ mod tests {
                 let weights = [whole(weights[lane]), whole(weights[LANES - 1 - lane])];
                 for k in 0..4 {
                     let expected = by_hand(texels.map(|t| t[lane]), weights, 8 * k as u32);
-                    assert_eq!(color[k][lane], expected as f32, "{name}: lane {lane}, component {k}");
+                    assert_eq!(
+                        color[k][lane], expected as f32,
+                        "{name}: lane {lane}, component {k}"
+                    );
                 }
             }
         }

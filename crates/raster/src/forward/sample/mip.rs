@@ -13,8 +13,9 @@ pub(crate) fn needs_lod(texture: &Texture) -> bool {
     min != mag
 }
 
-/// The level of detail of level 0 from how many texels a step of one pixel to the right crosses in each dimension, and
-/// a step up: the logarithm to base 2 of the longer step. -63 for no step at all.
+/// The level of detail of level 0 from how many texels a step of one pixel to the right crosses in
+/// each dimension, and a step up: the logarithm to base 2 of the longer step. -63 for no step at
+/// all.
 #[inline(always)]
 pub(crate) fn lod<S: Simd>(
     du_dx: F32x8<S>,
@@ -29,12 +30,13 @@ pub(crate) fn lod<S: Simd>(
     half_log2(max(across, up))
 }
 
-/// The logarithm to base 2 of a step, given its squared length, to within 3e-7; exact for powers of two.
+/// The logarithm to base 2 of a step, given its squared length, to within 3e-7; exact for powers of
+/// two.
 #[inline(always)]
 pub(crate) fn half_log2<V: Lanes>(square: V) -> V {
     let (exponent, mantissa) = max(square, square.splat(f32::MIN_POSITIVE)).split_exponent();
-    // The polynomial of degree 7 without a constant that is nearest to log2(1 + t) in 0..=1. It takes no division, unlike
-    // `Lanes::log2`, whose error is smaller.
+    // The polynomial of degree 7 without a constant that is nearest to log2(1 + t) in 0..=1. It
+    // takes no division, unlike `Lanes::log2`, whose error is smaller.
     let t = mantissa - 1.0;
     let mut p = t.splat(0.015_529_888);
     for c in [-0.079_557_63, 0.194_294_19, -0.325_901_9, 0.473_553_37, -0.720_585_46, 1.442_667_8] {
@@ -43,8 +45,8 @@ pub(crate) fn half_log2<V: Lanes>(square: V) -> V {
     (exponent + p * t) * 0.5
 }
 
-/// How many texels of level 0 a step to the right and a step up cross in each dimension, from the derivatives of
-/// (s, t, r, q) as interpolated.
+/// How many texels of level 0 a step to the right and a step up cross in each dimension, from the
+/// derivatives of (s, t, r, q) as interpolated.
 #[inline(always)]
 pub(crate) fn derivatives<S: Simd>(
     simd: S,
@@ -125,7 +127,12 @@ fn split(filter: Filter) -> (bool, Mip) {
 
 /// Levels and filters for levels `0..=last`.
 #[inline(always)]
-pub(super) fn choose<S: Simd, V: Floats<S>>(simd: S, sampler: &Sampler, last: usize, lod: V) -> Choice<V> {
+pub(super) fn choose<S: Simd, V: Floats<S>>(
+    simd: S,
+    sampler: &Sampler,
+    last: usize,
+    lod: V,
+) -> Choice<V> {
     // Clamp the level of detail.
     let zero = every(simd, 0.0);
     let (magnify_linear, _) = split(sampler.mag);
@@ -133,7 +140,8 @@ pub(super) fn choose<S: Simd, V: Floats<S>>(simd: S, sampler: &Sampler, last: us
     let lod = clamp(lod, sampler.lod[0], sampler.lod[1]);
 
     // Where texels are larger than pixels, only level 0 is read.
-    let from_nearest = matches!(sampler.min, Filter::NearestMipmapNearest | Filter::NearestMipmapLinear);
+    let from_nearest =
+        matches!(sampler.min, Filter::NearestMipmapNearest | Filter::NearestMipmapLinear);
     let switch_over = if magnify_linear && from_nearest { 0.5 } else { 0.0 };
     let magnified = lod.simd_le(every::<S, V>(simd, switch_over));
     let linear = match (magnify_linear, minify_linear) {
@@ -155,7 +163,11 @@ pub(super) fn choose<S: Simd, V: Floats<S>>(simd: S, sampler: &Sampler, last: us
             (level, lod - level)
         }
     };
-    Choice { level: select(magnified, zero, level), fraction: select(magnified, zero, fraction), linear }
+    Choice {
+        level: select(magnified, zero, level),
+        fraction: select(magnified, zero, fraction),
+        linear,
+    }
 }
 
 /// Mixes what `lookup(level, linear, lanes)` yields on the levels that the active lanes call for.
@@ -187,7 +199,8 @@ pub(super) fn mipped<S: Simd, const N: usize>(
         let level = levels[first];
         let linear = choice.linear >> first & 1 == 1;
         let same_filter = if linear { choice.linear } else { !choice.linear };
-        let group = bits_of(choice.level.simd_eq(splat(simd, level))) & same_filter & rest | 1 << first;
+        let group =
+            bits_of(choice.level.simd_eq(splat(simd, level))) & same_filter & rest | 1 << first;
 
         // Look one level up, or two and mix them.
         let level = level as usize;
@@ -196,7 +209,8 @@ pub(super) fn mipped<S: Simd, const N: usize>(
         for step in 0..steps {
             let texel = lookup((level + step).min(last), linear, group);
             for k in 0..N {
-                color[k] = if step == 0 { texel[k] } else { mix(color[k], texel[k], choice.fraction) };
+                color[k] =
+                    if step == 0 { texel[k] } else { mix(color[k], texel[k], choice.fraction) };
             }
         }
 

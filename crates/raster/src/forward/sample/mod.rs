@@ -1,15 +1,20 @@
 //! Looking eight points up in a texture: choose levels, wrap, fetch, compare, filter.
 //!
-//! [`mip::derivatives`] tell how many texels of level 0 a step of one pixel crosses, [`mip::lod`] is the logarithm of the larger
-//! step, and [`sample`] reads the levels it calls for. Lanes that choose the same level are looked up together, so that
-//! a row of pixels on one surface takes one or two passes. Texels are fetched lane by lane, everything else is done in
-//! lanes. The [`PackedTexture`] kinds of textures have ways of their own, for eight lanes or sixteen. A lookup never fails: what is
-//! missing reads as opaque black, and a coordinate that is not finite reads the texel at the low edge.
+//! [`mip::derivatives`] tell how many texels of level 0 a step of one pixel crosses, [`mip::lod`]
+//! is the logarithm of the larger step, and [`sample`] reads the levels it calls for. Lanes that
+//! choose the same level are looked up together, so that a row of pixels on one surface takes one
+//! or two passes. Texels are fetched lane by lane, everything else is done in lanes. The
+//! [`PackedTexture`] kinds of textures have ways of their own, for eight lanes or sixteen. A lookup
+//! never fails: what is missing reads as opaque black, and a coordinate that is not finite reads
+//! the texel at the low edge.
 //!
-//! In:   interpolated coordinates (s, t, r, q), level of detail. Out: RGBA, straight alpha, linear light.
-//! Cost: one texel (nearest), two, four or eight (linear in one to three dimensions); twice that between two levels.
-//! Source: OpenGL 1.5 specification, sections 3.8.7 to 3.8.11, 3.8.14; ARB_seamless_cube_map, EXT_texture_sRGB,
-//! EXT_texture_filter_anisotropic. Departs from it: texels are fetched once a lane, also where a lane is not active.
+//! In:   interpolated coordinates (s, t, r, q), level of detail. Out: RGBA, straight alpha, linear
+//!       light.
+//! Cost: one texel (nearest), two, four or eight (linear in one to three dimensions); twice that
+//!       between two levels.
+//! Source: OpenGL 1.5 specification, sections 3.8.7 to 3.8.11, 3.8.14; ARB_seamless_cube_map,
+//! EXT_texture_sRGB, EXT_texture_filter_anisotropic. Departs from it: texels are fetched once a
+//! lane, also where a lane is not active.
 
 pub(crate) mod anisotropic;
 pub(crate) mod cube;
@@ -55,14 +60,15 @@ impl<'a> PackedTexture<'a> {
     }
 }
 
-/// The texture's colours at eight points. `coords` are s, t, r, q as interpolated: they are divided by q here; of cube
-/// maps' q the sign matters alone, for s, t, r are a direction. `lod` is the logarithm to base 2 of the texels of level 0 per pixel, plus
-/// the bias; see [`mip::needs_lod`]. Lanes without their bit in `active` yield something harmless.
+/// The texture's colours at eight points. `coords` are s, t, r, q as interpolated: they are divided
+/// by q here; of cube maps' q the sign matters alone, for s, t, r are a direction. `lod` is the
+/// logarithm to base 2 of the texels of level 0 per pixel, plus the bias; see [`mip::needs_lod`].
+/// Lanes without their bit in `active` yield something harmless.
 ///
 /// `plane` is that of a depth texture whose texels are one, where the caller holds it already.
 ///
-/// Depth textures yield what their mode makes of the depth, or with a comparison of its result; the reference is r / q,
-/// for cube maps q.
+/// Depth textures yield what their mode makes of the depth, or with a comparison of its result; the
+/// reference is r / q, for cube maps q.
 #[inline(always)]
 pub(crate) fn sample<S: Simd>(
     simd: S,

@@ -1,10 +1,13 @@
-//! The common case: two dimensions, 8 bits a component, no texels of a border of its own. One dimension is a single row, where it is
-//! filtered: between two texels the nearest may be another one here.
+//! The common case: two dimensions, 8 bits a component, no texels of a border of its own. One
+//! dimension is a single row, where it is filtered: between two texels the nearest may be another
+//! one here.
 //!
-//! Where a lookup reaches beyond the image into the one colour of its border, the texels at the edge are filtered, and the border's
-//! share is mixed in: weights of two axes are products, so that this is what the four texels give.
+//! Where a lookup reaches beyond the image into the one colour of its border, the texels at the
+//! edge are filtered, and the border's share is mixed in: weights of two axes are products, so that
+//! this is what the four texels give.
 //!
-//! All lanes are looked up together, each on the level that it needs: a level is only a slice of texels and a size.
+//! All lanes are looked up together, each on the level that it needs: a level is only a slice of
+//! texels and a size.
 
 use super::fetch::{TexelWords, interior, quads};
 use super::halves::{Halves, weight};
@@ -12,7 +15,9 @@ use super::mip::{Choice, choose, dimensions, mix_rgba};
 use super::wrap::{Axis, linear_in, nearest_in, position_in};
 use crate::forward::fragment_ops::packed::unpack_bytes;
 use crate::forward::texture::{Filter, Level, Sampler, Texture, TextureKind, Wrap};
-use crate::forward::wide::{Rgba, bits_of, every, every_rgba, floor, max, min, select, select_rgba};
+use crate::forward::wide::{
+    Rgba, bits_of, every, every_rgba, floor, max, min, select, select_rgba,
+};
 use std::sync::Arc;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, Floats, MOST_LANES, Simd};
@@ -47,7 +52,10 @@ impl<'a> Packed<'a> {
             TextureKind::One => sampler.mag.is_linear() && sampler.min.is_linear(),
             kind => kind == TextureKind::Two,
         };
-        if !flat || texture.swizzle.is_some() || sampler.wrap[..2].iter().any(|wrap| wrap.mirrors_once()) {
+        if !flat
+            || texture.swizzle.is_some()
+            || sampler.wrap[..2].iter().any(|wrap| wrap.mirrors_once())
+        {
             return None;
         }
 
@@ -94,7 +102,13 @@ impl<'a> Packed<'a> {
 
     /// The colours at (s, t), as [`super::sample`] tells.
     #[inline(always)]
-    pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], lod: V, active: u32) -> [V; 4] {
+    pub(crate) fn at<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        place: [V; 2],
+        lod: V,
+        active: u32,
+    ) -> [V; 4] {
         // Choose the levels and the filter.
         let zero = every(simd, 0.0);
         let choice = if self.needs_lod() {
@@ -115,9 +129,10 @@ impl<'a> Packed<'a> {
         self.first.finish(color)
     }
 
-    /// The bytes of what [`Self::at`] gives for groups of places with levels of detail, see [`Self::meaning`], if all filter
-    /// linearly and those of a group need the same levels, as nearly always. Groups go through each step together: texels take long to
-    /// come, and none needs wait for another's.
+    /// The bytes of what [`Self::at`] gives for groups of places with levels of detail, see
+    /// [`Self::meaning`], if all filter linearly and those of a group need the same levels, as
+    /// nearly always. Groups go through each step together: texels take long to come, and none
+    /// needs wait for another's.
     #[inline(always)]
     pub(crate) fn sample_batch<S: Simd, V: Floats<S>, const N: usize>(
         &self,
@@ -149,7 +164,8 @@ impl<'a> Packed<'a> {
 
         // Compute addresses and weights for all groups and levels.
         let count = if several { 2 } else { 1 };
-        let (mut at, mut weights) = ([[V::Ints::splat(simd, 0); 2]; N], [[[every(simd, 0.0); 2]; 2]; N]);
+        let (mut at, mut weights) =
+            ([[V::Ints::splat(simd, 0); 2]; N], [[[every(simd, 0.0); 2]; 2]; N]);
         let (mut beyond, mut reached) = ([[every(simd, 0.0); 2]; N], false);
         for i in 0..N {
             for k in 0..count {
@@ -205,7 +221,13 @@ impl<'a> Packed<'a> {
 
     /// Raw colours, all lanes with one filter within a level.
     #[inline(always)]
-    fn filtered<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], choice: &Choice<V>, linear: bool) -> [V; 4] {
+    fn filtered<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        place: [V; 2],
+        choice: &Choice<V>,
+        linear: bool,
+    ) -> [V; 4] {
         let several = bits_of(choice.fraction.simd_gt(every::<S, V>(simd, 0.0))) != 0;
         let next = min(choice.level + 1.0, every(simd, self.last() as f32));
         if linear && !self.first.is_encoded() {
@@ -213,7 +235,9 @@ impl<'a> Packed<'a> {
             if !several {
                 return color.unpack();
             }
-            return color.mix(&self.halves(simd, place, next), weight(simd, choice.fraction)).unpack();
+            return color
+                .mix(&self.halves(simd, place, next), weight(simd, choice.fraction))
+                .unpack();
         }
         let color = self.level(simd, place, choice.level, linear);
         if !several {
@@ -229,7 +253,8 @@ impl<'a> Packed<'a> {
         let first = each.as_slice()[0];
         // Nearly always all lanes need the same level.
         let same = each.simd_eq(first).all_true().then(|| self.get(first));
-        let Some((columns, [width, height, _])) = same.and_then(|level| Some((level.columns(V::LEN)?, level.size)))
+        let Some((columns, [width, height, _])) =
+            same.and_then(|level| Some((level.columns(V::LEN)?, level.size)))
         else {
             return self.mixed_halves(simd, place, level);
         };
@@ -254,14 +279,26 @@ impl<'a> Packed<'a> {
 
     /// Colours of texels at the edge, mixed with the border's by its share.
     #[inline(always)]
-    fn bordered<S: Simd, V: Floats<S>>(&self, simd: S, color: Halves<S, V>, share: V) -> Halves<S, V> {
+    fn bordered<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        color: Halves<S, V>,
+        share: V,
+    ) -> Halves<S, V> {
         let border = self.sampler.border_word();
         color.mix(&Halves::new(V::Words::splat(simd, border)), weight(simd, share))
     }
 
-    /// What share of the colours at places of a level of this size is the border's; `None` for none at all.
+    /// What share of the colours at places of a level of this size is the border's; `None` for none
+    /// at all.
     #[inline(always)]
-    fn beyond<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], size: [V; 2], filtered: bool) -> Option<V> {
+    fn beyond<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        place: [V; 2],
+        size: [V; 2],
+        filtered: bool,
+    ) -> Option<V> {
         if self.reaches == [false; 2] {
             return None;
         }
@@ -270,7 +307,13 @@ impl<'a> Packed<'a> {
     }
 
     #[inline(never)]
-    fn beyond_apart<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], size: [V; 2], filtered: bool) -> V {
+    fn beyond_apart<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        place: [V; 2],
+        size: [V; 2],
+        filtered: bool,
+    ) -> V {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -281,7 +324,8 @@ impl<'a> Packed<'a> {
                     if !self.reaches[k] {
                         continue;
                     }
-                    // With `CLAMP` half of the way to the border's texels is the farthest, and the nearest texel the image's own.
+                    // With `CLAMP` half of the way to the border's texels is the farthest, and the
+                    // nearest texel the image's own.
                     let position = position_in(simd, place[k], size[k], self.sampler.wrap[k]);
                     if filtered {
                         let out = max(max(-position + 0.5, position - size[k] + 0.5), zero);
@@ -298,7 +342,12 @@ impl<'a> Packed<'a> {
 
     /// [`Self::halves`] where lanes need different levels.
     #[inline(never)]
-    fn mixed_halves<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], level: V) -> Halves<S, V> {
+    fn mixed_halves<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        place: [V; 2],
+        level: V,
+    ) -> Halves<S, V> {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -312,9 +361,15 @@ impl<'a> Packed<'a> {
         )
     }
 
-    /// The texels round places, each on its lane's level, and the weights of those further on along both axes.
+    /// The texels round places, each on its lane's level, and the weights of those further on along
+    /// both axes.
     #[inline(always)]
-    fn mixed_quads<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], level: V) -> ([V::Words; 4], [V; 2]) {
+    fn mixed_quads<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        place: [V; 2],
+        level: V,
+    ) -> ([V::Words; 4], [V; 2]) {
         // Find the texels and weights along both axes.
         let size = self.size_of(simd, level);
         let [x, y] = self.linear(simd, place, size);
@@ -324,7 +379,8 @@ impl<'a> Packed<'a> {
         let have_columns = if level.simd_eq(first).all_true() {
             self.get(first).columns(V::LEN).is_some()
         } else {
-            self.levels[0].has_columns() && level.as_slice().iter().all(|l| self.get(*l).columns(1).is_some())
+            self.levels[0].has_columns()
+                && level.as_slice().iter().all(|l| self.get(*l).columns(1).is_some())
         };
 
         // Fetch single texels where a level has no columns.
@@ -333,7 +389,12 @@ impl<'a> Packed<'a> {
                 #[inline(always)]
                 |x: V::Ints, y: V::Ints| self.words::<S, V>(simd, level, y * stride + x),
             );
-            let quads = [words(x.near, y.near), words(x.far, y.near), words(x.near, y.far), words(x.far, y.far)];
+            let quads = [
+                words(x.near, y.near),
+                words(x.far, y.near),
+                words(x.near, y.far),
+                words(x.far, y.far),
+            ];
             return (quads, [x.weight, y.weight]);
         }
 
@@ -350,7 +411,12 @@ impl<'a> Packed<'a> {
 
     /// The texels round a place along both axes.
     #[inline(always)]
-    fn linear<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], size: [V; 2]) -> [Axis<S, V>; 2] {
+    fn linear<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        place: [V; 2],
+        size: [V; 2],
+    ) -> [Axis<S, V>; 2] {
         let along = lanes::inlined(
             #[inline(always)]
             |k: usize| {
@@ -371,7 +437,13 @@ impl<'a> Packed<'a> {
 
     /// Raw colours of one level a lane.
     #[inline(never)]
-    fn level<S: Simd, V: Floats<S>>(&self, simd: S, place: [V; 2], level: V, filtered: bool) -> [V; 4] {
+    fn level<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        place: [V; 2],
+        level: V,
+        filtered: bool,
+    ) -> [V; 4] {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -393,7 +465,9 @@ impl<'a> Packed<'a> {
 
                 // Mix the border in where a wrap mode reaches it.
                 match self.beyond(simd, place, [width, height], filtered) {
-                    Some(share) => mix_rgba(color, every_rgba(simd, words.raw(self.sampler.border)), share),
+                    Some(share) => {
+                        mix_rgba(color, every_rgba(simd, words.raw(self.sampler.border)), share)
+                    }
                     None => color,
                 }
             },
@@ -410,7 +484,8 @@ impl<'a> Packed<'a> {
 
     #[inline(never)]
     fn add_words(&self, level: &[i32], at: &[i32], words: &mut [u32; MOST_LANES]) {
-        let texels = |level: i32| TexelWords::new(self.get(level)).map_or(&[][..], |words| words.texels);
+        let texels =
+            |level: i32| TexelWords::new(self.get(level)).map_or(&[][..], |words| words.texels);
         let [first, ..] = level else { return };
         // Nearly always all lanes need the same level.
         let (same, shared) = (level.iter().all(|other| other == first), texels(*first));

@@ -1,8 +1,8 @@
 //! The common case of cube maps: 8 bits a component, filtered linearly, no border colour in reach.
 //!
-//! Each face is laid out with a rim of the texels that lie beyond its edges, with seamless filtering those of the faces that meet it
-//! there, so that texels are found without a look at edges. A face is laid out when it is first looked at. Other cube maps are
-//! [`super::cube`]'s.
+//! Each face is laid out with a rim of the texels that lie beyond its edges, with seamless
+//! filtering those of the faces that meet it there, so that texels are found without a look at
+//! edges. A face is laid out when it is first looked at. Other cube maps are [`super::cube`]'s.
 //!
 //! Source: ARB_seamless_cube_map.
 
@@ -11,7 +11,9 @@ use super::fetch::{TexelWords, level_of_face, quads};
 use super::halves::Halves;
 use super::mip::{choose, mix_rgba};
 use super::wrap::{linear_in, position_in};
-use crate::forward::texture::{Columns, Filter, Level, Texels, Texture, TextureKind, Wrap, columns_of};
+use crate::forward::texture::{
+    Columns, Filter, Level, Texels, Texture, TextureKind, Wrap, columns_of,
+};
 use crate::forward::wide::{bits_of, every, floor, max, min, select_rgba};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, Floats, Lanes, MaskOf, Simd};
@@ -19,8 +21,9 @@ use vitral_math::lanes::{self, Floats, Lanes, MaskOf, Simd};
 /// Most levels: the largest texture has 2^14 texels a side.
 const LEVELS: usize = 16;
 
-/// Faces of levels with their rims, as far as lookups asked for them. Texel `(x, y)` of a face `size` wide, both from -1 on, is the
-/// first of number `(y + 1) * (size + 3) + x + 1`, the one above it is the second. A copy makes its own.
+/// Faces of levels with their rims, as far as lookups asked for them. Texel `(x, y)` of a face
+/// `size` wide, both from -1 on, is the first of number `(y + 1) * (size + 3) + x + 1`, the one
+/// above it is the second. A copy makes its own.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CubeFaces([[Columns; 6]; LEVELS]);
 
@@ -54,7 +57,8 @@ impl<'a> PackedCube<'a> {
 
         // Only linear filters are packed.
         let sampler = &texture.sampler;
-        let usual = texture.kind == TextureKind::Cube && texture.swizzle.is_none() && first.has_columns();
+        let usual =
+            texture.kind == TextureKind::Cube && texture.swizzle.is_none() && first.has_columns();
         if !usual || !regular || sampler.mag != Filter::Linear || !sampler.min.is_linear() {
             return None;
         }
@@ -75,7 +79,12 @@ impl<'a> PackedCube<'a> {
 
     /// The colours at points of faces, 0..=1 along both axes.
     #[inline(always)]
-    pub(crate) fn at<S: Simd, V: Floats<S>>(&self, simd: S, place: (V::Ints, [V; 2]), lod: V) -> [V; 4] {
+    pub(crate) fn at<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        place: (V::Ints, [V; 2]),
+        lod: V,
+    ) -> [V; 4] {
         if !self.needs_lod() {
             return self.level(simd, place, every(simd, 0.0));
         }
@@ -90,7 +99,12 @@ impl<'a> PackedCube<'a> {
 
     /// The colours on one level a lane.
     #[inline(always)]
-    fn level<S: Simd, V: Floats<S>>(&self, simd: S, (face, point): (V::Ints, [V; 2]), level: V) -> [V; 4] {
+    fn level<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        (face, point): (V::Ints, [V; 2]),
+        level: V,
+    ) -> [V; 4] {
         // Find the texels and weights along both axes.
         let size = max(floor(Lanes::exp2_whole(-level) * self.size as f32), every(simd, 1.0));
         let along = lanes::inlined(
@@ -122,7 +136,8 @@ impl<'a> PackedCube<'a> {
         };
 
         // Filter, and repair the lanes whose texels lie beyond an edge.
-        let beyond = [x.near.simd_lt(0), x.far.simd_ge(width), y.near.simd_lt(0), y.far.simd_ge(width)];
+        let beyond =
+            [x.near.simd_lt(0), x.far.simd_ge(width), y.near.simd_lt(0), y.far.simd_ge(width)];
         let weights = [x.weight, y.weight];
         let mut color = Halves::filter(simd, quads, weights).unpack();
         let edges = beyond[0] | beyond[1] | beyond[2] | beyond[3];
@@ -132,8 +147,8 @@ impl<'a> PackedCube<'a> {
         self.first.finish(color)
     }
 
-    /// Raw colours of four texels round places, some of which are beyond the left, right, lower and upper edges: what two faces make
-    /// of an edge shall be the same, so they are not rounded.
+    /// Raw colours of four texels round places, some of which are beyond the left, right, lower and
+    /// upper edges: what two faces make of an edge shall be the same, so they are not rounded.
     #[inline(never)]
     fn across_edges<S: Simd, V: Floats<S>>(
         &self,
@@ -158,7 +173,13 @@ impl<'a> PackedCube<'a> {
 
     /// Texels where lanes need different levels or faces.
     #[inline(never)]
-    fn mixed<S: Simd, V: Floats<S>>(&self, simd: S, face: V::Ints, level: V::Ints, at: V::Ints) -> [V::Words; 4] {
+    fn mixed<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        face: V::Ints,
+        level: V::Ints,
+        at: V::Ints,
+    ) -> [V::Words; 4] {
         let (face, level) = (face.as_slice(), level.as_slice());
         simd.vectorize(
             #[inline(always)]
@@ -185,12 +206,15 @@ impl<'a> PackedCube<'a> {
 #[cold]
 fn with_rim(texture: &Texture, face: usize, level: usize) -> Box<[[u32; 2]]> {
     // Read texels of any face of this level.
-    let words = |face: usize| match level_of_face(texture, face, level).map(|level| (level.texels(), level.size[0])) {
+    let words = |face: usize| match level_of_face(texture, face, level)
+        .map(|level| (level.texels(), level.size[0]))
+    {
         Some((Texels::Rgba8(words), size)) => (&words[..], size as i32),
         _ => (&[][..], 0),
     };
     let (own, size) = words(face);
-    let texel = |words: &[u32], x: i32, y: i32| words.get((y * size + x) as usize).copied().unwrap_or(0);
+    let texel =
+        |words: &[u32], x: i32, y: i32| words.get((y * size + x) as usize).copied().unwrap_or(0);
 
     // Find the texel beyond an edge: a neighbouring face's, or what the wrap mode says.
     let sampler = &texture.sampler;

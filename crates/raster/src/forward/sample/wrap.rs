@@ -1,14 +1,15 @@
 //! From a coordinate to texel numbers along one axis.
 //!
-//! Texel `i` covers `i..i + 1` of the position; the image is `0..size`, without its border. Texels -1 and `size` are
-//! the border.
+//! Texel `i` covers `i..i + 1` of the position; the image is `0..size`, without its border. Texels
+//! -1 and `size` are the border.
 
 use crate::forward::texture::Wrap;
 use crate::forward::wide::{every, floor, max, min, select, splat};
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, Floats, I32x8, Lanes, Simd};
 
-/// The two texels whose centres surround a position, and how far it is from the first to the second, 0..1.
+/// The two texels whose centres surround a position, and how far it is from the first to the
+/// second, 0..1.
 #[derive(Clone, Copy)]
 pub(super) struct Axis<S: Simd, V: Floats<S> = F32x8<S>> {
     pub(super) near: V::Ints,
@@ -36,9 +37,16 @@ pub(super) fn position<S: Simd>(simd: S, coordinate: F32x8<S>, size: u32, wrap: 
 
 /// As [`position`] where each lane has an image of its own size.
 #[inline(always)]
-pub(super) fn position_in<S: Simd, V: Floats<S>>(simd: S, coordinate: V, texels: V, wrap: Wrap) -> V {
+pub(super) fn position_in<S: Simd, V: Floats<S>>(
+    simd: S,
+    coordinate: V,
+    texels: V,
+    wrap: Wrap,
+) -> V {
     match wrap {
-        Wrap::Repeat => between((coordinate - floor(coordinate)) * texels, every(simd, 0.0), texels),
+        Wrap::Repeat => {
+            between((coordinate - floor(coordinate)) * texels, every(simd, 0.0), texels)
+        }
         Wrap::MirroredRepeat => {
             let there_and_back = coordinate - floor(coordinate * 0.5) * 2.0;
             let mirrored = min(there_and_back, -there_and_back + 2.0);
@@ -96,14 +104,21 @@ pub(super) fn linear<S: Simd>(simd: S, position: F32x8<S>, size: u32, wrap: Wrap
 
 /// As [`linear`] where each lane has an image of its own size.
 #[inline(always)]
-pub(super) fn linear_in<S: Simd, V: Floats<S>>(simd: S, position: V, texels: V, wrap: Wrap) -> Axis<S, V> {
+pub(super) fn linear_in<S: Simd, V: Floats<S>>(
+    simd: S,
+    position: V,
+    texels: V,
+    wrap: Wrap,
+) -> Axis<S, V> {
     let (zero, one): (V, V) = (every(simd, 0.0), every(simd, 1.0));
     let from_centre = position - 0.5;
     let near = floor(from_centre);
     let weight = from_centre - near;
     let far = near + one;
     let (near, far) = match wrap.after_mirror() {
-        Wrap::Repeat => (select(near.simd_lt(zero), texels - one, near), select(far.simd_ge(texels), zero, far)),
+        Wrap::Repeat => {
+            (select(near.simd_lt(zero), texels - one, near), select(far.simd_ge(texels), zero, far))
+        }
         Wrap::MirroredRepeat | Wrap::ClampToEdge => (near, min(far, max(texels - one, zero))),
         _ => (near, far),
     };

@@ -1,8 +1,10 @@
-//! Colours of tiny facets eight at a time, where they come from corners, textures of the common kinds and fog.
+//! Colours of tiny facets eight at a time, where they come from corners, textures of the common
+//! kinds and fog.
 //!
-//! Each facet has a lane while what its corners have is interpolated, at one place of all boxes after the other. The pixels that
-//! show are then brought together, since boxes are mostly empty, and textures are looked up for eight of them at a time,
-//! whichever facets they belong to. The colours are those of [`Shader::block`].
+//! Each facet has a lane while what its corners have is interpolated, at one place of all boxes
+//! after the other. The pixels that show are then brought together, since boxes are mostly empty,
+//! and textures are looked up for eight of them at a time, whichever facets they belong to. The
+//! colours are those of [`Shader::block`].
 
 use super::{MOST_W, Shader};
 use crate::SUBPIXEL;
@@ -94,10 +96,12 @@ struct Values<S: Simd> {
     fog: [F32x8<S>; 3],
 }
 
-/// Whether a draw's colours are those of corners, textures of the common kinds and fog, and nothing else.
+/// Whether a draw's colours are those of corners, textures of the common kinds and fog, and nothing
+/// else.
 pub(crate) fn can_batch_facets(draw: &DrawContext<'_>) -> bool {
     let (state, layout) = (draw.state, draw.layout);
-    let common = |unit: &Unit| unit.mode == EnvironmentMode::Modulate && layout.tex[unit.index].is_some();
+    let common =
+        |unit: &Unit| unit.mode == EnvironmentMode::Modulate && layout.tex[unit.index].is_some();
     (state.fog.is_none() || layout.fog.is_some())
         && !state.color_sum
         && layout.grid.is_none()
@@ -107,8 +111,9 @@ pub(crate) fn can_batch_facets(draw: &DrawContext<'_>) -> bool {
 }
 
 impl<'d, S: Simd> EightFacets<'d, S> {
-    /// Makes the facets of `eight` ready, in a tile whose first pixel is `tile`, for a draw whose colours [`can_batch_facets`].
-    /// `None` if `1 / w` differs much at the corners of one, or coordinates must be divided: this needs more care.
+    /// Makes the facets of `eight` ready, in a tile whose first pixel is `tile`, for a draw whose
+    /// colours [`can_batch_facets`]. `None` if `1 / w` differs much at the corners of one, or
+    /// coordinates must be divided: this needs more care.
     #[inline(always)]
     pub(crate) fn new(
         simd: S,
@@ -129,8 +134,11 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             #[inline(always)]
             |k| F32x8::from_slice(simd, &inverse_w[k]),
         );
-        let least = lanes::Lanes::min(lanes::Lanes::min(inverse_w[0], inverse_w[1]), inverse_w[2]) * MOST_W;
-        if (inverse_w[0].simd_gt(least) | inverse_w[1].simd_gt(least) | inverse_w[2].simd_gt(least)).any_true() {
+        let least =
+            lanes::Lanes::min(lanes::Lanes::min(inverse_w[0], inverse_w[1]), inverse_w[2]) * MOST_W;
+        if (inverse_w[0].simd_gt(least) | inverse_w[1].simd_gt(least) | inverse_w[2].simd_gt(least))
+            .any_true()
+        {
             return None;
         }
 
@@ -149,8 +157,9 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         for (i, (unit, (_, common))) in draw.state.units.iter().zip(&draw.plain).enumerate() {
             let at = draw.layout.tex[unit.index]?;
             let own = Numbers::of_corners(simd, records, facets, |_| at);
-            let undivided =
-                own.base[3].simd_eq(splat(simd, 1.0)) & own.d1[3].simd_eq(own.d2[3]) & own.d1[3].simd_eq(zero[3]);
+            let undivided = own.base[3].simd_eq(splat(simd, 1.0))
+                & own.d1[3].simd_eq(own.d2[3])
+                & own.d1[3].simd_eq(zero[3]);
             if !matches!(common, PackedTexture::Shadow(_)) && !undivided.all_true() {
                 return None;
             }
@@ -165,7 +174,14 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             let four = Numbers::of_corners(simd, records, facets, |_| first);
             fog = [four.base, four.d1, four.d2].map(|numbers| numbers[(at - first) % 4]);
         }
-        Some(Self::with_planes(simd, eight, inverse_w, tile, draw, Values { color, coordinates, fog }))
+        Some(Self::with_planes(
+            simd,
+            eight,
+            inverse_w,
+            tile,
+            draw,
+            Values { color, coordinates, fog },
+        ))
     }
 
     /// The operations of `Interpolation::near`, in their order.
@@ -202,7 +218,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         let (dx2, dy2) = (side(x[2], x[0]), side(y[2], y[0]));
         let inverse = F64x8::splat(simd, f64::from(SUBPIXEL)) / (dx1 * dy2 - dx2 * dy1);
         let zero = F64x8::splat(simd, 0.0);
-        let (a, b) = ([dy2 * inverse, (zero - dx2) * inverse], [(zero - dy1) * inverse, dx1 * inverse]);
+        let (a, b) =
+            ([dy2 * inverse, (zero - dx2) * inverse], [(zero - dy1) * inverse, dx1 * inverse]);
         // With one w for all corners the weights themselves are planes, and their sum is 1.
         let flat = inverse_w[0].simd_eq(inverse_w[1]) & inverse_w[1].simd_eq(inverse_w[2]);
         let weight = lanes::inlined(
@@ -232,8 +249,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         }
     }
 
-    /// The packed colours of the pixels `shown` of each facet go to their places in `words`; of `shown` those remain that pass the
-    /// alpha test.
+    /// The packed colours of the pixels `shown` of each facet go to their places in `words`; of
+    /// `shown` those remain that pass the alpha test.
     #[inline(always)]
     pub(crate) fn colors(
         &self,
@@ -261,14 +278,22 @@ impl<'d, S: Simd> EightFacets<'d, S> {
 
     /// Brings together the pixels of `shown`, with their colours and places in textures.
     #[inline(always)]
-    fn interpolate(&self, simd: S, eight: &TinyEight, tile: [u32; 2], shown: &[u64; LANES], pixels: &mut FacetPixels) {
+    fn interpolate(
+        &self,
+        simd: S,
+        eight: &TinyEight,
+        tile: [u32; 2],
+        shown: &[u64; LANES],
+        pixels: &mut FacetPixels,
+    ) {
         // Find the slopes of coordinates whose level of detail depends on them.
         let mut slopes = [None; MOST_UNITS];
         for (i, (_, common)) in self.draw.plain.iter().enumerate() {
             if let PackedTexture::Flat(packed) = common
                 && packed.needs_lod()
             {
-                slopes[i % MOST_UNITS] = Some(self.slopes(packed, &self.values.coordinates[i % MOST_UNITS]));
+                slopes[i % MOST_UNITS] =
+                    Some(self.slopes(packed, &self.values.coordinates[i % MOST_UNITS]));
             }
         }
         let mut count = 0;
@@ -276,7 +301,10 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         let word = lanes::inlined(
             #[inline(always)]
             |half: usize| {
-                I32x8::from_slice(simd, &std::array::from_fn::<_, LANES, _>(|f| (shown[f] >> (32 * half)) as i32))
+                I32x8::from_slice(
+                    simd,
+                    &std::array::from_fn::<_, LANES, _>(|f| (shown[f] >> (32 * half)) as i32),
+                )
             },
         );
         let (halves, none) = ([word(0), word(1)], I32x8::splat(simd, 0));
@@ -295,7 +323,9 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                 },
             );
             keep(0, saturate_rgba(value(&weights, &self.values.color)));
-            for (i, (unit, (_, common))) in self.draw.state.units.iter().zip(&self.draw.plain).enumerate() {
+            for (i, (unit, (_, common))) in
+                self.draw.state.units.iter().zip(&self.draw.plain).enumerate()
+            {
                 let i = i % MOST_UNITS;
                 keep(4 + 4 * i, self.texel_position(simd, &weights, (unit, common), i, &slopes[i]));
             }
@@ -303,7 +333,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                 numbers[FOG] = self.fog_coordinate(&weights);
             }
 
-            // Append the numbers of the facets that show there: the bit of the place becomes the sign.
+            // Append the numbers of the facets that show there: the bit of the place becomes the
+            // sign.
             let shows = (halves[place / 32 % 2] << (31 - place as u32 % 32)).simd_lt(none);
             let append = lanes::inlined(
                 #[inline(always)]
@@ -332,7 +363,13 @@ impl<'d, S: Simd> EightFacets<'d, S> {
 
     /// Looks textures up, for eight pixels at a time.
     #[inline(always)]
-    fn look_up(&self, simd: S, pixels: &FacetPixels, shown: &mut [u64; LANES], words: &mut [[u32; LANES]; PLACES]) {
+    fn look_up(
+        &self,
+        simd: S,
+        pixels: &FacetPixels,
+        shown: &mut [u64; LANES],
+        words: &mut [[u32; LANES]; PLACES],
+    ) {
         // Load the interpolated numbers of eight pixels.
         for start in (0..pixels.count).step_by(LANES) {
             let count = (pixels.count - start).min(LANES);
@@ -344,16 +381,20 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             let mut color = lanes::four(number);
 
             // Modulate with the texture of each unit.
-            for (i, (unit, (_, common))) in self.draw.state.units.iter().zip(&self.draw.plain).enumerate() {
+            for (i, (unit, (_, common))) in
+                self.draw.state.units.iter().zip(&self.draw.plain).enumerate()
+            {
                 let [a, b, c, d] = lanes::four(
                     #[inline(always)]
                     |k| number((4 + 4 * i + k) % FOG),
                 );
                 let texture = match common {
-                    PackedTexture::Flat(packed) => match packed.sample_batch(simd, &[([a, b], c)], active) {
-                        Some([words]) => packed.meaning(words),
-                        None => packed.at(simd, [a, b], c, active),
-                    },
+                    PackedTexture::Flat(packed) => {
+                        match packed.sample_batch(simd, &[([a, b], c)], active) {
+                            Some([words]) => packed.meaning(words),
+                            None => packed.at(simd, [a, b], c, active),
+                        }
+                    }
                     PackedTexture::Cube(packed) => packed.at(simd, (a.to_int(), [b, c]), d),
                     PackedTexture::Shadow(packed) => packed.at(simd, [a, b, c], active),
                 };
@@ -372,7 +413,10 @@ impl<'d, S: Simd> EightFacets<'d, S> {
             // Scatter the packed colours to their facets and places.
             let packed = pack::<S, F32x8<S>>(&color).to_array();
             for lane in 0..count {
-                let (place, facet) = (usize::from(pixels.places[start + lane]), pixels.facets[start + lane] as usize);
+                let (place, facet) = (
+                    usize::from(pixels.places[start + lane]),
+                    pixels.facets[start + lane] as usize,
+                );
                 words[place % PLACES][facet % LANES] = packed[lane];
                 shown[facet % LANES] &= !(u64::from(!passed >> lane & 1) << place);
             }
@@ -391,7 +435,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         let [column, row] = eight.pixels(simd, place);
         let (dx, dy) = (away(column, tile[0], self.origin[0]), away(row, tile[1], self.origin[1]));
         let w = splat(simd, 1.0) / (dx * self.sum[1] + dy * self.sum[2] + self.sum[0]);
-        let (q1, q2) = (dx * self.first[0] + dy * self.first[1], dx * self.second[0] + dy * self.second[1]);
+        let (q1, q2) =
+            (dx * self.first[0] + dy * self.first[1], dx * self.second[0] + dy * self.second[1]);
         Weights { b1: q1 * w, b2: q2 * w, w }
     }
 
@@ -401,12 +446,15 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         weights.b1 * d1 + weights.b2 * d2 + base
     }
 
-    /// How the weights of corners 1 and 2 change with one pixel to the right (axis 0), or one up. Where w is the same at all
-    /// corners the sum changes nothing.
+    /// How the weights of corners 1 and 2 change with one pixel to the right (axis 0), or one up.
+    /// Where w is the same at all corners the sum changes nothing.
     #[inline(always)]
     fn weight_steps(&self, weights: &Weights<S>, axis: usize) -> [F32x8<S>; 2] {
         let sum = self.sum[axis + 1];
-        [(self.first[axis] - weights.b1 * sum) * weights.w, (self.second[axis] - weights.b2 * sum) * weights.w]
+        [
+            (self.first[axis] - weights.b1 * sum) * weights.w,
+            (self.second[axis] - weights.b2 * sum) * weights.w,
+        ]
     }
 
     /// See `Slopes` of textures: numerators and sums, times the size in texels.
@@ -416,15 +464,17 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         let slope = lanes::inlined(
             #[inline(always)]
             |axis: usize, k: usize| {
-                let numerator =
-                    (self.first[axis] * coordinates.d1[k] + self.second[axis] * coordinates.d2[k]) * size[k];
+                let numerator = (self.first[axis] * coordinates.d1[k]
+                    + self.second[axis] * coordinates.d2[k])
+                    * size[k];
                 [numerator, self.sum[axis + 1] * size[k]]
             },
         );
         [[slope(0, 0), slope(0, 1)], [slope(1, 0), slope(1, 1)]]
     }
 
-    /// Where unit `i`'s texture is looked up: coordinates, and the level of detail or the reference of a shadow map.
+    /// Where unit `i`'s texture is looked up: coordinates, and the level of detail or the reference
+    /// of a shadow map.
     #[inline(always)]
     fn texel_position(
         &self,
@@ -438,7 +488,9 @@ impl<'d, S: Simd> EightFacets<'d, S> {
         let at = value(weights, coordinates);
         match common {
             PackedTexture::Flat(_) => self.place(simd, weights, unit, coordinates, at, slopes),
-            PackedTexture::Cube(packed) => self.place_on_cube(simd, weights, (unit, packed), coordinates, at),
+            PackedTexture::Cube(packed) => {
+                self.place_on_cube(simd, weights, (unit, packed), coordinates, at)
+            }
             PackedTexture::Shadow(packed) => {
                 let [x, y, reference] = packed.place(simd, at);
                 [x, y, reference, reference]
@@ -499,7 +551,8 @@ impl<'d, S: Simd> EightFacets<'d, S> {
                     )
                 },
             );
-            let [across, up] = derivatives_on_faces(simd, packed.size(), &chart, [step(0), step(1)]);
+            let [across, up] =
+                derivatives_on_faces(simd, packed.size(), &chart, [step(0), step(1)]);
             let square = lanes::inlined(
                 #[inline(always)]
                 |[s, t]: [F32x8<S>; 2]| s * s + t * t,
@@ -523,7 +576,12 @@ fn value<S: Simd>(weights: &Weights<S>, numbers: &Numbers<S>) -> Rgba<S> {
 impl<S: Simd> Numbers<S> {
     /// Of the records of `facets`; `at` is where the numbers begin in those of a lane's facet.
     #[inline(always)]
-    fn of_corners(simd: S, records: &[f32], facets: &[&Facet; LANES], at: impl Fn(usize) -> usize + Copy) -> Self {
+    fn of_corners(
+        simd: S,
+        records: &[f32],
+        facets: &[&Facet; LANES],
+        at: impl Fn(usize) -> usize + Copy,
+    ) -> Self {
         let base = four(simd, records, |lane| facets[lane].corners[0] as usize + at(lane));
         let second = four(simd, records, |lane| facets[lane].corners[1] as usize + at(lane));
         let third = four(simd, records, |lane| facets[lane].corners[2] as usize + at(lane));

@@ -1,9 +1,10 @@
 //! Texture colours of blocks of pixels, kept for draws that show the same surface again.
 //!
-//! Programs that add up light draw their scene once for each lamp, with the same textures: a lookup costs much more than to see
-//! that nothing changed.
+//! Programs that add up light draw their scene once for each lamp, with the same textures: a lookup
+//! costs much more than to see that nothing changed.
 //!
-//! In:   what the colours of a facet's texture depend on, and a block of 8x8 pixels of a tile. Out: its 64 words, if it has them.
+//! In:   what the colours of a facet's texture depend on, and a block of 8x8 pixels of a tile. Out:
+//!       its 64 words, if it has them.
 //! Cost: the comparison of two numbers, and for each facet in a tile of thirty.
 
 use super::{Differences, Interpolation, MAX_NUMBERS};
@@ -15,11 +16,13 @@ use std::sync::Arc;
 /// Blocks of a tile.
 const BLOCKS: usize = (TILE / BLOCK) * (TILE / BLOCK);
 
-/// What the colours of a texture within a facet depend on, but for the place. The texture lives as long as the pass.
+/// What the colours of a texture within a facet depend on, but for the place. The texture lives as
+/// long as the pass.
 #[derive(Debug, PartialEq)]
 struct TexelCacheKey {
     texture: usize,
-    /// Origin of the weights, bias of the level of detail, `w` of all corners and whether they have it in common, which numbers vary.
+    /// Origin of the weights, bias of the level of detail, `w` of all corners and whether they have
+    /// it in common, which numbers vary.
     facet: [u32; 6],
     planes: [[u32; 3]; 3],
     /// Coordinates s, t, q of corner 0, and how much the other corners' differ.

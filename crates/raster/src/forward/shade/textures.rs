@@ -1,5 +1,5 @@
-//! What a facet's textures make of its colour: coordinates, level of detail, lookups and environments, eight pixels at a
-//! time.
+//! What a facet's textures make of its colour: coordinates, level of detail, lookups and
+//! environments, eight pixels at a time.
 
 use super::{Groups, MAX_NUMBERS, Scratch, Shader, Weights};
 use crate::forward::environment::{UNITS, environment, format_of, modulate};
@@ -25,7 +25,12 @@ struct SampleBatch8<S: Simd> {
 impl<V, const N: usize> Groups<'_, V, N> {
     /// The colours of group `i`, made for eight pixels at a time.
     #[inline(always)]
-    fn by_eights<S: Simd>(&self, simd: S, i: usize, f: impl Fn(&SampleBatch8<S>) -> Rgba<S>) -> [V; 4]
+    fn by_eights<S: Simd>(
+        &self,
+        simd: S,
+        i: usize,
+        f: impl Fn(&SampleBatch8<S>) -> Rgba<S>,
+    ) -> [V; 4]
     where
         V: Floats<S>,
     {
@@ -35,7 +40,10 @@ impl<V, const N: usize> Groups<'_, V, N> {
             [b1, b2, w],
             #[inline(always)]
             |first, [b1, b2, w]| {
-                f(&SampleBatch8 { weights: Weights { b1, b2, w }, active: self.active >> first & 0xff })
+                f(&SampleBatch8 {
+                    weights: Weights { b1, b2, w },
+                    active: self.active >> first & 0xff,
+                })
             },
         )
     }
@@ -51,7 +59,9 @@ impl<'d> Shader<'d> {
         colors: &mut [[V; 4]; N],
     ) {
         // The mode that nearly all programs use needs no other unit's texture.
-        if self.draw.unlimited || !self.draw.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate) {
+        if self.draw.unlimited
+            || !self.draw.state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate)
+        {
             return self.combined(simd, groups, colors);
         }
         for unit in &self.draw.state.units {
@@ -75,9 +85,15 @@ impl<'d> Shader<'d> {
         colors: &mut [[V; 4]; N],
     ) -> bool {
         match self.common(unit) {
-            Some((PackedTexture::Flat(packed), at)) => self.plain(simd, groups, (unit, packed, at), colors),
-            Some((PackedTexture::Cube(packed), at)) => self.cube(simd, groups, (unit, packed, at), colors),
-            Some((PackedTexture::Shadow(packed), at)) => self.shadow(simd, groups, (unit, packed, at), colors),
+            Some((PackedTexture::Flat(packed), at)) => {
+                self.plain(simd, groups, (unit, packed, at), colors)
+            }
+            Some((PackedTexture::Cube(packed), at)) => {
+                self.cube(simd, groups, (unit, packed, at), colors)
+            }
+            Some((PackedTexture::Shadow(packed), at)) => {
+                self.shadow(simd, groups, (unit, packed, at), colors)
+            }
             None => return false,
         }
         true
@@ -100,7 +116,8 @@ impl<'d> Shader<'d> {
                 // Sample all units first, as one may use another's texture.
                 for unit in &self.draw.state.units {
                     let (own, format) = (unit.index % UNITS, format_of(&unit.texture));
-                    // White, modulated with a texture, is the texture's colour; but alpha alone comes with black.
+                    // White, modulated with a texture, is the texture's colour; but alpha alone
+                    // comes with black.
                     let mut found = [[one; 4]; N];
                     let common = self.multiply(simd, groups, unit, &mut found);
                     for i in 0..N {
@@ -116,15 +133,23 @@ impl<'d> Shader<'d> {
                 for i in 0..N {
                     let primary = colors[i];
                     for unit in &self.draw.state.units {
-                        colors[i] = environment(simd, unit, &textures[i], &primary, colors[i], !self.draw.unlimited);
+                        colors[i] = environment(
+                            simd,
+                            unit,
+                            &textures[i],
+                            &primary,
+                            colors[i],
+                            !self.draw.unlimited,
+                        );
                     }
                 }
             },
         );
     }
 
-    /// The texture of a unit and where its coordinates are in records, if it is of a common kind: two dimensions or a cube, 8
-    /// bits a component, no texels of a border, no anisotropy, no q of a cube's that could turn directions round.
+    /// The texture of a unit and where its coordinates are in records, if it is of a common kind:
+    /// two dimensions or a cube, 8 bits a component, no texels of a border, no anisotropy, no q of
+    /// a cube's that could turn directions round.
     #[inline(always)]
     fn common(&self, unit: &Unit) -> Option<(&'d PackedTexture<'d>, usize)> {
         let (_, packed) = self.draw.plain.iter().find(|(index, _)| *index == unit.index)?;
@@ -234,13 +259,19 @@ impl<'d> Shader<'d> {
         if anisotropic {
             return sample_anisotropic(simd, (texture, plane), coords, steps, bias, active);
         }
-        let level = lod(steps[0][0], steps[0][1], steps[0][2], steps[1][0], steps[1][1], steps[1][2]);
+        let level =
+            lod(steps[0][0], steps[0][1], steps[0][2], steps[1][0], steps[1][1], steps[1][2]);
         sample(simd, texture, plane, coords, level + bias, active)
     }
 
     /// How s, t, r, q change with one pixel to the right, and one up.
     #[inline(always)]
-    fn steps<S: Simd>(&self, simd: S, weights: &Weights<F32x8<S>>, at: Option<usize>) -> [Rgba<S>; 2] {
+    fn steps<S: Simd>(
+        &self,
+        simd: S,
+        weights: &Weights<F32x8<S>>,
+        at: Option<usize>,
+    ) -> [Rgba<S>; 2] {
         let zero = splat_rgba(simd, [0.0; 4]);
         let Some(at) = at else { return [zero; 2] };
         let i = &self.scratch.interpolation;
@@ -249,14 +280,15 @@ impl<'d> Shader<'d> {
         for axis in 0..2 {
             let [db1, db2] = i.weight_steps(simd, weights, axis);
             for k in 0..4 {
-                steps[axis][k] = db1 * d.d1[(at + k) % MAX_NUMBERS] + db2 * d.d2[(at + k) % MAX_NUMBERS];
+                steps[axis][k] =
+                    db1 * d.d1[(at + k) % MAX_NUMBERS] + db2 * d.d2[(at + k) % MAX_NUMBERS];
             }
         }
         steps
     }
 
-    /// Looks up the colours of the texture that the draw shows repeatedly, in a block of pixels, unless the cache has them.
-    /// Leaves the block out of the cache if they cannot be kept.
+    /// Looks up the colours of the texture that the draw shows repeatedly, in a block of pixels,
+    /// unless the cache has them. Leaves the block out of the cache if they cannot be kept.
     #[inline(always)]
     pub(super) fn see<S: Simd, V: Floats<S>, const N: usize>(
         &mut self,
@@ -265,7 +297,9 @@ impl<'d> Shader<'d> {
         weights: &[Weights<V>; N],
     ) {
         let draw = self.draw;
-        let Some(unit) = draw.state.units.iter().find(|unit| draw.again == Some(unit.index)) else { return };
+        let Some(unit) = draw.state.units.iter().find(|unit| draw.again == Some(unit.index)) else {
+            return;
+        };
         let Some((PackedTexture::Flat(packed), at)) = self.common(unit) else { return };
         let Scratch { interpolation, differences, seen } = &mut *self.scratch;
         seen.look_at(unit, at, interpolation, differences);
@@ -279,7 +313,8 @@ impl<'d> Shader<'d> {
         }
     }
 
-    /// The bytes of a texture of the common kind at groups of pixels, if it can be looked up for all together.
+    /// The bytes of a texture of the common kind at groups of pixels, if it can be looked up for
+    /// all together.
     #[inline(never)]
     fn look<S: Simd, V: Floats<S>, const N: usize>(
         &self,
@@ -328,11 +363,16 @@ impl<'d> Shader<'d> {
                 let format = format_of(&unit.texture);
                 if let Some(words) = groups.seen.filter(|_| self.draw.again == Some(unit.index)) {
                     for (color, words) in colors.iter_mut().zip(words.chunks_exact(V::LEN)) {
-                        *color = modulate(format, &packed.meaning(V::Words::from_slice(simd, words)), *color);
+                        *color = modulate(
+                            format,
+                            &packed.meaning(V::Words::from_slice(simd, words)),
+                            *color,
+                        );
                     }
                     return;
                 }
-                // Places and levels of all groups come first: each takes long, but they need not wait for each other.
+                // Places and levels of all groups come first: each takes long, but they need not
+                // wait for each other.
                 let places = self.places(simd, (unit, packed, at), &groups.weights);
                 if let Some(words) = packed.sample_batch(simd, &places, groups.active) {
                     for i in 0..N {
@@ -365,7 +405,8 @@ impl<'d> Shader<'d> {
             || {
                 let format = format_of(&unit.texture);
                 // As for flat textures, places of all groups come first.
-                let mut places = [self.place_on_cube(simd, &groups.weights[0], (unit, packed, at)); N];
+                let mut places =
+                    [self.place_on_cube(simd, &groups.weights[0], (unit, packed, at)); N];
                 for i in 1..N {
                     places[i] = self.place_on_cube(simd, &groups.weights[i], (unit, packed, at));
                 }
@@ -402,7 +443,8 @@ impl<'d> Shader<'d> {
         );
     }
 
-    /// Faces of a cube map of the common kind and points on them at a group of pixels, and the level of detail.
+    /// Faces of a cube map of the common kind and points on them at a group of pixels, and the
+    /// level of detail.
     #[inline(always)]
     fn place_on_cube<S: Simd, V: Floats<S>>(
         &self,
@@ -433,7 +475,13 @@ impl<'d> Shader<'d> {
 
     /// How s, t, r change with one pixel to the right (axis 0), or one up.
     #[inline(always)]
-    fn step<S: Simd, V: Floats<S>>(&self, simd: S, weights: &Weights<V>, at: usize, axis: usize) -> [V; 3] {
+    fn step<S: Simd, V: Floats<S>>(
+        &self,
+        simd: S,
+        weights: &Weights<V>,
+        at: usize,
+        axis: usize,
+    ) -> [V; 3] {
         let [db1, db2] = self.scratch.interpolation.weight_steps(simd, weights, axis);
         let d = &self.scratch.differences;
         lanes::three(
@@ -457,7 +505,8 @@ impl<'d> Shader<'d> {
             let (place, level) = self.divided(simd, weights, packed.size(), at, place);
             return (place, level + bias);
         }
-        let level = if packed.needs_lod() { slopes.level(simd, weights, &place) + bias } else { bias };
+        let level =
+            if packed.needs_lod() { slopes.level(simd, weights, &place) + bias } else { bias };
         (place, level)
     }
 
@@ -487,7 +536,8 @@ impl<'d> Shader<'d> {
                     let dq = db1 * d.d1[q_at] + db2 * d.d2[q_at];
                     for k in 0..2 {
                         let n = (at + k) % MAX_NUMBERS;
-                        let step = (db1 * d.d1[n] + db2 * d.d2[n] - place[k] * dq) * inverse_q * size[k];
+                        let step =
+                            (db1 * d.d1[n] + db2 * d.d2[n] - place[k] * dq) * inverse_q * size[k];
                         squares[axis] += step * step;
                     }
                 }
@@ -497,8 +547,8 @@ impl<'d> Shader<'d> {
     }
 }
 
-/// How the coordinates of a texture of the common kind change over a facet. With `s` a coordinate less corner 0's,
-/// `ds/dx = (d(Σ s l / w)/dx - s d(Σ l / w)/dx) w`.
+/// How the coordinates of a texture of the common kind change over a facet. With `s` a coordinate
+/// less corner 0's, `ds/dx = (d(Σ s l / w)/dx - s d(Σ l / w)/dx) w`.
 struct Slopes {
     /// For x and y, for s and t: `d(Σ s l / w)` and `d(Σ l / w)`, times the size in texels.
     numerator: [[f32; 2]; 2],
@@ -521,7 +571,8 @@ impl Slopes {
         for axis in 0..2 {
             for k in 0..2 {
                 let n = (at + k) % MAX_NUMBERS;
-                numerator[axis][k] = (i.first[axis + 1] * d.d1[n] + i.second[axis + 1] * d.d2[n]) * size[k];
+                numerator[axis][k] =
+                    (i.first[axis + 1] * d.d1[n] + i.second[axis + 1] * d.d2[n]) * size[k];
                 sum[axis][k] = i.sum[axis + 1] * size[k];
             }
         }

@@ -1,10 +1,11 @@
 //! The first pass: depths from the light, by the z-buffer algorithm of the renderer itself.
 //!
-//! Depths are all that is asked of opaque things, and a kernel for depths alone finds them, unless there are so many
-//! triangles that the whole map must wait for them. Transparent things are found by their facets, as in a picture.
+//! Depths are all that is asked of opaque things, and a kernel for depths alone finds them, unless
+//! there are so many triangles that the whole map must wait for them. Transparent things are found
+//! by their facets, as in a picture.
 //!
-//! Much of what the light sees is hidden from the viewer. A tile with opaque things alone is drawn when it is first asked
-//! about; until then the map keeps its triangles.
+//! Much of what the light sees is hidden from the viewer. A tile with opaque things alone is drawn
+//! when it is first asked about; until then the map keeps its triangles.
 
 use super::lens::Lens;
 use super::tiles::{Layer, Map, MapTile, Pending, nearest_depths};
@@ -12,7 +13,8 @@ use crate::raytrace::triangles::Triangles;
 use crate::shadow::occluders::Occluders;
 use crate::stats::CullCounters;
 use crate::visible::{
-    TileSink, all_batches, give_back, layer_list, resolve_in_passing, tile_origin, touching, walk, with_spare,
+    TileSink, all_batches, give_back, layer_list, resolve_in_passing, tile_origin, touching, walk,
+    with_spare,
 };
 use crate::{Background, Execution, Lines, PreparedView, Session, Settings, Visibility};
 use std::sync::{Mutex, OnceLock};
@@ -29,7 +31,8 @@ struct DepthSink<'a> {
     center: DVec3,
     execution: &'a Execution,
     tiles: Vec<OnceLock<MapTile>>,
-    /// Bytes of transparent things, charged to the budget while the map is drawn, and why it was given up.
+    /// Bytes of transparent things, charged to the budget while the map is drawn, and why it was
+    /// given up.
     charged: Mutex<(u64, Option<Limit>)>,
 }
 
@@ -65,7 +68,15 @@ impl FirstPass<'_> {
         // Prepare the view from the light.
         let settings = self.view_settings();
         let (pattern, counters) = (SamplePattern::new(1), &mut CullCounters::default());
-        let view = PreparedView::new(session, &lens.camera, &settings, viewport, pattern, execution, counters);
+        let view = PreparedView::new(
+            session,
+            &lens.camera,
+            &settings,
+            viewport,
+            pattern,
+            execution,
+            counters,
+        );
         let sink = DepthSink::new(self, &lens, viewport);
         let columns = viewport.tiles_x() as usize;
 
@@ -88,17 +99,23 @@ impl FirstPass<'_> {
 
     /// The settings of the view from the light: nothing but surfaces.
     fn view_settings(&self) -> Settings {
-        let settings =
-            Settings { acceleration: None, depth_bits: None, shows_all_backs: true, ..self.settings.clone() };
+        let settings = Settings {
+            acceleration: None,
+            depth_bits: None,
+            shows_all_backs: true,
+            ..self.settings.clone()
+        };
         let settings = settings.with_visibility(Visibility::Z_BUFFER).with_lines(Lines::None);
         settings.with_background(Background::Transparent)
     }
 
-    /// Keeps the opaque batches for tiles that wait, if any may; the session gets the memory of the others back.
+    /// Keeps the opaque batches for tiles that wait, if any may; the session gets the memory of the
+    /// others back.
     fn keep_pending(&self, mut batches: Vec<(bool, Batch)>) -> Option<Pending> {
         let mut pending = None;
         if self.when == When::Asked {
-            let (layered, opaque): (Vec<_>, Vec<_>) = batches.into_iter().partition(|(layered, _)| *layered);
+            let (layered, opaque): (Vec<_>, Vec<_>) =
+                batches.into_iter().partition(|(layered, _)| *layered);
             batches = layered;
             let opaque = opaque.into_iter().map(|(_, batch)| batch).collect();
             pending = Some(Pending { batches: opaque, level: self.execution.level });
@@ -111,7 +128,9 @@ impl FirstPass<'_> {
 impl TileSink for DepthSink<'_> {
     fn tile(&self, index: usize, tile: &Tile, layers: &mut LayerList) {
         let seen = tile.facet[..TILE_PIXELS].iter().zip(&tile.depth);
-        let depth = |(&facet, &depth): (&u32, &f32)| if facet == NO_FACET { f32::NEG_INFINITY } else { depth };
+        let depth = |(&facet, &depth): (&u32, &f32)| {
+            if facet == NO_FACET { f32::NEG_INFINITY } else { depth }
+        };
         let depths = if tile.touched { seen.map(depth).collect() } else { Vec::new() };
         self.keep(index, depths, self.layers(tile, layers));
     }
@@ -121,12 +140,14 @@ impl<'a> DepthSink<'a> {
     fn new(pass: &FirstPass<'a>, lens: &'a Lens, viewport: Viewport) -> Self {
         let FirstPass { session, occluders, execution, .. } = *pass;
         let center = Triangles::center_of(&session.world);
-        let tiles = (0..(viewport.tiles_x() * viewport.tiles_y()) as usize).map(|_| OnceLock::new()).collect();
+        let tiles = (0..(viewport.tiles_x() * viewport.tiles_y()) as usize)
+            .map(|_| OnceLock::new())
+            .collect();
         Self { lens, session, occluders, center, execution, tiles, charged: Mutex::default() }
     }
 
-    /// Settles the tiles that no batch touches as empty. The numbers of those that are to be drawn: all others, or
-    /// those with transparent things if the rest may wait.
+    /// Settles the tiles that no batch touches as empty. The numbers of those that are to be drawn:
+    /// all others, or those with transparent things if the rest may wait.
     fn settle_tiles(&self, batches: &[(bool, Batch)], when: When) -> Vec<usize> {
         // By opaque things, by transparent ones.
         let mut touched = [vec![false; self.tiles.len()], vec![false; self.tiles.len()]];
@@ -159,7 +180,13 @@ impl<'a> DepthSink<'a> {
     }
 
     /// Draws a tile of the view.
-    fn draw(&self, view: &PreparedView<'_>, index: usize, batches: &[(bool, &Batch)], spare: &Mutex<Vec<Tile>>) {
+    fn draw(
+        &self,
+        view: &PreparedView<'_>,
+        index: usize,
+        batches: &[(bool, &Batch)],
+        spare: &Mutex<Vec<Tile>>,
+    ) {
         if self.is_given_up() {
             return;
         }
@@ -176,12 +203,14 @@ impl<'a> DepthSink<'a> {
         let mut layers = Vec::new();
         if batches.iter().any(|(layered, _)| *layered) {
             with_spare(spare, view.pattern.len(), |tile| {
-                // Its facets stay unknown: what is as near as the nearest opaque thing hides nothing that this does not.
+                // Its facets stay unknown: what is as near as the nearest opaque thing hides
+                // nothing that this does not.
                 (tile.x, tile.y) = place;
                 (tile.block_far, tile.touched) = (far, true);
                 tile.depth.copy_from_slice(&depths);
                 let mut list = layer_list(view, self);
-                let layered: Vec<_> = batches.iter().copied().filter(|(layered, _)| *layered).collect();
+                let layered: Vec<_> =
+                    batches.iter().copied().filter(|(layered, _)| *layered).collect();
                 walk(level, &layered, index, tile, &view.pattern, &mut list);
                 list.finish();
                 layers = self.layers(tile, &list);
@@ -195,15 +224,17 @@ impl<'a> DepthSink<'a> {
     /// Keeps a tile, given its depths, −∞ where nothing is.
     fn keep(&self, index: usize, depth: Vec<f32>, layers: Vec<Layer>) {
         let (budget, bytes) = (&self.execution.budget, (layers.len() * size_of::<Layer>()) as u64);
-        let allowed =
-            budget.check("shadow maps").and_then(|()| budget.charge(bytes, "what is transparent in a shadow map"));
+        let allowed = budget
+            .check("shadow maps")
+            .and_then(|()| budget.charge(bytes, "what is transparent in a shadow map"));
         let mut charged = self.charged.lock().expect("bytes of a map");
         match allowed {
             Ok(()) => charged.0 += bytes,
             Err(limit) => return charged.1 = Some(limit),
         }
         drop(charged);
-        let new = self.tiles[index].set(MapTile::new(self.execution.level, self.lens, depth, layers));
+        let new =
+            self.tiles[index].set(MapTile::new(self.execution.level, self.lens, depth, layers));
         new.expect("each tile is drawn once");
     }
 
@@ -248,7 +279,13 @@ impl<'a> DepthSink<'a> {
     }
 
     /// What passes a facet in the middle of a texel.
-    fn transmittance(&self, facet: u32, world_from_view: &DMat4, texel: [u32; 2], depth: f32) -> Rgb {
+    fn transmittance(
+        &self,
+        facet: u32,
+        world_from_view: &DMat4,
+        texel: [u32; 2],
+        depth: f32,
+    ) -> Rgb {
         let world = &self.session.world;
         let instance = &world.instances[world.instance_of_facet(facet)];
         let triangle = instance.mesh.triangles[(facet - instance.first_facet) as usize];

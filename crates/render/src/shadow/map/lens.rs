@@ -23,7 +23,8 @@ pub(super) struct Lens {
 const WIDEST: f64 = 1.5;
 /// Texels left free along the border of a map.
 const BORDER: f64 = 4.0;
-/// Nearer to the border than this a map does not tell about places that lie outside of what it was fitted to.
+/// Nearer to the border than this a map does not tell about places that lie outside of what it was
+/// fitted to.
 const INNER: f64 = 2.0;
 
 impl Lens {
@@ -36,9 +37,10 @@ impl Lens {
         Self::new(aimed(camera, (low + high) * 0.5), [half.x, half.y], size, world, false)
     }
 
-    /// For light from infinitely far away that falls on these points (world space), with texels of a size that is smaller
-    /// than those of `whole` by a power of √2, on their grid: the same place in another such lens is in the same place of a texel.
-    /// `None` without points, or for larger texels.
+    /// For light from infinitely far away that falls on these points (world space), with texels of
+    /// a size that is smaller than those of `whole` by a power of √2, on their grid: the same place
+    /// in another such lens is in the same place of a texel. `None` without points, or for larger
+    /// texels.
     pub(super) fn parallel_round(
         towards: DVec3,
         points: &[DVec3],
@@ -63,11 +65,17 @@ impl Lens {
         }
 
         // Snap the box to the grid of texels.
-        let [low, high] =
-            [(low / texel).floor() - BORDER, (high / texel).ceil() + BORDER].map(|p| [p.x, p.y].map(|k| k as i64));
+        let [low, high] = [(low / texel).floor() - BORDER, (high / texel).ceil() + BORDER]
+            .map(|p| [p.x, p.y].map(|k| k as i64));
         let count = [0, 1].map(|k| (high[k] - low[k]).clamp(1, i64::from(size)) as u32);
         let middle = [0, 1].map(|k| (low[k] + high[k]) as f64 * 0.5 * texel);
-        Some(Self::of_texels(aimed(camera, DVec3::new(middle[0], middle[1], 0.0)), count, texel, world, false))
+        Some(Self::of_texels(
+            aimed(camera, DVec3::new(middle[0], middle[1], 0.0)),
+            count,
+            texel,
+            world,
+            false,
+        ))
     }
 
     /// For light from `at` (less the scene's middle): one lens before which the scene lies, or six.
@@ -80,10 +88,13 @@ impl Lens {
         }
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];
         let faces = axes.into_iter().flat_map(|axis| [axis, -axis]);
-        faces.map(|direction| Self::new(looking(position, direction), [1.0; 2], size, world, true)).collect()
+        faces
+            .map(|direction| Self::new(looking(position, direction), [1.0; 2], size, world, true))
+            .collect()
     }
 
-    /// For light from `at` (less the scene's middle) that falls on these points (world space), if one lens holds them.
+    /// For light from `at` (less the scene's middle) that falls on these points (world space), if
+    /// one lens holds them.
     pub(super) fn before(at: DVec3, points: &[DVec3], world: &World, size: u32) -> Option<Self> {
         let position = at + Triangles::center_of(world);
         let ways = || points.iter().map(|&p| (p - position).normalize_or_zero());
@@ -110,8 +121,15 @@ impl Lens {
         (extent[0].max(extent[1]) < WIDEST).then(|| Self::new(camera, extent, size, world, true))
     }
 
-    /// For a spot from `at` (less the scene's middle) with half the angle `cutoff`, unless it is too wide for one lens.
-    pub(super) fn cone(at: DVec3, direction: DVec3, cutoff: f64, world: &World, size: u32) -> Option<Self> {
+    /// For a spot from `at` (less the scene's middle) with half the angle `cutoff`, unless it is
+    /// too wide for one lens.
+    pub(super) fn cone(
+        at: DVec3,
+        direction: DVec3,
+        cutoff: f64,
+        world: &World,
+        size: u32,
+    ) -> Option<Self> {
         let position = at + Triangles::center_of(world);
         let extent = func::tan(cutoff.clamp(1e-3, 1.5));
         let camera = looking(position, direction.try_normalize()?);
@@ -127,7 +145,13 @@ impl Lens {
     }
 
     /// So many square texels of this side: at distance 1, or at any for a parallel light.
-    fn of_texels(mut camera: Camera, [width, height]: [u32; 2], texel: f64, world: &World, perspective: bool) -> Self {
+    fn of_texels(
+        mut camera: Camera,
+        [width, height]: [u32; 2],
+        texel: f64,
+        world: &World,
+        perspective: bool,
+    ) -> Self {
         let extent = [f64::from(width) * texel * 0.5, f64::from(height) * texel * 0.5];
         camera.projection = if perspective {
             Projection::Perspective { view_angle: 2.0 * func::atan2(extent[1], 1.0) }
@@ -139,7 +163,8 @@ impl Lens {
             camera.clip = all_round(depths);
         }
         let view = camera.transform(f64::from(width) / f64::from(height), depths);
-        let view_from_world = view.view_from_world * DMat4::from_translation(Triangles::center_of(world));
+        let view_from_world =
+            view.view_from_world * DMat4::from_translation(Triangles::center_of(world));
         Self { camera, view, view_from_world, width, height, extent, perspective }
     }
 
@@ -147,8 +172,11 @@ impl Lens {
     #[inline(always)]
     pub(super) fn distance(&self, depth: f32) -> f32 {
         let (near, far, depth) = (self.view.near, self.view.far, f64::from(depth));
-        let distance =
-            if self.perspective { near * far / (depth * (far - near) + near) } else { far - depth * (far - near) };
+        let distance = if self.perspective {
+            near * far / (depth * (far - near) + near)
+        } else {
+            far - depth * (far - near)
+        };
         distance as f32
     }
 
@@ -167,7 +195,11 @@ impl Lens {
 
     /// Side of a texel at the distance of a place.
     pub(super) fn texel(&self, place: DVec3) -> f64 {
-        let distance = if self.perspective { self.view_from_world.transform_point3(place).z.abs() } else { 1.0 };
+        let distance = if self.perspective {
+            self.view_from_world.transform_point3(place).z.abs()
+        } else {
+            1.0
+        };
         self.side() * distance
     }
 
@@ -197,11 +229,17 @@ impl Lens {
 fn far_away(towards: DVec3, world: &World) -> Camera {
     let center = Triangles::center_of(world);
     let projection = Projection::Parallel { height: 1.0 };
-    Camera { position: center + towards, focal_point: center, view_up: DVec3::Y, projection, clip: None }
+    Camera {
+        position: center + towards,
+        focal_point: center,
+        view_up: DVec3::Y,
+        projection,
+        clip: None,
+    }
 }
 
-/// Clipping planes a little outside these depths, also those behind the viewer: light that is infinitely far away comes from
-/// behind all of the scene.
+/// Clipping planes a little outside these depths, also those behind the viewer: light that is
+/// infinitely far away comes from behind all of the scene.
 fn all_round((nearest, farthest): (f64, f64)) -> Option<(f64, f64)> {
     let margin = ((farthest - nearest) * 0.01).max(farthest.abs().max(nearest.abs()) * 1e-4);
     let margin = if margin > 0.0 { margin } else { 1e-9 };
@@ -211,13 +249,20 @@ fn all_round((nearest, farthest): (f64, f64)) -> Option<(f64, f64)> {
 
 /// The viewer, moved sideways to this place of its view space.
 fn aimed(camera: Camera, middle: DVec3) -> Camera {
-    let shift = camera.view_from_world().inverse().transform_vector3(DVec3::new(middle.x, middle.y, 0.0));
+    let shift =
+        camera.view_from_world().inverse().transform_vector3(DVec3::new(middle.x, middle.y, 0.0));
     Camera { position: camera.position + shift, focal_point: camera.focal_point + shift, ..camera }
 }
 
 fn looking(position: DVec3, direction: DVec3) -> Camera {
     let projection = Projection::Perspective { view_angle: 1.0 };
-    Camera { position, focal_point: position + direction, view_up: DVec3::Y, projection, clip: None }
+    Camera {
+        position,
+        focal_point: position + direction,
+        view_up: DVec3::Y,
+        projection,
+        clip: None,
+    }
 }
 
 /// Smallest and largest coordinates.

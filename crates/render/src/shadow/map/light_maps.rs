@@ -1,4 +1,5 @@
-//! The maps of lights: how many each light needs, of what frusta, and what the session keeps of them.
+//! The maps of lights: how many each light needs, of what frusta, and what the session keeps of
+//! them.
 
 use super::draw::{FirstPass, When};
 use super::lens::Lens;
@@ -70,7 +71,13 @@ impl Maps {
         }
         session.cache.get_or_build(key, || {
             let occluders = Occluders::new(session, settings);
-            let pass = FirstPass { session, occluders: &occluders, settings, execution, when: When::Asked };
+            let pass = FirstPass {
+                session,
+                occluders: &occluders,
+                settings,
+                execution,
+                when: When::Asked,
+            };
             let maps = lights.iter().map(|light| LightMaps::new(light, pass));
             Ok(Self(maps.collect::<Result<_, Limit>>()?))
         })
@@ -83,9 +90,13 @@ impl Maps {
             let maps = match maps {
                 LightMaps::Unoccluded => Vec::new(),
                 LightMaps::Infinity { map, .. } => vec![*map],
-                LightMaps::Positions(places) => places.into_iter().flat_map(|(_, maps)| maps).collect(),
+                LightMaps::Positions(places) => {
+                    places.into_iter().flat_map(|(_, maps)| maps).collect()
+                }
             };
-            spare.extend(maps.into_iter().filter_map(|map| map.pending).flat_map(|pending| pending.batches));
+            spare.extend(
+                maps.into_iter().filter_map(|map| map.pending).flat_map(|pending| pending.batches),
+            );
         }
     }
 }
@@ -96,7 +107,11 @@ impl LightMaps {
         if world.bounds.is_empty() {
             return Ok(Self::Unoccluded);
         }
-        let source = LightSource::new(light, pass.settings.shadows.light_samples, Triangles::center_of(world));
+        let source = LightSource::new(
+            light,
+            pass.settings.shadows.light_samples,
+            Triangles::center_of(world),
+        );
         let emitters = source.places();
         // Draw one map for a parallel light or a spot, and a cube of maps for any other position.
         match source {
@@ -130,7 +145,11 @@ fn spot_lens(light: &Light, at: DVec3, pass: FirstPass<'_>) -> Option<Lens> {
 }
 
 /// The maps of this size round a place of a light.
-fn maps_around(from: Emitter, size: u32, pass: FirstPass<'_>) -> Result<(Emitter, Vec<Map>), Limit> {
+fn maps_around(
+    from: Emitter,
+    size: u32,
+    pass: FirstPass<'_>,
+) -> Result<(Emitter, Vec<Map>), Limit> {
     let lenses = Lens::around(from.at.truncate(), &pass.session.world, size);
     let maps: Result<_, Limit> = lenses.into_iter().map(|lens| pass.draw(lens)).collect();
     Ok((from, maps?))

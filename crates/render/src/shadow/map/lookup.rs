@@ -1,7 +1,7 @@
 //! Questions to one map, eight at a time.
 //!
-//! Where a place is on the map and how deep its facet's plane is in the four texels round it is found for eight places at
-//! once; each then looks at its texels.
+//! Where a place is on the map and how deep its facet's plane is in the four texels round it is
+//! found for eight places at once; each then looks at its texels.
 //!
 //! In:   places that face the light. Out: the part of the light that passes to each of them.
 //! Cost: a constant number of operations a place.
@@ -19,11 +19,11 @@ use vitral_raster::TILE;
 const LIFT: f64 = 0.5;
 /// How far behind a point's plane a surface may be and still count as its own, in texels.
 const BEYOND: f64 = 2.0;
-/// How far in front of a point's plane a surface may be and still only touch it, in texels, such as a wall that begins on a floor
-/// between a texel and the next.
+/// How far in front of a point's plane a surface may be and still only touch it, in texels, such as
+/// a wall that begins on a floor between a texel and the next.
 const TOUCHING: f64 = 4.0;
-/// Error of a texel's depth for each texel of depth that the plane rises over a texel: corners are rounded to 1/256
-/// texel, and two roundings may add up.
+/// Error of a texel's depth for each texel of depth that the plane rises over a texel: corners are
+/// rounded to 1/256 texel, and two roundings may add up.
 const SLOPE_BIAS: f64 = 1.0 / 64.0;
 /// Relative error of a depth.
 const DEPTH_BIAS: f64 = 1.0 / (1 << 19) as f64;
@@ -65,8 +65,14 @@ struct Answer {
     nearest: f64,
 }
 
-/// What maps answer to questions: the number of a map, and which of the places is asked about, which faces its light.
-pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)], places: &SurfacePoints) -> Vec<Rgb> {
+/// What maps answer to questions: the number of a map, and which of the places is asked about,
+/// which faces its light.
+pub(super) fn answers(
+    level: Level,
+    maps: &[&Map],
+    questions: &[(usize, usize)],
+    places: &SurfacePoints,
+) -> Vec<Rgb> {
     let mut parts = vec![[1.0; 3]; questions.len()];
     let mut own: Vec<u32> = Vec::with_capacity(questions.len());
     for (number, map) in maps.iter().enumerate() {
@@ -77,8 +83,8 @@ pub(super) fn answers(level: Level, maps: &[&Map], questions: &[(usize, usize)],
     parts
 }
 
-/// What the only map of a light at one place (homogeneous) tells: the part of the light that arrives, none at places that face
-/// away.
+/// What the only map of a light at one place (homogeneous) tells: the part of the light that
+/// arrives, none at places that face away.
 pub(super) fn light_visibility(
     level: Level,
     map: &Map,
@@ -92,7 +98,13 @@ pub(super) fn light_visibility(
 impl Map {
     /// The part of light that arrives at each of the places.
     #[inline(always)]
-    fn light_visibility<S: Simd>(&self, simd: S, light: DVec4, places: &SurfacePoints, parts: &mut LightVisibility) {
+    fn light_visibility<S: Simd>(
+        &self,
+        simd: S,
+        light: DVec4,
+        places: &SurfacePoints,
+        parts: &mut LightVisibility,
+    ) {
         let at = [light.x, light.y, light.z];
         // See `horizon`, of which these are the operations.
         let rounding = f64::from(DIRECTION_ROUNDING);
@@ -133,17 +145,27 @@ impl Map {
         }
     }
 
-    /// The part of light that arrives at those of eight places whose bits are set in `asked`, which face it; others keep theirs.
+    /// The part of light that arrives at those of eight places whose bits are set in `asked`, which
+    /// face it; others keep theirs.
     #[inline(always)]
-    fn transmittance<S: Simd>(&self, simd: S, places: &SurfacePoints8, asked: u32, parts: &mut [[f32; LANES]; 3]) {
+    fn transmittance<S: Simd>(
+        &self,
+        simd: S,
+        places: &SurfacePoints8,
+        asked: u32,
+        parts: &mut [[f32; LANES]; 3],
+    ) {
         let eight = self.locate(simd, places);
 
         // Look at the texels. Outside of the map, and where it does not tell, all is lit.
         let near = lanes::inlined(
             #[inline(always)]
-            |first: F64x8<S>, side: u32| first.simd_ge(splat(simd, -1.0)) & first.simd_lt(splat(simd, f64::from(side))),
+            |first: F64x8<S>, side: u32| {
+                first.simd_ge(splat(simd, -1.0)) & first.simd_lt(splat(simd, f64::from(side)))
+            },
         );
-        let told = (near(eight.first[0], self.lens.width) & near(eight.first[1], self.lens.height)).to_bitmask() as u32;
+        let told = (near(eight.first[0], self.lens.width) & near(eight.first[1], self.lens.height))
+            .to_bitmask() as u32;
         let (texels, apart) = self.texels(simd, &eight, asked & told);
 
         // Blend the answers by where the place is between the texels.
@@ -151,13 +173,20 @@ impl Map {
         let zero = F32x8::splat(simd, 0.0);
         let share = lanes::inlined(
             #[inline(always)]
-            |k: usize| lanes::Lanes::select(told, lanes::narrowed(simd, eight.at[k] - 0.5 - eight.first[k]), zero),
+            |k: usize| {
+                lanes::Lanes::select(
+                    told,
+                    lanes::narrowed(simd, eight.at[k] - 0.5 - eight.first[k]),
+                    zero,
+                )
+            },
         );
         let shares = [share(0), share(1)];
         let part = eight.filtered(simd, &texels, shares, asked);
         let asked_lanes = lanes_of(simd, asked);
         for channel in &mut *parts {
-            lanes::Lanes::select(asked_lanes, part, F32x8::from_slice(simd, channel)).store_slice(channel);
+            lanes::Lanes::select(asked_lanes, part, F32x8::from_slice(simd, channel))
+                .store_slice(channel);
         }
 
         // Ask texels with something transparent one by one.
@@ -166,10 +195,15 @@ impl Map {
         }
     }
 
-    /// The depths of the four texels of each of these places, ∞ where nothing is; and in which of them something transparent may
-    /// be.
+    /// The depths of the four texels of each of these places, ∞ where nothing is; and in which of
+    /// them something transparent may be.
     #[inline(always)]
-    fn texels<S: Simd>(&self, simd: S, eight: &LookupBatch8<S>, mut asked: u32) -> ([[f32; LANES]; 4], u32) {
+    fn texels<S: Simd>(
+        &self,
+        simd: S,
+        eight: &LookupBatch8<S>,
+        mut asked: u32,
+    ) -> ([[f32; LANES]; 4], u32) {
         // Find the address of each place's four texels.
         let mut texels = [[f32::INFINITY; LANES]; 4];
         let Addresses { corner, tiles, first, together } = self.addresses(simd, eight);
@@ -238,7 +272,8 @@ impl Map {
         }
     }
 
-    /// The depths of four texels that are not in one tile, ∞ outside of the map; `None` if something transparent may be there.
+    /// The depths of four texels that are not in one tile, ∞ outside of the map; `None` if
+    /// something transparent may be there.
     #[inline(never)]
     fn texels_of_tiles(&self, [left, top]: [i32; 2]) -> Option<[f32; 4]> {
         let mut texels = [f32::INFINITY; 4];
@@ -288,7 +323,8 @@ impl Map {
         let (px, py, pz) = (px + matrix.w_axis.x, py + matrix.w_axis.y, pz + matrix.w_axis.z);
 
         // Lift the places along their normals.
-        let texel = if lens.perspective { pz.abs() * lens.side() } else { splat(simd, lens.side()) };
+        let texel =
+            if lens.perspective { pz.abs() * lens.side() } else { splat(simd, lens.side()) };
         let lift = texel * LIFT;
         let point = [px + normal[0] * lift, py + normal[1] * lift, pz + normal[2] * lift];
 
@@ -316,8 +352,9 @@ impl Map {
         [before.select(u, nowhere), before.select(v, nowhere)]
     }
 
-    /// Depths of the planes through points of view space in the four texels from `first` on, less what they may be wrong by;
-    /// and where depths farther away belong to another surface. `texel` is the side of a texel at each point.
+    /// Depths of the planes through points of view space in the four texels from `first` on, less
+    /// what they may be wrong by; and where depths farther away belong to another surface. `texel`
+    /// is the side of a texel at each point.
     #[inline(always)]
     fn plane_depths<S: Simd>(
         &self,
@@ -332,9 +369,11 @@ impl Map {
         let (width, height) = (f64::from(lens.width), f64::from(lens.height));
         let own = -point[2];
 
-        // The facet's plane: how a step of a texel changes what the normal measures, at distance 1 or at any, and so what
-        // its height is to be divided by; for a parallel light the distance itself.
-        let step = [normal[0] * 2.0 * lens.extent[0] / width, -normal[1] * 2.0 * lens.extent[1] / height];
+        // The facet's plane: how a step of a texel changes what the normal measures, at distance 1
+        // or at any, and so what its height is to be divided by; for a parallel light the distance
+        // itself.
+        let step =
+            [normal[0] * 2.0 * lens.extent[0] / width, -normal[1] * 2.0 * lens.extent[1] / height];
         let corner = normal[1] * lens.extent[1] - normal[0] * lens.extent[0];
         let height = normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
         let scale = splat(simd, 1.0) / normal[2];
@@ -364,12 +403,13 @@ impl Map {
         (depths, ends)
     }
 
-    /// What passes four texels, some of them behind transparent things. `surface` is how deep the place's surface begins and ends
-    /// in each.
+    /// What passes four texels, some of them behind transparent things. `surface` is how deep the
+    /// place's surface begins and ends in each.
     ///
-    /// A texel in which the light sees something far behind that surface tells nothing about it: there, it has come to its
-    /// end. Were such a texel lit, light would leak in where two walls of a closed room meet. Where a wall begins, texels are dark
-    /// because of something that only touches the surface. They tell nothing about a place whose own texel is lit, or beside which
+    /// A texel in which the light sees something far behind that surface tells nothing about it:
+    /// there, it has come to its end. Were such a texel lit, light would leak in where two walls of
+    /// a closed room meet. Where a wall begins, texels are dark because of something that only
+    /// touches the surface. They tell nothing about a place whose own texel is lit, or beside which
     /// nothing else is dark and the surface itself is lit.
     #[inline(never)]
     fn four_apart(
@@ -379,21 +419,32 @@ impl Map {
         touching: f64,
         [right, bottom]: [f32; 2],
     ) -> Rgb {
-        let at = |k: usize| self.transmittance_at([left + (k % 2) as i32, top + (k / 2) as i32], surface[k]);
+        let at = |k: usize| {
+            self.transmittance_at([left + (k % 2) as i32, top + (k / 2) as i32], surface[k])
+        };
         let mut four = [at(0), at(1), at(2), at(3)];
         let own = usize::from(right >= 0.5) + 2 * usize::from(bottom >= 0.5);
-        let touches = |(answer, [begin, _]): (&Answer, [f64; 2])| !answer.dark || answer.nearest >= begin - touching;
-        let only_touched = four.iter().zip(surface).all(touches) && four.iter().any(|a| !a.dark && !a.beyond);
+        let touches = |(answer, [begin, _]): (&Answer, [f64; 2])| {
+            !answer.dark || answer.nearest >= begin - touching
+        };
+        let only_touched =
+            four.iter().zip(surface).all(touches) && four.iter().any(|a| !a.dark && !a.beyond);
         if !four[own].dark || only_touched {
             for (answer, [begin, _]) in four.iter_mut().zip(surface) {
                 answer.beyond |= answer.dark && answer.nearest >= begin - touching;
             }
         }
         let passing = four.map(|answer| answer.passing);
-        if passing.iter().all(|part| *part == [1.0; 3]) || !four.iter().any(|answer| answer.beyond) {
+        if passing.iter().all(|part| *part == [1.0; 3]) || !four.iter().any(|answer| answer.beyond)
+        {
             return [0, 1, 2].map(|k| blended(passing.map(|color| color[k]), right, bottom));
         }
-        let shares = [(1.0 - right) * (1.0 - bottom), right * (1.0 - bottom), (1.0 - right) * bottom, right * bottom];
+        let shares = [
+            (1.0 - right) * (1.0 - bottom),
+            right * (1.0 - bottom),
+            (1.0 - right) * bottom,
+            right * bottom,
+        ];
         let (mut sum, mut all) = ([0.0; 3], 0.0);
         for (answer, share) in four.iter().zip(shares).filter(|(answer, _)| !answer.beyond) {
             sum = [0, 1, 2].map(|k| sum[k] + answer.passing[k] * share);
@@ -419,10 +470,16 @@ impl Map {
 }
 
 impl<S: Simd> LookupBatch8<S> {
-    /// The part of light that passes texels of these depths, blended by the places' `shares` to the right and below; exact for
-    /// places whose bits are set in `asked`.
+    /// The part of light that passes texels of these depths, blended by the places' `shares` to the
+    /// right and below; exact for places whose bits are set in `asked`.
     #[inline(always)]
-    fn filtered(&self, simd: S, texels: &[[f32; LANES]; 4], [right, bottom]: [F32x8<S>; 2], asked: u32) -> F32x8<S> {
+    fn filtered(
+        &self,
+        simd: S,
+        texels: &[[f32; LANES]; 4],
+        [right, bottom]: [F32x8<S>; 2],
+        asked: u32,
+    ) -> F32x8<S> {
         // Compare the depths.
         let (one, zero) = (F32x8::splat(simd, 1.0), F32x8::splat(simd, 0.0));
         let (mut lit, mut beyond) = ([one; 4], [Mask8::splat(simd, false); 4]);
@@ -437,15 +494,16 @@ impl<S: Simd> LookupBatch8<S> {
         }
         let part = blended(lit, right, bottom);
 
-        // Where answers differ, leave out texels that the surface does not reach: see `four_apart`, of which these are the
-        // operations.
+        // Where answers differ, leave out texels that the surface does not reach: see `four_apart`,
+        // of which these are the operations.
         let differ = part.simd_gt(zero) & part.simd_lt(one);
         let half = F32x8::splat(simd, 0.5);
         let pick = lanes::inlined(
             #[inline(always)]
             |a: F32x8<S>, b: F32x8<S>| lanes::Lanes::select(right.simd_ge(half), b, a),
         );
-        let own = lanes::Lanes::select(bottom.simd_ge(half), pick(lit[2], lit[3]), pick(lit[0], lit[1]));
+        let own =
+            lanes::Lanes::select(bottom.simd_ge(half), pick(lit[2], lit[3]), pick(lit[0], lit[1]));
         let mut only_touched = Mask8::splat(simd, true);
         let mut some_lit = Mask8::splat(simd, false);
         for k in 0..4 {
@@ -461,7 +519,9 @@ impl<S: Simd> LookupBatch8<S> {
         }
         let (left, top) = (one - right, one - bottom);
         let (mut sum, mut all) = (zero, zero);
-        for (k, share) in [left * top, right * top, left * bottom, right * bottom].into_iter().enumerate() {
+        for (k, share) in
+            [left * top, right * top, left * bottom, right * bottom].into_iter().enumerate()
+        {
             let share = lanes::Lanes::select(beyond[k], zero, share);
             sum += lit[k] * share;
             all += share;
@@ -494,7 +554,9 @@ impl Stored {
         );
         let four = lanes::inlined(
             #[inline(always)]
-            |values: &[F64x8<S>; 4]| [store(values[0]), store(values[1]), store(values[2]), store(values[3])],
+            |values: &[F64x8<S>; 4]| {
+                [store(values[0]), store(values[1]), store(values[2]), store(values[3])]
+            },
         );
 
         // Store every register, lane by lane.
@@ -573,7 +635,8 @@ mod tests {
 
     #[test]
     fn eight_together_are_told_what_each_is_told_alone() {
-        for (transparent, towards) in [(false, dvec3(1.0, 2.0, 3.0)), (true, dvec3(-2.0, 1.0, 0.5))] {
+        for (transparent, towards) in [(false, dvec3(1.0, 2.0, 3.0)), (true, dvec3(-2.0, 1.0, 0.5))]
+        {
             let (map, bounds) = teapot(transparent, towards, 200, When::Asked);
             let extent = bounds.size() * 0.6;
             let mut state = 1u32;
@@ -596,7 +659,12 @@ mod tests {
                     for lane in 0..LANES.min(places.len() - number * LANES) {
                         let faces = faces(&eight.get(lane), towards.extend(0.0));
                         let expected = if faces { expected[lane] } else { [0.0; 3] };
-                        assert_eq!(parts.get(number * LANES + lane), expected, "{name}: {:?}", eight.get(lane));
+                        assert_eq!(
+                            parts.get(number * LANES + lane),
+                            expected,
+                            "{name}: {:?}",
+                            eight.get(lane)
+                        );
                         partly += usize::from(expected[0] > 0.0 && expected[0] < 1.0);
                     }
                 }

@@ -14,7 +14,8 @@ impl ConvexSolid {
             let pick = |k: usize| if bits >> k & 1 == 1 { bounds.max[k] } else { bounds.min[k] };
             DVec3::new(pick(0), pick(1), pick(2))
         };
-        let faces = [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]];
+        let faces =
+            [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]];
         Self(faces.iter().map(|face| face.map(corner).to_vec()).collect())
     }
 
@@ -44,7 +45,8 @@ impl ConvexSolid {
             // The new face: its corners go round its middle.
             let middle = rim.iter().sum::<DVec3>() / rim.len() as f64;
             let (x, y) = plane.truncate().normalize_or(DVec3::Z).any_orthonormal_pair();
-            let turn = |p: &DVec3| vitral_math::func::atan2((*p - middle).dot(y), (*p - middle).dot(x));
+            let turn =
+                |p: &DVec3| vitral_math::func::atan2((*p - middle).dot(y), (*p - middle).dot(x));
             rim.sort_by(|p, q| turn(p).total_cmp(&turn(q)));
             self.0.push(rim);
         }
@@ -63,7 +65,8 @@ pub(super) fn seen(world: &World, view: &ViewTransform) -> Vec<ConvexSolid> {
     let boxes = boxes.filter(|b| !b.is_empty() && b.min.is_finite() && b.max.is_finite());
     let seen = boxes.filter_map(|bounds| {
         let containment = frustum.test_box(bounds);
-        let mut solid = (containment != Containment::Outside).then(|| ConvexSolid::of_box(bounds))?;
+        let mut solid =
+            (containment != Containment::Outside).then(|| ConvexSolid::of_box(bounds))?;
         if containment == Containment::Crossing {
             frustum.planes.iter().for_each(|&plane| solid.cut(plane));
         }
@@ -72,8 +75,13 @@ pub(super) fn seen(world: &World, view: &ViewTransform) -> Vec<ConvexSolid> {
     seen.collect()
 }
 
-/// What of the solids lies between two depths. `depth` gives that of a point: `depth · (x, y, z, 1)`.
-pub(super) fn between(solids: &[ConvexSolid], depth: DVec4, [start, end]: [f64; 2]) -> Vec<ConvexSolid> {
+/// What of the solids lies between two depths. `depth` gives that of a point:
+/// `depth · (x, y, z, 1)`.
+pub(super) fn between(
+    solids: &[ConvexSolid],
+    depth: DVec4,
+    [start, end]: [f64; 2],
+) -> Vec<ConvexSolid> {
     let sliced = solids.iter().filter_map(|solid| {
         let mut solid = solid.clone();
         solid.cut(depth - DVec4::W * start);
@@ -125,7 +133,10 @@ mod tests {
 
     #[test]
     fn flat_boxes_are_cut_too() {
-        let mut flat = ConvexSolid::of_box(&Aabb { min: DVec3::new(-5.0, 0.0, -5.0), max: DVec3::new(5.0, 0.0, 5.0) });
+        let mut flat = ConvexSolid::of_box(&Aabb {
+            min: DVec3::new(-5.0, 0.0, -5.0),
+            max: DVec3::new(5.0, 0.0, 5.0),
+        });
         flat.cut(DVec4::new(1.0, 0.0, 1.0, 0.0));
         flat.cut(DVec4::new(1.0, 0.0, -1.0, 0.0));
         assert_eq!(extent(&flat), [DVec3::new(0.0, 0.0, -5.0), DVec3::new(5.0, 0.0, 5.0)]);

@@ -10,7 +10,8 @@ use vitral_light::AlphaMode;
 use vitral_math::{Aabb, DVec3};
 use vitral_scene::builtin;
 
-/// What parallel light sees of a teapot, one that lets half of it through if `transparent`, and the box of that.
+/// What parallel light sees of a teapot, one that lets half of it through if `transparent`, and the
+/// box of that.
 pub(super) fn teapot(transparent: bool, towards: DVec3, size: u32, when: When) -> (Map, Aabb) {
     let mut scene = builtin::scene("teapot").expect("there is one");
     if transparent {
@@ -21,7 +22,13 @@ pub(super) fn teapot(transparent: bool, towards: DVec3, size: u32, when: When) -
     let (settings, execution) = (Settings::default(), Execution::default());
     let occluders = Occluders::new(&session, &settings);
     let lens = Lens::parallel(towards, &session.world, size);
-    let pass = FirstPass { session: &session, occluders: &occluders, settings: &settings, execution: &execution, when };
+    let pass = FirstPass {
+        session: &session,
+        occluders: &occluders,
+        settings: &settings,
+        execution: &execution,
+        when,
+    };
     let map = pass.draw(lens).expect("no limit");
     (map, session.world.bounds)
 }

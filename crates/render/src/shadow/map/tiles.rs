@@ -27,7 +27,8 @@ pub(super) struct Pending {
 /// What the light sees in a tile.
 #[derive(Debug, Default)]
 pub(super) struct MapTile {
-    /// Distance of the nearest opaque thing along the axis, ∞ where there is none; empty if there is none at all.
+    /// Distance of the nearest opaque thing along the axis, ∞ where there is none; empty if there
+    /// is none at all.
     pub(super) depth: Vec<f32>,
     /// Transparent things, sorted by texel.
     pub(super) layers: Vec<Layer>,
@@ -55,8 +56,10 @@ impl Map {
     fn drawn(&self, number: usize) -> &MapTile {
         self.tiles[number].get_or_init(|| {
             let Some(pending) = &self.pending else { return MapTile::default() };
-            let place = [number % self.columns, number / self.columns].map(|tile| (tile * TILE) as u32);
-            let nearest = nearest_depths(pending.level, place.into(), pending.batches.iter(), number);
+            let place =
+                [number % self.columns, number / self.columns].map(|tile| (tile * TILE) as u32);
+            let nearest =
+                nearest_depths(pending.level, place.into(), pending.batches.iter(), number);
             MapTile::new(pending.level, &self.lens, nearest.into_depths(), Vec::new())
         })
     }

@@ -7,8 +7,8 @@ use vitral_math::DVec3;
 const MAX_CLIPPED: usize = 6;
 /// Cuts above a part.
 const DEEPEST: u32 = 40;
-/// Cuts in a row that may leave more than three quarters of the solids to a part. Where solids meet in a line, cutting goes on and on
-/// along it and separates none: they are clipped one by one, too.
+/// Cuts in a row that may leave more than three quarters of the solids to a part. Where solids meet
+/// in a line, cutting goes on and on along it and separates none: they are clipped one by one, too.
 const MAX_VAIN_CUTS: u32 = 6;
 
 /// A part of a facet.
@@ -51,7 +51,8 @@ impl Detail {
         (&self.corners[first..self.polygons[n].0 as usize], self.polygons[n].1)
     }
 
-    /// Whether a place in the plane of the facet with this root lies in a lit polygon, or beside one by no more than `slack`.
+    /// Whether a place in the plane of the facet with this root lies in a lit polygon, or beside
+    /// one by no more than `slack`.
     pub(super) fn lights(&self, root: u32, place: DVec3, slack: f64) -> bool {
         // Descend to the leaf that holds the place, and test its polygons.
         let mut node = root;
@@ -77,13 +78,16 @@ impl Detail {
     /// Calls `found` with the corners of the lit polygons of a facet.
     pub(super) fn each(&self, root: u32, found: &mut dyn FnMut(&[DVec3])) {
         match &self.nodes[root as usize] {
-            Node::Cut { children, .. } => children.iter().for_each(|&child| self.each(child, found)),
+            Node::Cut { children, .. } => {
+                children.iter().for_each(|&child| self.each(child, found))
+            }
             Node::Lit([first, end]) => (*first..*end).for_each(|n| found(self.polygon(n).0)),
         }
     }
 
     pub(super) fn bytes(&self) -> u64 {
-        let nodes = self.nodes.capacity() * size_of::<Node>() + self.polygons.capacity() * size_of::<(u32, DVec3)>();
+        let nodes = self.nodes.capacity() * size_of::<Node>()
+            + self.polygons.capacity() * size_of::<(u32, DVec3)>();
         (nodes + self.corners.capacity() * size_of::<DVec3>()) as u64
     }
 }
@@ -161,7 +165,11 @@ impl Cutter<'_> {
         if [lower, upper].iter().all(|&n| empty(&self.detail.nodes[n as usize])) {
             return lower;
         }
-        self.detail.nodes.push(Node::Cut { axis: axis as u8, at: middle[axis], children: [lower, upper] });
+        self.detail.nodes.push(Node::Cut {
+            axis: axis as u8,
+            at: middle[axis],
+            children: [lower, upper],
+        });
         self.detail.nodes.len() as u32 - 1
     }
 
@@ -229,8 +237,8 @@ fn reach(polygon: &[DVec3], solid: &Solid, eps: f64) -> Reach {
     if covers { Reach::Covers } else { Reach::Some }
 }
 
-/// The parts of a convex polygon where a linear function is not negative, and where it is not positive; a part without
-/// inner points has fewer than three corners.
+/// The parts of a convex polygon where a linear function is not negative, and where it is not
+/// positive; a part without inner points has fewer than three corners.
 fn split(polygon: &[DVec3], value: impl Fn(DVec3) -> f64, eps: f64) -> [Vec<DVec3>; 2] {
     let mut parts = [Vec::with_capacity(polygon.len() + 1), Vec::with_capacity(polygon.len() + 1)];
     let mut reached = [false; 2];
@@ -285,8 +293,9 @@ mod tests {
     use vitral_math::{DVec4, dvec3, func};
 
     fn area(polygon: &[DVec3]) -> f64 {
-        let doubled: DVec3 =
-            (2..polygon.len()).map(|i| (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0])).sum();
+        let doubled: DVec3 = (2..polygon.len())
+            .map(|i| (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]))
+            .sum();
         doubled.length() / 2.0
     }
 
@@ -311,8 +320,14 @@ mod tests {
             }
         }
         let mut detail = Detail::default();
-        let floor = vec![dvec3(-3.0, 0.0, -3.0), dvec3(-3.0, 0.0, 3.0), dvec3(3.0, 0.0, 3.0), dvec3(3.0, 0.0, -3.0)];
-        let root = Cutter { detail: &mut detail, normal: DVec3::Y, eps: 1e-13, solids: &solids }.add(floor);
+        let floor = vec![
+            dvec3(-3.0, 0.0, -3.0),
+            dvec3(-3.0, 0.0, 3.0),
+            dvec3(3.0, 0.0, 3.0),
+            dvec3(3.0, 0.0, -3.0),
+        ];
+        let root = Cutter { detail: &mut detail, normal: DVec3::Y, eps: 1e-13, solids: &solids }
+            .add(floor);
         let mut lit = 0.0;
         detail.each(root, &mut |corners| lit += area(corners));
         assert!((lit + shadow - 36.0).abs() < 1e-9, "{lit} and {shadow}");
@@ -324,18 +339,26 @@ mod tests {
 
     #[test]
     fn solids_that_meet_in_a_line_are_not_cut_apart() {
-        // Light falls along a wall, all but; on its upper edge lies a fan, whose wedges meet above a corner of the wall.
+        // Light falls along a wall, all but; on its upper edge lies a fan, whose wedges meet above
+        // a corner of the wall.
         let light = DVec4::new(0.0, 1.0, 0.0, 0.0);
         let rim = |k: i32| {
             let angle = std::f64::consts::PI * f64::from(k) / 64.0;
             dvec3(func::cos(angle), 1.0, -func::sin(angle))
         };
-        let wedges = (0..64).filter_map(|k| Solid::new(&[dvec3(0.0, 1.0, 0.0), rim(k), rim(k + 1)], light, 1e-9));
-        let solids: Vec<_> =
-            wedges.map(|solid| Solid { planes: solid.planes.map(|(n, at)| (n.normalize(), at)) }).collect();
+        let wedges = (0..64)
+            .filter_map(|k| Solid::new(&[dvec3(0.0, 1.0, 0.0), rim(k), rim(k + 1)], light, 1e-9));
+        let solids: Vec<_> = wedges
+            .map(|solid| Solid { planes: solid.planes.map(|(n, at)| (n.normalize(), at)) })
+            .collect();
         assert_eq!(solids.len(), 64);
         let mut detail = Detail::default();
-        let wall = [dvec3(0.0, 0.0, -1e-6), dvec3(0.0, 1.0, 0.0), dvec3(1.0, 1.0, 0.0), dvec3(1.0, 0.0, -1e-6)];
+        let wall = [
+            dvec3(0.0, 0.0, -1e-6),
+            dvec3(0.0, 1.0, 0.0),
+            dvec3(1.0, 1.0, 0.0),
+            dvec3(1.0, 0.0, -1e-6),
+        ];
         let normal = (wall[1] - wall[0]).cross(wall[2] - wall[0]).normalize();
         let mut cutter = Cutter { detail: &mut detail, normal, eps: 1e-13, solids: &solids };
         cutter.add(wall[..3].to_vec());
@@ -346,7 +369,12 @@ mod tests {
 
     #[test]
     fn what_only_touches_leaves_all() {
-        let square = [dvec3(0.0, 0.0, 0.0), dvec3(1.0, 0.0, 0.0), dvec3(1.0, 1.0, 0.0), dvec3(0.0, 1.0, 0.0)];
+        let square = [
+            dvec3(0.0, 0.0, 0.0),
+            dvec3(1.0, 0.0, 0.0),
+            dvec3(1.0, 1.0, 0.0),
+            dvec3(0.0, 1.0, 0.0),
+        ];
         let [left, right] = split(&square, |p| -p.x, 1e-12);
         assert!(left.is_empty() && right == square);
         let sun = DVec4::new(0.0, 0.0, 1.0, 0.0);

@@ -1,12 +1,13 @@
 //! Shadow polygons: every polygon projected, from the light, on every polygon behind it.
 //!
-//! What a caster hides from the light is a solid. Where it meets the plane of a receiver it is the caster's projection, and
-//! clipped by the receiver's edges it is the shadow polygon that lies on it. A scan line finds the same polygon by its crossings
-//! with the solid's planes; here it is found whole. Shadow polygons of several casters overlap. A face of a solid body that turns
-//! away from the light lies in its own shadow and gets none; nor does what the light sees edge-on.
+//! What a caster hides from the light is a solid. Where it meets the plane of a receiver it is the
+//! caster's projection, and clipped by the receiver's edges it is the shadow polygon that lies on
+//! it. A scan line finds the same polygon by its crossings with the solid's planes; here it is
+//! found whole. Shadow polygons of several casters overlap. A face of a solid body that turns away
+//! from the light lies in its own shadow and gets none; nor does what the light sees edge-on.
 //!
-//! In:   a light and triangles, world space less the scene's middle. Out: convex polygons, world space, each in the plane of its
-//!       receiver and in its winding.
+//! In:   a light and triangles, world space less the scene's middle. Out: convex polygons, world
+//!       space, each in the plane of its receiver and in its winding.
 //! Cost: for each receiver the triangles between it and the light.
 //! Source: [Bouknight & Kelley 1970], [Sutherland & Hodgman 1974].
 
@@ -44,13 +45,16 @@ struct Found {
 }
 
 impl Receivers<'_> {
-    /// Calls `take` with what each polygon is and its corners, receiver by receiver in the order of the tree; ends early at a
-    /// limit.
+    /// Calls `take` with what each polygon is and its corners, receiver by receiver in the order of
+    /// the tree; ends early at a limit.
     pub(super) fn each(&self, take: &mut dyn FnMut(&'static str, &[DVec3])) {
         let world = &self.session.world;
         let workers = &self.execution.workers;
-        let back_faces: Vec<_> =
-            world.instances.iter().map(|i| self.session.back_faces(i.mesh_index, self.transparency, workers)).collect();
+        let back_faces: Vec<_> = world
+            .instances
+            .iter()
+            .map(|i| self.session.back_faces(i.mesh_index, self.transparency, workers))
+            .collect();
 
         // Search some receivers at a time in parallel, and hand out what they found in order.
         let jobs = self.casters.triangles().count().div_ceil(RECEIVERS_A_JOB);
@@ -78,7 +82,13 @@ impl Receivers<'_> {
     }
 
     /// Finds the shadow polygons on a triangle.
-    fn on(&self, receiver: usize, back_faces: &[BackFaces<'_>], lists: &mut [Vec<u32>; 2], found: &mut Found) {
+    fn on(
+        &self,
+        receiver: usize,
+        back_faces: &[BackFaces<'_>],
+        lists: &mut [Vec<u32>; 2],
+        found: &mut Found,
+    ) {
         // Skip a receiver that faces away from the light.
         let triangles = self.casters.triangles();
         let corners = wide(&triangles.corners[receiver]);
@@ -87,7 +97,8 @@ impl Receivers<'_> {
             return;
         }
 
-        // What touches the receiver, as its neighbours do, casts nothing on it: solids begin a little behind their triangle.
+        // What touches the receiver, as its neighbours do, casts nothing on it: solids begin a
+        // little behind their triangle.
         let position = corners.iter().fold(DVec3::ZERO, |m, c| m.max(c.abs()));
         let behind = clearance(position, f64::from(triangles.extent));
         let near = near(self.light, triangles.extent);
@@ -97,7 +108,9 @@ impl Receivers<'_> {
             let (normal, at) = &mut solid.planes[0];
             *at += normal.normalize_or_zero() * behind;
             let shadow = clipped(&corners, &solid);
-            let area = (2..shadow.len()).map(|i| winding_normal(&[shadow[0], shadow[i - 1], shadow[i]])).sum::<DVec3>();
+            let area = (2..shadow.len())
+                .map(|i| winding_normal(&[shadow[0], shadow[i - 1], shadow[i]]))
+                .sum::<DVec3>();
             // Keep polygons that are more than slivers.
             if area.length() > SLIVER * winding.length() {
                 found.corners.extend(shadow.iter().map(|&c| c + triangles.center));
@@ -106,8 +119,8 @@ impl Receivers<'_> {
         }
     }
 
-    /// Whether shadows can fall on a triangle, given the light's height above it by its winding: not on what the light sees
-    /// edge-on, nor on faces of solid bodies that turn away from it.
+    /// Whether shadows can fall on a triangle, given the light's height above it by its winding:
+    /// not on what the light sees edge-on, nor on faces of solid bodies that turn away from it.
     fn can_receive(&self, receiver: usize, height: f64, back_faces: &[BackFaces<'_>]) -> bool {
         if height == 0.0 || height.is_nan() {
             return false;
@@ -119,7 +132,8 @@ impl Receivers<'_> {
         !(outside < 0.0 && back_faces[number].drops(facet - instance.first_facet))
     }
 
-    /// The triangles between a triangle and the light, each with the kind of its shadow; `lists` is workspace.
+    /// The triangles between a triangle and the light, each with the kind of its shadow; `lists` is
+    /// workspace.
     fn before<'l>(
         &'l self,
         receiver: usize,
@@ -129,7 +143,10 @@ impl Receivers<'_> {
         let casters = self.casters;
         let triangles = casters.triangles();
         let own = triangles.facets[receiver];
-        let (min, max) = (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+        let (min, max) = (
+            corners[0].min(corners[1]).min(corners[2]),
+            corners[0].max(corners[1]).max(corners[2]),
+        );
         let shaft = Shaft::between(min, max, self.light, triangles.extent);
         opaque.clear();
         filters.clear();

@@ -1,4 +1,5 @@
-//! Counting along paths: which sides and caps a path meets, and the numbers of a whole batch of places.
+//! Counting along paths: which sides and caps a path meets, and the numbers of a whole batch of
+//! places.
 
 use super::edges::{VolumeSide, before};
 use super::light_volumes::LightVolumes;
@@ -49,7 +50,8 @@ impl Path {
     /// Whether the path crosses a plane: 1 along the normal, -1 against it.
     #[inline(always)]
     fn crosses(&self, plane: DVec4) -> i32 {
-        let end = if self.ends { before(plane, self.to) } else { plane.truncate().dot(self.to) > 0.0 };
+        let end =
+            if self.ends { before(plane, self.to) } else { plane.truncate().dot(self.to) > 0.0 };
         i32::from(end) - i32::from(before(plane, self.from))
     }
 
@@ -89,12 +91,17 @@ impl Lit<'_> {
         self.volumes.from.at
     }
 
-    /// What the near cap of a triangle adds to the count along a path that crosses its plane `along` its normal.
+    /// What the near cap of a triangle adds to the count along a path that crosses its plane
+    /// `along` its normal.
     #[inline(always)]
     fn cap(&self, path: &Path, triangle: u32, along: i32) -> i32 {
         let t = triangle as usize;
         let corners = &self.casters.triangles().corners[t];
-        if along != 0 && path.meets(&wide(corners), along) { -along * i32::from(self.volumes.turned[t]) } else { 0 }
+        if along != 0 && path.meets(&wide(corners), along) {
+            -along * i32::from(self.volumes.turned[t])
+        } else {
+            0
+        }
     }
 
     /// What the listed sides and caps add to the count along a path.
@@ -111,7 +118,8 @@ impl Lit<'_> {
     fn caps_near(&self, path: &Path) -> Vec<u32> {
         let extent = self.casters.extent();
         let scale = path.way.abs().max_element();
-        let beam = Beam::around(&Ray::new(path.from.as_vec3(), (path.way / scale).as_vec3()), extent);
+        let beam =
+            Beam::around(&Ray::new(path.from.as_vec3(), (path.way / scale).as_vec3()), extent);
         let mut list = Vec::new();
         self.casters.opaque_near(&beam, &mut list);
         list
@@ -147,7 +155,9 @@ impl Lit<'_> {
     /// The count at a place, from the viewer or from infinity.
     fn at(&self, place: DVec3, counting: VolumeCounting, viewer: DVec4, around_viewer: i32) -> i32 {
         match counting {
-            VolumeCounting::ZPass => around_viewer - self.along(&Path::new(place, viewer, self.light())),
+            VolumeCounting::ZPass => {
+                around_viewer - self.along(&Path::new(place, viewer, self.light()))
+            }
             VolumeCounting::ZFail => {
                 let from_viewer = (place * viewer.w - viewer.truncate()).extend(0.0);
                 self.around(from_viewer) - self.along(&Path::new(place, from_viewer, self.light()))
@@ -161,7 +171,8 @@ impl Lit<'_> {
 pub(super) struct Batch {
     /// Which, and where (lifted).
     places: Vec<(u32, DVec3)>,
-    /// Lists of sides, caps and filters: those of a part are behind those of the part that it was cut from.
+    /// Lists of sides, caps and filters: those of a part are behind those of the part that it was
+    /// cut from.
     lists: [Vec<u32>; 3],
     /// What each of eight parts keeps, while a list is gone through.
     dealt: [Vec<u32>; LANES],
@@ -184,7 +195,8 @@ impl Batch {
         self.places.extend(places);
     }
 
-    /// Calls `found` for each place: which, where, its count, and the transparent triangles that may filter its light.
+    /// Calls `found` for each place: which, where, its count, and the transparent triangles that
+    /// may filter its light.
     pub(super) fn count(
         &mut self,
         level: Level,
@@ -208,7 +220,13 @@ impl Batch {
         let from = inner(middle, half);
         let known = (from, lit.at(from, counting, viewer, around_viewer));
         let lists = [0, 1, 2].map(|k| 0..self.lists[k].len());
-        self.part(level, lit, Part { places: 0..self.places.len(), known, lists }, slack, &mut found);
+        self.part(
+            level,
+            lit,
+            Part { places: 0..self.places.len(), known, lists },
+            slack,
+            &mut found,
+        );
     }
 
     /// The counts of a part, whose box holds the known place too.
@@ -237,7 +255,8 @@ impl Batch {
 
         // Cut the part into eight and bound each.
         let places = self.cut(part.places.clone());
-        let boxes = places.clone().map(|range| box_around(self.places[range].iter().map(|p| p.1), slack));
+        let boxes =
+            places.clone().map(|range| box_around(self.places[range].iter().map(|p| p.1), slack));
         let (middle, half) = (boxes.map(|b| b.0), boxes.map(|b| b.1));
         let to = boxes.map(|(middle, half)| inner(middle, half));
         let lengths = [0, 1, 2].map(|k: usize| self.lists[k].len());
@@ -256,7 +275,8 @@ impl Batch {
         }
     }
 
-    /// Cuts more than eight places into eight parts: each at the median of its longest axis, three times.
+    /// Cuts more than eight places into eight parts: each at the median of its longest axis, three
+    /// times.
     fn cut(&mut self, all: Range<usize>) -> [Range<usize>; LANES] {
         let mut parts = [const { 0..0 }; LANES];
         parts[0] = all;
@@ -267,7 +287,9 @@ impl Batch {
                 let (_, half) = box_around(places.iter().map(|p| p.1), 0.0);
                 let axis = (1..3).fold(0, |k, other| if half[other] > half[k] { other } else { k });
                 let at = places.len() / 2;
-                places.select_nth_unstable_by(at, |(i, p), (j, q)| p[axis].total_cmp(&q[axis]).then(i.cmp(j)));
+                places.select_nth_unstable_by(at, |(i, p), (j, q)| {
+                    p[axis].total_cmp(&q[axis]).then(i.cmp(j))
+                });
                 (parts[2 * k], parts[2 * k + 1]) = (start..start + at, start + at..end);
             }
         }
@@ -276,19 +298,30 @@ impl Batch {
 
     /// What a part's lists add to the count on the ways from its known place to eight others.
     #[inline(always)]
-    fn changes<S: Simd>(&self, simd: S, lit: &Lit<'_>, part: &Part, to: &[DVec3; LANES]) -> [i32; LANES] {
+    fn changes<S: Simd>(
+        &self,
+        simd: S,
+        lit: &Lit<'_>,
+        part: &Part,
+        to: &[DVec3; LANES],
+    ) -> [i32; LANES] {
         let mut paths = Paths::new(simd, part.known.0, to, lit.light());
         for &s in &self.lists[0][part.lists[0].clone()] {
             paths.meet_side(lit.side(s));
         }
         for &t in &self.lists[1][part.lists[1].clone()] {
             let t = t as usize;
-            paths.meet_cap(lit.planes[t], &lit.casters.triangles().corners[t], lit.volumes.turned[t]);
+            paths.meet_cap(
+                lit.planes[t],
+                &lit.casters.triangles().corners[t],
+                lit.volumes.turned[t],
+            );
         }
         paths.changes
     }
 
-    /// Appends what of the lists touches each of eight boxes, given by their middles and half their sides.
+    /// Appends what of the lists touches each of eight boxes, given by their middles and half their
+    /// sides.
     #[inline(always)]
     fn narrow<S: Simd>(
         &mut self,
@@ -308,20 +341,30 @@ impl Batch {
         let caps = self.deal(
             (1, lists[1].clone()),
             #[inline(always)]
-            |t| boxes.touched_by_triangle(lit.planes[t as usize], &lit.casters.triangles().corners[t as usize]),
+            |t| {
+                boxes.touched_by_triangle(
+                    lit.planes[t as usize],
+                    &lit.casters.triangles().corners[t as usize],
+                )
+            },
         );
         let filters = self.deal((2, lists[2].clone()), |t| {
             let solid = Solid::new(&lit.casters.filter(t), lit.light(), least);
-            let touched = |k: &usize| solid.as_ref().is_some_and(|s| s.touches(middle[*k], half[*k]));
+            let touched =
+                |k: &usize| solid.as_ref().is_some_and(|s| s.touches(middle[*k], half[*k]));
             (0..LANES).filter(touched).fold(0, |bits, k| bits | 1 << k)
         });
         std::array::from_fn(|k| [sides[k].clone(), caps[k].clone(), filters[k].clone()])
     }
 
-    /// Appends to a list those of its range that `touched` gives to the first part, one bit for each, then those of the second, and so
-    /// on.
+    /// Appends to a list those of its range that `touched` gives to the first part, one bit for
+    /// each, then those of the second, and so on.
     #[inline(always)]
-    fn deal(&mut self, (list, range): (usize, Range<usize>), touched: impl Fn(u32) -> u32) -> [Range<usize>; LANES] {
+    fn deal(
+        &mut self,
+        (list, range): (usize, Range<usize>),
+        touched: impl Fn(u32) -> u32,
+    ) -> [Range<usize>; LANES] {
         let list = &mut self.lists[list];
         self.dealt.iter_mut().for_each(Vec::clear);
         for &number in &list[range] {

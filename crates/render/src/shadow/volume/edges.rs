@@ -15,14 +15,16 @@ struct Use {
     ends: [u32; 2],
     /// The triangle, by its place in the list.
     triangle: u32,
-    /// Which of its edges this is, and in the lowest bit whether the triangle runs along it backwards.
+    /// Which of its edges this is, and in the lowest bit whether the triangle runs along it
+    /// backwards.
     corner: u32,
 }
 
 /// What volumes are made of, whatever the light.
 #[derive(Debug)]
 pub(crate) struct CasterSurface {
-    /// For each triangle its plane: the normal by its winding, and what makes the height of its corners 0.
+    /// For each triangle its plane: the normal by its winding, and what makes the height of its
+    /// corners 0.
     pub(super) planes: Vec<DVec4>,
     /// The edges of the opaque triangles, sorted by their ends.
     uses: Vec<Use>,
@@ -41,7 +43,8 @@ pub(super) struct VolumeSide {
     pub(super) plane: DVec4,
     /// How many volumes begin where the path goes along the normal.
     pub(super) multiplicity: i32,
-    /// Normals of the planes that it lies before: beyond the edge, beside its ray through `a`, beside that through `b`.
+    /// Normals of the planes that it lies before: beyond the edge, beside its ray through `a`,
+    /// beside that through `b`.
     pub(super) borders: [DVec3; 3],
 }
 
@@ -58,7 +61,12 @@ pub(super) fn before(plane: DVec4, place: DVec3) -> bool {
 }
 
 /// How each triangle is turned.
-pub(super) fn turned_all(light: DVec4, near: f64, triangles: &Triangles, workers: &Workers) -> Vec<i8> {
+pub(super) fn turned_all(
+    light: DVec4,
+    near: f64,
+    triangles: &Triangles,
+    workers: &Workers,
+) -> Vec<i8> {
     const CHUNK: usize = 8192;
     let mut all = vec![0i8; triangles.count()];
     workers.for_each_chunk(&mut all, CHUNK, |chunk, part| {
@@ -76,7 +84,11 @@ impl Cached for CasterSurface {
 
 impl CasterSurface {
     /// Of the world's triangles.
-    pub(super) fn new(world: &World, casters: &Casters, execution: &Execution) -> Result<Self, Limit> {
+    pub(super) fn new(
+        world: &World,
+        casters: &Casters,
+        execution: &Execution,
+    ) -> Result<Self, Limit> {
         let (triangles, budget) = (casters.triangles(), &execution.budget);
         budget.check("shadow volumes")?;
         let bytes = triangles.count() as u64 * 3 * (2 * size_of::<Use>() as u64 + 4);
@@ -112,15 +124,27 @@ impl CasterSurface {
         at + self.uses[at..].iter().take_while(|u| u.ends == before).count()
     }
 
-    fn sides_of(&self, job: usize, light: DVec4, turned: &[i8], triangles: &Triangles) -> Vec<VolumeSide> {
+    fn sides_of(
+        &self,
+        job: usize,
+        light: DVec4,
+        turned: &[i8],
+        triangles: &Triangles,
+    ) -> Vec<VolumeSide> {
         let mut sides = Vec::new();
         let uses = &self.uses[self.first_use(job)..self.first_use(job + 1)];
         for run in uses.chunk_by(|one, two| one.ends == two.ends) {
-            // Along a triangle that looks at the light, its volume is left of its edges: against the normal of the side.
-            let sign = |u: &Use| i32::from(turned[u.triangle as usize]) * if u.corner & 1 == 1 { 1 } else { -1 };
+            // Along a triangle that looks at the light, its volume is left of its edges: against
+            // the normal of the side.
+            let sign = |u: &Use| {
+                i32::from(turned[u.triangle as usize]) * if u.corner & 1 == 1 { 1 } else { -1 }
+            };
             let multiplicity: i32 = run.iter().map(sign).sum();
             if multiplicity != 0 {
-                let (corners, k) = (wide(&triangles.corners[run[0].triangle as usize]), (run[0].corner >> 1) as usize);
+                let (corners, k) = (
+                    wide(&triangles.corners[run[0].triangle as usize]),
+                    (run[0].corner >> 1) as usize,
+                );
                 let (p, q) = (corners[k], corners[(k + 1) % 3]);
                 let (a, b) = if run[0].corner & 1 == 1 { (q, p) } else { (p, q) };
                 sides.push(VolumeSide::new(a, b, light, multiplicity));
@@ -130,8 +154,8 @@ impl CasterSurface {
     }
 }
 
-/// The edges of the opaque triangles, and of how many of them each corner is the first, two places late: the table from
-/// which [`sorted_by_ends`] makes where the edges of each corner begin.
+/// The edges of the opaque triangles, and of how many of them each corner is the first, two places
+/// late: the table from which [`sorted_by_ends`] makes where the edges of each corner begin.
 fn opaque_edges(world: &World, casters: &Casters, workers: &Workers) -> (Vec<Use>, Vec<u32>) {
     // Number the corners, mesh by mesh.
     let mut count = 0u32;
@@ -150,7 +174,8 @@ fn opaque_edges(world: &World, casters: &Casters, workers: &Workers) -> (Vec<Use
         let instance = world.instance_of_facet(triangles.facets[i]);
         let (first, weld) = &welds[instance];
         let instance = &world.instances[instance];
-        let triangle = instance.mesh.triangles[(triangles.facets[i] - instance.first_facet) as usize];
+        let triangle =
+            instance.mesh.triangles[(triangles.facets[i] - instance.first_facet) as usize];
         let number = triangle.map(|v| first + weld.representative[v as usize]);
         let corners = wide(corners);
         // Order the ends of each edge, so that both neighbours find the same one.
@@ -161,7 +186,11 @@ fn opaque_edges(world: &World, casters: &Casters, workers: &Workers) -> (Vec<Use
             }
             let backwards = !ordered(corners[k], corners[m]);
             let ends = if backwards { [number[m], number[k]] } else { [number[k], number[m]] };
-            found.push(Use { ends, triangle: i as u32, corner: (k as u32) << 1 | u32::from(backwards) });
+            found.push(Use {
+                ends,
+                triangle: i as u32,
+                corner: (k as u32) << 1 | u32::from(backwards),
+            });
             counts[ends[0] as usize + 2] += 1;
         }
     }
@@ -170,7 +199,8 @@ fn opaque_edges(world: &World, casters: &Casters, workers: &Workers) -> (Vec<Use
 
 /// Sorts edges by their first corner, counted by [`opaque_edges`], then those of each corner.
 fn sorted_by_ends(found: Vec<Use>, counts: Vec<u32>) -> Vec<Use> {
-    // Where the edges of each corner begin, one place late, so that filling the table leaves the final places.
+    // Where the edges of each corner begin, one place late, so that filling the table leaves the
+    // final places.
     let mut starts = counts;
     for v in 2..starts.len() {
         starts[v] += starts[v - 1];

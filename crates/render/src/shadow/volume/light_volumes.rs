@@ -36,9 +36,11 @@ impl LightVolumes {
 
         // Turn each triangle towards the light and find the silhouette's sides.
         execution.budget.check("shadow volumes")?;
-        let turned = turned_all(light, near(light, triangles.extent), triangles, &execution.workers);
+        let turned =
+            turned_all(light, near(light, triangles.extent), triangles, &execution.workers);
         let sides = surface.sides(light, &turned, triangles, &execution.workers);
-        // A tree over runs of sides: neighbours in the list mostly are neighbours in space. A box is a triangle, too.
+        // A tree over runs of sides: neighbours in the list mostly are neighbours in space. A box
+        // is a triangle, too.
         let runs = || sides.chunks(RUN);
         let around = |run: &[VolumeSide]| {
             let (middle, half) = box_around(run.iter().flat_map(|s| [s.a, s.b]), 0.0);
@@ -52,7 +54,8 @@ impl LightVolumes {
         };
 
         // Build the tree and charge what it takes.
-        let bytes = sides.len() as u64 * size_of::<VolumeSide>() as u64 + Bvh::bytes(sides.len() as u64);
+        let bytes =
+            sides.len() as u64 * size_of::<VolumeSide>() as u64 + Bvh::bytes(sides.len() as u64);
         execution.budget.charge(bytes, "shadow volumes")?;
         execution.budget.release(bytes);
         let tree = Bvh::build(&boxes, &execution.workers, &execution.budget)?;
@@ -73,7 +76,13 @@ impl LightVolumes {
     }
 
     /// Hands on caps and sides, cut where the scene is well left behind.
-    pub(super) fn draw(&self, light: usize, casters: &Casters, triangles: &Triangles, take: &mut dyn FnMut(Drawn<'_>)) {
+    pub(super) fn draw(
+        &self,
+        light: usize,
+        casters: &Casters,
+        triangles: &Triangles,
+        take: &mut dyn FnMut(Drawn<'_>),
+    ) {
         // Extend volumes well beyond the scene.
         let reach = f64::from(triangles.extent) * 2.0;
         let beyond = |p: DVec3| p + away(self.from.at, p).normalize_or_zero() * reach;
@@ -82,7 +91,8 @@ impl LightVolumes {
             take(Drawn { light, kind, facet: None, corners: &corners });
         };
         // Outwards: the near cap towards the light, the far cap away from it.
-        let casting = || (0..self.turned.len()).filter(|&i| casters.opaque[i] && self.turned[i] != 0);
+        let casting =
+            || (0..self.turned.len()).filter(|&i| casters.opaque[i] && self.turned[i] != 0);
         let towards = |i: usize| {
             let [a, b, c] = wide(&triangles.corners[i]);
             if self.turned[i] > 0 { [a, b, c] } else { [a, c, b] }

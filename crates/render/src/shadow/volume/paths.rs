@@ -1,7 +1,8 @@
-//! Eight straight paths that begin at one place, and eight boxes: what a side or a cap means to each.
+//! Eight straight paths that begin at one place, and eight boxes: what a side or a cap means to
+//! each.
 //!
-//! In double precision, the operations in the order of the formulas for one path, so that a path has the same crossings
-//! whichever way it is looked at.
+//! In double precision, the operations in the order of the formulas for one path, so that a path
+//! has the same crossings whichever way it is looked at.
 
 use super::edges::{VolumeSide, before};
 use crate::shadow::casters::{away, ordered, wide};
@@ -128,7 +129,8 @@ impl<S: Simd> Paths<S> {
         }
     }
 
-    /// Counts the near cap of a triangle with this plane, which is `turned` towards the light, 1, or away, -1.
+    /// Counts the near cap of a triangle with this plane, which is `turned` towards the light, 1,
+    /// or away, -1.
     #[inline(always)]
     pub(super) fn meet_cap(&mut self, plane: DVec4, corners: &[Vec3; 3], turned: i8) {
         let (along, mut met) = self.crossing(plane);
@@ -141,7 +143,8 @@ impl<S: Simd> Paths<S> {
             // What two triangles share has one value for both.
             let swap = !ordered(a, b);
             let (a, b) = if swap { (b, a) } else { (a, b) };
-            let left = self.left_of(splat(self.simd, a - self.from), splat(self.simd, b - self.from));
+            let left =
+                self.left_of(splat(self.simd, a - self.from), splat(self.simd, b - self.from));
             met &= if along != swap { left } else { !left };
         }
         self.add(met, if along { -i32::from(turned) } else { i32::from(turned) });
@@ -162,7 +165,8 @@ impl<S: Simd> Boxes8<S> {
         Self { simd, middle: points(simd, middle), half: points(simd, half) }
     }
 
-    /// How far the corner of each box that is farthest along a normal is from its middle, along the normal.
+    /// How far the corner of each box that is farthest along a normal is from its middle, along the
+    /// normal.
     #[inline(always)]
     fn reach(&self, normal: DVec3) -> F64x8<S> {
         dot(splat(self.simd, normal.abs()), self.half)
@@ -201,7 +205,8 @@ impl<S: Simd> Boxes8<S> {
         let [a, b, c] = wide(corners);
         let (min, max) = (splat(self.simd, a.min(b).min(c)), splat(self.simd, a.max(b).max(c)));
         for k in 0..3 {
-            let inside = min[k].simd_le(self.middle[k] + self.half[k]) & max[k].simd_ge(self.middle[k] - self.half[k]);
+            let inside = min[k].simd_le(self.middle[k] + self.half[k])
+                & max[k].simd_ge(self.middle[k] - self.half[k]);
             touched &= inside.to_bitmask() as u32;
         }
         touched
@@ -218,7 +223,8 @@ mod tests {
 
     /// Numbers in -1..1, the same at every run.
     fn noise(seed: &mut u64) -> f64 {
-        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        *seed =
+            seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
@@ -246,8 +252,14 @@ mod tests {
                 let at = from + (to - from) * (start / (start - end));
                 let [a, b, c] = wide(&corners);
                 let normal = plane.truncate();
-                let inside = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (*q - *p).cross(at - *p).dot(normal) > 0.0);
-                if (start > 0.0) != (end > 0.0) && inside { if start > 0.0 { 1 } else { -1 } } else { 0 }
+                let inside = [(a, b), (b, c), (c, a)]
+                    .iter()
+                    .all(|(p, q)| (*q - *p).cross(at - *p).dot(normal) > 0.0);
+                if (start > 0.0) != (end > 0.0) && inside {
+                    if start > 0.0 { 1 } else { -1 }
+                } else {
+                    0
+                }
             });
             for (name, level) in available_levels() {
                 let changes = dispatch!(level, simd => {
@@ -276,9 +288,12 @@ mod tests {
                 let at = from + (to - from) * (start / (start - end));
                 // Seen from the light between both ends, and farther away than the edge.
                 let (toward, normal) = (at - light, side.plane.truncate());
-                let between = (a - light).cross(toward).dot(normal) * (toward.cross(b - light)).dot(normal) > 0.0
+                let between = (a - light).cross(toward).dot(normal)
+                    * (toward.cross(b - light)).dot(normal)
+                    > 0.0
                     && toward.dot((a - light) + (b - light)) > 0.0;
-                let edge_side = (b - a).cross(at - a).dot(normal) * (b - a).cross(light - a).dot(normal);
+                let edge_side =
+                    (b - a).cross(at - a).dot(normal) * (b - a).cross(light - a).dot(normal);
                 let crosses = (start > 0.0) != (end > 0.0) && between && edge_side < 0.0;
                 if !crosses {
                     0
@@ -317,12 +332,18 @@ mod tests {
                     [boxes.touched_by_triangle(plane, &corners), boxes.touched_by_side(&side)]
                 });
                 for lane in 0..LANES {
-                    let inside = |p: DVec3| ((p - middle[lane]).abs() - half[lane]).max_element() <= 0.0;
-                    let steps =
-                        || (0..=20).flat_map(|i| (0..=20).map(move |j| (f64::from(i) / 20.0, f64::from(j) / 20.0)));
-                    let in_triangle = steps().any(|(s, t)| s + t <= 1.0 && inside(a + (b - a) * s + (c - a) * t));
+                    let inside =
+                        |p: DVec3| ((p - middle[lane]).abs() - half[lane]).max_element() <= 0.0;
+                    let steps = || {
+                        (0..=20).flat_map(|i| {
+                            (0..=20).map(move |j| (f64::from(i) / 20.0, f64::from(j) / 20.0))
+                        })
+                    };
+                    let in_triangle =
+                        steps().any(|(s, t)| s + t <= 1.0 && inside(a + (b - a) * s + (c - a) * t));
                     let beyond = |p: DVec3, t: f64| p + (p - LIGHT.truncate()) * t;
-                    let in_side = steps().any(|(s, t)| inside(beyond(side.a + (side.b - side.a) * s, t * 0.3)));
+                    let in_side = steps()
+                        .any(|(s, t)| inside(beyond(side.a + (side.b - side.a) * s, t * 0.3)));
                     assert!(!in_triangle || by_triangle >> lane & 1 == 1, "{name}");
                     assert!(!in_side || by_side >> lane & 1 == 1, "{name}");
                     touched += (by_triangle >> lane & 1) + (by_side >> lane & 1);

@@ -1,4 +1,5 @@
-//! The painter's list: the first order beside the final one, from back to front, and what happened between them.
+//! The painter's list: the first order beside the final one, from back to front, and what happened
+//! between them.
 
 use super::super::Step;
 use super::super::lists::ListedPolygon;
@@ -72,7 +73,8 @@ fn name(polygon: u32, facet: u32) -> String {
     format!("{polygon} (facet {facet})")
 }
 
-/// Draws the list of painter's algorithm from [`Step::FirstOrder`], [`Step::Moved`], [`Step::Circle`], [`Step::Split`] and
+/// Draws the list of painter's algorithm from [`Step::FirstOrder`], [`Step::Moved`],
+/// [`Step::Circle`], [`Step::Split`] and
 /// [`Step::Piece`]: polygons that were moved are blue, parts of polygons that were split red.
 pub fn depth_sort_svg(steps: &[Step]) -> String {
     let sorting = Sorting::new(steps);
@@ -85,8 +87,9 @@ pub fn depth_sort_svg(steps: &[Step]) -> String {
         sorting.moved.len(),
         sorting.wholes.values().collect::<std::collections::BTreeSet<_>>().len(),
     );
-    let explained =
-        ["From back to front. Arrows lead to a polygon's place in the final list: blue if it was moved, red if split."];
+    let explained = [
+        "From back to front. Arrows lead to a polygon's place in the final list: blue if it was moved, red if split.",
+    ];
     let mut picture = Picture::new(&title, &explained);
     let top = picture.bottom() + LINE;
     picture.text([FIRST, top], "first order, by the farthest depth", INK, "start");
@@ -109,24 +112,37 @@ pub fn depth_sort_svg(steps: &[Step]) -> String {
     for (index, (text, color)) in sorting.events.iter().take(MOST_ROWS).enumerate() {
         picture.text([EVENTS, row(index) + LINE], text, color, "start");
     }
-    let counts = [(FIRST, sorting.first.len()), (FINAL, sorting.list.len()), (EVENTS, sorting.events.len())];
+    let counts =
+        [(FIRST, sorting.first.len()), (FINAL, sorting.list.len()), (EVENTS, sorting.events.len())];
     for (x, count) in counts.into_iter().filter(|(_, count)| *count > MOST_ROWS) {
-        picture.text([x, row(MOST_ROWS) + LINE], &format!("... and {} more", count - MOST_ROWS), GREY, "start");
+        picture.text(
+            [x, row(MOST_ROWS) + LINE],
+            &format!("... and {} more", count - MOST_ROWS),
+            GREY,
+            "start",
+        );
     }
 
     // The arrows between them.
-    let places: HashMap<u32, usize> = sorting.first.iter().enumerate().map(|(i, p)| (p.polygon, i)).collect();
+    let places: HashMap<u32, usize> =
+        sorting.first.iter().enumerate().map(|(i, p)| (p.polygon, i)).collect();
     for (to, &(polygon, _)) in sorting.list.iter().take(MOST_ROWS).enumerate() {
-        let Some(&from) = places.get(&sorting.whole(polygon)).filter(|from| **from < MOST_ROWS) else { continue };
+        let Some(&from) = places.get(&sorting.whole(polygon)).filter(|from| **from < MOST_ROWS)
+        else {
+            continue;
+        };
         let [from, to] = [from, to].map(|index| row(index) + DOWN / 2.0);
         picture.arrow([FIRST + WIDTH, from], [FINAL - 4.0, to], color(&sorting, polygon));
     }
     picture.finish()
 }
 
-/// The colour of what happened to a polygon: it was split or is a part, it or its whole was moved, or neither.
+/// The colour of what happened to a polygon: it was split or is a part, it or its whole was moved,
+/// or neither.
 fn color(sorting: &Sorting<'_>, polygon: u32) -> &'static str {
-    if sorting.wholes.contains_key(&polygon) || sorting.wholes.values().any(|&whole| whole == polygon) {
+    if sorting.wholes.contains_key(&polygon)
+        || sorting.wholes.values().any(|&whole| whole == polygon)
+    {
         RED
     } else if sorting.moved.contains(&polygon) {
         BLUE
@@ -169,7 +185,10 @@ mod tests {
                 by: 1,
                 by_facet: 2,
                 line: [1.0, 0.0, 0.0],
-                parts: vec![ListedPolygon { polygon: 3, ..listed(0) }, ListedPolygon { polygon: 4, ..listed(0) }],
+                parts: vec![
+                    ListedPolygon { polygon: 3, ..listed(0) },
+                    ListedPolygon { polygon: 4, ..listed(0) },
+                ],
                 unmarked: vec![1],
             },
             piece(0, 3, 0),

@@ -27,14 +27,17 @@ struct Window {
     verdict: WindowVerdict,
 }
 
-/// Draws the windows of a trace: in a picture of `width` x `height` pixels on top, as a tree below, in which nodes tell how many polygons
-/// are on the list. Levels with more than a few dozen windows are summed up.
+/// Draws the windows of a trace: in a picture of `width` x `height` pixels on top, as a tree below,
+/// in which nodes tell how many polygons are on the list. Levels with more than a few dozen windows
+/// are summed up.
 pub fn quadtree_svg(steps: &[NumberedStep], width: u32, height: u32) -> String {
     let windows: Vec<Window> = steps.iter().filter_map(window).collect();
     let title = format!("Area subdivision: {} window(s)", windows.len());
     let mut picture = Picture::new(
         &title,
-        &["The windows that were not cut. Below: the tree, with the polygons on each window's list."],
+        &[
+            "The windows that were not cut. Below: the tree, with the polygons on each window's list.",
+        ],
     );
     legend(&mut picture);
     plan(&windows, SIDE / f64::from(width.max(height).max(1)), &mut picture);
@@ -43,7 +46,9 @@ pub fn quadtree_svg(steps: &[NumberedStep], width: u32, height: u32) -> String {
 }
 
 fn window(step: &NumberedStep) -> Option<Window> {
-    let Step::Window { pixels, path, contained, intersecting, surrounding, verdict, .. } = &step.step else {
+    let Step::Window { pixels, path, contained, intersecting, surrounding, verdict, .. } =
+        &step.step
+    else {
         return None;
     };
     let polygons = contained.len() + intersecting.len() + surrounding.len();
@@ -94,7 +99,8 @@ fn tree(windows: &[Window], picture: &mut Picture) {
     let levels = windows.iter().map(|w| w.depth + 1).max().unwrap_or(0);
     let by_level: Vec<Vec<&Window>> =
         (0..levels).map(|level| windows.iter().filter(|w| w.depth == level).collect()).collect();
-    let widest = by_level.iter().map(Vec::len).filter(|count| *count <= MAX_WINDOWS).max().unwrap_or(1);
+    let widest =
+        by_level.iter().map(Vec::len).filter(|count| *count <= MAX_WINDOWS).max().unwrap_or(1);
     let width = (widest as f64 * ACROSS).max(SIDE);
 
     // Links begin at the boxes of the level above.
@@ -110,7 +116,12 @@ fn tree(windows: &[Window], picture: &mut Picture) {
                 let place = [MARGIN + (i as f64 + 0.5) * step, y];
                 places.insert(window.number, place);
                 if let Some([x, above]) = window.parent.and_then(|parent| places.get(&parent)) {
-                    picture.line([*x, above + BOX[1] / 2.0], [place[0], y - BOX[1] / 2.0], GREY, 1.0);
+                    picture.line(
+                        [*x, above + BOX[1] / 2.0],
+                        [place[0], y - BOX[1] / 2.0],
+                        GREY,
+                        1.0,
+                    );
                 }
                 node(window, place, picture);
             }

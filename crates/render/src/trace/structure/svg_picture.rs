@@ -4,7 +4,8 @@
 
 use std::fmt::Write;
 
-/// An SVG that is being written. Lengths are in its units, pixels where it is shown in its own size.
+/// An SVG that is being written. Lengths are in its units, pixels where it is shown in its own
+/// size.
 pub(super) struct Picture {
     pub(super) elements: String,
     /// What has been drawn so far reaches so far.
@@ -43,7 +44,8 @@ impl Picture {
         self.size = [self.size[0].max(x), self.size[1].max(y)];
     }
 
-    /// Text whose baseline begins at a point, or has it in its middle or at its end; returns how far it reaches.
+    /// Text whose baseline begins at a point, or has it in its middle or at its end; returns how
+    /// far it reaches.
     pub(super) fn text(&mut self, [x, y]: [f64; 2], text: &str, color: &str, anchor: &str) -> f64 {
         let escaped = text.replace('&', "&amp;").replace('<', "&lt;");
         // Writing to a string cannot fail.
@@ -75,14 +77,24 @@ impl Picture {
         let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
         let length = (dx * dx + dy * dy).sqrt().max(1.0);
         let [ux, uy] = [dx / length * 8.0, dy / length * 8.0];
-        let [left, right] =
-            [0.5, -0.5].map(|k| [to[0] - ux - uy * k, to[1] - uy + ux * k]).map(|[x, y]| format!("{x:.1},{y:.1}"));
+        let [left, right] = [0.5, -0.5]
+            .map(|k| [to[0] - ux - uy * k, to[1] - uy + ux * k])
+            .map(|[x, y]| format!("{x:.1},{y:.1}"));
         let [x, y] = to;
-        let _ = writeln!(self.elements, r#"<polygon points="{x:.1},{y:.1} {left} {right}" fill="{color}"/>"#);
+        let _ = writeln!(
+            self.elements,
+            r#"<polygon points="{x:.1},{y:.1} {left} {right}" fill="{color}"/>"#
+        );
     }
 
     /// A box by its upper left corner and its size.
-    pub(super) fn rectangle(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], stroke: &str, fill: &str) {
+    pub(super) fn rectangle(
+        &mut self,
+        [x, y]: [f64; 2],
+        [width, height]: [f64; 2],
+        stroke: &str,
+        fill: &str,
+    ) {
         let _ = writeln!(
             self.elements,
             r#"<rect x="{x:.1}" y="{y:.1}" width="{width:.1}" height="{height:.1}" rx="4" fill="{fill}" stroke="{stroke}"/>"#

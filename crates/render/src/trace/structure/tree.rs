@@ -36,15 +36,17 @@ struct Placed {
     is_drawn: bool,
 }
 
-/// Draws the BSP tree of [`Step::TreeNode`]s, with the walk of [`Step::TreeVisit`]s: nodes are named by the splitter's facet, and
-/// numbered as the walk comes to them, from back to front.
+/// Draws the BSP tree of [`Step::TreeNode`]s, with the walk of [`Step::TreeVisit`]s: nodes are
+/// named by the splitter's facet, and numbered as the walk comes to them, from back to front.
 pub fn bsp_tree_svg(steps: &[Step]) -> String {
     // Count nodes and cuts for the title.
     let nodes = nodes(steps);
     let cuts: u64 = nodes.values().map(|node| u64::from(node.cut.count)).sum();
     let polygons: u64 = nodes.values().map(|node| u64::from(node.coincident.count)).sum();
-    let title =
-        format!("BSP tree: {} node(s), {cuts} cut(s), {polygons} polygon(s) and parts in the list", nodes.len());
+    let title = format!(
+        "BSP tree: {} node(s), {cuts} cut(s), {polygons} polygon(s) and parts in the list",
+        nodes.len()
+    );
     let explained = [
         "A node: the facet that gave its plane, its polygons in the plane, those cut by it (red). A link: polygons on that side.",
         "#n: its place in the walk for this viewer, from back to front; blue links lead to the viewer's side.",
@@ -54,7 +56,8 @@ pub fn bsp_tree_svg(steps: &[Step]) -> String {
     let mut picture = Picture::new(&title, &explained);
     let top = picture.bottom();
     let placed = place(&nodes);
-    let middle = |p: &Placed| [MARGIN + BOX[0] / 2.0 + p.across * ACROSS, top + p.level as f64 * DOWN];
+    let middle =
+        |p: &Placed| [MARGIN + BOX[0] / 2.0 + p.across * ACROSS, top + p.level as f64 * DOWN];
 
     // Draw the links below the boxes.
     for p in &placed {
@@ -79,7 +82,12 @@ pub fn bsp_tree_svg(steps: &[Step]) -> String {
             let (below, polygons) = below(&nodes, p.node);
             picture.rectangle(corner, [BOX[0], 2.0 * LINE + 8.0], GREY, "#f4f4f4");
             picture.text([x, y + LINE], &format!("... {below} node(s)"), GREY, "middle");
-            picture.text([x, y + 2.0 * LINE], &format!("with {polygons} polygon(s)"), GREY, "middle");
+            picture.text(
+                [x, y + 2.0 * LINE],
+                &format!("with {polygons} polygon(s)"),
+                GREY,
+                "middle",
+            );
             continue;
         }
         let Some(node) = nodes.get(&p.node) else { continue };
@@ -102,7 +110,10 @@ fn nodes(steps: &[Step]) -> BTreeMap<u32, Node<'_>> {
                 let (children, visit) = ([None; 2], None);
                 let (splitter, plane) = (*splitter, *plane);
                 let counts = [back.count, front.count];
-                nodes.insert(*node, Node { splitter, plane, coincident, cut, children, counts, visit });
+                nodes.insert(
+                    *node,
+                    Node { splitter, plane, coincident, cut, children, counts, visit },
+                );
             }
             Step::TreeVisit { order, node, viewer, .. } => {
                 if let Some(node) = nodes.get_mut(node) {
@@ -115,7 +126,8 @@ fn nodes(steps: &[Step]) -> BTreeMap<u32, Node<'_>> {
     nodes
 }
 
-/// Chooses the nodes nearest to the root, and places them: leaves side by side, others above the middle of what hangs below.
+/// Chooses the nodes nearest to the root, and places them: leaves side by side, others above the
+/// middle of what hangs below.
 fn place(nodes: &BTreeMap<u32, Node<'_>>) -> Vec<Placed> {
     let Some(&root) = nodes.keys().next() else { return Vec::new() };
 
@@ -223,12 +235,17 @@ fn short(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// A tree whose nodes each have one polygon, the children of node `n` being `2 n + 1` behind and `2 n + 2` in front.
+    /// A tree whose nodes each have one polygon, the children of node `n` being `2 n + 1` behind
+    /// and `2 n + 2` in front.
     fn heap(count: u32) -> Vec<Step> {
         let node = |node: u32| Step::TreeNode {
             node,
             above: (node > 0).then(|| (node - 1) / 2),
-            side: (node > 0).then_some(if node % 2 == 1 { PlaneSide::Back } else { PlaneSide::Front }),
+            side: (node > 0).then_some(if node % 2 == 1 {
+                PlaneSide::Back
+            } else {
+                PlaneSide::Front
+            }),
             splitter: Some(node + 100),
             plane: [0.0, 0.0, 1.0, 0.0],
             coincident: PolygonSet::new([node + 100]),
@@ -251,9 +268,15 @@ mod tests {
         };
         steps.extend([visit(0, 1), visit(1, 0), visit(2, 2)]);
         let svg = bsp_tree_svg(&steps);
-        for text in
-            [">facet 100<", ">facet 101<", ">facet 102<", ">back 1<", ">front 3<", ">cut 1: 107<", ">node 1 #0<"]
-        {
+        for text in [
+            ">facet 100<",
+            ">facet 101<",
+            ">facet 102<",
+            ">back 1<",
+            ">front 3<",
+            ">cut 1: 107<",
+            ">node 1 #0<",
+        ] {
             assert!(svg.contains(text), "{text} in {svg}");
         }
         assert!(svg.contains("3 node(s), 1 cut(s), 3 polygon(s)") && !svg.contains("..."), "{svg}");

@@ -1,25 +1,32 @@
 //! Building a BSP tree, and walking it.
 //!
-//! A set of polygons is cut by a plane into those in front, those behind and those in the plane; polygons that cross it
-//! are split. Sets of many polygons are first halved by a plane across an axis, through a corner in the middle: it
-//! crosses few polygons of a surface, and the tree gets shallow. Small sets take the plane of one of their polygons:
-//! several are tried on a sample of the set, and the one that splits least and halves best is taken.
+//! A set of polygons is cut by a plane into those in front, those behind and those in the plane;
+//! polygons that cross it are split. Sets of many polygons are first halved by a plane across an
+//! axis, through a corner in the middle: it crosses few polygons of a surface, and the tree gets
+//! shallow. Small sets take the plane of one of their polygons: several are tried on a sample of
+//! the set, and the one that splits least and halves best is taken.
 //!
-//! Planes are thick. A corner that is off the plane by no more than positions are rounded lies in it, so faces that
-//! were meant to be coplanar do not split one another, and the rounding of split corners never turns a side over.
-//! Thickness is some 2^-21 of the numbers that enter the distance, rounding of `f64` some 2^-50: a side that is told is
-//! certain. The plane of a needle, whose normal is uncertain, is replaced by one along its longest edge. The polygon
-//! that gave the plane is always in it. So each node consumes a polygon or halves the set, and the build ends.
+//! Planes are thick. A corner that is off the plane by no more than positions are rounded lies in
+//! it, so faces that were meant to be coplanar do not split one another, and the rounding of split
+//! corners never turns a side over. Thickness is some 2^-21 of the numbers that enter the distance,
+//! rounding of `f64` some 2^-50: a side that is told is certain. The plane of a needle, whose
+//! normal is uncertain, is replaced by one along its longest edge. The polygon that gave the plane
+//! is always in it. So each node consumes a polygon or halves the set, and the build ends.
 //!
-//! Polygons whose facets share a plane of the world lie in one node, however their corners were rounded. A node keeps those that
-//! face the front apart from those that face the back: of two in one plane, the one that faces the viewer is nearer.
+//! Polygons whose facets share a plane of the world lie in one node, however their corners were
+//! rounded. A node keeps those that face the front apart from those that face the back: of two in
+//! one plane, the one that faces the viewer is nearer.
 //!
-//! A fragment keeps the planes that cut it and that it is near to. Those that stay clear of it are implied by the others
-//! but for rounding; should that move a sample across one, two fragments hold the sample, never none.
+//! A fragment keeps the planes that cut it and that it is near to. Those that stay clear of it are
+//! implied by the others but for rounding; should that move a sample across one, two fragments hold
+//! the sample, never none.
 //!
-//! In:   the world's polygons, world space. Out: nodes, and fragments: polygons with the planes that cut them.
-//! Cost: `O(n log n)` until sets are small, if planes split few polygons; `O(n^2)` fragments for the worst scenes.
-//! Source: [Fuchs, Kedem & Naylor 1980]; axis planes first after [Paterson & Yao 1990], who also bound the size.
+//! In:   the world's polygons, world space. Out: nodes, and fragments: polygons with the planes
+//!       that cut them.
+//! Cost: `O(n log n)` until sets are small, if planes split few polygons; `O(n^2)` fragments for
+//!       the worst scenes.
+//! Source: [Fuchs, Kedem & Naylor 1980]; axis planes first after [Paterson & Yao 1990], who also
+//!         bound the size.
 
 mod plane;
 mod report;
@@ -40,11 +47,13 @@ const CANDIDATES: usize = 8;
 const TRIED_ON: usize = 64;
 /// What a split costs, in polygons of imbalance.
 const SPLIT_COST: usize = 6;
-/// Eighths of the set that an axis plane may leave on one side at most; a plane that halves worse is not used.
+/// Eighths of the set that an axis plane may leave on one side at most; a plane that halves worse
+/// is not used.
 const WORST_HALF: usize = 6;
 /// Pieces of work that the set is divided into before threads share them.
 const JOBS: usize = 64;
-/// A cut is forgotten if all of a fragment is farther from it than this part of the fragment's size.
+/// A cut is forgotten if all of a fragment is farther from it than this part of the fragment's
+/// size.
 const CLEAR: f64 = 0.125;
 /// No node; no cut.
 const NONE: u32 = u32::MAX;
@@ -57,7 +66,8 @@ struct Node {
     plane: DVec4,
     front: u32,
     back: u32,
-    /// The fragments in the plane: those that face the back, then those that face the front, of each the highest polygon first.
+    /// The fragments in the plane: those that face the back, then those that face the front, of
+    /// each the highest polygon first.
     fragments: Range<u32>,
     /// The first that faces the front.
     facing_front: u32,
@@ -117,14 +127,19 @@ pub(crate) struct BspTree {
     cutters: Vec<DVec4>,
     /// The facets of the polygons.
     facets: PolygonFacets,
-    /// Polygons without finite corners; on the screen they are nothing, or clipped beyond recognition.
+    /// Polygons without finite corners; on the screen they are nothing, or clipped beyond
+    /// recognition.
     loose: Range<u32>,
     splits: u64,
 }
 
 impl BspTree {
     /// Builds the tree of all polygons of a world.
-    pub(crate) fn of_world(world: &World, planes: &SharedPlanes, execution: &Execution) -> Result<Self, Limit> {
+    pub(crate) fn of_world(
+        world: &World,
+        planes: &SharedPlanes,
+        execution: &Execution,
+    ) -> Result<Self, Limit> {
         let polygons = WorldPolygons::new(world, planes, execution)?;
         let bytes = polygons.bytes();
         let tree = Self::new(polygons, execution);
@@ -161,7 +176,8 @@ impl BspTree {
     /// Bytes it takes.
     pub(crate) fn bytes(&self) -> u64 {
         let bytes = size_of_val(self.nodes.as_slice()) + size_of_val(self.fragments.as_slice());
-        let bytes = bytes + size_of_val(self.cuts.as_slice()) + size_of_val(self.cutters.as_slice());
+        let bytes =
+            bytes + size_of_val(self.cuts.as_slice()) + size_of_val(self.cutters.as_slice());
         bytes as u64 + self.facets.bytes()
     }
 
@@ -175,17 +191,21 @@ impl BspTree {
         &self.cutters
     }
 
-    /// The cutters of a fragment by their numbers, and whether it lies on the positive side of each.
+    /// The cutters of a fragment by their numbers, and whether it lies on the positive side of
+    /// each.
     pub(crate) fn cuts(&self, fragment: u32) -> impl ExactSizeIterator<Item = (u32, bool)> + '_ {
         let Fragment { first_cut, cuts, .. } = self.fragments[fragment as usize];
         let cuts = &self.cuts[first_cut as usize..][..cuts as usize];
         cuts.iter().map(|cut| (cut.node, cut.positive))
     }
 
-    /// Calls `f` with the fragments from back to front. `viewer` is a homogeneous point: an eye, or a direction towards it.
+    /// Calls `f` with the fragments from back to front. `viewer` is a homogeneous point: an eye, or
+    /// a direction towards it.
     pub(crate) fn back_to_front(&self, viewer: DVec4, mut f: impl FnMut(u32)) {
         self.loose.clone().for_each(&mut f);
-        self.walk(viewer, |node, in_front| self.nodes[node as usize].each_fragment(in_front, &mut f));
+        self.walk(viewer, |node, in_front| {
+            self.nodes[node as usize].each_fragment(in_front, &mut f)
+        });
     }
 
     /// Calls `f` with the nodes from back to front, and whether the viewer is in front of each.
@@ -213,11 +233,13 @@ impl BspTree {
 }
 
 impl Node {
-    /// Calls `f` with its fragments in the order of the list: those that face away from the viewer first.
+    /// Calls `f` with its fragments in the order of the list: those that face away from the viewer
+    /// first.
     fn each_fragment(&self, in_front: bool, f: impl FnMut(u32)) {
         let (facing_back, facing_front) =
             (self.fragments.start..self.facing_front, self.facing_front..self.fragments.end);
-        let (first, then) = if in_front { (facing_back, facing_front) } else { (facing_front, facing_back) };
+        let (first, then) =
+            if in_front { (facing_back, facing_front) } else { (facing_front, facing_back) };
         first.chain(then).for_each(f);
     }
 }
@@ -236,7 +258,8 @@ struct Builder<'t> {
     accounted: usize,
     /// Workspace: corners of a polygon that is split.
     split: [Vec<DVec3>; 2],
-    /// Workspace: where the parts of a set lie, and the planes that those in the node's plane share.
+    /// Workspace: where the parts of a set lie, and the planes that those in the node's plane
+    /// share.
     sides: Vec<BspSide>,
     coplanar: Vec<u32>,
 }
@@ -283,7 +306,8 @@ impl<'t> Builder<'t> {
         let mut tasks = vec![Task { parts, parent: NONE, front: true }];
         let mut jobs = Vec::new();
         while let Some(task) = tasks.pop() {
-            let plane = if task.parts.len() > job_size { self.axis_plane(&task.parts) } else { None };
+            let plane =
+                if task.parts.len() > job_size { self.axis_plane(&task.parts) } else { None };
             match plane {
                 Some(plane) => self.cut(task, plane, None, &mut tasks)?,
                 None => jobs.push(task),
@@ -319,7 +343,8 @@ impl<'t> Builder<'t> {
         };
 
         // Cut large sets along axis planes and small ones along one of their own.
-        let mut tasks = vec![Task { parts: parts.iter().map(own).collect(), parent: NONE, front: true }];
+        let mut tasks =
+            vec![Task { parts: parts.iter().map(own).collect(), parent: NONE, front: true }];
         while let Some(task) = tasks.pop() {
             if task.parts.is_empty() {
                 continue;
@@ -434,7 +459,14 @@ impl<'t> Builder<'t> {
         // Store the node and queue both sides.
         let splitter = splitter.map_or(NONE, |i| task.parts[i].polygon);
         let plane = plane.equation;
-        self.tree.nodes.push(Node { plane, front: NONE, back: NONE, fragments, facing_front, splitter });
+        self.tree.nodes.push(Node {
+            plane,
+            front: NONE,
+            back: NONE,
+            fragments,
+            facing_front,
+            splitter,
+        });
         tasks.push(Task { parts: front, parent: node, front: true });
         tasks.push(Task { parts: back, parent: node, front: false });
         Ok(())
@@ -446,7 +478,11 @@ impl<'t> Builder<'t> {
         self.sides.clear();
         self.coplanar.clear();
         for (i, part) in parts.iter().enumerate() {
-            let side = if splitter == Some(i) { BspSide::In } else { side_of(plane, points_of(&self.points, part)) };
+            let side = if splitter == Some(i) {
+                BspSide::In
+            } else {
+                side_of(plane, points_of(&self.points, part))
+            };
             self.sides.push(side);
             if side == BspSide::In
                 && let Some(number) = self.polygons.plane(part.polygon)
@@ -456,12 +492,16 @@ impl<'t> Builder<'t> {
             }
         }
 
-        // What shares a plane with a polygon in the node's lies in it, too, however its corners were rounded.
+        // What shares a plane with a polygon in the node's lies in it, too, however its corners
+        // were rounded.
         if self.coplanar.is_empty() {
             return;
         }
-        let thick = ThickPlane { thickness: plane.thickness.max(2.0 * self.polygons.tolerance), ..*plane };
-        for (side, part) in self.sides.iter_mut().zip(parts).filter(|(side, _)| **side != BspSide::In) {
+        let thick =
+            ThickPlane { thickness: plane.thickness.max(2.0 * self.polygons.tolerance), ..*plane };
+        for (side, part) in
+            self.sides.iter_mut().zip(parts).filter(|(side, _)| **side != BspSide::In)
+        {
             let number = self.polygons.plane(part.polygon);
             if number.is_some_and(|number| self.coplanar.contains(&number))
                 && side_of(&thick, points_of(&self.points, part)) == BspSide::In
@@ -471,12 +511,13 @@ impl<'t> Builder<'t> {
         }
     }
 
-    /// Makes a part a fragment of the node that is being made. Of the planes that cut it on its way down, the tree keeps
-    /// those that it is near to.
+    /// Makes a part a fragment of the node that is being made. Of the planes that cut it on its way
+    /// down, the tree keeps those that it is near to.
     fn place(&mut self, part: &Part) {
         // Measure the part.
         let points = points_of(&self.points, part);
-        let (low, high) = points.iter().fold((points[0], points[0]), |(l, h), &p| (l.min(p), h.max(p)));
+        let (low, high) =
+            points.iter().fold((points[0], points[0]), |(l, h), &p| (l.min(p), h.max(p)));
         let clear = (high - low).max_element() * CLEAR;
 
         // Walk up the planes that cut it and keep the near ones.
@@ -484,7 +525,8 @@ impl<'t> Builder<'t> {
         while link != NONE {
             let outer = link & OUTER;
             let builder = if outer == 0 { None } else { self.outer };
-            let (links, nodes) = builder.map_or((&self.links, &self.tree.nodes), |b| (&b.links, &b.tree.nodes));
+            let (links, nodes) =
+                builder.map_or((&self.links, &self.tree.nodes), |b| (&b.links, &b.tree.nodes));
             let CutLink { cut, before } = links[(link & !OUTER) as usize];
             // The part's own node is about to be made, so all nodes that cut it are there.
             let plane = nodes[cut.node as usize].plane;
@@ -685,7 +727,8 @@ mod tests {
 
     /// Area of all fragments of a facet, from the corners that the builder keeps.
     fn area(points: &[DVec3]) -> f64 {
-        let fan = (1..points.len() - 1).map(|i| (points[i] - points[0]).cross(points[i + 1] - points[0]));
+        let fan =
+            (1..points.len() - 1).map(|i| (points[i] - points[0]).cross(points[i + 1] - points[0]));
         fan.fold(DVec3::ZERO, |sum, c| sum + c).length() * 0.5
     }
 

@@ -1,10 +1,11 @@
 //! Which of two polygons has to be painted first: the five tests, and what is left when they fail.
 //!
-//! In:   two convex polygons on the screen with their depth planes. Out: a [`ListVerdict`](Verdict), and the test that decided.
+//! In:   two convex polygons on the screen with their depth planes. Out: a
+//!       [`ListVerdict`](Verdict), and the test that decided.
 //! Cost: a few comparisons for most pairs; corners times edges for the last tests.
-//! Source: [Newell, Newell & Sancha 1972]. Departs from it: depths closer than 2^-22 count as equal, and polygons that are
-//! equally far over their whole overlap are ordered as the law of agreement decides: what faces the viewer comes last, then the
-//! lower facet.
+//! Source: [Newell, Newell & Sancha 1972]. Departs from it: depths closer than 2^-22 count as
+//! equal, and polygons that are equally far over their whole overlap are ordered as the law of
+//! agreement decides: what faces the viewer comes last, then the lower facet.
 
 use super::super::cut::{Cut, Depth};
 use super::super::polygons::Polygons;
@@ -88,8 +89,8 @@ impl PainterPolygon {
         (0..points.len()).filter_map(|i| edge(points[i], points[(i + 1) % points.len()])).collect()
     }
 
-    /// A line that has what it shares with one of two others on one side, and what it shares with the other on the other side;
-    /// whether it is one of the first's.
+    /// A line that has what it shares with one of two others on one side, and what it shares with
+    /// the other on the other side; whether it is one of the first's.
     pub(super) fn separating_line(
         &self,
         others: [&Self; 2],
@@ -118,7 +119,8 @@ impl PainterPolygon {
             let lines = crossing(plane(self), plane(other)).into_iter().chain(other.edges(corners));
             lines.map(move |line| (line, is_first))
         });
-        let mut lines = lines.filter(|(line, _)| side(line, &shared[0]) * side(line, &shared[1]) < 0);
+        let mut lines =
+            lines.filter(|(line, _)| side(line, &shared[0]) * side(line, &shared[1]) < 0);
         lines.find(|(line, _)| self.split(corners, line).is_some())
     }
 
@@ -203,7 +205,8 @@ pub(super) fn compare(
     // Test each polygon against the plane of the other.
     let [ps, qs] = [p, q].map(|i| wholes.get(i.whole as usize).plane());
     let (p_points, q_points) = (p.points(corners), q.points(corners));
-    // How much nearer Q is than P. With all corners of P, that tells where P lies from the plane of Q.
+    // How much nearer Q is than P. With all corners of P, that tells where P lies from the plane of
+    // Q.
     let gap = Depth::of(qs).minus(Depth::of(ps));
     let at_p = range(p_points.iter().map(|&c| gap.at(c)));
     let at_q = range(q_points.iter().map(|&c| gap.at(c)));
@@ -257,8 +260,9 @@ fn order((low, high): (f64, f64), p: &Setup, q: &Setup) -> Verdict {
     }
 }
 
-/// The verdict for polygons in one plane. Facets that share their plane in the world have parallel planes here, the nearer one where
-/// they face the viewer. Of equal ones the lower facet is seen, and comes last.
+/// The verdict for polygons in one plane. Facets that share their plane in the world have parallel
+/// planes here, the nearer one where they face the viewer. Of equal ones the lower facet is seen,
+/// and comes last.
 fn coplanar_order(p: &Setup, q: &Setup) -> Verdict {
     let slope = |s: &Setup| ([s.dz_dx, s.dz_dy].map(f32::to_bits), s.origin);
     let gap = if slope(p) == slope(q) { q.z.total_cmp(&p.z) } else { Ordering::Equal };
@@ -308,15 +312,18 @@ mod tests {
     use vitral_raster::CornerPosition;
 
     fn setup(corners: [[i32; 2]; 3], z: [f32; 3], facet: u32) -> Setup {
-        let [a, b, c] = [0, 1, 2].map(|i| CornerPosition { x: corners[i][0], y: corners[i][1], z: z[i] });
+        let [a, b, c] =
+            [0, 1, 2].map(|i| CornerPosition { x: corners[i][0], y: corners[i][1], z: z[i] });
         Setup::new([a, b, c], Setup::doubled_area(a, b, c), facet)
     }
 
     fn verdict(p: Setup, q: Setup) -> ((Verdict, ListTest), VisibilityCounters) {
         let [a, b] = [p, q].map(|s| corners(&s));
         let points = [a, b].concat();
-        let polygons =
-            [PainterPolygon::new(&p, 0, &a, 0..3, 0..0, [0; 4]), PainterPolygon::new(&q, 1, &b, 3..6, 0..0, [0; 4])];
+        let polygons = [
+            PainterPolygon::new(&p, 0, &a, 0..3, 0..0, [0; 4]),
+            PainterPolygon::new(&q, 1, &b, 3..6, 0..0, [0; 4]),
+        ];
         let mut counters = VisibilityCounters::default();
         let setups = [p, q];
         let wholes = Polygons::joined(&setups, |facet| facet);
@@ -347,22 +354,33 @@ mod tests {
         assert_eq!(decided(setup(HERE, [0.9; 3], 1)), [1, 0, 0, 0, 0, 0]);
         assert_eq!(decided(setup(moved([1000, 0]), [0.1; 3], 1)), [0, 1, 0, 0, 0, 0]);
         assert_eq!(decided(setup(moved([0, 1000]), [0.1; 3], 1)), [0, 0, 1, 0, 0, 0]);
-        // A parallel plane in front; a small polygon in front of the sloping one, whose own plane cuts that.
+        // A parallel plane in front; a small polygon in front of the sloping one, whose own plane
+        // cuts that.
         assert_eq!(decided(setup(HERE, [0.3, 0.9, 0.3], 1)), [0, 0, 0, 1, 0, 0]);
         assert_eq!(decided(setup([[0, 0], [100, 0], [0, 100]], [0.3; 3], 1)), [0, 0, 0, 0, 1, 0]);
         // The other half of the square.
-        assert_eq!(decided(setup([[1000, 1000], [1000, 0], [0, 1000]], [0.1, 0.5, 0.1], 1)), [0, 0, 0, 0, 0, 1]);
+        assert_eq!(
+            decided(setup([[1000, 1000], [1000, 0], [0, 1000]], [0.1, 0.5, 0.1], 1)),
+            [0, 0, 0, 0, 0, 1]
+        );
     }
 
     #[test]
     fn p21_what_is_left_when_the_tests_fail() {
         let p = setup(HERE, [0.2, 0.8, 0.2], 0);
-        assert_eq!(verdict(p, setup(HERE, [0.1, 0.7, 0.1], 1)).0, (Verdict::After, ListTest::ExchangedInFront));
-        assert_eq!(verdict(p, setup(HERE, [0.8, 0.2, 0.8], 1)).0, (Verdict::Across, ListTest::Overlap));
+        assert_eq!(
+            verdict(p, setup(HERE, [0.1, 0.7, 0.1], 1)).0,
+            (Verdict::After, ListTest::ExchangedInFront)
+        );
+        assert_eq!(
+            verdict(p, setup(HERE, [0.8, 0.2, 0.8], 1)).0,
+            (Verdict::Across, ListTest::Overlap)
+        );
         // Coplanar: the lower facet comes last.
         assert_eq!(verdict(p, Setup { facet: 1, ..p }).0, (Verdict::After, ListTest::Coplanar));
         assert_eq!(verdict(Setup { facet: 1, ..p }, p).0, (Verdict::Before, ListTest::BehindPlane));
-        // Of one plane, but this one faces the viewer: it comes last all the same, however little nearer that makes it.
+        // Of one plane, but this one faces the viewer: it comes last all the same, however little
+        // nearer that makes it.
         let facing = Setup { facet: 1, z: p.z + f32::EPSILON, ..p };
         assert_eq!(verdict(p, facing).0, (Verdict::Before, ListTest::BehindPlane));
         assert_eq!(verdict(facing, p).0, (Verdict::After, ListTest::Coplanar));
@@ -379,11 +397,22 @@ mod tests {
         let polygon = PainterPolygon::new(&p, 0, &points, 0..3, 0..0, [0; 4]);
         let area = |points: &[[f64; 2]]| -> f64 {
             let n = points.len();
-            (0..n).map(|i| points[i][0] * points[(i + 1) % n][1] - points[i][1] * points[(i + 1) % n][0]).sum::<f64>()
+            (0..n)
+                .map(|i| {
+                    points[i][0] * points[(i + 1) % n][1] - points[i][1] * points[(i + 1) % n][0]
+                })
+                .sum::<f64>()
         };
         let line = unit(1.0, 2.0, -700.0).unwrap();
         let [one, other] = polygon.split(&points, &line).unwrap();
-        assert!((area(&one) + area(&other) - area(&points)).abs() < 1e-6 && area(&one) > 1.0 && area(&other) > 1.0);
-        assert!(polygon.split(&points, &unit(1.0, 0.0, 0.0).unwrap()).is_none(), "an edge does not split it");
+        assert!(
+            (area(&one) + area(&other) - area(&points)).abs() < 1e-6
+                && area(&one) > 1.0
+                && area(&other) > 1.0
+        );
+        assert!(
+            polygon.split(&points, &unit(1.0, 0.0, 0.0).unwrap()).is_none(),
+            "an edge does not split it"
+        );
     }
 }

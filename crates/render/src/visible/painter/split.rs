@@ -1,7 +1,9 @@
-//! Splitting polygons of the painter's list: where two penetrate each other, and where some wait for each other in a circle.
+//! Splitting polygons of the painter's list: where two penetrate each other, and where some wait
+//! for each other in a circle.
 //!
 //! In:   marked polygons that cannot be painted. Out: their parts, which wait.
-//! Cost: the corners of a polygon for a split; for a circle the edges of its neighbours for each polygon.
+//! Cost: the corners of a polygon for a split; for a circle the edges of its neighbours for each
+//!       polygon.
 //! Source: [Newell, Newell & Sancha 1972]; see `painter.rs` for the departures.
 
 use super::super::cut::Cut;
@@ -11,22 +13,26 @@ use crate::trace::Step;
 use vitral_raster::SUBPIXEL;
 
 impl Sorting<'_, '_> {
-    /// Splits the last marked polygon, or the one that it penetrates, where their planes meet: the smaller one, if the line splits
-    /// it, and if it is not marked.
+    /// Splits the last marked polygon, or the one that it penetrates, where their planes meet: the
+    /// smaller one, if the line splits it, and if it is not marked.
     pub(super) fn split_at_plane(&mut self, other: u32) -> bool {
         let last = self.marked.len() - 1;
         let top = self.marked[last].polygon;
         let Some(line) = crossing(self.plane(top), self.plane(other)) else { return false };
-        let [own_area, other_area] = [top, other].map(|i| self.polygons[i as usize].area(&self.corners));
+        let [own_area, other_area] =
+            [top, other].map(|i| self.polygons[i as usize].area(&self.corners));
         let splits_other = other_area < own_area && self.states[other as usize] == State::Waiting;
-        if splits_other && let Some(halves) = self.polygons[other as usize].split(&self.corners, &line) {
+        if splits_other
+            && let Some(halves) = self.polygons[other as usize].split(&self.corners, &line)
+        {
             self.replace((other, self.progress[other as usize]), &halves, line, top, Vec::new());
             return true;
         }
         self.split(last, line, other)
     }
 
-    /// Cuts the circle of marked polygons that begins at `start`: somewhere along it, one is split by its neighbour.
+    /// Cuts the circle of marked polygons that begins at `start`: somewhere along it, one is split
+    /// by its neighbour.
     pub(super) fn cut_cycle(&mut self, start: u32) -> bool {
         // Report the circle.
         self.counters.cycles += 1;
@@ -37,7 +43,8 @@ impl Sorting<'_, '_> {
             let facets = polygons.iter().map(|&p| self.facet(p)).collect();
             Step::Circle { polygons, facets }
         });
-        // Each has to be painted after the next one, and the last after the first. Split one so that no part waits and is waited for.
+        // Each has to be painted after the next one, and the last after the first. Split one so
+        // that no part waits and is waited for.
         let (next, previous) = (
             |place: usize| if place == last { first } else { place + 1 },
             |place: usize| if place == first { last } else { place - 1 },
@@ -45,7 +52,8 @@ impl Sorting<'_, '_> {
         for place in (first..=last).rev() {
             let [p, q, r] = [place, next(place), previous(place)].map(|i| self.marked[i].polygon);
             let [own, behind, in_front] = [p, q, r].map(|i| &self.polygons[i as usize]);
-            if let Some((line, is_of_next)) = own.separating_line([behind, in_front], self.wholes, &self.corners)
+            if let Some((line, is_of_next)) =
+                own.separating_line([behind, in_front], self.wholes, &self.corners)
                 && self.split(place, line, if is_of_next { q } else { r })
             {
                 return true;
@@ -57,7 +65,8 @@ impl Sorting<'_, '_> {
             for (split, by) in [(place, next(place)), (next(place), place)] {
                 let [p, q] = [split, by].map(|i| self.marked[i].polygon);
                 let edges = self.polygons[q as usize].edges(&self.corners);
-                let lines: Vec<_> = crossing(self.plane(p), self.plane(q)).into_iter().chain(edges).collect();
+                let lines: Vec<_> =
+                    crossing(self.plane(p), self.plane(q)).into_iter().chain(edges).collect();
                 if lines.into_iter().any(|line| self.split(split, line, q)) {
                     return true;
                 }
@@ -66,13 +75,18 @@ impl Sorting<'_, '_> {
         false
     }
 
-    /// Splits a marked polygon along a line, that of the plane or an edge of another, if it lies clearly on both sides. Those marked
-    /// after it have to wait again.
+    /// Splits a marked polygon along a line, that of the plane or an edge of another, if it lies
+    /// clearly on both sides. Those marked after it have to wait again.
     fn split(&mut self, place: usize, line: Cut, by: u32) -> bool {
         let Marked { polygon: number, progress } = self.marked[place];
-        let Some(halves) = self.polygons[number as usize].split(&self.corners, &line) else { return false };
-        self.marked[place..].iter().for_each(|left| self.progress[left.polygon as usize] = left.progress);
-        let unmarked: Vec<u32> = self.marked.drain(place..).skip(1).map(|left| left.polygon).collect();
+        let Some(halves) = self.polygons[number as usize].split(&self.corners, &line) else {
+            return false;
+        };
+        self.marked[place..]
+            .iter()
+            .for_each(|left| self.progress[left.polygon as usize] = left.progress);
+        let unmarked: Vec<u32> =
+            self.marked.drain(place..).skip(1).map(|left| left.polygon).collect();
         for &left in &unmarked {
             self.states[left as usize] = State::Waiting;
             self.waiting.push(Farness {
@@ -102,7 +116,9 @@ impl Sorting<'_, '_> {
         let mut parts = [None; 2];
 
         // Add both parts with the cuts that matter to them.
-        for (part, (corners, cut)) in parts.iter_mut().zip(halves.iter().zip([line, line.opposite()])) {
+        for (part, (corners, cut)) in
+            parts.iter_mut().zip(halves.iter().zip([line, line.opposite()]))
+        {
             let first = self.cuts.len() as u32;
             for inherited in cuts.clone() {
                 // A line that stays clear of the part cuts nothing off it.

@@ -1,6 +1,7 @@
 //! A structure over the world's triangles, and what each of them is on the screen of a view.
 //!
-//! In:   a view's set-up triangles and a structure. Out: [`Cast`], which visitors of the structure look triangles up in.
+//! In:   a view's set-up triangles and a structure. Out: [`Cast`], which visitors of the structure
+//!       look triangles up in.
 //! Cost: linear in triangles and parts of the structure.
 
 use super::eye::{DEPTH_ROUNDING, Eye};
@@ -25,8 +26,8 @@ pub(super) struct Cast<'a, T> {
     pub(super) on_screen: ScreenSetups,
     /// What each triangle of the structure is on the screen.
     pub(super) triangles: Vec<ScreenTriangle>,
-    /// For each part how wrong the depth of an opaque facet in it may be, then the same for layers; -∞ if there is
-    /// none in it. No list of layers if there are none at all.
+    /// For each part how wrong the depth of an opaque facet in it may be, then the same for layers;
+    /// -∞ if there is none in it. No list of layers if there are none at all.
     pub(super) slack: [Vec<f32>; 2],
     pub(super) largest_slack: f32,
     pub(super) eye: Eye,
@@ -64,18 +65,36 @@ impl<'a, T: Structure> Cast<'a, T> {
         let opaque = on_screen.opaque as u32;
         let slack_of = |place: usize, layered: bool| {
             let triangle = &triangles[place];
-            if (triangle.setups[0] >= opaque) == layered { triangle.slack } else { f32::NEG_INFINITY }
+            if (triangle.setups[0] >= opaque) == layered {
+                triangle.slack
+            } else {
+                f32::NEG_INFINITY
+            }
         };
 
         // Keep bounds for opaque and transparent triangles apart.
         let any_layered = on_screen.opaque < on_screen.setups.len();
         let slack = [
             structure.largest(&|place| slack_of(place, false)),
-            if any_layered { structure.largest(&|place| slack_of(place, true)) } else { Vec::new() },
+            if any_layered {
+                structure.largest(&|place| slack_of(place, true))
+            } else {
+                Vec::new()
+            },
         ];
         let largest_slack = slack.iter().flatten().copied().fold(f32::NEG_INFINITY, f32::max);
         let eye = Eye::new(view, structure.triangles());
-        Self { view, execution, structure, on_screen, triangles, slack, largest_slack, eye, stamps: Mutex::default() }
+        Self {
+            view,
+            execution,
+            structure,
+            on_screen,
+            triangles,
+            slack,
+            largest_slack,
+            eye,
+            stamps: Mutex::default(),
+        }
     }
 
     /// A facet's setups.
@@ -201,8 +220,9 @@ impl Stamps {
     }
 }
 
-/// By how much `Setup::depth` can differ from the exact interpolation of the corners' depths: rounding grows with the
-/// square of the length over the area, but not beyond the range that depths are clamped to.
+/// By how much `Setup::depth` can differ from the exact interpolation of the corners' depths:
+/// rounding grows with the square of the length over the area, but not beyond the range that depths
+/// are clamped to.
 fn depth_slack(setup: &Setup, clipped: bool) -> f32 {
     let range = setup.z_max - setup.z_min + setup.z_max * DEPTH_ROUNDING;
     if clipped {

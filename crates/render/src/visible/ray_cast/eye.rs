@@ -1,9 +1,9 @@
 //! Where rays start and how wide they have to be.
 //!
-//! A ray through a sample is widened into a beam, so that it meets whatever can cover the sample once corners are
-//! snapped to the screen's grid and coordinates have been rounded; rays through a block of pixels become a pyramid with
-//! the same allowance on each side. And from the distance at which a box begins follows the largest depth that anything
-//! in it can have.
+//! A ray through a sample is widened into a beam, so that it meets whatever can cover the sample
+//! once corners are snapped to the screen's grid and coordinates have been rounded; rays through a
+//! block of pixels become a pyramid with the same allowance on each side. And from the distance at
+//! which a box begins follows the largest depth that anything in it can have.
 //!
 //! In:   a prepared view. Out: beams and pyramids, world space less the triangles' centre.
 //! Cost: some 50 operations each.
@@ -17,12 +17,14 @@ use vitral_math::lanes::Simd;
 use vitral_math::{DMat4, DVec3, Vec3, vec3};
 use vitral_raster::SUBPIXEL;
 
-/// Rounding of a depth on the screen, relative to the facet's range of depths and to how much of a needle it is.
+/// Rounding of a depth on the screen, relative to the facet's range of depths and to how much of a
+/// needle it is.
 pub(super) const DEPTH_ROUNDING: f32 = 1.0 / (1 << 19) as f32;
-/// Half the width of a beam in pixels. Snapping moves a corner by 1/512 pixel an axis, rounding of far corners by a few
-/// times that.
+/// Half the width of a beam in pixels. Snapping moves a corner by 1/512 pixel an axis, rounding of
+/// far corners by a few times that.
 const HAIR: f64 = 1.0 / 64.0;
-/// Rounding of clip coordinates, relative to their largest term: matrix, products, sums and clipping.
+/// Rounding of clip coordinates, relative to their largest term: matrix, products, sums and
+/// clipping.
 const CLIP_ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 
 /// See the module.
@@ -40,13 +42,15 @@ pub(super) struct Eye {
     view_rounding: [f64; 2],
     /// The pixel on the direction of view.
     middle: [f64; 2],
-    /// Half a beam's width on the world's axes: what it has at the eye, and its growth with the distance.
+    /// Half a beam's width on the world's axes: what it has at the eye, and its growth with the
+    /// distance.
     width: DVec3,
     growth: DVec3,
     /// Where beams start.
     start: f64,
     extent: f64,
-    /// Depth at distance `t`: `depth[0] + depth[1] / t` or `depth[0] - depth[1] t`, and the rounding of `t`.
+    /// Depth at distance `t`: `depth[0] + depth[1] / t` or `depth[0] - depth[1] t`, and the
+    /// rounding of `t`.
     depth: [f32; 2],
     relative_rounding: f32,
     rounding: f32,
@@ -63,7 +67,8 @@ impl Eye {
 
         // Find the step of a ray from pixel to pixel.
         let p = &view.view.clip_from_view;
-        let half_size = [f64::from(view.viewport.width) * 0.5, f64::from(view.viewport.height) * 0.5];
+        let half_size =
+            [f64::from(view.viewport.width) * 0.5, f64::from(view.viewport.height) * 0.5];
         let scale = [1.0 / (p.x_axis.x * half_size[0]), 1.0 / (p.y_axis.y * half_size[1])];
 
         let middle = [half_size[0] * (1.0 - p.z_axis.x), half_size[1] * (1.0 + p.z_axis.y)];
@@ -75,7 +80,8 @@ impl Eye {
         let rounding = spread(view_rounding[0], view_rounding[1]);
         let hair = spread(scale[0] * HAIR, scale[1] * HAIR);
         let perspective = view.view.perspective;
-        let (width, growth) = if perspective { (rounding, hair) } else { (rounding + hair, DVec3::ZERO) };
+        let (width, growth) =
+            if perspective { (rounding, hair) } else { (rounding + hair, DVec3::ZERO) };
 
         // Start in front of the scene, not far from it, so that 32 bits are enough.
         let extent = f64::from(triangles.extent);
@@ -106,13 +112,15 @@ impl Eye {
         }
     }
 
-    /// Where a ray through `(x, y)` in 1/256 pixel leads in view space, at distance 1 (perspective) or anywhere.
+    /// Where a ray through `(x, y)` in 1/256 pixel leads in view space, at distance 1 (perspective)
+    /// or anywhere.
     fn aside(&self, x: i32, y: i32) -> [f64; 2] {
         let pixel = |v: i32| f64::from(v) / f64::from(SUBPIXEL);
         [(pixel(x) - self.middle[0]) * self.scale[0], (self.middle[1] - pixel(y)) * self.scale[1]]
     }
 
-    /// The beam through the sample at `(x, y)` in 1/256 pixel. Its parameter counts from [`Self::start`].
+    /// The beam through the sample at `(x, y)` in 1/256 pixel. Its parameter counts from
+    /// [`Self::start`].
     pub(super) fn beam(&self, x: i32, y: i32) -> Beam {
         let [right, up] = self.aside(x, y);
         let aside = self.right * right + self.up * up;
@@ -128,16 +136,21 @@ impl Eye {
         Beam::new(narrow(origin), narrow(direction), narrow(width), narrow(growth))
     }
 
-    /// All beams through samples between `low` and `high` (x and y in 1/256 pixel) at once; its parameter counts from
-    /// the eye's plane.
+    /// All beams through samples between `low` and `high` (x and y in 1/256 pixel) at once; its
+    /// parameter counts from the eye's plane.
     #[inline(always)]
     pub(super) fn pyramid<S: Simd>(&self, simd: S, low: [i32; 2], high: [i32; 2]) -> Pyramid<S> {
-        let ([left, top], [right, bottom]) = (self.aside(low[0], low[1]), self.aside(high[0], high[1]));
+        let ([left, top], [right, bottom]) =
+            (self.aside(low[0], low[1]), self.aside(high[0], high[1]));
         let hair = self.scale.map(|s| s * HAIR);
         let plane = |axis: DVec3, at: f64, slack: f64| {
-            // Inside is where the coordinate along `axis` is at least `at`, times the distance in a perspective view.
-            let (normal, offset) =
-                if self.perspective { (axis - self.forward * at, slack) } else { (axis, slack - at) };
+            // Inside is where the coordinate along `axis` is at least `at`, times the distance in a
+            // perspective view.
+            let (normal, offset) = if self.perspective {
+                (axis - self.forward * at, slack)
+            } else {
+                (axis, slack - at)
+            };
             Plane { normal, offset: offset - normal.dot(self.position) }
         };
         let [slack_x, slack_y] = self.view_rounding;
@@ -155,15 +168,16 @@ impl Eye {
         self.start as f32
     }
 
-    /// Whether all depths at places whose distance from the eye's plane is `t` or more are smaller than `depth`; a facet's
-    /// own depths may be wrong by `slack`.
+    /// Whether all depths at places whose distance from the eye's plane is `t` or more are smaller
+    /// than `depth`; a facet's own depths may be wrong by `slack`.
     #[inline(always)]
     pub(super) fn is_behind(&self, t: f32, slack: f32, depth: f32) -> bool {
         let t = t - t.abs() * self.relative_rounding - self.rounding;
         let [at_zero, slope] = self.depth;
         let room = depth - slack - at_zero.abs() * (4.0 * DEPTH_ROUNDING);
         if self.perspective {
-            // The largest depth is `at_zero + slope / t`; both sides times `t`, since a division takes longer.
+            // The largest depth is `at_zero + slope / t`; both sides times `t`, since a division
+            // takes longer.
             t > 0.0 && room > 0.0 && (at_zero * t + slope) * (1.0 + 2.0 * DEPTH_ROUNDING) < room * t
         } else {
             let nearest = at_zero - slope * t;

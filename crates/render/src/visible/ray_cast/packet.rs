@@ -1,15 +1,17 @@
 //! The rays of 8x8 pixels at a time, for structures that are trees.
 //!
-//! Rays through neighbouring pixels go down the same branches. So they go together: a box is tested once for all of
-//! them, against the pyramid that holds them; a facet that is found is tested for all their samples, eight at a time.
-//! A branch is passed over once every sample of the block holds something nearer. The answers are those of the rays one
-//! by one, since what covers a sample and how near it is are asked as for a single ray.
+//! Rays through neighbouring pixels go down the same branches. So they go together: a box is tested
+//! once for all of them, against the pyramid that holds them; a facet that is found is tested for
+//! all their samples, eight at a time. A branch is passed over once every sample of the block holds
+//! something nearer. The answers are those of the rays one by one, since what covers a sample and
+//! how near it is are asked as for a single ray.
 //!
 //! Opaque facets come first. Only then are the layers collected that lie in front of them.
 //!
 //! In:   a view's facets and the tree over them. Out: the samples of a tile.
 //! Cost: one way down for each block and kind.
-//! Source: [Wald et al. 2001]. Departs from it: 64 rays and more, and planes round them, not each ray's own slabs.
+//! Source: [Wald et al. 2001]. Departs from it: 64 rays and more, and planes round them, not each
+//!         ray's own slabs.
 
 use super::cast::{Cast, ScreenTriangle, Stamps, Tests, names};
 use crate::raytrace::{Probe, Structure, Tree, Visitor, Watched};
@@ -19,7 +21,8 @@ use crate::visible::tiles::{extent, size_in_picture};
 use vitral_exec::Limit;
 use vitral_math::lanes::{Simd, dispatch};
 use vitral_raster::{
-    BLOCK, InBlocks, LayerList, LayerSink, SUBPIXEL, SamplePattern, Setup, TILE, Tile, VisibilitySink, traverse_block,
+    BLOCK, InBlocks, LayerList, LayerSink, SUBPIXEL, SamplePattern, Setup, TILE, Tile,
+    VisibilitySink, traverse_block,
 };
 
 /// Takes what is found in a block.
@@ -89,11 +92,14 @@ fn farthest(tile: &Tile, (x, y): (usize, usize)) -> f32 {
     tile.block_far[y / BLOCK * (TILE / BLOCK) + x / BLOCK]
 }
 
-/// Whether a triangle's box on the screen touches the block, in front of depth `far`. What is nowhere does not.
+/// Whether a triangle's box on the screen touches the block, in front of depth `far`. What is
+/// nowhere does not.
 #[inline(always)]
 fn reaches(triangle: &ScreenTriangle, tile: &Tile, (x, y): (usize, usize), far: f32) -> bool {
     let (x, y, side) = (tile.x as i32 + x as i32, tile.y as i32 + y as i32, BLOCK as i32);
-    let touches = |range: [i16; 2], start: i32| i32::from(range[0]) < start + side && i32::from(range[1]) >= start;
+    let touches = |range: [i16; 2], start: i32| {
+        i32::from(range[0]) < start + side && i32::from(range[1]) >= start
+    };
     touches(triangle.columns, x) & touches(triangle.rows, y) & (triangle.nearest >= far)
 }
 
@@ -120,7 +126,9 @@ impl<S: Simd, T: Structure, K: Taker<S>> Visitor for BlockSearch<'_, S, T, K> {
         let tile = self.taker.tile();
         let far = farthest(tile, self.block);
         let found = &self.cast.triangles[place];
-        if !reaches(found, tile, self.block, far) || self.cast.is_layered(found.setups) != K::LAYERED {
+        if !reaches(found, tile, self.block, far)
+            || self.cast.is_layered(found.setups) != K::LAYERED
+        {
             return;
         }
         if T::REPEATS && !self.stamps.first_time(place) {
@@ -169,7 +177,14 @@ pub(super) fn look<T: Tree>(
                 let pixels = [tile.x + x as u32, tile.y + y as u32, size[0], size[1]];
                 let through = names(cast.structure, passed);
                 let tested = tests.take();
-                cast.execution.report(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
+                cast.execution.report(|| Step::Rays {
+                    pixels,
+                    rays,
+                    boxes,
+                    facets,
+                    tested,
+                    through,
+                });
             }
             counters.triangle_tests += facets * rays;
         }
@@ -207,12 +222,20 @@ fn look_at_block<S: Simd, T: Tree>(
 
     stamps.next();
     let samples = [low, high];
-    let mut opaque =
-        BlockSearch { simd, cast, taker: Opaque(tile), block, samples, stamps: &mut *stamps, tests: &mut *tests };
+    let mut opaque = BlockSearch {
+        simd,
+        cast,
+        taker: Opaque(tile),
+        block,
+        samples,
+        stamps: &mut *stamps,
+        tests: &mut *tests,
+    };
     let mut boxes = descend(cast.structure, &pyramid, &mut opaque, passed.as_deref_mut());
     if !cast.slack[1].is_empty() {
         stamps.next();
-        let mut visitor = BlockSearch { simd, cast, taker: Layers(tile, layers), block, samples, stamps, tests };
+        let mut visitor =
+            BlockSearch { simd, cast, taker: Layers(tile, layers), block, samples, stamps, tests };
         boxes += descend(cast.structure, &pyramid, &mut visitor, passed);
     }
     boxes
@@ -220,7 +243,12 @@ fn look_at_block<S: Simd, T: Tree>(
 
 /// [`Tree::descend`], with the parts gone through if somebody wants to know.
 #[inline(always)]
-fn descend(tree: &impl Tree, probe: &impl Probe, visitor: &mut impl Visitor, passed: Option<&mut Vec<u32>>) -> u64 {
+fn descend(
+    tree: &impl Tree,
+    probe: &impl Probe,
+    visitor: &mut impl Visitor,
+    passed: Option<&mut Vec<u32>>,
+) -> u64 {
     match passed {
         None => tree.descend(probe, visitor),
         Some(passed) => tree.descend(probe, &mut Watched { visitor, passed }),

@@ -1,7 +1,8 @@
-//! One ray at a time, for structures that are walked rather than gone down: the grid, and the mere list.
+//! One ray at a time, for structures that are walked rather than gone down: the grid, and the mere
+//! list.
 //!
-//! Each sample has its beam. The facet that the last ray met is tried first: most often this one meets it, too, and then
-//! whatever lies behind it need not be looked at.
+//! Each sample has its beam. The facet that the last ray met is tried first: most often this one
+//! meets it, too, and then whatever lies behind it need not be looked at.
 //!
 //! In:   a view's facets and the structure over them. Out: the samples of a tile.
 //! Cost: one walk a sample.
@@ -34,7 +35,8 @@ struct RaySearch<'a, T> {
 }
 
 impl<T: Structure> RaySearch<'_, T> {
-    /// Follows the ray through a sample of a tile's pixel; notes the parts it went through in `passed`.
+    /// Follows the ray through a sample of a tile's pixel; notes the parts it went through in
+    /// `passed`.
     #[inline]
     fn follow(
         &mut self,
@@ -99,7 +101,11 @@ impl<T: Structure> Visitor for RaySearch<'_, T> {
 
     #[inline]
     fn done(&self, near: f32) -> bool {
-        self.cast.eye.is_behind(self.cast.eye.start() + near, self.cast.largest_slack, self.nearest.0)
+        self.cast.eye.is_behind(
+            self.cast.eye.start() + near,
+            self.cast.largest_slack,
+            self.nearest.0,
+        )
     }
 
     #[inline]
@@ -121,8 +127,15 @@ pub(super) fn look<T: Structure>(
     let mut counters = VisibilityCounters::default();
     let (stamps, none) = (cast.take_stamps(), [NONE; 2]);
     let tests = Tests::new(cast.execution);
-    let mut search =
-        RaySearch { cast, sample: [0; 2], nearest: BACKGROUND, setups: none, layers: Vec::new(), stamps, tests };
+    let mut search = RaySearch {
+        cast,
+        sample: [0; 2],
+        nearest: BACKGROUND,
+        setups: none,
+        layers: Vec::new(),
+        stamps,
+        tests,
+    };
     let mut passed = cast.execution.observer.is_some().then(Vec::new);
     let (rows, columns) = size_in_picture(cast.view, tile);
 
@@ -146,10 +159,18 @@ pub(super) fn look<T: Structure>(
             // Report the pixel.
             if let Some(passed) = &mut passed {
                 let (rays, boxes) = (samples as u64, counters.box_tests - before_pixel.0);
-                let (facets, through) = (search.tests.count - before_pixel.1, names(cast.structure, passed));
+                let (facets, through) =
+                    (search.tests.count - before_pixel.1, names(cast.structure, passed));
                 let pixels = [tile.x + column as u32, tile.y + row as u32, 1, 1];
                 let tested = search.tests.take();
-                cast.execution.report(|| Step::Rays { pixels, rays, boxes, facets, tested, through });
+                cast.execution.report(|| Step::Rays {
+                    pixels,
+                    rays,
+                    boxes,
+                    facets,
+                    tested,
+                    through,
+                });
             }
         }
     }

@@ -1,8 +1,10 @@
-//! The tables of the scan-line algorithm: lines, polygons, edges, and the edges that a line crosses.
+//! The tables of the scan-line algorithm: lines, polygons, edges, and the edges that a line
+//! crosses.
 //!
 //! In:   convex polygons (screen space). Out: for each line its crossings, from left to right.
 //! Cost: linear in edges and crossings; sorting is nearly so.
-//! Source: [Wylie et al. 1967]. Departs from it: a crossing is an exact fraction, a whole number and a remainder.
+//! Source: [Wylie et al. 1967]. Departs from it: a crossing is an exact fraction, a whole number
+//!         and a remainder.
 
 use super::face::OnLine;
 use crate::stats::VisibilityCounters;
@@ -28,7 +30,8 @@ pub(super) struct PolygonEntry<'f> {
     pub(super) shape: ConvexPolygon<'f, 'f>,
     /// The in-out flag: where the polygon stands in the list of those that are in, or [`OUT`].
     pub(super) slot: u32,
-    /// The last line to which the face's depth was brought, and the depth there: [`Setup::depth_of_line`].
+    /// The last line to which the face's depth was brought, and the depth there:
+    /// [`Setup::depth_of_line`].
     pub(super) line: i32,
     pub(super) start: f32,
 }
@@ -55,7 +58,8 @@ impl<'f> PolygonEntry<'f> {
     }
 }
 
-/// An entry of the edge table: the edge from corner `corner` of a polygon to the next, crossed by `lines`.
+/// An entry of the edge table: the edge from corner `corner` of a polygon to the next, crossed by
+/// `lines`.
 pub(super) struct EdgeEntry {
     pub(super) polygon: u32,
     pub(super) corner: u32,
@@ -106,8 +110,9 @@ pub(super) fn spacing(lines: &[SampleLine]) -> i32 {
     if lines.windows(2).all(|w| distance(w) == first) { first } else { 0 }
 }
 
-/// All edges that cross a line, sorted by the line where they begin. Horizontal ones need no entry: a line that runs
-/// along the top of a polygon crosses its other two edges, one along its bottom does not.
+/// All edges that cross a line, sorted by the line where they begin. Horizontal ones need no entry:
+/// a line that runs along the top of a polygon crosses its other two edges, one along its bottom
+/// does not.
 pub(super) fn edge_table(polygons: &[PolygonEntry<'_>], lines: &[SampleLine]) -> Vec<EdgeEntry> {
     let first_at = |y: i32| lines.partition_point(|line| line.y < y) as u16;
     let mut edges = Vec::new();
@@ -119,7 +124,11 @@ pub(super) fn edge_table(polygons: &[PolygonEntry<'_>], lines: &[SampleLine]) ->
         for corner in 0..outline.len() {
             let b = outline.get(corner + 1).map_or(first, |next| first_at(next[1]));
             if a != b {
-                edges.push(EdgeEntry { polygon: p as u32, corner: corner as u32, lines: a.min(b)..a.max(b) });
+                edges.push(EdgeEntry {
+                    polygon: p as u32,
+                    corner: corner as u32,
+                    lines: a.min(b)..a.max(b),
+                });
             }
             a = b;
         }
@@ -149,7 +158,8 @@ impl ActiveEdge {
     pub(super) fn new(edge: &EdgeEntry, outline: &[[i32; 2]], y: i32, spacing: i32) -> Self {
         let (dx, dy, _) = downwards(outline, edge.corner);
         let step = i64::from(dx) * i64::from(spacing);
-        let step = [step.div_euclid(i64::from(dy)), step.rem_euclid(i64::from(dy))].map(|v| v as i32);
+        let step =
+            [step.div_euclid(i64::from(dy)), step.rem_euclid(i64::from(dy))].map(|v| v as i32);
         let (polygon, corner, end) = (edge.polygon, edge.corner, edge.lines.end);
         let mut edge = Self { polygon, corner, end, x: 0, remainder: 0, dy, step, column: 0 };
         edge.cross(outline, y);
@@ -180,14 +190,15 @@ impl ActiveEdge {
     }
 }
 
-/// Where an edge, given by its extent and its upper end, crosses the line at `y`: a whole number and a remainder.
+/// Where an edge, given by its extent and its upper end, crosses the line at `y`: a whole number
+/// and a remainder.
 fn crossing((dx, dy, [x0, y0]): (i32, i32, [i32; 2]), y: i32) -> [i32; 2] {
     let (along, dy) = (i64::from(dx) * i64::from(y - y0), i64::from(dy));
     [x0 + along.div_euclid(dy) as i32, along.rem_euclid(dy) as i32]
 }
 
-/// The first pixel whose sample on a line is not left of a crossing. A sample on a left edge is in and one on a right edge
-/// is out, so the same pixel begins what is right of either.
+/// The first pixel whose sample on a line is not left of a crossing. A sample on a left edge is in
+/// and one on a right edge is out, so the same pixel begins what is right of either.
 fn column([x, remainder]: [i32; 2], line: &SampleLine) -> i32 {
     (x + i32::from(remainder > 0) - line.sample_x + SUBPIXEL - 1) >> 8
 }
@@ -200,7 +211,8 @@ pub(super) fn covered(triangle: &Setup, line: &SampleLine, pixels: &Range<usize>
     for corner in 0..3 {
         let ends = [outline[corner][1], outline[(corner + 1) % 3][1]];
         if (ends[0] <= line.y) != (ends[1] <= line.y) {
-            let crossed = column(crossing(downwards(&outline, corner as u32), line.y), line).clamp(first, last);
+            let crossed = column(crossing(downwards(&outline, corner as u32), line.y), line)
+                .clamp(first, last);
             (from, to) = (from.min(crossed), to.max(crossed));
         }
     }
@@ -221,8 +233,9 @@ pub(super) struct ActiveEdges<'e> {
 }
 
 impl<'e> ActiveEdges<'e> {
-    /// Of lines with this spacing, 0 if each crossing is to be found anew. If the table is not kept, each line begins with an
-    /// empty one and looks for its edges among all that began above it.
+    /// Of lines with this spacing, 0 if each crossing is to be found anew. If the table is not
+    /// kept, each line begins with an empty one and looks for its edges among all that began above
+    /// it.
     pub(super) fn new(edges: &'e [EdgeEntry], spacing: i32, is_kept: bool, width: u32) -> Self {
         let crossings = if spacing != 0 && !is_kept { vec![None; edges.len()] } else { Vec::new() };
         Self { edges, starting: edges, active: Vec::new(), crossings, spacing, is_kept, width }
@@ -265,7 +278,8 @@ impl<'e> ActiveEdges<'e> {
         counters.active_edges += self.active.len() as u64;
     }
 
-    /// Adds the edges that begin on or above a line and are not in the table; whether there may be some.
+    /// Adds the edges that begin on or above a line and are not in the table; whether there may be
+    /// some.
     fn join(
         &mut self,
         number: usize,
@@ -276,7 +290,8 @@ impl<'e> ActiveEdges<'e> {
         // Take the edges that begin on or above the line and do not end there.
         let joining = self.starting.partition_point(|e| usize::from(e.lines.start) <= number);
         let (begun, later) = self.starting.split_at(joining);
-        for (i, edge) in begun.iter().enumerate().filter(|(_, e)| usize::from(e.lines.end) > number) {
+        for (i, edge) in begun.iter().enumerate().filter(|(_, e)| usize::from(e.lines.end) > number)
+        {
             let outline = polygons[edge.polygon as usize].shape.outline();
             // Advance a crossing that is known from the line above, or compute it.
             self.active.push(match self.crossings.get_mut(i) {
@@ -311,7 +326,8 @@ pub(super) mod tests {
     use vitral_raster::CornerPosition;
 
     pub(in crate::visible::scanline) fn triangle(corners: [[i32; 2]; 3], z: [f32; 3]) -> Setup {
-        let [a, b, c] = [0, 1, 2].map(|i| CornerPosition { x: corners[i][0], y: corners[i][1], z: z[i] });
+        let [a, b, c] =
+            [0, 1, 2].map(|i| CornerPosition { x: corners[i][0], y: corners[i][1], z: z[i] });
         Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0)
     }
 
@@ -336,8 +352,14 @@ pub(super) mod tests {
             active.extend(joining.map(|e| ActiveEdge::new(e, outline, line.y, spacing)));
             let mut columns: Vec<_> = active.iter().map(|e| e.column_on(line, width)).collect();
             columns.sort_unstable();
-            assert!(columns.is_empty() || columns.len() == 2, "a line crosses two edges of a triangle, or none");
-            spans.push((line.y, columns.first().copied().unwrap_or(0)..columns.last().copied().unwrap_or(0)));
+            assert!(
+                columns.is_empty() || columns.len() == 2,
+                "a line crosses two edges of a triangle, or none"
+            );
+            spans.push((
+                line.y,
+                columns.first().copied().unwrap_or(0)..columns.last().copied().unwrap_or(0),
+            ));
         }
         spans
     }
@@ -356,8 +378,12 @@ pub(super) mod tests {
                 let grid = if round % 2 == 0 { 32 } else { 1 };
                 let corners = [0; 3].map(|_| [0; 2].map(|_| (next() % 6000 - 900) / grid * grid));
                 let setup = triangle(corners, [0.5; 3]);
-                for (line, (y, span)) in lines(&pattern, 0, 16).iter().zip(columns(&setup, &pattern, 16)) {
-                    assert!(covered(&setup, line, &(0..16)).eq(span.start as usize..span.end as usize));
+                for (line, (y, span)) in
+                    lines(&pattern, 0, 16).iter().zip(columns(&setup, &pattern, 16))
+                {
+                    assert!(
+                        covered(&setup, line, &(0..16)).eq(span.start as usize..span.end as usize)
+                    );
                     let part = covered(&setup, line, &(5..9));
                     assert!((5..=9).contains(&part.start) && (5..=9).contains(&part.end));
                     assert!(part.eq((5..9).filter(|&x| span.contains(&x)).map(|x| x as usize)));

@@ -1,23 +1,27 @@
 //! Implied edges: the lines where faces penetrate each other.
 //!
-//! Two planes meet in a line, and on the screen it is a straight line, too: an edge that is in no table, but just as good.
-//! Two points of it are enough. They are found when two polygons first compete for a span; on every line after that, the
-//! crossing follows from them by a step, and the span falls in two parts with a winner each, without a look at depths.
+//! Two planes meet in a line, and on the screen it is a straight line, too: an edge that is in no
+//! table, but just as good. Two points of it are enough. They are found when two polygons first
+//! compete for a span; on every line after that, the crossing follows from them by a step, and the
+//! span falls in two parts with a winner each, without a look at depths.
 //!
-//! Depths are rounded, and clamped to the range of their facet. So a strip along the edge is left to the depths at the
-//! samples: as wide as the planes need to come farther apart than all that can differ from them. Beyond it, the winner
-//! is the one that the depth function would find at each sample.
+//! Depths are rounded, and clamped to the range of their facet. So a strip along the edge is left
+//! to the depths at the samples: as wide as the planes need to come farther apart than all that can
+//! differ from them. Beyond it, the winner is the one that the depth function would find at each
+//! sample.
 //!
-//! In:   two convex polygons (screen space) and a span that both cover. Out: the part where depths decide, and who is
-//!       nearer left and right of it.
+//! In:   two convex polygons (screen space) and a span that both cover. Out: the part where depths
+//!       decide, and who is nearer left and right of it.
 //! Cost: some 60 operations for a pair, one product and one sum on each line after that.
-//! Source: implied edge coherence after [Foley et al. 1990], section 15.2. Departs from it: the strip.
+//! Source: implied edge coherence after [Foley et al. 1990], section 15.2. Departs from it: the
+//!         strip.
 
 use crate::visible::polygons::ConvexPolygon;
 use std::ops::Range;
 use vitral_raster::{SUBPIXEL, TILE};
 
-/// The edge's second point lies this far below the first, 1/256 pixel: the farther apart, the better they fix the line.
+/// The edge's second point lies this far below the first, 1/256 pixel: the farther apart, the
+/// better they fix the line.
 const APART: i32 = TILE as i32 * SUBPIXEL;
 /// Places in the table.
 const PLACES: usize = 256;
@@ -37,7 +41,8 @@ struct ImpliedEdge {
     first_on_left: bool,
 }
 
-/// The edges that were found, each at the place that its polygons have. Edges with the same place displace each other.
+/// The edges that were found, each at the place that its polygons have. Edges with the same place
+/// displace each other.
 #[derive(Debug, Default)]
 pub(super) struct ImpliedEdges {
     places: Vec<Option<ImpliedEdge>>,
@@ -50,12 +55,14 @@ pub(super) struct ImpliedEdges {
 pub(super) struct DividedSpan {
     /// The pixels where the depths decide. Those before them and those behind them have a winner.
     pub(super) undecided: Range<usize>,
-    /// Whether the first polygon is nearer on the left, and the second on the right, or the other way round.
+    /// Whether the first polygon is nearer on the left, and the second on the right, or the other
+    /// way round.
     pub(super) first_on_left: bool,
 }
 
 impl ImpliedEdges {
-    /// Divides a span at the edge of two polygons: `pixels` with samples at `sample_x` within the pixel, on the line at `y`.
+    /// Divides a span at the edge of two polygons: `pixels` with samples at `sample_x` within the
+    /// pixel, on the line at `y`.
     pub(super) fn divide(
         &mut self,
         polygons: [u32; 2],
@@ -67,7 +74,10 @@ impl ImpliedEdges {
         if self.places.is_empty() {
             self.places = vec![None; PLACES];
         }
-        let place = polygons[0].wrapping_mul(0x9e37_79b1).wrapping_add(polygons[1].wrapping_mul(0x85eb_ca6b)) >> 24;
+        let place = polygons[0]
+            .wrapping_mul(0x9e37_79b1)
+            .wrapping_add(polygons[1].wrapping_mul(0x85eb_ca6b))
+            >> 24;
         let edge = match self.places[place as usize] {
             Some(known) if known.polygons == polygons => known,
             _ => {
@@ -75,7 +85,10 @@ impl ImpliedEdges {
                 *self.places[place as usize].insert(ImpliedEdge::new(polygons, shapes, y))
             }
         };
-        DividedSpan { undecided: edge.undecided(pixels, sample_x, y), first_on_left: edge.first_on_left }
+        DividedSpan {
+            undecided: edge.undecided(pixels, sample_x, y),
+            first_on_left: edge.first_on_left,
+        }
     }
 }
 
@@ -85,17 +98,26 @@ impl ImpliedEdge {
         let [p, q] = [p, q].map(Plane::of);
         // The part for needed rounding is generous; the last factor is for slopes that are raised.
         let margin = (p.rounding + q.rounding + p.beyond + q.beyond) * 1.0625;
-        // How much nearer P gets than Q for a step to the right. Planes that stay as far apart as they are get a slope that
-        // does not matter on any screen.
+        // How much nearer P gets than Q for a step to the right. Planes that stay as far apart as
+        // they are get a slope that does not matter on any screen.
         let (slope, least) = (p.slope[0] - q.slope[0], margin * 1e-9);
         let slope = if slope.abs() < least { least } else { slope };
-        let crossing =
-            |y: i32| p.origin[0] - (p.at(p.origin[0], f64::from(y)) - q.at(p.origin[0], f64::from(y))) / slope;
+        let crossing = |y: i32| {
+            p.origin[0]
+                - (p.at(p.origin[0], f64::from(y)) - q.at(p.origin[0], f64::from(y))) / slope
+        };
         let (x, far) = (crossing(y), crossing(y + APART));
         let (step, reach) = ((far - x) / f64::from(APART), margin / slope.abs() + 1.0);
         if !(x + far + reach).is_finite() {
             // Planes without numbers decide nothing.
-            return Self { polygons, x: 0.0, y, step: 0.0, reach: f64::INFINITY, first_on_left: false };
+            return Self {
+                polygons,
+                x: 0.0,
+                y,
+                step: 0.0,
+                reach: f64::INFINITY,
+                first_on_left: false,
+            };
         }
         Self { polygons, x, y, step, reach, first_on_left: slope < 0.0 }
     }
@@ -112,7 +134,8 @@ impl ImpliedEdge {
     }
 }
 
-/// The plane of a polygon's depths, not clamped to the polygon's, and by how much the depth function may differ from it.
+/// The plane of a polygon's depths, not clamped to the polygon's, and by how much the depth
+/// function may differ from it.
 struct Plane {
     origin: [f64; 2],
     z: f64,
@@ -130,14 +153,20 @@ impl Plane {
         let slope = [setup.dz_dx, setup.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
         let (origin, z) = (setup.origin.map(f64::from), f64::from(setup.z));
         let mut plane = Self { origin, z, slope, rounding: 0.0, beyond: 0.0 };
-        // Four roundings to 24 bits, of numbers no larger than the sum; or of numbers that are too small for 24 bits.
-        let away = |k: usize| shape.outline().iter().map(move |corner| (corner[k] - setup.origin[k]).abs());
+        // Four roundings to 24 bits, of numbers no larger than the sum; or of numbers that are too
+        // small for 24 bits.
+        let away = |k: usize| {
+            shape.outline().iter().map(move |corner| (corner[k] - setup.origin[k]).abs())
+        };
         let [across, down] = [0, 1].map(|k| f64::from(away(k).max().unwrap_or(0)));
         let sum = z.abs() + across * slope[0].abs() + down * slope[1].abs();
         plane.rounding = sum * f64::from(f32::EPSILON) * 4.0 + f64::from(f32::MIN_POSITIVE);
         for &[x, y] in shape.outline() {
             let depth = plane.at(f64::from(x), f64::from(y));
-            plane.beyond = plane.beyond.max(f64::from(setup.z_min) - depth).max(depth - f64::from(setup.z_max));
+            plane.beyond = plane
+                .beyond
+                .max(f64::from(setup.z_min) - depth)
+                .max(depth - f64::from(setup.z_max));
         }
         plane
     }
@@ -170,7 +199,11 @@ mod tests {
         for line in 0..18 {
             let parts = edges.divide([1, 2], [p, q], 0..30, 128, at(line));
             let middle = 19 - line as usize;
-            assert_eq!(parts, DividedSpan { undecided: middle..middle + 1, first_on_left: false }, "line {line}");
+            assert_eq!(
+                parts,
+                DividedSpan { undecided: middle..middle + 1, first_on_left: false },
+                "line {line}"
+            );
         }
         assert_eq!(edges.found, 1);
         // A span beside the edge has no undecided part, at one end of it or the other.
@@ -195,18 +228,21 @@ mod tests {
         let (mut decided, mut undecided) = (0, 0);
         for round in 0..4000 {
             // Some nearly parallel, some nearly equal, some needles.
-            let (flat, thin) = ([1 << 20, 1 << 10, 8][round % 3], [6000, 6000, 6000, 90][round % 4]);
+            let (flat, thin) =
+                ([1 << 20, 1 << 10, 8][round % 3], [6000, 6000, 6000, 90][round % 4]);
             let corners = [0; 3].map(|_| [next(6000), next(thin)]);
             let mut depths = || [0; 3].map(|_| 0.5 + next(flat) as f32 / (1 << 21) as f32);
             let (a, b) = (depths(), depths());
             let others = [0; 3].map(|_| [next(6000), next(thin)]);
             let area = |c: [[i32; 2]; 3]| {
-                (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) - (c[2][0] - c[0][0]) * (c[1][1] - c[0][1])
+                (c[1][0] - c[0][0]) * (c[2][1] - c[0][1])
+                    - (c[2][0] - c[0][0]) * (c[1][1] - c[0][1])
             };
             if area(corners) == 0 || area(others) == 0 {
                 continue;
             }
-            let [p, q] = [(triangle(corners, a), 3), (triangle(others, b), 4)].map(|(s, facet)| Setup { facet, ..s });
+            let [p, q] = [(triangle(corners, a), 3), (triangle(others, b), 4)]
+                .map(|(s, facet)| Setup { facet, ..s });
             let mut edges = ImpliedEdges::default();
             let setups = [p, q];
             let shapes = apart(&setups);
@@ -215,7 +251,13 @@ mod tests {
                 let both = |x: usize| [p, q].iter().all(|s| s.covers(x as i32 * 256 + 128, y));
                 let Some(start) = (0..24).find(|&x| both(x)) else { continue };
                 let end = (start..24).find(|&x| !both(x)).unwrap_or(24);
-                let parts = edges.divide([0, 1], [0, 1].map(|number| shapes.get(number)), start..end, 128, y);
+                let parts = edges.divide(
+                    [0, 1],
+                    [0, 1].map(|number| shapes.get(number)),
+                    start..end,
+                    128,
+                    y,
+                );
                 for x in start..end {
                     if parts.undecided.contains(&x) {
                         undecided += 1;
@@ -234,7 +276,11 @@ mod tests {
     #[test]
     fn planes_without_numbers_and_equal_planes_decide_nothing() {
         let [p, q] = crossing();
-        for odd in [Setup { dz_dx: f32::NAN, ..p }, Setup { dz_dy: f32::INFINITY, ..p }, Setup { facet: 9, ..q }] {
+        for odd in [
+            Setup { dz_dx: f32::NAN, ..p },
+            Setup { dz_dy: f32::INFINITY, ..p },
+            Setup { facet: 9, ..q },
+        ] {
             let setups = [odd, q];
             let shapes = apart(&setups);
             let shapes = [shapes.get(0), shapes.get(1)];

@@ -21,12 +21,14 @@ pub(super) fn tables(
     if execution.observer.is_none() {
         return Ok(());
     }
-    let bytes = size_of_val(edges) / size_of::<EdgeEntry>() * (size_of::<TableEdge>() + size_of::<Bucket>())
+    let bytes = size_of_val(edges) / size_of::<EdgeEntry>()
+        * (size_of::<TableEdge>() + size_of::<Bucket>())
         + polygons.len() * size_of::<TablePolygon>();
     execution.budget.charge(bytes as u64, "the edge table that is told")?;
     let rows = rows.map(|row| row as u32);
     let world = view.session.world();
-    let polygon_table = polygons.iter().map(|p| polygon(p, world.surface_of_facet(p.shape.facet()))).collect();
+    let polygon_table =
+        polygons.iter().map(|p| polygon(p, world.surface_of_facet(p.shape.facet()))).collect();
     let buckets = buckets(polygons, edges, lines, rows[0]);
     execution.report(|| Step::EdgeTable { rows, polygons: polygon_table, buckets });
     execution.budget.release(bytes as u64);
@@ -37,16 +39,26 @@ fn polygon(polygon: &PolygonEntry<'_>, surface: u32) -> TablePolygon {
     let setup = polygon.plane();
     let [dx, dy] = [setup.dz_dx, setup.dz_dy].map(f64::from);
     let [x, y] = setup.origin.map(pixels);
-    TablePolygon { facet: setup.facet, surface, plane: [dx, dy, f64::from(setup.z) - x * dx - y * dy] }
+    TablePolygon {
+        facet: setup.facet,
+        surface,
+        plane: [dx, dy, f64::from(setup.z) - x * dx - y * dy],
+    }
 }
 
 /// The edge table, of a band whose first row of pixels is `top`.
-fn buckets(polygons: &[PolygonEntry<'_>], edges: &[EdgeEntry], lines: &[SampleLine], top: u32) -> Vec<Bucket> {
+fn buckets(
+    polygons: &[PolygonEntry<'_>],
+    edges: &[EdgeEntry],
+    lines: &[SampleLine],
+    top: u32,
+) -> Vec<Bucket> {
     let place = |line: &SampleLine| [top + line.row as u32, line.sample as u32];
 
     // Describe an edge by its first crossing and its slope.
     let entry = |edge: &EdgeEntry| {
-        let (shape, line) = (polygons[edge.polygon as usize].shape, &lines[usize::from(edge.lines.start)]);
+        let (shape, line) =
+            (polygons[edge.polygon as usize].shape, &lines[usize::from(edge.lines.start)]);
         let active = ActiveEdge::new(edge, shape.outline(), line.y, 0);
         let (dx, dy, _) = downwards(shape.outline(), edge.corner);
         TableEdge {
@@ -67,7 +79,8 @@ fn buckets(polygons: &[PolygonEntry<'_>], edges: &[EdgeEntry], lines: &[SampleLi
     edges.chunk_by(|a, b| a.lines.start == b.lines.start).map(bucket).collect()
 }
 
-/// The active edge table, from left to right; edges that cross the line at one place in the order of the polygon table.
+/// The active edge table, from left to right; edges that cross the line at one place in the order
+/// of the polygon table.
 pub(super) fn crossings(active: &[ActiveEdge], polygons: &[PolygonEntry<'_>]) -> Vec<Crossing> {
     let crossing = |edge: &ActiveEdge| Crossing {
         x: edge.place(),
@@ -76,7 +89,8 @@ pub(super) fn crossings(active: &[ActiveEdge], polygons: &[PolygonEntry<'_>]) ->
         edge: edge.corner,
     };
     let mut crossings: Vec<_> = active.iter().map(crossing).collect();
-    crossings.sort_by(|a, b| a.x.total_cmp(&b.x).then((a.polygon, a.edge).cmp(&(b.polygon, b.edge))));
+    crossings
+        .sort_by(|a, b| a.x.total_cmp(&b.x).then((a.polygon, a.edge).cmp(&(b.polygon, b.edge))));
     crossings
 }
 
@@ -98,7 +112,8 @@ mod tests {
     use super::*;
     use vitral_raster::{SamplePattern, Setup};
 
-    /// Two triangles in pixels: corners (2,1) (10,1) (2,9), and (4,2) (12,10) (4,10), which overlap.
+    /// Two triangles in pixels: corners (2,1) (10,1) (2,9), and (4,2) (12,10) (4,10), which
+    /// overlap.
     fn overlapping() -> [Setup; 2] {
         let corners = |c: [[i32; 2]; 3]| c.map(|p| p.map(|v| v * SUBPIXEL));
         let [a, b] = [[[2, 1], [10, 1], [2, 9]], [[4, 2], [12, 10], [4, 10]]].map(corners);
@@ -112,16 +127,21 @@ mod tests {
         let polygons = polygon_table(&shapes);
         let lines = lines(&SamplePattern::new(1), 0, 16);
         let table = buckets(&polygons, &edge_table(&polygons, &lines), &lines, 0);
-        // The line through the middle of row 1 is the first that meets a triangle whose top is at 1; tops have no entry.
+        // The line through the middle of row 1 is the first that meets a triangle whose top is at
+        // 1; tops have no entry.
         let places: Vec<_> = table.iter().map(|b| (b.row, b.sample, b.edges.len())).collect();
         assert_eq!(places, [(1, 0, 2), (2, 0, 2)]);
         let of = |bucket: usize| {
-            let mut told: Vec<_> =
-                table[bucket].edges.iter().map(|e| (e.polygon, e.facet, e.x, e.dx, e.last)).collect();
+            let mut told: Vec<_> = table[bucket]
+                .edges
+                .iter()
+                .map(|e| (e.polygon, e.facet, e.x, e.dx, e.last))
+                .collect();
             told.sort_by(|a, b| a.2.total_cmp(&b.2));
             told
         };
-        // The first: upright at 2, and from (10,1) one to the left for each pixel down; at 1.5 it is at 9.5.
+        // The first: upright at 2, and from (10,1) one to the left for each pixel down; at 1.5 it
+        // is at 9.5.
         assert_eq!(of(0), [(0, 0, 2.0, 0.0, [8, 0]), (0, 0, 9.5, -1.0, [8, 0])]);
         // The second: upright at 4, and from (4,2) one to the right; at 2.5 it is at 4.5.
         assert_eq!(of(1), [(1, 7, 4.0, 0.0, [9, 0]), (1, 7, 4.5, 1.0, [9, 0])]);

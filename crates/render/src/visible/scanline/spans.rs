@@ -1,4 +1,5 @@
-//! The spans of a line: between two active edges the polygons that are in do not change, and one decision serves all samples.
+//! The spans of a line: between two active edges the polygons that are in do not change, and one
+//! decision serves all samples.
 //!
 //! In:   active edges from left to right, polygons (screen space). Out: the samples of the line.
 //! Cost: spans times the polygons that are in, plus covered samples.
@@ -25,7 +26,8 @@ pub(super) struct Spans<'s, 'f> {
     inside: Vec<u32>,
     /// The polygon that won the last span alone.
     last: u32,
-    /// Workspace: polygons that may be visible somewhere in the span, with their nearest depth in it.
+    /// Workspace: polygons that may be visible somewhere in the span, with their nearest depth in
+    /// it.
     rivals: Vec<(f32, u32)>,
     implied: ImpliedEdges,
     coherence: CoherenceSet,
@@ -44,7 +46,17 @@ impl<'s, 'f> Spans<'s, 'f> {
         counters: &'s mut VisibilityCounters,
     ) -> Self {
         let (inside, rivals, implied) = (Vec::new(), Vec::new(), ImpliedEdges::default());
-        Self { polygons, inside, last: 0, rivals, implied, coherence, reported: None, tiles, counters }
+        Self {
+            polygons,
+            inside,
+            last: 0,
+            rivals,
+            implied,
+            coherence,
+            reported: None,
+            tiles,
+            counters,
+        }
     }
 
     /// Counts what was found on all lines.
@@ -80,7 +92,8 @@ impl<'s, 'f> Spans<'s, 'f> {
         if let Some(reported) = &mut self.reported {
             let facet = winner.map(|p| self.polygons[p as usize].shape.facet());
             let pixels = [pixels.start, pixels.end].map(|x| x as u32);
-            let mut inside: Vec<u32> = self.inside.iter().map(|&p| self.polygons[p as usize].shape.facet()).collect();
+            let mut inside: Vec<u32> =
+                self.inside.iter().map(|&p| self.polygons[p as usize].shape.facet()).collect();
             inside.sort_unstable();
             reported.push(Span { pixels, inside, verdict, facet });
         }
@@ -101,7 +114,8 @@ impl<'s, 'f> Spans<'s, 'f> {
         }
     }
 
-    /// Fills a span: with the one polygon that is in, or that hides the others, else sample by sample.
+    /// Fills a span: with the one polygon that is in, or that hides the others, else sample by
+    /// sample.
     fn fill(&mut self, pixels: Range<usize>, line: &SampleLine) {
         self.counters.spans += 1;
         if let [only] = self.inside[..] {
@@ -119,8 +133,8 @@ impl<'s, 'f> Spans<'s, 'f> {
         self.rivals = rivals;
     }
 
-    /// Fills a span in which any of `rivals` may be seen: cuts it at the implied edge of the first two, and decides what
-    /// no edge tells sample by sample.
+    /// Fills a span in which any of `rivals` may be seen: cuts it at the implied edge of the first
+    /// two, and decides what no edge tells sample by sample.
     fn divide(&mut self, pixels: Range<usize>, rivals: &mut [(f32, u32)], line: &SampleLine) {
         if pixels.is_empty() {
             return;
@@ -155,7 +169,8 @@ impl<'s, 'f> Spans<'s, 'f> {
         self.divide(right, without(rivals, right_loser), line);
     }
 
-    /// Takes the nearest of `rivals`, whose depths were brought to the line when they were found, at each sample.
+    /// Takes the nearest of `rivals`, whose depths were brought to the line when they were found,
+    /// at each sample.
     fn fill_by_samples(&mut self, pixels: Range<usize>, rivals: &[(f32, u32)], line: &SampleLine) {
         if pixels.is_empty() {
             return;
@@ -166,7 +181,9 @@ impl<'s, 'f> Spans<'s, 'f> {
         for x in pixels {
             let sample_x = x as i32 * SUBPIXEL + line.sample_x;
             let facet = |p: u32| self.polygons[p as usize].shape.facet_within(sample_x, line.y);
-            let depths = rivals.iter().map(|&(_, p)| (self.polygons[p as usize].on_line().depth(sample_x), p));
+            let depths = rivals
+                .iter()
+                .map(|&(_, p)| (self.polygons[p as usize].on_line().depth(sample_x), p));
             let nearest = depths.reduce(|a, b| {
                 // The facets matter where depths are equal.
                 let [fa, fb] = if a.0 == b.0 { [a.1, b.1].map(facet) } else { [0; 2] };
@@ -194,7 +211,11 @@ impl<'s, 'f> Spans<'s, 'f> {
         // Begin with a polygon that is likely to be near.
         let ends = [pixels.start, pixels.end - 1].map(|x| x as i32 * SUBPIXEL + line.sample_x);
         let by_depth = self.coherence.has(Coherence::Depth);
-        let lucky = if !by_depth || self.polygons[self.last as usize].slot == OUT { self.inside[0] } else { self.last };
+        let lucky = if !by_depth || self.polygons[self.last as usize].slot == OUT {
+            self.inside[0]
+        } else {
+            self.last
+        };
         // Some polygon is nowhere farther than `floor`.
         let (mut floor, near) = self.bring(lucky, line).range(ends);
         self.rivals.clear();
@@ -238,7 +259,8 @@ impl<'s, 'f> Spans<'s, 'f> {
                 several => {
                     for triangle in several {
                         let columns = covered(triangle, line, &(x..end));
-                        tile.facet[at + (columns.start - x)..at + (columns.end - x)].fill(triangle.facet);
+                        tile.facet[at + (columns.start - x)..at + (columns.end - x)]
+                            .fill(triangle.facet);
                     }
                 }
             }

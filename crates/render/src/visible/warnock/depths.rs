@@ -1,6 +1,7 @@
 //! The four-corner test: whether one polygon hides another all over a window.
 //!
-//! In:   two planes of depth, a window (screen space). Out: whether the first is nearer at every sample of the window.
+//! In:   two planes of depth, a window (screen space). Out: whether the first is nearer at every
+//!       sample of the window.
 //! Cost: constant.
 
 use super::super::polygons::same_plane;
@@ -21,9 +22,12 @@ impl<'f> CornerDepths<'f> {
         let mut margin = 0.0f64;
         let depths = samples.corners().map(|[x, y]| {
             let offset = |v: i32, k: usize| f64::from(v - setup.origin[k]) / f64::from(SUBPIXEL);
-            let (across, down) = (offset(x, 0) * f64::from(setup.dz_dx), offset(y, 1) * f64::from(setup.dz_dy));
+            let (across, down) =
+                (offset(x, 0) * f64::from(setup.dz_dx), offset(y, 1) * f64::from(setup.dz_dy));
             // Four roundings to 24 bits, of numbers no larger than the sum.
-            let rounding = (f64::from(setup.z.abs()) + across.abs() + down.abs()) * f64::from(f32::EPSILON) * 4.0;
+            let rounding = (f64::from(setup.z.abs()) + across.abs() + down.abs())
+                * f64::from(f32::EPSILON)
+                * 4.0;
             // f64::max would swallow the NaN of a plane that overflows.
             margin = if rounding <= margin { margin } else { rounding };
             f64::from(setup.z) + across + down
@@ -31,9 +35,9 @@ impl<'f> CornerDepths<'f> {
         Self { setup, depths, margin }
     }
 
-    /// Whether this facet is what is seen of the two at each sample of the window that both cover. The planes' distance
-    /// is linear, so smallest at a corner; depths are clamped, so neither plane may leave the other facet's range on
-    /// the wrong side.
+    /// Whether this facet is what is seen of the two at each sample of the window that both cover.
+    /// The planes' distance is linear, so smallest at a corner; depths are clamped, so neither
+    /// plane may leave the other facet's range on the wrong side.
     pub(super) fn hides(&self, other: &Self) -> bool {
         let (near, far) = (self.setup, other.setup);
         if near.z_min > far.z_max {
@@ -46,7 +50,9 @@ impl<'f> CornerDepths<'f> {
         near.z_max > far.z_min
             && (0..4).all(|i| {
                 let (a, b) = (self.depths[i], other.depths[i]);
-                a - b > margin && a - margin > f64::from(far.z_min) && b + margin < f64::from(near.z_max)
+                a - b > margin
+                    && a - margin > f64::from(far.z_min)
+                    && b + margin < f64::from(near.z_max)
             })
     }
 }

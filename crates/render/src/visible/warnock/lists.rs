@@ -1,6 +1,7 @@
 //! The list of a window's polygons: what is left of the list of the window that it is a part of.
 //!
-//! In:   polygons, a window and the list that is handed down to it (screen space). Out: its own list, told as a step.
+//! In:   polygons, a window and the list that is handed down to it (screen space). Out: its own
+//!       list, told as a step.
 //! Cost: linear in the list that is handed down.
 
 use super::super::agreement::nearer;
@@ -49,11 +50,12 @@ impl<'f> Lists<'f> {
         Self { execution, coherence, extent, polygons, stack, hidden, counters }
     }
 
-    /// Puts the own list of a window behind the others: of those at `list` what is not disjoint, and not behind a surrounder.
-    /// Returns where it begins.
+    /// Puts the own list of a window behind the others: of those at `list` what is not disjoint,
+    /// and not behind a surrounder. Returns where it begins.
     pub(super) fn look_at(&mut self, window: &Window, list: Range<usize>) -> usize {
         self.counters.windows += 1;
-        let (samples, start, handed_down) = (window.samples(self.extent), self.stack.len(), list.len());
+        let (samples, start, handed_down) =
+            (window.samples(self.extent), self.stack.len(), list.len());
         self.classify(samples, list);
         let disjoint = handed_down - (self.stack.len() - start);
         self.hidden.clear();
@@ -86,7 +88,9 @@ impl<'f> Lists<'f> {
         let list = self.from(start);
         let (verdict, drawn) = match list {
             [] => (WindowVerdict::Empty, None),
-            [only] if only.relation == WindowRelation::Surrounding => (WindowVerdict::Surrounded, Some(only)),
+            [only] if only.relation == WindowRelation::Surrounding => {
+                (WindowVerdict::Surrounded, Some(only))
+            }
             [only] => (WindowVerdict::One, Some(only)),
             _ if window.is_pixel() => (WindowVerdict::Pixel, None),
             _ => (WindowVerdict::Cut, None),
@@ -112,11 +116,13 @@ impl<'f> Lists<'f> {
     fn classify(&mut self, samples: SampleBox, list: Range<usize>) {
         for i in list {
             let mut entry = self.stack[i];
-            if entry.relation == WindowRelation::Surrounding && self.coherence.has(Coherence::Area) {
+            if entry.relation == WindowRelation::Surrounding && self.coherence.has(Coherence::Area)
+            {
                 self.counters.saved_by_area += 1;
             } else {
                 self.counters.window_tests += 1;
-                entry.relation = relation(self.polygons.get(entry.polygon as usize).outline(), samples);
+                entry.relation =
+                    relation(self.polygons.get(entry.polygon as usize).outline(), samples);
                 if entry.relation == WindowRelation::Disjoint {
                     continue;
                 }
@@ -125,31 +131,38 @@ impl<'f> Lists<'f> {
         }
     }
 
-    /// Drops from the list that begins at `start` what the nearest surrounder hides at all four corners.
+    /// Drops from the list that begins at `start` what the nearest surrounder hides at all four
+    /// corners.
     fn drop_hidden(&mut self, samples: SampleBox, start: usize) {
         if self.stack.len() - start < 2 {
             return;
         }
 
         // Find the surrounder that is nearest at all corners.
-        let surrounders =
-            self.from(start).iter().filter(|e| e.relation == WindowRelation::Surrounding).map(|e| e.polygon);
+        let surrounders = self
+            .from(start)
+            .iter()
+            .filter(|e| e.relation == WindowRelation::Surrounding)
+            .map(|e| e.polygon);
         let farthest = |p: u32| {
             let [near, far] = [f32::max, f32::min].map(|pick| {
-                let depths = samples.corners().map(|[x, y]| self.polygons.get(p as usize).depth(x, y));
+                let depths =
+                    samples.corners().map(|[x, y]| self.polygons.get(p as usize).depth(x, y));
                 depths.into_iter().reduce(pick).unwrap_or(0.0)
             });
             (far, near, p)
         };
-        let front = surrounders.map(farthest).reduce(|a, b| match (b.0, b.1).partial_cmp(&(a.0, a.1)) {
-            Some(Ordering::Greater) => b,
-            Some(Ordering::Equal)
-                if self.polygons.get(b.2 as usize).facet() < self.polygons.get(a.2 as usize).facet() =>
-            {
-                b
-            }
-            _ => a,
-        });
+        let front =
+            surrounders.map(farthest).reduce(|a, b| match (b.0, b.1).partial_cmp(&(a.0, a.1)) {
+                Some(Ordering::Greater) => b,
+                Some(Ordering::Equal)
+                    if self.polygons.get(b.2 as usize).facet()
+                        < self.polygons.get(a.2 as usize).facet() =>
+                {
+                    b
+                }
+                _ => a,
+            });
         let Some((_, _, front)) = front else { return };
 
         // Drop what its plane hides at all corners.
@@ -161,7 +174,10 @@ impl<'f> Lists<'f> {
             let entry = self.stack[i];
             let hidden = entry.polygon != front && {
                 counters.depth_comparisons += 1;
-                plane.hides(&CornerDepths::new(polygons.get(entry.polygon as usize).plane(), samples))
+                plane.hides(&CornerDepths::new(
+                    polygons.get(entry.polygon as usize).plane(),
+                    samples,
+                ))
             };
             if !hidden {
                 self.stack[kept] = entry;

@@ -60,8 +60,8 @@ impl Window {
         [self.x.start, self.y.start, self.x.end - self.x.start, self.y.end - self.y.start]
     }
 
-    /// The four smaller windows, or two where it is too narrow for four. A window of several tiles is cut between tiles,
-    /// nearest to its middle, one within a tile at powers of two.
+    /// The four smaller windows, or two where it is too narrow for four. A window of several tiles
+    /// is cut between tiles, nearest to its middle, one within a tile at powers of two.
     pub(super) fn parts(&self) -> Vec<Self> {
         // Choose the cut of each side.
         let half = (self.x.len().max(self.y.len()).next_power_of_two() / 2) as u32;
@@ -109,8 +109,8 @@ impl SampleBox {
     }
 }
 
-/// Tests a polygon, given by its outline, against the box round a window's samples: one of the box's sides or of the
-/// outline's edges has the other on its outer side, if they are disjoint.
+/// Tests a polygon, given by its outline, against the box round a window's samples: one of the
+/// box's sides or of the outline's edges has the other on its outer side, if they are disjoint.
 pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> WindowRelation {
     let outside =
         // Reject outlines beside the box.
@@ -122,7 +122,8 @@ pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> WindowRelati
     let mut surrounds = true;
     for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
         let (dx, dy) = (i64::from(b[0] - a[0]), i64::from(b[1] - a[1]));
-        // Positive inside, y downwards: left edges go up, top edges go right; on these, 0 is inside.
+        // Positive inside, y downwards: left edges go up, top edges go right; on these, 0 is
+        // inside.
         let inside = if dy < 0 || (dy == 0 && dx > 0) { 0 } else { 1 };
         let down = samples.y.map(|y| dx * i64::from(y - a[1]));
         let across = samples.x.map(|x| -dy * i64::from(x - a[0]));
@@ -134,7 +135,8 @@ pub(super) fn relation(outline: &[[i32; 2]], samples: SampleBox) -> WindowRelati
 
     // Tell surrounding, contained and intersecting apart.
     let within = |k: usize, [low, high]: [i32; 2]| {
-        let sides = low.div_euclid(SUBPIXEL) * SUBPIXEL..=(high.div_euclid(SUBPIXEL) + 1) * SUBPIXEL;
+        let sides =
+            low.div_euclid(SUBPIXEL) * SUBPIXEL..=(high.div_euclid(SUBPIXEL) + 1) * SUBPIXEL;
         outline.iter().all(|v| sides.contains(&v[k]))
     };
     if surrounds {
@@ -152,7 +154,8 @@ pub(super) mod tests {
     use vitral_raster::{CornerPosition, Setup};
 
     pub(crate) fn triangle(corners: [[i32; 2]; 3], z: [f32; 3], facet: u32) -> Setup {
-        let [a, b, c] = [0, 1, 2].map(|i| CornerPosition { x: corners[i][0], y: corners[i][1], z: z[i] });
+        let [a, b, c] =
+            [0, 1, 2].map(|i| CornerPosition { x: corners[i][0], y: corners[i][1], z: z[i] });
         Setup::new([a, b, c], Setup::doubled_area(a, b, c), facet)
     }
 
@@ -160,7 +163,8 @@ pub(super) mod tests {
 
     #[test]
     fn p20_windows_are_cut_down_to_pixels() {
-        for (width, height) in [(1, 1), (5, 1), (16, 16), (64, 64), (65, 3), (200, 150), (640, 480)] {
+        for (width, height) in [(1, 1), (5, 1), (16, 16), (64, 64), (65, 3), (200, 150), (640, 480)]
+        {
             let (mut open, mut pixels) = (vec![Window::whole(width, height)], 0);
             while let Some(window) = open.pop() {
                 if window.is_pixel() {
@@ -173,7 +177,8 @@ pub(super) mod tests {
                 assert_eq!(areas.sum::<usize>(), window.x.len() * window.y.len());
                 // Tiles stay whole until the window lies in one.
                 let tile = TILE as u32;
-                let aligned = |p: &Window| p.x.start.is_multiple_of(tile) && p.y.start.is_multiple_of(tile);
+                let aligned =
+                    |p: &Window| p.x.start.is_multiple_of(tile) && p.y.start.is_multiple_of(tile);
                 assert!(window.is_in_tile() || parts.iter().all(aligned), "{window:?}");
                 open.extend(parts);
             }
@@ -195,9 +200,15 @@ pub(super) mod tests {
         assert_eq!(relation([[4000, 0], [4000, 4000], [0, 4000]]), WindowRelation::Disjoint);
         assert_eq!(relation([[300, 300], [900, 300], [300, 900]]), WindowRelation::Contained);
         assert_eq!(relation([[-300, 300], [900, 300], [300, 900]]), WindowRelation::Intersecting);
-        assert_eq!(relation([[-300, -300], [9000, -300], [-300, 9000]]), WindowRelation::Surrounding);
+        assert_eq!(
+            relation([[-300, -300], [9000, -300], [-300, 9000]]),
+            WindowRelation::Surrounding
+        );
         // The samples on the left and top edges are in, those on the right one are out.
         assert_eq!(relation([[128, 128], [9000, 128], [128, 9000]]), WindowRelation::Surrounding);
-        assert_eq!(relation([[1920, 9000], [1920, -7000], [-7000, -7000]]), WindowRelation::Intersecting);
+        assert_eq!(
+            relation([[1920, 9000], [1920, -7000], [-7000, -7000]]),
+            WindowRelation::Intersecting
+        );
     }
 }

@@ -52,8 +52,10 @@ impl Grid {
     /// First and last column and row of cells that a box reaches.
     fn reach(&self, around: [f64; 4]) -> [[usize; 2]; 2] {
         [0, 1].map(|k| {
-            [around[k] - 1.0, around[k + 2] + 1.0]
-                .map(|at| (((at - self.origin[k]) * self.cells_a_unit[k]).max(0.0) as usize).min(self.side - 1))
+            [around[k] - 1.0, around[k + 2] + 1.0].map(|at| {
+                (((at - self.origin[k]) * self.cells_a_unit[k]).max(0.0) as usize)
+                    .min(self.side - 1)
+            })
         })
     }
 
@@ -80,7 +82,8 @@ impl Buckets {
                 let [[x0, x1], [y0, y1]] = grid.reach(*b);
                 (x1 - x0 + 1) * (y1 - y0 + 1)
             };
-            if side == 1 || boxes.iter().map(entries).sum::<usize>() <= boxes.len() * ENTRIES_A_BOX {
+            if side == 1 || boxes.iter().map(entries).sum::<usize>() <= boxes.len() * ENTRIES_A_BOX
+            {
                 break grid;
             }
             side /= 2;
@@ -96,7 +99,9 @@ impl Buckets {
         found.clear();
         for cell in self.grid.cells(around) {
             let numbers = self.numbers.bucket(cell);
-            found.extend(numbers.iter().filter(|&&number| overlap(self.boxes[number as usize], around)));
+            found.extend(
+                numbers.iter().filter(|&&number| overlap(self.boxes[number as usize], around)),
+            );
         }
         found.sort_unstable();
         found.dedup();
@@ -130,7 +135,8 @@ mod tests {
             let mut found = Vec::new();
             for around in boxes.iter().copied().chain([[-500.0, 400.0, 2000.0, 401.0]]) {
                 buckets.overlapping(around, &mut found);
-                let expected: Vec<_> = (0..300).filter(|&i| overlap(boxes[i as usize], around)).collect();
+                let expected: Vec<_> =
+                    (0..300).filter(|&i| overlap(boxes[i as usize], around)).collect();
                 assert_eq!(found, expected);
             }
         }

@@ -12,7 +12,8 @@ const EDGES_A_BAND: usize = 4;
 /// Bands at most.
 const MAX_BANDS: usize = 1024;
 
-/// See the module. Numbers of edges are their positions in the region's list; removed ones keep theirs.
+/// See the module. Numbers of edges are their positions in the region's list; removed ones keep
+/// theirs.
 #[derive(Clone, Debug)]
 pub(super) struct EdgeIndex {
     /// What is divided: 0 for x, 1 for y.
@@ -103,12 +104,17 @@ impl EdgeIndex {
 
     /// Edges that may be met by a line across the bands.
     pub(super) fn across(&self, at: f64) -> impl Iterator<Item = usize> {
-        self.bands[self.band(at)].iter().map(|&number| number as usize).filter(|&number| self.has(number))
+        self.bands[self.band(at)]
+            .iter()
+            .map(|&number| number as usize)
+            .filter(|&number| self.has(number))
     }
 
     /// Bytes in memory, about.
     pub(super) fn bytes(&self) -> usize {
         let entries: usize = self.bands.iter().map(Vec::capacity).sum();
-        self.bands.len() * size_of::<Vec<u32>>() + entries * size_of::<u32>() + self.is_removed.len()
+        self.bands.len() * size_of::<Vec<u32>>()
+            + entries * size_of::<u32>()
+            + self.is_removed.len()
     }
 }

@@ -1,8 +1,8 @@
 //! Visible polygons drawn into tiles.
 //!
-//! A row of tiles is filled polygon by polygon: on each line of samples, the crossings with its boundary begin and end the spans
-//! that are its own. Visible polygons do not overlap but for what rounding of depths leaves open, and there each sample is
-//! decided by the facets' depth function.
+//! A row of tiles is filled polygon by polygon: on each line of samples, the crossings with its
+//! boundary begin and end the spans that are its own. Visible polygons do not overlap but for what
+//! rounding of depths leaves open, and there each sample is decided by the facets' depth function.
 //!
 //! In:   visible polygons (screen space). Out: the samples of a row of tiles.
 //! Cost: edges times lines of samples that they cross, and the samples within.
@@ -41,7 +41,9 @@ impl VisiblePolygons {
         let first = self.edges.len();
         self.edges.extend(region.fill_edges());
         let own = &self.edges[first..];
-        let y = own.iter().fold([i32::MAX, i32::MIN], |[low, high], e| [low.min(e.y[0]), high.max(e.y[1])]);
+        let y = own
+            .iter()
+            .fold([i32::MAX, i32::MIN], |[low, high], e| [low.min(e.y[0]), high.max(e.y[1])]);
         self.polygons.push(Visible {
             polygon,
             edges: first..self.edges.len(),
@@ -99,7 +101,13 @@ pub(super) struct Filling<'f, 'p> {
 
 impl Filling<'_, '_> {
     /// Fills the samples of a row of tiles with the visible polygons of these numbers.
-    pub(super) fn row(&self, row: usize, numbers: &[u32], tiles: &mut [Tile], budget: &Budget) -> Result<(), Limit> {
+    pub(super) fn row(
+        &self,
+        row: usize,
+        numbers: &[u32],
+        tiles: &mut [Tile],
+        budget: &Budget,
+    ) -> Result<(), Limit> {
         let mut crossings = Vec::new();
         for (done, &number) in numbers.iter().enumerate() {
             if done % 1024 == 0 {
@@ -116,9 +124,10 @@ impl Filling<'_, '_> {
         Ok(())
     }
 
-    /// Finds where edges cross the lines of samples of a row of tiles: the line (row of pixels in the tiles, sample), and the
-    /// first column whose sample is to the right. A sample on an edge counts as one a little to the right, and if that is on it
-    /// too, a little below: this is the rule of top and left edges.
+    /// Finds where edges cross the lines of samples of a row of tiles: the line (row of pixels in
+    /// the tiles, sample), and the first column whose sample is to the right. A sample on an edge
+    /// counts as one a little to the right, and if that is on it too, a little below: this is the
+    /// rule of top and left edges.
     fn cross(&self, row: usize, edges: &[FillEdge], crossings: &mut Vec<[u32; 2]>) {
         crossings.clear();
         let (pattern, viewport) = (self.pattern, self.viewport);
@@ -172,7 +181,8 @@ impl Filling<'_, '_> {
     }
 }
 
-/// The first column whose sample at `y` lies right of an edge, or on it; `x` is its place in the pixel.
+/// The first column whose sample at `y` lies right of an edge, or on it; `x` is its place in the
+/// pixel.
 pub(super) fn first_right(edge: &FillEdge, y: i32, x: i32) -> i64 {
     let line = &edge.line;
     let (a, rest) = (i64::from(line.a), i64::from(line.b) * i64::from(y) + line.c);

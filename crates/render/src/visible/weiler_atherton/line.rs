@@ -1,14 +1,16 @@
 //! Lines with whole coefficients, and the points where they cross, compared exactly.
 //!
-//! A point is not rounded: it is the crossing of two lines, and which side of a third line it lies on is the sign of a
-//! whole number. Most questions are decided by floating-point numbers that are far enough from zero; only close ones
-//! are computed with 128 bits.
+//! A point is not rounded: it is the crossing of two lines, and which side of a third line it lies
+//! on is the sign of a whole number. Most questions are decided by floating-point numbers that are
+//! far enough from zero; only close ones are computed with 128 bits.
 //!
-//! Bits, in units of 1/256 pixel: a picture has at most 16384 pixels a side, 2^22 units. Corners lie in the guard band, at most
-//! 16384 pixels from the picture's middle, so their coordinates are below 2^23 and their differences at most 2^23. A side has
-//! `a, b <= 2^23` and `c < 2^48`; where two planes meet, `a, b <= 2^25` and `c < 2^49`. Two such lines cross at `(x / w, y / w)`
-//! with `w <= 2^51`. Ends of edges lie in the picture: `x, y <= 2^22 w <= 2^73`. The side of a line is the sign of
-//! `a x + b y + c w < 2^102`. Two points are compared by `x1 w2` and `x2 w1`, below 2^124: they fit into 128 bits.
+//! Bits, in units of 1/256 pixel: a picture has at most 16384 pixels a side, 2^22 units. Corners
+//! lie in the guard band, at most 16384 pixels from the picture's middle, so their coordinates are
+//! below 2^23 and their differences at most 2^23. A side has `a, b <= 2^23` and `c < 2^48`; where
+//! two planes meet, `a, b <= 2^25` and `c < 2^49`. Two such lines cross at `(x / w, y / w)` with
+//! `w <= 2^51`. Ends of edges lie in the picture: `x, y <= 2^22 w <= 2^73`. The side of a line is
+//! the sign of `a x + b y + c w < 2^102`. Two points are compared by `x1 w2` and `x2 w1`, below
+//! 2^124: they fit into 128 bits.
 //!
 //! Source: points as crossings after [Bernstein & Fussell 2009].
 
@@ -41,7 +43,8 @@ pub(super) struct Point {
     is_corner: bool,
 }
 
-/// Beyond this, in 1/256 pixel, the rounding of [`Point::about`] cannot matter: it is below 2^-28 in a picture.
+/// Beyond this, in 1/256 pixel, the rounding of [`Point::about`] cannot matter: it is below 2^-28
+/// in a picture.
 pub(super) const ROUNDING: f64 = 1e-6;
 
 impl Point {
@@ -55,7 +58,8 @@ impl Point {
         if self.is_corner {
             return [self.about[0] as i128, self.about[1] as i128, 1];
         }
-        let [[a, b, c], [d, e, f]] = self.lines.map(|l| [l.a.into(), l.b.into(), l.c].map(i128::from));
+        let [[a, b, c], [d, e, f]] =
+            self.lines.map(|l| [l.a.into(), l.b.into(), l.c].map(i128::from));
         let (x, y, w) = (b * f - e * c, c * d - f * a, a * e - d * b);
         if w < 0 { [-x, -y, -w] } else { [x, y, w] }
     }
@@ -122,7 +126,8 @@ impl Line {
         }
         // Rounding of the point, and of the sum, whose parts may be large.
         let value = self.about(p.about);
-        let slack = (f64::from(self.a).abs() + f64::from(self.b).abs()) * ROUNDING + (self.c as f64).abs() * 1e-14;
+        let slack = (f64::from(self.a).abs() + f64::from(self.b).abs()) * ROUNDING
+            + (self.c as f64).abs() * 1e-14;
         if value.abs() > slack {
             return value.total_cmp(&0.0);
         }
@@ -134,7 +139,8 @@ impl Line {
         (a * x + b * y + c * w).cmp(&0)
     }
 
-    /// How steeply another line falls to its negative side, on the way along this one: 0 for parallel lines.
+    /// How steeply another line falls to its negative side, on the way along this one: 0 for
+    /// parallel lines.
     pub(super) fn cross(&self, other: &Self) -> i64 {
         i64::from(self.a) * i64::from(other.b) - i64::from(other.a) * i64::from(self.b)
     }
@@ -143,14 +149,16 @@ impl Line {
     pub(super) fn crossing(&self, other: &Self) -> Point {
         let w = self.cross(other) as f64;
         // The products need up to 74 bits, and may cancel.
-        let [[a, b, c], [d, e, f]] = [self, other].map(|l| [l.a.into(), l.b.into(), l.c].map(i128::from));
+        let [[a, b, c], [d, e, f]] =
+            [self, other].map(|l| [l.a.into(), l.b.into(), l.c].map(i128::from));
         let about = [(b * f - e * c) as f64 / w, (c * d - f * a) as f64 / w];
         Point { about, lines: [*self, *other], is_corner: false }
     }
 
     /// Which of two points on the line comes first.
     pub(super) fn compare(&self, one: &Point, two: &Point) -> Ordering {
-        let (axis, forwards) = if self.b.abs() >= self.a.abs() { (0, self.b > 0) } else { (1, self.a < 0) };
+        let (axis, forwards) =
+            if self.b.abs() >= self.a.abs() { (0, self.b > 0) } else { (1, self.a < 0) };
         let order = one.compare(two, axis);
         if forwards { order } else { order.reverse() }
     }
@@ -170,7 +178,8 @@ pub(super) struct RegionEdge {
 impl RegionEdge {
     /// Between two points on a line.
     pub(super) fn new(line: Line, ends: [Point; 2]) -> Self {
-        let across = ends.map(|p| if line.cross(&p.lines[0]) == 0 { p.lines[1] } else { p.lines[0] });
+        let across =
+            ends.map(|p| if line.cross(&p.lines[0]) == 0 { p.lines[1] } else { p.lines[0] });
         Self { line, about: ends.map(|p| p.about), across, is_corner: ends.map(|p| p.is_corner) }
     }
 
@@ -201,9 +210,11 @@ mod tests {
 
     #[test]
     fn the_greatest_numbers_are_compared_exactly() {
-        // Nearly parallel lines with the greatest coefficients, that cross in the picture's far corner.
+        // Nearly parallel lines with the greatest coefficients, that cross in the picture's far
+        // corner.
         let [x, y] = [1i64 << 22; 2];
-        let through = |a: i64, b: i64, off: i64| Line { a: a as i32, b: b as i32, c: -(a * x + b * y) + off };
+        let through =
+            |a: i64, b: i64, off: i64| Line { a: a as i32, b: b as i32, c: -(a * x + b * y) + off };
         let (m, n) = (MAX_SLOPE, MAX_SLOPE - 1);
         let one = through(m, -n, 0).crossing(&through(-n, m, 0));
         let two = through(m, -n, 1).crossing(&through(-n, m, 0));
@@ -220,11 +231,17 @@ mod tests {
     fn edges_keep_their_ends() {
         let [a, b, c] = [[0, 0], [1024, 0], [300, 700]];
         let sides = [Line::through(a, b), Line::through(b, c), Line::through(c, a)];
-        let edge = RegionEdge::new(sides[0], [Point::corner(a, [sides[2], sides[0]]), sides[0].crossing(&sides[1])]);
+        let edge = RegionEdge::new(
+            sides[0],
+            [Point::corner(a, [sides[2], sides[0]]), sides[0].crossing(&sides[1])],
+        );
         let turned = edge.reversed();
         for (one, two) in [(0, 1), (1, 0)] {
             assert_eq!(edge.end(one).compare_both(&turned.end(two)), Ordering::Equal);
         }
-        assert_eq!(sides.map(|side| side.side(&edge.end(1))), [Ordering::Equal, Ordering::Equal, Ordering::Greater]);
+        assert_eq!(
+            sides.map(|side| side.side(&edge.end(1))),
+            [Ordering::Equal, Ordering::Equal, Ordering::Greater]
+        );
     }
 }

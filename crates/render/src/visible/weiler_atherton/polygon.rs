@@ -1,6 +1,7 @@
 //! Polygons of the list, and which of two hides the other.
 //!
-//! In:   polygons and a region of the screen. Out: whether one is hidden there by the other, or beyond which line.
+//! In:   polygons and a region of the screen. Out: whether one is hidden there by the other, or
+//!       beyond which line.
 //! Cost: linear in the region's edges.
 
 use super::line::{Line, MAX_OFFSET, MAX_SLOPE};
@@ -25,7 +26,13 @@ impl<'p> AreaPolygon<'p> {
     pub(super) fn new(number: u32, polygon: ConvexPolygon<'p, '_>) -> Self {
         let plane = polygon.plane();
         let slope = [plane.dz_dx, plane.dz_dy].map(|d| f64::from(d) / f64::from(SUBPIXEL));
-        Self { plane, number, facets: polygon.facets(), shape: ConvexOutline::polygon(polygon.outline()), slope }
+        Self {
+            plane,
+            number,
+            facets: polygon.facets(),
+            shape: ConvexOutline::polygon(polygon.outline()),
+            slope,
+        }
     }
 
     /// What moving from the plane's origin adds to its depth, for x and for y.
@@ -39,7 +46,8 @@ impl<'p> AreaPolygon<'p> {
         f64::from(self.plane.z) + x + y
     }
 
-    /// How far [`Setup::depth`] may be from that: four roundings to 24 bits, of numbers no larger than the sum.
+    /// How far [`Setup::depth`] may be from that: four roundings to 24 bits, of numbers no larger
+    /// than the sum.
     fn rounding(&self, p: [f64; 2]) -> f64 {
         let [x, y] = self.change(p);
         (f64::from(self.plane.z.abs()) + x.abs() + y.abs()) * f64::from(f32::EPSILON) * 4.0
@@ -57,9 +65,13 @@ pub(super) enum DepthRelation {
     Partly { margin: f64 },
 }
 
-/// Looks at the corners of a region: between them depths are linear, apart from rounding and from the clamping to the
-/// facet's own range, for which there has to be room.
-pub(super) fn relation(front: &AreaPolygon<'_>, back: &AreaPolygon<'_>, region: &Region) -> DepthRelation {
+/// Looks at the corners of a region: between them depths are linear, apart from rounding and from
+/// the clamping to the facet's own range, for which there has to be room.
+pub(super) fn relation(
+    front: &AreaPolygon<'_>,
+    back: &AreaPolygon<'_>,
+    region: &Region,
+) -> DepthRelation {
     // Decide by the ranges of depth if they do not overlap.
     let (near, far) = (front.plane, back.plane);
     if near.z_min > far.z_max {
@@ -67,7 +79,11 @@ pub(super) fn relation(front: &AreaPolygon<'_>, back: &AreaPolygon<'_>, region: 
     }
     if same_plane(near, far) {
         // Where ids of facets mix, each sample decides.
-        return if front.facets[1] < back.facets[0] { DepthRelation::Hidden } else { DepthRelation::Visible };
+        return if front.facets[1] < back.facets[0] {
+            DepthRelation::Hidden
+        } else {
+            DepthRelation::Visible
+        };
     }
 
     // Compare depths at all corners.
@@ -85,7 +101,8 @@ pub(super) fn relation(front: &AreaPolygon<'_>, back: &AreaPolygon<'_>, region: 
     }
 
     // Compare the differences with the rounding.
-    room &= farthest_front - margin > f64::from(far.z_min) && nearest_back + margin < f64::from(near.z_max);
+    room &= farthest_front - margin > f64::from(far.z_min)
+        && nearest_back + margin < f64::from(near.z_max);
     if smallest > margin && room {
         DepthRelation::Hidden
     } else if largest > margin {
@@ -95,8 +112,8 @@ pub(super) fn relation(front: &AreaPolygon<'_>, back: &AreaPolygon<'_>, region: 
     }
 }
 
-/// The line, with whole coefficients, beyond which, in a box, `front` is nearer than `back` by `margin`, and a little more for
-/// the rounding of the coefficients.
+/// The line, with whole coefficients, beyond which, in a box, `front` is nearer than `back` by
+/// `margin`, and a little more for the rounding of the coefficients.
 pub(super) fn line_of_gap(
     front: &AreaPolygon<'_>,
     back: &AreaPolygon<'_>,

@@ -1,21 +1,24 @@
 //! Regions of the screen with any number of parts and holes, cut exactly.
 //!
-//! Weiler and Atherton walk along the outline of one polygon until it meets the other, and turn there. What makes this
-//! hard are the degenerate cases: corners on edges, edges along edges, and rounded crossings that are not on either.
-//! Here a region is the set of its boundary's edges, each directed with the region on the positive side of its line.
-//! Lines have whole coefficients, and points are crossings of lines, compared exactly (`line.rs`). Clipping by a convex polygon
-//! then needs no cases:
+//! Weiler and Atherton walk along the outline of one polygon until it meets the other, and turn
+//! there. What makes this hard are the degenerate cases: corners on edges, edges along edges, and
+//! rounded crossings that are not on either. Here a region is the set of its boundary's edges, each
+//! directed with the region on the positive side of its line. Lines have whole coefficients, and
+//! points are crossings of lines, compared exactly (`line.rs`). Clipping by a convex polygon then
+//! needs no cases:
 //!
-//! - An edge of the region is cut where it enters and leaves the clipping polygon: the middle bounds the inside, the rest
-//!   the outside. What lies along an edge of the clipping polygon is dropped.
-//! - Along an edge of the clipping polygon, the region is met in intervals. Infinitely little to the inner side of the
-//!   edge, the crossings with the region's boundary begin and end the intervals that bound the inside; infinitely little
-//!   to the outer side, those that bound the outside, turned round. Where an edge is crossed nowhere, one of its ends is looked at.
+//! - An edge of the region is cut where it enters and leaves the clipping polygon: the middle
+//!   bounds the inside, the rest the outside. What lies along an edge of the clipping polygon is
+//!   dropped.
+//! - Along an edge of the clipping polygon, the region is met in intervals. Infinitely little to
+//!   the inner side of the edge, the crossings with the region's boundary begin and end the
+//!   intervals that bound the inside; infinitely little to the outer side, those that bound the
+//!   outside, turned round. Where an edge is crossed nowhere, one of its ends is looked at.
 //!
-//! Holes need no bookkeeping: where a polygon lies in the middle of a region, its edges, turned round, are the hole.
-//! A point belongs to the region if a ray from it crosses the boundary an odd number of times. Outlines are walked when they
-//! are asked for. An edge that does not touch the clipping polygon's box stays as it is and is not looked at, in a region
-//! that has many.
+//! Holes need no bookkeeping: where a polygon lies in the middle of a region, its edges, turned
+//! round, are the hole. A point belongs to the region if a ray from it crosses the boundary an odd
+//! number of times. Outlines are walked when they are asked for. An edge that does not touch the
+//! clipping polygon's box stays as it is and is not looked at, in a region that has many.
 //!
 //! In:   regions and convex polygons, 1/256 pixel. Out: the part inside and the part outside.
 //! Cost: edges of the region near the polygon, times edges of the polygon.
@@ -26,14 +29,16 @@ use super::line::{Line, Point, ROUNDING, RegionEdge};
 use std::cmp::Ordering;
 use vitral_raster::SUBPIXEL;
 
-/// Edges up to which all of a region are clipped: a search for those near the clipping polygon takes longer.
+/// Edges up to which all of a region are clipped: a search for those near the clipping polygon
+/// takes longer.
 const SMALL: usize = 8;
 /// Edges up to which a region's box is found anew when it was cut.
 const BOUNDED: usize = 32;
 /// Edges from which on a region has an index of them.
 const INDEX_THRESHOLD: usize = 256;
 
-/// A convex polygon to clip with: its corners, and the line from each to the next, positive inside. A half-plane has no corners.
+/// A convex polygon to clip with: its corners, and the line from each to the next, positive inside.
+/// A half-plane has no corners.
 #[derive(Clone, Debug)]
 pub(super) struct ConvexOutline {
     lines: Vec<Line>,
@@ -43,7 +48,8 @@ pub(super) struct ConvexOutline {
 }
 
 impl ConvexOutline {
-    /// A polygon of grid points that run so that the inner side is positive. Corners on a straight line are left out.
+    /// A polygon of grid points that run so that the inner side is positive. Corners on a straight
+    /// line are left out.
     pub(super) fn polygon(outline: &[[i32; 2]]) -> Self {
         let count = outline.len();
         let turns = |i: usize| {
@@ -71,7 +77,9 @@ impl ConvexOutline {
     /// Where a side begins and ends, if it does.
     fn ends(&self, side: usize) -> Option<[Point; 2]> {
         let count = self.corners.len();
-        let corner = |i: usize| Point::corner(self.corners[i], [self.lines[(i + count - 1) % count], self.lines[i]]);
+        let corner = |i: usize| {
+            Point::corner(self.corners[i], [self.lines[(i + count - 1) % count], self.lines[i]])
+        };
         (count > 0).then(|| [corner(side), corner((side + 1) % count)])
     }
 
@@ -87,7 +95,11 @@ impl ConvexOutline {
     }
 
     /// A box round what this and another polygon have in common, a little too large.
-    fn common_box(&self, other: &Self, [outline, clipped]: &mut [Vec<[f64; 2]>; 2]) -> Option<[f64; 4]> {
+    fn common_box(
+        &self,
+        other: &Self,
+        [outline, clipped]: &mut [Vec<[f64; 2]>; 2],
+    ) -> Option<[f64; 4]> {
         // Clip the outline by the other's lines, with some slack.
         outline.clear();
         outline.extend(self.corners.iter().map(|c| c.map(f64::from)));
@@ -187,7 +199,11 @@ impl Region {
     /// A convex polygon.
     pub(super) fn polygon(polygon: &ConvexOutline) -> Self {
         let side = |i: usize| polygon.ends(i).map(|ends| RegionEdge::new(polygon.lines[i], ends));
-        Self { edges: (0..polygon.lines.len()).filter_map(side).collect(), index: None, bounds: polygon.bounds }
+        Self {
+            edges: (0..polygon.lines.len()).filter_map(side).collect(),
+            index: None,
+            bounds: polygon.bounds,
+        }
     }
 
     fn of(edges: &[RegionEdge]) -> Self {
@@ -217,11 +233,17 @@ impl Region {
 
     /// Bytes in memory, about.
     pub(super) fn bytes(&self) -> usize {
-        self.edges.capacity() * size_of::<RegionEdge>() + self.index.as_ref().map_or(0, |index| index.bytes())
+        self.edges.capacity() * size_of::<RegionEdge>()
+            + self.index.as_ref().map_or(0, |index| index.bytes())
     }
 
     /// Clips by a convex polygon. The region is a part of `whole`.
-    pub(super) fn clip(&mut self, polygon: &ConvexOutline, whole: &ConvexOutline, work: &mut Workspace) -> Clipped {
+    pub(super) fn clip(
+        &mut self,
+        polygon: &ConvexOutline,
+        whole: &ConvexOutline,
+        work: &mut Workspace,
+    ) -> Clipped {
         // Reject by boxes.
         if !polygon.touches(self.bounds) {
             return Clipped::Outside;
@@ -235,13 +257,21 @@ impl Region {
             if polygon.holds_box(self.bounds) {
                 return Clipped::Inside;
             }
-            let Some(common) = whole.common_box(polygon, &mut work.outlines) else { return Clipped::Outside };
-            if self.index.as_ref().map_or(self.edges.len() > INDEX_THRESHOLD, |index| index.is_stale()) {
+            let Some(common) = whole.common_box(polygon, &mut work.outlines) else {
+                return Clipped::Outside;
+            };
+            if self
+                .index
+                .as_ref()
+                .map_or(self.edges.len() > INDEX_THRESHOLD, |index| index.is_stale())
+            {
                 self.make_index();
             }
             match &self.index {
                 Some(index) => index.near(&self.edges, common, &mut work.near),
-                None => work.near.extend((0..).zip(&self.edges).filter(|(_, e)| e.touches(common)).map(|(i, _)| i)),
+                None => work.near.extend(
+                    (0..).zip(&self.edges).filter(|(_, e)| e.touches(common)).map(|(i, _)| i),
+                ),
             }
         }
 
@@ -252,8 +282,14 @@ impl Region {
         self.cut(polygon, work)
     }
 
-    /// Finds on which side of the polygon's lines the near edges' ends lie, and what follows if these are all edges.
-    fn find_sides(&self, polygon: &ConvexOutline, is_all: bool, work: &mut Workspace) -> Option<Clipped> {
+    /// Finds on which side of the polygon's lines the near edges' ends lie, and what follows if
+    /// these are all edges.
+    fn find_sides(
+        &self,
+        polygon: &ConvexOutline,
+        is_all: bool,
+        work: &mut Workspace,
+    ) -> Option<Clipped> {
         let mut within = true;
         work.sides.clear();
         // Classify both ends of each near edge.
@@ -344,7 +380,8 @@ impl Region {
         self.index = Some(Box::new(EdgeIndex::new(&self.edges, self.bounds)));
     }
 
-    /// Where the region is met infinitely little beside a side of a polygon, on its inner or outer side: from where to where.
+    /// Where the region is met infinitely little beside a side of a polygon, on its inner or outer
+    /// side: from where to where.
     fn intervals(
         &self,
         polygon: &ConvexOutline,
@@ -358,9 +395,11 @@ impl Region {
         let count = work.near.len();
         let mut crossings = std::mem::take(&mut work.crossings);
         crossings.clear();
-        for (&number, &sides) in work.near.iter().zip(&work.sides[side * count..(side + 1) * count]) {
+        for (&number, &sides) in work.near.iter().zip(&work.sides[side * count..(side + 1) * count])
+        {
             // Beside the line, the points on it are on the other side.
-            let [from, to] = sides.map(|s| if inner { s == Ordering::Greater } else { s != Ordering::Less });
+            let [from, to] =
+                sides.map(|s| if inner { s == Ordering::Greater } else { s != Ordering::Less });
             if from == to {
                 continue;
             }
@@ -371,7 +410,8 @@ impl Region {
                 _ => line.crossing(&edge.line),
             };
             let is_within = ends.is_none_or(|[first, last]| {
-                line.compare(&place, &first) == Ordering::Greater && line.compare(&place, &last) == Ordering::Less
+                line.compare(&place, &first) == Ordering::Greater
+                    && line.compare(&place, &last) == Ordering::Less
             });
             if is_within {
                 crossings.push((place, if line.cross(&edge.line) < 0 { 1 } else { -1 }));
@@ -409,12 +449,14 @@ impl Region {
         work.crossings = crossings;
     }
 
-    /// Whether the region holds a place infinitely little farther than `corner` along a line, and still less beside it.
+    /// Whether the region holds a place infinitely little farther than `corner` along a line, and
+    /// still less beside it.
     fn holds_beside(&self, corner: [i32; 2], line: &Line, inner: bool) -> bool {
         // Reject corners outside the region's box.
         let place = corner.map(f64::from);
         let [x0, y0, x1, y1] = self.bounds;
-        if place[0] < x0 - 1.0 || place[1] < y0 - 1.0 || place[0] > x1 + 1.0 || place[1] > y1 + 1.0 {
+        if place[0] < x0 - 1.0 || place[1] < y0 - 1.0 || place[0] > x1 + 1.0 || place[1] > y1 + 1.0
+        {
             return false;
         }
 
@@ -450,7 +492,9 @@ impl Region {
 
         // Count the crossings: an odd number means inside.
         let crossed = match &self.index {
-            Some(index) => index.across(place[axis]).filter(|&i| is_crossed(&self.edges[i])).count(),
+            Some(index) => {
+                index.across(place[axis]).filter(|&i| is_crossed(&self.edges[i])).count()
+            }
             None => self.edges.iter().filter(|edge| is_crossed(edge)).count(),
         };
         crossed % 2 == 1
@@ -473,11 +517,13 @@ impl Region {
         })
     }
 
-    /// The outlines, walked, those around the region before its holes. Where several edges leave a point, the walk takes the one
-    /// that turns most towards the region, so that outlines touch but do not cross.
+    /// The outlines, walked, those around the region before its holes. Where several edges leave a
+    /// point, the walk takes the one that turns most towards the region, so that outlines touch but
+    /// do not cross.
     pub(super) fn outlines(&self) -> Vec<RegionOutline> {
         // Sort the edges by where they begin.
-        let mut edges: Vec<(Point, RegionEdge)> = self.edges().map(|edge| (edge.end(0), *edge)).collect();
+        let mut edges: Vec<(Point, RegionEdge)> =
+            self.edges().map(|edge| (edge.end(0), *edge)).collect();
         edges.sort_by(|one, two| one.0.compare_both(&two.0));
 
         // Walk one boundary from each edge that is not walked.
@@ -492,13 +538,19 @@ impl Region {
             loop {
                 let edge = edges[at].1;
                 let end = edge.end(1);
-                let first = edges.partition_point(|(begin, _)| begin.compare_both(&end) == Ordering::Less);
+                let first =
+                    edges.partition_point(|(begin, _)| begin.compare_both(&end) == Ordering::Less);
                 let leaving = (first..edges.len())
                     .take_while(|&i| edges[i].0.compare_both(&end) == Ordering::Equal)
                     .filter(|&i| !is_walked[i]);
-                let next = leaving.max_by(|&i, &j| turn(&edge, &edges[i].1).total_cmp(&turn(&edge, &edges[j].1)));
+                let next = leaving
+                    .max_by(|&i, &j| turn(&edge, &edges[i].1).total_cmp(&turn(&edge, &edges[j].1)));
                 // A boundary is closed: the walk ends where it began.
-                let Some(next) = next.filter(|_| end.compare_both(&edges[start].0) != Ordering::Equal) else { break };
+                let Some(next) =
+                    next.filter(|_| end.compare_both(&edges[start].0) != Ordering::Equal)
+                else {
+                    break;
+                };
                 is_walked[next] = true;
                 walk.push(edges[next].1);
                 at = next;
@@ -541,12 +593,17 @@ struct EdgeCut {
 
 impl EdgeCut {
     /// `sides`: on which side of the polygon's lines the edge's ends lie.
-    fn new<'s>(edge: &RegionEdge, polygon: &ConvexOutline, sides: impl Iterator<Item = &'s [Ordering; 2]>) -> Self {
+    fn new<'s>(
+        edge: &RegionEdge,
+        polygon: &ConvexOutline,
+        sides: impl Iterator<Item = &'s [Ordering; 2]>,
+    ) -> Self {
         use Ordering::{Equal, Greater, Less};
 
         // Start with the whole edge.
         let own = [edge.end(0), edge.end(1)];
-        let mut cut = Self { edge: *edge, ends: own, is_cut: [false; 2], is_along: false, is_outside: false };
+        let mut cut =
+            Self { edge: *edge, ends: own, is_cut: [false; 2], is_along: false, is_outside: false };
 
         // Cut it at each line of the polygon.
         for (line, sides) in polygon.lines.iter().zip(sides) {
@@ -577,8 +634,8 @@ impl EdgeCut {
         cut
     }
 
-    /// The part within the polygon, if it is not along one of its sides, and those before and behind it; `None` if all is
-    /// outside.
+    /// The part within the polygon, if it is not along one of its sides, and those before and
+    /// behind it; `None` if all is outside.
     fn into_parts(self) -> Option<[Option<RegionEdge>; 3]> {
         let Self { edge, ends, is_cut, is_along, is_outside } = self;
         let part = |ends: [Point; 2]| RegionEdge::new(edge.line, ends);

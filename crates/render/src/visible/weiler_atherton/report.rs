@@ -34,7 +34,12 @@ fn contours(region: &Region) -> Vec<Contour> {
 
 /// The step of a visible polygon.
 pub(super) fn visible(polygon: &AreaPolygon<'_>, item: &Item, clip: Option<u32>) -> Step {
-    Step::Visible { facet: polygon.plane.facet, clip, area: item.region.area(), contours: contours(&item.region) }
+    Step::Visible {
+        facet: polygon.plane.facet,
+        clip,
+        area: item.region.area(),
+        contours: contours(&item.region),
+    }
 }
 
 impl AreaSorting<'_> {
@@ -54,7 +59,9 @@ impl AreaSorting<'_> {
                 nearest: self.polygons[item.polygon as usize].plane.z_max,
                 contours: contours(&item.region),
             };
-            self.execution.report(|| Step::NearestFirst { polygons: list.items.iter().map(sorted).collect() });
+            self.execution.report(|| Step::NearestFirst {
+                polygons: list.items.iter().map(sorted).collect(),
+            });
         }
     }
 
@@ -74,7 +81,13 @@ impl Report {
         if let Some(clip) = &mut self.0 {
             let before = contours(&own.region);
             let (facet, inside) = (front.plane.facet, before.clone());
-            clip.cut.push(CutPolygon { facet, before, inside, hidden: Vec::new(), outside: Vec::new() });
+            clip.cut.push(CutPolygon {
+                facet,
+                before,
+                inside,
+                hidden: Vec::new(),
+                outside: Vec::new(),
+            });
         }
     }
 
@@ -113,7 +126,9 @@ impl Report {
         inside: &[Item],
     ) -> Option<u32> {
         let Clip { number, cut, hidden, .. } = self.0?;
-        let outside = || list.items.iter().filter(|item| !item.region.is_empty()).map(|item| sorting.facet(item));
+        let outside = || {
+            list.items.iter().filter(|item| !item.region.is_empty()).map(|item| sorting.facet(item))
+        };
         sorting.execution.report(|| Step::Clip {
             clip: number,
             within: list.clip,

@@ -1,10 +1,12 @@
 //! Long lists on all threads.
 //!
-//! In a list, an item is clipped by the clipping polygons before it, in their order; what is inside one goes into that one's
-//! list, and the rest goes on to the next. That asks nothing of other items but whether they have anything left when it is
-//! their turn to clip. And even that hardly matters: if nothing is left of a clipping polygon, those before it have taken
-//! everything inside its outline from the others, too, and a clip finds nothing there. But where a part was cut off in
-//! penetration, the outline encloses more than what there was. Such items are therefore taken first.
+//! In a list, an item is clipped by the clipping polygons before it, in their order; what is inside
+//! one goes into that one's list, and the rest goes on to the next. That asks nothing of other
+//! items but whether they have anything left when it is their turn to clip. And even that hardly
+//! matters: if nothing is left of a clipping polygon, those before it have taken everything inside
+//! its outline from the others, too, and a clip finds nothing there. But where a part was cut off
+//! in penetration, the outline encloses more than what there was. Such items are therefore taken
+//! first.
 //!
 //! In:   a list. Out: its visible polygons.
 //! Cost: as in the plain order; memory: all parts inside clipping polygons at once.
@@ -47,8 +49,13 @@ impl AreaSorting<'_> {
     pub(super) fn spread(&self, list: List) -> Result<Found, Limit> {
         let (mut found, mut long) = (Found::default(), vec![list]);
         while let Some(list) = long.pop() {
-            let lists = if list.items.len() > LONG { self.clip_long(list, &mut found)? } else { vec![list] };
-            let (longer, short) = lists.into_iter().partition(|list: &List| list.items.len() > LONG);
+            let lists = if list.items.len() > LONG {
+                self.clip_long(list, &mut found)?
+            } else {
+                vec![list]
+            };
+            let (longer, short) =
+                lists.into_iter().partition(|list: &List| list.items.len() > LONG);
             long.extend::<Vec<_>>(longer);
             self.treat_short(short, &mut found)?;
         }
@@ -76,7 +83,8 @@ impl AreaSorting<'_> {
         self.execution.workers.for_each_chunk(&mut jobs, 1, |_, jobs| {
             for job in jobs.iter_mut().filter(|_| !is_stopped.load(Ordering::Relaxed)) {
                 let mut worker = Worker::default();
-                let treated = job.lists.drain(..).try_for_each(|list| self.treat(list, &mut worker));
+                let treated =
+                    job.lists.drain(..).try_for_each(|list| self.treat(list, &mut worker));
                 is_stopped.fetch_or(treated.is_err(), Ordering::Relaxed);
                 job.found = treated.map(|()| worker.found);
             }
@@ -125,7 +133,10 @@ impl AreaSorting<'_> {
             let mut open = items.iter_mut().filter(|one| !one.is_done);
             let passed = open.try_for_each(|one| self.pass(one, &clippers, &buckets, &mut worker));
             is_stopped.fetch_or(passed.is_err(), Ordering::Relaxed);
-            results.lock().expect("no thread panics while it adds").push(passed.map(|()| worker.found.counters));
+            results
+                .lock()
+                .expect("no thread panics while it adds")
+                .push(passed.map(|()| worker.found.counters));
         });
         for counters in results.into_inner().expect("no thread panics while it adds") {
             found.counters.add(&counters?);

@@ -4,7 +4,11 @@ use std::sync::{Arc, Mutex};
 use vitral_raster::{CornerPosition, NO_FACET, SamplePattern, Setup, TILE, TILE_PIXELS, Tile};
 
 fn triangle(corners: [[i32; 2]; 3], z: [f32; 3], facet: u32) -> Setup {
-    let [a, b, c] = [0, 1, 2].map(|i| CornerPosition { x: corners[i][0] * 256, y: corners[i][1] * 256, z: z[i] });
+    let [a, b, c] = [0, 1, 2].map(|i| CornerPosition {
+        x: corners[i][0] * 256,
+        y: corners[i][1] * 256,
+        z: z[i],
+    });
     Setup::new([a, b, c], Setup::doubled_area(a, b, c), facet)
 }
 
@@ -18,8 +22,13 @@ impl Observer for Steps {
     }
 }
 
-/// Facet and area of the visible polygons in a picture of this size, in the plain order or on all threads.
-fn visible_in(size: [i32; 2], setups: &[Setup], execution: &Execution) -> (Vec<(u32, f64)>, VisibilityCounters) {
+/// Facet and area of the visible polygons in a picture of this size, in the plain order or on all
+/// threads.
+fn visible_in(
+    size: [i32; 2],
+    setups: &[Setup],
+    execution: &Execution,
+) -> (Vec<(u32, f64)>, VisibilityCounters) {
     let polygons = Polygons::joined(setups, |facet| facet);
     let (sorted, held) = (in_first_order(&polygons), Charge::new(&execution.budget, STAGE));
     let sorting = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: false };
@@ -45,7 +54,9 @@ fn told(size: [i32; 2], setups: &[Setup]) -> (Vec<(u32, f64)>, VisibilityCounter
 
 /// The area of a union: what the picture loses when everything is cut out of it.
 fn union_area(side: i32, setups: &[Setup]) -> f64 {
-    let picture = ConvexOutline::polygon(&[[0, 0], [side, 0], [side, side], [0, side]].map(|c| c.map(|v| v * 256)));
+    let picture = ConvexOutline::polygon(
+        &[[0, 0], [side, 0], [side, side], [0, side]].map(|c| c.map(|v| v * 256)),
+    );
     let (mut left, mut work) = (Region::polygon(&picture), Workspace::default());
     for setup in setups {
         let polygon = ConvexOutline::polygon(&[0, 1, 2].map(|i| [setup.x[i], setup.y[i]]));
@@ -77,8 +88,10 @@ const LARGE: [[i32; 2]; 3] = [[0, 0], [60, 0], [0, 60]];
 
 #[test]
 fn p24_a_polygon_in_front_cuts_a_hole() {
-    let (seen, counters) =
-        visible(&[triangle(LARGE, [0.2; 3], 0), triangle([[10, 10], [20, 10], [10, 20]], [0.8; 3], 1)]);
+    let (seen, counters) = visible(&[
+        triangle(LARGE, [0.2; 3], 0),
+        triangle([[10, 10], [20, 10], [10, 20]], [0.8; 3], 1),
+    ]);
     assert_eq!(seen, [(1, 50.0), (0, 1750.0)]);
     assert_eq!((counters.recursions, counters.splits), (0, 0));
 }
@@ -86,8 +99,10 @@ fn p24_a_polygon_in_front_cuts_a_hole() {
 #[test]
 fn p24_the_preliminary_order_may_err() {
     // The large one comes nearer, but elsewhere: where they overlap, the small one is in front.
-    let (seen, counters) =
-        visible(&[triangle(LARGE, [0.1, 0.9, 0.1], 0), triangle([[2, 2], [12, 2], [2, 12]], [0.5; 3], 1)]);
+    let (seen, counters) = visible(&[
+        triangle(LARGE, [0.1, 0.9, 0.1], 0),
+        triangle([[2, 2], [12, 2], [2, 12]], [0.5; 3], 1),
+    ]);
     let of = |facet: u32| seen.iter().filter(|s| s.0 == facet).map(|s| s.1).sum::<f64>();
     assert!((of(1) - 50.0).abs() < 1e-6 && (of(0) - 1750.0).abs() < 1e-6, "{seen:?}");
     assert!(counters.recursions > 0);
@@ -95,7 +110,8 @@ fn p24_the_preliminary_order_may_err() {
 
 #[test]
 fn p24_penetrating_polygons_are_cut_where_they_meet() {
-    let (seen, counters) = visible(&[triangle(LARGE, [0.2, 0.8, 0.2], 0), triangle(LARGE, [0.8, 0.2, 0.8], 1)]);
+    let (seen, counters) =
+        visible(&[triangle(LARGE, [0.2, 0.8, 0.2], 0), triangle(LARGE, [0.8, 0.2, 0.8], 1)]);
     let of = |facet: u32| seen.iter().filter(|s| s.0 == facet).map(|s| s.1).sum::<f64>();
     // They meet at x = 30: a triangle of 450 square pixels remains right of it.
     assert!((of(0) - 450.0).abs() < 0.1 && (of(1) - 1350.0).abs() < 0.1, "{seen:?}");
@@ -120,7 +136,8 @@ fn one_triangle_is_one_polygon_at_any_size() {
     for [width, height] in [[64, 64], [128, 128], [640, 480], [1280, 960], [16384, 16384]] {
         // Across the whole picture, and beyond its sides.
         for low in [0, -4000] {
-            let setups = [triangle([[low, low], [width, 2], [low, height + 700]], [0.1, 0.5, 0.9], 7)];
+            let setups =
+                [triangle([[low, low], [width, 2], [low, height + 700]], [0.1, 0.5, 0.9], 7)];
             let (seen, counters) = visible_in([width, height], &setups, &Execution::default());
             assert_eq!(seen.len(), 1, "{width} x {height}");
             assert_eq!(counters, VisibilityCounters::default());
@@ -147,7 +164,9 @@ fn a_square_with_a_hole_is_one_polygon_with_two_outlines() {
         let outlines: Vec<Vec<_>> = steps
             .iter()
             .filter_map(|step| match step {
-                Step::Visible { contours, .. } => Some(contours.iter().map(|c| (c.is_hole, c.corners.len())).collect()),
+                Step::Visible { contours, .. } => {
+                    Some(contours.iter().map(|c| (c.is_hole, c.corners.len())).collect())
+                }
                 _ => None,
             })
             .collect();
@@ -155,11 +174,24 @@ fn a_square_with_a_hole_is_one_polygon_with_two_outlines() {
         let Step::NearestFirst { polygons } = &steps[0] else { panic!("{:?}", steps[0]) };
         assert_eq!(polygons.iter().map(|p| p.facet).collect::<Vec<_>>(), [1, 0]);
         assert_eq!(polygons[1].contours.len(), 1, "two triangles of one plane are one polygon");
-        let Step::Clip { clip: 0, within: None, facet: 1, cut, inside, outside, hidden, again: false, .. } = &steps[1]
+        let Step::Clip {
+            clip: 0,
+            within: None,
+            facet: 1,
+            cut,
+            inside,
+            outside,
+            hidden,
+            again: false,
+            ..
+        } = &steps[1]
         else {
             panic!("{:?}", steps[1])
         };
-        assert_eq!((inside.as_slice(), outside.as_slice(), hidden.as_slice()), (&[1][..], &[0][..], &[0][..]));
+        assert_eq!(
+            (inside.as_slice(), outside.as_slice(), hidden.as_slice()),
+            (&[1][..], &[0][..], &[0][..])
+        );
         let lengths = |i: usize| {
             let cut = &cut[i];
             [&cut.before, &cut.inside, &cut.hidden, &cut.outside].map(Vec::len)
@@ -171,7 +203,8 @@ fn a_square_with_a_hole_is_one_polygon_with_two_outlines() {
 
 #[test]
 fn clips_of_an_inside_list_name_the_clip_that_made_it() {
-    let setups = [triangle(LARGE, [0.1, 0.9, 0.1], 0), triangle([[2, 2], [12, 2], [2, 12]], [0.5; 3], 1)];
+    let setups =
+        [triangle(LARGE, [0.1, 0.9, 0.1], 0), triangle([[2, 2], [12, 2], [2, 12]], [0.5; 3], 1)];
     let (_, _, steps) = told([64; 2], &setups);
     let clips: Vec<_> = steps
         .iter()
@@ -197,7 +230,9 @@ fn threads_and_the_plain_order_find_the_same_polygons() {
     for (count, size) in [(40, 200), (600, 30), (320, 80)] {
         let mut setups = random(&mut state, count, 120, size);
         // Something large that lies behind, before and across the others.
-        for (facet, z) in [[0.0, 0.1, 0.0], [0.9, 0.0, 0.5], [1.0, 0.1, 0.1]].into_iter().enumerate() {
+        for (facet, z) in
+            [[0.0, 0.1, 0.0], [0.9, 0.0, 0.5], [1.0, 0.1, 0.1]].into_iter().enumerate()
+        {
             setups.push(triangle([[-900, -900], [900, -700], [-800, 900]], z, 5000 + facet as u32));
         }
         let sorted = |mut seen: Vec<(u32, f64)>| {
@@ -225,10 +260,18 @@ fn threads_and_the_plain_order_find_the_same_polygons() {
     }
 }
 
-/// The facet at each sample of a picture of four tiles and a little, as the visible polygons are drawn.
-fn drawn(viewport: Viewport, pattern: &SamplePattern, polygons: &Polygons<'_>, execution: &Execution) -> TileGrid {
+/// The facet at each sample of a picture of four tiles and a little, as the visible polygons are
+/// drawn.
+fn drawn(
+    viewport: Viewport,
+    pattern: &SamplePattern,
+    polygons: &Polygons<'_>,
+    execution: &Execution,
+) -> TileGrid {
     let (sorted, held) = (in_first_order(polygons), Charge::new(&execution.budget, STAGE));
-    let found = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: false }.run(viewport).unwrap();
+    let found = AreaSorting { execution, polygons: &sorted, held: &held, keeps_outlines: false }
+        .run(viewport)
+        .unwrap();
     let rows = found.visible.rows(viewport);
     let filling = Filling { viewport, pattern, polygons, visible: &found.visible };
     let mut grid = TileGrid::new(viewport, pattern.len());
@@ -245,11 +288,16 @@ fn samples_are_those_of_the_nearest_facets() {
     for (round, size) in [10, 40, 150, 400].into_iter().cycle().take(8).enumerate() {
         let pattern = SamplePattern::new([1, 4][round / 4]);
         let mut setups = random(&mut state, [400, 60][round % 2], 150, size);
-        // Squares of two facets in one plane, whose ids mix, over each other, and some in the plane of others.
+        // Squares of two facets in one plane, whose ids mix, over each other, and some in the plane
+        // of others.
         for facet in 0..4 {
             let [low, high] = [facet * 11, facet * 11 + 50].map(|v| v as i32);
             for (half, tip) in [[high, low], [low, high]].into_iter().enumerate() {
-                let corners = if half == 0 { [[low, low], tip, [high, high]] } else { [[low, low], [high, high], tip] };
+                let corners = if half == 0 {
+                    [[low, low], tip, [high, high]]
+                } else {
+                    [[low, low], [high, high], tip]
+                };
                 let z = if facet < 3 { 0.5 } else { 0.75 };
                 let own = triangle(corners, [z; 3], 9000 + facet + 4 * half as u32);
                 setups.push(Setup { origin: [0, 0], dz_dx: 0.0, dz_dy: 0.0, ..own });
@@ -261,12 +309,18 @@ fn samples_are_those_of_the_nearest_facets() {
             let rows = TILE.min((viewport.height - tile.y) as usize);
             let columns = TILE.min((viewport.width - tile.x) as usize);
             let samples = (0..pattern.len()).flat_map(|s| (0..rows).map(move |row| (s, row)));
-            for (s, row, column) in samples.flat_map(|(s, row)| (0..columns).map(move |column| (s, row, column))) {
+            for (s, row, column) in
+                samples.flat_map(|(s, row)| (0..columns).map(move |column| (s, row, column)))
+            {
                 let [sx, sy] = pattern.position(s);
-                let [x, y] =
-                    [(tile.x as usize + column, sx), (tile.y as usize + row, sy)].map(|(p, o)| p as i32 * 256 + o);
-                let candidates = setups.iter().filter(|setup| setup.covers(x, y)).map(|f| (f.depth(x, y), f.facet));
-                let expected = candidates.reduce(|a, b| if crate::visible::nearer(b, a) { b } else { a });
+                let [x, y] = [(tile.x as usize + column, sx), (tile.y as usize + row, sy)]
+                    .map(|(p, o)| p as i32 * 256 + o);
+                let candidates = setups
+                    .iter()
+                    .filter(|setup| setup.covers(x, y))
+                    .map(|f| (f.depth(x, y), f.facet));
+                let expected =
+                    candidates.reduce(|a, b| if crate::visible::nearer(b, a) { b } else { a });
                 let found = tile.facet[s * TILE_PIXELS + row * TILE + column];
                 assert_eq!(found, expected.map_or(NO_FACET, |e| e.1), "round {round}: {x}, {y}");
             }

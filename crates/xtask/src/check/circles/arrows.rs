@@ -19,25 +19,33 @@ enum Target<'a> {
 
 /// The arrows between the files of these modules, of which the first is the root.
 ///
-/// An arrow ends where a name is defined, not at the modules that hand it on. A `use` with a visibility hands names on
-/// and makes no arrow; code that uses such a name does.
+/// An arrow ends where a name is defined, not at the modules that hand it on. A `use` with a
+/// visibility hands names on and makes no arrow; code that uses such a name does.
 pub(super) fn arrows(modules: &[Module<'_>]) -> Arrows {
     let scope = Scope { modules };
     let mut arrows = Arrows::new();
     for (from, module) in modules.iter().enumerate() {
-        let imports = module.imports.iter().filter(|import| !import.public).map(|import| import.path.clone());
+        let imports =
+            module.imports.iter().filter(|import| !import.public).map(|import| import.path.clone());
         for path in imports.chain(named_paths(&module.code)) {
-            let Some(Target::Item(definer, name)) = scope.resolve(from, &path, &mut Open::new()) else { continue };
+            let Some(Target::Item(definer, name)) = scope.resolve(from, &path, &mut Open::new())
+            else {
+                continue;
+            };
             let to = &modules[definer].file;
             if *to != module.file {
-                arrows.entry((module.file.clone(), to.clone())).or_default().insert(name.to_owned());
+                arrows
+                    .entry((module.file.clone(), to.clone()))
+                    .or_default()
+                    .insert(name.to_owned());
             }
         }
     }
     arrows
 }
 
-/// The paths in code. A single name is a path unless it is a field, a method, a lifetime or a binding.
+/// The paths in code. A single name is a path unless it is a field, a method, a lifetime or a
+/// binding.
 fn named_paths<'a>(code: &[Token<'a>]) -> Vec<Vec<&'a str>> {
     let text = |at: usize| code.get(at).map_or("", |token| token.text);
     let separator = |at: usize| [text(at), text(at + 1)] == [":", ":"];
@@ -49,7 +57,11 @@ fn named_paths<'a>(code: &[Token<'a>]) -> Vec<Vec<&'a str>> {
         let before = |steps: usize| start.checked_sub(steps).map_or("", text);
         let is_field = before(1) == "." && before(2) != ".";
         let continues = before(1) == ":" && before(2) == ":";
-        if !is_name(text(start)) || is_field || continues || matches!(before(1), "'" | "$" if text(start) != "crate") {
+        if !is_name(text(start))
+            || is_field
+            || continues
+            || matches!(before(1), "'" | "$" if text(start) != "crate")
+        {
             continue;
         }
 
@@ -59,7 +71,8 @@ fn named_paths<'a>(code: &[Token<'a>]) -> Vec<Vec<&'a str>> {
             path.push(text(at + 2));
             at += 3;
         }
-        let binds = matches!(before(1), "fn" | "let" | "mut" | "ref") || (text(at) == ":" && !separator(at));
+        let binds = matches!(before(1), "fn" | "let" | "mut" | "ref")
+            || (text(at) == ":" && !separator(at));
         if path.len() > 1 || !binds {
             paths.push(path);
         }
@@ -71,8 +84,8 @@ fn is_name(text: &str) -> bool {
     text != "_" && text.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// The look-ups that wait for an inner one, so that imports in a circle come to an end: module, name, and whether a
-/// module is wanted.
+/// The look-ups that wait for an inner one, so that imports in a circle come to an end: module,
+/// name, and whether a module is wanted.
 type Open<'a> = BTreeSet<(usize, &'a str, bool)>;
 
 /// Looks names up.
@@ -81,7 +94,8 @@ struct Scope<'m, 'a> {
 }
 
 impl<'a> Scope<'_, 'a> {
-    /// Follows a path that stands in module `from`; `None` for a name that no item of the crate has.
+    /// Follows a path that stands in module `from`; `None` for a name that no item of the crate
+    /// has.
     fn resolve(&self, from: usize, path: &[&'a str], open: &mut Open<'a>) -> Option<Target<'a>> {
         let (first, rest) = path.split_first()?;
         let mut target = match *first {
@@ -106,8 +120,15 @@ impl<'a> Scope<'_, 'a> {
         Some(target)
     }
 
-    /// What a name means in a module. Modules and items may share a name: `as_module` says which is wanted.
-    fn look_up(&self, module: usize, name: &'a str, as_module: bool, open: &mut Open<'a>) -> Option<Target<'a>> {
+    /// What a name means in a module. Modules and items may share a name: `as_module` says which is
+    /// wanted.
+    fn look_up(
+        &self,
+        module: usize,
+        name: &'a str,
+        as_module: bool,
+        open: &mut Open<'a>,
+    ) -> Option<Target<'a>> {
         if !open.insert((module, name, as_module)) {
             return None;
         }
@@ -140,7 +161,10 @@ impl<'a> Scope<'_, 'a> {
     fn hands_on_others(&self, module: usize) -> bool {
         let globs = |import: &&Import<'a>| import.binding == Binding::Glob;
         let outside = |import: &Import<'a>| {
-            matches!(self.resolve(module, &import.path, &mut Open::new()), None | Some(Target::Outside))
+            matches!(
+                self.resolve(module, &import.path, &mut Open::new()),
+                None | Some(Target::Outside)
+            )
         };
         self.modules[module].imports.iter().filter(globs).any(outside)
     }

@@ -81,7 +81,10 @@ mod tests {
 
     #[test]
     fn nodes_without_circle_stand_alone() {
-        assert_eq!(components(&[vec![1, 2], vec![2], vec![], vec![3]]), [vec![2], vec![1], vec![0], vec![3]]);
+        assert_eq!(
+            components(&[vec![1, 2], vec![2], vec![], vec![3]]),
+            [vec![2], vec![1], vec![0], vec![3]]
+        );
         assert!(components(&[]).is_empty());
     }
 }

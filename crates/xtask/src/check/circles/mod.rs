@@ -1,8 +1,9 @@
 //! Circles of source files: few files of a crate may import each other.
 //!
-//! An arrow leads from a file to each file of the same crate that defines an item it names, tests excepted. A circle is
-//! a strongly connected component of that graph: each of its files reaches every other one along arrows. A reader can
-//! understand none of them without the rest, so a circle is as small as one thing to read.
+//! An arrow leads from a file to each file of the same crate that defines an item it names, tests
+//! excepted. A circle is a strongly connected component of that graph: each of its files reaches
+//! every other one along arrows. A reader can understand none of them without the rest, so a circle
+//! is as small as one thing to read.
 
 mod arrows;
 mod components;
@@ -47,7 +48,8 @@ struct Exception {
     reason: &'static str,
 }
 
-/// What an exception allows. Paths are below `src`; one that ends in `/` stands for all files of a folder.
+/// What an exception allows. Paths are below `src`; one that ends in `/` stands for all files of a
+/// folder.
 enum Allowed {
     /// Circles that have no file outside of these paths.
     Within(&'static [&'static str]),
@@ -78,8 +80,8 @@ impl Exception {
     }
 }
 
-/// One line for each circle that is too large, and for each exception that no circle needs. The crates are known by
-/// their folders.
+/// One line for each circle that is too large, and for each exception that no circle needs. The
+/// crates are known by their folders.
 pub(super) fn check(crates: &BTreeMap<&str, Sources<'_>>) -> Vec<String> {
     check_with(crates, &EXCEPTIONS)
 }
@@ -87,7 +89,8 @@ pub(super) fn check(crates: &BTreeMap<&str, Sources<'_>>) -> Vec<String> {
 fn check_with(crates: &BTreeMap<&str, Sources<'_>>, exceptions: &[Exception]) -> Vec<String> {
     let mut violations = Vec::new();
     let none = Sources::new();
-    let folders: BTreeSet<&str> = crates.keys().copied().chain(exceptions.iter().map(|e| e.folder)).collect();
+    let folders: BTreeSet<&str> =
+        crates.keys().copied().chain(exceptions.iter().map(|e| e.folder)).collect();
     for folder in folders {
         let graph = Graph::new(crates.get(folder).unwrap_or(&none));
         let own: Vec<&Exception> = exceptions.iter().filter(|e| e.folder == folder).collect();
@@ -114,9 +117,13 @@ fn check_with(crates: &BTreeMap<&str, Sources<'_>>, exceptions: &[Exception]) ->
 fn objection(folder: &str, circle: &[String], exceptions: &[&Exception]) -> Option<String> {
     let start = format!("crates/{folder}/src: {} files import each other", circle.len());
     let hint = format!("`cargo xtask circles {folder}` lists the arrows");
-    let Some(exception) = exceptions.iter().find(|exception| circle.iter().any(|file| exception.covers(file))) else {
+    let Some(exception) =
+        exceptions.iter().find(|exception| circle.iter().any(|file| exception.covers(file)))
+    else {
         let files = enumerate(&circle.iter().collect::<Vec<_>>());
-        return Some(format!("{start}: {files}; cut the circle, {MOST_FILES} is the limit ({hint})"));
+        return Some(format!(
+            "{start}: {files}; cut the circle, {MOST_FILES} is the limit ({hint})"
+        ));
     };
     let strangers: Vec<&String> = circle.iter().filter(|file| !exception.covers(file)).collect();
     (!strangers.is_empty()).then(|| {
@@ -158,18 +165,27 @@ fn list_with(folder: &str, sources: &Sources<'_>, all: bool, exceptions: &[Excep
     // Say what is left out.
     let (mut text, mut hubs) = (String::new(), Vec::new());
     for exception in exceptions.iter().filter(|e| e.folder == folder && !e.hubs().is_empty()) {
-        text += &format!("{folder}: without the arrows to {}: {}\n", exception.hubs().join(", "), exception.reason);
+        text += &format!(
+            "{folder}: without the arrows to {}: {}\n",
+            exception.hubs().join(", "),
+            exception.reason
+        );
         hubs.extend(exception.hubs());
     }
 
     // List each circle, with the reason if it is large and may be.
     let circles = graph.circles(&hubs);
     for circle in &circles {
-        let mut allowing = exceptions.iter().filter(|e| e.folder == folder && circle.iter().all(|file| e.covers(file)));
+        let mut allowing = exceptions
+            .iter()
+            .filter(|e| e.folder == folder && circle.iter().all(|file| e.covers(file)));
         let exception = allowing.next().filter(|_| circle.len() > MOST_FILES);
         let reason = exception.map_or(String::new(), |exception| format!(": {}", exception.reason));
         text += &format!("{folder}: a circle of {} files{reason}\n", circle.len());
-        let inside = graph.arrows.iter().filter(|((from, to), _)| circle.contains(from) && circle.contains(to));
+        let inside = graph
+            .arrows
+            .iter()
+            .filter(|((from, to), _)| circle.contains(from) && circle.contains(to));
         text.extend(inside.map(line));
     }
     if circles.is_empty() {
@@ -202,7 +218,8 @@ impl Graph {
     /// The files of each circle, the largest first; arrows to `hubs` are not followed.
     fn circles(&self, hubs: &[&str]) -> Vec<Vec<String>> {
         // Number the files.
-        let files: BTreeSet<&str> = self.arrows.keys().flat_map(|(from, to)| [from.as_str(), to]).collect();
+        let files: BTreeSet<&str> =
+            self.arrows.keys().flat_map(|(from, to)| [from.as_str(), to]).collect();
         let files: Vec<&str> = files.into_iter().collect();
         let numbers: BTreeMap<&str, usize> = files.iter().copied().zip(0..).collect();
         let mut successors = vec![Vec::new(); files.len()];
@@ -210,8 +227,11 @@ impl Graph {
             successors[numbers[from.as_str()]].push(numbers[to.as_str()]);
         }
 
-        let components = components::components(&successors).into_iter().filter(|component| component.len() > 1);
-        let named = |component: Vec<usize>| component.into_iter().map(|number| files[number].to_owned()).collect();
+        let components =
+            components::components(&successors).into_iter().filter(|component| component.len() > 1);
+        let named = |component: Vec<usize>| {
+            component.into_iter().map(|number| files[number].to_owned()).collect()
+        };
         let mut circles: Vec<Vec<String>> = components.map(named).collect();
         circles.sort_by_key(|circle| (Reverse(circle.len()), circle[0].clone()));
         circles

@@ -54,14 +54,21 @@ struct Reader<'s, 'a> {
 }
 
 impl<'a> Reader<'_, 'a> {
-    /// Reads a file as a module; `folder` is where the files of its children are, with `/` at the end unless empty.
+    /// Reads a file as a module; `folder` is where the files of its children are, with `/` at the
+    /// end unless empty.
     fn read_file(&mut self, file: String, folder: String, parent: usize) -> usize {
         let text = self.sources.get(file.as_str()).copied().unwrap_or_default();
         self.read_module(&without_tests(&tokens(text)), file, &folder, parent)
     }
 
     /// Reads a module from the tokens between its braces, or of its file.
-    fn read_module(&mut self, code: &[Token<'a>], file: String, folder: &str, parent: usize) -> usize {
+    fn read_module(
+        &mut self,
+        code: &[Token<'a>],
+        file: String,
+        folder: &str,
+        parent: usize,
+    ) -> usize {
         let index = self.modules.len();
         self.modules.push(Module { file: file.clone(), parent, ..Module::default() });
         let mut at = 0;
@@ -74,11 +81,17 @@ impl<'a> Reader<'_, 'a> {
             if let (Kind::Module, Some(name)) = (item.kind, item.name) {
                 let below = format!("{folder}{name}/");
                 let child = match tokens.iter().position(|token| token.text == "{") {
-                    Some(open) => self.read_module(&tokens[open + 1..tokens.len() - 1], file.clone(), &below, index),
+                    Some(open) => self.read_module(
+                        &tokens[open + 1..tokens.len() - 1],
+                        file.clone(),
+                        &below,
+                        index,
+                    ),
                     None => {
                         let folder_file = format!("{below}mod.rs");
                         let is_folder = self.sources.contains_key(folder_file.as_str());
-                        let file = if is_folder { folder_file } else { format!("{folder}{name}.rs") };
+                        let file =
+                            if is_folder { folder_file } else { format!("{folder}{name}.rs") };
                         self.read_file(file, below, index)
                     }
                 };
@@ -123,7 +136,8 @@ impl<'a> Item<'a> {
                 ("#", "!") => 2 + group_length(&tokens[at + 2..]),
                 ("#", _) => 1 + group_length(&tokens[at + 1..]),
                 ("pub", "(") => 1 + group_length(&tokens[at + 1..]),
-                ("pub" | "unsafe" | "async", _) | ("const" | "extern", "fn" | "unsafe" | "async" | "extern") => 1,
+                ("pub" | "unsafe" | "async", _)
+                | ("const" | "extern", "fn" | "unsafe" | "async" | "extern") => 1,
                 _ => break,
             };
         }
@@ -160,7 +174,8 @@ fn read_code<'a>(tokens: &[Token<'a>], module: &mut Module<'a>) {
     let mut at = 0;
     while at < tokens.len() {
         // `use<'a>` in a type is no import.
-        let is_import = tokens[at].text == "use" && tokens.get(at + 1).is_some_and(|next| next.text != "<");
+        let is_import =
+            tokens[at].text == "use" && tokens.get(at + 1).is_some_and(|next| next.text != "<");
         if !is_import {
             module.code.push(tokens[at]);
             at += 1;

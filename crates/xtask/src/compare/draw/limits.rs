@@ -1,4 +1,5 @@
-//! Whether limits hold: `--time-limit`, `--max-memory` and `--max-segments` on meshes that are too much for them.
+//! Whether limits hold: `--time-limit`, `--max-memory` and `--max-segments` on meshes that are too
+//! much for them.
 
 use super::process::watch;
 use super::subjects::{folder, generated};
@@ -59,19 +60,40 @@ pub(super) fn measure(vitral: &Path) -> Result<Vec<Held>, String> {
 fn held(vitral: &Path, mesh: &'static str, path: &Path, options: &str) -> Result<Held, String> {
     let drawing = folder()?.join("limits.svg");
     let mut words = command(vitral);
-    words.arg("draw").arg(path).arg("-o").arg(&drawing).args(options.split(' ')).args(["--quiet", "--no-config"]);
+    words
+        .arg("draw")
+        .arg(path)
+        .arg("-o")
+        .arg(&drawing)
+        .args(options.split(' '))
+        .args(["--quiet", "--no-config"]);
     let options = options.to_owned();
     let Some(done) = watch(&mut words, KILL_AFTER)? else {
         let said = format!("killed after {KILL_AFTER} s");
-        return Ok(Held { mesh, options, code: None, seconds: KILL_AFTER, peak: None, said, kept: false });
+        return Ok(Held {
+            mesh,
+            options,
+            code: None,
+            seconds: KILL_AFTER,
+            peak: None,
+            said,
+            kept: false,
+        });
     };
 
-    // A command that a limit stops says so with code 7; one that ends in time and memory has kept to it, too.
+    // A command that a limit stops says so with code 7; one that ends in time and memory has kept
+    // to it, too.
     let code = done.status.code();
     let most = (MEMORY.0 << 20) as f64 * (1.0 + MEMORY.1);
     let kept = matches!(code, Some(0 | 7))
         && (!options.contains("--time-limit") || done.seconds <= TIME.0 + TIME.1)
         && (!options.contains("--max-memory") || done.peak.is_none_or(|peak| peak as f64 <= most));
-    let said = done.output.lines().rev().find(|line| !line.starts_with("hint:")).unwrap_or_default().to_owned();
+    let said = done
+        .output
+        .lines()
+        .rev()
+        .find(|line| !line.starts_with("hint:"))
+        .unwrap_or_default()
+        .to_owned();
     Ok(Held { mesh, options, code, seconds: done.seconds, peak: done.peak, said, kept })
 }

@@ -1,8 +1,10 @@
-//! `cargo xtask compare draw`: `vitral draw` and other programs that make vector drawings of meshes, file to SVG.
+//! `cargo xtask compare draw`: `vitral draw` and other programs that make vector drawings of
+//! meshes, file to SVG.
 //!
-//! Peers: Blender's Line Art (the `bpy` package), OCCT's hidden-line removal (the `cadquery-ocp-novtk` package) and gl2ps over
-//! Mesa's OSMesa. Those that cannot be installed are told, with the way to install them. Every figure is that of a whole
-//! process; the programs run in turns, and the median over the rounds counts.
+//! Peers: Blender's Line Art (the `bpy` package), OCCT's hidden-line removal (the
+//! `cadquery-ocp-novtk` package) and gl2ps over Mesa's OSMesa. Those that cannot be installed are
+//! told, with the way to install them. Every figure is that of a whole process; the programs run in
+//! turns, and the median over the rounds counts.
 
 mod limits;
 mod process;
@@ -10,7 +12,9 @@ mod programs;
 mod report;
 mod subjects;
 
-use crate::shell::{Outcome, cargo, command, output, repository, run as run_command, target_folder};
+use crate::shell::{
+    Outcome, cargo, command, output, repository, run as run_command, target_folder,
+};
 use programs::{Figures, Program, Work, peers};
 use report::Report;
 use std::collections::BTreeMap;
@@ -72,7 +76,9 @@ fn read(options: &[&str]) -> Result<Choices, String> {
             "--quick" => choices.rounds = 1,
             "--no-peers" => choices.with_peers = false,
             "--vitral" => {
-                let path = words.next().ok_or("compare draw: --vitral needs the path of a built command")?;
+                let path = words
+                    .next()
+                    .ok_or("compare draw: --vitral needs the path of a built command")?;
                 choices.vitral = Some(PathBuf::from(path));
             }
             other => {
@@ -87,7 +93,8 @@ fn read(options: &[&str]) -> Result<Choices, String> {
 
 /// Draws with every program that does such work, in turns; gives each program's median.
 ///
-/// `slow` holds, for a program and a kind of work, the largest knot that it did not end: larger ones are not tried.
+/// `slow` holds, for a program and a kind of work, the largest knot that it did not end: larger
+/// ones are not tried.
 fn in_turns<'a>(
     programs: &'a [Program],
     subject: &Subject,
@@ -106,10 +113,14 @@ fn in_turns<'a>(
                     continue;
                 }
                 turn += 1;
-                if !result.as_ref().is_ok_and(|done| done.iter().all(|figures| figures.seconds < ONCE_ABOVE)) {
+                if !result
+                    .as_ref()
+                    .is_ok_and(|done| done.iter().all(|figures| figures.seconds < ONCE_ABOVE))
+                {
                     continue;
                 }
-            } else if let (Some(triangles), Some(&least)) = (subject.knot, slow.get(&(program.name, work)))
+            } else if let (Some(triangles), Some(&least)) =
+                (subject.knot, slow.get(&(program.name, work)))
                 && triangles > least
             {
                 let why = format!("not tried: {} triangles are too many", subjects::grouped(least));
@@ -148,12 +159,14 @@ fn median(mut rounds: Vec<Figures>) -> Figures {
     Figures { peak, ..rounds.swap_remove(middle) }
 }
 
-/// Writes the report to `benches/results`; what stands under `## Notes` in a file of the same day stays.
+/// Writes the report to `benches/results`; what stands under `## Notes` in a file of the same day
+/// stays.
 fn write(report: &str) -> Outcome {
     let date = output(command("date").arg("+%F"))?;
     let path = repository().join(format!("benches/results/{}-draw.md", date.trim()));
     let notes = std::fs::read_to_string(&path).ok().and_then(|old| notes(&old)).unwrap_or_default();
-    std::fs::write(&path, format!("{report}{notes}")).map_err(|e| format!("{}: {e}", path.display()))
+    std::fs::write(&path, format!("{report}{notes}"))
+        .map_err(|e| format!("{}: {e}", path.display()))
 }
 
 /// The part of a results file that was written by hand, with a blank line before it.
@@ -168,7 +181,10 @@ mod tests {
     #[test]
     fn options_are_read() {
         let choices = read(&["--quick", "--vitral", "a/vitral"]).unwrap();
-        assert_eq!((choices.rounds, choices.with_peers, choices.vitral), (1, true, Some(PathBuf::from("a/vitral"))));
+        assert_eq!(
+            (choices.rounds, choices.with_peers, choices.vitral),
+            (1, true, Some(PathBuf::from("a/vitral")))
+        );
         assert!(read(&["--vitral"]).is_err() && read(&["--fast"]).is_err());
     }
 

@@ -1,4 +1,5 @@
-//! One process from its start to its end: seconds, processor time and the most memory, within a limit.
+//! One process from its start to its end: seconds, processor time and the most memory, within a
+//! limit.
 
 use crate::shell::target_folder;
 use crate::spent::Stopwatch;
@@ -28,14 +29,19 @@ pub(super) struct Finished {
 pub(super) fn watch(command: &mut Command, limit: f64) -> Result<Option<Finished>, String> {
     // Files take any amount of output without a reader.
     let path = target_folder().join("compare-draw/output.txt");
-    let text = |error: std::io::Error| format!("{}: {error}", command.get_program().to_string_lossy());
+    let text =
+        |error: std::io::Error| format!("{}: {error}", command.get_program().to_string_lossy());
     let file = File::create(&path).map_err(text)?;
     let same = file.try_clone().map_err(text)?;
 
     // Look at the process until it ends.
     let (watch, start) = (Stopwatch::start(), Instant::now());
-    let mut child =
-        command.stdin(Stdio::null()).stdout(file).stderr(same).spawn().map_err(|e| format!("it cannot start: {e}"))?;
+    let mut child = command
+        .stdin(Stdio::null())
+        .stdout(file)
+        .stderr(same)
+        .spawn()
+        .map_err(|e| format!("it cannot start: {e}"))?;
     let mut peak = None;
     let status = loop {
         peak = resident(&child).max(peak);
@@ -77,7 +83,10 @@ mod tests {
 
     #[test]
     fn the_high_water_mark_is_in_kibibytes() {
-        assert_eq!(high_water_mark("Name:\tcat\nVmHWM:\t    1200 kB\nVmRSS:\t 4 kB\n"), Some(1_228_800));
+        assert_eq!(
+            high_water_mark("Name:\tcat\nVmHWM:\t    1200 kB\nVmRSS:\t 4 kB\n"),
+            Some(1_228_800)
+        );
         assert_eq!(high_water_mark("Name:\tcat\n"), None);
     }
 }

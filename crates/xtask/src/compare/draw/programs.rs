@@ -40,7 +40,9 @@ impl Work {
         match self {
             Self::AllEdges => "All edges",
             Self::Creases => "Contours and creases alone",
-            Self::Lines => "The usual lines: contours, boundaries, creases, materials and intersections",
+            Self::Lines => {
+                "The usual lines: contours, boundaries, creases, materials and intersections"
+            }
             Self::Partition => "Filled partition",
             Self::Filled => "Filled, with the usual seams",
             Self::LinesAndFill => "Filled regions and the usual lines",
@@ -104,7 +106,8 @@ type Tasks = &'static [(Work, &'static str)];
 /// The name of a program and its script's tasks.
 type Variant = (&'static str, Tasks);
 
-const LINE_ART: [(Work, &str); 3] = [(Work::AllEdges, "all"), (Work::Creases, "creases"), (Work::Lines, "lines")];
+const LINE_ART: [(Work, &str); 3] =
+    [(Work::AllEdges, "all"), (Work::Creases, "creases"), (Work::Lines, "lines")];
 const OCCT_EXACT: [(Work, &str); 1] = [(Work::AllEdges, "exact")];
 const OCCT_POLYGONS: [(Work, &str); 1] = [(Work::AllEdges, "polygons")];
 
@@ -135,14 +138,29 @@ impl Program {
         match &self.kind {
             Kind::Vitral(path) => {
                 let mut words = command(path);
-                words.arg("draw").arg(&subject.model).arg("-o").arg(drawing).args(work.options().split(' '));
-                words.args(["--stats", "--quiet", "--no-config", "--time-limit", &LIMIT.to_string()]);
+                words
+                    .arg("draw")
+                    .arg(&subject.model)
+                    .arg("-o")
+                    .arg(drawing)
+                    .args(work.options().split(' '));
+                words.args([
+                    "--stats",
+                    "--quiet",
+                    "--no-config",
+                    "--time-limit",
+                    &LIMIT.to_string(),
+                ]);
                 Some(words)
             }
             Kind::Script { python, script, tasks } => {
                 let task = tasks.iter().find(|(known, _)| *known == work)?.1;
                 let mut words = command(python);
-                words.arg(format!("benches/peers/draw/{script}")).arg(&subject.mesh).arg(drawing).arg(task);
+                words
+                    .arg(format!("benches/peers/draw/{script}"))
+                    .arg(&subject.mesh)
+                    .arg(drawing)
+                    .arg(task);
                 Some(words)
             }
             Kind::Gl2ps { program, sort } => {
@@ -163,12 +181,18 @@ impl Program {
 /// Reads what a program tells and the drawing that it wrote.
 fn figures(finished: &Finished, drawing: &Path) -> Result<Figures, String> {
     if !finished.status.success() {
-        let last = finished.output.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no message");
+        let last = finished
+            .output
+            .lines()
+            .rev()
+            .find(|line| !line.trim().is_empty())
+            .unwrap_or("no message");
         return Err(format!("{:.1} s, {}: {last}", finished.seconds, finished.status));
     }
     let text = &finished.output;
     let object = text.find('{').zip(text.rfind('}')).and_then(|(from, to)| text.get(from..=to));
-    let told: Value = object.and_then(|object| serde_json::from_str(object).ok()).unwrap_or(Value::Null);
+    let told: Value =
+        object.and_then(|object| serde_json::from_str(object).ok()).unwrap_or(Value::Null);
     let svg = std::fs::read(drawing).map_err(|e| format!("no drawing: {e}"))?;
     let polygons = count(&svg, b"<polygon ") as u64;
     Ok(Figures {
@@ -177,7 +201,10 @@ fn figures(finished: &Finished, drawing: &Path) -> Result<Figures, String> {
         draw: told["seconds"]["draw"].as_f64(),
         peak: finished.peak,
         bytes: svg.len() as u64,
-        lines: told["polylines"].as_u64().or_else(|| told["lines"].as_u64()).filter(|&lines| lines > 0),
+        lines: told["polylines"]
+            .as_u64()
+            .or_else(|| told["lines"].as_u64())
+            .filter(|&lines| lines > 0),
         regions: told["regions"].as_u64().or(Some(polygons)).filter(|&regions| regions > 0),
     })
 }
@@ -187,7 +214,8 @@ fn count(text: &[u8], word: &[u8]) -> usize {
     text.windows(word.len()).filter(|window| window == &word).count()
 }
 
-/// The peers that are there or could be installed; what is missing is told with the way to install it.
+/// The peers that are there or could be installed; what is missing is told with the way to install
+/// it.
 pub(super) fn peers() -> (Vec<Program>, Vec<String>) {
     let (mut programs, mut missing) = (Vec::new(), Vec::new());
     match gl2ps() {
@@ -210,15 +238,16 @@ pub(super) fn peers() -> (Vec<Program>, Vec<String>) {
     ];
     for (module, package, script, variants) in scripts {
         match python_package(&python, module, package) {
-            Ok(()) => {
-                programs.extend(variants.iter().map(|&(name, tasks)| Program {
-                    name,
-                    kind: Kind::Script { python: python.clone(), script, tasks },
-                }))
-            }
+            Ok(()) => programs.extend(variants.iter().map(|&(name, tasks)| Program {
+                name,
+                kind: Kind::Script { python: python.clone(), script, tasks },
+            })),
             Err(why) => {
                 let names: Vec<_> = variants.iter().map(|variant| variant.0).collect();
-                missing.push(format!("{} is not there (`pip install {package} numpy`): {why}", names.join(", ")));
+                missing.push(format!(
+                    "{} is not there (`pip install {package} numpy`): {why}",
+                    names.join(", ")
+                ));
             }
         }
     }
@@ -230,7 +259,12 @@ fn gl2ps() -> Result<PathBuf, String> {
     debian_packages(&["libgl2ps-dev", "libosmesa6-dev", "gcc", "libc6-dev"])?;
     let program = folder()?.join("gl2ps");
     let source = repository().join("benches/peers/draw/gl2ps.c");
-    run(command("cc").arg("-O2").arg(source).arg("-o").arg(&program).args(["-lgl2ps", "-lOSMesa", "-lm"]))?;
+    run(command("cc")
+        .arg("-O2")
+        .arg(source)
+        .arg("-o")
+        .arg(&program)
+        .args(["-lgl2ps", "-lOSMesa", "-lm"]))?;
     Ok(program)
 }
 
@@ -260,9 +294,18 @@ mod tests {
     #[test]
     fn a_program_does_its_own_works() {
         let mesh = PathBuf::from("a.ply");
-        let subject =
-            Subject { name: String::new(), model: mesh.clone(), mesh, closed: true, knot: None, works: &Work::ALL };
-        let gl2ps = Program { name: "gl2ps", kind: Kind::Gl2ps { program: PathBuf::from("gl2ps"), sort: "bsp" } };
+        let subject = Subject {
+            name: String::new(),
+            model: mesh.clone(),
+            mesh,
+            closed: true,
+            knot: None,
+            works: &Work::ALL,
+        };
+        let gl2ps = Program {
+            name: "gl2ps",
+            kind: Kind::Gl2ps { program: PathBuf::from("gl2ps"), sort: "bsp" },
+        };
         assert!(gl2ps.command(&subject, Work::AllEdges, Path::new("a.svg")).is_none());
         let words = gl2ps.command(&subject, Work::Partition, Path::new("a.svg")).unwrap();
         let words: Vec<_> = words.get_args().map(|word| word.to_string_lossy()).collect();

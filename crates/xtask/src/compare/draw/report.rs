@@ -26,7 +26,11 @@ impl Report {
         let mut head = format!(
             "# Vector drawings, file to SVG\n\n`cargo xtask compare draw`: whole processes, {}, in turns; drawings that take more than \
              5 s are made once. Isometric view, parallel projection.\n\n{}",
-            if rounds == 1 { "one round".to_owned() } else { format!("the median of {rounds} rounds") },
+            if rounds == 1 {
+                "one round".to_owned()
+            } else {
+                format!("the median of {rounds} rounds")
+            },
             machine()
         );
         for line in missing {
@@ -36,15 +40,24 @@ impl Report {
     }
 
     /// Adds one row.
-    pub(super) fn add(&mut self, work: Work, subject: &Subject, program: &str, result: Result<Figures, String>) {
+    pub(super) fn add(
+        &mut self,
+        work: Work,
+        subject: &Subject,
+        program: &str,
+        result: Result<Figures, String>,
+    ) {
         let rows = self.rows.entry(work).or_default();
         let _ = match &result {
             Ok(figures) => writeln!(rows, "| {} | {program} |{}", subject.name, cells(figures)),
-            Err(why) => writeln!(rows, "| {} | {program} | – | – | – | – | – | – | {why} |", subject.name),
+            Err(why) => {
+                writeln!(rows, "| {} | {program} | – | – | – | – | – | – | {why} |", subject.name)
+            }
         };
 
         // Keep the seconds of knots.
-        let step = subject.knot.and_then(|triangles| KNOTS.iter().position(|&known| known == triangles));
+        let step =
+            subject.knot.and_then(|triangles| KNOTS.iter().position(|&known| known == triangles));
         if let Some(step) = step {
             let programs = self.growth.entry(work).or_default();
             let known = programs.iter().position(|(name, _)| name == program);
@@ -52,7 +65,8 @@ impl Report {
                 programs.push((program.to_owned(), [None; 4]));
                 programs.len() - 1
             });
-            programs[place].1[step] = result.ok().map(|figures| figures.processor.unwrap_or(figures.seconds));
+            programs[place].1[step] =
+                result.ok().map(|figures| figures.processor.unwrap_or(figures.seconds));
         }
     }
 
@@ -72,8 +86,7 @@ impl Report {
     pub(super) fn finish(&self) -> String {
         let mut text = self.head.clone();
         for (work, rows) in &self.rows {
-            let head =
-                "| model | program | s | processor s | drawing alone, s | memory, MB | SVG, MB | lines; regions |";
+            let head = "| model | program | s | processor s | drawing alone, s | memory, MB | SVG, MB | lines; regions |";
             let _ = write!(
                 text,
                 "\n## {}\n\n`vitral draw {}`\n\n{head} why not |\n|---|---|---:|---:|---:|---:|---:|---:|---|\n{rows}",
@@ -85,20 +98,21 @@ impl Report {
         text += "| work | program | 1 000 to 10 000 | to 100 000 | to 1 000 000 | 10 000 to 1 000 000 |\n|---|---|---:|---:|---:|---:|\n";
         for (work, programs) in &self.growth {
             for (program, seconds) in programs {
-                let steps = [(0, 1), (1, 2), (2, 3), (1, 3)].map(|(from, to)| exponent(seconds, from, to));
+                let steps =
+                    [(0, 1), (1, 2), (2, 3), (1, 3)].map(|(from, to)| exponent(seconds, from, to));
                 let _ = writeln!(text, "| {} | {program} | {} |", work.title(), steps.join(" | "));
             }
         }
         text += "\n## Limits\n\nWithin .5 s of `--time-limit`, within 10 % of `--max-memory` in resident memory; code 7 says that a limit was reached.\n\n";
-        text +=
-            "| mesh | `vitral draw` | code | s | memory, MB | kept | last line |\n|---|---|---:|---:|---:|---|---|\n";
+        text += "| mesh | `vitral draw` | code | s | memory, MB | kept | last line |\n|---|---|---:|---:|---:|---|---|\n";
         text + &self.limits
     }
 }
 
 /// The cells of one drawing.
 fn cells(figures: &Figures) -> String {
-    let seconds = |seconds: Option<f64>| seconds.map_or("–".to_owned(), |seconds| format!("{seconds:.2}"));
+    let seconds =
+        |seconds: Option<f64>| seconds.map_or("–".to_owned(), |seconds| format!("{seconds:.2}"));
     let number = |number: Option<u64>| number.map_or("–".to_owned(), grouped);
     format!(
         " {} | {} | {} | {} | {:.2} | {}; {} | |",
@@ -132,11 +146,17 @@ fn machine() -> String {
     let read = |path: &str| std::fs::read_to_string(path).unwrap_or_default();
     let after = |text: &str, key: &str| {
         let line = text.lines().find(|line| line.starts_with(key)).unwrap_or_default();
-        line.split_once([':', '=']).map_or("unknown", |(_, value)| value).trim().trim_matches('"').to_owned()
+        line.split_once([':', '='])
+            .map_or("unknown", |(_, value)| value)
+            .trim()
+            .trim_matches('"')
+            .to_owned()
     };
-    let (cpu, memory, system) = (read("/proc/cpuinfo"), read("/proc/meminfo"), read("/etc/os-release"));
+    let (cpu, memory, system) =
+        (read("/proc/cpuinfo"), read("/proc/meminfo"), read("/etc/os-release"));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let kibibytes: f64 = after(&memory, "MemTotal").trim_end_matches("kB").trim().parse().unwrap_or(0.0);
+    let kibibytes: f64 =
+        after(&memory, "MemTotal").trim_end_matches("kB").trim().parse().unwrap_or(0.0);
     let load: Vec<String> = read("/proc/loadavg").split(' ').take(3).map(str::to_owned).collect();
     let rust = output(command("rustc").arg("--version")).unwrap_or_default();
     format!(
@@ -189,12 +209,18 @@ mod tests {
         report.add(Work::Creases, &subject, "vitral", Ok(figures));
         report.add(Work::Creases, &subject, "other", Err("killed after 60 s".to_owned()));
         let text = report.finish();
-        assert!(text.contains("| knot | vitral | 1.50 | – | 0.25 | 12 | 2.50 | 1 234; – | |"), "{text}");
-        assert!(text.contains("* X is not there"), "{text}");
-        let table =
-            text.lines().skip_while(|line| !line.starts_with("| model")).take_while(|line| line.starts_with('|'));
         assert!(
-            table.clone().count() == 4 && table.map(|line| line.matches('|').count()).all(|bars| bars == 10),
+            text.contains("| knot | vitral | 1.50 | – | 0.25 | 12 | 2.50 | 1 234; – | |"),
+            "{text}"
+        );
+        assert!(text.contains("* X is not there"), "{text}");
+        let table = text
+            .lines()
+            .skip_while(|line| !line.starts_with("| model"))
+            .take_while(|line| line.starts_with('|'));
+        assert!(
+            table.clone().count() == 4
+                && table.map(|line| line.matches('|').count()).all(|bars| bars == 10),
             "{text}"
         );
     }

@@ -47,18 +47,41 @@ pub(super) fn subjects() -> Result<Vec<Subject>, String> {
     for triangles in KNOTS {
         let mesh = generated("knot", triangles)?;
         let name = format!("torus knot, {}", grouped(triangles));
-        subjects.push(Subject { name, model: mesh.clone(), mesh, closed: true, knot: Some(triangles), works: &ALL });
+        subjects.push(Subject {
+            name,
+            model: mesh.clone(),
+            mesh,
+            closed: true,
+            knot: Some(triangles),
+            works: &ALL,
+        });
     }
-    for (kind, triangles, name) in [("slivers", 3_000, "crossing slivers"), ("small", 100_000, "random triangles")] {
+    for (kind, triangles, name) in
+        [("slivers", 3_000, "crossing slivers"), ("small", 100_000, "random triangles")]
+    {
         let mesh = generated(kind, triangles)?;
         let works = &[Work::AllEdges, Work::Partition, Work::Filled];
         let name = format!("{} {name}", grouped(triangles));
-        subjects.push(Subject { name, model: mesh.clone(), mesh, closed: false, knot: None, works });
+        subjects.push(Subject {
+            name,
+            model: mesh.clone(),
+            mesh,
+            closed: false,
+            knot: None,
+            works,
+        });
     }
     let glass = generated("glass", 10_000)?;
     let works = &[Work::ShadowsAndGlass];
     let name = "knot, floor and glass ball, 10 000".to_owned();
-    subjects.push(Subject { name, model: glass.clone(), mesh: glass, closed: false, knot: None, works });
+    subjects.push(Subject {
+        name,
+        model: glass.clone(),
+        mesh: glass,
+        closed: false,
+        knot: None,
+        works,
+    });
     for (name, path, works) in MODELS {
         let model = repository().join(path);
         if !model.exists() {
@@ -69,7 +92,14 @@ pub(super) fn subjects() -> Result<Vec<Subject>, String> {
         if !mesh.exists() {
             output(command("python3").args([MESHES, "triangles"]).arg(&model).arg(&mesh))?;
         }
-        subjects.push(Subject { name: name.to_owned(), model, mesh, closed: false, knot: None, works });
+        subjects.push(Subject {
+            name: name.to_owned(),
+            model,
+            mesh,
+            closed: false,
+            knot: None,
+            works,
+        });
     }
     Ok(subjects)
 }

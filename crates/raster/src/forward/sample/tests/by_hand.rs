@@ -17,7 +17,11 @@ fn bilinear_between_four_texels() {
     ] {
         assert!(close(red(&t, s, v), expected), "({s}, {v})");
     }
-    assert_eq!(at(&t, [1.0, 0.5, 0.0, 2.0], 0.0), at(&t, [0.5, 0.25, 0.0, 1.0], 0.0), "divided by q");
+    assert_eq!(
+        at(&t, [1.0, 0.5, 0.0, 2.0], 0.0),
+        at(&t, [0.5, 0.25, 0.0, 1.0], 0.0),
+        "divided by q"
+    );
 }
 
 #[test]
@@ -61,8 +65,15 @@ fn border_texels_replace_the_border_colour() {
         assert!(close(red(&t, 0.5, 9.0), 150.0), "t does not count");
     }
     let image = level([4, 1, 1], 1, reds(&[0, 100, 200, 60]));
-    let t = texture(TextureKind::One, vec![vec![image]], Sampler { border: [1.0; 4], ..linear(Wrap::ClampToBorder) });
-    assert!(close(red(&t, -9.0, 0.0), 0.0), "the border's own texel, as far as the coordinate is clamped");
+    let t = texture(
+        TextureKind::One,
+        vec![vec![image]],
+        Sampler { border: [1.0; 4], ..linear(Wrap::ClampToBorder) },
+    );
+    assert!(
+        close(red(&t, -9.0, 0.0), 0.0),
+        "the border's own texel, as far as the coordinate is clamped"
+    );
 }
 
 #[test]
@@ -99,14 +110,23 @@ fn srgb_is_decoded_before_filtering_and_alpha_is_not() {
 
 #[test]
 fn floats_are_not_clamped() {
-    let t = flat(2, 1, Texels::RgbaF32(vec![[-2.0, 1e9, 0.5, 3.0], [4.0, 1e9, 0.5, 5.0]]), linear(Wrap::ClampToEdge));
+    let t = flat(
+        2,
+        1,
+        Texels::RgbaF32(vec![[-2.0, 1e9, 0.5, 3.0], [4.0, 1e9, 0.5, 5.0]]),
+        linear(Wrap::ClampToEdge),
+    );
     assert_eq!(at(&t, [0.5, 0.5, 0.0, 1.0], 0.0), [1.0, 1e9, 0.5, 4.0]);
 }
 
 /// Levels 8x8, 4x4, 2x2, 1x1 whose red is the level's number.
 fn pyramid(sampler: Sampler) -> Texture {
     let levels = [8, 4, 2, 1].into_iter().enumerate().map(|(n, side): (usize, u32)| {
-        level([side, side, 1], 0, Texels::RgbaF32(vec![[n as f32, 0.0, 0.0, 1.0]; (side * side) as usize]))
+        level(
+            [side, side, 1],
+            0,
+            Texels::RgbaF32(vec![[n as f32, 0.0, 0.0, 1.0]; (side * side) as usize]),
+        )
     });
     texture(TextureKind::Two, vec![levels.collect()], sampler)
 }
@@ -142,7 +162,12 @@ fn magnification_ends_at_a_half_for_a_linear_filter_over_nearest_levels() {
     assert!(same(chosen(Filter::Linear, Filter::LinearMipmapLinear), [0.3, 0.5, 0.75]));
     // Which filter it is that reads level 0.
     let two = |mag, min, lod| {
-        let t = flat(2, 1, reds(&[0, 200]), Sampler { mag, min, wrap: [Wrap::ClampToEdge; 3], ..NEAREST });
+        let t = flat(
+            2,
+            1,
+            reds(&[0, 200]),
+            Sampler { mag, min, wrap: [Wrap::ClampToEdge; 3], ..NEAREST },
+        );
         (at(&t, [0.4, 0.5, 0.0, 1.0], lod)[0] * 255.0).round()
     };
     assert_eq!(two(Filter::Linear, Filter::Nearest, 0.0), 60.0);
@@ -155,26 +180,41 @@ fn magnification_ends_at_a_half_for_a_linear_filter_over_nearest_levels() {
 #[test]
 fn the_level_of_detail_is_clamped() {
     let t = pyramid(Sampler { min: Filter::LinearMipmapLinear, lod: [1.0, 2.25], ..NEAREST });
-    let out = look(&t, [[0.5, 0.5, 0.0, 1.0]; 8], [-9.0, 0.0, 1.0, 1.5, 2.25, 2.5, 7.0, 1e30], 0xff);
+    let out =
+        look(&t, [[0.5, 0.5, 0.0, 1.0]; 8], [-9.0, 0.0, 1.0, 1.5, 2.25, 2.5, 7.0, 1e30], 0xff);
     assert_eq!(out.map(|c| c[0]), [1.0, 1.0, 1.0, 1.5, 2.25, 2.25, 2.25, 2.25]);
 }
 
 #[test]
 fn any_coordinate_gives_a_finite_colour() {
     let odd = [0.0, -1e-9, 1e9, -3e38, f32::MAX, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
-    let kinds = [TextureKind::One, TextureKind::Two, TextureKind::Rectangle, TextureKind::Three, TextureKind::Cube];
-    let wraps = [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::Clamp, Wrap::ClampToEdge, Wrap::ClampToBorder];
+    let kinds = [
+        TextureKind::One,
+        TextureKind::Two,
+        TextureKind::Rectangle,
+        TextureKind::Three,
+        TextureKind::Cube,
+    ];
+    let wraps =
+        [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::Clamp, Wrap::ClampToEdge, Wrap::ClampToBorder];
     for kind in kinds {
         for wrap in wraps {
             for border in [0, 1] {
                 let size = [4, if kind == TextureKind::One { 1 } else { 4 }, 4];
                 let image = level(size, border, reds(&[7; 64]));
-                let s = Sampler { min: Filter::LinearMipmapLinear, border: [7.0 / 255.0; 4], ..linear(wrap) };
+                let s = Sampler {
+                    min: Filter::LinearMipmapLinear,
+                    border: [7.0 / 255.0; 4],
+                    ..linear(wrap)
+                };
                 let t = texture(kind, vec![vec![image]; 6], s);
                 for x in odd {
                     for y in odd {
                         for c in look(&t, odd.map(|z| [x, y, z, x]), odd, 0xff) {
-                            assert!(close(c[0] * 255.0, 7.0), "{kind:?} {wrap:?} ({x}, {y}): {c:?}");
+                            assert!(
+                                close(c[0] * 255.0, 7.0),
+                                "{kind:?} {wrap:?} ({x}, {y}): {c:?}"
+                            );
                         }
                     }
                 }
@@ -189,7 +229,13 @@ fn what_is_missing_reads_as_nothing() {
     assert_eq!(at(&none, [0.5, 0.5, 0.0, 1.0], 0.0), [0.0, 0.0, 0.0, 1.0]);
     let hollow = texture(TextureKind::Cube, vec![vec![]; 6], NEAREST);
     assert_eq!(at(&hollow, [0.5, 0.5, 1.0, 1.0], 3.0), [0.0, 0.0, 0.0, 1.0]);
-    for kind in [TextureKind::One, TextureKind::Two, TextureKind::Rectangle, TextureKind::Three, TextureKind::Cube] {
+    for kind in [
+        TextureKind::One,
+        TextureKind::Two,
+        TextureKind::Rectangle,
+        TextureKind::Three,
+        TextureKind::Cube,
+    ] {
         for texels in [reds(&[]), Texels::Depth(vec![]), Texels::RgbaF32(vec![])] {
             for size in [[0, 0, 0], [4, 4, 4], [16384, 16384, 2]] {
                 let image = level(size, 0, texels.clone());
@@ -203,6 +249,7 @@ fn what_is_missing_reads_as_nothing() {
 #[test]
 fn lanes_that_are_not_active_do_not_matter() {
     let t = pyramid(Sampler { min: Filter::NearestMipmapNearest, ..NEAREST });
-    let out = look(&t, [[0.5, 0.5, 0.0, 1.0]; 8], [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0], 0b0010_1010);
+    let out =
+        look(&t, [[0.5, 0.5, 0.0, 1.0]; 8], [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0], 0b0010_1010);
     assert_eq!([out[1][0], out[3][0], out[5][0]], [1.0, 3.0, 1.0]);
 }

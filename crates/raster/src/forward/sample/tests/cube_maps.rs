@@ -20,13 +20,22 @@ fn toward(texture: &Texture, direction: [f32; 3]) -> f32 {
 fn all_six_faces_are_turned_as_specified() {
     let t = cube(2, NEAREST);
     // Directions to texel (0, 0) of each face: sc and tc negative in table 3.20.
-    for (face, first) in
-        [[1.0, 0.5, 0.5], [-1.0, 0.5, -0.5], [-0.5, 1.0, -0.5], [-0.5, -1.0, 0.5], [-0.5, 0.5, 1.0], [0.5, 0.5, -1.0]]
-            .into_iter()
-            .enumerate()
+    for (face, first) in [
+        [1.0, 0.5, 0.5],
+        [-1.0, 0.5, -0.5],
+        [-0.5, 1.0, -0.5],
+        [-0.5, -1.0, 0.5],
+        [-0.5, 0.5, 1.0],
+        [0.5, 0.5, -1.0],
+    ]
+    .into_iter()
+    .enumerate()
     {
         assert!(close(toward(&t, first), 20.0 * face as f32), "face {face}");
-        assert!(close(toward(&t, first.map(|c| c * 7.0)), 20.0 * face as f32), "length does not matter");
+        assert!(
+            close(toward(&t, first.map(|c| c * 7.0)), 20.0 * face as f32),
+            "length does not matter"
+        );
     }
     // And the texel one to the right (s grows), then one up (t grows).
     for (face, s_axis, t_axis, centre) in [
@@ -39,7 +48,10 @@ fn all_six_faces_are_turned_as_specified() {
     ] {
         for (texel, s, v) in [(0, -0.5, -0.5), (1, 0.5, -0.5), (2, -0.5, 0.5), (3, 0.5, 0.5f32)] {
             let direction = [0, 1, 2].map(|k: usize| centre[k] + s * s_axis[k] + v * t_axis[k]);
-            assert!(close(toward(&t, direction), 20.0 * face as f32 + texel as f32), "face {face} texel {texel}");
+            assert!(
+                close(toward(&t, direction), 20.0 * face as f32 + texel as f32),
+                "face {face} texel {texel}"
+            );
         }
     }
 }
@@ -133,7 +145,10 @@ fn derivatives_follow_the_face() {
             });
             for k in 0..2 {
                 let expected = (project(e)[k] - project(-e)[k]) / (2.0 * e);
-                assert!((f64::from(step[k]) - expected).abs() < 1e-4, "{name} {c:?} {k}: {step:?} {expected}");
+                assert!(
+                    (f64::from(step[k]) - expected).abs() < 1e-4,
+                    "{name} {c:?} {k}: {step:?} {expected}"
+                );
             }
         }
     }

@@ -8,7 +8,9 @@ mod shadows;
 use super::anisotropic::sample_anisotropic;
 use super::mip::{derivatives, half_log2, lod};
 use super::sample;
-use crate::forward::texture::{BaseFormat, Filter, Level, Sampler, Texels, Texture, TextureKind, Wrap};
+use crate::forward::texture::{
+    BaseFormat, Filter, Level, Sampler, Texels, Texture, TextureKind, Wrap,
+};
 use std::sync::Arc;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{F32x8, available_levels, dispatch};
@@ -60,7 +62,11 @@ fn look(texture: &Texture, coords: [[f32; 4]; 8], lods: [f32; 8], active: u32) -
     });
     let (_, first) = results.next().expect("at least one level");
     for (name, other) in results {
-        assert_eq!(first.map(|c| c.map(f32::to_bits)), other.map(|c| c.map(f32::to_bits)), "{name}");
+        assert_eq!(
+            first.map(|c| c.map(f32::to_bits)),
+            other.map(|c| c.map(f32::to_bits)),
+            "{name}"
+        );
     }
     std::array::from_fn(|lane| std::array::from_fn(|k| first[k][lane]))
 }
@@ -84,8 +90,10 @@ fn close(a: f32, b: f32) -> bool {
 #[test]
 fn derivatives_are_those_of_texel_coordinates() {
     // Differences of the projected coordinates over a small step, against the quotient rule.
-    let image = |kind, size: [u32; 3]| texture(kind, vec![vec![level(size, 0, reds(&[]))]], NEAREST);
-    let (c, dx, dy) = ([0.7f32, -0.4, 0.9, 1.3], [0.02f32, 0.01, -0.03, 0.05], [-0.01f32, 0.04, 0.02, -0.02]);
+    let image =
+        |kind, size: [u32; 3]| texture(kind, vec![vec![level(size, 0, reds(&[]))]], NEAREST);
+    let (c, dx, dy) =
+        ([0.7f32, -0.4, 0.9, 1.3], [0.02f32, 0.01, -0.03, 0.05], [-0.01f32, 0.04, 0.02, -0.02]);
     for (kind, size) in [
         (TextureKind::One, [16, 1, 1]),
         (TextureKind::Two, [16, 8, 1]),
@@ -107,9 +115,14 @@ fn derivatives_are_those_of_texel_coordinates() {
                         let value = |i: usize| f64::from(c[i]) + h * f64::from(d[i]);
                         value(k) / value(3)
                     };
-                    let scale = if kind == TextureKind::Rectangle { 1.0 } else { f64::from(size[k]) };
-                    let expected = if k < used { (project(e) - project(-e)) / (2.0 * e) * scale } else { 0.0 };
-                    assert!((f64::from(step[k]) - expected).abs() < 1e-4, "{name} {kind:?} {k}: {steps:?}");
+                    let scale =
+                        if kind == TextureKind::Rectangle { 1.0 } else { f64::from(size[k]) };
+                    let expected =
+                        if k < used { (project(e) - project(-e)) / (2.0 * e) * scale } else { 0.0 };
+                    assert!(
+                        (f64::from(step[k]) - expected).abs() < 1e-4,
+                        "{name} {kind:?} {k}: {steps:?}"
+                    );
                 }
             }
         }
@@ -156,11 +169,13 @@ fn level_of_detail_never_falls_as_steps_grow() {
 fn anisotropic_probes_average_along_the_long_side() {
     // Rows of 0 and 255 alternate down; columns are constant. 8 texels across and 1 up a pixel.
     let levels = |base: u8, other: u8| {
-        let fine: Vec<u8> = (0..16 * 16).map(|i| if (i / 16) % 2 == 0 { base } else { other }).collect();
+        let fine: Vec<u8> =
+            (0..16 * 16).map(|i| if (i / 16) % 2 == 0 { base } else { other }).collect();
         let coarse = |n: u32| level([n, n, 1], 0, reds(&vec![128; (n * n) as usize]));
         vec![level([16, 16, 1], 0, reds(&fine)), coarse(8), coarse(4), coarse(2), coarse(1)]
     };
-    let trilinear = Sampler { min: Filter::LinearMipmapLinear, anisotropy: 16.0, ..linear(Wrap::Repeat) };
+    let trilinear =
+        Sampler { min: Filter::LinearMipmapLinear, anisotropy: 16.0, ..linear(Wrap::Repeat) };
     let t = texture(TextureKind::Two, vec![levels(0, 255)], trilinear);
     let row_centre = 2.5 / 16.0;
     let probe = |texture: &Texture, along: f32, width: f32| {

@@ -1,16 +1,20 @@
-//! A plain scalar sampler, written after the specification's formulas one texel at a time, against the lanes on many
-//! pseudo-random look-ups.
+//! A plain scalar sampler, written after the specification's formulas one texel at a time, against
+//! the lanes on many pseudo-random look-ups.
 
 use super::*;
 use crate::forward::sample::packed::Packed;
 
-/// How far a colour of bytes, filtered as bytes, may be from the exact one: three roundings, of weights too.
+/// How far a colour of bytes, filtered as bytes, may be from the exact one: three roundings, of
+/// weights too.
 const FILTERED: f32 = 3.0 / 255.0;
 
 /// Whether texels of a level are mixed at this level of detail.
 fn filters_within(sampler: &Sampler, lod: f32) -> bool {
     // Where both filters may be meant, the weaker promise.
-    let minified = matches!(sampler.min, Filter::Linear | Filter::LinearMipmapNearest | Filter::LinearMipmapLinear);
+    let minified = matches!(
+        sampler.min,
+        Filter::Linear | Filter::LinearMipmapNearest | Filter::LinearMipmapLinear
+    );
     minified || sampler.mag == Filter::Linear && lod <= 0.5
 }
 
@@ -40,9 +44,9 @@ fn texel(texture: &Texture, level: usize, at: [i32; 3]) -> [f32; 4] {
     }
     let [w, h, _] = level.size.map(|s| s as i32);
     match level.texels() {
-        Texels::Rgba8(words) => {
-            words[((at[2] * h + at[1]) * w + at[0]) as usize].to_le_bytes().map(|b| f32::from(b) / 255.0)
-        }
+        Texels::Rgba8(words) => words[((at[2] * h + at[1]) * w + at[0]) as usize]
+            .to_le_bytes()
+            .map(|b| f32::from(b) / 255.0),
         _ => unreachable!("the reference knows bytes only"),
     }
 }
@@ -61,11 +65,19 @@ fn wrapped(s: f32, size: f32, wrap: Wrap) -> f32 {
         Wrap::Clamp => s.clamp(0.0, 1.0),
         Wrap::ClampToEdge => s.clamp(half, 1.0 - half),
         Wrap::ClampToBorder => s.clamp(-half, 1.0 + half),
-        Wrap::MirrorClamp | Wrap::MirrorClampToEdge | Wrap::MirrorClampToBorder => unreachable!("mirrored above"),
+        Wrap::MirrorClamp | Wrap::MirrorClampToEdge | Wrap::MirrorClampToBorder => {
+            unreachable!("mirrored above")
+        }
     }
 }
 
-fn one_level(texture: &Texture, level: usize, linear: bool, coords: [f32; 3], dimensions: usize) -> [f32; 4] {
+fn one_level(
+    texture: &Texture,
+    level: usize,
+    linear: bool,
+    coords: [f32; 3],
+    dimensions: usize,
+) -> [f32; 4] {
     let size = texture.faces[0][level].size;
     let mut u = [0.0; 3];
     for k in 0..dimensions {
@@ -81,7 +93,11 @@ fn one_level(texture: &Texture, level: usize, linear: bool, coords: [f32; 3], di
                 weight *= 1.0 - far as f32;
                 // The far end belongs to the last texel, but for a border beyond it.
                 let beyond = i32::from(texture.sampler.wrap[k] == Wrap::ClampToBorder);
-                at[k] = if k < dimensions { (u[k].floor() as i32).min(size[k] as i32 - 1 + beyond) } else { 0 };
+                at[k] = if k < dimensions {
+                    (u[k].floor() as i32).min(size[k] as i32 - 1 + beyond)
+                } else {
+                    0
+                };
                 continue;
             }
             let from = u[k] - 0.5;
@@ -113,7 +129,8 @@ fn scalar(texture: &Texture, coords: [f32; 4], lod: f32, dimensions: usize) -> [
     if lod <= c {
         return one_level(texture, 0, mag == Filter::Linear, point, dimensions);
     }
-    let linear = matches!(min, Filter::Linear | Filter::LinearMipmapNearest | Filter::LinearMipmapLinear);
+    let linear =
+        matches!(min, Filter::Linear | Filter::LinearMipmapNearest | Filter::LinearMipmapLinear);
     match min {
         Filter::Nearest | Filter::Linear => one_level(texture, 0, linear, point, dimensions),
         Filter::NearestMipmapNearest | Filter::LinearMipmapNearest => {
@@ -133,7 +150,8 @@ fn scalar(texture: &Texture, coords: [f32; 4], lod: f32, dimensions: usize) -> [
     }
 }
 
-const WRAPS: [Wrap; 5] = [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::Clamp, Wrap::ClampToEdge, Wrap::ClampToBorder];
+const WRAPS: [Wrap; 5] =
+    [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::Clamp, Wrap::ClampToEdge, Wrap::ClampToBorder];
 const FILTERS: [Filter; 6] = [
     Filter::Nearest,
     Filter::Linear,
@@ -190,7 +208,8 @@ fn the_lanes_agree_with_the_scalar_sampler() {
                     let out = look(&texture, coords, lods, 0xff);
                     for lane in 0..8 {
                         let expected = scalar(&texture, coords[lane], lods[lane], dimensions);
-                        let as_bytes = Packed::new(&texture).is_some() && filters_within(&texture.sampler, lods[lane]);
+                        let as_bytes = Packed::new(&texture).is_some()
+                            && filters_within(&texture.sampler, lods[lane]);
                         let most = if as_bytes { FILTERED } else { 1e-4 };
                         for k in 0..4 {
                             assert!(
@@ -219,12 +238,15 @@ fn the_packed_path_agrees_with_the_general_one() {
             let border = [0.2, 0.6, 1.0, 0.4];
             let sampler = Sampler { min, mag: Filter::Linear, wrap: [wrap; 3], border, ..NEAREST };
             let mut texture = noise(&mut n, TextureKind::Two, size, sampler);
-            let coords: [[f32; 8]; 2] = std::array::from_fn(|_| std::array::from_fn(|_| n.between(-3.0, 4.0)));
+            let coords: [[f32; 8]; 2] =
+                std::array::from_fn(|_| std::array::from_fn(|_| n.between(-3.0, 4.0)));
             let lods: [f32; 8] = std::array::from_fn(|_| n.between(-1.0, 4.0));
             for srgb in [false, true] {
                 if srgb {
                     for level in &mut texture.faces[0] {
-                        let Texels::Rgba8(words) = level.texels().clone() else { unreachable!("made of bytes") };
+                        let Texels::Rgba8(words) = level.texels().clone() else {
+                            unreachable!("made of bytes")
+                        };
                         *level = super::level(level.size, 0, Texels::Srgb8(words));
                     }
                 }
@@ -245,7 +267,10 @@ fn the_packed_path_agrees_with_the_general_one() {
                             // Bytes that are no light are filtered as bytes.
                             let as_bytes = !srgb && filters_within(&sampler, lods[lane]);
                             let most = if as_bytes { FILTERED } else { 1e-6 };
-                            assert!((a[k][lane] - b[k][lane]).abs() < most, "{name} {min:?} {wrap:?}");
+                            assert!(
+                                (a[k][lane] - b[k][lane]).abs() < most,
+                                "{name} {min:?} {wrap:?}"
+                            );
                         }
                     }
                 }

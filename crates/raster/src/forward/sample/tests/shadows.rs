@@ -40,8 +40,11 @@ fn every_comparison_has_the_reference_on_the_left() {
 #[test]
 fn the_reference_is_clamped() {
     let image = level([1, 1, 1], 0, Texels::Depth(vec![1.0]));
-    let mut t =
-        texture(TextureKind::Two, vec![vec![image]], Sampler { compare: Some(Compare::LessOrEqual), ..NEAREST });
+    let mut t = texture(
+        TextureKind::Two,
+        vec![vec![image]],
+        Sampler { compare: Some(Compare::LessOrEqual), ..NEAREST },
+    );
     assert_eq!([0.9, 1.0, 1.5].map(|r| at(&t, [0.5, 0.5, r, 1.0], 0.0)[0]), [1.0; 3]);
     t.float_depth = true;
     assert_eq!([0.9, 1.0, 1.5].map(|r| at(&t, [0.5, 0.5, r, 1.0], 0.0)[0]), [1.0, 1.0, 0.0]);
@@ -82,14 +85,23 @@ fn planes_are_read_tile_by_tile() {
     plane.set(99, 63, 0, 8_388_608.0);
     let plane = Arc::new(Mutex::new(DepthBuffer::new(plane, scale)));
     let image = level([100, 70, 1], 0, Texels::DepthBuffer(plane));
-    let t = texture(TextureKind::Two, vec![vec![image.clone()]], Sampler { wrap: [Wrap::ClampToEdge; 3], ..NEAREST });
+    let t = texture(
+        TextureKind::Two,
+        vec![vec![image.clone()]],
+        Sampler { wrap: [Wrap::ClampToEdge; 3], ..NEAREST },
+    );
     let depth = |x: f32, y: f32| at(&t, [(x + 0.5) / 100.0, (y + 0.5) / 70.0, 0.0, 1.0], 0.0)[0];
     assert_eq!([depth(63.0, 0.0), depth(64.0, 0.0), depth(65.0, 0.0)], [1.0, 0.0, 1.0]);
-    assert_eq!([depth(99.0, 63.0), depth(99.0, 64.0), depth(0.0, 69.0)], [8_388_608.0 / scale, 1.0, 1.0]);
+    assert_eq!(
+        [depth(99.0, 63.0), depth(99.0, 64.0), depth(0.0, 69.0)],
+        [8_388_608.0 / scale, 1.0, 1.0]
+    );
     let s = Sampler { compare: Some(Compare::GreaterOrEqual), ..linear(Wrap::ClampToEdge) };
     let shadow = texture(TextureKind::Two, vec![vec![image]], s);
     let lit = |x: f32, r: f32| at(&shadow, [x / 100.0, 0.5 / 70.0, r, 1.0], 0.0)[0];
-    assert!(close(lit(64.0, 0.5), 0.5) && close(lit(64.75, 0.5), 0.75) && close(lit(66.0, 0.5), 0.0));
+    assert!(
+        close(lit(64.0, 0.5), 0.5) && close(lit(64.75, 0.5), 0.75) && close(lit(66.0, 0.5), 0.0)
+    );
 }
 
 #[test]
@@ -98,5 +110,8 @@ fn cube_maps_compare_with_q() {
     let s = Sampler { compare: Some(Compare::LessOrEqual), ..NEAREST };
     let t = texture(TextureKind::Cube, (0..6).map(face).collect(), s);
     let lit = |z: f32, q: f32| at(&t, [0.1, 0.2, z, q], 0.0);
-    assert_eq!([lit(1.0, 0.45), lit(1.0, 0.55), lit(-1.0, 0.55)], [[1.0; 4], [0.0, 0.0, 0.0, 1.0], [1.0; 4]]);
+    assert_eq!(
+        [lit(1.0, 0.45), lit(1.0, 0.55), lit(-1.0, 0.55)],
+        [[1.0; 4], [0.0, 0.0, 0.0, 1.0], [1.0; 4]]
+    );
 }

@@ -16,16 +16,21 @@ pub(super) struct ThickPlane {
 }
 
 impl ThickPlane {
-    /// The plane of a triangle; of one that is thinner than its corners are certain, some plane through it.
+    /// The plane of a triangle; of one that is thinner than its corners are certain, some plane
+    /// through it.
     pub(super) fn of([a, b, c]: [DVec3; 3]) -> Self {
         let edges = [b - a, c - b, a - c];
-        let longest =
-            edges.into_iter().fold(DVec3::ZERO, |l, e| if e.length_squared() > l.length_squared() { e } else { l });
+        let longest = edges
+            .into_iter()
+            .fold(DVec3::ZERO, |l, e| if e.length_squared() > l.length_squared() { e } else { l });
         let cross = edges[0].cross(-edges[2]);
         let wide = cross.length() > 1e-9 * longest.length_squared();
         let across = if wide { cross } else { longest.any_orthogonal_vector() };
         let normal = across.try_normalize().unwrap_or(DVec3::Z);
-        Self { equation: normal.extend(-normal.dot(a)), thickness: Self::rounding(normal, &[a, b, c]) }
+        Self {
+            equation: normal.extend(-normal.dot(a)),
+            thickness: Self::rounding(normal, &[a, b, c]),
+        }
     }
 
     /// The plane of a polygon: the one that it shares with others, or that of its first corners.

@@ -1,5 +1,5 @@
-//! What a tree tells an observer: its nodes, and the walk for a viewer. It is told from the finished tree, so that it is the same
-//! whoever built it and whether it was there already.
+//! What a tree tells an observer: its nodes, and the walk for a viewer. It is told from the
+//! finished tree, so that it is the same whoever built it and whether it was there already.
 
 use super::{BspTree, NONE};
 use crate::Execution;
@@ -36,7 +36,8 @@ impl BspTree {
         });
     }
 
-    /// For each fragment the node in whose plane it lies; none for polygons that have no place in the tree.
+    /// For each fragment the node in whose plane it lies; none for polygons that have no place in
+    /// the tree.
     pub(crate) fn nodes_of_fragments(&self) -> Vec<Option<u32>> {
         let mut nodes = vec![None; self.fragments.len()];
         for (number, node) in (0..).zip(&self.nodes) {
@@ -63,7 +64,8 @@ impl BspTree {
         parents
     }
 
-    /// The step of a node. Each polygon of its set has one part in it: what hangs on both sides was cut here.
+    /// The step of a node. Each polygon of its set has one part in it: what hangs on both sides was
+    /// cut here.
     fn node_step(&self, node: u32, parents: &[Option<(u32, PlaneSide)>]) -> Step {
         let n = &self.nodes[node as usize];
         let parent = parents[node as usize];
@@ -74,7 +76,8 @@ impl BspTree {
             n.fragments.clone().map(|fragment| self.fragments[fragment as usize].polygon).collect();
         coincident.sort_unstable();
         let cut = front.iter().copied().filter(|polygon| back.binary_search(polygon).is_ok());
-        let named = |polygons: &[u32]| PolygonSet::new(polygons.iter().map(|&p| self.facets.name(p)));
+        let named =
+            |polygons: &[u32]| PolygonSet::new(polygons.iter().map(|&p| self.facets.name(p)));
         Step::TreeNode {
             node,
             above: parent.map(|(parent, _)| parent),
@@ -94,7 +97,9 @@ impl BspTree {
         let (mut polygons, mut waiting) = (Vec::new(), vec![node]);
         while let Some(node) = waiting.pop() {
             let Some(n) = self.nodes.get(node as usize) else { continue };
-            polygons.extend(n.fragments.clone().map(|fragment| self.fragments[fragment as usize].polygon));
+            polygons.extend(
+                n.fragments.clone().map(|fragment| self.fragments[fragment as usize].polygon),
+            );
             waiting.extend([n.front, n.back]);
         }
         polygons.sort_unstable();

@@ -24,7 +24,9 @@ fn clip(region: &Region, corners: &[[i32; 2]]) -> [Region; 2] {
 
 /// Whether the sample of this column, at `x` in its pixel, and at `y`, is in a region.
 fn covers(region: &[FillEdge], column: i32, x: i32, y: i32) -> bool {
-    let crossed = region.iter().filter(|e| (e.y[0]..e.y[1]).contains(&y) && first_right(e, y, x) <= column.into());
+    let crossed = region
+        .iter()
+        .filter(|e| (e.y[0]..e.y[1]).contains(&y) && first_right(e, y, x) <= column.into());
     crossed.count() % 2 == 1
 }
 
@@ -124,7 +126,8 @@ fn p24_random_polygons_share_samples_and_area_out() {
         for (row, s) in (0..64).step_by(3).flat_map(|row| (0..4).map(move |s| (row, s))) {
             let [x, y] = pattern.position(s);
             for column in 0..64 {
-                let count = parts.iter().filter(|part| covers(part, column, x, row * 256 + y)).count();
+                let count =
+                    parts.iter().filter(|part| covers(part, column, x, row * 256 + y)).count();
                 assert_eq!(count, 1, "round {round}: {column}, {row}, {s}");
             }
         }
@@ -167,15 +170,22 @@ fn an_index_of_edges_changes_nothing() {
 #[test]
 fn p24_samples_of_a_triangle_are_those_that_its_edge_functions_cover() {
     use vitral_raster::{CornerPosition, Setup};
-    for corners in
-        [[[0, 0], [2048, 0], [0, 2048]], [[128, 128], [1408, 640], [640, 1408]], [[77, 9], [3000, 1111], [500, 4000]]]
-    {
+    for corners in [
+        [[0, 0], [2048, 0], [0, 2048]],
+        [[128, 128], [1408, 640], [640, 1408]],
+        [[77, 9], [3000, 1111], [500, 4000]],
+    ] {
         let [a, b, c] = corners.map(|[x, y]| CornerPosition { x, y, z: 0.5 });
         let setup = Setup::new([a, b, c], Setup::doubled_area(a, b, c), 0);
-        let edges: Vec<_> = Region::polygon(&ConvexOutline::polygon(&corners)).fill_edges().collect();
+        let edges: Vec<_> =
+            Region::polygon(&ConvexOutline::polygon(&corners)).fill_edges().collect();
         for (row, column) in (0..20).flat_map(|row| (0..20).map(move |column| (row, column))) {
             let expected = setup.covers(column * 256 + 128, row * 256 + 128);
-            assert_eq!(covers(&edges, column, 128, row * 256 + 128), expected, "{corners:?}: {column}, {row}");
+            assert_eq!(
+                covers(&edges, column, 128, row * 256 + 128),
+                expected,
+                "{corners:?}: {column}, {row}"
+            );
         }
     }
 }

@@ -555,7 +555,7 @@ fn each_verb_has_help_in_two_sizes_and_by_groups() {
         verbs.filter(starts_verb).filter_map(|line| line.split_whitespace().next()).collect();
     assert!(verbs.contains(&"render") && verbs.contains(&"thumbnail"), "{verbs:?}");
     for verb in verbs {
-        // A summary of at most two screens, and a form that is no longer.
+        // A summary of at most two screens, and a form of at most that length.
         let (long, short) = (help(&[verb, "--help"]), help(&[verb, "-h"]));
         assert!(long.lines().count() <= 100 && short.len() <= long.len(), "{verb}: {long}");
         assert!(

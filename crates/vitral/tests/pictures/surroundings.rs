@@ -307,7 +307,7 @@ fn the_ground_shows_shadow_alone() {
 }
 
 fn sun_from(from: DVec3) -> Light {
-    Light { kind: LightKind::Directional { direction: -from }, ..Light::default() }
+    Light { kind: LightKind::Directional { direction: -from }, shadow: true, ..Light::default() }
 }
 
 #[test]
@@ -318,6 +318,7 @@ fn the_shadow_falls_where_the_light_says() {
     (renderer.view, renderer.lights) =
         (View::Top, Some(vec![sun_from(DVec3::new(-1.0, 1.0, 0.0))]));
     renderer.lens = vitral::Lens::Parallel;
+    renderer.moves.zoom = 0.25;
     let camera = renderer.frame_camera();
     let pixels = colors(&mut renderer);
     let vitral::Projection::Parallel { height } = camera.projection else {

@@ -43,6 +43,7 @@ fn log10(x: f64) -> f64 {
 
 /// A plot of seconds over sizes.
 pub(crate) fn svg(title: &str, axis: &str, curves: &[Curve]) -> String {
+    // Map the logarithms between whole powers of ten to the frame.
     let ends = |k: usize| {
         let values = curves.iter().flat_map(|c| &c.points).map(|p| log10(p[k]));
         let (low, high) =
@@ -53,12 +54,15 @@ pub(crate) fn svg(title: &str, axis: &str, curves: &[Curve]) -> String {
     let [left, top, right, bottom] = FRAME;
     let x = |log: f64| left + (log - x_ends.0) / (x_ends.1 - x_ends.0) * (right - left);
     let y = |log: f64| bottom - (log - y_ends.0) / (y_ends.1 - y_ends.0) * (bottom - top);
-    // Writing to a String cannot fail.
+
+    // Open the picture. Writing to a String cannot fail.
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" font-family=\"sans-serif\" font-size=\"12\">\n\
          <rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"white\"/>\n\
          <text x=\"{left}\" y=\"24\" font-size=\"15\">{title}</text>\n"
     );
+
+    // Draw a line of the grid and a label for each power of ten.
     let line = |out: &mut String, [x0, y0, x1, y1]: [f64; 4]| {
         let _ = writeln!(out, "<path d=\"M{x0:.1} {y0:.1}L{x1:.1} {y1:.1}\" stroke=\"#ddd\"/>");
     };
@@ -81,6 +85,8 @@ pub(crate) fn svg(title: &str, axis: &str, curves: &[Curve]) -> String {
             at + 4.0
         );
     }
+
+    // Name the axes.
     let middle = (left + right) / 2.0;
     let _ = writeln!(
         out,
@@ -88,6 +94,8 @@ pub(crate) fn svg(title: &str, axis: &str, curves: &[Curve]) -> String {
         bottom + 36.0
     );
     let _ = writeln!(out, "<text x=\"8\" y=\"{}\">seconds</text>", top - 4.0);
+
+    // Draw each curve, its points and its entry in the key.
     for (i, curve) in curves.iter().enumerate() {
         let (color, dash) =
             (COLORS[i % COLORS.len()], if curve.dashed { " stroke-dasharray=\"6 4\"" } else { "" });

@@ -77,6 +77,7 @@ pub fn command(arguments: Vec<OsString>) -> u8 {
 
 /// Runs the verb that is typed.
 fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
+    // Parse the arguments.
     let typed = help_groups::split(batch_args::arrange(args::with_verb(arguments)));
     let parsed = args::command()
         .try_get_matches_from(&typed)
@@ -100,6 +101,8 @@ fn dispatch(arguments: Vec<OsString>) -> Result<u8, Failure> {
         }
         Err(e) => return Err(e.into()),
     };
+
+    // Run the verb.
     match cli.verb {
         Verb::Render(args) => render_command::run(&args),
         Verb::Draw(args) => draw_command::run(&args),

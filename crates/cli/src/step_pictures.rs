@@ -49,6 +49,7 @@ pub(crate) fn video(
     camera: &Camera,
     options: &EncodeOptions,
 ) -> Result<Vec<String>, Failure> {
+    // Record the steps, and choose how many pictures show them.
     let watched = renderer.watch_steps(camera)?;
     let steps = watched.steps.len();
     let most = args
@@ -62,11 +63,14 @@ pub(crate) fn video(
         count as u64,
         "pictures",
     );
+
+    // Write the pictures as frames of an animation or as files of their own.
     let mut animation = output.animation(count as u32, args.output.frame_rate, options)?;
     let (mut replay, mut written) = (Replay::new(&watched), Vec::new());
     for number in 0..count {
         renderer.execution().budget.check("the steps' pictures")?;
-        // The last picture is that after the last step.
+
+        // Go to the next step that is shown; the last picture is that after the last step.
         replay.go_to(((number + 1) * steps / count).saturating_sub(1));
         let (width, height) = (watched.image.width(), watched.image.height());
         let frame = Frame { width, height, steps: Some(replay.picture()), ..Frame::default() };
@@ -79,6 +83,8 @@ pub(crate) fn video(
         }
         progress.step();
     }
+
+    // Write the animation.
     if let Some(animation) = animation {
         let path = output.path(model, 0)?;
         output.write_bytes(&path, &animation.finish()?)?;

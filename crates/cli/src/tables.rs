@@ -94,6 +94,8 @@ fn add_section<'a>(text: &mut String, title: &str, rows: impl Iterator<Item = (&
 pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
     let rows = vitral::internals::io::formats();
     let kind = |row: &vitral::internals::io::FormatRow| format!("{:?}", row.kind).to_lowercase();
+
+    // Print everything as JSON.
     if args.json {
         let list: Vec<_> = rows
             .iter()
@@ -117,6 +119,8 @@ pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
             .collect();
         return report::print_json(&json!({"formats": list, "builtin": builtin})).map(|()| 0);
     }
+
+    // List the file formats.
     let mut text = String::new();
     for r in &rows {
         let ways = match (r.read, r.write) {
@@ -135,6 +139,8 @@ pub(crate) fn formats(args: &ListArgs) -> Result<u8, Failure> {
             r.description
         );
     }
+
+    // List the built-in scenes.
     text.push_str("\nScenes that need no file\n");
     for (name, about) in vitral::builtin_names() {
         let _ = writeln!(text, "  {:<30} {about}", format!("builtin:{name}"));

@@ -181,10 +181,14 @@ fn parts_of(
         run.budget.advance();
         let triangle = &stage.mesh.triangles[t];
         let source = &stage.mesh.sources[t];
+
+        // Skip triangles of unwanted surfaces, and those that neither hide nor are clear.
         let is_wanted = surfaces.only.is_none_or(|only| only(source.surface));
         if !is_wanted || (!triangle.hides && !triangle.clear) {
             continue;
         }
+
+        // Find what is visible of the triangle, layer by layer.
         let VisibleShapes { layers, contacts } = clipping.visible_shapes(stage, t as u32, run)?;
 
         // Divide each layer between the lights, and colour the parts.
@@ -199,6 +203,8 @@ fn parts_of(
                     lit::divide(shapes, &[facet], normal, surfaces.lit, &facets.to_page)
                 }
             };
+
+            // Colour the part that each set of lights reaches.
             for (lights, shapes) in divided {
                 let corners: usize = shapes.iter().flatten().map(Vec::len).sum();
                 run.memory.add(corners as u64 * BYTES_A_CORNER)?;

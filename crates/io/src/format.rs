@@ -164,14 +164,18 @@ pub fn formats() -> Vec<FormatRow> {
         read,
         write: true,
     };
+
+    // Offer the formats of the feature `images` in builds that have it.
     let coded = cfg!(feature = "images");
     let texture = |name, extensions, description| FormatRow {
         write: false,
         ..picture(name, extensions, description, coded)
     };
 
-    // List the formats.
+    // List the model formats.
     let mut rows: Vec<FormatRow> = Format::ALL.into_iter().map(model).collect();
+
+    // Add pictures without animation.
     rows.push(picture(
         "PNG",
         &["png"],
@@ -182,6 +186,8 @@ pub fn formats() -> Vec<FormatRow> {
     rows.push(FormatRow { write: coded, ..jpeg });
     rows.push(texture("TGA", &["tga"], "Truevision TGA, as textures"));
     rows.push(texture("BMP", &["bmp"], "Windows bitmap, as textures"));
+
+    // Add the formats that also hold animations.
     let written = |name, extensions, description| FormatRow {
         write: coded,
         ..texture(name, extensions, description)
@@ -197,6 +203,8 @@ pub fn formats() -> Vec<FormatRow> {
         "WebP, lossless, turntables as animations; the first picture as textures",
     ));
     rows.push(picture("APNG", &["apng"], "PNG with turntables as animations", false));
+
+    // Add textures that are only read, then plain pixels and numbers.
     rows.push(texture("TIFF", &["tif", "tiff"], "TIFF, the first picture, as textures"));
     rows.push(texture(
         "DDS",

@@ -192,6 +192,7 @@ impl MtlMaterial {
                 let what = || format!("`{}` is not used: clear coats are not shown", show(keyword));
                 warnings.note("mtl coat", Place::Line(line), what);
             }
+            // Warn of statements that are known and not used, and of unknown ones.
             b"disp" | b"map_disp" | b"decal" | b"map_ns" | b"map_tr" | b"map_ni" | b"refl"
             | b"map_refl" | b"map_aat" | b"sharpness" | b"ps" | b"aniso" | b"anisor"
             | b"map_ps" => {

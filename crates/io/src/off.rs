@@ -325,6 +325,8 @@ impl Lists {
         workers: &Workers,
     ) -> Mesh {
         let built = crate::polygons::build(&self.positions, &self.sizes, self.corners, workers);
+
+        // Take the colours of the vertices, or else those of the faces.
         let colors = if header.color {
             Some(Attribute::per_vertex(decode(&self.colors, warnings)))
         } else if self.face_colors.iter().any(Option::is_some) {
@@ -337,6 +339,8 @@ impl Lists {
         } else {
             None
         };
+
+        // Assemble the mesh.
         Mesh {
             name,
             parts: vec![Part {

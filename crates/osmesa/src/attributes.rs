@@ -78,6 +78,8 @@ impl Attributes {
     ) -> Result<Self, String> {
         let (mut format, mut depth, mut stencil, mut accum) = (RGBA.cast_signed(), 0, 0, 0);
         let (mut profile, mut major, mut minor) = (COMPAT_PROFILE, 1, 0);
+
+        // Take the attributes' values, the last of each.
         for &(attribute, value) in pairs {
             match attribute {
                 FORMAT => format = value,
@@ -90,6 +92,8 @@ impl Attributes {
                 _ => return Err(format!("the attribute {attribute:#x} is none of OSMesa's")),
             }
         }
+
+        // Refuse unknown profiles and versions, and the core profile.
         if profile != COMPAT_PROFILE && profile != CORE_PROFILE {
             return Err(format!("the profile {profile:#x} is none of OSMesa's"));
         }
@@ -101,6 +105,8 @@ impl Attributes {
                 "OpenGL {major}.{minor} core was asked for, there is the compatibility profile of 1.5 alone: no shaders"
             ));
         }
+
+        // Accept the versions that are there.
         if (major, minor) <= VERSION {
             return Self::new(format, depth, stencil, accum);
         }

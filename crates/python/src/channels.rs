@@ -216,10 +216,12 @@ pub(crate) fn fill_from(
     match (channel, pixels) {
         (Channel::Rgba, Pixels::Bytes(to)) => to.copy_from_slice(picture.rgba8()),
         (Channel::Rgb, Pixels::Bytes(to)) => {
+            // Leave the alpha out.
             let (to, from) = (to.as_chunks_mut::<3>().0, picture.rgba8().as_chunks::<4>().0);
             to.iter_mut().zip(from).for_each(|(to, [r, g, b, _])| *to = [*r, *g, *b]);
         }
         (Channel::Depth, Pixels::Floats(to)) => {
+            // Convert the depths to distances; the background is infinitely far away.
             let distance = |depth: f32| {
                 if depth > 0.0 { view.distance_at(depth) as f32 } else { f32::INFINITY }
             };

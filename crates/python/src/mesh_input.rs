@@ -110,6 +110,7 @@ impl Faces {
 
 /// Faces from an array, or from a list of polygons.
 fn faces(value: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Faces> {
+    // Check that an index names a vertex.
     let index = |index: i64| {
         let there = u32::try_from(index).ok().filter(|&index| (index as usize) < vertices);
         there.ok_or_else(|| {
@@ -145,6 +146,8 @@ fn faces(value: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Faces> {
             corners => Faces::Polygons(indices.chunks(corners).map(<[u32]>::to_vec).collect()),
         });
     }
+
+    // Read other rows polygon by polygon.
     let polygon = |polygon: Bound<'_, PyAny>| {
         let (shape, corners) = numbers::<i64>(&polygon, "faces", &[None])?;
         if shape[0] < 3 {

@@ -287,6 +287,7 @@ impl PyRenderer {
         channels: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        // Read the channels and cameras, and prepare the arrays.
         let channels = Channel::all_named(channels)?;
         let cameras = cameras
             .try_iter()?
@@ -309,6 +310,7 @@ impl PyRenderer {
             }
         };
 
+        // Render the pictures, and put each into its part of the arrays.
         let request = Channel::request(&channels);
         let shelf = Shelf::new(&channels, &mut targets, count)?;
         self.work(py, |engine| {

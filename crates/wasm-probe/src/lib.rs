@@ -80,11 +80,14 @@ pub extern "C" fn length() -> usize {
 }
 
 fn draw(level: Level) -> Vec<u8> {
+    // Set up the scene.
     let scene = Arc::new(builtin::scene("scene1").expect("scene1 is built in"));
     let mut session = Session::new(scene).expect("built-in scenes are sound");
     let execution =
         Execution { workers: Workers::single(), level, budget: Budget::default(), observer: None };
     let camera = session.world().cameras[0];
+
+    // Take different ways of shading.
     let smooth = Settings::default().with_size(SIZE.0, SIZE.1).with_channels(Channels {
         depth: true,
         surface: true,
@@ -103,12 +106,15 @@ fn draw(level: Level) -> Vec<u8> {
         .with_lines(Lines::Edges)
         .with_samples(1)
         .with_channels(Channels::default());
-    // From close by, so that facets are clipped, too.
+
+    // Look from close by, so that facets are clipped.
     let near = Camera {
         position: camera.position * 0.35,
         projection: Projection::Perspective { view_angle: 1.3 },
         ..camera
     };
+
+    // Render the frames.
     let mut frame = |settings: &Settings, camera: Camera| {
         let lights = session.world().lights.clone();
         let shot = Shot {

@@ -149,6 +149,7 @@ fn sanitizer(name: &str) -> Outcome {
 }
 
 fn valgrind() -> Outcome {
+    // Build the library and the runner with the lines of the code.
     debian_packages(&["valgrind", "libc6-dbg", "gcc", "libc6-dev", "libgl-dev"])?;
     let target = folder("valgrind");
     let mut build = cargo();
@@ -165,6 +166,7 @@ fn valgrind() -> Outcome {
     let debug = target.join("debug");
     let (runner, library) = (debug.join("examples/scene_runner"), debug.join("libOSMesa.so"));
 
+    // Watch the scenes and the modes of the lifecycle.
     let scenes = target.join("scenes");
     watch(&runner, "definite", |words| {
         words.arg(&library).arg(&scenes);
@@ -178,6 +180,7 @@ fn valgrind() -> Outcome {
         })?;
     }
 
+    // Build and watch the client in C.
     println!("buffers.c");
     let program = target.join("buffers");
     let named = target.join("libOSMesa.so.8");

@@ -50,6 +50,7 @@ enum Converter {
 
 /// Draws everything.
 pub(crate) fn run(options: &[&str]) -> Outcome {
+    // Read the arguments, and find the converter and the models.
     let (folder, vitral) = match options {
         [folder] => {
             run_command(cargo().args(["build", "--release", "--package", "vitral-cli"]))?;
@@ -65,6 +66,8 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
     let folder = std::env::current_dir().map_err(|e| e.to_string())?.join(folder);
     let converter = converter()?;
     let models = models()?;
+
+    // Draw all models in each style.
     let mut failures = String::new();
     for (style, words) in STYLES {
         let inside = folder.join(style);
@@ -90,6 +93,8 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
         }
         println!("{style}: {} of {} models", drawn.len(), models.len());
     }
+
+    // List the failures.
     let list = folder.join("failures.txt");
     std::fs::write(&list, &failures).map_err(|e| format!("{}: {e}", list.display()))?;
     print!("{failures}");

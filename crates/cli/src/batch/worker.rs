@@ -83,6 +83,7 @@ fn done(order: Order, args: &BatchWorkerArgs, dispatch: Dispatch) -> Reply {
         typed.insert(place, format!("--threads={}", args.threads));
     }
 
+    // Run the command, and keep what it prints and reports.
     report::keep();
     let result = make_folder(&order.output)
         .and_then(|()| dispatch(typed.into_iter().map(Into::into).collect()));
@@ -103,6 +104,8 @@ fn done(order: Order, args: &BatchWorkerArgs, dispatch: Dispatch) -> Reply {
         _ if code == 0 => vec![order.output.clone()],
         _ => Vec::new(),
     };
+
+    // Put a finished job on record.
     let seconds = start.elapsed().as_secs_f64();
     if code == 0 {
         let entry = Entry {

@@ -182,15 +182,19 @@ impl Sheet {
         }
         let Some((scales, spot)) = best else { return Err(SheetError::Views) };
 
-        // Give each view its place.
+        // Centre the whole on the sheet.
         let lengths = [0, 1].map(|k| rows[k].length(spot[k], scales, size[k]));
         let whole = sheet.unwrap_or(lengths.map(|length| length + 2.0 * margin));
         let corner = [0, 1].map(|k| (whole[k] - lengths[k]) / 2.0);
+
+        // Cover the view of the longest reach with the window that all cameras share.
         let reach = extents
             .iter()
             .flat_map(|e| [e.low[0], e.low[1], e.high[0], e.high[1]])
             .fold(0.0, f64::max);
         let window = if reach > 0.0 { 2.0 * reach * ROOM } else { 1.0 };
+
+        // Place each view in the middle of its cell.
         let views = extents.iter().map(|extent| {
             let is_iso = extent.view == View::Iso;
             let scale = if is_iso { scales[1] } else { scales[0] };

@@ -236,6 +236,8 @@ impl Context {
         if name == 0 {
             return self.attach(call, target, attachment, None);
         }
+
+        // Look the texture up.
         let Some(texture) = lock(&self.shared.textures).get(&name).cloned().flatten() else {
             return self.record_error(INVALID_OPERATION, call, "there is no such texture");
         };
@@ -281,6 +283,8 @@ impl Context {
         let Some(layer) = usize::try_from(layer).ok().filter(|&l| l < MAX_3D_TEXTURE_SIZE) else {
             return self.record_error(INVALID_VALUE, call, "the layer is negative or too large");
         };
+
+        // Attach the level.
         self.attach(
             call,
             target,

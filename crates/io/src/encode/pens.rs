@@ -202,6 +202,8 @@ pub(super) fn layers<'d>(drawing: &'d Drawing, options: &'d DrawingOptions) -> V
             drawing.lines.iter().filter(move |line| line.layers == 0 && line.class == class);
         of_class.map(|line| &line.points[..]).collect()
     };
+
+    // Begin with the hatching, which is painted under everything else.
     let lines = visible(LineClass::Hatch);
     let mut layers = vec![Layer {
         number: count + 3,
@@ -211,6 +213,8 @@ pub(super) fn layers<'d>(drawing: &'d Drawing, options: &'d DrawingOptions) -> V
         lines,
         points: &[],
     }];
+
+    // Add the hidden lines, of all classes.
     layers.push(Layer {
         number: count + 1,
         name: HIDDEN,
@@ -224,6 +228,8 @@ pub(super) fn layers<'d>(drawing: &'d Drawing, options: &'d DrawingOptions) -> V
             .collect(),
         points: &[],
     });
+
+    // Add the visible lines, the most important class last.
     for (i, (class, name, _)) in LineClass::ALL.into_iter().enumerate().rev() {
         let lines = visible(class);
         layers.push(Layer {
@@ -235,6 +241,8 @@ pub(super) fn layers<'d>(drawing: &'d Drawing, options: &'d DrawingOptions) -> V
             points: &[],
         });
     }
+
+    // Add the title block.
     let lines = options.title.iter().map(|stroke| &stroke[..]).collect();
     layers.push(Layer {
         number: count + 2,
@@ -244,9 +252,13 @@ pub(super) fn layers<'d>(drawing: &'d Drawing, options: &'d DrawingOptions) -> V
         lines,
         points: &[],
     });
+
+    // Add the free points, as wide as contours unless the pens say otherwise.
     let width = pens.point_width.unwrap_or(pens.widths[LineClass::Contour as usize]);
     let (number, points) = (count + 4, &drawing.points[..]);
     layers.push(Layer { number, name: POINT, width, dashes: None, lines: Vec::new(), points });
+
+    // Leave empty layers out.
     layers.retain(|layer| !layer.lines.is_empty() || !layer.points.is_empty());
     layers
 }

@@ -32,12 +32,15 @@ pub(super) fn in_steps(
     options: &DrawingOptions,
     steps_a_millimetre: f64,
 ) -> (Drawing, DrawingOptions) {
+    // Convert between millimetres and steps of the plotter.
     let steps = |points: &[[f64; 2]]| -> Vec<Step> {
         points.iter().map(|p| p.map(|at| (at * steps_a_millimetre).round() as i32)).collect()
     };
     let millimetres = |points: Vec<Step>| -> Polyline {
         points.into_iter().map(|p| p.map(|at| f64::from(at) / steps_a_millimetre)).collect()
     };
+
+    // Route lines along a short way of the pen, and draw no segment twice.
     let mut drawn = HashSet::new();
     let mut route = |lines: Vec<&[[f64; 2]]>| {
         let mut fresh = Vec::new();
@@ -52,6 +55,8 @@ pub(super) fn in_steps(
         let points = route(visible.map(|line| &line.points[..]).collect());
         lines.extend(points.into_iter().map(|points| Line { class, layers: 0, points }));
     }
+
+    // Order the points, the title block and the hidden lines.
     let dots = drawing.points.iter().map(|point| steps(&[*point, *point])).collect();
     let points = ordered(dots).into_iter().map(|dot| millimetres(dot)[0]).collect();
     let title = route(options.title.iter().map(|stroke| &stroke[..]).collect());

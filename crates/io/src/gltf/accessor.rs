@@ -100,6 +100,8 @@ impl<'a> Source<'a> {
     ) -> Result<Vec<[f32; N]>, Error> {
         let layout = self.layout(index, N, user)?;
         let normalized = layout.normalized || integers == Integers::Normalized;
+
+        // Convert elements to floats; normalized integers span 0 to 1, or -1 to 1 with a sign.
         let read = |elements: Elements<'_>, range: Range<usize>| -> Vec<[f32; N]> {
             match (layout.component, normalized) {
                 (ComponentType::F32, _) => elements.convert(range, f32::from_le_bytes),
@@ -129,6 +131,8 @@ impl<'a> Source<'a> {
                 }
             }
         };
+
+        // Read the dense elements, zero where there are none, and put the sparse ones over them.
         let base = layout.elements.map(|e| read(e, range.clone()));
         let out = base.unwrap_or_else(|| vec![[0.0; N]; range.len()]);
         self.with_sparse(index, &layout, range, out, read)

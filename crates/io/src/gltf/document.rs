@@ -175,6 +175,8 @@ fn split_container<'a>(bytes: &'a [u8], file: &str) -> Result<(&'a [u8], Option<
     let word = |at: usize| {
         bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize)
     };
+
+    // Check the header.
     let (Some(version), Some(length)) = (word(4), word(8)) else {
         return Err(bad(
             bytes.len(),
@@ -191,6 +193,8 @@ fn split_container<'a>(bytes: &'a [u8], file: &str) -> Result<(&'a [u8], Option<
             format!("the header says {length} bytes, the file has {}", bytes.len()),
         ));
     }
+
+    // Walk through the chunks, and keep the first of JSON and the first of binary data.
     let (mut json, mut binary, mut at) = (None, None, 12);
     while let (Some(size), Some(kind)) = (word(at), bytes.get(at + 4..at + 8)) {
         let start = at + 8;
@@ -211,7 +215,8 @@ fn split_container<'a>(bytes: &'a [u8], file: &str) -> Result<(&'a [u8], Option<
         }
     }
     let json: &[u8] = json.ok_or_else(|| bad(12, "a GLB needs a JSON chunk".to_owned()))?;
-    // The format fills up with blanks; some writers take zeros.
+
+    // Cut zeros off the end: the format pads with blanks, some writers with zeros.
     let length = json.iter().rposition(|&b| b != 0).map_or(0, |last| last + 1);
     Ok((&json[..length], binary))
 }

@@ -116,6 +116,7 @@ fn transforms(
     path: &str,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<NodeTransform>, Error> {
+    // Read the attributes; the missing ones take their defaults.
     let translations = vectors::<3>(
         source,
         translations,
@@ -132,6 +133,8 @@ fn transforms(
     )?;
     let scales =
         vectors::<3>(source, scales, count, [1.0; 3], &format!("{path}.attributes.SCALE"))?;
+
+    // Combine them to the placement of each copy, without a rotation where it is zero.
     let mut zeros = 0;
     let transforms = translations.into_iter().zip(rotations).zip(scales).map(|((t, r), s)| {
         let unit = DVec4::from_array(r.map(f64::from)).try_normalize().unwrap_or_else(|| {
@@ -145,6 +148,8 @@ fn transforms(
         }
     });
     let transforms = transforms.collect();
+
+    // Warn of all zero rotations at once.
     if zeros > 0 {
         warnings.push(format!(
             "{}: {path}: {zeros} of {count} rotations are zero, none is used there",

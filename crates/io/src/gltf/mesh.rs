@@ -47,6 +47,8 @@ impl Plan {
         let name = mesh.name.clone().unwrap_or_default();
         let mut plan =
             Self { name, outlines: Vec::new(), blocks: Vec::new(), warnings: Vec::new() };
+
+        // Read the outline of each primitive that has positions.
         for (p, primitive) in mesh.primitives.iter().enumerate() {
             let path = format!("meshes[{m}].primitives[{p}]");
             let Some(attributes) = Attributes::find(source, primitive, &path, &mut plan.warnings)?
@@ -56,6 +58,8 @@ impl Plan {
                 continue;
             };
             let outline = Outline::read(source, primitive, attributes, &path, &mut plan.warnings)?;
+
+            // Share the block of vertices with the primitives of the same attributes.
             let block =
                 plan.blocks.iter().position(|b| b.attributes == outline.attributes).unwrap_or_else(
                     || {
@@ -71,6 +75,8 @@ impl Plan {
                         plan.blocks.len() - 1
                     },
                 );
+
+            // Widen the block to the vertices that the primitive uses.
             let shared = &mut plan.blocks[block];
             shared.has_surface |= outline.is_surface();
             if shared.range.is_empty() {
@@ -84,6 +90,8 @@ impl Plan {
             }
             plan.outlines.push((outline, block, material_index(primitive)));
         }
+
+        // Lay the blocks out one after the other.
         let mut next = 0usize;
         for block in &mut plan.blocks {
             block.base = next as u32;

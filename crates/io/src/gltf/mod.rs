@@ -203,6 +203,7 @@ fn add_nodes(
     scene: &mut Scene,
     warnings: &mut Vec<String>,
 ) {
+    // Number the nodes that are shown, and the meshes with their poses.
     let root = source.root;
     let mut numbers = vec![0u32; root.nodes.len()];
     for (number, &n) in tree.shown.iter().enumerate() {
@@ -213,6 +214,8 @@ fn add_nodes(
         .enumerate()
         .map(|(i, p)| ((p.mesh, p.skin, weight_bits(p)), i as u32))
         .collect();
+
+    // Convert the cameras and lights.
     let cameras: Vec<_> = root
         .cameras
         .iter()
@@ -222,6 +225,7 @@ fn add_nodes(
     let lights = AsRef::<[_]>::as_ref(root).iter().enumerate();
     let lights: Vec<_> = lights.map(|(i, l)| node::light(source, l, i, warnings)).collect();
 
+    // Add node after node, and set skinned meshes aside.
     let mut skinned = Vec::new();
     for &n in &tree.shown {
         let json = &root.nodes[n];
@@ -249,7 +253,7 @@ fn add_nodes(
     }
     scene.roots = tree.roots.iter().map(|&n| numbers[n]).collect();
 
-    // Skinned meshes are in world space already: they hang beside the tree.
+    // Add the skinned meshes beside the tree: they are in world space already.
     for (name, mesh) in skinned {
         scene.add_root(Node { name, mesh, ..Node::default() });
     }

@@ -215,6 +215,8 @@ fn transform(
     let not_finite =
         |name: &str| source.error(format!("nodes[{index}].{name}"), "a number is not finite");
     let mut warn = |what: &str| warnings.push(format!("{}: nodes[{index}]: {what}", source.file));
+
+    // Take a matrix, whose last row must be that of an affine map.
     if let Some(columns) = node.matrix {
         let mut matrix = DMat4::from_cols_array(&columns.map(f64::from));
         if !matrix.is_finite() {
@@ -228,6 +230,8 @@ fn transform(
         }
         return Ok(NodeTransform::Matrix(matrix));
     }
+
+    // Check translation and scale, and normalise the rotation.
     let vector = |v: Option<[f32; 3]>, default: DVec3, name: &str| {
         let v = v.map_or(default, |v| DVec3::from_array(v.map(f64::from)));
         if v.is_finite() { Ok(v) } else { Err(not_finite(name)) }
@@ -242,6 +246,8 @@ fn transform(
         warn("the rotation is zero, none is used");
         DVec4::W
     });
+
+    // Keep the default if the node is not moved.
     if translation == DVec3::ZERO && scale == DVec3::ONE && unit == DVec4::W {
         return Ok(NodeTransform::default());
     }
@@ -296,6 +302,7 @@ pub(crate) fn light(
     index: usize,
     warnings: &mut Vec<String>,
 ) -> Option<Light> {
+    // Leave out lights of unknown types.
     let Checked::Valid(kind) = json.type_ else {
         let path = format!("extensions.KHR_lights_punctual.lights[{index}]");
         warnings.push(format!(
@@ -304,11 +311,15 @@ pub(crate) fn light(
         ));
         return None;
     };
+
+    // Multiply the colour by the intensity, and replace what is not finite by zero.
     let intensity =
         if json.intensity.is_finite() { json.intensity.max(0.0) * FRAC_1_PI } else { 0.0 };
     let color = json
         .color
         .map(|c| if c.is_finite() { (c.max(0.0) * intensity).min(f32::MAX) } else { 0.0 });
+
+    // Place the light at the origin, along -z.
     let (position, direction) = (DVec3::ZERO, DVec3::NEG_Z);
     let kind = match (kind, &json.spot) {
         (LightType::Spot, Some(spot)) => {
@@ -320,6 +331,8 @@ pub(crate) fn light(
         (LightType::Point | LightType::Spot, _) => LightKind::Point { position },
         (LightType::Directional, _) => LightKind::Directional { direction },
     };
+
+    // Choose how it falls off with the distance.
     let attenuation = match (&kind, json.range) {
         (LightKind::Directional { .. }, _) => Attenuation::None,
         (_, Some(range)) if range > 0.0 && range.is_finite() => {

@@ -62,6 +62,7 @@ impl Wanted {
         meaning: Meaning,
         warnings: &mut Vec<String>,
     ) -> Option<TextureRef> {
+        // Find the image: that of the WebP extension, or else the usual one.
         let texture = &source.root.textures[reference.texture];
         let webp =
             texture.extensions.as_ref().and_then(|e| e.others.get(WEBP)?.get("source")?.as_u64());
@@ -75,11 +76,15 @@ impl Wanted {
             ));
             return None;
         };
+
+        // Number each image once for each meaning.
         let key = (image, meaning);
         let number = self.images.iter().position(|&k| k == key).unwrap_or_else(|| {
             self.images.push(key);
             self.images.len() - 1
         });
+
+        // Choose the set of texture coordinates; the set of the transform takes precedence.
         let mut uv_set =
             reference.transform.as_ref().and_then(|t| t.tex_coord).unwrap_or(reference.uv_set);
         if uv_set > 1 {
@@ -89,6 +94,8 @@ impl Wanted {
             ));
             uv_set = 0;
         }
+
+        // Assemble the reference.
         let sampler = texture
             .sampler
             .map_or_else(Sampler::default, |s| sampler(&source.root.samplers[s.value()]));

@@ -309,6 +309,8 @@ impl Chunk {
         let line = cursor.line();
         let word = cursor.word();
         let statement = Statement::of(word);
+
+        // Read the statement, or warn that it is not read.
         let result = match statement {
             Statement::Position => self.position(cursor),
             Statement::Texture => self.texture_coordinate(cursor),
@@ -339,6 +341,8 @@ impl Chunk {
                 Ok(())
             }
         };
+
+        // Note whether any statement is known, and keep the first error.
         self.understood |= statement != Statement::Unknown;
         if let Err(what) = result
             && self.error.is_none()

@@ -43,12 +43,15 @@ pub(super) struct Events<'a> {
 impl<'a> Events<'a> {
     /// Walks the changes of all pieces.
     pub(super) fn new(chunks: &[Chunk], pieces: &[&'a [u8]], first_lines: &[u64]) -> Self {
+        // Begin with a run that has neither name nor material.
         let mut events = Self::default();
         let mut number: HashMap<&[u8], usize> = HashMap::new();
         let (mut faces, mut triangles, mut free) = (0, 0, [0, 0]);
         let mut name = Cow::Borrowed("");
         let mut material = None;
         events.start_run(name.clone(), material, 0);
+
+        // Follow the changes in the order of the file.
         for ((chunk, &text), first_line) in chunks.iter().zip(pieces).zip(first_lines) {
             for event in &chunk.events {
                 let line = event.line + first_line;
@@ -77,8 +80,12 @@ impl<'a> Events<'a> {
                         events.libraries.push((line, text::name(&text[range.clone()])))
                     }
                 }
+
+                // Start a run at the triangle where the change stands.
                 events.start_run(name.clone(), material, triangles + event.triangle);
             }
+
+            // Count the elements of the piece, which the next one follows.
             faces += chunk.faces.count as u32;
             triangles += chunk.faces.triangles() as u32;
             free = [free[0] + chunk.lines.len(), free[1] + chunk.points.len()];

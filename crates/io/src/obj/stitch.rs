@@ -184,6 +184,8 @@ pub(super) fn leave_out_bad_attributes(
     workers: &Workers,
 ) -> bool {
     let sum = totals.sum();
+
+    // Find the first bad corner of each kind in each piece.
     let first = workers.map(chunks.len(), |i| {
         let (faces, base) = (&chunks[i].faces, totals.bases[i]);
         let kinds = [(&faces.vt, base.vt, sum.vt), (&faces.vn, base.vn, sum.vn)];
@@ -191,13 +193,16 @@ pub(super) fn leave_out_bad_attributes(
             list.iter().position(|&p| p != NONE && is_bad(p, base, total))
         })
     });
+
+    // Warn of each bad corner; the place is that of the first one.
     let mut note =
         |i: usize, corner: usize, index: i64, count: usize, total: usize, kind: &'static str| {
             let place = Place::Line(Chunk::line_of_corner(pieces[i], corner) + first_lines[i]);
             let told = || format!("{}; left out", nowhere(index, total, kind));
             (0..count).for_each(|_| warnings.note(kind, place.clone(), told));
         };
-    // One kind after the other, so that the order of the warnings does not tell the pieces.
+
+    // Take one kind after the other, so that the order of the warnings does not tell the pieces.
     for (i, [corner, _]) in first.iter().enumerate() {
         let (Some(corner), base, faces) = (*corner, totals.bases[i].vt, &mut chunks[i].faces)
         else {
@@ -309,6 +314,8 @@ fn fill_faces(
     workers: &Workers,
 ) -> FaceArrays {
     let sum = totals.sum();
+
+    // Allocate the arrays that the faces need.
     let has_uv_corners = totals.has_uvs && !totals.uvs_like_positions;
     let has_normal_corners = totals.has_normals && !totals.normals_like_positions;
     let is_mixed = !totals.all_triangles;

@@ -135,6 +135,8 @@ impl Content {
             layouts.iter().position(|l| l.has_colors && (l.role == Role::Vertex || face_colors));
         let color_types = [slot::COLOR, slot::COLOR + 3]
             .map(|slot| colored.and_then(|e| layouts[e].type_of(&header.elements[e], slot)));
+
+        // Prefer texture coordinates of corners to those of vertices, and look for image numbers.
         let corner_uvs = layouts.iter().any(|l| l.has_corner_uvs);
         let images = layouts.iter().any(|l| l.targets.contains(&Target::Slot(slot::IMAGE)));
         Ok(Self {
@@ -161,6 +163,7 @@ impl Content {
         match role {
             Role::Vertex => self.push_vertex(row),
             Role::Face => {
+                // Leave out faces with fewer than three corners.
                 if row.corners.len() < 3 {
                     warnings.note("few corners", place(), || {
                         format!(
@@ -170,11 +173,15 @@ impl Content {
                     });
                     return Ok(());
                 }
+
+                // Add the corners.
                 for &index in &row.corners {
                     let index = self.vertex(index)?;
                     self.corners.push(index);
                 }
                 self.sizes.push(row.corners.len() as u32);
+
+                // Add the face's colour, image and texture coordinates.
                 if let Some(colors) = &mut self.face_colors {
                     colors.push(encoded_color(row));
                 }

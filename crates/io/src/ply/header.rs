@@ -139,6 +139,7 @@ impl Header {
             bytes[first_end..].first() == Some(&b'\r') && bytes.get(first_end + 1) != Some(&b'\n');
         let end = if old_mac { b'\r' } else { b'\n' };
 
+        // Read line after line until `end_header`.
         let (mut encoding, mut elements, mut textures) = (None, Vec::new(), Vec::new());
         let (mut at, mut line) = (0, 0);
         loop {
@@ -147,11 +148,14 @@ impl Header {
             if at >= bytes.len() {
                 return Err(error("the file ends here, `end_header` is required".to_owned()));
             }
+
             // Cut the next line into words.
             let length = bytes[at..].iter().position(|&b| b == end).unwrap_or(bytes.len() - at);
             let text = crate::text::name(&bytes[at..at + length]);
             at = (at + length + 1).min(bytes.len());
             let words: Vec<&str> = text.split_ascii_whitespace().collect();
+
+            // Take the line by its first word.
             match words.as_slice() {
                 ["ply", ..] if line == 1 => {}
                 _ if line == 1 => return Err(error("the first line must be `ply`".to_owned())),

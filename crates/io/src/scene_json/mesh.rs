@@ -10,6 +10,7 @@ use vitral_scene::{Attribute, Corners, Faces, FreePart, Mesh, Part};
 
 /// Makes a mesh of its form; the error says what does not fit.
 pub(super) fn from_form(form: MeshForm, workers: &Workers) -> Result<Mesh, String> {
+    // Take the arrays as they are.
     let positions: Vec<[f32; 3]> = form.positions.into_iter().map(|p| p.map(|c| c.0)).collect();
     let (faces, triangles) = surfaces(&positions, form.faces, form.triangles, workers)?;
     let mut mesh = Mesh {
@@ -28,6 +29,8 @@ pub(super) fn from_form(form: MeshForm, workers: &Workers) -> Result<Mesh, Strin
         smoothing_groups: form.smoothing_groups,
         ..Mesh::default()
     };
+
+    // Divide the triangles into the given parts, or make them one part.
     mesh.parts = match form.parts {
         Some(_) if form.material.is_some() => return Err("either `parts` or `material`".to_owned()),
         Some(parts) => parts_of(&mesh, parts)?,
@@ -38,6 +41,8 @@ pub(super) fn from_form(form: MeshForm, workers: &Workers) -> Result<Mesh, Strin
             material: form.material,
         }],
     };
+
+    // Divide the lines and points.
     if form.line_material.is_some() && (form.line_parts.is_some() || form.point_parts.is_some()) {
         return Err("either `line-material` or `line-parts` and `point-parts`".to_owned());
     }
@@ -45,6 +50,8 @@ pub(super) fn from_form(form: MeshForm, workers: &Workers) -> Result<Mesh, Strin
     FreePart::extend(&mut mesh.point_parts, 0..mesh.points.len(), form.line_material);
     free_parts(&mut mesh.line_parts, form.line_parts);
     free_parts(&mut mesh.point_parts, form.point_parts);
+
+    // Check the mesh.
     if mesh.uvs.len() > 2 {
         return Err(format!(
             "{} sets of texture coordinates, at most 2 are possible",

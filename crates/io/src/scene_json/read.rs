@@ -229,6 +229,8 @@ fn add_meshes(
     let mut entries = Vec::with_capacity(forms.len());
     for (i, form) in forms.into_iter().enumerate() {
         let path = format!("meshes[{i}]");
+
+        // Check the materials that the entry names.
         let materials = scene.materials.len();
         let parts = form.parts.iter().flatten().filter_map(|p| p.material);
         let free = [&form.line_parts, &form.point_parts]
@@ -239,6 +241,8 @@ fn add_meshes(
         for material in parts.chain(free).chain(form.material).chain(form.line_material) {
             report.index(path.as_str(), "material", material, materials)?;
         }
+
+        // Make the mesh of an inline entry, or load the model that the entry names.
         let inline = !form.positions.is_empty()
             || form.faces.is_some()
             || form.triangles.is_some()
@@ -287,6 +291,7 @@ fn add_nodes(
     entries: &[Entry],
     report: &Report<'_>,
 ) -> Result<Vec<(usize, usize)>, Error> {
+    // Check the tree, and find its roots.
     if forms.len() > MAX_ENTRIES {
         return Err(
             report.at("nodes", format!("{} nodes, at most {MAX_ENTRIES} are read", forms.len()))
@@ -312,6 +317,8 @@ fn add_nodes(
             light: form.light,
             ..Node::default()
         };
+
+        // Attach the camera, and the mesh unless the entry is a model.
         if let Some(camera) = form.camera {
             report.index(format!("{path}.camera"), "camera", camera, scene.cameras.len())?;
             node.camera = Some(camera);

@@ -67,9 +67,13 @@ impl<'a> Origin<'a> {
         place: &Place,
     ) -> Result<Reference<'a>, Error> {
         let full = self.locate(path);
+
+        // Share a scene that is loaded already.
         if let Some(scene) = self.known.borrow().get(&full) {
             return Ok(Reference::Scene(Arc::clone(scene)));
         }
+
+        // Refuse a file that refers back to itself, and one that cannot be read.
         let missing = |why: String| Error::Missing {
             file: format!("{file}: {}", place.to_string().trim_end_matches(": ")),
             needed: path.to_owned(),
@@ -79,6 +83,8 @@ impl<'a> Origin<'a> {
             return Err(missing("it refers back to itself".to_owned()));
         }
         let bytes = self.resolver.read(&full).map_err(|e| missing(e.to_string()))?;
+
+        // Load the model, whose own files are found from its folder.
         let folder = full.rfind('/').map_or("", |slash| &full[..slash]);
         let below = Below { inner: self.resolver, folder };
         match models::load(

@@ -168,6 +168,8 @@ fn threads(gl: &Gl) -> Result<(), String> {
 /// may wait for the other.
 fn shared_map(gl: &Gl) -> Result<(), String> {
     let first = Window::new(gl);
+
+    // Create a depth texture.
     let (mut names, mut buffers) = ([0], [0]);
     gl.glGenTextures(1, &mut names);
     gl.glBindTexture(TEXTURE_2D, names[0]);
@@ -183,6 +185,8 @@ fn shared_map(gl: &Gl) -> Result<(), String> {
         FLOAT,
         0,
     );
+
+    // Draw into it by clearing it through a framebuffer.
     gl.glGenFramebuffers(1, &mut buffers);
     gl.glBindFramebuffer(FRAMEBUFFER, buffers[0]);
     gl.glFramebufferTexture2D(FRAMEBUFFER, DEPTH_ATTACHMENT, TEXTURE_2D, names[0], 0);
@@ -192,9 +196,13 @@ fn shared_map(gl: &Gl) -> Result<(), String> {
     gl.glClear(DEPTH_BUFFER_BIT);
     gl.glBindFramebuffer(FRAMEBUFFER, 0);
     gl.glFinish();
+
+    // Create a second context that shares the texture.
     let context = gl.OSMesaCreateContextExt(RGBA, 24, 8, 0, first.context);
     gl.OSMesaMakeCurrent(0, 0, 0, 0, 0);
     let second = Window { context, buffer: first.buffer.clone() };
+
+    // Give triangles to both contexts, each on a thread of its own.
     std::thread::scope(|scope| {
         let work = move |mut window: Window| {
             window.make_current(gl);

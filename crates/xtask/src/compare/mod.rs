@@ -45,6 +45,7 @@ struct Effort {
 
 /// Installs, builds, measures, prints.
 pub(crate) fn run(options: &[&str]) -> Outcome {
+    // Read the options.
     let mut effort = Effort { rounds: 3, frames: 8, with_vitral: true };
     for option in options {
         match *option {
@@ -57,6 +58,8 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
             }
         }
     }
+
+    // Install and build the programs, and generate the torus.
     let python = peers::install()?;
     let mut programs = vec![Program::f3d(&python), Program::pyvista(&python)];
     if effort.with_vitral {
@@ -88,6 +91,8 @@ pub(crate) fn run(options: &[&str]) -> Outcome {
         report.parts(name, whole.first().and_then(|w| w.as_ref().ok()).copied(), parts);
         report.processes(name, &whole);
     }
+
+    // Measure how long the programs take to start.
     report.start_up(&python, effort.rounds)?;
     print!("{report}");
     Ok(())

@@ -492,12 +492,16 @@ pub(super) fn build(
         }
         Vertices::Elements { count, kind, pointer, buffer, base, restart } => {
             let mut indices = reader.indices(buffer, kind, count, pointer)?;
+
+            // Cut primitives at the restart index, which names no element.
             if let Some(restart) = restart {
                 pieces.extend(indices.split(|&index| index == restart).map(<[u32]>::len));
                 indices.retain(|&index| index != restart);
             } else {
                 pieces.push(count);
             }
+
+            // Add the base vertex, and renumber the indices from 0.
             if base != 0 {
                 for index in &mut indices {
                     *index = index.checked_add_signed(base).ok_or(BEFORE)?;

@@ -336,7 +336,7 @@ fn ball_and_floor(gl: &Gl) {
 
 /// With filters for minification and magnification.
 fn shadow_map(gl: &mut Stage<'_>, [min, mag]: [u32; 2]) {
-    // The light's view, as depth.
+    // Create a depth texture for the light's view.
     framebuffer(gl);
     let texture = name_of(|names| gl.glGenTextures(1, names));
     gl.glBindTexture(TEXTURE_2D, texture);
@@ -361,6 +361,8 @@ fn shadow_map(gl: &mut Stage<'_>, [min, mag]: [u32; 2]) {
     ] {
         gl.glTexParameteri(TEXTURE_2D, name, value as i32);
     }
+
+    // Attach the texture to a framebuffer without colour.
     gl.glFramebufferTexture2D(FRAMEBUFFER, DEPTH_ATTACHMENT, TEXTURE_2D, texture, 0);
     gl.glDrawBuffer(NONE);
     gl.glReadBuffer(NONE);
@@ -385,7 +387,7 @@ fn shadow_map(gl: &mut Stage<'_>, [min, mag]: [u32; 2]) {
     ball_and_floor(gl);
     gl.glDisable(POLYGON_OFFSET_FILL);
 
-    // The eye's view, with the light's clip coordinates as texture coordinates.
+    // Draw the eye's view, with the light's clip coordinates as texture coordinates.
     gl.glBindFramebuffer(FRAMEBUFFER, 0);
     camera(gl);
     gl.glRotatef(25.0, 1.0, 0.0, 0.0);

@@ -137,6 +137,7 @@ impl Program {
     fn command(&self, subject: &Subject, work: Work, drawing: &Path) -> Option<Command> {
         match &self.kind {
             Kind::Vitral(path) => {
+                // Run vitral without the user's configuration, and let it report its times.
                 let mut words = command(path);
                 words
                     .arg("draw")
@@ -154,6 +155,7 @@ impl Program {
                 Some(words)
             }
             Kind::Script { python, script, tasks } => {
+                // Run the peer's script, if it knows the work.
                 let task = tasks.iter().find(|(known, _)| *known == work)?.1;
                 let mut words = command(python);
                 words
@@ -164,6 +166,7 @@ impl Program {
                 Some(words)
             }
             Kind::Gl2ps { program, sort } => {
+                // Run gl2ps, which only partitions.
                 if work != Work::Partition {
                     return None;
                 }

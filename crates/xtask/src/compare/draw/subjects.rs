@@ -43,6 +43,7 @@ const MODELS: [(&str, &str, &[Work]); 8] = [
 
 /// All subjects; generated files are made once.
 pub(super) fn subjects() -> Result<Vec<Subject>, String> {
+    // Add closed knots of several sizes, for all works.
     let mut subjects = Vec::new();
     for triangles in KNOTS {
         let mesh = generated("knot", triangles)?;
@@ -56,6 +57,8 @@ pub(super) fn subjects() -> Result<Vec<Subject>, String> {
             works: &ALL,
         });
     }
+
+    // Add triangles that cross each other, and many small ones.
     for (kind, triangles, name) in
         [("slivers", 3_000, "crossing slivers"), ("small", 100_000, "random triangles")]
     {
@@ -71,6 +74,8 @@ pub(super) fn subjects() -> Result<Vec<Subject>, String> {
             works,
         });
     }
+
+    // Add the scene for shadows and glass.
     let glass = generated("glass", 10_000)?;
     let works = &[Work::ShadowsAndGlass];
     let name = "knot, floor and glass ball, 10 000".to_owned();
@@ -82,6 +87,8 @@ pub(super) fn subjects() -> Result<Vec<Subject>, String> {
         knot: None,
         works,
     });
+
+    // Add the models that are there.
     for (name, path, works) in MODELS {
         let model = repository().join(path);
         if !model.exists() {

@@ -105,10 +105,12 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
         );
     };
 
-    // List the vectors and the material's coefficients.
+    // List the vectors.
     let three = |rgb: [f32; 3]| rgb.map(digits).join(" ");
     row("N".to_owned(), three(evaluation.normal), "unit normal, view space", None);
     row("V".to_owned(), three(evaluation.viewer), "unit vector to the viewer, view space", None);
+
+    // List the coefficients of the material's model.
     match evaluation.coefficients {
         CoefficientValues::Empirical { ka, kd, ks, shininess } => {
             row(
@@ -152,8 +154,7 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
         Some("ambient".to_owned()),
     );
 
-    // List the terms of each light.
-    // List the light's colours, angles and terms.
+    // List the values of each light.
     for of_light in &evaluation.lights {
         let (t, name) = (&of_light.terms, &lights[of_light.light]);
         let mut of = |symbol: &str, value: String, meaning: &str| {
@@ -164,6 +165,8 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
                 Some(format!("lights.{}", of_light.light)),
             );
         };
+
+        // List the colours, the direction, and what distance and shadow leave of the light.
         let [ambient, diffuse, specular] = t.colors.map(three);
         of("Ia", ambient, "ambient colour of the light");
         of("Id", diffuse, "diffuse colour of the light");
@@ -172,6 +175,8 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
         of("N·L", digits(t.n_l), "cosine of the angle of incidence, 0 behind the surface");
         of("f_att", digits(t.attenuation), "what distance leaves of the light");
         of("S", three(t.visibility), "which part arrives: 1 without shadow");
+
+        // List the highlight.
         if let Some(highlight) = t.highlight {
             let (symbol, meaning) = match highlight.r {
                 Some(_) => ("R·V", "cosine between the mirrored light and the viewer"),
@@ -184,6 +189,8 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
                 "that cosine to the power n, or the microfacets' lobe",
             );
         }
+
+        // List the terms that the light adds.
         of("ambient", three(t.ambient), "ambient term");
         of("diffuse", three(t.diffuse), "diffuse term");
         of("specular", three(t.specular), "specular term");

@@ -113,9 +113,11 @@ impl Lab {
     }
 
     fn carry_out(&mut self, json: &str, planes: Vec<Vec<u8>>) -> Answer {
+        // Parse the request.
         let Request { want, state } = Request::from_json(json)?;
         let Self { files, stage, recordings } = self;
         match want {
+            // List the choices, store the user's files, or complete a state.
             Want::Catalog => catalog::catalog(),
             Want::Files { files: names } => {
                 names
@@ -126,6 +128,8 @@ impl Lab {
                 Ok((json!({"files": files.list()}), Vec::new()))
             }
             Want::Complete => complete::complete(stage.show(&state, files)?, &state),
+
+            // Render a picture, or record and show an algorithm's steps.
             Want::Picture { channel, coarse } => {
                 picture::picture(stage.show(&state, files)?, &state, channel, coarse)
             }
@@ -147,16 +151,24 @@ impl Lab {
             Want::Structure => {
                 steps::structure(&Asked { stage, files, state: &state, pixel: None }, recordings)
             }
+
+            // Look at the camera from outside, or explain a pixel.
             Want::Overview { second } => {
                 overview::overview(stage.show(&state, files)?, second.as_deref())
             }
             Want::Explain { pixel } => explain::explain(stage.show(&state, files)?, pixel),
             Want::AskAll { pixel } => explain::ask_all(stage.show(&state, files)?, pixel),
+
+            // Compare states or algorithms, or time pictures.
             Want::Compare { b } => compare::compare(stage, files, &state, &b),
             Want::CompareAll => compare::compare_all(stage.show(&state, files)?),
             Want::Bench { frames } => compare::bench(stage.show(&state, files)?, frames),
+
+            // Count the work of the stages, or describe the scene.
             Want::Stages { pixel } => stages::stages(stage.show(&state, files)?, pixel),
             Want::Info => stages::info(stage.show(&state, files)?),
+
+            // Check an exercise, save a file, or plot a curve.
             Want::Check { exercise, pixel } => {
                 exercises::check(stage.show(&state, files)?, &state, &exercise, pixel)
             }

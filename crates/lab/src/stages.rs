@@ -51,12 +51,17 @@ fn rows_of(corners: &FacetSpaces) -> Value {
 
 /// A row for each stage: its name, its input, its output.
 fn rows(stats: &Value) -> Vec<Value> {
+    // Read the sections of the statistics.
     let (cull, geometry, picture) = (&stats["cull"], &stats["geometry"], &stats["picture"]);
     let count = |value: &Value| value.as_u64().unwrap_or(0);
+
+    // Count the triangles that culling of boxes leaves, and those that later culling drops.
     let left =
         count(&cull["triangles"]) - count(&cull["triangles-culled"]).min(count(&cull["triangles"]));
     let gone = ["outside", "back-facing", "degenerate", "no-sample", "not-finite"]
         .map(|name| count(&geometry[name]));
+
+    // List the stages, each with what enters and what leaves it.
     let row = |stage: &str, goes_in: String, comes_out: String| json!({"stage": stage, "in": goes_in, "out": comes_out});
     vec![
         row(

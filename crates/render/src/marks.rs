@@ -214,6 +214,7 @@ pub(crate) fn build(
     lighting: PointLighting<'_>,
     execution: &Execution,
 ) -> Result<(Marks, MarkColors), Limit> {
+    // Set up the pen and the table of colours.
     let (world, count) = (&view.session.world, view.pattern.len());
     let samples = if count == 1 {
         Vec::new()
@@ -239,6 +240,8 @@ pub(crate) fn build(
     for prepared in &view.instances {
         drawing.instance(&world.instances[prepared.instance]);
     }
+
+    // Draw the lines where surfaces penetrate each other.
     let shows_penetrations = settings.picture.edge_classes.has(LineClass::Intersection);
     if shows_penetrations
         && matches!(settings.picture.lines, Lines::Edges | Lines::WireframeHiddenLine)

@@ -180,6 +180,7 @@ fn bodies(mesh: &Mesh, workers: &Workers) -> Vec<u32> {
 
 /// Some faces of a mesh, with the positions and values that they use.
 fn subset(mesh: &Mesh, faces: &[u32]) -> Mesh {
+    // Renumber the triangles' corners by the positions in use.
     let triangles: Vec<usize> =
         faces.iter().flat_map(|&face| mesh.face_triangles(face as usize)).collect();
     let own: Vec<Corners> = triangles.iter().map(|&t| mesh.triangles[t]).collect();
@@ -209,6 +210,8 @@ fn subset(mesh: &Mesh, faces: &[u32]) -> Mesh {
             _ => parts.push(Part { triangles: i as u32..i as u32 + 1, ..of.clone() }),
         }
     }
+
+    // Name the mesh after its first part, and select the values of each attribute.
     let name = parts.first().map(|part| part.name.clone()).filter(|name| !name.is_empty());
     Mesh {
         name: name.unwrap_or_else(|| mesh.name.clone()),

@@ -52,14 +52,18 @@ impl Topology {
 
     /// Counts everything. A mesh of 2^31 triangles or more is only told its size.
     pub fn of(mesh: &Mesh, workers: &Workers) -> Self {
+        // Tell only the size of a mesh that is empty or too large.
         let triangles = mesh.triangles.len();
         if triangles == 0 || triangles >= MAX_FACES {
             return Self { triangles, ..Self::default() };
         }
+
+        // Weld vertices at the same position.
         let weld = Weld::new(&mesh.positions, workers);
         let welded = |t: usize| mesh.triangles[t].map(|i| weld.representative[i as usize]);
         let collapsed = |t: usize| is_collapsed(welded(t));
 
+        // Count the edges by the number and the direction of their uses.
         let parts = for_each_edge(
             mesh,
             &weld.representative,
@@ -79,6 +83,7 @@ impl Topology {
         );
         let sum = |field: fn(&EdgeCounts) -> usize| parts.iter().map(field).sum::<usize>();
 
+        // Count bodies, vertices and triangles.
         let (components, vertices, sound_vertices) = bodies(mesh, &weld);
         let sound_triangles = (0..triangles).filter(|&t| !collapsed(t)).count();
         let (boundary_edges, non_manifold_edges) = (sum(|c| c.boundary), sum(|c| c.non_manifold));

@@ -149,6 +149,7 @@ pub fn measure(
     entrant: &Entrant,
     execution: &Execution,
 ) -> Result<Result<Measured, Limit>, Error> {
+    // Set up a session and a budget for this algorithm alone.
     let settings = entrant.settings(task.settings);
     let viewport = settings.check()?;
     let session = Session::with_workers(Arc::clone(task.scene), &execution.workers)?;
@@ -158,6 +159,8 @@ pub fn measure(
         .with_time_limit(task.time_limit)
         .with_memory_limit(task.memory_limit);
     let execution = Execution { budget, ..execution.clone() };
+
+    // Resolve and time one picture a call.
     let samples = settings.picture.samples as usize;
     let mut grid = TileGrid::new(viewport, samples);
     let picture = |grid: &mut TileGrid| -> Result<_, Limit> {
@@ -177,10 +180,14 @@ pub fn measure(
             entrant.algorithm.algorithm.resolve(&view, None, grid, &execution, &NullSink)?;
         Ok((execution.budget.elapsed() - start, resolved))
     };
+
+    // Time the first picture, with all that is built once.
     let (first_seconds, resolved) = match picture(&mut grid) {
         Ok(first) => first,
         Err(limit) => return Ok(Err(limit)),
     };
+
+    // Digest what is visible, then time the remaining pictures.
     let seen = VisibilityDigest::of(&grid, viewport, samples);
     let mut seconds = Vec::new();
     while seconds.len() + 1 < task.frames {
@@ -188,6 +195,8 @@ pub fn measure(
         let Ok((more, _)) = picture(&mut grid) else { break };
         seconds.push(more);
     }
+
+    // Report the times, the memory and the counters.
     Ok(Ok(Measured {
         first_seconds,
         fastest_seconds: seconds.iter().copied().reduce(f64::min).unwrap_or(first_seconds),

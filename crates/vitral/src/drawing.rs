@@ -263,6 +263,8 @@ impl Renderer {
                 })?;
             lit.push(LitPolygons { light, place, of_facet: BTreeMap::new() });
         }
+
+        // Require a light that casts shadows.
         if lit.is_empty() {
             return Err(Error::usage(
                 "no light casts shadows",

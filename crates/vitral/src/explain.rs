@@ -269,6 +269,7 @@ pub fn explain(
     deciders: &Deciders,
     time_limit: Option<f64>,
 ) -> Result<Explanation, Error> {
+    // Check that the pixel lies in the picture.
     let settings = &renderer.picture_settings();
     if pixel[0] >= settings.picture.width || pixel[1] >= settings.picture.height {
         let size = format!(
@@ -277,6 +278,7 @@ pub fn explain(
         );
         return Err(Error::usage(format!("there is no pixel {},{}", pixel[0], pixel[1]), size));
     }
+
     // The limit is each algorithm's; what remains of the whole is that the user may cancel.
     let budget = renderer.execution().budget.renewed().with_time_limit(None);
     let examined = examined(
@@ -287,9 +289,13 @@ pub fn explain(
         &budget.clone().with_time_limit(time_limit),
         None,
     )?;
+
+    // Find the surfaces over the pixel's centre, and interpolate Gouraud's colours on the nearest.
     let surfaces = surfaces(renderer, camera, pixel)?;
     let nearest = surfaces.first().filter(|_| settings.shading.model == Shading::Gouraud);
     let gouraud = nearest.map_or(Ok(None), |s| gouraud(renderer, camera, pixel, s.facet))?;
+
+    // Let each algorithm decide the pixel.
     let (entrants, tile_only) = match deciders {
         Deciders::Chosen => (chosen(settings), true),
         Deciders::Named(entrants) => (entrants.clone(), false),
@@ -299,10 +305,14 @@ pub fn explain(
         decisions.push(decide(renderer, camera, pixel, &entrant, tile_only, time_limit)?);
         budget.check("explaining a pixel").map_err(vitral_render::Error::from)?;
     }
+
+    // Follow the pixel's rays.
     let rays = match settings.global.model {
         Global::RayTrace => rays(renderer, camera, pixel, &budget.with_time_limit(time_limit))?,
         Global::None | Global::Radiosity => Vec::new(),
     };
+
+    // Name the surface, mesh and material of each candidate.
     let overlying = |candidate: Candidate| {
         let (surface, mesh, material) = named(renderer.session(), candidate.facet);
         Overlying { candidate, surface, mesh, material }
@@ -511,6 +521,7 @@ fn decide(
     tile_only: bool,
     time_limit: Option<f64>,
 ) -> Result<Decision, Error> {
+    // Set up the entrant's settings, an observer and a budget.
     let settings = Settings { coherence: None, ..entrant.settings(&renderer.settings) };
     let viewport = settings.check().map_err(vitral_render::Error::from)?;
     let onlooker = Arc::new(Onlooker { pixel, steps: Mutex::default() });
@@ -521,6 +532,8 @@ fn decide(
         observer: Some(Arc::clone(&onlooker) as Arc<dyn Observer>),
         ..own.clone()
     };
+
+    // Prepare the view, limited to the pixel's tile where that is enough.
     let session: &Session = renderer.session();
     let culled = &mut CullCounters::default();
     let mut view = PreparedView::new(
@@ -536,11 +549,15 @@ fn decide(
         let [column, row] = pixel.map(|v| v / TILE as u32);
         view.limit_to_tile((row * viewport.tiles_x() + column) as usize);
     }
+
+    // Resolve visibility, and look up the pixel's sample.
     let mut grid = TileGrid::new(viewport, 1);
     let resolved =
         entrant.algorithm.algorithm.resolve(&view, None, &mut grid, &execution, &NullSink);
     let (tile, at) = grid.locate(pixel[0], pixel[1]);
     let seen = resolved.is_ok() && tile.facet[at] != NO_FACET;
+
+    // Report the visible facet and the steps, or the limit that ended the algorithm.
     let steps = std::mem::take(
         &mut *onlooker.steps.lock().expect("no thread panics while it keeps a step"),
     );

@@ -227,6 +227,7 @@ impl Viewpoint {
 
     /// The camera: a framed one or the scene's, its parts replaced, then moved.
     fn camera(&self, renderer: &Renderer) -> Camera {
+        // Choose Lab3D's eye, a camera of the scene, or a framed view.
         let point = DVec3::from_array;
         let mut camera = match self.camera_index {
             None if self.eye_rotation.is_some() || self.eye_translation.is_some() => {
@@ -243,6 +244,8 @@ impl Viewpoint {
                 _ => renderer.frame_camera(),
             },
         };
+
+        // Replace the focal point and the position.
         if let Some(focal_point) = self.focal_point.map(point) {
             // Alone, a new focal point takes the viewer along.
             camera.position += focal_point - camera.focal_point;
@@ -260,6 +263,8 @@ impl Viewpoint {
                 camera.focal_point = bounds.center();
             }
         }
+
+        // Replace the up vector, the direction and the projection.
         if let Some(view_up) = self.view_up.map(point) {
             camera.view_up = view_up;
         }
@@ -274,6 +279,8 @@ impl Viewpoint {
         if self.orthographic {
             camera = camera.orthographic();
         }
+
+        // Replace the clipping planes, and move the camera.
         camera.clip = self.clip.or(camera.clip);
         self.moves().applied(&camera)
     }

@@ -733,6 +733,7 @@ impl<'a> Shader<'a> {
                 match self.shape() {
                     None => {}
                     Some(Shape::Polygon { boundary, .. }) => {
+                        // Cover by the part of the pixel inside the polygon's own edges.
                         let coverage = polygon_coverage(
                             simd,
                             x,
@@ -744,11 +745,13 @@ impl<'a> Shader<'a> {
                         pass = bits_of(coverage.simd_gt(splat(simd, 0.0)));
                     }
                     Some(Shape::Line { from, to, width, first, stipple, .. }) => {
+                        // Measure how far along the line the samples lie.
                         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
                         let length = (dx * dx + dy * dy).sqrt();
                         let (ux, uy) = (dx / length, dy / length);
                         let along = (x - from[0]) * ux + (y - from[1]) * uy;
                         let smooth = self.draw.layout.smooth[1];
+
                         // Cover the part between the line's sides and ends.
                         if smooth {
                             let across = (x - from[0]) * -uy + (y - from[1]) * ux;
@@ -788,6 +791,7 @@ impl<'a> Shader<'a> {
                         }
                     }
                     Some(Shape::Point { center, size, fade, .. }) => {
+                        // Cover a smooth point as a disc, and fade it.
                         if self.draw.layout.smooth[0] {
                             let coverage =
                                 disc_coverage(simd, x - center[0], y - center[1], size * 0.5);

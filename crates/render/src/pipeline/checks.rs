@@ -74,6 +74,8 @@ pub(super) fn warnings(
     workers: &Workers,
 ) -> Vec<String> {
     let mut warnings = Vec::new();
+
+    // Warn of open surfaces of refractive materials, through which rays pass straight.
     if settings.global.model == Global::RayTrace && settings.transparency.model.sees_through() {
         warnings.extend(session.sheets(workers).into_iter().map(|name| {
             let of =
@@ -83,6 +85,8 @@ pub(super) fn warnings(
             )
         }));
     }
+
+    // Warn of a radiosity solution that is cut short or that approximates transparency.
     if stats.radiosity.stopped {
         let left = 100.0 * stats.radiosity.residual;
         warnings.push(format!(
@@ -101,7 +105,11 @@ pub(super) fn warnings(
         let holes = "radiosity knows holes of cut-out surfaces by 16 samples of each element, and glass in textures as all or nothing";
         warnings.push(holes.to_owned());
     }
+
+    // Warn of material properties that the transparency settings ignore.
     warnings.extend(unused_transparency(session, settings));
+
+    // Warn of an empty picture and of dropped layers.
     let picture = &stats.picture;
     let shown = picture.covered_pixels + picture.shaded_points + picture.layer_samples > 0;
     if settings.picture.channels.color && !shown && !session.world.bounds.is_empty() {

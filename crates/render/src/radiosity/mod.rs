@@ -313,7 +313,7 @@ impl Session {
             }
         }
 
-        // Hash the materials, and the textures that they use.
+        // Hash the materials, and collect the textures that they use.
         let mut textures = BTreeSet::new();
         for m in &self.scene.materials {
             let surface =
@@ -327,6 +327,8 @@ impl Session {
             hash = solution::mix(hash, format!("{surface:?} {used:?}").as_bytes());
             textures.extend(used.into_iter().flatten().map(|reference| reference.texture));
         }
+
+        // Hash all levels of these textures.
         for texture in textures.iter().filter_map(|&t| self.scene.textures.get(t as usize)) {
             hash = solution::mix(hash, format!("{:?}", texture.encoding).as_bytes());
             for level in &texture.levels {

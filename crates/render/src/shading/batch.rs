@@ -69,10 +69,12 @@ pub(super) fn each_pair<S: Simd>(
     mut visit: impl FnMut(&ShadingBatch8<'_>, Option<&ShadingBatch8<'_>>),
 ) {
     for group in &points.groups {
-        // Make the records of the group's facets and find which lights reach its points.
+        // Make the records of the group's facets.
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
         facets.fill(simd, points, order, &subject);
+
+        // Find which lights reach the group's points.
         let light = if asks(material) {
             shadowed::group_light(
                 simd,
@@ -106,6 +108,8 @@ pub(super) fn each_pair<S: Simd>(
                 open: &light.open,
                 first,
             };
+
+            // Visit eight points, with the next eight if the group has more.
             let place = 2 * LANES * i;
             let my_slots = Slots::of_points(points, mine, my_records, subject.first_facet);
             let mine = eight(mine, &my_slots, place);

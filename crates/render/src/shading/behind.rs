@@ -370,6 +370,7 @@ impl DeepPicture<'_> {
 
     /// What lies behind a place (view space), over a pixel.
     fn next(&self, pixel: [u32; 2], sample: usize, from: DVec3) -> Next {
+        // Find the pixel's tile, and the least distance of what lies behind the place.
         let side = TILE as u32;
         let tiles_x = self.constants.view.viewport.tiles_x();
         let tile = &self.tiles[(pixel[1] / side * tiles_x + pixel[0] / side) as usize];
@@ -378,7 +379,7 @@ impl DeepPicture<'_> {
         let least = -from.z * (1.0 + CLEARANCE);
         let faces = |point: usize| tile.planes[point].dot(from.extend(1.0)) > -from.z * CLEARANCE;
 
-        // The nearest fragment behind the place.
+        // Find the nearest fragment behind the place.
         let mut nearest: Option<(&FragmentPoint, f64)> = None;
         for f in &tile.points.fragments[tile.starts[at] as usize..tile.starts[at + 1] as usize] {
             if f.mask >> sample & 1 == 0 {
@@ -398,7 +399,7 @@ impl DeepPicture<'_> {
             return Next::Surface(LayerHit { away, color: of.color, passes: of.passes, exponent });
         }
 
-        // Or the opaque surface.
+        // Otherwise find the opaque surface, or the background.
         let sample_at = sample * TILE_PIXELS + at;
         if opaque.facet[sample_at] == NO_FACET {
             return Next::Background;
@@ -407,6 +408,8 @@ impl DeepPicture<'_> {
             Source::Point(point) => point,
             Source::Mixed(start) => tile.points.mixed[start as usize + sample],
         };
+
+        // Give up where it has no point, lies in front of the place, or is turned away from it.
         let away = self.lens.away(opaque.depth[sample_at]);
         if point == NO_POINT || away <= least || !faces(point as usize) {
             return Next::Hidden;

@@ -69,10 +69,12 @@ pub(super) fn shade_color_only<S: Simd, V: Floats<S>>(
                 coefficients,
             } = points;
 
-            // Reflect the lights and store the colours.
+            // Reflect the lights and premultiply the colours by alpha and coverage.
             let reflected =
                 lighting(first, constants).reflect(simd, &position, &normal, &coefficients);
             let color = premultiplied(first.material, false, &reflected, emission, alpha, coverage);
+
+            // Store the colours, eight points at a time.
             V::by_eights(
                 simd,
                 [color.x, color.y, color.z, alpha],

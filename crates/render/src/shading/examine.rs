@@ -112,7 +112,12 @@ impl Examination<'_> {
         parameters.occlude(simd, eight);
         let places =
             shadowed::world_places(simd, constants, subject, slots, &surface.place_weights());
+
+        // Evaluate the model where the shading model does.
         let wanted = self.evaluations(simd, eight, &surface, &parameters);
+
+        // Find the interreflected light, the glow of translucent sheets, and colours without
+        // lights.
         let received = constants.radiosity.filter(|_| material.model.needs_light_visibility()).map(
             |solution| {
                 let k = parameters.coefficients(simd, material, parameters.base);
@@ -200,7 +205,7 @@ impl Examination<'_> {
             return Vec::new();
         }
 
-        // Evaluate where the shading model does: at the point, on the face, or at the corners.
+        // Set up an evaluation at a single place, towards the viewer.
         let viewer =
             |position: &V3<F<S>>| towards_viewer(simd, position, None, subject.viewing.perspective);
         let of_point = |placed: Placed<F<S>>| {
@@ -213,6 +218,8 @@ impl Examination<'_> {
                 weight: parameters.alpha.splat(1.0),
             }]
         };
+
+        // Evaluate where the shading model does: at the point, on the face, or at the corners.
         match self.constants.shading {
             Shading::Phong => of_point(phong::placed(
                 surface,
@@ -316,6 +323,8 @@ impl Examination<'_> {
             }
             _ => (None, None),
         };
+
+        // Sum the terms of the lights and the surroundings.
         let mut sum = sum_of_terms(ambient, &terms);
         gathered.into_iter().for_each(|gathered| sum.diffuse = sum.diffuse + gathered);
         environment.into_iter().for_each(|mirrored| sum.specular = sum.specular + mirrored);

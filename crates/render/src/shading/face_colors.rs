@@ -110,6 +110,8 @@ impl FaceColors {
                 Reflected { diffuse: V3::from_array([0.0; 3]), specular: V3::from_array([0.0; 3]) }
             }
         };
+
+        // Add the light that the material emits.
         let [diffuse, specular] = [sum.diffuse, sum.specular].map(V3::to_array);
         [0, 1, 2].map(|k| diffuse[k] + specular[k] + material.emission[k])
     }

@@ -162,10 +162,13 @@ impl Lighting<'_> {
         coefficients: &Coefficients<V>,
         lit: impl Fn(usize) -> V3<V>,
     ) -> Reflected<V> {
+        // Set up the surface, with the direction to the viewer.
         let v = towards_viewer(simd, position, self.along, self.perspective);
         let surface = Surface { position: *position, n: *n, v };
         match coefficients {
             Coefficients::Empirical(k) => {
+                // Evaluate the empirical model, with what rounding may add to the cosine of a
+                // light.
                 let grazing = lanes::inlined(
                     #[inline(always)]
                     |light: &PreparedLight| light.direction_rounding(*position),
@@ -181,6 +184,8 @@ impl Lighting<'_> {
                 )
             }
             Coefficients::Microfacet(m) => {
+                // Evaluate the microfacet model, and add what the sky and the environment
+                // contribute.
                 let mut reflected = cook_torrance(self.lights, self.ambient, &surface, m, lit);
                 if let Some(sky) = self.sky {
                     reflected.specular = reflected.specular + sky.mirrored(&surface, m);

@@ -109,12 +109,15 @@ pub(crate) fn shade_hits<S: Simd>(
     constants: &FrameConstants<'_>,
     lit: &mut ShadedPoints,
 ) {
+    // Reuse one buffer of records and one of hits for all batches.
     let mut records = [Record([0.0; 32]); LANES];
     let mut together = Vec::with_capacity(LANES);
-    // Find which lights reach the group's hits.
+
     for group in &points.groups {
         let order = &points.order[group.start as usize..group.end as usize];
         let (subject, material) = subject(group, constants);
+
+        // Find which lights reach the group's hits.
         let light = if material.model.needs_light_visibility() {
             let places: SurfacePoints = order.iter().map(|&p| hits[p as usize].place).collect();
             GroupLight::of_places(
@@ -246,10 +249,10 @@ fn reflect_lights<S: Simd>(
     surface: &Surface<F<S>>,
     constants: &FrameConstants<'_>,
 ) -> Reflected<F<S>> {
-    // Take a colour without lights as it is, or evaluate the shading model.
     let &ShadingBatch8 { subject, material, slots, .. } = eight;
     let lighting = lighting(eight, constants);
     match material.model {
+        // Take a colour that needs no lights as it is.
         Model::Own => Reflected {
             diffuse: parameters.own(simd, material),
             specular: V3::splat(parameters.alpha, [0.0; 3]),
@@ -261,14 +264,17 @@ fn reflect_lights<S: Simd>(
                 specular: V3::splat(parameters.alpha, [0.0; 3]),
             }
         }
-        // Evaluate the model at the point, once for the face, or at the corners.
+
+        // Evaluate the illumination model where the shading model does.
         Model::Empirical(_) | Model::Microfacet => match constants.shading {
             Shading::Phong => {
+                // Evaluate at the point, with the interpolated or mapped normal.
                 let k = parameters.coefficients(simd, material, parameters.base);
                 let normal = parameters.mapped_normal(simd, subject, slots, surface, material);
                 phong::shade(simd, surface, normal, &lighting, &k)
             }
             Shading::Flat => {
+                // Evaluate with the normal of the face.
                 let k = parameters.coefficients(simd, material, parameters.base);
                 let faces = constants
                     .faces
@@ -285,6 +291,7 @@ fn reflect_lights<S: Simd>(
                 )
             }
             Shading::Gouraud => {
+                // Evaluate at the corners, and interpolate the results.
                 let colors = &parameters.corner_colors;
                 let corners = [
                     parameters.coefficients(simd, material, colors[0]),

@@ -61,7 +61,7 @@ pub(crate) fn group_light<S: Simd>(
         return GroupLight::default();
     }
 
-    // SurfacePoint the points, eight at a time.
+    // Find the places of the points, eight at a time.
     let placing = placing(constants, subject);
     let corners = placing.facets(simd, facets.triangles());
     let mut all = SurfacePoints::with_capacity(order.len());
@@ -78,14 +78,18 @@ pub(crate) fn group_light<S: Simd>(
             },
         );
     }
+
+    // Find which part of the lights and of ambient light reaches them.
     let mut light =
         GroupLight::of_places(constants, material.scatters.is_some() && subject.turns(), all, rays);
 
-    // Near edges of shadows each sample counts.
+    // Sample the lights at each sample near the edges of shadows.
     if constants.view.pattern.len() > 1
         && constants.shadows.is_some_and(|shadows| !shadows.is_smooth())
     {
         let asked = Cell::new(0);
+
+        // Find the places that are asked for, eight at a time.
         let place = |questions: &Questions| {
             let mut places = SurfacePoints::with_capacity(questions.numbers.len());
             let all: Vec<(u32, [f32; 2])> =

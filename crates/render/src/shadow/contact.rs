@@ -62,6 +62,7 @@ impl ContactShadow {
     ) -> Result<Arc<Self>, Limit> {
         let key = (up, settings.transparency.model);
         session.cache.get_or_build(key, || {
+            // Lay a grid over the model's footprint, with a margin as wide as the shadow's radius.
             let radius = RADIUS * session.world.bounds.bounding_sphere().radius;
             let cell = ((most - least).max_element() + 2.0 * radius) / CELLS;
             let margin = DVec2::splat(radius + MIXED as f64 * cell);

@@ -83,6 +83,7 @@ impl<'a> Ground<'a> {
         up: Axis,
         (settings, execution): (&Settings, &Execution),
     ) -> Result<Option<Self>, Limit> {
+        // Skip pictures without a ground shadow, lighting or surfaces.
         let chosen = settings.shadows.ground;
         if chosen == GroundShadow::None
             || !settings.shading.lighting
@@ -90,6 +91,8 @@ impl<'a> Ground<'a> {
         {
             return Ok(None);
         }
+
+        // Lay the ground through the lowest corner of all triangles.
         let session = view.session;
         let triangles = Triangles::of(session, execution)?;
         let corners = || triangles.corners.iter().flatten().map(|corner| corner.as_dvec3());
@@ -97,6 +100,8 @@ impl<'a> Ground<'a> {
         if !height.is_finite() {
             return Ok(None);
         }
+
+        // Prepare the contact shadow over the model's footprint, or rays to the lights.
         let cast = if chosen == GroundShadow::Soft {
             let axes = [up.vector().cross(up.front()), up.front()];
             let on_ground =
@@ -112,6 +117,8 @@ impl<'a> Ground<'a> {
             let lights = prepared.filter_map(|(number, light)| Some((number, light?))).collect();
             Cast::Lights(LitGround { shadows, lights, ambient: grey(ambient) })
         };
+
+        // Set up the rays of sight in world space round the scene's middle.
         let sight = Sight {
             world_from_view: DMat4::from_translation(-triangles.center)
                 * view.view.view_from_world.inverse(),

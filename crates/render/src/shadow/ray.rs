@@ -72,11 +72,14 @@ impl PreparedShadows for Prepared<'_> {
         rays: &mut u64,
     ) {
         let mut feelers = Vec::with_capacity(TOGETHER);
+
         // Trace several points at a time.
         for first in (0..places.len()).step_by(TOGETHER) {
             let mut found = [[1.0; 3]; TOGETHER];
             let found = &mut found[..TOGETHER.min(places.len() - first)];
             let asking = (first..first + found.len()).map(|number| places.get(number));
+
+            // Trace a ray from each point to the light, or one to each cell of an area light.
             match &self.sources[light] {
                 LightSource::Unoccluded => {}
                 LightSource::Infinity(towards) => {
@@ -100,6 +103,8 @@ impl PreparedShadows for Prepared<'_> {
                         let seed = hash(place.seed ^ hash(light as u32));
                         let seed = if self.finer.is_some() { 0 } else { seed };
                         *part = self.area_part(area, &place, seed, &mut feelers, rays);
+
+                        // Divide an area light into more cells where the coarse ones disagree.
                         let finer = self.finer.as_ref().map(|finer| &finer[light]);
                         if let (Some(LightSource::Area(finer)), true) =
                             (finer, part.iter().any(|&p| p > 0.0 && p < 1.0))

@@ -146,13 +146,18 @@ impl Observer for Recorder {
     fn step(&self, step: &Step) {
         let planes = &mut *self.planes.lock().expect("no thread panics while it draws steps");
         match step {
+            // Add a cost of one to each pixel that a facet covers.
             Step::Drawn { stays, hidden, .. } => {
                 for &[row, from, to] in stays.iter().chain(hidden) {
                     self.spend(planes, [from, row, to - from, 1], 1);
                 }
             }
             Step::DepthTest { .. } | Step::Box { .. } | Step::Clipped { .. } => {}
+
+            // Outline a window in the colour of its verdict.
             Step::Window { pixels, verdict, .. } => self.window(planes, *pixels, *verdict),
+
+            // Add to the cost the polygons of each span, and the boxes and facets that rays test.
             Step::Line { row, spans, .. } => {
                 for span in spans {
                     let [from, to] = span.pixels;
@@ -162,6 +167,8 @@ impl Observer for Recorder {
             Step::Rays { pixels, boxes, facets, .. } => {
                 self.spend(planes, *pixels, boxes + facets);
             }
+
+            // Enter a list's piece in the order, and outline it if it is cut.
             Step::Piece { order, cuts, outline, .. } => {
                 self.canvas
                     .fill(edges(outline), |at| planes.order[at] = planes.order[at].max(order + 1));
@@ -173,11 +180,15 @@ impl Observer for Recorder {
                     }
                 }
             }
+
+            // Outline a visible polygon.
             Step::Visible { contours, .. } => {
                 for edge in contours.iter().flat_map(Contour::edges) {
                     self.canvas.line(edge, |at| planes.mark[at] = 1);
                 }
             }
+
+            // Leave out steps that have no pixels of their own to colour.
             Step::TreeNode { .. }
             | Step::TreeVisit { .. }
             | Step::FirstOrder { .. }

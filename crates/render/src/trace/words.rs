@@ -185,6 +185,8 @@ impl Step {
             Self::FirstOrder { polygons } => of(polygons),
             Self::Split { parts, unmarked, .. } => of(parts) + of(unmarked),
             Self::Overruled { samples, .. } => of(samples),
+
+            // Count nothing for steps that own no list.
             Self::DepthTest { .. }
             | Self::Space { .. }
             | Self::RayMeets { .. }
@@ -316,13 +318,16 @@ fn tell_of_list(step: &Step) -> String {
                 few(polygons)
             )
         }
-        // Tell of the painter's list.
+
+        // Tell of the painter's list and of the turn of each polygon.
         Step::FirstOrder { polygons } => {
             format!("{} polygon(s) in their first order, by their farthest depths", polygons.len())
         }
         Step::Turn { polygon, facet } => {
             format!("it is the turn of polygon {polygon}, of facet {facet}")
         }
+
+        // Tell of comparisons, and of what they change in the list.
         Step::Compared { polygon, with, test, verdict, .. } => {
             let found = match verdict {
                 ListVerdict::Before => format!("{polygon} may be painted before {with}"),

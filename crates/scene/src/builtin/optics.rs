@@ -159,6 +159,7 @@ pub(super) fn lens() -> Scene {
 /// Mirrors and glass on a chequered floor: a mirror, a ball of chrome, one of glass, a coloured
 /// pane, a plastic cone, two lamps.
 pub(super) fn mirrors() -> Scene {
+    // Place two lamps and a chequered floor.
     let mut scene = Scene { ambient: [0.2; 3], ..Scene::default() };
     let lamp = |at: DVec3, color: Rgb| {
         let kind = LightKind::Point { position: at };
@@ -167,6 +168,8 @@ pub(super) fn mirrors() -> Scene {
     scene.lights =
         vec![lamp(dvec3(4.0, 7.0, 5.0), [0.6; 3]), lamp(dvec3(-5.0, 5.0, 3.0), [0.35, 0.33, 0.28])];
     place_floor(&mut scene, 9.0, 12);
+
+    // Place the mirror, the ball of chrome and the ball of glass.
     let mirror = Material {
         name: "mirror".to_owned(),
         reflectance: Reflectance::Phong {
@@ -197,6 +200,8 @@ pub(super) fn mirrors() -> Scene {
         clear("glass", 0.9, 1.5),
         dvec3(-0.1, 0.76, 1.0),
     );
+
+    // Place the coloured pane and the plastic cone.
     let mut pane = clear("red glass", 0.7, 1.0);
     (pane.filter, pane.double_sided) = ([1.0, 0.25, 0.2], true);
     let corners = [
@@ -208,6 +213,8 @@ pub(super) fn mirrors() -> Scene {
     place(&mut scene, quad("pane", corners), pane, DVec3::ZERO);
     let green = plastic("green cone", [0.2, 0.55, 0.25], 40.0);
     place(&mut scene, solids::cone(0.6, 1.5, 64), green, dvec3(-2.0, 0.75, -0.6));
+
+    // Place the camera.
     look(&mut scene, lab_camera(dvec3(0.0, 1.0, 0.0), dvec3(-16.0, 14.0, 0.0), 15.0));
     scene
 }

@@ -69,13 +69,15 @@ impl Grid {
             ((low + high) / 2.0, (high - low) / 2.0)
         };
         let ((x, half_width), (y, half_height)) = (along(across), along(up));
+
+        // Fit the grid to the longer side, and give up if its size is zero or infinite.
         let steps_a_unit = HALF_GRID / half_width.max(half_height);
         let model_from_world = instance.world_from_model.inverse();
         if !(steps_a_unit.is_finite() && steps_a_unit > 0.0 && model_from_world.is_finite()) {
             return None;
         }
 
-        // Find the vertex at each point; of several, the first.
+        // Bound how far rounding may move a vertex.
         let origin = plane.point + across * x + up * y;
         let largest = corners().fold(DVec3::ZERO, |largest, v| largest.max(mesh.position(v).abs()));
         let scale =
@@ -93,6 +95,8 @@ impl Grid {
             vertices: BTreeMap::new(),
             vertex_at: HashMap::new(),
         };
+
+        // Find the vertex at each point and at each position; of several, the first.
         for vertex in corners() {
             let Point { x, y } = grid.point(mesh, vertex);
             let first = grid.vertices.entry([x, y]).or_insert(vertex);

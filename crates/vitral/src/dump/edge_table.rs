@@ -53,7 +53,7 @@ fn describe(step: &Step) -> String {
     let mut text = String::new();
     match step {
         Step::EdgeTable { rows: [first, end], polygons, buckets } => {
-            // Write the polygons, then the edges by the row in which they begin.
+            // Write the polygons.
             let _ = writeln!(text, "rows {first} to {}", end - 1);
             let _ = writeln!(text, "  polygon table");
             for (number, p) in polygons.iter().enumerate() {
@@ -61,6 +61,8 @@ fn describe(step: &Step) -> String {
                 let of = format!("facet {}, surface {}", p.facet, p.surface);
                 let _ = writeln!(text, "    {number}: {of}, depth {dx} x + {dy} y + {z}");
             }
+
+            // Write the edges by the row in which they begin.
             let _ = writeln!(text, "  edge table");
             for bucket in buckets {
                 let _ = writeln!(text, "    row {}", bucket.row);
@@ -72,7 +74,7 @@ fn describe(step: &Step) -> String {
             }
         }
         Step::Line { row, active_edges, spans, .. } if !active_edges.is_empty() => {
-            // Write the active edges of the line and its spans.
+            // Write the active edges of the line.
             let _ = writeln!(text, "  row {row}");
             for e in active_edges {
                 let _ = writeln!(
@@ -81,6 +83,8 @@ fn describe(step: &Step) -> String {
                     e.x, e.polygon, e.edge, e.facet
                 );
             }
+
+            // Write its spans, each with what decided its visibility.
             for span in spans {
                 let [from, to] = [span.pixels[0], span.pixels[1] - 1];
                 let inside: Vec<_> = span.inside.iter().map(u32::to_string).collect();

@@ -36,6 +36,7 @@ pub(super) fn write(
     camera: &Camera,
     put: &mut Write<'_>,
 ) -> Result<Vec<Listed>, Error> {
+    // Render the buffers at one sample a pixel, and restore the settings.
     let settings = renderer.settings.clone();
     renderer.settings.picture.samples = 1;
     renderer.settings.picture.channels =
@@ -47,6 +48,8 @@ pub(super) fn write(
     let raw = renderer.settings.picture.color_space == ColorSpace::Raw;
     let TwoBuffers { opaque, depth, layers, intensity, coefficient } = &buffers;
     let most = layers.data().iter().copied().max().unwrap_or(0);
+
+    // Define how a plane becomes a file.
     let mut listed = Vec::new();
     let mut file = |name: &'static str, what: String, bytes: Vec<u8>| {
         listed.push(Listed { name: name.to_owned(), what });
@@ -67,6 +70,8 @@ pub(super) fn write(
             &EncodeOptions { srgb, ..Default::default() },
         )
     };
+
+    // Write the first buffer: colour and depth of what is opaque.
     let opaque_rgb = opaque.map(|&[r, g, b, _]| [r, g, b]);
     file("9-opaque.png", "first buffer: what is opaque".to_owned(), png(shown(opaque), !raw)?)?;
     file(
@@ -75,6 +80,8 @@ pub(super) fn write(
         encode::npy_f32x3(&opaque_rgb),
     )?;
     file("9-opaque-depth.npy", "its depth".to_owned(), encode::npy_f32(depth))?;
+
+    // Write the second buffer: layers, intensity and coefficient of what is transparent.
     let what = format!("surfaces of the list in front of that, {most} at most");
     file("9-transparent-layers.npy", what, encode::npy_u32(layers))?;
     let light = intensity.map(|&[r, g, b]| bytes([r, g, b, 1.0], raw));
@@ -91,6 +98,8 @@ pub(super) fn write(
     let k = coefficient.map(|&[r, g, b]| [r, g, b, 1.0].map(byte_from_unit));
     file("9-transparent-k.png", "its coefficient k, a channel each".to_owned(), png(k, false)?)?;
     file("9-transparent-k.npy", "the same, numbers".to_owned(), encode::npy_f32x3(coefficient))?;
+
+    // Write both buffers together.
     let combined = frame.color.take().unwrap_or_default();
     file(
         "9-combined.png",

@@ -10,6 +10,7 @@ use vitral_render::visible::fates::{ClipPlane, Fate};
 
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // List the facets whose outline holds the pixel, with the fate of each.
         let ([x, y], [r, g, b, a]) = (self.pixel, self.bytes);
         writeln!(f, "pixel {x},{y}: {r} {g} {b}, opacity {a}")?;
         writeln!(f, "{} facet(s) whose outline holds it:", self.candidates.len())?;
@@ -23,6 +24,8 @@ impl fmt::Display for Explanation {
                 c.mesh
             )?;
         }
+
+        // Show how the pixel's light adds up.
         light(f, &self.light)?;
         if self.light.bytes != self.bytes {
             writeln!(
@@ -30,6 +33,8 @@ impl fmt::Display for Explanation {
                 "  with what mirrors, glass and translucent surfaces show: {r} {g} {b}, opacity {a}"
             )?;
         }
+
+        // List the surfaces over the pixel's centre.
         writeln!(f, "{} surface(s) cover its centre, the nearest first", self.surfaces.len())?;
         for s in &self.surfaces {
             let material = s.material.as_ref().map_or(String::new(), |m| format!(", material {m}"));
@@ -41,9 +46,13 @@ impl fmt::Display for Explanation {
                 s.depth, s.mesh
             )?;
         }
+
+        // Show the interpolation of Gouraud shading.
         if let Some(gouraud) = &self.gouraud {
             write!(f, "{gouraud}")?;
         }
+
+        // List the decision of each algorithm and its steps.
         for d in &self.decisions {
             match (&d.limit, d.facet, d.depth) {
                 (Some(limit), ..) => writeln!(f, "{}: {limit}", d.algorithm)?,
@@ -56,6 +65,8 @@ impl fmt::Display for Explanation {
                 writeln!(f, "  {step}")?;
             }
         }
+
+        // List the rays.
         if !self.rays.is_empty() {
             writeln!(f, "ray tracing: {} ray(s)", self.rays.len())?;
         }

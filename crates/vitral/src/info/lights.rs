@@ -108,6 +108,7 @@ impl LightInfo {
 
 impl fmt::Display for LightInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Write where the light is and where it points.
         write!(f, "light {}: {}", quoted(&self.name), self.kind)?;
         if let Some(at) = self.position.or(self.center) {
             write!(f, " at {}", triple(at))?;
@@ -115,6 +116,8 @@ impl fmt::Display for LightInfo {
         if let Some(to) = self.direction.or(self.normal) {
             write!(f, " towards {}", triple(to))?;
         }
+
+        // Write its extent and its cone.
         if let Some(radius) = self.radius {
             write!(f, ", radius {}", short(radius))?;
         }
@@ -133,6 +136,8 @@ impl fmt::Display for LightInfo {
                 short(exponent)
             )?;
         }
+
+        // Write its colours and its attenuation.
         for (term, color) in
             [("ambient", self.ambient), ("diffuse", self.diffuse), ("specular", self.specular)]
         {
@@ -148,6 +153,8 @@ impl fmt::Display for LightInfo {
             }
             Attenuation::Range { range } => write!(f, ", attenuation range,{}", short(range))?,
         }
+
+        // Write whether it is photometric, casts no shadow, or is off.
         let no_shadow = if self.shadow || self.kind == "ambient" { "" } else { ", no shadow" };
         f.write_str(if self.photometric { ", photometric" } else { "" })?;
         write!(f, "{no_shadow}{}", if self.enabled { "" } else { ", off" })

@@ -513,10 +513,14 @@ impl<S: Simd> LookupBatch8<S> {
         }
         let begins = own.simd_gt(zero) | (only_touched & some_lit);
         (0..4).for_each(|k| beyond[k] |= touching[k] & begins);
+
+        // Keep the blended part where no place that is asked for is affected.
         let beside = differ & (beyond[0] | beyond[1] | beyond[2] | beyond[3]);
         if beside.to_bitmask() as u32 & asked == 0 {
             return part;
         }
+
+        // Blend the remaining texels by their shares.
         let (left, top) = (one - right, one - bottom);
         let (mut sum, mut all) = (zero, zero);
         for (k, share) in

@@ -138,7 +138,7 @@ impl<'f> Lists<'f> {
             return;
         }
 
-        // Find the surrounder that is nearest at all corners.
+        // Find the nearest and the farthest depth of each surrounder at the window's corners.
         let surrounders = self
             .from(start)
             .iter()
@@ -152,6 +152,8 @@ impl<'f> Lists<'f> {
             });
             (far, near, p)
         };
+
+        // Choose the one that is nearest by its farthest depth, then by its nearest, then by facet.
         let front =
             surrounders.map(farthest).reduce(|a, b| match (b.0, b.1).partial_cmp(&(a.0, a.1)) {
                 Some(Ordering::Greater) => b,
@@ -186,6 +188,8 @@ impl<'f> Lists<'f> {
                 self.hidden.push(polygons.get(entry.polygon as usize).facet());
             }
         }
+
+        // Count and cut off what is dropped.
         self.counters.saved_by_depth += (self.stack.len() - kept) as u64;
         self.stack.truncate(kept);
     }

@@ -86,6 +86,7 @@ impl<'a> AmbientOcclusion<'a> {
     pub(crate) fn open(&self, places: &SurfacePoints, rays: &mut u64) -> Vec<f32> {
         let (mut feelers, mut passing) = (Vec::new(), vec![[0.0; 3]; self.strata.count() as usize]);
         let of_place = |place: SurfacePoint| {
+            passing.fill([1.0; 3]);
             self.rays.transmittance(&mut feelers, self.ways(&place), true, &mut passing);
             *rays += feelers.len() as u64;
             passing.iter().map(|&part| grey(part)).sum::<f32>() / passing.len() as f32
@@ -93,15 +94,18 @@ impl<'a> AmbientOcclusion<'a> {
         places.iter().map(of_place).collect()
     }
 
-    /// The ways of a place's rays. A facet without area has no side, and gets all light.
+    /// The ways of a place's rays. Those that end before they have left the surface meet nothing,
+    /// and are left out. A facet without area has no side, and no rays.
     fn ways(&self, place: &SurfacePoint) -> impl Iterator<Item = (SurfacePoint, DVec3)> {
-        let (place, strata, radius) = (*place, self.strata, self.radius);
+        let (place, strata, radius, rays) = (*place, self.strata, self.radius, &self.rays);
         let first = hash(place.seed);
-        (0..strata.count()).map(move |i| {
+        let ways = (0..strata.count()).map(move |i| {
             let direction = strata.direction(i, first, COSINE, place.normal);
             let length = first.wrapping_add(GOLDEN.wrapping_mul(i));
-            (place, direction * (radius * (f64::from(length) + 0.5) / 4_294_967_296.0))
-        })
+            direction * (radius * (f64::from(length) + 0.5) / 4_294_967_296.0)
+        });
+        let leaves = move |way: &DVec3| place.normal.dot(*way) > rays.least_height(&place, *way);
+        ways.filter(leaves).map(move |way| (place, way))
     }
 }
 

@@ -101,6 +101,14 @@ impl<'a> LightRays<'a> {
         });
     }
 
+    /// How high above a place's facet the end of a way has to be for a ray to find what is before
+    /// it.
+    pub(super) fn least_height(&self, place: &SurfacePoint, way: DVec3) -> f64 {
+        let extent = f64::from(self.structure.triangles().extent);
+        let horizon = horizon(place.position, (place.position + way).extend(1.0));
+        clearance(place.position, extent).max(horizon)
+    }
+
     /// The ray from a place along `way`, the parameter of its end, and the light, homogeneous; or
     /// what arrives, where that is known without one.
     fn feeler(

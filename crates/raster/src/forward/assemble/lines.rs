@@ -231,8 +231,8 @@ impl Assembler<'_> {
             if self.state.point_smooth || self.state.multisample || self.state.point_sprite {
                 ([x, y], size * 0.5 + if self.state.point_smooth { 0.5 } else { 0.0 })
             } else {
-                // An aliased point is a square of whole pixels round the vertex. Half a pixel counts
-                // for nothing, as with Mesa.
+                // An aliased point is a square of whole pixels round the vertex. Half a pixel
+                // counts for nothing, as with Mesa.
                 let size = (size - 0.5).ceil().max(1.0);
                 let middle =
                     |v: f32| if size % 2.0 == 1.0 { v.floor() + 0.5 } else { (v + 0.5).floor() };

@@ -5,6 +5,7 @@ mod clients;
 mod common;
 mod course;
 mod course_surfaces;
+mod coverage;
 mod equal_planes;
 mod errors;
 mod extensions;

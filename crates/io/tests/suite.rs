@@ -6,6 +6,7 @@ mod encode;
 mod gltf;
 mod gltf_animation;
 mod gltf_extensions;
+mod gltf_models;
 mod malformed;
 mod models;
 mod scene_json;

@@ -27,6 +27,7 @@ mod robust;
 mod scene_files;
 mod steps;
 mod surroundings;
+mod touching_glass;
 mod translucent;
 mod transparency;
 mod traps;

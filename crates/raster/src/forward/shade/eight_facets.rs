@@ -6,7 +6,8 @@
 //! and textures are looked up for eight of them at a time, whichever facets they belong to. The
 //! colours are those of [`Shader::block`].
 
-use super::{MOST_W, Shader};
+use super::Shader;
+use super::interpolation::MOST_W;
 use crate::SUBPIXEL;
 use crate::forward::assemble::{Facet, Primitives};
 use crate::forward::environment::fog::fog;

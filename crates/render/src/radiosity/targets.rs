@@ -10,6 +10,7 @@
 use super::parts::{PARTS, WHOLE, parts};
 use super::patch::{Cell, NONE, Trees};
 use crate::Session;
+use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 use vitral_math::{DVec3, Vec3};
 use vitral_scene::{Mesh, Part, Scene};
@@ -163,8 +164,9 @@ impl Targets {
 
     /// Corners of a facet, by its number in the scene that is drawn.
     pub(super) fn corners(&self, facet: u32) -> [DVec3; 3] {
-        let positions = &self.session.world.instances[0].mesh.positions;
-        [0, 1, 2].map(|k| Vec3::from(positions[(3 * facet + k) as usize]).as_dvec3())
+        let mesh = &self.session.world.instances[0].mesh;
+        let vertices = mesh.triangles[facet as usize];
+        vertices.map(|vertex| Vec3::from(mesh.positions[vertex as usize]).as_dvec3())
     }
 
     /// How many borders of a facet's cells a line crosses in its first step, about; `slopes` tells
@@ -216,12 +218,20 @@ impl Targets {
     }
 }
 
-/// Triangles as a scene of their own.
+/// Triangles as a scene of their own. Corners in one place are one vertex, which each of many small
+/// pictures transforms once.
 fn scene_of(triangles: &[[DVec3; 3]]) -> Session {
-    let positions = triangles.iter().flatten().map(|v| v.as_vec3().to_array()).collect();
-    let count = triangles.len() as u32;
-    let triangles: Vec<_> = (0..count).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
-    let parts = vec![Part { name: String::new(), triangles: 0..count, material: None }];
+    let (mut positions, mut numbers) = (Vec::new(), HashMap::new());
+    let mut number = |corner: DVec3| {
+        let position = corner.as_vec3().to_array();
+        *numbers.entry(position.map(f32::to_bits)).or_insert_with(|| {
+            positions.push(position);
+            positions.len() as u32 - 1
+        })
+    };
+    let triangles: Vec<_> = triangles.iter().map(|corners| corners.map(&mut number)).collect();
+    let parts =
+        vec![Part { name: String::new(), triangles: 0..triangles.len() as u32, material: None }];
     let mesh = Mesh { positions, triangles, parts, ..Mesh::default() };
     Session::new(Arc::new(Scene::from_mesh(mesh))).expect("a mesh of its own triangles is sound")
 }

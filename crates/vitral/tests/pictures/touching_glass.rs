@@ -2,7 +2,7 @@
 
 use super::common::{colors, exact, on_z, poster};
 use super::ray_trace::{above, add, cuboid, differing, glass, tinted, traced};
-use vitral::{Background, Camera, DMat4, DVec3, Mesh, Part, solids};
+use vitral::{Background, Camera, DMat4, DVec3, Mesh, Part, Renderer, Scene, solids};
 
 #[test]
 fn coincident_panes_are_layers_in_the_order_of_the_scene() {

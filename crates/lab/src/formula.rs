@@ -6,7 +6,9 @@
 
 use serde_json::{Value, json};
 use vitral::explain::Explanation;
-use vitral::internals::render::shading::pixel_light::{CoefficientValues, Evaluation};
+use vitral::internals::render::shading::pixel_light::{
+    CoefficientValues, Evaluation, NumberedTerms,
+};
 
 /// The formula at a pixel; `null` where no light is computed.
 pub(crate) fn formula(told: &Explanation, lights: &[String]) -> Value {
@@ -106,7 +108,6 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
     };
 
     // List the vectors.
-    let three = |rgb: [f32; 3]| rgb.map(digits).join(" ");
     row("N".to_owned(), three(evaluation.normal), "unit normal, view space", None);
     row("V".to_owned(), three(evaluation.viewer), "unit vector to the viewer, view space", None);
 
@@ -156,44 +157,7 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
 
     // List the values of each light.
     for of_light in &evaluation.lights {
-        let (t, name) = (&of_light.terms, &lights[of_light.light]);
-        let mut of = |symbol: &str, value: String, meaning: &str| {
-            row(
-                format!("{symbol} ({name})"),
-                value,
-                meaning,
-                Some(format!("lights.{}", of_light.light)),
-            );
-        };
-
-        // List the colours, the direction, and what distance and shadow leave of the light.
-        let [ambient, diffuse, specular] = t.colors.map(three);
-        of("Ia", ambient, "ambient colour of the light");
-        of("Id", diffuse, "diffuse colour of the light");
-        of("Is", specular, "specular colour of the light");
-        of("L", three(t.l), "unit vector to the light, view space");
-        of("N·L", digits(t.n_l), "cosine of the angle of incidence, 0 behind the surface");
-        of("f_att", digits(t.attenuation), "what distance leaves of the light");
-        of("S", three(t.visibility), "which part arrives: 1 without shadow");
-
-        // List the highlight.
-        if let Some(highlight) = t.highlight {
-            let (symbol, meaning) = match highlight.r {
-                Some(_) => ("R·V", "cosine between the mirrored light and the viewer"),
-                None => ("N·H", "cosine between the normal and the halfway vector"),
-            };
-            of(symbol, digits(highlight.cosine), meaning);
-            of(
-                "lobe",
-                digits(highlight.lobe),
-                "that cosine to the power n, or the microfacets' lobe",
-            );
-        }
-
-        // List the terms that the light adds.
-        of("ambient", three(t.ambient), "ambient term");
-        of("diffuse", three(t.diffuse), "diffuse term");
-        of("specular", three(t.specular), "specular term");
+        light_values(of_light, &lights[of_light.light], &mut row);
     }
 
     // List the sum and the pixel's bytes.
@@ -210,4 +174,52 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
         None,
     );
     rows
+}
+
+/// The values of one light, which is called `name`; `row` adds a symbol with its value, meaning and
+/// setting.
+fn light_values(
+    of_light: &NumberedTerms,
+    name: &str,
+    row: &mut impl FnMut(String, String, &str, Option<String>),
+) {
+    let t = &of_light.terms;
+    let mut of = |symbol: &str, value: String, meaning: &str| {
+        row(
+            format!("{symbol} ({name})"),
+            value,
+            meaning,
+            Some(format!("lights.{}", of_light.light)),
+        );
+    };
+
+    // List the colours, the direction, and what distance and shadow leave of the light.
+    let [ambient, diffuse, specular] = t.colors.map(three);
+    of("Ia", ambient, "ambient colour of the light");
+    of("Id", diffuse, "diffuse colour of the light");
+    of("Is", specular, "specular colour of the light");
+    of("L", three(t.l), "unit vector to the light, view space");
+    of("N·L", digits(t.n_l), "cosine of the angle of incidence, 0 behind the surface");
+    of("f_att", digits(t.attenuation), "what distance leaves of the light");
+    of("S", three(t.visibility), "which part arrives: 1 without shadow");
+
+    // List the highlight.
+    if let Some(highlight) = t.highlight {
+        let (symbol, meaning) = match highlight.r {
+            Some(_) => ("R·V", "cosine between the mirrored light and the viewer"),
+            None => ("N·H", "cosine between the normal and the halfway vector"),
+        };
+        of(symbol, digits(highlight.cosine), meaning);
+        of("lobe", digits(highlight.lobe), "that cosine to the power n, or the microfacets' lobe");
+    }
+
+    // List the terms that the light adds.
+    of("ambient", three(t.ambient), "ambient term");
+    of("diffuse", three(t.diffuse), "diffuse term");
+    of("specular", three(t.specular), "specular term");
+}
+
+/// Three numbers, one after the other.
+fn three(rgb: [f32; 3]) -> String {
+    rgb.map(digits).join(" ")
 }

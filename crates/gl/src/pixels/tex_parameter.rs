@@ -92,21 +92,7 @@ pub(super) fn set(
     match pname {
         // Wrap modes and filters; rectangles allow some of them.
         TEXTURE_WRAP_S | TEXTURE_WRAP_T | TEXTURE_WRAP_R => {
-            let axis = [TEXTURE_WRAP_S, TEXTURE_WRAP_T, TEXTURE_WRAP_R]
-                .iter()
-                .position(|&t| t == pname)
-                .unwrap_or(0);
-            let all = [
-                CLAMP,
-                CLAMP_TO_EDGE,
-                CLAMP_TO_BORDER,
-                REPEAT,
-                MIRRORED_REPEAT,
-                MIRROR_CLAMP_EXT,
-                MIRROR_CLAMP_TO_EDGE_EXT,
-                MIRROR_CLAMP_TO_BORDER_EXT,
-            ];
-            p.wrap[axis] = token_of(value, if rectangle { &all[..3] } else { &all })?;
+            set_wrap(p, rectangle, pname, value)?;
         }
         TEXTURE_MIN_FILTER => {
             let all = [
@@ -174,6 +160,31 @@ pub(super) fn set(
         }
         _ => return Err((INVALID_ENUM, "pname is not a texture parameter")),
     }
+    Ok(())
+}
+
+/// Sets the wrap mode of an axis; rectangles allow the first three modes.
+fn set_wrap(
+    p: &mut TextureParameters,
+    rectangle: bool,
+    pname: u32,
+    value: Value,
+) -> Result<(), Failure> {
+    let axis = [TEXTURE_WRAP_S, TEXTURE_WRAP_T, TEXTURE_WRAP_R]
+        .iter()
+        .position(|&t| t == pname)
+        .unwrap_or(0);
+    let all = [
+        CLAMP,
+        CLAMP_TO_EDGE,
+        CLAMP_TO_BORDER,
+        REPEAT,
+        MIRRORED_REPEAT,
+        MIRROR_CLAMP_EXT,
+        MIRROR_CLAMP_TO_EDGE_EXT,
+        MIRROR_CLAMP_TO_BORDER_EXT,
+    ];
+    p.wrap[axis] = token_of(value, if rectangle { &all[..3] } else { &all })?;
     Ok(())
 }
 

@@ -126,13 +126,7 @@ impl Examination<'_> {
         );
         let shines = material.scatters.is_some() && material.model.needs_light_visibility();
         let glow = shines.then(|| glow(simd, eight, &parameters, &surface, constants));
-        let own = match material.model {
-            Model::Own => Some(parameters.own(simd, material)),
-            Model::Constant(color) => {
-                Some(V3::splat(parameters.alpha, color).times(parameters.base))
-            }
-            Model::Empirical(_) | Model::Microfacet => None,
-        };
+        let own = unlit_color(simd, material, &parameters);
 
         // Take each lane by itself.
         for (lane, &p) in eight.points.iter().enumerate() {
@@ -308,21 +302,8 @@ impl Examination<'_> {
             }
         };
 
-        // Add what the environment mirrors.
-        let sky = constants.sky.filter(|_| material.mirrors_sky);
-        let (gathered, environment) = match (sky, &constants.environment, microfacet) {
-            (Some(sky), _, Some(m)) => (None, Some(sky.mirrored(&s, &m))),
-            (None, Some(image), Some(m)) => {
-                let [gathered, mirrored] =
-                    EnvironmentLight::reflected(&s, &m, |n, towards, roughness| {
-                        image
-                            .arriving(n.to_array(), towards.to_array(), roughness)
-                            .map(V3::from_array)
-                    });
-                (Some(gathered), Some(mirrored).filter(|_| material.mirrors_sky))
-            }
-            _ => (None, None),
-        };
+        // Find what the surroundings add.
+        let (gathered, environment) = self.environment_terms(material, &s, microfacet);
 
         // Sum the terms of the lights and the surroundings.
         let mut sum = sum_of_terms(ambient, &terms);
@@ -344,6 +325,29 @@ impl Examination<'_> {
             environment: environment.map(V3::to_array),
             diffuse: sum.diffuse.to_array(),
             specular: sum.specular.to_array(),
+        }
+    }
+
+    /// The diffuse and the mirrored light of the surroundings, which only microfacets reflect.
+    fn environment_terms(
+        &self,
+        material: &MaterialConstants<'_>,
+        s: &vitral_light::Surface<f32>,
+        microfacet: Option<Microfacet<f32>>,
+    ) -> (Option<V3<f32>>, Option<V3<f32>>) {
+        let sky = self.constants.sky.filter(|_| material.mirrors_sky);
+        match (sky, &self.constants.environment, microfacet) {
+            (Some(sky), _, Some(m)) => (None, Some(sky.mirrored(s, &m))),
+            (None, Some(image), Some(m)) => {
+                let [gathered, mirrored] =
+                    EnvironmentLight::reflected(s, &m, |n, towards, roughness| {
+                        image
+                            .arriving(n.to_array(), towards.to_array(), roughness)
+                            .map(V3::from_array)
+                    });
+                (Some(gathered), Some(mirrored).filter(|_| material.mirrors_sky))
+            }
+            _ => (None, None),
         }
     }
 
@@ -431,6 +435,20 @@ impl Examination<'_> {
             _ => mean(below.iter().copied()),
         };
         finished(explained, samples, average, constants)
+    }
+}
+
+/// The colour of a material whose model needs no lights.
+#[inline(always)]
+fn unlit_color<S: Simd>(
+    simd: S,
+    material: &MaterialConstants<'_>,
+    parameters: &SurfaceParameters<S>,
+) -> Option<V3<F<S>>> {
+    match material.model {
+        Model::Own => Some(parameters.own(simd, material)),
+        Model::Constant(color) => Some(V3::splat(parameters.alpha, color).times(parameters.base)),
+        Model::Empirical(_) | Model::Microfacet => None,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::lists::ListVerdict;
 use super::outlines::{Contour, CutPolygon, edges};
-use super::{BoxVerdict, SpanVerdict, Step, WindowVerdict};
+use super::{BoxVerdict, Span, SpanVerdict, Step, WindowVerdict};
 
 impl Step {
     /// Whether a pixel's first sample is in what the step is about.
@@ -74,30 +74,7 @@ impl Step {
                 format!("window {left},{top} of {width} x {height}, {}: {what}", self.relations())
             }
             // Steps of the scan-line algorithm.
-            Self::Line { active_edges, spans, .. } => {
-                let line = format!("{} active edge(s)", active_edges.len());
-                match spans.iter().find(|s| (s.pixels[0]..s.pixels[1]).contains(&x)) {
-                    Some(span) => {
-                        let how = match span.verdict {
-                            SpanVerdict::Only => "one polygon is in",
-                            SpanVerdict::Hides => "one hides the others at both ends",
-                            SpanVerdict::ImpliedEdge => {
-                                "one hides the others on its side of an implied edge"
-                            }
-                            SpanVerdict::Samples => "decided sample by sample",
-                        };
-                        let ([from, to], inside) = (span.pixels, span.inside.len());
-                        let won =
-                            span.facet.map_or(String::new(), |facet| format!(", facet {facet}"));
-                        let facets = few(&span.inside);
-                        format!(
-                            "{line}; span {from} to {} with {inside} polygon(s) in, of facet(s) {facets}: {how}{won}",
-                            to - 1
-                        )
-                    }
-                    None => format!("{line}; no polygon is in here"),
-                }
-            }
+            Self::Line { active_edges, spans, .. } => describe_line(active_edges.len(), spans, x),
             // Steps of ray casting.
             Self::Rays { pixels: [_, _, width, height], rays, boxes, facets, tested, through } => {
                 let which =
@@ -232,6 +209,29 @@ fn few(facets: &[u32]) -> String {
     const MAX_NAMED: usize = 8;
     let names: Vec<_> = facets.iter().take(MAX_NAMED).map(u32::to_string).collect();
     names.join(" ") + if facets.len() > MAX_NAMED { " ..." } else { "" }
+}
+
+/// A scan line with so many active edges, and its span at column `x`, in words.
+fn describe_line(active_edges: usize, spans: &[Span], x: u32) -> String {
+    let line = format!("{active_edges} active edge(s)");
+    match spans.iter().find(|s| (s.pixels[0]..s.pixels[1]).contains(&x)) {
+        Some(span) => {
+            let how = match span.verdict {
+                SpanVerdict::Only => "one polygon is in",
+                SpanVerdict::Hides => "one hides the others at both ends",
+                SpanVerdict::ImpliedEdge => "one hides the others on its side of an implied edge",
+                SpanVerdict::Samples => "decided sample by sample",
+            };
+            let ([from, to], inside) = (span.pixels, span.inside.len());
+            let won = span.facet.map_or(String::new(), |facet| format!(", facet {facet}"));
+            let facets = few(&span.inside);
+            format!(
+                "{line}; span {from} to {} with {inside} polygon(s) in, of facet(s) {facets}: {how}{won}",
+                to - 1
+            )
+        }
+        None => format!("{line}; no polygon is in here"),
+    }
 }
 
 /// A step of culling and clipping, of a list or a tree, or of a ray, in words.

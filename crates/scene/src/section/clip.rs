@@ -102,28 +102,8 @@ pub(super) fn clip(mesh: &Mesh, weld: &Weld, heights: &Heights) -> (Mesh, Vec<Pl
     let section = Section { first_cap: kept_first_cap.unwrap_or(faces), outline: old_outline };
 
     // Clip lines and points.
-    let (mut lines, mut line_parts) = (Vec::new(), Vec::new());
-    for (i, &line) in mesh.lines.iter().enumerate() {
-        if let Some(line) = clipper.line(line) {
-            lines.push(line);
-            FreePart::extend(
-                &mut line_parts,
-                lines.len() - 1..lines.len(),
-                FreePart::material_of(&mesh.line_parts, i),
-            );
-        }
-    }
-    let (mut points, mut point_parts) = (Vec::new(), Vec::new());
-    for (i, &point) in mesh
-        .points
-        .iter()
-        .enumerate()
-        .filter(|&(_, &p)| heights.side(p).is_some_and(|side| side <= 0))
-    {
-        points.push(point);
-        let material = FreePart::material_of(&mesh.point_parts, i);
-        FreePart::extend(&mut point_parts, points.len() - 1..points.len(), material);
-    }
+    let (lines, line_parts) = clipper.lines();
+    let (points, point_parts) = clipper.points();
 
     // Collect the mesh, with attributes interpolated at the crossings.
     let clipped = Mesh {
@@ -252,6 +232,39 @@ impl Clipper<'_> {
         }
         let between = (at_a * at_b < 0).then(|| self.vertex_between(a, b).0)?;
         Some(if at_a > 0 { [between, b] } else { [a, between] })
+    }
+
+    /// What is left of the free lines, and their parts.
+    fn lines(&mut self) -> (Vec<[u32; 2]>, Vec<FreePart>) {
+        let (mut lines, mut parts) = (Vec::new(), Vec::new());
+        for (i, &line) in self.mesh.lines.iter().enumerate() {
+            if let Some(line) = self.line(line) {
+                lines.push(line);
+                FreePart::extend(
+                    &mut parts,
+                    lines.len() - 1..lines.len(),
+                    FreePart::material_of(&self.mesh.line_parts, i),
+                );
+            }
+        }
+        (lines, parts)
+    }
+
+    /// The free points that are left, and their parts.
+    fn points(&self) -> (Vec<u32>, Vec<FreePart>) {
+        let (mut points, mut parts) = (Vec::new(), Vec::new());
+        for (i, &point) in self
+            .mesh
+            .points
+            .iter()
+            .enumerate()
+            .filter(|&(_, &p)| self.heights.side(p).is_some_and(|side| side <= 0))
+        {
+            points.push(point);
+            let material = FreePart::material_of(&self.mesh.point_parts, i);
+            FreePart::extend(&mut parts, points.len() - 1..points.len(), material);
+        }
+        (points, parts)
     }
 
     /// What is left of the outline of earlier cuts.

@@ -288,12 +288,12 @@ fn the_ground_shows_shadow_alone() {
                 255 => assert_eq!(a, b, "the model stays"),
                 0 => {
                     assert_eq!(b[..3], [0; 3], "shadow is black, more or less of it");
-                    shadow += usize::from(b[3] > 40);
+                    shadow += usize::from(b[3] > 8);
                 }
                 _ => assert!(b[3] >= a[3]),
             }
         }
-        assert!(shadow > 60, "{kind:?}: {shadow}");
+        assert!(shadow > 40, "{kind:?}: {shadow}");
         // Over a background of a colour the same shadow darkens it, and nothing else changes.
         let white = Background::Color { color: [1.0; 3] };
         let (plain, over) = (picture(GroundShadow::None, white), picture(kind, white));
@@ -381,7 +381,7 @@ fn the_soft_shadow_is_darkest_at_the_foot_and_fades() {
     let pixels = colors(&mut renderer);
     let row: Vec<u8> = (0..64).map(|x| at_alpha(&pixels, x, 32)).collect();
     let foot = (32..64).find(|&x| row[x] < 255).unwrap() + 1;
-    assert!(row[foot] > 40 && row[foot] < 200 && row[63] == 0, "{row:?}");
+    assert!(row[foot] > 12 && row[foot] < 200 && row[63] == 0, "{row:?}");
     assert!(row[foot..].windows(2).all(|w| w[1] <= w[0] + 3), "{row:?}");
     // Both sides alike, as no light has a say.
     assert!((0..64).all(|x| row[x].abs_diff(row[63 - x]) <= 6), "{row:?}");
@@ -401,20 +401,18 @@ fn glass_shows_the_shadow_behind_it_and_the_ground_has_no_back() {
         colors(&mut renderer)
     };
     let soft = |renderer: &mut Renderer| renderer.settings.shadows.ground = GroundShadow::Soft;
-    let traced = |renderer: &mut Renderer| renderer.settings.global.model = Global::RayTrace;
-    let shown = picture(&scene, &soft);
-    let by_rays = picture(&scene, &|r| {
-        soft(r);
-        traced(r);
-    });
-    let plain_by_rays = picture(&scene, &traced);
-    assert!(by_rays.iter().zip(&plain_by_rays).filter(|(a, b)| a[0] + 8 < b[0]).count() > 50);
-    let far = shown
-        .iter()
-        .zip(&by_rays)
-        .filter(|(a, b)| (0..3).any(|k| a[k].abs_diff(b[k]) > 60))
-        .count();
-    assert!(far < 64 * 64 / 50, "{far}");
+    let covered = picture(&scene, &|r| r.settings.picture.background = Background::Transparent);
+    for model in [Global::None, Global::RayTrace] {
+        let plain = picture(&scene, &|r| r.settings.global.model = model);
+        let shaded = picture(&scene, &|r| {
+            soft(r);
+            r.settings.global.model = model;
+        });
+        let darker = |(a, b): &(&[u8; 4], &[u8; 4])| a[0] > b[0] + 2;
+        let seen_through = plain.iter().zip(&shaded).zip(&covered).filter(|(_, c)| c[3] > 30);
+        let count = seen_through.map(|(pair, _)| pair).filter(darker).count();
+        assert!(count > 40, "{model}: {count}");
+    }
     // From below the ground does not hide the model.
     let below = |renderer: &mut Renderer| renderer.view = View::Bottom;
     assert!(

@@ -411,7 +411,7 @@ fn glass_shows_the_shadow_behind_it_and_the_ground_has_no_back() {
         let darker = |(a, b): &(&[u8; 4], &[u8; 4])| a[0] > b[0] + 2;
         let seen_through = plain.iter().zip(&shaded).zip(&covered).filter(|(_, c)| c[3] > 30);
         let count = seen_through.map(|(pair, _)| pair).filter(darker).count();
-        assert!(count > 40, "{model}: {count}");
+        assert!(count > 40, "{model:?}: {count}");
     }
     // From below the ground does not hide the model.
     let below = |renderer: &mut Renderer| renderer.view = View::Bottom;

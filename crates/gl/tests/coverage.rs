@@ -1,6 +1,6 @@
 //! Coverage of points, lines and polygons, smooth and aliased, each worked out by hand.
 
-use crate::common::{Stage, assert_color};
+use crate::common::Stage;
 use vitral_gl::enums as gl;
 
 /// Sum of alpha over a window of black.

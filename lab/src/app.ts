@@ -58,6 +58,10 @@ export class App {
   sameCamera = true;
   alert = "";
   message = "";
+  /** The request that the message speaks of, which it leaves with. */
+  private messageOf: string | null = null;
+  /** What could not be drawn, lest the picture be waited for. */
+  private refusedPlane: string | null = null;
   hasKeys = true;
   /** Models of the user that the link names and that are not here. */
   missing: string[] = [];
@@ -103,9 +107,15 @@ export class App {
     this.emit("error");
   }
 
-  say(message: string) {
+  /** Tells something; what is said of a request is taken back when its answer comes, or none will. */
+  say(message: string, request: string | null = null) {
     this.message = message;
+    this.messageOf = request;
     this.changed();
+  }
+
+  private silence(request: string) {
+    if (this.messageOf === request) this.say("");
   }
 
   private emitters: ((event: "ready" | "step" | "error") => void)[] = [];
@@ -168,7 +178,8 @@ export class App {
   }
 
   get isBusy() {
-    return this.plane?.key !== this.planeKey() || (this.lab.compare !== "none" && this.planeB?.key !== this.planeKeyB());
+    const key = this.planeKey();
+    return (this.plane?.key !== key && this.refusedPlane !== key) || (this.lab.compare !== "none" && this.planeB?.key !== this.planeKeyB());
   }
 
   private key(state = this.state) {
@@ -194,6 +205,7 @@ export class App {
 
   /** Sets fields of the state of a picture. */
   set(fields: Record<string, Json>, picture: "a" | "b" = "a", history: History = "replace") {
+    this.alert = "";
     const situation = { ...this.situation, b: { ...this.situation.b } };
     for (const [path, value] of Object.entries(fields)) {
       if (picture === "a") situation.state = put(situation.state, path, value);
@@ -216,12 +228,16 @@ export class App {
     }
     const b = Object.fromEntries(Object.entries(this.situation.b).filter(([path]) => path.startsWith("settings.")));
     const lab = { ...this.lab, step: null, pixel: null };
+    this.alert = "";
+    this.cross = null;
     this.go({ state: { ...this.state, ...fields }, b, lab }, "push");
   }
 
   /** Replaces the state of picture A by a state file. */
   openState(state: JsonObject, lab: Partial<Lab> = {}, history: History = "push") {
     const whole = overlay(this.catalog!.defaults, state);
+    this.alert = "";
+    this.cross = null;
     this.go({ state: whole, b: {}, lab: { ...this.lab, step: null, pixel: null, ...lab } }, history);
   }
 
@@ -231,10 +247,12 @@ export class App {
     if (!equal(before.state, situation.state)) {
       this.playback.prediction = null;
       this.exerciseResult = null;
+      this.message = "";
       if (this.lab.step !== null && before.lab.step === situation.lab.step) this.playback.pause();
     }
     if (before.lab.exercise !== situation.lab.exercise) {
       this.exerciseResult = null;
+      this.message = "";
       this.hasHint = false;
     }
     this.effects();
@@ -564,10 +582,12 @@ export class App {
         const isNewest = this.wanted.get(name) === key;
         if (!isNewest && name !== "picture" && name !== "pictureB") return;
         take(answer);
+        this.silence(name);
         this.changed();
       },
       (error: unknown) => {
         if (this.wanted.get(name) === key) this.wanted.delete(name);
+        this.silence(name);
         if (error instanceof Superseded) return;
         if (name === "record" || name === "step") this.isRecording = false;
         this.refuse(name, key, error);
@@ -578,7 +598,7 @@ export class App {
   /** Tells why a request was refused. It counts as sent, lest it be sent again and again. */
   private refuse(name: string, key: string, error: unknown) {
     this.wanted.set(name, key);
-    if (name === "picture" && this.plane) this.plane = { ...this.plane, key };
+    if (name === "picture") this.refusedPlane = this.planeKey();
     if (name === "pictureB" && this.planeB) this.planeB = { ...this.planeB, key };
     this.answers.delete(name);
     this.fail(wordsOf(error));
@@ -621,7 +641,9 @@ export class App {
 
   /** Files came: what was asked for may have other answers. */
   forgetAnswers() {
-    this.recording = undefined;
+    this.recording = this.step = undefined;
+    this.finished = this.finishedB = undefined;
+    this.answers.clear();
     this.wanted.clear();
   }
 

@@ -6,6 +6,9 @@ import type { JsonObject } from "./json.ts";
 import { hashOf, missingModels, nameOf, overlay, stateIn } from "./states.ts";
 import { t } from "./words.ts";
 
+/** Names of files that models name: material libraries, textures, buffers. */
+const GOES_WITH_MODELS = /\.(mtl|bin|png|jpe?g|webp|gif|bmp|tga|tiff?|ktx2?|hdr)$/i;
+
 export class OwnFiles {
   /** The names of those that are models. */
   models = new Set<string>();
@@ -42,9 +45,11 @@ export class OwnFiles {
       app.forgetAnswers();
       const names = told.filter((f) => f["model"] === true).map((f) => `file:${f["name"]}#${f["hash"]}`);
       const lacking = told.flatMap((f) => (f["missing"] as string[] | undefined) ?? []);
-      if (lacking.length) app.fail(t("Files that the model names are missing: {0}", [...new Set(lacking)].join(", ")));
-      else app.alert = "";
+      const strange = told.filter((f) => f["model"] !== true && !GOES_WITH_MODELS.test(String(f["name"])));
+      app.alert = "";
       this.show(names, list);
+      if (lacking.length) app.fail(t("Files that the model names are missing: {0}. Choose them together with the model.", [...new Set(lacking)].join(", ")));
+      else if (strange.length) app.fail(t("No model that can be read: {0}", strange.map((f) => String(f["name"])).join(", ")));
     } catch (e) {
       app.fail(wordsOf(e));
     }

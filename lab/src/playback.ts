@@ -45,7 +45,7 @@ export class Playback {
     const { app } = this;
     if (app.stepNumber >= app.stepCount) return;
     const next = app.stepNumber + 1;
-    if (!this.askFirst || this.isPlaying) return app.goToStep(next);
+    if (!this.askFirst) return app.goToStep(next);
     const { ok } = await app.engine.askLong("ahead", { ...app.stepRequest(next), lang: app.language });
     const step = ok as unknown as Step;
     const question = questionOf(step);
@@ -80,6 +80,15 @@ export class Playback {
       const now = performance.now();
       const passed = ((now - last) / 1000) * app.lab.speed;
       const isReady = app.stepCount > 0 && !app.isRecording;
+      if (isReady && passed >= 1 && this.askFirst) {
+        last = now;
+        void this.next().then(() => {
+          if (this.prediction) this.pause();
+          else if (app.stepNumber >= app.stepCount) this.pause();
+          else next();
+        });
+        return;
+      }
       if (isReady && passed >= 1) {
         const from = app.lab.step ?? 0;
         const to = Math.min(from + Math.floor(passed), app.stepCount);

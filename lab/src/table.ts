@@ -68,10 +68,15 @@ const PAGE = {
     "{0} n’est pas le fichier que désigne le lien",
     "{0} não é o ficheiro indicado pela ligação",
   ],
-  "Files that the model names are missing: {0}": [
-    "Lipsesc fișiere numite de model: {0}",
-    "Il manque des fichiers nommés par le modèle : {0}",
-    "Faltam ficheiros nomeados pelo modelo: {0}",
+  "Files that the model names are missing: {0}. Choose them together with the model.": [
+    "Lipsesc fișiere numite de model: {0}. Alegeți-le împreună cu modelul.",
+    "Il manque des fichiers nommés par le modèle : {0}. Choisissez-les avec le modèle.",
+    "Faltam ficheiros nomeados pelo modelo: {0}. Escolha-os juntamente com o modelo.",
+  ],
+  "No model that can be read: {0}": [
+    "Niciun model care poate fi citit: {0}",
+    "Aucun modèle lisible : {0}",
+    "Nenhum modelo que se possa ler: {0}",
   ],
 
   // Settings

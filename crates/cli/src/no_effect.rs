@@ -12,8 +12,8 @@ use std::sync::Arc;
 use vitral::{
     AlphaMode, AreaShape, Camera, Channels, ColorSpace, Environment, Global, GroundShadow,
     Illumination, Interpolation, Light, LightKind, LightTerm, Lines, Material, Normals, Projection,
-    Renderer, Scene, Settings, Shading, State, Transmission, Transparency, TransparencyOrder, View,
-    Viewpoint,
+    Reflectance, Renderer, Scene, Settings, Shading, State, Transmission, Transparency,
+    TransparencyOrder, View, Viewpoint,
 };
 
 /// A row of the table: an option, a condition under which it has no effect, and the reason.
@@ -132,12 +132,12 @@ const ROWS: &[Row] = &[
     row("--terminator", |a| a.algorithms.terminator.is_some(), |c| !c.casts_shadows(), NO_CASTER),
     row("--together", |a| a.output.together, |c| c.models < 2, "there is one model"),
     row("--scatter-samples", gives_scatter, Case::makes_no_color, DATA),
-    row("--scatter-samples", gives_scatter, Case::is_opaque, OPAQUE),
+    row("--scatter-samples", gives_scatter, |c| c.is_opaque() && !c.scatters(), OPAQUE),
     row(
         "--scatter-samples",
         gives_scatter,
         |c| !c.scatters(),
-        "the models have no translucent surfaces",
+        "the models have no translucent surfaces, and rays meet no metal",
     ),
     row("--shadows", gives_shadows, |c| c.makes_no_color() && !c.shows_shadows(), DATA),
     row("--shadows", gives_shadows, |c| c.draws_wires() && !c.shows_shadows(), WIRES),
@@ -528,7 +528,11 @@ impl Case {
 
     fn scatters(&self) -> bool {
         let scene = &self.scene;
-        scene.materials.iter().any(|material| material.transmission == Transmission::Translucent)
+        let traced = self.settings.global.model == Global::RayTrace;
+        scene.materials.iter().any(|material| {
+            let is_metal = matches!(material.reflectance, Reflectance::MetallicRoughness { .. });
+            material.transmission == Transmission::Translucent || (traced && is_metal)
+        })
     }
 
     fn casts_shadows(&self) -> bool {

@@ -201,7 +201,8 @@ pub(crate) struct AlgorithmArgs {
     #[arg(help_heading = help::TRANSPARENCY)]
     #[arg(long, value_name = "ORDER", value_parser = choices::transparency_order())]
     pub(crate) transparency_order: Option<TransparencyOrder>,
-    /// About how many rays per pixel a translucent surface scatters, 1 to 4096 [default: 32]
+    /// About how many rays per pixel a translucent surface scatters, and show what a slightly rough
+    /// metal mirrors with --global ray-trace, 1 to 4096 [default: 32]
     #[arg(help_heading = help::TRANSPARENCY)]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=4096u32), allow_negative_numbers = true)]
     pub(crate) scatter_samples: Option<u32>,

@@ -38,7 +38,7 @@ pub use refraction::{reflected_share, transmitted};
 pub use sky::Sky;
 pub use surface::{Reflected, Surface, reflect};
 pub use terms::{Highlight, LightTerms, ambient_term, microfacet_terms, phong_terms, sum_of_terms};
-pub use translucency::{scattered, scattering_exponent, transmitted_light};
+pub use translucency::{mirroring_exponent, scattered, scattering_exponent, transmitted_light};
 
 /// Linear RGB, each component usually in `0..=1`.
 pub type Rgb = [f32; 3];

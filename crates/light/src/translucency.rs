@@ -18,26 +18,41 @@
 //! second: the lobe is the empirical one.
 
 use crate::surface::tint;
-use crate::{LEAST_SLOPE, PreparedLight, Reflectance};
+use crate::{PreparedLight, Reflectance};
 use vitral_math::func;
 use vitral_math::lanes::{Lanes, V3};
 
 /// The widest and the narrowest lobe.
 const EXPONENTS: (f32, f32) = (1.0, 1000.0);
+/// The RMS slope of facets that counts as none.
+const MIRROR_SLOPE: f32 = 1e-4;
 
 /// The exponent of the directions in which a surface scatters what passes it: that of its
 /// highlight, from 1 to 1000.
 pub fn scattering_exponent(reflectance: &Reflectance) -> f32 {
-    let exponent = match *reflectance {
+    // Not `clamp`: what is not a number becomes the least.
+    highlight_exponent(reflectance).max(EXPONENTS.0).min(EXPONENTS.1)
+}
+
+/// The exponent of the directions in which a surface that is not quite smooth shows mirror images:
+/// that of its highlight. `None` where the images are sharp: smoother surfaces blur by less than an
+/// eighth of a degree.
+pub fn mirroring_exponent(reflectance: &Reflectance) -> Option<f32> {
+    const SHARP: f32 = 200_000.0;
+    let exponent = highlight_exponent(reflectance);
+    (exponent < SHARP).then(|| exponent.max(EXPONENTS.0))
+}
+
+/// The exponent of a surface's highlight round the mirror direction.
+fn highlight_exponent(reflectance: &Reflectance) -> f32 {
+    match *reflectance {
         Reflectance::Phong { shininess, .. } => shininess,
         Reflectance::MetallicRoughness { roughness, .. } => {
             // As in `phong_from_microfacet`.
-            let slope = (roughness * roughness).max(LEAST_SLOPE);
+            let slope = (roughness * roughness).max(MIRROR_SLOPE);
             (2.0 / (slope * slope) - 2.0) * 0.25
         }
-    };
-    // Not `clamp`: what is not a number becomes the least.
-    exponent.max(EXPONENTS.0).min(EXPONENTS.1)
+    }
 }
 
 /// A direction round +z, unit, from two numbers in `0..1` that are spread evenly: as dense as
@@ -92,6 +107,9 @@ mod tests {
             roughness,
         };
         assert_eq!([0.0, 1.0].map(|r| scattering_exponent(&rough(r))), [1000.0, 1.0]);
+        assert_eq!([0.0, 0.03].map(|r| mirroring_exponent(&rough(r))), [None; 2]);
+        let fifth = mirroring_exponent(&rough(0.2)).unwrap();
+        assert!((fifth / 312.0 - 1.0).abs() < 1e-3, "{fifth}");
         let half = scattering_exponent(&rough(0.5));
         assert!((half - 7.5).abs() < 1e-4, "m = 1/4: (32 - 2) / 4, {half}");
     }

@@ -2,8 +2,8 @@
 //! thread count.
 
 use vitral::{
-    Background, DMat4, DVec3, DepthCue, Execution, Global, Illumination, Light, Lines, Material,
-    Renderer, Scene, Shading, Shadows, Transparency, panels, solids,
+    Background, DMat4, DVec3, DepthCue, Execution, Global, GroundShadow, Illumination, Light,
+    Lines, Material, Renderer, Scene, Shading, Shadows, Transparency, panels, solids,
 };
 use vitral_testkit::fixture::repository;
 use vitral_testkit::golden::{Tolerance, check_everywhere};
@@ -203,9 +203,8 @@ fn other_shadows() {
     });
 }
 
-/// Polished, brushed and rough metal under the sky that they mirror.
-#[test]
-fn metals() {
+/// Polished, brushed and rough metal.
+fn metal_balls() -> Scene {
     let mut scene = Scene::default();
     for (k, roughness) in [0.05, 0.3, 0.7].into_iter().enumerate() {
         let base_color = [[0.9, 0.9, 0.9], [1.0, 0.77, 0.34], [0.95, 0.64, 0.54]][k];
@@ -214,5 +213,43 @@ fn metals() {
         ball.parts.iter_mut().for_each(|part| part.material = material);
         scene.add_mesh(ball, DMat4::from_translation(DVec3::X * 2.2 * k as f64));
     }
-    golden("metals", scene, |r| (r.settings.picture.width, r.settings.picture.height) = (180, 80));
+    scene
+}
+
+fn wide(renderer: &mut Renderer) {
+    (renderer.settings.picture.width, renderer.settings.picture.height) = (180, 80);
+}
+
+/// Metal under the sky that it mirrors.
+#[test]
+fn metals() {
+    golden("metals", metal_balls(), wide);
+}
+
+/// Metal in an image of a studio, on a ground that shows its shadow.
+#[test]
+fn surroundings() {
+    let file = repository().join("examples/environments/studio.png");
+    let image = vitral::load_environment(file, 1 << 20).unwrap();
+    golden("metals-studio", metal_balls(), |r| {
+        wide(r);
+        r.environment_image = Some(image.clone());
+        r.settings.shadows.ground = GroundShadow::Auto;
+    });
+    golden("scene1-ambient-occlusion", builtin("scene1"), |r| {
+        r.settings.shading.ambient_occlusion = Some(16);
+        r.settings.picture.background = Background::Color { color: [1.0; 3] };
+        r.settings.shadows.ground = GroundShadow::Lights;
+    });
+}
+
+/// A metal that is not quite smooth blurs what it mirrors.
+#[test]
+fn blurred_mirrors() {
+    let mut scene = builtin("scene0");
+    let metal = Some(scene.add_material(Material::metal([0.9; 3], 0.15)));
+    let mut floor = solids::cuboid(DVec3::new(6.0, 0.1, 6.0));
+    floor.parts.iter_mut().for_each(|part| part.material = metal);
+    scene.add_mesh(floor, DMat4::from_translation(DVec3::Y * 0.03));
+    golden("scene0-blurred-mirror", scene, traced);
 }

@@ -83,7 +83,7 @@ export function spin(label: string, value: number | null, change: (value: number
   };
   const restore = (e: Event) => {
     const input = e.target as HTMLInputElement;
-    if (input.value === "" || Number.isNaN(input.valueAsNumber)) input.value = text;
+    if (input.value === "" || !input.validity.valid) input.value = text;
   };
   return html`<label class="field number">
     <span class="label">${label}</span>
@@ -93,6 +93,7 @@ export function spin(label: string, value: number | null, change: (value: number
       min=${range.min ?? nothing}
       max=${range.max ?? nothing}
       step=${range.step ?? "any"}
+      title=${Number.isFinite(min) && Number.isFinite(max) ? `${typed(min)} … ${typed(max)}` : nothing}
       ?disabled=${Boolean(range.reason)}
       aria-describedby=${reason.id}
       @input=${take}

@@ -81,7 +81,7 @@ export function compareAll(app: App): TemplateResult {
   const rows = answer?.key === key ? objects(answer.value.ok["rows"]) : [];
   const ask = () => {
     app.answer("compare-all", { want: "compare-all", state: app.state }, true);
-    app.say(t("Comparing all algorithms…"));
+    app.say(t("Comparing all algorithms…"), "compare-all");
   };
   const counters = (v: Json | undefined) =>
     isObject(v)

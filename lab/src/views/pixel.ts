@@ -78,7 +78,7 @@ function decisions(app: App, explanation: JsonObject): TemplateResult {
   ]);
   const ask = () => {
     app.answer("ask-all", { want: "ask-all", state: app.state, pixel }, true);
-    app.say(t("Asking all algorithms…"));
+    app.say(t("Asking all algorithms…"), "ask-all");
   };
   return html`${table({ name: t("Decisions"), columns: [t("algorithm"), t("facet"), t("why")], rows, caption: true })}
   ${isCurrent ? nothing : button(t("Ask all algorithms"), ask)}`;

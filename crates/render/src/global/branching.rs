@@ -56,7 +56,8 @@ pub(super) struct Branching<'a> {
     pub(super) scene: RayScene<'a>,
     /// Turns that a ray takes at the most.
     pub(super) max_depth: u32,
-    /// The directions in which each sample sees through the first translucent surface.
+    /// The directions in which each sample sees through the first translucent surface, or what the
+    /// first metal that is not quite smooth mirrors.
     pub(super) strata: Strata,
 }
 
@@ -130,17 +131,19 @@ impl Branching<'_> {
         // Follow the light that is mirrored.
         if counts(mirrored, least) {
             if ray.depth < self.max_depth {
-                counters.mirrored += 1;
-                let (origin, depth) = (next(surface.facet), ray.depth + 1);
-                let direction = surface.mirrored(ray.direction);
-                rays.free.push(Branch {
+                let branch = Branch {
                     weight: mirrored,
-                    origin,
-                    direction,
-                    depth,
+                    origin: next(surface.facet),
+                    direction: surface.mirrored(ray.direction),
+                    depth: ray.depth + 1,
                     row: None,
                     ..go_on
-                });
+                };
+                match self.scene.blurs(place.facet) {
+                    None => rays.free.push(branch),
+                    Some(exponent) => self.blur(&branch, &surface, exponent, &mut rays.free),
+                }
+                counters.mirrored += 1;
             } else {
                 counters.stopped_by_depth += 1;
                 rays.end(ray.target, mirrored);
@@ -250,6 +253,19 @@ impl Branching<'_> {
                 ..*branch
             });
         }
+    }
+
+    /// The rays that go on where a metal that is not quite smooth mirrors `branch`, in directions
+    /// round its own.
+    fn blur(&self, branch: &Branch, surface: &HitSurface, exponent: f32, rays: &mut Vec<Branch>) {
+        let strata = if branch.scattered { Strata::new(1) } else { self.strata };
+        let share = 1.0 / strata.count() as f32;
+        let (weight, least) = (branch.weight.map(|w| w * share), branch.least * share);
+        rays.extend((0..strata.count()).map(|i| {
+            let direction = strata.direction(i, branch.seed, exponent, branch.direction);
+            let (direction, seed) = (surface.before(direction), hash(branch.seed ^ hash(i)));
+            Branch { weight, least, direction, seed, scattered: true, ..*branch }
+        }));
     }
 
     /// How the ray goes on behind the surface, or behind all those of a pile.

@@ -185,6 +185,11 @@ impl<'a> RayScene<'a> {
         self.material(number).and_then(|m| self.constants.material(Some(m)).scatters)
     }
 
+    /// The exponent with which a facet blurs what it mirrors, if it does.
+    pub(super) fn blurs(&self, number: u32) -> Option<f32> {
+        self.material(number).and_then(|m| self.constants.material(Some(m)).blurs)
+    }
+
     /// The material of a facet.
     fn material(&self, number: u32) -> Option<u32> {
         let world = &self.constants.view.session.world;

@@ -18,6 +18,13 @@ impl HitSurface {
         if towards < 0.0 { direction } else { direction - self.facet * (2.0 * towards) }
     }
 
+    /// The direction, on the side from which the ray comes: the other half of the lobe is folded
+    /// over.
+    pub(super) fn before(&self, direction: DVec3) -> DVec3 {
+        let away = self.facet.dot(direction);
+        if away > 0.0 { direction } else { direction - self.facet * (2.0 * away) }
+    }
+
     /// The direction in which a mirror sends a ray: it leaves at the angle at which it came, and
     /// not into the facet.
     pub(super) fn mirrored(&self, direction: DVec3) -> DVec3 {
@@ -45,5 +52,7 @@ mod tests {
         let tilted = HitSurface { n: dvec3(0.8, 0.6, 0.0), facet: DVec3::Y };
         let grazing = dvec3(-0.6, -0.05, 0.0).normalize();
         assert!(tilted.mirrored(grazing).y > 0.0);
+        assert_eq!(surface.before(down), -surface.behind(-down));
+        assert_eq!(surface.before(down), dvec3(0.6, 0.8, 0.0));
     }
 }

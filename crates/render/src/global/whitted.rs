@@ -18,6 +18,7 @@
 //!
 //! A translucent surface scatters what passes it: the ray goes on as many, in directions round that
 //! of clear glass; those are scattered in one direction each where they meet another such surface.
+//! In the same way a metal that is not quite smooth mirrors in directions round that of a mirror.
 //!
 //! Faces that coincide are met one after the other (see `coincident`), and are one border between
 //! media: light bends behind the last of them.

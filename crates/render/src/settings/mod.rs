@@ -190,7 +190,8 @@ pub struct TransparencySettings {
     /// The exponent `m` of [`Transparency::Kay`], above 0: the larger, the thinner the glass; 2 or
     /// 3 are usual.
     pub kay_exponent: f32,
-    /// Rays a pixel that each translucent surface scatters, about, `1..=4096`.
+    /// Rays a pixel that each translucent surface scatters, and into which ray tracing splits what a
+    /// metal mirrors that is not quite smooth, about, `1..=4096`.
     pub scatter_samples: u32,
     /// Memory in bytes for the transparent layers of a picture. When it is full, the layers behind
     /// others are dropped, and the picture comes with a warning. Two for each sample are always

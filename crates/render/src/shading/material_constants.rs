@@ -5,7 +5,8 @@ use crate::display::DecodeTables;
 use crate::{Global, PreparedView, Settings};
 use vitral_frame::Texture;
 use vitral_light::{
-    AlphaMode, Material, Reflectance, TextureRef, Transmission, scattering_exponent,
+    AlphaMode, Material, Reflectance, TextureRef, Transmission, mirroring_exponent,
+    scattering_exponent,
 };
 
 /// A texture as a material uses it, ready to sample.
@@ -40,6 +41,8 @@ pub(crate) struct MaterialConstants<'a> {
     pub follows: bool,
     /// It is translucent: the exponent with which it scatters what passes.
     pub scatters: Option<f32>,
+    /// It shows blurred mirror images: the exponent with which it scatters them.
+    pub blurs: Option<f32>,
 }
 
 impl<'a> MaterialConstants<'a> {
@@ -69,7 +72,8 @@ impl<'a> MaterialConstants<'a> {
         // Collect everything.
         let traced = settings.global.model == Global::RayTrace;
         let mut material = material.clone();
-        material.mirror |= traced && is_polished_metal(&material);
+        let is_polished = traced && !material.mirror && is_polished_metal(&material);
+        material.mirror |= is_polished;
         Self {
             model: Model::of_material(
                 &material,
@@ -90,13 +94,13 @@ impl<'a> MaterialConstants<'a> {
             follows: traced && (cutoff.is_some() || blend || material.mirror),
             scatters: (blend && material.transmission == Transmission::Translucent)
                 .then(|| scattering_exponent(&material.reflectance)),
+            blurs: mirroring_exponent(&material.reflectance).filter(|_| is_polished),
             material,
         }
     }
 }
 
-/// Whether rays that a surface mirrors show its surroundings sharply: a metal that is all but
-/// smooth.
+/// Whether rays that a surface mirrors show its surroundings: a metal that is all but smooth.
 fn is_polished_metal(material: &Material) -> bool {
     const MOST_ROUGHNESS: f32 = 0.2;
     const LEAST_METALLIC: f32 = 0.5;

@@ -337,6 +337,40 @@ fn fog_takes_the_distance_that_its_mode_says() {
 }
 
 #[test]
+fn the_first_or_the_last_corner_colours_a_flat_element() {
+    let colors = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 0, 255]];
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
+    let drawn = |mode: u32, convention: u32, order: [usize; 4], count: usize, at: [i32; 2]| {
+        let mut c = Stage::new(8, 8);
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.shade_model(gl::FLAT);
+        c.provoking_vertex(convention);
+        assert_eq!(c.get_error(), gl::NO_ERROR);
+        c.begin(mode);
+        for k in &order[..count] {
+            let [r, g, b, _] = colors[*k].map(|v: u8| f32::from(v) / 255.0);
+            c.color_3f(r, g, b);
+            c.vertex_2f(corners[*k][0], corners[*k][1]);
+        }
+        c.end();
+        let color = c.pixel(at[0], at[1]);
+        colors.iter().position(|known| *known == color).unwrap_or(9)
+    };
+    let (first, last) = (gl::FIRST_VERTEX_CONVENTION, gl::LAST_VERTEX_CONVENTION);
+    for (mode, order, count, at, expected) in [
+        (gl::TRIANGLES, [0, 1, 2, 3], 3, [1, 1], [0, 2]),
+        (gl::TRIANGLE_STRIP, [0, 1, 2, 3], 4, [1, 1], [0, 2]),
+        (gl::TRIANGLE_STRIP, [0, 1, 2, 3], 4, [6, 6], [1, 3]),
+        (gl::TRIANGLE_FAN, [0, 1, 3, 2], 4, [6, 1], [1, 3]),
+        (gl::QUADS, [0, 1, 3, 2], 4, [6, 1], [2, 2]),
+        (gl::POLYGON, [0, 1, 3, 2], 4, [6, 1], [0, 0]),
+    ] {
+        let found = [first, last].map(|convention| drawn(mode, convention, order, count, at));
+        assert_eq!(found, expected, "{mode:#x}");
+    }
+}
+
+#[test]
 fn zoomed_pixels_have_their_left_and_lower_boundaries() {
     for (zoom, origin) in
         [(-1.5f32, 20.0f32), (-0.5, 20.0), (-1.0, 20.5), (-1.0, 20.0), (1.0, 4.5), (1.5, 4.0)]

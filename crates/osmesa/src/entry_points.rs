@@ -417,6 +417,7 @@ entry_points! {
     glPrioritizeTextures glPrioritizeTexturesEXT => prioritize_textures(n: i32, textures: usize, priorities: usize) -> ();
     glPrimitiveRestartIndexNV => [primitive_restart_index_nv](index: u32) -> ();
     glPrimitiveRestartNV => [primitive_restart_nv]() -> ();
+    glProvokingVertex glProvokingVertexEXT => [provoking_vertex](mode: u32) -> ();
     glPushAttrib => push_attrib(mask: u32) -> ();
     glPushClientAttrib => push_client_attrib(mask: u32) -> ();
     glPushDebugGroup => push_debug_group(source: u32, id: u32, length: i32, message: usize) -> ();

@@ -108,8 +108,8 @@ unsupported! {
     glProgramUniform3uiv glProgramUniform4f glProgramUniform4fv glProgramUniform4i glProgramUniform4iv
     glProgramUniform4ui glProgramUniform4uiv glProgramUniformMatrix2fv glProgramUniformMatrix2x3fv
     glProgramUniformMatrix2x4fv glProgramUniformMatrix3fv glProgramUniformMatrix3x2fv glProgramUniformMatrix3x4fv
-    glProgramUniformMatrix4fv glProgramUniformMatrix4x2fv glProgramUniformMatrix4x3fv glProvokingVertex
-    glProvokingVertexEXT glReadnPixels glReadnPixelsARB glReleaseShaderCompiler glResetHistogram glResetMinmax
+    glProgramUniformMatrix4fv glProgramUniformMatrix4x2fv glProgramUniformMatrix4x3fv
+    glReadnPixels glReadnPixelsARB glReleaseShaderCompiler glResetHistogram glResetMinmax
     glResumeTransformFeedback glRotatex glSampleCoveragex glSampleMaski glScalex glScissorArrayv glScissorIndexed
     glScissorIndexedv glSecondaryColorP3ui glSecondaryColorP3uiv glSeparableFilter2D glShaderBinary glShaderSource
     glShaderSourceARB glTexBuffer glTexBufferARB glTexBufferRange

@@ -162,6 +162,19 @@ impl Context {
             }
         });
     }
+
+    /// `glProvokingVertex`.
+    pub fn provoking_vertex(&mut self, mode: u32) {
+        self.listable_keeping(move |c| {
+            let call = "glProvokingVertex";
+            let modes = [gl::FIRST_VERTEX_CONVENTION, gl::LAST_VERTEX_CONVENTION];
+            let allowed = c.may_set(call) && c.check_enum(call, "mode", mode, &modes);
+            if allowed && c.state.lighting.provoking_vertex != mode {
+                c.flush_vertices();
+                c.state.lighting.provoking_vertex = mode;
+            }
+        });
+    }
 }
 
 #[cfg(test)]

@@ -87,6 +87,8 @@ pub struct Lighting {
     pub enabled: bool,
     /// `SHADE_MODEL`.
     pub shade_model: u32,
+    /// `PROVOKING_VERTEX`.
+    pub provoking_vertex: u32,
     /// `COLOR_MATERIAL`.
     pub color_material: ColorMaterial,
     /// Front and back.
@@ -117,6 +119,7 @@ impl Default for Lighting {
         Self {
             enabled: false,
             shade_model: enums::SMOOTH,
+            provoking_vertex: enums::LAST_VERTEX_CONVENTION,
             color_material: ColorMaterial {
                 enabled: false,
                 face: enums::FRONT_AND_BACK,

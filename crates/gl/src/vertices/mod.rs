@@ -14,6 +14,7 @@ mod lists;
 mod merge;
 mod names;
 mod position;
+mod provoking;
 mod quick;
 mod rect;
 
@@ -43,6 +44,16 @@ impl Context {
         }
         #[cfg(test)]
         self.builder.log.push(batch.clone());
+
+        // Have the corner that colours an element come last where the first one is to.
+        let lighting = &self.state.lighting;
+        let is_first = lighting.provoking_vertex == enums::FIRST_VERTEX_CONVENTION;
+        let batch = match is_first && lighting.shade_model == enums::FLAT {
+            true => Arc::new(batch.with_first_corner_last()),
+            false => batch,
+        };
+
+        // Hand it on.
         if self.feedback.mode == enums::RENDER {
             self.record_draw(batch, sent, given);
         } else if !self.refused_by_framebuffer("draw") {

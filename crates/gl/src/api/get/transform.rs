@@ -61,6 +61,8 @@ impl Context {
         let fog = &self.state.fog;
         Some(match pname {
             gl::SHADE_MODEL => Value::token(lighting.shade_model),
+            gl::PROVOKING_VERTEX => Value::token(lighting.provoking_vertex),
+            gl::QUADS_FOLLOW_PROVOKING_VERTEX_CONVENTION => Value::boolean(false),
             gl::COLOR_MATERIAL_FACE => Value::token(lighting.color_material.face),
             gl::COLOR_MATERIAL_PARAMETER => Value::token(lighting.color_material.mode),
             gl::LIGHT_MODEL_AMBIENT => Value::normalized(&lighting.model.ambient),

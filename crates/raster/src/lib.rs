@@ -1,13 +1,14 @@
 //! Floor 2: triangles to samples. Clip, project, snap, set up, bin, and walk the tiles.
 //!
 //! A picture is cut into tiles of 64x64 pixels, each owned by one worker at a time. [`geometry`]
-//! turns triangles into [`Setup`]s (integer edge functions, a depth plane) and sorts them into the
-//! tiles they touch; [`traverse`] walks a tile's triangles in blocks of 8x8 pixels and hands each
-//! block with its coverage masks to a [`BlockSink`], which decides what a covered sample means:
-//! [`VisibilitySink`] keeps the nearest facet, [`LayerSink`] collects every facet in front of it,
-//! [`FragmentSink`] likewise, pixel by pixel. [`traverse_by_rows`] hands triangles that are at most
-//! eight pixels wide row by row to a [`RowSink`], wherever the rows begin: of a fine mesh, most
-//! are. [`NearestDepths`] keeps depths alone, for shadow maps.
+//! turns triangles into [`Setup`]s (snapped corners, a depth plane) and sorts them into the tiles
+//! they touch; [`traverse_by_rows`] walks a tile's triangles, makes their integer edge functions,
+//! and hands rows of eight pixels with their coverage masks to a [`RowSink`], which decides what a
+//! covered sample means: [`VisibilitySink`] keeps the nearest facet, [`LayerSink`] collects every
+//! facet in front of it, [`FragmentSink`] likewise, pixel by pixel. Triangles that are at most eight
+//! pixels wide go row by row, wherever the rows begin: of a fine mesh, most are. Larger ones are cut
+//! into blocks of 8x8 pixels. [`NearestDepths`] keeps depths alone, for shadow maps. OpenGL walks by
+//! [`traverse_window`], which hands blocks to a [`BlockSink`].
 //!
 //! Coverage is decided in integers on corners snapped to 1/256 pixel, with the top-left rule: two
 //! triangles that share an edge cover each sample along it exactly once. Depth is `1` at the near

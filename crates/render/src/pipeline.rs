@@ -476,7 +476,7 @@ impl<'a> FrameContext<'a> {
         )))
     }
 
-    /// Room for the two buffers, for which memory is needed for a while.
+    /// Asks whether the budget has room for the two buffers, which are there for a while.
     fn check_room_for_buffers(&self) -> Result<(), Limit> {
         let bytes =
             u64::from(self.viewport.width) * u64::from(self.viewport.height) * BYTES_A_PIXEL;
@@ -493,8 +493,8 @@ impl<'a> FrameContext<'a> {
         if spare.len() == pixels { spare } else { vec![[0; 4]; pixels] }
     }
 
-    /// The session's tiles if they fit, else new ones, charged to the budget: all of them, though
-    /// the z-buffer often needs but a few
+    /// The session's tiles if they fit, else new ones. Asks whether the budget has room for all of
+    /// them, though the z-buffer often needs but a few
     /// ([`TileSink::keeps_tiles`](crate::visible::TileSink::keeps_tiles)).
     fn take_grid(&self, session: &mut Session, samples: usize) -> Result<TileGrid, Error> {
         let (viewport, budget) = (self.viewport, &self.execution.budget);

@@ -242,11 +242,11 @@ impl Context {
         let mut layout =
             if shaded { self.layout(fragment, &units, samples) } else { Layout::default() };
 
-        // Triangulate batches that are drawn repeatedly.
+        // Triangulate all but small batches that are drawn at once.
         let primitive = self.primitive_state(fragment, target)?;
         let small = sent == Submission::Now && batch.is_small();
         let triangulation = (!small).then(|| batch.triangulation.get(&batch));
-        // What draws depths alone into a texture is seldom looked at: it stays as it was given.
+        // A flat grid becomes a rectangle where all that varies on it is linear.
         let flat = triangulation.as_ref().is_some_and(|triangulation| triangulation.grid.is_some());
         let grid = flat && self.draws_grids(&snapshot, &primitive, fragment);
         if grid && snapshot.fog == Some(FogSource::Depth) {

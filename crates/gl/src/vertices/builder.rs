@@ -38,7 +38,7 @@ pub(crate) struct Builder {
     open: bool,
     /// A Begin is open, or complete primitives wait to be drawn.
     gathering: bool,
-    /// Whether complete primitives wait.
+    /// Whether complete primitives may wait, for more that are drawn alike.
     merging: bool,
     mode: u32,
     first: u32,

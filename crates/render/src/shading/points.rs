@@ -69,9 +69,10 @@ pub(super) struct LayerPoint {
 }
 
 impl LayerPoint {
+    /// Orders layers by facets, those of a facet by samples.
     #[inline(always)]
     pub(super) fn key(&self) -> u64 {
-        u64::from(self.facet) << 4 | u64::from(self.sample)
+        u64::from(self.facet) << 32 | u64::from(self.sample)
     }
 }
 
@@ -194,4 +195,16 @@ pub(super) fn samples_in(mask: u32) -> impl Iterator<Item = u32> {
         left &= left.wrapping_sub(1);
         sample
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_of_neighbouring_facets_are_told_apart_at_every_sample() {
+        let all = (0..4).flat_map(|facet| (0..32).map(move |sample| (facet, sample)));
+        let key = |(facet, sample)| LayerPoint { sample, depth: 0.0, facet }.key();
+        assert!(all.clone().map(key).is_sorted_by(|a, b| a < b));
+    }
 }

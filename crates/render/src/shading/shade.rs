@@ -181,7 +181,7 @@ fn illuminate<S: Simd>(
     let &ShadingBatch8 { subject, material, slots, records, along, .. } = eight;
     let is_lit = material.model.needs_light_visibility();
 
-    // SurfacePoint the points on their facets, and let textures and vertex colours vary the
+    // Place the points on their facets, and let textures and vertex colours vary the
     // material.
     let mut surface = surface(simd, records, slots);
     surface.screen_linear = along.is_none() && subject.viewing.screen_linear();

@@ -15,8 +15,6 @@ const PACKAGE: &str = "vitral-wasm-probe";
 /// The compiler takes six times as long to optimise the kernels for WebAssembly at level 2, and the
 /// pictures are small.
 const OPT_LEVEL: &str = "1";
-/// The largest crate takes ten minutes in one piece.
-const CODEGEN_UNITS: &str = "8";
 
 /// Flags of modules with vectors, and the folder below cargo's in which they are built.
 pub(crate) const SIMD: &str = "-C target-feature=+simd128";
@@ -95,9 +93,7 @@ pub(crate) fn build_with_vectors(package: &str) -> Result<PathBuf, String> {
 fn module(flags: &str) -> std::process::Command {
     let mut build = cargo();
     build.env("RUSTFLAGS", flags).env_remove("CARGO_ENCODED_RUSTFLAGS");
-    let profile = format!("CARGO_PROFILE_{}", PROFILE.to_uppercase());
-    build.env(format!("{profile}_OPT_LEVEL"), OPT_LEVEL);
-    build.env(format!("{profile}_CODEGEN_UNITS"), CODEGEN_UNITS);
+    build.env(format!("CARGO_PROFILE_{}_OPT_LEVEL", PROFILE.to_uppercase()), OPT_LEVEL);
     build.args(["build", "--quiet", "--profile", PROFILE, "--lib", "--target", WASM_TARGET]);
     build
 }

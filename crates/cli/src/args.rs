@@ -45,7 +45,7 @@ pub(crate) enum Verb {
     ReadProbe(ReadProbeArgs),
     /// Open the Lab in a browser: watch the classical algorithms step by step
     Lab(LabPageArgs),
-    /// Show what is in a model file
+    /// List the contents of a model file
     Info(InfoArgs),
     /// Make the small picture of a model that file managers show
     Thumbnail(ThumbnailArgs),
@@ -225,6 +225,7 @@ pub(crate) fn command() -> clap::Command {
 /// neither a verb nor looks like a model stays, to be refused as a verb. `help VERB GROUP` and
 /// `--help VERB GROUP` become `VERB --help GROUP`.
 pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi::OsString> {
+    // Turn `help VERB GROUP` into `VERB --help GROUP`.
     let is_verb = |word: &str| Cli::command().get_subcommands().any(|c| c.get_name() == word);
     let names_verb = arguments.get(2).and_then(|word| word.to_str()).is_some_and(is_verb);
     if arguments.get(1).is_some_and(|a| a == "help" || a == "--help" && names_verb) {
@@ -233,9 +234,13 @@ pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi:
         arguments.insert(arguments.len().min(2), "--help".into());
         return arguments;
     }
+
+    // Return if nothing was typed.
     let Some(first) = arguments.get(1).map(|a| a.to_string_lossy().into_owned()) else {
         return arguments;
     };
+
+    // Insert the verb before a word that may be a model or an option of `render` and `draw`.
     let first = first.as_str();
     let general = ["-h", "--help", "-V", "--version"].contains(&first);
     if !general && !is_verb(first) && may_be_model(&arguments[1]) {
@@ -247,6 +252,7 @@ pub(crate) fn with_verb(mut arguments: Vec<std::ffi::OsString>) -> Vec<std::ffi:
 
 /// Whether a word may be the name of a model: it is no plain word, or there is a file of that name.
 pub(crate) fn may_be_model(word: &std::ffi::OsStr) -> bool {
+    // Take a word for plain if it begins with a letter and has no character of paths or patterns.
     let text = word.to_string_lossy();
     let is_plain = text.starts_with(|c: char| c.is_ascii_alphabetic())
         && !text.contains(['.', '/', '\\', ':', '{']);
@@ -257,6 +263,7 @@ pub(crate) fn may_be_model(word: &std::ffi::OsStr) -> bool {
 fn names_drawing(arguments: &[std::ffi::OsString]) -> bool {
     let mut texts = arguments.iter().map(|argument| argument.to_string_lossy());
     while let Some(text) = texts.next() {
+        // Find the output in each form in which it can be typed; behind `--` all words are models.
         let output = match (&*text, text.strip_prefix("--output="), text.strip_prefix("-o")) {
             ("--", ..) => return false,
             ("-o" | "--output", ..) => texts.next().map(|next| next.into_owned()),
@@ -264,6 +271,8 @@ fn names_drawing(arguments: &[std::ffi::OsString]) -> bool {
             (_, None, Some(value)) => Some(value.trim_start_matches('=').to_owned()),
             _ => None,
         };
+
+        // Look its extension up among those of drawings.
         let extension =
             output.as_deref().and_then(|name| std::path::Path::new(name).extension()?.to_str());
         if extension

@@ -65,7 +65,7 @@ pub(crate) struct BatchArgs {
 /// Options of a process that does jobs; `vitral batch` starts them.
 #[derive(Args, Debug)]
 pub(crate) struct BatchWorkerArgs {
-    /// The record of what is done.
+    /// The record of finished jobs.
     #[arg(long)]
     pub(crate) record: PathBuf,
     /// Threads of jobs that do not say how many they take.

@@ -53,6 +53,7 @@ struct Measured {
 pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> Result<u8, Failure> {
     let mut text = head(args, execution);
     for subject in subjects(args, execution)? {
+        // Set up a parallel projection of the scene.
         let mut renderer = Renderer::with_execution(subject.scene, execution.clone())?;
         (renderer.lens, renderer.view) = (Lens::Parallel, subject.view);
 
@@ -86,6 +87,8 @@ pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> R
         }
         text.push_str(if subject.pictures.is_some() { "\n" } else { "" });
     }
+
+    // End the report with one line break, and write it.
     text.truncate(text.trim_end().len());
     text.push('\n');
     vitral::picture::write(folder.join("drawing-report.md"), text.as_bytes())?;
@@ -133,6 +136,7 @@ fn subjects(args: &BenchArgs, execution: &Execution) -> Result<Vec<Subject>, Fai
 
 /// Adds a quadrilateral in a colour.
 fn add_quad(scene: &mut Scene, color: [f32; 3], corners: [[f32; 3]; 4]) {
+    // Make one polygon of the four corners, visible from both sides.
     let material = scene.add_material(Material { double_sided: true, ..Material::matte(color) });
     let faces = Faces::Polygons { starts: vec![0, 4], corners: vec![0, 1, 2, 3] };
     let mesh = Mesh { faces, ..Mesh::new(corners, [[0, 1, 2], [0, 2, 3]]) };
@@ -187,6 +191,8 @@ fn measured(
             .with_time_limit(Some(args.time_limit))
             .with_memory_limit(args.max_memory.or_else(crate::machine::memory))
     };
+
+    // Leave the lines out: only regions are measured.
     let page = DrawingSettings { lines: vitral::LineClasses::EMPTY, ..DrawingSettings::default() };
 
     // Measure the first drawing in full, and of the others the time.
@@ -238,9 +244,12 @@ fn filled(
     algorithm: Option<Visibility>,
     page: &DrawingSettings,
 ) -> Result<Filled, Error> {
+    // Draw exactly where no algorithm is named.
     let Some(algorithm) = algorithm else {
         return Ok((renderer.draw_filled(page, &touching())?.drawing, None, None));
     };
+
+    // Draw the polygons of the algorithm without outlines.
     let settings = PolygonSettings { outlines: false, ..PolygonSettings::new(algorithm) };
     let drawn = renderer.draw_polygons(&settings, page)?;
     Ok((drawn.drawing, Some(drawn.model_polygons), Some(drawn.counters.splits)))
@@ -248,14 +257,19 @@ fn filled(
 
 /// An SVG with outlines.
 fn small_picture(renderer: &Renderer, algorithm: Option<Visibility>) -> Result<Vec<u8>, Failure> {
+    // Fit the sheet to the picture.
     let page = PageSize::Fit { longer: PICTURE };
     let page = DrawingSettings { page, margin: 2.0, ..DrawingSettings::default() };
     let mut options = DrawingOptions { decimals: 2, ..DrawingOptions::default() };
+
+    // Draw exactly where no algorithm is named.
     let Some(algorithm) = algorithm else {
         return Ok(
             DrawingFormat::Svg.encode(&renderer.draw_filled(&page, &touching())?.drawing, &options)
         );
     };
+
+    // Draw the polygons; outline each where later ones cover earlier ones.
     let drawn = renderer.draw_polygons(&PolygonSettings::new(algorithm), &page)?;
     options.region_outlines =
         Some(LineClass::Smooth).filter(|_| drawn.order == PolygonOrder::BackToFront);
@@ -268,11 +282,17 @@ const TABLE_HEAD: &str = "| algorithm | polygons of the model | splits | regions
 /// A line of the table.
 fn line(row: &Row) -> String {
     let name = name_of(row.algorithm);
+
+    // Put a limit into the row in place of numbers.
     let m = match &row.outcome {
         Ok(measured) => measured,
         Err(limit) => return format!("| {name} | {limit} | - | - | - | - | - | - | - |\n"),
     };
+
+    // Write a dash for counters that the algorithm does not have.
     let count = |count: Option<u64>| count.map_or("-".to_owned(), |count| count.to_string());
+
+    // Compute the area that lies under another region.
     let again = (m.area - m.covered).max(0.0);
     format!(
         "| {name} | {} | {} | {} | {} | {:.2} | {:.2} | {:.1} | {:.1} % |\n",

@@ -39,15 +39,19 @@ fn pixels(step: &Step) -> u32 {
 
 /// Measures, and writes the report and its plots into `folder`.
 pub(crate) fn write(args: &BenchArgs, folder: &Path, execution: &Execution) -> Result<u8, Failure> {
+    // Measure with more and more polygons, then with more and more pixels.
     let over_polygons = POLYGONS.iter().map(|&n| step(args, execution, n, PIXELS[2]));
     let over_polygons = over_polygons.collect::<Result<Vec<_>, _>>()?;
     let over_pixels = PIXELS.iter().map(|&p| step(args, execution, POLYGONS[1], p));
     let over_pixels = over_pixels.collect::<Result<Vec<_>, _>>()?;
 
+    // Plot both series.
     let first =
         svg("A built scene, more and more polygons", "polygons", &curves(&over_polygons, polygons));
     let second =
         svg("The same polygons, more and more pixels", "pixels", &curves(&over_pixels, pixels));
+
+    // Write the plots and the report.
     let write = |name: &str, text: &str| vitral::picture::write(folder.join(name), text.as_bytes());
     write("visibility-polygons.svg", &first)?;
     write("visibility-pixels.svg", &second)?;
@@ -61,9 +65,12 @@ fn step(
     polygons: usize,
     size: [u32; 2],
 ) -> Result<Step, Failure> {
+    // Set up the scene and the size of the picture.
     let mut renderer = Renderer::with_execution(heap(polygons), execution.clone())?;
     let settings = &mut renderer.settings;
     ([settings.picture.width, settings.picture.height], settings.picture.samples) = (size, 1);
+
+    // Say which size is measured.
     if !args.quiet {
         report::line(&format!(
             "{} triangles, {} x {} pixels",
@@ -72,6 +79,8 @@ fn step(
             size[1]
         ));
     }
+
+    // Measure all algorithms.
     let rows = rows(args, &renderer, &Entrant::all())?;
     Ok(Step { polygons: renderer.world().facet_count, pixels: size[0] * size[1], rows })
 }
@@ -81,6 +90,7 @@ fn heap(polygons: usize) -> Scene {
     let mut scene = Scene::default();
     let mesh = grid_torus(polygons / 8);
     for i in 0..8 {
+        // Turn each ring by a multiple of the golden angle, and move it off the centre.
         let angle = f64::from(i) * 2.399_963;
         let turn = DQuat::from_axis_angle(DVec3::new(1.0, f64::from(i), 0.5).normalize(), angle);
         let at = turn * DVec3::new(0.8, 0.0, 0.0);
@@ -92,6 +102,7 @@ fn heap(polygons: usize) -> Scene {
 /// A curve for each algorithm; those of image precision are drawn through, the others dashed.
 fn curves(steps: &[Step], size: fn(&Step) -> u32) -> Vec<Curve> {
     let curve = |(i, entrant): (usize, Entrant)| {
+        // Plot the fastest time at each size; sizes that met a limit have no point.
         let point = |s: &Step| {
             s.rows[i].1.as_ref().ok().map(|m| [f64::from(size(s)), m.fastest_seconds.max(1e-9)])
         };
@@ -103,9 +114,12 @@ fn curves(steps: &[Step], size: fn(&Step) -> u32) -> Vec<Curve> {
 
 /// A table with a column for each size, in milliseconds, and the exponent of the growth.
 fn table(steps: &[Step], size: fn(&Step) -> u32, what: &str) -> String {
+    // Write the head: a column for each size.
     let heads: Vec<_> = steps.iter().map(|s| format!("{} {what}", size(s))).collect();
     let mut out = format!("| algorithm | precision | {} | exponent |\n", heads.join(" | "));
     let _ = writeln!(out, "|---|---|{}---:|", "---:|".repeat(steps.len()));
+
+    // Write a row for each algorithm: its times or limits, and the exponent.
     for (i, (entrant, curve)) in Entrant::all().iter().zip(curves(steps, size)).enumerate() {
         let cell = |s: &Step| match &s.rows[i].1 {
             Ok(m) => format!("{:.2}", m.fastest_seconds * 1e3),
@@ -129,6 +143,8 @@ fn memory(step: &Step) -> String {
     let mut out =
         "| algorithm | first picture, ms | memory, KiB | samples unlike the z-buffer's |\n|---|---:|---:|---:|\n"
             .to_owned();
+
+    // Write a row for each algorithm, with its limit where it met one.
     for (entrant, row) in &step.rows {
         let _ = match row {
             Ok(m) => {

@@ -4,7 +4,7 @@ use crate::fields::Fields;
 use crate::values::{color, not_negative, share};
 use vitral::DepthCue;
 
-/// Reads the numbers; what is left out has its default. Whether they go together is checked with
+/// Reads the numbers; omitted ones have their defaults. Whether they go together is checked with
 /// the other settings.
 pub(crate) fn parse(text: &str) -> Result<DepthCue, String> {
     let mut fields = Fields::split(text)?;

@@ -64,7 +64,7 @@ pub(crate) struct LineArgs {
     /// lines of the class smooth; in a list from back to front, later polygons cover earlier ones
     #[arg(long, value_name = "NAME", value_parser = choices::drawing_algorithm())]
     pub(crate) algorithm: Option<DrawingAlgorithm>,
-    /// What is drawn: lines, filled regions or both [default: hidden-line; filled-lines with
+    /// Style of the drawing: lines, filled regions or both [default: hidden-line; filled-lines with
     /// another --algorithm than exact]
     #[arg(long, value_name = "STYLE", value_enum)]
     pub(crate) style: Option<Style>,
@@ -317,6 +317,8 @@ pub(crate) fn line_classes(text: &str) -> Result<LineClasses, String> {
     if text.eq_ignore_ascii_case("all") {
         return Ok(LineClasses::ALL);
     }
+
+    // Look each name of the list up.
     let class = |word: &str| {
         let found = LineClass::ALL
             .iter()
@@ -333,6 +335,8 @@ fn page_size(text: &str) -> Result<Sheet, String> {
     if text.eq_ignore_ascii_case("fit") {
         return Ok(Sheet::Fit);
     }
+
+    // Look for a size of the series A.
     let series = [("A0", [841, 1189]), ("A1", [594, 841]), ("A2", [420, 594]), ("A3", [297, 420])];
     let small = [("A4", [210, 297]), ("A5", [148, 210]), ("A6", [105, 148])];
     if let Some((_, size)) =
@@ -340,6 +344,8 @@ fn page_size(text: &str) -> Result<Sheet, String> {
     {
         return Ok(Sheet::Size(size.map(f64::from)));
     }
+
+    // Parse width and height, of at most 10 m each.
     let sides = text.strip_suffix("mm").and_then(|sides| sides.split_once('x'));
     let side = |side: &str| values::positive(side).ok().filter(|&side| side <= 10_000.0);
     match sides.and_then(|(width, height)| Some([side(width)?, side(height)?])) {
@@ -368,6 +374,8 @@ fn stroke(text: &str) -> Result<(String, f64), String> {
             Pens::names().collect::<Vec<_>>().join(", ")
         ));
     }
+
+    // Parse the width, of at most 100 mm.
     let width = values::positive(width)?;
     if width > 100.0 {
         Err("at most 100 mm is required".to_owned())
@@ -379,6 +387,8 @@ fn stroke(text: &str) -> Result<(String, f64), String> {
 /// `1:2`, `2:1` or `0.5`.
 fn scale(text: &str) -> Result<f64, String> {
     let wrong = || format!("`{text}` is not a scale: 1:2, 2:1 or a number above 0 is required");
+
+    // Divide the two sides of a colon, or take a plain number.
     let ratio = match text.split_once(':') {
         Some((paper, model)) => {
             values::positive(paper).and_then(|paper| Ok(paper / values::positive(model)?))
@@ -398,6 +408,8 @@ fn decimals(text: &str) -> Result<u8, String> {
 /// `Scale=1:2`, in letters that there are strokes for.
 fn title_row(text: &str) -> Result<(String, String), String> {
     let (key, value) = text.split_once('=').ok_or("KEY=VALUE is required, such as Scale=1:2")?;
+
+    // Refuse letters that the stroke font does not have.
     let row = (key.to_owned(), value.to_owned());
     match TitleBlock::new(std::slice::from_ref(&row)) {
         Ok(_) => Ok(row),

@@ -26,6 +26,8 @@ pub(crate) fn check(args: &DrawArgs, state: &State, format: DrawingFormat) -> Re
             Failure::usage("--environment: drawings show no reflections").with_hint("leave it out")
         );
     }
+
+    // Report the first conflict of the tables.
     check_polygons(args)?;
     check_sheet(args, state)?;
     check_lines(args)?;
@@ -49,6 +51,7 @@ fn typed(options: &[(bool, &'static str)]) -> Option<&'static str> {
 
 /// Options of exact drawings beside an algorithm that gives its own polygons.
 fn check_polygons(args: &DrawArgs) -> Result<(), Failure> {
+    // Return if the drawing is exact.
     let Some(algorithm) = args.polygons() else { return Ok(()) };
     let exact = "leave it out, or choose --algorithm exact";
     let refuse = |option: &str, why: &str| {
@@ -69,6 +72,8 @@ fn check_polygons(args: &DrawArgs) -> Result<(), Failure> {
     if let Some(option) = typed(&of_lines) {
         return refuse(option, "the outlines of its polygons are the lines");
     }
+
+    // Refuse pens that draw neither the outlines nor the title block.
     let outline = LineClass::Smooth.name();
     let mut classes = lines.stroke.iter().map(|(class, _)| class.as_str());
     if let Some(class) = classes.find(|class| ![outline, "title"].contains(class)) {
@@ -150,6 +155,8 @@ fn check_lines(args: &DrawArgs) -> Result<(), Failure> {
     let has_tangent = classes.has(LineClass::Smooth)
         || classes.has(LineClass::Material)
         || classes.has(LineClass::Crease) && crease_angle < 1f64.to_radians();
+
+    // Report the first option about lines that are not drawn.
     first(&[
         (
             is_filled && lines.lines.is_some(),
@@ -203,6 +210,7 @@ fn check_lines(args: &DrawArgs) -> Result<(), Failure> {
 
 /// Options of sections without a plane or without hatching.
 fn check_sections(args: &DrawArgs) -> Result<(), Failure> {
+    // Find out whether a plane cuts the model, and whether the cut is hatched.
     let is_cut = !args.section.section_plane.is_empty();
     let names_section =
         |classes: LineClasses| classes.has(LineClass::Section) && classes != LineClasses::ALL;
@@ -309,6 +317,8 @@ fn check_surfaces(args: &DrawArgs, format: DrawingFormat) -> Result<(), Failure>
     {
         return refuse(name, "only --color-by shading depends on light", "give --color-by shading");
     }
+
+    // Refuse shadows where the lights are off.
     first(&[(
         fill.shadows && light.lighting == Some(false),
         "--shadows: the lights are off",

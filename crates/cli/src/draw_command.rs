@@ -32,6 +32,8 @@ pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     } else {
         vec![models.clone()]
     };
+
+    // Check each drawing as far as its options allow, and the names of the files.
     let jobs: Vec<Job> = sheets
         .into_iter()
         .map(|models| Job::new(args, &state, models))
@@ -39,6 +41,8 @@ pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
     if apart {
         models::check_files(&models, |name| Ok(expand(args.output.as_os_str(), name, 0)?.into()))?;
     }
+
+    // Save the state if that is asked for.
     if let Some(path) = &args.process.save_state {
         save_state(&state, &models, path)?;
     }
@@ -54,6 +58,8 @@ pub(crate) fn run(args: &DrawArgs) -> Result<u8, Failure> {
                 .try_for_each(|job| draw(args, job, execution.clone(), start))
                 .map(|()| 0);
         }
+
+        // Draw each model with a budget of its own, and go on after a model that fails.
         let mut progress = Progress::new(when, quiet, jobs.len() as u64, "drawings");
         let mut jobs = jobs.iter();
         let (_, code) = models::for_each(&models, &execution.budget, |_| {
@@ -83,10 +89,15 @@ struct Job {
 impl Job {
     /// The drawing of these models, checked as far as it can be before the work.
     fn new(args: &DrawArgs, state: &State, models: Vec<PathBuf>) -> Result<Self, Failure> {
+        // Restrict the state to the models of this drawing.
         let apart = models::named(&args.models, state).len() > models.len();
         let state = State { models: models::in_unicode(&models), ..state.clone() };
+
+        // Choose the file by the name of the first model.
         let file =
             DrawFile::new(args, &state, models.first().map_or(Path::new(""), PathBuf::as_path))?;
+
+        // Make room for the title block on the sheet.
         let mut settings = settings_of(args)?;
         settings.page = file.page_above_title(settings.page, settings.margin)?;
         Ok(Self { state, models, file, settings, apart })
@@ -109,10 +120,14 @@ fn draw(
         &execution,
         ReadLimits::of(&args.process).among_others(*apart),
     )?;
+
+    // Cut the scene, and print its warnings.
     let scene = args.section.apply(scene, &execution)?;
     if !args.report.quiet {
         report::warnings(&scene.warnings);
     }
+
+    // Set up the renderer and its camera.
     execution.budget.check("loading")?;
     let mut renderer = Renderer::with_execution(scene, execution)?;
     projected(args, state, renderer.world()).apply(&mut renderer)?;
@@ -130,8 +145,12 @@ fn draw(
         Made::Exact(drawn) => stats_of(drawn),
         Made::Polygons(drawn) => draw_polygons::stats_of(drawn),
     });
+
+    // Encode the drawing, and write the file.
     let bytes = file.encode(made.into_drawing(), settings.margin);
     report::write(&file.path, &bytes)?;
+
+    // Print the statistics.
     if let Some(mut stats) = counted {
         use std::io::Write;
         if let Some(views) = views {
@@ -153,14 +172,19 @@ pub(crate) fn make(
     renderer: &Renderer,
     settings: &mut DrawingSettings,
 ) -> Result<(Made, Option<serde_json::Value>), Failure> {
+    // Warn if no surface is transparent, although transparency is asked for.
     let is_opaque = renderer.opacities().iter().all(|&opacity| opacity == 1.0);
     if args.fill.transparency && is_opaque && !args.report.quiet {
         report::warnings(&["--transparency: the models have no transparent surfaces".to_owned()]);
     }
+
+    // Draw several views on one sheet.
     if !args.page.views.is_empty() {
         let (drawn, layout) = draw_sheet::draw(args, renderer, settings)?;
         return Ok((Made::Exact(drawn), Some(draw_sheet::stats_of(args, &layout))));
     }
+
+    // Draw one view at its scale: polygons of an algorithm, filled regions or lines.
     settings.page = scaled_page(args, settings.page, renderer.drawing_window())?;
     let made = match args.polygons() {
         Some(algorithm) => {
@@ -171,6 +195,8 @@ pub(crate) fn make(
             None => renderer.draw(settings)?,
         }),
     };
+
+    // Check that the drawing fits on the sheet.
     check_fits(args, settings, made.drawing())?;
     Ok((made, None))
 }
@@ -199,8 +225,11 @@ impl Made {
 
 /// The state: defaults, then files, then options.
 fn state_of(args: &DrawArgs) -> Result<State, Failure> {
+    // Overlay the configuration and state files.
     let mut state = State::default();
     overlay_files(&mut state, &args.process)?;
+
+    // Overlay the models, camera, lights and illumination of the command line.
     if !args.models.is_empty() {
         state.models = models::in_unicode(&args.models);
     }
@@ -208,6 +237,8 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
     set_lights(&mut state, &args.light)?;
     let shading = &mut state.settings.shading;
     shading.illumination = args.fill.illumination.unwrap_or(shading.illumination);
+
+    // Set how files are read, up to the memory limit.
     set_reading(&mut state, &args.process);
     if let Some(limit) = args.process.max_memory {
         state.load.max_file_bytes = state.load.max_file_bytes.min(limit);
@@ -216,16 +247,21 @@ fn state_of(args: &DrawArgs) -> Result<State, Failure> {
 }
 
 /// The state with the projection of drawings: a parallel one, unless that is said or the camera has
-/// an angle of view. What is framed for it is seen at equal angles to all axes, if no side is said.
+/// an angle of view. A framed model is seen at equal angles to all axes, if no side is said.
 pub(crate) fn projected(args: &DrawArgs, state: &State, world: &World) -> State {
+    // Use the own camera of the scene, unless the sheet has several views.
     let mut state = state.clone();
     if args.page.views.is_empty() {
         state.viewpoint = state.viewpoint.or_own(world);
     }
+
+    // Choose between parallel and perspective projection.
     let viewpoint = &mut state.viewpoint;
     let has_angle = viewpoint.view_angle_degrees.is_some() || viewpoint.camera_index.is_some();
     viewpoint.orthographic =
         !args.perspective && (!args.page.views.is_empty() || viewpoint.orthographic || !has_angle);
+
+    // Look at a framed model from the isometric side, unless a side is named.
     if viewpoint.orthographic && viewpoint.is_framed() {
         viewpoint.view.get_or_insert(View::Iso);
     }
@@ -244,6 +280,8 @@ pub(crate) fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
         (_, None | Some(0)) => u32::MAX,
         (_, Some(layers)) => layers,
     };
+
+    // Take the default of each option that was not typed.
     Ok(DrawingSettings {
         lines: if has_lines { lines.lines.unwrap_or(usual.lines) } else { LineClasses::EMPTY },
         hidden_layers,
@@ -258,6 +296,7 @@ pub(crate) fn settings_of(args: &DrawArgs) -> Result<DrawingSettings, Failure> {
 }
 
 fn page_of(args: &PageArgs) -> Result<PageSize, Failure> {
+    // Fit the sheet to the drawing if it has no size.
     let Some(Sheet::Size([width, height])) = args.page else {
         if args.landscape {
             return Err(Failure::usage("--landscape: it needs a sheet with a fixed size")
@@ -265,12 +304,16 @@ fn page_of(args: &PageArgs) -> Result<PageSize, Failure> {
         }
         return Ok(PageSize::default());
     };
+
+    // Refuse margins that leave no room.
     let margin = args.margin.unwrap_or(DrawingSettings::default().margin);
     if 2.0 * margin >= width.min(height) {
         return Err(Failure::usage(format!(
             "--margin {margin}: no room is left on a sheet of {width} x {height} mm"
         )));
     }
+
+    // Turn the sheet if it is to lie across.
     let (shorter, longer) = (width.min(height), width.max(height));
     Ok(match args.landscape {
         true => PageSize::Sheet { width: longer, height: shorter },

@@ -83,6 +83,8 @@ const GROUPS: [Group; 19] = [
 /// The words of a command line with `--help=GROUP` as two words.
 pub(crate) fn split(words: Vec<OsString>) -> Vec<OsString> {
     let mut is_option = true;
+
+    // Divide `--help=GROUP` into two words; behind `--` no word is an option.
     let parts = |word: OsString| {
         is_option &= word != "--";
         match word.to_str().and_then(|text| text.strip_prefix("--help=")).filter(|_| is_option) {
@@ -96,6 +98,7 @@ pub(crate) fn split(words: Vec<OsString>) -> Vec<OsString> {
 /// The help that a command line asks for, of which clap has said that it asks for help; `None`:
 /// clap's own text.
 pub(crate) fn asked_for(words: &[OsString]) -> Result<Option<StyledStr>, Failure> {
+    // Find the option, and the word behind it if that is no option.
     let is_long = |word: &OsString| word == "--help";
     let position =
         words.iter().position(is_long).or_else(|| words.iter().position(|word| word == "-h"));
@@ -103,11 +106,15 @@ pub(crate) fn asked_for(words: &[OsString]) -> Result<Option<StyledStr>, Failure
     let behind = position
         .and_then(|at| words.get(at + 1))
         .filter(|word| !word.to_string_lossy().starts_with('-'));
+
+    // Find the verb; without one, a word behind the option must be a verb.
     let command = args::command();
     let Some(verb) = words.get(1).and_then(|word| command.find_subcommand(word)) else {
         return behind
             .map_or(Ok(None), |word| Err(unknown_verb(&command, &word.to_string_lossy())));
     };
+
+    // Choose the summary, all options or one group by the word behind the option.
     let name = verb.get_name();
     match behind.map(|word| (group_of(verb, word), word)) {
         // What may be a model is none of help's words.
@@ -121,11 +128,14 @@ pub(crate) fn asked_for(words: &[OsString]) -> Result<Option<StyledStr>, Failure
 
 /// The error for a word behind `vitral --help` that is no verb.
 fn unknown_verb(command: &Command, word: &str) -> Failure {
+    // List the verbs that help shows.
     let verbs: Vec<&str> = command
         .get_subcommands()
         .filter(|verb| !verb.is_hide_set())
         .map(Command::get_name)
         .collect();
+
+    // Suggest the verb with the most similar name.
     let meant =
         nearest(word, verbs.iter().copied()).map(|verb| format!("; did you mean `{verb}`?"));
     let text = format!("--help {word}: there is no such verb{}", meant.unwrap_or_default());
@@ -142,16 +152,20 @@ fn groups(verb: &Command) -> impl Iterator<Item = &'static Group> {
 
 /// The group of a verb that a word names; `Some(None)`: all of them.
 fn group_of(verb: &Command, word: &OsString) -> Option<Option<&'static Group>> {
+    // Accept the word for all options, with every verb.
     let word = word.to_str()?.to_lowercase();
     if word == ALL {
         return Some(None);
     }
+
+    // Look the group up among those of the verb, if it has any.
     essential(verb.get_name())?;
     groups(verb).find(|group| group.name == word).map(Some)
 }
 
 /// The error for a word that names no group.
 fn unknown(verb: &Command, word: &str) -> Failure {
+    // Point to the whole help of verbs without groups.
     let name = verb.get_name();
     if essential(name).is_none() {
         return Failure::usage(format!(
@@ -177,6 +191,8 @@ fn unknown(verb: &Command, word: &str) -> Failure {
             .or_else(similar)
             .map(|group| format!("did you mean `vitral {name} --help {group}`?")),
     };
+
+    // Name the groups in the message, and the suggestion in the hint.
     let text = format!(
         "--help {word}: there is no such group of options; the groups are {}",
         names.join(", ")
@@ -203,6 +219,8 @@ fn summary(name: &str, is_short: bool) -> Option<StyledStr> {
         }
         after.push('\n');
     }
+
+    // List the groups.
     let _ = writeln!(after, "More options, by group (`vitral {name} --help GROUP`, `--help all`):");
     for group in groups(verb) {
         let _ = writeln!(after, "  {:<13} {}", group.name, group.about);
@@ -210,6 +228,8 @@ fn summary(name: &str, is_short: bool) -> Option<StyledStr> {
     if !is_short {
         let _ = write!(after, "\n{EXIT_CODES}");
     }
+
+    // Show the essential options under one heading, and hide the others.
     let change = |option: Arg| {
         if option.is_positional() {
             option
@@ -224,11 +244,14 @@ fn summary(name: &str, is_short: bool) -> Option<StyledStr> {
 
 /// The options of one group.
 fn of_group(name: &str, group: &Group, is_short: bool) -> StyledStr {
+    // Describe the group above its options, and name the way to the others below.
     let is_in = |option: &Arg| option.get_help_heading() == Some(group.heading);
     let after = format!(
         "`vitral {name} --help` lists the other groups, `vitral {name} --help all` shows all options"
     );
     let about = format!("{}: {}", group.heading, group.about);
+
+    // Hide all options of other groups.
     rendered(name, is_short, |verb| {
         let verb = verb.mut_args(|option| if is_in(&option) { option } else { option.hide(true) });
         let usage = format!("vitral {name} [OPTIONS] [MODEL]...");
@@ -243,8 +266,11 @@ fn everything(name: &str, is_short: bool) -> StyledStr {
 
 /// The help of a verb whose definition `change` adapts.
 fn rendered(name: &str, is_short: bool, change: impl FnOnce(Command) -> Command) -> StyledStr {
+    // Adapt the verb, then build the whole definition so that headings and usage are filled in.
     let mut command = args::command().mut_subcommand(name, change);
     command.build();
+
+    // Render the help of the verb alone.
     let verb = command.find_subcommand_mut(Path::new(name)).expect("the verb is there");
     if is_short { verb.render_help() } else { verb.render_long_help() }
 }
@@ -341,7 +367,7 @@ mod tests {
                 );
             }
         }
-        // What has no groups is no longer than that.
+        // The help of verbs without groups is no longer than that.
         let mut command = args::command();
         command.build();
         for verb in

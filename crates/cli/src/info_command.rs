@@ -1,4 +1,4 @@
-//! `vitral info`: what is in a model file.
+//! `vitral info`: the contents of a model file.
 
 use crate::args::InfoArgs;
 use crate::report::{self, Failure};

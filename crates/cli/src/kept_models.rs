@@ -9,7 +9,7 @@ use vitral::{Error, LoadOptions, ReadFile, Scene, Workers};
 /// Models that are kept.
 const MOST_KEPT: usize = 4;
 
-/// What is kept; nothing unless somebody wants it.
+/// The cached models; `None` unless a caller turns the cache on.
 static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
 
 #[derive(Default)]

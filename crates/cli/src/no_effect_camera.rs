@@ -53,7 +53,7 @@ pub(crate) fn idle(
         tried.push(("--camera-index", vec![of(|v| v.camera_index = None)]));
     }
 
-    // Compare what is seen by each.
+    // Compare the views of each.
     let mut idle = Vec::new();
     for (option, trials) in tried {
         let is_same = |trial: &dyn Fn(&mut Viewpoint), renderer: &mut Renderer| {

@@ -174,7 +174,7 @@ fn unknown(purpose: Purpose, name: &str) -> Failure {
 /// A light from the text of `--light`.
 ///
 /// # Errors
-/// What is required instead.
+/// The required form of the text.
 pub fn light(text: &str) -> Result<vitral::Light, String> {
     crate::light_spec::parse(text, false)
 }
@@ -206,7 +206,7 @@ impl Resolved {
     /// How to compute: threads, and limits that count from now on.
     ///
     /// # Errors
-    /// What is wrong in `VITRAL_THREADS` or `VITRAL_SIMD`.
+    /// An invalid value of `VITRAL_THREADS` or `VITRAL_SIMD`.
     pub fn execution(&self) -> Result<Execution, Failure> {
         execution_within(&self.args.process, None)
     }

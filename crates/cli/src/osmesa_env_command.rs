@@ -21,7 +21,7 @@ pub fn osmesa_lies_in(folder: PathBuf) {
     let _ = FOLDER.set(folder);
 }
 
-/// Exit code for what is missing.
+/// Exit code for a missing library.
 const MISSING: u8 = 3;
 
 /// Runs the verb; gives the exit code.

@@ -19,7 +19,7 @@ pub(crate) const FRAMES_HINT: &str =
 pub(crate) struct Output {
     /// As typed.
     pattern: PathBuf,
-    /// What is written there.
+    /// The channel that the file holds.
     pub(crate) channel: Channel,
     format: PictureFormat,
 }
@@ -146,7 +146,7 @@ impl Output {
         &self.pattern
     }
 
-    /// Whether each of the frames has a name and a place: what is wrong is told before the work.
+    /// Whether each of the frames has a name and a place: mistakes are reported before the work.
     pub(crate) fn check_places(
         &self,
         model: &OsStr,
@@ -174,7 +174,7 @@ impl Output {
         self.write_bytes(path, &picture::encode_with(frame, self.channel, self.format, options)?)
     }
 
-    /// Writes what has been encoded.
+    /// Writes an encoded picture.
     pub(crate) fn write_bytes(&self, path: &Path, bytes: &[u8]) -> Result<(), Failure> {
         if self.is_standard() {
             return report::print(bytes);
@@ -210,7 +210,7 @@ pub(crate) fn format_of(
     PictureFormat::from_path(path).map_err(unknown)
 }
 
-/// Whether what is written there is dropped.
+/// Whether the path drops all bytes written to it.
 fn is_null(path: &Path) -> bool {
     path == Path::new("/dev/null")
 }
@@ -269,7 +269,7 @@ fn split_at(name: &OsStr, byte: u8) -> Vec<OsString> {
     name.as_bytes().split(|b| *b == byte).map(|piece| OsStr::from_bytes(piece).to_owned()).collect()
 }
 
-/// The pieces of a name between bytes of ASCII. What is not Unicode is lost.
+/// The pieces of a name between bytes of ASCII. Characters that are not Unicode are lost.
 #[cfg(not(unix))]
 fn split_at(name: &OsStr, byte: u8) -> Vec<OsString> {
     name.to_string_lossy().split(char::from(byte)).map(OsString::from).collect()

@@ -142,7 +142,7 @@ impl Counted {
 struct Stage {
     name: String,
     start: Option<Instant>,
-    /// What has been told of it.
+    /// The work that has been reported done.
     done: u64,
     tenth: u64,
 }

@@ -59,7 +59,7 @@ pub(crate) struct OutputArgs {
     /// the extension; png for `-`, devices and pipes]
     #[arg(long, value_name = "FORMAT", value_parser = choices::picture_format())]
     pub(crate) format: Vec<PictureFormat>,
-    /// What is written: the n-th channel goes to the n-th --output [default: color]
+    /// Channel to write: the n-th channel goes to the n-th --output [default: color]
     #[arg(long, value_name = "CHANNEL", value_parser = choices::channel())]
     pub(crate) channel: Vec<Channel>,
     /// With --channel steps: the picture after step N of the algorithm, counted from 0 as in
@@ -175,7 +175,7 @@ pub(crate) struct AlgorithmArgs {
     /// those of each algorithm [default: all]
     #[arg(long, value_name = "LIST", value_parser = values::coherence)]
     pub(crate) coherence: Option<values::CoherenceList>,
-    /// What is culled before rendering: a list of frustum, back-face; or none [default:
+    /// Culling before rendering: a list of frustum, back-face; or none [default:
     /// frustum,back-face]
     #[arg(long, value_name = "LIST", value_parser = values::culling)]
     pub(crate) cull: Option<Culling>,
@@ -217,7 +217,7 @@ pub(crate) struct AlgorithmArgs {
     #[arg(help_heading = help::SHADOWS)]
     #[arg(long, value_name = "RAYS", value_parser = values::whole(1..=4096u32), num_args = 0..=1, require_equals = true, default_missing_value = DEFAULT_RAYS, help = occlusion_help())]
     pub(crate) ambient_occlusion: Option<u32>,
-    /// How far away what is near may be for --ambient-occlusion, in the model's unit [default: half
+    /// Greatest distance of occluders for --ambient-occlusion, in the model's unit [default: half
     /// the radius of the scene]
     #[arg(help_heading = help::SHADOWS)]
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, allow_negative_numbers = true)]
@@ -231,7 +231,7 @@ pub(crate) struct AlgorithmArgs {
     #[arg(help_heading = help::SHADOWS)]
     #[arg(long, value_name = "N", value_parser = values::whole(16..=8192u32), allow_negative_numbers = true)]
     pub(crate) shadow_map_size: Option<u32>,
-    /// Shadow maps per light, 1 to 8, each for a range of depths, so that what is near gets more
+    /// Shadow maps per light, 1 to 8, each for a range of depths, so that near parts get more
     /// detail; for large scenes, with --shadows map [default: 1]
     #[arg(help_heading = help::SHADOWS)]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=8u32), allow_negative_numbers = true)]
@@ -263,7 +263,7 @@ pub(crate) struct AlgorithmArgs {
     #[arg(help_heading = help::GLOBAL)]
     #[arg(long, value_name = "N", value_parser = values::whole(1..=u64::MAX), allow_negative_numbers = true)]
     pub(crate) iterations: Option<u64>,
-    /// Fade what is farther away into the background
+    /// Fade surfaces into the background with distance
     ///
     /// The optional value, after an equals sign, is key=value,... with the keys color (a name,
     /// #rrggbb or r,g,b) instead of the background's; front and back, the distances from the viewer
@@ -437,7 +437,7 @@ pub(crate) struct CameraArgs {
     /// Parallel projection
     #[arg(long)]
     pub(crate) camera_orthographic: bool,
-    /// Show only what is between these distances from the viewer, along the direction of view
+    /// Show only the parts between these distances from the viewer, along the direction of view
     /// [default: all in front of the viewer]
     #[arg(long, value_name = "NEAR,FAR", value_parser = values::distances, allow_hyphen_values = true)]
     pub(crate) camera_clip: Option<(f64, f64)>,
@@ -555,7 +555,7 @@ pub(crate) struct ReportArgs {
     /// Print the results as one JSON object on standard output
     #[arg(long)]
     pub(crate) json: bool,
-    /// Say what is done, and how long it takes
+    /// Report each step of the work, and how long it takes
     #[arg(long, short, conflicts_with = "quiet")]
     pub(crate) verbose: bool,
     /// Print no warnings

@@ -319,7 +319,7 @@ struct Drawn {
     frames: Vec<Value>,
     /// Files that were written.
     written: Vec<String>,
-    /// What is not as it was asked for.
+    /// Differences between the picture and the options.
     warnings: Vec<String>,
     /// A picture differs from the reference, or is blank and must not be.
     different: bool,

@@ -94,7 +94,7 @@ impl Failure {
         self.code
     }
 
-    /// What is wrong, `FILE: WHERE: WHAT`; empty if nothing is to be said.
+    /// The mistake, `FILE: WHERE: WHAT`; empty if nothing is to be said.
     pub fn message(&self) -> &str {
         self.message.as_deref().unwrap_or_default()
     }
@@ -170,15 +170,15 @@ impl From<clap::Error> for Failure {
     }
 }
 
-/// What is kept instead of being told: standard output, and the lines of standard error.
+/// Captured text that is not printed: standard output, and the lines of standard error.
 static KEPT: Mutex<Option<(Vec<u8>, Vec<String>)>> = Mutex::new(None);
 
-/// Keeps what is told until it is taken.
+/// Captures all text that is reported, until [`take`].
 pub(crate) fn keep() {
     *kept() = Some(<(Vec<u8>, Vec<String>)>::default());
 }
 
-/// What was told since: standard output, and the lines of standard error.
+/// The text captured since [`keep`]: standard output, and the lines of standard error.
 pub(crate) fn take() -> (Vec<u8>, Vec<String>) {
     kept().take().unwrap_or_default()
 }

@@ -83,7 +83,7 @@ impl<'v> Clipper<'v> {
         self.vertices
     }
 
-    /// Cuts a triangle, and adds what is inside as a fan.
+    /// Cuts a triangle, and adds the inner part as a fan.
     pub(crate) fn clip(&mut self, facet: &Facet, to: &mut Vec<Facet>) {
         // Drop facets without finite coordinates.
         let codes = facet.vertices.map(|v| self.vertices[v as usize].outcode);
@@ -132,7 +132,7 @@ impl<'v> Clipper<'v> {
         }
     }
 
-    /// What is left of a line.
+    /// The inner part of a line.
     pub(crate) fn clip_line(&mut self, ends: [u32; 2]) -> Option<[u32; 2]> {
         let codes = ends.map(|v| self.vertices[v as usize].outcode);
         if codes[0] & codes[1] != 0 || (codes[0] | codes[1]) & NOT_FINITE != 0 {

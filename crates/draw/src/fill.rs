@@ -6,7 +6,7 @@
 //! | lit and shadowed parts | `lit.rs` |
 //! | colours; parts that look alike and touch become one region | `fill/groups.rs` |
 //! | regions reach under those that are painted later | `fill/seams.rs` |
-//! | clear layers mixed with what is behind them | `fill/flatten.rs` |
+//! | clear layers mixed with the colours behind them | `fill/flatten.rs` |
 //!
 //! In:   the page's mesh, a grid of the triangles that hide, colours. Out: regions in units of the
 //!       page, in the order of painting.
@@ -62,7 +62,7 @@ pub struct Surfaces<'s> {
     pub palette: &'s Palette<'s>,
     /// Opacity of each material, by index, 0 to 1. Materials beyond the end are opaque.
     pub opacities: &'s [f32],
-    /// Mix clear layers with what is behind them, so that every region is opaque.
+    /// Mix clear layers with the colours behind them, so that every region is opaque.
     pub flatten: bool,
     /// Lit polygons of the lights that cast shadows; the other lights reach everything.
     pub lit: &'s [LitPolygons],
@@ -188,7 +188,7 @@ fn parts_of(
             continue;
         }
 
-        // Find what is visible of the triangle, layer by layer.
+        // Find the visible parts of the triangle, layer by layer.
         let VisibleShapes { layers, contacts } = clipping.visible_shapes(stage, t as u32, run)?;
 
         // Divide each layer between the lights, and colour the parts.
@@ -209,7 +209,7 @@ fn parts_of(
                 let corners: usize = shapes.iter().flatten().map(Vec::len).sum();
                 run.memory.add(corners as u64 * BYTES_A_CORNER)?;
                 let color = (surfaces.palette)(&look(triangle.facing, source, lights));
-                // Layers are painted from the deepest to the nearest, over what is opaque.
+                // Layers are painted from the deepest to the nearest, over opaque ones.
                 let over = if triangle.clear { u32::MAX - layer as u32 } else { 0 };
                 let face = if surfaces.by_face { source.surface } else { 0 };
                 let opacity = surfaces.opacity(source.material);

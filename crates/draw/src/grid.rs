@@ -42,7 +42,7 @@ struct Level {
     width: usize,
     /// Where each cell's list begins.
     starts: Vec<u32>,
-    /// Where the part of each list ends that counts for what is visible.
+    /// Where the part of each list ends that counts for visible parts.
     ends: Vec<u32>,
     items: Vec<u32>,
 }

@@ -37,8 +37,8 @@ pub enum PageSize {
         /// Width and height of the sheet; `None`: as large as the drawing.
         sheet: Option<[f64; 2]>,
     },
-    /// The whole window of the camera, to scale and without margins: what is in the middle of the
-    /// window is in the middle of the page.
+    /// The whole window of the camera, to scale and without margins: the middle of the window
+    /// is the middle of the page.
     Window {
         /// Millimetres on paper along its longer side.
         window: f64,
@@ -127,7 +127,7 @@ fn millimetres(point: Step) -> [f64; 2] {
     point.map(|step| f64::from(step) / STEPS_A_MILLIMETRE)
 }
 
-/// What is drawn, in units of the page's grid.
+/// The content of a drawing, in units of the page's grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Content<'a> {
     /// Width and height of the camera's window.

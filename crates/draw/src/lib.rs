@@ -80,7 +80,7 @@ use vitral_frame::Drawing;
 use vitral_frame::drawing::LineClass;
 use vitral_scene::{Camera, World, depth_range};
 
-/// What is to be decided about a drawing.
+/// Settings of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawingSettings {
     /// Which lines are drawn, if any; an edge of several classes is drawn as the first of these.
@@ -136,7 +136,7 @@ pub struct Drawn {
 pub struct DrawingStats {
     /// Triangles on the page.
     pub triangles: u64,
-    /// Of these, triangles that hide what is behind them.
+    /// Of these, triangles that hide surfaces behind them.
     pub hiding_triangles: u64,
     /// Edges of faces, diagonals of polygons included.
     pub edges: u64,
@@ -149,7 +149,7 @@ pub struct DrawingStats {
 }
 
 /// Draws what `camera` sees in a window of `aspect` (width by height): lines, and with `surfaces`
-/// what is visible of the faces. Faces of materials that let light through hide no lines there.
+/// the visible parts of faces. Faces of materials that let light through hide no lines there.
 ///
 /// # Errors
 /// A limit of the budget.

@@ -40,7 +40,7 @@ pub struct ListedPolygon {
     pub outlines: Vec<Vec<[f64; 2]>>,
 }
 
-/// Polygons, and what is drawn of them.
+/// Polygons, and whether their regions and outlines are drawn.
 pub struct ListedPolygons<'p> {
     /// In the order in which they are painted.
     pub list: Vec<ListedPolygon>,
@@ -104,7 +104,7 @@ pub fn draw_polygons(
         strokes = without_coincident(strokes, size, &run)?;
     }
 
-    // Place what is drawn on the sheet.
+    // Place the regions and lines on the sheet.
     if polygons.fill.is_none() {
         regions.clear();
     }

@@ -104,7 +104,7 @@ impl Projector {
     /// A convex polygon on the page, made larger; `None` if nothing of it is in front of the viewer
     /// or it is seen edge-on.
     fn polygon(&self, polygon: &[DVec3]) -> Option<Vec<Corner>> {
-        // Leave out what is behind the viewer.
+        // Leave out the part behind the viewer.
         let clip: Vec<DVec4> =
             polygon.iter().map(|p| self.clip_from_world * p.extend(1.0)).collect();
         let near = NEAR * clip.iter().fold(0.0f64, |most, p| most.max(p.w));

@@ -1,4 +1,4 @@
-//! Shapes on a grid that is finer than the page's, and what is made of two of them.
+//! Shapes on a grid that is finer than the page's, and their differences and common parts.
 //!
 //! A shape is an outline, counter-clockwise, with holes, clockwise. The overlay of polygons is the
 //! crate `i_overlay`'s.
@@ -9,7 +9,7 @@ use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::i_float::int::point::IntPoint;
 use vitral_math::exact::GridPoint;
 
-/// Steps of the finer grid in a unit of the page: the corners of what is left of clipped polygons
+/// Steps of the finer grid in a unit of the page: the corners of the pieces of clipped polygons
 /// are rounded to it.
 pub(crate) const FINER: i32 = 128;
 /// Shapes that are nowhere wider, in units of the page, are traces of rounding where they are not
@@ -40,7 +40,7 @@ pub(crate) fn on_page(corner: &Corner) -> [f64; 2] {
     [corner.x, corner.y].map(|c| f64::from(c) / f64::from(FINER))
 }
 
-/// What is left of `subject` without `polygons`.
+/// The part of `subject` outside `polygons`.
 pub(crate) fn without<'p>(
     subject: &Shapes,
     polygons: impl IntoIterator<Item = &'p Vec<Corner>>,

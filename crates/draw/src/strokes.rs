@@ -108,7 +108,7 @@ pub(crate) fn without_coincident(
     Ok(left)
 }
 
-/// What is left of a stroke beside a more important one: all of it, or a piece before and a piece
+/// The pieces of a stroke beside a more important one: all of it, or a piece before and a piece
 /// behind.
 fn give_way(stroke: &Stroke, front: &Stroke) -> [Option<Stroke>; 2] {
     // Measure along and across the stroke.

@@ -129,8 +129,8 @@ pub(crate) fn fragments(
 /// Stops the search for fragments where their segments are far too many.
 ///
 /// Fragments still get fewer: coincident ones are dropped, and those in a line are joined. So they
-/// are joined to be counted, each time that they have doubled. What is found later may join what
-/// was found, so only twice the limit stops the search; the finished drawing is counted exactly.
+/// are joined to be counted, each time that they have doubled. Fragments found later may join
+/// earlier ones, so only twice the limit stops the search; the finished drawing is counted exactly.
 struct SegmentWatch {
     limit: u64,
     /// Fragments at which they are counted next.

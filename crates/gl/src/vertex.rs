@@ -65,7 +65,7 @@ pub struct VertexBatch {
     pub modelviews: Vec<(u32, Mat4)>,
     /// Indices into the attributes; without them vertices are taken in order.
     pub indices: Option<Vec<u32>>,
-    /// What is drawn, in order.
+    /// The primitives, in the order in which they are drawn.
     pub primitives: Vec<Primitive>,
     /// The triangles of filled polygons, made when they are first drawn.
     pub triangulation: TriangulationCell,

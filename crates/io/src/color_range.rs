@@ -7,7 +7,7 @@
 /// The least largest value of bytes that are not whole numbers, as averages of bytes are.
 const LEAST_LARGEST: f32 = 64.0;
 
-/// What is known of the values of all colours in a file: the largest, and whether all are whole
+/// Properties of the values of all colours in a file: the largest, and whether all are whole
 /// numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ColorRange {

@@ -75,7 +75,7 @@ use vitral_scene::{Scene, normals};
 /// extension second.
 ///
 /// `file` is its name, for messages and for the extension; `-` for what came in by standard input.
-/// `resolver` gives the files that it names. What is odd but readable is told in
+/// `resolver` gives the files that it names. Odd but readable parts are reported in
 /// [`Scene::warnings`]. The scene does not depend on the number of `workers`.
 ///
 /// # Errors

@@ -15,7 +15,7 @@
 //! wants a surface that is not seen.
 //!
 //! A material with `Pr` (roughness) or `Pm` (metal), or maps of them, is one of metallic-roughness
-//! with the base colour `Kd`; what is missing follows from `Ns` as Blender writes it,
+//! with the base colour `Kd`; missing values follow from `Ns` as Blender writes it,
 //! `Ns = 1000 (1 - roughness)^2`, or is 0.5 and 0.
 //!
 //! Maps: `map_Kd` (shown alone: many programs leave the colour of their viewport in `Kd`, which is

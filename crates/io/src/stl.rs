@@ -26,7 +26,7 @@ use vitral_scene::Scene;
 ///
 /// # Errors
 /// [`Error::Malformed`] with the byte at which a binary file ends too early or stops making sense,
-/// or the line of what is not STL in an ASCII one.
+/// or the first line that is not STL in an ASCII one.
 pub fn load(bytes: &[u8], file: &str, workers: &Workers) -> Result<Scene, Error> {
     let is_text = !is_binary_size(bytes) && is_ascii(bytes);
     if is_text { ascii::read(bytes, file, workers) } else { binary::read(bytes, file, workers) }

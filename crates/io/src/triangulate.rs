@@ -12,7 +12,7 @@
 //! Out:  triangles with the polygon's orientation, as corner numbers `0..n`. The same for every run
 //!       and machine.
 //! Cost: `O(n)` for convex polygons; ear clipping takes `O(n * r)` ear tests of `O(r)` with `r`
-//!       inward corners. Its work is limited to a multiple of `n` plus a constant; what is left
+//!       inward corners. Its work is limited to a multiple of `n` plus a constant; the part left
 //!       then becomes a fan (a polygon of 100 000 corners must not stop the program).
 //! Source: [Meisters 1975] (every simple polygon has two ears); Newell's normal after
 //! [Sutherland, Sproull & Schumacker 1974].

@@ -1,4 +1,4 @@
-//! Scene files: everything comes back, references are followed, what is wrong is told with its
+//! Scene files: everything comes back, references are followed, mistakes are reported with their
 //! place.
 
 use proptest::prelude::*;

@@ -492,7 +492,7 @@ impl Batch {
 
     /// Exchanges the memory of what is needed up to [`Batch::finish`]: once after [`Batch::clear`],
     /// once after `finish`. What was in `unsorted` is forgotten. Of [`TileLists::Copied`] that is
-    /// [`Batch::setups`], too: what is left is the copies.
+    /// [`Batch::setups`], too: only the copies remain.
     pub fn exchange(&mut self, unsorted: &mut Unsorted) {
         unsorted.setups.clear();
         unsorted.entries.clear();

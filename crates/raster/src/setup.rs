@@ -2,7 +2,7 @@
 //!
 //! The depth of a facet at a sample is one function of the facet and the sample's position, with a
 //! fixed order of operations, clamped to the facet's own range: [`Setup::depth`]. Every algorithm
-//! that decides what is nearer calls it, so that all of them decide alike.
+//! that decides which facet is nearer calls it, so that all of them decide alike.
 //!
 //! Source: edge functions after [Pineda 1988].
 

@@ -177,8 +177,8 @@ pub struct PriorityCounts {
 /// Depths closer than this, 2^-20 of the range, count as a near tie.
 pub const NEAR_TIE: f32 = 1.0 / (1 << 20) as f32;
 
-/// Facets in a list from back to front, each covers what is there; or from front to back, each
-/// fills what is left, and blocks that are full are not looked at. The depth function has the last
+/// Facets in a list from back to front, each covers earlier ones; or from front to back, each
+/// fills empty samples, and blocks that are full are not looked at. The depth function has the last
 /// word: where it contradicts the list, the nearer facet is kept, and that is counted.
 #[derive(Debug)]
 pub struct PrioritySink<'a, const FRONT_FIRST: bool> {

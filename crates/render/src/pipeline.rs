@@ -54,7 +54,7 @@ pub struct Shot<'a> {
     pub lights: &'a [Light],
     /// Global ambient light.
     pub ambient: Rgb,
-    /// What is around the scene.
+    /// The surroundings of the scene.
     pub surroundings: Surroundings,
 }
 

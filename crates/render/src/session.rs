@@ -1,4 +1,4 @@
-//! What outlives a frame: the flattened scene, what is known of its meshes, and memory to reuse.
+//! What outlives a frame: the flattened scene, derived data of its meshes, and memory to reuse.
 //!
 //! Pictures with a fresh session and with a used one are equal.
 
@@ -137,7 +137,7 @@ impl Session {
         }
     }
 
-    /// Another session of the same scene, for another thread. Both share what is known of the
+    /// Another session of the same scene, for another thread. Both share the derived data of the
     /// meshes, whichever finds it out, and the acceleration structures that are built already.
     #[must_use]
     pub fn fork(&self) -> Self {

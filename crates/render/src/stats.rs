@@ -207,7 +207,7 @@ counters! {
 }
 
 counters! {
-    /// Rays that were followed on from what is seen: to mirror images, through transparent
+    /// Rays that were followed on from visible points: to mirror images, through transparent
     /// surfaces, to lights.
     TracingCounters += Self {
         /// Rays that look for the first thing they meet.

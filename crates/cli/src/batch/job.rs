@@ -41,6 +41,7 @@ pub(crate) struct Task {
 impl Task {
     /// The same for the same task done by the same version, in hexadecimal digits.
     pub(crate) fn hash(&self) -> String {
+        // Hash the version and the words, each behind its length so that words cannot run together.
         let mut hash = Sha256::new();
         for part in std::iter::once(env!("CARGO_PKG_VERSION"))
             .chain(self.command.iter().map(String::as_str))
@@ -83,11 +84,14 @@ pub(crate) fn all(args: &BatchArgs) -> Result<Vec<Job>, Failure> {
         Some(file) => written(&text_of(file)?, &commands),
         None => matching(args, &commands)?,
     };
+
+    // Refuse jobs that write one file.
     check_outputs(&jobs)?;
     Ok(jobs)
 }
 
 fn text_of(file: &Path) -> Result<String, Failure> {
+    // Read standard input or the file, up to the limit.
     let mut bytes = Vec::new();
     if file.as_os_str() == "-" {
         let read = std::io::stdin().lock().take(MOST_BYTES).read_to_end(&mut bytes);
@@ -95,23 +99,31 @@ fn text_of(file: &Path) -> Result<String, Failure> {
     } else {
         bytes = vitral::read(file, MOST_BYTES)?;
     }
+
+    // Refuse bytes that are not text.
     String::from_utf8(bytes)
         .map_err(|_| Failure::with_code(3, format!("{}: it is not UTF-8", file.display())))
 }
 
 /// Jobs that are written line by line. What cannot be read is a job that fails.
 fn written(text: &str, commands: &Commands) -> Vec<Job> {
+    // Number the lines, and skip empty ones.
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+
+    // Parse each line; a line that fails becomes a job that fails.
     let job = |(number, line): (usize, &str)| {
         let place = format!("line {}", number + 1);
         match serde_json::from_str::<Line>(line) {
             Err(e) => Job { id: place, task: Err(format!("it cannot be read: {e}")) },
             Ok(Line { model, output, options, id }) => {
+                // Name the job by its own id, or else by its line.
                 let id = match id {
                     None => place,
                     Some(Value::String(text)) => text,
                     Some(other) => other.to_string(),
                 };
+
+                // Accept one model or a list of them.
                 let models = match model {
                     Models::One(model) => vec![model],
                     Models::Several(models) => models,
@@ -137,6 +149,8 @@ fn matching(args: &BatchArgs, commands: &Commands) -> Result<Vec<Job>, Failure> 
                 .with_hint("quote the pattern, so that the shell leaves it alone"));
         }
     }
+
+    // Sort them, and drop files that several patterns match.
     files.sort();
     files.dedup();
 
@@ -152,6 +166,7 @@ fn matching(args: &BatchArgs, commands: &Commands) -> Result<Vec<Job>, Failure> 
 
 /// Refuses jobs that write over each other.
 fn check_outputs(jobs: &[Job]) -> Result<(), Failure> {
+    // Note the job of each output, and stop at the first output that has one already.
     let mut outputs: BTreeMap<&str, &str> = BTreeMap::new();
     for (id, task) in jobs.iter().filter_map(|job| Some((&job.id, job.task.as_ref().ok()?))) {
         if let Some(other) = outputs.insert(&task.output, id) {
@@ -186,6 +201,8 @@ impl Commands {
                 ["render", "draw"].iter().find_map(|verb| option(cli.find_subcommand(verb)?, name));
             let found =
                 found.ok_or_else(|| Failure::usage(format!("there is no option --{name}")))?;
+
+            // Refuse options that have no place in a batch.
             if NOT_IN_A_BATCH.contains(&name) {
                 return Err(Failure::usage(format!("--{name} cannot be used in a batch")));
             }
@@ -207,8 +224,11 @@ impl Commands {
         output: String,
         options: &Map<String, Value>,
     ) -> Result<Task, String> {
+        // Choose the verb by the extension of the output.
         let verb = if is_drawing(&output) { "draw" } else { "render" };
         let known = self.cli.find_subcommand(verb).expect("it is a verb");
+
+        // Refuse standard input and output, which the processes use for orders and replies.
         if models.is_empty() || models.iter().any(|model| model == "-") || output == "-" {
             return Err("a job reads models from files and writes a file".to_owned());
         }
@@ -235,12 +255,16 @@ impl Commands {
                 );
             }
         }
+
+        // Name the output, and keep the process from drawing a progress bar.
         command.extend([
             "--output".to_owned(),
             output.clone(),
             "--progress".to_owned(),
             "never".to_owned(),
         ]);
+
+        // End the options, so that a model may begin with a dash.
         command.push("--".to_owned());
         command.extend(models.iter().cloned());
         Ok(Task { models, output, command })
@@ -258,11 +282,14 @@ fn is_drawing(output: &str) -> bool {
 
 /// The value of an option; `None` for `null`.
 fn given(name: &str, value: &Value) -> Result<Option<Given>, String> {
+    // Write strings and numbers as words, and refuse other values.
     let text = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Number(number) => Ok(number.to_string()),
         _ => Err(format!("the option `{name}` has no value that can be: {value}")),
     };
+
+    // Turn each JSON type into the way in which it is typed.
     Ok(match value {
         Value::Null => None,
         Value::Bool(is_on) => Some(Given::Switch(*is_on)),

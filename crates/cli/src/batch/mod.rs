@@ -38,6 +38,7 @@ struct Counts {
 
 /// Runs the verb; gives the exit code.
 pub(crate) fn run(args: &BatchArgs) -> Result<u8, Failure> {
+    // List the jobs, those of one shard alone if one was typed.
     let start = Instant::now();
     let mut jobs = job::all(args)?;
     if let Some(shard) = args.shard {
@@ -46,6 +47,8 @@ pub(crate) fn run(args: &BatchArgs) -> Result<u8, Failure> {
             job.task.as_ref().map_or(shard.index == 0, |task| task.part(shard.count) == shard.index)
         });
     }
+
+    // Read the record of finished jobs.
     let path = record_of(args);
     let mut record = Record::read(&path)
         .map_err(|e| Failure::with_code(3, format!("{}: {e}", path.display())))?;
@@ -60,6 +63,8 @@ pub(crate) fn run(args: &BatchArgs) -> Result<u8, Failure> {
             Ok(_) => waiting.push(job),
         }
     }
+
+    // List the waiting jobs instead of doing them, for a dry run.
     if args.dry_run {
         for (id, task) in waiting.iter().filter_map(|job| Some((&job.id, job.task.as_ref().ok()?)))
         {
@@ -67,6 +72,8 @@ pub(crate) fn run(args: &BatchArgs) -> Result<u8, Failure> {
         }
         return Ok(if told.counts.failed > 0 { SOME_FAILED } else { 0 });
     }
+
+    // Do the waiting jobs, and sum up.
     if !(args.fail_fast && told.counts.failed > 0) {
         do_all(args, &waiting, path, &mut told)?;
     }
@@ -89,18 +96,23 @@ fn do_all(
     record: PathBuf,
     told: &mut Told<'_>,
 ) -> Result<(), Failure> {
+    // Watch for interruptions, and share the processors out among the processes.
     interrupt::watch();
     let stop = AtomicBool::new(false);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let processes = if args.jobs == 0 { cores } else { args.jobs as usize };
     let threads = (cores / processes.min(waiting.len().max(1))).max(1);
     let pool = Pool { processes, threads, record, stop: &stop };
+
+    // Show a progress bar for the jobs.
     told.progress = Some(Progress::new(
         args.progress.unwrap_or_default(),
         args.quiet,
         waiting.len() as u64,
         "jobs",
     ));
+
+    // Run the pool; stop it at an interruption, a failed report or, with --fail-fast, a failed job.
     let mut trouble = None;
     pool.run(waiting, |id, task, reply| {
         let reported = told.replied(id, task, reply);
@@ -110,6 +122,8 @@ fn do_all(
         }
         trouble = trouble.take().or(reported.err());
     })?;
+
+    // Remove the bar, and pass the first failed report on.
     told.progress.iter().for_each(Progress::finish);
     trouble.map_or(Ok(()), Err)
 }
@@ -145,11 +159,14 @@ impl Told<'_> {
                 "warnings": reply.told,
             }))?;
         }
+
+        // Move the bar.
         self.progress.iter_mut().for_each(Progress::step);
         Ok(())
     }
 
     fn failed(&mut self, id: &str, code: u8, why: &[String]) -> Result<(), Failure> {
+        // Count the job, and tell why it failed.
         self.counts.failed += 1;
         if !self.args.json {
             self.say(&format!("job {id} failed ({code})"), why);
@@ -158,6 +175,7 @@ impl Told<'_> {
     }
 
     fn skipped(&mut self, id: &str, task: &Task) -> Result<(), Failure> {
+        // Count the job, and list it in a dry run.
         self.counts.skipped += 1;
         if self.args.dry_run && !self.args.json {
             report::print(format!("done {id} {}\n", task.output).as_bytes())?;
@@ -179,6 +197,7 @@ impl Told<'_> {
 
     /// Lines about a job on standard error, above the bar.
     fn say(&self, about: &str, lines: &[String]) {
+        // Hide the bar while the lines are written.
         let say = || lines.iter().for_each(|line| report::line(&format!("{about}: {line}")));
         match &self.progress {
             Some(Progress::Bar(bar, _)) => bar.suspend(say),
@@ -196,6 +215,8 @@ impl Told<'_> {
                 "{jobs} jobs: {done} done, {skipped} skipped, {failed} failed in {seconds:.1} s ({rate:.1} a second)"
             ));
         }
+
+        // Choose the exit code: an interruption counts more than failed jobs.
         if interrupt::is_asked() {
             return Ok(interrupt::INTERRUPTED);
         }

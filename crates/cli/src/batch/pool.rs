@@ -36,6 +36,7 @@ struct Queue<'j> {
 
 impl<'j> Queue<'j> {
     fn new(jobs: &[&'j Job]) -> Self {
+        // Group the jobs by their models, in the order in which the models come.
         let mut places: BTreeMap<&[String], usize> = BTreeMap::new();
         let mut groups: Vec<VecDeque<_>> = Vec::new();
         for job in jobs {
@@ -46,6 +47,8 @@ impl<'j> Queue<'j> {
             });
             groups[place].push_back((job.id.as_str(), task));
         }
+
+        // Start with no group taken.
         let taken = vec![false; groups.len()];
         Self { groups, taken }
     }
@@ -53,12 +56,17 @@ impl<'j> Queue<'j> {
     /// The next job for a process that is at a group: of the same, else of one that nobody is at,
     /// else of the longest.
     fn next(&mut self, at: &mut Option<usize>) -> Option<(&'j str, &'j Task)> {
+        // Stay with the group as long as it has jobs.
         if let Some(job) = at.and_then(|at| self.groups[at].pop_front()) {
             return Some(job);
         }
+
+        // Find a group that no process has taken, or else the longest.
         let fresh = (0..self.groups.len()).find(|&group| !self.taken[group]);
         let longest = || (0..self.groups.len()).max_by_key(|&group| self.groups[group].len());
         let group = fresh.or_else(longest)?;
+
+        // Take it and its first job.
         self.taken[group] = true;
         *at = Some(group);
         self.groups[group].pop_front()
@@ -75,10 +83,13 @@ impl Pool<'_> {
         let queue = Mutex::new(Queue::new(jobs));
         let (send, replies) = mpsc::channel();
         std::thread::scope(|scope| {
+            // Start a thread for each process, but no more than there are jobs.
             for _ in 0..self.processes.min(jobs.len()) {
                 let (send, queue) = (send.clone(), &queue);
                 scope.spawn(move || self.serve(queue, &send));
             }
+
+            // Report the replies until the last thread has dropped its sender.
             drop(send);
             for reply in replies {
                 let (id, task, reply): (&str, &Task, Result<Reply, Failure>) = reply;
@@ -96,6 +107,7 @@ impl Pool<'_> {
     ) {
         let (mut at, mut process) = (None, None);
         while !self.stop.load(Ordering::Relaxed) {
+            // Take the next job, and have it done.
             let next = queue.lock().expect("no thread panics while it takes a job").next(&mut at);
             let Some((id, task)) = next else { break };
             let reply = self.ask(&mut process, id, task);
@@ -104,20 +116,27 @@ impl Pool<'_> {
                 // The interruption ended it, not the job.
                 break;
             }
+
+            // Send the reply; end if nobody receives it, or if no process can be started.
             if send.send((id, task, reply)).is_err() || is_over {
                 break;
             }
         }
+
+        // End the process.
         process.into_iter().for_each(Process::end);
     }
 
     /// Has a job done. An error is that no process can be started.
     fn ask(&self, process: &mut Option<Process>, id: &str, task: &Task) -> Result<Reply, Failure> {
+        // Keep the running process, or start one.
         let started = match process.take() {
             Some(running) => running,
             None => Process::start(self)?,
         };
         let started = process.insert(started);
+
+        // Send the order, and wait for the reply.
         let order = Order {
             id: id.to_owned(),
             job: task.hash(),
@@ -127,6 +146,7 @@ impl Pool<'_> {
         match started.ask(&order) {
             Some(reply) => Ok(reply),
             None => {
+                // Report a process that ended as a failed job.
                 let (code, ended) =
                     process.take().map_or_else(Default::default, Process::how_it_ended);
                 Ok(Reply {
@@ -151,12 +171,16 @@ impl Process {
     fn start(pool: &Pool<'_>) -> Result<Self, Failure> {
         let failed =
             |e: std::io::Error| Failure::other(format!("no process can be started for jobs: {e}"));
+
+        // Build the command of the worker.
         let mut command = program::command().map_err(failed)?;
         command
             .arg("batch-worker")
             .arg("--record")
             .arg(&pool.record)
             .arg(format!("--threads={}", pool.threads));
+
+        // Start it with pipes for orders and replies.
         let mut child =
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
         let orders = child.stdin.take().expect("it is a pipe");
@@ -178,6 +202,8 @@ impl Process {
     fn how_it_ended(mut self) -> (Option<u8>, String) {
         // A process whose replies cannot be read ends with its orders.
         drop(self.orders);
+
+        // Take its exit status apart.
         match self.child.wait() {
             Ok(status) => {
                 let code = status.code().and_then(|code| u8::try_from(code).ok());

@@ -182,7 +182,7 @@ fn mistakes_in_outputs_are_told_before_the_work() {
     std::fs::create_dir_all(folder.0.join("folder")).unwrap();
     folder.file("text.png", "no picture");
     let volumes = ["--shadows", "volume", "--export-shadow-polygons", "no/s.obj"];
-    // The model is missing, too: what is told is what was looked at first.
+    // The model is missing, too: the message is about the first mistake found.
     for (arguments, expected, said) in [
         (&["-o", "x{fr}.png"][..], 2, "the word in braces is not known"),
         (&["-o", "x.npy"], 4, "the channel color cannot be written as NPY"),

@@ -40,7 +40,7 @@ fn an_environment_comes_from_a_file_and_goes_through_a_state() {
     let text = String::from_utf8(folder.read("states.json")).unwrap();
     assert!(text.contains("\"environment-image\": \"green.hdr\""), "{text}");
     assert!(picture(&["--load-state", "states.json"]) == green);
-    // What is typed later counts.
+    // The option typed later counts.
     assert!(picture(&["--load-state", "states.json", "--environment", "blue.png"]) == blue);
     assert!(picture(&["--load-state", "states.json", "--environment", "auto"]) == plain);
 }

@@ -1,6 +1,6 @@
-//! Clear layers mixed with what is behind them.
+//! Clear layers mixed with the colours behind them.
 //!
-//! From the deepest layer on, each clear shape divides what has been painted: where it lies over a
+//! From the deepest layer on, each clear shape divides the painted regions: where it lies over a
 //! colour, the two are mixed as viewers mix them, in the display's encoding; where it lies over
 //! nothing, with the white of the paper. Every region is opaque then.
 //!
@@ -31,14 +31,14 @@ pub(super) fn flattened(
 ) -> Result<Vec<PageRegion>, Limit> {
     let (opaque, clear): (Vec<Joined>, Vec<Joined>) =
         joined.into_iter().partition(|group| group.look.over == 0);
-    // What is opaque, without what it has beneath other regions.
+    // Start with the opaque regions, without their parts beneath other regions.
     let mut painted = match seams {
         Seams::None => opaque.clone(),
         Seams::Under => groups.joined(parts, &vec![Vec::new(); groups.len()], run)?,
     };
     painted.retain(|group| group.look.over == 0);
 
-    // Lay each layer over what is painted.
+    // Lay each layer over the painted regions.
     for layer in clear.chunk_by(|a, b| a.look.over == b.look.over) {
         painted = laid_over(painted, layer, run)?;
     }

@@ -1,6 +1,6 @@
 //! Parts that look alike, and the regions that they make.
 //!
-//! In:   visible parts. Out: one union for each look, in the order of painting: what is opaque,
+//! In:   visible parts. Out: one union for each look, in the order of painting: opaque ones,
 //!       then clear layers from the deepest on.
 //! Cost: `n log n` for the corners of each union.
 

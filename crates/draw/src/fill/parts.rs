@@ -49,7 +49,7 @@ pub(super) struct VisibleParts {
 /// nothing of another colour reaches between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
-    /// 0 for what is opaque; clear layers come over each other in this order.
+    /// 0 for opaque parts; clear layers come over each other in this order.
     pub(super) over: u32,
     pub(super) material: u32,
     pub(super) color: [u8; 3],

@@ -6,7 +6,7 @@
 //! covers such pixels whole, and the neighbour mixes with it alone.
 //!
 //! A part reaches under the visible parts of all triangles round its corners, and of those whose
-//! outlines cut it, or that it cuts. Clear parts reach nowhere: what is under a clear part shows.
+//! outlines cut it, or that it cuts. Clear parts reach nowhere: parts under a clear one show.
 //! Where parts are smaller than pixels, or belong to bodies that only touch, that is not enough:
 //! beneath everything lies the outline of the whole in its mean colour, so that a pixel with a gap
 //! is not far from its neighbours.

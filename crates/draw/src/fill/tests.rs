@@ -98,7 +98,7 @@ fn the_first_painted_reaches_under_its_neighbours_and_under_what_cuts_it() {
     };
     assert_eq!(areas(&SQUARE), [1_000_000.0, 1_000_000.0, 500_000.0]);
     assert_eq!(found(&SQUARE, &[], &touching(Seams::Under))[0].color, [3, 0, 0]);
-    // A triangle in front, painted later; painted first, it reaches under what is left of the
+    // A triangle in front, painted later; painted first, it reaches under the visible part of the
     // other.
     assert_eq!(areas(&[BIG, SMALL]), [8_000_000.0, 8_000_000.0, 500_000.0]);
     assert_eq!(areas(&[SMALL, BIG]), [8_000_000.0, 8_000_000.0, 7_500_000.0]);
@@ -116,7 +116,7 @@ fn clear_triangles_hide_nothing_and_are_painted_from_behind() {
     let regions = found(&[near, BIG, SMALL], &[0, 2], &touching(Seams::Under));
     let told: Vec<_> = regions.iter().map(|r| (r.surface, r.opacity, area(r))).collect();
     assert_eq!(told, [(1, 1.0, 8_000_000.0), (2, 0.5, 500_000.0), (0, 0.5, 500_000.0)]);
-    // What is behind an opaque one is not seen.
+    // The triangle behind an opaque one is not seen.
     assert_eq!(found(&[near, BIG, SMALL], &[2], &touching(Seams::None)).len(), 2);
 }
 

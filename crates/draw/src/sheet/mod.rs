@@ -47,11 +47,11 @@ const ROUNDING: f64 = 1e-6;
 /// How views are placed round the front view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Angle {
-    /// First-angle projection, as is usual in Europe: what is seen from the right stands on the
+    /// First-angle projection, as is usual in Europe: the view from the right stands on the
     /// left.
     #[default]
     First,
-    /// Third-angle projection, as is usual in America: what is seen from the right stands on the
+    /// Third-angle projection, as is usual in America: the view from the right stands on the
     /// right.
     Third,
 }

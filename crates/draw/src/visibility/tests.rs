@@ -155,7 +155,7 @@ fn layers_are_counted_up_to_the_wanted_number() {
         [0, 1, 2, 3].map(|layers| length(&mesh, &all, layers).round() as i32)
     };
     let (each, last) = (8000 + 5657, 2 * 800 + 1);
-    // The outlines of the walls lie behind one another: a closed outline hides what is behind it.
+    // The outlines of the walls lie behind one another: a closed outline hides the lines behind it.
     assert_eq!(lengths(0), [each, 0, 0, 0]);
     assert_eq!(lengths(1), [each, each, 0, 0]);
     assert_eq!(lengths(9), [each, each, each, last]);

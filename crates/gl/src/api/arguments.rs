@@ -62,7 +62,7 @@ impl Form {
     }
 }
 
-/// A token that came as a number; what is none becomes an invalid one.
+/// A token that came as a number; any other number becomes an invalid one.
 pub(super) fn token(value: f32) -> u32 {
     if value >= 0.0 { value as u32 } else { u32::MAX }
 }

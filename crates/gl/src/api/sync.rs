@@ -1,6 +1,6 @@
 //! ARB_sync: fences.
 //!
-//! Placing a fence runs what is recorded, so that each fence is passed when the call returns:
+//! Placing a fence runs the recorded commands, so that each fence is passed when the call returns:
 //! nobody ever waits.
 //!
 //! Source: the ARB_sync specification.

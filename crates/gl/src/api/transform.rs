@@ -45,7 +45,7 @@ impl Context {
     /// `glClipPlane`.
     pub fn clip_plane(&mut self, plane: u32, equation: usize) {
         let index = index_in(plane, gl::CLIP_PLANE0, MAX_CLIP_PLANES);
-        // Of what is no plane the equation is not read: it may be nowhere.
+        // For an invalid plane the equation is not read: its pointer may be invalid.
         let given =
             index.map_or(Some([0.0; 4]), |_| self.take_arguments("glClipPlane", equation, 4));
         let Some(given) = given else { return };

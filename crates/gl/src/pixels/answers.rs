@@ -144,7 +144,7 @@ impl Context {
     pub(crate) fn restore_bound_textures(&mut self, saved: SavedTextures) {
         for (names, bound) in saved.bound.iter().zip(&mut self.textures.bound) {
             for (slot, (name, bound)) in names.iter().zip(bound).enumerate() {
-                // What is bound still may have been deleted in another context.
+                // The texture still bound may have been deleted in another context.
                 if bound.as_ref().map_or(0, |texture| lock(texture).name) != *name {
                     let texture = lock(&self.shared.textures).get(name).cloned().flatten();
                     *bound = texture.filter(|texture| lock(texture).slot == slot);

@@ -1,4 +1,4 @@
-//! Framebuffer objects: what is attached to them, the planes behind that, and whether they are
+//! Framebuffer objects: their attachments, the planes behind that, and whether they are
 //! complete.
 
 use super::image::{Shared, lock};
@@ -17,7 +17,7 @@ pub(crate) const DEPTH_POINT: usize = MAX_COLOR_ATTACHMENTS;
 /// Index of the stencil attachment.
 pub(crate) const STENCIL_POINT: usize = MAX_COLOR_ATTACHMENTS + 1;
 
-/// What is attached to an attachment point.
+/// The image attached to an attachment point.
 #[derive(Clone, Debug)]
 pub(crate) enum Attached {
     Renderbuffer(RenderbufferHandle),

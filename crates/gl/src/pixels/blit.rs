@@ -25,7 +25,7 @@ struct Blit {
     filter: u32,
 }
 
-/// What is copied where.
+/// The pixels to copy, and their places.
 struct Plan {
     /// Without scaling.
     job: Option<Job>,
@@ -221,7 +221,7 @@ impl Context {
         let Some(read) = self.read_surfaces(CALL, false, None) else { return Ok(()) };
         let (Some(from), Some(to)) = (read.size, draw.size) else { return Ok(()) };
 
-        // Plan the copy, and finish what is recorded.
+        // Plan the copy, and finish the recorded commands.
         let plan = blit.plan(from, self.scissored(to), self.workers());
         // The copy counts as a draw, and happens at once.
         if blit.mask == 0 || blit.is_empty() || self.draw_target(None).is_none() {

@@ -139,7 +139,7 @@ mod tests {
         c.get_tex_image(TEXTURE_2D, 0, RGBA, UNSIGNED_BYTE, 0);
         c.get_buffer_sub_data(PIXEL_PACK_BUFFER, 0, 16, BASE);
         assert_eq!((c.error, read_u32(&c, BASE + 12)), (NO_ERROR, 0xff00_00ff));
-        // What is mapped is the client's.
+        // A mapped buffer belongs to the client.
         c.map_buffer(PIXEL_PACK_BUFFER, READ_ONLY);
         c.read_pixels(0, 0, 1, 1, RGBA, UNSIGNED_BYTE, 0);
         assert_eq!(std::mem::take(&mut c.error), INVALID_OPERATION);

@@ -176,7 +176,7 @@ pub struct DepthCopy {
     pub bytes: Vec<u8>,
 }
 
-/// What is known about framebuffer 0.
+/// Size and buffer of framebuffer 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BufferInfo {
     /// Pixels in a row; 0 without a buffer.

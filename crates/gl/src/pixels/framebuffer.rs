@@ -12,7 +12,7 @@ use crate::names::Names;
 use crate::state::MAX_3D_TEXTURE_SIZE;
 use std::sync::Arc;
 
-/// Framebuffer objects and what is bound.
+/// Framebuffer objects and the bound ones.
 #[derive(Debug, Default)]
 pub(crate) struct FramebufferBindings {
     /// By name.

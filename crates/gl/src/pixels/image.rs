@@ -41,7 +41,7 @@ pub(crate) fn new_color_plane(
 /// One level of one face.
 #[derive(Debug)]
 pub(crate) struct TextureImage {
-    /// What is stored.
+    /// The format of the stored texels.
     pub format: InternalFormat,
     /// Width, height, depth, with borders.
     pub size: [u32; 3],

@@ -30,7 +30,7 @@ pub(crate) struct InternalFormat {
     /// `ALPHA`, `LUMINANCE`, `LUMINANCE_ALPHA`, `INTENSITY`, `RED`, `RG`, `RGB`, `RGBA`,
     /// `DEPTH_COMPONENT`, `DEPTH_STENCIL`, `STENCIL_INDEX`.
     pub base: u32,
-    /// What is stored.
+    /// The components stored for each texel.
     pub storage: Storage,
 }
 
@@ -110,7 +110,7 @@ impl InternalFormat {
             LUMINANCE => BaseFormat::Luminance,
             LUMINANCE_ALPHA => BaseFormat::LuminanceAlpha,
             INTENSITY => BaseFormat::Intensity,
-            // Texels are expanded: what is missing is 0, and alpha the fragment's.
+            // Texels are expanded: missing components are 0, and alpha the fragment's.
             RED | RG | RGB => BaseFormat::Rgb,
             RGBA => BaseFormat::Rgba,
             _ => BaseFormat::Depth,
@@ -169,7 +169,7 @@ impl InternalFormat {
         }
     }
 
-    /// A colour as a framebuffer of this format keeps it: what is not stored is 0, alpha 1, for
+    /// A colour as a framebuffer of this format keeps it: components not stored are 0, alpha 1, for
     /// blending reads it.
     pub(crate) fn kept(&self, color: [f32; 4]) -> [f32; 4] {
         let missing = self.missing();

@@ -212,7 +212,7 @@ fn next_level(
     }
 }
 
-/// Makes the levels after the base level of some faces. What is recorded must have run if the
+/// Makes the levels after the base level of some faces. Recorded commands must have run if the
 /// texture is stale.
 pub(crate) fn generate(texture: &mut TextureObject, faces: Range<usize>) {
     let Some(base) = texture.base_level() else { return };

@@ -138,7 +138,7 @@ pub(crate) fn read_stencils(plane: &StencilPlane, r: &Rectangle) -> Vec<u8> {
 }
 
 /// Calls `encode` with places in the window and their part of the bytes of a rectangle: pieces of
-/// rows, so that what is between planes and bytes stays in the cache.
+/// rows, so that the values between planes and bytes stay in the cache.
 fn encoded(
     workers: &Workers,
     format: PixelFormat,

@@ -17,7 +17,7 @@ pub(crate) type RenderbufferHandle = Arc<Mutex<Renderbuffer>>;
 /// Planes without an owner: of a renderbuffer or of framebuffer 0.
 #[derive(Clone, Debug)]
 pub(crate) struct RenderbufferStorage {
-    /// What is stored.
+    /// The format of the stored pixels.
     pub format: InternalFormat,
     /// Size.
     pub viewport: Viewport,

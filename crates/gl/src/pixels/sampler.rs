@@ -1,4 +1,4 @@
-//! ARB_sampler_objects: how textures are looked up, apart from the textures. What is bound to a
+//! ARB_sampler_objects: how textures are looked up, apart from the textures. A sampler bound to a
 //! unit replaces the parameters of whatever texture the unit samples.
 //!
 //! Source: the ARB_sampler_objects specification.

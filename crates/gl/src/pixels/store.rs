@@ -271,7 +271,7 @@ impl Context {
         if (address == 0 && !bound) || (self.inside_begin() && !self.lists.recording) {
             return Ok(None);
         }
-        // The pixels, and what is made of them: rarely more.
+        // The pixels and the texels made of them: rarely more.
         let bytes = size.iter().try_fold(2 * format.pixel_bytes(), |n, &side| n.checked_mul(side));
         if !bytes.is_some_and(can_have) {
             return Err((OUT_OF_MEMORY, "there is no memory for so many pixels"));

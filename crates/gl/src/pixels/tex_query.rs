@@ -176,7 +176,7 @@ impl Context {
             self.flush_recorded();
         }
 
-        // Check that the texture holds what is asked for.
+        // Check that the texture holds the requested components.
         let mut texture = lock(&texture);
         let dimensions = texture.dimensions();
         let Some(image) = texture.image(target.face, level) else { return Ok(()) };

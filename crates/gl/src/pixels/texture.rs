@@ -285,7 +285,7 @@ impl TextureObject {
         self.faces.iter().flatten().flatten().any(TextureImage::has_planes)
     }
 
-    /// Whether making a snapshot needs what is recorded to run first.
+    /// Whether the recorded commands must run before a snapshot is made.
     pub(crate) fn is_stale(&self) -> bool {
         // Cube maps are sampled from copies of their depths.
         let cube = self.slot == slot::CUBE;

@@ -64,7 +64,7 @@ pub struct PixelStore {
     pub skip_images: i32,
     /// `ALIGNMENT`: 1, 2, 4 or 8.
     pub alignment: i32,
-    /// `PACK_INVERT_MESA`: rows of what is read begin with the highest.
+    /// `PACK_INVERT_MESA`: rows of read pixels begin with the highest.
     pub invert: bool,
     /// `PIXEL_PACK_BUFFER_BINDING` or `PIXEL_UNPACK_BUFFER_BINDING`: addresses are offsets in it,
     /// if there is one.

@@ -9,7 +9,7 @@ use vitral_math::Vec4;
 /// Vertices up to which it is looked for: a draw of more is likely to cover much.
 const MOST_VERTICES: usize = 64;
 
-/// Pixels round the vertices, for what is rounded.
+/// Pixels round the vertices, for rounded positions.
 const MARGIN: f32 = 2.0;
 
 impl Context {

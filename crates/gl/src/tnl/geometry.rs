@@ -37,7 +37,7 @@ pub(crate) struct DrawGeometry {
     /// The batch is a flat grid, and drawn as one.
     pub grid: bool,
     /// Quads are cut from their first corner to the third, not from the second to the fourth. The
-    /// specification leaves open which; Mesa does so with what is neither indexed nor comes from a
+    /// specification leaves open which; Mesa does so with quads neither indexed nor from a
     /// list, and where colours vary all see it.
     pub first_diagonal: bool,
     pub snapshot: VertexSnapshot,

@@ -1,5 +1,5 @@
 //! Recording: draws and other commands gather in a pass, which runs when the target changes or
-//! someone looks. Of a long stream of vertices, what is there already runs while the calling thread
+//! someone looks. Of a long stream of vertices, the recorded part runs while the calling thread
 //! takes in more.
 //!
 //! A picture that is left for a shadow map and gone on with is one pass: tiles are visited once,
@@ -108,7 +108,7 @@ impl Recorder {
         self.run();
     }
 
-    /// Has what is recorded run while more comes, unless what was recorded before is still running.
+    /// Starts the recorded draws while more come, unless those recorded before are still running.
     /// Depths alone are left to be drawn where they are looked at.
     fn start(&mut self) {
         // Wait for nothing: skip if the last part still runs, or if there are no colours to draw.

@@ -64,7 +64,7 @@ pub(crate) struct LightingSnapshot {
 pub(crate) enum FogSource {
     /// The distance from the eye's plane.
     Depth,
-    /// How far it lies ahead of the eye: as `Depth` for what is seen, but linear.
+    /// How far it lies ahead of the eye: as `Depth` for visible vertices, but linear.
     Ahead,
     /// The distance from the eye.
     Radial,

@@ -30,7 +30,7 @@ pub(crate) struct Triangulation {
 pub struct TriangulationCell(OnceLock<Arc<Triangulation>>);
 
 impl TriangulationCell {
-    /// What is cached; made by `make` if nothing is.
+    /// The cached triangulation; made by `make` if there is none.
     pub(super) fn get_or_make(&self, make: impl FnOnce() -> Triangulation) -> Arc<Triangulation> {
         self.0.get_or_init(|| Arc::new(make())).clone()
     }

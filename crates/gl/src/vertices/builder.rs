@@ -8,7 +8,7 @@
 //! If the caller promises to announce every call that changes what primitives are drawn with
 //! ([`Context::set_merging`]), Begin/End pairs gather in one batch until then. Modelview matrices
 //! and materials may change in between: they are kept with the vertices. Small batches from lists
-//! and arrays gather with them; one that stays alone is drawn as it is. What has become long is
+//! and arrays gather with them; one that stays alone is drawn as it is. A long batch is
 //! drawn while more is given; for that, long primitives whose elements share no vertices are cut.
 
 use super::attribute::{CARRIED, COLOR};
@@ -44,7 +44,7 @@ pub(crate) struct Builder {
     first: u32,
     /// With so many vertices the open primitive is long.
     pub(super) most: usize,
-    /// Whether what is gathered is cut as what comes at once.
+    /// Whether gathered primitives are cut like those of single draws.
     sent: Submission,
     /// As it was at the first Begin.
     given: CurrentState,
@@ -52,7 +52,7 @@ pub(crate) struct Builder {
     moved: bool,
     /// All that is gathered: a batch that somebody else holds, too. Nothing is in `batch` then.
     lone: Option<Arc<VertexBatch>>,
-    /// What is drawn: its memory serves again when it has been.
+    /// Batches being drawn: their memory serves again afterwards.
     pub(super) drawn: Vec<Arc<VertexBatch>>,
     /// Empty vectors with memory, for the attributes of `batch`.
     spare: VertexBatch,
@@ -130,7 +130,7 @@ impl Builder {
         batch.primitives = std::mem::take(&mut spare.primitives);
     }
 
-    /// Keeps what is drawn, for its memory.
+    /// Keeps a batch that is drawn, for its memory.
     fn keep(&mut self, batch: &Arc<VertexBatch>) {
         if !REUSED.contains(&batch.positions.len()) {
             return;
@@ -277,7 +277,7 @@ impl Context {
         if batch.primitives.is_empty() {
             return true;
         }
-        // What is indexed is cut as what lists hold.
+        // Indexed batches are cut like those of display lists.
         let sent = if batch.indices.is_some() { Submission::Listed } else { sent };
         if !self.builder.gathering {
             let given = CurrentState::current(&self.state);
@@ -396,7 +396,7 @@ impl Context {
         }
     }
 
-    /// Keeps the value of an attribute for what is gathered, before it changes.
+    /// Keeps the value of an attribute for the gathered vertices, before it changes.
     #[inline(always)]
     fn sees(&mut self, which: usize) {
         if let Some(lone) = &self.builder.lone {

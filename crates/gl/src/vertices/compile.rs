@@ -73,7 +73,7 @@ pub(crate) struct Compiler {
 /// Vertices or items from which on memory for more is asked for before it is taken.
 const LONG: usize = 1 << 16;
 
-/// What is left of a draw of nothing: called between Begin and End, or with an incomplete
+/// The call that remains of a draw of nothing: called between Begin and End, or with an incomplete
 /// framebuffer, even that is an error.
 pub(super) fn drawing_nothing(call: &'static str) -> Call {
     Box::new(move |c| {

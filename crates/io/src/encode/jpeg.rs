@@ -7,7 +7,7 @@ use crate::Error;
 use vitral_frame::Plane;
 
 /// Writes an sRGB picture. `quality` is 1 (small) to 100 (good); 90 is a usual choice. JPEG knows
-/// no transparency: what is transparent lets a white page through.
+/// no transparency: transparent pixels let a white page through.
 ///
 /// # Errors
 /// [`Error::Encode`] if the picture has no pixels or more than 65535 a side, if `quality` is out of

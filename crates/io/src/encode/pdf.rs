@@ -44,7 +44,7 @@ pub fn pdf(drawing: &Drawing, options: &DrawingOptions) -> Vec<u8> {
         optional.insert(Name(b"OCGs")).array().items((0..groups.len()).map(group));
         let mut usual = optional.insert(Name(b"D")).dict();
         usual.pair(Name(b"Name"), TextStr("layers"));
-        // What is painted last is on top of the list, as in other programs.
+        // The layer painted last is on top of the list, as in other programs.
         usual.insert(Name(b"Order")).array().items((0..groups.len()).rev().map(group));
         usual.finish();
         optional.finish();

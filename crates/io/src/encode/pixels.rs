@@ -19,7 +19,7 @@ pub(super) fn check_sides(
     Ok(())
 }
 
-/// The RGB bytes of a picture; what is transparent lets a white page through, mixed in linear
+/// The RGB bytes of a picture; transparent ones let a white page through, mixed in linear
 /// light.
 pub(super) fn over_white(picture: &Plane<[u8; 4]>) -> Vec<u8> {
     let linear = color::linear_from_srgb_table();

@@ -221,7 +221,7 @@ fn split_container<'a>(bytes: &'a [u8], file: &str) -> Result<(&'a [u8], Option<
     Ok((&json[..length], binary))
 }
 
-/// Reads the JSON. What is only untidy is mended; a value of the wrong type is reported with its
+/// Reads the JSON. Untidy values are mended; a value of the wrong type is reported with its
 /// path.
 fn parse_json(text: &[u8], file: &str) -> Result<Root, Error> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);

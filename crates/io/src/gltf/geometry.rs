@@ -40,7 +40,7 @@ pub(crate) struct Outline {
 
 impl Attributes {
     /// Finds the accessors of a primitive and checks that they have equally many elements. `None`:
-    /// there are no positions, so there is nothing to draw. Adds to `warnings` what is passed over.
+    /// there are no positions, so there is nothing to draw. Adds passed-over parts to `warnings`.
     pub(crate) fn find(
         source: &Source<'_>,
         primitive: &Primitive,

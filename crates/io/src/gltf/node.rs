@@ -312,7 +312,7 @@ pub(crate) fn light(
         return None;
     };
 
-    // Multiply the colour by the intensity, and replace what is not finite by zero.
+    // Multiply the colour by the intensity, and replace values that are not finite by zero.
     let intensity =
         if json.intensity.is_finite() { json.intensity.max(0.0) * FRAC_1_PI } else { 0.0 };
     let color = json

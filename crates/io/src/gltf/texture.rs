@@ -29,7 +29,7 @@ pub(crate) enum Meaning {
     OpaqueColor,
     /// Linear values.
     Data,
-    /// Red is how much a surface transmits, times this factor; the texture gets what is left, as
+    /// Red is how much a surface transmits, times this factor; the texture gets the rest, as
     /// opacity.
     Transmission(f32),
 }

@@ -281,7 +281,7 @@ fn take_textures(material: &mut Material, loaded: &Loaded) {
 
 /// The libraries of one `mtllib` line: the whole rest of the line as one name, else this without a
 /// comment, else each of its words, else what is called as the last part of the path, which may be
-/// that of another machine. What is in other case comes last.
+/// that of another machine. Names in other case come last.
 fn read_libraries(
     line: u64,
     names: &str,

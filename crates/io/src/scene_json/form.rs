@@ -37,7 +37,7 @@ pub(super) struct SceneForm {
     pub(super) ambient: [f32; 3],
 }
 
-/// What is written as an object. A list would be taken for its fields in order, and an empty one
+/// A value written as an object. A list would be taken for its fields in order, and an empty one
 /// for all of them left out.
 struct Object<T>(T);
 

@@ -2,7 +2,7 @@
 //!
 //! `docs/scene-format.md` describes the form. `form.rs` has its types, `mesh.rs` the meshes,
 //! `read.rs` makes a scene of them, `reference.rs` brings in other files and built-in scenes,
-//! `write.rs` writes a scene down. What is written is read back as an equal scene.
+//! `write.rs` writes a scene down. A written scene is read back as an equal one.
 //!
 //! Limits: 8 files deep, 2²⁰ nodes, meshes, materials, textures or cameras after all references are
 //! followed.

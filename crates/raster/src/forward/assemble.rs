@@ -215,7 +215,7 @@ pub struct Primitives {
     pub scratch: PieceScratch,
 }
 
-/// What is known of a piece's vertices while it is assembled; kept, so that memory need not be
+/// Values of a piece's vertices while it is assembled; kept, so that memory need not be
 /// asked for and cleared. The vectors may be longer than the piece.
 #[derive(Debug, Default)]
 pub struct PieceScratch {

@@ -67,7 +67,7 @@ impl Boxes {
     }
 
     /// Hands out those of some entries whose box holds pixel `(x, y)` of the tile and whose bound
-    /// is above `floor`; what is returned is the next floor.
+    /// is above `floor`; the return value is the next floor.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &self,

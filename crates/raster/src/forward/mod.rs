@@ -17,6 +17,7 @@ mod fragment_ops;
 mod hard_line;
 mod pass;
 mod pending;
+mod plan;
 mod plane;
 mod project;
 mod sample;

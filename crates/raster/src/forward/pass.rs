@@ -7,6 +7,7 @@ use super::assemble::{Facet, Primitives, screen};
 use super::environment::UNITS;
 use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, PendingKind, pendable};
+use super::plan::{Plan, PlanItem, plan, rounds};
 use super::plane::{ColorPlane, DepthBuffer, Plane, PlaneTile, StencilPlane};
 use super::sample::PackedTexture;
 use super::shade::{Layout, TexelCache};
@@ -219,13 +220,6 @@ pub struct Runner {
     seen: Mutex<Vec<TexelCache>>,
 }
 
-/// Triangles of a job.
-const JOB: usize = 4096;
-
-/// Jobs whose primitives wait in memory at a time: so many that caches hold them until tiles have
-/// walked them.
-const JOBS_A_ROUND: usize = 16;
-
 /// Tiles of which a runner keeps the memory for what is seen there.
 const MOST_SEEN: usize = 256;
 
@@ -262,20 +256,6 @@ pub(crate) struct DrawContext<'a> {
 
 /// Depth planes that are held for a pass, with their addresses.
 type Held<'a> = Vec<(*const Mutex<DepthBuffer>, MutexGuard<'a, DepthBuffer>)>;
-
-/// A job before it runs.
-struct Plan {
-    /// Index of the command, pieces of it.
-    pieces: Vec<(usize, Range<usize>)>,
-    weight: usize,
-}
-
-enum PlanItem {
-    /// A command that is no draw, by its number.
-    Command(usize),
-    /// A job of several draws' pieces, by its number.
-    Job(usize),
-}
 
 impl Runner {
     /// A runner.
@@ -716,51 +696,6 @@ fn sampled_planes(commands: &[Command]) -> Vec<Arc<Mutex<DepthBuffer>>> {
     sole.sort_by_key(|plane| Arc::as_ptr(plane));
     sole.dedup_by(|a, b| Arc::ptr_eq(a, b));
     sole.into_iter().cloned().collect()
-}
-
-/// Cuts draws into jobs; what is no draw stands between them.
-fn plan(commands: &[Command]) -> (Vec<Plan>, Vec<PlanItem>) {
-    let (mut plans, mut order): (Vec<Plan>, Vec<PlanItem>) = (Vec::new(), Vec::new());
-    let mut open = false;
-    for (c, command) in commands.iter().enumerate() {
-        let Command::Draw(geometry, _) = command else {
-            order.push(PlanItem::Command(c));
-            open = false;
-            continue;
-        };
-        // Append pieces to the open job until it is full.
-        for piece in 0..geometry.pieces() {
-            let weight = geometry.weight(piece);
-            if !open || plans.last().is_none_or(|p| p.weight + weight > JOB && p.weight > 0) {
-                order.push(PlanItem::Job(plans.len()));
-                plans.push(Plan { pieces: Vec::new(), weight: 0 });
-                open = true;
-            }
-            let Some(plan) = plans.last_mut() else { continue };
-            plan.weight += weight;
-            match plan.pieces.last_mut() {
-                Some((last, range)) if *last == c => range.end = piece + 1,
-                _ => plan.pieces.push((c, piece..piece + 1)),
-            }
-        }
-    }
-    (plans, order)
-}
-
-/// Cuts a pass where it has many jobs; there is at least one round.
-fn rounds(order: &[PlanItem]) -> Vec<&[PlanItem]> {
-    let (mut rounds, mut start, mut jobs) = (Vec::new(), 0, 0);
-    for (at, item) in order.iter().enumerate() {
-        if let PlanItem::Job(_) = item {
-            if jobs == JOBS_A_ROUND {
-                rounds.push(&order[start..at]);
-                (start, jobs) = (at, 0);
-            }
-            jobs += 1;
-        }
-    }
-    rounds.push(&order[start..]);
-    rounds
 }
 
 /// The facet of a setup.

@@ -623,8 +623,8 @@ fn depths_at<S: Simd, V: Floats<S>>(simd: S, setup: &Setup, texels: &TileTexels<
     min(max(z, every(simd, setup.z_min)), every(simd, setup.z_max))
 }
 
-/// What later triangles must be above. Nothing is above infinity: what is better than the floor may
-/// settle it.
+/// The depth that later triangles must be above. Nothing is above infinity: a depth better than the
+/// floor may settle it.
 #[inline(always)]
 fn next_floor(settled: bool, floor: f32, best: f32) -> f32 {
     if settled && best > floor { f32::INFINITY } else { best.max(floor) }

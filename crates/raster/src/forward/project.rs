@@ -247,7 +247,7 @@ fn to_window<S: Simd>(
     (whole(in_band, gx), whole(in_band, gy), sz, flags | residues(in_band, gx, gy))
 }
 
-/// What is left of places on the grid, half a step to the right and below, when they are snapped:
+/// The remainder of places on the grid, half a step to the right and below, when they are snapped:
 /// as the bits of flags.
 #[inline(always)]
 fn residues<S: Simd>(in_band: Mask8<S>, x: F32x8<S>, y: F32x8<S>) -> U32x8<S> {

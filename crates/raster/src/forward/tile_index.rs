@@ -99,7 +99,7 @@ impl TileIndex {
     }
 
     /// Hands out the triangles that cover some of the texels and may lie above `floors` there, with
-    /// which texels; what is returned are the next floors.
+    /// which texels; the return value is the next floors.
     #[inline(always)]
     pub(crate) fn find<S: Simd, V: Floats<S>>(
         &self,

@@ -547,7 +547,7 @@ fn bring<S: Simd, const M: usize>(
     );
 }
 
-/// Depth tests of what is seen, facet by facet, with their writes: what passes remains. Gives
+/// Depth tests of visible samples, facet by facet, with their writes: passing ones remain. Gives
 /// whether something of that is not the depth that was stored. A plane of samples meets the facets'
 /// depths of the sample that `depths` says.
 #[inline(never)]

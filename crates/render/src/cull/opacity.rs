@@ -1,4 +1,4 @@
-//! Which surfaces hide what is behind them: others are layers, and close no solid whose back faces
+//! Which surfaces hide those behind them: others are layers, and close no solid whose back faces
 //! could be dropped.
 
 use crate::Transparency;

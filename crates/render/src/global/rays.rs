@@ -65,7 +65,7 @@ pub(super) struct Rays {
     pub(super) free: Vec<Branch>,
     /// Those within a pile.
     pub(super) piled: Vec<Branch>,
-    /// Points, and what is added to them where branches end (black, not a hole) and where light
+    /// Points, and the colours added to them where branches end (black, not a hole) and where light
     /// fades.
     pub(super) ended: Vec<(u32, [f32; 4])>,
 }
@@ -92,7 +92,7 @@ impl Rays {
         }
     }
 
-    /// What is left of a branch with this weight where light fades that turns here; the rest is of
+    /// The rest of a branch with this weight where light fades that turns here; the rest is of
     /// the colour that it fades into.
     pub(super) fn fade(&mut self, target: u32, weight: [f32; 4], haze: &Haze) -> [f32; 4] {
         if haze.kept < 1.0 {

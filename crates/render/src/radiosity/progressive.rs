@@ -270,7 +270,7 @@ fn receive(
         }
     }
 
-    // Account for what is absorbed and what leaves the scene.
+    // Account for the light that is absorbed and the light that leaves the scene.
     progress.absorbed += power(&kept);
     progress.escaped += power(sent) * (1.0 - seen.whole);
     progress.shots += 1;

@@ -4,7 +4,7 @@
 //! Light is known for elements; between their middles it is interpolated. Each vertex gets the mean
 //! of the elements round it that lie about in its plane, so that light is smooth over a surface and
 //! breaks at its edges. A leaf that has a vertex in the middle of an edge, from a finer neighbour,
-//! is cut there: both sides of every edge then show the same. What is kept is irradiance, not
+//! is cut there: both sides of every edge then show the same. The kept value is irradiance, not
 //! radiosity, so that textures stay as sharp as they are.
 //!
 //! In:   facet, weights of its corners, side. Out: irradiance, linear RGB, on the scale on which a

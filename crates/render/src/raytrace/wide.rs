@@ -52,7 +52,7 @@ pub(super) struct Wide {
     places: Vec<[u32; 2]>,
 }
 
-/// What is below boxes that were met, and where those are entered; the nearest of a node's boxes
+/// Children of boxes that were met, and where those are entered; the nearest of a node's boxes
 /// come first.
 struct Waiting {
     list: [(u32, f32); WAITING],
@@ -221,7 +221,7 @@ impl Wide {
         }
     }
 
-    /// The number, as a part, of what is below a box: nodes come first, those above before those
+    /// The number, as a part, of the child of a box: nodes come first, those above before those
     /// below, then leaves.
     #[inline(always)]
     fn part(&self, below: u32) -> usize {

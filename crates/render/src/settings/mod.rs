@@ -87,7 +87,7 @@ pub struct ShadingSettings {
     /// What polished surfaces mirror of their surroundings.
     pub environment: Environment,
     /// Rays by which a point finds out how much of the ambient light, and of the light of the
-    /// surroundings, what is near keeps away, `1..=4096`; `None`: all of it arrives.
+    /// surroundings, nearby surfaces keep away, `1..=4096`; `None`: all of it arrives.
     pub ambient_occlusion: Option<u32>,
     /// How far away such things may be, in the world's unit, above 0; `None`: half the radius of
     /// the scene's bounding sphere.

@@ -229,7 +229,7 @@ impl DeepPicture<'_> {
         Some((tile.tile.as_ref()?, &tile.points, lit))
     }
 
-    /// What is behind a fragment of a translucent surface, premultiplied; `None` for other
+    /// The colour behind a fragment of a translucent surface, premultiplied; `None` for other
     /// fragments, for those behind others of the kind at all their samples, and where the picture
     /// does not show it. `fragments` are all of the pixel.
     pub(crate) fn behind(
@@ -358,7 +358,7 @@ impl DeepPicture<'_> {
         Some(light)
     }
 
-    /// What is behind all surfaces of a pixel.
+    /// The colour behind all surfaces of a pixel.
     fn background(&self, pixel: [u32; 2]) -> [f32; 4] {
         let side = TILE as u32;
         let tile = &self.tiles

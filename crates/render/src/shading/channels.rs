@@ -125,7 +125,7 @@ impl ChannelSink<'_> {
             return None;
         }
 
-        // Their alpha is part of what they look like; what is behind them need not be illuminated
+        // Their alpha is part of what they look like; surfaces behind them need not be illuminated
         // for that.
         let mut bare = tile.clone();
         bare.facet.fill(NO_FACET);

@@ -207,7 +207,7 @@ pub(super) fn mean(samples: impl ExactSizeIterator<Item = [f32; 4]>) -> [f32; 4]
     sum.map(|c| c / count)
 }
 
-/// The colours of a tile's samples, all pixels of one sample after the other: what is opaque, and
+/// The colours of a tile's samples, all pixels of one sample after the other: opaque ones, and
 /// the background.
 pub(super) fn opaque_samples(
     tile: &Tile,

@@ -1,6 +1,6 @@
 //! What illumination makes of the corners of facets, for whoever wants to see that stage.
 //!
-//! Pictures illuminate what is seen, after visibility. Here the corners of facets go through the
+//! Pictures illuminate visible points, after visibility. Here the corners of facets go through the
 //! same formulas, textures and shadows, seen or not, each as part of its facet: that is where
 //! Gouraud's shading takes its intensities.
 //!

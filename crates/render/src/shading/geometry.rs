@@ -95,7 +95,7 @@ pub(crate) struct Surface<T> {
     pub normals: [V3<T>; 3],
     /// Unit normal of the facet, view space, turned likewise.
     pub facet_normal: V3<T>,
-    /// Barycentric coordinates of the point, not negative, sum 1: what is interpolated has these
+    /// Barycentric coordinates of the point, not negative, sum 1: interpolated values have these
     /// weights of the corners.
     pub weights: [T; 3],
     /// The weights are linear on the screen, and thus not those of the place, see
@@ -276,7 +276,7 @@ pub(super) fn surfaces<S: Simd, V: Floats<S>>(
 }
 
 impl<T: Lanes> Surface<T> {
-    /// Weights of the corners in the place of the point. What is interpolated linearly on the
+    /// Weights of the corners in the place of the point. Values interpolated linearly on the
     /// screen shows a defect; the place, with the ways to lights and shadows, is the real one.
     #[inline(always)]
     pub(crate) fn place_weights(&self) -> [T; 3] {

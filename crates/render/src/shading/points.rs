@@ -118,7 +118,7 @@ pub(crate) struct Group {
 }
 
 impl Points {
-    /// What is behind all surfaces of a pixel of the tile, in the space of composition.
+    /// The colour behind all surfaces of a pixel of the tile, in the space of composition.
     #[inline]
     pub(crate) fn background(&self, tile: &Tile, pixel: usize, rows: &BackgroundRows) -> [f32; 4] {
         let row = tile.y + (pixel / TILE) as u32;

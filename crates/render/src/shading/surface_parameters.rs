@@ -134,7 +134,7 @@ impl<S: Simd> SurfaceParameters<S> {
         }
     }
 
-    /// What is near keeps ambient light away.
+    /// Nearby surfaces keep ambient light away.
     #[inline(always)]
     pub(super) fn occlude(&mut self, simd: S, eight: &ShadingBatch8<'_>) {
         let Some(open) = eight.open.get(eight.first..) else { return };

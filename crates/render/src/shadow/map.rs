@@ -20,7 +20,7 @@
 //! scene fills a cone before it; else it has six, the faces of a cube. A spot has the one that fits
 //! its cone. An area light has maps at several of its places. Transparent things are kept as lists
 //! at their texels, with the part of each colour of light that passes. In large scenes, one map may
-//! be joined by sharper ones for what is near the viewer (`map/cascade.rs`), as many as
+//! be joined by sharper ones for the part near the viewer (`map/cascade.rs`), as many as
 //! `shadow_cascades` says.
 //!
 //! In:   lights, scene. Out: the part of a light that arrives at a place.

@@ -197,7 +197,7 @@ impl Details {
     }
 
     /// Takes from a triangle what others hide from the light, to which its normal is turned; gives
-    /// the root of what is left.
+    /// the root of the lit part.
     fn clip(
         &mut self,
         triangle: usize,

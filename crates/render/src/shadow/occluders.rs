@@ -108,7 +108,7 @@ impl<'a> Occluders<'a> {
             None => {}
         }
 
-        // Let light through by what is left.
+        // Let light through by coverage and the opaque part.
         let metallic = self
             .sample(metal_texture(material), mesh, triangle, weights)
             .map_or(1.0, |texel| texel[2]);

@@ -3,7 +3,7 @@
 //!
 //! Warnock's windows are drawn in the picture and as a tree, a BSP tree as nodes and links, the
 //! painter's list as two columns: the first order beside the final one. Large structures are
-//! abbreviated; what is left out is counted in the picture.
+//! abbreviated; omitted parts are counted in the picture.
 
 mod depth_sort;
 mod quadtree;

@@ -39,7 +39,7 @@ pub(crate) fn range(depths: &[f32]) -> [f32; 2] {
 
 impl<'a> Fragment<'a> {
     /// A fragment of `facet` at the samples `mask`, with its depth at each of them; nothing is
-    /// known of what is behind it.
+    /// known of the colour behind it.
     pub fn new(
         facet: u32,
         (mask, depths): (u32, &'a [f32]),

@@ -1,5 +1,5 @@
 //! Linear transparency without refraction: a surface shows its own light and, in the proportion
-//! `kt`, what is behind.
+//! `kt`, the colour behind.
 //!
 //! `I = (1 - kt) I1 + kt I2`, where `I2` is again such a mixture for as long as there are
 //! transparent surfaces, down to the first opaque one or the background. `kt` is the same whatever

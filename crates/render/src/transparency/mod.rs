@@ -10,7 +10,7 @@
 //! lies in front of them; all algorithms hand on the same ones, so each model and each order works
 //! with each of them. The facets of a pixel become [`Fragment`]s; the orders take these in the
 //! order of the scene (that in which triangles were submitted), only [`back_to_front`] in that of a
-//! list. A translucent surface shows a blurred picture of what is behind it instead
+//! list. A translucent surface shows a blurred picture of the scene behind it instead
 //! ([`registry::TRANSLUCENCY`]).
 
 pub mod a_buffer;

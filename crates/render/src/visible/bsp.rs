@@ -18,7 +18,7 @@
 //!       included.
 //! Source: [Fuchs, Kedem & Naylor 1980], [Schumacker et al. 1969]. Departs from them: a parallel
 //! projection asks for the side of the direction to the viewer; the list is taken from its end,
-//! from front to back, so that what is full need not be looked at again; a fragment is not a new
+//! from front to back, so that full blocks need not be looked at again; a fragment is not a new
 //! polygon but its facets and the planes that cut it, which become lines on the screen (see
 //! `pieces.rs`). Coherence: of frames. The tree stays in the session, so a second picture from
 //! anywhere does not build one.

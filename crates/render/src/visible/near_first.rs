@@ -1,4 +1,4 @@
-//! Opaque triangles from near to far, roughly: what is drawn first hides what comes later, which is
+//! Opaque triangles from near to far, roughly: triangles drawn first hide later ones, which is
 //! then rejected unseen.
 //!
 //! Runs of triangles are dealt into slices by how far away their boxes begin; within a slice they

@@ -246,7 +246,7 @@ impl Pieces {
     }
 
     /// Clips a triangle's outline: first and last column and row of pixels that may have samples in
-    /// what is left. Adds the cuts that matter.
+    /// the clipped part. Adds the cuts that matter.
     fn cut_outline(
         &mut self,
         setup: &Setup,

@@ -1,13 +1,13 @@
 //! Lists of polygons in order of depth: what painter's algorithm and BSP trees come to in the end.
 //!
-//! The list decides what is seen: from back to front, what comes later covers what came before;
-//! from front to back, it fills what is left, and full blocks of 8x8 pixels are passed over.
+//! The list decides visibility: from back to front, later facets cover earlier ones;
+//! from front to back, it fills empty samples, and full blocks of 8x8 pixels are passed over.
 //! Samples at which the common depth function says otherwise go to the nearer facet, since that is
 //! the law for all algorithms, and are counted as overruled: corners are snapped to 1/256 pixel, so
 //! surfaces closer than that moves them can seem to change places.
 //!
 //! Transparent facets can take part in the list, for an order of transparency that draws by it.
-//! Which of them lie in front of what is opaque is the law's matter as for all algorithms; in which
+//! Which of them lie in front of opaque ones is the law's matter as for all algorithms; in which
 //! order they are drawn is the list's alone.
 //!
 //! In:   pieces of facets in order (screen space). Out: the samples of each tile (screen space).

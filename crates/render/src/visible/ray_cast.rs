@@ -1,7 +1,7 @@
 //! Ray casting: a ray through every sample, and what it meets first.
 //!
 //! A structure over the world's triangles (a tree of boxes, an octree, a partition, a grid:
-//! `--acceleration`) finds those near a ray without looking at the others; what is nearest comes
+//! `--acceleration`) finds those near a ray without looking at the others; the nearest hit comes
 //! first, and once a facet is found, whatever begins behind it is passed over. The structure serves
 //! every view.
 //!

@@ -1,4 +1,4 @@
-//! Tiles that are drawn in rounds of triangles: what is known of them between rounds, and how a
+//! Tiles that are drawn in rounds of triangles: their state between rounds, and how a
 //! round changes one.
 //!
 //! In:   batches of set-up triangles (screen space). Out: the samples of each tile, handed on after

@@ -9,7 +9,7 @@
 //! there is nothing to decide. With several, their depths at the two ends of the span show which
 //! are hidden throughout. If two are left (they penetrate each other, or touch), the span is cut
 //! where their planes meet: along an implied edge, which two points fix for all lines to come
-//! (`scanline/implied_edge.rs`). What is left near it, and where it cannot be told, is decided by
+//! (`scanline/implied_edge.rs`). The part left near it, and where it cannot be told, is decided by
 //! the depths at the samples.
 //!
 //! Each row of samples is a line, so a picture with four samples a pixel has four lines a row of

@@ -87,7 +87,7 @@ fn walk_layers(
     });
 }
 
-/// Draws what is opaque in a tile. Out of line: compilers for WebAssembly take very long over
+/// Draws the opaque facets in a tile. Out of line: compilers for WebAssembly take very long over
 /// functions that are very large.
 #[inline(never)]
 fn walk_opaque(
@@ -105,7 +105,7 @@ fn walk_opaque(
     });
 }
 
-/// Lets facets that are drawn as layers hide what is behind them, though not each other where they
+/// Lets facets that are drawn as layers hide those behind them, though not each other where they
 /// are equally near: nothing is left there but a depth just behind theirs. Depths are integers of
 /// `bits` bits, if of any.
 pub(super) fn hide_behind(

@@ -1,4 +1,4 @@
-//! Warnock's area subdivision: what is simple in a window is drawn, the rest is looked at in four
+//! Warnock's area subdivision: a simple window is drawn, the rest is looked at in four
 //! smaller windows.
 //!
 //! A polygon is to a window one of four things: disjoint, contained, intersecting, or surrounding

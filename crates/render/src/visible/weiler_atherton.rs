@@ -10,8 +10,8 @@
 //!
 //! The whole picture is one list. A clipping polygon only meets polygons whose boxes overlap its
 //! own (`buckets.rs`), and of a polygon with many edges only those nearby (`edge_index.rs`). A long
-//! list is clipped polygon by polygon on all threads (`spread.rs`): what is left of a polygon
-//! depends on the clipping polygons before it, not on what is left of others. Short lists go to the
+//! list is clipped polygon by polygon on all threads (`spread.rs`): the rest of a polygon
+//! depends on the clipping polygons before it, not on the rests of others. Short lists go to the
 //! threads whole. Neither shows in the result: visible polygons, counters and steps are those of
 //! the plain order.
 //!
@@ -19,7 +19,7 @@
 //!       samples of each tile (screen space).
 //! Cost: pairs of polygons whose boxes overlap on the screen, times their edges nearby.
 //! Source: [Weiler & Atherton 1977]. Departs from it: how regions are clipped, see
-//! `weiler_atherton/region.rs`. A clipping polygon is the polygon as it came in, not what is left
+//! `weiler_atherton/region.rs`. A clipping polygon is the polygon as it came in, not the rest
 //! of it. Whatever is closer to the clipping polygon than the rounding of depths is not taken for
 //! hidden by it: then both are visible polygons, and where they overlap the facets' depth function
 //! decides each sample. Nothing loops: a list never takes the same clipping polygon twice.
@@ -168,11 +168,11 @@ struct Frame {
     buckets: Option<Buckets>,
 }
 
-/// What is inside a clipping polygon of an item that it cuts or holds.
+/// The inner part of an item that it cuts or holds.
 struct Inside {
     /// What may be visible.
     kept: Option<Item>,
-    /// What is hidden by the clipping polygon.
+    /// The part hidden by the clipping polygon.
     hidden: Option<Region>,
 }
 
@@ -230,7 +230,7 @@ const PAIRS_A_CHECK: u32 = 64;
 const PAIRS_A_COUNT: u32 = 1 << 14;
 
 impl AreaSorting<'_> {
-    /// Finds what is visible in a picture.
+    /// Finds the visible polygons of a picture.
     fn run(&self, viewport: Viewport) -> Result<Found, Limit> {
         let list =
             self.whole([viewport.width, viewport.height].map(|side| side as i32 * SUBPIXEL))?;
@@ -307,7 +307,7 @@ impl AreaSorting<'_> {
         let front = &self.polygons[items[at].polygon as usize];
         let mut report = self.report(worker);
 
-        // Clip what is near.
+        // Clip the nearby polygons.
         let mut near = std::mem::take(&mut worker.near);
         near_items(front.shape.bounds, frame.buckets.as_ref(), items.len(), &mut near);
         let mut inside = Vec::new();
@@ -338,7 +338,7 @@ impl AreaSorting<'_> {
         Ok(Some(List { clip, items: inside }))
     }
 
-    /// Clips an item by another polygon: leaves the outside, and gives what is inside.
+    /// Clips an item by another polygon: leaves the outside, and gives the inside.
     fn clip(
         &self,
         item: &mut Item,
@@ -421,7 +421,7 @@ fn near_items(around: [f64; 4], buckets: Option<&Buckets>, count: usize, near: &
 }
 
 impl Found {
-    /// Bytes of what is visible.
+    /// Bytes of the visible polygons.
     fn bytes(&self) -> u64 {
         let corners = self
             .outlines

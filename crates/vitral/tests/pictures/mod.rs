@@ -3,6 +3,7 @@
 
 mod agreement;
 mod common;
+mod coverage_masks;
 mod culling;
 mod cut_outs;
 mod defects;

@@ -9,7 +9,7 @@ use crate::objects::BufferHandle;
 use crate::state::{ClientState, ColorBuffer, PixelMode, PixelTransfer, Polygons};
 use crate::{Context, enums as gl};
 
-/// Stores what is there.
+/// Stores the saved value, if there is one.
 fn put<T>(saved: Option<T>, field: &mut T) {
     if let Some(saved) = saved {
         *field = saved;

@@ -18,7 +18,7 @@ const BEFORE: Refusal = "an index with its base is negative or too large";
 /// The most vertices a draw may take.
 const MAX_VERTICES: usize = 1 << 28;
 
-/// Memory that a vertex of a draw takes, roughly: attributes, indices, what is found out about
+/// Memory that a vertex of a draw takes, roughly: attributes, indices, and the data derived from
 /// them.
 const BYTES_A_VERTEX: usize = 64;
 

@@ -37,7 +37,7 @@ struct Feeder<'a> {
     only_depths: bool,
     view: &'a View<'a>,
     to: &'a mut Feedback,
-    /// Memory for a polygon's corners, and for what is told of them.
+    /// Memory for a polygon's corners, and for the values reported of them.
     corners: Vec<Vertex>,
     told: Vec<FeedbackVertex>,
 }
@@ -148,7 +148,7 @@ impl Feeder<'_> {
             polygon = self.view.clip_polygon(polygon);
         }
 
-        // Report what is left.
+        // Report the clipped polygon.
         if !polygon.is_empty() {
             self.visible(&polygon);
         }

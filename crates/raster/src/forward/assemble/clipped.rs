@@ -32,7 +32,7 @@ pub(super) struct Corner {
 }
 
 impl Assembler<'_> {
-    /// Cuts a polygon at the view volume and the user's planes; what is left of it keeps its
+    /// Cuts a polygon at the view volume and the user's planes; the inner part keeps its
     /// weights.
     fn cut(&self, corners: &[u32; 3], boundary: [bool; 3]) -> Vec<Corner> {
         // Start with the triangle's corners, each with weight one of its own.
@@ -72,7 +72,7 @@ impl Assembler<'_> {
         polygon
     }
 
-    /// Draws what is left of a triangle; `smooth` says which edges of a smooth polygon's piece are
+    /// Draws the clipped triangle; `smooth` says which edges of a smooth polygon's piece are
     /// the polygon's.
     #[cold]
     pub(super) fn clipped(

@@ -50,7 +50,7 @@ impl Assembler<'_> {
             ends = clipped;
         }
 
-        // Widen and emit what is left.
+        // Widen and emit the clipped line.
         let slots = [
             self.derived_slot([from, to, to], &ends[0]),
             self.derived_slot([from, to, to], &ends[1]),

@@ -5,7 +5,7 @@
 //! choose the same level are looked up together, so that a row of pixels on one surface takes one
 //! or two passes. Texels are fetched lane by lane, everything else is done in lanes. The
 //! [`PackedTexture`] kinds of textures have ways of their own, for eight lanes or sixteen. A lookup
-//! never fails: what is missing reads as opaque black, and a coordinate that is not finite reads
+//! never fails: missing texels read as opaque black, and a coordinate that is not finite reads
 //! the texel at the low edge.
 //!
 //! In:   interpolated coordinates (s, t, r, q), level of detail. Out: RGBA, straight alpha, linear

@@ -3,10 +3,10 @@
 //! A map that holds a large scene spends its texels evenly, but the picture does not: a texel that
 //! is smaller than a pixel far away is many pixels wide in front of the viewer. So the view is cut
 //! in depth, and each slice has a map fitted to the objects in it, `n` slices between the nearest
-//! and the farthest of what is seen. With cuts in geometric progression,
+//! and the farthest visible point. With cuts in geometric progression,
 //! `d(i) = near (far / near)^(i / n)`, texels are as wide in the picture at the near end of every
 //! slice; the *practical split scheme* takes the mean of these and of equal cuts, weighted. As
-//! `near` is fitted to what is seen, the weight of the first may be large.
+//! `near` is fitted to visible points, the weight of the first may be large.
 //!
 //! A slice's map must hold everything between the slice and the light, but only beside the slice
 //! may it be cut off. A map has to pay: where it would not be twice as sharp as the one of the

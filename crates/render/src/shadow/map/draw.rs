@@ -203,7 +203,7 @@ impl<'a> DepthSink<'a> {
         let mut layers = Vec::new();
         if batches.iter().any(|(layered, _)| *layered) {
             with_spare(spare, view.pattern.len(), |tile| {
-                // Its facets stay unknown: what is as near as the nearest opaque thing hides
+                // Its facets stay unknown: a facet as near as the nearest opaque one hides
                 // nothing that this does not.
                 (tile.x, tile.y) = place;
                 (tile.block_far, tile.touched) = (far, true);

@@ -198,7 +198,7 @@ fn crossing((dx, dy, [x0, y0]): (i32, i32, [i32; 2]), y: i32) -> [i32; 2] {
 }
 
 /// The first pixel whose sample on a line is not left of a crossing. A sample on a left edge is in
-/// and one on a right edge is out, so the same pixel begins what is right of either.
+/// and one on a right edge is out, so the same pixel begins the span right of either.
 fn column([x, remainder]: [i32; 2], line: &SampleLine) -> i32 {
     (x + i32::from(remainder > 0) - line.sample_x + SUBPIXEL - 1) >> 8
 }

@@ -50,7 +50,7 @@ impl<'f> Lists<'f> {
         Self { execution, coherence, extent, polygons, stack, hidden, counters }
     }
 
-    /// Puts the own list of a window behind the others: of those at `list` what is not disjoint,
+    /// Puts the own list of a window behind the others: of those at `list` the ones not disjoint,
     /// and not behind a surrounder. Returns where it begins.
     pub(super) fn look_at(&mut self, window: &Window, list: Range<usize>) -> usize {
         self.counters.windows += 1;
@@ -189,7 +189,7 @@ impl<'f> Lists<'f> {
             }
         }
 
-        // Count and cut off what is dropped.
+        // Count and cut off the dropped polygons.
         self.counters.saved_by_depth += (self.stack.len() - kept) as u64;
         self.stack.truncate(kept);
     }

@@ -16,7 +16,7 @@ const MAX_BANDS: usize = 1024;
 /// theirs.
 #[derive(Clone, Debug)]
 pub(super) struct EdgeIndex {
-    /// What is divided: 0 for x, 1 for y.
+    /// The axis that is divided: 0 for x, 1 for y.
     pub(super) axis: usize,
     origin: f64,
     bands_a_unit: f64,

@@ -123,7 +123,7 @@ impl ConvexOutline {
             }
         }
 
-        // Bound what is left.
+        // Bound the clipped outline.
         let [x0, y0, x1, y1] = bounds(outline.iter().copied());
         Some([x0 - 1.0, y0 - 1.0, x1 + 1.0, y1 + 1.0])
     }

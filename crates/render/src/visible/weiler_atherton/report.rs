@@ -7,13 +7,13 @@ use crate::trace::Step;
 use crate::trace::outlines::{Contour, CutPolygon, MAX_LISTED, SortedPolygon};
 use vitral_raster::SUBPIXEL;
 
-/// What is to be told of a clip: nothing, if nobody listens.
+/// The steps to report of a clip: none, if nobody listens.
 pub(super) struct Report(Option<Clip>);
 
 struct Clip {
     number: u32,
     cut: Vec<CutPolygon>,
-    /// First facets of what is hidden.
+    /// First facets of the hidden parts.
     hidden: Vec<u32>,
     /// The item at hand, before it was clipped.
     before: Vec<Contour>,

@@ -34,7 +34,7 @@ struct Passing {
     place: usize,
     item: Item,
     is_done: bool,
-    /// What is inside clipping polygons and may be visible, with their places.
+    /// The parts that are inside clipping polygons and may be visible, with their places.
     parts: Vec<(u32, Item)>,
 }
 
@@ -97,7 +97,7 @@ impl AreaSorting<'_> {
         Ok(())
     }
 
-    /// Clips a long list, adds what is visible without more ado, and gives the inside lists.
+    /// Clips a long list, adds the polygons that are visible already, and gives the inside lists.
     fn clip_long(&self, list: List, found: &mut Found) -> Result<Vec<List>, Limit> {
         // Sort the outlines into buckets, and list what clips.
         let bytes = Buckets::bytes(list.items.len()) as u64;
@@ -191,7 +191,7 @@ impl AreaSorting<'_> {
                 lists[place as usize].items.push(part);
             }
 
-            // Show what has clipped already, and list the rest under its own place.
+            // Show the polygons that have clipped already, and list the rest under its own place.
             if one.item.region.is_empty() {
                 continue;
             }

@@ -1,7 +1,7 @@
 //! Values with several parts as users type them: `key=value,key=value`.
 //!
-//! Keys are the same in upper and lower case. Values may hold commas: what has no `=` belongs to
-//! the field before it.
+//! Keys are the same in upper and lower case. Values may hold commas: a piece without `=` belongs
+//! to the field before it.
 
 /// The fields that have not been used yet.
 pub(crate) struct Fields<'a>(Vec<(&'a str, String)>);

@@ -485,8 +485,8 @@ impl Case {
         self.settings.global.model == Global::Radiosity
     }
 
-    /// Whether some surface shows what is around the scene: by its roughness, or by rays that it
-    /// turns.
+    /// Whether some surface shows the surroundings of the scene: by its roughness, or by rays that
+    /// it turns.
     fn mirrors_surroundings(&self) -> bool {
         let illumination = self.settings.shading.illumination;
         let is_rough = |m: &Material| {

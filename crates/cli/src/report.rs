@@ -94,7 +94,7 @@ impl Failure {
         self.code
     }
 
-    /// The mistake, `FILE: WHERE: WHAT`; empty if nothing is to be said.
+    /// The error, `FILE: WHERE: WHAT`; empty if nothing is to be said.
     pub fn message(&self) -> &str {
         self.message.as_deref().unwrap_or_default()
     }

@@ -1,8 +1,8 @@
 //! Caps: the faces with which planes of section close the bodies that they cut.
 //!
-//! Parts are told apart by their hatching. A part is a material; what has no material is a part by
-//! itself in each instance. Parts are numbered in the order of their materials, then of instances,
-//! whatever is seen of them.
+//! Parts are told apart by their hatching. A part is a material; a body without material is a part
+//! by itself in each instance. Parts are numbered in the order of their materials, then of
+//! instances, whatever is seen of them.
 //!
 //! Where caps overlap, as of a body that lies in another one, the smaller is in front.
 //!

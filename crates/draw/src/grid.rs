@@ -6,8 +6,8 @@
 //! each level. The list of a cell is sorted by the nearest corners: it ends for an edge where
 //! triangles begin to lie wholly behind the edge.
 //!
-//! A face that covers a cell ends the cell's list behind it, for whoever only asks what is visible:
-//! whatever it hides is hidden already. Large triangles are laid over the cells of a level
+//! A face that covers a cell ends the cell's list behind it, for callers that only ask for visible
+//! parts: whatever it hides is hidden already. Large triangles are laid over the cells of a level
 //! [`COVER_LEVELS`] finer than their own, and finer levels inherit. Without this, models of many
 //! parts behind one wall cost as much as if there were no wall.
 //!

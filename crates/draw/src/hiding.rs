@@ -1,8 +1,8 @@
 //! The part of an edge that one triangle hides.
 //!
 //! On the page, a triangle is the common part of three half planes; each cuts the edge in one place
-//! at most, and what is left is an interval. In depth, the edge meets the triangle's plane in one
-//! place at most: the signs of the ends' heights over the plane tell on which side of it the
+//! at most, and the hidden part is an interval. In depth, the edge meets the triangle's plane in
+//! one place at most: the signs of the ends' heights over the plane tell on which side of it the
 //! triangle hides. All decisions are exact ([`vitral_math::exact`]).
 //!
 //! Hidden is what lies inside the triangle, its outline included, and behind it by more than

@@ -1,4 +1,4 @@
-//! Shapes on a grid that is finer than the page's, and their differences and common parts.
+//! Shapes on a grid that is finer than the page's, and their overlays.
 //!
 //! A shape is an outline, counter-clockwise, with holes, clockwise. The overlay of polygons is the
 //! crate `i_overlay`'s.

@@ -109,8 +109,8 @@ impl VertexBatch {
         self.indices.as_ref().map_or(i, |indices| indices[i as usize]) as usize
     }
 
-    /// Adds a primitive without what is incomplete of it; joins it with the one before if that is
-    /// the same drawing.
+    /// Adds a primitive without its incomplete last element; joins it with the one before if that
+    /// is the same drawing.
     pub fn add_primitive(&mut self, mode: u32, first: u32, count: u32) {
         let count = complete(mode, count);
         if count == 0 {

@@ -6,7 +6,7 @@
 //! numbers of vertices, faces and edges follows (the last may be missing; it is not used; some
 //! files have the first of them glued to the word, `OFF8 6 12`), then each vertex and each face:
 //! the corner count, the corners, and possibly a colour. Both begin a line and may go on over
-//! several, but a colour that may be left out is on the line of the number before it. `#` begins a
+//! several, but a colour that may be left out is on the line of the values before it. `#` begins a
 //! comment.
 //!
 //! Colours are sRGB, `0..=255` where they look like bytes, else `0..=1` (`color_range`); those of

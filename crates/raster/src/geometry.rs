@@ -490,9 +490,9 @@ impl Batch {
         self.entry_boxes = boxes;
     }
 
-    /// Exchanges the memory of what is needed up to [`Batch::finish`]: once after [`Batch::clear`],
-    /// once after `finish`. What was in `unsorted` is forgotten. Of [`TileLists::Copied`] that is
-    /// [`Batch::setups`], too: only the copies remain.
+    /// Exchanges the memory of the data needed up to [`Batch::finish`]: once after
+    /// [`Batch::clear`], once after `finish`. What was in `unsorted` is forgotten. Of
+    /// [`TileLists::Copied`] that is [`Batch::setups`], too: only the copies remain.
     pub fn exchange(&mut self, unsorted: &mut Unsorted) {
         unsorted.setups.clear();
         unsorted.entries.clear();

@@ -264,8 +264,8 @@ impl Session {
         }
     }
 
-    /// The solids that what is opaque of a mesh makes by itself, if that is not all and not
-    /// nothing.
+    /// The solids that the opaque triangles of a mesh make by themselves, if that is not all and
+    /// not nothing.
     fn opaque_solids(
         &self,
         mesh: u32,

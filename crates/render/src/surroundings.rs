@@ -1,4 +1,5 @@
-//! What is around a scene: which way is up, and an image of what lies far away in all directions.
+//! The surroundings of a scene: which way is up, and an image of what lies far away in all
+//! directions.
 
 use std::sync::Arc;
 use vitral_light::EnvironmentMap;

@@ -10,7 +10,8 @@ use crate::state::MAX_TEXTURE_UNITS;
 use std::sync::{Arc, Mutex};
 use vitral_raster::forward::Texture;
 
-/// Textures of a context: what is bound, and the default ones and the proxies, which have no names.
+/// Textures of a context: the bound ones, and the default ones and the proxies, which have no
+/// names.
 #[derive(Debug)]
 pub(crate) struct TextureBindings {
     /// By unit and slot; `None` is the default texture. Names may be deleted elsewhere.

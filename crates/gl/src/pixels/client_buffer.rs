@@ -345,8 +345,8 @@ impl Context {
         }
     }
 
-    /// Runs what is recorded and writes the colours that have changed to the client's buffer. To be
-    /// called by `Flush`, `Finish` and whatever lets the client look.
+    /// Runs the recorded commands and writes the colours that have changed to the client's buffer.
+    /// To be called by `Flush`, `Finish` and whatever lets the client look.
     pub fn store_default_framebuffer(&mut self) {
         self.store_colors(true);
     }

@@ -144,8 +144,8 @@ impl VertexSnapshot {
         Transform::new(modelview, &self.projection, self.rescale_normal, &self.clip_planes)
     }
 
-    /// Takes what is needed; `units` are the sampled units, `fog` whether fog is on, `lights` a
-    /// cache.
+    /// Takes the state that the draw needs; `units` are the sampled units, `fog` whether fog is on,
+    /// `lights` a cache.
     pub(crate) fn new(
         state: &State,
         given: &CurrentState,

@@ -44,8 +44,8 @@ impl Triangulation {
         all
     }
 
-    /// All primitives in parts, for what is not only filled triangles; whether a stipple runs along
-    /// lines.
+    /// All primitives in parts, for draws that are not only filled triangles; whether a stipple
+    /// runs along lines.
     pub(crate) fn ordered(&self, batch: &VertexBatch, stippled: bool) -> &[Vec<Primitive>] {
         self.ordered[usize::from(stippled)]
             .get_or_init(|| cut_into_parts(&batch.primitives, stippled))

@@ -20,8 +20,8 @@ pub(crate) struct Triangulation {
     pub points: bool,
     /// The flat grid that all triangles form, if they do.
     pub grid: Option<Grid>,
-    /// All primitives in parts, for what is not only filled triangles: without a stipple along
-    /// lines, with one.
+    /// All primitives in parts, for draws that are not only filled triangles: without a stipple
+    /// along lines, with one.
     pub(super) ordered: [OnceLock<Vec<Vec<Primitive>>>; 2],
 }
 

@@ -88,8 +88,8 @@ pub struct DrawingOptions {
     pub decimals: u8,
     /// Whether regions of SVG files tell the surface that they show.
     pub surface_ids: bool,
-    /// Whether regions of SVG and PDF files are outlined, each above what is painted before, and by
-    /// the pen of which class.
+    /// Whether regions of SVG and PDF files are outlined, each above the regions painted before,
+    /// and by the pen of which class.
     pub region_outlines: Option<LineClass>,
     /// Strokes of the title block.
     pub title: Vec<Polyline>,

@@ -322,8 +322,8 @@ fn read_libraries(
         }
     }
 
-    // Tell what is missing: the words, where some of them were found or quotes part them, else the
-    // whole.
+    // Tell the missing files: the words, where some of them were found or quotes part them, else
+    // the whole.
     let mut missing = |name: &str, why: &crate::ResolveError| {
         warnings.note("", Place::Line(line), || {
             format!("material library `{name}` is left out: {why}")

@@ -2,8 +2,8 @@
 //! one after the other.
 //!
 //! Coverage by alpha, soft borders, sRGB and floating-point colours go row by row through
-//! [`super::fragment`]; what is left is done here in short loops, each over all samples of a block,
-//! with the same operations and the same results.
+//! [`super::fragment`]; the other kinds are done here in short loops, each over all samples of a
+//! block, with the same operations and the same results.
 
 use super::depth_ranges::{Verdict, verdict};
 use super::fragment::{

@@ -351,8 +351,8 @@ pub struct FragmentState {
     pub flat: bool,
     /// Depth is clamped to the range instead of clipped.
     pub depth_clamp: bool,
-    /// Bytes of red, green and blue are sRGB-encoded: blending decodes what is stored, and results
-    /// are encoded.
+    /// Bytes of red, green and blue are sRGB-encoded: blending decodes the stored bytes, and
+    /// results are encoded.
     pub srgb: bool,
     /// Where colours in floating-point storage are clamped.
     pub clamping: Clamping,

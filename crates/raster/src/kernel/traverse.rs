@@ -60,8 +60,8 @@ fn far_edge(x: &[i32; 3], y: &[i32; 3], i: usize) -> (Edge, impl Fn([i32; 2]) ->
     (Edge { a: -dy, b: dx }, constant)
 }
 
-/// What is added to the edge functions of eight edges `(dx, dy)`, so that 0 counts as inside on top
-/// and left edges alone.
+/// The bias added to the edge functions of eight edges `(dx, dy)`, so that 0 counts as inside on
+/// top and left edges alone.
 #[inline(always)]
 pub(crate) fn biases<S: Simd>(simd: S, dx: I32x8<S>, dy: I32x8<S>) -> I32x8<S> {
     let zero = I32x8::splat(simd, 0);

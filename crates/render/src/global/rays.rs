@@ -37,8 +37,8 @@ pub(super) struct Branch {
     pub(super) seed: u32,
 }
 
-/// Depth cueing at a surface that the eye sees on a straight way: what is kept of its light, and
-/// what that fades into. Light that turns there is its light.
+/// Depth cueing at a surface that the eye sees on a straight way: the part of its light that is
+/// kept, and the colour that the rest becomes. Light that turns there is its light.
 pub(super) struct Haze {
     /// The part of the light that is left.
     pub(super) kept: f32,

@@ -136,8 +136,8 @@ pub struct ShadowSettings {
     pub light_samples: u32,
     /// Texels along the longer side of a shadow map, `16..=8192`.
     pub map_size: u32,
-    /// Shadow maps that share what is near the viewer of a large scene, for each light, `1..=8`; 1:
-    /// one for the whole scene.
+    /// Shadow maps that share the part near the viewer of a large scene, for each light, `1..=8`;
+    /// 1: one for the whole scene.
     pub cascades: u32,
     /// Where shadow volumes are counted from; only for them. `None`: [`VolumeCounting::ZFail`].
     pub volume_counting: Option<VolumeCounting>,

@@ -1,5 +1,5 @@
-//! What is seen through translucent surfaces: a blurred picture of what is behind them, taken from
-//! the picture's own layers.
+//! What is seen through translucent surfaces: a blurred picture of the scene behind them, taken
+//! from the picture's own layers.
 //!
 //! A picture that keeps, for every pixel, all transparent fragments and the opaque surface behind
 //! them, with their depths and colours, is a scene of its own, seen from the eye. Rays can be

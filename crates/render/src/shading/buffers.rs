@@ -1,6 +1,6 @@
 //! The buffers of the two-buffer order of transparency, for whoever wants to see them.
 //!
-//! The first holds opaque surfaces, with its depth. The second holds what the list of transparent
+//! The first holds opaque surfaces, with their depth. The second holds what the list of transparent
 //! surfaces leaves there, a coefficient and an intensity, in front of that depth. The picture is
 //! made of both.
 //!

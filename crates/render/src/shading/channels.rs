@@ -1,5 +1,6 @@
-//! Planes of data about what is visible at each pixel's centre: depth, surface, object, material,
-//! normal. Transparent things are looked through; cut-out ones are seen where they are there.
+//! Planes of data about the surface visible at each pixel's centre: depth, surface, object,
+//! material, normal. Transparent things are looked through; cut-out ones are seen where they are
+//! there.
 
 use super::FrameConstants;
 use super::batch::each_eight;

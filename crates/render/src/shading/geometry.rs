@@ -1,7 +1,7 @@
 //! The surface at eight points: which corners each point lies between, and with which weights.
 //!
-//! What is the same all over a facet is in its [`Record`], see [`super::facets`]; here each point
-//! weighs the corners.
+//! Values that are the same all over a facet are in its [`Record`], see [`super::facets`]; here
+//! each point weighs the corners.
 
 use super::slots::Slots;
 use vitral_math::lanes::prelude::*;

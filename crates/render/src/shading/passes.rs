@@ -1,12 +1,12 @@
 //! Composing a tile pass by pass, with one layer in memory.
 //!
-//! The picture begins with what is opaque. Each pass brings one layer for each sample that has some
-//! left, the farthest: it is illuminated, laid over the picture, and forgotten. What a layer looks
-//! like, and where in the pixel it is illuminated, is the same as when all layers are there at
-//! once, to the last bit.
+//! The picture begins with opaque surfaces. Each pass brings one layer for each sample that has
+//! some left, the farthest: it is illuminated, laid over the picture, and forgotten. What a layer
+//! looks like, and where in the pixel it is illuminated, is the same as when all layers are there
+//! at once, to the last bit.
 //!
-//! In:   a tile, and passes over what is in front of it. Out: its pixels, and on demand those after
-//!       each pass.
+//! In:   a tile, and passes over the layers in front of it. Out: its pixels, and on demand those
+//!       after each pass.
 //! Cost: see `visible/peel.rs`; memory: a colour for each sample.
 //! Source: \[Mammen 1989\].
 

@@ -15,8 +15,8 @@ pub(crate) struct Front {
     pub touching: Vec<u32>,
 }
 
-/// Takes over the samples that show mirrors and transparent surfaces, and finds what is seen in and
-/// through them.
+/// Takes over the samples that show mirrors and transparent surfaces, and finds the surfaces seen
+/// in and through them.
 ///
 /// Shading asks once for each tile. It illuminates the first surface at each sample itself.
 pub(crate) trait Tracer: Sync {

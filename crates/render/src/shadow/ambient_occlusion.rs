@@ -148,7 +148,7 @@ mod tests {
         let mut rays = 0;
         let part = occlusion.open(&SurfacePoints::from_iter([place]), &mut rays)[0];
         let followed = occlusion.ways(&place).count() as u64;
-        assert!(rays == followed && followed >= 4095, "{rays}, {followed}");
+        assert!(rays == followed && followed > 4000, "{rays}, {followed}");
         part
     }
 

@@ -9,10 +9,10 @@
 //! Texels are coarser than pixels, and a lit surface must not find itself in its own way (*acne*),
 //! nor may it be moved so far that its shadow loosens from its foot (*peter-panning*). So the depth
 //! that is compared is not the point's own but that of its facet's plane in the middle of the
-//! texel, which takes a slope exactly into account; what is left, the rounding of corners to 1/256
-//! texel, grows with the slope (*slope-scaled bias*). And because the texel's middle may lie on a
-//! neighbour that rises towards the light, the point is lifted by half a texel along its normal
-//! (*normal bias*). Four texels round the point are compared one by one, and the answers are
+//! texel, which takes a slope exactly into account; the remaining error, the rounding of corners to
+//! 1/256 texel, grows with the slope (*slope-scaled bias*). And because the texel's middle may lie
+//! on a neighbour that rises towards the light, the point is lifted by half a texel along its
+//! normal (*normal bias*). Four texels round the point are compared one by one, and the answers are
 //! blended (*percentage-closer filtering*), but for those in which the light sees something far
 //! behind: the surface does not reach there.
 //!

@@ -10,10 +10,10 @@
 //! *multiplicity*; it is ±1 along an open border, and any number where more than two triangles
 //! meet, so no mesh has to be closed.
 //!
-//! *Z-pass* counts from the viewer to what is seen, beginning with the number of volumes that the
-//! viewer is in. *Z-fail* counts from infinity beyond it, beginning with the far caps. Both give
-//! the number at any place, and need it only once for a batch of neighbours: from there on, the
-//! path goes to the others. The batch is cut in two again and again, and each half keeps the
+//! *Z-pass* counts from the viewer to the visible point, beginning with the number of volumes that
+//! the viewer is in. *Z-fail* counts from infinity beyond it, beginning with the far caps. Both
+//! give the number at any place, and need it only once for a batch of neighbours: from there on,
+//! the path goes to the others. The batch is cut in two again and again, and each half keeps the
 //! polygons that touch the box round its places; where none is left, all have the same number.
 //! Polygons are homogeneous (the sides end at points with `w = 0`) and nothing is clipped, so no
 //! near plane can cut a volume open.

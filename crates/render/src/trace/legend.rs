@@ -11,8 +11,8 @@ pub enum Legend {
     Cost(&'static str),
     /// Windows, outlined in the colour of their verdict.
     Windows,
-    /// The place of what is on top in the list, as a ramp, with the outlines of polygons that were
-    /// cut.
+    /// The place of the polygon on top in the list, as a ramp, with the outlines of polygons that
+    /// were cut.
     List,
     /// Outlines of visible polygons.
     Outlines,

@@ -200,8 +200,8 @@ struct Progress {
     version: u32,
 }
 
-/// A polygon on the list of a cell, with what is looked at first when another is compared with it.
-/// Small, since many are looked at.
+/// A polygon on the list of a cell, with the values compared first when another is compared with
+/// it. Small, since many are looked at.
 #[derive(Clone, Copy)]
 struct Entry {
     polygon: u32,

@@ -62,8 +62,8 @@ impl<'a> RoundTiles<'a> {
         let mut layers = self.layers[index].lock().expect("no thread panics while it holds layers");
         self.overdraw.come(view, self.execution, &round.batches, index, tile);
 
-        // Let marks hide what is behind them, then walk the triangles. Layers that are asked for in
-        // passes wait.
+        // Let marks hide the samples behind them, then walk the triangles. Layers that are asked
+        // for in passes wait.
         let marks = self.marks.filter(|_| round.is_last);
         if let Some(marks) = marks {
             hide_behind((level, view.depth_bits), &marks.hiding, index, tile, &view.pattern);

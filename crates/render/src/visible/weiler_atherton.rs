@@ -168,7 +168,7 @@ struct Frame {
     buckets: Option<Buckets>,
 }
 
-/// The inner part of an item that it cuts or holds.
+/// The parts of an item inside a clipping polygon that cuts or holds the item.
 struct Inside {
     /// What may be visible.
     kept: Option<Item>,

@@ -54,8 +54,8 @@ impl Assembler<'_> {
         if outside {
             return;
         }
-        // What has no area, as what is seen edge-on, is a back face; its edges and corners are
-        // drawn.
+        // A polygon without area, such as one seen edge-on, is a back face; its edges and corners
+        // are drawn.
         let back = area == 0.0 || (area > 0.0) != self.state.counter_clockwise;
         if self.state.cull[usize::from(back)] {
             return;

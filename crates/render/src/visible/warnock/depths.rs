@@ -35,9 +35,9 @@ impl<'f> CornerDepths<'f> {
         Self { setup, depths, margin }
     }
 
-    /// Whether this facet is what is seen of the two at each sample of the window that both cover.
-    /// The planes' distance is linear, so smallest at a corner; depths are clamped, so neither
-    /// plane may leave the other facet's range on the wrong side.
+    /// Whether this facet is the visible one of the two at each sample of the window that both
+    /// cover. The planes' distance is linear, so smallest at a corner; depths are clamped, so
+    /// neither plane may leave the other facet's range on the wrong side.
     pub(super) fn hides(&self, other: &Self) -> bool {
         let (near, far) = (self.setup, other.setup);
         if near.z_min > far.z_max {

@@ -1,12 +1,12 @@
 //! Long lists on all threads.
 //!
-//! In a list, an item is clipped by the clipping polygons before it, in their order; what is inside
-//! one goes into that one's list, and the rest goes on to the next. That asks nothing of other
-//! items but whether they have anything left when it is their turn to clip. And even that hardly
-//! matters: if nothing is left of a clipping polygon, those before it have taken everything inside
-//! its outline from the others, too, and a clip finds nothing there. But where a part was cut off
-//! in penetration, the outline encloses more than what there was. Such items are therefore taken
-//! first.
+//! In a list, an item is clipped by the clipping polygons before it, in their order; the part
+//! inside one goes into that one's list, and the rest goes on to the next. That asks nothing of
+//! other items but whether they have anything left when it is their turn to clip. And even that
+//! hardly matters: if nothing is left of a clipping polygon, those before it have taken everything
+//! inside its outline from the others, too, and a clip finds nothing there. But where a part was
+//! cut off in penetration, the outline encloses more than what there was. Such items are therefore
+//! taken first.
 //!
 //! In:   a list. Out: its visible polygons.
 //! Cost: as in the plain order; memory: all parts inside clipping polygons at once.

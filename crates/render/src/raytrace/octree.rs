@@ -12,8 +12,8 @@
 //! In:   triangles. Out: [`Octree`].
 //! Cost: `O(n log n)` to build; at most [`REFERENCES`] entries a triangle, whatever the scene.
 //! Source: [Glassner 1984]. Departs from it: children are found through their parent, not by a hash
-//!         of their names, and tested against the ray one by one, since the followed triangles may
-//!         be as wide as a block of pixels.
+//!         of their names, and tested against the ray one by one, since a beam of rays may be as
+//!         wide as a block of pixels.
 
 use super::beam::Beam;
 use super::follow::{Follow, StructureUser};

@@ -414,7 +414,7 @@ fn title_row(text: &str) -> Result<(String, String), String> {
     match TitleBlock::new(std::slice::from_ref(&row)) {
         Ok(_) => Ok(row),
         Err(letter) => Err(format!(
-            "there are there is no stroke letter for `{letter}`; letters are A to Z, a to z, 0 to 9 and punctuation"
+            "there is no stroke letter for `{letter}`; letters are A to Z, a to z, 0 to 9 and punctuation"
         )),
     }
 }

@@ -6,9 +6,25 @@
 
 import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { deflateRawSync } from "node:zlib";
 import { build } from "esbuild";
 
-const options = { bundle: true, target: "es2022", legalComments: "none", logLevel: "warning" };
+/** The module `lab-texts`: the texts in all languages as JSON, deflated, in base64. */
+const texts = {
+  name: "texts",
+  setup(build) {
+    build.onResolve({ filter: /^lab-texts$/ }, () => ({ path: "src/table.ts", namespace: "texts" }));
+    build.onLoad({ filter: /.*/, namespace: "texts" }, async () => {
+      const bundled = await build.esbuild.build({ entryPoints: ["src/table.ts"], bundle: true, write: false, format: "esm" });
+      const source = Buffer.from(bundled.outputFiles[0].contents).toString("base64");
+      const { TABLE } = await import(`data:text/javascript;base64,${source}`);
+      const packed = deflateRawSync(JSON.stringify(TABLE), { level: 9 }).toString("base64");
+      return { contents: `export default ${JSON.stringify(packed)};`, loader: "js" };
+    });
+  },
+};
+
+const options = { bundle: true, target: "es2022", legalComments: "none", logLevel: "warning", plugins: [texts] };
 
 if (process.argv.includes("--unit")) {
   const entryPoints = readdirSync("src").filter((f) => f.endsWith(".test.ts")).map((f) => `src/${f}`);

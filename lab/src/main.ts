@@ -8,7 +8,7 @@ import { acceptDrops, startFiles } from "./files.ts";
 import { talkToParent } from "./frame.ts";
 import { listenToKeys } from "./keys.ts";
 import { page } from "./page.ts";
-import { setLanguage, t } from "./words.ts";
+import { readTexts, setLanguage, t } from "./words.ts";
 import { browserLanguage } from "./app.ts";
 
 /** What the browser has to have. */
@@ -36,13 +36,14 @@ async function start() {
   const root = document.getElementById("lab")!;
   const hash = new URLSearchParams(location.hash.slice(1)).get("lang");
   setLanguage(hash === "ro" || hash === "fr" || hash === "pt" || hash === "en" ? hash : browserLanguage());
+  const missing = lacking();
+  if (!missing.includes("DecompressionStream")) await readTexts();
   const app = new App();
   app.onRender(() => {
     render(page(app), root);
     app.after("scrollers", 200, () => markScrollers(root));
   });
   app.changed();
-  const missing = lacking();
   if (missing.length) return app.fail(t("This browser lacks {0}", missing.join(", ")));
 
   // Open what the page was made for.

@@ -2,10 +2,20 @@
 //
 // English texts are the keys of the table. What the engine tells in English is looked up there, too.
 
+import packed from "lab-texts";
+import { inflated } from "./inflate.ts";
 import type { Language } from "./link.ts";
-import { TABLE } from "./table.ts";
+import type { TABLE } from "./table.ts";
 
 export type Key = keyof typeof TABLE;
+
+/** The table, once it is read. */
+let table: Record<string, readonly [string, string, string]> = {};
+
+/** Reads the table; until then all texts are English. */
+export async function readTexts() {
+  table = JSON.parse(await inflated(packed).text()) as typeof table;
+}
 
 const COLUMNS = { ro: 0, fr: 1, pt: 2 } as const;
 
@@ -19,7 +29,7 @@ export const isEnglish = () => language === "en";
 
 const lookUp = (text: string): string => {
   if (language === "en") return text;
-  const row = Object.hasOwn(TABLE, text) ? (TABLE as Record<string, readonly [string, string, string]>)[text] : undefined;
+  const row = Object.hasOwn(table, text) ? table[text] : undefined;
   return row?.[COLUMNS[language]] ?? text;
 };
 
@@ -35,7 +45,7 @@ export function translated(text: string): string {
 
 /** A text of the engine in a tooltip: nothing where the table lacks it. */
 export function tooltip(text: string): string {
-  return language === "en" || Object.hasOwn(TABLE, text) ? lookUp(text) : "";
+  return language === "en" || Object.hasOwn(table, text) ? lookUp(text) : "";
 }
 
 /** What goes in and out of a stage: numbers with words of the table. */

@@ -1,5 +1,6 @@
 // The engine in a worker: one WebAssembly module, one request at a time.
 
+import { bytesOf, inflated } from "./inflate.ts";
 import type { JsonObject } from "./json.ts";
 import { decode, encode } from "./message.ts";
 
@@ -38,12 +39,8 @@ async function compile(source: Source): Promise<WebAssembly.Module> {
       return WebAssembly.compile(await answer.arrayBuffer());
     }
     case "text": {
-      const text = atob(source.base64.replace(/\s+/g, ""));
-      const bytes = new Uint8Array(text.length);
-      for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
-      if (!source.isDeflated) return WebAssembly.compile(bytes);
-      const inflated = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-      return WebAssembly.compile(await new Response(inflated).arrayBuffer());
+      if (!source.isDeflated) return WebAssembly.compile(bytesOf(source.base64));
+      return WebAssembly.compile(await inflated(source.base64).arrayBuffer());
     }
   }
 }

@@ -690,6 +690,36 @@ const PAGE = {
   "Inspect a pixel to see the depths round it.": ["Inspectați un pixel pentru adâncimile din jurul lui.", "Inspectez un pixel pour voir les profondeurs autour.", "Inspecione um píxel para ver as profundidades à volta."],
   "Inspect a pixel to see the depths of all facets over it.": ["Inspectați un pixel pentru adâncimile tuturor fațetelor de peste el.", "Inspectez un pixel pour voir les profondeurs de toutes ses facettes.", "Inspecione um píxel para ver as profundidades de todas as facetas sobre ele."],
   nearest: ["cea mai apropiată", "la plus proche", "a mais próxima"],
+  "edge on": ["pe muchie", "de profil", "de perfil"],
+  "faces the viewer": ["spre observator", "vers l’observateur", "virada para o observador"],
+  "faces away": ["în partea opusă", "tournée de l’autre côté", "virada para o outro lado"],
+  "V leads from the facet to the eye, N is its normal. A face with V·N < 0 is a back face: nobody sees it on a closed body.": [
+    "V duce de la fațetă la ochi, N este normala ei. O față cu V·N < 0 este o față spate: nimeni nu o vede pe un corp închis.",
+    "V va de la facette à l’œil, N est sa normale. Une face avec V·N < 0 est une face arrière : personne ne la voit sur un corps fermé.",
+    "V vai da faceta ao olho, N é a sua normal. Uma face com V·N < 0 é uma face traseira: ninguém a vê num corpo fechado.",
+  ],
+  "Depth cueing": ["Atenuare cu adâncimea", "Atténuation avec la profondeur", "Atenuação com a profundidade"],
+  "Depth cue": ["Indiciu de adâncime", "Indice de profondeur", "Indício de profundidade"],
+  "Depth cueing is off": ["Atenuarea cu adâncimea este oprită", "L’atténuation avec la profondeur est désactivée", "A atenuação com a profundidade está desligada"],
+  "Scale in front": ["Scara în față", "Échelle devant", "Escala à frente"],
+  "Scale behind": ["Scara în spate", "Échelle derrière", "Escala atrás"],
+  "s falls from the front plane to the back plane; I_dc is the background.": [
+    "s scade de la planul din față la cel din spate; I_dc este fundalul.",
+    "s décroît du plan avant au plan arrière ; I_dc est le fond.",
+    "s diminui do plano da frente ao de trás; I_dc é o fundo.",
+  ],
+  "Profile along the line": ["Profilul de-a lungul liniei", "Profil le long de la ligne", "Perfil ao longo da linha"],
+  "brightness of row {0}, 0 to 255; the mark is the inspected pixel": [
+    "luminozitatea rândului {0}, de la 0 la 255; semnul este pixelul inspectat",
+    "luminosité de la rangée {0}, de 0 à 255 ; la marque est le pixel inspecté",
+    "brilho da linha {0}, de 0 a 255; a marca é o píxel inspecionado",
+  ],
+  "Inspect a pixel to see how bright its row is.": [
+    "Inspectați un pixel pentru a vedea luminozitatea rândului său.",
+    "Inspectez un pixel pour voir la luminosité de sa rangée.",
+    "Inspecione um píxel para ver o brilho da sua linha.",
+  ],
+  "Value of {0}": ["Valoarea lui {0}", "Valeur de {0}", "Valor de {0}"],
 } as const satisfies Record<string, readonly [string, string, string]>;
 
 export const TABLE = { ...PAGE, ...ENGINE };

@@ -11,7 +11,10 @@ import { drawing } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
 import { stagePart, t, translated } from "../words.ts";
+import { depthCue } from "./depth-cue.ts";
+import { facing } from "./facing.ts";
 import { show } from "./picture.ts";
+import { profile } from "./profile.ts";
 import { explanationOf, increments, objects } from "./pixel.ts";
 
 // ---- Scene ----
@@ -34,7 +37,7 @@ export function pipeline(app: App): TemplateResult {
   const rows = objects(answer?.["stages"]).map((s): Cell[] => [translated(String(s["stage"])), stagePart(String(s["in"])), stagePart(String(s["out"]))]);
   return html`<section class="region" aria-labelledby="stages-title">
     <h2 id="stages-title">${t("Stages")}</h2>
-    ${table({ name: t("Stages"), columns: [t("stage"), t("in"), t("out")], rows })} ${vertices(app, answer)} ${projector(answer)}
+    ${table({ name: t("Stages"), columns: [t("stage"), t("in"), t("out")], rows })} ${vertices(app, answer)} ${facing(app, answer)} ${projector(answer)}
   </section>`;
 }
 
@@ -168,7 +171,8 @@ export function illumination(app: App): TemplateResult {
           <button type="button" @click=${() => app.dialogs.open("lights")}>${t("Lights…")}</button>
         </div>
       </div>
-    </section>`;
+    </section>
+    ${depthCue(app)}`;
 }
 
 /** The terms of the formula, apart and together. */
@@ -260,7 +264,7 @@ export function shading(app: App): TemplateResult {
       <h2 id="shading-title">${t("Flat, Gouraud, Phong")}</h2>
       <div class="thumbnails">${["flat", "gouraud", "phong"].map(one)}</div>
     </section>
-    ${normals(app)}
+    ${profile(app)} ${normals(app)}
     <section class="region" aria-labelledby="defects-title">
       <h2 id="defects-title">${t("Defects of interpolated shading")}</h2>
       <div class="list">${DEFECTS.map((d) => radio(t(d.name), "defect", d === shown, () => open(d)))}</div>

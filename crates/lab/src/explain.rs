@@ -4,7 +4,7 @@ use crate::answer::Answer;
 use crate::{formula, printed, why};
 use serde_json::{Value, json};
 use vitral::bench::Entrant;
-use vitral::explain::{Deciders, Explanation, corner_normals, explain as explain_pixel};
+use vitral::explain::{Deciders, Explanation, explain as explain_pixel};
 use vitral::{Error, LightKind, Renderer};
 
 /// Seconds after which an algorithm that is asked gives up.
@@ -17,12 +17,10 @@ pub(crate) fn explain(renderer: &mut Renderer, pixel: [u32; 2]) -> Answer {
     let told = explain_pixel(renderer, &camera, pixel, &Deciders::Chosen, None)?;
     let lights = renderer.frame_lights(&camera);
     let names: Vec<String> = light_names(&lights);
-    let nearest = told.surfaces.first().map(|surface| corner_normals(renderer, surface.facet));
-    let normals = nearest.transpose()?;
     let answer = json!({
         "explanation": as_json(&told)?,
         "lights": names,
-        "normals": normals,
+        "normals": told.normals,
         "why": why::why(&told, &names),
         "formula": formula::formula(&told, &names),
         "printed": printed::printed(&told, &lights, &names),

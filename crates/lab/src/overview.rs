@@ -12,7 +12,7 @@ use vitral::internals::math::{DVec4, func};
 use vitral::internals::render::trace::Step;
 use vitral::internals::scene::framing::{depth_range, frame_from};
 use vitral::{
-    Aabb, Camera, DMat4, DVec3, Error, Light, LightKind, Projection, Renderer, Viewpoint,
+    Aabb, AreaShape, Camera, DMat4, DVec3, Error, Light, LightKind, Projection, Renderer, Viewpoint,
 };
 
 /// How much of the picture is filled.
@@ -66,7 +66,9 @@ pub(crate) fn overview(renderer: &mut Renderer, asked: &Asked<'_>) -> Answer {
     screen.cuboid(&mut svg, volume, "volume", "");
     for light in lights.iter().filter(|light| light.enabled) {
         match &light.kind {
-            LightKind::Point { position } => screen.point(&mut svg, *position, "light", &light.name),
+            LightKind::Point { position } => {
+                screen.point(&mut svg, *position, "light", &light.name)
+            }
             LightKind::Spot { position, direction, cutoff, .. } => {
                 let length = (renderer.world().bounds.center() - *position).length();
                 for edge in cone(*direction, *cutoff) {

@@ -23,9 +23,7 @@ pub(crate) fn picture(
     let start = renderer.execution().budget.elapsed();
     let picture = renderer.render_from(&camera)?;
     let seconds = renderer.execution().budget.elapsed() - start;
-    let shown = picture::shown(&picture.frame, channel)?;
-    let colors = color_count(shown.data());
-    let pixels = shown.data().as_flattened().to_vec();
+    let pixels = picture::shown(&picture.frame, channel)?.data().as_flattened().to_vec();
 
     let lights = renderer.frame_lights(&camera);
     let answer = json!({
@@ -33,7 +31,6 @@ pub(crate) fn picture(
         "height": picture.height(),
         "description": description(renderer, state, lights.len()),
         "seconds": seconds,
-        "colors": colors,
         "warnings": ([renderer.scene().warnings.clone(), picture.warnings.clone()].concat()),
         "counters": counters(&serde_json::to_value(&picture.stats).map_err(|e| Error::usage(e.to_string(), ""))?),
         "facts": {
@@ -48,16 +45,6 @@ pub(crate) fn picture(
     });
     renderer.recycle(picture);
     Ok((answer, vec![pixels]))
-}
-
-/// How many different colours there are, the background's among them.
-fn color_count(pixels: &[[u8; 4]]) -> usize {
-    // Neighbours are often equal.
-    let mut colors: Vec<u32> = pixels.iter().map(|pixel| u32::from_ne_bytes(*pixel)).collect();
-    colors.dedup();
-    colors.sort_unstable();
-    colors.dedup();
-    colors.len()
 }
 
 /// The picture in words: "teapot seen from front, z-buffer, phong shading, 2 lights".

@@ -17,11 +17,11 @@ pub(crate) fn stages(renderer: &mut Renderer, pixel: Option<[u32; 2]>) -> Answer
     renderer.recycle(picture);
 
     // Bring the corners of the facet at the pixel through all spaces.
-    let mut answer =
-        json!({"stages": rows(&stats), "facet": null, "spaces": null, "projector": null, "faces": []});
+    let mut answer = json!({"stages": rows(&stats), "facet": null, "spaces": null, "projector": null, "faces": []});
     if let Some(pixel) = pixel {
         let explained = explain(renderer, &camera, pixel, &Deciders::Chosen, None)?;
-        answer["faces"] = explained.candidates.iter().map(|c| facing(renderer, &camera, c)).collect();
+        answer["faces"] =
+            explained.candidates.iter().map(|c| facing(renderer, &camera, c)).collect();
         let surfaces = explained.surfaces;
         if let Some(nearest) = surfaces.first() {
             answer["facet"] = json!(nearest.facet);

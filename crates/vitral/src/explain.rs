@@ -58,6 +58,8 @@ pub struct Explanation {
     pub light: PixelLight,
     /// The surfaces that cover its centre, the nearest first.
     pub surfaces: Vec<Surface>,
+    /// The normals at the corners of the nearest surface's facet; empty on the background.
+    pub normals: Vec<CornerNormal>,
     /// How Gouraud's shading gets the nearest surface's intensity, with that shading.
     pub gouraud: Option<Gouraud>,
     /// What algorithms decided.
@@ -256,6 +258,8 @@ pub fn explain(
 
     // Find the surfaces over the pixel's centre, and interpolate Gouraud's colours on the nearest.
     let surfaces = surfaces(renderer, camera, pixel)?;
+    let normals = surfaces.first().map(|s| corner_normals(renderer, s.facet)).transpose()?;
+    let normals = normals.map_or(Vec::new(), Vec::from);
     let nearest = surfaces.first().filter(|_| settings.shading.model == Shading::Gouraud);
     let gouraud =
         nearest.map_or(Ok(None), |s| gouraud::gouraud(renderer, camera, pixel, s.facet))?;
@@ -284,7 +288,7 @@ pub fn explain(
     };
     let ExaminedPixel { candidates, light, bytes } = examined;
     let candidates = candidates.into_iter().map(overlying).collect();
-    Ok(Explanation { pixel, bytes, candidates, light, surfaces, gouraud, decisions, rays })
+    Ok(Explanation { pixel, bytes, candidates, light, surfaces, normals, gouraud, decisions, rays })
 }
 
 /// The algorithm that the settings choose.

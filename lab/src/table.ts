@@ -1,8 +1,11 @@
 // All texts of the page: English, then Romanian, French, Portuguese. Course terms as the notes say them.
 
 import { ENGINE } from "./table-engine.ts";
+import { TERMS } from "./table-terms.ts";
 
 const PAGE = {
+  ...TERMS,
+
   // Landmarks, menus, pages
   "Main menu": ["Meniul principal", "Menu principal", "Menu principal"],
   Topics: ["Teme", "Thèmes", "Temas"],
@@ -245,14 +248,14 @@ const PAGE = {
   "box of items {0}: {1}": ["cutia elementelor {0}: {1}", "boîte des éléments {0} : {1}", "caixa dos elementos {0}: {1}"],
   "facet {0} is clipped: {1}": ["fațeta {0} este decupată: {1}", "la facette {0} est découpée : {1}", "a faceta {0} é recortada: {1}"],
   "facet {0} is drawn: {1} runs stay, {2} are hidden": [
-    "fațeta {0} este desenată: {1} șiruri rămân, {2} sunt ascunse",
-    "la facette {0} est tracée : {1} suites restent, {2} sont cachées",
-    "a faceta {0} é desenhada: {1} sequências ficam, {2} são escondidas",
+    "fațeta {0} este desenată: {1} șiruri mai apropiate se păstrează, {2} sunt ascunse",
+    "la facette {0} est tracée : {1} suites plus proches sont gardées, {2} sont cachées",
+    "a faceta {0} é desenhada: {1} sequências mais próximas ficam, {2} são escondidas",
   ],
   "facet {0}, depth {1}; there: {2}; stays: {3}": [
-    "fațeta {0}, adâncimea {1}; acolo: {2}; rămâne: {3}",
-    "facette {0}, profondeur {1} ; déjà là : {2} ; reste : {3}",
-    "faceta {0}, profundidade {1}; lá: {2}; fica: {3}",
+    "fațeta {0}, adâncimea {1}; acolo: {2}; mai aproape, se păstrează: {3}",
+    "facette {0}, profondeur {1} ; déjà là : {2} ; plus proche, gardée : {3}",
+    "faceta {0}, profundidade {1}; lá: {2}; mais perto, fica: {3}",
   ],
   "window {0},{1} of {2} x {3}, polygons left: {4}; {5}": [
     "fereastra {0},{1} de {2} x {3}, poligoane rămase: {4}; {5}",
@@ -303,7 +306,7 @@ const PAGE = {
   algorithm: ["algoritm", "algorithme", "algoritmo"],
   why: ["de ce", "pourquoi", "porquê"],
   "{0} steps": ["{0} pași", "{0} étapes", "{0} passos"],
-  "facet {0}, depth {1}: {2} stays": ["fațeta {0}, adâncimea {1}: rămâne {2}", "facette {0}, profondeur {1} : {2} reste", "faceta {0}, profundidade {1}: fica {2}"],
+  "facet {0}, depth {1}: {2} stays": ["fațeta {0}, adâncimea {1}: se păstrează {2}", "facette {0}, profondeur {1} : {2} est gardée", "faceta {0}, profundidade {1}: fica {2}"],
   background: ["fundal", "fond", "fundo"],
   "Ask all algorithms": ["Întreabă toți algoritmii", "Interroger tous les algorithmes", "Perguntar a todos os algoritmos"],
   "Asking all algorithms…": ["Sunt întrebați toți algoritmii…", "On interroge tous les algorithmes…", "A perguntar a todos os algoritmos…"],
@@ -690,6 +693,6 @@ const PAGE = {
   "Inspect a pixel to see the depths round it.": ["Inspectați un pixel pentru adâncimile din jurul lui.", "Inspectez un pixel pour voir les profondeurs autour.", "Inspecione um píxel para ver as profundidades à volta."],
   "Inspect a pixel to see the depths of all facets over it.": ["Inspectați un pixel pentru adâncimile tuturor fațetelor de peste el.", "Inspectez un pixel pour voir les profondeurs de toutes ses facettes.", "Inspecione um píxel para ver as profundidades de todas as facetas sobre ele."],
   nearest: ["cea mai apropiată", "la plus proche", "a mais próxima"],
-} as const satisfies Record<string, readonly [string, string, string]>;
+} as const satisfies Record<string, readonly [string, string, string, string?]>;
 
 export const TABLE = { ...PAGE, ...ENGINE };

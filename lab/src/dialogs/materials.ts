@@ -5,6 +5,7 @@ import type { App } from "../app.ts";
 import type { JsonObject } from "../json.ts";
 import { propertyOf, setMaterial } from "../materials.ts";
 import { button, check, combo, group, spin } from "../parts/fields.ts";
+import type { Term } from "../parts/what.ts";
 import { t, type Key } from "../words.ts";
 import { dialog } from "./dialog.ts";
 import { CHANNELS } from "./lights.ts";
@@ -50,11 +51,12 @@ function fields(app: App, material: JsonObject): unknown {
         ),
       ),
       "in-row",
+      property,
     );
   };
-  const number = (label: Key, property: string, range: { min?: number; max?: number; step?: number }) => {
+  const number = (label: Key & Term, property: string, range: { min?: number; max?: number; step?: number }) => {
     const value = propertyOf(material, property);
-    return typeof value === "number" ? spin(t(label), value, set(property), range) : nothing;
+    return typeof value === "number" ? spin(t(label), value, set(property), { ...range, term: label }) : nothing;
   };
   const transmission = propertyOf(material, "transmission");
   const mirror = propertyOf(material, "mirror");
@@ -65,7 +67,7 @@ function fields(app: App, material: JsonObject): unknown {
       ${number("kt min", "kt-min", { min: 0, max: 1, step: 0.05 })} ${number("Index of refraction", "ior", { min: 0.1, step: 0.05 })}
     </div>
     <div class="row-of-fields">
-      ${typeof mirror === "boolean" ? check(t("Mirror"), mirror, set("mirror")) : nothing}
+      ${typeof mirror === "boolean" ? check(t("Mirror"), mirror, set("mirror"), { term: "Mirror" }) : nothing}
       ${typeof transmission === "string"
         ? combo(
             t("Transmission"),
@@ -75,6 +77,7 @@ function fields(app: App, material: JsonObject): unknown {
               { value: "translucent", text: t("translucent") },
             ],
             set("transmission"),
+            { term: "Transmission" },
           )
         : nothing}
     </div>`;

@@ -626,6 +626,12 @@ export class App {
     this.setLab({ step });
   }
 
+  /** Leaves the steps for the finished picture. */
+  showFinished() {
+    this.playback.pause();
+    this.goToStep(null);
+  }
+
   get stepNumber() {
     return this.lab.step ?? this.stepCount;
   }

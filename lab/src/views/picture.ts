@@ -9,9 +9,11 @@ import { axes, project, unproject, type Eye, type Vector } from "../camera.ts";
 import type { JsonObject } from "../json.ts";
 import { placeOf, setPlace } from "../lights.ts";
 import { combo } from "../parts/fields.ts";
+import { explanationText } from "../parts/what.ts";
 import { drawing } from "../parts/markup.ts";
-import { t } from "../words.ts";
+import { t, translated } from "../words.ts";
 import { turn, zoom } from "./camera.ts";
+import { CHANNELS, TERMS } from "./settings.ts";
 
 /** The result that each canvas shows. */
 const drawn = new WeakMap<HTMLCanvasElement, Result<Plane>>();
@@ -261,8 +263,18 @@ function handles(app: App): unknown {
 /** What the step is about, over the picture so far. */
 function overlay(app: App): unknown {
   const step = app.step?.value;
-  if (app.lab.step === null || !app.hasSteps || !step?.drawing) return nothing;
-  return html`<div class="overlay" aria-hidden="true">${drawing(step.drawing, "overlay")}</div>`;
+  const isStep = app.lab.step !== null && app.hasSteps && step?.drawing;
+  return html`${isStep ? html`<div class="overlay" aria-hidden="true">${drawing(step.drawing!, "overlay")}</div>` : nothing} ${asked(app)}`;
+}
+
+/** The window that a question is about. */
+function asked(app: App): unknown {
+  const { prediction } = app.playback;
+  const pixels = prediction?.next.fields["pixels"];
+  if (!prediction || prediction.chosen !== null || !Array.isArray(pixels) || pixels.length !== 4) return nothing;
+  const [x, y, w, h] = pixels.map(Number);
+  const outline = svg`<rect vector-effect="non-scaling-stroke" x=${x} y=${y} width=${w} height=${h} />`;
+  return html`<svg class="cross asked" aria-hidden="true" viewBox="0 0 ${app.width} ${app.height}"><g class="halo">${outline}</g><g>${outline}</g></svg>`;
 }
 
 export interface Stage {
@@ -311,8 +323,32 @@ export function dragChoice(app: App): TemplateResult {
   });
 }
 
-/** The colours in the drawing over the picture, each with a word. */
+/** Whether the picture shows something else than colour, which the line below it explains. */
+export const hasChannelLegend = (app: App) => channelTerm(app) !== "Colour";
+
+/** What the picture shows: a channel, or a term of the lights. */
+function channelTerm(app: App): (typeof CHANNELS)[number][1] | (typeof TERMS)[number][1] {
+  const channel = app.channel() === "id" ? "surface" : app.channel();
+  const term = channel === "color" ? app.get("light-term") : null;
+  return TERMS.find(([field]) => field === term)?.[1] ?? CHANNELS.find(([field]) => field === channel)?.[1] ?? "Id";
+}
+
+/** What the colours of the channel mean, in a line. */
+function channelLegend(app: App): unknown {
+  if (!hasChannelLegend(app)) return nothing;
+  const term = channelTerm(app);
+  const found = app.catalog?.algorithms["visibility"]?.find((a) => a.name === app.get("settings.visibility"));
+  const steps = typeof found?.["steps"] === "string" ? translated(found["steps"]) : "";
+  return html`<p class="note"><strong>${t(term)}:</strong> ${term === "Steps" && steps ? steps : explanationText(term)}</p>`;
+}
+
+/** What the line below the picture says: the colours of its channel, of the step, of marks. */
 export function legend(app: App): unknown {
+  return html`${channelLegend(app)} ${stepLegend(app)}`;
+}
+
+/** The colours in the drawing over the picture, each with a word. */
+function stepLegend(app: App): unknown {
   const step = app.step?.value;
   if (app.lab.step === null || !app.hasSteps || !step) return nothing;
   const entries: Record<string, [string, string][]> = {
@@ -324,8 +360,8 @@ export function legend(app: App): unknown {
       ["cut", t("cut in four")],
     ],
     drawn: [
-      ["stays", t("stays")],
-      ["hidden", t("hidden")],
+      ["stays", t("nearer: is kept, until something nearer comes")],
+      ["hidden", t("farther: is hidden")],
     ],
     line: [
       ["line", t("scan line")],
@@ -338,5 +374,6 @@ export function legend(app: App): unknown {
   };
   const list = entries[step.group];
   if (!list) return nothing;
-  return html`<p class="legend">${list.map(([key, text]) => html`<span><i class=${`swatch ${key}`} aria-hidden="true"></i>${text}</span>`)}</p>`;
+  return html`<p class="legend">${list.map(([key, text]) => html`<span><i class=${`swatch ${key}`} aria-hidden="true"></i>${text}</span>`)}</p>
+    ${step.group === "window" ? html`<p class="note">${t("Windows are cut between tiles of 64 pixels, then at powers of two, never through a pixel.")}</p>` : nothing}`;
 }

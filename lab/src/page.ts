@@ -22,7 +22,7 @@ import { exerciseRegion, exercises } from "./views/exercise.ts";
 import { formulaRegion } from "./views/formula.ts";
 import { menubar } from "./views/menus.ts";
 import { compareAll, illumination, pipeline, scene, shading } from "./views/pages.ts";
-import { dragChoice, hasChannelLegend, legend, show, stage } from "./views/picture.ts";
+import { dragChoice, hasLegend, legend, show, stage } from "./views/picture.ts";
 import { pixelRegion } from "./views/pixel.ts";
 import { settings } from "./views/settings.ts";
 import { stepsToolbar } from "./views/steps.ts";
@@ -79,7 +79,7 @@ function pictures(app: App): TemplateResult {
       ? stage(app, { name: t("Picture"), picture: "a", plane: app.plane, isBusy: app.isBusy })
       : html`${comparison(app)} ${comparisonControls(app)}`}
     ${app.hasSteps ? stepsToolbar(app) : nothing}
-    ${app.hasSteps || hasChannelLegend(app) ? html`<div class="legend-line">${legend(app)}</div>` : nothing}
+    ${hasLegend(app) ? html`<div class="legend-line">${legend(app)}</div>` : nothing}
     <div class="bar">
       ${cameraToolbar(app)}
       ${isFull ? html`${dragChoice(app)} ${compareChoice(app)}` : nothing}
@@ -113,6 +113,12 @@ const PAGES_WITH_STEPS: Page[] = ["visibility", "pipeline"];
 /** Goes to a page; one without steps shows the finished picture. */
 const toPage = (app: App, page: Page): Partial<App["lab"]> => ({ page, step: PAGES_WITH_STEPS.includes(page) ? app.lab.step : null });
 
+/** Wide tables of a page, which stand below the picture where there is room. */
+function belowPictures(app: App): unknown {
+  if (app.lab.page === "illumination") return formulaRegion(app);
+  return app.lab.page === "visibility" && !isNarrow() ? compareAll(app) : nothing;
+}
+
 /** What the present page shows beside picture and settings. */
 function regions(app: App): unknown {
   const { page } = app.lab;
@@ -120,7 +126,7 @@ function regions(app: App): unknown {
   const pages: Record<Page, () => unknown> = {
     scene: () => html`${pixelRegion(app)} ${app.lab.pixel ? formulaRegion(app) : nothing} ${scene(app)} ${counters(app)}`,
     pipeline: () => html`${pipeline(app)} ${pixelRegion(app)} ${counters(app)}`,
-    visibility: () => html`${pixelRegion(app)} ${compareAll(app)} ${counters(app)}`,
+    visibility: () => html`${pixelRegion(app)} ${isNarrow() ? compareAll(app) : nothing} ${counters(app)}`,
     illumination: () => html`${pixelRegion(app)} ${illumination(app)}`,
     shading: () => html`${shading(app)} ${pixelRegion(app)} ${counters(app)}`,
     exercises: () => html`${exercises(app)} ${pixelRegion(app)}`,
@@ -180,7 +186,7 @@ export function page(app: App): TemplateResult {
     </header>
     ${topics(app)} ${messages(app)}
     <div class=${app.lab.compare === "side" || app.lab.compare === "difference" ? "columns wide-pictures" : "columns"}>
-      <main>${pictures(app)} ${isNarrow() ? exerciseRegion(app) : nothing} ${app.lab.page === "illumination" ? formulaRegion(app) : nothing}</main>
+      <main>${pictures(app)} ${isNarrow() ? exerciseRegion(app) : nothing} ${belowPictures(app)}</main>
       ${settings(app)}
       <div class="regions">${regions(app)}</div>
     </div>

@@ -58,6 +58,28 @@ export const TERMS = {
     "contornos dos polígonos visíveis, azul",
   ],
 
+  // Comparison, curves, marks
+  on: ["activ", "activé", "ativo"],
+  off: ["inactiv", "désactivé", "inativo"],
+  usual: ["obișnuit", "habituel", "habitual"],
+  "of one picture; the first picture of an algorithm also builds what it keeps, such as trees": [
+    "pentru o imagine; prima imagine a unui algoritm construiește și ce păstrează el, de exemplu arbori",
+    "d’une image ; la première image d’un algorithme construit aussi ce qu’il garde, par exemple des arbres",
+    "de uma imagem; a primeira imagem de um algoritmo constrói também o que ele guarda, como árvores",
+  ],
+  "what it keeps besides the picture; –: nothing": ["ce păstrează pe lângă imagine; –: nimic", "ce qu’il garde outre l’image ; – : rien", "o que guarda além da imagem; –: nada"],
+  "from the first algorithm's picture; 0: all agree": ["față de imaginea primului algoritm; 0: toți sunt de acord", "de l’image du premier algorithme ; 0 : tous s’accordent", "da imagem do primeiro algoritmo; 0: todos concordam"],
+  "what the algorithm counted; those that are 0 are left out": [
+    "ce a numărat algoritmul; cele care sunt 0 lipsesc",
+    "ce que l’algorithme a compté ; ceux qui valent 0 sont omis",
+    "o que o algoritmo contou; os que são 0 não aparecem",
+  ],
+  solid: ["continuu", "continu", "contínuo"],
+  dashed: ["întrerupt", "tireté", "tracejado"],
+  "dotted: above 1, where it is clamped": ["punctat: peste 1, unde este limitat", "pointillé : au-dessus de 1, où c’est limité", "pontilhado: acima de 1, onde é limitado"],
+  "centroid of the highlight of {0}": ["centrul reflexului luminii {0}", "centre du reflet de {0}", "centro do brilho de {0}"],
+  "mirror point of {0}": ["punctul de oglindire al luminii {0}", "point de réflexion de {0}", "ponto de reflexão de {0}"],
+
   // Fields of area lights
   Shape: ["Formă", "Forme", "Forma"],
   Disc: ["Disc", "Disque", "Disco"],

@@ -66,7 +66,7 @@ function fields(app: App, material: JsonObject): unknown {
       ${number("Roughness", "roughness", { min: 0, max: 1, step: 0.05 })} ${number("Opacity", "opacity", { min: 0, max: 1, step: 0.05 })}
       ${number("kt min", "kt-min", { min: 0, max: 1, step: 0.05 })} ${number("Index of refraction", "ior", { min: 0.1, step: 0.05 })}
     </div>
-    <div class="row-of-fields">
+    <div class="column">
       ${typeof mirror === "boolean" ? check(t("Mirror"), mirror, set("mirror"), { term: "Mirror" }) : nothing}
       ${typeof transmission === "string"
         ? combo(

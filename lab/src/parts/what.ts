@@ -44,11 +44,17 @@ export const words = (terms: [Term, string][]): TemplateResult =>
   html`<p class="words">${terms.map(([term, word]) => html`<span>${word} ${what(term, word)}</span>`)}</p>`;
 
 /** Where explanations appear. */
-export const explanationBox = (): TemplateResult =>
-  html`<div id=${ID} class="explanation" popover="auto" role="note" tabindex="-1" autofocus aria-labelledby=${`${ID}-title`}>
+export const explanationBox = (): TemplateResult => {
+  // The focus goes along, so that the text is read aloud; Escape gives it back.
+  const read = (e: Event) => {
+    const box = e.currentTarget as HTMLElement;
+    if (box.matches(":popover-open")) box.focus({ preventScroll: true });
+  };
+  return html`<div id=${ID} class="explanation" popover="auto" role="note" tabindex="-1" aria-labelledby=${`${ID}-title`} @toggle=${read}>
     <strong id=${`${ID}-title`}></strong>
     <p></p>
   </div>`;
+};
 
 /** Which way depths count, below a table that has some. */
 export const depthNote = (): TemplateResult => html`<p class="note">${t("Depths: 1 is near, 0 is far.")}</p>`;

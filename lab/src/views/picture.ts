@@ -6,7 +6,7 @@ import { css } from "../parts/css.ts";
 import type { Plane, Result } from "../answers.ts";
 import { type App } from "../app.ts";
 import { axes, project, unproject, type Eye, type Vector } from "../camera.ts";
-import type { JsonObject } from "../json.ts";
+import type { Json, JsonObject } from "../json.ts";
 import { placeOf, setPlace } from "../lights.ts";
 import { combo } from "../parts/fields.ts";
 import { explanationText } from "../parts/what.ts";
@@ -267,6 +267,46 @@ function overlay(app: App): unknown {
   return html`${isStep ? html`<div class="overlay" aria-hidden="true">${drawing(step.drawing!, "overlay")}</div>` : nothing} ${asked(app)}`;
 }
 
+/** The exercises about where a highlight falls. */
+const HIGHLIGHT_EXERCISES = ["4.1", "4.2", "4.3", "L20"];
+
+/** Where the highlight of the chosen light falls: its centroid, and the point that mirrors the light to the eye. */
+function highlightPoints(app: App): { centroid: [number, number] | null; mirror: [number, number] | null } | null {
+  if (!HIGHLIGHT_EXERCISES.includes(app.lab.exercise ?? "") || !app.catalog?.wants?.includes("highlight")) return null;
+  if (!app.complete?.value.lights[app.lightNumber] || app.isDragging) return null;
+  app.answerQuietly("highlight points", { want: "highlight", state: app.state, light: app.lightNumber });
+  const ok = app.answerTo("highlight points")?.ok;
+  const point = (v: Json | undefined): [number, number] | null => (Array.isArray(v) ? [Number(v[0]), Number(v[1])] : null);
+  return ok ? { centroid: point(ok["centroid"]), mirror: point(ok["mirror"]) } : null;
+}
+
+/** Marks of the highlight: a disc round its centroid, a slanted cross at the mirror point. */
+function highlightMarks(app: App): unknown {
+  const found = highlightPoints(app);
+  if (!found) return nothing;
+  const r = Math.max(app.width, app.height) / 60;
+  const { centroid, mirror } = found;
+  const disc = centroid ? svg`<circle vector-effect="non-scaling-stroke" cx=${centroid[0]} cy=${centroid[1]} r=${r} />` : nothing;
+  const cross = mirror
+    ? svg`<path vector-effect="non-scaling-stroke" d="M${mirror[0] - r} ${mirror[1] - r}l${2 * r} ${2 * r}M${mirror[0] + r} ${mirror[1] - r}l${-2 * r} ${2 * r}" />`
+    : nothing;
+  return html`<svg class="cross" aria-hidden="true" viewBox="0 0 ${app.width} ${app.height}">
+    <g class="halo">${disc}${cross}</g>
+    <g>${disc}${cross}</g>
+  </svg>`;
+}
+
+/** The marks of the highlight in words. */
+function highlightLegend(app: App): unknown {
+  const found = highlightPoints(app);
+  if (!found) return nothing;
+  const name = `LIGHT${app.lightNumber}`;
+  return html`<p class="legend">
+    ${found.centroid ? html`<span><i class="sign" aria-hidden="true">○</i>${t("centroid of the highlight of {0}", name)}</span>` : nothing}
+    ${found.mirror ? html`<span><i class="sign" aria-hidden="true">✕</i>${t("mirror point of {0}", name)}</span>` : nothing}
+  </p>`;
+}
+
 /** The window that a question is about. */
 function asked(app: App): unknown {
   const { prediction } = app.playback;
@@ -307,7 +347,7 @@ export function stage(app: App, s: Stage): TemplateResult {
     @keydown=${(e: KeyboardEvent) => keyDown(app, e, picture)}
   >
     <canvas role="img" aria-label=${description(app, picture)} ${ref((e) => show(e as HTMLCanvasElement | undefined, s.plane))}></canvas>
-    ${picture === "a" ? overlay(app) : nothing} ${cross(app)} ${picture === "a" ? handles(app) : nothing}
+    ${picture === "a" ? overlay(app) : nothing} ${cross(app)} ${picture === "a" ? html`${highlightMarks(app)} ${handles(app)}` : nothing}
   </div>`;
 }
 
@@ -324,7 +364,10 @@ export function dragChoice(app: App): TemplateResult {
 }
 
 /** Whether the picture shows something else than colour, which the line below it explains. */
-export const hasChannelLegend = (app: App) => channelTerm(app) !== "Colour";
+const hasChannelLegend = (app: App) => channelTerm(app) !== "Colour";
+
+/** Whether something in the picture is explained below it, or may be at another step. */
+export const hasLegend = (app: App) => app.hasSteps || hasChannelLegend(app) || HIGHLIGHT_EXERCISES.includes(app.lab.exercise ?? "");
 
 /** What the picture shows: a channel, or a term of the lights. */
 function channelTerm(app: App): (typeof CHANNELS)[number][1] | (typeof TERMS)[number][1] {
@@ -344,7 +387,7 @@ function channelLegend(app: App): unknown {
 
 /** What the line below the picture says: the colours of its channel, of the step, of marks. */
 export function legend(app: App): unknown {
-  return html`${channelLegend(app)} ${stepLegend(app)}`;
+  return html`${channelLegend(app)} ${stepLegend(app)} ${highlightLegend(app)}`;
 }
 
 /** The colours in the drawing over the picture, each with a word. */

@@ -7,12 +7,8 @@ export const TERMS = {
   "Move aside": ["Mută alături", "Déplacer de côté", "Mover para o lado"],
 
   // Legends
-  "nearer: is kept, until something nearer comes": [
-    "mai aproape: se păstrează, până vine ceva mai apropiat",
-    "plus proche : gardé, jusqu’à ce que vienne plus proche",
-    "mais perto: fica, até vir algo mais próximo",
-  ],
-  "farther: is hidden": ["mai departe: ascuns", "plus loin : caché", "mais longe: escondido"],
+  "pale: will be drawn over": ["palid: va fi acoperit", "pâle : sera recouvert", "pálido: será coberto"],
+  "not decided yet": ["încă nedecis", "pas encore décidé", "ainda não decidido"],
   "nearer, is kept": ["mai aproape, se păstrează", "plus proche, gardé", "mais perto, fica"],
   "farther, is hidden": ["mai departe, ascuns", "plus loin, caché", "mais longe, escondido"],
   "Depths: 1 is near, 0 is far.": ["Adâncimi: 1 este aproape, 0 departe.", "Profondeurs : 1 est proche, 0 est loin.", "Profundidades: 1 é perto, 0 é longe."],

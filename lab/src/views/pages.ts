@@ -219,13 +219,13 @@ export function illumination(app: App): TemplateResult {
           ${curve(
             t("Attenuation curve"),
             ATTENUATION,
-            [...attenuationGraphs(square, "second"), ...attenuationGraphs(law, "graph")],
+            [...attenuationGraphs(square, "square"), ...attenuationGraphs(law, "graph")],
             attenuated !== null ? [distance, attenuated] : null,
             ["d = 0", String(FARTHEST)],
           )}
           <p class="legend">
             <span><i class="swatch graph" aria-hidden="true"></i>${t("solid")}: min(1, 1 / (${c[0]} + ${c[1]} d + ${c[2]} d²))</span>
-            <span><i class="swatch second" aria-hidden="true"></i>${t("dashed")}: min(1, 1 / d²)</span>
+            <span><i class="swatch square" aria-hidden="true"></i>${t("dashed")}: min(1, 1 / d²)</span>
             <span>${t("dotted: above 1, where it is clamped")}</span>
           </p>
           <button type="button" @click=${() => app.dialogs.open("lights")}>${t("Lights…")}</button>

@@ -394,6 +394,9 @@ export function legend(app: App): unknown {
 function stepLegend(app: App): unknown {
   const step = app.step?.value;
   if (app.lab.step === null || !app.hasSteps || !step) return nothing;
+  // Algorithms that overwrite show what will not last in pale colours; the others begin with paper.
+  const pale: [string, string] = ["pale", t("pale: will be drawn over")];
+  const paper: [string, string] = ["paper", t("not decided yet")];
   const entries: Record<string, [string, string][]> = {
     window: [
       ["empty", t("empty window")],
@@ -401,19 +404,22 @@ function stepLegend(app: App): unknown {
       ["surrounded", t("surrounded")],
       ["pixel", t("one pixel")],
       ["cut", t("cut in four")],
+      paper,
     ],
     drawn: [
-      ["stays", t("nearer: is kept, until something nearer comes")],
-      ["hidden", t("farther: is hidden")],
+      ["stays", t("nearer, is kept")],
+      ["hidden", t("farther, is hidden")],
+      pale,
     ],
     line: [
       ["line", t("scan line")],
       ["span", t("span")],
+      paper,
     ],
-    rays: [["rays", t("rays")]],
-    piece: [["piece", t("piece")]],
-    clip: [["clip", t("clip polygon")]],
-    visible: [["visible", t("visible polygon")]],
+    rays: [["rays", t("rays")], paper],
+    piece: [["piece", t("piece")], pale],
+    clip: [["clip", t("clip polygon")], paper],
+    visible: [["visible", t("visible polygon")], paper],
   };
   const list = entries[step.group];
   if (!list) return nothing;

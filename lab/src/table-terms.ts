@@ -4,6 +4,11 @@ export const TERMS = {
   "What is {0}?": ["Ce este {0}?", "Qu’est-ce que {0} ?", "O que é {0}?"],
 
   "Finished picture": ["Imaginea finită", "Image finie", "Imagem acabada"],
+  "close a dialog or a menu, or leave the steps for the finished picture": [
+    "închide un dialog sau un meniu, ori lasă pașii pentru imaginea finită",
+    "fermer un dialogue ou un menu, ou quitter les étapes pour l’image finie",
+    "fechar um diálogo ou um menu, ou deixar os passos pela imagem acabada",
+  ],
   "Move aside": ["Mută alături", "Déplacer de côté", "Mover para o lado"],
 
   // Legends

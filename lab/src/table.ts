@@ -580,7 +580,6 @@ const PAGE = {
   "in the picture: inspect the pixel": ["în imagine: inspectează pixelul", "dans l’image : inspecter le pixel", "na imagem: inspecionar o píxel"],
   "in the picture: turn the camera": ["în imagine: rotește camera", "dans l’image : tourner la caméra", "na imagem: rodar a câmara"],
   "in the picture: zoom": ["în imagine: apropie, depărtează", "dans l’image : agrandir, réduire", "na imagem: aproximar, afastar"],
-  "close a dialog or a menu": ["închide un dialog sau un meniu", "fermer un dialogue ou un menu", "fechar um diálogo ou um menu"],
   "vitral Lab shows the classical algorithms of computer graphics step by step, on built-in scenes and on your own models.": [
     "vitral Lab arată pas cu pas algoritmii clasici ai graficii pe calculator, pe scene incluse și pe modelele dumneavoastră.",
     "vitral Lab montre pas à pas les algorithmes classiques de l’infographie, sur des scènes fournies et sur vos propres modèles.",

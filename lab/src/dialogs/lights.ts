@@ -102,7 +102,7 @@ function fields(app: App, light: JsonObject, number: number): unknown {
   };
   const isSpot = type === "spot";
   const direction = isSpot ? ((kind["direction"] as number[] | undefined) ?? [0, 0, -1]) : null;
-  return html`<div class="row-of-fields">
+  return html`<div class="checks">
       ${check(t("Enabled"), light["enabled"] !== false, (on) => setSwitch(app, number, "enabled", on))}
       ${check(t("Casts shadow"), light["shadow"] !== false, (on) => setSwitch(app, number, "shadow", on), { term: "Casts shadow" })}
     </div>

@@ -84,7 +84,7 @@ const KEYS: [string[], Key][] = [
   [["Enter"], "in the picture: inspect the pixel"],
   [["Shift + ← ↑ → ↓"], "in the picture: turn the camera"],
   [["+", "-"], "in the picture: zoom"],
-  [["Escape"], "close a dialog or a menu"],
+  [["Escape"], "close a dialog or a menu, or leave the steps for the finished picture"],
 ];
 
 export function keyboardDialog(app: App): TemplateResult {

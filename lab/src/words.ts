@@ -15,7 +15,8 @@ let table: Record<string, readonly string[]> = {};
 
 /** Reads the table; until then all texts are English. */
 export async function readTexts() {
-  table = JSON.parse(await inflated(packed).text()) as typeof table;
+  const [keys = [], ...columns] = JSON.parse(await inflated(packed).text()) as string[][];
+  table = Object.fromEntries(keys.map((key, i) => [key, columns.map((column) => column[i] ?? "")]));
 }
 
 const COLUMNS = { ro: 0, fr: 1, pt: 2, en: 3 } as const;
@@ -30,7 +31,7 @@ export const isEnglish = () => language === "en";
 
 const lookUp = (text: string): string => {
   const row = Object.hasOwn(table, text) ? table[text] : undefined;
-  return row?.[COLUMNS[language]] ?? text;
+  return row?.[COLUMNS[language]] || text;
 };
 
 /** A text of the table; `{0}`, `{1}`, … stand for the parts. */

@@ -113,9 +113,10 @@ const PAGES_WITH_STEPS: Page[] = ["visibility", "pipeline"];
 /** Goes to a page; one without steps shows the finished picture. */
 const toPage = (app: App, page: Page): Partial<App["lab"]> => ({ page, step: PAGES_WITH_STEPS.includes(page) ? app.lab.step : null });
 
-/** Wide tables of a page, which stand below the picture where there is room. */
+/** What stands below the picture: wide tables where there is room, on narrow pages what the page is for. */
 function belowPictures(app: App): unknown {
   if (app.lab.page === "illumination") return formulaRegion(app);
+  if (app.lab.page === "exercises" && isNarrow()) return exercises(app);
   return app.lab.page === "visibility" && !isNarrow() ? compareAll(app) : nothing;
 }
 
@@ -129,7 +130,7 @@ function regions(app: App): unknown {
     visibility: () => html`${pixelRegion(app)} ${isNarrow() ? compareAll(app) : nothing} ${counters(app)}`,
     illumination: () => html`${pixelRegion(app)} ${illumination(app)}`,
     shading: () => html`${shading(app)} ${pixelRegion(app)} ${counters(app)}`,
-    exercises: () => html`${exercises(app)} ${pixelRegion(app)}`,
+    exercises: () => html`${isNarrow() ? nothing : exercises(app)} ${pixelRegion(app)}`,
   };
   return html`${isNarrow() ? nothing : exerciseRegion(app)} ${isAlone ? nothing : comparisonRegions(app)} ${app.hasSteps ? structure(app) : nothing} ${pages[page]()}`;
 }

@@ -96,7 +96,7 @@ export function comparison(app: App): TemplateResult {
   const stepB = app.lab.step !== null && app.hasSteps && app.stepB ? ` · ${t("{0} of {1}: {2}", app.stepB.value.number, app.stepB.value.total, stepWords(app.stepB.value))}` : "";
   const caption = (name: string, content: unknown) => html`<div class="captioned"><p class="caption">${name}</p>${content}</div>`;
   const [captionA, captionB] = [captionOf(app, "a"), `${captionOf(app, "b")}${stepB}`];
-  const shows = (isB: boolean) => (compare === "blink" && isB !== showsB ? "caption dim" : "caption");
+  const shows = (isB: boolean) => (compare === "blink" && isB === showsB ? "caption shown" : "caption");
   const stacked = html`<div class="captions"><p class=${shows(false)}>${captionA}</p><p class=${shows(true)}>${captionB}</p></div>
     <div class="stack">${a}${b}</div>`;
   return html`<div class=${`pair ${compare}`}>

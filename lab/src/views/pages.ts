@@ -321,7 +321,7 @@ export function shading(app: App): TemplateResult {
   };
   return html`<section class="region" aria-labelledby="shading-title">
       <h2 id="shading-title">${t("Flat, Gouraud, Phong")}</h2>
-      <div class="thumbnails">${["flat", "gouraud", "phong"].map(one)}</div>
+      <div class="thumbnails three">${["flat", "gouraud", "phong"].map(one)}</div>
     </section>
     ${normals(app)}
     <section class="region" aria-labelledby="defects-title">

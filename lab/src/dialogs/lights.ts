@@ -62,7 +62,7 @@ function content(app: App): unknown {
   </div>`;
   const kind = light && isObject(light["kind"]) ? String(light["kind"]["type"]) : "";
   const kinds = KINDS.map((k) => ({ value: k, text: t(KIND_NAMES[k]) }));
-  return html`<div class="row-of-fields">
+  return html`<div class="rows">
       ${choice} ${light ? combo(t("Kind"), kind, kinds, (v) => setKind(app, number, v), { term: "Kind" }) : nothing}
     </div>
     ${light ? fields(app, light, number) : html`<p class="note">${t("No light shines.")}</p>`} ${buttons}`;

@@ -20,7 +20,7 @@ function content(app: App): unknown {
   const number = Math.min(app.materialNumber, materials.length - 1);
   const material = materials[number]!;
   const options = materials.map((m, i) => ({ value: String(i), text: String(m["name"] || "default") }));
-  return html`<div class="row-of-fields">
+  return html`<div class="rows">
       ${combo(t("Material"), String(number), options, (v) => {
         app.materialNumber = Number(v);
         app.changed();

@@ -111,7 +111,7 @@ function fields(app: App, light: JsonObject, number: number): unknown {
       ? group(
           t("Position"),
           ["x", "y", "z", "w"].map((name, i) => spin(name, place[i] ?? 0, axis(i), { name: t(`Position ${name}` as Key), step: 0.5 })),
-          "in-row",
+          "pairs",
           "Position",
         )
       : nothing}

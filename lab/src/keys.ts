@@ -25,9 +25,9 @@ export function listenToKeys(app: App) {
   });
 }
 
-/** Leaves the steps, unless something is open that Escape closes. */
+/** Leaves the steps, unless something is open or chosen that Escape takes away first. */
 function escape(app: App) {
-  if (app.lab.step === null || app.dialogs.all.length > 0 || document.querySelector(":popover-open")) return;
+  if (app.lab.step === null || app.chosen || app.dialogs.all.length > 0 || document.querySelector(":popover-open")) return;
   app.showFinished();
 }
 

@@ -20,9 +20,10 @@ import { compareChoice, comparison, comparisonControls, comparisonRegions } from
 import { counters } from "./views/counters.ts";
 import { exerciseRegion, exercises } from "./views/exercise.ts";
 import { formulaRegion } from "./views/formula.ts";
+import { hasLegend } from "./views/marks.ts";
 import { menubar } from "./views/menus.ts";
 import { compareAll, illumination, pipeline, scene, shading } from "./views/pages.ts";
-import { dragChoice, hasLegend, legend, show, stage } from "./views/picture.ts";
+import { dragChoice, legend, show, stage } from "./views/picture.ts";
 import { pixelRegion } from "./views/pixel.ts";
 import { settings } from "./views/settings.ts";
 import { stepsToolbar } from "./views/steps.ts";

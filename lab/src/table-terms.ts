@@ -203,6 +203,18 @@ export const TERMS = {
     "Polígonos retirados antes do algoritmo: fora do volume de visão, e faces viradas para longe do olho (V·N < 0), que um corpo fechado esconde.",
     "Polygons dropped before the algorithm: those outside the view volume, and faces turned away from the eye (V·N < 0), which a closed body hides.",
   ],
+  "about View volume": [
+    "Partea din univers pe care o vede ochiul: o piramidă retezată între planul din față și cel din spate.",
+    "La part de l’univers que voit l’œil : une pyramide tronquée entre les plans avant et arrière.",
+    "A parte do mundo que o olho vê: uma pirâmide truncada entre o plano da frente e o de trás.",
+    "The part of the world that the eye sees: a pyramid cut off by the front and back planes.",
+  ],
+  "about Back faces": [
+    "Fețe a căror normală arată de la ochi. La un corp închis cele din față le ascund mereu.",
+    "Faces dont la normale s’écarte de l’œil. Dans un corps fermé, celles de devant les cachent toujours.",
+    "Faces cuja normal aponta para longe do olho. Num corpo fechado as da frente escondem-nas sempre.",
+    "Faces whose normal points away from the eye. In a closed body front faces always hide them.",
+  ],
   "about Channels shown": [
     "Ce arată imaginea: culoarea sau datele din care se face, câte un canal. Culorile unui canal sunt explicate sub imagine.",
     "Ce que montre l’image : la couleur, ou les données dont elle est faite, un canal à la fois. Les couleurs d’un canal sont expliquées sous l’image.",
@@ -273,6 +285,18 @@ export const TERMS = {
   ],
 
   // Lights
+  "about Light Number": [
+    "Lumina pe care o schimbă câmpurile de mai jos, numită ca în OpenGL: LIGHT0, LIGHT1, …",
+    "La lumière que changent les champs ci-dessous, nommée comme dans OpenGL : LIGHT0, LIGHT1, …",
+    "A luz que os campos abaixo mudam, chamada como no OpenGL: LIGHT0, LIGHT1, …",
+    "The light that the fields below change, called as in OpenGL: LIGHT0, LIGHT1, …",
+  ],
+  "about Enabled": [
+    "O lumină oprită nu contribuie cu nimic, nici cu partea ambiantă.",
+    "Une lumière éteinte n’apporte rien, pas même sa part ambiante.",
+    "Uma luz desligada não contribui com nada, nem com a parte ambiente.",
+    "A light that is off adds nothing, not even its ambient part.",
+  ],
   "about Kind": [
     "De unde vin razele: din toate părțile (ambiantă), paralele (direcțională), dintr-un punct, dintr-un punct în con (reflector) sau de pe o suprafață.",
     "D’où viennent les rayons : de toutes parts (ambiante), parallèles (directionnelle), d’un point, d’un point dans un cône (spot), ou d’une surface.",
@@ -341,6 +365,12 @@ export const TERMS = {
   ],
 
   // Materials
+  "about Material": [
+    "Cum reflectă și transmite lumina o suprafață: coeficienții formulei de iluminare. Mai multe fețe pot avea același material.",
+    "Comment une surface réfléchit et transmet la lumière : les coefficients de la formule. Plusieurs faces peuvent avoir le même matériau.",
+    "Como uma superfície reflete e transmite a luz: os coeficientes da fórmula. Várias faces podem ter o mesmo material.",
+    "How a surface reflects and transmits light: the coefficients of the formula. Several faces may share a material.",
+  ],
   "about ka": [
     "Coeficientul ambiant, 0 la 1 pe canal: partea de lumină ambiantă pe care o reflectă materialul.",
     "Le coefficient ambiant, 0 à 1 par canal : la part de lumière ambiante que réfléchit le matériau.",

@@ -163,7 +163,7 @@ test("every label of Settings and of the dialogs is explained in place", async (
   const settings = page.getByRole("complementary", { name: "Settings" });
   for (const name of ["Model", "Visibility", "Acceleration", "Illumination", "Shading", "Interpolation", "Shadows", "Volume counting",
     "Transparency", "Transparency order", "Global illumination", "Colour space", "Samples", "Size", "Depth bits", "Shadow map size",
-    "Coherence", "Culling", "Channels shown", "Colour", "Depth", "Id", "Normal", "Attached shadow", "Cast shadow", "Steps",
+    "Coherence", "Culling", "View volume", "Back faces", "Channels shown", "Colour", "Depth", "Id", "Normal", "Attached shadow", "Cast shadow", "Steps",
     "Ambient term", "Diffuse term", "Specular term", "depth", "implied-edge"]) {
     assert.equal(await settings.getByRole("button", { name: `What is ${name}?`, exact: true }).count(), 1, name);
   }
@@ -186,9 +186,9 @@ test("every label of Settings and of the dialogs is explained in place", async (
   await page.keyboard.press("Escape");
 
   for (const [entry, names] of [
-    ["Lights…", ["Kind", "Ambient", "Diffuse", "Specular", "Position", "Cutoff", "Exponent", "Attenuation", "Casts shadow"]],
-    ["Materials…", ["Shininess", "Opacity", "kt min", "Index of refraction", "Mirror", "Transmission"]],
-    ["Camera…", ["View angle", "Parallel"]],
+    ["Lights…", ["Light Number", "Enabled", "Kind", "Ambient", "Diffuse", "Specular", "Position", "Cutoff", "Exponent", "Attenuation", "Casts shadow"]],
+    ["Materials…", ["Material", "ka", "kd", "ks", "Shininess", "Opacity", "kt min", "Index of refraction", "Mirror", "Transmission"]],
+    ["Camera…", ["eyeU", "eyeT", "allU", "allT", "View angle", "Parallel"]],
   ]) {
     const dialog = await openDialog(page, entry);
     for (const name of names) {

@@ -55,7 +55,7 @@ function content(app: App): unknown {
     app.lightNumber = Number(v.slice(5));
     app.draftPlace = null;
     app.changed();
-  });
+  }, { term: "Light Number" });
   const buttons = html`<div class="buttons">
     ${button(t("Add light"), () => addLight(app))} ${light ? button(t("Remove light"), () => removeLight(app, number)) : nothing}
     ${button(t("Reset"), () => resetLights(app))}
@@ -103,7 +103,7 @@ function fields(app: App, light: JsonObject, number: number): unknown {
   const isSpot = type === "spot";
   const direction = isSpot ? ((kind["direction"] as number[] | undefined) ?? [0, 0, -1]) : null;
   return html`<div class="checks">
-      ${check(t("Enabled"), light["enabled"] !== false, (on) => setSwitch(app, number, "enabled", on))}
+      ${check(t("Enabled"), light["enabled"] !== false, (on) => setSwitch(app, number, "enabled", on), { term: "Enabled" })}
       ${check(t("Casts shadow"), light["shadow"] !== false, (on) => setSwitch(app, number, "shadow", on), { term: "Casts shadow" })}
     </div>
     ${color("Ambient", "ambient")} ${color("Diffuse", "diffuse")} ${color("Specular", "specular")}

@@ -24,7 +24,7 @@ function content(app: App): unknown {
       ${combo(t("Material"), String(number), options, (v) => {
         app.materialNumber = Number(v);
         app.changed();
-      })}
+      }, { term: "Material" })}
     </div>
     ${fields(app, material)}
     <div class="buttons">${button(t("Reset"), () => app.set({ materials: [] }))}</div>`;
@@ -51,6 +51,7 @@ function fields(app: App, material: JsonObject): unknown {
         ),
       ),
       "in-row",
+      property,
       property,
     );
   };

@@ -47,6 +47,7 @@ export function cameraDialog(app: App): TemplateResult {
       ["x", "y", "z"].map((axis, i) => spin(`${prefix}${axis}`, round(values[i] ?? 0), set(i), { step })),
       "in-row",
       prefix,
+      prefix,
     );
   const angle = app.get("viewpoint.view-angle") ?? camera["view-angle"] ?? 30;
   const isParallel = app.get("viewpoint.orthographic") === true;

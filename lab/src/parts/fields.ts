@@ -139,10 +139,10 @@ export function radio(label: string, name: string, isChecked: boolean, choose: (
   return explained(field, label, term);
 }
 
-export function group(legend: string, content: unknown, style = "", term?: Term): TemplateResult {
+export function group(legend: string, content: unknown, style = "", term?: Term, word = legend): TemplateResult {
   return html`<fieldset class=${style}>
     <legend>${legend}</legend>
-    ${term ? what(term, legend) : nothing}
+    ${term ? what(term, word) : nothing}
     <div class="inside">${content}</div>
   </fieldset>`;
 }

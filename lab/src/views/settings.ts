@@ -177,9 +177,9 @@ function coherence(app: App): TemplateResult {
 }
 
 function culling(app: App): TemplateResult {
-  const one = (label: string, field: string) =>
-    check(label, app.get(`settings.cull.${field}`) === true, (on) => app.set({ [`settings.cull.${field}`]: on }));
-  return group(t("Culling"), [one(t("View volume"), "frustum"), one(t("Back faces"), "back-face")], "two", "Culling");
+  const one = (label: Explained, field: string) =>
+    check(t(label), app.get(`settings.cull.${field}`) === true, (on) => app.set({ [`settings.cull.${field}`]: on }), { term: label });
+  return group(t("Culling"), [one("View volume", "frustum"), one("Back faces", "back-face")], "two", "Culling");
 }
 
 /** Names of channels as labels, where the state file has a switch for them. */

@@ -10,6 +10,7 @@ import { listenToKeys } from "./keys.ts";
 import { page } from "./page.ts";
 import { readTexts, setLanguage, t } from "./words.ts";
 import { browserLanguage } from "./app.ts";
+import { onWidthChange } from "./width.ts";
 
 /** What the browser has to have. */
 function lacking(): string[] {
@@ -58,6 +59,7 @@ async function start() {
     app.fail(e instanceof Error ? e.message : String(e));
   }
   listenToKeys(app);
+  onWidthChange(() => app.changed());
   acceptDrops(app);
   talkToParent(app);
   await app.openFragment(location.hash.slice(1));

@@ -1,8 +1,11 @@
 // All texts of the page: English, then Romanian, French, Portuguese. Course terms as the notes say them.
 
 import { ENGINE } from "./table-engine.ts";
+import { TERMS } from "./table-terms.ts";
 
 const PAGE = {
+  ...TERMS,
+
   // Landmarks, menus, pages
   "Main menu": ["Meniul principal", "Menu principal", "Menu principal"],
   Topics: ["Teme", "Thèmes", "Temas"],
@@ -245,14 +248,14 @@ const PAGE = {
   "box of items {0}: {1}": ["cutia elementelor {0}: {1}", "boîte des éléments {0} : {1}", "caixa dos elementos {0}: {1}"],
   "facet {0} is clipped: {1}": ["fațeta {0} este decupată: {1}", "la facette {0} est découpée : {1}", "a faceta {0} é recortada: {1}"],
   "facet {0} is drawn: {1} runs stay, {2} are hidden": [
-    "fațeta {0} este desenată: {1} șiruri rămân, {2} sunt ascunse",
-    "la facette {0} est tracée : {1} suites restent, {2} sont cachées",
-    "a faceta {0} é desenhada: {1} sequências ficam, {2} são escondidas",
+    "fațeta {0} este desenată: {1} șiruri mai apropiate se păstrează, {2} sunt ascunse",
+    "la facette {0} est tracée : {1} suites plus proches sont gardées, {2} sont cachées",
+    "a faceta {0} é desenhada: {1} sequências mais próximas ficam, {2} são escondidas",
   ],
   "facet {0}, depth {1}; there: {2}; stays: {3}": [
-    "fațeta {0}, adâncimea {1}; acolo: {2}; rămâne: {3}",
-    "facette {0}, profondeur {1} ; déjà là : {2} ; reste : {3}",
-    "faceta {0}, profundidade {1}; lá: {2}; fica: {3}",
+    "fațeta {0}, adâncimea {1}; acolo: {2}; mai aproape, se păstrează: {3}",
+    "facette {0}, profondeur {1} ; déjà là : {2} ; plus proche, gardée : {3}",
+    "faceta {0}, profundidade {1}; lá: {2}; mais perto, fica: {3}",
   ],
   "window {0},{1} of {2} x {3}, polygons left: {4}; {5}": [
     "fereastra {0},{1} de {2} x {3}, poligoane rămase: {4}; {5}",
@@ -303,7 +306,7 @@ const PAGE = {
   algorithm: ["algoritm", "algorithme", "algoritmo"],
   why: ["de ce", "pourquoi", "porquê"],
   "{0} steps": ["{0} pași", "{0} étapes", "{0} passos"],
-  "facet {0}, depth {1}: {2} stays": ["fațeta {0}, adâncimea {1}: rămâne {2}", "facette {0}, profondeur {1} : {2} reste", "faceta {0}, profundidade {1}: fica {2}"],
+  "facet {0}, depth {1}: {2} stays": ["fațeta {0}, adâncimea {1}: se păstrează {2}", "facette {0}, profondeur {1} : {2} est gardée", "faceta {0}, profundidade {1}: fica {2}"],
   background: ["fundal", "fond", "fundo"],
   "Ask all algorithms": ["Întreabă toți algoritmii", "Interroger tous les algorithmes", "Perguntar a todos os algoritmos"],
   "Asking all algorithms…": ["Sunt întrebați toți algoritmii…", "On interroge tous les algorithmes…", "A perguntar a todos os algoritmos…"],
@@ -577,7 +580,6 @@ const PAGE = {
   "in the picture: inspect the pixel": ["în imagine: inspectează pixelul", "dans l’image : inspecter le pixel", "na imagem: inspecionar o píxel"],
   "in the picture: turn the camera": ["în imagine: rotește camera", "dans l’image : tourner la caméra", "na imagem: rodar a câmara"],
   "in the picture: zoom": ["în imagine: apropie, depărtează", "dans l’image : agrandir, réduire", "na imagem: aproximar, afastar"],
-  "close a dialog or a menu": ["închide un dialog sau un meniu", "fermer un dialogue ou un menu", "fechar um diálogo ou um menu"],
   "vitral Lab shows the classical algorithms of computer graphics step by step, on built-in scenes and on your own models.": [
     "vitral Lab arată pas cu pas algoritmii clasici ai graficii pe calculator, pe scene incluse și pe modelele dumneavoastră.",
     "vitral Lab montre pas à pas les algorithmes classiques de l’infographie, sur des scènes fournies et sur vos propres modèles.",
@@ -720,6 +722,6 @@ const PAGE = {
     "Inspecione um píxel para ver o brilho da sua linha.",
   ],
   "Value of {0}": ["Valoarea lui {0}", "Valeur de {0}", "Valor de {0}"],
-} as const satisfies Record<string, readonly [string, string, string]>;
+} as const satisfies Record<string, readonly [string, string, string, string?]>;
 
 export const TABLE = { ...PAGE, ...ENGINE };

@@ -7,6 +7,7 @@ import { spin } from "../parts/fields.ts";
 import { formula } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
+import { words } from "../parts/what.ts";
 import { t, translated } from "../words.ts";
 import { attenuationOf, lightNow, setAttenuation, setField } from "../lights.ts";
 import { propertyOf, setMaterial } from "../materials.ts";
@@ -87,6 +88,9 @@ function materialOfPixel(app: App): string | null {
   return seen && typeof seen["material"] === "string" ? seen["material"] : null;
 }
 
+/** Symbols of a light that are explained below the table. */
+const FORMULA_TERMS = ["N·L", "R·V", "N·H", "f_att", "S"] as const;
+
 export function formulaRegion(app: App): TemplateResult {
   const found = explanationOf(app) ? app.answerTo("explain")?.ok["formula"] : null;
   const f = isObject(found ?? undefined) ? (found as JsonObject) : null;
@@ -103,7 +107,8 @@ export function formulaRegion(app: App): TemplateResult {
       ? html`<div class="math scroll" tabindex="0" role="group" aria-label=${t("Formula")}>
             ${typeof mathml === "string" ? formula(mathml, "letters") : nothing} ${typeof numbers === "string" ? formula(numbers, "numbers") : nothing}
           </div>
-          ${table({ name: t("Values"), columns: [t("symbol"), t("value"), t("meaning"), t("set in")], rows, caption: true })}`
+          ${table({ name: t("Values"), columns: [t("symbol"), t("value"), t("meaning"), t("set in")], rows, caption: true })}
+          ${words(FORMULA_TERMS.filter((term) => rows.some(([symbol]) => String(symbol).startsWith(`${term} (`))).map((term) => [term, term]))}`
       : html`<p class="note">${t("Inspect a pixel to see its formula with numbers.")}</p>`}
     ${f ? printed(app) : nothing}
   </section>`;

@@ -12,6 +12,7 @@ import { combo } from "../parts/fields.ts";
 import { drawing } from "../parts/markup.ts";
 import { t } from "../words.ts";
 import { turn, zoom } from "./camera.ts";
+import { asked, channelLegend, highlightLegend, highlightMarks } from "./marks.ts";
 
 /** The result that each canvas shows. */
 const drawn = new WeakMap<HTMLCanvasElement, Result<Plane>>();
@@ -295,7 +296,7 @@ export function stage(app: App, s: Stage): TemplateResult {
     @keydown=${(e: KeyboardEvent) => keyDown(app, e, picture)}
   >
     <canvas role="img" aria-label=${description(app, picture)} ${ref((e) => show(e as HTMLCanvasElement | undefined, s.plane))}></canvas>
-    ${picture === "a" ? overlay(app) : nothing} ${cross(app)} ${picture === "a" ? handles(app) : nothing}
+    ${picture === "a" ? overlay(app) : nothing} ${cross(app)} ${picture === "a" ? html`${asked(app)} ${highlightMarks(app)} ${handles(app)}` : nothing}
   </div>`;
 }
 
@@ -311,10 +312,18 @@ export function dragChoice(app: App): TemplateResult {
   });
 }
 
-/** The colours in the drawing over the picture, each with a word. */
+/** What the line below the picture says: the colours of its channel, of the step, of marks. */
 export function legend(app: App): unknown {
+  return html`${channelLegend(app)} ${stepLegend(app)} ${highlightLegend(app)}`;
+}
+
+/** The colours in the drawing over the picture, each with a word. */
+function stepLegend(app: App): unknown {
   const step = app.step?.value;
   if (app.lab.step === null || !app.hasSteps || !step) return nothing;
+  // Algorithms that overwrite show what will not last in pale colours; the others begin with paper.
+  const pale: [string, string] = ["pale", t("pale: will be drawn over")];
+  const paper: [string, string] = ["paper", t("not decided yet")];
   const entries: Record<string, [string, string][]> = {
     window: [
       ["empty", t("empty window")],
@@ -322,21 +331,25 @@ export function legend(app: App): unknown {
       ["surrounded", t("surrounded")],
       ["pixel", t("one pixel")],
       ["cut", t("cut in four")],
+      paper,
     ],
     drawn: [
-      ["stays", t("stays")],
-      ["hidden", t("hidden")],
+      ["stays", t("nearer, is kept")],
+      ["hidden", t("farther, is hidden")],
+      pale,
     ],
     line: [
       ["line", t("scan line")],
       ["span", t("span")],
+      paper,
     ],
-    rays: [["rays", t("rays")]],
-    piece: [["piece", t("piece")]],
-    clip: [["clip", t("clip polygon")]],
-    visible: [["visible", t("visible polygon")]],
+    rays: [["rays", t("rays")], paper],
+    piece: [["piece", t("piece")], pale],
+    clip: [["clip", t("clip polygon")], paper],
+    visible: [["visible", t("visible polygon")], paper],
   };
   const list = entries[step.group];
   if (!list) return nothing;
-  return html`<p class="legend">${list.map(([key, text]) => html`<span><i class=${`swatch ${key}`} aria-hidden="true"></i>${text}</span>`)}</p>`;
+  return html`<p class="legend">${list.map(([key, text]) => html`<span><i class=${`swatch ${key}`} aria-hidden="true"></i>${text}</span>`)}</p>
+    ${step.group === "window" ? html`<p class="note">${t("Windows are cut between tiles of 64 pixels, then at powers of two, never through a pixel.")}</p>` : nothing}`;
 }

@@ -7,6 +7,7 @@ import { button, spin } from "../parts/fields.ts";
 import { number } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
+import { depthNote } from "../parts/what.ts";
 import { isEnglish, t, translated } from "../words.ts";
 import { whyWords } from "../why.ts";
 
@@ -206,7 +207,7 @@ export function pixelRegion(app: App): TemplateResult {
     ${pixel ? nothing : html`<p class="note">${t("Double-click in the picture, or press Enter there.")}</p>`}
     ${explanation
       ? html`<p class="why">${why.map((s) => whyWords(s)).join(" ")}</p>
-          ${surfaces(explanation)} ${decisions(app, explanation)} ${light(app, explanation)} ${rays(app, explanation)}
+          ${surfaces(explanation)} ${depthNote()} ${decisions(app, explanation)} ${light(app, explanation)} ${rays(app, explanation)}
           ${app.lab.page === "shading" ? nothing : increments(explanation)}`
       : nothing}
   </section>`;

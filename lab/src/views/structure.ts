@@ -12,6 +12,7 @@ import { drawing } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
+import { depthNote } from "../parts/what.ts";
 import { stepWords } from "../stepwords.ts";
 import { t, translated } from "../words.ts";
 import { prediction } from "./steps.ts";
@@ -275,7 +276,7 @@ function weilerAtherton(app: App, step: Step): unknown {
 function zBuffer(step: Step): unknown {
   const f = step.fields;
   const depths = step.depths ?? null;
-  return html`${depths ? depthTable(depths) : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : fieldsTable(f)}`;
+  return html`${depths ? html`${depthTable(depths)}${depthNote()}` : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : fieldsTable(f)}`;
 }
 
 /** Brute force: what the pixel's sample is compared with. */
@@ -283,12 +284,12 @@ function bruteForce(step: Step): unknown {
   const facets = objects(step.depths?.["facets"]);
   if (!step.depths) return html`<p class="note">${t("Inspect a pixel to see the depths of all facets over it.")}</p>`;
   const nearest = Math.max(...facets.map((f) => Number(f["depth"])));
-  return table({
+  return html`${table({
     name: t("Depths"),
     columns: [t("facet"), t("Depth"), t("verdict")],
     rows: facets.map((f) => [f["facet"] as number, valueText(f["depth"]), Number(f["depth"]) === nearest ? t("nearest") : t("hidden")]),
     caption: true,
-  });
+  })}${depthNote()}`;
 }
 
 /** Runs of pixels in which a facet stays, and those in which it is hidden. */
@@ -298,7 +299,7 @@ function runsOf(f: JsonObject): unknown {
       const [row = 0, first = 0, end = 0] = numbers(r);
       return [row, `${first}–${end - 1}`, end - first, word];
     });
-  const rows = [...runs("stays", t("stays")), ...runs("hidden", t("hidden"))].sort((a, b) => Number(a[0]) - Number(b[0]));
+  const rows = [...runs("stays", t("nearer, is kept")), ...runs("hidden", t("farther, is hidden"))].sort((a, b) => Number(a[0]) - Number(b[0]));
   return table({ name: t("Runs of pixels"), columns: [t("row"), t("pixels"), t("count"), t("verdict")], rows, caption: true });
 }
 

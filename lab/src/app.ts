@@ -51,7 +51,7 @@ export class App {
 
   /** The cross in the picture, which Enter inspects. */
   cross: [number, number] | null = null;
-  /** A facet or surface that was chosen in a table, list or tree. */
+  /** The facet that was chosen in a table, list, tree or drawing. */
   chosen: { facet: number } | null = null;
   isDragging = false;
   isRecording = false;
@@ -244,6 +244,7 @@ export class App {
   go(situation: Situation, history: History) {
     const before = this.situation;
     this.situation = situation;
+    if (!equal(before.state["models"], situation.state["models"])) this.chosen = null;
     if (!equal(before.state, situation.state)) {
       this.playback.prediction = null;
       this.exerciseResult = null;

@@ -8,6 +8,7 @@ import { acceptDrops, startFiles } from "./files.ts";
 import { talkToParent } from "./frame.ts";
 import { listenToKeys } from "./keys.ts";
 import { page } from "./page.ts";
+import { followPixel, listenToEscape } from "./views/chosen.ts";
 import { readTexts, setLanguage, t } from "./words.ts";
 import { browserLanguage } from "./app.ts";
 
@@ -40,6 +41,7 @@ async function start() {
   if (!missing.includes("DecompressionStream")) await readTexts();
   const app = new App();
   app.onRender(() => {
+    followPixel(app);
     render(page(app), root);
     app.after("scrollers", 200, () => markScrollers(root));
   });
@@ -58,6 +60,7 @@ async function start() {
     app.fail(e instanceof Error ? e.message : String(e));
   }
   listenToKeys(app);
+  listenToEscape(app);
   acceptDrops(app);
   talkToParent(app);
   await app.openFragment(location.hash.slice(1));

@@ -1,26 +1,31 @@
 // Trees with arrow keys: one node is a tab stop, long trees show a window of nodes.
 
 import { html, nothing, type TemplateResult } from "lit-html";
+import { ref } from "lit-html/directives/ref.js";
+import type { Choice } from "./choice.ts";
 import { css } from "./css.ts";
 
 export interface Node {
   id: number;
   parent: number | null;
   text: string;
-  choose?: (() => void) | undefined;
+  choice?: Choice | null;
 }
 
 export interface Tree {
   name: string;
   nodes: Node[];
+  /** The node of the present step. */
   current?: number | null | undefined;
+  /** Whether a node that was chosen is brought into view in place of the present one. */
+  followsChoice?: boolean;
 }
 
 interface Looks {
   closed: Set<number>;
   focus: number | null;
   offset: number;
-  current: number | null;
+  target: number | null;
 }
 
 const ROW = 26;
@@ -30,7 +35,7 @@ const looks = new Map<string, Looks>();
 
 export function tree(t: Tree, changed: () => void): TemplateResult {
   let look = looks.get(t.name);
-  if (!look) looks.set(t.name, (look = { closed: new Set(), focus: null, offset: 0, current: null }));
+  if (!look) looks.set(t.name, (look = { closed: new Set(), focus: null, offset: 0, target: null }));
   const own = look;
 
   // Put children below their parents.
@@ -43,15 +48,17 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
     else children.set(parent, [node]);
   }
 
-  // Open the way to the present node when it changes.
+  // Open the way to the present or chosen node when it changes.
   const byId = new Map(t.nodes.map((n) => [n.id, n]));
   const current = t.current ?? null;
-  const isNew = current !== own.current;
-  if (isNew && current !== null) {
-    for (let n = byId.get(current)?.parent ?? null; n !== null; n = byId.get(n)?.parent ?? null) own.closed.delete(n);
-    own.focus = current;
+  const marked = t.followsChoice ? t.nodes.filter((n) => n.choice?.isChosen).map((n) => n.id) : [];
+  const target = marked.length === 0 || (current !== null && marked.includes(current)) ? current : marked[0]!;
+  const isNew = target !== own.target;
+  if (isNew && target !== null) {
+    for (let n = byId.get(target)?.parent ?? null; n !== null; n = byId.get(n)?.parent ?? null) own.closed.delete(n);
+    own.focus = target;
   }
-  own.current = current;
+  own.target = target;
 
   // List the nodes that are to be seen.
   const shown: { node: Node; level: number; place: number; among: number }[] = [];
@@ -110,7 +117,7 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
         break;
       case "Enter":
       case " ":
-        here.node.choose?.();
+        here.node.choice?.choose();
         break;
       default:
         return;
@@ -130,16 +137,19 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
     };
     const click = () => {
       own.focus = node.id;
-      node.choose?.();
+      node.choice?.choose();
       changed();
     };
+    const isMarked = node.choice?.isChosen ?? false;
     return html`<li
       role="treeitem"
+      class=${`${node.id === current ? "current" : ""}${isMarked ? " chosen" : ""}`}
+      aria-current=${node.id === current ? "true" : nothing}
       aria-level=${level}
       aria-posinset=${place}
       aria-setsize=${among}
       aria-expanded=${hasChildren ? String(isOpen) : nothing}
-      aria-selected=${String(node.id === current)}
+      aria-selected=${String(node.id === current || isMarked)}
       tabindex=${first + i === focusAt ? "0" : "-1"}
       .style=${css({ "padding-inline-start": `${Math.min(level - 1, 12) * 0.9 + 0.2}rem` })}
       @click=${click}
@@ -155,9 +165,12 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
       changed();
     }
   };
-  return html`<div class="scroll windowed" @scroll=${scrolled}>
+  const reveal = (e: Element | undefined) => {
+    if (e && isNew && isLong) setTimeout(() => (e.scrollTop = own.offset * ROW));
+  };
+  return html`<div class="scroll windowed" @scroll=${scrolled} ${ref(reveal)}>
     <div .style=${css({ height: isLong ? `${shown.length * ROW}px` : "auto" })}>
-      <ul role="tree" aria-label=${t.name} @keydown=${keys} .style=${css({ transform: `translateY(${first * ROW}px)` })}>
+      <ul role="tree" aria-label=${t.name} aria-multiselectable="true" @keydown=${keys} .style=${css({ transform: `translateY(${first * ROW}px)` })}>
         ${visible.map(item)}
       </ul>
     </div>

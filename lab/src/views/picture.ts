@@ -12,6 +12,7 @@ import { combo } from "../parts/fields.ts";
 import { drawing } from "../parts/markup.ts";
 import { t } from "../words.ts";
 import { turn, zoom } from "./camera.ts";
+import { chooseShapeAt, chosenOutline, markShapes } from "./chosen.ts";
 
 /** The result that each canvas shows. */
 const drawn = new WeakMap<HTMLCanvasElement, Result<Plane>>();
@@ -141,8 +142,12 @@ async function moveHighlight(app: App, pixel: [number, number]) {
   setPlace(app, app.lightNumber, [...point.world.map((c, i) => round(c + towards[i]! * distance)), 1]);
 }
 
-function pointerUp(app: App) {
+function pointerUp(app: App, e?: PointerEvent) {
   if (!drag) return;
+  if (e && !drag.hasMoved && dragMode === "camera") {
+    const [x, y] = pixelAt(app, e, canvasOf(e));
+    chooseShapeAt(app, e.currentTarget as Element, x + 0.5, y + 0.5);
+  }
   drag = null;
   app.endDrag();
 }
@@ -262,7 +267,7 @@ function handles(app: App): unknown {
 function overlay(app: App): unknown {
   const step = app.step?.value;
   if (app.lab.step === null || !app.hasSteps || !step?.drawing) return nothing;
-  return html`<div class="overlay" aria-hidden="true">${drawing(step.drawing, "overlay")}</div>`;
+  return html`<div class="overlay" aria-hidden="true" ${ref((e) => markShapes(app, e))}>${drawing(step.drawing, "overlay")}</div>`;
 }
 
 export interface Stage {
@@ -288,14 +293,14 @@ export function stage(app: App, s: Stage): TemplateResult {
     .style=${css({ ...size, ...clip })}
     @pointerdown=${(e: PointerEvent) => pointerDown(app, e, picture)}
     @pointermove=${(e: PointerEvent) => pointerMove(app, e, picture)}
-    @pointerup=${() => pointerUp(app)}
+    @pointerup=${(e: PointerEvent) => pointerUp(app, picture === "a" ? e : undefined)}
     @pointercancel=${() => pointerUp(app)}
     @wheel=${(e: WheelEvent) => wheel(app, e, picture)}
     @dblclick=${(e: MouseEvent) => app.inspect(pixelAt(app, e, canvasOf(e)))}
     @keydown=${(e: KeyboardEvent) => keyDown(app, e, picture)}
   >
     <canvas role="img" aria-label=${description(app, picture)} ${ref((e) => show(e as HTMLCanvasElement | undefined, s.plane))}></canvas>
-    ${picture === "a" ? overlay(app) : nothing} ${cross(app)} ${picture === "a" ? handles(app) : nothing}
+    ${picture === "a" ? html`${overlay(app)} ${chosenOutline(app)}` : nothing} ${cross(app)} ${picture === "a" ? handles(app) : nothing}
   </div>`;
 }
 

@@ -9,6 +9,7 @@ import { table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
 import { isEnglish, t, translated } from "../words.ts";
 import { whyWords } from "../why.ts";
+import { choiceOf, followsChoice } from "./chosen.ts";
 
 export const objects = (v: Json | undefined): JsonObject[] => (Array.isArray(v) ? v.filter(isObject) : []);
 const numbers = (v: Json | undefined): number[] => (Array.isArray(v) ? v.map(Number) : []);
@@ -46,22 +47,22 @@ function fate(c: JsonObject, all: JsonObject[]): string {
   }
 }
 
-function surfaces(explanation: JsonObject): TemplateResult {
+function surfaces(app: App, explanation: JsonObject): TemplateResult {
   const all = objects(explanation["candidates"]);
   const depth = (c: JsonObject) => (typeof c["depth"] === "number" ? c["depth"] : -1);
-  const rows = [...all]
-    .sort((a, b) => depth(b) - depth(a))
-    .map((c): Cell[] => [
-      c["surface"] as number,
-      String(c["mesh"] ?? "–"),
-      String(c["material"] || "–"),
-      typeof c["depth"] === "number" ? Number(c["depth"].toPrecision(6)) : null,
-      fate(c, all),
-    ]);
+  const sorted = [...all].sort((a, b) => depth(b) - depth(a));
+  const rows = sorted.map((c): Cell[] => [
+    c["surface"] as number,
+    String(c["mesh"] ?? "–"),
+    String(c["material"] || "–"),
+    typeof c["depth"] === "number" ? Number(c["depth"].toPrecision(6)) : null,
+    fate(c, all),
+  ]);
   return table({
     name: t("Surfaces at the pixel"),
     columns: [t("Surface"), t("Mesh"), t("Material"), t("Depth"), t("Fate")],
     rows,
+    choices: sorted.map((c) => choiceOf(app, c["facet"])),
     caption: true,
   });
 }
@@ -80,7 +81,7 @@ function decisions(app: App, explanation: JsonObject): TemplateResult {
     app.answer("ask-all", { want: "ask-all", state: app.state, pixel }, true);
     app.say(t("Asking all algorithms…"), "ask-all");
   };
-  return html`${table({ name: t("Decisions"), columns: [t("algorithm"), t("facet"), t("why")], rows, caption: true })}
+  return html`${table({ name: t("Decisions"), columns: [t("algorithm"), t("facet"), t("why")], rows, choices: all.map((d) => choiceOf(app, d["facet"])), caption: true })}
   ${isCurrent ? nothing : button(t("Ask all algorithms"), ask)}`;
 }
 
@@ -144,12 +145,16 @@ function light(app: App, explanation: JsonObject): unknown {
   <p class="note">${t("Sum of the samples: {0}; bytes: {1}", three(whole["straight"]), numbers(whole["bytes"]).slice(0, 3).join(" "))}</p>`;
 }
 
-/** `tree "Ray tree"` of the pixel: a ray hangs below the one that sent it. */
-function rays(app: App, explanation: JsonObject): unknown {
-  const list = objects(explanation["rays"]);
-  if (!list.length) return nothing;
+interface RayNode extends Node {
+  facet: number | null;
+  /** How it goes on from the one that sent it. */
+  way: string | null;
+}
+
+/** The rays of the pixel: a ray hangs below the one that sent it. */
+export function rayNodes(app: App): RayNode[] {
   const senders = new Map<string, { id: number; way: string; angles: number[] }>();
-  const nodes: Node[] = list.map((ray, id) => {
+  return objects(explanationOf(app)?.["rays"]).map((ray, id) => {
     const sender = senders.get(JSON.stringify(ray["direction"]));
     for (const on of objects(ray["goes-on"])) {
       senders.set(JSON.stringify(on["direction"]), { id, way: String(on["way"]), angles: numbers(on["angles"]) });
@@ -157,9 +162,16 @@ function rays(app: App, explanation: JsonObject): unknown {
     const met = isObject(ray["meets"]) ? ray["meets"] : null;
     const what = met ? t("surface {0} of {1}, distance {2}", String(met["surface"]), String(met["mesh"] || "–"), number(Number(met["distance"]))) : t("background");
     const how = sender ? `${translated(sender.way)} (${sender.angles.map((a) => `${a.toFixed(1)}°`).join(" → ")}): ` : "";
-    return { id, parent: sender?.id ?? null, text: how + what };
+    const facet = typeof met?.["facet"] === "number" ? met["facet"] : null;
+    return { id, parent: sender?.id ?? null, text: how + what, choice: choiceOf(app, facet), facet, way: sender ? translated(sender.way) : null };
   });
-  return html`<div class="labelled"><p class="label">${t("Ray tree")}</p>${tree({ name: t("Ray tree"), nodes }, () => app.changed())}</div>`;
+}
+
+/** `tree "Ray tree"` of the pixel. */
+export function rayTree(app: App): unknown {
+  const nodes = rayNodes(app);
+  if (!nodes.length) return nothing;
+  return html`<div class="labelled"><p class="label">${t("Ray tree")}</p>${tree({ name: t("Ray tree"), nodes, followsChoice: followsChoice() }, () => app.changed())}</div>`;
 }
 
 /** `table "Increments"`: Gouraud's intensities on the line of the pixel. */
@@ -185,6 +197,9 @@ export function increments(explanation: JsonObject | null): unknown {
   });
 }
 
+/** Whether region Structure shows the ray tree. */
+export const hasOwnRays = (app: App) => app.hasSteps && app.get("settings.global") === "ray-trace";
+
 export function pixelRegion(app: App): TemplateResult {
   const { pixel } = app.lab;
   const explanation = explanationOf(app);
@@ -206,7 +221,7 @@ export function pixelRegion(app: App): TemplateResult {
     ${pixel ? nothing : html`<p class="note">${t("Double-click in the picture, or press Enter there.")}</p>`}
     ${explanation
       ? html`<p class="why">${why.map((s) => whyWords(s)).join(" ")}</p>
-          ${surfaces(explanation)} ${decisions(app, explanation)} ${light(app, explanation)} ${rays(app, explanation)}
+          ${surfaces(app, explanation)} ${decisions(app, explanation)} ${light(app, explanation)} ${hasOwnRays(app) ? nothing : rayTree(app)}
           ${app.lab.page === "shading" ? nothing : increments(explanation)}`
       : nothing}
   </section>`;

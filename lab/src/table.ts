@@ -657,11 +657,6 @@ const PAGE = {
   "not-drawn": ["nedesenată", "non tracée", "não desenhada"],
   "not-finite": ["nu este finită", "non finie", "não finita"],
   degenerate: ["degenerată", "dégénérée", "degenerada"],
-  "blue: the view volume; green: boxes in view; red, dashed: boxes that are culled": [
-    "albastru: volumul de vizualizare; verde: cutii care se văd; roșu, întrerupt: cutii eliminate",
-    "bleu : le volume de vue ; vert : boîtes en vue ; rouge, tireté : boîtes éliminées",
-    "azul: o volume de vista; verde: caixas à vista; vermelho, tracejado: caixas descartadas",
-  ],
   // Misprints, projectors, normals, depths
   what: ["ce", "quoi", "o quê"],
   "right form": ["forma corectă", "forme juste", "forma certa"],
@@ -757,6 +752,30 @@ const PAGE = {
   "Drawing of the ray tree": ["Desenul arborelui de raze", "Dessin de l’arbre des rayons", "Desenho da árvore de raios"],
   "facet that the ray meets; below: how it came": ["fațeta întâlnită de rază; dedesubt: cum a ajuns", "facette rencontrée ; dessous : comment le rayon vient", "faceta que o raio encontra; por baixo: como veio"],
   "Inspect a pixel to see its rays.": ["Inspectați un pixel pentru a-i vedea razele.", "Inspectez un pixel pour voir ses rayons.", "Inspecione um píxel para ver os seus raios."],
+  Matrices: ["Matrice", "Matrices", "Matrizes"],
+  product: ["produs", "produit", "produto"],
+  Corner: ["Colț", "Sommet", "Canto"],
+  "corner {0}, vertex {1}": ["colțul {0}, vârful {1}", "coin {0}, sommet {1}", "canto {0}, vértice {1}"],
+  "mean of the faces": ["media fețelor", "moyenne des faces", "média das faces"],
+  normal: ["normala", "normale", "normal"],
+  "extents in x and y": ["întinderi în x și y", "étendues en x et y", "extensões em x e y"],
+  "line of the split": ["linia împărțirii", "ligne de coupe", "linha da divisão"],
+  splitter: ["separator", "séparateur", "separador"],
+  "The marked line is added up to the pixel, the others to their last pixel.": [
+    "Linia marcată se adună până la pixel, celelalte până la ultimul lor pixel.",
+    "La ligne marquée est additionnée jusqu’au pixel, les autres jusqu’à leur dernier pixel.",
+    "A linha marcada soma-se até ao píxel, as outras até ao seu último píxel.",
+  ],
+  "the eye": ["ochiul", "l’œil", "o olho"],
+  "view volume": ["volumul vizual", "volume de vision", "volume de visão"],
+  "box in view": ["cutie în câmpul vizual", "boîte dans le champ", "caixa no campo de visão"],
+  "box culled": ["cutie eliminată", "boîte éliminée", "caixa eliminada"],
+  "ray of the pixel": ["raza pixelului", "rayon du pixel", "raio do píxel"],
+  "ray to a light": ["rază spre o lumină", "rayon vers une lumière", "raio para uma luz"],
+  "box that the ray opened": ["cutie deschisă de rază", "boîte ouverte par le rayon", "caixa aberta pelo raio"],
+  "plane that divides space": ["plan care împarte spațiul", "plan qui divise l’espace", "plano que divide o espaço"],
+  chosen: ["ales", "choisi", "escolhido"],
+  "first {0} steps of more": ["primii {0} pași din mai mulți", "{0} premières étapes, il y en a d’autres", "primeiros {0} passos de mais"],
 } as const satisfies Record<string, readonly [string, string, string]>;
 
 export const TABLE = { ...PAGE, ...ENGINE };

@@ -53,12 +53,13 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
   const current = t.current ?? null;
   const marked = t.followsChoice ? t.nodes.filter((n) => n.choice?.isChosen).map((n) => n.id) : [];
   const target = marked.length === 0 || (current !== null && marked.includes(current)) ? current : marked[0]!;
-  const isNew = target !== own.target;
-  if (isNew && target !== null) {
+  const isNew = target !== null && byId.has(target) && target !== own.target;
+  if (isNew) {
     for (let n = byId.get(target)?.parent ?? null; n !== null; n = byId.get(n)?.parent ?? null) own.closed.delete(n);
     own.focus = target;
   }
-  own.target = target;
+  // A node that is not here yet is looked for again.
+  own.target = target !== null && byId.has(target) ? target : null;
 
   // List the nodes that are to be seen.
   const shown: { node: Node; level: number; place: number; among: number }[] = [];
@@ -151,7 +152,7 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
       aria-expanded=${hasChildren ? String(isOpen) : nothing}
       aria-selected=${String(node.id === current || isMarked)}
       tabindex=${first + i === focusAt ? "0" : "-1"}
-      .style=${css({ "padding-inline-start": `${Math.min(level - 1, 12) * 0.9 + 0.2}rem` })}
+      .style=${css({ "padding-inline-start": `${Math.min(level - 1, 14) * 0.6 + 0.2}rem` })}
       @click=${click}
     >
       <span class="twist" aria-hidden="true" @click=${toggle}>${hasChildren ? (isOpen ? "▾" : "▸") : "·"}</span>${node.text}

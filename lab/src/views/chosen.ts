@@ -8,7 +8,7 @@ import type { Choice } from "../parts/choice.ts";
 import { t } from "../words.ts";
 import { explanationOf, objects } from "./pixel.ts";
 
-/** Facets before the chosen one that may be of the same face of the file. */
+/** Facets before and after the chosen one that may be of the same face of the file. */
 const SAME_FACE = 6;
 
 /** What a rendered part brings into view: the present step, or what was chosen after it. */
@@ -31,8 +31,10 @@ function chosenFacets(app: App): NonNullable<typeof known> {
   if (known && isSame) return known;
   let all: JsonObject[] = [];
   if (chosen && app.catalog?.wants?.includes("facets")) {
+    const count = Number(app.picture?.value.facts["triangles"] ?? 0);
     const first = Math.max(0, chosen.facet - SAME_FACE);
-    const facets = Array.from({ length: chosen.facet - first + 1 }, (_, i) => first + i);
+    const last = Math.max(chosen.facet, Math.min(count - 1, chosen.facet + SAME_FACE));
+    const facets = Array.from({ length: last - first + 1 }, (_, i) => first + i);
     const request: JsonObject = { want: "facets", state, facets };
     if (!isDragging) app.answer("facets", request);
     const answer = answers.get("facets");

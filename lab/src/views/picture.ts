@@ -320,28 +320,35 @@ export function dragChoice(app: App): TemplateResult {
 export function legend(app: App): unknown {
   const step = app.step?.value;
   if (app.lab.step === null || !app.hasSteps || !step) return nothing;
-  const entries: Record<string, [string, string][]> = {
-    window: [
-      ["empty", t("empty window")],
-      ["one", t("one polygon")],
-      ["surrounded", t("surrounded")],
-      ["pixel", t("one pixel")],
-      ["cut", t("cut in four")],
-    ],
-    drawn: [
-      ["stays", t("stays")],
-      ["hidden", t("hidden")],
-    ],
-    line: [
-      ["line", t("scan line")],
-      ["span", t("span")],
-    ],
-    rays: [["rays", t("rays")]],
-    piece: [["piece", t("piece")]],
-    clip: [["clip", t("clip polygon")]],
-    visible: [["visible", t("visible polygon")]],
-  };
-  const list = entries[step.group];
-  if (!list) return nothing;
+  const windows: [string, string][] = [
+    ["empty", t("empty window")],
+    ["one", t("one polygon")],
+    ["surrounded", t("surrounded")],
+    ["pixel", t("one pixel")],
+    ["cut", t("cut in four")],
+  ];
+  const others: [string, string][] = [
+    ["stays", t("stays")],
+    ["hidden", t("hidden")],
+    ["line", t("scan line")],
+    ["span", t("span")],
+    ["rays", t("rays")],
+    ["p", t("P, the present one")],
+    ["q", t("Q, the other one")],
+    ["extent", t("extents in x and y")],
+    ["split-line", t("line of the split")],
+    ["splitter", t("splitter")],
+    ["piece", t("piece")],
+    ["clip", t("clip polygon")],
+    ["inside", t("inside")],
+    ["outside", t("outside")],
+    ["removed", t("hidden, removed")],
+    ["visible", t("visible polygon")],
+  ];
+
+  // Windows have all words, other steps those of what is drawn.
+  const drawn = new Set([...(step.drawing ?? "").matchAll(/class="([^"]*)"/g)].flatMap((m) => m[1]!.split(" ")));
+  const list = step.group === "window" ? windows : others.filter(([key]) => drawn.has(key));
+  if (!list.length) return nothing;
   return html`<p class="legend">${list.map(([key, text]) => html`<span><i class=${`swatch ${key}`} aria-hidden="true"></i>${text}</span>`)}</p>`;
 }

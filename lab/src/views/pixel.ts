@@ -174,13 +174,14 @@ export function rayTree(app: App): unknown {
   return html`<div class="labelled"><p class="label">${t("Ray tree")}</p>${tree({ name: t("Ray tree"), nodes, followsChoice: followsChoice() }, () => app.changed())}</div>`;
 }
 
-/** `table "Increments"`: Gouraud's intensities on the line of the pixel. */
-export function increments(explanation: JsonObject | null): unknown {
+/** `table "Increments"`: Gouraud's intensities on all lines of the facet, that of the pixel marked. */
+export function increments(app: App, explanation: JsonObject | null): unknown {
   const g = explanation?.["gouraud"];
   const pixel = numbers(explanation?.["pixel"]);
   if (!isObject(g)) return nothing;
   const edges = objects(g["edges"]);
-  const row: Cell[] = [
+  const columns = [t("line"), "I1", "I2", "py", "px", t("additions"), t("incremental"), t("direct")];
+  const own: Cell[] = [
     pixel[1] ?? null,
     ...[0, 1].map((i) => three(edges[i]?.["intensity"])),
     edges.map((e) => three(e["py"])).join("; "),
@@ -189,12 +190,22 @@ export function increments(explanation: JsonObject | null): unknown {
     three(g["intensity"]),
     three(g["direct"]),
   ];
-  return table({
-    name: t("Increments"),
-    columns: [t("line"), "I1", "I2", "py", "px", t("additions"), t("incremental"), t("direct")],
-    rows: [row],
-    caption: true,
-  });
+  const lines = objects(g["lines"]);
+  if (!lines.length) return table({ name: t("Increments"), columns, rows: [own], caption: true });
+
+  // Other lines tell of their last pixel, the pixel's line of the pixel.
+  const current = lines.findIndex((l) => l["row"] === pixel[1]);
+  const row = (l: JsonObject): Cell[] => [
+    l["row"] as number,
+    ...["i1", "i2", "py", "px"].map((k) => three(l[k])),
+    l["additions"] as number,
+    three(l["incremental"]),
+    three(l["direct"]),
+  ];
+  const rows = lines.map((l, i) => (i === current ? own : row(l)));
+  const name = t("Increments");
+  return html`${table({ name, columns, rows, current: current < 0 ? undefined : current, caption: true }, () => app.changed())}
+    <p class="note">${t("The marked line is added up to the pixel, the others to their last pixel.")}</p>`;
 }
 
 /** Whether region Structure shows the ray tree. */
@@ -222,7 +233,7 @@ export function pixelRegion(app: App): TemplateResult {
     ${explanation
       ? html`<p class="why">${why.map((s) => whyWords(s)).join(" ")}</p>
           ${surfaces(app, explanation)} ${decisions(app, explanation)} ${light(app, explanation)} ${hasOwnRays(app) ? nothing : rayTree(app)}
-          ${app.lab.page === "shading" ? nothing : increments(explanation)}`
+          ${app.lab.page === "shading" ? nothing : increments(app, explanation)}`
       : nothing}
   </section>`;
 }

@@ -238,7 +238,7 @@ function bsp(app: App, step: Step): unknown {
   const seen = visits.length ? visits : f["step"] === "tree-visit" ? [f] : [];
   const order = seen.map((s) => ({
     text: t("node {0}: facets {1}", Number(s["node"]), facets(s["polygons"])),
-    isCurrent: s["node"] === f["node"] && f["step"] === "tree-visit",
+    isCurrent: s["node"] === f["node"] && f["step"] !== "tree-node",
     choice: choiceOf(app, numbers(s["polygons"])[0], s["at"]),
   }));
   const current = typeof f["node"] === "number" ? f["node"] : null;

@@ -23,8 +23,9 @@ export interface LinkedNode {
 const MOST_ENDS = 11;
 const LEVEL = 44;
 
-/** Levels above the present node that are drawn. */
+/** Levels above the present node that are drawn, and levels in all. */
 const MOST_ABOVE = 4;
+const MOST_LEVELS = 9;
 
 export interface Links {
   content: TemplateResult;
@@ -61,12 +62,16 @@ export function links(nodes: LinkedNode[], current: number | null): Links {
     ends += count - 1;
   };
   for (const id of way.slice(above, -1)) open(id);
-  const queue = [way[way.length - 1]!, root];
+  const queue: { id: number; level: number }[] = [
+    { id: way[way.length - 1]!, level: way.length - 1 - above },
+    { id: root, level: 0 },
+  ];
   for (let i = 0; i < queue.length && i < 200; i++) {
-    const id = queue[i]!;
-    if (!opened.has(id) && ends + below(id).length - 1 > MOST_ENDS) continue;
+    const { id, level } = queue[i]!;
+    const own = below(id);
+    if (!opened.has(id) && (ends + own.length - 1 > MOST_ENDS || level + 1 >= MOST_LEVELS)) continue;
     open(id);
-    for (const child of below(id)) if (!queue.includes(child.id)) queue.push(child.id);
+    for (const child of own) if (!queue.some((q) => q.id === child.id)) queue.push({ id: child.id, level: level + 1 });
   }
 
   // Give each end a column, and each other node the middle of those below it.

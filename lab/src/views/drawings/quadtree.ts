@@ -28,10 +28,15 @@ export function quadtreeDrawing(app: App, present: JsonObject): TemplateResult {
     const [x = 0, y = 0, width = 0, height = 0] = numbers(w["pixels"]);
     return `M${x} ${y}h${width}v${height}h${-width}z`;
   };
-  const groups = VERDICTS.map((verdict) => {
-    const all = windows.filter((w) => w["verdict"] === verdict);
-    return all.length ? svg`<path class=${`window ${verdict}`} d=${all.map(path).join("")} />` : nothing;
-  });
+  // Small windows have no outline: it would hide them.
+  const isSmall = (w: JsonObject) => Number(numbers(w["pixels"])[2]) * map.scale < 6;
+  const groups = VERDICTS.flatMap((verdict) =>
+    [false, true].map((small) => {
+      const all = windows.filter((w) => w["verdict"] === verdict && isSmall(w) === small);
+      const style = `window ${verdict}${small ? " small" : ""}`;
+      return all.length && !(small && verdict === "cut") ? svg`<path class=${style} d=${all.map(path).join("")} />` : nothing;
+    }),
+  );
 
   // Count the polygons in windows with room for a number: those that were not cut, and the present one.
   const counts = windows
@@ -60,11 +65,11 @@ export function quadtreeDrawing(app: App, present: JsonObject): TemplateResult {
     click,
     content: svg`${map.shapes(svg`${groups}<path class="present-halo" d=${path(present)} /><path class="present" d=${path(present)} />`)}${counts}`,
     legend: [
-      ["empty", t("empty window")],
-      ["one", t("one polygon")],
-      ["surrounded", t("surrounded")],
-      ["pixel", t("one pixel")],
-      ["cut", t("cut in four")],
+      ["d-empty", t("empty window")],
+      ["d-one", t("one polygon")],
+      ["d-surrounded", t("surrounded")],
+      ["d-one-pixel", t("one pixel")],
+      ["d-cut", t("cut in four")],
       ["d-present", t("the present window")],
     ],
     note: t("Numbers: polygons left in the window"),

@@ -24,7 +24,17 @@ const texts = {
   },
 };
 
-const options = { bundle: true, target: "es2022", legalComments: "none", logLevel: "warning", plugins: [texts] };
+/** Leaves out the indentation of lines, which templates would keep. */
+const indentation = {
+  name: "indentation",
+  setup(build) {
+    build.onLoad({ filter: /[\\/]src[\\/].*\.ts$/ }, ({ path }) => {
+      return { contents: readFileSync(path, "utf8").replace(/\n[ \t]+/g, "\n"), loader: "ts" };
+    });
+  },
+};
+
+const options = { bundle: true, target: "es2022", legalComments: "none", logLevel: "warning", plugins: [texts, indentation] };
 
 if (process.argv.includes("--unit")) {
   const entryPoints = readdirSync("src").filter((f) => f.endsWith(".test.ts")).map((f) => `src/${f}`);

@@ -9,7 +9,7 @@ import { table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
 import { isEnglish, t, translated } from "../words.ts";
 import { whyWords } from "../why.ts";
-import { choiceOf, followsChoice } from "./chosen.ts";
+import { choiceOf, chosenWords, followsChoice } from "./chosen.ts";
 
 export const objects = (v: Json | undefined): JsonObject[] => (Array.isArray(v) ? v.filter(isObject) : []);
 const numbers = (v: Json | undefined): number[] => (Array.isArray(v) ? v.map(Number) : []);
@@ -231,7 +231,8 @@ export function pixelRegion(app: App): TemplateResult {
     </div>
     ${pixel ? nothing : html`<p class="note">${t("Double-click in the picture, or press Enter there.")}</p>`}
     ${explanation
-      ? html`<p class="why">${why.map((s) => whyWords(s)).join(" ")}</p>
+      ? html`${app.hasSteps ? nothing : chosenWords(app)}
+          <p class="why">${why.map((s) => whyWords(s)).join(" ")}</p>
           ${surfaces(app, explanation)} ${decisions(app, explanation)} ${light(app, explanation)} ${hasOwnRays(app) ? nothing : rayTree(app)}
           ${app.lab.page === "shading" ? nothing : increments(app, explanation)}`
       : nothing}

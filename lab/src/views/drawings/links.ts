@@ -48,7 +48,7 @@ export function links(nodes: LinkedNode[], current: number | null): Links {
   };
   const way: number[] = [];
   for (let at = current !== null && byId.has(current) ? current : (nodes[0]?.id ?? null); at !== null; at = parentOf(at)) way.unshift(at);
-  const above = Math.max(0, way.length - 1 - MOST_ABOVE);
+  const above = way.length <= MOST_LEVELS ? 0 : way.length - 1 - MOST_ABOVE;
   const root = way[above];
   if (root === undefined) return { content: svg``, height: 0, above: 0, leftOut: 0 };
 

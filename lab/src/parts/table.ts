@@ -15,7 +15,7 @@ export interface Table {
   /** The row that is in force. */
   current?: number | undefined;
   /** What choosing each row does: its head is a button. */
-  choices?: (Choice | null)[];
+  choices?: (row: number) => Choice | null;
   /** The row that is brought into view when it becomes another one. */
   shown?: number | undefined;
   /** Whether the first cell of a row is its head. */
@@ -61,7 +61,7 @@ export function table(t: Table, changed: () => void = () => {}): TemplateResult 
     const isCurrent = index === t.current;
     const [head, ...rest] = cells;
     const isNumber = (v: Cell) => (typeof v === "number" ? "n" : "");
-    const choice = t.choices?.[index];
+    const choice = t.choices?.(index);
     const headCell = choice ? rowButton(choice, cell(head)) : cell(head);
     return html`<tr class=${`${isCurrent ? "current" : ""}${choice?.isChosen ? " chosen" : ""}`} aria-rowindex=${isLong ? index + 2 : nothing} aria-current=${isCurrent ? "true" : nothing}>
       ${t.hasHeads === false ? html`<td class=${isNumber(head)}>${headCell}</td>` : html`<th scope="row" class=${isNumber(head)}>${headCell}</th>`}

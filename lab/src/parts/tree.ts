@@ -8,17 +8,22 @@ import { css } from "./css.ts";
 export interface Node {
   id: number;
   parent: number | null;
-  text: string;
-  choice?: Choice | null;
+  text: () => string;
+  choice?: () => Choice | null;
+  /** The facet that the node stands for. */
+  facet?: number | null;
 }
 
 export interface Tree {
   name: string;
+  /** A list that is the same one is read once. */
   nodes: Node[];
+  /** How many of the nodes are there. */
+  count?: number;
   /** The node of the present step. */
   current?: number | null | undefined;
-  /** Whether a node that was chosen is brought into view in place of the present one. */
-  followsChoice?: boolean;
+  /** Finds the chosen node, where it is brought into view in place of the present one. */
+  isChosen?: ((facet: number) => boolean) | null;
 }
 
 interface Looks {
@@ -33,42 +38,72 @@ const MOST_ROWS = 200;
 
 const looks = new Map<string, Looks>();
 
+interface Relations {
+  /** Where each node stands in the list. */
+  places: Map<number, number>;
+  /** The places of those below each node; of the roots below `null`. */
+  below: Map<number | null, number[]>;
+}
+
+const relations = new WeakMap<Node[], Relations>();
+
+function relationsOf(nodes: Node[]): Relations {
+  let known = relations.get(nodes);
+  if (known) return known;
+  const places = new Map(nodes.map((n, i) => [n.id, i]));
+  const below: Relations["below"] = new Map();
+  nodes.forEach((node, i) => {
+    const parent = node.parent !== null && places.has(node.parent) ? node.parent : null;
+    const list = below.get(parent);
+    if (list) list.push(i);
+    else below.set(parent, [i]);
+  });
+  relations.set(nodes, (known = { places, below }));
+  return known;
+}
+
 export function tree(t: Tree, changed: () => void): TemplateResult {
   let look = looks.get(t.name);
   if (!look) looks.set(t.name, (look = { closed: new Set(), focus: null, offset: 0, target: null }));
   const own = look;
 
-  // Put children below their parents.
-  const ids = new Set(t.nodes.map((n) => n.id));
-  const children = new Map<number | null, Node[]>();
-  for (const node of t.nodes) {
-    const parent = node.parent !== null && ids.has(node.parent) ? node.parent : null;
-    const list = children.get(parent);
-    if (list) list.push(node);
-    else children.set(parent, [node]);
-  }
+  // Leave out nodes that are not there yet: they stand behind the others.
+  const { places, below } = relationsOf(t.nodes);
+  const count = t.count ?? t.nodes.length;
+  const nodeOf = (id: number | null) => {
+    const place = id === null ? undefined : places.get(id);
+    return place !== undefined && place < count ? t.nodes[place] : undefined;
+  };
+  const childrenOf = (id: number | null) => {
+    const all = below.get(id) ?? [];
+    return all.length && all[all.length - 1]! >= count ? all.filter((place) => place < count) : all;
+  };
 
   // Open the way to the present or chosen node when it changes.
-  const byId = new Map(t.nodes.map((n) => [n.id, n]));
   const current = t.current ?? null;
-  const marked = t.followsChoice ? t.nodes.filter((n) => n.choice?.isChosen).map((n) => n.id) : [];
-  const target = marked.length === 0 || (current !== null && marked.includes(current)) ? current : marked[0]!;
-  const isNew = target !== null && byId.has(target) && target !== own.target;
+  const isMarked = t.isChosen;
+  const marks = (n: Node | undefined) => Boolean(isMarked && n && typeof n.facet === "number" && isMarked(n.facet));
+  const marked = isMarked && !marks(nodeOf(current)) ? t.nodes.findIndex((n, i) => i < count && marks(n)) : -1;
+  const target = marked >= 0 ? t.nodes[marked]!.id : current;
+  const isNew = nodeOf(target) !== undefined && target !== own.target;
   if (isNew) {
-    for (let n = byId.get(target)?.parent ?? null; n !== null; n = byId.get(n)?.parent ?? null) own.closed.delete(n);
+    for (let n = nodeOf(target)?.parent; n !== undefined && n !== null; n = nodeOf(n)?.parent) own.closed.delete(n);
     own.focus = target;
   }
   // A node that is not here yet is looked for again.
-  own.target = target !== null && byId.has(target) ? target : null;
+  own.target = nodeOf(target) ? target : null;
 
   // List the nodes that are to be seen.
   const shown: { node: Node; level: number; place: number; among: number }[] = [];
-  const stack = [...(children.get(null) ?? [])].reverse().map((node, i, all) => ({ node, level: 1, place: all.length - i, among: all.length }));
+  const stack: typeof shown = [];
+  const push = (id: number | null, level: number) => {
+    const children = childrenOf(id);
+    for (let i = children.length - 1; i >= 0; i--) stack.push({ node: t.nodes[children[i]!]!, level, place: i + 1, among: children.length });
+  };
+  push(null, 1);
   for (let top = stack.pop(); top; top = stack.pop()) {
     shown.push(top);
-    const below = children.get(top.node.id) ?? [];
-    if (own.closed.has(top.node.id)) continue;
-    for (let i = below.length - 1; i >= 0; i--) stack.push({ node: below[i]!, level: top.level + 1, place: i + 1, among: below.length });
+    if (!own.closed.has(top.node.id)) push(top.node.id, top.level + 1);
   }
   const focusAt = Math.max(0, shown.findIndex((s) => s.node.id === own.focus));
   const isLong = shown.length > MOST_ROWS;
@@ -92,7 +127,7 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
     const here = shown[focusAt];
     if (!here) return;
     const isClosed = own.closed.has(here.node.id);
-    const hasChildren = children.has(here.node.id);
+    const hasChildren = childrenOf(here.node.id).length > 0;
     switch (e.key) {
       case "ArrowDown":
         move(focusAt + 1, box);
@@ -118,7 +153,7 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
         break;
       case "Enter":
       case " ":
-        here.node.choice?.choose();
+        here.node.choice?.()?.choose();
         break;
       default:
         return;
@@ -128,8 +163,9 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
   };
 
   const item = ({ node, level, place, among }: (typeof shown)[number], i: number) => {
-    const hasChildren = children.has(node.id);
+    const hasChildren = childrenOf(node.id).length > 0;
     const isOpen = hasChildren && !own.closed.has(node.id);
+    const choice = node.choice?.();
     const toggle = (e: Event) => {
       e.stopPropagation();
       if (isOpen) own.closed.add(node.id);
@@ -138,10 +174,10 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
     };
     const click = () => {
       own.focus = node.id;
-      node.choice?.choose();
+      choice?.choose();
       changed();
     };
-    const isMarked = node.choice?.isChosen ?? false;
+    const isMarked = choice?.isChosen ?? false;
     return html`<li
       role="treeitem"
       class=${`${node.id === current ? "current" : ""}${isMarked ? " chosen" : ""}`}
@@ -155,7 +191,7 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
       .style=${css({ "padding-inline-start": `${Math.min(level - 1, 14) * 0.6 + 0.2}rem` })}
       @click=${click}
     >
-      <span class="twist" aria-hidden="true" @click=${toggle}>${hasChildren ? (isOpen ? "▾" : "▸") : "·"}</span>${node.text}
+      <span class="twist" aria-hidden="true" @click=${toggle}>${hasChildren ? (isOpen ? "▾" : "▸") : "·"}</span>${node.text()}
     </li>`;
   };
   const scrolled = (e: Event) => {

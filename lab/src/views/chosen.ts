@@ -51,6 +51,9 @@ function chosenFacets(app: App): NonNullable<typeof known> {
 /** Whether a facet is the chosen one, or its polygon is. */
 export const isChosen = (app: App, facet: Json | undefined): boolean => app.chosen !== null && typeof facet === "number" && chosenFacets(app).ids.has(facet);
 
+/** Finds the chosen facet in a tree, while that is what is brought into view. */
+export const chosenFinder = (app: App) => (followsChoice() && app.chosen ? (facet: number) => isChosen(app, facet) : null);
+
 /** Chooses a facet, or none. */
 export function chooseFacet(app: App, facet: number | null) {
   app.chosen = facet === null ? null : { facet };

@@ -269,7 +269,7 @@ function cornerNormals(app: App): unknown {
       name: t("Normals at the corners"),
       columns: [t("normal"), "x", "y", "z"],
       rows,
-      choices: faces.map((f) => choiceOf(app, f["facet"])),
+      choices: (row) => choiceOf(app, faces[row]?.["facet"]),
       current: rows.length - 1,
       caption: true,
     })}`;

@@ -9,7 +9,7 @@ import { table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
 import { isEnglish, t, translated } from "../words.ts";
 import { whyWords } from "../why.ts";
-import { choiceOf, chosenWords, followsChoice } from "./chosen.ts";
+import { choiceOf, chosenFinder, chosenWords } from "./chosen.ts";
 
 export const objects = (v: Json | undefined): JsonObject[] => (Array.isArray(v) ? v.filter(isObject) : []);
 const numbers = (v: Json | undefined): number[] => (Array.isArray(v) ? v.map(Number) : []);
@@ -62,7 +62,7 @@ function surfaces(app: App, explanation: JsonObject): TemplateResult {
     name: t("Surfaces at the pixel"),
     columns: [t("Surface"), t("Mesh"), t("Material"), t("Depth"), t("Fate")],
     rows,
-    choices: sorted.map((c) => choiceOf(app, c["facet"])),
+    choices: (row) => choiceOf(app, sorted[row]?.["facet"]),
     caption: true,
   });
 }
@@ -81,7 +81,7 @@ function decisions(app: App, explanation: JsonObject): TemplateResult {
     app.answer("ask-all", { want: "ask-all", state: app.state, pixel }, true);
     app.say(t("Asking all algorithms…"), "ask-all");
   };
-  return html`${table({ name: t("Decisions"), columns: [t("algorithm"), t("facet"), t("why")], rows, choices: all.map((d) => choiceOf(app, d["facet"])), caption: true })}
+  return html`${table({ name: t("Decisions"), columns: [t("algorithm"), t("facet"), t("why")], rows, choices: (row) => choiceOf(app, all[row]?.["facet"]), caption: true })}
   ${isCurrent ? nothing : button(t("Ask all algorithms"), ask)}`;
 }
 
@@ -163,7 +163,7 @@ export function rayNodes(app: App): RayNode[] {
     const what = met ? t("surface {0} of {1}, distance {2}", String(met["surface"]), String(met["mesh"] || "–"), number(Number(met["distance"]))) : t("background");
     const how = sender ? `${translated(sender.way)} (${sender.angles.map((a) => `${a.toFixed(1)}°`).join(" → ")}): ` : "";
     const facet = typeof met?.["facet"] === "number" ? met["facet"] : null;
-    return { id, parent: sender?.id ?? null, text: how + what, choice: choiceOf(app, facet), facet, way: sender ? translated(sender.way) : null };
+    return { id, parent: sender?.id ?? null, text: () => how + what, choice: () => choiceOf(app, facet), facet, way: sender ? translated(sender.way) : null };
   });
 }
 
@@ -171,7 +171,7 @@ export function rayNodes(app: App): RayNode[] {
 export function rayTree(app: App): unknown {
   const nodes = rayNodes(app);
   if (!nodes.length) return nothing;
-  return html`<div class="labelled"><p class="label">${t("Ray tree")}</p>${tree({ name: t("Ray tree"), nodes, followsChoice: followsChoice() }, () => app.changed())}</div>`;
+  return html`<div class="labelled"><p class="label">${t("Ray tree")}</p>${tree({ name: t("Ray tree"), nodes, isChosen: chosenFinder(app) }, () => app.changed())}</div>`;
 }
 
 /** `table "Increments"`: Gouraud's intensities on all lines of the facet, that of the pixel marked. */

@@ -17,13 +17,18 @@ const flattened = new WeakMap<object, JsonObject[]>();
 /** The number of the present step among all. */
 export const presentStep = (app: App): number => app.step?.value.at ?? app.step?.value.number ?? Infinity;
 
+/** The steps of several answers in one list, made once. */
+const joined = new WeakMap<JsonObject[], { parts: JsonObject[][]; all: JsonObject[] }>();
+
+const NONE: JsonObject[] = [];
+
 /** The steps of a kind, brief, at least up to the present one; empty until they are here. */
 export function stepsOf(app: App, kind: string): JsonObject[] {
   const wants = app.catalog?.wants ?? [];
   const group = app.recording?.value.groups.find((g) => g.name === kind);
-  if (!group || !wants.includes("steps")) return [];
+  if (!group || !wants.includes("steps")) return NONE;
   const here = presentStep(app);
-  let all: JsonObject[] = [];
+  const parts: JsonObject[][] = [];
   for (let from = 1; from <= group.count; from += PORTION) {
     const name = from === 1 ? `steps ${kind}` : `steps ${kind} ${from}`;
     const request: JsonObject = { want: "steps", state: app.state, show: kind, from, to: Math.min(group.count, from + PORTION - 1) };
@@ -38,19 +43,40 @@ export function stepsOf(app: App, kind: string): JsonObject[] {
       });
       flattened.set(answer, steps);
     }
-    all = from === 1 ? steps : [...all, ...steps];
-    if (Number(all[all.length - 1]?.["at"] ?? 0) >= here) break;
+    parts.push(steps);
+    if (Number(steps[steps.length - 1]?.["at"] ?? 0) >= here) break;
   }
-  return all;
+  const first = parts[0];
+  if (!first || parts.length === 1) return first ?? NONE;
+  let known = joined.get(first);
+  if (known?.parts.length !== parts.length || !parts.every((p, i) => p === known?.parts[i])) joined.set(first, (known = { parts, all: parts.flat() }));
+  return known.all;
 }
 
-/** Those of them that are done at the present step. */
+/** How many steps of a list are done at the present one. */
+export function doneCount(app: App, all: JsonObject[]): number {
+  const here = presentStep(app);
+  let [low, high] = [0, all.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (Number(all[middle]!["at"]) <= here) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** The done steps of each kind, made once for each step. */
+const done = new Map<string, { all: JsonObject[]; count: number; steps: JsonObject[] }>();
+
+/** The steps of a kind that are done at the present one. */
 export function doneOf(app: App, kind: string): JsonObject[] {
   const all = stepsOf(app, kind);
-  const here = presentStep(app);
-  const last = all[all.length - 1];
-  if (!last || Number(last["at"]) <= here) return all;
-  return all.slice(0, all.findIndex((s) => Number(s["at"]) > here));
+  const count = doneCount(app, all);
+  const known = done.get(kind);
+  if (known?.all === all && known.count === count) return known.steps;
+  const steps = count === all.length ? all : all.slice(0, count);
+  done.set(kind, { all, count, steps });
+  return steps;
 }
 
 /** A step by its number among all, with every member of its lists. */

@@ -15,7 +15,7 @@ import { rowButton, table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
 import { stepWords } from "../stepwords.ts";
 import { t, translated } from "../words.ts";
-import { choiceOf, chosenWords, followsChoice, followStep, goTo } from "./chosen.ts";
+import { choiceOf, chosenFinder, chosenWords, followsChoice, followStep, goTo } from "./chosen.ts";
 import { bspDrawing } from "./drawings/bsp-tree.ts";
 import { clipDrawing } from "./drawings/clip.ts";
 import { blockDrawing, bruteForceDrawing, depthsDrawing } from "./drawings/depths.ts";
@@ -24,14 +24,15 @@ import { accelerationDrawing, rayTreeDrawing } from "./drawings/rays.ts";
 import { edgesDrawing } from "./drawings/scan-line.ts";
 import { listDrawing, sortedList, type EntryState } from "./drawings/sorted-list.ts";
 import { hasOwnRays, rayTree } from "./pixel.ts";
-import { doneOf, facetsText as facets, list, numbers, objects, presentStep, wholeStep } from "./recorded.ts";
+import { doneCount, doneOf, facetsText as facets, list, numbers, objects, presentStep, stepsOf, wholeStep } from "./recorded.ts";
 import { prediction } from "./steps.ts";
 
-/** The row of a list that is in force or was chosen, counted from 0. */
-const shownRow = (choices: (Choice | null)[], current = -1) => {
-  const chosen = followsChoice() ? choices.findIndex((c) => c?.isChosen) : -1;
-  return chosen >= 0 ? chosen : current;
-};
+/** Rows that stand for facets: what choosing them does, and the one that is brought into view. */
+function rowsOf(app: App, facets: (Json | undefined)[], current?: number): { choices: (row: number) => Choice | null; shown: number | undefined } {
+  const finder = chosenFinder(app);
+  const chosen = finder ? facets.findIndex((f) => typeof f === "number" && finder(f)) : -1;
+  return { choices: (row) => choiceOf(app, facets[row]), shown: chosen >= 0 ? chosen : current };
+}
 
 function warnock(app: App, f: JsonObject): unknown {
   const rows: Cell[][] = [
@@ -48,29 +49,39 @@ function warnock(app: App, f: JsonObject): unknown {
 function quadtree(app: App, f: JsonObject): unknown {
   const path = String(f["path"] ?? "");
   const quarters = [t("top left"), t("top right"), t("bottom left"), t("bottom right")];
-  const known = doneOf(app, "window");
+  const known = stepsOf(app, "window");
   if (known.length) {
-    const nodes: Node[] = known.map((s) => ({
+    const nodes = nodesOf(known, (s) => ({
       id: Number(s["at"]),
       parent: typeof s["parent"] === "number" ? s["parent"] : null,
-      text: `${numbers(s["pixels"]).slice(0, 2).join(",")} · ${numbers(s["pixels"]).slice(2).join(" x ")}: ${translated(String(s["verdict"]))}`,
-      choice: choiceOf(app, s["facet"], s["at"]),
+      text: () => `${numbers(s["pixels"]).slice(0, 2).join(",")} · ${numbers(s["pixels"]).slice(2).join(" x ")}: ${translated(String(s["verdict"]))}`,
+      choice: () => choiceOf(app, s["facet"], s["at"]),
+      facet: typeof s["facet"] === "number" ? s["facet"] : null,
     }));
-    return labelledTree(app, t("Quadtree"), nodes, app.step?.value.at ?? null);
+    return labelledTree(app, t("Quadtree"), nodes, app.step?.value.at ?? null, doneCount(app, known));
   }
   // Without the other steps, the way down from the whole picture.
-  const nodes: Node[] = [{ id: 0, parent: null, text: t("whole picture") }];
+  const nodes: Node[] = [{ id: 0, parent: null, text: () => t("whole picture") }];
   let parent = 0;
   for (let depth = 0; depth < path.length; depth++) {
     const at = Number(path[depth]);
-    for (let q = 0; q < 4; q++) nodes.push({ id: depth * 4 + q + 1, parent, text: quarters[q]! });
+    for (let q = 0; q < 4; q++) nodes.push({ id: depth * 4 + q + 1, parent, text: () => quarters[q]! });
     parent = depth * 4 + at + 1;
   }
   return labelledTree(app, t("Quadtree"), nodes, parent);
 }
 
-const labelledTree = (app: App, name: string, nodes: Node[], current: number | null) =>
-  labelled(name, tree({ name, nodes, current, followsChoice: followsChoice() }, () => app.changed()));
+const labelledTree = (app: App, name: string, nodes: Node[], current: number | null, count = nodes.length) =>
+  labelled(name, tree({ name, nodes, count, current, isChosen: chosenFinder(app) }, () => app.changed()));
+
+/** The nodes of the steps of a recording, made once. */
+const knownNodes = new WeakMap<JsonObject[], Node[]>();
+
+function nodesOf(steps: JsonObject[], nodeOf: (s: JsonObject) => Node): Node[] {
+  let nodes = knownNodes.get(steps);
+  if (!nodes) knownNodes.set(steps, (nodes = steps.map(nodeOf)));
+  return nodes;
+}
 
 /** Facets that have a button of their own. */
 const MOST_BUTTONS = 12;
@@ -88,7 +99,6 @@ function facetButtons(app: App, f: JsonObject): unknown {
 const labelled = (label: string, content: unknown) => html`<div class="labelled"><p class="label">${label}</p>${content}</div>`;
 
 function polygonTable(app: App, polygons: JsonObject[], inside: Set<number> | null): unknown {
-  const choices = polygons.map((p) => choiceOf(app, p["facet"]));
   const last = (p: JsonObject) =>
     inside ? (inside.has(Number(p["facet"])) ? t("in") : t("out")) : numbers(p["plane"]).map((n) => Number(n.toPrecision(4))).join(", ");
   return table(
@@ -96,8 +106,7 @@ function polygonTable(app: App, polygons: JsonObject[], inside: Set<number> | nu
       name: t("Polygon table"),
       columns: [t("polygon"), t("facet"), t("surface"), inside ? t("in-out flag") : t("plane")],
       rows: polygons.map((p, i) => [i, Number(p["facet"]), Number(p["surface"]), last(p)]),
-      choices,
-      shown: shownRow(choices),
+      ...rowsOf(app, polygons.map((p) => p["facet"])),
       caption: true,
     },
     () => app.changed(),
@@ -106,14 +115,12 @@ function polygonTable(app: App, polygons: JsonObject[], inside: Set<number> | nu
 
 function edgeTable(app: App, f: JsonObject): unknown {
   const edges = objects(f["buckets"]).flatMap((b) => objects(b["edges"]).map((e): JsonObject => ({ ...e, row: b["row"] ?? null })));
-  const choices = edges.map((e) => choiceOf(app, e["facet"]));
   return table(
     {
       name: t("Edge table"),
       columns: [t("row"), t("polygon"), t("edge"), "x", "dx", t("last row")],
       rows: edges.map((e) => [e["row"] as number, e["polygon"] as number, e["edge"] as number, e["x"] as number, e["dx"] as number, valueText(e["last"])]),
-      choices,
-      shown: shownRow(choices),
+      ...rowsOf(app, edges.map((e) => e["facet"])),
       caption: true,
     },
     () => app.changed(),
@@ -134,7 +141,7 @@ function scanLine(app: App, step: Step): unknown {
       name: t("Active edge table"),
       columns: ["x", t("polygon"), t("facet"), t("edge")],
       rows: active.map((e) => [e["x"] as number, e["polygon"] as number, e["facet"] as number, e["edge"] as number]),
-      choices: active.map((e) => choiceOf(app, e["facet"])),
+      ...rowsOf(app, active.map((e) => e["facet"])),
       caption: true,
     },
     changed,
@@ -144,13 +151,13 @@ function scanLine(app: App, step: Step): unknown {
       name: t("Spans"),
       columns: [t("pixels"), t("inside"), t("verdict"), t("facet")],
       rows: spans.map((s) => [numbers(s["pixels"]).join("–"), facets(s["inside"]), translated(String(s["verdict"])), s["facet"] as number | null]),
-      choices: spans.map((s) => choiceOf(app, s["facet"] ?? numbers(s["inside"])[0])),
+      ...rowsOf(app, spans.map((s) => s["facet"] ?? numbers(s["inside"])[0])),
       caption: true,
     },
     changed,
   )}
   ${fields ? polygonTable(app, objects(fields["polygons"]), inside) : nothing}
-  ${fields ? html`<details><summary>${t("Edge table")}</summary>${edgeTable(app, fields)}</details>` : nothing}`;
+  ${fields ? details(app, t("Edge table"), () => edgeTable(app, fields)) : nothing}`;
 }
 
 /** Painter's tests in their order; the third and the fourth may be asked with P and Q exchanged. */
@@ -177,11 +184,12 @@ function painter(app: App, step: Step): unknown {
   const words: Record<EntryState, string> = { painted: t("painted"), waits: t("waits"), moved: t("moved, waits"), part: t("part, waits"), split: t("split") };
   const current = Number(f["polygon"] ?? -1);
   const items = sorted.list.map((e) => ({
-    text: t("polygon {0}, facet {1}: {2}", e.polygon, String(e.facet), words[e.state]),
+    text: () => t("polygon {0}, facet {1}: {2}", e.polygon, String(e.facet), words[e.state]),
     isCurrent: e.polygon === current,
-    choice: choiceOf(app, e.facet, e.at),
+    facet: e.facet,
+    choice: () => choiceOf(app, e.facet, e.at),
   }));
-  return html`${tests} ${pairButtons(app, f)} ${listDrawing(app, f, sorted)} ${items.length ? entries(t("Depth-sort list"), items) : nothing}
+  return html`${tests} ${pairButtons(app, f)} ${listDrawing(app, f, sorted)} ${items.length ? entries(app, t("Depth-sort list"), items) : nothing}
   ${f["step"] === "piece" ? fieldsTable(f) : nothing}`;
 }
 
@@ -195,13 +203,21 @@ function pairButtons(app: App, f: JsonObject): unknown {
   return html`<div class="chips" role="group" aria-label=${t("Polygons P and Q")}>${one("P", f["polygon"], f["facet"])} ${one("Q", f["with"], f["with_facet"])}</div>`;
 }
 
-/** A list; of a long one the part round the present entry. */
-function entries(name: string, items: { text: string; isCurrent?: boolean; choice?: Choice | null }[]): unknown {
+interface Item {
+  text: () => string;
+  isCurrent: boolean;
+  facet: number | null;
+  choice: () => Choice | null;
+}
+
+/** A list; of a long one the part round the present or chosen entry. */
+function entries(app: App, name: string, items: Item[]): unknown {
   const MOST = 200;
-  const current = items.findIndex((i) => i.isCurrent);
-  const at = Math.max(0, shownRow(items.map((i) => i.choice ?? null), current));
+  const finder = chosenFinder(app);
+  const chosen = finder ? items.findIndex((i) => i.facet !== null && finder(i.facet)) : -1;
+  const at = Math.max(0, chosen >= 0 ? chosen : items.findIndex((i) => i.isCurrent));
   const first = items.length > MOST ? Math.max(0, Math.min(at - 50, items.length - MOST)) : 0;
-  const shown = items.slice(first, first + MOST);
+  const shown = items.slice(first, first + MOST).map((i) => ({ ...i, choice: i.choice() }));
   return labelled(
     name,
     html`<div class="scroll" tabindex="0" role="group" aria-label=${name}>
@@ -214,7 +230,7 @@ function entries(name: string, items: { text: string; isCurrent?: boolean; choic
               aria-setsize=${items.length}
               aria-posinset=${first + n + 1}
             >
-              ${i.choice ? rowButton(i.choice, i.text) : i.text}
+              ${i.choice ? rowButton(i.choice, i.text()) : i.text()}
             </li>`,
         )}
       </ol>
@@ -224,26 +240,28 @@ function entries(name: string, items: { text: string; isCurrent?: boolean; choic
 
 function bsp(app: App, step: Step): unknown {
   const f = step.fields;
-  const all = doneOf(app, "tree-node");
+  const all = stepsOf(app, "tree-node");
   const there = all.length ? all : f["step"] === "tree-node" ? [f] : [];
   const side = (s: JsonObject) => (s["side"] === "front" ? t("front") : s["side"] === "back" ? t("back") : t("root"));
   const count = (v: Json | undefined) => (isObject(v) ? Number(v["count"]) : 0);
-  const nodes: Node[] = there.map((s) => ({
+  const nodes = nodesOf(there, (s) => ({
     id: Number(s["node"]),
     parent: typeof s["above"] === "number" ? s["above"] : null,
-    text: t("{0}: splitter facet {1}, front {2}, back {3}", side(s), valueText(s["splitter"]), count(s["front"]), count(s["back"])),
-    choice: choiceOf(app, s["splitter"], s["at"]),
+    facet: typeof s["splitter"] === "number" ? s["splitter"] : null,
+    text: () => t("{0}: splitter facet {1}, front {2}, back {3}", side(s), valueText(s["splitter"]), count(s["front"]), count(s["back"])),
+    choice: () => choiceOf(app, s["splitter"], s["at"]),
   }));
   const visits = doneOf(app, "tree-visit");
   const seen = visits.length ? visits : f["step"] === "tree-visit" ? [f] : [];
   const order = seen.map((s) => ({
-    text: t("node {0}: facets {1}", Number(s["node"]), facets(s["polygons"])),
+    text: () => t("node {0}: facets {1}", Number(s["node"]), facets(s["polygons"])),
     isCurrent: s["node"] === f["node"] && f["step"] !== "tree-node",
-    choice: choiceOf(app, numbers(s["polygons"])[0], s["at"]),
+    facet: numbers(s["polygons"])[0] ?? null,
+    choice: () => choiceOf(app, numbers(s["polygons"])[0], s["at"]),
   }));
   const current = typeof f["node"] === "number" ? f["node"] : null;
-  return html`${bspDrawing(app, f)} ${nodes.length ? labelledTree(app, t("BSP tree"), nodes, current) : nothing}
-  ${order.length ? entries(t("Back to front"), order) : nothing}
+  return html`${bspDrawing(app, f)} ${nodes.length ? labelledTree(app, t("BSP tree"), nodes, current, all.length ? doneCount(app, all) : 1) : nothing}
+  ${order.length ? entries(app, t("Back to front"), order) : nothing}
   ${f["step"] === "piece" || f["step"] === "overruled" ? fieldsTable(f) : nothing}`;
 }
 
@@ -251,7 +269,6 @@ function weilerAtherton(app: App, step: Step): unknown {
   const f = step.fields;
   const here = presentStep(app);
   const visible = doneOf(app, "visible");
-  const members = (key: string) => choiceOf(app, numbers(f[key])[0]);
   const clip =
     f["step"] === "clip"
       ? table({
@@ -263,16 +280,17 @@ function weilerAtherton(app: App, step: Step): unknown {
             [t("outside"), Number(f["outside_count"] ?? 0), facets(f["outside"])],
             [t("hidden, removed"), list(f["hidden"]).length, facets(f["hidden"])],
           ],
-          choices: [choiceOf(app, f["facet"]), members("inside"), members("outside"), members("hidden")],
+          choices: (row) => choiceOf(app, row === 0 ? f["facet"] : numbers(f[["inside", "outside", "hidden"][row - 1]!])[0]),
           caption: true,
         })
       : nothing;
   const items = visible.map((s) => ({
-    text: t("facet {0}: {1} square pixels", Number(s["facet"]), valueText(s["area"])),
+    text: () => t("facet {0}: {1} square pixels", Number(s["facet"]), valueText(s["area"])),
     isCurrent: s["at"] === here,
-    choice: choiceOf(app, s["facet"], s["at"]),
+    facet: Number(s["facet"]),
+    choice: () => choiceOf(app, s["facet"], s["at"]),
   }));
-  return html`${clipDrawing(app, f)} ${clip} ${items.length ? entries(t("Visible polygons"), items) : nothing} ${f["step"] === "visible" ? fieldsTable(f) : nothing}`;
+  return html`${clipDrawing(app, f)} ${clip} ${items.length ? entries(app, t("Visible polygons"), items) : nothing} ${f["step"] === "visible" ? fieldsTable(f) : nothing}`;
 }
 
 function zBuffer(app: App, step: Step): unknown {
@@ -288,12 +306,11 @@ function zBuffer(app: App, step: Step): unknown {
 function bruteForce(app: App, step: Step): unknown {
   const facets = objects(step.depths?.["facets"]);
   if (!step.depths) return html`${bruteForceDrawing(app, step)}<p class="note">${t("Inspect a pixel to see the depths of all facets over it.")}</p>`;
-  const choices = facets.map((f) => choiceOf(app, f["facet"]));
   const nearest = Math.max(...facets.map((f) => Number(f["depth"])));
   const rows = facets.map((f) => [f["facet"] as number, valueText(f["depth"]), Number(f["depth"]) === nearest ? t("nearest") : t("hidden")]);
   const columns = [t("facet"), t("Depth"), t("verdict")];
   return html`${bruteForceDrawing(app, step)}
-  ${table({ name: t("Depths"), columns, rows, choices, shown: shownRow(choices), caption: true }, () => app.changed())}`;
+  ${table({ name: t("Depths"), columns, rows, ...rowsOf(app, facets.map((f) => f["facet"])), caption: true }, () => app.changed())}`;
 }
 
 /** Ray casting: what the ray of the pixel opened in the structure, and the facets that were tested there. */
@@ -317,10 +334,10 @@ function rayCast(app: App, step: Step): unknown {
     // Facets hang below the part in which they were tested.
     const nodes: Node[] = parts.flatMap((p, i): Node[] => {
       const id = Number(p["id"]);
-      const own: Node = { id, parent: typeof p["parent"] === "number" ? p["parent"] : null, text: String(p["name"]) };
-      return [own, ...numbers(p["facets"]).map((facet, k): Node => ({ id: -1 - i * 10000 - k, parent: id, text: facetWords(facet), choice: choiceOf(app, facet) }))];
+      const own: Node = { id, parent: typeof p["parent"] === "number" ? p["parent"] : null, text: () => String(p["name"]) };
+      return [own, ...numbers(p["facets"]).map((facet, k): Node => ({ id: -1 - i * 10000 - k, parent: id, text: () => facetWords(facet), facet, choice: () => choiceOf(app, facet) }))];
     });
-    content = labelledTree(app, name, nodes, nodes.find((n) => n.text === (typeof hit === "number" ? facetWords(hit) : ""))?.id ?? null);
+    content = labelledTree(app, name, nodes, nodes.find((n) => n.facet !== undefined && n.facet === hit)?.id ?? null);
   } else if (parts.length) {
     const corner = (v: Json | undefined) => numbers(v).map((n) => Number(n.toPrecision(4))).join(" ");
     const holdsHit = (p: JsonObject) => typeof hit === "number" && numbers(p["facets"]).includes(hit);
@@ -328,7 +345,7 @@ function rayCast(app: App, step: Step): unknown {
       name,
       columns: [t("part"), t("facets"), t("from"), t("to"), t("hit")],
       rows: parts.map((p) => [String(p["name"]), facets(p["facets"]), corner(p["min"]), corner(p["max"]), holdsHit(p) ? t("facet {0}", Number(hit)) : "–"]),
-      choices: parts.map((p) => choiceOf(app, holdsHit(p) ? hit : numbers(p["facets"])[0])),
+      ...rowsOf(app, parts.map((p) => (holdsHit(p) ? hit : numbers(p["facets"])[0]))),
       current: parts.findIndex(holdsHit),
       caption: true,
     });
@@ -419,17 +436,31 @@ function content(app: App, step: Step): unknown {
   }
 }
 
+/** Summaries of the details that are open. */
+const open = new Set<string>();
+
+/** Content that is made only while it is seen. */
+function details(app: App, summary: string, content: () => unknown): TemplateResult {
+  const toggle = (e: Event) => {
+    if ((e.currentTarget as HTMLDetailsElement).open) open.add(summary);
+    else open.delete(summary);
+    app.changed();
+  };
+  return html`<details ?open=${open.has(summary)} @toggle=${toggle}><summary>${summary}</summary>${open.has(summary) ? content() : nothing}</details>`;
+}
+
 /** The drawing of the whole structure: quadtree, tree, list. */
 function wholeDrawing(app: App): unknown {
   const visibility = String(app.get("settings.visibility"));
   if (!["warnock", "painter", "bsp"].includes(visibility) || app.get("settings.global") === "ray-trace") return nothing;
+  return details(app, t("Drawing of the structure"), () => wholeContent(app));
+}
+
+function wholeContent(app: App): unknown {
   app.answer("structure", { want: "structure", state: app.state }, true);
   const text = app.answerTo("structure")?.ok["drawing"];
   if (typeof text !== "string" || text.length > 1_500_000) return nothing;
-  return html`<details>
-    <summary>${t("Drawing of the structure")}</summary>
-    <div class="drawing" role="img" aria-label=${t("Drawing of the structure")}>${drawing(text, "structure")}</div>
-  </details>`;
+  return html`<div class="drawing" role="img" aria-label=${t("Drawing of the structure")}>${drawing(text, "structure")}</div>`;
 }
 
 /** The step whose rows and nodes were brought into view last. */

@@ -13,23 +13,24 @@ export function bspDrawing(app: App, present: JsonObject): TemplateResult | type
   const built = doneOf(app, "tree-node");
   const all = built.length ? built : present["step"] === "tree-node" ? [present] : [];
   if (!all.length) return nothing;
-  const visits = new Map(doneOf(app, "tree-visit").map((s) => [Number(s["node"]), Number(s["order"])]));
-  const nodes = all.map((s): LinkedNode => {
-    const id = Number(s["node"]);
-    const order = visits.get(id);
-    const splitter = typeof s["splitter"] === "number" ? s["splitter"] : null;
-    return {
-      id,
-      parent: typeof s["above"] === "number" ? s["above"] : null,
-      text: String(id),
-      title: t("node {0}: divides along facet {1}", id, String(splitter ?? "–")),
-      style: `${order === undefined ? "" : "visited"}${isChosen(app, splitter) ? " chosen" : ""}`,
-      facet: splitter,
-      at: typeof s["at"] === "number" ? s["at"] : null,
-      below: order === undefined ? "" : `${order + 1}.`,
-      side: s["side"] === "front" ? 1 : 0,
-    };
-  });
+  const visits = new Map(doneOf(app, "tree-visit").map((s) => [s["node"], Number(s["order"])]));
+  const nodes = all.map((s): LinkedNode => ({
+    id: Number(s["node"]),
+    parent: typeof s["above"] === "number" ? s["above"] : null,
+    side: s["side"] === "front" ? 1 : 0,
+    look: () => {
+      const order = visits.get(s["node"]);
+      const splitter = typeof s["splitter"] === "number" ? s["splitter"] : null;
+      return {
+        text: String(s["node"]),
+        title: t("node {0}: divides along facet {1}", String(s["node"]), String(splitter ?? "–")),
+        style: `${order === undefined ? "" : "visited"}${isChosen(app, splitter) ? " chosen" : ""}`,
+        facet: splitter,
+        at: typeof s["at"] === "number" ? s["at"] : null,
+        below: order === undefined ? "" : `${order + 1}.`,
+      };
+    },
+  }));
   const drawn = links(nodes, typeof present["node"] === "number" ? present["node"] : null);
   return sheet(app, {
     name: t("Drawing of the BSP tree"),

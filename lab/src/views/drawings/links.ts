@@ -7,6 +7,12 @@ import { short, WIDTH } from "./sheet.ts";
 export interface LinkedNode {
   id: number;
   parent: number | null;
+  /** Where it hangs below its parent: 0 left, 1 right. */
+  side?: 0 | 1;
+  look: () => Look;
+}
+
+export interface Look {
   text: string;
   /** What the node says in more words. */
   title: string;
@@ -15,8 +21,6 @@ export interface LinkedNode {
   at?: number | null;
   /** A word below the node. */
   below?: string;
-  /** Where it hangs below its parent: 0 left, 1 right. */
-  side?: 0 | 1;
 }
 
 /** Ends of branches that fit beside each other. */
@@ -38,7 +42,11 @@ export interface Links {
 export function links(nodes: LinkedNode[], current: number | null): Links {
   const byId = new Map(nodes.map((n) => [n.id, n]));
   const children = new Map<number, LinkedNode[]>();
-  for (const n of nodes) if (n.parent !== null && byId.has(n.parent)) children.set(n.parent, [...(children.get(n.parent) ?? []), n]);
+  for (const n of nodes) {
+    const list = n.parent === null ? undefined : children.get(n.parent);
+    if (list) list.push(n);
+    else if (n.parent !== null && byId.has(n.parent)) children.set(n.parent, [n]);
+  }
   const below = (id: number) => (children.get(id) ?? []).sort((a, b) => (a.side ?? 0) - (b.side ?? 0));
 
   // Go up from the present node, or begin at the root.
@@ -98,12 +106,13 @@ export function links(nodes: LinkedNode[], current: number | null): Links {
   const node = (n: LinkedNode) => {
     const [x, y] = places.get(n.id)!;
     const hidden = opened.has(n.id) ? 0 : below(n.id).length;
-    const style = `node ${n.style ?? ""}${n.id === current ? " present" : ""}`;
-    return svg`<g class=${style} data-facet=${String(n.facet ?? "")} data-step=${String(n.at ?? "")}><title>${n.title}</title>
+    const look = n.look();
+    const style = `node ${look.style ?? ""}${n.id === current ? " present" : ""}`;
+    return svg`<g class=${style} data-facet=${String(look.facet ?? "")} data-step=${String(look.at ?? "")}><title>${look.title}</title>
       ${hidden ? svg`<path class="more" d=${`M${short(x)} ${y}l-7 ${LEVEL - 17}h14z`} />` : nothing}
       <circle cx=${short(x)} cy=${y} r=${short(radius)} />
-      <text class="name" x=${short(x)} y=${y + 3.5} text-anchor="middle">${n.text}</text>
-      ${n.below && !hidden ? svg`<text class="below" x=${short(x)} y=${y + radius + 11} text-anchor="middle">${n.below}</text>` : nothing}</g>`;
+      <text class="name" x=${short(x)} y=${y + 3.5} text-anchor="middle">${look.text}</text>
+      ${look.below && !hidden ? svg`<text class="below" x=${short(x)} y=${y + radius + 11} text-anchor="middle">${look.below}</text>` : nothing}</g>`;
   };
   const drawn = nodes.filter(isDrawn);
   const stem = above > 0 ? svg`<path class="tree-link dashed" d=${`M${short(places.get(root)![0])} 0V20`} />` : nothing;

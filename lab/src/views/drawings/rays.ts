@@ -109,11 +109,13 @@ export function rayTreeDrawing(app: App): TemplateResult | typeof nothing {
     nodes.map((n) => ({
       id: n.id,
       parent: n.parent,
-      text: n.facet === null ? "–" : String(n.facet),
-      title: n.text,
-      facet: n.facet,
-      style: `${n.facet === null ? "background" : "visited"}${isChosen(app, n.facet) ? " chosen" : ""}`,
-      below: n.way ?? "",
+      look: () => ({
+        text: n.facet === null ? "–" : String(n.facet),
+        title: n.text(),
+        facet: n.facet,
+        style: `${n.facet === null ? "background" : "visited"}${isChosen(app, n.facet) ? " chosen" : ""}`,
+        below: n.way ?? "",
+      }),
     })),
     null,
   );

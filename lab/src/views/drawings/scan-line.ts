@@ -2,7 +2,7 @@
 
 import { nothing, svg, type TemplateResult } from "lit-html";
 import type { App } from "../../app.ts";
-import type { JsonObject } from "../../json.ts";
+import type { Json, JsonObject } from "../../json.ts";
 import { t } from "../../words.ts";
 import { isChosen } from "../chosen.ts";
 import { numbers, objects } from "../recorded.ts";
@@ -13,14 +13,20 @@ const HEIGHT = 190;
 /** More edges than this are one shape. */
 const MOST_SINGLE = 600;
 
-/** `table` is the edge table of the band, `line` the line that is swept, if one is. */
-export function edgesDrawing(app: App, table: JsonObject, line: JsonObject | null): TemplateResult {
-  const [top = 0, bottom = 1] = numbers(table["rows"]);
-  const X = (x: number) => (x / app.width) * WIDTH;
-  const Y = (row: number) => 8 + ((row - top) / Math.max(1, bottom - top)) * (HEIGHT - 16);
+interface Edge {
+  key: string;
+  facet: Json;
+  path: string;
+}
 
-  // Each edge runs from the line of its bucket to its last line.
-  const edges = objects(table["buckets"]).flatMap((bucket) =>
+/** The edges of each table, made once. */
+const known = new WeakMap<JsonObject, Edge[]>();
+
+/** Each edge runs from the line of its bucket to its last line. */
+function edgesOf(table: JsonObject, X: (x: number) => number, Y: (row: number) => number): Edge[] {
+  let edges = known.get(table);
+  if (edges) return edges;
+  edges = objects(table["buckets"]).flatMap((bucket) =>
     objects(bucket["edges"]).map((e) => {
       const row = Number(bucket["row"]);
       const last = numbers(e["last"])[0] ?? row;
@@ -29,9 +35,20 @@ export function edgesDrawing(app: App, table: JsonObject, line: JsonObject | nul
       return { key: `${String(e["polygon"])} ${String(e["edge"])}`, facet: e["facet"] ?? null, path };
     }),
   );
+  known.set(table, edges);
+  return edges;
+}
+
+/** `table` is the edge table of the band, `line` the line that is swept, if one is. */
+export function edgesDrawing(app: App, table: JsonObject, line: JsonObject | null): TemplateResult {
+  const [top = 0, bottom = 1] = numbers(table["rows"]);
+  const X = (x: number) => (x / app.width) * WIDTH;
+  const Y = (row: number) => 8 + ((row - top) / Math.max(1, bottom - top)) * (HEIGHT - 16);
+
+  const edges = edgesOf(table, X, Y);
   const active = new Set(objects(line?.["active_edges"]).map((e) => `${String(e["polygon"])} ${String(e["edge"])}`));
   const resting = edges.filter((e) => !active.has(e.key));
-  const one = (style: string) => (e: (typeof edges)[number]) =>
+  const one = (style: string) => (e: Edge) =>
     svg`<path class=${`${style}${isChosen(app, e.facet) ? " chosen" : ""}`} data-facet=${String(e.facet)} d=${e.path} />`;
   const rest = resting.length > MOST_SINGLE ? svg`<path class="edge" d=${resting.map((e) => e.path).join("")} />` : resting.map(one("edge"));
 

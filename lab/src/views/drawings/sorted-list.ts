@@ -24,25 +24,33 @@ export interface SortedList {
   list: Entry[];
 }
 
-/** Replays moves, splits and turns up to the present step. */
-export function sortedList(app: App, present: JsonObject): SortedList {
-  const brief = stepsOf(app, "first-order")[0];
-  const whole = brief ? wholeStep(app, brief["at"], "first-order") : null;
-  const order = objects((whole ?? brief ?? (present["step"] === "first-order" ? present : null))?.["polygons"]);
-  const painted = doneOf(app, "painted");
-  const done = new Map(painted.map((s) => [Number(s["polygon"]), s["at"] ?? null]));
-  const moved = new Set<number>();
-  const parts = new Set<number>();
-  const gone = new Set<number>();
+/** What the list is without what is painted. */
+interface Replayed {
+  order: JsonObject[];
+  moves: JsonObject[];
+  splits: JsonObject[];
+  waiting: number[];
+  moved: Set<number>;
+  parts: Set<number>;
+  gone: Set<number>;
+  facets: Map<number, number>;
+}
 
-  // Take the changes of the list in the order of their steps.
+/** The list that was replayed last. */
+let replayed: Replayed | undefined;
+
+/** Takes the changes of the list in the order of their steps. */
+function replay(order: JsonObject[], moves: JsonObject[], splits: JsonObject[]): Replayed {
+  if (replayed?.order === order && replayed.moves === moves && replayed.splits === splits) return replayed;
   const far = new Map(order.map((p) => [Number(p["polygon"]), Number(p["far"])]));
   const facets = new Map(order.map((p) => [Number(p["polygon"]), Number(p["facet"])]));
-  let waiting = order.map((p) => Number(p["polygon"]));
-  const changes = [...doneOf(app, "moved"), ...doneOf(app, "split")].sort((a, b) => Number(a["at"]) - Number(b["at"]));
+  const [moved, parts, gone] = [new Set<number>(), new Set<number>(), new Set<number>()];
+  const waiting = order.map((p) => Number(p["polygon"]));
+  const changes = [...moves, ...splits].sort((a, b) => Number(a["at"]) - Number(b["at"]));
   for (const change of changes) {
     const polygon = Number(change["polygon"]);
-    waiting = waiting.filter((p) => p !== polygon);
+    const from = waiting.indexOf(polygon);
+    if (from >= 0) waiting.splice(from, 1);
     if (change["step"] === "moved") {
       moved.add(polygon);
       waiting.splice(Math.max(0, waiting.indexOf(Number(change["before_polygon"]))), 0, polygon);
@@ -60,7 +68,20 @@ export function sortedList(app: App, present: JsonObject): SortedList {
       waiting.splice(place < 0 ? waiting.length : place, 0, number);
     }
   }
+  replayed = { order, moves, splits, waiting, moved, parts, gone, facets };
+  return replayed;
+}
 
+const NONE: JsonObject[] = [];
+
+/** Replays moves, splits and turns up to the present step. */
+export function sortedList(app: App, present: JsonObject): SortedList {
+  const brief = stepsOf(app, "first-order")[0];
+  const whole = brief ? wholeStep(app, brief["at"], "first-order") : null;
+  const list = (whole ?? brief ?? (present["step"] === "first-order" ? present : null))?.["polygons"];
+  const order = Array.isArray(list) ? (list as JsonObject[]) : NONE;
+  const done = new Map(doneOf(app, "painted").map((s) => [Number(s["polygon"]), s["at"] ?? null]));
+  const { waiting, moved, parts, gone, facets } = replay(order, doneOf(app, "moved"), doneOf(app, "split"));
   const entry = (polygon: number): Entry => {
     const state = done.has(polygon) ? "painted" : gone.has(polygon) ? "split" : moved.has(polygon) ? "moved" : parts.has(polygon) ? "part" : "waits";
     return { polygon, facet: facets.get(polygon) ?? null, state, at: done.get(polygon) ?? null };

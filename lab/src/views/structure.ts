@@ -113,18 +113,18 @@ function polygonTable(app: App, polygons: JsonObject[], inside: Set<number> | nu
   );
 }
 
+/** The rows of each edge table and the facets of their edges, made once. */
+const edgeRows = new WeakMap<JsonObject, { rows: Cell[][]; facets: (Json | undefined)[] }>();
+
 function edgeTable(app: App, f: JsonObject): unknown {
-  const edges = objects(f["buckets"]).flatMap((b) => objects(b["edges"]).map((e): JsonObject => ({ ...e, row: b["row"] ?? null })));
-  return table(
-    {
-      name: t("Edge table"),
-      columns: [t("row"), t("polygon"), t("edge"), "x", "dx", t("last row")],
-      rows: edges.map((e) => [e["row"] as number, e["polygon"] as number, e["edge"] as number, e["x"] as number, e["dx"] as number, valueText(e["last"])]),
-      ...rowsOf(app, edges.map((e) => e["facet"])),
-      caption: true,
-    },
-    () => app.changed(),
-  );
+  let known = edgeRows.get(f);
+  if (!known) {
+    const edges = objects(f["buckets"]).flatMap((b) => objects(b["edges"]).map((e): JsonObject => ({ ...e, row: b["row"] ?? null })));
+    const rows = edges.map((e): Cell[] => [...["row", "polygon", "edge", "x", "dx"].map((k) => e[k] as number), valueText(e["last"])]);
+    edgeRows.set(f, (known = { rows, facets: edges.map((e) => e["facet"]) }));
+  }
+  const columns = [t("row"), t("polygon"), t("edge"), "x", "dx", t("last row")];
+  return table({ name: t("Edge table"), columns, rows: known.rows, ...rowsOf(app, known.facets), caption: true }, () => app.changed());
 }
 
 function scanLine(app: App, step: Step): unknown {
@@ -157,7 +157,7 @@ function scanLine(app: App, step: Step): unknown {
     changed,
   )}
   ${fields ? polygonTable(app, objects(fields["polygons"]), inside) : nothing}
-  ${fields ? details(app, t("Edge table"), () => edgeTable(app, fields)) : nothing}`;
+  ${fields ? edgeTable(app, fields) : nothing}`;
 }
 
 /** Painter's tests in their order; the third and the fourth may be asked with P and Q exchanged. */
@@ -354,10 +354,9 @@ function rayCast(app: App, step: Step): unknown {
 }
 
 /** Ray tracing: the rays of the pixel. */
-function rayTrace(app: App, f: JsonObject): unknown {
-  const choice = choiceOf(app, f["facet"]);
-  return html`${app.lab.pixel ? html`${rayTreeDrawing(app)} ${rayTree(app)}` : html`<p class="note">${t("Inspect a pixel to see its rays.")}</p>`}
-  ${choice ? html`<div class="chips">${rowButton(choice, t("facet {0}", Number(f["facet"])))}</div>` : nothing} ${fieldsTable(f)}`;
+function rayTrace(app: App): unknown {
+  if (!app.lab.pixel) return html`<p class="note">${t("Inspect a pixel to see its rays.")}</p>`;
+  return html`${rayTreeDrawing(app)} ${rayTree(app)}`;
 }
 
 /** Runs of pixels in which a facet stays, and those in which it is hidden. */
@@ -400,7 +399,6 @@ function fieldsTable(f: JsonObject): unknown {
 
 function content(app: App, step: Step): unknown {
   const f = step.fields;
-  if (hasOwnRays(app)) return rayTrace(app, f);
   switch (f["step"]) {
     case "window":
       return warnock(app, f);
@@ -431,8 +429,10 @@ function content(app: App, step: Step): unknown {
     case "clip":
     case "visible":
       return weilerAtherton(app, step);
-    default:
-      return fieldsTable(f);
+    default: {
+      const choice = choiceOf(app, f["facet"]);
+      return html`${choice ? html`<div class="chips">${rowButton(choice, t("facet {0}", Number(f["facet"])))}</div>` : nothing} ${fieldsTable(f)}`;
+    }
   }
 }
 
@@ -493,6 +493,6 @@ export function structure(app: App): TemplateResult {
     ${typeof parent === "number"
       ? html`<p class="note"><button type="button" class="link" @click=${() => goTo(app, parent)}>${t("follows from step {0}", parent)}</button></p>`
       : nothing}
-    ${chosenWords(app)} ${step ? content(app, step) : nothing} ${step ? wholeDrawing(app) : nothing}
+    ${chosenWords(app)} ${step && hasOwnRays(app) ? rayTrace(app) : nothing} ${step ? content(app, step) : nothing} ${step ? wholeDrawing(app) : nothing}
   </section>`;
 }

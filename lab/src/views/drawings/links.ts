@@ -111,7 +111,7 @@ export function links(nodes: LinkedNode[], current: number | null): Links {
     return svg`<g class=${style} data-facet=${String(look.facet ?? "")} data-step=${String(look.at ?? "")}><title>${look.title}</title>
       ${hidden ? svg`<path class="more" d=${`M${short(x)} ${y}l-7 ${LEVEL - 17}h14z`} />` : nothing}
       <circle cx=${short(x)} cy=${y} r=${short(radius)} />
-      <text class="name" x=${short(x)} y=${y + 3.5} text-anchor="middle">${look.text}</text>
+      <text class=${look.text.length > 4 ? "name long" : "name"} x=${short(x)} y=${y + 3.5} text-anchor="middle">${look.text}</text>
       ${look.below && !hidden ? svg`<text class="below" x=${short(x)} y=${y + radius + 11} text-anchor="middle">${look.below}</text>` : nothing}</g>`;
   };
   const drawn = nodes.filter(isDrawn);

@@ -64,7 +64,7 @@ export function edgesDrawing(app: App, table: JsonObject, line: JsonObject | nul
   return sheet(app, {
     name: t("Drawing of the edges"),
     height: HEIGHT,
-    content: svg`<g class="edges">${rest}${isSwept ? svg`<path class="scan" d="M0 ${short(y)}H${WIDTH}" />` : nothing}
+    content: svg`<g class=${active.size > 60 ? "edges many" : "edges"}>${rest}${isSwept ? svg`<path class="scan" d="M0 ${short(y)}H${WIDTH}" />` : nothing}
       ${edges.filter((e) => active.has(e.key)).map(one("active"))}${spans}</g>`,
     legend: isSwept
       ? [
